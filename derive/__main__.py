@@ -1,0 +1,55 @@
+"""`python -m derive`: write generated/, or check that it is fresh, or report what each pass saved."""
+
+import argparse
+import sys
+import time
+from importlib.util import find_spec
+from pathlib import Path
+
+REMEDY = "python -m derive"
+
+
+def target() -> Path:
+    """The folder that is written: generated/ beside this package, or where the installed one is."""
+    beside = Path(__file__).resolve().parent.parent / "generated"
+    if beside.is_dir() and Path(__file__).resolve().parent.name == "derive":
+        return beside
+    spec = find_spec("desaxe.generated")
+    return Path(spec.origin).parent if spec and spec.origin else beside
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command; 1 where --check finds a difference."""
+    parser = argparse.ArgumentParser(prog="python -m derive", description=__doc__)
+    parser.add_argument("--check", action="store_true", help="build in memory, compare, exit 1 on a difference")
+    parser.add_argument("--report", action="store_true", help="operations before and after each pass, per quantity")
+    parser.add_argument("-o", "--output", type=Path, help="another folder than generated/")
+    options = parser.parse_args(arguments)
+    folder = options.output or target()
+
+    started = time.perf_counter()
+    print("deriving from the loop closure ...", file=sys.stderr, flush=True)
+    from .build import build
+    from .report import report
+    from .write import differences, render, write
+
+    derivation = build()
+    files = render(derivation)
+    lines = len(derivation.program.lines)
+    seconds = time.perf_counter() - started
+    print(f"derived {len(derivation.names)} names in {lines} lines, {seconds:.1f} s", file=sys.stderr)
+    if options.report:
+        print(report(derivation))
+        return 0
+    if options.check:
+        found = differences(files, folder)
+        sys.stdout.write("".join(found))
+        print(f"{folder.name}/ is {'stale: run ' + REMEDY if found else 'fresh'}")
+        return 1 if found else 0
+    changed = write(files, folder)
+    print(f"wrote {', '.join(changed)}" if changed else f"{folder.name}/ was fresh: nothing written")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,75 @@
+"""From the loop closure to the frozen Programs, in order."""
+
+from typing import NamedTuple
+
+from desaxe.compiler.passes.number import number_values
+from desaxe.compiler.passes.slicing import drop_unused
+from desaxe.compiler.program import Program, validate
+
+from .freeze import freeze
+from .motion import state_sheet
+from .quantities import FACTS, QUANTITIES, SECOND_ORDER, build_sheet
+from .sheet import PARAMETERS, Sheet, derivative_name, symbol
+
+INPUTS = (*PARAMETERS, "branch")
+
+
+class Derivation(NamedTuple):
+    """What is written: the law's program, the state's lines, and the public names."""
+
+    program: Program
+    state: Program
+    names: tuple[str, ...]
+
+
+def public_names() -> tuple[str, ...]:
+    """Every name that can be asked for: quantities, sensitivities, facts."""
+    first = [derivative_name(q, p) for q in QUANTITIES for p in PARAMETERS]
+    second = [
+        derivative_name(derivative_name(q, p), t)
+        for q in SECOND_ORDER
+        for i, p in enumerate(PARAMETERS)
+        for t in PARAMETERS[i:]
+    ]
+    return (*QUANTITIES, *FACTS, *first, *second)
+
+
+def build() -> Derivation:
+    """Derive everything."""
+    sheet = build_sheet()
+    for name in public_names():
+        _derive(sheet, name)
+    state = state_sheet()
+    motion = tuple(name for name in state.equations if sheet.equation(name) is not None)
+    program = freeze(sheet, INPUTS, (*public_names(), *motion))
+    frozen = freeze(state, ("omega", "alpha"), motion)
+    return Derivation(_finished(program), _finished(frozen), public_names())
+
+
+def _derive(sheet: Sheet, name: str) -> None:
+    """Make the equation of a public name."""
+    base, _, wrt = name.partition("_wrt_")
+    so_far = base
+    for parameter in wrt.split("_") if wrt else ():
+        value = sheet.derivative(so_far, parameter)
+        so_far = derivative_name(so_far, parameter)
+        if value.is_number and so_far not in sheet.equations:
+            _define_constant(sheet, so_far, base, value)
+
+
+def _define_constant(sheet: Sheet, name: str, base: str, value: object) -> None:
+    """A derivative that is 0: NaN all the same where there is no mechanism or no motion."""
+    if value != 0:
+        raise ValueError(f"{name} is the constant {value}")
+    needs = set(sheet.ordered((base,)))
+    still = "no_effect_on_rod" if "D" in needs else "no_effect_on_motion"
+    equation = sheet.equation(base)
+    assert equation is not None and equation.unit is not None
+    unit = equation.unit
+    for parameter in name.partition("_wrt_")[2].split("_"):
+        unit = unit.over(parameter)
+    sheet.define(name, symbol(still), unit=unit, meaning=f"0: {base} does not depend on it", rigid=True)
+
+
+def _finished(program: Program) -> Program:
+    return validate(drop_unused(number_values(program)))

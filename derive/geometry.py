@@ -1,0 +1,63 @@
+"""Partial derivatives of the rod angle phi and the slider position Y, of any order that is needed.
+
+Y = AB cos(theta) + branch S is the solved loop. Lengths are differentiated first, theta last (see
+`rod`).
+"""
+
+import sympy as sp
+
+from .loop import AB, BC, ec, slider, solved
+from .rod import UNITS, RodFunction, read_rod_function
+from .sheet import Equation, Sheet
+from .stable import OFFSET, TRIGONOMETRY, cos_theta, crank_ratio, in_theta, recollected
+from .units import LENGTH
+
+POSITION = solved()[slider].subs(TRIGONOMETRY)
+LENGTHS = {"ec": ec, "AB": AB, "BC": BC}
+BASES = {"phi": (RodFunction("phi").symbol, UNITS["phi"]), "Y": (POSITION, LENGTH)}
+
+
+def resolve_geometry(sheet: Sheet, name: str) -> Equation | None:
+    """The equation of a derivative of phi or Y by theta and lengths."""
+    base, _, wrt = name.partition("_wrt_")
+    parameters = wrt.split("_")
+    if base not in BASES or any(p not in (*LENGTHS, "theta") for p in parameters):
+        return None
+    expression, unit = BASES[base]
+    for parameter in parameters:
+        unit = unit.over(parameter)
+    lengths, turns = [p for p in parameters if p != "theta"], parameters.count("theta")
+    if base == "phi" and not lengths:
+        expression = crank_ratio * cos_theta if turns == 1 else recollected(turns)
+    else:
+        for length in lengths:
+            expression = _by_length(expression, length)
+        for _ in range(turns):
+            expression = _by_theta(expression)
+        expression = sp.factor_terms(expression)
+    return Equation(expression, unit, f"derivative of {base} by {', '.join(parameters)}")
+
+
+def _rod_functions(expression: sp.Expr) -> list[tuple[sp.Symbol, RodFunction]]:
+    """The rod functions in an expression, in the order of their names."""
+    symbols = sorted(expression.free_symbols, key=lambda s: s.name)
+    return [(s, rod) for s in symbols if (rod := read_rod_function(s.name)) is not None]
+
+
+def _by_length(expression: sp.Expr, name: str) -> sp.Expr:
+    """The derivative by a length, through u and BC where the rod's functions depend on it."""
+    length = LENGTHS[name]
+    result = expression.diff(length)
+    for s, rod in _rod_functions(expression):
+        rate = rod.with_respect_to("u").symbol * OFFSET.diff(length)
+        rate += rod.with_respect_to("BC").symbol * BC.diff(length)
+        result += expression.diff(s) * rate
+    return sp.expand(result)
+
+
+def _by_theta(expression: sp.Expr) -> sp.Expr:
+    """The derivative by theta at fixed lengths."""
+    result = in_theta(expression)
+    for s, rod in _rod_functions(expression):
+        result += expression.diff(s) * rod._replace(turns=rod.turns + 1).symbol
+    return sp.expand(result)

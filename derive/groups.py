@@ -1,0 +1,52 @@
+"""The kernels that are committed: which outputs each of them has."""
+
+from typing import NamedTuple
+
+from .quantities import SECOND_ORDER
+from .sheet import PARAMETERS, derivative_name
+
+
+class Group(NamedTuple):
+    """A kernel module of generated/."""
+
+    name: str
+    what: str
+    outputs: tuple[str, ...]
+
+
+LENGTHS = PARAMETERS[:4]
+KINEMATICS = ("Y", "V_C", "a_C")
+ROD_ANGLES = ("phi", "delta", "transmission_angle", "pressure_angle")
+ROD_RATES = ("omega_BC", "alpha_BC")
+
+
+def first(name: str) -> tuple[str, ...]:
+    """A quantity's first sensitivities: a position has none by the motion."""
+    parameters = PARAMETERS if name in ("V_C", "a_C", *ROD_RATES) else LENGTHS
+    return tuple(derivative_name(name, p) for p in parameters)
+
+
+def second(name: str) -> tuple[str, ...]:
+    """A quantity's second sensitivities."""
+    pairs = [(p, q) for i, p in enumerate(PARAMETERS) for q in PARAMETERS[i:]]
+    return tuple(derivative_name(derivative_name(name, p), q) for p, q in pairs)
+
+
+GROUPS = (
+    Group("position", "position of the slider and angles of the rod", ("Y", "s", *ROD_ANGLES, "margin", "status")),
+    Group("motion", "position, velocity and acceleration of the slider", KINEMATICS),
+    Group(
+        "sensitivities",
+        "position, velocity and acceleration of the slider with all first sensitivities",
+        (*KINEMATICS, *(name for quantity in KINEMATICS for name in first(quantity))),
+    ),
+    Group(
+        "rod",
+        "angles, speed and acceleration of the rod with all their sensitivities",
+        (
+            *(*ROD_ANGLES, *ROD_RATES),
+            *(name for quantity in (*ROD_ANGLES, *ROD_RATES) for name in first(quantity)),
+            *(name for quantity in ROD_RATES if quantity in SECOND_ORDER for name in second(quantity)),
+        ),
+    ),
+)

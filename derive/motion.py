@@ -1,0 +1,99 @@
+"""How the crank moves, and time derivatives along that motion.
+
+Paper A's law: omega(theta)^2 = omega0^2 + 2 alpha theta, turning the way omega0 points (forwards
+where it is 0). Or a given state: omega and alpha at this instant. Either way d(theta)/dt = omega,
+d(omega)/dt = alpha and alpha is constant, so a time derivative is the same expression; only how
+omega depends on the parameters differs. The state therefore replaces these equations and no others.
+
+Only omega^2 enters most quantities: it is differentiated itself, so that they have their limits at
+rest. At rest under the law (omega0 = alpha = 0) omega is omega0, and has that limit's derivatives.
+"""
+
+from itertools import combinations_with_replacement
+
+import sympy as sp
+
+from .loop import theta
+from .sheet import Sheet, derivative_name, symbol
+from .stable import eq, le, lt, select
+from .units import ANGULAR_SPEED, NONE, Unit
+
+omega, omega2, omega0, alpha, turn, nan = map(symbol, ("omega", "omega2", "omega0", "alpha", "turn", "nan"))
+MOVING = ("theta", "omega0", "alpha")
+SQUARE_RATES = (("theta",), ("omega0",), ("alpha",), ("theta", "alpha"), ("omega0", "omega0"))
+UNITS = {"omega": ANGULAR_SPEED, "omega2": Unit(0, -2, 2)}
+LAW = omega0**2 + 2 * alpha * theta  # = omega^2, paper A, listing
+
+
+def time_derivative(expression: sp.Expr, by_theta: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
+    """d/dt of an expression in omega, alpha and symbols that turn with the crank (`by_theta`)."""
+    turning = (expression.diff(s) * rate * omega for s, rate in by_theta.items())
+    return sp.expand(expression.diff(omega) * alpha + sp.Add(*turning))
+
+
+def define_law(sheet: Sheet) -> None:
+    """omega, omega^2 and their derivatives under paper A's law."""
+    constant_speed = eq(alpha, 0)
+    sheet.define("omega2_law", LAW, unit=UNITS["omega2"], meaning="omega^2 by the law", source="A listing")
+    square = select(lt(symbol("omega2_law"), 0), nan, symbol("omega2_law"))
+    sheet.define(
+        "omega2",
+        select(constant_speed, omega0**2, square),
+        unit=UNITS["omega2"],
+        meaning="square of the crank's speed, NaN where it has stalled",
+        differentiate=LAW,
+    )
+    sheet.define("turn", select(le(0, omega0), 1, -1), unit=NONE, meaning="way of turning", rigid=True)
+    sheet.define(
+        "omega",
+        select(constant_speed, omega0, turn * sp.sqrt(omega2)),
+        unit=ANGULAR_SPEED,
+        meaning="angular speed of the crank",
+        source="A listing",
+    )
+    for parameters, value in {**_omega_rates(), **_omega_second_rates()}.items():
+        _define_rate(sheet, "omega", parameters, value)
+    for parameters in SQUARE_RATES:
+        _define_rate(sheet, "omega2", parameters, LAW.diff(*map(symbol, parameters)))
+
+
+def _define_rate(sheet: Sheet, name: str, parameters: tuple[str, ...], value: sp.Expr | int) -> None:
+    unit, meaning = UNITS[name], f"derivative of {name} by {', '.join(parameters)}"
+    for parameter in parameters:
+        name, unit = derivative_name(name, parameter), unit.over(parameter)
+    sheet.define(name, value, unit=unit, meaning=meaning)
+
+
+def _omega_rates() -> dict[tuple[str, ...], sp.Expr]:
+    """From 2 omega d(omega) = d(omega^2), with the limits at rest."""
+    limits = {"theta": (eq(alpha, 0), 0), "omega0": (eq(omega, omega0), 1), "alpha": (eq(theta, 0), 0)}
+    return {(p,): select(*limit, LAW.diff(symbol(p)) / (2 * omega)) for p, limit in limits.items()}
+
+
+def _omega_second_rates() -> dict[tuple[str, ...], sp.Expr]:
+    """From omega d2(omega) = d2(omega^2)/2 - d(omega) d(omega), over omega^3."""
+    found = {}
+    for p, q in combinations_with_replacement(MOVING, 2):
+        first, second = symbol(p), symbol(q)
+        numerator = LAW.diff(first, second) / 2 * LAW - LAW.diff(first) * LAW.diff(second) / 4
+        value = sp.factor(numerator) / (omega2 * omega)
+        # By theta and by omega0 these are 0 for every alpha = 0, at rest too.
+        found[p, q] = value if "alpha" in (p, q) else select(eq(alpha, 0), 0, value)
+    return found
+
+
+def state_sheet() -> Sheet:
+    """The equations that a given state (omega, alpha) puts in place of the law's.
+
+    omega stands in the place of omega0: a derivative by it carries omega0's name.
+    """
+    sheet = Sheet(())
+    sheet.define("omega2", omega**2, unit=UNITS["omega2"], meaning="square of the crank's speed")
+    sheet.define("turn", select(le(0, omega), 1, -1), unit=NONE, meaning="way of turning")
+    for parameters in (*_omega_rates(), *_omega_second_rates()):
+        _define_rate(sheet, "omega", parameters, int(parameters == ("omega0",)))
+    for parameters in SQUARE_RATES:
+        by_omega = set(parameters) == {"omega0"}
+        value = (omega**2).diff(*(omega for _ in parameters)) if by_omega else 0
+        _define_rate(sheet, "omega2", parameters, value)
+    return sheet

@@ -1,0 +1,196 @@
+"""Every quantity: its equation, its unit, what it means and where the papers have it.
+
+To add one, add its equation here (or a room of its own for a family of them) and its name to
+`QUANTITIES`; its sensitivities, catalogue row and tests of freshness and accuracy follow.
+"""
+
+import sympy as sp
+
+from .geometry import POSITION, resolve_geometry
+from .loop import AB, BC, branch, ec, r, theta, u
+from .motion import alpha, define_law, omega, omega2, time_derivative, turn
+from .rod import resolve_rod
+from .sheet import Sheet, symbol
+from .stable import (
+    CRANK_PIN,
+    OFFSET,
+    D,
+    E,
+    W,
+    abs_sin,
+    absolute,
+    atan2,
+    copysign,
+    cos_theta,
+    ec_side,
+    eps,
+    eq,
+    le,
+    lt,
+    margin_side,
+    reach_side,
+    select,
+    side,
+    sin_theta,
+    two_sum_error,
+)
+from .units import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    JERK,
+    LENGTH,
+    NONE,
+    SPEED,
+    Unit,
+)
+
+QUANTITIES = (
+    "phi", "delta", "Y", "s", "V_B_X", "V_B_Y", "V_B", "a_B_X", "a_B_Y", "a_B", "omega", "omega_BC",
+    "alpha_BC", "V_C", "a_C", "j_C", "transmission_angle", "pressure_angle",
+)  # fmt: skip
+SECOND_ORDER = ("Y", "V_C", "a_C", "omega_BC", "alpha_BC")
+FACTS = ("status", "margin")
+
+S, phi = symbol("S"), symbol("phi")
+
+
+def build_sheet() -> Sheet:
+    """The whole sheet under paper A's law of motion."""
+    sheet = Sheet((resolve_rod, resolve_geometry))
+    _define_crank(sheet)
+    _define_rod(sheet)
+    define_law(sheet)
+    _define_angles(sheet)
+    _define_crank_motion(sheet)
+    _define_slider_motion(sheet)
+    _define_facts(sheet)
+    return sheet
+
+
+def _exact_sum(sheet: Sheet, name: str, first: sp.Expr, second: sp.Expr, meaning: str) -> None:
+    """name = BC + first + second for lengths first and second, rounded once: the errors are added last."""
+    part = sheet.define(f"{name}_part", BC + first)
+    total = sheet.define(f"{name}_total", part + second)
+    error = sheet.define(f"{name}_error", two_sum_error(BC, first) + two_sum_error(part, second))
+    sheet.define(name, total + error, unit=LENGTH, meaning=meaning)
+
+
+def _define_crank(sheet: Sheet) -> None:
+    sheet.define("sin_theta", sp.sin(theta), unit=NONE, meaning="sine of the crank angle")
+    sheet.define("cos_theta", sp.cos(theta), unit=NONE, meaning="cosine of the crank angle")
+    sheet.define("side", copysign(1, sin_theta), unit=NONE, meaning="sigma: which side the crank is on")
+    sheet.define("abs_sin", absolute(sin_theta), unit=NONE, meaning="|sin(theta)|")
+    sheet.define("eps", cos_theta**2 / (1 + abs_sin), unit=NONE, meaning="1 - |sin(theta)| without cancellation")
+
+
+def _define_rod(sheet: Sheet) -> None:
+    """E, W and their root in the stable variables; the ratios that everything else is made of."""
+    sheet.define("ec_side", side * ec, unit=LENGTH, meaning="eccentricity towards the crank's side")
+    _exact_sum(sheet, "margin_side", -AB, -ec_side, "m: BC - AB - sigma ec")
+    _exact_sum(sheet, "reach_side", AB, ec_side, "n: BC + AB + sigma ec")
+    near_quarter = sheet.define("near_quarter", le(sp.Float(0.5), abs_sin))
+    low, high = sheet.define("BC_less_ec", BC - ec_side), sheet.define("BC_plus_ec", BC + ec_side)
+    forms = {
+        E: (margin_side + AB * eps, low - AB * abs_sin, "BC - sigma u"),
+        W: (reach_side - AB * eps, high + AB * abs_sin, "BC + sigma u"),
+    }
+    for name, (near, far, meaning) in forms.items():
+        sheet.define(name.name, select(near_quarter, near, far), unit=LENGTH, meaning=meaning)
+    sheet.define("D", E * W, unit=Unit(m=2), meaning="BC^2 - u^2", source="B (7)")
+    sheet.define("S", sp.sqrt(D), unit=LENGTH, meaning="BC cos(phi), the rod's height", source="B (7)")
+    sheet.define("inv_S", 1 / S, unit=Unit(m=-1), meaning="1 / S")
+    sheet.define("u", OFFSET, unit=LENGTH, meaning="BC sin(phi), crank pin from the slider axis", source="A (6)")
+    sheet.define("crank_ratio", AB * r, unit=NONE, meaning="AB / S")
+    sheet.define("ec_ratio", ec_side * r, unit=NONE, meaning="sigma ec / S")
+    sheet.define("margin_ratio", (margin_side * r) * symbol("reach_ratio"), unit=NONE, meaning="m n / S^2")
+    sheet.define("reach_ratio", reach_side * r, unit=NONE, meaning="n / S")
+    sheet.define("tan_phi", u * r, unit=NONE, meaning="tan(phi) = u / S")
+    sheet.define("sec_phi", BC * r, unit=NONE, meaning="1 / cos(phi) = BC / S")
+
+
+def _define_angles(sheet: Sheet) -> None:
+    sheet.define("phi", atan2(u, S), unit=ANGLE, meaning="angle of the rod to the slider axis", source="A (6)")
+    across = sheet.define("side_u", copysign(1, u), unit=NONE, meaning="sign of u", rigid=True)
+    sheet.define(
+        "delta", atan2(S, u), unit=ANGLE, meaning="angle of the rod across the slider axis", source="A (5)",
+        differentiate=-phi,
+    )  # fmt: skip
+    sheet.define(
+        "transmission_angle", atan2(S, absolute(u)), unit=ANGLE, differentiate=-across * phi,
+        meaning="angle between the rod and the normal of the slider axis, at most pi/2",
+    )  # fmt: skip
+    sheet.define(
+        "pressure_angle", atan2(absolute(u), S), unit=ANGLE, differentiate=across * phi,
+        meaning="angle between the rod and the slider axis, |phi|",
+    )  # fmt: skip
+
+
+def _define_crank_motion(sheet: Sheet) -> None:
+    """Velocity and acceleration of the crank pin B, from its position by time derivatives."""
+    by_theta = {sin_theta: cos_theta, cos_theta: -sin_theta}
+    for axis, position in zip("XY", CRANK_PIN, strict=True):
+        velocity = time_derivative(position, by_theta)
+        acceleration = time_derivative(velocity, by_theta).subs(omega**2, omega2)
+        sheet.define(
+            f"V_B_{axis}", velocity, unit=SPEED, meaning=f"velocity of the crank pin along {axis}", source="A (2)"
+        )
+        sheet.define(
+            f"a_B_{axis}", sp.factor_terms(acceleration), unit=ACCELERATION, source="A (4)",
+            meaning=f"acceleration of the crank pin along {axis}",
+        )  # fmt: skip
+    sheet.define(
+        "V_B", AB * absolute(omega), unit=SPEED, meaning="speed of the crank pin", source="B (2b)",
+        differentiate=AB * turn * omega,
+    )  # fmt: skip
+    # d|a_B| is AB times omega^2 and alpha in the shares they have in it; at rest it has those of alpha = 0.
+    pull = sheet.define("crank_pull", sp.sqrt(omega2**2 + alpha**2))
+    share = sheet.define("share_omega2", select(eq(pull, 0), 1, omega2 / pull), rigid=True)
+    rest = sheet.define("share_alpha", select(eq(pull, 0), 0, alpha / pull), rigid=True)
+    sheet.define(
+        "a_B", AB * pull, unit=ACCELERATION, meaning="magnitude of the crank pin's acceleration", source="B (3)",
+        differentiate=AB * (share * omega2 + rest * alpha),
+    )  # fmt: skip
+
+
+def _define_slider_motion(sheet: Sheet) -> None:
+    """Rates of the slider and the rod: time derivatives of Y and phi along the motion."""
+    sheet.define("Y", POSITION, unit=LENGTH, meaning="slider position along the slider axis", source="A (7)")
+    reach = sheet.define("outer_reach", sp.sqrt((AB + BC - ec) * (AB + BC + ec)))
+    sheet.define(
+        "s", reach - branch * symbol("Y"), unit=LENGTH, meaning="slider's distance from its outer dead centre",
+        source="B (9)",
+    )  # fmt: skip
+    rows = (
+        ("V_C", "Y", 1, SPEED, "velocity of the slider", "A (11)"),
+        ("a_C", "Y", 2, ACCELERATION, "acceleration of the slider", "A (19)"),
+        ("j_C", "Y", 3, JERK, "jerk of the slider", ""),
+        ("omega_BC", "phi", 1, ANGULAR_SPEED, "rate of phi, the rod's angular speed", "A (10)"),
+        ("alpha_BC", "phi", 2, ANGULAR_ACCELERATION, "rate of omega_BC", "A (14)"),
+    )
+    for name, base, order, unit, meaning, source in rows:
+        sheet.define(name, _rate(base, order), unit=unit, meaning=meaning, source=source)
+
+
+def _rate(base: str, order: int) -> sp.Expr:
+    """The `order`-th time derivative of phi or Y."""
+    by_theta = [symbol(base)] + [symbol(f"{base}_wrt" + "_theta" * n) for n in range(1, order + 1)]
+    expression: sp.Expr = by_theta[0]
+    for _ in range(order):
+        expression = time_derivative(expression, dict(zip(by_theta, by_theta[1:], strict=False)))
+    return sp.factor_terms(expression.subs({omega**3: omega * omega2, omega**2: omega2}))
+
+
+def _define_facts(sheet: Sheet) -> None:
+    """Margin and status; NaN compares false, so what cannot be computed is not assembled."""
+    _exact_sum(sheet, "margin", -AB, -sheet.define("abs_ec", absolute(ec)), "BC - AB - |ec|, rounded once")
+    stalled = select(lt(symbol("omega2_law"), 0), 3, 0)
+    assembled = select(lt(0, D), stalled, select(eq(D, 0), 2, 1))
+    sheet.define(
+        "status", assembled, unit=NONE,
+        meaning="0 ok, 1 cannot be assembled here, 2 change point, 3 stalled, 4 bad input",
+    )  # fmt: skip
+    # A derivative that is 0 wherever there is anything to differentiate.
+    sheet.define("no_effect_on_rod", select(le(0, D), 0, sp.Symbol("nan", real=True)))
+    sheet.define("no_effect_on_motion", select(eq(omega2, omega2), 0, sp.Symbol("nan", real=True)))

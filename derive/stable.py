@@ -1,0 +1,122 @@
+"""Variables in which nothing cancels, and recollection in them.
+
+Next to the change point BC = AB + |ec| the textbook form D = BC^2 - u^2 loses every digit, and
+its derivatives lose them even if D itself is exact: they are differences of large terms. Two
+steps repair that, both exact algebra.
+
+1. With sigma = sign(sin theta) ("side"), a = |sin theta| and eps = 1 - a = cos^2/(1 + a):
+   D = E W,  E = BC - sigma u = m + AB eps,  W = BC + sigma u = n - AB eps, where
+   m = BC - AB - sigma ec (the margin on this side) and n = BC + AB + sigma ec are exact sums.
+   Away from the quarter (a < 1/2) E and W are summed from BC -+ sigma ec, which is exact there
+   when |ec| is near BC.
+2. The crank-angle derivatives of the rod angle are rational in these; their numerators, written as
+   polynomials in m n, sigma ec and AB, have coefficients that factor into a and eps, and the terms
+   that cancelled are gone. `recollected` does that, and proves its result against the chain rule.
+
+Everything is divided by powers of S = sqrt(D), so that only ratios of lengths are multiplied.
+Source: DESIGN section 5; paper A (5), (6), (10), (14); paper B (12), (18), (29).
+"""
+
+from functools import cache
+
+import sympy as sp
+
+from .loop import AB, CRANK, r, rod_partials, solved, theta, u
+
+sin_theta, cos_theta, side, abs_sin, eps = sp.symbols("sin_theta cos_theta side abs_sin eps", real=True)
+ec_side, margin_side, reach_side = sp.symbols("ec_side margin_side reach_side", real=True)
+E, W, D = sp.symbols("E W D", real=True)
+crank_ratio, margin_ratio, ec_ratio = sp.symbols("crank_ratio margin_ratio ec_ratio", real=True)
+tan_phi, sec_phi = sp.symbols("tan_phi sec_phi", real=True)
+
+TRIGONOMETRY = {sp.sin(theta): sin_theta, sp.cos(theta): cos_theta}
+CRANK_PIN = CRANK.subs(TRIGONOMETRY)
+OFFSET = solved()[u].subs(TRIGONOMETRY)  # u, from the solved loop
+
+select, lt, le, eq, both = (sp.Function(name) for name in ("select", "lt", "le", "eq", "and"))
+copysign, atan2, absolute = sp.Function("copysign"), sp.Function("atan2"), sp.Function("abs")
+two_sum_error = sp.Function("two_sum_error")
+
+
+def phi_by_theta(order: int) -> sp.Symbol:
+    """The symbol of the `order`-th derivative of the rod angle with respect to the crank angle."""
+    return sp.Symbol("phi" + "_wrt" * bool(order) + "_theta" * order, real=True)
+
+
+def in_theta(expression: sp.Expr) -> sp.Expr:
+    """d/dtheta at fixed lengths, by the chain rule on sin, cos, u, 1/S and the rod angle's derivatives."""
+    rules = {
+        sin_theta: cos_theta,
+        cos_theta: -sin_theta,
+        u: OFFSET.diff(sin_theta) * cos_theta,
+        r: inverse_rate(u) * OFFSET.diff(sin_theta) * cos_theta,
+        **{phi_by_theta(n): phi_by_theta(n + 1) for n in range(1, 4)},
+    }
+    return sp.Add(*(expression.diff(symbol) * rate for symbol, rate in rules.items()))
+
+
+def inverse_rate(parameter: sp.Symbol) -> sp.Expr:
+    """d(1/S)/d(parameter)."""
+    return -(r**2) * rod_partials()["S", parameter]
+
+
+@cache
+def chain_rule_form(order: int) -> sp.Expr:
+    """The textbook form of the `order`-th derivative of phi by theta, in sin, cos, u, 1/S, AB."""
+    if order == 1:
+        return rod_partials()["phi", u] * OFFSET.diff(sin_theta) * cos_theta
+    return sp.expand(in_theta(chain_rule_form(order - 1)))
+
+
+@cache
+def recollected(order: int) -> sp.Expr:
+    """The same derivative in crank_ratio, margin_ratio, ec_ratio, |sin| and eps: nothing cancels."""
+    polynomial = _numerator(order)
+    common = cos_theta if order % 2 else side
+    inner = sp.Poly(polynomial, margin_ratio)
+    nested = sp.Integer(0)
+    for coefficient in inner.all_coeffs():  # Horner in the margin
+        nested = nested * margin_ratio + _by_eccentricity(coefficient)
+    result = common * crank_ratio * nested
+    _prove(order, result)
+    return result
+
+
+def _numerator(order: int) -> sp.Expr:
+    """The numerator over S^(2 order - 1), divided by AB and by cos (odd) or side (even)."""
+    squared = margin_ratio + 2 * (crank_ratio + ec_ratio) * crank_ratio * eps - (crank_ratio * eps) ** 2
+    across = side * (ec_ratio + crank_ratio * (1 - eps))
+    textbook = sp.expand(chain_rule_form(order) / r ** (2 * order - 1))
+    in_ratios = textbook.subs({r: 1 / sp.sqrt(squared), u: across, AB: crank_ratio, sin_theta: side * (1 - eps)})
+    divided = sp.expand(in_ratios / (crank_ratio * (cos_theta if order % 2 else side)))
+    even = sp.expand(divided.subs(cos_theta, sp.sqrt(eps * (2 - eps))))
+    return sp.expand(even.replace(lambda x: x.is_Pow and x.base == side, lambda x: side ** (x.exp % 2)))
+
+
+def _by_eccentricity(coefficient: sp.Expr) -> sp.Expr:
+    """A coefficient of the margin, Horner in ec_ratio, each part factored into |sin| and eps."""
+    nested = sp.Integer(0)
+    for part in sp.Poly(coefficient, ec_ratio).all_coeffs():
+        nested = nested * ec_ratio + _factored(part)
+    return nested
+
+
+def _factored(part: sp.Expr) -> sp.Expr:
+    """The factors of a polynomial in eps; 1 - eps is written |sin|."""
+    constant, factors = sp.factor_list(part, eps, crank_ratio)
+    result = sp.Mul(constant)
+    for factor, power in factors:
+        if sp.expand(factor - (eps - 1)) == 0:
+            result *= (-abs_sin) ** power
+        elif sp.expand(factor - (eps - 2)) == 0:
+            result *= (-(1 + abs_sin)) ** power
+        else:
+            result *= sp.horner(factor, eps) ** power
+    return result
+
+
+def _prove(order: int, result: sp.Expr) -> None:
+    """The recollected form equals the chain rule's, as polynomials, or the derivation stops."""
+    textbook = _numerator(order) * crank_ratio * (cos_theta if order % 2 else side)
+    if sp.expand(result.subs(abs_sin, 1 - eps) - textbook) != 0:
+        raise ArithmeticError(f"the recollected derivative of phi of order {order} is not the chain rule's")

@@ -1,0 +1,58 @@
+"""Offset (eccentric) slider-crank: exact kinematics and sensitivities, derived and compiled.
+
+    import desaxe as dx
+
+    dx.evaluate("a_C", theta=1.047, ec=0.0, AB=0.125, BC=0.350, omega0=157.08)   # -> float
+
+SI units and radians. Nothing is imported until it is used: one point needs only `math`.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from . import plot as plot
+    from ._evaluate import evaluate as evaluate
+    from ._feasibility import feasibility as feasibility
+    from ._grid import grid as grid
+    from ._inverse import inverse as inverse
+    from ._peak import peak as peak
+    from ._scene import scene as scene
+    from .catalogue import quantities as quantities
+
+# Public name -> the room it lives in; `equation` is SymPy's and comes with the extra `derive`.
+_ROOMS = {
+    "evaluate": "desaxe._evaluate",
+    "grid": "desaxe._grid",
+    "peak": "desaxe._peak",
+    "inverse": "desaxe._inverse",
+    "feasibility": "desaxe._feasibility",
+    "scene": "desaxe._scene",
+    "quantities": "desaxe.catalogue",
+    "equation": "desaxe.derive.equation",
+}
+_MODULES = ("plot",)
+
+__all__ = [*_ROOMS, *_MODULES]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first used."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("desaxe")
+    if name in _MODULES:
+        return import_module(f"{__name__}.{name}")
+    if name not in _ROOMS:
+        raise AttributeError(f"module 'desaxe' has no attribute {name!r}")
+    from .extras import needed
+
+    with needed(name):
+        value = getattr(import_module(_ROOMS[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__, "__version__"])

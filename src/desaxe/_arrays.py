@@ -1,0 +1,141 @@
+"""`evaluate` over arrays: broadcast, run in blocks, put the answers where they are wanted."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._evaluate import Request, as_number
+from ._kernels import KernelKey, is_ready, kernel_for, key_of, point_for
+from ._program import program_of
+from ._threads import run_in_blocks
+from .inputs import INPUTS
+
+Array = NDArray[Any]
+
+# Below this many points plain Python ends before a kernel has been compiled.
+BREAK_EVEN = 2_000
+
+
+def evaluate_arrays(wanted: Request, given: Mapping[str, Any], threads: int | None, out: Any) -> dict[str, Array]:
+    """The answers by the names asked for, in the broadcast shape."""
+    inputs = tuple(name for name in program_of(wanted.names, wanted.state).inputs if name != "branch")
+    arrays = {name: as_array(name, given[name], inputs, wanted.shown) for name in inputs}
+    shape = broadcast_shape(arrays)
+    places = places_for(wanted.shown, shape, out)
+    buffers = {name: _buffer(name, place) for name, place in places.items()}
+    if all(buffer.size for buffer in buffers.values()):
+        scalars = {name: float(a.reshape(-1)[0]) for name, a in arrays.items() if a.size == 1}
+        columns = {name: _column(a, shape) for name, a in arrays.items() if a.size != 1}
+        _fill(wanted, scalars, columns, [b.reshape(-1) for b in buffers.values()], threads)
+    return delivered(places, buffers, out is None)
+
+
+def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]) -> Array:
+    """An input as a float64 array; an error that names it if it is missing, no number or wholly bad."""
+    number = as_number(name, value, inputs, names)
+    if number is not None:
+        return np.float64(number).reshape(())
+    if hasattr(value, "magnitude"):
+        from .units import in_si
+
+        value = in_si(name, value)
+    array = np.asarray(value)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name}: real numbers are wanted, got an array of {array.dtype}")
+    array = array.astype(np.float64, copy=False)
+    if array.size and not _is_good(name, array[(slice(0, 1),) * array.ndim]).any():
+        good = _is_good(name, array)
+        if not good.any():
+            first = array.reshape(-1)[0]
+            raise ValueError(f"{name}: every value is bad, the first is {first}; it must be {INPUTS[name].limit}")
+    return array
+
+
+def _is_good(name: str, array: Array) -> NDArray[np.bool_]:
+    least = INPUTS[name].least
+    good: NDArray[np.bool_] = np.isfinite(array)
+    return good if least is None else good & (array >= least)
+
+
+def broadcast_shape(arrays: Mapping[str, Array]) -> tuple[int, ...]:
+    """The common shape; an error that names every shape where there is none."""
+    try:
+        return np.broadcast_shapes(*(array.shape for array in arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items() if array.ndim)
+        raise ValueError(f"the shapes do not broadcast together: {shapes}") from None
+
+
+def places_for(names: Sequence[str], shape: tuple[int, ...], out: Any) -> dict[str, Array]:
+    """Where the answers go: new arrays, or those of `out`, checked."""
+    if out is None:
+        return {name: np.empty(shape, dtype_of(name)) for name in names}
+    places = dict(out) if isinstance(out, Mapping) else {names[0]: out}
+    if set(places) != set(names):
+        wanted = "a dict with the keys " + ", ".join(names) if len(names) > 1 else f"an array for {names[0]}"
+        raise ValueError(f"out= is {wanted}, got {', '.join(places)}")
+    for name, place in places.items():
+        if not isinstance(place, np.ndarray) or place.shape != shape:
+            got = getattr(place, "shape", type(place).__name__)
+            raise ValueError(f"out= for {name}: an array of shape {shape} is wanted, got {got}")
+        if not np.can_cast(dtype_of(name), place.dtype, "same_kind"):
+            raise TypeError(f"out= for {name}: {place.dtype} cannot hold {dtype_of(name)}")
+        if not place.flags.writeable:
+            raise ValueError(f"out= for {name}: the array is read-only")
+    return {name: places[name] for name in names}
+
+
+def dtype_of(name: str) -> np.dtype[Any]:
+    """int8 for a status, float64 for all else."""
+    return np.dtype(np.int8 if name == "status" else np.float64)
+
+
+def _buffer(name: str, place: Array) -> Array:
+    """The place itself where a kernel can write into it, else an array to be copied from."""
+    direct = place.flags.c_contiguous and place.dtype == dtype_of(name) and place.flags.aligned
+    return place if direct else np.empty(place.shape, dtype_of(name))
+
+
+def delivered(places: Mapping[str, Array], buffers: Mapping[str, Array], fresh: bool) -> dict[str, Array]:
+    """The filled places; a fresh answer without axes is a NumPy scalar, as from a ufunc."""
+    for name, place in places.items():
+        if buffers[name] is not place:
+            np.copyto(place, buffers[name], casting="same_kind")
+    return {name: place[()] if fresh and not place.ndim else place for name, place in places.items()}
+
+
+def _column(array: Array, shape: tuple[int, ...]) -> Array:
+    return np.ascontiguousarray(np.broadcast_to(array, shape)).reshape(-1)
+
+
+def _fill(
+    wanted: Request, scalars: dict[str, float], columns: dict[str, Array], outs: list[Array], threads: int | None
+) -> None:
+    """Fill flat outputs from scalars and flat columns."""
+    key = key_of(wanted, scalars, dict.fromkeys(columns, 0), axes=1)
+    if not columns:
+        for out, value in zip(outs, point_for(key).run(scalars), strict=True):
+            out[...] = value
+    elif outs[0].size < BREAK_EVEN and not is_ready(key):
+        _fill_by_points(key, scalars, columns, outs)
+    else:
+        run_in_blocks(kernel_for(key), {**scalars, **columns}, outs, threads)
+
+
+def _fill_by_points(key: KernelKey, scalars: dict[str, float], columns: dict[str, Array], outs: list[Array]) -> None:
+    """Plain Python, point by point: nobody pays a compilation for a hundred points."""
+    point = point_for(key)
+    good = np.logical_and.reduce([_is_good(name, column) for name, column in columns.items()])
+    for index in range(good.size):
+        if good[index]:
+            here = {name: float(column[index]) for name, column in columns.items()}
+            for out, value in zip(outs, point.run({**scalars, **here}), strict=True):
+                out[index] = value
+        else:
+            for out in outs:
+                out[index] = np.nan if out.dtype.kind == "f" else BAD_INPUT
+
+
+BAD_INPUT = 4

@@ -1,0 +1,132 @@
+"""Kernels by what they compute: compiled once, kept on disk, loaded by the next process.
+
+A kernel is a module of its own in the cache folder, named by a hash of what is asked for and of
+the derivation; numba keeps its machine code beside it. The first compilation happens under a lock,
+so that processes started together do not compile the same kernel into each other's way.
+"""
+
+import hashlib
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from threading import Lock
+from typing import Any, NamedTuple
+
+from . import _cache, _program
+from ._evaluate import Request
+from .compiler.emit_numba import emit_numba
+from .compiler.emit_python import compile_python
+from .compiler.kernel import hoist
+from .compiler.passes.guard import guard_inputs
+from .compiler.passes.pipeline import optimise
+from .compiler.program import Program
+from .inputs import LEAST
+
+# A scalar of 0 for one of these makes whole terms vanish, so it is folded into the kernel.
+STRUCTURAL_ZEROS = ("ec", "alpha")
+
+
+class KernelKey(NamedTuple):
+    """What a kernel is: its outputs, motion, fixed inputs and the axis of every other input."""
+
+    names: tuple[str, ...]
+    state: bool
+    fixed: tuple[tuple[str, float], ...]
+    axis_of: tuple[tuple[str, int], ...]
+    axes: int
+
+
+class CompiledKernel(NamedTuple):
+    """A kernel and the order of its inputs; an input that is a scalar has no axis."""
+
+    function: Callable[..., None]
+    axis_of: tuple[tuple[str, int | None], ...]
+
+    def run(self, values: Mapping[str, Any], outs: Sequence[Any]) -> None:
+        """Fill the outputs."""
+        self.function(*(values[name] for name, _ in self.axis_of), *outs)
+
+
+class PlainPoint(NamedTuple):
+    """The same for one point, in plain Python."""
+
+    function: Callable[..., tuple[Any, ...]]
+    inputs: tuple[str, ...]
+
+    def run(self, values: Mapping[str, float]) -> tuple[Any, ...]:
+        """The outputs."""
+        return self.function(*(values[name] for name in self.inputs))
+
+
+def key_of(wanted: Request, scalars: Mapping[str, float], axis_of: Mapping[str, int], axes: int) -> KernelKey:
+    """The key of a request whose scalars and axes are known."""
+    zeros = [(name, 0.0) for name in STRUCTURAL_ZEROS if scalars.get(name) == 0.0]
+    fixed = (("branch", float(wanted.branch)), *zeros)
+    return KernelKey(wanted.names, wanted.state, fixed, tuple(sorted(axis_of.items())), axes)
+
+
+@cache
+def _cut(key: KernelKey) -> Program:
+    return optimise(_program.program_of(key.names, key.state), dict(key.fixed))[0]
+
+
+@cache
+def point_for(key: KernelKey) -> PlainPoint:
+    """The plain function of a key."""
+    program = _cut(key)
+    return PlainPoint(compile_python(program), program.inputs)
+
+
+_LOADED: dict[KernelKey, CompiledKernel] = {}
+_LOCK = Lock()
+
+
+def is_ready(key: KernelKey) -> bool:
+    """Whether the kernel is in memory already."""
+    return key in _LOADED
+
+
+def kernel_for(key: KernelKey) -> CompiledKernel:
+    """The compiled kernel of a key, from memory, from disk, or compiled now."""
+    found = _LOADED.get(key)
+    if found is None:
+        with _LOCK:
+            found = _LOADED.get(key) or _load(key)
+            _LOADED[key] = found
+    return found
+
+
+def source_of(key: KernelKey, cached: bool = True) -> str:
+    """The text of the kernel's module."""
+    program = _cut(key)
+    axes = dict(key.axis_of)
+    guarded = guard_inputs(program, [name for name in program.inputs if name in axes], LEAST)
+    kernel = hoist(guarded, {name: axes.get(name) for name in program.inputs}, key.axes)
+    fixed = ", ".join(f"{name} = {value:g}" for name, value in key.fixed)
+    motion = "a given state" if key.state else "paper A's law"
+    return emit_numba(kernel, f"desaxe kernel: {', '.join(key.names)}; {motion}; {fixed}.", cached)
+
+
+def _load(key: KernelKey) -> CompiledKernel:
+    inputs = _cut(key).inputs
+    order = tuple((name, dict(key.axis_of).get(name)) for name in inputs)
+    folder = _cache.folder()
+    path = folder.path / f"kernel_{_identity(key)}.py"
+    with _cache.locked(path):
+        if not path.exists():
+            _cache.write(path, source_of(key, folder.lasting))
+        return CompiledKernel(_module_function(path), order)
+
+
+def _identity(key: KernelKey) -> str:
+    return hashlib.sha256(repr((_program.digest(), key)).encode()).hexdigest()[:20]
+
+
+def _module_function(path: Path) -> Callable[..., None]:
+    spec = spec_from_file_location(f"desaxe_{path.stem}", path)
+    assert spec is not None and spec.loader is not None
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    function: Callable[..., None] = module.kernel
+    return function

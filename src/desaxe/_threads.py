@@ -1,0 +1,46 @@
+"""Blocks of the outermost axis, shared by threads; the answer is the same for any number of them."""
+
+import os
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from typing import Any
+
+from ._kernels import CompiledKernel
+
+# A block smaller than this costs more to hand out than to compute.
+LEAST_BLOCK = 20_000
+
+
+def available() -> int:
+    """How many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+@cache
+def _pool(threads: int) -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(threads, thread_name_prefix="desaxe")
+
+
+def run_in_blocks(
+    kernel: CompiledKernel, values: Mapping[str, Any], outs: Sequence[Any], threads: int | None
+) -> None:
+    """Run the kernel over its outermost axis in as many blocks as there are threads."""
+    if threads is not None and threads < 1:
+        raise ValueError(f"threads = {threads}: at least 1")
+    length, size = outs[0].shape[0], outs[0].size
+    count = max(1, min(threads or available(), size // LEAST_BLOCK, length))
+    if count == 1:
+        kernel.run(values, outs)
+        return
+    edges = [length * k // count for k in range(count + 1)]
+    outer = {name for name, axis in kernel.axis_of if axis == 0}
+
+    def block(start: int, stop: int) -> None:
+        part = {name: v[start:stop] if name in outer else v for name, v in values.items()}
+        kernel.run(part, [out[start:stop] for out in outs])
+
+    for done in [_pool(count).submit(block, a, b) for a, b in zip(edges, edges[1:], strict=False)]:
+        done.result()

@@ -1,0 +1,59 @@
+"""What can be asked for: every quantity and sensitivity, its unit, meaning and paper equation.
+
+The names are read from generated/index.py, where the derivation wrote them. Under a given state
+(`omega` instead of `omega0`) the sensitivity `_wrt_omega` stands where `_wrt_omega0` does.
+"""
+
+from functools import cache
+from importlib import import_module
+from typing import NamedTuple
+
+
+class Quantity(NamedTuple):
+    """One name that can be asked for."""
+
+    name: str
+    unit: str
+    meaning: str
+    source: str = ""
+
+
+@cache
+def _names() -> dict[str, tuple[str, ...]]:
+    names: dict[str, tuple[str, ...]] = import_module("desaxe.generated.index").NAMES
+    return names
+
+
+def quantities() -> tuple[Quantity, ...]:
+    """Every quantity and sensitivity that can be asked for, in order: name, unit, meaning, source."""
+    return tuple(Quantity(name, *row) for name, row in _names().items())
+
+
+def quantity(name: str, state: bool = False) -> Quantity:
+    """One of them by name; ValueError with the nearest names where there is none such."""
+    if not isinstance(name, str):
+        raise TypeError(f"the name of a quantity is a str, got {name!r}")
+    row = _names().get(law_name(name) if state else name)
+    if row is None or (state and "omega0" in name):
+        raise ValueError(_unknown(name, state))
+    return Quantity(name, *row)
+
+
+def law_name(name: str) -> str:
+    """The name under the law of a name under a state: omega stands in the place of omega0."""
+    base, wrt, parameters = name.partition("_wrt_")
+    if not wrt:
+        return name
+    return base + wrt + "_".join("omega0" if p == "omega" else p for p in parameters.split("_"))
+
+
+def _unknown(name: str, state: bool) -> str:
+    from difflib import get_close_matches
+
+    if not state and law_name(name) in _names():
+        return f"{name!r} needs a state: give omega= instead of omega0="
+    if state and name in _names():
+        return f"{name!r} has no meaning for a given state omega=: ask for {name.replace('omega0', 'omega')!r}"
+    near = get_close_matches(name, _names(), 3, 0.5)
+    hint = f"; did you mean {', '.join(near)}?" if near else ""
+    return f"unknown quantity {name!r}{hint} (desaxe.quantities() lists them all)"

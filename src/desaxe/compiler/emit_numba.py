@@ -1,0 +1,118 @@
+"""A Kernel as a self-contained numba module: `kernel(*inputs, *outputs)` fills the outputs.
+
+Rules that numba's issue tracker teaches: every option is a literal in the module and every helper
+stands in it (its cache does not see changes elsewhere); ``error_model="numpy"``, so that a division
+by zero is an infinity; no fast-math flag, which would erase the NaN of an infeasible point;
+``nogil=True``, so that threads can share the blocks of an array. Signatures are written out: the
+module compiles when it is imported, or loads what an earlier process compiled.
+"""
+
+from .kernel import Kernel, level_program
+from .operations import HELPERS, OPERATIONS
+from .program import Program
+from .text import INDENT, write_lines
+
+_ARRAY_TYPES = {"f64": "f8", "i64": "i1"}  # a status is stored as int8
+_NUMPY_TYPES = {"f64": "float64", "i64": "int8"}
+
+
+def emit_numba(kernel: Kernel, docstring: str, cache: bool = True) -> str:
+    """The source of the module."""
+    return "\n\n".join([_header(kernel, docstring, ()), *_helpers(kernel), _function(kernel, cache)])
+
+
+def emit_numba_with_front(kernel: Kernel, docstring: str, front: str) -> str:
+    """The same with a function `evaluate(...)` that broadcasts like NumPy; `front` is its docstring.
+
+    Precondition: one axis, along which every input but `branch` varies.
+    """
+    numpy_names = ("ascontiguousarray", "broadcast_arrays", "empty", "float64", "int8")
+    used = [name for name in numpy_names if name != "int8" or "i64" in kernel.types.values()]
+    parts = [_header(kernel, docstring, used), *_helpers(kernel), _function(kernel, True), _front(kernel, front)]
+    return "\n\n".join(parts)
+
+
+def _header(kernel: Kernel, docstring: str, numpy_names: list[str] | tuple[str, ...]) -> str:
+    lines = [line for lines in kernel.levels for line in lines]
+    calls = sorted({_called(line.op) for line in lines} - {""})
+    constants = {str(a) for line in lines for a in line.args if isinstance(a, float) and a - a != 0.0}
+    from_numpy = sorted({*numpy_names, *constants})
+    imports = [f"from math import {', '.join(calls)}\n"] if calls else []
+    imports.append("from numba import njit")
+    imports += [f"from numpy import {', '.join(from_numpy)}"] if from_numpy else []
+    return "\n".join([f'"""{docstring}"""\n', *imports, ""])
+
+
+def _helpers(kernel: Kernel) -> list[str]:
+    used = {line.op for lines in kernel.levels for line in lines}
+    return [f'@njit(error_model="numpy")\n{HELPERS[name]}' for name in HELPERS if name in used]
+
+
+def _called(op: str) -> str:
+    """The function of `math` that the spelling of an operation calls, if it does."""
+    name, bracket, _ = OPERATIONS[op].numba.partition("(")
+    return name if bracket and name not in HELPERS else ""
+
+
+def _function(kernel: Kernel, cache: bool) -> str:
+    scalars = ["f8" if axis is None else "f8[::1]" for axis in kernel.inputs.values()]
+    shape = ", ".join([":"] * (kernel.axes - 1) + ["::1"])
+    arrays = [f"{_ARRAY_TYPES[kernel.types.get(name, 'f64')]}[{shape}]" for name in kernel.outputs]
+    names = [*_parameters(kernel), *(f"out_{name}" for name in kernel.outputs)]
+    return "\n".join(
+        [
+            "@njit(",
+            f'{INDENT}"void({", ".join(scalars + arrays)})",',
+            f'{INDENT}cache={cache}, error_model="numpy", nogil=True,',
+            ")",
+            "def kernel(",
+            *(f"{INDENT}{name}," for name in names),
+            "):",
+            *_body(kernel),
+            "",
+        ]
+    )
+
+
+def _parameters(kernel: Kernel) -> list[str]:
+    """An input that varies along an axis comes in as `<name>_axis`."""
+    return [name if axis is None else f"{name}_axis" for name, axis in kernel.inputs.items()]
+
+
+def _body(kernel: Kernel) -> list[str]:
+    lines = _level(kernel, 0)
+    for axis in range(kernel.axes):
+        # The length is read from an output: an axis may have no input that is needed.
+        lines.append(f"{INDENT * (axis + 1)}for i{axis} in range(out_{kernel.outputs[0]}.shape[{axis}]):")
+        pad = INDENT * (axis + 2)
+        lines += [f"{pad}{name} = {name}_axis[i{axis}]" for name, on in kernel.inputs.items() if on == axis]
+        lines += _level(kernel, axis + 1)
+    index = ", ".join(f"i{axis}" for axis in range(kernel.axes))
+    pad = INDENT * (kernel.axes + 1)
+    return lines + [f"{pad}out_{name}[{index}] = {name}" for name in kernel.outputs]
+
+
+def _level(kernel: Kernel, level: int) -> list[str]:
+    program: Program = level_program(kernel, level)
+    return [INDENT * (level + 1) + line for line in write_lines(program, "numba")]
+
+
+def _front(kernel: Kernel, docstring: str) -> str:
+    """`evaluate(...)`: broadcast, allocate, run, give back a mapping."""
+    axes = [name for name, axis in kernel.inputs.items() if axis is not None]
+    parameters = [f"{name}=0.0" if name == "alpha" else name for name in axes]
+    parameters += ["branch=1.0"] if "branch" in kernel.inputs else []
+    arguments = [f"flat[{axes.index(name)}]" if name in axes else name for name in kernel.inputs]
+    names = ", ".join(f'"{name}"' for name in kernel.outputs)
+    integers = [name for name in kernel.outputs if kernel.types.get(name) == "i64"]
+    kind = f"int8 if name in {tuple(integers)} else float64" if integers else "float64"
+    body = [
+        f'"""{docstring}"""',
+        f"arrays = broadcast_arrays({', '.join(axes)})",
+        "flat = [ascontiguousarray(array, dtype=float64).ravel() for array in arrays]",
+        f"out = {{name: empty(arrays[0].shape, {kind}) for name in OUTPUTS}}",
+        f"kernel({', '.join(arguments)}, *(array.reshape(-1) for array in out.values()))",
+        "return out",
+    ]
+    head = f"OUTPUTS = ({names},)\n\n\ndef evaluate({', '.join(parameters)}):"
+    return "\n".join([head, *(INDENT + line for line in body)]) + "\n"

@@ -1,0 +1,86 @@
+"""Run a Program line by line: in doubles with IEEE 754 answers, or exactly for the tests.
+
+The exact interpretation follows the table's `exact` column over a namespace of high-precision
+functions such as ``mpmath.mp``; it is how the tests tell what a pass did to the meaning.
+"""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from .operations import OPERATIONS
+from .program import Argument, Program
+
+
+def run_exactly(program: Program, mp: Any, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Every name of the program, from its inputs, over the functions of `mp`."""
+    scope: dict[str, Any] = {name: mp.mpf(values[name]) for name in program.inputs}
+    for line in program.lines:
+        args = [_exact_argument(a, scope, mp) for a in line.args]
+        scope[line.name] = OPERATIONS[line.op].exact(mp, *args)
+    return scope
+
+
+def _exact_argument(argument: Argument, scope: Mapping[str, Any], mp: Any) -> Any:
+    if isinstance(argument, str):
+        return scope[argument]
+    return mp.mpf(argument) if isinstance(argument, float) else argument
+
+
+def run_in_doubles(program: Program, values: Mapping[str, float]) -> dict[str, Any]:
+    """Every name of the program in double precision; nothing raises, inf and NaN flow."""
+    scope: dict[str, Any] = dict(values)
+    for line in program.lines:
+        scope[line.name] = ieee(line.op, *(scope[a] if isinstance(a, str) else a for a in line.args))
+    return scope
+
+
+def ieee(op: str, *args: Any) -> Any:
+    """One operation on Python numbers, with the answers of IEEE 754."""
+    return _IEEE[op](*args)
+
+
+def _divide(a: float, b: float) -> float:
+    if b:
+        return a / b
+    return math.nan if a == 0.0 or a != a else math.copysign(math.inf, a) * math.copysign(1.0, b)
+
+
+def _finite_only(function: Any) -> Any:
+    """The function where it is defined, NaN where Python would raise."""
+
+    def guarded(a: float) -> float:
+        return function(a) if a - a == 0.0 else math.nan
+
+    return guarded
+
+
+def _two_sum_error(a: float, b: float) -> float:
+    total = a + b
+    of_b = total - a
+    return (a - (total - of_b)) + (b - of_b)
+
+
+_IEEE: dict[str, Any] = {
+    "copy": lambda a: a,
+    "add": lambda a, b: a + b,
+    "sub": lambda a, b: a - b,
+    "mul": lambda a, b: a * b,
+    "div": _divide,
+    "neg": lambda a: -a,
+    "abs": math.fabs,
+    "sqrt": lambda a: math.sqrt(a) if a >= 0.0 else math.nan,
+    "sin": _finite_only(math.sin),
+    "cos": _finite_only(math.cos),
+    "atan2": math.atan2,
+    "floor": lambda a: float(math.floor(a)) if a - a == 0.0 else a,
+    "copysign": math.copysign,
+    "two_sum_error": _two_sum_error,
+    "lt": lambda a, b: a < b,
+    "le": lambda a, b: a <= b,
+    "eq": lambda a, b: a == b,
+    "and": lambda a, b: a and b,
+    "or": lambda a, b: a or b,
+    "not": lambda a: not a,
+    "select": lambda c, a, b: a if c else b,
+}

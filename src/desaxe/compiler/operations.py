@@ -1,0 +1,122 @@
+"""The operation table: everything a Program may do, one row each.
+
+A row says what an operation means (its exact reference), how each language spells it, what it
+costs and where it is undefined. A new operation, or a new language, is a change to this table.
+
+`exact` is the meaning over the real numbers, computed by a namespace of high-precision functions
+(``mpmath.mp`` in the tests); the error terms of two-sum and two-product are exactly 0 there.
+`python` and `numba` are templates over the argument texts. Plain Python raises where IEEE 754
+arithmetic answers inf or NaN, so its division and square root are guarded in the template.
+`precedence` is that of the spelling in the readable text form; calls bind tightest.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+CALL = 100
+
+
+class Operation(NamedTuple):
+    """One row of the table."""
+
+    name: str
+    signature: str  # argument types then result: f = f64, b = bool, i = i64, T = the same on both sides
+    text: str  # the readable text form, also valid plain Python
+    precedence: int
+    python: str  # plain Python with IEEE 754 answers
+    numba: str
+    cost: float  # relative to one addition, throughput in a vectorised loop
+    exact: Callable[..., Any]  # exact(mp, *args)
+    undefined: str = ""  # where the real function has no value
+    commutes: bool = False
+
+    @property
+    def arity(self) -> int:
+        """How many arguments it takes."""
+        return len(self.signature) - 1
+
+
+def _row(
+    name: str, signature: str, text: str, precedence: int, cost: float, exact: Callable[..., Any], **more: Any
+) -> tuple[str, Operation]:
+    python = more.pop("python", text)
+    numba = more.pop("numba", text)
+    return name, Operation(name, signature, text, precedence, python, numba, cost, exact, **more)
+
+
+OPERATIONS: dict[str, Operation] = dict(
+    [
+        _row("copy", "TT", "{0}", CALL, 0, lambda mp, a: a),
+        _row("add", "fff", "{0} + {1}", 12, 1, lambda mp, a, b: a + b, commutes=True),
+        _row("sub", "fff", "{0} - {1}", 12, 1, lambda mp, a, b: a - b),
+        _row("mul", "fff", "{0} * {1}", 13, 1, lambda mp, a, b: a * b, commutes=True),
+        _row(
+            "div", "fff", "{0} / {1}", 13, 8, lambda mp, a, b: a / b,
+            python="divide({0}, {1})", undefined="{1} == 0",
+        ),
+        _row("neg", "ff", "-{0}", 14, 0.5, lambda mp, a: -a),
+        _row("abs", "ff", "fabs({0})", CALL, 0.5, lambda mp, a: abs(a)),
+        _row(
+            "sqrt", "ff", "sqrt({0})", CALL, 9, lambda mp, a: mp.sqrt(a),
+            python="root({0})", undefined="{0} < 0",
+        ),
+        _row("sin", "ff", "sin({0})", CALL, 20, lambda mp, a: mp.sin(a)),
+        _row("cos", "ff", "cos({0})", CALL, 20, lambda mp, a: mp.cos(a)),
+        _row("atan2", "fff", "atan2({0}, {1})", CALL, 40, lambda mp, a, b: mp.atan2(a, b)),
+        _row("floor", "ff", "floor({0})", CALL, 1, lambda mp, a: mp.floor(a), python="whole({0})"),
+        _row(
+            "copysign", "fff", "copysign({0}, {1})", CALL, 1,
+            lambda mp, a, b: abs(a) if b >= 0 else -abs(a),
+        ),
+        _row(
+            "two_sum_error", "fff", "two_sum_error({0}, {1})", CALL, 5, lambda mp, a, b: a * 0, commutes=True
+        ),
+        _row("lt", "ffb", "{0} < {1}", 6, 1, lambda mp, a, b: a < b),
+        _row("le", "ffb", "{0} <= {1}", 6, 1, lambda mp, a, b: a <= b),
+        _row("eq", "ffb", "{0} == {1}", 6, 1, lambda mp, a, b: a == b, commutes=True),
+        _row("and", "bbb", "{0} and {1}", 4, 0.5, lambda mp, a, b: a and b, numba="{0} & {1}"),
+        _row("or", "bbb", "{0} or {1}", 3, 0.5, lambda mp, a, b: a or b, numba="{0} | {1}"),
+        _row("not", "bb", "not {0}", 5, 0.5, lambda mp, a: not a),
+        _row("select", "bTTT", "{1} if {0} else {2}", 1, 1, lambda mp, c, a, b: a if c else b),
+    ]
+)  # fmt: skip
+
+# What the spellings above call besides `math`, as source text: the emitters copy it into what they
+# write, because a numba cache does not see changes in another file.
+HELPERS = {
+    "two_sum_error": '''def two_sum_error(a, b):
+    """What rounding took from a + b, exactly (Knuth)."""
+    total = a + b
+    of_b = total - a
+    return (a - (total - of_b)) + (b - of_b)
+''',
+    "divide": '''def divide(a, b):
+    """a / b with the IEEE 754 answers that Python refuses to give."""
+    if b:
+        return a / b
+    return nan if a == 0.0 or a != a else copysign(inf, a) * copysign(1.0, b)
+''',
+    "root": '''def root(a):
+    """The square root, NaN below zero."""
+    return sqrt(a) if a >= 0.0 else nan
+''',
+    "whole": '''def whole(a):
+    """The floor as a float; infinities and NaN stay."""
+    return float(floor(a)) if a - a == 0.0 else a
+''',
+}
+MATH_NAMES = ("atan2", "copysign", "cos", "fabs", "floor", "inf", "nan", "sin", "sqrt")
+
+TYPES = {"f": "f64", "b": "bool", "i": "i64"}
+
+
+def result_type(operation: Operation, types: tuple[str, ...]) -> str:
+    """The type of the result for these argument types; TypeError where they do not fit."""
+    generic = ""
+    for letter, given in zip(operation.signature, types, strict=False):
+        wanted = TYPES.get(letter) or generic or given
+        if letter == "T":
+            generic = given
+        if wanted != given:
+            raise TypeError(f"{operation.name} wants {wanted}, got {given}")
+    return TYPES.get(operation.signature[-1]) or generic

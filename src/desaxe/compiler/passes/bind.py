@@ -1,0 +1,37 @@
+"""Fix inputs to constants, or put other lines in place of given ones."""
+
+from collections.abc import Mapping
+
+from ..program import Program, renamed
+from .slicing import drop_unused
+
+
+def bind_constants(program: Program, constants: Mapping[str, float]) -> Program:
+    """The program with some inputs fixed.
+
+    Effect: every use of the input becomes the constant, and the input is gone. `fold` then
+    computes what has become constant.
+    """
+    lines = []
+    for line in program.lines:
+        args = tuple(float(constants[a]) if isinstance(a, str) and a in constants else a for a in line.args)
+        lines.append(line._replace(args=args))
+    inputs = tuple(name for name in program.inputs if name not in constants)
+    return program._replace(inputs=inputs, lines=tuple(lines))
+
+
+def overlay(program: Program, other: Program) -> Program:
+    """The program with the lines of `other` in place of its own lines of the same names.
+
+    Precondition: `other` needs nothing that the program computes. Effect: its lines come first;
+    its inputs join the program's; an input of `other` that the program computes is no longer
+    computed. What becomes unused is dropped.
+    """
+    replaced = {line.name for line in other.lines} | set(other.inputs)
+    # Temporaries of one program must not meet those of the other.
+    kept = set(other.notes) | set(other.outputs)
+    fresh = renamed(other, {line.name: f"_{line.name}" for line in other.lines if line.name not in kept})
+    lines = fresh.lines + tuple(line for line in program.lines if line.name not in replaced)
+    inputs = program.inputs + tuple(name for name in other.inputs if name not in program.inputs)
+    notes = {**program.notes, **other.notes}
+    return drop_unused(program._replace(inputs=inputs, lines=lines, notes=notes))

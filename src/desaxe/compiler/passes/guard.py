@@ -1,0 +1,58 @@
+"""Give a bad element of an array NaN and its status, and nothing else.
+
+A scalar is checked once, before anything runs; an array element is checked here, inside the loop.
+Most bad values turn into NaN by themselves (the sine of an infinity, the square root of a negative
+number), but a rod of negative or infinite length would give a finite, wrong answer.
+"""
+
+from collections.abc import Iterable, Mapping
+from math import inf, nan
+
+from ..program import Line, Note, Program
+from .slicing import drop_unused
+
+BAD_INPUT = 4
+
+
+def guard_inputs(program: Program, inputs: Iterable[str], least: Mapping[str, float]) -> Program:
+    """The program in which a bad element of one of these inputs is NaN, and `status` says 4.
+
+    Effect: an input below its least value, at least 0 for a length (a rod of 0 is as bad), infinite
+    or NaN is replaced by NaN where it is used. Where `status` is an output it becomes 4.
+    """
+    checked = [name for name in inputs if name in program.inputs]
+    lines: list[Line] = []
+    safe: dict[str, str] = {}
+    for name in checked:
+        lines += _check(name, least.get(name))
+        safe[name] = f"{name}_good"
+    for line in program.lines:
+        lines.append(line._replace(args=tuple(safe.get(a, a) if isinstance(a, str) else a for a in line.args)))
+    if "status" in program.outputs and checked:
+        lines = _with_status(lines, checked)
+    notes = {**program.notes, **{good: Note("", f"{name}, NaN where bad") for name, good in safe.items()}}
+    return drop_unused(program._replace(lines=tuple(lines), notes=notes))
+
+
+def _check(name: str, least: float | None) -> list[Line]:
+    """`<name>_is_good` and `<name>_good`, which is NaN where it is not."""
+    lines = [Line(f"{name}_size", "abs", (name,)), Line(f"{name}_is_finite", "lt", (f"{name}_size", inf), "bool")]
+    good = f"{name}_is_finite"
+    if least is not None:
+        lines.append(Line(f"{name}_is_enough", "le", (least, name), "bool"))
+        lines.append(Line(f"{name}_is_good", "and", (good, f"{name}_is_enough"), "bool"))
+        good = f"{name}_is_good"
+    return [*lines, Line(f"{name}_good", "select", (good, name, nan))]
+
+
+def _with_status(lines: list[Line], checked: list[str]) -> list[Line]:
+    """The lines with `status` read as 4 wherever a checked input is not good."""
+    lines = [line._replace(name="status_if_good") if line.name == "status" else line for line in lines]
+    good = ""
+    for name in checked:
+        own = Line(f"{name}_counts", "eq", (f"{name}_good", f"{name}_good"), "bool")
+        lines.append(own)
+        if good:
+            lines.append(Line(f"good_to_{name}", "and", (good, own.name), "bool"))
+        good = f"good_to_{name}" if good else own.name
+    return [*lines, Line("status", "select", (good, "status_if_good", BAD_INPUT), "i64")]

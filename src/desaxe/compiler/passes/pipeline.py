@@ -1,0 +1,45 @@
+"""The passes in their order, with what each of them saved."""
+
+from collections.abc import Callable, Collection, Mapping
+from typing import NamedTuple
+
+from ..cost import Cost, cost_of
+from ..program import Program
+from .bind import bind_constants
+from .fold import fold_constants
+from .number import number_values
+from .slicing import drop_unused
+
+
+class Pass(NamedTuple):
+    """A named pass; a name can be switched off."""
+
+    name: str
+    run: Callable[[Program], Program]
+
+
+class Step(NamedTuple):
+    """What a pass left: its name and the cost of the program after it."""
+
+    name: str
+    cost: Cost
+
+
+PASSES = (
+    Pass("fold", fold_constants),
+    Pass("number", number_values),
+    Pass("slice", drop_unused),
+)
+
+
+def optimise(
+    program: Program, fixed: Mapping[str, float] | None = None, without: Collection[str] = ()
+) -> tuple[Program, list[Step]]:
+    """The program with `fixed` inputs bound, after every pass not switched off; the cost after each."""
+    steps = [Step("sliced", cost_of(program))]
+    program = bind_constants(program, fixed or {})
+    for step in PASSES:
+        if step.name not in without:
+            program = step.run(program)
+            steps.append(Step(step.name, cost_of(program)))
+    return program, steps

@@ -1,0 +1,236 @@
+"""The text form: a Program as plain, readable, straight-line Python, and back.
+
+    def law(theta, ec, AB, BC):
+        sin_theta = sin(theta)  # 1 | sine of the crank angle
+        u = ec + AB * sin_theta  # m | distance of the crank pin from the slider axis | A (5)
+        return u
+
+A temporary that is used once is written inside the line that uses it; one that is used more often
+keeps a line of its own (`t0`). Parentheses keep the order of the operations, so that reading the
+text gives the same program. `read` takes only the lines that the wanted outputs reach: it looks
+each name up in the text and never parses the rest.
+"""
+
+import ast
+from collections.abc import Iterable, Sequence
+
+from .operations import CALL, OPERATIONS, result_type
+from .program import Argument, Line, Note, Program, ProgramError, names_in, renamed_temporaries, type_of
+
+INDENT = "    "
+
+
+# ---- writing ---------------------------------------------------------------------------------
+
+
+def write_lines(program: Program, column: str = "text") -> list[str]:
+    """The assignments as text, one a line, in the spelling of a column of the operation table."""
+    inlined = _used_once(program)
+    text: dict[str, tuple[str, int]] = {}
+    lines = []
+    for line in program.lines:
+        spelled = spell(line, text, column)
+        if line.name in inlined:
+            text[line.name] = spelled
+        else:
+            note = program.notes.get(line.name)
+            lines.append(f"{line.name} = {spelled[0]}{_comment(note)}")
+    return lines
+
+
+def write_function(program: Program, name: str, docstring: str) -> str:
+    """The whole function that computes the program."""
+    program = with_short_temporaries(program)
+    body = [f'"""{docstring}"""', *write_lines(program), f"return {', '.join(program.outputs)}"]
+    return "\n".join([f"def {name}({', '.join(program.inputs)}):", *(INDENT + line for line in body)]) + "\n"
+
+
+def spell(line: Line, text: dict[str, tuple[str, int]], column: str) -> tuple[str, int]:
+    """The right-hand side and its precedence; `text` has what stands inside it."""
+    operation = OPERATIONS[line.op]
+    template = getattr(operation, column)
+    precedence = operation.precedence if template == operation.text else CALL
+    if column == "numba" and line.op in ("and", "or"):
+        precedence = 8  # & and | bind tighter than comparisons
+    if line.op == "copy":
+        return text.get(line.args[0]) or _plain(line.args[0])  # type: ignore[arg-type]
+    parts = []
+    for position, argument in enumerate(line.args):
+        part, inner = text.get(argument) or _plain(argument)  # type: ignore[arg-type]
+        parts.append(f"({part})" if _wants_parentheses(precedence, inner, position, line.op) else part)
+    return template.format(*parts), precedence
+
+
+def _wants_parentheses(outer: int, inner: int, position: int, op: str) -> bool:
+    """Whether an argument of this precedence must be set apart to keep the order of operations."""
+    if outer == CALL:
+        return False
+    if op in ("add", "sub", "mul", "div"):
+        return inner < outer or (inner == outer and position == 1)
+    return inner <= outer
+
+
+def _plain(value: Argument) -> tuple[str, int]:
+    """A name or a constant, and its precedence."""
+    if isinstance(value, str):
+        return value, CALL
+    if isinstance(value, float) and value != value:
+        return "nan", CALL
+    text = repr(value)
+    return text, OPERATIONS["neg"].precedence if text.startswith("-") else CALL
+
+
+def _comment(note: Note | None) -> str:
+    if note is None:
+        return ""
+    return "  # " + " | ".join(part for part in note if part)
+
+
+def with_short_temporaries(program: Program) -> Program:
+    """The program with the temporaries that keep a line of their own named t0, t1, ... first."""
+    inlined = _used_once(program)
+    ordered = [line.name for line in program.lines if line.name not in inlined]
+    ordered += [line.name for line in program.lines if line.name in inlined]
+    return renamed_temporaries(program, ordered)
+
+
+def _used_once(program: Program) -> set[str]:
+    """Temporaries that one other line uses once."""
+    uses: dict[str, int] = {}
+    for line in program.lines:
+        for name in names_in(line.args):
+            uses[name] = uses.get(name, 0) + 1
+    keep = set(program.outputs) | set(program.notes)
+    return {line.name for line in program.lines if line.name not in keep and uses.get(line.name) == 1}
+
+
+# ---- reading ---------------------------------------------------------------------------------
+
+
+class ProgramText:
+    """A text form whose lines are read only when they are wanted."""
+
+    def __init__(self, text: str) -> None:
+        """Find the signature; the lines are found by name, later."""
+        start = text.index("\ndef ") + len("\ndef ") if not text.startswith("def ") else len("def ")
+        end = text.index("):", start)
+        self.name, _, inputs = text[start:end].partition("(")
+        self.inputs = tuple(name.strip() for name in inputs.split(",") if name.strip())
+        self._text = text[end:]
+
+    def outputs(self) -> tuple[str, ...]:
+        """The names that the function returns, in order."""
+        _, _, names = self._text.rpartition(f"\n{INDENT}return ")
+        return tuple(name.strip() for name in names.split(","))
+
+    def line(self, name: str) -> tuple[str, int]:
+        """The right-hand side and note of a name, and where the line stands; KeyError without one."""
+        mark = f"\n{INDENT}{name} = "
+        at = self._text.find(mark)
+        if at < 0:
+            raise KeyError(name)
+        end = self._text.find("\n", at + 1)
+        return self._text[at + len(mark) : end if end >= 0 else None], at
+
+    def read(self, outputs: Sequence[str] | None = None) -> Program:
+        """The program of these outputs (all without): only what they reach is parsed."""
+        wanted = list(self.outputs() if outputs is None else outputs)
+        found: dict[str, tuple[int, ast.expr, Note | None]] = {}
+        stack = [name for name in wanted if name not in self.inputs]
+        while stack:
+            name = stack.pop()
+            if name in found:
+                continue
+            right, at = self.line(name)
+            expression, _, comment = right.partition("  # ")
+            tree = ast.parse(expression, mode="eval").body
+            found[name] = at, tree, _note(comment)
+            stack += [used for used in _free_names(tree) if used not in found and used not in self.inputs]
+        ordered = sorted(found.items(), key=lambda item: item[1][0])
+        reader = _Reader(self.inputs)
+        for name, (_, tree, _) in ordered:
+            reader.assign(name, tree)
+        used = {name for line in reader.lines for name in names_in(line.args)} | set(wanted)
+        notes = {name: note for name, (_, _, note) in ordered if note is not None}
+        inputs = tuple(name for name in self.inputs if name in used)
+        return Program(inputs, tuple(reader.lines), tuple(wanted), notes)
+
+
+def read_function(text: str) -> Program:
+    """The program of a text form, whole."""
+    return ProgramText(text).read()
+
+
+def _note(comment: str) -> Note | None:
+    return Note(*comment.split(" | ")) if comment else None
+
+
+def _free_names(tree: ast.expr) -> Iterable[str]:
+    called = {node.func.id for node in ast.walk(tree) if isinstance(node, ast.Call)}  # type: ignore[attr-defined]
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name) and node.id not in called and node.id != "nan":
+            yield node.id
+
+
+_BINARY = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul", ast.Div: "div"}
+_COMPARE = {ast.Lt: "lt", ast.LtE: "le", ast.Eq: "eq"}
+_BOOLEAN = {ast.And: "and", ast.Or: "or"}
+_CALLS = {
+    operation.text.partition("(")[0]: name
+    for name, operation in OPERATIONS.items()
+    if operation.precedence == CALL
+}
+
+
+class _Reader:
+    """Turns expressions back into lines of one operation each."""
+
+    def __init__(self, inputs: Iterable[str]) -> None:
+        self.lines: list[Line] = []
+        self.types: dict[str, str] = dict.fromkeys(inputs, "f64")
+        self.temporaries = 0
+
+    def assign(self, name: str, tree: ast.expr) -> None:
+        op, args = self._operation(tree)
+        self._append(name, op, args)
+
+    def _append(self, name: str, op: str, args: tuple[Argument, ...]) -> None:
+        types = tuple(type_of(argument, self.types) for argument in args)
+        line = Line(name, op, args, result_type(OPERATIONS[op], types))
+        self.types[name] = line.type
+        self.lines.append(line)
+
+    def _argument(self, tree: ast.expr) -> Argument:
+        """A name, a constant, or a new temporary that holds the expression."""
+        if isinstance(tree, ast.Name):
+            return float("nan") if tree.id == "nan" else tree.id
+        if isinstance(tree, ast.Constant) and isinstance(tree.value, (bool, int, float)):
+            return tree.value
+        match tree:
+            case ast.UnaryOp(ast.USub(), ast.Constant(int() | float() as value)):
+                return -value
+        op, args = self._operation(tree)
+        name = f"_{self.temporaries}"
+        self.temporaries += 1
+        self._append(name, op, args)
+        return name
+
+    def _operation(self, tree: ast.expr) -> tuple[str, tuple[Argument, ...]]:
+        match tree:
+            case ast.Name() | ast.Constant():
+                return "copy", (self._argument(tree),)
+            case ast.BinOp(left, op, right):
+                return _BINARY[type(op)], (self._argument(left), self._argument(right))
+            case ast.UnaryOp(ast.USub(), operand):
+                return "neg", (self._argument(operand),)
+            case ast.UnaryOp(ast.Not(), operand):
+                return "not", (self._argument(operand),)
+            case ast.Compare(left, [op], [right]):
+                return _COMPARE[type(op)], (self._argument(left), self._argument(right))
+            case ast.BoolOp(op, [first, second]):
+                return _BOOLEAN[type(op)], (self._argument(first), self._argument(second))
+            case ast.IfExp(test, body, orelse):
+                return "select", (self._argument(test), self._argument(body), self._argument(orelse))
+            case ast.Call(ast.Name(name), args):
+                return _CALLS[name], tuple(self._argument(argument) for argument in args)
+        raise ProgramError(f"cannot read {ast.unparse(tree)!r}")
