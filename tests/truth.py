@@ -258,8 +258,8 @@ def truth(
 
 
 def all_names(parameters: tuple[str, ...] = LAW) -> list[str]:
-    """Every name that the library knows: second order exists for five quantities."""
-    first = [f"{q}_wrt_{p}" for q in QUANTITIES for p in parameters]
+    """Every name that the library knows: the margin has no sensitivities, five quantities second ones."""
+    first = [f"{q}_wrt_{p}" for q in QUANTITIES if q != "margin" for p in parameters]
     pairs = combinations_with_replacement(parameters, 2)
     return [*QUANTITIES, *first, *(f"{q}_wrt_{p}_{r}" for p, r in pairs for q in SECOND_ORDER)]
 

@@ -6,6 +6,7 @@ so that processes started together do not compile the same kernel into each othe
 """
 
 import hashlib
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from importlib.util import module_from_spec, spec_from_file_location
@@ -127,6 +128,7 @@ def _module_function(path: Path) -> Callable[..., None]:
     spec = spec_from_file_location(f"desaxe_{path.stem}", path)
     assert spec is not None and spec.loader is not None
     module = module_from_spec(spec)
+    sys.modules[spec.name] = module  # numba finds the module by its name when it loads machine code
     spec.loader.exec_module(module)
     function: Callable[..., None] = module.kernel
     return function

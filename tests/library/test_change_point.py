@@ -1,8 +1,8 @@
 """Next to and exactly at the places where textbook formulas lose everything, against the truth.
 
 At the change point BC = AB + |ec| rod and crank can lie across the slider axis together.  There, D = BC^2 -
-(ec + AB sin theta)^2 vanishes like the square of the distance, and what is divided by it keeps its digits only
-if the margin keeps its own.
+(ec + AB sin theta)^2 vanishes like the square of the distance, and what is divided by it keeps its digits
+only if the margin keeps its own.
 """
 
 import itertools
@@ -46,7 +46,7 @@ def feasible(at):
 
 
 @pytest.mark.parametrize("AB, ec", MECHANISMS)
-@pytest.mark.parametrize("side, branch", itertools.product(SIDES, SIDES))
+@pytest.mark.parametrize("side, branch", list(itertools.product(SIDES, SIDES)))
 def test_at_the_change_point(AB, ec, side, branch):
     for distance in [0.0, *DISTANCES]:
         at = point(side * QUARTER + distance, side * ec, AB, AB + ec) | {"branch": branch}

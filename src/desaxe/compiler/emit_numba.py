@@ -12,13 +12,14 @@ from .operations import HELPERS, OPERATIONS
 from .program import Program
 from .text import INDENT, write_lines
 
-_ARRAY_TYPES = {"f64": "f8", "i64": "i1"}  # a status is stored as int8
-_NUMPY_TYPES = {"f64": "float64", "i64": "int8"}
+_TYPES = {"f64": "float64", "i64": "int8"}  # a status is stored as int8
+# An input may be an array that must not be written to; numba's signature strings cannot say so.
+_INPUT = 'axis = types.Array(types.float64, 1, "C", readonly=True)\n'
 
 
 def emit_numba(kernel: Kernel, docstring: str, cache: bool = True) -> str:
     """The source of the module."""
-    return "\n\n".join([_header(kernel, docstring, ()), *_helpers(kernel), _function(kernel, cache)])
+    return "\n\n".join([_header(kernel, docstring, []), *_helpers(kernel), _function(kernel, cache)])
 
 
 def emit_numba_with_front(kernel: Kernel, docstring: str, front: str) -> str:
@@ -32,15 +33,16 @@ def emit_numba_with_front(kernel: Kernel, docstring: str, front: str) -> str:
     return "\n\n".join(parts)
 
 
-def _header(kernel: Kernel, docstring: str, numpy_names: list[str] | tuple[str, ...]) -> str:
+def _header(kernel: Kernel, docstring: str, numpy_names: list[str]) -> str:
     lines = [line for lines in kernel.levels for line in lines]
     calls = sorted({_called(line.op) for line in lines} - {""})
     constants = {str(a) for line in lines for a in line.args if isinstance(a, float) and a - a != 0.0}
     from_numpy = sorted({*numpy_names, *constants})
     imports = [f"from math import {', '.join(calls)}\n"] if calls else []
-    imports.append("from numba import njit")
+    imports.append("from numba import njit, types")
     imports += [f"from numpy import {', '.join(from_numpy)}"] if from_numpy else []
-    return "\n".join([f'"""{docstring}"""\n', *imports, ""])
+    given = [_INPUT] if any(axis is not None for axis in kernel.inputs.values()) else []
+    return "\n".join([f'"""{docstring}"""\n', *imports, "", *given])
 
 
 def _helpers(kernel: Kernel) -> list[str]:
@@ -55,14 +57,14 @@ def _called(op: str) -> str:
 
 
 def _function(kernel: Kernel, cache: bool) -> str:
-    scalars = ["f8" if axis is None else "f8[::1]" for axis in kernel.inputs.values()]
+    types = ["types.float64" if axis is None else "axis" for axis in kernel.inputs.values()]
     shape = ", ".join([":"] * (kernel.axes - 1) + ["::1"])
-    arrays = [f"{_ARRAY_TYPES[kernel.types.get(name, 'f64')]}[{shape}]" for name in kernel.outputs]
+    types += [f"types.{_TYPES[kernel.types.get(name, 'f64')]}[{shape}]" for name in kernel.outputs]
     names = [*_parameters(kernel), *(f"out_{name}" for name in kernel.outputs)]
     return "\n".join(
         [
             "@njit(",
-            f'{INDENT}"void({", ".join(scalars + arrays)})",',
+            f"{INDENT}types.void({', '.join(types)}),",
             f'{INDENT}cache={cache}, error_model="numpy", nogil=True,',
             ")",
             "def kernel(",

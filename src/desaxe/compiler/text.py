@@ -111,8 +111,8 @@ class ProgramText:
     """A text form whose lines are read only when they are wanted."""
 
     def __init__(self, text: str) -> None:
-        """Find the signature; the lines are found by name, later."""
-        start = text.index("\ndef ") + len("\ndef ") if not text.startswith("def ") else len("def ")
+        """Find the signature of the last function; its lines are found by name, later."""
+        start = f"\n{text}".rindex("\ndef ") + len("def ")
         end = text.index("):", start)
         self.name, _, inputs = text[start:end].partition("(")
         self.inputs = tuple(name.strip() for name in inputs.split(",") if name.strip())

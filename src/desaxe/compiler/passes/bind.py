@@ -27,10 +27,10 @@ def overlay(program: Program, other: Program) -> Program:
     its inputs join the program's; an input of `other` that the program computes is no longer
     computed. What becomes unused is dropped.
     """
-    replaced = {line.name for line in other.lines} | set(other.inputs)
     # Temporaries of one program must not meet those of the other.
     kept = set(other.notes) | set(other.outputs)
     fresh = renamed(other, {line.name: f"_{line.name}" for line in other.lines if line.name not in kept})
+    replaced = {line.name for line in fresh.lines} | set(other.inputs)
     lines = fresh.lines + tuple(line for line in program.lines if line.name not in replaced)
     inputs = program.inputs + tuple(name for name in other.inputs if name not in program.inputs)
     notes = {**program.notes, **other.notes}

@@ -33,8 +33,8 @@ def _leaders(program: Program) -> dict[str, str]:
     leader: dict[str, str] = {}
     seen: dict[tuple[str, tuple[str, ...]], str] = {}
     for line in program.lines:
-        if line.op == "copy" and line.args[0] in leader:
-            leader[line.name] = leader[line.args[0]]
+        if line.op == "copy":  # of a line: its value; of a constant or an input: itself
+            leader[line.name] = leader.get(str(line.args[0]), line.name)
             continue
         args = tuple(_key(a, leader) for a in line.args)
         if OPERATIONS[line.op].commutes:
