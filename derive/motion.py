@@ -35,7 +35,8 @@ def define_law(sheet: Sheet) -> None:
     """omega, omega^2 and their derivatives under paper A's law."""
     constant_speed = eq(alpha, 0)
     sheet.define("omega2_law", LAW, unit=UNITS["omega2"], meaning="omega^2 by the law", source="A listing")
-    square = select(lt(symbol("omega2_law"), 0), nan, symbol("omega2_law"))
+    sheet.define("stalled", lt(symbol("omega2_law"), 0), unit=NONE, meaning="the crank stopped before this angle")
+    square = select(symbol("stalled"), nan, symbol("omega2_law"))
     sheet.define(
         "omega2",
         select(constant_speed, omega0**2, square),
@@ -89,6 +90,7 @@ def state_sheet() -> Sheet:
     """
     sheet = Sheet(())
     sheet.define("omega2", omega**2, unit=UNITS["omega2"], meaning="square of the crank's speed")
+    sheet.define("stalled", lt(omega2, 0), unit=NONE, meaning="never: a given speed is real")
     sheet.define("turn", select(le(0, omega), 1, -1), unit=NONE, meaning="way of turning")
     for parameters in (*_omega_rates(), *_omega_second_rates()):
         _define_rate(sheet, "omega", parameters, int(parameters == ("omega0",)))

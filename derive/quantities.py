@@ -185,8 +185,7 @@ def _rate(base: str, order: int) -> sp.Expr:
 def _define_facts(sheet: Sheet) -> None:
     """Margin and status; NaN compares false, so what cannot be computed is not assembled."""
     _exact_sum(sheet, "margin", -AB, -sheet.define("abs_ec", absolute(ec)), "BC - AB - |ec|, rounded once")
-    stalled = select(lt(symbol("omega2_law"), 0), 3, 0)
-    assembled = select(lt(0, D), stalled, select(eq(D, 0), 2, 1))
+    assembled = select(lt(0, D), select(symbol("stalled"), 3, 0), select(eq(D, 0), 2, 1))
     sheet.define(
         "status", assembled, unit=NONE,
         meaning="0 ok, 1 cannot be assembled here, 2 change point, 3 stalled, 4 bad input",

@@ -84,6 +84,8 @@ def evaluate(
     given = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
     wanted = (names,) if isinstance(names, str) else tuple(names)
     key = wanted, omega is not None, branch, accuracy
+    if omega0 is None and omega is None and "status" in wanted:
+        given.update(_unmoved(wanted))
     point = _POINTS.get(key)
     if point is None:
         point = _POINTS[key] = _point(request(wanted, given, branch, accuracy))
@@ -120,6 +122,15 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
         quantity(name, state)
     shown = tuple(names)
     return Request(shown, tuple(law_name(name) if state else name for name in shown), state, int(branch))
+
+
+def _unmoved(names: tuple[str, ...]) -> dict[str, float]:
+    """The speed to take where none is given and only `status` would use it: a crank that stands still."""
+    others = tuple(name for name in names if name not in ("status", "margin"))
+    for name in others:
+        quantity(name)
+    needs = _program.program_of(others).inputs if others else ()
+    return {} if "omega0" in needs else {"omega0": 0.0, "alpha": 0.0}
 
 
 def _point(wanted: Request) -> Point:

@@ -1,0 +1,64 @@
+"""`feasibility`: can the mechanism be assembled, can it turn, at which crank angles."""
+
+from math import asin, fsum, pi, ulp
+from typing import Any
+
+from ._evaluate import as_number
+
+CHANGE_POINT_ULPS = 4  # |margin| within so many last bits of BC is called a change-point design
+
+
+def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
+    """Where a design can be assembled.
+
+    ec, AB, BC: numbers (or text with a unit) in metres. Gives a dict:
+
+    margin           BC - AB - |ec| [m], of the doubles given, rounded once
+    gradient         its derivatives by ec, AB, BC (at ec = 0 that by ec is taken as 0)
+    can_turn         whether the crank can turn fully (margin >= 0)
+    theta_intervals  list of (first, last) crank angles [rad] in which it can be assembled; an
+                     interval that crosses 2 pi goes on beyond it. [(0, 2 pi)] where it can turn
+    kind             "crank" (turns fully), "change point", "rocker" (turns partly), "none"
+
+    Raises ValueError for a bad value. Source: paper A (6), where |u| <= BC.
+    """
+    lengths = {name: _number(name, value) for name, value in (("ec", ec), ("AB", AB), ("BC", BC))}
+    ec, AB, BC = lengths.values()
+    margin = fsum((BC, -AB, -abs(ec)))
+    intervals = theta_intervals(ec, AB, BC)
+    near = abs(margin) <= CHANGE_POINT_ULPS * ulp(BC)
+    kind = "change point" if near else "crank" if margin > 0.0 else "rocker" if intervals else "none"
+    slope = 0.0 if ec == 0.0 else (-1.0 if ec > 0.0 else 1.0)
+    return {
+        "margin": margin,
+        "gradient": {"ec": slope, "AB": -1.0, "BC": 1.0},
+        "can_turn": margin >= 0.0,
+        "theta_intervals": intervals,
+        "kind": kind,
+    }
+
+
+def _number(name: str, value: Any) -> float:
+    number = as_number(name, value, ("ec", "AB", "BC"), ("feasibility",))
+    if number is None:
+        raise TypeError(f"{name}: feasibility takes numbers, got {type(value).__name__}")
+    return number
+
+
+def theta_intervals(ec: float, AB: float, BC: float) -> list[tuple[float, float]]:
+    """The crank angles in [0, 2 pi) at which |ec + AB sin(theta)| <= BC, as closed intervals."""
+    if fsum((BC, -AB, -abs(ec))) >= 0.0:
+        return [(0.0, 2.0 * pi)]
+    low, high = (-BC - ec), (BC - ec)  # AB sin(theta) must lie between
+    if AB == 0.0 or low > AB or high < -AB:
+        return []
+    top = asin(high / AB) if high < AB else None
+    bottom = asin(low / AB) if low > -AB else None
+    if top is None and bottom is None:
+        return [(0.0, 2.0 * pi)]
+    if bottom is None:
+        assert top is not None
+        return [(pi - top, 2.0 * pi + top)]
+    if top is None:
+        return [(bottom % (2.0 * pi), bottom % (2.0 * pi) + pi - 2.0 * bottom)]
+    return [(pi - top, pi - bottom), (2.0 * pi + bottom, 2.0 * pi + top)]
