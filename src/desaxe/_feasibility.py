@@ -1,6 +1,6 @@
 """`feasibility`: can the mechanism be assembled, can it turn, at which crank angles."""
 
-from math import asin, fsum, pi, ulp
+from math import asin, fsum, pi, sqrt, ulp
 from typing import Any
 
 from ._evaluate import as_number
@@ -46,19 +46,24 @@ def _number(name: str, value: Any) -> float:
 
 
 def theta_intervals(ec: float, AB: float, BC: float) -> list[tuple[float, float]]:
-    """The crank angles in [0, 2 pi) at which |ec + AB sin(theta)| <= BC, as closed intervals."""
-    if fsum((BC, -AB, -abs(ec))) >= 0.0:
+    """The crank angles from 0 on at which |ec + AB sin(theta)| <= BC, as closed intervals.
+
+    Each side of the crank has its own margin; where it is negative, the angles nearer to that
+    quarter than `gap` are lost, and 1 - cos(gap) = -margin/AB has no cancellation.
+    """
+    upper, lower = fsum((BC, -AB, -ec)), fsum((BC, -AB, ec))  # margins at pi/2 and -pi/2
+    if min(upper, lower) >= 0.0:
         return [(0.0, 2.0 * pi)]
-    low, high = (-BC - ec), (BC - ec)  # AB sin(theta) must lie between
-    if AB == 0.0 or low > AB or high < -AB:
+    if AB == 0.0 or min(upper, lower) < -2.0 * AB:  # even the opposite quarter is too far away
         return []
-    top = asin(high / AB) if high < AB else None
-    bottom = asin(low / AB) if low > -AB else None
-    if top is None and bottom is None:
-        return [(0.0, 2.0 * pi)]
-    if bottom is None:
-        assert top is not None
-        return [(pi - top, 2.0 * pi + top)]
-    if top is None:
-        return [(bottom % (2.0 * pi), bottom % (2.0 * pi) + pi - 2.0 * bottom)]
-    return [(pi - top, pi - bottom), (2.0 * pi + bottom, 2.0 * pi + top)]
+    top, bottom = _gap(upper, AB), _gap(lower, AB)
+    if bottom == 0.0:
+        return [(pi / 2 + top, 2.5 * pi - top)]
+    if top == 0.0:
+        return [(3 * pi / 2 + bottom, 3.5 * pi - bottom)] if bottom < pi / 2 else [(bottom - pi / 2, 3 * pi / 2 - bottom)]
+    return [(pi / 2 + top, 3 * pi / 2 - bottom), (3 * pi / 2 + bottom, 2.5 * pi - top)]
+
+
+def _gap(margin: float, AB: float) -> float:
+    """How far from a quarter the crank must stay for this margin there."""
+    return 2.0 * asin(sqrt(-margin / (2.0 * AB))) if margin < 0.0 else 0.0

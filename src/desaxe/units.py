@@ -18,7 +18,11 @@ def registry() -> Any:
 
 def in_si(name: str, value: Any) -> Any:
     """The magnitude of a text or pint quantity in the SI unit of an input; errors name both."""
-    unit = INPUTS[name].unit
+    return in_unit(name, value, INPUTS[name].unit)
+
+
+def in_unit(name: str, value: Any, unit: str) -> Any:
+    """The magnitude of a text or pint quantity in a unit."""
     if isinstance(value, str):
         plain = _plain_number(value)
         if plain is not None:

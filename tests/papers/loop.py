@@ -16,6 +16,7 @@ from mpmath import mp, mpf
 
 DIGITS = 40
 STEP_DIGITS = 20
+NOW = mpf(0)
 
 Vector = tuple[mpf, mpf]
 
@@ -43,20 +44,20 @@ def crank_angle(motion: Motion, t: mpf) -> mpf:
     return mpf(motion.theta) + omega(motion) * t + mpf(motion.alpha) * t * t / 2
 
 
-def pin(motion: Motion, t: mpf = mpf(0)) -> Vector:
+def pin(motion: Motion, t: mpf = NOW) -> Vector:
     """Crank pin B = (X, Y), m."""
     angle = crank_angle(motion, t)
     return mpf(motion.AB) * mp.sin(angle), mpf(motion.AB) * mp.cos(angle)
 
 
-def slider(motion: Motion, t: mpf = mpf(0)) -> Vector:
+def slider(motion: Motion, t: mpf = NOW) -> Vector:
     """Slider C = (X, Y), m: on the line X = -ec, one rod length from B, on its far side."""
     x, y = pin(motion, t)
     side = x + mpf(motion.ec)
     return -mpf(motion.ec), y + mp.sqrt(mpf(motion.BC) ** 2 - side**2)
 
 
-def rod_angle(motion: Motion, t: mpf = mpf(0)) -> mpf:
+def rod_angle(motion: Motion, t: mpf = NOW) -> mpf:
     """Angle phi of the rod, rad: of the direction from C to B, against the slider axis."""
     (x_B, y_B), (x_C, y_C) = pin(motion, t), slider(motion, t)
     return mp.atan2(x_B - x_C, y_C - y_B)

@@ -1,0 +1,136 @@
+"""One quantity as a SymPy expression and as LaTeX: what `desaxe.equation` answers.
+
+The closed form is the textbook one, in the parameters alone, by differentiating the solved loop.
+It is for reading and for symbolic work; numbers come from the stable form, whose lines `steps` has.
+"""
+
+from functools import cache
+from typing import NamedTuple
+
+import sympy as sp
+
+from .loop import AB, BC, branch, ec, slider, solved, theta, u
+from .motion import LAW, alpha, omega
+from .sheet import PARAMETERS
+
+S = sp.Symbol("S", real=True)
+LATEX_NAMES = {
+    "phi": r"\varphi", "delta": r"\delta", "omega": r"\omega", "omega_BC": r"\omega_{BC}",
+    "alpha_BC": r"\alpha_{BC}", "theta": r"\theta", "ec": "e_c", "omega0": r"\omega_0", "alpha": r"\alpha",
+    "transmission_angle": r"\mu", "pressure_angle": r"|\varphi|", "branch": r"\sigma",
+}  # fmt: skip
+
+
+class EquationText(NamedTuple):
+    """`expression` in the parameters, its LaTeX `lhs = rhs`, unit, meaning, source, stable steps."""
+
+    name: str
+    expression: sp.Expr
+    latex: str
+    unit: str
+    meaning: str
+    source: str
+    steps: tuple[str, ...]
+
+    def _repr_latex_(self) -> str:
+        return f"$\\displaystyle {self.latex}$"
+
+
+def equation(name: str) -> EquationText:
+    """The equation of a quantity or sensitivity: SymPy expression, LaTeX, and its stable steps.
+
+    The expression is in `theta, ec, AB, BC, omega0, alpha, branch` (SI, radians), under paper A's
+    law omega^2 = omega0^2 + 2 alpha theta for omega0 >= 0. `steps` are the lines that are computed.
+    Raises ValueError for an unknown name.
+    """
+    from desaxe.catalogue import quantity
+
+    known = quantity(name)
+    if name in ("status", "margin"):
+        expression = BC - AB - sp.Abs(ec) if name == "margin" else _status()
+    else:
+        base, _, wrt = name.partition("_wrt_")
+        expression = closed_form(base)
+        for parameter in wrt.split("_") if wrt else ():
+            expression = expression.diff(_parameter(parameter))
+    latex = f"{latex_name(name)} = {sp.latex(expression, symbol_names=_latex_symbols())}"
+    return EquationText(name, expression, latex, known.unit, known.meaning, known.source, _steps(name))
+
+
+def _parameter(name: str) -> sp.Symbol:
+    return sp.Symbol(name, real=True)
+
+
+@cache
+def closed_form(base: str) -> sp.Expr:
+    """The textbook form of a quantity, by time derivatives of the solved loop."""
+    across = solved()[u]
+    height = sp.sqrt(BC**2 - across**2)
+    position = solved()[slider].subs(S, height)
+    angle = sp.asin(across / BC)
+    crank = {"X": AB * sp.sin(theta), "Y": AB * sp.cos(theta)}
+    if base == "phi":
+        found = angle
+    elif base in ("V_B", "a_B"):
+        turns = 1 if base == "V_B" else 2
+        found = sp.sqrt(sp.Add(*(_rate(p, turns) ** 2 for p in crank.values())))
+    elif base.startswith(("V_B_", "a_B_")):
+        found = _rate(crank[base[-1]], 1 if base[0] == "V" else 2)
+    else:
+        found = {
+            "Y": position,
+            "omega": omega,
+            "delta": sp.acos(across / BC),
+            "transmission_angle": sp.pi / 2 - sp.Abs(angle),
+            "pressure_angle": sp.Abs(angle),
+            "s": sp.sqrt((AB + BC) ** 2 - ec**2) - branch * position,
+            "omega_BC": _rate(angle, 1),
+            "alpha_BC": _rate(angle, 2),
+            "V_C": _rate(position, 1),
+            "a_C": _rate(position, 2),
+            "j_C": _rate(position, 3),
+        }[base]
+    return sp.simplify(found).subs(omega, sp.sqrt(LAW)) if base in ("V_B", "a_B") else found.subs(omega, sp.sqrt(LAW))
+
+
+def _rate(expression: sp.Expr, turns: int) -> sp.Expr:
+    """A time derivative: d(theta)/dt = omega, d(omega)/dt = alpha."""
+    for _ in range(turns):
+        expression = expression.diff(theta) * omega + expression.diff(omega) * alpha
+    return expression
+
+
+def _status() -> sp.Expr:
+    across = solved()[u]
+    return sp.Piecewise(
+        (1, sp.Abs(across) > BC), (2, sp.Eq(sp.Abs(across), BC)), (3, LAW < 0), (0, True), evaluate=False
+    )
+
+
+def _steps(name: str) -> tuple[str, ...]:
+    """The lines of the frozen program that compute it."""
+    from desaxe._program import program_of
+    from desaxe.compiler.text import with_short_temporaries, write_lines
+
+    return tuple(write_lines(with_short_temporaries(program_of((name,)))))
+
+
+def latex_name(name: str) -> str:
+    r"""`a_C_wrt_ec` as \frac{\partial a_C}{\partial e_c}."""
+    base, _, wrt = name.partition("_wrt_")
+    top = LATEX_NAMES.get(base) or _subscripted(base)
+    parameters = [LATEX_NAMES.get(p, p) for p in wrt.split("_")] if wrt else []
+    if not parameters:
+        return top
+    order = f"^{{{len(parameters)}}}" if len(parameters) > 1 else ""
+    below = " ".join(rf"\partial {p}" for p in parameters)
+    return rf"\frac{{\partial{order} {top}}}{{{below}}}"
+
+
+def _subscripted(name: str) -> str:
+    head, _, tail = name.partition("_")
+    return f"{head}_{{{tail.replace('_', ',')}}}" if tail else head
+
+
+def _latex_symbols() -> dict[sp.Symbol, str]:
+    return {_parameter(name): LATEX_NAMES.get(name, name) for name in (*PARAMETERS, "branch")}

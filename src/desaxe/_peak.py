@@ -1,0 +1,315 @@
+"""`peak`: the refined extremum of a quantity over the crank angle, with its exact gradient.
+
+For each design: a sweep that is graded towards the quarters and the limit angles, where peaks are
+as narrow as the root of the margin; every change of sign of the exact derivative by theta is
+bracketed and refined; ends of the range and of feasible arcs count. By the envelope theorem the
+gradient of the extreme value is the partial derivative at the extreme angle.
+"""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._arrays import as_array, broadcast_shape
+from ._evaluate import evaluate, request
+from ._feasibility import theta_intervals
+from ._program import program_of
+from .catalogue import quantities
+from .inputs import INPUTS
+
+Array = NDArray[np.float64]
+
+KINDS = ("absmax", "max", "min")
+PARAMETERS = ("theta", "ec", "AB", "BC", "omega0", "alpha")
+BLOCK = 4096  # designs at a time
+UNIFORM = 240  # nodes per turn
+GRADED = 2.0 ** -np.arange(1.0, 46.0)  # distances from a quarter or a limit angle, down to 3e-14
+STEPS = 80  # of a refinement; it ends when every bracket is down to a last bit
+
+# These stay finite at a limit angle, where S = 0; all other quantities of the rod grow without bound.
+BOUNDED = (
+    "phi", "delta", "Y", "s", "transmission_angle", "pressure_angle",
+    "V_B", "V_B_X", "V_B_Y", "a_B", "a_B_X", "a_B_Y", "omega",
+)  # fmt: skip
+
+
+class Designs(NamedTuple):
+    """Flat arrays of the inputs of every design, what is fixed for all, and the range of theta."""
+
+    columns: dict[str, Array]
+    branch: int
+    theta: tuple[float, float]
+
+    def at(self, rows: NDArray[np.intp], theta: Array) -> dict[str, Any]:
+        """The inputs of the designs `rows`, one angle each."""
+        return {"theta": theta, "branch": self.branch, **{n: c[rows] for n, c in self.columns.items()}}
+
+
+def peak(
+    name: str,
+    *,
+    ec: Any = None,
+    AB: Any = None,
+    BC: Any = None,
+    omega0: Any = None,
+    alpha: Any = 0.0,
+    omega: Any = None,
+    branch: int = 1,
+    kind: str = "absmax",
+    theta: tuple[float, float] = (0.0, 2.0 * np.pi),
+    accuracy: str = "standard",
+) -> dict[str, Any]:
+    """The extreme value of a quantity over the crank angle; designs broadcast like NumPy.
+
+    kind    "absmax" (the largest magnitude), "max" or "min"
+    theta   range of crank angles [rad]; its ends count
+    others  as in `evaluate`
+
+    Gives a dict, floats for one design and arrays for many:
+
+    value     the extreme value; a magnitude for "absmax". inf where it grows without bound at a
+              limit angle of a mechanism that cannot turn fully
+    theta     the crank angle where it is reached
+    gradient  dict parameter -> exact derivative of the value (ec, AB, BC, omega0 or omega, alpha, as
+              far as the quantity depends on them); NaN where the value is not finite or is reached
+              at a limit angle
+    status    0 ok, 1 cannot be assembled anywhere in the range, 2 reached at a limit angle or change
+              point, 3 stalled in all of the range, 4 bad input
+
+    Raises ValueError for an unknown kind, or a quantity whose derivative by theta is not derived.
+    """
+    slope = _slope_name(name)
+    if kind not in KINDS:
+        raise ValueError(f"kind = {kind!r}: it is one of {', '.join(KINDS)}")
+    low, high = (float(angle) for angle in theta)
+    if not -np.inf < low <= high < np.inf:
+        raise ValueError(f"theta = ({low}, {high}): a finite range, its lower end first")
+    given = {"ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
+    wanted = request((name, slope), given, branch, accuracy)
+    needs = [n for n in program_of(wanted.names, wanted.state).inputs if n not in ("theta", "branch")]
+    arrays = {n: as_array(n, given[n], needs, (name,)) for n in needs}
+    shape = broadcast_shape(arrays)
+    columns = {n: np.broadcast_to(a, shape).reshape(-1) for n, a in arrays.items()}
+    count = int(np.prod(shape))
+    parts = []
+    for start in range(0, count, BLOCK):
+        block = {n: column[start : start + BLOCK] for n, column in columns.items()}
+        parts.append(_peaks(name, slope, kind, Designs(block, branch, (low, high))))
+    return _shaped(parts, shape, [n for n in PARAMETERS[1:] if n in needs or (n == "omega0" and wanted.state)])
+
+
+def _slope_name(name: str) -> str:
+    """The derivative by theta of a name; ValueError where there is none."""
+    base, _, wrt = name.partition("_wrt_")
+    parameters = ["theta", *(wrt.split("_") if wrt else [])]
+    slope = f"{base}_wrt_{'_'.join(parameters)}"
+    known = {row.name for row in quantities()}
+    if slope.replace("_omega_", "_omega0_").removesuffix("_omega") not in known and slope not in known:
+        request((name,), {}, 1, "standard")  # an unknown name is the better complaint
+        raise ValueError(f"peak of {name}: its derivative by theta is not derived")
+    return slope
+
+
+# ---- one block of designs -----------------------------------------------------------------------
+
+
+def _peaks(name: str, slope: str, kind: str, designs: Designs) -> dict[str, Any]:
+    rows = np.arange(next(iter(designs.columns.values())).size)
+    nodes, ends = _nodes(designs)
+    swept = _values((name, slope, "status"), designs, np.repeat(rows, nodes.shape[1]), nodes.reshape(-1))
+    value, rate, status = (swept[n].reshape(nodes.shape) for n in (name, slope, "status"))
+    candidate_rows, candidates = _refined(slope, designs, nodes, rate)
+    # Every node counts as well: the ends of the range and of arcs are among them.
+    at_roots = _values((name,), designs, candidate_rows, candidates)[name]
+    best_value, best_theta = _best(kind, value, nodes, candidate_rows, at_roots, candidates)
+    result = {"value": best_value, "theta": best_theta, "status": _status(status)}
+    _mark_limits(name, kind, result, value, nodes, ends)
+    result["gradient"] = _gradient(name, kind, designs, result)
+    if kind == "absmax":
+        result["value"] = np.abs(result["value"])
+    return result
+
+
+def _values(names: tuple[str, ...], designs: Designs, rows: NDArray[np.intp], theta: Array) -> dict[str, Any]:
+    found: dict[str, Any] = evaluate(list(names), **designs.at(rows, theta))
+    return found
+
+
+def _nodes(designs: Designs) -> tuple[Array, list[tuple[int, float]]]:
+    """Crank angles to sweep for each design, ascending, and its limit angles inside the range."""
+    low, high = designs.theta
+    turns = max(1.0, (high - low) / (2.0 * np.pi))
+    marks = [low, high]
+    marks += [np.pi * (0.5 + k) for k in range(int(np.floor(low / np.pi)) - 1, int(np.ceil(high / np.pi)) + 1)]
+    common = np.concatenate([np.linspace(low, high, int(UNIFORM * turns) + 1), *map(_around, marks)])
+    limits = _limit_angles(designs)
+    ends = [(row, angle) for row, angles in enumerate(limits) for angle in angles]
+    width = max((len(angles) for angles in limits), default=0)
+    own = np.full((len(limits), width * (2 * GRADED.size + 1)), low)
+    for row, angles in enumerate(limits):
+        near = np.concatenate([_around(angle) for angle in angles]) if angles else np.empty(0)
+        own[row, : near.size] = near
+    both = np.concatenate([np.broadcast_to(common, (len(limits), common.size)), own], axis=1)
+    return np.sort(np.clip(both, low, high), axis=1), ends
+
+
+def _around(angle: float) -> Array:
+    return np.concatenate([angle - GRADED, [angle], angle + GRADED])
+
+
+def _limit_angles(designs: Designs) -> list[list[float]]:
+    """For each design the angles in the range at which it stops being feasible, or stalls."""
+    low, high = designs.theta
+    columns = designs.columns
+    lengths = [columns.get(n) for n in ("ec", "AB", "BC")]
+    count = next(iter(columns.values())).size
+    margins = np.zeros(count)
+    if all(c is not None for c in lengths):
+        ec, AB, BC = lengths
+        margins = BC - AB - np.abs(ec)  # type: ignore[operator, arg-type]
+    found: list[list[float]] = [[] for _ in range(count)]
+    for row in np.flatnonzero(margins < 0.0):
+        for interval in theta_intervals(*(float(c[row]) for c in lengths)):  # type: ignore[index]
+            for end in interval:
+                first = end + 2.0 * np.pi * np.ceil((low - end) / (2.0 * np.pi))
+                found[row] += list(np.arange(first, high + 1e-12, 2.0 * np.pi))
+    if "alpha" in columns and "omega0" in columns:
+        for row in np.flatnonzero(columns["alpha"] != 0.0):
+            stop = float(-(columns["omega0"][row] ** 2) / (2.0 * columns["alpha"][row]))
+            found[row] += [stop] if low < stop < high else []
+    return found
+
+
+# ---- refinement ---------------------------------------------------------------------------------
+
+
+def _refined(slope: str, designs: Designs, nodes: Array, rate: Array) -> tuple[NDArray[np.intp], Array]:
+    """The angles at which the derivative changes sign, each with the row of its design."""
+    with np.errstate(invalid="ignore"):
+        change = np.sign(rate[:, :-1]) * np.sign(rate[:, 1:]) < 0
+    rows, columns = np.nonzero(change)
+    a, b = nodes[rows, columns], nodes[rows, columns + 1]
+    fa, fb = rate[rows, columns], rate[rows, columns + 1]
+    return rows, _roots(lambda theta: _values((slope,), designs, rows, theta)[slope], a, b, fa, fb)
+
+
+def _roots(function: Any, a: Array, b: Array, fa: Array, fb: Array) -> Array:
+    """The root in each bracket, by Chandrupatla's method (inverse quadratic steps, else halving)."""
+    c, fc = a.copy(), fa.copy()
+    fraction = np.full(a.shape, 0.5)
+    for _ in range(STEPS):
+        if not a.size:
+            break
+        theta = a + fraction * (b - a)
+        value = function(theta)
+        same = np.sign(value) == np.sign(fa)
+        c, fc = np.where(same, a, b), np.where(same, fa, fb)
+        b, fb = np.where(same, b, a), np.where(same, fb, fa)
+        a, fa = theta, value
+        best = np.where(np.abs(fa) < np.abs(fb), a, b)
+        tolerance = 2.0 * np.finfo(float).eps * np.abs(best)
+        width = np.abs(b - a)
+        if bool(np.all((width <= tolerance) | (fa == 0.0) | ~np.isfinite(fa))):
+            break
+        fraction = _next_fraction(a, b, c, fa, fb, fc, 0.5 * tolerance / np.maximum(width, tolerance))
+    return np.where(np.abs(fa) < np.abs(fb), a, b)
+
+
+def _next_fraction(a: Array, b: Array, c: Array, fa: Array, fb: Array, fc: Array, least: Array) -> Array:
+    with np.errstate(all="ignore"):
+        xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
+        quadratic = (phi**2 < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
+        step = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+    step = np.where(quadratic & np.isfinite(step), step, 0.5)
+    return np.clip(step, least, 1.0 - least)
+
+
+# ---- choosing -----------------------------------------------------------------------------------
+
+
+def _score(kind: str, value: Array) -> Array:
+    """What is to be made as large as possible; NaN never wins."""
+    score = {"absmax": np.abs(value), "max": value, "min": -value}[kind]
+    return np.where(np.isnan(score), -np.inf, score)
+
+
+def _best(
+    kind: str, value: Array, nodes: Array, rows: NDArray[np.intp], at_roots: Array, roots: Array
+) -> tuple[Array, Array]:
+    """The best of the nodes and the refined candidates of each design: its value and angle."""
+    every = np.arange(len(value))
+    column = np.argmax(_score(kind, value), axis=1)
+    best_value, best_theta = value[every, column].copy(), nodes[every, column].copy()
+    order = np.argsort(_score(kind, at_roots), kind="stable")  # the best of a row is written last
+    winner = np.full(len(value), -1)
+    winner[rows[order]] = order
+    known = winner >= 0
+    better = np.zeros(len(value), bool)
+    # An extremum that a node happens to hit counts as refined: it has the same value.
+    better[known] = _score(kind, at_roots[winner[known]]) >= _score(kind, best_value[known])
+    best_value[better], best_theta[better] = at_roots[winner[better]], roots[winner[better]]
+    return best_value, best_theta
+
+
+def _status(status: NDArray[np.int8]) -> NDArray[np.int8]:
+    """0 where any angle is ok, else what is wrong at the first."""
+    usable = ((status == 0) | (status == 2)).any(axis=1)
+    return np.where(usable, np.int8(0), status[:, 0]).astype(np.int8)
+
+
+def _mark_limits(
+    name: str, kind: str, result: dict[str, Any], value: Array, nodes: Array, ends: list[tuple[int, float]]
+) -> None:
+    """An extremum at a limit angle has status 2; what has no bound there is infinite."""
+    base = name.partition("_wrt_")[0]
+    bounded = base in BOUNDED and "_wrt_" not in name
+    for row, end in ends:
+        usable = np.isfinite(value[row])
+        if not usable.any() or result["status"][row] != 0:
+            continue
+        near = np.flatnonzero(usable)[np.argmin(np.abs(nodes[row, usable] - end))]
+        if abs(nodes[row, near] - end) > 1e-6:
+            continue
+        at_end = result["theta"][row] == nodes[row, near]
+        grows = not bounded and _score(kind, value[row, near]) >= _score(kind, result["value"][row])
+        if at_end or grows:
+            result["status"][row] = 2
+            result["theta"][row] = end
+            if not bounded:
+                result["value"][row] = np.copysign(np.inf, value[row, near])
+
+
+def _gradient(name: str, kind: str, designs: Designs, result: Mapping[str, Any]) -> dict[str, Array]:
+    """The partial derivatives at the extreme angle."""
+    parameters = [n for n in designs.columns if n in INPUTS]
+    names = tuple(_sensitivity(name, p) for p in parameters)
+    rows = np.arange(len(result["theta"]))
+    found = _values(names, designs, rows, np.asarray(result["theta"]))
+    sign = np.sign(result["value"]) if kind == "absmax" else 1.0
+    usable = (result["status"] == 0) & np.isfinite(result["value"])
+    with np.errstate(invalid="ignore"):
+        return {p: np.where(usable, sign * found[n], np.nan) for p, n in zip(parameters, names, strict=True)}
+
+
+def _sensitivity(name: str, parameter: str) -> str:
+    base, _, wrt = name.partition("_wrt_")
+    order = (*PARAMETERS[:4], "omega0", "omega", "alpha")
+    return f"{base}_wrt_{'_'.join(sorted([*(wrt.split('_') if wrt else []), parameter], key=order.index))}"
+
+
+def _shaped(parts: list[dict[str, Any]], shape: tuple[int, ...], parameters: list[str]) -> dict[str, Any]:
+    """The blocks put together in the shape of the designs; plain numbers for one design."""
+
+    def joined(arrays: list[Any], dtype: Any = np.float64) -> Any:
+        array = np.concatenate(arrays) if arrays else np.empty(0, dtype)
+        return array.reshape(shape) if shape else array[0].item()
+
+    names = list(parts[0]["gradient"]) if parts else parameters
+    return {
+        "value": joined([part["value"] for part in parts]),
+        "theta": joined([part["theta"] for part in parts]),
+        "gradient": {n: joined([part["gradient"][n] for part in parts]) for n in names},
+        "status": joined([part["status"] for part in parts], np.int8),
+    }

@@ -1,0 +1,336 @@
+"""Paper A by hand: Siswanto and Ibrahim, eccentric slider mechanism, every equation and every line of its listing.
+
+`printed_*` is what the paper prints, `corrected_*` exists only where that is not right. Equations use the crank's
+speed `omega` (rad/s) and angular acceleration `alpha` (rad/s2) at the crank angle `theta` (rad); lengths are in
+metres. Each function takes its mathematics from `m`: the `math` module, or `mpmath.mp` for more digits.
+
+Frame of the paper's vectors (Eqs. 1 to 4, 8, 9, 12, 13): x like the package's X, y the opposite of the package's
+Y, because the paper hangs the slider below the crank centre. V_C and a_C themselves are positive away from the
+crank centre, as in the package, which is why they carry a minus inside Eqs. 9 and 13.
+"""
+
+import math
+from collections.abc import Sequence
+from types import ModuleType
+from typing import Any
+
+Vector = tuple[Any, Any]
+Signs = Sequence[int]
+
+
+def add(*vectors: Vector) -> Vector:
+    """Sum of plane vectors: the right-hand sides of Eqs. 1, 3, 8 and 12."""
+    return sum(v[0] for v in vectors), sum(v[1] for v in vectors)
+
+
+# --- the crank, Eqs. 1 to 4 ------------------------------------------------------------------------------------
+
+
+def printed_eq1(V_A: Vector, V_BA: Vector) -> Vector:
+    """V_B = V_A + V_BA, m/s (Eq. 1)."""
+    return add(V_A, V_BA)
+
+
+def printed_eq2(theta: Any, AB: Any, omega: Any, m: ModuleType = math) -> Vector:
+    """Velocity of the crank pin B, m/s (Eq. 2)."""
+    return AB * omega * m.cos(theta), AB * omega * m.sin(theta)
+
+
+def printed_eq3(a_A: Vector, a_BA_n: Vector, a_BA_t: Vector) -> Vector:
+    """a_B = a_A + (a_BA)_n + (a_BA)_t, m/s2 (Eq. 3)."""
+    return add(a_A, a_BA_n, a_BA_t)
+
+
+def printed_normal(AB: Any, omega: Any, alpha: Any) -> Any:
+    """Size of the normal acceleration of B about A, m/s2, as the text above Eq. 3 gives it."""
+    return AB * omega**2
+
+
+def printed_tangential(AB: Any, omega: Any, alpha: Any) -> Any:
+    """Size of the tangential acceleration of B about A, m/s2, as the text above Eq. 3 gives it."""
+    return AB * omega**2
+
+
+def corrected_tangential(AB: Any, omega: Any, alpha: Any) -> Any:
+    """Size of the tangential acceleration of B about A, m/s2."""
+    return AB * alpha
+
+
+def crank_normal(theta: Any, AB: Any, omega: Any, m: ModuleType = math) -> Vector:
+    """First vector of Eqs. 4 and 13, m/s2: towards A."""
+    return -AB * omega**2 * m.sin(theta), AB * omega**2 * m.cos(theta)
+
+
+def crank_tangential(theta: Any, AB: Any, alpha: Any, m: ModuleType = math) -> Vector:
+    """Second vector of Eqs. 4 and 13, m/s2: across AB."""
+    return AB * alpha * m.cos(theta), AB * alpha * m.sin(theta)
+
+
+def printed_eq4(theta: Any, AB: Any, omega: Any, alpha: Any, m: ModuleType = math) -> Vector:
+    """Acceleration of the crank pin B, m/s2 (Eq. 4)."""
+    return add(crank_normal(theta, AB, omega, m), crank_tangential(theta, AB, alpha, m))
+
+
+# --- the rod, Eqs. 5 to 18 -------------------------------------------------------------------------------------
+
+
+def printed_eq5(theta: Any, ec: Any, AB: Any, BC: Any, m: ModuleType = math) -> Any:
+    """Delta, the angle between rod and the x axis, rad (Eq. 5)."""
+    return m.acos((ec + AB * m.sin(theta)) / BC)
+
+
+def printed_eq6(theta: Any, ec: Any, AB: Any, BC: Any, m: ModuleType = math) -> Any:
+    """Phi, the angle between rod and slider axis, rad (Eq. 6)."""
+    return m.asin((ec + AB * m.sin(theta)) / BC)
+
+
+def printed_eq7(theta: Any, ec: Any, AB: Any, BC: Any, m: ModuleType = math) -> Any:
+    """Y, the slider's distance from A along its axis, m (Eq. 7)."""
+    return AB * m.cos(theta) + BC * m.cos(printed_eq6(theta, ec, AB, BC, m))
+
+
+def printed_eq8(V_C: Vector, V_BC: Vector) -> Vector:
+    """V_B = V_C + V_BC, m/s (Eq. 8)."""
+    return add(V_C, V_BC)
+
+
+def printed_eq9(phi: Any, BC: Any, omega_BC: Any, V_C: Any, m: ModuleType = math) -> Vector:
+    """Right-hand side of Eq. 9, m/s; its left-hand side is Eq. 2."""
+    return add((0, -V_C), (BC * omega_BC * m.cos(phi), -BC * omega_BC * m.sin(phi)))
+
+
+def printed_eq10(theta: Any, ec: Any, AB: Any, BC: Any, omega: Any, m: ModuleType = math) -> Any:
+    """omega_BC = d phi/dt, rad/s (Eq. 10)."""
+    return AB * omega * m.cos(theta) / (BC * m.cos(printed_eq6(theta, ec, AB, BC, m)))
+
+
+def V_C_of_signs(
+    signs: Signs, theta: Any, ec: Any, AB: Any, BC: Any, omega: Any, m: ModuleType = math
+) -> Any:
+    """V_C, m/s, with a sign of choice before its crank and its rod term: Eq. 11 is (-1, -1)."""
+    crank = AB * omega * m.sin(theta)
+    rod = BC * printed_eq10(theta, ec, AB, BC, omega, m) * m.sin(printed_eq6(theta, ec, AB, BC, m))
+    return signs[0] * crank + signs[1] * rod
+
+
+def printed_eq11(theta: Any, ec: Any, AB: Any, BC: Any, omega: Any, m: ModuleType = math) -> Any:
+    """V_C = dY/dt, m/s (Eq. 11)."""
+    return V_C_of_signs((-1, -1), theta, ec, AB, BC, omega, m)
+
+
+def printed_eq12(a_C: Vector, a_BC_t: Vector, a_BC_n: Vector) -> Vector:
+    """a_B = a_C + (a_BC)_t + (a_BC)_n, m/s2 (Eq. 12)."""
+    return add(a_C, a_BC_t, a_BC_n)
+
+
+def printed_eq13(phi: Any, BC: Any, omega_BC: Any, alpha_BC: Any, a_C: Any, m: ModuleType = math) -> Vector:
+    """Right-hand side of Eq. 13, m/s2; its left-hand side is Eq. 4."""
+    tangential = BC * alpha_BC * m.cos(phi), -BC * alpha_BC * m.sin(phi)
+    normal = -BC * omega_BC**2 * m.sin(phi), -BC * omega_BC**2 * m.cos(phi)
+    return add((0, -a_C), tangential, normal)
+
+
+def printed_eq15(theta: Any, AB: Any, omega: Any, m: ModuleType = math) -> Any:
+    """alpha_BC1, m/s2 (Eq. 15)."""
+    return -AB * omega**2 * m.sin(theta)
+
+
+def printed_eq16(theta: Any, AB: Any, alpha: Any, m: ModuleType = math) -> Any:
+    """alpha_BC2, m/s2 (Eq. 16)."""
+    return AB * alpha * m.cos(theta)
+
+
+def printed_eq17(theta: Any, ec: Any, AB: Any, BC: Any, omega: Any, m: ModuleType = math) -> Any:
+    """alpha_BC3, m/s2 (Eq. 17)."""
+    omega_BC = printed_eq10(theta, ec, AB, BC, omega, m)
+    return -BC * omega_BC**2 * m.sin(printed_eq6(theta, ec, AB, BC, m))
+
+
+def printed_eq18(theta: Any, ec: Any, AB: Any, BC: Any, m: ModuleType = math) -> Any:
+    """alpha_BC4, m (Eq. 18)."""
+    return BC * m.cos(printed_eq6(theta, ec, AB, BC, m))
+
+
+def alpha_BC_of_signs(
+    signs: Signs, theta: Any, ec: Any, AB: Any, BC: Any, omega: Any, alpha: Any, m: ModuleType = math
+) -> Any:
+    """alpha_BC, rad/s2, with signs of choice before alpha_BC1 to alpha_BC3: Eq. 14 is (1, 1, -1)."""
+    parts = (
+        printed_eq15(theta, AB, omega, m),
+        printed_eq16(theta, AB, alpha, m),
+        printed_eq17(theta, ec, AB, BC, omega, m),
+    )
+    return sum(s * part for s, part in zip(signs, parts, strict=True)) / printed_eq18(theta, ec, AB, BC, m)
+
+
+def printed_eq14(theta: Any, ec: Any, AB: Any, BC: Any, omega: Any, alpha: Any, m: ModuleType = math) -> Any:
+    """alpha_BC = d2 phi/dt2, rad/s2 (Eq. 14)."""
+    return alpha_BC_of_signs((1, 1, -1), theta, ec, AB, BC, omega, alpha, m)
+
+
+# --- the slider's acceleration, Eqs. 19 to 23 -------------------------------------------------------------------
+
+
+def printed_eq20(theta: Any, AB: Any, omega: Any, m: ModuleType = math) -> Any:
+    """a_C1, m/s2 (Eq. 20)."""
+    return -AB * omega**2 * m.cos(theta)
+
+
+def printed_eq21(theta: Any, AB: Any, alpha: Any, m: ModuleType = math) -> Any:
+    """a_C2, m/s2 (Eq. 21)."""
+    return -AB * alpha * m.sin(theta)
+
+
+def printed_eq22(theta: Any, ec: Any, AB: Any, BC: Any, omega: Any, alpha: Any, m: ModuleType = math) -> Any:
+    """a_C3, m/s2 (Eq. 22)."""
+    alpha_BC = printed_eq14(theta, ec, AB, BC, omega, alpha, m)
+    return -BC * alpha_BC * m.sin(printed_eq6(theta, ec, AB, BC, m))
+
+
+def printed_eq23(theta: Any, ec: Any, AB: Any, BC: Any, omega: Any, m: ModuleType = math) -> Any:
+    """a_C4, m/s2 (Eq. 23)."""
+    omega_BC = printed_eq10(theta, ec, AB, BC, omega, m)
+    return -BC * omega_BC**2 * m.cos(printed_eq6(theta, ec, AB, BC, m))
+
+
+def a_C_parts(
+    theta: Any, ec: Any, AB: Any, BC: Any, omega: Any, alpha: Any, m: ModuleType = math
+) -> tuple[Any, Any, Any, Any]:
+    """The four terms a_C1 to a_C4, m/s2 (Eqs. 20 to 23)."""
+    return (
+        printed_eq20(theta, AB, omega, m),
+        printed_eq21(theta, AB, alpha, m),
+        printed_eq22(theta, ec, AB, BC, omega, alpha, m),
+        printed_eq23(theta, ec, AB, BC, omega, m),
+    )
+
+
+def a_C_of_signs(
+    signs: Signs, theta: Any, ec: Any, AB: Any, BC: Any, omega: Any, alpha: Any, m: ModuleType = math
+) -> Any:
+    """a_C, m/s2, with signs of choice before a_C1 to a_C4: Eq. 19 is (1, 1, -1, -1)."""
+    parts = a_C_parts(theta, ec, AB, BC, omega, alpha, m)
+    return sum(s * part for s, part in zip(signs, parts, strict=True))
+
+
+def printed_eq19(theta: Any, ec: Any, AB: Any, BC: Any, omega: Any, alpha: Any, m: ModuleType = math) -> Any:
+    """a_C as printed, m/s2 (Eq. 19): two signs are wrong."""
+    return a_C_of_signs((1, 1, -1, -1), theta, ec, AB, BC, omega, alpha, m)
+
+
+def corrected_eq19(
+    theta: Any, ec: Any, AB: Any, BC: Any, omega: Any, alpha: Any, m: ModuleType = math
+) -> Any:
+    """a_C = a_C1 + a_C2 + a_C3 + a_C4 = d2Y/dt2, m/s2 (Eq. 19 corrected)."""
+    return a_C_of_signs((1, 1, 1, 1), theta, ec, AB, BC, omega, alpha, m)
+
+
+# --- the worksheet: functions of the design with omega0 and alpha as its constants (Eqs. 24, 25, listing) ---------
+
+
+class Worksheet:
+    """The listing as printed, one method a line; `omega0` (rad/s) and `alpha` (rad/s2) are set once above it.
+
+    Lines that are not right have a `corrected_` twin. Arguments are in the paper's order.
+    """
+
+    def __init__(self, omega0: Any, alpha: Any, m: ModuleType = math) -> None:
+        """Set the two constants of the main window (Fig. 7) and the mathematics."""
+        self.omega0, self.alpha, self.m = omega0, alpha, m
+
+    def omega(self, theta: Any) -> Any:
+        """Crank speed, rad/s."""
+        return self.m.sqrt(self.omega0**2 + 2 * self.alpha * theta)
+
+    def delta(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+        """Delta, rad."""
+        return self.m.acos((ec + AB * self.m.sin(theta)) / BC)
+
+    def phi(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+        """Phi, rad."""
+        return self.m.asin((ec + AB * self.m.sin(theta)) / BC)
+
+    def Y(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+        """Slider position, m."""
+        return AB * self.m.cos(theta) + BC * self.m.cos(self.phi(theta, ec, AB, BC))
+
+    def V_B(self, theta: Any, AB: Any) -> Vector:
+        """Velocity of the crank pin, m/s, in the paper's frame."""
+        return AB * self.omega(theta) * self.m.cos(theta), AB * self.omega(theta) * self.m.sin(theta)
+
+    def a_B(self, theta: Any, AB: Any) -> Vector:
+        """Acceleration of the crank pin, m/s2, in the paper's frame."""
+        sin, cos, square = self.m.sin(theta), self.m.cos(theta), self.omega(theta) ** 2
+        return add((-AB * square * sin, AB * square * cos), (AB * self.alpha * cos, AB * self.alpha * sin))
+
+    def omega_BC(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+        """Rod rate, rad/s."""
+        return AB * self.omega(theta) * self.m.cos(theta) / (BC * self.m.cos(self.phi(theta, ec, AB, BC)))
+
+    def V_C(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+        """Slider velocity as printed, m/s: the sign of the whole line is wrong."""
+        rod = BC * self.omega_BC(theta, ec, AB, BC) * self.m.sin(self.phi(theta, ec, AB, BC))
+        return AB * self.omega(theta) * self.m.sin(theta) + rod
+
+    def corrected_V_C(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+        """Slider velocity, m/s, with the signs of Eq. 11."""
+        rod = BC * self.omega_BC(theta, ec, AB, BC) * self.m.sin(self.phi(theta, ec, AB, BC))
+        return -AB * self.omega(theta) * self.m.sin(theta) - rod
+
+    def alpha_BC(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+        """Rod angular acceleration, rad/s2, in the two fractions of the listing."""
+        design = theta, ec, AB, BC
+        first = (self.alpha_BC1(*design) + self.alpha_BC2(*design)) / self.alpha_BC4(*design)
+        return first + -self.alpha_BC3(*design) / self.alpha_BC4(*design)
+
+    def alpha_BC1(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+        """First term of alpha_BC, m/s2."""
+        return -AB * self.omega(theta) ** 2 * self.m.sin(theta)
+
+    def alpha_BC2(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+        """Second term of alpha_BC, m/s2."""
+        return AB * self.alpha * self.m.cos(theta)
+
+    def alpha_BC3(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+        """Third term of alpha_BC, m/s2."""
+        return -BC * self.omega_BC(theta, ec, AB, BC) ** 2 * self.m.sin(self.phi(theta, ec, AB, BC))
+
+    def alpha_BC4(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+        """Divisor of alpha_BC, m."""
+        return BC * self.m.cos(self.phi(theta, ec, AB, BC))
+
+    def a_C(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+        """Slider acceleration as printed, m/s2: two signs are wrong, as in Eq. 19."""
+        design = theta, ec, AB, BC
+        return self.a_C1(*design) + self.a_C2(*design) - self.a_C3(*design) - self.a_C4(*design)
+
+    def corrected_a_C(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+        """Slider acceleration, m/s2."""
+        design = theta, ec, AB, BC
+        return self.a_C1(*design) + self.a_C2(*design) + self.a_C3(*design) + self.a_C4(*design)
+
+    def a_C1(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+        """First term of a_C, m/s2."""
+        return -AB * self.omega(theta) ** 2 * self.m.cos(theta)
+
+    def a_C2(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+        """Second term of a_C, m/s2."""
+        return -AB * self.alpha * self.m.sin(theta)
+
+    def a_C3(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+        """Third term of a_C, m/s2."""
+        return -BC * self.alpha_BC(theta, ec, AB, BC) * self.m.sin(self.phi(theta, ec, AB, BC))
+
+    def a_C4(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+        """Fourth term of a_C, m/s2."""
+        return -BC * self.omega_BC(theta, ec, AB, BC) ** 2 * self.m.cos(self.phi(theta, ec, AB, BC))
+
+
+def printed_eq24(theta: Any, ec: Any, AB: Any, BC: Any, sheet: Worksheet) -> Any:
+    """V_C(theta, ec, AB, BC), m/s, as Eq. 11 (Eq. 24): the sheet supplies omega0 and alpha."""
+    return printed_eq11(theta, ec, AB, BC, sheet.omega(theta), sheet.m)
+
+
+def printed_eq25(theta: Any, ec: Any, AB: Any, BC: Any, sheet: Worksheet) -> Any:
+    """a_C(theta, ec, AB, BC), m/s2, as Eq. 19 corrected (Eq. 25): the sheet supplies omega0 and alpha."""
+    return corrected_eq19(theta, ec, AB, BC, sheet.omega(theta), sheet.alpha, sheet.m)
