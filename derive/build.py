@@ -4,10 +4,12 @@ from typing import NamedTuple
 
 from desaxe.compiler.passes.number import number_values
 from desaxe.compiler.passes.slicing import drop_unused
+from desaxe.compiler.passes.trigonometry import Trigonometry
 from desaxe.compiler.program import Program, validate
 
 from .freeze import freeze
 from .motion import state_sheet
+from .polynomials import trigonometry
 from .quantities import FACTS, QUANTITIES, SECOND_ORDER, build_sheet
 from .sheet import PARAMETERS, Sheet, derivative_name, symbol
 
@@ -15,11 +17,12 @@ INPUTS = (*PARAMETERS, "branch")
 
 
 class Derivation(NamedTuple):
-    """What is written: the law's program, the state's lines, and the public names."""
+    """What is written: the law's program, the state's lines, the public names, sine and cosine."""
 
     program: Program
     state: Program
     names: tuple[str, ...]
+    trigonometry: Trigonometry
 
 
 def public_names() -> tuple[str, ...]:
@@ -43,7 +46,7 @@ def build() -> Derivation:
     motion = tuple(name for name in state.equations if sheet.equation(name) is not None)
     program = freeze(sheet, INPUTS, (*public_names(), *motion))
     frozen = freeze(state, ("omega", "alpha"), motion)
-    return Derivation(_finished(program), _finished(frozen), public_names())
+    return Derivation(_finished(program), _finished(frozen), public_names(), trigonometry())
 
 
 def _derive(sheet: Sheet, name: str) -> None:

@@ -20,7 +20,6 @@ from .stable import (
     abs_sin,
     absolute,
     atan2,
-    copysign,
     cos_theta,
     ec_side,
     eps,
@@ -80,7 +79,7 @@ def _exact_sum(sheet: Sheet, name: str, first: sp.Expr, second: sp.Expr, meaning
 def _define_crank(sheet: Sheet) -> None:
     sheet.define("sin_theta", sp.sin(theta), unit=NONE, meaning="sine of the crank angle")
     sheet.define("cos_theta", sp.cos(theta), unit=NONE, meaning="cosine of the crank angle")
-    sheet.define("side", copysign(1, sin_theta), unit=NONE, meaning="sigma: which side the crank is on")
+    sheet.define("side", select(lt(sin_theta, 0), -1, 1), unit=NONE, meaning="sigma: which side the crank is on")
     sheet.define("abs_sin", absolute(sin_theta), unit=NONE, meaning="|sin(theta)|")
     sheet.define("eps", cos_theta**2 / (1 + abs_sin), unit=NONE, meaning="1 - |sin(theta)| without cancellation")
 
@@ -112,7 +111,7 @@ def _define_rod(sheet: Sheet) -> None:
 
 def _define_angles(sheet: Sheet) -> None:
     sheet.define("phi", atan2(u, S), unit=ANGLE, meaning="angle of the rod to the slider axis", source="A (6)")
-    across = sheet.define("side_u", copysign(1, u), unit=NONE, meaning="sign of u", rigid=True)
+    across = sheet.define("side_u", select(lt(u, 0), -1, 1), unit=NONE, meaning="sign of u", rigid=True)
     sheet.define(
         "delta", atan2(S, u), unit=ANGLE, meaning="angle of the rod across the slider axis", source="A (5)",
         differentiate=-phi,

@@ -33,8 +33,8 @@ TRIGONOMETRY = {sp.sin(theta): sin_theta, sp.cos(theta): cos_theta}
 CRANK_PIN = CRANK.subs(TRIGONOMETRY)
 OFFSET = solved()[u].subs(TRIGONOMETRY)  # u, from the solved loop
 
-select, lt, le, eq, both = (sp.Function(name) for name in ("select", "lt", "le", "eq", "and"))
-copysign, atan2, absolute = sp.Function("copysign"), sp.Function("atan2"), sp.Function("abs")
+select, lt, le, eq = (sp.Function(name) for name in ("select", "lt", "le", "eq"))
+atan2, absolute = sp.Function("atan2"), sp.Function("abs")
 two_sum_error = sp.Function("two_sum_error")
 
 

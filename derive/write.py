@@ -19,8 +19,10 @@ from desaxe.compiler.emit_numba import emit_numba_with_front
 from desaxe.compiler.kernel import hoist
 from desaxe.compiler.operations import HELPERS, MATH_NAMES
 from desaxe.compiler.passes.guard import guard_inputs
+from desaxe.compiler.passes.number import number_values
 from desaxe.compiler.passes.pipeline import optimise
 from desaxe.compiler.passes.slicing import keep_outputs
+from desaxe.compiler.passes.trigonometry import Trigonometry, expand_trigonometry
 from desaxe.compiler.program import Program
 from desaxe.compiler.text import write_function
 from desaxe.inputs import LEAST
@@ -50,9 +52,10 @@ def render(derivation: Derivation) -> dict[str, str]:
         "program.py": _program(derivation.program, "law", _LAW, digest),
         "state.py": _program(derivation.state, "state", _STATE, digest),
         "index.py": _index(derivation, digest),
+        "trigonometry.py": _trigonometry(derivation.trigonometry, digest),
     }
     for group in GROUPS:
-        files[f"{group.name}.py"] = _group(derivation.program, group, digest)
+        files[f"{group.name}.py"] = _group(derivation, group, digest)
     return files
 
 
@@ -99,16 +102,26 @@ def _index(derivation: Derivation, digest: str) -> str:
     return f'"""{banner.replace("0 operations.", f"{len(rows)} names.")}"""\n\nNAMES = {{\n' + "\n".join(rows) + "\n}\n"
 
 
-def _group(program: Program, group: Group, digest: str) -> str:
+def _trigonometry(constants: Trigonometry, digest: str) -> str:
+    banner = _banner("Minimax polynomials of sine and cosine on |y| <= pi/4, and pi/2 in parts.", digest, 0)
+    rows = "\n".join(f"    {name!r}: {value!r}," for name, value in constants._asdict().items())
+    banner = banner.replace("0 operations.\n", "")
+    return f'"""{banner}"""\n\nCONSTANTS = {{\n{rows}\n}}\n'
+
+
+def _group(derivation: Derivation, group: Group, digest: str) -> str:
+    program = derivation.program
     sliced, _ = optimise(keep_outputs(program, group.outputs))
     inputs = [name for name in sliced.inputs if name != "branch"]
     guarded = guard_inputs(sliced, inputs, LEAST)
     axis_of = {name: None if name == "branch" else 0 for name in sliced.inputs}
+    guarded = number_values(expand_trigonometry(guarded, derivation.trigonometry))
     kernel = hoist(guarded, axis_of, 1)
     banner = _banner(f"numba kernel: {group.what}.", digest, cost_of(guarded).operations)
     front = (
         f"{group.what[0].upper()}{group.what[1:]}; arrays broadcast like NumPy.\n\n"
-        "    SI units and radians, a mapping name -> array. An infeasible or bad element is NaN.\n    "
+        "    SI units and radians, a mapping name -> array. An infeasible or bad element is NaN, and so is one\n"
+        f"    with |theta| > {derivation.trigonometry.limit:.0f} rad.\n    "
     )
     return emit_numba_with_front(kernel, banner, front)
 

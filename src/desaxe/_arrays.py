@@ -114,7 +114,7 @@ def _fill(
     wanted: Request, scalars: dict[str, float], columns: dict[str, Array], outs: list[Array], threads: int | None
 ) -> None:
     """Fill flat outputs from scalars and flat columns."""
-    key = key_of(wanted, scalars, dict.fromkeys(columns, 0), axes=1)
+    key = key_of(wanted, scalars, columns, dict.fromkeys(columns, 0), axes=1)
     if not columns:
         for out, value in zip(outs, point_for(key).run(scalars), strict=True):
             out[...] = value

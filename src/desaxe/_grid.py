@@ -102,7 +102,7 @@ def _filled(
         order = list(dimensions) or [""]
         scalars = {name: float(axes[name].reshape(-1)[0]) for name in inputs if name not in order}
         columns = {name: np.ascontiguousarray(axes[name]) for name in inputs if name in order}
-        key = key_of(wanted, scalars, {name: order.index(name) for name in columns}, len(order))
+        key = key_of(wanted, scalars, columns, {name: order.index(name) for name in columns}, len(order))
         outs = [buffer if dimensions else buffer.reshape(1) for buffer in buffers.values()]
         run_in_blocks(kernel_for(key), {**scalars, **columns}, outs, threads)
     return delivered(places, buffers, False)

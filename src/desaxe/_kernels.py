@@ -9,6 +9,7 @@ import hashlib
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
+from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from threading import Lock
@@ -20,7 +21,9 @@ from .compiler.emit_numba import emit_numba
 from .compiler.emit_python import compile_python
 from .compiler.kernel import hoist
 from .compiler.passes.guard import guard_inputs
+from .compiler.passes.number import number_values
 from .compiler.passes.pipeline import optimise
+from .compiler.passes.trigonometry import Trigonometry, expand_trigonometry
 from .compiler.program import Program
 from .inputs import LEAST
 
@@ -36,6 +39,7 @@ class KernelKey(NamedTuple):
     fixed: tuple[tuple[str, float], ...]
     axis_of: tuple[tuple[str, int], ...]
     axes: int
+    far: bool = False  # some angle is beyond what the written-out sine and cosine reduce exactly
 
 
 class CompiledKernel(NamedTuple):
@@ -60,11 +64,30 @@ class PlainPoint(NamedTuple):
         return self.function(*(values[name] for name in self.inputs))
 
 
-def key_of(wanted: Request, scalars: Mapping[str, float], axis_of: Mapping[str, int], axes: int) -> KernelKey:
-    """The key of a request whose scalars and axes are known."""
+@cache
+def constants() -> Trigonometry:
+    """The constants of the written-out sine and cosine, from generated/."""
+    return Trigonometry(**import_module("desaxe.generated.trigonometry").CONSTANTS)
+
+
+def key_of(
+    wanted: Request, scalars: Mapping[str, float], columns: Mapping[str, Any], axis_of: Mapping[str, int], axes: int
+) -> KernelKey:
+    """The key of a request whose scalars and columns are known."""
+    far = _largest(columns.get("theta", scalars.get("theta", 0.0))) > constants().limit
     zeros = [(name, 0.0) for name in STRUCTURAL_ZEROS if scalars.get(name) == 0.0]
     fixed = (("branch", float(wanted.branch)), *zeros)
-    return KernelKey(wanted.names, wanted.state, fixed, tuple(sorted(axis_of.items())), axes)
+    return KernelKey(wanted.names, wanted.state, fixed, tuple(sorted(axis_of.items())), axes, far)
+
+
+def _largest(angles: Any) -> float:
+    """The largest finite magnitude."""
+    if isinstance(angles, float):
+        return abs(angles)
+    import numpy as np
+
+    largest = float(max(np.fmax.reduce(angles), -np.fmin.reduce(angles)))
+    return largest if largest < np.inf else float(np.abs(angles[np.isfinite(angles)]).max(initial=0.0))
 
 
 @cache
@@ -103,6 +126,8 @@ def source_of(key: KernelKey, cached: bool = True) -> str:
     program = _cut(key)
     axes = dict(key.axis_of)
     guarded = guard_inputs(program, [name for name in program.inputs if name in axes], LEAST)
+    if not key.far:
+        guarded = number_values(expand_trigonometry(guarded, constants()))
     kernel = hoist(guarded, {name: axes.get(name) for name in program.inputs}, key.axes)
     fixed = ", ".join(f"{name} = {value:g}" for name, value in key.fixed)
     motion = "a given state" if key.state else "paper A's law"

@@ -13,6 +13,7 @@ from .program import Program
 from .text import INDENT, write_lines
 
 _TYPES = {"f64": "float64", "i64": "int8"}  # a status is stored as int8
+_NUMPY_CALLS = {"floor"}  # numba's math.floor gives an integer, which does not vectorise
 # An input may be an array that must not be written to; numba's signature strings cannot say so.
 _INPUT = 'axis = types.Array(types.float64, 1, "C", readonly=True)\n'
 
@@ -35,9 +36,10 @@ def emit_numba_with_front(kernel: Kernel, docstring: str, front: str) -> str:
 
 def _header(kernel: Kernel, docstring: str, numpy_names: list[str]) -> str:
     lines = [line for lines in kernel.levels for line in lines]
-    calls = sorted({_called(line.op) for line in lines} - {""})
+    called = {_called(line.op) for line in lines} - {""}
+    calls = sorted(called - _NUMPY_CALLS)
     constants = {str(a) for line in lines for a in line.args if isinstance(a, float) and a - a != 0.0}
-    from_numpy = sorted({*numpy_names, *constants})
+    from_numpy = sorted({*numpy_names, *constants, *(called & _NUMPY_CALLS)})
     imports = [f"from math import {', '.join(calls)}\n"] if calls else []
     imports.append("from numba import njit, types")
     imports += [f"from numpy import {', '.join(from_numpy)}"] if from_numpy else []

@@ -1,0 +1,85 @@
+"""Minimax polynomials for sine and cosine, and pi/2 in parts, for loops that must vectorise.
+
+A loop that calls the C library's `sin` runs one point at a time. The compiler writes these
+polynomials into the loop instead. They are made here, by Remez' exchange in high precision, and
+committed with the kernels.
+
+    sin(y) = y + y z P(z),   cos(y) = 1 - z/2 + z^2 Q(z),   z = y^2,   |y| <= pi/4
+"""
+
+from collections.abc import Callable
+
+from mpmath import mp, mpf
+
+from desaxe.compiler.passes.trigonometry import Trigonometry
+
+BITS = 33  # of each part of pi/2: a whole number below 2^20 times a part is exact
+PARTS = 4  # so that angles next to a multiple of pi/2 keep all their digits
+TERMS = 6
+EXCHANGES = 8
+
+
+def trigonometry() -> Trigonometry:
+    """The constants, rounded to doubles."""
+    with mp.workdps(60):
+        return Trigonometry(
+            limit=float(mp.floor(2**20 * mp.pi / 2)),
+            two_over_pi=float(2 / mp.pi),
+            pi_half=_parts(mp.pi / 2),
+            sine=_rounded(_minimax(_sine_rest, lambda z: mp.sin(mp.sqrt(z)) / (mp.sqrt(z) * z), TERMS)),
+            cosine=_rounded(_minimax(_cosine_rest, lambda z: mp.cos(mp.sqrt(z)) / z**2, TERMS)),
+        )
+
+
+def _parts(value: mpf) -> tuple[float, ...]:
+    """The value as a sum of doubles of BITS bits each; the last part is a full double."""
+    parts = []
+    for _ in range(PARTS - 1):
+        scale = mpf(2) ** (BITS - 1 - mp.floor(mp.log(value, 2)))
+        part = mp.floor(value * scale) / scale
+        parts.append(float(part))
+        value -= part
+    return (*parts, float(value))
+
+
+def _sine_rest(z: mpf) -> mpf:
+    """P(z), exactly."""
+    y = mp.sqrt(z)
+    return (mp.sin(y) - y) / (y * z)
+
+
+def _cosine_rest(z: mpf) -> mpf:
+    """Q(z), exactly."""
+    return (mp.cos(mp.sqrt(z)) - 1 + z / 2) / z**2
+
+
+def _rounded(coefficients: list[mpf]) -> tuple[float, ...]:
+    return tuple(float(c) for c in coefficients)
+
+
+def _minimax(function: Callable[[mpf], mpf], scale: Callable[[mpf], mpf], terms: int) -> list[mpf]:
+    """Coefficients that level |polynomial - function| / |scale| on (0, (pi/4)^2], lowest first."""
+    low, high = mpf(10) ** -8, (mp.pi / 4) ** 2 * mpf("1.0001")
+    count = terms + 1
+    nodes = [(low + high) / 2 - (high - low) / 2 * mp.cos(mp.pi * k / (count - 1)) for k in range(count)]
+    for _ in range(EXCHANGES):
+        rows = [[z**k for k in range(terms)] + [(-1) ** i * scale(z)] for i, z in enumerate(nodes)]
+        solution = mp.lu_solve(mp.matrix(rows), mp.matrix([function(z) for z in nodes]))
+        coefficients = list(solution)[:terms]
+        nodes = _extrema(lambda z, c=coefficients: (mp.polyval(c[::-1], z) - function(z)) / scale(z), low, high, count)
+    return coefficients
+
+
+def _extrema(error: Callable[[mpf], mpf], low: mpf, high: mpf, count: int) -> list[mpf]:
+    """Where the error is extreme, on a fine grid between its changes of sign."""
+    grid = [(low + high) / 2 - (high - low) / 2 * mp.cos(mp.pi * k / 400) for k in range(401)]
+    values = [error(z) for z in grid]
+    best: list[int] = []
+    for i, value in enumerate(values):
+        if best and (value > 0) == (values[best[-1]] > 0):
+            best[-1] = max(best[-1], i, key=lambda j: abs(values[j]))
+        else:
+            best.append(i)
+    while len(best) > count:
+        best.pop(0 if abs(values[best[0]]) < abs(values[best[-1]]) else -1)
+    return [grid[i] for i in best]
