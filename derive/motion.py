@@ -5,8 +5,9 @@ where it is 0). Or a given state: omega and alpha at this instant. Either way d(
 d(omega)/dt = alpha and alpha is constant, so a time derivative is the same expression; only how
 omega depends on the parameters differs. The state therefore replaces these equations and no others.
 
-Only omega^2 enters most quantities: it is differentiated itself, so that they have their limits at
-rest. At rest under the law (omega0 = alpha = 0) omega is omega0, and has that limit's derivatives.
+Only omega^2, omega^3 and omega alpha enter most quantities: they are differentiated themselves, so
+that the quantities have their limits at rest. At rest under the law (omega0 = alpha = 0) omega is
+omega0, and has that limit's derivatives; only those of omega itself by alpha are infinite there.
 """
 
 from itertools import combinations_with_replacement
@@ -21,7 +22,12 @@ from .units import ANGULAR_SPEED, NONE, Unit
 omega, omega2, omega0, alpha, turn, nan = map(symbol, ("omega", "omega2", "omega0", "alpha", "turn", "nan"))
 MOVING = ("theta", "omega0", "alpha")
 SQUARE_RATES = (("theta",), ("omega0",), ("alpha",), ("theta", "alpha"), ("omega0", "omega0"))
-UNITS = {"omega": ANGULAR_SPEED, "omega2": Unit(0, -2, 2)}
+UNITS = {
+    "omega": ANGULAR_SPEED,
+    "omega2": Unit(0, -2, 2),
+    "omega3": Unit(0, -3, 3),
+    "omega_alpha": Unit(0, -3, 2),
+}
 LAW = omega0**2 + 2 * alpha * theta  # = omega^2, paper A, listing
 
 
@@ -56,6 +62,18 @@ def define_law(sheet: Sheet) -> None:
         _define_rate(sheet, "omega", parameters, value)
     for parameters in SQUARE_RATES:
         _define_rate(sheet, "omega2", parameters, LAW.diff(*map(symbol, parameters)))
+    _define_powers(sheet)
+
+
+def _define_powers(sheet: Sheet) -> None:
+    """omega^3 and omega alpha, with derivatives that keep their limits where omega is 0."""
+    sheet.define("omega3", omega * omega2, unit=Unit(0, -3, 3), meaning="omega^3")
+    for parameter in MOVING:
+        by_square = sp.Rational(3, 2) * omega * symbol(derivative_name("omega2", parameter))
+        _define_rate(sheet, "omega3", (parameter,), by_square)
+    sheet.define("omega_alpha", omega * alpha, unit=Unit(0, -3, 2), meaning="omega alpha")
+    moving = omega + alpha * symbol("omega_wrt_alpha")
+    _define_rate(sheet, "omega_alpha", ("alpha",), select(eq(alpha, 0), omega, moving))
 
 
 def _define_rate(sheet: Sheet, name: str, parameters: tuple[str, ...], value: sp.Expr | int) -> None:

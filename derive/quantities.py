@@ -28,9 +28,11 @@ from .stable import (
     lt,
     margin_side,
     reach_side,
+    sec_phi,
     select,
     side,
     sin_theta,
+    tan_phi,
     two_sum_error,
 )
 from .units import (
@@ -64,6 +66,7 @@ def build_sheet() -> Sheet:
     _define_angles(sheet)
     _define_crank_motion(sheet)
     _define_slider_motion(sheet)
+    _define_stroke(sheet)
     _define_facts(sheet)
     return sheet
 
@@ -156,11 +159,6 @@ def _define_crank_motion(sheet: Sheet) -> None:
 def _define_slider_motion(sheet: Sheet) -> None:
     """Rates of the slider and the rod: time derivatives of Y and phi along the motion."""
     sheet.define("Y", POSITION, unit=LENGTH, meaning="slider position along the slider axis", source="A (7)")
-    reach = sheet.define("outer_reach", sp.sqrt((AB + BC - ec) * (AB + BC + ec)))
-    sheet.define(
-        "s", reach - branch * symbol("Y"), unit=LENGTH, meaning="slider's distance from its outer dead centre",
-        source="B (9)",
-    )  # fmt: skip
     rows = (
         ("V_C", "Y", 1, SPEED, "velocity of the slider", "A (11)"),
         ("a_C", "Y", 2, ACCELERATION, "acceleration of the slider", "A (19)"),
@@ -172,13 +170,42 @@ def _define_slider_motion(sheet: Sheet) -> None:
         sheet.define(name, _rate(base, order), unit=unit, meaning=meaning, source=source)
 
 
+def _define_stroke(sheet: Sheet) -> None:
+    """The slider's distance from its outer dead centre, without the cancellation of outer_Y - branch Y.
+
+    Crank and rod enclose the angle beta, 0 at that dead centre. With across = BC sin(beta) and
+    along = BC cos(beta), outer_Y^2 - Y^2 = 2 AB BC (1 - cos(beta)), and BC (1 - cos(beta)) is
+    across^2/(BC + along) where cos(beta) > 0. By BC and ec the derivative is a difference of
+    sec(phi) and of tan(phi) from their values at the dead centre; by AB it is that by BC and
+    (1 - cos(beta)) sec(phi).
+    """
+    outer = sheet.define("outer_Y", sp.sqrt((AB + BC - ec) * (AB + BC + ec)), unit=LENGTH,
+                         meaning="|Y| at the outer dead centre")  # fmt: skip
+    along = sheet.define("rod_along_crank", branch * cos_theta * S - u * sin_theta)
+    across = sheet.define("rod_across_crank", u * cos_theta + branch * sin_theta * S)
+    bend = sheet.define(
+        "bend", select(lt(0, along), across**2 / (BC + along), BC - along), unit=LENGTH, meaning="BC (1 - cos(beta))"
+    )
+    outer_tan, outer_sec = sheet.define("outer_tan", ec / outer), sheet.define("outer_sec", (AB + BC) / outer)
+    sheet.define(
+        "s", 2 * AB * bend / (outer + branch * symbol("Y")), unit=LENGTH, source="B (9)",
+        meaning="slider's distance from its outer dead centre",
+        differentiate=outer - branch * symbol("Y"),
+    )  # fmt: skip
+    steeper = (outer_tan - tan_phi) * (outer_tan + tan_phi) / (outer_sec + sec_phi)
+    by_length = {"ec": tan_phi - outer_tan, "AB": symbol("s_wrt_BC") + bend * r, "BC": steeper}
+    for parameter, value in by_length.items():
+        sheet.define(f"s_wrt_{parameter}", value, unit=NONE, meaning=f"derivative of s by {parameter}")
+
+
 def _rate(base: str, order: int) -> sp.Expr:
     """The `order`-th time derivative of phi or Y."""
     by_theta = [symbol(base)] + [symbol(f"{base}_wrt" + "_theta" * n) for n in range(1, order + 1)]
     expression: sp.Expr = by_theta[0]
     for _ in range(order):
         expression = time_derivative(expression, dict(zip(by_theta, by_theta[1:], strict=False)))
-    return sp.factor_terms(expression.subs({omega**3: omega * omega2, omega**2: omega2}))
+    powers = expression.subs(omega**3, symbol("omega3")).subs(omega**2, omega2)
+    return powers.subs(omega * alpha, symbol("omega_alpha"))
 
 
 def _define_facts(sheet: Sheet) -> None:

@@ -13,11 +13,13 @@ each name up in the text and never parses the rest.
 
 import ast
 from collections.abc import Iterable, Sequence
+from textwrap import wrap
 
 from .operations import CALL, OPERATIONS, result_type
 from .program import Argument, Line, Note, Program, ProgramError, names_in, renamed_temporaries, type_of
 
 INDENT = "    "
+WIDTH = 100
 
 
 # ---- writing ---------------------------------------------------------------------------------
@@ -41,8 +43,17 @@ def write_lines(program: Program, column: str = "text") -> list[str]:
 def write_function(program: Program, name: str, docstring: str) -> str:
     """The whole function that computes the program."""
     program = with_short_temporaries(program)
-    body = [f'"""{docstring}"""', *write_lines(program), f"return {', '.join(program.outputs)}"]
+    body = [f'"""{docstring}"""', *write_lines(program), *_return(program.outputs)]
     return "\n".join([f"def {name}({', '.join(program.inputs)}):", *(INDENT + line for line in body)]) + "\n"
+
+
+def _return(outputs: Sequence[str]) -> list[str]:
+    """The return statement, wrapped where it is long."""
+    whole = f"return {', '.join(outputs)}"
+    if len(whole) <= WIDTH:
+        return [whole]
+    rows = wrap(", ".join(outputs) + ",", WIDTH, break_long_words=False)
+    return ["return (", *(INDENT + row for row in rows), ")"]
 
 
 def spell(line: Line, text: dict[str, tuple[str, int]], column: str) -> tuple[str, int]:
@@ -121,7 +132,7 @@ class ProgramText:
     def outputs(self) -> tuple[str, ...]:
         """The names that the function returns, in order."""
         _, _, names = self._text.rpartition(f"\n{INDENT}return ")
-        return tuple(name.strip() for name in names.split(","))
+        return tuple(name.strip() for name in names.strip("()\n ").split(",") if name.strip())
 
     def line(self, name: str) -> tuple[str, int]:
         """The right-hand side and note of a name, and where the line stands; KeyError without one."""

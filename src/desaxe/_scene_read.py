@@ -1,0 +1,349 @@
+"""From what is written in a scene file to inputs in SI units and names that exist."""
+
+import tomllib
+from collections.abc import Iterable, Mapping
+from math import isfinite, pi
+from os import PathLike
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from . import _scene_schema as schema
+from ._program import program_of
+from ._scene_printed import Printed, read_percentage, read_printed
+from ._scene_schema import SceneError, shown
+from .catalogue import law_name, quantity
+from .inputs import INPUTS, is_good
+from .units import in_si
+
+Value = float | tuple[float, ...]
+SECTIONS = ("mechanism", "motion")
+MOST = 100_000_000  # values of one range
+
+
+class Check(NamedTuple):
+    """One printed value, and the inputs at which it is to be computed."""
+
+    title: str
+    source: str
+    quantity: str
+    printed: Printed
+    inputs: dict[str, float]
+
+
+class Claim(NamedTuple):
+    """What somebody says about the peak of one design: its increase over the baseline."""
+
+    source: str
+    at: dict[str, float]
+    design: dict[str, float]
+    increase: Printed
+
+
+class Peak(NamedTuple):
+    """A peak over the crank angle, for the outer product of `axes` with everything else fixed."""
+
+    title: str
+    quantity: str
+    kind: str
+    axes: dict[str, tuple[float, ...]]
+    fixed: dict[str, float]
+    theta: tuple[float, float]
+    at_baseline: dict[str, float]
+    baseline: dict[str, float]
+    claims: tuple[Claim, ...]
+    sensitivities: tuple[str, ...]
+
+
+class Picture(NamedTuple):
+    """A family of curves and the file it goes to."""
+
+    title: str
+    file: str
+    quantity: str
+    over: str
+    family: str | None
+    inputs: dict[str, Value]
+
+
+class Content(NamedTuple):
+    """All that a scene says, in SI units; inputs in the order in which they are written."""
+
+    title: str
+    outputs: tuple[str, ...]
+    accuracy: str
+    branch: int
+    inputs: dict[str, Value]
+    checks: tuple[Check, ...]
+    peaks: tuple[Peak, ...]
+    pictures: tuple[Picture, ...]
+    data: str | None
+
+
+def plain_data(source: str | PathLike[str] | Mapping[str, Any]) -> dict[str, Any]:
+    """The tables of a scene file, or of the same thing in Python (NumPy numbers and arrays are fine)."""
+    if isinstance(source, Mapping):
+        return {str(name): _plain(value) for name, value in source.items()}
+    if not isinstance(source, (str, PathLike)):
+        raise TypeError(f"a scene is the path of a TOML file or a mapping, got {type(source).__name__}")
+    try:
+        return tomllib.loads(Path(source).read_bytes().decode("utf-8"))
+    except UnicodeDecodeError as error:
+        raise SceneError(f"not a text in UTF-8: {error}") from None
+    except tomllib.TOMLDecodeError as error:
+        raise SceneError(f"not a TOML file: {error}") from None
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(name): _plain(part) for name, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(part) for part in value]
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    return str(value) if isinstance(value, PathLike) else value
+
+
+def read(data: Mapping[str, Any]) -> Content:
+    """The content of a scene; SceneError names the first key that is wrong."""
+    file = schema.decoded(data)
+    inputs = _inputs(data, file)
+    branch = file.mechanism.branch
+    if "omega" in inputs and "omega0" in inputs:
+        raise SceneError(f"motion.omega = {inputs['omega']}: give omega0 (the law) or omega (a state), not both")
+    outputs = tuple(dict.fromkeys(file.outputs))
+    for index, name in enumerate(outputs, 1):
+        _known(f"outputs #{index}", name, "omega" in inputs)
+    if outputs:
+        _require_for_grid("outputs", outputs, inputs)
+    if not (outputs or file.peak or file.check or file.picture):
+        raise SceneError("nothing is asked for: give outputs = [...], [[peak]], [[check]] or [[picture]]")
+    if file.results.data is not None and not (outputs or file.peak):
+        raise SceneError(f"results.data = {shown(file.results.data)}: there is nothing to write, give outputs = [...]")
+    checks = [c for index, table in enumerate(file.check, 1) for c in _checks(f"check #{index}", table, inputs)]
+    peaks = [_peak(f"peak #{index}", table, inputs) for index, table in enumerate(file.peak, 1)]
+    pictures = [_picture(f"picture #{index}", table, inputs) for index, table in enumerate(file.picture, 1)]
+    return Content(
+        file.title, outputs, file.accuracy, branch, inputs,
+        tuple(checks), tuple(peaks), tuple(pictures), file.results.data,
+    )  # fmt: skip
+
+
+# ---- values of inputs ----------------------------------------------------------------------------
+
+
+def _inputs(data: Mapping[str, Any], file: schema.SceneFile) -> dict[str, Value]:
+    """The inputs of [mechanism] and [motion] in the order in which they stand in the file."""
+    order = [(section, name) for section in data if section in SECTIONS for name in data[section]]
+    tables = [(f"{section}.{name}", name, getattr(getattr(file, section), name)) for section, name in order]
+    return {name: values_of(key, name, written) for key, name, written in tables if name in INPUTS}
+
+
+def values_of(key: str, name: str, written: float | str | tuple[float | str, ...] | schema.Range) -> Value:
+    """A number, or the values of a list or range, in the SI unit of an input."""
+    if isinstance(written, tuple):
+        if not written:
+            raise SceneError(f"{key} = []: at least one value is wanted")
+        return tuple(number_of(f"{key} #{index}", name, part) for index, part in enumerate(written, 1))
+    if isinstance(written, schema.Range):
+        return _spread(key, name, written)
+    return number_of(key, name, written)
+
+
+def number_of(key: str, name: str, written: float | str) -> float:
+    """A number or text with a unit, in the SI unit of an input."""
+    try:
+        value = float(in_si(name, written)) if isinstance(written, str) else float(written)
+    except ValueError as error:
+        raise SceneError(f"{key}{str(error).removeprefix(name)}") from None
+    if not is_good(name, value):
+        raise SceneError(f"{key} = {shown(written)}: it must be {INPUTS[name].limit}")
+    return value
+
+
+def _spread(key: str, name: str, written: schema.Range) -> tuple[float, ...]:
+    """The values of a range, both ends included."""
+    start = number_of(f"{key}.start", name, written.start)
+    stop = number_of(f"{key}.stop", name, written.stop)
+    if (written.num is None) == (written.step is None):
+        raise SceneError(f"{key}: a range has start, stop, and either num (how many) or step (how far apart)")
+    last = written.num - 1 if written.num is not None else _steps(key, name, written, stop - start)
+    if last >= MOST:
+        raise SceneError(f"{key}: {last + 1} values are too many, at most {MOST}")
+    return (*(start + (stop - start) * k / last for k in range(last)), stop)
+
+
+def _steps(key: str, name: str, written: schema.Range, length: float) -> int:
+    # A step of a length may be negative, which the length itself may not.
+    alike = "ec" if name in ("AB", "BC") else name
+    step = number_of(f"{key}.step", alike, written.step or 0.0)
+    count = length / step if step else 0.0
+    if not (isfinite(count) and count > 0.5 and abs(count - round(count)) < 1e-6):
+        raise SceneError(
+            f"{key}.step = {shown(written.step)}: it must lead from start to stop in a whole number of steps"
+        )
+    return round(count)
+
+
+def _design(key: str, written: Mapping[str, float | str]) -> dict[str, float]:
+    _only_inputs(key, written)
+    return {name: number_of(f"{key}.{name}", name, value) for name, value in written.items()}
+
+
+def _only_inputs(key: str, names: Iterable[str]) -> None:
+    for name in names:
+        if name not in INPUTS:
+            raise SceneError(f"{key}.{name}: unknown input; {schema.hint(name, tuple(INPUTS))}")
+
+
+# ---- what is asked for ---------------------------------------------------------------------------
+
+
+def _known(key: str, name: str, state: bool) -> None:
+    try:
+        quantity(name, state)
+    except ValueError as error:
+        raise SceneError(f"{key} = {shown(name)}: {error}") from None
+
+
+def _needs(names: Iterable[str], inputs: Mapping[str, Any]) -> tuple[str, ...]:
+    """The inputs that quantities need, under the law or for a given state."""
+    state = "omega" in inputs
+    law = tuple(law_name(name) if state else name for name in names)
+    return tuple(name for name in program_of(law, state).inputs if name != "branch")
+
+
+def _require(key: str, needs: Iterable[str], what: str, inputs: Mapping[str, Any]) -> list[str]:
+    """Those of the needed inputs that are given; SceneError for one that is missing (alpha is 0)."""
+    for name in needs:
+        if name not in inputs and name != "alpha":
+            section = "mechanism" if name in schema.Mechanism.__struct_fields__ else "motion"
+            raise SceneError(f"{key}: {what} needs {section}.{name}, which is missing")
+    return [name for name in needs if name in inputs]
+
+
+def _require_for_grid(key: str, names: tuple[str, ...], inputs: Mapping[str, Any]) -> list[str]:
+    """The same for a grid, which has `status` and `margin` too; they need no speed."""
+    always = [name for name in _needs(("status", "margin"), inputs) if name in ("theta", "ec", "AB", "BC")]
+    needs = dict.fromkeys([*_needs(names, inputs), *always])
+    return _require(key, needs, ", ".join(names), inputs)
+
+
+def _with(inputs: Mapping[str, Value], other: Mapping[str, Value]) -> dict[str, Value]:
+    """Inputs with others in their place; a given state takes the place of the law, and back."""
+    swapped = {"omega": "omega0", "omega0": "omega"}
+    replaced = {swapped[name] for name in other if name in swapped}
+    return {**{name: value for name, value in inputs.items() if name not in replaced}, **other}
+
+
+def _numbers(key: str, names: Iterable[str], inputs: Mapping[str, Value]) -> dict[str, float]:
+    """Those inputs, each a number; SceneError for one that is a list or range."""
+    found = {}
+    for name in names:
+        value = inputs[name]
+        if isinstance(value, tuple):
+            raise SceneError(f"{key}: {name} has {len(value)} values, one is wanted: give at.{name}")
+        found[name] = value
+    return found
+
+
+def _checks(key: str, table: schema.CheckTable, inputs: Mapping[str, Value]) -> list[Check]:
+    there = _with(inputs, _design(f"{key}.at", table.at))
+    checks = []
+    for name, written in table.printed.items():
+        place = f"{key}.printed.{name}"
+        _known(place, name, "omega" in there)
+        needed = _require(place, _needs((name,), there), name, there)
+        printed = read_printed(place, written, table.digits, quantity(name, "omega" in there).unit)
+        checks.append(Check(table.title, table.source, name, printed, _numbers(place, needed, there)))
+    if not checks:
+        raise SceneError(f"{key}.printed = {{}}: at least one printed value is wanted")
+    return checks
+
+
+def _peak(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> Peak:
+    name = table.quantity
+    _only_inputs(f"{key}.over", table.over)
+    over = {n: values_of(f"{key}.over.{n}", n, written) for n, written in table.over.items()}
+    if "theta" in over:
+        raise SceneError(f"{key}.over.theta: a peak is taken over theta; its range is {key}.theta")
+    there = _with(inputs, over)
+    _known(f"{key}.quantity", name, "omega" in there)
+    slope = _slope(f"{key}.quantity", name, "omega" in there)
+    needed = _require(f"{key}.quantity", [n for n in _needs((name, slope), there) if n != "theta"], name, there)
+    for n in over:
+        if n not in needed:
+            raise SceneError(f"{key}.over.{n}: {name} does not depend on it")
+    ordered = [n for n in over if n in needed] + [n for n in needed if n not in over]
+    axes = {n: value for n in ordered if isinstance(value := there[n], tuple)}
+    fixed = {n: value for n in needed if isinstance(value := there[n], float)}
+    base = _other_design(f"{key}.baseline", table.baseline or {}, axes, fixed) if table.baseline is not None else {}
+    claims = tuple(
+        _claim(f"{key}.claim #{index}", claim, axes, fixed, bool(base)) for index, claim in enumerate(table.claim, 1)
+    )
+    _only_inputs(f"{key}.sensitivities", table.sensitivities)
+    wanted = tuple(n for n in table.sensitivities if n in needed)
+    angles = _angles(key, table, inputs)
+    at_base = _design(f"{key}.baseline", table.baseline or {})
+    return Peak(table.title, name, table.kind, axes, fixed, angles, at_base, base, claims, wanted)
+
+
+def _slope(key: str, name: str, state: bool) -> str:
+    """The derivative of a quantity by theta, which a peak needs."""
+    base, _, parameters = name.partition("_wrt_")
+    slope = "_".join([f"{base}_wrt_theta", *([parameters] if parameters else [])])
+    try:
+        quantity(slope, state)
+    except ValueError:
+        raise SceneError(f"{key} = {shown(name)}: it has no peak, its derivative by theta is not derived") from None
+    return slope
+
+
+def _angles(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> tuple[float, float]:
+    """The range of theta: that of the peak, else that of the motion, else one turn."""
+    if table.theta is not None:
+        low, high = (number_of(f"{key}.theta #{i}", "theta", part) for i, part in enumerate(table.theta, 1))
+        if low > high:
+            raise SceneError(f"{key}.theta = {shown(list(table.theta))}: its lower end comes first")
+        return low, high
+    theta = inputs.get("theta")
+    return (min(theta), max(theta)) if isinstance(theta, tuple) and len(theta) > 1 else (0.0, 2.0 * pi)
+
+
+def _other_design(
+    key: str, written: Mapping[str, float | str], axes: Mapping[str, Any], fixed: Mapping[str, float]
+) -> dict[str, float]:
+    """All inputs of a design that says only what is different."""
+    design = {**fixed, **_design(key, written)}
+    for name in axes:
+        if name not in design:
+            raise SceneError(f"{key}: {name} has {len(axes[name])} values, one is wanted: give {key}.{name}")
+    return {name: design[name] for name in (*axes, *fixed)}
+
+
+def _claim(
+    key: str, claim: schema.ClaimTable, axes: Mapping[str, Any], fixed: Mapping[str, float], based: bool
+) -> Claim:
+    if not based:
+        raise SceneError(f"{key}.increase = {shown(claim.increase)}: an increase needs the peak's baseline = {{...}}")
+    design = _other_design(f"{key}.at", claim.at, axes, fixed)
+    at = _design(f"{key}.at", claim.at)
+    return Claim(claim.source, at, design, read_percentage(f"{key}.increase", claim.increase))
+
+
+def _picture(key: str, table: schema.PictureTable, inputs: Mapping[str, Value]) -> Picture:
+    name = table.quantity
+    _only_inputs(f"{key}.family", table.family)
+    if len(table.family) > 1:
+        raise SceneError(f"{key}.family: one input makes a family, got {', '.join(table.family)}")
+    family = {n: values_of(f"{key}.family.{n}", n, written) for n, written in table.family.items()}
+    there = _with(_with(inputs, _design(f"{key}.at", table.at)), family)
+    _known(f"{key}.quantity", name, "omega" in there)
+    needed = _require_for_grid(f"{key}.quantity", (name,), there)
+    if table.over not in INPUTS:
+        raise SceneError(f"{key}.over = {shown(table.over)}: unknown input; {schema.hint(table.over, tuple(INPUTS))}")
+    if not isinstance(there.get(table.over), tuple) or table.over in family:
+        raise SceneError(f"{key}.over = {shown(table.over)}: it must be an input that has a list or range of values")
+    member = next(iter(family), None)
+    curves = [n for n in (member, table.over) if n is not None]
+    fixed = _numbers(key, [n for n in needed if n not in curves], there)
+    return Picture(table.title, table.file, name, table.over, member, {**{n: there[n] for n in curves}, **fixed})
