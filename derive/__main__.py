@@ -21,8 +21,12 @@ def target() -> Path:
 def main(arguments: list[str] | None = None) -> int:
     """Run the command; 1 where --check finds a difference."""
     parser = argparse.ArgumentParser(prog="python -m derive", description=__doc__)
-    parser.add_argument("--check", action="store_true", help="build in memory, compare, exit 1 on a difference")
-    parser.add_argument("--report", action="store_true", help="operations before and after each pass, per quantity")
+    parser.add_argument(
+        "--check", action="store_true", help="build in memory, compare, exit 1 on a difference"
+    )
+    parser.add_argument(
+        "--report", action="store_true", help="operations before and after each pass, per quantity"
+    )
     parser.add_argument("-o", "--output", type=Path, help="another folder than generated/")
     options = parser.parse_args(arguments)
     folder = options.output or target()

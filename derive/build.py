@@ -66,9 +66,9 @@ def _define_constant(sheet: Sheet, name: str, base: str, value: object) -> None:
         raise ValueError(f"{name} is the constant {value}")
     needs = set(sheet.ordered((base,)))
     still = "no_effect_on_rod" if "D" in needs else "no_effect_on_motion"
-    equation = sheet.equation(base)
-    assert equation is not None and equation.unit is not None
-    unit = equation.unit
+    unit = sheet.equations[base].unit
+    if unit is None:
+        raise ValueError(f"{base} has no unit")
     for parameter in name.partition("_wrt_")[2].split("_"):
         unit = unit.over(parameter)
     sheet.define(name, symbol(still), unit=unit, meaning=f"0: {base} does not depend on it", rigid=True)

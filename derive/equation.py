@@ -90,7 +90,11 @@ def closed_form(base: str) -> sp.Expr:
             "a_C": _rate(position, 2),
             "j_C": _rate(position, 3),
         }[base]
-    return sp.simplify(found).subs(omega, sp.sqrt(LAW)) if base in ("V_B", "a_B") else found.subs(omega, sp.sqrt(LAW))
+    return (
+        sp.simplify(found).subs(omega, sp.sqrt(LAW))
+        if base in ("V_B", "a_B")
+        else found.subs(omega, sp.sqrt(LAW))
+    )
 
 
 def _rate(expression: sp.Expr, turns: int) -> sp.Expr:

@@ -33,7 +33,11 @@ def second(name: str) -> tuple[str, ...]:
 
 
 GROUPS = (
-    Group("position", "position of the slider and angles of the rod", ("Y", "s", *ROD_ANGLES, "margin", "status")),
+    Group(
+        "position",
+        "position of the slider and angles of the rod",
+        ("Y", "s", *ROD_ANGLES, "margin", "status"),
+    ),
     Group("motion", "position, velocity and acceleration of the slider", KINEMATICS),
     Group(
         "sensitivities",

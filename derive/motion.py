@@ -41,7 +41,9 @@ def define_law(sheet: Sheet) -> None:
     """omega, omega^2 and their derivatives under paper A's law."""
     constant_speed = eq(alpha, 0)
     sheet.define("omega2_law", LAW, unit=UNITS["omega2"], meaning="omega^2 by the law", source="A listing")
-    sheet.define("stalled", lt(symbol("omega2_law"), 0), unit=NONE, meaning="the crank stopped before this angle")
+    sheet.define(
+        "stalled", lt(symbol("omega2_law"), 0), unit=NONE, meaning="the crank stopped before this angle"
+    )
     square = select(symbol("stalled"), nan, symbol("omega2_law"))
     sheet.define(
         "omega2",
@@ -91,7 +93,7 @@ def _omega_rates() -> dict[tuple[str, ...], sp.Expr]:
 
 def _omega_second_rates() -> dict[tuple[str, ...], sp.Expr]:
     """From omega d2(omega) = d2(omega^2)/2 - d(omega) d(omega), over omega^3."""
-    found = {}
+    found: dict[tuple[str, ...], sp.Expr] = {}
     for p, q in combinations_with_replacement(MOVING, 2):
         first, second = symbol(p), symbol(q)
         numerator = LAW.diff(first, second) / 2 * LAW - LAW.diff(first) * LAW.diff(second) / 4

@@ -66,8 +66,15 @@ def _minimax(function: Callable[[mpf], mpf], scale: Callable[[mpf], mpf], terms:
         rows = [[z**k for k in range(terms)] + [(-1) ** i * scale(z)] for i, z in enumerate(nodes)]
         solution = mp.lu_solve(mp.matrix(rows), mp.matrix([function(z) for z in nodes]))
         coefficients = list(solution)[:terms]
-        nodes = _extrema(lambda z, c=coefficients: (mp.polyval(c[::-1], z) - function(z)) / scale(z), low, high, count)
+        nodes = _extrema(_error(coefficients, function, scale), low, high, count)
     return coefficients
+
+
+def _error(
+    coefficients: list[mpf], function: Callable[[mpf], mpf], scale: Callable[[mpf], mpf]
+) -> Callable[[mpf], mpf]:
+    """The relative error of a polynomial."""
+    return lambda z: (mp.polyval(coefficients[::-1], z) - function(z)) / scale(z)
 
 
 def _extrema(error: Callable[[mpf], mpf], low: mpf, high: mpf, count: int) -> list[mpf]:

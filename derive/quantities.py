@@ -4,6 +4,8 @@ To add one, add its equation here (or a room of its own for a family of them) an
 `QUANTITIES`; its sensitivities, catalogue row and tests of freshness and accuracy follow.
 """
 
+from itertools import pairwise
+
 import sympy as sp
 
 from .geometry import POSITION, resolve_geometry
@@ -82,9 +84,13 @@ def _exact_sum(sheet: Sheet, name: str, first: sp.Expr, second: sp.Expr, meaning
 def _define_crank(sheet: Sheet) -> None:
     sheet.define("sin_theta", sp.sin(theta), unit=NONE, meaning="sine of the crank angle")
     sheet.define("cos_theta", sp.cos(theta), unit=NONE, meaning="cosine of the crank angle")
-    sheet.define("side", select(lt(sin_theta, 0), -1, 1), unit=NONE, meaning="sigma: which side the crank is on")
+    sheet.define(
+        "side", select(lt(sin_theta, 0), -1, 1), unit=NONE, meaning="sigma: which side the crank is on"
+    )
     sheet.define("abs_sin", absolute(sin_theta), unit=NONE, meaning="|sin(theta)|")
-    sheet.define("eps", cos_theta**2 / (1 + abs_sin), unit=NONE, meaning="1 - |sin(theta)| without cancellation")
+    sheet.define(
+        "eps", cos_theta**2 / (1 + abs_sin), unit=NONE, meaning="1 - |sin(theta)| without cancellation"
+    )
 
 
 def _define_rod(sheet: Sheet) -> None:
@@ -103,7 +109,9 @@ def _define_rod(sheet: Sheet) -> None:
     sheet.define("D", E * W, unit=Unit(m=2), meaning="BC^2 - u^2", source="B (7)")
     sheet.define("S", sp.sqrt(D), unit=LENGTH, meaning="BC cos(phi), the rod's height", source="B (7)")
     sheet.define("inv_S", 1 / S, unit=Unit(m=-1), meaning="1 / S")
-    sheet.define("u", OFFSET, unit=LENGTH, meaning="BC sin(phi), crank pin from the slider axis", source="A (6)")
+    sheet.define(
+        "u", OFFSET, unit=LENGTH, meaning="BC sin(phi), crank pin from the slider axis", source="A (6)"
+    )
     sheet.define("crank_ratio", AB * r, unit=NONE, meaning="AB / S")
     sheet.define("ec_ratio", ec_side * r, unit=NONE, meaning="sigma ec / S")
     sheet.define("margin_ratio", (margin_side * r) * symbol("reach_ratio"), unit=NONE, meaning="m n / S^2")
@@ -113,7 +121,9 @@ def _define_rod(sheet: Sheet) -> None:
 
 
 def _define_angles(sheet: Sheet) -> None:
-    sheet.define("phi", atan2(u, S), unit=ANGLE, meaning="angle of the rod to the slider axis", source="A (6)")
+    sheet.define(
+        "phi", atan2(u, S), unit=ANGLE, meaning="angle of the rod to the slider axis", source="A (6)"
+    )
     across = sheet.define("side_u", select(lt(u, 0), -1, 1), unit=NONE, meaning="sign of u", rigid=True)
     sheet.define(
         "delta", atan2(S, u), unit=ANGLE, meaning="angle of the rod across the slider axis", source="A (5)",
@@ -136,7 +146,11 @@ def _define_crank_motion(sheet: Sheet) -> None:
         velocity = time_derivative(position, by_theta)
         acceleration = time_derivative(velocity, by_theta).subs(omega**2, omega2)
         sheet.define(
-            f"V_B_{axis}", velocity, unit=SPEED, meaning=f"velocity of the crank pin along {axis}", source="A (2)"
+            f"V_B_{axis}",
+            velocity,
+            unit=SPEED,
+            meaning=f"velocity of the crank pin along {axis}",
+            source="A (2)",
         )
         sheet.define(
             f"a_B_{axis}", sp.factor_terms(acceleration), unit=ACCELERATION, source="A (4)",
@@ -151,7 +165,8 @@ def _define_crank_motion(sheet: Sheet) -> None:
     share = sheet.define("share_omega2", select(eq(pull, 0), 1, omega2 / pull), rigid=True)
     rest = sheet.define("share_alpha", select(eq(pull, 0), 0, alpha / pull), rigid=True)
     sheet.define(
-        "a_B", AB * pull, unit=ACCELERATION, meaning="magnitude of the crank pin's acceleration", source="B (3)",
+        "a_B", AB * pull, unit=ACCELERATION, source="B (3)",
+        meaning="magnitude of the crank pin's acceleration",
         differentiate=AB * (share * omega2 + rest * alpha),
     )  # fmt: skip
 
@@ -184,7 +199,10 @@ def _define_stroke(sheet: Sheet) -> None:
     along = sheet.define("rod_along_crank", branch * cos_theta * S - u * sin_theta)
     across = sheet.define("rod_across_crank", u * cos_theta + branch * sin_theta * S)
     bend = sheet.define(
-        "bend", select(lt(0, along), across**2 / (BC + along), BC - along), unit=LENGTH, meaning="BC (1 - cos(beta))"
+        "bend",
+        select(lt(0, along), across**2 / (BC + along), BC - along),
+        unit=LENGTH,
+        meaning="BC (1 - cos(beta))",
     )
     outer_tan, outer_sec = sheet.define("outer_tan", ec / outer), sheet.define("outer_sec", (AB + BC) / outer)
     sheet.define(
@@ -203,7 +221,7 @@ def _rate(base: str, order: int) -> sp.Expr:
     by_theta = [symbol(base)] + [symbol(f"{base}_wrt" + "_theta" * n) for n in range(1, order + 1)]
     expression: sp.Expr = by_theta[0]
     for _ in range(order):
-        expression = time_derivative(expression, dict(zip(by_theta, by_theta[1:], strict=False)))
+        expression = time_derivative(expression, dict(pairwise(by_theta)))
     powers = expression.subs(omega**3, symbol("omega3")).subs(omega**2, omega2)
     return powers.subs(omega * alpha, symbol("omega_alpha"))
 

@@ -1,7 +1,7 @@
 """`python -m derive --report`: what each pass saved, per quantity."""
 
 from desaxe.compiler.cost import cost_of
-from desaxe.compiler.passes.pipeline import optimise
+from desaxe.compiler.passes.pipeline import PASSES, optimise
 from desaxe.compiler.passes.slicing import keep_outputs
 
 from .build import Derivation
@@ -12,7 +12,7 @@ def report(derivation: Derivation) -> str:
     """Operations of each quantity: in the whole program, sliced, after each pass, then specialised."""
     whole = cost_of(derivation.program)
     head = f"the whole program: {whole.operations} operations, depth {whole.depth}\n"
-    rows = []
+    rows: list[list[object]] = []
     for name in QUANTITIES:
         sliced = keep_outputs(derivation.program, (name,))
         general, steps = optimise(sliced)
@@ -21,12 +21,21 @@ def report(derivation: Derivation) -> str:
         concentric, _ = optimise(sliced, {"ec": 0.0, "alpha": 0.0, "branch": 1.0})
         counts = [step.cost.operations for step in steps]
         rows.append([name, *counts, cost_of(general).depth, len(family.lines), len(concentric.lines)])
-    passes = [step.name for step in steps]
-    titles = ["quantity", *passes, "depth", "with all its sensitivities", "ec=0, alpha=0, branch=1"]
+    titles = [
+        "quantity",
+        "sliced",
+        *(step.name for step in PASSES),
+        "depth",
+        "with all its sensitivities",
+        "ec=0, alpha=0, branch=1",
+    ]
     return head + _table(titles, rows)
 
 
 def _table(titles: list[str], rows: list[list[object]]) -> str:
-    widths = [max(len(str(row[i])) for row in (titles, *rows)) for i in range(len(titles))]
-    lines = ["  ".join(str(cell).ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
-    return "\n".join(["  ".join(t.ljust(w) for t, w in zip(titles, widths, strict=True)), *lines])
+    texts = [titles, *([str(cell) for cell in row] for row in rows)]
+    widths = [max(map(len, column)) for column in zip(*texts, strict=True)]
+    return "\n".join(
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in texts
+    )

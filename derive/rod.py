@@ -67,11 +67,8 @@ def resolve_rod(sheet: Sheet, name: str) -> Equation | None:
     rod = read_rod_function(name)
     if rod is None or not (rod.by or rod.turns):
         return None
-    if rod.by:
-        expression = sp.factor_terms(in_ratios(_followed(rod)))
-    else:
-        expression = sp.factor_terms(_height(rod.turns))
-    return Equation(expression, rod.unit, rod.meaning)
+    expression = in_ratios(_followed(rod)) if rod.by else _height(rod.turns)
+    return Equation(sp.factor_terms(expression), rod.unit, rod.meaning)
 
 
 def _followed(rod: RodFunction) -> sp.Expr:

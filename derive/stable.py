@@ -87,7 +87,9 @@ def _numerator(order: int) -> sp.Expr:
     squared = margin_ratio + 2 * (crank_ratio + ec_ratio) * crank_ratio * eps - (crank_ratio * eps) ** 2
     across = side * (ec_ratio + crank_ratio * (1 - eps))
     textbook = sp.expand(chain_rule_form(order) / r ** (2 * order - 1))
-    in_ratios = textbook.subs({r: 1 / sp.sqrt(squared), u: across, AB: crank_ratio, sin_theta: side * (1 - eps)})
+    in_ratios = textbook.subs(
+        {r: 1 / sp.sqrt(squared), u: across, AB: crank_ratio, sin_theta: side * (1 - eps)}
+    )
     divided = sp.expand(in_ratios / (crank_ratio * (cos_theta if order % 2 else side)))
     even = sp.expand(divided.subs(cos_theta, sp.sqrt(eps * (2 - eps))))
     return sp.expand(even.replace(lambda x: x.is_Pow and x.base == side, lambda x: side ** (x.exp % 2)))

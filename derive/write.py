@@ -99,7 +99,11 @@ def _index(derivation: Derivation, digest: str) -> str:
     notes = derivation.program.notes
     rows = [f'    "{name}": {tuple(notes[name])!r},' for name in derivation.names]
     banner = _banner("Every name that can be asked for: its unit, meaning and paper equation.", digest, 0)
-    return f'"""{banner.replace("0 operations.", f"{len(rows)} names.")}"""\n\nNAMES = {{\n' + "\n".join(rows) + "\n}\n"
+    return (
+        f'"""{banner.replace("0 operations.", f"{len(rows)} names.")}"""\n\nNAMES = {{\n'
+        + "\n".join(rows)
+        + "\n}\n"
+    )
 
 
 def _trigonometry(constants: Trigonometry, digest: str) -> str:
@@ -120,8 +124,8 @@ def _group(derivation: Derivation, group: Group, digest: str) -> str:
     banner = _banner(f"numba kernel: {group.what}.", digest, cost_of(guarded).operations)
     front = (
         f"{group.what[0].upper()}{group.what[1:]}; arrays broadcast like NumPy.\n\n"
-        "    SI units and radians, a mapping name -> array. An infeasible or bad element is NaN, and so is one\n"
-        f"    with |theta| > {derivation.trigonometry.limit:.0f} rad.\n    "
+        "    SI units and radians, a mapping name -> array. An infeasible or bad element is NaN;\n"
+        f"    for |theta| <= {derivation.trigonometry.limit:.0f} rad.\n    "
     )
     return emit_numba_with_front(kernel, banner, front)
 
@@ -138,7 +142,10 @@ def differences(files: Mapping[str, str], folder: Path) -> list[str]:
         new = files.get(name, "")
         if old != new or (name in there) != (name in files):
             diff = difflib.unified_diff(
-                old.splitlines(True), new.splitlines(True), f"{folder.name}/{name} (there)", f"{name} (derived)"
+                old.splitlines(True),
+                new.splitlines(True),
+                f"{folder.name}/{name} (there)",
+                f"{name} (derived)",
             )
             found.append("".join(diff) or f"{folder.name}/{name}: only its presence differs\n")
     return found

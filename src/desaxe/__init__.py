@@ -33,7 +33,17 @@ _ROOMS = {
 }
 _MODULES = ("plot",)
 
-__all__ = [*_ROOMS, *_MODULES]
+__all__ = [
+    "equation",
+    "evaluate",
+    "feasibility",
+    "grid",
+    "inverse",
+    "peak",
+    "plot",
+    "quantities",
+    "scene",
+]
 
 
 def __getattr__(name: str) -> Any:

@@ -18,7 +18,9 @@ Array = NDArray[Any]
 BREAK_EVEN = 2_000
 
 
-def evaluate_arrays(wanted: Request, given: Mapping[str, Any], threads: int | None, out: Any) -> dict[str, Array]:
+def evaluate_arrays(
+    wanted: Request, given: Mapping[str, Any], threads: int | None, out: Any
+) -> dict[str, Array]:
     """The answers by the names asked for, in the broadcast shape."""
     inputs = tuple(name for name in program_of(wanted.names, wanted.state).inputs if name != "branch")
     arrays = {name: as_array(name, given[name], inputs, wanted.shown) for name in inputs}
@@ -36,7 +38,7 @@ def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str])
     """An input as a float64 array; an error that names it if it is missing, no number or wholly bad."""
     number = as_number(name, value, inputs, names)
     if number is not None:
-        return np.float64(number).reshape(())
+        return np.array(number)
     if hasattr(value, "magnitude"):
         from .units import in_si
 
@@ -49,7 +51,9 @@ def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str])
         good = _is_good(name, array)
         if not good.any():
             first = array.reshape(-1)[0]
-            raise ValueError(f"{name}: every value is bad, the first is {first}; it must be {INPUTS[name].limit}")
+            raise ValueError(
+                f"{name}: every value is bad, the first is {first}; it must be {INPUTS[name].limit}"
+            )
     return array
 
 
@@ -111,7 +115,11 @@ def _column(array: Array, shape: tuple[int, ...]) -> Array:
 
 
 def _fill(
-    wanted: Request, scalars: dict[str, float], columns: dict[str, Array], outs: list[Array], threads: int | None
+    wanted: Request,
+    scalars: dict[str, float],
+    columns: dict[str, Array],
+    outs: list[Array],
+    threads: int | None,
 ) -> None:
     """Fill flat outputs from scalars and flat columns."""
     key = key_of(wanted, scalars, columns, dict.fromkeys(columns, 0), axes=1)
@@ -124,7 +132,9 @@ def _fill(
         run_in_blocks(kernel_for(key), {**scalars, **columns}, outs, threads)
 
 
-def _fill_by_points(key: KernelKey, scalars: dict[str, float], columns: dict[str, Array], outs: list[Array]) -> None:
+def _fill_by_points(
+    key: KernelKey, scalars: dict[str, float], columns: dict[str, Array], outs: list[Array]
+) -> None:
     """Plain Python, point by point: nobody pays a compilation for a hundred points."""
     point = point_for(key)
     good = np.logical_and.reduce([_is_good(name, column) for name, column in columns.items()])

@@ -5,7 +5,7 @@ array, `_arrays` takes over.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, overload
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import _program
 from .catalogue import law_name, quantity
@@ -15,9 +15,6 @@ from .inputs import INPUTS, is_good
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-    import numpy as np
-    from numpy.typing import ArrayLike, NDArray
 
 ACCURACIES = ("standard",)
 
@@ -38,12 +35,6 @@ class Point(NamedTuple):
     inputs: tuple[str, ...]
 
 
-@overload
-def evaluate(names: str, *, theta: float, **inputs: float) -> float: ...
-@overload
-def evaluate(names: str, **inputs: "ArrayLike | float | int | str | None") -> "NDArray[np.float64]": ...
-@overload
-def evaluate(names: Sequence[str], **inputs: "ArrayLike | float | int | str | None") -> dict[str, Any]: ...
 def evaluate(
     names: str | Sequence[str],
     *,

@@ -60,7 +60,11 @@ def theta_intervals(ec: float, AB: float, BC: float) -> list[tuple[float, float]
     if bottom == 0.0:
         return [(pi / 2 + top, 2.5 * pi - top)]
     if top == 0.0:
-        return [(3 * pi / 2 + bottom, 3.5 * pi - bottom)] if bottom < pi / 2 else [(bottom - pi / 2, 3 * pi / 2 - bottom)]
+        return (
+            [(3 * pi / 2 + bottom, 3.5 * pi - bottom)]
+            if bottom < pi / 2
+            else [(bottom - pi / 2, 3 * pi / 2 - bottom)]
+        )
     return [(pi / 2 + top, 3 * pi / 2 - bottom), (3 * pi / 2 + bottom, 2.5 * pi - top)]
 
 

@@ -69,7 +69,9 @@ def grid(
         variables["margin"] = (own, margin["margin"])
     state = given.get("omega") is not None
     data = {name: (dims, array, attributes(name, state)) for name, (dims, array) in variables.items()}
-    coordinates = {name: (dimensions_of(name, array), array, input_attributes(name)) for name, array in axes.items()}
+    coordinates = {
+        name: (dimensions_of(name, array), array, input_attributes(name)) for name, array in axes.items()
+    }
     return xarray.Dataset(
         {name: data[name] for name in shown}, coordinates, {"title": "offset slider-crank", "branch": branch}
     )
@@ -87,7 +89,11 @@ def dimensions_of(name: str, array: NDArray[Any]) -> tuple[str, ...]:
 
 
 def _filled(
-    wanted: Request, axes: Mapping[str, NDArray[Any]], dimensions: Sequence[str], threads: int | None, out: Any
+    wanted: Request,
+    axes: Mapping[str, NDArray[Any]],
+    dimensions: Sequence[str],
+    threads: int | None,
+    out: Any,
 ) -> dict[str, NDArray[Any]]:
     """The answers over these dimensions, from one loop nest in their order."""
     shape = tuple(axes[name].size for name in dimensions)

@@ -48,10 +48,12 @@ def inverse(
     if a_C is not None and V_C is None:
         raise TypeError("inverse: V_C is missing (alpha needs V_C and a_C)")
     given = {"Y": Y, "ec": ec, "AB": AB, "BC": BC, "V_C": V_C, "a_C": a_C}
-    arrays = {name: _input(name, value) for name, value in given.items() if value is not None or name in INPUTS}
+    arrays = {
+        name: _input(name, value) for name, value in given.items() if value is not None or name in INPUTS
+    }
     shape = broadcast_shape(arrays)
     position, *lengths = (np.broadcast_to(arrays[n], shape)[..., None] for n in ("Y", "ec", "AB", "BC"))
-    theta, flat = _angles(position, *lengths, branch)
+    theta, flat = _angles(position, lengths, branch)
     result: dict[str, Any] = {"theta": theta}
     with np.errstate(all="ignore"):
         if V_C is not None:
@@ -75,8 +77,9 @@ def _input(name: str, value: Any) -> Array:
     return array.astype(np.float64, copy=False)
 
 
-def _angles(Y: Array, ec: Array, AB: Array, BC: Array, branch: int) -> tuple[Array, NDArray[np.bool_]]:
+def _angles(Y: Array, lengths: list[Array], branch: int) -> tuple[Array, NDArray[np.bool_]]:
     """Both crank angles, ascending, NaN where there is none; and where the triangle is flat."""
+    ec, AB, BC = lengths
     with np.errstate(invalid="ignore", divide="ignore"):
         L = np.hypot(ec, Y)
         # tan^2(beta/2) of the angle between AB and AC, as products of exact-ish differences.
@@ -84,7 +87,9 @@ def _angles(Y: Array, ec: Array, AB: Array, BC: Array, branch: int) -> tuple[Arr
         below = ((L + AB) - BC) * ((L + AB) + BC)
         beta = 2.0 * np.arctan2(np.sqrt(above), np.sqrt(below))
         theta = np.arctan2(-ec, Y) + beta * np.array([-1.0, 1.0])
-        theta = np.where(theta > np.pi, theta - 2.0 * np.pi, np.where(theta <= -np.pi, theta + 2.0 * np.pi, theta))
+        theta = np.where(
+            theta > np.pi, theta - 2.0 * np.pi, np.where(theta <= -np.pi, theta + 2.0 * np.pi, theta)
+        )
         rod_up = (Y - AB * np.cos(theta)) * branch
         good = (rod_up >= 0.0) & (BC > 0.0) & (AB >= 0.0)
     theta = np.sort(np.where(good, theta, np.nan), axis=-1)
@@ -95,12 +100,18 @@ def _angles(Y: Array, ec: Array, AB: Array, BC: Array, branch: int) -> tuple[Arr
 
 
 def _add_rates(
-    result: dict[str, Any], arrays: dict[str, Array], lengths: list[Array], branch: int, shape: tuple[int, ...],
+    result: dict[str, Any],
+    arrays: dict[str, Array],
+    lengths: list[Array],
+    branch: int,
+    shape: tuple[int, ...],
     flat: NDArray[np.bool_],
 ) -> None:
     """omega = V_C / Y', alpha = (a_C - omega^2 Y'') / Y', with Y' and Y'' by theta."""
     theta = result["theta"]
-    sides = {name: np.broadcast_to(v, theta.shape) for name, v in zip(("ec", "AB", "BC"), lengths, strict=True)}
+    sides = {
+        name: np.broadcast_to(v, theta.shape) for name, v in zip(("ec", "AB", "BC"), lengths, strict=True)
+    }
     known = np.isfinite(theta)
     slope, bend = np.full(theta.shape, np.nan), np.full(theta.shape, np.nan)
     if known.any():

@@ -71,7 +71,11 @@ def constants() -> Trigonometry:
 
 
 def key_of(
-    wanted: Request, scalars: Mapping[str, float], columns: Mapping[str, Any], axis_of: Mapping[str, int], axes: int
+    wanted: Request,
+    scalars: Mapping[str, float],
+    columns: Mapping[str, Any],
+    axis_of: Mapping[str, int],
+    axes: int,
 ) -> KernelKey:
     """The key of a request whose scalars and columns are known."""
     far = _largest(columns.get("theta", scalars.get("theta", 0.0))) > constants().limit
@@ -151,7 +155,8 @@ def _identity(key: KernelKey) -> str:
 
 def _module_function(path: Path) -> Callable[..., None]:
     spec = spec_from_file_location(f"desaxe_{path.stem}", path)
-    assert spec is not None and spec.loader is not None
+    if spec is None or spec.loader is None:
+        raise ImportError(f"cannot load {path}")
     module = module_from_spec(spec)
     sys.modules[spec.name] = module  # numba finds the module by its name when it loads machine code
     spec.loader.exec_module(module)

@@ -97,7 +97,9 @@ def peak(
     for start in range(0, count, BLOCK):
         block = {n: column[start : start + BLOCK] for n, column in columns.items()}
         parts.append(_peaks(name, slope, kind, Designs(block, branch, (low, high))))
-    return _shaped(parts, shape, [n for n in PARAMETERS[1:] if n in needs or (n == "omega0" and wanted.state)])
+    return _shaped(
+        parts, shape, [n for n in PARAMETERS[1:] if n in needs or (n == "omega0" and wanted.state)]
+    )
 
 
 def _slope_name(name: str) -> str:
@@ -124,7 +126,7 @@ def _peaks(name: str, slope: str, kind: str, designs: Designs) -> dict[str, Any]
     # Every node counts as well: the ends of the range and of arcs are among them.
     at_roots = _values((name,), designs, candidate_rows, candidates)[name]
     best_value, best_theta = _best(kind, value, nodes, candidate_rows, at_roots, candidates)
-    result = {"value": best_value, "theta": best_theta, "status": _status(status)}
+    result: dict[str, Any] = {"value": best_value, "theta": best_theta, "status": _status(status)}
     _mark_limits(name, kind, result, value, nodes, ends)
     result["gradient"] = _gradient(name, kind, designs, result)
     if kind == "absmax":
@@ -142,7 +144,9 @@ def _nodes(designs: Designs) -> tuple[Array, list[tuple[int, float]]]:
     low, high = designs.theta
     turns = max(1.0, (high - low) / (2.0 * np.pi))
     marks = [low, high]
-    marks += [np.pi * (0.5 + k) for k in range(int(np.floor(low / np.pi)) - 1, int(np.ceil(high / np.pi)) + 1)]
+    marks += [
+        np.pi * (0.5 + k) for k in range(int(np.floor(low / np.pi)) - 1, int(np.ceil(high / np.pi)) + 1)
+    ]
     common = np.concatenate([np.linspace(low, high, int(UNIFORM * turns) + 1), *map(_around, marks)])
     limits = _limit_angles(designs)
     ends = [(row, angle) for row, angles in enumerate(limits) for angle in angles]
@@ -163,15 +167,15 @@ def _limit_angles(designs: Designs) -> list[list[float]]:
     """For each design the angles in the range at which it stops being feasible, or stalls."""
     low, high = designs.theta
     columns = designs.columns
-    lengths = [columns.get(n) for n in ("ec", "AB", "BC")]
     count = next(iter(columns.values())).size
     margins = np.zeros(count)
-    if all(c is not None for c in lengths):
+    lengths = [columns[n] for n in ("ec", "AB", "BC") if n in columns]
+    if len(lengths) == 3:
         ec, AB, BC = lengths
-        margins = BC - AB - np.abs(ec)  # type: ignore[operator, arg-type]
+        margins = BC - AB - np.abs(ec)
     found: list[list[float]] = [[] for _ in range(count)]
     for row in np.flatnonzero(margins < 0.0):
-        for interval in theta_intervals(*(float(c[row]) for c in lengths)):  # type: ignore[index]
+        for interval in theta_intervals(*(float(c[row]) for c in lengths)):
             for end in interval:
                 first = end + 2.0 * np.pi * np.ceil((low - end) / (2.0 * np.pi))
                 found[row] += list(np.arange(first, high + 1e-12, 2.0 * np.pi))

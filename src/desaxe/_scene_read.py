@@ -109,7 +109,9 @@ def read(data: Mapping[str, Any]) -> Content:
     inputs = _inputs(data, file)
     branch = file.mechanism.branch
     if "omega" in inputs and "omega0" in inputs:
-        raise SceneError(f"motion.omega = {inputs['omega']}: give omega0 (the law) or omega (a state), not both")
+        raise SceneError(
+            f"motion.omega = {inputs['omega']}: give omega0 (the law) or omega (a state), not both"
+        )
     outputs = tuple(dict.fromkeys(file.outputs))
     for index, name in enumerate(outputs, 1):
         _known(f"outputs #{index}", name, "omega" in inputs)
@@ -118,8 +120,12 @@ def read(data: Mapping[str, Any]) -> Content:
     if not (outputs or file.peak or file.check or file.picture):
         raise SceneError("nothing is asked for: give outputs = [...], [[peak]], [[check]] or [[picture]]")
     if file.results.data is not None and not (outputs or file.peak):
-        raise SceneError(f"results.data = {shown(file.results.data)}: there is nothing to write, give outputs = [...]")
-    checks = [c for index, table in enumerate(file.check, 1) for c in _checks(f"check #{index}", table, inputs)]
+        raise SceneError(
+            f"results.data = {shown(file.results.data)}: there is nothing to write, give outputs = [...]"
+        )
+    checks = [
+        c for index, table in enumerate(file.check, 1) for c in _checks(f"check #{index}", table, inputs)
+    ]
     peaks = [_peak(f"peak #{index}", table, inputs) for index, table in enumerate(file.peak, 1)]
     pictures = [_picture(f"picture #{index}", table, inputs) for index, table in enumerate(file.picture, 1)]
     return Content(
@@ -269,16 +275,23 @@ def _peak(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> Pea
     there = _with(inputs, over)
     _known(f"{key}.quantity", name, "omega" in there)
     slope = _slope(f"{key}.quantity", name, "omega" in there)
-    needed = _require(f"{key}.quantity", [n for n in _needs((name, slope), there) if n != "theta"], name, there)
+    needed = _require(
+        f"{key}.quantity", [n for n in _needs((name, slope), there) if n != "theta"], name, there
+    )
     for n in over:
         if n not in needed:
             raise SceneError(f"{key}.over.{n}: {name} does not depend on it")
     ordered = [n for n in over if n in needed] + [n for n in needed if n not in over]
     axes = {n: value for n in ordered if isinstance(value := there[n], tuple)}
     fixed = {n: value for n in needed if isinstance(value := there[n], float)}
-    base = _other_design(f"{key}.baseline", table.baseline or {}, axes, fixed) if table.baseline is not None else {}
+    base = (
+        _other_design(f"{key}.baseline", table.baseline or {}, axes, fixed)
+        if table.baseline is not None
+        else {}
+    )
     claims = tuple(
-        _claim(f"{key}.claim #{index}", claim, axes, fixed, bool(base)) for index, claim in enumerate(table.claim, 1)
+        _claim(f"{key}.claim #{index}", claim, axes, fixed, bool(base))
+        for index, claim in enumerate(table.claim, 1)
     )
     _only_inputs(f"{key}.sensitivities", table.sensitivities)
     wanted = tuple(n for n in table.sensitivities if n in needed)
@@ -294,7 +307,9 @@ def _slope(key: str, name: str, state: bool) -> str:
     try:
         quantity(slope, state)
     except ValueError:
-        raise SceneError(f"{key} = {shown(name)}: it has no peak, its derivative by theta is not derived") from None
+        raise SceneError(
+            f"{key} = {shown(name)}: it has no peak, its derivative by theta is not derived"
+        ) from None
     return slope
 
 
@@ -324,7 +339,9 @@ def _claim(
     key: str, claim: schema.ClaimTable, axes: Mapping[str, Any], fixed: Mapping[str, float], based: bool
 ) -> Claim:
     if not based:
-        raise SceneError(f"{key}.increase = {shown(claim.increase)}: an increase needs the peak's baseline = {{...}}")
+        raise SceneError(
+            f"{key}.increase = {shown(claim.increase)}: an increase needs the peak's baseline = {{...}}"
+        )
     design = _other_design(f"{key}.at", claim.at, axes, fixed)
     at = _design(f"{key}.at", claim.at)
     return Claim(claim.source, at, design, read_percentage(f"{key}.increase", claim.increase))
@@ -340,10 +357,16 @@ def _picture(key: str, table: schema.PictureTable, inputs: Mapping[str, Value]) 
     _known(f"{key}.quantity", name, "omega" in there)
     needed = _require_for_grid(f"{key}.quantity", (name,), there)
     if table.over not in INPUTS:
-        raise SceneError(f"{key}.over = {shown(table.over)}: unknown input; {schema.hint(table.over, tuple(INPUTS))}")
+        raise SceneError(
+            f"{key}.over = {shown(table.over)}: unknown input; {schema.hint(table.over, tuple(INPUTS))}"
+        )
     if not isinstance(there.get(table.over), tuple) or table.over in family:
-        raise SceneError(f"{key}.over = {shown(table.over)}: it must be an input that has a list or range of values")
+        raise SceneError(
+            f"{key}.over = {shown(table.over)}: it must be an input that has a list or range of values"
+        )
     member = next(iter(family), None)
     curves = [n for n in (member, table.over) if n is not None]
     fixed = _numbers(key, [n for n in needed if n not in curves], there)
-    return Picture(table.title, table.file, name, table.over, member, {**{n: there[n] for n in curves}, **fixed})
+    return Picture(
+        table.title, table.file, name, table.over, member, {**{n: there[n] for n in curves}, **fixed}
+    )

@@ -1,20 +1,10 @@
 """Running a scene: values over the grid, peaks, checks, feasibility, files."""
 
-import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from math import pi
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-
-from ._evaluate import evaluate
-from ._feasibility import feasibility
-from ._grid import grid, input_attributes
-from ._peak import peak
-from ._scene_read import Check, Claim, Content, Peak, Picture, Value
-from .catalogue import quantity
+from ._scene_read import Check, Claim, Content, Peak
 from .extras import needed
 
 if TYPE_CHECKING:

@@ -4,6 +4,7 @@ import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from itertools import pairwise
 from typing import Any
 
 from ._kernels import CompiledKernel
@@ -42,5 +43,5 @@ def run_in_blocks(
         part = {name: v[start:stop] if name in outer else v for name, v in values.items()}
         kernel.run(part, [out[start:stop] for out in outs])
 
-    for done in [_pool(count).submit(block, a, b) for a, b in zip(edges, edges[1:], strict=False)]:
+    for done in [_pool(count).submit(block, a, b) for a, b in pairwise(edges)]:
         done.result()

@@ -53,7 +53,9 @@ def _unknown(name: str, state: bool) -> str:
     if not state and law_name(name) in _names():
         return f"{name!r} needs a state: give omega= instead of omega0="
     if state and name in _names():
-        return f"{name!r} has no meaning for a given state omega=: ask for {name.replace('omega0', 'omega')!r}"
+        return (
+            f"{name!r} has no meaning for a given state omega=: ask for {name.replace('omega0', 'omega')!r}"
+        )
     near = get_close_matches(name, _names(), 3, 0.5)
     hint = f"; did you mean {', '.join(near)}?" if near else ""
     return f"unknown quantity {name!r}{hint} (desaxe.quantities() lists them all)"

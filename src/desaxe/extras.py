@@ -16,7 +16,7 @@ EXTRAS = {
 }
 
 
-class MissingExtra(ImportError):
+class MissingExtraError(ImportError):
     """An optional dependency is not installed."""
 
 
@@ -29,4 +29,5 @@ def needed(what: str) -> Iterator[None]:
         extra = EXTRAS.get((error.name or "").partition(".")[0]) or EXTRAS.get(error.name or "")
         if extra is None:
             raise
-        raise MissingExtra(f"{what} needs {error.name}: python -m pip install 'desaxe[{extra}]'") from None
+        remedy = f"python -m pip install 'desaxe[{extra}]'"
+        raise MissingExtraError(f"{what} needs {error.name}: {remedy}") from None

@@ -3,6 +3,7 @@
 import ast
 import re
 from collections import Counter
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -35,7 +36,8 @@ def needs(name):
     return direct.union(*(needs(other) for other in direct))
 
 
-def tests_in(path):
+@cache
+def functions_in(path):
     """The test functions of a file, each with the texts that may stand in its parameter list."""
     tree = ast.parse((ROOT / path).read_text("utf-8"))
     texts = {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant)}
@@ -79,14 +81,14 @@ def test_proof_exists(entry):
     path, name, parameter = re.fullmatch(
         r"(tests/papers/\w+\.py)::(test_\w+)(?:\[(\w+)\])?", entry.test
     ).groups()
-    names, parametrised, texts = tests_in(path)
+    names, parametrised, texts = functions_in(path)
     assert name in names
     assert (parameter is not None) == (name in parametrised)
     assert parameter is None or parameter in texts
 
 
 def test_filters():
-    assert entries() == tuple(entry for verdict_free in [entries()] for entry in verdict_free)
+    assert [entry.id for entry in entries()[:2]] == ["A-eq1", "A-eq2"]
     assert [entry.id for entry in entries("A", "sign")] == ["A-eq19", "A-listing-V_C", "A-listing-a_C"]
     assert {entry.document for entry in entries("A")} == {"A"}
     assert sum(len(entries(verdict=verdict)) for verdict in VERDICTS) == len(entries())

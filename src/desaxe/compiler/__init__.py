@@ -1,0 +1,15 @@
+"""The compiler: a frozen Program, passes over it, and emitters. No SymPy, nothing of the library.
+
+    operations   the operation table: meaning, spellings, cost, one row each
+    program      Program, a list of single assignments, and its canonical form
+    text         a Program as readable Python, and back, reading only what is wanted
+    interpret    a Program run exactly (mpmath) or in IEEE doubles
+    cost         operations, depth, throughput
+    passes       Program -> Program, one module each
+    kernel       a loop nest whose bodies are Programs
+    emit_python  a Program as plain Python over `math`
+    emit_numba   a Kernel as a self-contained numba module
+
+Imports point downwards in this list and never out of the room. To add an operation, add its row; a
+language, its column and an emitter; a pass, its module and its entry in `passes.pipeline.PASSES`.
+"""

@@ -30,7 +30,12 @@ def emit_numba_with_front(kernel: Kernel, docstring: str, front: str) -> str:
     """
     numpy_names = ("ascontiguousarray", "broadcast_arrays", "empty", "float64", "int8")
     used = [name for name in numpy_names if name != "int8" or "i64" in kernel.types.values()]
-    parts = [_header(kernel, docstring, used), *_helpers(kernel), _function(kernel, True), _front(kernel, front)]
+    parts = [
+        _header(kernel, docstring, used),
+        *_helpers(kernel),
+        _function(kernel, True),
+        _front(kernel, front),
+    ]
     return "\n\n".join(parts)
 
 

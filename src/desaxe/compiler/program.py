@@ -85,7 +85,9 @@ def _validate_line(line: Line, types: Mapping[str, str]) -> None:
     if operation is None:
         raise ProgramError(f"{line.name!r}: unknown operation {line.op!r}")
     if len(line.args) != operation.arity:
-        raise ProgramError(f"{line.name!r}: {line.op} takes {operation.arity} arguments, got {len(line.args)}")
+        raise ProgramError(
+            f"{line.name!r}: {line.op} takes {operation.arity} arguments, got {len(line.args)}"
+        )
     for name in names_in(line.args):
         if name not in types:
             raise ProgramError(f"{line.name!r} uses {name!r} before it is assigned")

@@ -41,7 +41,8 @@ def _simplified(line: Line) -> Line | Argument:
     if line.op == "select" and line.args[1] == line.args[2] and isinstance(line.args[1], str):
         return line.args[1]
     if not any(isinstance(a, str) for a in line.args):
-        return ieee(line.op, *line.args)
+        constant: Argument = ieee(line.op, *line.args)
+        return constant
     rule = _RULES.get(line.op)
     return rule(line) if rule else line
 

@@ -27,7 +27,9 @@ def guard_inputs(program: Program, inputs: Iterable[str], least: Mapping[str, fl
         lines += _check(name, least.get(name))
         safe[name] = f"{name}_good"
     for line in program.lines:
-        lines.append(line._replace(args=tuple(safe.get(a, a) if isinstance(a, str) else a for a in line.args)))
+        lines.append(
+            line._replace(args=tuple(safe.get(a, a) if isinstance(a, str) else a for a in line.args))
+        )
     if "status" in program.outputs and checked:
         lines = _with_status(lines, checked)
     notes = {**program.notes, **{good: Note("", f"{name}, NaN where bad") for name, good in safe.items()}}
@@ -36,7 +38,10 @@ def guard_inputs(program: Program, inputs: Iterable[str], least: Mapping[str, fl
 
 def _check(name: str, least: float | None) -> list[Line]:
     """`<name>_is_good` and `<name>_good`, which is NaN where it is not."""
-    lines = [Line(f"{name}_size", "abs", (name,)), Line(f"{name}_is_finite", "lt", (f"{name}_size", inf), "bool")]
+    lines = [
+        Line(f"{name}_size", "abs", (name,)),
+        Line(f"{name}_is_finite", "lt", (f"{name}_size", inf), "bool"),
+    ]
     good = f"{name}_is_finite"
     if least is not None:
         lines.append(Line(f"{name}_is_enough", "le", (least, name), "bool"))
