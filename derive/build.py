@@ -17,9 +17,10 @@ INPUTS = (*PARAMETERS, "branch")
 
 
 class Derivation(NamedTuple):
-    """What is written: the law's program, the state's lines, the public names, sine and cosine."""
+    """What is written: the law's program, the state's lines, public names, sine and cosine."""
 
     program: Program
+    frozen: Program  # the same before equal values were merged
     state: Program
     names: tuple[str, ...]
     trigonometry: Trigonometry
@@ -45,8 +46,8 @@ def build() -> Derivation:
     state = state_sheet()
     motion = tuple(name for name in state.equations if sheet.equation(name) is not None)
     program = freeze(sheet, INPUTS, (*public_names(), *motion))
-    frozen = freeze(state, ("omega", "alpha"), motion)
-    return Derivation(_finished(program), _finished(frozen), public_names(), trigonometry())
+    state_program = freeze(state, ("omega", "alpha"), motion)
+    return Derivation(_finished(program), program, _finished(state_program), public_names(), trigonometry())
 
 
 def _derive(sheet: Sheet, name: str) -> None:

@@ -1,0 +1,14 @@
+"""The coverage set covers."""
+
+from desaxe.compiler.operations import OPERATIONS
+from desaxe.compiler.program import validate
+
+from tests.compiler.coverage_set import coverage
+
+
+def test_every_operation_is_in_it():
+    assert {line.op for line in coverage().lines} == set(OPERATIONS)
+
+
+def test_it_is_a_valid_program():
+    assert validate(coverage()).inputs == ("x", "y", "z")

@@ -1,0 +1,179 @@
+"""Each row of the operation table: all its spellings mean the same, at ordinary points and at the edges."""
+
+import itertools
+import math
+import random
+import string
+from fractions import Fraction
+from functools import cache
+
+import mpmath
+import numpy as np
+import pytest
+
+from desaxe.compiler.emit_numba import emit_numba
+from desaxe.compiler.interpret import ieee
+from desaxe.compiler.kernel import hoist
+from desaxe.compiler.operations import HELPERS, MATH_NAMES, OPERATIONS, result_type
+from desaxe.compiler.program import Line, Program
+from tests.compiler.programs import same_bits
+from tests.truth import ulp_error
+
+TINY, LEAST, MOST = 5e-324, 2.2250738585072014e-308, 1.7976931348623157e308
+EDGES = (0.0, 1.0, 0.5, 2.5, 1e16, TINY, LEAST, MOST, math.inf, math.nan)
+FLOATS = (*EDGES, *(-edge for edge in EDGES[:-1]))
+BOOLS = (True, False)
+OPS = list(OPERATIONS)
+REFERENCE = {
+    "copy": lambda a: a, "add": np.add, "sub": np.subtract, "mul": np.multiply, "div": np.divide,
+    "neg": np.negative, "abs": np.abs, "sqrt": np.sqrt, "sin": np.sin, "cos": np.cos, "atan2": np.arctan2,
+    "floor": np.floor, "copysign": np.copysign, "lt": np.less, "le": np.less_equal, "eq": np.equal,
+    "and": np.logical_and, "or": np.logical_or, "not": np.logical_not, "select": np.where,
+}  # fmt: skip
+CALLED = ("sin", "cos", "atan2")  # each library rounds these in its own way
+
+
+def arguments(op):
+    """All combinations of edge values for the arguments of an operation."""
+    return itertools.product(*(BOOLS if letter == "b" else FLOATS for letter in OPERATIONS[op].signature[:-1]))
+
+
+def ordinary(op, count=50):
+    """Seeded ordinary arguments."""
+    rng = random.Random(op)
+    for _ in range(count):
+        yield tuple(
+            rng.random() < 0.5 if letter == "b" else rng.choice([-1, 1]) * 10 ** rng.uniform(-3, 3)
+            for letter in OPERATIONS[op].signature[:-1]
+        )
+
+
+def agree(op, got, wanted):
+    if op in CALLED and math.isfinite(wanted) and wanted:
+        return abs(got - wanted) <= 2 * math.ulp(wanted)
+    return same_bits(got, wanted)
+
+
+@pytest.mark.parametrize("op", [op for op in OPS if op != "two_sum_error"])
+def test_ieee_answers_are_those_of_numpy(op):
+    with np.errstate(all="ignore"):
+        wrong = [a for a in arguments(op) if not agree(op, ieee(op, *a), float(REFERENCE[op](*a)))]
+    assert not wrong
+
+
+@cache
+def python_spelling(op):
+    scope = {name: getattr(math, name) for name in MATH_NAMES}
+    for helper in HELPERS.values():
+        exec(helper, scope)
+    letters = "abc"[: OPERATIONS[op].arity]
+    return eval(f"lambda {', '.join(letters)}: {OPERATIONS[op].python.format(*letters)}", scope)
+
+
+@pytest.mark.parametrize("op", OPS)
+def test_the_python_spelling_is_ieee(op):
+    wrong = [a for a in arguments(op) if not same_bits(python_spelling(op)(*a), ieee(op, *a))]
+    assert not wrong
+
+
+@cache
+def numba_spellings():
+    """One kernel with an output for each operation; a truth value comes in as 0 < x and goes out as 1 or 0."""
+    lines = [Line(f"is_{name}", "lt", (0.0, name), "bool") for name in "abc"]
+    for op, row in OPERATIONS.items():
+        names = [f"is_{x}" if kind == "b" else x for x, kind in zip("abc", row.signature[:-1], strict=False)]
+        kind = "bool" if row.signature[-1] == "b" else "f64"
+        lines.append(Line(f"_{op}", op, tuple(names), kind))
+        lines.append(Line(f"out_{op}", "select" if kind == "bool" else "copy", shown(f"_{op}", kind)))
+    program = Program(("a", "b", "c"), tuple(lines), tuple(f"out_{op}" for op in OPS), {})
+    scope = {}
+    exec(emit_numba(hoist(program, {"a": 0, "b": 0, "c": 0}, 1), "every operation", cache=False), scope)
+    return scope["kernel"]
+
+
+def shown(name, kind):
+    return (name, 1.0, 0.0) if kind == "bool" else (name,)
+
+
+def by_numba(op, points):
+    columns = [np.ascontiguousarray(c, float) for c in itertools.zip_longest(*points, [0.0] * 3, fillvalue=0.0)]
+    for column, kind in zip(columns, OPERATIONS[op].signature[:-1], strict=False):
+        column -= 0.5 if kind == "b" else 0.0
+    outs = [np.empty(columns[0].size) for _ in OPS]
+    numba_spellings()(*columns, *outs)
+    return outs[OPS.index(op)]
+
+
+@pytest.mark.parametrize("op", OPS)
+def test_the_numba_spelling_is_ieee(op):
+    points = list(arguments(op))
+    wanted = [float(ieee(op, *a)) for a in points]
+    wrong = [a for a, got, want in zip(points, by_numba(op, points), wanted, strict=False) if not agree(op, got, want)]
+    assert not wrong
+
+
+@pytest.mark.parametrize("op", [op for op in OPS if op != "two_sum_error"])
+def test_ieee_rounds_the_exact_meaning(op):
+    with mpmath.workdps(50):
+        for point in ordinary(op):
+            point = tuple(abs(a) for a in point) if op == "sqrt" else point
+            exact = OPERATIONS[op].exact(mpmath.mp, *(a if a in BOOLS else mpmath.mpf(a) for a in point))
+            assert ulp_error(float(ieee(op, *point)), mpmath.mpf(exact)) < 1, point
+
+
+@pytest.mark.parametrize("spell", [python_spelling("two_sum_error"), lambda a, b: ieee("two_sum_error", a, b)])
+def test_the_error_of_a_sum_is_what_rounding_took(spell):
+    for a, b in [*ordinary("add"), (1.0, TINY), (1e16, -1.0), (0.1, 1e9), (-LEAST, TINY)]:
+        assert Fraction(a) + Fraction(b) == Fraction(a + b) + Fraction(spell(a, b))
+
+
+def test_the_error_of_a_sum_is_exactly_zero_over_the_reals():
+    assert OPERATIONS["two_sum_error"].exact(mpmath.mp, mpmath.mpf(0.1), mpmath.mpf(0.2)) == 0
+
+
+@pytest.mark.parametrize("op", [op for op in OPS if OPERATIONS[op].undefined])
+def test_the_exact_meaning_ends_where_the_table_says(op):
+    points = [a for a in arguments(op) if all(math.isfinite(x) for x in a)]
+    assert {has_value(op, a) for a in points} == {True, False}
+    assert [has_value(op, a) for a in points] == [not says_undefined(op, a) for a in points]
+
+
+def has_value(op, point):
+    try:
+        return isinstance(OPERATIONS[op].exact(mpmath.mp, *map(mpmath.mpf, point)), mpmath.mpf)
+    except ZeroDivisionError:
+        return False
+
+
+def says_undefined(op, point):
+    return eval(OPERATIONS[op].undefined.format(*(f"({value!r})" for value in point)))
+
+
+@pytest.mark.parametrize("op", OPS)
+@pytest.mark.parametrize("column", ["text", "python", "numba"])
+def test_a_spelling_uses_each_argument(op, column):
+    fields = {field for _, field, _, _ in string.Formatter().parse(getattr(OPERATIONS[op], column)) if field}
+    assert fields == {str(position) for position in range(OPERATIONS[op].arity)}
+
+
+@pytest.mark.parametrize("op", [op for op in OPS if OPERATIONS[op].commutes])
+def test_what_commutes_does(op):
+    assert all(same_bits(ieee(op, a, b), ieee(op, b, a)) for a, b in arguments(op))
+
+
+def test_the_result_type_follows_the_signature():
+    assert result_type(OPERATIONS["lt"], ("f64", "f64")) == "bool"
+    assert result_type(OPERATIONS["select"], ("bool", "i64", "i64")) == "i64"
+
+
+@pytest.mark.parametrize(
+    "op, types, complaint",
+    [
+        ("add", ("f64", "bool"), "add wants f64, got bool"),
+        ("select", ("f64", "f64", "f64"), "select wants bool, got f64"),
+        ("select", ("bool", "f64", "i64"), "select wants f64, got i64"),
+    ],
+)
+def test_wrong_argument_types_are_refused(op, types, complaint):
+    with pytest.raises(TypeError, match=complaint):
+        result_type(OPERATIONS[op], types)
