@@ -107,7 +107,8 @@ def test_closure_and_definitions(point):
     assert agree(mpmath.sin(q["phi"]) * BC, ec + B_X)
     assert agree(mpmath.cos(q["delta"]) * BC, ec + B_X)
     assert agree(branch * (q["Y"] + branch * q["s"]), mpmath.sqrt((AB + BC) ** 2 - ec**2))
-    assert agree(q["V_B_X"], q["omega"] * B_Y) and agree(q["V_B_Y"], -q["omega"] * B_X)
+    assert agree(q["V_B_X"], q["omega"] * B_Y)
+    assert agree(q["V_B_Y"], -q["omega"] * B_X)
     assert agree(q["a_B_X"], point["alpha"] * B_Y - q["omega"] ** 2 * B_X)
     assert agree(q["a_B_Y"], -point["alpha"] * B_X - q["omega"] ** 2 * B_Y)
     assert agree(q["V_B"], mpmath.hypot(q["V_B_X"], q["V_B_Y"]))
@@ -189,7 +190,7 @@ def test_full_turn(name, branch):
 
 
 @pytest.mark.parametrize(
-    "name, parity", [("Y", -1), ("V_C", -1), ("a_C", -1), ("omega_BC", 1), ("alpha_BC", 1)]
+    ("name", "parity"), [("Y", -1), ("V_C", -1), ("a_C", -1), ("omega_BC", 1), ("alpha_BC", 1)]
 )
 def test_branches_are_mirror_images(name, parity):
     """Y -> -Y turns theta into pi - theta, backwards, and one branch into the other."""
@@ -239,7 +240,8 @@ def test_starting_from_rest_under_acceleration():
 def test_no_number_where_there_is_none():
     lengths = {"ec": 0.1, "AB": 0.125, "BC": 0.35}
     stalled = {"theta": 1.0, "omega0": 1.0, "alpha": -0.75, **lengths}
-    assert mpmath.isnan(truth("V_C", **stalled)) and mpmath.isnan(truth("omega", **stalled))
+    assert mpmath.isnan(truth("V_C", **stalled))
+    assert mpmath.isnan(truth("omega", **stalled))
     assert truth("Y", **stalled) == truth("Y", theta=1.0, omega0=1.0, **lengths)
     assert mpmath.isnan(truth("Y", theta=1.0, **lengths | {"ec": 0.25}))
     assert mpmath.isnan(truth("V_C", theta=0.0, omega0=1.0, **lengths | {"ec": 0.35}))
@@ -255,7 +257,8 @@ def test_digits_asked_for():
 def test_conditions():
     point = POINTS[0]
     assert conditions("omega", **point) == conditions("margin", **point) == 1
-    assert conditions("V_B", **point) == 2 and conditions("a_B", **point) == 3
+    assert conditions("V_B", **point) == 2
+    assert conditions("a_B", **point) == 3
     assert conditions("Y_wrt_alpha", **point) == 0
     assert conditions("V_C", **point | {"theta": 0.0, "ec": 0.0}) == math.inf
     near = {"theta": math.pi / 2, "ec": 0.225, "AB": 0.125, "BC": 0.35 + 2**-40, "omega0": 2.0}
@@ -270,7 +273,8 @@ def test_errors():
     assert ulp_error(1.0, 1 - mpmath.mpf(2) ** -53) == 1
     assert ulp_error(5e-324, mpmath.mpf(0)) == 1
     assert relative_error(1.1, mpmath.mpf(1)) == pytest.approx(0.1)
-    assert relative_error(0.0, mpmath.mpf(0)) == 0 and relative_error(1e-300, mpmath.mpf(0)) == math.inf
+    assert relative_error(0.0, mpmath.mpf(0)) == 0
+    assert relative_error(1e-300, mpmath.mpf(0)) == math.inf
     for error in (ulp_error, relative_error):
         assert error(math.nan, mpmath.nan) == error(math.inf, mpmath.inf) == 0
         assert error(math.nan, mpmath.mpf(1)) == error(1.0, mpmath.nan) == error(1.0, mpmath.inf) == math.inf

@@ -35,9 +35,10 @@ from flint import arb, arb_series, ctx
 LAW = ("theta", "ec", "AB", "BC", "omega0", "alpha")
 STATE = ("theta", "ec", "AB", "BC", "omega", "alpha")
 
-QUANTITIES = tuple(
-    "phi delta Y s V_B_X V_B_Y V_B a_B_X a_B_Y a_B omega omega_BC alpha_BC V_C a_C j_C".split()
-    + ["transmission_angle", "pressure_angle", "margin"]
+QUANTITIES = (
+    *("phi", "delta", "Y", "s", "V_C", "a_C", "j_C", "omega", "omega_BC", "alpha_BC"),
+    *("V_B_X", "V_B_Y", "V_B", "a_B_X", "a_B_Y", "a_B"),
+    *("transmission_angle", "pressure_angle", "margin"),
 )
 GAPS = {"margin": (-1, 1), "rod": (0, 1), "crank": (1, 0), "ec": (0, 0)}  # |ec| = a AB + b BC -+ gap
 SECOND_ORDER = ("Y", "V_C", "a_C", "omega_BC", "alpha_BC")

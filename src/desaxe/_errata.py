@@ -1,7 +1,7 @@
 """What the papers print, and whether it is right: the ledgers in `errata/`, one TOML file a paper.
 
-Each entry holds one equation, line of code, number or claim of a paper, the verdict on it, the corrected form and
-the test that proves the verdict.
+Each entry holds one equation, line of code, number or claim of a paper, the verdict on it, the corrected form
+and the test that proves the verdict.
 """
 
 import textwrap
@@ -42,7 +42,7 @@ def entries(document: str | None = None, verdict: str | None = None) -> tuple[En
 
 
 def table(entries: Iterable[Entry], width: int = 100) -> str:
-    """The entries as text for a terminal, wrapped to `width` columns, and a last line that counts verdicts."""
+    """The entries as text for a terminal, wrapped to `width` columns; the last line counts verdicts."""
     rows = tuple(entries)
     indent = max((len(row.verdict) for row in rows), default=0) + 2
     blocks = [_block(row, indent, width) for row in rows]
@@ -68,7 +68,7 @@ def _require(what: str, value: str | None, allowed: tuple[str, ...]) -> None:
 
 
 def _block(entry: Entry, indent: int, width: int) -> str:
-    """One entry: verdict in the margin; id and place, then what is printed, the correction and the evidence."""
+    """One entry: verdict in the margin; id and place, what is printed, the correction, the evidence."""
     lines = [(entry.verdict, f"{entry.id}  ({entry.where})"), ("", f"printed: {entry.printed}")]
     if entry.corrected:
         lines.append(("", f"instead: {entry.corrected}"))

@@ -70,7 +70,9 @@ def grid(
     state = given.get("omega") is not None
     data = {name: (dims, array, attributes(name, state)) for name, (dims, array) in variables.items()}
     coordinates = {
-        name: (dimensions_of(name, array), array, input_attributes(name)) for name, array in axes.items()
+        name: (dimensions_of(name, axes[name]), axes[name], input_attributes(name))
+        for name in inputs
+        if name in axes
     }
     return xarray.Dataset(
         {name: data[name] for name in shown}, coordinates, {"title": "offset slider-crank", "branch": branch}

@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 
 from desaxe._program import program_of
 from desaxe.compiler.interpret import run_exactly, run_in_doubles
-from desaxe.compiler.operations import OPERATIONS
+from desaxe.compiler.operations import OPERATIONS, result_type
 from desaxe.compiler.passes.slicing import drop_unused
-from desaxe.compiler.program import Argument, Line, Note, Program, names_in, validate
+from desaxe.compiler.program import Argument, Line, Note, Program, names_in, type_of, validate
 
 INPUTS = ("x", "y", "z")
 SIMPLE = (0.0, 1.0, -1.0, 2.0, -2.5, 0.5)
@@ -36,7 +36,7 @@ class _Builder:
         self.lines: list[Line] = []
         self.types = dict.fromkeys(INPUTS, "f64")
 
-    def append(self, op: str, *args: Argument, kind: str = "f64", name: str = "_") -> str:
+    def append(self, op: str, *args: Argument, kind: str = "f64", name: str = "p") -> str:
         name = f"{name}{len(self.lines)}"
         self.lines.append(Line(name, op, args, kind))
         self.types[name] = kind
@@ -58,7 +58,7 @@ class _Builder:
             args[1] = self.append("add", 1.0, self.append("abs", args[1]))
         if op == "sqrt":
             args[0] = self.append("abs", args[0])
-        self.append(op, *args, kind=kinds[-1], name=self.draw(st.sampled_from(["q", "_", "_"])))
+        self.append(op, *args, kind=kinds[-1], name=self.draw(st.sampled_from(["q", "p", "p"])))
 
 
 @st.composite
@@ -110,11 +110,16 @@ def same_bits(a: Any, b: Any) -> bool:
 
 
 def tree(program: Program) -> dict[str, Any]:
-    """Each output as nested operations: what a program says, whatever its temporaries are called."""
+    """Each output as nested operations: what a program says, whatever its temporaries are called.
+
+    A negated constant is the negative constant: both are written alike.
+    """
     known: dict[str, Any] = {name: name for name in program.inputs}
     for line in program.lines:
         args = tuple(known[a] if isinstance(a, str) else (type(a).__name__, repr(a)) for a in line.args)
         known[line.name] = args[0] if line.op == "copy" else (line.op, line.type, *args)
+        if line.op == "neg" and isinstance(args[0], tuple) and args[0][0] == "float":
+            known[line.name] = ("float", repr(-float(args[0][1])))
     return {name: known[name] for name in program.outputs}
 
 
@@ -133,10 +138,10 @@ def lines_of(nested: Any) -> tuple[Line, ...]:
     def visit(node: Any) -> Argument:
         if not isinstance(node, tuple):
             return node
-        op, *args = node
-        kind = TYPES.get(OPERATIONS[op].signature[-1], "f64")
-        lines.append(Line("", op, tuple(visit(a) for a in args), kind))
-        lines[-1] = lines[-1]._replace(name=f"_{len(lines)}")
+        op, args = node[0], tuple(visit(argument) for argument in node[1:])
+        kinds = dict.fromkeys(INPUTS, "f64") | {line.name: line.type for line in lines}
+        kind = result_type(OPERATIONS[op], tuple(type_of(a, kinds) for a in args))
+        lines.append(Line(f"_{len(lines)}", op, args, kind))
         return lines[-1].name
 
     visit(nested)

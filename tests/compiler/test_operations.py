@@ -96,10 +96,11 @@ def shown(name, kind):
 
 
 def by_numba(op, points):
-    columns = [np.ascontiguousarray(c, float) for c in itertools.zip_longest(*points, [0.0] * 3, fillvalue=0.0)]
-    for column, kind in zip(columns, OPERATIONS[op].signature[:-1], strict=False):
-        column -= 0.5 if kind == "b" else 0.0
-    outs = [np.empty(columns[0].size) for _ in OPS]
+    columns = [np.zeros(len(points)) for _ in "abc"]
+    for position, kind in enumerate(OPERATIONS[op].signature[:-1]):
+        columns[position][:] = [point[position] for point in points]
+        columns[position] -= 0.5 if kind == "b" else 0.0
+    outs = [np.empty(len(points)) for _ in OPS]
     numba_spellings()(*columns, *outs)
     return outs[OPS.index(op)]
 
@@ -107,9 +108,8 @@ def by_numba(op, points):
 @pytest.mark.parametrize("op", OPS)
 def test_the_numba_spelling_is_ieee(op):
     points = list(arguments(op))
-    wanted = [float(ieee(op, *a)) for a in points]
-    wrong = [a for a, got, want in zip(points, by_numba(op, points), wanted, strict=False) if not agree(op, got, want)]
-    assert not wrong
+    answers = zip(points, by_numba(op, points), strict=True)
+    assert not [a for a, got in answers if not agree(op, got, float(ieee(op, *a)))]
 
 
 @pytest.mark.parametrize("op", [op for op in OPS if op != "two_sum_error"])

@@ -1,42 +1,33 @@
-"""Every quantity and sensitivity at generic points, against the truth."""
+"""Every quantity and sensitivity at generic points, against the truth.
+
+Errors are at most 1e-13 of the value; where the value is so sensitive to its inputs that 8 ulp x (1 + sum of
+condition numbers), the promise, is more than that, it is the bound.
+"""
 
 import math
 import random
 
+import numpy as np
 import pytest
 
 import desaxe as dx
 from tests.truth import LAW, STATE, all_names, conditions, relative_error, truth_all
 
+PROMISE = 8 * 2.0**-52
+
 
 def lengths(rng, kind):
     """Rod, crank and eccentricity: a mechanism that turns fully, or one that cannot."""
     BC = rng.uniform(0.2, 1.0)
-    AB = BC * (rng.uniform(1.1, 3.0) if kind == "long crank" else rng.uniform(0.1, 0.7))
-    reach = 0.8 * BC if kind == "long crank" else 0.8 * (BC - AB)
-    ec = 0.0 if kind == "concentric" else reach * rng.uniform(0.1, 1.0) * rng.choice([-1, 1])
+    AB, room = BC * rng.uniform(0.1, 0.7), BC
+    if kind == "long crank":
+        AB = BC * rng.uniform(1.1, 3.0)
+    elif kind == "very long crank":
+        AB = BC * 10 ** rng.uniform(0.5, 3.0)
+    else:
+        room = BC - AB
+    ec = 0.0 if kind == "concentric" else room * rng.uniform(0.05, 0.8) * rng.choice([-1, 1])
     return {"ec": ec, "AB": AB, "BC": BC}
-
-
-def motion(rng, kind, theta):
-    """Law or state; the law never stalls at theta."""
-    speed = rng.uniform(1.0, 200.0) * (-1 if kind == "backwards" else rng.choice([-1, 1]))
-    gain = speed * speed / (2 * abs(theta))
-    alpha = rng.uniform(0.1, 0.9) * gain
-    match kind:
-        case "state":
-            return {"omega": speed, "alpha": rng.choice([-1, 1]) * alpha}
-        case "at rest":
-            return {"omega0": 0.0, "alpha": 0.0}
-        case "state at rest":
-            return {"omega": 0.0, "alpha": 0.0}
-        case "speeding up":
-            return {"omega0": speed, "alpha": math.copysign(alpha, theta)}
-        case "slowing down":
-            return {"omega0": speed, "alpha": -math.copysign(alpha, theta)}
-        case "steady":
-            return {"omega0": speed, "alpha": 0.0}
-    return {"omega0": speed, "alpha": rng.choice([-1, 1]) * alpha}
 
 
 def angle(rng, ec, AB, BC):
@@ -47,41 +38,96 @@ def angle(rng, ec, AB, BC):
             return theta
 
 
+def motion(rng, kind, theta):
+    """Law or state; the law never stalls at theta."""
+    speed = rng.uniform(1.0, 200.0) * (-1 if kind == "backwards" else rng.choice([-1, 1]))
+    alpha = rng.uniform(0.1, 0.9) * speed * speed / (2 * abs(theta))
+    speedup, either = math.copysign(alpha, theta), alpha * rng.choice([-1, 1])
+    kinds = {
+        "state": {"omega": speed, "alpha": either},
+        "state at rest": {"omega": 0.0, "alpha": 0.0},
+        "state that starts": {"omega": 0.0, "alpha": either},
+        "at rest": {"omega0": 0.0, "alpha": 0.0},
+        "speeding up": {"omega0": speed, "alpha": speedup},
+        "slowing down": {"omega0": speed, "alpha": -speedup},
+        "steady": {"omega0": speed, "alpha": 0.0},
+        "from rest": {"omega0": 0.0, "alpha": speedup},
+    }
+    return kinds.get(kind, {"omega0": speed, "alpha": either})
+
+
 def draw(kind, count):
     """Seeded points of one kind."""
     rng = random.Random(f"values: {kind}")
     for _ in range(count):
         sizes = lengths(rng, kind)
         theta = angle(rng, **sizes)
-        branch = rng.choice([-1, 1]) if kind in ("long crank", "state") else -1 if kind == "branch -1" else 1
+        branch = -1 if kind == "branch -1" else rng.choice([-1, 1]) if "crank" in kind else 1
         yield {"theta": theta, **sizes, **motion(rng, kind, theta), "branch": branch}
 
 
 def names_for(point):
+    """Every name that exists for this point."""
     return all_names(STATE if "omega" in point else LAW)
 
 
+def is_right(name, value, exact, point):
+    """Whether a value is as near to the truth as it must be; an infinite limit at rest may be NaN."""
+    if math.isinf(exact):
+        return math.isnan(value) or value == exact
+    error = relative_error(value, exact)
+    return error <= 1e-13 or error <= PROMISE * (1 + conditions(name, **point))
+
+
 def misses(values, point):
-    """What is further from the truth than 1e-13, or than its condition allows where that is above 50."""
+    """The names whose values are not right, with values and truth."""
     exact = truth_all(values, **point)
-    errors = {name: relative_error(value, exact[name]) for name, value in values.items()}
-    suspects = {name: error for name, error in errors.items() if not error <= 1e-13}
-    bounds = {name: 2e-15 * conditions(name, **point) for name in suspects}
-    return {
-        name: (error, bounds[name]) for name, error in suspects.items() if not error <= bounds[name] < 1e-8
-    }
+    wrong = (name for name, value in values.items() if not is_right(name, value, exact[name], point))
+    return {name: (values[name], float(exact[name])) for name in wrong}
 
 
-@pytest.mark.parametrize("kind", ["generic", "branch -1", "long crank", "backwards", "concentric", "steady"])
-def test_hundred_points(kind):
+GEOMETRIES = ("generic", "branch -1", "long crank", "very long crank", "concentric")
+MOTIONS = ("backwards", "steady", "speeding up", "slowing down", "from rest", "at rest")
+STATES = ("state", "state at rest", "state that starts")
+
+
+@pytest.mark.parametrize("kind", GEOMETRIES)
+def test_a_hundred_points(kind):
     for point in draw(kind, 100):
         assert not misses(dx.evaluate(names_for(point), **point), point), point
 
 
-KINDS = ("speeding up", "slowing down", "at rest", "state", "state at rest")
-
-
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", [*MOTIONS, *STATES])
 def test_motions(kind):
-    for point in draw(kind, 25):
+    for point in draw(kind, 30):
         assert not misses(dx.evaluate(names_for(point), **point), point), point
+
+
+def test_generic_points_are_generic():
+    """The promise does not excuse much: nearly all of these values are held to 1e-13."""
+    point = next(draw("generic", 1))
+    loose = [name for name in names_for(point) if conditions(name, **point) > 50]
+    assert len(loose) < 12
+
+
+@pytest.mark.parametrize("kind", ["generic", "concentric", "state"])
+def test_a_kernel_is_as_right_as_a_point(kind):
+    """The same through the compiled loop, which has a sine and cosine of its own."""
+    points = list(draw(kind, 50))
+    columns = {name: np.tile([point[name] for point in points], 50) for name in points[0] if name != "branch"}
+    answers = dx.evaluate(names_for(points[0]), **columns, branch=points[0]["branch"])
+    for index, point in enumerate(points):
+        values = {name: float(column[index]) for name, column in answers.items()}
+        assert not misses(values, point), point
+
+
+def test_an_array_agrees_with_its_elements():
+    points = list(draw("generic", 20))
+    columns = {name: np.array([point[name] for point in points]).reshape(4, 5) for name in LAW}
+    names = names_for(points[0])
+    answers = dx.evaluate(names, **columns)
+    singles = [dx.evaluate(names, **point) for point in points]
+    for name in names:
+        expected = np.reshape([single[name] for single in singles], (4, 5))
+        np.testing.assert_allclose(answers[name], expected, rtol=1e-11, err_msg=name)
+        assert dx.evaluate(name, **points[0]) == pytest.approx(singles[0][name], rel=1e-11)

@@ -1,12 +1,12 @@
-"""The loop closure itself, differentiated in time at high precision: the independent truth for the papers' formulas.
+"""The loop closure itself, differentiated in time at high precision: the papers' independent truth.
 
 Nothing here is a solved velocity or acceleration formula. The crank angle moves under a constant angular
-acceleration, theta(t) = theta + omega t + alpha t^2/2; the crank pin B follows the crank; the slider C lies on its
-line where the rod reaches it; the rod angle is the direction from C to B. Rates are numerical derivatives of these
-positions, taken by mpmath at twice the working precision.
+acceleration, theta(t) = theta + omega t + alpha t^2/2; the crank pin B follows the crank; the slider C lies
+on its line where the rod reaches it; the rod angle is the direction from C to B. Rates are numerical
+derivatives of these positions, taken by mpmath at twice the working precision.
 
-Frame: origin at the crank centre A, Y along the slider axis, X to the side, theta from +Y towards +X. The slider
-line is X = -ec. Lengths in metre, angles in radian, time in second.
+Frame: origin at the crank centre A, Y along the slider axis, X to the side, theta from +Y towards +X. The
+slider line is X = -ec. Lengths in metre, angles in radian, time in second.
 """
 
 from collections.abc import Callable

@@ -1,12 +1,13 @@
-"""Paper A by hand: Siswanto and Ibrahim, eccentric slider mechanism, every equation and every line of its listing.
+"""Paper A by hand: every equation and every line of the listing of Siswanto and Ibrahim.
 
-`printed_*` is what the paper prints, `corrected_*` exists only where that is not right. Equations use the crank's
-speed `omega` (rad/s) and angular acceleration `alpha` (rad/s2) at the crank angle `theta` (rad); lengths are in
-metres. Each function takes its mathematics from `m`: the `math` module, or `mpmath.mp` for more digits.
+`printed_*` is what the paper prints, `corrected_*` exists only where that is not right. Equations use the
+crank's speed `omega` (rad/s) and angular acceleration `alpha` (rad/s2) at the crank angle `theta` (rad);
+lengths are in metres. Each function takes its mathematics from `m`: the `math` module, or `mpmath.mp` for
+more digits.
 
-Frame of the paper's vectors (Eqs. 1 to 4, 8, 9, 12, 13): x like the package's X, y the opposite of the package's
-Y, because the paper hangs the slider below the crank centre. V_C and a_C themselves are positive away from the
-crank centre, as in the package, which is why they carry a minus inside Eqs. 9 and 13.
+Frame of the paper's vectors (Eqs. 1 to 4, 8, 9, 12, 13): x like the package's X, y the opposite of the
+package's Y, because the paper hangs the slider below the crank centre. V_C and a_C themselves are positive
+away from the crank centre, as in the package, which is why they carry a minus inside Eqs. 9 and 13.
 """
 
 import math
@@ -23,7 +24,7 @@ def add(*vectors: Vector) -> Vector:
     return sum(v[0] for v in vectors), sum(v[1] for v in vectors)
 
 
-# --- the crank, Eqs. 1 to 4 ------------------------------------------------------------------------------------
+# --- the crank, Eqs. 1 to 4 -----------------------------------------------------------------------
 
 
 def printed_eq1(V_A: Vector, V_BA: Vector) -> Vector:
@@ -71,7 +72,7 @@ def printed_eq4(theta: Any, AB: Any, omega: Any, alpha: Any, m: ModuleType = mat
     return add(crank_normal(theta, AB, omega, m), crank_tangential(theta, AB, alpha, m))
 
 
-# --- the rod, Eqs. 5 to 18 -------------------------------------------------------------------------------------
+# --- the rod, Eqs. 5 to 18 ------------------------------------------------------------------------
 
 
 def printed_eq5(theta: Any, ec: Any, AB: Any, BC: Any, m: ModuleType = math) -> Any:
@@ -168,7 +169,7 @@ def printed_eq14(theta: Any, ec: Any, AB: Any, BC: Any, omega: Any, alpha: Any, 
     return alpha_BC_of_signs((1, 1, -1), theta, ec, AB, BC, omega, alpha, m)
 
 
-# --- the slider's acceleration, Eqs. 19 to 23 -------------------------------------------------------------------
+# --- the slider's acceleration, Eqs. 19 to 23 -----------------------------------------------------
 
 
 def printed_eq20(theta: Any, AB: Any, omega: Any, m: ModuleType = math) -> Any:
@@ -225,7 +226,7 @@ def corrected_eq19(
     return a_C_of_signs((1, 1, 1, 1), theta, ec, AB, BC, omega, alpha, m)
 
 
-# --- the worksheet: functions of the design with omega0 and alpha as its constants (Eqs. 24, 25, listing) ---------
+# --- the worksheet: omega0 and alpha are its constants (Eqs. 24, 25, listing) ---------------------
 
 
 class Worksheet:

@@ -1,0 +1,46 @@
+"""A progress bar on the terminal, for runs that take long."""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import Event, Thread
+from typing import Any
+
+from ._scene_run import Progress
+
+DELAY = 1.0  # seconds without a bar
+PACE = 0.2  # seconds between two looks
+
+
+@contextmanager
+def progress_bar(delay: float = DELAY) -> Iterator[Progress | None]:
+    """A bar on stderr that appears after `delay` seconds and leaves no trace.
+
+    None where stderr is not a terminal or tqdm is not installed.
+    """
+    try:
+        from tqdm import tqdm
+    except ModuleNotFoundError:
+        tqdm = None
+    if tqdm is None or not sys.stderr.isatty():
+        yield None
+        return
+    state: list[tuple[int, int, str]] = [(0, 1, "")]
+    over = Event()
+    thread = Thread(target=_show, args=(tqdm, state, over, delay), daemon=True)
+    thread.start()
+    try:
+        yield lambda done, total, what: state.__setitem__(0, (done, total, what))
+    finally:
+        over.set()
+        thread.join()
+
+
+def _show(tqdm: Any, state: list[tuple[int, int, str]], over: Event, delay: float) -> None:
+    """Draw the newest state until it is over; a thread of its own, since one step can take long."""
+    if over.wait(delay):
+        return
+    with tqdm(total=1, leave=False, file=sys.stderr, unit="step", dynamic_ncols=True) as bar:
+        while not over.wait(PACE):
+            bar.n, bar.total, what = state[0]
+            bar.set_description_str(what, refresh=True)

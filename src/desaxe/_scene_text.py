@@ -1,0 +1,196 @@
+"""The report of a scene as text for a terminal, at most 100 columns wide."""
+
+from collections.abc import Sequence
+from math import degrees
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._scene_read import Content, Peak
+from ._scene_run import WORDS, CheckResult, ClaimResult, FeasibilityResult, PeakResult, group_names
+from .catalogue import quantity
+from .inputs import INPUTS
+
+if TYPE_CHECKING:
+    from ._scene import SceneResult
+
+ROWS = 24  # of a table; a longer one is thinned out
+GAPS = 5  # designs that cannot turn fully
+
+
+def report(content: Content, result: "SceneResult") -> str:
+    """The whole report."""
+    parts = [content.title] if content.title else []
+    parts += [_checks(result.checks)] if result.checks else []
+    parts += [_feasibility(result.feasibility)] if result.feasibility else []
+    parts += [_peak(found) for found in result.peaks]
+    parts += [_values(result)] if result.dataset is not None else []
+    parts += [_files(content, result)] if result.files else []
+    return "\n\n".join(parts)
+
+
+def table(rows: Sequence[Sequence[str]], left: int = 0) -> list[str]:
+    """Rows of cells as aligned lines; the first `left` columns are flush left, the others right."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = []
+    for row in rows:
+        cells = [
+            cell.ljust(width) if index < left else cell.rjust(width)
+            for index, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ]
+        lines.append(("  " + "   ".join(cells)).rstrip())
+    return lines
+
+
+def number(value: float) -> str:
+    """A number in six digits."""
+    return f"{float(value):.6g}"
+
+
+# ---- printed values ------------------------------------------------------------------------------
+
+
+def _checks(results: tuple[CheckResult, ...]) -> str:
+    """Printed values next to the computed ones, a block for each source."""
+    sources = list(dict.fromkeys(result.check.source for result in results))
+    blocks = [_block(source, [result for result in results if result.check.source == source]) for source in sources]
+    return "\n".join(["Printed and computed", *blocks])
+
+
+def _block(source: str, results: list[CheckResult]) -> str:
+    rows = [("", "", source, "desaxe", "in full", "")]
+    last = None
+    for check, computed, agrees in results:
+        printed = check.printed
+        full = f"{computed * printed.factor:.8g}"
+        title = "" if check.title == last else check.title
+        last = check.title
+        cells = printed.text(printed.value), printed.text(printed.rounded(computed))
+        rows.append((title, check.quantity, *cells, full, "agrees" if agrees else "DIFFERS"))
+    return "\n".join(table(rows, left=2))
+
+
+# ---- feasibility ---------------------------------------------------------------------------------
+
+
+def _feasibility(found: FeasibilityResult) -> str:
+    """Up to where the crank turns, and which designs do not."""
+    lines = ["Feasibility"]
+    if found.limit is not None:
+        sign = "ec = 0 at most" if found.limit == 0.0 else f"|ec| <= BC - AB = {number(found.limit)} m"
+        lines.append(
+            f"  the crank turns fully for {sign}" if found.limit >= 0.0 else "  the crank turns fully for no ec: AB > BC"
+        )
+    lines.append(f"  {found.turning} of {found.designs} designs of this scene turn fully")
+    axes = _varying([one.design for one in found.infeasible], found.designs)
+    for one in found.infeasible[:GAPS]:
+        design = ", ".join(f"{name} = {number(one.design[name])} m" for name in axes)
+        gaps = " and ".join(f"{degrees(a):.2f} to {degrees(b):.2f}" for a, b in one.gaps)
+        lines.append(f"  infeasible at part of the turn: {design} cannot be assembled for theta from {gaps} deg")
+    more = found.designs - found.turning - GAPS
+    return "\n".join(lines + ([f"  and {more} more"] if more > 0 else []))
+
+
+def _varying(designs: list[dict[str, float]], count: int) -> list[str]:
+    """The lengths that tell these designs apart; `ec` where there is one design only."""
+    names = list(designs[0]) if designs else []
+    varying = [name for name in names if len({design[name] for design in designs}) > 1]
+    return varying or (["ec"] if count > 0 else [])
+
+
+# ---- peaks ---------------------------------------------------------------------------------------
+
+
+def _peak(found: PeakResult) -> str:
+    """A table with a row for each design, and the claims."""
+    one, dataset = found.peak, found.dataset
+    known = quantity(one.quantity, "omega" in one.axes or "omega" in one.fixed)
+    low, high = (f"{degrees(angle):g}" for angle in one.theta)
+    title = one.title or f"{WORDS[one.kind].capitalize()} of {one.quantity}, {known.meaning}"
+    lines = [f"{title} (theta from {low} to {high} deg)"]
+    lines += table(_peak_rows(found))
+    lines += _remarks(found)
+    return "\n".join(lines + [_claim(one, claim) for claim in found.claims])
+
+
+def _peak_rows(found: PeakResult) -> list[list[str]]:
+    one, dataset = found.peak, found.dataset
+    symbol = {"absmax": f"|{one.quantity}|", "max": f"max {one.quantity}", "min": f"min {one.quantity}"}[one.kind]
+    slopes = [name for name in one.sensitivities if f"value_wrt_{name}" in dataset]
+    base = [f"over {_design(one.at_baseline)}"] if "increase" in dataset else []
+    rows = [[*one.axes, symbol, "at theta", *base, *(f"d/d({name})" for name in slopes)]]
+    units = [*(INPUTS[name].unit for name in one.axes), dataset["value"].units, "deg", *("" for _ in base)]
+    rows.append([*units, *(dataset[f"value_wrt_{name}"].units for name in slopes)])
+    for index in _thinned(list(np.ndindex(dataset["value"].shape))):
+        row = [number(dataset[name].values[i]) for name, i in zip(one.axes, index, strict=True)]
+        row += [number(dataset["value"].values[index]), f"{degrees(dataset['theta'].values[index]):.3f}"]
+        row += [f"{dataset['increase'].values[index]:+.1f} %"] if base else []
+        row += [_slope(found, name, index) for name in slopes]
+        rows.append(row)
+    return rows
+
+
+def _slope(found: PeakResult, name: str, index: tuple[int, ...]) -> str:
+    """A sensitivity; of either sign by ec where two angles share the peak."""
+    value = found.dataset[f"value_wrt_{name}"].values[index]
+    return f"+-{number(abs(value))}" if name == "ec" and found.mirrored[index] else number(value)
+
+
+def _thinned(indices: list[tuple[int, ...]]) -> list[tuple[int, ...]]:
+    """At most so many rows, evenly chosen, the first and last among them."""
+    if len(indices) <= ROWS:
+        return indices
+    return [indices[round(k * (len(indices) - 1) / (ROWS - 1))] for k in range(ROWS)]
+
+
+STATUS_WORDS = {
+    1: "cannot be assembled at any of these angles",
+    2: "reached at a limit angle or change point, where there is no gradient",
+    3: "stalled at all of these angles",
+    4: "bad input",
+}
+
+
+def _remarks(found: PeakResult) -> list[str]:
+    """What is to be said about designs that have no ordinary peak, and about rows left out."""
+    status = found.dataset["status"].values
+    lines = [f"  designs: {np.sum(status == code)} {words}" for code, words in STATUS_WORDS.items() if code in status]
+    if found.mirrored.any():
+        lines.append("  +-: at ec = 0 the peak is at theta and at -theta, and d/d(ec) is + at one and - at the other")
+    if status.size > ROWS:
+        lines.append(f"  {ROWS} of {status.size} designs are shown")
+    return lines
+
+
+def _claim(one: Peak, result: ClaimResult) -> str:
+    claim = result.claim
+    printed = claim.increase.text(claim.increase.value)
+    computed = claim.increase.text(claim.increase.rounded(result.computed))
+    verdict = "agrees" if result.agrees else "DIFFERS"
+    where = f"{_design(claim.at)} over {_design(one.at_baseline)}"
+    return f"  increase of {where}: {claim.source} {printed}, desaxe {computed} ({result.computed:.2f} %): {verdict}"
+
+
+def _design(inputs: dict[str, float]) -> str:
+    return ", ".join(f"{name} = {number(value)}" + (f" {INPUTS[name].unit}" if value else "") for name, value in inputs.items())
+
+
+# ---- values and files ----------------------------------------------------------------------------
+
+
+def _values(result: "SceneResult") -> str:
+    """What the labelled result holds."""
+    assert result.dataset is not None
+    shape = " x ".join(f"{name} ({size})" for name, size in result.dataset.sizes.items())
+    return f"Values\n  {', '.join(result.scene.outputs)} over {shape or 'one point'}"
+
+
+def _files(content: Content, result: "SceneResult") -> str:
+    """A line for each file that was written."""
+    groups = ", ".join(group_names(result.peaks))
+    data = "the values" if result.dataset is not None else ""
+    data += (", and " if data and groups else "") + (f"as groups {groups}" if groups else "")
+    pictures = [f"{picture.quantity} over {picture.over}" for picture in content.pictures]
+    whats = [*([data] if content.data is not None else []), *pictures]
+    rows = [(str(path), what) for path, what in zip(result.files, whats, strict=True)]
+    return "\n".join(["Written", *table(rows, left=2)])

@@ -1,0 +1,327 @@
+"""The command `desaxe`: one function for each sub-command.
+
+Start-up is light: what a command needs is imported when it runs. A complaint is one line on stderr
+with exit code 2.
+"""
+
+import argparse
+import json
+import os
+import sys
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from math import isfinite
+from typing import Any, NoReturn
+
+from .extras import MissingExtra, needed
+
+SIGNS = """\
+signs: Y points along the slider axis towards the slider, theta turns from +Y towards +X;
+       V_C and a_C are positive along +Y (away from the crank), the slider axis is at X = -ec."""
+
+INTERRUPTED = 130  # as a shell reports it
+
+
+class UsageError(Exception):
+    """The command line cannot be understood."""
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser whose complaints are one line, like all others."""
+
+    def error(self, message: str) -> NoReturn:
+        raise UsageError(f"{message} (see {self.prog} --help)")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; the exit code: 0 done, 1 a check failed, 2 a complaint."""
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        code = _run(words)
+        sys.stdout.flush()
+        return code
+    except BrokenPipeError:  # whoever read our output has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except KeyboardInterrupt:
+        print("desaxe: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except (UsageError, MissingExtra, ValueError, TypeError, OSError) as error:
+        print(f"desaxe: error: {_one_line(error)}", file=sys.stderr)
+        return 2
+
+
+def _run(words: list[str]) -> int:
+    if words[:1] == ["derive"]:  # its options are its own
+        return _derive(words[1:])
+    parser = _parser()
+    try:
+        options = parser.parse_args(words)
+    except SystemExit as done:  # --help and --version
+        return int(done.code or 0)
+    run: Callable[[argparse.Namespace], int] | None = getattr(options, "run", None)
+    if run is None:
+        parser.print_help()
+        return 0
+    return run(options)
+
+
+def _one_line(error: Exception) -> str:
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
+    return " ".join(str(error).split())
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="desaxe",
+        description="Offset slider-crank: kinematics with exact sensitivities.",
+        epilog=f"{SIGNS}\n\n`desaxe COMMAND --help` explains a command and gives examples.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action=_Version, help="print the version and leave")
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=_Parser)
+    for add in (_add_point, _add_run, _add_derive, _add_errata, _add_doctor):
+        add(commands)
+    return parser
+
+
+class _Version(argparse.Action):
+    """Looks the version up only when it is asked for."""
+
+    def __init__(self, option_strings: Sequence[str], dest: str, **options: Any) -> None:
+        super().__init__(option_strings, argparse.SUPPRESS, nargs=0, **options)
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        from . import __version__
+
+        print(f"desaxe {__version__}")
+        parser.exit()
+
+
+def _add(commands: Any, name: str, what: str, more: str, run: Callable[[argparse.Namespace], int]) -> Any:
+    """A sub-command: one line about it, and a longer text with examples."""
+    parser = commands.add_parser(
+        name,
+        help=what,
+        description=f"{what[0].upper()}{what[1:]}.",
+        epilog=more,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=run)
+    return parser
+
+
+# ---- point ---------------------------------------------------------------------------------------
+
+_POINT = f"""\
+inputs (SI units and radians, or any unit written behind the number):
+  theta    crank angle            theta=60deg  theta=1.047
+  ec       eccentricity           ec=10mm      either sign
+  AB, BC   crank, connecting rod  AB=125mm     BC=0.35
+  omega0   crank speed at theta=0 omega0=1500rpm; omega^2 = omega0^2 + 2 alpha theta
+  alpha    crank acceleration     alpha=10     0 by default
+  omega    speed at this instant, instead of omega0
+  branch   1 (default) or -1: on which side of the crank pin the slider is
+
+{SIGNS}
+
+examples:
+  desaxe point a_C theta=60deg ec=10mm AB=125mm BC=300mm omega0=1500rpm
+  desaxe point V_C,a_C,a_C_wrt_ec theta=60deg ec=0 AB=.125 BC=.35 omega0=157.08
+  desaxe point margin ec=220mm AB=125mm BC=350mm --json
+  desaxe point --list                        all names, with units and meanings"""
+
+
+def _add_point(commands: Any) -> None:
+    parser = _add(commands, "point", "values at one crank angle of one design", _POINT, _point)
+    parser.add_argument(
+        "words", nargs="*", metavar="NAME | INPUT=VALUE", help="quantities (V_C a_C, or V_C,a_C) and inputs"
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.add_argument("--list", action="store_true", help="print the quantities that can be asked for")
+
+
+def _point(options: argparse.Namespace) -> int:
+    if options.list:
+        return _list()
+    from . import evaluate
+    from .catalogue import quantity
+
+    names, inputs = _names_and_inputs(options.words)
+    values: dict[str, Any] = evaluate(names, **inputs)
+    rows = {name: quantity(name, "omega" in inputs) for name in names}
+    status = _status(values, inputs)
+    if options.json:
+        found: dict[str, Any] = {
+            name: {"value": _json_number(values[name]), "unit": row.unit, "meaning": row.meaning}
+            for name, row in rows.items()
+        }
+        print(json.dumps({**found, **({"status": _status_words()[status]} if status else {})}, indent=2))
+        return 0
+    texts = [f"{name} = {values[name]!r} {'' if row.unit == '1' else row.unit}".rstrip() for name, row in rows.items()]
+    width = max(map(len, texts))
+    for text, row in zip(texts, rows.values(), strict=True):
+        print(f"{text:{width}}   {row.meaning}")
+    if status:
+        print(f"status {status}: {_status_words()[status]}")
+    return 0
+
+
+def _list() -> int:
+    from .catalogue import quantities
+
+    rows = quantities()
+    wide = [max(len(getattr(row, field)) for row in rows) for field in ("name", "unit")]
+    for row in rows:
+        source = f" ({row.source})" if row.source else ""
+        print(f"{row.name:{wide[0]}}  {row.unit:{wide[1]}}  {row.meaning}{source}")
+    return 0
+
+
+def _names_and_inputs(words: Sequence[str]) -> tuple[list[str], dict[str, Any]]:
+    """Words with an = are inputs, all others names."""
+    from .inputs import INPUTS
+
+    names: list[str] = []
+    inputs: dict[str, Any] = {}
+    for word in words:
+        key, equals, value = word.partition("=")
+        if not equals:
+            names += [name for name in word.split(",") if name]
+        elif key == "branch":
+            inputs[key] = _branch(value)
+        elif key not in INPUTS:
+            raise UsageError(f"{word}: no input is called {key!r}, there are {', '.join([*INPUTS, 'branch'])}")
+        elif key in inputs:
+            raise UsageError(f"{word}: {key} is given twice")
+        else:
+            inputs[key] = value
+    if not names:
+        raise UsageError("which quantity? give a name such as a_C (desaxe point --list shows all)")
+    return list(dict.fromkeys(names)), inputs
+
+
+def _branch(text: str) -> int:
+    if text not in ("1", "+1", "-1"):
+        raise UsageError(f"branch={text}: it is 1 or -1")
+    return int(text)
+
+
+def _status(values: dict[str, Any], inputs: dict[str, Any]) -> int:
+    """The status at the point; 0 also where too few inputs are given to know."""
+    from . import evaluate
+
+    if "status" in values:
+        return int(values["status"])
+    try:
+        return int(evaluate("status", **inputs))
+    except TypeError:
+        return 0
+
+
+def _status_words() -> dict[int, str]:
+    """Code -> words, from the meaning of `status` in the catalogue."""
+    from .catalogue import quantity
+
+    parts = (part.split(" ", 1) for part in quantity("status").meaning.split(", "))
+    return {int(code): words for code, words in parts}
+
+
+def _json_number(value: float) -> float | None:
+    """JSON has no NaN."""
+    return value if isfinite(value) else None
+
+
+# ---- run -----------------------------------------------------------------------------------------
+
+_RUN = """\
+A scene is a TOML file: [mechanism] and [motion] with numbers, lists or ranges (units as text, such
+as "125 mm"), outputs = [...] for the grid of all of them, [[peak]], [[check]] and [[picture]], and
+under [results] where the data go. It is data only; nothing in it is executed. Files are written
+relative to the current directory. examples/compactor.toml shows every key.
+
+examples:
+  desaxe run examples/compactor.toml
+  desaxe run my_press.toml > report.txt"""
+
+
+def _add_run(commands: Any) -> None:
+    parser = _add(commands, "run", "run a scene: values, peaks, checks, pictures", _RUN, _scene)
+    parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
+
+
+def _scene(options: argparse.Namespace) -> int:
+    from . import scene
+    from ._scene_progress import progress_bar
+
+    wanted = scene(options.scene)
+    with progress_bar() as progress:
+        result = wanted.run(progress)
+    print(result)
+    return 0
+
+
+# ---- derive, errata, doctor ----------------------------------------------------------------------
+
+_DERIVE = """\
+The same command as `python -m derive` from the repository root.
+
+examples:
+  desaxe derive --check      is generated/ fresh?
+  desaxe derive --report     operations before and after each pass, per quantity"""
+
+
+def _add_derive(commands: Any) -> None:
+    _add(commands, "derive", "derive the formulas again with SymPy and write generated/", _DERIVE, lambda _: 0)
+
+
+def _derive(words: list[str]) -> int:
+    with needed("desaxe derive"):
+        code: int = import_module("desaxe.derive.__main__").main(words)
+    return code
+
+
+_ERRATA = """\
+examples:
+  desaxe errata                       every equation, listing line and claim that was looked at
+  desaxe errata --document A          of one paper
+  desaxe errata --verdict sign        those with a wrong sign"""
+
+
+def _add_errata(commands: Any) -> None:
+    parser = _add(commands, "errata", "what the papers print, and what of it is right", _ERRATA, _errata)
+    parser.add_argument("--document", metavar="LETTER", help="A, B or C")
+    parser.add_argument("--verdict", metavar="WORD", help="correct, typo, sign, wrong claim, not reproducible")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+
+
+def _errata(options: argparse.Namespace) -> int:
+    from ._errata import entries, table
+
+    found = entries(document=options.document, verdict=options.verdict)
+    print(json.dumps([entry._asdict() for entry in found], indent=2) if options.json else table(found))
+    return 0
+
+
+_DOCTOR = """\
+Exit code 0 where desaxe can be used, 1 where not. Compiles one small kernel, which takes a second.
+
+example:
+  desaxe doctor"""
+
+
+def _add_doctor(commands: Any) -> None:
+    _add(commands, "doctor", "versions, cache, threads, and whether loops vectorise on this CPU", _DOCTOR, _doctor)
+
+
+def _doctor(_: argparse.Namespace) -> int:
+    from .doctor import examine
+
+    found = examine()
+    print(found.text)
+    return 0 if found.usable else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

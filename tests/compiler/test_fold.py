@@ -1,0 +1,140 @@
+"""Folding: what is constant is computed, factors 0 and 1 are gone, and nothing else changes."""
+
+import math
+
+import mpmath
+import pytest
+from hypothesis import assume, given, settings
+
+from desaxe.compiler.interpret import run_exactly, run_in_doubles
+from desaxe.compiler.operations import OPERATIONS
+from desaxe.compiler.passes.bind import bind_constants
+from desaxe.compiler.passes.fold import fold_constants
+from desaxe.compiler.program import Line, Program, validate
+from tests.compiler.programs import (
+    NO_JUMPS,
+    POINT,
+    committed,
+    exactly,
+    in_doubles,
+    points,
+    program_of_nested,
+    programs,
+    same,
+)
+
+LESS = ("lt", "x", "y")
+FOLDED = [
+    (("add", "x", 0.0), ("copy", "x")),
+    (("add", 0.0, "x"), ("copy", "x")),
+    (("sub", "x", 0.0), ("copy", "x")),
+    (("sub", 0.0, "x"), ("neg", "x")),
+    (("mul", 0.0, "x"), ("copy", 0.0)),
+    (("mul", "x", 0.0), ("copy", 0.0)),
+    (("mul", "x", 1.0), ("copy", "x")),
+    (("mul", -1.0, "x"), ("neg", "x")),
+    (("div", "x", 1.0), ("copy", "x")),
+    (("div", 0.0, "x"), ("copy", 0.0)),
+    (("two_sum_error", "x", 0.0), ("copy", 0.0)),
+    (("select", True, "x", "y"), ("copy", "x")),
+    (("select", ("lt", 2.0, 1.0), "x", "y"), ("copy", "y")),
+    (("select", LESS, "x", "x"), ("copy", "x")),
+    (("select", LESS, ("mul", 1.0, "x"), "x"), ("copy", "x")),
+    (("add", 0.1, 0.2), ("copy", 0.30000000000000004)),
+    (("sqrt", ("mul", 8.0, 2.0)), ("copy", 4.0)),
+    (("div", 1.0, 0.0), ("copy", math.inf)),
+    (("not", ("le", 1.0, 2.0)), ("copy", False)),
+    (("add", "y", ("mul", ("mul", "x", 0.0), "z")), ("copy", "y")),
+]
+KEPT = [
+    ("add", "x", 1.0),
+    ("sub", 1.0, "x"),
+    ("mul", "x", 2.0),
+    ("div", 1.0, "x"),
+    ("mul", math.nan, "x"),
+    ("select", LESS, "x", "y"),
+    ("copysign", "x", 0.0),
+]
+
+
+@pytest.mark.parametrize("nested, folded", FOLDED)
+def test_golden(nested, folded):
+    assert only_line(fold_constants(program_of_nested(nested))) == folded
+
+
+def only_line(program):
+    (line,) = program.lines
+    return line.op, *line.args
+
+
+@pytest.mark.parametrize("nested", KEPT)
+def test_what_is_not_neutral_stays(nested):
+    assert fold_constants(program_of_nested(nested)).lines == program_of_nested(nested).lines
+
+
+@pytest.mark.parametrize("op", [op for op, row in OPERATIONS.items() if set(row.signature) == {"f"}])
+def test_constants_are_computed_as_they_would_be(op):
+    args = (0.7, 1.3)[: OPERATIONS[op].arity]
+    folded = only_line(fold_constants(program_of_nested((op, *args))))
+    assert folded == ("copy", in_doubles(program_of_nested((op, *args)), {"x": 0, "y": 0, "z": 0})["out"])
+
+
+def test_an_output_that_becomes_another_stays():
+    lines = (Line("u", "neg", ("x",)), Line("v", "mul", ("u", 1.0)))
+    program = Program(("x",), lines, ("u", "v"), {})
+    assert fold_constants(program).lines == (lines[0], Line("v", "copy", ("u",)))
+
+
+def test_inputs_of_a_vanished_term_are_gone():
+    assert fold_constants(program_of_nested(("add", "x", ("mul", 0.0, "y")))).inputs == ("x",)
+
+
+@given(programs())
+@settings(max_examples=100, deadline=None)
+def test_the_result_is_valid_and_final(program):
+    once = validate(fold_constants(program))
+    assert fold_constants(once) == once
+
+
+@given(programs(ops=NO_JUMPS), points())
+@settings(max_examples=150, deadline=None)
+def test_the_exact_meaning_is_unchanged(program, point):
+    """Where no line rounds, so that computing a constant in doubles is exact."""
+    with mpmath.workdps(50):
+        doubles, exact = run_in_doubles(program, point), run_exactly(program, mpmath.mp, point)
+    assume(all(doubles[line.name] == exact[line.name] for line in program.lines))
+    assert same(exactly(fold_constants(program), point), exactly(program, point))
+
+
+@given(programs(ops=NO_JUMPS), points())
+@settings(max_examples=150, deadline=None)
+def test_no_bit_changes_where_all_is_finite(program, point):
+    """The sign of a zero may."""
+    scope = run_in_doubles(program, point)
+    assume(all(math.isfinite(scope[line.name]) for line in program.lines))
+    assert same(in_doubles(fold_constants(program), point), in_doubles(program, point))
+
+
+NAMES = ("Y", "phi", "V_C", "a_C", "j_C", "alpha_BC", "a_C_wrt_ec", "omega_BC_wrt_AB", "V_C_wrt_theta", "status")
+SCENES = [{}, {"ec": 0.0}, {"alpha": 0.0}, {"ec": 0.0, "alpha": 0.0, "branch": 1.0}, {"branch": -1.0}]
+
+
+@pytest.mark.parametrize("fixed", SCENES)
+def test_the_committed_program_keeps_its_meaning(fixed):
+    program = committed(*NAMES)
+    point = POINT | fixed
+    folded = validate(fold_constants(bind_constants(program, fixed)))
+    found, wanted = exactly(folded, point), exactly(program, point)
+    assert all(abs(found[name] - wanted[name]) <= 1e-45 * abs(wanted[name]) for name in NAMES)
+
+
+@pytest.mark.parametrize("fixed", SCENES[1:4])
+def test_the_committed_program_loses_lines(fixed):
+    program = committed(*NAMES)
+    assert len(fold_constants(bind_constants(program, fixed)).lines) < len(program.lines)
+
+
+@pytest.mark.parametrize("fixed", SCENES)
+def test_an_infeasible_point_stays_nan(fixed):
+    program = fold_constants(bind_constants(committed("Y", "V_C", "a_C", "alpha_BC", "a_C_wrt_BC"), fixed))
+    assert all(math.isnan(value) for value in in_doubles(program, POINT | fixed | {"AB": 0.5}).values())

@@ -1,0 +1,48 @@
+"""Closed forms: the same numbers as the stable program, for every quantity and first sensitivity."""
+
+import random
+
+import mpmath
+import pytest
+import sympy as sp
+from desaxe.derive.quantities import QUANTITIES
+
+import desaxe as dx
+
+POINT = {"theta": 0.7, "ec": -0.03, "AB": 0.125, "BC": 0.35, "omega0": 12.0, "alpha": 5.0}
+FIRST = [
+    row.name for row in dx.quantities() if row.name.count("_wrt_") and row.name.partition("_wrt_")[2] in POINT
+]
+
+
+def number(expression):
+    values = {
+        sp.Symbol(name, real=True): sp.Float(value, 40) for name, value in {**POINT, "branch": 1}.items()
+    }
+    return mpmath.mpf(str(expression.subs(values).doit().evalf(30)))
+
+
+@pytest.mark.parametrize("name", [*QUANTITIES, "margin", "status"])
+def test_closed_forms(name):
+    assert float(number(dx.equation(name).expression)) == pytest.approx(dx.evaluate(name, **POINT), rel=1e-13)
+
+
+def test_derivatives_of_closed_forms():
+    for name in random.Random(5).sample(FIRST, 12):
+        assert float(number(dx.equation(name).expression)) == pytest.approx(
+            dx.evaluate(name, **POINT), rel=1e-12
+        ), name
+
+
+def test_text():
+    found = dx.equation("V_C_wrt_ec")
+    assert found.latex.startswith(r"\frac{\partial V_{C}}{\partial e_c} = ")
+    assert found.unit == "1/s"
+    assert found.steps[-1].startswith("V_C_wrt_ec = ")
+    assert found._repr_latex_().startswith("$")
+    assert dx.equation("a_C").source == "A (19)"
+
+
+def test_unknown():
+    with pytest.raises(ValueError, match="did you mean a_C"):
+        dx.equation("a_c")

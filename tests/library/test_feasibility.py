@@ -1,0 +1,69 @@
+"""Where a design can be assembled, against the status of a fine sweep and exact margins."""
+
+import math
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+
+import desaxe as dx
+
+DESIGNS = [
+    (0.1, 0.125, 0.35), (0.23, 0.125, 0.35), (-0.23, 0.125, 0.35), (0.0, 0.5, 0.35), (0.1, 0.5, 0.35),
+    (-0.1, 0.5, 0.35), (0.45, 0.125, 0.35), (-0.45, 0.125, 0.35), (0.48, 0.125, 0.35), (2.0, 0.5, 0.35),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("ec", "AB", "BC"), DESIGNS)
+def test_intervals_are_where_the_sweep_is_feasible(ec, AB, BC):
+    intervals = dx.feasibility(ec=ec, AB=AB, BC=BC)["theta_intervals"]
+    theta = np.linspace(0, 2 * np.pi, 5001)
+    status = dx.evaluate("status", theta=theta, ec=ec, AB=AB, BC=BC)
+    inside = np.zeros(theta.size, bool)
+    for first, last in intervals:
+        assert 0 <= first < 2 * np.pi
+        assert first < last
+        for turn in (0, 2 * np.pi):
+            inside |= (theta + turn >= first) & (theta + turn <= last)
+    np.testing.assert_array_equal(inside, status == 0)
+
+
+@pytest.mark.parametrize("ec", [0.2251, 0.225 + 1e-9, 0.225 + 1e-13])
+def test_limit_angles_keep_their_digits(ec):
+    """Next to the change point asin loses half of the digits; the gap from the quarter must not."""
+    first, last = dx.feasibility(ec=ec, AB=0.125, BC=0.35)["theta_intervals"][0]
+    with mpmath.workdps(50):
+        gap = mpmath.acos((mpmath.mpf(0.35) - mpmath.mpf(ec)) / mpmath.mpf(0.125))
+    assert first - math.pi / 2 == pytest.approx(float(gap), abs=5e-16)
+    assert last - 5 * math.pi / 2 == pytest.approx(-float(gap), abs=2e-15)
+
+
+@pytest.mark.parametrize(
+    ("ec", "AB", "BC"), [(0.225, 0.125, 0.35), (0.1, 0.2, 0.3), (-1 / 3, 0.1, 0.7), (1e-30, 1.0, 1.0)]
+)
+def test_margin_is_rounded_once(ec, AB, BC):
+    exact = float(Fraction(BC) - Fraction(AB) - abs(Fraction(ec)))
+    assert dx.feasibility(ec=ec, AB=AB, BC=BC)["margin"] == exact
+    assert dx.evaluate("margin", ec=ec, AB=AB, BC=BC) == exact
+    assert dx.evaluate("margin", ec=[ec, 0.0], AB=AB, BC=BC)[0] == exact
+
+
+@pytest.mark.parametrize(
+    ("ec", "AB", "BC", "kind", "turns"),
+    [
+        (0.1, 0.125, 0.35, "crank", True), (0.225, 0.125, 0.35, "change point", False),
+        (0.23, 0.125, 0.35, "rocker", False), (2.0, 0.1, 0.3, "none", False),
+        (0.25, 0.5, 0.75, "change point", True),
+    ],
+)  # fmt: skip
+def test_kind(ec, AB, BC, kind, turns):
+    found = dx.feasibility(ec=ec, AB=AB, BC=BC)
+    assert (found["kind"], found["can_turn"]) == (kind, turns)
+
+
+def test_bad_lengths():
+    with pytest.raises(ValueError, match=r"BC = 0\.0: it must be a finite length > 0"):
+        dx.feasibility(ec=0.0, AB=0.1, BC=0.0)
+    with pytest.raises(TypeError, match="ec: feasibility takes numbers"):
+        dx.feasibility(ec=[0.0], AB=0.1, BC=0.3)

@@ -1,0 +1,103 @@
+"""The labelled grid: the outer product of its arguments, with units, status and margin."""
+
+import numpy as np
+import pint_xarray
+import pytest
+import xarray as xr
+
+import desaxe as dx
+
+THETA = np.linspace(0.0, 6.0, 7)
+MACHINE = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
+
+
+def test_dimensions_in_the_order_given():
+    grid = dx.grid(["V_C", "a_C"], BC=[0.3, 0.35], theta=THETA, ec=[0.0, 0.1, 0.2], AB=0.125, omega0=157.08)
+    assert grid["a_C"].dims == ("BC", "theta", "ec")
+    assert grid["a_C"].shape == (2, 7, 3)
+    assert grid["AB"].dims == ()
+    assert grid["AB"].item() == 0.125
+
+
+def test_every_element_is_that_of_evaluate():
+    grid = dx.grid(["a_C", "a_C_wrt_ec"], theta=THETA, ec=[0.0, 0.1, 0.24], **MACHINE)
+    for name in ("a_C", "a_C_wrt_ec", "status"):
+        ec = np.array([[0.0, 0.1, 0.24]])
+        plain = dx.evaluate(name, theta=THETA[:, None], ec=ec, **MACHINE)
+        np.testing.assert_allclose(grid[name], plain, rtol=1e-14)
+
+
+def test_status_and_margin_come_always():
+    grid = dx.grid("a_C", theta=[1.6, 4.0], ec=[0.1, 0.24, np.nan], **MACHINE)
+    assert grid["status"].dtype == np.int8
+    assert grid["status"].values.tolist() == [[0, 1, 4], [0, 0, 4]]
+    assert grid["margin"].dims == ("ec",)
+    assert grid["margin"].values[0] == pytest.approx(0.125)
+    assert np.isnan(grid["a_C"].values[0, 1])
+
+
+def test_attributes():
+    grid = dx.grid(["a_C", "V_C_wrt_ec"], theta=THETA, ec=0.1, **MACHINE)
+    assert grid["a_C"].attrs["units"] == "m/s^2"
+    assert grid["V_C_wrt_ec"].attrs["units"] == "1/s"
+    assert grid["theta"].attrs["units"] == "rad"
+    assert grid["a_C"].attrs["long_name"] == "acceleration of the slider"
+    assert grid["status"].attrs["flag_values"].tolist() == [0, 1, 2, 3, 4]
+    assert len(grid["status"].attrs["flag_meanings"].split()) == 5
+
+
+def test_netcdf_there_and_back(tmp_path):
+    grid = dx.grid(["a_C"], theta=THETA, ec=[0.0, 0.24], **MACHINE)
+    grid.to_netcdf(tmp_path / "grid.nc", engine="h5netcdf")
+    with xr.open_dataset(tmp_path / "grid.nc", engine="h5netcdf") as again:
+        xr.testing.assert_identical(again.load(), grid)
+
+
+def test_units_survive_pint():
+    grid = dx.grid(["a_C"], theta=THETA, ec=[0.0, 0.1], **MACHINE)
+    assert pint_xarray.unit_registry is not None
+    with_units = grid[["a_C"]].reset_coords(drop=True).pint.quantify()
+    assert with_units["a_C"].pint.to("km/h/s").pint.magnitude[0, 0] == pytest.approx(
+        3.6 * grid["a_C"].values[0, 0]
+    )
+
+
+def test_out_needs_no_labels():
+    place = np.empty((7, 2))
+    answer = dx.grid("a_C", theta=THETA, ec=[0.0, 0.1], out=place, **MACHINE)
+    assert answer["a_C"] is place
+    np.testing.assert_array_equal(place, dx.grid("a_C", theta=THETA, ec=[0.0, 0.1], **MACHINE)["a_C"])
+    with pytest.raises(ValueError, match=r"shape \(7, 2\) is wanted"):
+        dx.grid("a_C", theta=THETA, ec=[0.0, 0.1], out=np.empty((2, 7)), **MACHINE)
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3])
+def test_threads_change_nothing(threads):
+    theta, ec = np.linspace(0, 6, 400), np.linspace(0, 0.2, 300)
+    one = dx.grid("a_C", theta=theta, ec=ec, threads=1, **MACHINE)["a_C"].values
+    np.testing.assert_array_equal(dx.grid("a_C", theta=theta, ec=ec, threads=threads, **MACHINE)["a_C"], one)
+
+
+def test_numbers_alone_and_an_empty_axis():
+    assert dx.grid("a_C", theta=1.0, ec=0.1, **MACHINE)["a_C"].shape == ()
+    assert dx.grid("a_C", theta=[], ec=0.1, **MACHINE)["a_C"].shape == (0,)
+
+
+def test_a_position_needs_no_motion():
+    grid = dx.grid("Y", theta=THETA, ec=0.1, AB=0.125, BC=0.35)
+    assert "omega0" not in grid
+    assert (grid["status"] == 0).all()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "words"),
+    [
+        ({"speed": 3.0}, TypeError, "no input 'speed'"),
+        ({"ec": [[0.0]]}, ValueError, r"ec: a grid takes numbers and 1-d arrays, got the shape \(1, 1\)"),
+        ({"omega0": None}, TypeError, "omega0 is missing"),
+        ({"BC": [-1.0, -2.0]}, ValueError, "BC: every value is bad"),
+    ],
+)
+def test_bad_arguments(arguments, error, words):
+    with pytest.raises(error, match=words):
+        dx.grid("a_C", **{"theta": THETA, "ec": 0.1, **MACHINE, **arguments})

@@ -1,0 +1,75 @@
+"""The slider-driven problem: there and back, and the two flat triangles."""
+
+import math
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+
+LENGTHS = {"ec": 0.05, "AB": 0.125, "BC": 0.35}
+
+
+@pytest.mark.parametrize("branch", [1, -1])
+@pytest.mark.parametrize("AB", [0.125, 0.5])
+def test_there_and_back(branch, AB):
+    lengths = {"ec": -0.07, "AB": AB, "BC": 0.35}
+    theta = np.linspace(-3.1, 3.1, 400)
+    Y, status = dx.evaluate(["Y", "status"], theta=theta, branch=branch, **lengths).values()
+    theta, Y = theta[status == 0], Y[status == 0]
+    found = dx.inverse(Y=Y, branch=branch, **lengths)
+    nearest = np.nanmin(np.abs(found["theta"] - theta[:, None]), axis=1)
+    assert nearest.max() < 1e-7
+    back = dx.evaluate("Y", theta=found["theta"], branch=branch, **lengths)
+    np.testing.assert_allclose(
+        back[np.isfinite(back)], np.broadcast_to(Y[:, None], back.shape)[np.isfinite(back)], atol=1e-14
+    )
+
+
+def test_rates_are_those_of_the_crank():
+    theta = np.array([0.4, 2.0, -1.2])
+    motion = dx.evaluate(["Y", "V_C", "a_C"], theta=theta, omega=7.0, alpha=-3.0, **LENGTHS)
+    found = dx.inverse(**motion, **LENGTHS)
+    own = np.abs(found["theta"] - theta[:, None]) < 1e-9
+    np.testing.assert_allclose(found["omega"][own], 7.0, rtol=1e-12)
+    np.testing.assert_allclose(found["alpha"][own], -3.0, rtol=1e-10)
+
+
+def test_branches_share_no_solution():
+    up = dx.inverse(Y=0.3, branch=1, ec=0.05, AB=0.5, BC=0.35)["theta"]
+    down = dx.inverse(Y=0.3, branch=-1, ec=0.05, AB=0.5, BC=0.35)["theta"]
+    angles = [a for a in (*up, *down) if math.isfinite(a)]
+    assert len(angles) == 2
+    assert abs(angles[0] - angles[1]) > 0.1
+
+
+def test_status():
+    found = dx.inverse(Y=[0.3, 0.9, math.nan, 0.475], ec=0.0, AB=0.125, BC=0.35, V_C=1.0)
+    assert found["status"].tolist() == [0, 1, 4, 2]
+    assert np.isnan(found["theta"][1]).all()
+    assert found["theta"][3, 0] == 0.0
+    assert np.isnan(found["omega"][3]).all()
+
+
+def test_shapes():
+    found = dx.inverse(Y=np.full((3, 1), 0.3), ec=[0.0, 0.1], AB=0.125, BC=0.35)
+    assert found["theta"].shape == (3, 2, 2)
+    assert found["status"].shape == (3, 2)
+    assert isinstance(dx.inverse(Y=0.3, **LENGTHS)["status"], int)
+    assert (
+        dx.inverse(Y="300 mm", **LENGTHS)["theta"].tolist() == dx.inverse(Y=0.3, **LENGTHS)["theta"].tolist()
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "words"),
+    [
+        ({"Y": math.inf}, ValueError, "Y = inf: it must be a finite number"),
+        ({"BC": 0.0}, ValueError, "BC = 0.0"),
+        ({"branch": 2}, ValueError, "branch = 2"),
+        ({"a_C": 1.0}, TypeError, "V_C is missing"),
+    ],
+)
+def test_bad_arguments(arguments, error, words):
+    with pytest.raises(error, match=words):
+        dx.inverse(**{"Y": 0.3, **LENGTHS, **arguments})
