@@ -12,6 +12,7 @@ class Group(NamedTuple):
     name: str
     what: str
     outputs: tuple[str, ...]
+    fixed: tuple[tuple[str, float], ...] = ()  # inputs that do not matter here
 
 
 LENGTHS = PARAMETERS[:4]
@@ -37,6 +38,7 @@ GROUPS = (
         "position",
         "position of the slider and angles of the rod",
         ("Y", "s", *ROD_ANGLES, "margin", "status"),
+        (("omega0", 0.0), ("alpha", 0.0)),
     ),
     Group("motion", "position, velocity and acceleration of the slider", KINEMATICS),
     Group(

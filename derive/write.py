@@ -115,17 +115,17 @@ def _trigonometry(constants: Trigonometry, digest: str) -> str:
 
 def _group(derivation: Derivation, group: Group, digest: str) -> str:
     program = derivation.program
-    sliced, _ = optimise(keep_outputs(program, group.outputs))
+    sliced, _ = optimise(keep_outputs(program, group.outputs), dict(group.fixed))
     inputs = [name for name in sliced.inputs if name != "branch"]
-    guarded = guard_inputs(sliced, inputs, LEAST)
+    guarded = guard_inputs(sliced, inputs, LEAST, {"theta": derivation.trigonometry.limit})
     axis_of = {name: None if name == "branch" else 0 for name in sliced.inputs}
     guarded = number_values(expand_trigonometry(guarded, derivation.trigonometry))
     kernel = hoist(guarded, axis_of, 1)
     banner = _banner(f"numba kernel: {group.what}.", digest, cost_of(guarded).operations)
     front = (
         f"{group.what[0].upper()}{group.what[1:]}; arrays broadcast like NumPy.\n\n"
-        "    SI units and radians, a mapping name -> array. An infeasible or bad element is NaN;\n"
-        f"    for |theta| <= {derivation.trigonometry.limit:.0f} rad.\n    "
+        "    SI units and radians, a mapping name -> array. An infeasible or bad element is NaN,\n"
+        f"    and so is one with |theta| > {derivation.trigonometry.limit:.0f} rad.\n    "
     )
     return emit_numba_with_front(kernel, banner, front)
 

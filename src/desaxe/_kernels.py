@@ -129,7 +129,7 @@ def source_of(key: KernelKey, cached: bool = True) -> str:
     """The text of the kernel's module."""
     program = _cut(key)
     axes = dict(key.axis_of)
-    guarded = guard_inputs(program, [name for name in program.inputs if name in axes], LEAST)
+    guarded = guard_inputs(program, [name for name in program.inputs if name in axes], LEAST, {})
     if not key.far:
         guarded = number_values(expand_trigonometry(guarded, constants()))
     kernel = hoist(guarded, {name: axes.get(name) for name in program.inputs}, key.axes)

@@ -126,7 +126,9 @@ def _require_rooms(content: Content) -> None:
     rooms = {"outputs": "xarray"} if content.outputs else {}
     rooms |= {"[[peak]]": "xarray"} if content.peaks else {}
     rooms |= {"results.data": "h5netcdf"} if content.data is not None else {}
-    rooms |= {"[[picture]]": "matplotlib", "the values of a [[picture]]": "xarray"} if content.pictures else {}
+    rooms |= (
+        {"[[picture]]": "matplotlib", "the values of a [[picture]]": "xarray"} if content.pictures else {}
+    )
     for what, module in rooms.items():
         with needed(what):
             import_module(module)
@@ -205,7 +207,11 @@ def _feasibility(inputs: Mapping[str, Value]) -> FeasibilityResult | None:
     designs = [{name: float(column[row]) for name, column in columns.items()} for row in rows[:MOST_SHOWN]]
     found = tuple(Infeasible(one, _gaps(feasibility(**one)["theta_intervals"])) for one in designs)
     AB, BC = inputs["AB"], inputs["BC"]
-    limit = None if isinstance(AB, tuple) or isinstance(BC, tuple) else feasibility(ec=0.0, AB=AB, BC=BC)["margin"]
+    limit = (
+        None
+        if isinstance(AB, tuple) or isinstance(BC, tuple)
+        else feasibility(ec=0.0, AB=AB, BC=BC)["margin"]
+    )
     return FeasibilityResult(margins.size, margins.size - rows.size, found, limit)
 
 
@@ -300,7 +306,9 @@ def _labelled(one: Peak, content: Content, arrays: Mapping[str, NDArray[Any]]) -
     attributes = {
         "value": _peak_attributes(one, state),
         "theta": {"units": "rad", "long_name": "crank angle of the peak"},
-        "status": {"long_name": "0 ok, 1 infeasible, 2 at a limit angle or change point, 3 stalled, 4 bad input"},
+        "status": {
+            "long_name": "0 ok, 1 infeasible, 2 at a limit angle or change point, 3 stalled, 4 bad input"
+        },
         "increase": {"units": "percent", "long_name": "increase over the baseline"},
         **{name: _slope_attributes(one, name.removeprefix("value_wrt_"), state) for name in slopes},
     }

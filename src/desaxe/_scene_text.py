@@ -53,7 +53,9 @@ def number(value: float) -> str:
 def _checks(results: tuple[CheckResult, ...]) -> str:
     """Printed values next to the computed ones, a block for each source."""
     sources = list(dict.fromkeys(result.check.source for result in results))
-    blocks = [_block(source, [result for result in results if result.check.source == source]) for source in sources]
+    blocks = [
+        _block(source, [result for result in results if result.check.source == source]) for source in sources
+    ]
     return "\n".join(["Printed and computed", *blocks])
 
 
@@ -77,16 +79,16 @@ def _feasibility(found: FeasibilityResult) -> str:
     """Up to where the crank turns, and which designs do not."""
     lines = ["Feasibility"]
     if found.limit is not None:
-        sign = "ec = 0 at most" if found.limit == 0.0 else f"|ec| <= BC - AB = {number(found.limit)} m"
-        lines.append(
-            f"  the crank turns fully for {sign}" if found.limit >= 0.0 else "  the crank turns fully for no ec: AB > BC"
-        )
+        limit = f"|ec| < BC - AB = {number(found.limit)} m" if found.limit > 0.0 else "no ec, since BC <= AB"
+        lines.append(f"  the crank turns fully for {limit}")
     lines.append(f"  {found.turning} of {found.designs} designs of this scene turn fully")
     axes = _varying([one.design for one in found.infeasible], found.designs)
     for one in found.infeasible[:GAPS]:
         design = ", ".join(f"{name} = {number(one.design[name])} m" for name in axes)
         gaps = " and ".join(f"{degrees(a):.2f} to {degrees(b):.2f}" for a, b in one.gaps)
-        lines.append(f"  infeasible at part of the turn: {design} cannot be assembled for theta from {gaps} deg")
+        lines.append(
+            f"  infeasible at part of the turn: {design} cannot be assembled for theta from {gaps} deg"
+        )
     more = found.designs - found.turning - GAPS
     return "\n".join(lines + ([f"  and {more} more"] if more > 0 else []))
 
@@ -115,7 +117,9 @@ def _peak(found: PeakResult) -> str:
 
 def _peak_rows(found: PeakResult) -> list[list[str]]:
     one, dataset = found.peak, found.dataset
-    symbol = {"absmax": f"|{one.quantity}|", "max": f"max {one.quantity}", "min": f"min {one.quantity}"}[one.kind]
+    symbol = {"absmax": f"|{one.quantity}|", "max": f"max {one.quantity}", "min": f"min {one.quantity}"}[
+        one.kind
+    ]
     slopes = [name for name in one.sensitivities if f"value_wrt_{name}" in dataset]
     base = [f"over {_design(one.at_baseline)}"] if "increase" in dataset else []
     rows = [[*one.axes, symbol, "at theta", *base, *(f"d/d({name})" for name in slopes)]]
@@ -154,9 +158,15 @@ STATUS_WORDS = {
 def _remarks(found: PeakResult) -> list[str]:
     """What is to be said about designs that have no ordinary peak, and about rows left out."""
     status = found.dataset["status"].values
-    lines = [f"  designs: {np.sum(status == code)} {words}" for code, words in STATUS_WORDS.items() if code in status]
+    lines = [
+        f"  designs: {np.sum(status == code)} {words}"
+        for code, words in STATUS_WORDS.items()
+        if code in status
+    ]
     if found.mirrored.any():
-        lines.append("  +-: at ec = 0 the peak is at theta and at -theta, and d/d(ec) is + at one and - at the other")
+        lines.append(
+            "  +-: at ec = 0 the peak is at theta and at -theta, and d/d(ec) is + at one and - at the other"
+        )
     if status.size > ROWS:
         lines.append(f"  {ROWS} of {status.size} designs are shown")
     return lines
@@ -172,7 +182,10 @@ def _claim(one: Peak, result: ClaimResult) -> str:
 
 
 def _design(inputs: dict[str, float]) -> str:
-    return ", ".join(f"{name} = {number(value)}" + (f" {INPUTS[name].unit}" if value else "") for name, value in inputs.items())
+    return ", ".join(
+        f"{name} = {number(value)}" + (f" {INPUTS[name].unit}" if value else "")
+        for name, value in inputs.items()
+    )
 
 
 # ---- values and files ----------------------------------------------------------------------------
@@ -187,10 +200,12 @@ def _values(result: "SceneResult") -> str:
 
 def _files(content: Content, result: "SceneResult") -> str:
     """A line for each file that was written."""
-    groups = ", ".join(group_names(result.peaks))
-    data = "the values" if result.dataset is not None else ""
-    data += (", and " if data and groups else "") + (f"as groups {groups}" if groups else "")
+    rows: list[tuple[str, str]] = []
     pictures = [f"{picture.quantity} over {picture.over}" for picture in content.pictures]
-    whats = [*([data] if content.data is not None else []), *pictures]
-    rows = [(str(path), what) for path, what in zip(result.files, whats, strict=True)]
+    if content.data is not None:
+        rows += [("", "the values")] if result.dataset is not None else []
+        rows += [("", f"group {name}") for name in group_names(result.peaks)]
+        rows[0] = (str(result.files[0]), rows[0][1])
+    paths = result.files[len(result.files) - len(pictures) :]
+    rows += [(str(path), what) for path, what in zip(paths, pictures, strict=True)]
     return "\n".join(["Written", *table(rows, left=2)])

@@ -13,7 +13,7 @@ from importlib import import_module
 from math import isfinite
 from typing import Any, NoReturn
 
-from .extras import MissingExtra, needed
+from .extras import MissingExtraError, needed
 
 SIGNS = """\
 signs: Y points along the slider axis towards the slider, theta turns from +Y towards +X;
@@ -40,13 +40,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code = _run(words)
         sys.stdout.flush()
         return code
+    except SystemExit as done:  # --help and --version
+        return int(done.code or 0)
     except BrokenPipeError:  # whoever read our output has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except KeyboardInterrupt:
         print("desaxe: interrupted", file=sys.stderr)
         return INTERRUPTED
-    except (UsageError, MissingExtra, ValueError, TypeError, OSError) as error:
+    except (UsageError, MissingExtraError, ValueError, TypeError, OSError) as error:
         print(f"desaxe: error: {_one_line(error)}", file=sys.stderr)
         return 2
 
@@ -55,10 +57,7 @@ def _run(words: list[str]) -> int:
     if words[:1] == ["derive"]:  # its options are its own
         return _derive(words[1:])
     parser = _parser()
-    try:
-        options = parser.parse_args(words)
-    except SystemExit as done:  # --help and --version
-        return int(done.code or 0)
+    options = parser.parse_args(words)
     run: Callable[[argparse.Namespace], int] | None = getattr(options, "run", None)
     if run is None:
         parser.print_help()
@@ -159,7 +158,10 @@ def _point(options: argparse.Namespace) -> int:
         }
         print(json.dumps({**found, **({"status": _status_words()[status]} if status else {})}, indent=2))
         return 0
-    texts = [f"{name} = {values[name]!r} {'' if row.unit == '1' else row.unit}".rstrip() for name, row in rows.items()]
+    texts = [
+        f"{name} = {values[name]!r} {'' if row.unit == '1' else row.unit}".rstrip()
+        for name, row in rows.items()
+    ]
     width = max(map(len, texts))
     for text, row in zip(texts, rows.values(), strict=True):
         print(f"{text:{width}}   {row.meaning}")
@@ -192,7 +194,9 @@ def _names_and_inputs(words: Sequence[str]) -> tuple[list[str], dict[str, Any]]:
         elif key == "branch":
             inputs[key] = _branch(value)
         elif key not in INPUTS:
-            raise UsageError(f"{word}: no input is called {key!r}, there are {', '.join([*INPUTS, 'branch'])}")
+            raise UsageError(
+                f"{word}: no input is called {key!r}, there are {', '.join([*INPUTS, 'branch'])}"
+            )
         elif key in inputs:
             raise UsageError(f"{word}: {key} is given twice")
         else:
@@ -273,7 +277,9 @@ examples:
 
 
 def _add_derive(commands: Any) -> None:
-    _add(commands, "derive", "derive the formulas again with SymPy and write generated/", _DERIVE, lambda _: 0)
+    _add(
+        commands, "derive", "derive the formulas again with SymPy and write generated/", _DERIVE, lambda _: 0
+    )
 
 
 def _derive(words: list[str]) -> int:
@@ -292,7 +298,9 @@ examples:
 def _add_errata(commands: Any) -> None:
     parser = _add(commands, "errata", "what the papers print, and what of it is right", _ERRATA, _errata)
     parser.add_argument("--document", metavar="LETTER", help="A, B or C")
-    parser.add_argument("--verdict", metavar="WORD", help="correct, typo, sign, wrong claim, not reproducible")
+    parser.add_argument(
+        "--verdict", metavar="WORD", help="correct, typo, sign, wrong claim, not reproducible"
+    )
     parser.add_argument("--json", action="store_true", help="print JSON")
 
 
@@ -312,7 +320,13 @@ example:
 
 
 def _add_doctor(commands: Any) -> None:
-    _add(commands, "doctor", "versions, cache, threads, and whether loops vectorise on this CPU", _DOCTOR, _doctor)
+    _add(
+        commands,
+        "doctor",
+        "versions, cache, threads, and whether loops vectorise on this CPU",
+        _DOCTOR,
+        _doctor,
+    )
 
 
 def _doctor(_: argparse.Namespace) -> int:

@@ -319,6 +319,11 @@ def test_eq19():
     agrees(
         lambda p: A.corrected_eq19(*p.design, p.omega, p.alpha, p.m), lambda q, p: q("a_C"), "acceleration"
     )
+    agrees(
+        lambda p: A.printed_eq19(*p.design, p.omega, p.alpha, p.m),
+        lambda q, p: 2 * q("a_B_Y") - q("a_C"),  # what the two wrong signs make of it
+        "acceleration",
+    )
     differs(lambda p: A.printed_eq19(*p.design, p.omega, p.alpha), "a_C")
     point = float_point(CASE)
     assert A.printed_eq19(*point.design, point.omega, 0.0) == pytest.approx(-2090.66, abs=0.01)
@@ -424,6 +429,7 @@ def test_listing_V_C():
 
 def test_listing_a_C():
     agrees(lambda p: p.sheet.corrected_a_C(*p.design), lambda q, p: q("a_C"), "acceleration")
+    agrees(lambda p: p.sheet.a_C(*p.design), lambda q, p: 2 * q("a_B_Y") - q("a_C"), "acceleration")
     differs(lambda p: p.sheet.a_C(*p.design), "a_C")
     assert SHEET.a_C(*CASE[:4]) == pytest.approx(-2090.66, abs=0.01)
 

@@ -22,7 +22,12 @@ SIZE = (8.0, 4.8)  # inches
 
 
 def curves(
-    dataset: "xr.Dataset", name: str, *, over: str = "theta", family: str | None = None, ax: "Axes | None" = None
+    dataset: "xr.Dataset",
+    name: str,
+    *,
+    over: str = "theta",
+    family: str | None = None,
+    ax: "Axes | None" = None,
 ) -> "list[Line2D]":
     """Draw a quantity over one input, one curve for each value of another; returns the lines.
 
@@ -40,8 +45,8 @@ def curves(
         from matplotlib.figure import Figure
     array = _chosen(dataset, name, over, family)
     family = next((str(dim) for dim in array.dims if dim != over), None)
-    if ax is None:
-        ax = Figure(figsize=SIZE, layout="constrained").add_subplot()
+    beside = ax is None
+    ax = Figure(figsize=SIZE, layout="constrained").add_subplot() if ax is None else ax
     members = array[family] if family else [None]
     colours = _colours(len(members))
     horizontal = _shown(array[over])
@@ -51,7 +56,7 @@ def curves(
         lines += ax.plot(horizontal, values, color=colour, linewidth=1.6, **label)
     _finish(ax, array, over, lines)
     if family:
-        _explain(ax, array[family], lines)
+        _explain(ax, array[family], lines, beside)
     return lines
 
 
@@ -75,7 +80,9 @@ def _chosen(dataset: "xr.Dataset", name: str, over: str, family: str | None) -> 
     array = dataset[name]
     for dim in (over, family):
         if dim is not None and dim not in array.dims:
-            raise ValueError(f"{name} has no dimension {dim!r}, it has: {', '.join(map(str, array.dims)) or 'none'}")
+            raise ValueError(
+                f"{name} has no dimension {dim!r}, it has: {', '.join(map(str, array.dims)) or 'none'}"
+            )
     if family == over:
         raise ValueError(f"family = {family!r}: it must be another dimension than over")
     rest = [str(dim) for dim in array.dims if dim not in (over, family)]
@@ -83,7 +90,9 @@ def _chosen(dataset: "xr.Dataset", name: str, over: str, family: str | None) -> 
         family, rest = rest[0], []
     if rest:
         wanted = ", ".join(f"{dim}=..." for dim in rest)
-        raise ValueError(f"{name} varies with {', '.join(rest)} too: choose a value first, dataset.sel({wanted})")
+        raise ValueError(
+            f"{name} varies with {', '.join(rest)} too: choose a value first, dataset.sel({wanted})"
+        )
     return array.transpose(*([family] if family else []), over)
 
 
@@ -132,7 +141,7 @@ def _limit(ax: "Axes", lines: "list[Line2D]") -> None:
     whole = [v for v in values if np.isfinite(v).all()]
     if whole and len(whole) < len(values):
         low, high = min(v.min() for v in whole), max(v.max() for v in whole)
-        room = 0.15 * (high - low) or 1.0
+        room = 0.25 * (high - low) or 1.0
         ax.set_ylim(low - room, high + room)
 
 
@@ -143,11 +152,12 @@ def _colours(count: int) -> list[Any]:
     return [colormaps["viridis"](0.9 * k / max(1, count - 1)) for k in range(count)]
 
 
-def _explain(ax: "Axes", family: "xr.DataArray", lines: "list[Line2D]") -> None:
-    """A legend beside the curves, or a colour bar where they are many."""
+def _explain(ax: "Axes", family: "xr.DataArray", lines: "list[Line2D]", beside: bool) -> None:
+    """A legend, beside the curves where there is room, or a colour bar where they are many."""
     title = f"{family.name} {_unit(family)}".rstrip()
     if len(lines) <= MOST_IN_LEGEND:
-        ax.legend(title=title, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False)
+        place = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0)} if beside else {"loc": "best"}
+        ax.legend(title=title, frameon=False, **place)
         return
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import ListedColormap, Normalize

@@ -14,17 +14,19 @@ from .slicing import drop_unused
 BAD_INPUT = 4
 
 
-def guard_inputs(program: Program, inputs: Iterable[str], least: Mapping[str, float]) -> Program:
+def guard_inputs(
+    program: Program, inputs: Iterable[str], least: Mapping[str, float], largest: Mapping[str, float]
+) -> Program:
     """The program in which a bad element of one of these inputs is NaN, and `status` says 4.
 
-    Effect: an input below its least value, at least 0 for a length (a rod of 0 is as bad), infinite
-    or NaN is replaced by NaN where it is used. Where `status` is an output it becomes 4.
+    Effect: an input that is infinite or NaN, below its `least` value or of a magnitude above its
+    `largest` is replaced by NaN where it is used. Where `status` is an output it becomes 4.
     """
     checked = [name for name in inputs if name in program.inputs]
     lines: list[Line] = []
     safe: dict[str, str] = {}
     for name in checked:
-        lines += _check(name, least.get(name))
+        lines += _check(name, least.get(name), largest.get(name))
         safe[name] = f"{name}_good"
     for line in program.lines:
         lines.append(
@@ -36,11 +38,12 @@ def guard_inputs(program: Program, inputs: Iterable[str], least: Mapping[str, fl
     return drop_unused(program._replace(lines=tuple(lines), notes=notes))
 
 
-def _check(name: str, least: float | None) -> list[Line]:
+def _check(name: str, least: float | None, largest: float | None) -> list[Line]:
     """`<name>_is_good` and `<name>_good`, which is NaN where it is not."""
+    op, bound = ("lt", inf) if largest is None else ("le", largest)
     lines = [
         Line(f"{name}_size", "abs", (name,)),
-        Line(f"{name}_is_finite", "lt", (f"{name}_size", inf), "bool"),
+        Line(f"{name}_is_finite", op, (f"{name}_size", bound), "bool"),
     ]
     good = f"{name}_is_finite"
     if least is not None:

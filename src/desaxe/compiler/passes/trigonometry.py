@@ -79,7 +79,8 @@ class _Writer:
         *rest, value = coefficients
         result: Argument = value
         for coefficient in reversed(rest):
-            result = self.line("add", self.line("mul", result, z), coefficient)
+            op = "sub" if coefficient < 0.0 else "add"
+            result = self.line(op, self.line("mul", result, z), abs(coefficient))
         return str(result)
 
     def _sine(self, y: str, low: str) -> str:

@@ -1,0 +1,1 @@
+"""Run time against error, in one run on one core: `python -m benchmarks`."""

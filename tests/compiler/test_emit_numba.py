@@ -1,0 +1,184 @@
+"""numba modules: self-contained, with literal options, right on one, two and three axes."""
+
+import ast
+import math
+from functools import cache
+
+import mpmath
+import numpy as np
+import pytest
+
+from desaxe._kernels import constants
+from desaxe.compiler.emit_numba import emit_numba
+from desaxe.compiler.kernel import hoist
+from desaxe.compiler.passes.guard import guard_inputs
+from desaxe.compiler.passes.trigonometry import expand_trigonometry
+from desaxe.inputs import INPUTS, LEAST
+from tests.compiler.coverage_set import NAMES, POINTS, coverage
+from tests.compiler.programs import committed, exactly, in_doubles, program_of_nested, same
+
+STATUS = "state"
+CALLS = program_of_nested(("atan2", ("sin", ("mul", "x", "y")), ("sqrt", ("add", "z", ("mul", "x", "x")))))
+
+
+def function(source):
+    scope = {}
+    exec(source, scope)
+    return scope["kernel"]
+
+
+@cache
+def coverage_kernel():
+    return function(emit_numba(hoist(coverage(), {"x": 0, "y": 0, "z": 0}, 1), "The coverage set.", cache=False))
+
+
+def covered(**columns):
+    """What the kernel of the coverage set gives for these columns."""
+    size = len(columns["x"])
+    outs = {name: np.full(size, -1, np.int8 if name == STATUS else float) for name in NAMES}
+    coverage_kernel()(*(np.ascontiguousarray(columns[name], float) for name in "xyz"), *outs.values())
+    return outs
+
+
+def test_the_coverage_set_against_exact():
+    found = covered(**{name: [point[name] for point in POINTS] for name in "xyz"})
+    for index, point in enumerate(POINTS):
+        assert not differing(found, index, point), point
+
+
+def differing(found, index, point):
+    with mpmath.workdps(30):
+        wanted = exactly(coverage(), point)
+        x, y = point["x"], point["y"]
+        wanted["lost"] += (mpmath.mpf(x) + mpmath.mpf(y) - mpmath.mpf(x + y)) / 2
+        size = max(1, *map(abs, point.values()))
+        return [n for n in NAMES if abs(float(found[n][index]) - wanted[n]) > 4e-16 * max(size, abs(wanted[n]))]
+
+
+def test_nan_survives():
+    found = covered(x=[math.nan, -2000.0, 1.0], y=[1.0, 1.0, 0.0], z=[1.0, 1.0, math.nan])
+    assert np.isnan(found["mul_of_sum"]).tolist() == [True, False, True]
+    assert np.isnan(found["missing"]).tolist() == [True, True, False]
+
+
+def test_infinities_flow():
+    found = covered(x=[1.0, -1.0, 0.0], y=[1.0, 1.0, 1.0], z=[0.0, 0.0, 0.0])
+    assert found["div_div"][:2].tolist() == [math.inf, -math.inf]
+    assert math.isnan(found["div_div"][2])
+
+
+@cache
+def grid_source(axes):
+    """x, y and z along the axes, in turn."""
+    return emit_numba(hoist(CALLS, {"x": 0, "y": min(1, axes - 1), "z": axes - 1}, axes), "A grid.", cache=False)
+
+
+@pytest.mark.parametrize("axes", [1, 2, 3])
+def test_a_kernel_of_some_axes(axes):
+    shape = (3, 4, 5)[:axes]
+    sizes = {name: shape[axis] for name, axis in zip("xyz", (0, min(1, axes - 1), axes - 1), strict=True)}
+    columns = {name: np.linspace(0.1, 2.0, size) for name, size in sizes.items()}
+    out = np.empty(shape)
+    function(grid_source(axes))(*columns.values(), out)
+    for index in np.ndindex(shape):
+        at = {"x": index[0], "y": index[min(1, axes - 1)], "z": index[axes - 1]}
+        wanted = in_doubles(CALLS, {name: float(columns[name][i]) for name, i in at.items()})["out"]
+        assert math.isclose(out[index], wanted, rel_tol=1e-15)
+
+
+def test_a_scalar_input_has_no_axis():
+    out = np.empty(2)
+    kernel = function(emit_numba(hoist(CALLS, {"x": 0, "y": None, "z": None}, 1), "A row.", cache=False))
+    kernel(np.array([0.5, 1.5]), 2.0, 3.0, out)
+    assert math.isclose(out[1], in_doubles(CALLS, {"x": 1.5, "y": 2.0, "z": 3.0})["out"], rel_tol=1e-15)
+
+
+def test_an_input_may_be_read_only():
+    column = np.array([0.5, 1.0])
+    column.flags.writeable = False
+    out = np.empty(2)
+    function(grid_source(1))(column, column, column, out)
+    assert np.isfinite(out).all()
+
+
+def test_the_outermost_axis_can_be_empty():
+    out = np.empty((0, 4))
+    function(grid_source(2))(np.empty(0), np.ones(4), np.ones(4), out)
+    assert out.size == 0
+
+
+@cache
+def real_source():
+    """The text of a real kernel: guarded, with its sine and cosine written out."""
+    program = guard_inputs(committed("Y", "V_C", "a_C", "status"), INPUTS, LEAST)
+    program = expand_trigonometry(program, constants())
+    return emit_numba(hoist(program, dict.fromkeys(program.inputs, 0), 1), "A real kernel.")
+
+
+SOURCES = [real_source, lambda: grid_source(3)]
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_only_math_numpy_and_numba_are_imported(source):
+    imports = [n for n in ast.walk(ast.parse(source())) if isinstance(n, (ast.Import, ast.ImportFrom))]
+    assert {node.module for node in imports} <= {"math", "numpy", "numba"}
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_everything_it_uses_stands_in_it(source):
+    tree = ast.parse(source())
+    used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}
+    assert used - bound(tree) <= {"range"}
+
+
+def bound(tree):
+    """Every name that is imported, assigned, defined or an argument."""
+    nodes = list(ast.walk(tree))
+    names = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    names |= {alias.name for node in nodes if isinstance(node, ast.ImportFrom) for alias in node.names}
+    return names | {n.arg for n in nodes if isinstance(n, ast.arg)} | {
+        n.name for n in nodes if isinstance(n, ast.FunctionDef)
+    }
+
+
+def options(source):
+    """The options of every jit decorator."""
+    functions = [node for node in ast.parse(source).body if isinstance(node, ast.FunctionDef)]
+    return [{k.arg: k.value for k in f.decorator_list[0].keywords} for f in functions]
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_the_options_are_literals(source):
+    assert all(isinstance(value, ast.Constant) for each in options(source()) for value in each.values())
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_divisions_by_zero_do_not_raise_and_no_flag_erases_nan(source):
+    for each in options(source()):
+        assert each["error_model"].value == "numpy"
+        assert not {"fastmath", "parallel"} & set(each)
+
+
+def test_threads_can_share_the_kernel():
+    assert options(real_source())[-1]["nogil"].value is True
+
+
+@pytest.mark.parametrize("cache", [True, False])
+def test_the_cache_is_as_asked_for(cache):
+    source = emit_numba(hoist(CALLS, {"x": 0, "y": 0, "z": 0}, 1), "A row.", cache=cache)
+    assert options(source)[-1]["cache"].value is cache
+
+
+def test_the_docstring_comes_first():
+    assert ast.get_docstring(ast.parse(real_source())) == "A real kernel."
+
+
+def test_each_line_keeps_its_note():
+    assert "  # m/s | velocity of the slider | A (11)\n" in real_source()
+
+
+def test_one_level_is_one_loop():
+    program = CALLS
+    loops = [n for n in ast.walk(ast.parse(grid_source(3))) if isinstance(n, ast.For)]
+    assert len(loops) == 3
+    assert same(in_doubles(program, {"x": 1.0, "y": 1.0, "z": 1.0}), in_doubles(program, {"x": 1.0, "y": 1.0, "z": 1.0}))

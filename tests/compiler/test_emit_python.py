@@ -1,0 +1,87 @@
+"""Plain Python: one function over `math` that answers for every point and loads nothing else."""
+
+import ast
+import math
+
+import mpmath
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from desaxe.compiler.emit_python import compile_python, emit_python
+from desaxe.compiler.operations import HELPERS
+from desaxe.compiler.program import Line, Program
+from tests.compiler.coverage_set import NAMES, POINTS, coverage
+from tests.compiler.programs import (
+    INPUTS,
+    POINT,
+    WITH_NAN,
+    committed,
+    exactly,
+    in_doubles,
+    program_of_nested,
+    programs,
+    same_bits,
+)
+
+ANY = st.floats(allow_nan=True, allow_infinity=True)
+
+
+@pytest.mark.parametrize("point", POINTS)
+def test_the_coverage_set_against_exact(point):
+    answers = dict(zip(NAMES, compile_python(coverage())(**point), strict=True))
+    with mpmath.workdps(30):
+        wanted = exactly(coverage(), point)
+        wanted["lost"] += exact_error(point) / 2
+        wrong = [n for n in NAMES if abs(answers[n] - wanted[n]) > 4e-16 * max(1, abs(wanted[n]), *map(abs, point.values()))]
+    assert not wrong
+
+
+def exact_error(point):
+    """What rounding takes from x + y: exactly 0 over the reals, but what the emitted code is to find."""
+    return mpmath.mpf(point["x"]) + mpmath.mpf(point["y"]) - mpmath.mpf(point["x"] + point["y"])
+
+
+@given(programs(WITH_NAN), st.fixed_dictionaries(dict.fromkeys(INPUTS, ANY)))
+@settings(max_examples=100, deadline=None)
+def test_no_bit_differs_from_the_interpretation(program, point):
+    wanted = in_doubles(program, point)
+    answers = compile_python(program)(*(point[name] for name in program.inputs))
+    assert all(same_bits(a, wanted[n]) for n, a in zip(program.outputs, answers, strict=True))
+
+
+def test_the_committed_program():
+    program = committed("Y", "V_C", "a_C_wrt_ec", "alpha_BC", "status")
+    answers = compile_python(program)(*(POINT[name] for name in program.inputs))
+    assert dict(zip(program.outputs, answers, strict=True)) == in_doubles(program, POINT)
+
+
+@pytest.mark.parametrize("nested", [("div", "x", 0.0), ("sqrt", -4.0), ("floor", math.nan), ("sin", ("mul", "x", math.inf))])
+def test_it_never_raises(nested):
+    (answer,) = compile_python(program_of_nested(nested))(1.0, 2.0, 3.0)
+    assert not math.isfinite(answer)
+
+
+def test_one_output_is_a_tuple_too():
+    assert compile_python(program_of_nested(("neg", "x")))(1.0, 0.0, 0.0) == (-1.0,)
+
+
+def test_an_input_can_be_an_output():
+    assert compile_python(Program(("x",), (), ("x", "x"), {}))(2.0) == (2.0, 2.0)
+
+
+def test_nothing_but_math_is_imported():
+    tree = ast.parse(emit_python(committed("a_C")))
+    imports = [node for node in ast.walk(tree) if isinstance(node, (ast.Import, ast.ImportFrom))]
+    assert [node.module for node in imports] == ["math"]
+
+
+def test_golden():
+    lines = (Line("u", "add", ("x", "y")), Line("v", "div", ("u", ("y"))))
+    text = emit_python(Program(("x", "y"), lines, ("v", "u"), {}), "ratio")
+    assert text.endswith("\n\ndef ratio(x, y):\n    u = x + y\n    v = divide(u, y)\n    return (v, u,)\n")
+
+
+def test_the_helpers_stand_in_it():
+    text = emit_python(coverage())
+    assert all(f"def {name}(" in text for name in HELPERS)

@@ -1,0 +1,92 @@
+"""Guarding: a bad element becomes NaN where it is used, and 4 in the status; a good one is untouched."""
+
+import math
+
+import pytest
+from hypothesis import given, settings
+
+from desaxe.compiler.passes.guard import BAD_INPUT, guard_inputs
+from desaxe.compiler.passes.slicing import keep_outputs
+from desaxe.compiler.program import Line, Program, validate
+from desaxe.inputs import INPUTS, LEAST
+from tests.compiler.programs import (
+    POINT,
+    committed,
+    depends_on,
+    exactly,
+    in_doubles,
+    points,
+    programs,
+    same,
+)
+
+LINES = (Line("less", "lt", ("x", 0.0), "bool"), Line("u", "mul", ("x", "y")))
+STATUS = Line("status", "select", ("less", 1, 0), "i64")
+PROGRAM = Program(("x", "y"), (*LINES, STATUS), ("u", "status"), {})
+LEAST_OF_Y = {"y": 2.0}
+
+
+def guarded(x, y, inputs=("x", "y")):
+    program = validate(guard_inputs(PROGRAM, inputs, LEAST_OF_Y))
+    return in_doubles(program, {"x": x, "y": y})
+
+
+@pytest.mark.parametrize(("x", "status"), [(3.0, 0), (-3.0, 1), (0.0, 0), (1.7e308, 0), (5e-324, 0)])
+def test_a_good_element_is_untouched(x, status):
+    assert guarded(x, 2.0) == {"u": x * 2.0, "status": status}
+
+
+@pytest.mark.parametrize(("x", "y"), [(math.nan, 3), (math.inf, 3), (-math.inf, 3), (3, 1.9), (3, -5), (3, math.inf)])
+def test_a_bad_element_is_nan_with_its_status(x, y):
+    found = guarded(float(x), float(y))
+    assert math.isnan(found["u"])
+    assert found["status"] == BAD_INPUT
+
+
+def test_only_the_inputs_named_are_guarded():
+    assert guarded(3.0, 1.0, inputs=("x",)) == {"u": 3.0, "status": 0}
+
+
+def test_an_input_that_is_not_there_is_passed_over():
+    assert guard_inputs(PROGRAM, ["z"], {}) == PROGRAM
+
+
+def test_nothing_is_added_for_a_status_that_is_not_asked_for():
+    program = guard_inputs(keep_outputs(PROGRAM, ["u"]), ["x"], {})
+    assert [line.name for line in program.lines] == ["x_size", "x_is_finite", "x_good", "u"]
+
+
+def test_an_input_that_is_an_output_is_nan_where_bad():
+    program = Program(("x",), (Line("u", "neg", ("x",)),), ("u", "x"), {})
+    found = in_doubles(validate(guard_inputs(program, ["x"], {})), {"x": math.inf})
+    assert math.isnan(found["u"])
+    assert math.isnan(found["x"])
+
+
+@given(programs(), points())
+@settings(max_examples=50, deadline=None)
+def test_the_meaning_of_good_values_is_unchanged(program, point):
+    guarded = validate(guard_inputs(program, program.inputs, {}))
+    assert same(exactly(guarded, point), exactly(program, point))
+
+
+NAMES = ("Y", "phi", "V_C", "j_C", "alpha_BC", "a_C_wrt_ec", "omega", "V_B", "margin", "status")
+
+
+def test_the_committed_program_keeps_its_meaning():
+    program = committed(*NAMES)
+    whole = validate(guard_inputs(program, INPUTS, LEAST))
+    assert same(exactly(whole, POINT), exactly(program, POINT))
+
+
+BAD = {"theta": math.inf, "ec": -math.inf, "AB": -0.125, "BC": 0.0, "omega0": math.inf, "alpha": math.nan}
+
+
+@pytest.mark.parametrize("name", BAD)
+@pytest.mark.parametrize("alpha", [0.0, -3.0])
+def test_every_quantity_that_needs_a_bad_input_is_nan(name, alpha):
+    program = committed(*NAMES)
+    needs = depends_on(program)
+    found = in_doubles(guard_inputs(program, INPUTS, LEAST), POINT | {"alpha": alpha} | {name: BAD[name]})
+    assert found.pop("status") == BAD_INPUT
+    assert [q for q, value in found.items() if math.isnan(value)] == [q for q in found if name in needs[q]]

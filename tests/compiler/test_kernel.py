@@ -1,0 +1,106 @@
+"""Hoisting: every line runs in the outermost loop that has what it needs, and nowhere else."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from desaxe.compiler.kernel import hoist, level_program
+from desaxe.compiler.program import Line, Program, names_in
+from tests.compiler.programs import INPUTS, committed, depends_on, programs
+
+AXES = 3
+GRID = {"BC": 0, "ec": 1, "theta": 2, "AB": None, "omega0": None, "alpha": None, "branch": None}
+KINEMATICS = ("Y", "V_C", "a_C")
+
+
+def level_of(kernel):
+    return {line.name: depth for depth, lines in enumerate(kernel.levels) for line in lines}
+
+
+def placements():
+    return st.fixed_dictionaries({name: st.sampled_from([None, 0, 1, 2]) for name in INPUTS})
+
+
+@given(programs(), placements())
+@settings(max_examples=75, deadline=None)
+def test_every_line_is_in_the_outermost_loop_possible(program, axis_of):
+    kernel = hoist(program, axis_of, AXES)
+    program = Program(program.inputs, sum(kernel.levels, ()), program.outputs, {})
+    for name, needs in depends_on(program).items():
+        if name not in program.inputs:
+            axes = [axis_of[n] for n in needs if axis_of[n] is not None]
+            assert level_of(kernel)[name] == max(axes, default=-1) + 1
+
+
+@given(programs(), placements())
+@settings(max_examples=50, deadline=None)
+def test_no_line_is_lost_or_doubled(program, axis_of):
+    kernel = hoist(program, axis_of, AXES)
+    assert sorted(line.op for lines in kernel.levels for line in lines) == sorted(l.op for l in program.lines)
+    assert len(level_of(kernel)) == len(program.lines)
+
+
+@given(programs(), placements())
+@settings(max_examples=50, deadline=None)
+def test_a_line_comes_after_what_it_uses(program, axis_of):
+    kernel = hoist(program, axis_of, AXES)
+    known = set(program.inputs)
+    for line in sum(kernel.levels, ()):
+        assert known.issuperset(names_in(line.args))
+        known.add(line.name)
+
+
+def kernel_of(*names, **axis_of):
+    program = committed(*names)
+    placed = GRID | axis_of
+    return hoist(program, {name: placed[name] for name in program.inputs}, AXES)
+
+
+def test_what_needs_only_the_angle_stays_out_of_the_inner_loops():
+    kernel = kernel_of(*KINEMATICS, theta=0, ec=1, BC=2)
+    levels = level_of(kernel)
+    assert {levels[name] for name in ("sin_theta", "cos_theta", "side", "abs_sin", "eps", "omega", "turn")} <= {0, 1}
+    assert not {"sin", "cos"} & {line.op for line in (*kernel.levels[2], *kernel.levels[3])}
+
+
+def test_the_inner_loop_uses_its_axis():
+    kernel = kernel_of(*KINEMATICS, theta=0, ec=1, BC=2)
+    needs = depends_on(Program(tuple(kernel.inputs), sum(kernel.levels, ()), (), {}))
+    assert all("BC" in needs[line.name] for line in kernel.levels[3])
+
+
+def test_what_needs_no_axis_runs_once():
+    levels = level_of(kernel_of(*KINEMATICS))
+    assert levels["turn"] == 0
+
+
+def test_the_margin_of_a_design_is_outside_the_angles():
+    levels = level_of(kernel_of("margin", "Y"))
+    assert levels["margin"] == 2
+    assert levels["sin_theta"] == 3
+
+
+def test_types_and_notes_come_along():
+    kernel = kernel_of("Y", "status")
+    assert kernel.types["status"] == "i64"
+    assert kernel.notes == committed("Y", "status").notes
+
+
+LINES = (
+    Line("u", "neg", ("x",)),
+    Line("v", "mul", ("u", "y")),
+    Line("w", "mul", ("v", "z")),
+    Line("only_x", "sin", ("u",)),
+)
+SMALL = Program(INPUTS, LINES, ("w", "only_x", "v"), {})
+
+
+@pytest.mark.parametrize(("level", "outputs"), [(0, ()), (1, ("u", "only_x")), (2, ("v",)), (3, ("w",))])
+def test_a_level_gives_what_the_others_need(level, outputs):
+    """`u` and `v` go deeper; `only_x` and `w` go to the outputs."""
+    assert level_program(hoist(SMALL, {"x": 0, "y": 1, "z": 2}, AXES), level).outputs == outputs
+
+
+def test_a_constant_runs_once():
+    program = Program(("x",), (Line("u", "copy", (2.0,)), Line("v", "mul", ("u", "x"))), ("v",), {})
+    assert level_of(hoist(program, {"x": 0}, 1)) == {"u": 0, "v": 1}
