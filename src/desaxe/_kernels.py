@@ -125,7 +125,7 @@ def kernel_for(key: KernelKey) -> CompiledKernel:
     return found
 
 
-def source_of(key: KernelKey, cached: bool = True) -> str:
+def source_of(key: KernelKey) -> str:
     """The text of the kernel's module."""
     program = _cut(key)
     axes = dict(key.axis_of)
@@ -135,17 +135,16 @@ def source_of(key: KernelKey, cached: bool = True) -> str:
     kernel = hoist(guarded, {name: axes.get(name) for name in program.inputs}, key.axes)
     fixed = ", ".join(f"{name} = {value:g}" for name, value in key.fixed)
     motion = "a given state" if key.state else "paper A's law"
-    return emit_numba(kernel, f"desaxe kernel: {', '.join(key.names)}; {motion}; {fixed}.", cached)
+    return emit_numba(kernel, f"desaxe kernel: {', '.join(key.names)}; {motion}; {fixed}.")
 
 
 def _load(key: KernelKey) -> CompiledKernel:
     inputs = _cut(key).inputs
     order = tuple((name, dict(key.axis_of).get(name)) for name in inputs)
-    folder = _cache.folder()
-    path = folder.path / f"kernel_{_identity(key)}.py"
+    path = _cache.folder().path / f"kernel_{_identity(key)}.py"
     with _cache.locked(path):
         if not path.exists():
-            _cache.write(path, source_of(key, folder.lasting))
+            _cache.write(path, source_of(key))
         return CompiledKernel(_module_function(path), order)
 
 

@@ -1,12 +1,10 @@
 """Numbers as somebody printed them: a computed value is shown with the same digits and unit."""
 
-import re
-from decimal import ROUND_HALF_EVEN, Context, Decimal, InvalidOperation
+from decimal import ROUND_HALF_EVEN, Context, Decimal
 from typing import NamedTuple
 
+from ._scene_number import spelled, split_quantity
 from ._scene_schema import SceneError, shown
-
-_FORM = re.compile(r"\s*([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(.*?)\s*")
 
 
 class Printed(NamedTuple):
@@ -43,18 +41,16 @@ def read_printed(key: str, written: str | float, digits: int | None, unit: str) 
     Trailing zeros of a whole number are not taken as digits: -7740 has three, unless `digits` says
     otherwise. A number without a unit is in the SI unit.
     """
-    match = _FORM.fullmatch(str(written))
     try:
-        value = Decimal(match[1]) if match else None
-    except InvalidOperation:
-        value = None
-    if match is None or value is None:
-        raise SceneError(f'{key} = {shown(written)}: it must be a number with a unit, such as "-20.2 m/s"')
+        number, written_unit = split_quantity(str(written))
+        value = Decimal(number)
+    except ValueError as error:
+        raise SceneError(f"{key} = {shown(written)}: {error}") from None
     exponent = int(value.as_tuple().exponent)
     place = exponent if exponent < 0 else int(value.normalize().as_tuple().exponent)
     if digits is not None:
         place = value.adjusted() - digits + 1
-    unit_text = match[2] or unit
+    unit_text = written_unit or unit
     return Printed(value, place, unit_text, _factor(f"{key} = {shown(written)}", unit_text, unit))
 
 
@@ -69,13 +65,12 @@ def read_percentage(key: str, written: str | float) -> Printed:
 
 def _factor(complaint: str, unit: str, si: str) -> float:
     """What a value in the SI unit is multiplied with to be in a unit; people write m/s2 for m/s^2."""
-    spelled = re.sub(r"([a-zA-Z])(-?[0-9])", r"\1^\2", unit).replace("**", "^").replace("^^", "^")
-    if spelled.replace(" ", "") == si or unit == "%":
+    if spelled(unit).replace(" ", "") == si or unit == "%":
         return 1.0
     from .units import registry
 
     units = registry()
     try:
-        return float(units.Quantity(1.0, si).to(spelled).magnitude)
+        return float(units.Quantity(1.0, si).to(spelled(unit)).magnitude)
     except Exception as error:
         raise SceneError(f"{complaint}: its unit must be one of {si} ({error})") from None

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from . import _scene_schema as schema
 from ._program import program_of
+from ._scene_number import quantity_text
 from ._scene_printed import Printed, read_percentage, read_printed
 from ._scene_schema import SceneError, shown
 from .catalogue import law_name, quantity
@@ -157,13 +158,23 @@ def values_of(key: str, name: str, written: float | str | tuple[float | str, ...
 
 def number_of(key: str, name: str, written: float | str) -> float:
     """A number or text with a unit, in the SI unit of an input."""
-    try:
-        value = float(in_si(name, written)) if isinstance(written, str) else float(written)
-    except ValueError as error:
-        raise SceneError(f"{key}{str(error).removeprefix(name)}") from None
+    value = float(written) if not isinstance(written, str) else _from_text(key, name, written)
     if not is_good(name, value):
         raise SceneError(f"{key} = {shown(written)}: it must be {INPUTS[name].limit}")
     return value
+
+
+def _from_text(key: str, name: str, written: str) -> float:
+    try:
+        text = quantity_text(written)
+    except ValueError as error:
+        raise SceneError(f"{key} = {shown(written)}: {error}") from None
+    try:
+        return float(in_si(name, text))
+    except ValueError as error:
+        # What the units' complaint says after the name and the value that it repeats.
+        reason = str(error).partition(": ")[2] or str(error)
+        raise SceneError(f"{key} = {shown(written)}: {reason}") from None
 
 
 def _spread(key: str, name: str, written: schema.Range) -> tuple[float, ...]:

@@ -192,8 +192,8 @@ def _provenance(content: Content) -> dict[str, str]:
 
 
 def _check(check: Check, content: Content) -> CheckResult:
-    options: dict[str, Any] = {"branch": content.branch, "accuracy": content.accuracy}
-    computed = float(evaluate(check.quantity, **check.inputs, **options))
+    design: dict[str, Any] = {**check.inputs, "branch": content.branch, "accuracy": content.accuracy}
+    computed = float(evaluate(check.quantity, **design))
     return CheckResult(check, computed, check.printed.agrees(computed))
 
 
@@ -201,7 +201,7 @@ def _feasibility(inputs: Mapping[str, Value]) -> FeasibilityResult | None:
     """Which designs turn fully; None where a length is not given."""
     if not all(name in inputs for name in ("ec", "AB", "BC")):
         return None
-    columns = _columns({name: inputs[name] for name in inputs if name in ("ec", "AB", "BC")})
+    columns: dict[str, Any] = _columns({name: inputs[name] for name in inputs if name in ("ec", "AB", "BC")})
     margins: Any = evaluate("margin", **columns)
     rows = np.flatnonzero(margins < 0.0)
     designs = [{name: float(column[row]) for name, column in columns.items()} for row in rows[:MOST_SHOWN]]
@@ -285,8 +285,8 @@ def _mirrored(
         return np.zeros(theta.shape, np.bool_)
     steady = columns["alpha"] == 0.0 if "alpha" in columns else True
     usable = (columns["ec"] == 0.0) & (found["status"] == 0) & (np.abs(np.sin(theta)) > 1e-6) & steady
-    options: dict[str, Any] = {"branch": content.branch, "accuracy": content.accuracy}
-    there: Any = evaluate(one.quantity, theta=-theta, **columns, **options)
+    design: dict[str, Any] = {**columns, "branch": content.branch, "accuracy": content.accuracy}
+    there: Any = evaluate(one.quantity, theta=-theta, **design)
     there = np.abs(there) if one.kind == "absmax" else there
     shared: NDArray[np.bool_] = usable & (np.abs(there - found["value"]) <= 1e-9 * np.abs(found["value"]))
     return shared
@@ -366,8 +366,8 @@ def _picture(picture: Picture, content: Content, steps: Steps) -> Path:
     names = content.outputs if picture.quantity in content.outputs else (picture.quantity,)
     options: dict[str, Any] = {"branch": content.branch, "accuracy": content.accuracy}
     dataset: Any = grid(names, **options, **_arrays(picture.inputs))
-    lines = curves(dataset, picture.quantity, over=picture.over, family=picture.family)
+    axes: Any = curves(dataset, picture.quantity, over=picture.over, family=picture.family)[0].axes
     title = picture.title or content.title
     if title:
-        lines[0].axes.set_title(title, loc="left")
-    return save(lines[0].axes.figure, picture.file)
+        axes.set_title(title, loc="left")
+    return save(axes.figure, picture.file)

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from math import degrees
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -105,7 +105,7 @@ def _varying(designs: list[dict[str, float]], count: int) -> list[str]:
 
 def _peak(found: PeakResult) -> str:
     """A table with a row for each design, and the claims."""
-    one, dataset = found.peak, found.dataset
+    one = found.peak
     known = quantity(one.quantity, "omega" in one.axes or "omega" in one.fixed)
     low, high = (f"{degrees(angle):g}" for angle in one.theta)
     title = one.title or f"{WORDS[one.kind].capitalize()} of {one.quantity}, {known.meaning}"
@@ -178,7 +178,8 @@ def _claim(one: Peak, result: ClaimResult) -> str:
     computed = claim.increase.text(claim.increase.rounded(result.computed))
     verdict = "agrees" if result.agrees else "DIFFERS"
     where = f"{_design(claim.at)} over {_design(one.at_baseline)}"
-    return f"  increase of {where}: {claim.source} {printed}, desaxe {computed} ({result.computed:.2f} %): {verdict}"
+    full = f"{result.computed:.2f} %"
+    return f"  increase of {where}: {claim.source} {printed}, desaxe {computed} ({full}): {verdict}"
 
 
 def _design(inputs: dict[str, float]) -> str:

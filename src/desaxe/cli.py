@@ -200,10 +200,19 @@ def _names_and_inputs(words: Sequence[str]) -> tuple[list[str], dict[str, Any]]:
         elif key in inputs:
             raise UsageError(f"{word}: {key} is given twice")
         else:
-            inputs[key] = value
+            inputs[key] = _quantity(word, value)
     if not names:
         raise UsageError("which quantity? give a name such as a_C (desaxe point --list shows all)")
     return list(dict.fromkeys(names)), inputs
+
+
+def _quantity(word: str, text: str) -> str:
+    from ._scene_number import quantity_text
+
+    try:
+        return quantity_text(text)
+    except ValueError as error:
+        raise UsageError(f"{word}: {error}") from None
 
 
 def _branch(text: str) -> int:

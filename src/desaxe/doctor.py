@@ -101,7 +101,8 @@ def _optional(name: str) -> str:
 
 
 def _python() -> str:
-    return f"{platform.python_version()} ({platform.python_implementation()}, {sys.platform}, {platform.machine()})"
+    kind = f"{platform.python_implementation()}, {sys.platform}, {platform.machine()}"
+    return f"{platform.python_version()} ({kind})"
 
 
 # ---- where kernels are ---------------------------------------------------------------------------
@@ -140,8 +141,7 @@ def _processor() -> list[str]:
 
     rows = [_row("threads", f"{available()} can be used by this process")]
     try:
-        import llvmlite.binding as llvm
-
+        llvm = import_module("llvmlite.binding")
         features = llvm.get_host_cpu_features()
         found = [name for name in FEATURES if features.get(name)]
         rows += [_row("name", llvm.get_host_cpu_name()), _row("SIMD", ", ".join(found) or "none known")]
@@ -206,7 +206,8 @@ def _assembly() -> Iterator[str]:
 
 def _compiled(path: Path) -> Any:
     spec = spec_from_file_location(path.stem, path)
-    assert spec is not None and spec.loader is not None
+    assert spec is not None
+    assert spec.loader is not None
     module = module_from_spec(spec)
     spec.loader.exec_module(module)
     return module.kernel

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from desaxe.compiler.kernel import hoist, level_program
-from desaxe.compiler.program import Line, Program, names_in
+from desaxe.compiler.program import Line, Note, Program, names_in
 from tests.compiler.programs import INPUTS, committed, depends_on, programs
 
 AXES = 3
@@ -92,7 +92,7 @@ LINES = (
     Line("w", "mul", ("v", "z")),
     Line("only_x", "sin", ("u",)),
 )
-SMALL = Program(INPUTS, LINES, ("w", "only_x", "v"), {})
+SMALL = Program(INPUTS, LINES, ("w", "only_x", "v"), {"u": Note("1", "a step")})
 
 
 @pytest.mark.parametrize(("level", "outputs"), [(0, ()), (1, ("u", "only_x")), (2, ("v",)), (3, ("w",))])
@@ -102,5 +102,5 @@ def test_a_level_gives_what_the_others_need(level, outputs):
 
 
 def test_a_constant_runs_once():
-    program = Program(("x",), (Line("u", "copy", (2.0,)), Line("v", "mul", ("u", "x"))), ("v",), {})
+    program = Program(("x",), (Line("u", "copy", (2.0,)), Line("v", "mul", ("u", "x"))), ("u", "v"), {})
     assert level_of(hoist(program, {"x": 0}, 1)) == {"u": 0, "v": 1}

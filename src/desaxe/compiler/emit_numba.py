@@ -4,23 +4,31 @@ Rules that numba's issue tracker teaches: every option is a literal in the modul
 stands in it (its cache does not see changes elsewhere); ``error_model="numpy"``, so that a division
 by zero is an infinity; no fast-math flag, which would erase the NaN of an infeasible point;
 ``nogil=True``, so that threads can share the blocks of an array. Signatures are written out: the
-module compiles when it is imported, or loads what an earlier process compiled.
+module compiles when it is imported, or loads what an earlier process compiled; where nothing can be
+kept on disk, it compiles in every process.
 """
+
+from textwrap import wrap
 
 from .kernel import Kernel, level_program
 from .operations import HELPERS, OPERATIONS
 from .program import Program
-from .text import INDENT, write_lines
+from .text import INDENT, WIDTH, write_lines
 
 _TYPES = {"f64": "float64", "i64": "int8"}  # a status is stored as int8
 _NUMPY_CALLS = {"floor"}  # numba's math.floor gives an integer, which does not vectorise
+_COMPILE = """try:
+    kernel = njit(signature, cache=True, error_model="numpy", nogil=True)(loops)
+except RuntimeError:  # numba found no folder that it can write to
+    kernel = njit(signature, error_model="numpy", nogil=True)(loops)
+"""
 # An input may be an array that must not be written to; numba's signature strings cannot say so.
 _INPUT = 'axis = types.Array(types.float64, 1, "C", readonly=True)\n'
 
 
-def emit_numba(kernel: Kernel, docstring: str, cache: bool = True) -> str:
+def emit_numba(kernel: Kernel, docstring: str) -> str:
     """The source of the module."""
-    return "\n\n".join([_header(kernel, docstring, []), *_helpers(kernel), _function(kernel, cache)])
+    return "\n\n".join([_header(kernel, docstring, []), *_helpers(kernel), _function(kernel)])
 
 
 def emit_numba_with_front(kernel: Kernel, docstring: str, front: str) -> str:
@@ -33,7 +41,7 @@ def emit_numba_with_front(kernel: Kernel, docstring: str, front: str) -> str:
     parts = [
         _header(kernel, docstring, used),
         *_helpers(kernel),
-        _function(kernel, True),
+        _function(kernel),
         _front(kernel, front),
     ]
     return "\n\n".join(parts)
@@ -63,22 +71,23 @@ def _called(op: str) -> str:
     return name if bracket and name not in HELPERS else ""
 
 
-def _function(kernel: Kernel, cache: bool) -> str:
+def _function(kernel: Kernel) -> str:
+    """The loops as a plain function, and `kernel`, that function compiled."""
     types = ["types.float64" if axis is None else "axis" for axis in kernel.inputs.values()]
     shape = ", ".join([":"] * (kernel.axes - 1) + ["::1"])
     types += [f"types.{_TYPES[kernel.types.get(name, 'f64')]}[{shape}]" for name in kernel.outputs]
     names = [*_parameters(kernel), *(f"out_{name}" for name in kernel.outputs)]
+    rows = wrap(", ".join(types), WIDTH)
     return "\n".join(
         [
-            "@njit(",
-            f"{INDENT}types.void({', '.join(types)}),",
-            f'{INDENT}cache={cache}, error_model="numpy", nogil=True,',
-            ")",
-            "def kernel(",
+            "def loops(",
             *(f"{INDENT}{name}," for name in names),
             "):",
             *_body(kernel),
-            "",
+            "\n\nsignature = types.void(",
+            *(INDENT + row for row in rows),
+            ")",
+            _COMPILE,
         ]
     )
 

@@ -52,8 +52,8 @@ def curves(
     horizontal = _shown(array[over])
     lines: list[Line2D] = []
     for member, values, colour in zip(members, np.atleast_2d(array.values), colours, strict=True):
-        label = {} if member is None else {"label": f"{float(_shown(member)):.6g}"}
-        lines += ax.plot(horizontal, values, color=colour, linewidth=1.6, **label)
+        label = None if member is None else f"{float(_shown(member)):.6g}"
+        lines += ax.plot(horizontal, values, color=colour, linewidth=1.6, label=label)
     _finish(ax, array, over, lines)
     if family:
         _explain(ax, array[family], lines, beside)

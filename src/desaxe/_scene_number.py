@@ -1,0 +1,31 @@
+"""A number with its unit as text: its form is checked here, before any unit library reads it.
+
+Nothing but a number and a unit passes: no sums, lists or decimal commas, which a unit library may
+take for something else ("1,5 rad" for 15 rad).
+"""
+
+import re
+
+_NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
+_TERM = r"[^\W\d_]+(?:_[^\W\d_]+)*(?:(?:\^|\*\*)?-?[1-9])?|%|\u00b0"
+_UNIT = rf"(?:{_TERM})(?:\s*[*/]\s*(?:{_TERM})|\s+(?:{_TERM}))*"
+_FORM = re.compile(rf"\s*({_NUMBER})\s*({_UNIT})?\s*")
+
+
+def split_quantity(text: str) -> tuple[str, str]:
+    """The number and the unit (may be empty) of a text; ValueError where it is anything else."""
+    match = _FORM.fullmatch(text)
+    if match is None:
+        raise ValueError('it must be a number, or a number with a unit such as "125 mm"')
+    return match[1], match[2] or ""
+
+
+def spelled(unit: str) -> str:
+    """A unit in the spelling of the catalogue: people write m/s2 for m/s^2."""
+    return re.sub(r"([^\W\d_])(?:\*\*)?(-?[1-9])(?![0-9])", r"\1^\2", unit)
+
+
+def quantity_text(text: str) -> str:
+    """A number with its unit as the unit library reads it; ValueError where it is anything else."""
+    number, unit = split_quantity(text)
+    return f"{number} {spelled(unit)}".rstrip()
