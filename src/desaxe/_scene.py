@@ -5,8 +5,10 @@ from dataclasses import dataclass, field
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
+from ._scene_peaks import PeakResult
+from ._scene_progress import Progress
 from ._scene_read import Content, plain_data, read
-from ._scene_run import CheckResult, FeasibilityResult, PeakResult, Progress, run
+from ._scene_run import CheckResult, FeasibilityResult, run
 from ._scene_schema import SceneError as SceneError
 from ._scene_text import report
 

@@ -1,15 +1,29 @@
-"""A progress bar on the terminal, for runs that take long."""
+"""How far a run is, and a bar on the terminal for one that takes long."""
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from threading import Event, Thread
 from typing import Any
 
-from ._scene_run import Progress
+# Called before each step: steps done, steps in all, what comes next.
+Progress = Callable[[int, int, str], None]
 
 DELAY = 1.0  # seconds without a bar
 PACE = 0.2  # seconds between two looks
+
+
+class Steps:
+    """Counts the steps of a run for whoever watches."""
+
+    def __init__(self, total: int, watch: Progress | None) -> None:
+        self.done, self.total, self.watch = 0, total, watch
+
+    def next(self, what: str) -> None:
+        """The next step begins."""
+        if self.watch is not None:
+            self.watch(self.done, self.total, what)
+        self.done += 1
 
 
 @contextmanager

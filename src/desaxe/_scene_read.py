@@ -2,23 +2,20 @@
 
 import tomllib
 from collections.abc import Iterable, Mapping
-from math import isfinite, pi
+from math import pi
 from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from . import _scene_schema as schema
 from ._program import program_of
-from ._scene_number import quantity_text
 from ._scene_printed import Printed, read_percentage, read_printed
 from ._scene_schema import SceneError, shown
+from ._scene_values import Value, design_of, number_of, only_inputs, values_of
 from .catalogue import law_name, quantity
-from .inputs import INPUTS, is_good
-from .units import in_si
+from .inputs import INPUTS
 
-Value = float | tuple[float, ...]
 SECTIONS = ("mechanism", "motion")
-MOST = 100_000_000  # values of one range
 
 
 class Check(NamedTuple):
@@ -145,73 +142,6 @@ def _inputs(data: Mapping[str, Any], file: schema.SceneFile) -> dict[str, Value]
     return {name: values_of(key, name, written) for key, name, written in tables if name in INPUTS}
 
 
-def values_of(key: str, name: str, written: float | str | tuple[float | str, ...] | schema.Range) -> Value:
-    """A number, or the values of a list or range, in the SI unit of an input."""
-    if isinstance(written, tuple):
-        if not written:
-            raise SceneError(f"{key} = []: at least one value is wanted")
-        return tuple(number_of(f"{key} #{index}", name, part) for index, part in enumerate(written, 1))
-    if isinstance(written, schema.Range):
-        return _spread(key, name, written)
-    return number_of(key, name, written)
-
-
-def number_of(key: str, name: str, written: float | str) -> float:
-    """A number or text with a unit, in the SI unit of an input."""
-    value = float(written) if not isinstance(written, str) else _from_text(key, name, written)
-    if not is_good(name, value):
-        raise SceneError(f"{key} = {shown(written)}: it must be {INPUTS[name].limit}")
-    return value
-
-
-def _from_text(key: str, name: str, written: str) -> float:
-    try:
-        text = quantity_text(written)
-    except ValueError as error:
-        raise SceneError(f"{key} = {shown(written)}: {error}") from None
-    try:
-        return float(in_si(name, text))
-    except ValueError as error:
-        # What the units' complaint says after the name and the value that it repeats.
-        reason = str(error).partition(": ")[2] or str(error)
-        raise SceneError(f"{key} = {shown(written)}: {reason}") from None
-
-
-def _spread(key: str, name: str, written: schema.Range) -> tuple[float, ...]:
-    """The values of a range, both ends included."""
-    start = number_of(f"{key}.start", name, written.start)
-    stop = number_of(f"{key}.stop", name, written.stop)
-    if (written.num is None) == (written.step is None):
-        raise SceneError(f"{key}: a range has start, stop, and either num (how many) or step (how far apart)")
-    last = written.num - 1 if written.num is not None else _steps(key, name, written, stop - start)
-    if last >= MOST:
-        raise SceneError(f"{key}: {last + 1} values are too many, at most {MOST}")
-    return (*(start + (stop - start) * k / last for k in range(last)), stop)
-
-
-def _steps(key: str, name: str, written: schema.Range, length: float) -> int:
-    # A step of a length may be negative, which the length itself may not.
-    alike = "ec" if name in ("AB", "BC") else name
-    step = number_of(f"{key}.step", alike, written.step or 0.0)
-    count = length / step if step else 0.0
-    if not (isfinite(count) and count > 0.5 and abs(count - round(count)) < 1e-6):
-        raise SceneError(
-            f"{key}.step = {shown(written.step)}: it must lead from start to stop in a whole number of steps"
-        )
-    return round(count)
-
-
-def _design(key: str, written: Mapping[str, float | str]) -> dict[str, float]:
-    _only_inputs(key, written)
-    return {name: number_of(f"{key}.{name}", name, value) for name, value in written.items()}
-
-
-def _only_inputs(key: str, names: Iterable[str]) -> None:
-    for name in names:
-        if name not in INPUTS:
-            raise SceneError(f"{key}.{name}: unknown input; {schema.hint(name, tuple(INPUTS))}")
-
-
 # ---- what is asked for ---------------------------------------------------------------------------
 
 
@@ -264,7 +194,7 @@ def _numbers(key: str, names: Iterable[str], inputs: Mapping[str, Value]) -> dic
 
 
 def _checks(key: str, table: schema.CheckTable, inputs: Mapping[str, Value]) -> list[Check]:
-    there = _with(inputs, _design(f"{key}.at", table.at))
+    there = _with(inputs, design_of(f"{key}.at", table.at))
     checks = []
     for name, written in table.printed.items():
         place = f"{key}.printed.{name}"
@@ -279,7 +209,7 @@ def _checks(key: str, table: schema.CheckTable, inputs: Mapping[str, Value]) -> 
 
 def _peak(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> Peak:
     name = table.quantity
-    _only_inputs(f"{key}.over", table.over)
+    only_inputs(f"{key}.over", table.over)
     over = {n: values_of(f"{key}.over.{n}", n, written) for n, written in table.over.items()}
     if "theta" in over:
         raise SceneError(f"{key}.over.theta: a peak is taken over theta; its range is {key}.theta")
@@ -304,10 +234,10 @@ def _peak(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> Pea
         _claim(f"{key}.claim #{index}", claim, axes, fixed, bool(base))
         for index, claim in enumerate(table.claim, 1)
     )
-    _only_inputs(f"{key}.sensitivities", table.sensitivities)
+    only_inputs(f"{key}.sensitivities", table.sensitivities)
     wanted = tuple(n for n in table.sensitivities if n in needed)
     angles = _angles(key, table, inputs)
-    at_base = _design(f"{key}.baseline", table.baseline or {})
+    at_base = design_of(f"{key}.baseline", table.baseline or {})
     return Peak(table.title, name, table.kind, axes, fixed, angles, at_base, base, claims, wanted)
 
 
@@ -339,7 +269,7 @@ def _other_design(
     key: str, written: Mapping[str, float | str], axes: Mapping[str, Any], fixed: Mapping[str, float]
 ) -> dict[str, float]:
     """All inputs of a design that says only what is different."""
-    design = {**fixed, **_design(key, written)}
+    design = {**fixed, **design_of(key, written)}
     for name in axes:
         if name not in design:
             raise SceneError(f"{key}: {name} has {len(axes[name])} values, one is wanted: give {key}.{name}")
@@ -354,17 +284,17 @@ def _claim(
             f"{key}.increase = {shown(claim.increase)}: an increase needs the peak's baseline = {{...}}"
         )
     design = _other_design(f"{key}.at", claim.at, axes, fixed)
-    at = _design(f"{key}.at", claim.at)
+    at = design_of(f"{key}.at", claim.at)
     return Claim(claim.source, at, design, read_percentage(f"{key}.increase", claim.increase))
 
 
 def _picture(key: str, table: schema.PictureTable, inputs: Mapping[str, Value]) -> Picture:
     name = table.quantity
-    _only_inputs(f"{key}.family", table.family)
+    only_inputs(f"{key}.family", table.family)
     if len(table.family) > 1:
         raise SceneError(f"{key}.family: one input makes a family, got {', '.join(table.family)}")
     family = {n: values_of(f"{key}.family.{n}", n, written) for n, written in table.family.items()}
-    there = _with(_with(inputs, _design(f"{key}.at", table.at)), family)
+    there = _with(_with(inputs, design_of(f"{key}.at", table.at)), family)
     _known(f"{key}.quantity", name, "omega" in there)
     needed = _require_for_grid(f"{key}.quantity", (name,), there)
     if table.over not in INPUTS:

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ._scene_peaks import WORDS, ClaimResult, PeakResult
 from ._scene_read import Content, Peak
-from ._scene_run import WORDS, CheckResult, ClaimResult, FeasibilityResult, PeakResult, group_names
+from ._scene_run import CheckResult, FeasibilityResult, group_names
 from .catalogue import quantity
 from .inputs import INPUTS
 

@@ -249,10 +249,21 @@ def _json_number(value: float) -> float | None:
 # ---- run -----------------------------------------------------------------------------------------
 
 _RUN = """\
-A scene is a TOML file: [mechanism] and [motion] with numbers, lists or ranges (units as text, such
-as "125 mm"), outputs = [...] for the grid of all of them, [[peak]], [[check]] and [[picture]], and
-under [results] where the data go. It is data only; nothing in it is executed. Files are written
-relative to the current directory. examples/compactor.toml shows every key.
+A scene is a TOML file. It is data only: nothing in it is executed. Its keys:
+
+  title, outputs = ["V_C", "a_C"] (over the grid of all lists and ranges below), accuracy
+  [mechanism]     AB, BC, ec, branch
+  [motion]        theta, omega0 or omega, alpha
+                  each a number (SI), "125 mm", a list, or { start = , stop = , num = or step = }
+  [[check]]       printed = { a_C = "-994 m/s2" }, at = { theta = "60 deg" }, source, title, digits
+  [[peak]]        quantity, kind (absmax, max or min), over = { ec = [0, "50 mm"] }, theta = [from, to],
+                  baseline = { ec = 0 }, sensitivities = ["ec", "AB", "BC"], title
+  [[peak.claim]]  at = { ec = "150 mm" }, increase = "33 %", source
+  [[picture]]     file, quantity, over = "theta", family = { ec = [0, "50 mm"] }, at, title
+  [results]       data = "out/values.nc" (NetCDF; the peaks are groups in it)
+
+Files are written relative to the current directory. Pictures and values need the extras `plot` and
+`labelled`.
 
 examples:
   desaxe run examples/compactor.toml

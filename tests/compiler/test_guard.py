@@ -23,11 +23,11 @@ from tests.compiler.programs import (
 LINES = (Line("less", "lt", ("x", 0.0), "bool"), Line("u", "mul", ("x", "y")))
 STATUS = Line("status", "select", ("less", 1, 0), "i64")
 PROGRAM = Program(("x", "y"), (*LINES, STATUS), ("u", "status"), {})
-LEAST_OF_Y = {"y": 2.0}
+LEAST_Y, LARGEST_X = {"y": 2.0}, {"x": 1e6}
 
 
-def guarded(x, y, inputs=("x", "y")):
-    program = validate(guard_inputs(PROGRAM, inputs, LEAST_OF_Y))
+def guarded(x, y, inputs=("x", "y"), largest=()):
+    program = validate(guard_inputs(PROGRAM, inputs, LEAST_Y, dict(largest)))
     return in_doubles(program, {"x": x, "y": y})
 
 
@@ -43,30 +43,35 @@ def test_a_bad_element_is_nan_with_its_status(x, y):
     assert found["status"] == BAD_INPUT
 
 
+@pytest.mark.parametrize(("x", "status"), [(1e6, 0), (-1e6, 1), (1000001.0, BAD_INPUT), (math.nan, BAD_INPUT)])
+def test_an_element_too_large_is_bad(x, status):
+    assert guarded(x, 2.0, largest=LARGEST_X)["status"] == status
+
+
 def test_only_the_inputs_named_are_guarded():
     assert guarded(3.0, 1.0, inputs=("x",)) == {"u": 3.0, "status": 0}
 
 
 def test_an_input_that_is_not_there_is_passed_over():
-    assert guard_inputs(PROGRAM, ["z"], {}) == PROGRAM
+    assert guard_inputs(PROGRAM, ["z"], {}, {}) == PROGRAM
 
 
 def test_nothing_is_added_for_a_status_that_is_not_asked_for():
-    program = guard_inputs(keep_outputs(PROGRAM, ["u"]), ["x"], {})
+    program = guard_inputs(keep_outputs(PROGRAM, ["u"]), ["x"], {}, {})
     assert [line.name for line in program.lines] == ["x_size", "x_is_finite", "x_good", "u"]
 
 
 def test_an_input_that_is_an_output_is_nan_where_bad():
     program = Program(("x",), (Line("u", "neg", ("x",)),), ("u", "x"), {})
-    found = in_doubles(validate(guard_inputs(program, ["x"], {})), {"x": math.inf})
-    assert math.isnan(found["u"])
-    assert math.isnan(found["x"])
+    found = in_doubles(validate(guard_inputs(program, ["x"], {}, {})), {"x": math.inf})
+    assert len(found) == 2
+    assert all(map(math.isnan, found.values()))
 
 
 @given(programs(), points())
 @settings(max_examples=50, deadline=None)
 def test_the_meaning_of_good_values_is_unchanged(program, point):
-    guarded = validate(guard_inputs(program, program.inputs, {}))
+    guarded = validate(guard_inputs(program, program.inputs, {}, {}))
     assert same(exactly(guarded, point), exactly(program, point))
 
 
@@ -75,7 +80,7 @@ NAMES = ("Y", "phi", "V_C", "j_C", "alpha_BC", "a_C_wrt_ec", "omega", "V_B", "ma
 
 def test_the_committed_program_keeps_its_meaning():
     program = committed(*NAMES)
-    whole = validate(guard_inputs(program, INPUTS, LEAST))
+    whole = validate(guard_inputs(program, INPUTS, LEAST, {}))
     assert same(exactly(whole, POINT), exactly(program, POINT))
 
 
@@ -87,6 +92,6 @@ BAD = {"theta": math.inf, "ec": -math.inf, "AB": -0.125, "BC": 0.0, "omega0": ma
 def test_every_quantity_that_needs_a_bad_input_is_nan(name, alpha):
     program = committed(*NAMES)
     needs = depends_on(program)
-    found = in_doubles(guard_inputs(program, INPUTS, LEAST), POINT | {"alpha": alpha} | {name: BAD[name]})
+    found = in_doubles(guard_inputs(program, INPUTS, LEAST, {}), POINT | {"alpha": alpha} | {name: BAD[name]})
     assert found.pop("status") == BAD_INPUT
     assert [q for q, value in found.items() if math.isnan(value)] == [q for q in found if name in needs[q]]

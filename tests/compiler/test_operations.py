@@ -87,7 +87,7 @@ def numba_spellings():
         lines.append(Line(f"out_{op}", "select" if kind == "bool" else "copy", shown(f"_{op}", kind)))
     program = Program(("a", "b", "c"), tuple(lines), tuple(f"out_{op}" for op in OPS), {})
     scope = {}
-    exec(emit_numba(hoist(program, {"a": 0, "b": 0, "c": 0}, 1), "every operation", cache=False), scope)
+    exec(emit_numba(hoist(program, {"a": 0, "b": 0, "c": 0}, 1), "every operation"), scope)
     return scope["kernel"]
 
 

@@ -79,13 +79,13 @@ def test_operations_of_a_sine():
 
 COUNTS = [
     (("Y",), {"branch": 1.0}, 38),
-    (("V_C",), {"branch": 1.0}, 53),
-    (("V_C",), CONCENTRIC, 0),
-    (("a_C",), {"branch": 1.0}, 0),
-    (("a_C",), CONCENTRIC, 0),
-    (("margin",), {}, 0),
-    (("margin",), {"ec": 0.0}, 0),
-    (("Y", "V_C", "a_C"), {"branch": 1.0}, 0),
+    (("V_C",), {"branch": 1.0}, 58),
+    (("V_C",), CONCENTRIC, 32),
+    (("a_C",), {"branch": 1.0}, 72),
+    (("a_C",), CONCENTRIC, 45),
+    (("Y", "V_C", "a_C"), {"branch": 1.0}, 79),
+    (("margin",), {}, 9),
+    (("margin",), {"ec": 0.0}, 4),
 ]
 
 

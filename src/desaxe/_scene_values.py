@@ -1,0 +1,82 @@
+"""The values of inputs as they are written in a scene, in SI units."""
+
+from collections.abc import Iterable, Mapping
+from math import isfinite
+
+from . import _scene_schema as schema
+from ._scene_number import quantity_text
+from ._scene_schema import SceneError, shown
+from .inputs import INPUTS, is_good
+from .units import in_si
+
+Value = float | tuple[float, ...]
+MOST = 100_000_000  # values of one range
+
+
+def values_of(key: str, name: str, written: float | str | tuple[float | str, ...] | schema.Range) -> Value:
+    """A number, or the values of a list or range, in the SI unit of an input."""
+    if isinstance(written, tuple):
+        if not written:
+            raise SceneError(f"{key} = []: at least one value is wanted")
+        return tuple(number_of(f"{key} #{index}", name, part) for index, part in enumerate(written, 1))
+    if isinstance(written, schema.Range):
+        return _spread(key, name, written)
+    return number_of(key, name, written)
+
+
+def number_of(key: str, name: str, written: float | str) -> float:
+    """A number or text with a unit, in the SI unit of an input."""
+    value = float(written) if not isinstance(written, str) else _from_text(key, name, written)
+    if not is_good(name, value):
+        raise SceneError(f"{key} = {shown(written)}: it must be {INPUTS[name].limit}")
+    return value
+
+
+def _from_text(key: str, name: str, written: str) -> float:
+    try:
+        text = quantity_text(written)
+    except ValueError as error:
+        raise SceneError(f"{key} = {shown(written)}: {error}") from None
+    try:
+        return float(in_si(name, text))
+    except ValueError as error:
+        # What the units' complaint says after the name and the value that it repeats.
+        reason = str(error).partition(": ")[2] or str(error)
+        raise SceneError(f"{key} = {shown(written)}: {reason}") from None
+
+
+def _spread(key: str, name: str, written: schema.Range) -> tuple[float, ...]:
+    """The values of a range, both ends included."""
+    start = number_of(f"{key}.start", name, written.start)
+    stop = number_of(f"{key}.stop", name, written.stop)
+    if (written.num is None) == (written.step is None):
+        raise SceneError(f"{key}: a range has start, stop, and either num (how many) or step (how far apart)")
+    last = written.num - 1 if written.num is not None else _steps(key, name, written, stop - start)
+    if last >= MOST:
+        raise SceneError(f"{key}: {last + 1} values are too many, at most {MOST}")
+    return (*(start + (stop - start) * k / last for k in range(last)), stop)
+
+
+def _steps(key: str, name: str, written: schema.Range, length: float) -> int:
+    # A step of a length may be negative, which the length itself may not.
+    alike = "ec" if name in ("AB", "BC") else name
+    step = number_of(f"{key}.step", alike, written.step or 0.0)
+    count = length / step if step else 0.0
+    if not (isfinite(count) and count > 0.5 and abs(count - round(count)) < 1e-6):
+        raise SceneError(
+            f"{key}.step = {shown(written.step)}: it must lead from start to stop in a whole number of steps"
+        )
+    return round(count)
+
+
+def design_of(key: str, written: Mapping[str, float | str]) -> dict[str, float]:
+    """A table of inputs in SI units."""
+    only_inputs(key, written)
+    return {name: number_of(f"{key}.{name}", name, value) for name, value in written.items()}
+
+
+def only_inputs(key: str, names: Iterable[str]) -> None:
+    """Complain about a key that is no input."""
+    for name in names:
+        if name not in INPUTS:
+            raise SceneError(f"{key}.{name}: unknown input; {schema.hint(name, tuple(INPUTS))}")
