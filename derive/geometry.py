@@ -9,7 +9,7 @@ import sympy as sp
 from .loop import AB, BC, ec, slider, solved
 from .rod import UNITS, RodFunction, read_rod_function
 from .sheet import Equation, Sheet
-from .stable import OFFSET, TRIGONOMETRY, cos_theta, crank_ratio, in_theta, recollected
+from .stable import OFFSET, TRIGONOMETRY, in_theta, phi_rate
 from .units import LENGTH
 
 POSITION = solved()[slider].subs(TRIGONOMETRY)
@@ -28,7 +28,7 @@ def resolve_geometry(sheet: Sheet, name: str) -> Equation | None:
         unit = unit.over(parameter)
     lengths, turns = [p for p in parameters if p != "theta"], parameters.count("theta")
     if base == "phi" and not lengths:
-        expression = crank_ratio * cos_theta if turns == 1 else recollected(turns)
+        expression = phi_rate(turns)
     else:
         for length in lengths:
             expression = _by_length(expression, length)

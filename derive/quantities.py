@@ -109,9 +109,11 @@ def _define_rod(sheet: Sheet) -> None:
     sheet.define("D", E * W, unit=Unit(m=2), meaning="BC^2 - u^2", source="B (7)")
     sheet.define("S", sp.sqrt(D), unit=LENGTH, meaning="BC cos(phi), the rod's height", source="B (7)")
     sheet.define("inv_S", 1 / S, unit=Unit(m=-1), meaning="1 / S")
+    pin_side = sheet.define("pin_side", AB + ec_side)  # exact where they nearly cancel
     sheet.define(
-        "u", OFFSET, unit=LENGTH, meaning="BC sin(phi), crank pin from the slider axis", source="A (6)"
-    )
+        "u", select(near_quarter, side * (pin_side - AB * eps), OFFSET), unit=LENGTH, source="A (6)",
+        meaning="BC sin(phi), crank pin from the slider axis",
+    )  # fmt: skip
     sheet.define("crank_ratio", AB * r, unit=NONE, meaning="AB / S")
     sheet.define("ec_ratio", ec_side * r, unit=NONE, meaning="sigma ec / S")
     sheet.define("margin_ratio", (margin_side * r) * symbol("reach_ratio"), unit=NONE, meaning="m n / S^2")

@@ -82,6 +82,21 @@ def recollected(order: int) -> sp.Expr:
     return result
 
 
+def phi_rate(order: int) -> sp.Expr:
+    """The `order`-th derivative of phi by theta, in the form that keeps its digits.
+
+    The recollected form from the third order on cancels where m n is large against S^2, which only a
+    crank longer than its rod can have; the chain rule's own form does not cancel there.
+    """
+    if order == 1:
+        return crank_ratio * cos_theta
+    if order == 2:
+        return recollected(order)
+    in_ratios = chain_rule_form(order).subs({u: tan_phi / r, sin_theta: side * abs_sin}).subs(AB, crank_ratio / r)
+    plain = sp.collect(sp.expand(in_ratios), crank_ratio, sp.factor).subs(side * abs_sin, sin_theta)
+    return select(le(absolute(margin_ratio), 1), recollected(order), plain)
+
+
 def _numerator(order: int) -> sp.Expr:
     """The numerator over S^(2 order - 1), divided by AB and by cos (odd) or side (even)."""
     squared = margin_ratio + 2 * (crank_ratio + ec_ratio) * crank_ratio * eps - (crank_ratio * eps) ** 2

@@ -97,6 +97,25 @@ def test_textbook_formulas_differentiated_numerically(name, point):
 
 
 @pytest.mark.parametrize("point", POINTS)
+@pytest.mark.parametrize("third", [("theta",) * 3, ("theta", "ec", "AB"), ("ec", "BC", "BC"), ("AB",) * 3])
+def test_third_order(third, point):
+    """The condition numbers of second sensitivities need it."""
+    at = [mpmath.mpf(point[p]) for p in LAW]
+    counts = tuple(third.count(p) for p in LAW)
+    tail = "_wrt_" + "_".join(third)
+
+    def phi(theta, ec, AB, BC, omega0, alpha):
+        return mpmath.asin((ec + AB * mpmath.sin(theta)) / BC)
+
+    with mpmath.workdps(150):
+        assert agree(
+            truth("Y" + tail, **point), mpmath.diff(textbook(point.get("branch", 1))["Y"], at, counts)
+        )
+        assert agree(truth("phi" + tail, **point), mpmath.diff(phi, at, counts))
+    assert agree(truth("delta" + tail, **point), -truth("phi" + tail, **point))
+
+
+@pytest.mark.parametrize("point", POINTS)
 def test_closure_and_definitions(point):
     q = truth_all(QUANTITIES, **point)
     theta, ec, AB, BC = (mpmath.mpf(point[p]) for p in LAW[:4])

@@ -50,10 +50,7 @@ _REST_MAGNITUDE = 300  # numbers below 2^-300 tend to 0 and those above 2^300 to
 
 
 class Jet:
-    """A truncated Taylor polynomial in the parameters; its coefficients are power series in time.
-
-    ``terms`` maps a sorted tuple of parameter numbers (a monomial) to its coefficient; an absent one is zero.
-    """
+    """A Taylor polynomial: sorted parameter numbers (a monomial) -> coefficient, a power series in time."""
 
     def __init__(self, terms: dict[tuple[int, ...], arb_series], order: int) -> None:
         self.terms, self.order = terms, order
@@ -172,8 +169,7 @@ def _quantities(parameters: list[Jet], branch: int, law: bool) -> dict[str, Jet]
     _, ec, AB, BC, _, _ = parameters
     theta, B_X, B_Y, Y, phi, delta = _closure(parameters, branch, law)
     V_X, V_Y, a_X, a_Y = B_X.rate(1), B_Y.rate(1), B_X.rate(2), B_Y.rate(2)
-    outer = ((AB + BC) * (AB + BC) - ec * ec).sqrt()
-    pressure = phi.times(_sign(phi.terms[()][0]))
+    outer, pressure = ((AB + BC) * (AB + BC) - ec * ec).sqrt(), phi.times(_sign(phi.terms[()][0]))
     quarter = Jet({(): arb_series([arb.pi() / 2])}, phi.order)
     return {
         **{"phi": phi, "delta": delta, "Y": Y, "s": outer - Y.times(branch)},
@@ -246,9 +242,8 @@ def truth(
     """One quantity or sensitivity (``q``, ``q_wrt_p``, ``q_wrt_p_p``, ...) with so many correct digits."""
     law = omega is None
     quantity, monomial = _split(name, LAW if law else STATE)
-    speed = omega0 if omega is None else omega
-    values = tuple(float(x) for x in (theta, ec, AB, BC, speed, alpha))
-    still = _stands_still(theta, speed, alpha, law)
+    values = tuple(map(float, (theta, ec, AB, BC, omega0 if omega is None else omega, alpha)))
+    still = _stands_still(values[0], *values[4:], law)
     for bits in _BITS[-1:] if still else _BITS:
         jet = _enclosures(values, law, branch, max(2, len(monomial)), bits)[quantity]
         with _precision(bits):

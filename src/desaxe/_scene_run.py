@@ -151,11 +151,10 @@ def _check(check: Check, content: Content) -> CheckResult:
 
 def _feasibility(inputs: Mapping[str, Value]) -> FeasibilityResult | None:
     """Which designs turn fully; None where a length is not given."""
-    if not all(name in inputs for name in ("ec", "AB", "BC")):
+    lengths = {name: value for name, value in inputs.items() if name in ("ec", "AB", "BC")}
+    if len(lengths) < 3:
         return None
-    columns: dict[str, Any] = columns_of(
-        {name: inputs[name] for name in inputs if name in ("ec", "AB", "BC")}
-    )
+    columns: dict[str, Any] = columns_of(lengths)
     margins: Any = evaluate("margin", **columns)
     rows = np.flatnonzero(margins < 0.0)
     designs = [{name: float(column[row]) for name, column in columns.items()} for row in rows[:MOST_SHOWN]]

@@ -200,7 +200,7 @@ def _assembly() -> Iterator[str]:
     key = key_of(wanted, {"alpha": 0.0}, columns, dict.fromkeys(INPUTS, 0), axes=1)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "desaxe_doctor_kernel.py"
-        path.write_text(source_of(key, cached=False), encoding="utf-8")
+        path.write_text(source_of(key), encoding="utf-8")
         yield from _compiled(path).inspect_asm().values()
 
 

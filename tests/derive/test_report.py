@@ -1,0 +1,34 @@
+"""`python -m derive --report`: what each pass leaves, for every quantity."""
+
+import pytest
+
+from desaxe.compiler.passes.pipeline import PASSES, optimise
+from desaxe.compiler.passes.slicing import keep_outputs
+from desaxe.derive.quantities import QUANTITIES
+from desaxe.derive.report import CONCENTRIC, GENERAL, report
+from tests.derive.derived import derivation
+
+
+def rows(name):
+    """The words of the rows that start with a name, of both tables."""
+    return [line.split() for line in report(derivation()).splitlines() if line.startswith(f"{name} ")]
+
+
+@pytest.mark.parametrize("name", QUANTITIES)
+def test_every_quantity_has_a_row_in_both_tables(name):
+    assert len(rows(name)) == 2
+
+
+def test_every_pass_has_a_column():
+    assert all(row[1 : len(PASSES) + 2] == ["sliced", *(step.name for step in PASSES)] for row in rows("quantity"))
+
+
+@pytest.mark.parametrize(("table", "fixed"), [(0, GENERAL), (1, CONCENTRIC)])
+def test_the_counts_are_those_of_the_pipeline(table, fixed):
+    _, steps = optimise(keep_outputs(derivation().program, ("a_C",)), fixed)
+    assert rows("a_C")[table][1 : len(steps) + 1] == [str(step.cost.operations) for step in steps]
+
+
+def test_the_whole_program_comes_first():
+    words = report(derivation()).splitlines()[0].replace(",", "").split()
+    assert {str(len(derivation().program.lines)), str(len(derivation().names))} <= set(words)

@@ -1,0 +1,294 @@
+"""The command line as people use it."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import desaxe as dx
+from desaxe import cli, doctor
+from desaxe.cli import main
+
+COMPACTOR = str(Path(__file__).parents[2] / "examples" / "compactor.toml")
+POINT = ["theta=60deg", "ec=10mm", "AB=125mm", "BC=300mm", "omega0=1500rpm"]
+COMMANDS = ("point", "run", "derive", "errata", "doctor")
+
+
+def test_point(capsys):
+    assert main(["point", "a_C", *POINT]) == 0
+    out, err = capsys.readouterr()
+    name, value, unit, meaning = re.fullmatch(r"(\S+) = (\S+) (\S+) +(.*)\n", out).groups()
+    point = {"theta": "60 deg", "ec": 0.01, "AB": 0.125, "BC": 0.3, "omega0": "1500 rpm"}
+    assert (name, unit, meaning) == ("a_C", "m/s^2", "acceleration of the slider")
+    assert float(value) == pytest.approx(dx.evaluate("a_C", **point), rel=1e-15)
+    assert err == ""
+
+
+def test_point_with_several_names(capsys):
+    assert main(["point", "V_C,a_C", *POINT, "a_C_wrt_ec"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == ["V_C", "a_C", "a_C_wrt_ec"]
+    starts = {re.search(r" {3}\w", line).start() for line in lines}
+    assert len(starts) == 1
+
+
+def test_point_needs_only_what_is_needed(capsys):
+    assert main(["point", "margin", "ec=220mm", "AB=.125", "BC=0.35"]) == 0
+    assert capsys.readouterr().out.startswith("margin = 0.00499999999999")
+
+
+def test_point_tells_the_status_in_words(capsys):
+    assert main(["point", "a_C", "theta=90deg", "ec=.23", "AB=.125", "BC=.35", "omega0=1"]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("a_C = nan m/s^2")
+    assert out.endswith("status 1: cannot be assembled here\n")
+    assert main(["point", "status", "theta=90deg", "ec=.23", "AB=.125", "BC=.35", "omega0=1"]) == 0
+    assert capsys.readouterr().out.startswith("status = 1   ")
+
+
+def test_point_in_json(capsys):
+    assert main(["point", "a_C", *POINT, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["a_C"]["unit"] == "m/s^2"
+    assert found["a_C"]["value"] == pytest.approx(-810.4, abs=0.05)
+    assert main(["point", "a_C", "theta=90deg", "ec=.23", "AB=.125", "BC=.35", "omega0=1", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["a_C"]["value"] is None
+    assert found["status"] == "cannot be assembled here"
+
+
+def test_point_with_branch_and_state(capsys):
+    where = ["theta=1", "ec=0.01", "AB=0.125", "BC=0.3", "branch=-1"]
+    assert main(["point", "a_C", *where, "omega=3", "alpha=2rad/s2"]) == 0
+    value = float(capsys.readouterr().out.split()[2])
+    point = {"theta": 1.0, "ec": 0.01, "AB": 0.125, "BC": 0.3, "omega": 3.0, "alpha": 2.0, "branch": -1}
+    assert value == dx.evaluate("a_C", **point)
+
+
+def test_list_of_names(capsys):
+    assert main(["point", "--list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == len(dx.quantities())
+    assert any(line.startswith("a_C ") and "acceleration of the slider (A (19))" in line for line in lines)
+
+
+COMPLAINTS = {
+    "no name": (["point"], "which quantity?"),
+    "no such name": (["point", "aC", *POINT], "unknown quantity 'aC'; did you mean a_C?"),
+    "no such input": (["point", "a_C", "CD=3"], "CD=3: no input is called 'CD', there are theta, ec"),
+    "input twice": (["point", "a_C", *POINT, "ec=3"], "ec=3: ec is given twice"),
+    "missing input": (["point", "a_C", *POINT[:-1]], "a_C: omega0 is missing"),
+    "bad value": (["point", "a_C", "AB=-1", *POINT[:2], *POINT[3:]], "it must be a finite length >= 0"),
+    "list": (["point", "Y", "theta=[1,2]"], "theta=[1,2]: it must be a number"),
+    "decimal comma": (["point", "Y", "theta=1,5"], "theta=1,5: it must be a number"),
+    "unit of another kind": (["point", "Y", "theta=1kg", *POINT[1:]], "not a quantity in rad"),
+    "no such branch": (["point", "Y", "branch=2"], "branch=2: it is 1 or -1"),
+    "no such option": (["point", "--exact"], "unrecognized arguments: --exact"),
+    "no such command": (["frobnicate"], "invalid choice: 'frobnicate'"),
+    "no scene": (["run"], "required: SCENE (see desaxe run --help)"),
+    "no such file": (["run", "missing.toml"], "missing.toml: No such file or directory"),
+    "no such verdict": (["errata", "--verdict", "maybe"], "unknown verdict 'maybe'"),
+    "no such document": (["errata", "--document", "Z"], "unknown document 'Z'"),
+}
+
+
+@pytest.mark.parametrize("complaint", COMPLAINTS)
+def test_complaint(complaint, capsys):
+    words, message = COMPLAINTS[complaint]
+    assert main(words) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("desaxe: error: ")
+    assert message in err
+    assert err.count("\n") == 1
+
+
+def test_scene_that_is_wrong(tmp_path, capsys):
+    path = tmp_path / "press.toml"
+    path.write_text('outputs = ["a_C"]\n[mechanism]\nec = { start = 0, stop = "3 kg", num = 3 }\n')
+    assert main(["run", str(path)]) == 2
+    err = capsys.readouterr().err
+    assert 'press.toml: mechanism.ec.stop = "3 kg": not a quantity in m' in err
+    assert err.count("\n") == 1
+
+
+def test_missing_extra(monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "tomllib", None)
+    for name in [name for name in sys.modules if name.startswith("desaxe._scene")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.delitem(vars(dx), "scene", raising=False)
+    monkeypatch.setitem(sys.modules, "msgspec", None)
+    assert main(["run", COMPACTOR]) == 2
+    assert "needs msgspec: python -m pip install 'desaxe[scene]'" in capsys.readouterr().err
+
+
+def test_run(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", COMPACTOR]) == 0
+    out, err = capsys.readouterr()
+    for text in ("29.5 rad/s", "-20.2 m/s", "-7740 rad/s2", "-994 m/s2"):
+        assert out.count(text) == 2
+    assert "Written\n  out/compactor.nc" in out.replace(os.sep, "/")
+    assert (tmp_path / "out" / "compactor.nc").exists()
+    assert err == ""
+
+
+@pytest.mark.parametrize("command", [(), *((name,) for name in COMMANDS)])
+def test_help(command, capsys):
+    assert main([*command, "--help"]) == 0
+    out, err = capsys.readouterr()
+    assert out.startswith("usage: ")
+    assert max(map(len, out.splitlines())) <= 100
+    assert err == ""
+
+
+def test_help_has_signs_and_examples(capsys):
+    main(["point", "--help"])
+    out = capsys.readouterr().out
+    assert "V_C and a_C are positive along +Y" in out
+    assert "desaxe point a_C theta=60deg ec=10mm AB=125mm BC=300mm omega0=1500rpm" in out
+
+
+def test_no_command_gives_help(capsys):
+    assert main([]) == 0
+    out = capsys.readouterr().out
+    assert all(f"    {command} " in out for command in COMMANDS)
+
+
+def test_version(capsys):
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"desaxe {dx.__version__}\n"
+
+
+def test_errata(capsys):
+    assert main(["errata", "--document", "A"]) == 0
+    assert "A-eq19" in capsys.readouterr().out
+    assert main(["errata", "--verdict", "sign", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found
+    assert {entry["verdict"] for entry in found} == {"sign"}
+
+
+def test_derive_hands_its_options_on(monkeypatch):
+    given = []
+
+    class Fake:
+        @staticmethod
+        def main(words):
+            given.append(words)
+            return 7
+
+    monkeypatch.setitem(sys.modules, "desaxe.derive.__main__", Fake)
+    assert main(["derive", "--check", "-o", "x"]) == 7
+    assert given == [["--check", "-o", "x"]]
+
+
+def test_interruption_is_no_traceback(monkeypatch, capsys):
+    def interrupted(words):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cli, "_run", interrupted)
+    assert main(["doctor"]) == 130
+    assert capsys.readouterr().err == "desaxe: interrupted\n"
+
+
+# ---- real processes ------------------------------------------------------------------------------
+
+
+def desaxe(*words, **options):
+    return subprocess.run(
+        [sys.executable, "-m", "desaxe.cli", *words], capture_output=True, text=True, **options
+    )
+
+
+def test_process(tmp_path):
+    done = desaxe("point", "a_C", *POINT, cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("a_C = -810.39")
+    done = desaxe("point", "a_C", "theta=1", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+
+
+def test_start_is_light():
+    """One point with plain numbers loads neither NumPy nor any optional dependency."""
+    heavy = ("numpy", "numba", "pint", "msgspec", "xarray", "matplotlib", "sympy", "tqdm")
+    code = f"""
+import sys
+from desaxe.cli import main
+code = main(["point", "a_C", "theta=1", "ec=0", "AB=1", "BC=3", "omega0=1"])
+print([name for name in {heavy!r} if name in sys.modules])
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX pipes")
+def test_broken_pipe():
+    """Whoever reads our output may stop reading."""
+    read, write = os.pipe()
+    os.close(read)
+    code = [sys.executable, "-m", "desaxe.cli", "point", "--list"]
+    with os.fdopen(write, "w") as closed:
+        done = subprocess.run(code, stdout=closed, stderr=subprocess.PIPE, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+# ---- doctor --------------------------------------------------------------------------------------
+
+
+def test_doctor(capsys):
+    assert main(["doctor"]) == 0
+    out = capsys.readouterr().out
+    assert max(len(line) for line in out.splitlines() if "/" not in line) <= 100
+    for word in ("numba", "llvmlite", "xarray", "folder", "threads", "freshness", "vectorised", "sin, cos"):
+        assert f"\n  {word} " in out
+    assert out.endswith("desaxe can be used.\n")
+
+
+def test_doctor_where_something_is_missing(monkeypatch):
+    real = doctor.version
+
+    def version(name):
+        if name in ("pint", "numba"):
+            raise doctor.PackageNotFoundError(name)
+        return real(name)
+
+    monkeypatch.setattr(doctor, "version", version)
+    monkeypatch.setattr(doctor, "_assembly", lambda: iter([""]))
+    found = doctor.examine()
+    assert "missing: python -m pip install 'desaxe[units]'" in found.text
+    assert not found.usable
+
+
+def test_doctor_where_nothing_compiles(monkeypatch):
+    def broken():
+        raise RuntimeError("no LLVM")
+
+    monkeypatch.setattr(doctor, "_assembly", broken)
+    found = doctor.examine()
+    assert "compilation  FAILED: RuntimeError: no LLVM" in found.text
+    assert not found.usable
+
+
+@pytest.mark.parametrize(
+    ("assembly", "doubles", "calls"),
+    {
+        "\tvmulpd\t%zmm1, %zmm2, %zmm3\n\tvmulsd\t%xmm1, %xmm2, %xmm3\n": (8, ()),
+        "\tvfmadd231pd\t(%rax), %ymm2, %ymm3\n": (4, ()),
+        "\tmulpd\t%xmm2, %xmm3\n": (2, ()),
+        "\tfmul\tv0.2d, v1.2d, v2.2d\n\tbl\tsincos\n": (2, ("sincos",)),
+        "\tvmulsd\t%xmm1, %xmm2, %xmm3\n\tmovabsq\t$sincos, %rax\n": (1, ("sincos",)),
+        "\tfmul\td0, d1, d2\n\tbl\t_sin\n\tbl\t_cos\n": (1, ("cos", "sin")),
+        '\tmovabsq\t$".const.missing", %rsi\n': (1, ()),
+    }.items(),
+)
+def test_doctor_reads_machine_code(assembly, doubles, calls):
+    loop = doctor.examine_assembly(assembly)
+    assert loop.doubles == doubles
+    assert loop.library_calls == calls
+    assert loop.vectorised is (doubles > 1)

@@ -1,0 +1,146 @@
+"""Pictures: labels from the dataset, gaps where infeasible, no pyplot."""
+
+import subprocess
+import sys
+
+import matplotlib.figure
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+
+import desaxe as dx
+from desaxe.plot import curves, save
+
+THETA = np.linspace(0, 2 * np.pi, 181)
+MACHINE = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
+
+
+def family(ecs, names=("a_C",)):
+    return dx.grid(list(names), ec=np.asarray(ecs), theta=THETA, **MACHINE)
+
+
+def texts(legend):
+    return [text.get_text() for text in legend.get_texts()]
+
+
+def test_family():
+    dataset = family([0, 0.05, 0.15])
+    lines = curves(dataset, "a_C", over="theta", family="ec")
+    axes = lines[0].axes
+    assert len(lines) == 3
+    assert axes.get_xlabel() == "crank angle, theta [deg]"
+    assert axes.get_ylabel() == "acceleration of the slider, a_C [m/s$^{2}$]"
+    assert axes.get_legend().get_title().get_text() == "ec [m]"
+    assert texts(axes.get_legend()) == ["0", "0.05", "0.15"]
+    assert len({to_hex(line.get_color()) for line in lines}) == 3
+    np.testing.assert_allclose(lines[1].get_xdata(), np.degrees(THETA))
+    np.testing.assert_array_equal(lines[1].get_ydata(), dataset.a_C.values[1])
+    assert axes.get_xlim() == pytest.approx((0, 360))
+    assert set(np.diff(axes.get_xticks())) == {45.0}
+
+
+def test_family_is_the_other_dimension():
+    dataset = family([0, 0.05]).transpose("theta", "ec")
+    assert [len(line.get_ydata()) for line in curves(dataset, "a_C")] == [181, 181]
+    over_ec = curves(dataset.isel(theta=[0, 45, 90]), "a_C", over="ec")
+    assert over_ec[0].axes.get_xlabel().endswith(", ec [m]")
+    assert texts(over_ec[0].axes.get_legend()) == ["0", "90", "180"]
+    assert over_ec[0].axes.get_legend().get_title().get_text() == "theta [deg]"
+
+
+def test_single_curve_has_no_legend():
+    dataset = dx.grid(["phi"], ec=0.05, theta=THETA, **MACHINE)
+    (line,) = dx.plot.curves(dataset, "phi")
+    assert line.axes.get_legend() is None
+    assert line.axes.get_ylabel() == "angle of the rod to the slider axis, phi [rad]"
+
+
+def test_given_axes_are_drawn_on():
+    axes = matplotlib.figure.Figure().add_subplot()
+    lines = curves(family([0, 0.1]), "a_C", ax=axes)
+    assert lines == list(axes.lines)
+
+
+def test_infeasible_points_are_gaps_and_do_not_squash_the_rest():
+    dataset = family([0.0, 0.2, 0.23])
+    lines = curves(dataset, "a_C")
+    assert np.isnan(lines[2].get_ydata()).any()
+    assert not np.isnan(lines[1].get_ydata()).any()
+    low, high = lines[0].axes.get_ylim()
+    largest = float(dataset.a_C.sel(ec=0.2).max())
+    assert largest < high < 2 * largest
+    assert np.nanmax(lines[2].get_ydata()) > high
+
+
+def test_nothing_feasible_still_draws():
+    lines = curves(family([1.0, 2.0]), "a_C")
+    assert np.isnan(lines[0].get_ydata()).all()
+    lines[0].figure.canvas.draw()
+
+
+def test_many_curves_get_a_colour_bar(tmp_path):
+    lines = curves(family(np.linspace(0, 0.2, 21)), "a_C")
+    axes = lines[0].axes
+    assert axes.get_legend() is None
+    labels = [other.get_ylabel() for other in axes.figure.axes if other is not axes]
+    assert labels == ["ec [m]"]
+    save(axes.figure, tmp_path / "many.png")
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"name": "V_C"}, "no 'V_C' in this dataset, it has: a_C, status, margin"),
+        ({"name": "a_C", "over": "BC"}, "a_C has no dimension 'BC', it has: ec, theta"),
+        ({"name": "a_C", "family": "AB"}, "a_C has no dimension 'AB'"),
+        ({"name": "a_C", "family": "theta"}, "another dimension than over"),
+        ({"name": "margin"}, "margin has no dimension 'theta', it has: ec"),
+    ],
+)
+def test_complaints(options, words):
+    with pytest.raises(ValueError, match=words):
+        curves(family([0, 0.1]), **options)
+
+
+def test_dimensions_left_over():
+    dataset = dx.grid(["a_C"], ec=[0, 0.1], AB=[0.1, 0.12], BC=0.35, omega0=1, theta=THETA)
+    with pytest.raises(
+        ValueError, match=r"a_C varies with AB too: choose a value first, dataset\.sel\(AB=\.\.\.\)"
+    ):
+        curves(dataset, "a_C", family="ec")
+    assert len(curves(dataset.sel(AB=0.12), "a_C")) == 2
+
+
+@pytest.mark.parametrize("kind", ["png", "svg", "pdf"])
+def test_save(kind, tmp_path):
+    figure = curves(family([0, 0.1]), "a_C")[0].figure
+    path = save(figure, tmp_path / "new" / f"picture.{kind}")
+    assert path.stat().st_size > 1000
+    assert [other.name for other in path.parent.iterdir()] == [path.name]
+
+
+def test_unknown_kind_of_file_leaves_nothing(tmp_path):
+    figure = curves(family([0, 0.1]), "a_C")[0].figure
+    with pytest.raises(ValueError, match="xyz"):
+        save(figure, tmp_path / "picture.xyz")
+    assert not list(tmp_path.iterdir())
+
+
+def test_pyplot_is_never_loaded():
+    code = """
+import sys
+import numpy as np
+import desaxe as dx
+dataset = dx.grid(["a_C"], ec=[0, 0.1], theta=np.linspace(0, 6, 9), AB=0.125, BC=0.35, omega0=1)
+dx.plot.curves(dataset, "a_C")
+print("matplotlib.pyplot" in sys.modules)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
+
+
+def test_missing_extra(monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    with pytest.raises(ImportError, match=r"plot\.curves needs matplotlib.*'desaxe\[plot\]'"):
+        curves(family([0, 0.1]), "a_C")
