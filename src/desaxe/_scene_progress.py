@@ -11,6 +11,7 @@ Progress = Callable[[int, int, str], None]
 
 DELAY = 1.0  # seconds without a bar
 PACE = 0.2  # seconds between two looks
+FORMAT = "{n_fmt} of {total_fmt} steps |{bar}| {desc}"
 
 
 class Steps:
@@ -54,7 +55,7 @@ def _show(tqdm: Any, state: list[tuple[int, int, str]], over: Event, delay: floa
     """Draw the newest state until it is over; a thread of its own, since one step can take long."""
     if over.wait(delay):
         return
-    with tqdm(total=1, leave=False, file=sys.stderr, unit="step", dynamic_ncols=True) as bar:
+    with tqdm(total=state[0][1], bar_format=FORMAT, leave=False, file=sys.stderr, dynamic_ncols=True) as bar:
         while not over.wait(PACE):
             bar.n, bar.total, what = state[0]
             bar.set_description_str(what, refresh=True)

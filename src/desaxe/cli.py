@@ -256,8 +256,8 @@ A scene is a TOML file. It is data only: nothing in it is executed. Its keys:
   [motion]        theta, omega0 or omega, alpha
                   each a number (SI), "125 mm", a list, or { start = , stop = , num = or step = }
   [[check]]       printed = { a_C = "-994 m/s2" }, at = { theta = "60 deg" }, source, title, digits
-  [[peak]]        quantity, kind (absmax, max or min), over = { ec = [0, "50 mm"] }, theta = [from, to],
-                  baseline = { ec = 0 }, sensitivities = ["ec", "AB", "BC"], title
+  [[peak]]        quantity, kind (absmax, max or min), over = { ec = [0, "50 mm"] },
+                  theta = [from, to], baseline = { ec = 0 }, sensitivities = ["ec", "AB"], title
   [[peak.claim]]  at = { ec = "150 mm" }, increase = "33 %", source
   [[picture]]     file, quantity, over = "theta", family = { ec = [0, "50 mm"] }, at, title
   [results]       data = "out/values.nc" (NetCDF; the peaks are groups in it)

@@ -1,5 +1,7 @@
 """`python -m derive --report`: what each pass leaves, for every quantity."""
 
+from functools import cache
+
 import pytest
 
 from desaxe.compiler.passes.pipeline import PASSES, optimise
@@ -9,9 +11,14 @@ from desaxe.derive.report import CONCENTRIC, GENERAL, report
 from tests.derive.derived import derivation
 
 
+@cache
+def lines():
+    return report(derivation()).splitlines()
+
+
 def rows(name):
     """The words of the rows that start with a name, of both tables."""
-    return [line.split() for line in report(derivation()).splitlines() if line.startswith(f"{name} ")]
+    return [line.split() for line in lines() if line.startswith(f"{name} ")]
 
 
 @pytest.mark.parametrize("name", QUANTITIES)
@@ -30,5 +37,5 @@ def test_the_counts_are_those_of_the_pipeline(table, fixed):
 
 
 def test_the_whole_program_comes_first():
-    words = report(derivation()).splitlines()[0].replace(",", "").split()
+    words = lines()[0].replace(",", "").split()
     assert {str(len(derivation().program.lines)), str(len(derivation().names))} <= set(words)

@@ -2,8 +2,10 @@
 
 import contextlib
 import copy
+import io
 import math
 import sys
+import time
 import tomllib
 from pathlib import Path
 
@@ -15,6 +17,7 @@ import desaxe as dx
 from desaxe import _scene_run
 from desaxe._scene_number import quantity_text
 from desaxe._scene_printed import read_percentage, read_printed
+from desaxe._scene_progress import progress_bar
 from desaxe._scene_schema import SceneError
 
 COMPACTOR = Path(__file__).parents[2] / "examples" / "compactor.toml"
@@ -375,6 +378,27 @@ def test_progress(compactor):
     assert set(total) == {len(steps) - 1}
     assert what[0] == "values"
     assert what[-1] == ""
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+def test_progress_bar(monkeypatch):
+    """It shows up on a terminal after a while, and is silent elsewhere."""
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    with progress_bar(delay=0.0) as progress:
+        progress(3, 7, "values")
+        time.sleep(0.5)
+    assert "3 of 7 steps" in sys.stderr.getvalue()
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    with progress_bar() as progress:
+        progress(3, 7, "values")
+    assert sys.stderr.getvalue() == ""
+    monkeypatch.setattr(sys, "stderr", io.StringIO())
+    with progress_bar(delay=0.0) as progress:
+        assert progress is None
 
 
 @pytest.mark.parametrize("text", ["29.5 rad/s", "-20.2 m/s", "-7740 rad/s2", "-994 m/s2"])

@@ -1,0 +1,23 @@
+"""The same bytes whatever the hash seed: nothing is ever taken in the order of a set."""
+
+import os
+import subprocess
+import sys
+
+from desaxe.derive.write import render
+from tests.derive.derived import derivation
+
+SEEDS = ("0", "1", "4242")
+
+
+def start(seed, folder):
+    command = [sys.executable, "-m", "desaxe.derive", "-o", str(folder)]
+    return subprocess.Popen(command, env=os.environ | {"PYTHONHASHSEED": seed}, stderr=subprocess.DEVNULL)
+
+
+def test_every_hash_seed_writes_the_same_bytes(tmp_path):
+    running = [start(seed, tmp_path / seed) for seed in SEEDS]
+    assert [process.wait() for process in running] == [0, 0, 0]
+    wanted = {name: text.encode() for name, text in render(derivation()).items()}
+    for seed in SEEDS:
+        assert {path.name: path.read_bytes() for path in (tmp_path / seed).iterdir()} == wanted

@@ -1,0 +1,139 @@
+"""The committed kernels: self-contained modules that give what `desaxe.evaluate` gives."""
+
+import inspect
+import math
+import random
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from desaxe._kernels import constants
+from desaxe._program import _text
+from desaxe.derive.groups import GROUPS
+from desaxe.generated.program import law
+
+NAMES = [group.name for group in GROUPS]
+OUTPUTS = {group.name: group.outputs for group in GROUPS}
+INPUTS = ("theta", "ec", "AB", "BC", "omega0", "alpha")
+
+
+def evaluate(group, **inputs):
+    """The function of a group; what it does not take is left out."""
+    function = import_module(f"desaxe.generated.{group}").evaluate
+    return function(**{name: inputs[name] for name in inspect.signature(function).parameters if name in inputs})
+
+
+def points(count, seed=7):
+    """Random points: mechanisms that turn fully, and a few that cannot be assembled at all."""
+    rng = np.random.default_rng(seed)
+    BC = rng.uniform(0.2, 1.0, count)
+    columns = {
+        "theta": rng.uniform(-9, 9, count),
+        "ec": BC * rng.uniform(-0.3, 0.3, count),
+        "AB": BC * rng.uniform(0.05, 0.5, count),
+        "BC": BC,
+        "omega0": rng.choice([-1, 1], count) * rng.uniform(50, 200, count),
+        "alpha": rng.uniform(-50, 50, count),
+    }
+    columns["ec"][::7] = 2 * BC[::7]
+    return columns
+
+
+@pytest.mark.parametrize("group", NAMES)
+@pytest.mark.parametrize("branch", [1, -1])
+def test_a_kernel_gives_what_evaluate_gives(group, branch):
+    columns = points(60)
+    found = evaluate(group, **columns, branch=branch)
+    wanted = dx.evaluate(list(OUTPUTS[group]), **columns, branch=branch)
+    for name in OUTPUTS[group]:
+        scale = np.nanmax(np.abs(wanted[name]))
+        np.testing.assert_allclose(found[name], wanted[name], rtol=1e-11, atol=1e-13 * scale, err_msg=name)
+
+
+@pytest.mark.parametrize("group", NAMES)
+def test_an_infeasible_point_is_nan(group):
+    columns = points(60)
+    for name, values in evaluate(group, **columns).items():
+        if name not in ("status", "margin"):
+            assert np.isnan(values[::7]).all(), name
+            assert np.isfinite(np.delete(values, np.s_[::7])).all(), name
+
+
+@pytest.mark.parametrize("group", NAMES)
+def test_it_broadcasts(group):
+    columns = points(5)
+    grid = {name: values[:, None] for name, values in columns.items()} | {"theta": np.array([0.1, 0.2, 0.3])}
+    found = evaluate(group, **grid)
+    for column, theta in enumerate(grid["theta"]):
+        row = evaluate(group, **columns | {"theta": float(theta)})
+        assert {name: values.shape for name, values in found.items()} == dict.fromkeys(OUTPUTS[group], (5, 3))
+        assert all(np.array_equal(found[name][:, column], row[name], equal_nan=True) for name in row)
+
+
+@pytest.mark.parametrize("group", NAMES)
+def test_its_outputs_are_those_of_the_group(group):
+    assert import_module(f"desaxe.generated.{group}").OUTPUTS == OUTPUTS[group]
+
+
+BAD = {"theta": math.nan, "ec": math.inf, "AB": -0.1, "BC": -0.35, "omega0": math.nan, "alpha": -math.inf}
+
+
+@pytest.mark.parametrize("group", NAMES)
+@pytest.mark.parametrize("name", BAD)
+def test_a_bad_element_disturbs_no_other(group, name):
+    columns = points(6)
+    before = evaluate(group, **columns)
+    after = evaluate(group, **columns | {name: np.where(np.arange(6) == 2, BAD[name], columns[name])})
+    for output in before:
+        assert np.array_equal(np.delete(before[output], 2), np.delete(after[output], 2), equal_nan=True)
+
+
+@pytest.mark.parametrize("group", NAMES)
+def test_a_bad_rod_makes_everything_nan(group):
+    columns = points(6) | {"BC": np.array([0.35, 0.35, -0.35, 0.35, 0.0, math.inf])}
+    for output, values in evaluate(group, **columns).items():
+        if output != "status":
+            assert np.isnan(values[[2, 4, 5]]).all(), output
+
+
+@pytest.mark.parametrize("name", ["theta", "ec", "AB", "BC"])
+def test_the_status_of_a_bad_element_is_4(name):
+    columns = points(6)
+    found = evaluate("position", **columns | {name: np.where(np.arange(6) == 2, BAD[name], columns[name])})
+    assert found["status"].tolist() == [1, 0, 4, 0, 0, 0]
+    assert found["status"].dtype == np.int8
+
+
+@pytest.mark.parametrize("group", NAMES)
+def test_an_angle_beyond_the_written_out_sine_is_nan(group):
+    limit = constants().limit
+    theta = np.array([limit, math.nextafter(limit, math.inf), -2 * limit])
+    found = evaluate(group, theta=theta, ec=0.0, AB=0.125, BC=0.35, omega0=10.0, alpha=0.0)
+    first = OUTPUTS[group][0]
+    assert np.isnan(found[first]).tolist() == [False, True, True]
+
+
+@pytest.mark.parametrize("group", NAMES)
+def test_numbers_and_integers_are_taken(group):
+    found = evaluate(group, theta=1, ec=0, AB=1, BC=3, omega0=2, alpha=0)
+    wanted = evaluate(group, theta=1.0, ec=0.0, AB=1.0, BC=3.0, omega0=2.0, alpha=0.0)
+    assert all(found[name].shape == () and found[name] == wanted[name] for name in OUTPUTS[group])
+
+
+def feasible_points(count):
+    rng = random.Random("law")
+    for _ in range(count):
+        BC, speed = rng.uniform(0.2, 1.0), rng.choice([-1, 1]) * rng.uniform(50, 200)
+        values = rng.uniform(-9, 9), BC * rng.uniform(-0.3, 0.3), BC * rng.uniform(0.05, 0.6), BC, speed
+        yield dict(zip(INPUTS, (*values, rng.choice([0.0, rng.uniform(-50, 50)])), strict=True))
+
+
+@pytest.mark.parametrize("branch", [1, -1])
+def test_the_text_itself_runs_as_python(branch):
+    names = _text("program").outputs()
+    public = [quantity.name for quantity in dx.quantities()]
+    for point in feasible_points(25):
+        found = dict(zip(names, law(**point, branch=float(branch)), strict=True))
+        assert {name: found[name] for name in public} == dx.evaluate(public, **point, branch=branch)

@@ -1,0 +1,46 @@
+"""What is loaded when: nothing heavy before it is needed, in a new process each."""
+
+import subprocess
+import sys
+
+import pytest
+
+HEAVY = ("numpy", "numba", "sympy", "xarray", "matplotlib", "pint", "desaxe.derive")
+POINT = "theta=1.0, ec=0.01, AB=0.125, BC=0.35, omega0=157.0"
+ARRAYS = "theta=numpy.array([1.0, 2.0]), ec=0.01, AB=0.125, BC=0.35, omega0=157.0"
+KERNEL = "theta=numpy.linspace(0, 6, 3000), ec=0.01, AB=0.125, BC=0.35, omega0=157.0"
+
+
+def loaded_by(code):
+    """Which of the heavy modules are loaded after this code."""
+    report = f"import sys; print(*(name for name in {HEAVY!r} if name in sys.modules))"
+    command = [sys.executable, "-W", "error", "-c", f"{code}\n{report}"]
+    return set(subprocess.run(command, capture_output=True, text=True, check=True).stdout.split())
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import desaxe",
+        "import desaxe.generated",
+        f"import desaxe\ndesaxe.evaluate('a_C', {POINT})",
+        f"import desaxe\ndesaxe.evaluate(['Y', 'status', 'alpha_BC_wrt_ec_AB'], {POINT}, branch=-1)",
+        "import desaxe\ndesaxe.evaluate('a_C_wrt_omega', theta=1, ec=0, AB=1, BC=3, omega=2)",
+        "import desaxe\ndesaxe.quantities()",
+    ],
+)
+def test_one_point_loads_nothing(code):
+    assert loaded_by(code) == set()
+
+
+def test_a_few_points_load_numpy_alone():
+    assert loaded_by(f"import numpy, desaxe\ndesaxe.evaluate('a_C', {ARRAYS})") == {"numpy"}
+
+
+def test_a_kernel_loads_numba_and_no_sympy():
+    assert loaded_by(f"import numpy, desaxe\ndesaxe.evaluate('a_C', {KERNEL})") == {"numpy", "numba"}
+
+
+def test_a_unit_loads_pint():
+    with_unit = POINT.replace("ec=0.01", "ec='10 mm'")
+    assert "pint" in loaded_by(f"import desaxe\ndesaxe.evaluate('a_C', {with_unit})")
