@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
+import llvmlite.binding
 import numba
 import numpy as np
 import sympy as sp
@@ -34,9 +35,8 @@ def main() -> None:
     parser.add_argument("--points", type=int, default=1_000_000)
     parser.add_argument("--rounds", type=int, default=7)
     options = parser.parse_args()
-    print(
-        f"{platform.processor() or platform.machine()}, {dx.__version__=}, {numba.__version__=}, {np.__version__=}\n"
-    )
+    versions = f"desaxe {dx.__version__}, numba {numba.__version__}, NumPy {np.__version__}"
+    print(f"{platform.machine()}, {llvmlite.binding.get_host_cpu_name()}, {versions}\n")
     print(f"time at {options.points} random points, one core, as a multiple of desaxe's\n")
     print("| work | NumPy lambdify | numba on it | desaxe |\n|---|---|---|---|")
     for title, names in WORK.items():

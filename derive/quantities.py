@@ -106,7 +106,9 @@ def _define_rod(sheet: Sheet) -> None:
     }
     for name, (near, far, meaning) in forms.items():
         sheet.define(name.name, select(near_quarter, near, far), unit=LENGTH, meaning=meaning)
-    sheet.define("D", E * W, unit=Unit(m=2), meaning="BC^2 - u^2", source="B (7)")
+    # E + W = 2 BC: the smaller one gives the other, and their roundings do not add up in the product.
+    less = sheet.define("less", select(lt(E, W), E, W), unit=LENGTH, meaning="the smaller of E and W")
+    sheet.define("D", less * (2 * BC - less), unit=Unit(m=2), meaning="BC^2 - u^2 = E W", source="B (7)")
     sheet.define("S", sp.sqrt(D), unit=LENGTH, meaning="BC cos(phi), the rod's height", source="B (7)")
     sheet.define("inv_S", 1 / S, unit=Unit(m=-1), meaning="1 / S")
     pin_side = sheet.define("pin_side", AB + ec_side)  # exact where they nearly cancel

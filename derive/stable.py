@@ -92,7 +92,9 @@ def phi_rate(order: int) -> sp.Expr:
         return crank_ratio * cos_theta
     if order == 2:
         return recollected(order)
-    in_ratios = chain_rule_form(order).subs({u: tan_phi / r, sin_theta: side * abs_sin}).subs(AB, crank_ratio / r)
+    in_ratios = (
+        chain_rule_form(order).subs({u: tan_phi / r, sin_theta: side * abs_sin}).subs(AB, crank_ratio / r)
+    )
     plain = sp.collect(sp.expand(in_ratios), crank_ratio, sp.factor).subs(side * abs_sin, sin_theta)
     return select(le(absolute(margin_ratio), 1), recollected(order), plain)
 

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._evaluate import Request, as_number
 from ._kernels import KernelKey, is_ready, kernel_for, key_of, point_for
 from ._program import program_of
+from ._request import Request, as_number
 from ._threads import run_in_blocks
 from .inputs import INPUTS
 

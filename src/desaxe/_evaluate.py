@@ -4,28 +4,18 @@ This file is the path of a single point, which needs only `math`. As soon as an 
 array, `_arrays` takes over.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import _program
-from .catalogue import law_name, quantity
+from ._request import Request, as_number, request
+from .catalogue import quantity
 from .compiler.emit_python import compile_python
 from .compiler.passes.pipeline import optimise
-from .inputs import INPUTS, is_good
+from .inputs import is_good
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-ACCURACIES = ("standard",)
-
-
-class Request(NamedTuple):
-    """What is asked for: the names as the user says them, the same under the law, state, branch."""
-
-    shown: tuple[str, ...]
-    names: tuple[str, ...]
-    state: bool
-    branch: int
 
 
 class Point(NamedTuple):
@@ -100,21 +90,6 @@ def evaluate(
 _POINTS: dict[tuple[Any, ...], Point] = {}
 
 
-def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accuracy: str) -> Request:
-    """The request, checked; its names are those of the law."""
-    state = given.get("omega") is not None
-    if state and given.get("omega0") is not None:
-        raise ValueError("give omega0= (the law) or omega= (a state), not both")
-    if branch not in (1, -1):
-        raise ValueError(f"branch = {branch!r}: it is +1 or -1")
-    if accuracy not in ACCURACIES:
-        raise ValueError(f"accuracy = {accuracy!r}: it is one of {', '.join(ACCURACIES)}")
-    for name in names:
-        quantity(name, state)
-    shown = tuple(names)
-    return Request(shown, tuple(law_name(name) if state else name for name in shown), state, int(branch))
-
-
 def _unmoved(names: tuple[str, ...]) -> dict[str, float]:
     """The speed to take where none is given and only `status` would use it: a crank that stands still."""
     others = tuple(name for name in names if name not in ("status", "margin"))
@@ -127,24 +102,3 @@ def _unmoved(names: tuple[str, ...]) -> dict[str, float]:
 def _point(wanted: Request) -> Point:
     program, _ = optimise(_program.program_of(wanted.names, wanted.state), {"branch": float(wanted.branch)})
     return Point(compile_python(program), program.inputs)
-
-
-def as_number(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]) -> float | None:
-    """The input as a float, None if it is an array; an error that names it if it is bad or missing."""
-    if value is None:
-        raise TypeError(f"{', '.join(names)}: {name} is missing (needed: {', '.join(inputs)})")
-    if isinstance(value, str) or hasattr(value, "magnitude"):
-        from .units import in_si
-
-        value = in_si(name, value)
-    if isinstance(value, bool) or not (isinstance(value, (int, float)) or _is_numpy_number(value)):
-        return None
-    number = float(value)
-    if not is_good(name, number):
-        raise ValueError(f"{name} = {value!r}: it must be {INPUTS[name].limit}")
-    return number
-
-
-def _is_numpy_number(value: Any) -> bool:
-    """A NumPy real scalar such as np.float32(1); a 0-d array is an array."""
-    return getattr(value, "shape", None) == () and hasattr(value, "is_integer")

@@ -3,7 +3,7 @@
 from math import asin, fsum, pi, sqrt, ulp
 from typing import Any
 
-from ._evaluate import as_number
+from ._request import as_number
 
 CHANGE_POINT_ULPS = 4  # |margin| within so many last bits of BC is called a change-point design
 

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._arrays import as_array, delivered, dtype_of, places_for
-from ._evaluate import Request, request
 from ._kernels import kernel_for, key_of
 from ._program import program_of
+from ._request import Request, request
 from ._threads import run_in_blocks
 from .catalogue import quantity
 from .extras import needed

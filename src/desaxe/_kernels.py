@@ -16,7 +16,7 @@ from threading import Lock
 from typing import Any, NamedTuple
 
 from . import _cache, _program
-from ._evaluate import Request
+from ._request import Request
 from .compiler.emit_numba import emit_numba
 from .compiler.emit_python import compile_python
 from .compiler.kernel import hoist

@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._arrays import as_array, broadcast_shape
-from ._evaluate import evaluate, request
+from ._evaluate import evaluate
 from ._feasibility import theta_intervals
 from ._program import program_of
+from ._request import request
 from .catalogue import quantities
 from .inputs import INPUTS
 
@@ -77,6 +78,9 @@ def peak(
               at a limit angle
     status    0 ok, 1 cannot be assembled anywhere in the range, 2 reached at a limit angle or change
               point, 3 stalled in all of the range, 4 bad input
+
+    Where two angles share the extreme value, as by symmetry at ec = 0, one of them is told, and the
+    gradient is the one-sided derivative there.
 
     Raises ValueError for an unknown kind, or a quantity whose derivative by theta is not derived.
     """

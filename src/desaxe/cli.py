@@ -207,7 +207,7 @@ def _names_and_inputs(words: Sequence[str]) -> tuple[list[str], dict[str, Any]]:
 
 
 def _quantity(word: str, text: str) -> str:
-    from ._scene_number import quantity_text
+    from ._quantity_text import quantity_text
 
     try:
         return quantity_text(text)
@@ -277,7 +277,7 @@ def _add_run(commands: Any) -> None:
 
 def _scene(options: argparse.Namespace) -> int:
     from . import scene
-    from ._scene_progress import progress_bar
+    from ._scene.progress import progress_bar
 
     wanted = scene(options.scene)
     with progress_bar() as progress:

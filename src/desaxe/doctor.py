@@ -192,8 +192,8 @@ def _assembly() -> Iterator[str]:
     """The machine code of a fresh kernel with every input an array; numba keeps none of a cached one."""
     import numpy as np
 
-    from ._evaluate import request
     from ._kernels import key_of, source_of
+    from ._request import request
 
     columns = dict.fromkeys(INPUTS, np.ones(8))
     wanted = request(NAMES, {"omega0": 1.0}, 1, "standard")

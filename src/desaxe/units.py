@@ -1,10 +1,10 @@
 """Units at the border: text such as "10 mm" and pint quantities become SI numbers (extra `units`)."""
 
-import re
 from functools import cache
 from typing import Any
 
-from .extras import needed
+from ._quantity_text import quantity_text
+from .extras import MissingExtraError, needed
 from .inputs import INPUTS
 
 
@@ -42,9 +42,9 @@ def _plain_number(text: str) -> float | None:
 
 
 def _parsed(name: str, text: str) -> Any:
-    # "60deg" and "1500rpm" as people write them on a command line.
-    spaced = re.sub(r"^([-+0-9.eE]*[0-9.])\s*([a-zA-Z%])", r"\1 \2", text.strip())
     try:
-        return registry().Quantity(spaced)
+        return registry().Quantity(quantity_text(text))
+    except MissingExtraError:
+        raise
     except Exception as error:
         raise ValueError(f"{name} = {text!r}: cannot be read as a number with a unit ({error})") from None

@@ -42,7 +42,9 @@ def test_the_committed_program_bound_on_a_branch():
     assert same(exactly(bound, POINT), exactly(program, POINT | {"branch": -1.0}))
 
 
-OTHER = Program(("w",), (Line("_1", "neg", ("w",)), Line("u", "sin", ("_1",))), ("u",), {"u": Note("m", "new")})
+OTHER = Program(
+    ("w",), (Line("_1", "neg", ("w",)), Line("u", "sin", ("_1",))), ("u",), {"u": Note("m", "new")}
+)
 
 
 def test_the_lines_of_the_overlay_come_instead():

@@ -2,7 +2,6 @@
 
 from desaxe.compiler.operations import OPERATIONS
 from desaxe.compiler.program import validate
-
 from tests.compiler.coverage_set import coverage
 
 

@@ -52,7 +52,9 @@ def differing(found, index, point):
         x, y = point["x"], point["y"]
         wanted["lost"] += (mpmath.mpf(x) + mpmath.mpf(y) - mpmath.mpf(x + y)) / 2
         size = max(1, *map(abs, point.values()))
-        return [n for n in NAMES if abs(float(found[n][index]) - wanted[n]) > 4e-16 * max(size, abs(wanted[n]))]
+        return [
+            n for n in NAMES if abs(float(found[n][index]) - wanted[n]) > 4e-16 * max(size, abs(wanted[n]))
+        ]
 
 
 def test_nan_survives():
@@ -127,7 +129,9 @@ def test_only_math_numpy_and_numba_are_imported(source):
 @pytest.mark.parametrize("source", SOURCES)
 def test_everything_it_uses_stands_in_it(source):
     tree = ast.parse(source())
-    used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}
+    used = {
+        node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)
+    }
     assert used - bound(tree) <= {"range", "RuntimeError"}
 
 
@@ -136,9 +140,11 @@ def bound(tree):
     nodes = list(ast.walk(tree))
     names = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
     names |= {alias.name for node in nodes if isinstance(node, ast.ImportFrom) for alias in node.names}
-    return names | {n.arg for n in nodes if isinstance(n, ast.arg)} | {
-        n.name for n in nodes if isinstance(n, ast.FunctionDef)
-    }
+    return (
+        names
+        | {n.arg for n in nodes if isinstance(n, ast.arg)}
+        | {n.name for n in nodes if isinstance(n, ast.FunctionDef)}
+    )
 
 
 def options(source):

@@ -33,7 +33,11 @@ def test_the_coverage_set_against_exact(point):
     with mpmath.workdps(30):
         wanted = exactly(coverage(), point)
         wanted["lost"] += exact_error(point) / 2
-        wrong = [n for n in NAMES if abs(answers[n] - wanted[n]) > 4e-16 * max(1, abs(wanted[n]), *map(abs, point.values()))]
+        wrong = [
+            n
+            for n in NAMES
+            if abs(answers[n] - wanted[n]) > 4e-16 * max(1, abs(wanted[n]), *map(abs, point.values()))
+        ]
     assert not wrong
 
 
@@ -56,7 +60,9 @@ def test_the_committed_program():
     assert dict(zip(program.outputs, answers, strict=True)) == in_doubles(program, POINT)
 
 
-@pytest.mark.parametrize("nested", [("div", "x", 0.0), ("sqrt", -4.0), ("floor", math.nan), ("sin", ("mul", "x", math.inf))])
+@pytest.mark.parametrize(
+    "nested", [("div", "x", 0.0), ("sqrt", -4.0), ("floor", math.nan), ("sin", ("mul", "x", math.inf))]
+)
 def test_it_never_raises(nested):
     (answer,) = compile_python(program_of_nested(nested))(1.0, 2.0, 3.0)
     assert not math.isfinite(answer)

@@ -115,7 +115,18 @@ def test_no_bit_changes_where_all_is_finite(program, point):
     assert same(in_doubles(fold_constants(program), point), in_doubles(program, point))
 
 
-NAMES = ("Y", "phi", "V_C", "a_C", "j_C", "alpha_BC", "a_C_wrt_ec", "omega_BC_wrt_AB", "V_C_wrt_theta", "status")
+NAMES = (
+    "Y",
+    "phi",
+    "V_C",
+    "a_C",
+    "j_C",
+    "alpha_BC",
+    "a_C_wrt_ec",
+    "omega_BC_wrt_AB",
+    "V_C_wrt_theta",
+    "status",
+)
 SCENES = [{}, {"ec": 0.0}, {"alpha": 0.0}, {"ec": 0.0, "alpha": 0.0, "branch": 1.0}, {"branch": -1.0}]
 
 

@@ -36,14 +36,18 @@ def test_a_good_element_is_untouched(x, status):
     assert guarded(x, 2.0) == {"u": x * 2.0, "status": status}
 
 
-@pytest.mark.parametrize(("x", "y"), [(math.nan, 3), (math.inf, 3), (-math.inf, 3), (3, 1.9), (3, -5), (3, math.inf)])
+@pytest.mark.parametrize(
+    ("x", "y"), [(math.nan, 3), (math.inf, 3), (-math.inf, 3), (3, 1.9), (3, -5), (3, math.inf)]
+)
 def test_a_bad_element_is_nan_with_its_status(x, y):
     found = guarded(float(x), float(y))
     assert math.isnan(found["u"])
     assert found["status"] == BAD_INPUT
 
 
-@pytest.mark.parametrize(("x", "status"), [(1e6, 0), (-1e6, 1), (1000001.0, BAD_INPUT), (math.nan, BAD_INPUT)])
+@pytest.mark.parametrize(
+    ("x", "status"), [(1e6, 0), (-1e6, 1), (1000001.0, BAD_INPUT), (math.nan, BAD_INPUT)]
+)
 def test_an_element_too_large_is_bad(x, status):
     assert guarded(x, 2.0, largest=LARGEST_X)["status"] == status
 

@@ -54,13 +54,16 @@ def test_nothing_raises_in_doubles(program, point):
 
 
 @pytest.mark.parametrize(
-    ("nested", "value"), [(("div", 1.0, 0.0), math.inf), (("div", -1.0, 0.0), -math.inf), (("mul", 1e300, 1e300), math.inf)]
+    ("nested", "value"),
+    [(("div", 1.0, 0.0), math.inf), (("div", -1.0, 0.0), -math.inf), (("mul", 1e300, 1e300), math.inf)],
 )
 def test_infinities_flow(nested, value):
     assert in_doubles(program_of_nested(nested), {})["out"] == value
 
 
-@pytest.mark.parametrize("nested", [("div", 0.0, 0.0), ("sqrt", -1.0), ("sin", math.inf), ("sub", math.inf, math.inf)])
+@pytest.mark.parametrize(
+    "nested", [("div", 0.0, 0.0), ("sqrt", -1.0), ("sin", math.inf), ("sub", math.inf, math.inf)]
+)
 def test_what_has_no_value_is_nan(nested):
     assert math.isnan(in_doubles(program_of_nested(nested), {})["out"])
 

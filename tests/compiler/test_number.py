@@ -21,7 +21,9 @@ from tests.compiler.programs import (
 def numbered(*nested):
     """The lines after numbering a product of these."""
     sides = [lines_of(side) for side in nested]
-    lines = [line._replace(name=f"s{i}_{line.name}", args=own(line, i)) for i, s in enumerate(sides) for line in s]
+    lines = [
+        line._replace(name=f"s{i}_{line.name}", args=own(line, i)) for i, s in enumerate(sides) for line in s
+    ]
     product = Line("product", "atan2", tuple(f"s{i}_out" for i in range(2)))
     return number_values(Program(("x", "y", "z"), (*lines, product), ("product",), {})).lines
 

@@ -35,7 +35,9 @@ CALLED = ("sin", "cos", "atan2")  # each library rounds these in its own way
 
 def arguments(op):
     """All combinations of edge values for the arguments of an operation."""
-    return itertools.product(*(BOOLS if letter == "b" else FLOATS for letter in OPERATIONS[op].signature[:-1]))
+    return itertools.product(
+        *(BOOLS if letter == "b" else FLOATS for letter in OPERATIONS[op].signature[:-1])
+    )
 
 
 def ordinary(op, count=50):
@@ -121,7 +123,9 @@ def test_ieee_rounds_the_exact_meaning(op):
             assert ulp_error(float(ieee(op, *point)), mpmath.mpf(exact)) < 1, point
 
 
-@pytest.mark.parametrize("spell", [python_spelling("two_sum_error"), lambda a, b: ieee("two_sum_error", a, b)])
+@pytest.mark.parametrize(
+    "spell", [python_spelling("two_sum_error"), lambda a, b: ieee("two_sum_error", a, b)]
+)
 def test_the_error_of_a_sum_is_what_rounding_took(spell):
     for a, b in [*ordinary("add"), (1.0, TINY), (1e16, -1.0), (0.1, 1e9), (-LEAST, TINY)]:
         assert Fraction(a) + Fraction(b) == Fraction(a + b) + Fraction(spell(a, b))

@@ -4,7 +4,16 @@ import math
 
 import pytest
 
-from desaxe.compiler.program import Line, Note, Program, ProgramError, reached, renamed_temporaries, type_of, validate
+from desaxe.compiler.program import (
+    Line,
+    Note,
+    Program,
+    ProgramError,
+    reached,
+    renamed_temporaries,
+    type_of,
+    validate,
+)
 from tests.compiler.programs import committed
 
 U = Line("u", "add", ("x", "y"))
@@ -48,7 +57,9 @@ def test_the_committed_program_is_canonical():
     assert validate(program) is program
 
 
-@pytest.mark.parametrize("argument, kind", [("n", "i64"), (1.0, "f64"), (math.nan, "f64"), (1, "i64"), (True, "bool")])
+@pytest.mark.parametrize(
+    "argument, kind", [("n", "i64"), (1.0, "f64"), (math.nan, "f64"), (1, "i64"), (True, "bool")]
+)
 def test_every_argument_has_a_type(argument, kind):
     assert type_of(argument, {"n": "i64"}) == kind
 
@@ -59,7 +70,17 @@ def test_what_the_outputs_reach():
 
 
 def test_only_temporaries_are_renamed():
-    lines = (Line("_a", "neg", ("x",)), Line("u", "neg", ("_a",)), Line("_b", "neg", ("u",)), Line("v", "neg", ("_b",)))
+    lines = (
+        Line("_a", "neg", ("x",)),
+        Line("u", "neg", ("_a",)),
+        Line("_b", "neg", ("u",)),
+        Line("v", "neg", ("_b",)),
+    )
     program = Program(("x",), lines, ("v",), {"u": Note("m", "a length")})
     short = renamed_temporaries(program, ["_b", "_a", "u", "v", "x"])
-    assert [(line.name, line.args[0]) for line in short.lines] == [("t1", "x"), ("u", "t1"), ("t0", "u"), ("v", "t0")]
+    assert [(line.name, line.args[0]) for line in short.lines] == [
+        ("t1", "x"),
+        ("u", "t1"),
+        ("t0", "u"),
+        ("v", "t0"),
+    ]

@@ -7,7 +7,13 @@ import pytest
 from hypothesis import given, settings
 
 from desaxe.compiler.program import Line, Note, Program, ProgramError
-from desaxe.compiler.text import ProgramText, read_function, with_short_temporaries, write_function, write_lines
+from desaxe.compiler.text import (
+    ProgramText,
+    read_function,
+    with_short_temporaries,
+    write_function,
+    write_lines,
+)
 from tests.compiler.programs import WITH_NAN, program_of_nested, programs, tree
 
 LESS, MORE = ("lt", "x", "y"), ("le", "y", "z")
@@ -34,7 +40,10 @@ GOLDEN = [
     (("sqrt", ("add", "x", "y")), "sqrt(x + y)"),
     (("atan2", ("neg", "x"), ("select", LESS, "x", "y")), "atan2(-x, x if x < y else y)"),
     (("select", LESS, "x", ("select", MORE, "y", "z")), "x if x < y else (y if y <= z else z)"),
-    (("select", ("lt", ("select", LESS, "x", "y"), "z"), 1.0, 0.0), "1.0 if (x if x < y else y) < z else 0.0"),
+    (
+        ("select", ("lt", ("select", LESS, "x", "y"), "z"), 1.0, 0.0),
+        "1.0 if (x if x < y else y) < z else 0.0",
+    ),
     (("select", LESS, ("neg", "x"), ("add", "x", 1.0)), "-x if x < y else x + 1.0"),
     (("add", ("select", LESS, "x", "y"), 1.0), "(x if x < y else y) + 1.0"),
     (("select", LESS, 3, 0), "3 if x < y else 0"),

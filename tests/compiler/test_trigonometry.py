@@ -26,7 +26,9 @@ def worst(angles):
     sine_and_cosine = compile_python(EXPANDED)
     with mpmath.workdps(60):
         pairs = ((sine_and_cosine(a), (mpmath.sin(a), mpmath.cos(a))) for a in angles)
-        return max(ulp_error(got, want) for gots, wants in pairs for got, want in zip(gots, wants, strict=True))
+        return max(
+            ulp_error(got, want) for gots, wants in pairs for got, want in zip(gots, wants, strict=True)
+        )
 
 
 def next_to_quarters(count):
@@ -94,7 +96,10 @@ def test_names_and_notes_stay():
 
 @pytest.mark.parametrize("point", POINTS)
 def test_the_coverage_set(point):
-    found, wanted = in_doubles(expand_trigonometry(coverage(), constants()), point), in_doubles(coverage(), point)
+    found, wanted = (
+        in_doubles(expand_trigonometry(coverage(), constants()), point),
+        in_doubles(coverage(), point),
+    )
     assert all(math.isclose(found[name], wanted[name], rel_tol=1e-15, abs_tol=1e-15) for name in found)
 
 

@@ -3,11 +3,11 @@
 from functools import cache
 
 import pytest
+from desaxe.derive.quantities import QUANTITIES
+from desaxe.derive.report import CONCENTRIC, GENERAL, report
 
 from desaxe.compiler.passes.pipeline import PASSES, optimise
 from desaxe.compiler.passes.slicing import keep_outputs
-from desaxe.derive.quantities import QUANTITIES
-from desaxe.derive.report import CONCENTRIC, GENERAL, report
 from tests.derive.derived import derivation
 
 
@@ -27,7 +27,9 @@ def test_every_quantity_has_a_row_in_both_tables(name):
 
 
 def test_every_pass_has_a_column():
-    assert all(row[1 : len(PASSES) + 2] == ["sliced", *(step.name for step in PASSES)] for row in rows("quantity"))
+    assert all(
+        row[1 : len(PASSES) + 2] == ["sliced", *(step.name for step in PASSES)] for row in rows("quantity")
+    )
 
 
 @pytest.mark.parametrize(("table", "fixed"), [(0, GENERAL), (1, CONCENTRIC)])

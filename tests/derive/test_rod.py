@@ -3,7 +3,6 @@
 import mpmath
 import pytest
 import sympy as sp
-
 from desaxe.derive.quantities import build_sheet
 from desaxe.derive.rod import RodFunction, read_rod_function, resolve_rod
 from desaxe.derive.units import Unit
@@ -78,11 +77,14 @@ def test_another_name_is_no_rod_function(name):
 
 def test_the_order_of_the_parameters_does_not_matter():
     start = RodFunction("S")
-    assert start.with_respect_to("u").with_respect_to("BC") == start.with_respect_to("BC").with_respect_to("u")
+    assert start.with_respect_to("u").with_respect_to("BC") == start.with_respect_to("BC").with_respect_to(
+        "u"
+    )
 
 
 @pytest.mark.parametrize(
-    ("name", "unit"), [("S_u", Unit()), ("phi_u", Unit(-1, 0, 1)), ("S_u_BC_2", Unit(-1, 0, -2)), ("S_1", Unit(1, 0, -1))]
+    ("name", "unit"),
+    [("S_u", Unit()), ("phi_u", Unit(-1, 0, 1)), ("S_u_BC_2", Unit(-1, 0, -2)), ("S_1", Unit(1, 0, -1))],
 )
 def test_units(name, unit):
     assert read_rod_function(name).unit == unit

@@ -2,7 +2,6 @@
 
 import pytest
 import sympy as sp
-
 from desaxe.derive.sheet import PARAMETERS, Equation, Sheet, derivative_name, symbol
 from desaxe.derive.units import LENGTH, Unit
 
@@ -115,7 +114,11 @@ def test_only_what_is_needed_is_ordered():
 
 @pytest.mark.parametrize(
     ("name", "parameter", "new"),
-    [("Y", "ec", "Y_wrt_ec"), ("Y_wrt_AB", "theta", "Y_wrt_theta_AB"), ("V_C_wrt_alpha", "alpha", "V_C_wrt_alpha_alpha")],
+    [
+        ("Y", "ec", "Y_wrt_ec"),
+        ("Y_wrt_AB", "theta", "Y_wrt_theta_AB"),
+        ("V_C_wrt_alpha", "alpha", "V_C_wrt_alpha_alpha"),
+    ],
 )
 def test_the_parameters_of_a_derivative_stand_in_one_order(name, parameter, new):
     assert derivative_name(name, parameter) == new

@@ -3,7 +3,6 @@
 import mpmath
 import pytest
 import sympy as sp
-
 from desaxe.derive import stable
 from desaxe.derive.stable import chain_rule_form, recollected
 
@@ -26,7 +25,11 @@ def names_at(theta, ec, AB, BC):
     offset = ec + AB * sine
     inverse = 1 / mpmath.sqrt(BC * BC - offset * offset)
     margin, reach = BC - AB - side * ec, BC + AB + side * ec
-    ratios = {"crank_ratio": AB * inverse, "ec_ratio": side * ec * inverse, "margin_ratio": margin * reach * inverse**2}
+    ratios = {
+        "crank_ratio": AB * inverse,
+        "ec_ratio": side * ec * inverse,
+        "margin_ratio": margin * reach * inverse**2,
+    }
     crank = {"sin_theta": sine, "cos_theta": cosine, "side": side, "abs_sin": abs(sine), "eps": 1 - abs(sine)}
     return ratios | crank | {"u": offset, "inv_S": inverse, "AB": AB}
 

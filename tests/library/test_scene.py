@@ -14,11 +14,11 @@ import pytest
 import xarray
 
 import desaxe as dx
-from desaxe import _scene_run
-from desaxe._scene_number import quantity_text
-from desaxe._scene_printed import read_percentage, read_printed
-from desaxe._scene_progress import progress_bar
-from desaxe._scene_schema import SceneError
+from desaxe._quantity_text import quantity_text
+from desaxe._scene import run as scene_run
+from desaxe._scene.printed import read_percentage, read_printed
+from desaxe._scene.progress import progress_bar
+from desaxe._scene.schema import SceneError
 
 COMPACTOR = Path(__file__).parents[2] / "examples" / "compactor.toml"
 
@@ -364,7 +364,7 @@ def test_given_state():
 
 def test_large_grid_in_blocks(monkeypatch):
     whole = dx.scene(SMALL).run().dataset
-    monkeypatch.setattr(_scene_run, "BLOCK", 5)
+    monkeypatch.setattr(scene_run, "BLOCK", 5)
     steps = []
     parts = dx.scene(SMALL).run(lambda *step: steps.append(step)).dataset
     assert xarray.testing.assert_identical(parts, whole) is None

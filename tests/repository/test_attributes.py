@@ -6,8 +6,8 @@ import subprocess
 from pathlib import Path
 
 import pytest
-
 from desaxe.derive.write import render
+
 from tests.derive.derived import derivation
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -35,7 +35,9 @@ def test_a_generated_file_is_marked(attribute, path):
     assert attribute("linguist-generated", path) == "true"
 
 
-@pytest.mark.parametrize("path", ["derive/loop.py", "src/desaxe/compiler/text.py", "tests/generated/test_fresh.py"])
+@pytest.mark.parametrize(
+    "path", ["derive/loop.py", "src/desaxe/compiler/text.py", "tests/generated/test_fresh.py"]
+)
 def test_a_written_file_is_not(attribute, path):
     assert attribute("linguist-generated", path) == "unspecified"
 

@@ -10,7 +10,11 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-ROOMS = {"desaxe": ROOT / "src" / "desaxe", "desaxe.derive": ROOT / "derive", "desaxe.generated": ROOT / "generated"}
+ROOMS = {
+    "desaxe": ROOT / "src" / "desaxe",
+    "desaxe.derive": ROOT / "derive",
+    "desaxe.generated": ROOT / "generated",
+}
 
 
 def imported(source, module, is_package):
@@ -56,7 +60,9 @@ def test_sympy_and_the_derivation_are_imported_by_derive_alone(room):
 
 
 def test_generated_imports_only_math_numpy_and_numba():
-    assert not [pair for pair in imports_of("desaxe.generated") if not is_in(pair[1], "math", "numpy", "numba")]
+    assert not [
+        pair for pair in imports_of("desaxe.generated") if not is_in(pair[1], "math", "numpy", "numba")
+    ]
 
 
 def test_the_compiler_imports_nothing_above_it_and_nothing_that_must_be_installed():
@@ -89,4 +95,6 @@ def test_the_check_sees_an_import(source, names):
 
 
 def test_the_check_knows_a_package():
-    assert imported("from .passes import fold", "desaxe.compiler", is_package=True) == {"desaxe.compiler.passes.fold"}
+    assert imported("from .passes import fold", "desaxe.compiler", is_package=True) == {
+        "desaxe.compiler.passes.fold"
+    }

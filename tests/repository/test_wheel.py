@@ -53,19 +53,28 @@ def run(unzipped, tmp_path):
 
 
 def sources(folder):
-    return {path.relative_to(folder).as_posix() for path in folder.rglob("*.py") if "__pycache__" not in path.parts}
+    return {
+        path.relative_to(folder).as_posix()
+        for path in folder.rglob("*.py")
+        if "__pycache__" not in path.parts
+    }
 
 
-@pytest.mark.parametrize(("room", "place"), [("src/desaxe", "desaxe"), ("derive", "desaxe/derive"), ("generated", "desaxe/generated")])
+@pytest.mark.parametrize(
+    ("room", "place"),
+    [("src/desaxe", "desaxe"), ("derive", "desaxe/derive"), ("generated", "desaxe/generated")],
+)
 def test_every_source_is_in_it(unzipped, room, place):
     assert sources(ROOT / room) <= sources(unzipped / place)
 
 
 def test_the_data_is_in_it(unzipped):
     assert (unzipped / "desaxe" / "py.typed").is_file()
-    assert {path.name for path in (ROOT / "src/desaxe/errata").glob("*.toml")} == {
-        path.name for path in (unzipped / "desaxe/errata").glob("*.toml")
-    } != set()
+    assert (
+        {path.name for path in (ROOT / "src/desaxe/errata").glob("*.toml")}
+        == {path.name for path in (unzipped / "desaxe/errata").glob("*.toml")}
+        != set()
+    )
 
 
 def test_nothing_else_is_in_it(unzipped):
@@ -73,7 +82,9 @@ def test_nothing_else_is_in_it(unzipped):
 
 
 def test_the_licence_is_in_it(unzipped):
-    assert [path.read_text() for path in unzipped.glob("*.dist-info/licenses/LICENSE")] == [(ROOT / "LICENSE").read_text()]
+    assert [path.read_text() for path in unzipped.glob("*.dist-info/licenses/LICENSE")] == [
+        (ROOT / "LICENSE").read_text()
+    ]
 
 
 def test_it_evaluates_a_point(run, unzipped):

@@ -3,11 +3,11 @@
 from collections.abc import Iterable, Mapping
 from math import isfinite
 
-from . import _scene_schema as schema
-from ._scene_number import quantity_text
-from ._scene_schema import SceneError, shown
-from .inputs import INPUTS, is_good
-from .units import in_si
+from .._quantity_text import quantity_text
+from ..inputs import INPUTS, is_good
+from ..units import in_si
+from . import schema
+from .schema import SceneError, shown
 
 Value = float | tuple[float, ...]
 MOST = 100_000_000  # values of one range

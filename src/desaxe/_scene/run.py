@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ._evaluate import evaluate
-from ._feasibility import feasibility
-from ._grid import grid
-from ._scene_peaks import PeakResult, batches, columns_of, peaks_of, provenance
-from ._scene_progress import Progress, Steps
-from ._scene_read import Check, Content, Picture
-from ._scene_values import Value
-from .extras import needed
+from .._evaluate import evaluate
+from .._feasibility import feasibility
+from .._grid import grid
+from ..extras import needed
+from .peaks import PeakResult, batches, columns_of, peaks_of, provenance
+from .progress import Progress, Steps
+from .read import Check, Content, Picture
+from .values import Value
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -205,7 +205,7 @@ def group_names(peaks: tuple[PeakResult, ...]) -> list[str]:
 
 
 def _picture(picture: Picture, content: Content, steps: Steps) -> Path:
-    from .plot import curves, save
+    from ..plot import curves, save
 
     steps.next(f"drawing {picture.file}")
     # With the names of the outputs the kernel of the grid serves here too.

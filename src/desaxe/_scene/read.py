@@ -7,13 +7,13 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from . import _scene_schema as schema
-from ._program import program_of
-from ._scene_printed import Printed, read_percentage, read_printed
-from ._scene_schema import SceneError, shown
-from ._scene_values import Value, design_of, number_of, only_inputs, values_of
-from .catalogue import law_name, quantity
-from .inputs import INPUTS
+from .._program import program_of
+from ..catalogue import law_name, quantity
+from ..inputs import INPUTS
+from . import schema
+from .printed import Printed, read_percentage, read_printed
+from .schema import SceneError, shown
+from .values import Value, design_of, number_of, only_inputs, values_of
 
 SECTIONS = ("mechanism", "motion")
 

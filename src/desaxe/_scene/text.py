@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ._scene_peaks import WORDS, ClaimResult, PeakResult
-from ._scene_read import Content, Peak
-from ._scene_run import CheckResult, FeasibilityResult, group_names
-from .catalogue import quantity
-from .inputs import INPUTS
+from ..catalogue import quantity
+from ..inputs import INPUTS
+from .peaks import WORDS, ClaimResult, PeakResult
+from .read import Content, Peak
+from .run import CheckResult, FeasibilityResult, group_names
 
 if TYPE_CHECKING:
-    from ._scene import SceneResult
+    from .model import SceneResult
 
 ROWS = 24  # of a table; a longer one is thinned out
 GAPS = 5  # designs that cannot turn fully

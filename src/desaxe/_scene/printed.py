@@ -3,8 +3,8 @@
 from decimal import ROUND_HALF_EVEN, Context, Decimal
 from typing import NamedTuple
 
-from ._scene_number import spelled, split_quantity
-from ._scene_schema import SceneError, shown
+from .._quantity_text import spelled, split_quantity
+from .schema import SceneError, shown
 
 
 class Printed(NamedTuple):
@@ -67,7 +67,7 @@ def _factor(complaint: str, unit: str, si: str) -> float:
     """What a value in the SI unit is multiplied with to be in a unit; people write m/s2 for m/s^2."""
     if spelled(unit).replace(" ", "") == si or unit == "%":
         return 1.0
-    from .units import registry
+    from ..units import registry
 
     units = registry()
     try:

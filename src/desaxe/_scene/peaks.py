@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ._evaluate import evaluate
-from ._grid import input_attributes
-from ._peak import peak
-from ._program import digest
-from ._scene_progress import Steps
-from ._scene_read import Claim, Content, Peak
-from ._scene_values import Value
-from .catalogue import quantity
+from .._evaluate import evaluate
+from .._grid import input_attributes
+from .._peak import peak
+from .._program import digest
+from ..catalogue import quantity
+from .progress import Steps
+from .read import Claim, Content, Peak
+from .values import Value
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -154,7 +154,7 @@ def columns_of(inputs: Mapping[str, Value]) -> dict[str, NDArray[np.float64]]:
 
 def provenance(content: Content) -> dict[str, str]:
     """Attributes that say where a dataset comes from."""
-    from . import __version__
+    from .. import __version__
 
     title = {"title": content.title} if content.title else {}
     return {**title, "source": f"desaxe {__version__}, derivation {digest()[:16]}"}

@@ -5,12 +5,12 @@ from dataclasses import dataclass, field
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
-from ._scene_peaks import PeakResult
-from ._scene_progress import Progress
-from ._scene_read import Content, plain_data, read
-from ._scene_run import CheckResult, FeasibilityResult, run
-from ._scene_schema import SceneError as SceneError
-from ._scene_text import report
+from .peaks import PeakResult
+from .progress import Progress
+from .read import Content, plain_data, read
+from .run import CheckResult, FeasibilityResult, run
+from .schema import SceneError as SceneError
+from .text import report
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -1,0 +1,54 @@
+"""The border: what is asked for and what is given, checked once, with errors that name the culprit."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from .catalogue import law_name, quantity
+from .inputs import INPUTS, is_good
+
+ACCURACIES = ("standard",)
+
+
+class Request(NamedTuple):
+    """What is asked for: the names as the user says them, the same under the law, state, branch."""
+
+    shown: tuple[str, ...]
+    names: tuple[str, ...]
+    state: bool
+    branch: int
+
+
+def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accuracy: str) -> Request:
+    """The request, checked; its names are those of the law."""
+    state = given.get("omega") is not None
+    if state and given.get("omega0") is not None:
+        raise ValueError("give omega0= (the law) or omega= (a state), not both")
+    if branch not in (1, -1):
+        raise ValueError(f"branch = {branch!r}: it is +1 or -1")
+    if accuracy not in ACCURACIES:
+        raise ValueError(f"accuracy = {accuracy!r}: it is one of {', '.join(ACCURACIES)}")
+    for name in names:
+        quantity(name, state)
+    shown = tuple(names)
+    return Request(shown, tuple(law_name(name) if state else name for name in shown), state, int(branch))
+
+
+def as_number(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]) -> float | None:
+    """The input as a float, None if it is an array; an error that names it if it is bad or missing."""
+    if value is None:
+        raise TypeError(f"{', '.join(names)}: {name} is missing (needed: {', '.join(inputs)})")
+    if isinstance(value, str) or hasattr(value, "magnitude"):
+        from .units import in_si
+
+        value = in_si(name, value)
+    if isinstance(value, bool) or not (isinstance(value, (int, float)) or _is_numpy_number(value)):
+        return None
+    number = float(value)
+    if not is_good(name, number):
+        raise ValueError(f"{name} = {value!r}: it must be {INPUTS[name].limit}")
+    return number
+
+
+def _is_numpy_number(value: Any) -> bool:
+    """A NumPy real scalar such as np.float32(1); a 0-d array is an array."""
+    return getattr(value, "shape", None) == () and hasattr(value, "is_integer")
