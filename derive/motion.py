@@ -39,7 +39,7 @@ def time_derivative(expression: sp.Expr, by_theta: dict[sp.Symbol, sp.Expr]) -> 
 
 def define_law(sheet: Sheet) -> None:
     """omega, omega^2 and their derivatives under paper A's law."""
-    constant_speed = eq(alpha, 0)
+    constant_speed = eq(alpha * theta, 0)  # NaN where theta is: it must not be lost here
     sheet.define("omega2_law", LAW, unit=UNITS["omega2"], meaning="omega^2 by the law", source="A listing")
     sheet.define(
         "stalled", lt(symbol("omega2_law"), 0), unit=NONE, meaning="the crank stopped before this angle"

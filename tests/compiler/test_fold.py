@@ -57,7 +57,7 @@ KEPT = [
 ]
 
 
-@pytest.mark.parametrize("nested, folded", FOLDED)
+@pytest.mark.parametrize(("nested", "folded"), FOLDED)
 def test_golden(nested, folded):
     assert only_line(fold_constants(program_of_nested(nested))) == folded
 

@@ -36,7 +36,9 @@ def test_every_line_is_in_the_outermost_loop_possible(program, axis_of):
 @settings(max_examples=50, deadline=None)
 def test_no_line_is_lost_or_doubled(program, axis_of):
     kernel = hoist(program, axis_of, AXES)
-    assert sorted(line.op for lines in kernel.levels for line in lines) == sorted(l.op for l in program.lines)
+    assert sorted(line.op for lines in kernel.levels for line in lines) == sorted(
+        line.op for line in program.lines
+    )
     assert len(level_of(kernel)) == len(program.lines)
 
 

@@ -41,7 +41,7 @@ BROKEN = [
 ]
 
 
-@pytest.mark.parametrize("program, complaint", BROKEN)
+@pytest.mark.parametrize(("program", "complaint"), BROKEN)
 def test_a_broken_program_is_refused(program, complaint):
     with pytest.raises(ProgramError, match=complaint):
         validate(program)
@@ -58,7 +58,7 @@ def test_the_committed_program_is_canonical():
 
 
 @pytest.mark.parametrize(
-    "argument, kind", [("n", "i64"), (1.0, "f64"), (math.nan, "f64"), (1, "i64"), (True, "bool")]
+    ("argument", "kind"), [("n", "i64"), (1.0, "f64"), (math.nan, "f64"), (1, "i64"), (True, "bool")]
 )
 def test_every_argument_has_a_type(argument, kind):
     assert type_of(argument, {"n": "i64"}) == kind

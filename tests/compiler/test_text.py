@@ -66,17 +66,17 @@ OTHER_COLUMNS = [
 ]
 
 
-@pytest.mark.parametrize("nested, text", GOLDEN)
+@pytest.mark.parametrize(("nested", "text"), GOLDEN)
 def test_golden(nested, text):
     assert write_lines(program_of_nested(nested)) == [f"out = {text}"]
 
 
-@pytest.mark.parametrize("column, nested, text", OTHER_COLUMNS)
+@pytest.mark.parametrize(("column", "nested", "text"), OTHER_COLUMNS)
 def test_golden_of_a_language(column, nested, text):
     assert write_lines(program_of_nested(nested), column) == [f"out = {text}"]
 
 
-@pytest.mark.parametrize("nested, text", GOLDEN)
+@pytest.mark.parametrize(("nested", "text"), GOLDEN)
 def test_golden_reads_back(nested, text):
     program = read_function(f"def f(x, y, z):\n    out = {text}\n    return out\n")
     assert tree(program) == tree(program_of_nested(nested))

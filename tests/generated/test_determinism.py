@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 from desaxe.derive.write import render
+
 from tests.derive.derived import derivation
 
 SEEDS = ("0", "1", "4242")

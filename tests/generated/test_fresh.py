@@ -4,12 +4,12 @@ import ast
 import shutil
 from pathlib import Path
 
-import pytest
-
 import desaxe.generated
+import pytest
 from desaxe.derive import build
 from desaxe.derive.__main__ import main, target
 from desaxe.derive.write import COMMAND, differences, inputs_digest, render
+
 from tests.derive.derived import derivation
 
 FOLDER = Path(desaxe.generated.__file__).parent

@@ -7,12 +7,12 @@ from importlib import import_module
 
 import numpy as np
 import pytest
+from desaxe.derive.groups import GROUPS
+from desaxe.generated.program import law
 
 import desaxe as dx
 from desaxe._kernels import constants
 from desaxe._program import _text
-from desaxe.derive.groups import GROUPS
-from desaxe.generated.program import law
 
 NAMES = [group.name for group in GROUPS]
 OUTPUTS = {group.name: group.outputs for group in GROUPS}
@@ -22,7 +22,8 @@ INPUTS = ("theta", "ec", "AB", "BC", "omega0", "alpha")
 def evaluate(group, **inputs):
     """The function of a group; what it does not take is left out."""
     function = import_module(f"desaxe.generated.{group}").evaluate
-    return function(**{name: inputs[name] for name in inspect.signature(function).parameters if name in inputs})
+    taken = inspect.signature(function).parameters
+    return function(**{name: value for name, value in inputs.items() if name in taken})
 
 
 def points(count, seed=7):
@@ -74,7 +75,7 @@ def test_it_broadcasts(group):
 
 @pytest.mark.parametrize("group", NAMES)
 def test_its_outputs_are_those_of_the_group(group):
-    assert import_module(f"desaxe.generated.{group}").OUTPUTS == OUTPUTS[group]
+    assert OUTPUTS[group] == import_module(f"desaxe.generated.{group}").OUTPUTS
 
 
 BAD = {"theta": math.nan, "ec": math.inf, "AB": -0.1, "BC": -0.35, "omega0": math.nan, "alpha": -math.inf}

@@ -4,7 +4,6 @@ import os
 from pathlib import Path
 
 import pytest
-
 from desaxe.derive.write import write
 
 OLD = {"a.py": "a = 1\n", "b.py": "b = 1\n", "c.py": "c = 1\n", "stale.py": "stale = 1\n"}

@@ -24,13 +24,19 @@ def copy_of_the_tree(folder):
     (folder / "wheel").mkdir()
 
 
+def output_of(command, **where):
+    """What a command prints; if it fails, the test shows its complaint."""
+    done = subprocess.run(command, capture_output=True, text=True, check=False, **where)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
 @pytest.fixture(scope="module")
 def unzipped(tmp_path_factory):
     """The wheel of a copy of the tree, unzipped: the folder to put on the path."""
     tree = tmp_path_factory.mktemp("tree")
     copy_of_the_tree(tree)
-    built = subprocess.run([sys.executable, "-c", BUILD], cwd=tree, capture_output=True, text=True)
-    assert built.returncode == 0, built.stderr
+    output_of([sys.executable, "-c", BUILD], cwd=tree)
     (wheel,) = (tree / "wheel").glob("*.whl")
     site = tmp_path_factory.mktemp("site")
     with zipfile.ZipFile(wheel) as archive:
@@ -44,10 +50,7 @@ def run(unzipped, tmp_path):
 
     def run(*arguments):
         environment = os.environ | {"PYTHONPATH": str(unzipped)}
-        command = [sys.executable, *arguments]
-        done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
-        assert done.returncode == 0, done.stderr
-        return done.stdout
+        return output_of([sys.executable, *arguments], cwd=tmp_path, env=environment)
 
     return run
 

@@ -73,7 +73,7 @@ _IEEE: dict[str, Any] = {
     "sin": _finite_only(math.sin),
     "cos": _finite_only(math.cos),
     "atan2": math.atan2,
-    "floor": lambda a: float(math.floor(a)) if a - a == 0.0 else a,
+    "floor": lambda a: float(math.floor(a)) if a - a == 0.0 and a else a,
     "copysign": math.copysign,
     "two_sum_error": _two_sum_error,
     "lt": lambda a, b: a < b,

@@ -60,8 +60,8 @@ OPERATIONS: dict[str, Operation] = dict(
             "sqrt", "ff", "sqrt({0})", CALL, 9, lambda mp, a: mp.sqrt(a),
             python="root({0})", undefined="{0} < 0",
         ),
-        _row("sin", "ff", "sin({0})", CALL, 20, lambda mp, a: mp.sin(a)),
-        _row("cos", "ff", "cos({0})", CALL, 20, lambda mp, a: mp.cos(a)),
+        _row("sin", "ff", "sin({0})", CALL, 20, lambda mp, a: mp.sin(a), python="sine({0})"),
+        _row("cos", "ff", "cos({0})", CALL, 20, lambda mp, a: mp.cos(a), python="cosine({0})"),
         _row("atan2", "fff", "atan2({0}, {1})", CALL, 40, lambda mp, a, b: mp.atan2(a, b)),
         _row("floor", "ff", "floor({0})", CALL, 1, lambda mp, a: mp.floor(a), python="whole({0})"),
         _row(
@@ -100,9 +100,17 @@ HELPERS = {
     """The square root, NaN below zero."""
     return sqrt(a) if a >= 0.0 else nan
 ''',
+    "sine": '''def sine(a):
+    """The sine, NaN of an infinity."""
+    return sin(a) if a - a == 0.0 else nan
+''',
+    "cosine": '''def cosine(a):
+    """The cosine, NaN of an infinity."""
+    return cos(a) if a - a == 0.0 else nan
+''',
     "whole": '''def whole(a):
-    """The floor as a float; infinities and NaN stay."""
-    return float(floor(a)) if a - a == 0.0 else a
+    """The floor as a float; infinities, NaN and the sign of a zero stay."""
+    return float(floor(a)) if a - a == 0.0 and a else a
 ''',
 }
 MATH_NAMES = ("atan2", "copysign", "cos", "fabs", "floor", "inf", "nan", "sin", "sqrt")

@@ -173,7 +173,9 @@ def read_function(text: str) -> Program:
 
 
 def _note(comment: str) -> Note | None:
-    return Note(*comment.split(" | ")) if comment else None
+    """The note of a comment; one without a unit has its meaning alone."""
+    parts = comment.split(" | ")
+    return None if not comment else Note(*parts) if len(parts) > 1 else Note("", comment)
 
 
 def _free_names(tree: ast.expr) -> Iterable[str]:
@@ -202,8 +204,12 @@ class _Reader:
         self.temporaries = 0
 
     def assign(self, name: str, tree: ast.expr) -> None:
-        op, args = self._operation(tree)
-        self._append(name, op, args)
+        """Append the lines of an assignment; ProgramError where they are no operations."""
+        try:
+            op, args = self._operation(tree)
+            self._append(name, op, args)
+        except (KeyError, TypeError) as error:
+            raise ProgramError(f"cannot read {name} = {ast.unparse(tree)}: {error}") from None
 
     def _append(self, name: str, op: str, args: tuple[Argument, ...]) -> None:
         types = tuple(type_of(argument, self.types) for argument in args)
@@ -228,7 +234,7 @@ class _Reader:
 
     def _operation(self, tree: ast.expr) -> tuple[str, tuple[Argument, ...]]:
         match tree:
-            case ast.Name() | ast.Constant():
+            case ast.Name() | ast.Constant() | ast.UnaryOp(ast.USub(), ast.Constant()):
                 return "copy", (self._argument(tree),)
             case ast.BinOp(left, op, right):
                 return _BINARY[type(op)], (self._argument(left), self._argument(right))

@@ -35,7 +35,8 @@ def guard_inputs(
     if "status" in program.outputs and checked:
         lines = _with_status(lines, checked)
     notes = {**program.notes, **{good: Note("", f"{name}, NaN where bad") for name, good in safe.items()}}
-    return drop_unused(program._replace(lines=tuple(lines), notes=notes))
+    outputs = tuple(safe.get(name, name) for name in program.outputs)  # an output may be an input
+    return drop_unused(program._replace(lines=tuple(lines), notes=notes, outputs=outputs))
 
 
 def _check(name: str, least: float | None, largest: float | None) -> list[Line]:

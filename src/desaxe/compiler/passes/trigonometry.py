@@ -8,6 +8,7 @@ of pi/2, where the rod's geometry needs cos(theta) to its last digit, nothing is
 from typing import NamedTuple
 
 from ..program import Argument, Line, Program
+from .slicing import drop_unused
 
 
 class Trigonometry(NamedTuple):
@@ -32,7 +33,7 @@ def expand_trigonometry(program: Program, constants: Trigonometry) -> Program:
             writer.lines.append(line._replace(op="copy", args=(writer.of_angle(line.args[0], line.op),)))
         else:
             writer.lines.append(line)
-    return program._replace(lines=tuple(writer.lines))
+    return drop_unused(program._replace(lines=tuple(writer.lines)))
 
 
 class _Writer:
