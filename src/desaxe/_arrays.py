@@ -1,6 +1,6 @@
 """`evaluate` over arrays: broadcast, run in blocks, put the answers where they are wanted."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ from ._kernels import KernelKey, is_ready, kernel_for, key_of, point_for
 from ._program import program_of
 from ._request import Request, as_number
 from ._threads import run_in_blocks
+from .compiler.passes.guard import BAD_INPUT
 from .inputs import INPUTS
 
 Array = NDArray[Any]
@@ -26,7 +27,7 @@ def evaluate_arrays(
     arrays = {name: as_array(name, given[name], inputs, wanted.shown) for name in inputs}
     shape = broadcast_shape(arrays)
     places = places_for(wanted.shown, shape, out)
-    buffers = {name: _buffer(name, place) for name, place in places.items()}
+    buffers = {name: _buffer(name, place, arrays.values()) for name, place in places.items()}
     if all(buffer.size for buffer in buffers.values()):
         scalars = {name: float(a.reshape(-1)[0]) for name, a in arrays.items() if a.size == 1}
         columns = {name: _column(a, shape) for name, a in arrays.items() if a.size != 1}
@@ -96,10 +97,11 @@ def dtype_of(name: str) -> np.dtype[Any]:
     return np.dtype(np.int8 if name == "status" else np.float64)
 
 
-def _buffer(name: str, place: Array) -> Array:
+def _buffer(name: str, place: Array, inputs: Iterable[Array]) -> Array:
     """The place itself where a kernel can write into it, else an array to be copied from."""
-    direct = place.flags.c_contiguous and place.dtype == dtype_of(name) and place.flags.aligned
-    return place if direct else np.empty(place.shape, dtype_of(name))
+    direct = place.flags.c_contiguous and place.flags.aligned and place.dtype == dtype_of(name)
+    overlaps = any(np.may_share_memory(place, array) for array in inputs)
+    return place if direct and not overlaps else np.empty(place.shape, dtype_of(name))
 
 
 def delivered(places: Mapping[str, Array], buffers: Mapping[str, Array], fresh: bool) -> dict[str, Array]:
@@ -137,15 +139,12 @@ def _fill_by_points(
 ) -> None:
     """Plain Python, point by point: nobody pays a compilation for a hundred points."""
     point = point_for(key)
-    good = np.logical_and.reduce([_is_good(name, column) for name, column in columns.items()])
-    for index in range(good.size):
-        if good[index]:
-            here = {name: float(column[index]) for name, column in columns.items()}
-            for out, value in zip(outs, point.run({**scalars, **here}), strict=True):
-                out[index] = value
-        else:
-            for out in outs:
-                out[index] = np.nan if out.dtype.kind == "f" else BAD_INPUT
-
-
-BAD_INPUT = 4
+    good = {name: _is_good(name, column) for name, column in columns.items()}
+    safe = {name: np.where(good[name], column, np.nan).tolist() for name, column in columns.items()}
+    for index, here in enumerate(zip(*safe.values(), strict=True)):
+        answer = point.run({**scalars, **dict(zip(safe, here, strict=True))})
+        for out, value in zip(outs, answer, strict=True):
+            out[index] = value
+    if "status" in key.names:
+        bad = ~np.logical_and.reduce(list(good.values()))
+        outs[key.names.index("status")][bad] = BAD_INPUT

@@ -1,6 +1,8 @@
 """The folder where compiled kernels live: one that can be written, or a temporary one, never a crash."""
 
+import atexit
 import os
+import shutil
 import sys
 import tempfile
 import warnings
@@ -29,6 +31,7 @@ def folder() -> Folder:
             with tempfile.TemporaryFile(dir=path):
                 return Folder(path, True)
     path = Path(tempfile.mkdtemp(prefix="desaxe-"))
+    atexit.register(shutil.rmtree, path, ignore_errors=True)
     warnings.warn(
         f"no cache folder can be written: kernels are compiled anew in every process (set {VARIABLE})",
         RuntimeWarning,

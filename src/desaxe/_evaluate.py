@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import _program
-from ._request import Request, as_number, request
+from ._request import Request, as_number, check_border, request
 from .catalogue import quantity
 from .compiler.emit_python import compile_python
 from .compiler.passes.pipeline import optimise
@@ -63,7 +63,9 @@ def evaluate(
     ValueError for an unknown name or a bad value, TypeError for a missing input.
     """
     given = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
-    wanted = (names,) if isinstance(names, str) else tuple(names)
+    wanted = (names,) if isinstance(names, str) else tuple(dict.fromkeys(names))
+    if threads is not None or (omega is not None and omega0 is not None) or type(branch) is not int:
+        check_border(given, branch, threads)
     key = wanted, omega is not None, branch, accuracy
     if omega0 is None and omega is None and "status" in wanted:
         given.update(_unmoved(wanted))

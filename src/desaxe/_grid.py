@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ._arrays import as_array, delivered, dtype_of, places_for
 from ._kernels import kernel_for, key_of
 from ._program import program_of
-from ._request import Request, request
+from ._request import Request, check_border, request
 from ._threads import run_in_blocks
 from .catalogue import quantity
 from .extras import needed
@@ -48,6 +48,7 @@ def grid(
     if unknown:
         raise TypeError(f"grid() has no input {unknown[0]!r}: {', '.join(INPUTS)}")
     given = {"alpha": 0.0, **inputs}
+    check_border(given, branch, threads)
     if given.get("omega0") is None and given.get("omega") is None:
         given["omega0"] = _standstill(wanted, branch, accuracy)
     shown = wanted if out is not None else (*wanted, *(name for name in ALWAYS if name not in wanted))

@@ -1,6 +1,7 @@
 """The border: what is asked for and what is given, checked once, with errors that name the culprit."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from math import inf
 from typing import Any, NamedTuple
 
 from .catalogue import law_name, quantity
@@ -18,13 +19,21 @@ class Request(NamedTuple):
     branch: int
 
 
+def check_border(given: Mapping[str, Any], branch: Any, threads: int | None = None) -> None:
+    """Refuse a law and a state at once, a branch that is none, and less than one thread."""
+    if given.get("omega") is not None and given.get("omega0") is not None:
+        raise ValueError("give omega0= (the law) or omega= (a state), not both")
+    number = isinstance(branch, (int, float)) or _is_numpy_number(branch)
+    if isinstance(branch, bool) or not number or branch not in (1, -1):
+        raise ValueError(f"branch = {branch!r}: it is +1 or -1")
+    if threads is not None and threads < 1:
+        raise ValueError(f"threads = {threads}: at least 1")
+
+
 def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accuracy: str) -> Request:
     """The request, checked; its names are those of the law."""
+    check_border(given, branch)
     state = given.get("omega") is not None
-    if state and given.get("omega0") is not None:
-        raise ValueError("give omega0= (the law) or omega= (a state), not both")
-    if branch not in (1, -1):
-        raise ValueError(f"branch = {branch!r}: it is +1 or -1")
     if accuracy not in ACCURACIES:
         raise ValueError(f"accuracy = {accuracy!r}: it is one of {', '.join(ACCURACIES)}")
     for name in names:
@@ -43,7 +52,10 @@ def as_number(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]
         value = in_si(name, value)
     if isinstance(value, bool) or not (isinstance(value, (int, float)) or _is_numpy_number(value)):
         return None
-    number = float(value)
+    try:
+        number = float(value)
+    except OverflowError:
+        number = inf
     if not is_good(name, number):
         raise ValueError(f"{name} = {value!r}: it must be {INPUTS[name].limit}")
     return number

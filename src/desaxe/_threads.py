@@ -29,8 +29,6 @@ def run_in_blocks(
     kernel: CompiledKernel, values: Mapping[str, Any], outs: Sequence[Any], threads: int | None
 ) -> None:
     """Run the kernel over its outermost axis in as many blocks as there are threads."""
-    if threads is not None and threads < 1:
-        raise ValueError(f"threads = {threads}: at least 1")
     length, size = outs[0].shape[0], outs[0].size
     count = max(1, min(threads or available(), size // LEAST_BLOCK, length))
     if count == 1:

@@ -9,12 +9,13 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
 
 import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe import _arrays
+from desaxe import _arrays, _cache, _kernels
 
 SIZES = {"AB": 0.125, "BC": 0.35, "omega0": 157.0}
 POINT = {"theta": 1.1, "ec": 0.01, **SIZES}
@@ -662,6 +663,31 @@ def test_a_folder_that_cannot_be_written_is_a_warning(tmp_path):
     complaints = answer(start(blocked / "cache", TMPDIR=str(scratch)))[-1]
     assert "RuntimeWarning: no cache folder can be written" in complaints
     assert "DESAXE_CACHE_DIR" in complaints
+
+
+def test_a_folder_without_permission_is_a_warning(tmp_path, monkeypatch):
+    def refused(**_):
+        raise PermissionError("read-only")
+
+    monkeypatch.setenv("DESAXE_CACHE_DIR", str(tmp_path / "cache"))
+    monkeypatch.setattr(tempfile, "TemporaryFile", refused)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    with pytest.warns(RuntimeWarning, match="no cache folder can be written"):
+        found = _cache.folder.__wrapped__()
+    assert found.path.parent == tmp_path
+    assert not found.lasting
+
+
+def test_a_kernel_of_another_version_is_not_taken_for_this_one(tmp_path, monkeypatch):
+    """A version with other limits: the same request, another kernel."""
+    monkeypatch.setattr(_cache, "folder", lambda: _cache.Folder(tmp_path, True))
+    key = _kernels.KernelKey(("V_B_X",), True, (("branch", 1.0),), (("AB", 0),), 1)
+    values, out = {"theta": 0.0, "omega": 2.0, "AB": np.array([-0.5])}, np.empty(1)
+    _kernels._load(key).run(values, [out])
+    assert math.isnan(out[0])
+    monkeypatch.setattr(_kernels, "LEAST", {})
+    _kernels._load(key).run(values, [out])
+    assert out[0] == -1.0
 
 
 def test_a_makeshift_folder_is_not_left_behind(tmp_path):
