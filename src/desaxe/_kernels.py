@@ -1,8 +1,8 @@
 """Kernels by what they compute: compiled once, kept on disk, loaded by the next process.
 
-A kernel is a module of its own in the cache folder, named by a hash of what is asked for and of
-the derivation; numba keeps its machine code beside it. The first compilation happens under a lock,
-so that processes started together do not compile the same kernel into each other's way.
+A kernel is a module of its own in the cache folder, named by a hash of its text; numba keeps its
+machine code beside it. The first compilation happens under a lock, so that processes started
+together do not compile the same kernel into each other's way.
 """
 
 import hashlib
@@ -139,17 +139,14 @@ def source_of(key: KernelKey) -> str:
 
 
 def _load(key: KernelKey) -> CompiledKernel:
-    inputs = _cut(key).inputs
-    order = tuple((name, dict(key.axis_of).get(name)) for name in inputs)
-    path = _cache.folder().path / f"kernel_{_identity(key)}.py"
+    axes = dict(key.axis_of)
+    order = tuple((name, axes.get(name)) for name in _cut(key).inputs)
+    source = source_of(key)
+    path = _cache.folder().path / f"kernel_{hashlib.sha256(source.encode()).hexdigest()[:20]}.py"
     with _cache.locked(path):
         if not path.exists():
-            _cache.write(path, source_of(key))
+            _cache.write(path, source)
         return CompiledKernel(_module_function(path), order)
-
-
-def _identity(key: KernelKey) -> str:
-    return hashlib.sha256(repr((_program.digest(), key)).encode()).hexdigest()[:20]
 
 
 def _module_function(path: Path) -> Callable[..., None]:
