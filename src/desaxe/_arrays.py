@@ -27,7 +27,7 @@ def evaluate_arrays(
     arrays = {name: as_array(name, given[name], inputs, wanted.shown) for name in inputs}
     shape = broadcast_shape(arrays)
     places = places_for(wanted.shown, shape, out)
-    buffers = {name: _buffer(name, place, arrays.values()) for name, place in places.items()}
+    buffers = {name: buffer_for(name, place, arrays.values()) for name, place in places.items()}
     if all(buffer.size for buffer in buffers.values()):
         scalars = {name: float(a.reshape(-1)[0]) for name, a in arrays.items() if a.size == 1}
         columns = {name: _column(a, shape) for name, a in arrays.items() if a.size != 1}
@@ -97,7 +97,7 @@ def dtype_of(name: str) -> np.dtype[Any]:
     return np.dtype(np.int8 if name == "status" else np.float64)
 
 
-def _buffer(name: str, place: Array, inputs: Iterable[Array]) -> Array:
+def buffer_for(name: str, place: Array, inputs: Iterable[Array]) -> Array:
     """The place itself where a kernel can write into it, else an array to be copied from."""
     direct = place.flags.c_contiguous and place.flags.aligned and place.dtype == dtype_of(name)
     overlaps = any(np.may_share_memory(place, array) for array in inputs)

@@ -8,8 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import _program
-from ._request import Request, as_number, check_border, request
-from .catalogue import quantity
+from ._request import Request, as_number, check_border, request, standstill
 from .compiler.emit_python import compile_python
 from .compiler.passes.pipeline import optimise
 from .inputs import is_good
@@ -68,7 +67,7 @@ def evaluate(
         check_border(given, branch, threads)
     key = wanted, omega is not None, branch, accuracy
     if omega0 is None and omega is None and "status" in wanted:
-        given.update(_unmoved(wanted))
+        given["omega0"] = standstill(wanted)
     point = _POINTS.get(key)
     if point is None:
         point = _POINTS[key] = _point(request(wanted, given, branch, accuracy))
@@ -90,15 +89,6 @@ def evaluate(
 
 
 _POINTS: dict[tuple[Any, ...], Point] = {}
-
-
-def _unmoved(names: tuple[str, ...]) -> dict[str, float]:
-    """The speed to take where none is given and only `status` would use it: a crank that stands still."""
-    others = tuple(name for name in names if name not in ("status", "margin"))
-    for name in others:
-        quantity(name)
-    needs = _program.program_of(others).inputs if others else ()
-    return {} if "omega0" in needs else {"omega0": 0.0, "alpha": 0.0}
 
 
 def _point(wanted: Request) -> Point:

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from math import inf
 from typing import Any, NamedTuple
 
+from ._program import program_of
 from .catalogue import law_name, quantity
 from .inputs import INPUTS, is_good
 
@@ -40,6 +41,14 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
         quantity(name, state)
     shown = tuple(names)
     return Request(shown, tuple(law_name(name) if state else name for name in shown), state, int(branch))
+
+
+def standstill(names: Iterable[str]) -> float | None:
+    """The speed to take where none is given: 0 where only `status` would use it, else None."""
+    others = tuple(name for name in names if name not in ("status", "margin"))
+    for name in others:
+        quantity(name)
+    return None if others and "omega0" in program_of(others).inputs else 0.0
 
 
 def as_number(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]) -> float | None:

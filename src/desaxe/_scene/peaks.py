@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._evaluate import evaluate
-from .._grid import input_attributes
+from .._labels import input_attributes
 from .._peak import peak
 from .._program import digest
 from ..catalogue import quantity

@@ -1,0 +1,49 @@
+"""Names, units and CF attributes for labelled results."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .catalogue import quantity
+from .extras import needed
+from .inputs import INPUTS
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+STATUS_FLAGS = ("ok", "cannot_be_assembled", "change_point", "stalled", "bad_input")
+
+
+def attributes(name: str, state: bool = False) -> dict[str, Any]:
+    """CF attributes of a quantity."""
+    if name == "status":
+        flags = np.arange(len(STATUS_FLAGS), dtype=np.int8)
+        return {"long_name": "status", "flag_values": flags, "flag_meanings": " ".join(STATUS_FLAGS)}
+    known = quantity(name, state)
+    found = {"units": known.unit, "long_name": known.meaning}
+    if known.source:
+        found["references"] = known.source
+    return found
+
+
+def input_attributes(name: str) -> dict[str, str]:
+    """CF attributes of an input."""
+    return {"units": INPUTS[name].unit, "long_name": INPUTS[name].meaning}
+
+
+def labelled(
+    values: Mapping[str, tuple[Sequence[str], NDArray[Any]]],
+    inputs: Mapping[str, NDArray[Any]],
+    branch: int,
+    state: bool,
+) -> "xr.Dataset":
+    """A Dataset of values by name (dimensions, array); a 1-d input is a dimension, a number is not."""
+    with needed("a labelled result"):
+        import xarray
+    variables = {name: (dims, array, attributes(name, state)) for name, (dims, array) in values.items()}
+    coordinates = {
+        name: ((name,) if array.ndim else (), array, input_attributes(name)) for name, array in inputs.items()
+    }
+    return xarray.Dataset(variables, coordinates, {"title": "offset slider-crank", "branch": branch})
