@@ -8,6 +8,7 @@ EXTRAS = {
     "mpmath": "derive",
     "xarray": "labelled",
     "h5netcdf": "labelled",
+    "h5py": "labelled",
     "matplotlib": "plot",
     "pint": "units",
     "msgspec": "scene",
