@@ -84,7 +84,9 @@ def _require_rooms(content: Content) -> None:
     """Fail at the start, not at the end, where an optional dependency is missing."""
     rooms = {"outputs": "xarray"} if content.outputs else {}
     rooms |= {"[[peak]]": "xarray"} if content.peaks else {}
-    rooms |= {"results.data": "h5netcdf"} if content.data is not None else {}
+    rooms |= (
+        {"results.data": "h5netcdf", "the file of results.data": "h5py"} if content.data is not None else {}
+    )
     rooms |= (
         {"[[picture]]": "matplotlib", "the values of a [[picture]]": "xarray"} if content.pictures else {}
     )
