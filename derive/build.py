@@ -6,12 +6,13 @@ from desaxe.compiler.passes.number import number_values
 from desaxe.compiler.passes.slicing import drop_unused
 from desaxe.compiler.passes.trigonometry import Trigonometry
 from desaxe.compiler.program import Program, validate
+from desaxe.names import PARAMETERS, parts, sensitivity
 
 from .freeze import freeze
 from .motion import state_sheet
 from .polynomials import trigonometry
 from .quantities import FACTS, QUANTITIES, SECOND_ORDER, build_sheet
-from .sheet import PARAMETERS, Sheet, derivative_name, symbol
+from .sheet import Sheet, symbol
 
 INPUTS = (*PARAMETERS, "branch")
 
@@ -28,9 +29,9 @@ class Derivation(NamedTuple):
 
 def public_names() -> tuple[str, ...]:
     """Every name that can be asked for: quantities, sensitivities, facts."""
-    first = [derivative_name(q, p) for q in QUANTITIES for p in PARAMETERS]
+    first = [sensitivity(q, p) for q in QUANTITIES for p in PARAMETERS]
     second = [
-        derivative_name(derivative_name(q, p), t)
+        sensitivity(sensitivity(q, p), t)
         for q in SECOND_ORDER
         for i, p in enumerate(PARAMETERS)
         for t in PARAMETERS[i:]
@@ -52,11 +53,11 @@ def build() -> Derivation:
 
 def _derive(sheet: Sheet, name: str) -> None:
     """Make the equation of a public name."""
-    base, _, wrt = name.partition("_wrt_")
+    base, parameters = parts(name)
     so_far = base
-    for parameter in wrt.split("_") if wrt else ():
+    for parameter in parameters:
         value = sheet.derivative(so_far, parameter)
-        so_far = derivative_name(so_far, parameter)
+        so_far = sensitivity(so_far, parameter)
         if value.is_number and so_far not in sheet.equations:
             _define_constant(sheet, so_far, base, value)
 
@@ -70,9 +71,13 @@ def _define_constant(sheet: Sheet, name: str, base: str, value: object) -> None:
     unit = sheet.equations[base].unit
     if unit is None:
         raise ValueError(f"{base} has no unit")
-    for parameter in name.partition("_wrt_")[2].split("_"):
-        unit = unit.over(parameter)
-    sheet.define(name, symbol(still), unit=unit, meaning=f"0: {base} does not depend on it", rigid=True)
+    sheet.define(
+        name,
+        symbol(still),
+        unit=unit.over(*parts(name)[1]),
+        meaning=f"0: {base} does not depend on it",
+        rigid=True,
+    )
 
 
 def _finished(program: Program) -> Program:

@@ -9,9 +9,10 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from desaxe.names import PARAMETERS, parts
+
 from .loop import AB, BC, branch, ec, slider, solved, theta, u
 from .motion import LAW, alpha, omega
-from .sheet import PARAMETERS
 
 S = sp.Symbol("S", real=True)
 LATEX_NAMES = {
@@ -49,9 +50,9 @@ def equation(name: str) -> EquationText:
     if name in ("status", "margin"):
         expression = BC - AB - sp.Abs(ec) if name == "margin" else _status()
     else:
-        base, _, wrt = name.partition("_wrt_")
+        base, parameters = parts(name)
         expression = closed_form(base)
-        for parameter in wrt.split("_") if wrt else ():
+        for parameter in parameters:
             expression = expression.diff(_parameter(parameter))
     latex = f"{latex_name(name)} = {sp.latex(expression, symbol_names=_latex_symbols())}"
     return EquationText(name, expression, latex, known.unit, known.meaning, known.source, _steps(name))
@@ -121,9 +122,9 @@ def _steps(name: str) -> tuple[str, ...]:
 
 def latex_name(name: str) -> str:
     r"""`a_C_wrt_ec` as \frac{\partial a_C}{\partial e_c}."""
-    base, _, wrt = name.partition("_wrt_")
+    base, by = parts(name)
     top = LATEX_NAMES.get(base) or _subscripted(base)
-    parameters = [LATEX_NAMES.get(p, p) for p in wrt.split("_")] if wrt else []
+    parameters = [LATEX_NAMES.get(p, p) for p in by]
     if not parameters:
         return top
     order = f"^{{{len(parameters)}}}" if len(parameters) > 1 else ""

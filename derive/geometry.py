@@ -6,6 +6,8 @@ Y = AB cos(theta) + branch S is the solved loop. Lengths are differentiated firs
 
 import sympy as sp
 
+from desaxe.names import parts
+
 from .loop import AB, BC, ec, slider, solved
 from .rod import UNITS, RodFunction, read_rod_function
 from .sheet import Equation, Sheet
@@ -19,13 +21,10 @@ BASES = {"phi": (RodFunction("phi").symbol, UNITS["phi"]), "Y": (POSITION, LENGT
 
 def resolve_geometry(sheet: Sheet, name: str) -> Equation | None:
     """The equation of a derivative of phi or Y by theta and lengths."""
-    base, _, wrt = name.partition("_wrt_")
-    parameters = wrt.split("_")
-    if base not in BASES or any(p not in (*LENGTHS, "theta") for p in parameters):
+    base, parameters = parts(name)
+    if base not in BASES or not parameters or any(p not in (*LENGTHS, "theta") for p in parameters):
         return None
     expression, unit = BASES[base]
-    for parameter in parameters:
-        unit = unit.over(parameter)
     lengths, turns = [p for p in parameters if p != "theta"], parameters.count("theta")
     if base == "phi" and not lengths:
         expression = phi_rate(turns)
@@ -35,7 +34,7 @@ def resolve_geometry(sheet: Sheet, name: str) -> Equation | None:
         for _ in range(turns):
             expression = _by_theta(expression)
         expression = sp.factor_terms(expression)
-    return Equation(expression, unit, f"derivative of {base} by {', '.join(parameters)}")
+    return Equation(expression, unit.over(*parameters), f"derivative of {base} by {', '.join(parameters)}")
 
 
 def _rod_functions(expression: sp.Expr) -> list[tuple[sp.Symbol, RodFunction]]:

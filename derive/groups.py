@@ -2,8 +2,9 @@
 
 from typing import NamedTuple
 
+from desaxe.names import PARAMETERS, sensitivity
+
 from .quantities import SECOND_ORDER
-from .sheet import PARAMETERS, derivative_name
 
 
 class Group(NamedTuple):
@@ -24,13 +25,13 @@ ROD_RATES = ("omega_BC", "alpha_BC")
 def first(name: str) -> tuple[str, ...]:
     """A quantity's first sensitivities: a position has none by the motion."""
     parameters = PARAMETERS if name in ("V_C", "a_C", *ROD_RATES) else LENGTHS
-    return tuple(derivative_name(name, p) for p in parameters)
+    return tuple(sensitivity(name, p) for p in parameters)
 
 
 def second(name: str) -> tuple[str, ...]:
     """A quantity's second sensitivities."""
     pairs = [(p, q) for i, p in enumerate(PARAMETERS) for q in PARAMETERS[i:]]
-    return tuple(derivative_name(derivative_name(name, p), q) for p, q in pairs)
+    return tuple(sensitivity(sensitivity(name, p), q) for p, q in pairs)
 
 
 GROUPS = (

@@ -14,8 +14,10 @@ from itertools import combinations_with_replacement
 
 import sympy as sp
 
+from desaxe.names import sensitivity
+
 from .loop import theta
-from .sheet import Sheet, derivative_name, symbol
+from .sheet import Sheet, symbol
 from .stable import eq, le, lt, select
 from .units import ANGULAR_SPEED, NONE, Unit
 
@@ -71,7 +73,7 @@ def _define_powers(sheet: Sheet) -> None:
     """omega^3 and omega alpha, with derivatives that keep their limits where omega is 0."""
     sheet.define("omega3", omega * omega2, unit=Unit(0, -3, 3), meaning="omega^3")
     for parameter in MOVING:
-        by_square = sp.Rational(3, 2) * omega * symbol(derivative_name("omega2", parameter))
+        by_square = sp.Rational(3, 2) * omega * symbol(sensitivity("omega2", parameter))
         _define_rate(sheet, "omega3", (parameter,), by_square)
     sheet.define("omega_alpha", omega * alpha, unit=Unit(0, -3, 2), meaning="omega alpha")
     moving = omega + alpha * symbol("omega_wrt_alpha")
@@ -79,10 +81,8 @@ def _define_powers(sheet: Sheet) -> None:
 
 
 def _define_rate(sheet: Sheet, name: str, parameters: tuple[str, ...], value: sp.Expr | int) -> None:
-    unit, meaning = UNITS[name], f"derivative of {name} by {', '.join(parameters)}"
-    for parameter in parameters:
-        name, unit = derivative_name(name, parameter), unit.over(parameter)
-    sheet.define(name, value, unit=unit, meaning=meaning)
+    meaning = f"derivative of {name} by {', '.join(parameters)}"
+    sheet.define(sensitivity(name, *parameters), value, unit=UNITS[name].over(*parameters), meaning=meaning)
 
 
 def _omega_rates() -> dict[tuple[str, ...], sp.Expr]:

@@ -39,10 +39,7 @@ class RodFunction(NamedTuple):
     @property
     def unit(self) -> Unit:
         """Its unit: u and BC are lengths."""
-        unit = UNITS[self.function]
-        for parameter in (*("BC" for _ in self.by), *("theta" for _ in range(self.turns))):
-            unit = unit.over(parameter)
-        return unit
+        return UNITS[self.function].over(*["BC"] * len(self.by), *["theta"] * self.turns)
 
     @property
     def meaning(self) -> str:

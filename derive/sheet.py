@@ -12,11 +12,9 @@ from typing import NamedTuple
 import sympy as sp
 
 from desaxe.compiler.program import Note
+from desaxe.names import sensitivity
 
 from .units import Unit, unit_text
-
-# The order in which parameters stand in the name of a derivative.
-PARAMETERS = ("theta", "ec", "AB", "BC", "omega0", "alpha")
 
 
 class Equation(NamedTuple):
@@ -36,13 +34,6 @@ class Equation(NamedTuple):
     def note(self) -> Note | None:
         """What the frozen line says of itself."""
         return Note(unit_text(self.unit), self.meaning, self.source) if self.unit is not None else None
-
-
-def derivative_name(name: str, parameter: str) -> str:
-    """`V_C`, `ec` -> `V_C_wrt_ec`; the parameters of a name stand in one order."""
-    base, _, before = name.partition("_wrt_")
-    parameters = [*(before.split("_") if before else []), parameter]
-    return f"{base}_wrt_{'_'.join(sorted(parameters, key=PARAMETERS.index))}"
 
 
 class Sheet:
@@ -82,7 +73,7 @@ class Sheet:
         equation = self.equation(name)
         if equation is None or equation.rigid:
             return sp.Integer(0)
-        new = derivative_name(name, parameter)
+        new = sensitivity(name, parameter)
         if self.equation(new) is None:
             expression = self.chain_rule(name, parameter)
             if expression.is_number:

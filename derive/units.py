@@ -10,9 +10,12 @@ class Unit(NamedTuple):
     s: int = 0
     rad: int = 0
 
-    def over(self, parameter: str) -> "Unit":
-        """The unit of a derivative by a parameter."""
-        return Unit(*(a - b for a, b in zip(self, PARAMETER_UNITS[parameter], strict=True)))
+    def over(self, *parameters: str) -> "Unit":
+        """The unit of a derivative by these parameters."""
+        unit = self
+        for parameter in parameters:
+            unit = Unit(*(a - b for a, b in zip(unit, PARAMETER_UNITS[parameter], strict=True)))
+        return unit
 
 
 NONE = Unit()

@@ -32,16 +32,28 @@ from .groups import GROUPS, Group
 
 COMMAND = "python -m derive"
 HERE = Path(__file__).resolve().parent
+LIBRARY = ("inputs.py", "names.py")  # what the derivation uses of the library besides its compiler
 
 
 def inputs_digest() -> str:
-    """sha256 of the derivation's and the compiler's sources and of SymPy's version."""
+    """sha256 of everything that the files are made from, and of SymPy's version."""
     digest = hashlib.sha256(sympy.__version__.encode())
-    for root in (HERE, Path(compiler.__file__).resolve().parent):
-        for path in sorted(root.rglob("*.py")):
-            digest.update(path.relative_to(root).as_posix().encode() + b"\0")
-            digest.update(path.read_bytes().replace(b"\r\n", b"\n"))
+    library = Path(compiler.__file__).resolve().parents[1]
+    files = [
+        *HERE.rglob("*.py"),
+        *(library / "compiler").rglob("*.py"),
+        *(library / name for name in LIBRARY),
+    ]
+    for path in sorted(files, key=_place):
+        digest.update(_place(path).encode() + b"\0" + path.read_bytes().replace(b"\r\n", b"\n"))
     return digest.hexdigest()
+
+
+def _place(path: Path) -> str:
+    """Where a file stands in its room, however the rooms are installed."""
+    roots = {"derive": HERE, "desaxe": Path(compiler.__file__).resolve().parents[1]}
+    room, root = next((room, root) for room, root in roots.items() if path.is_relative_to(root))
+    return f"{room}/{path.relative_to(root).as_posix()}"
 
 
 def render(derivation: Derivation) -> dict[str, str]:
@@ -154,6 +166,8 @@ def differences(files: Mapping[str, str], folder: Path) -> list[str]:
 def write(files: Mapping[str, str], folder: Path) -> list[str]:
     """Swap the changed files in, all or none, and remove what is no longer made; their names."""
     folder.mkdir(parents=True, exist_ok=True)
+    for left in folder.glob(".*.new"):  # of a run that was killed
+        left.unlink()
     old = {path.name: path.read_bytes() for path in folder.glob("*.py")}
     new = {name: text.encode() for name, text in files.items()}
     changed = sorted(name for name in {*old, *new} if old.get(name) != new.get(name))

@@ -17,13 +17,13 @@ from ._evaluate import evaluate
 from ._feasibility import theta_intervals
 from ._program import program_of
 from ._request import request
-from .catalogue import quantities
+from .catalogue import quantity
 from .inputs import INPUTS
+from .names import sensitivity
 
 Array = NDArray[np.float64]
 
 KINDS = ("absmax", "max", "min")
-PARAMETERS = ("theta", "ec", "AB", "BC", "omega0", "alpha")
 BLOCK = 4096  # designs at a time
 UNIFORM = 240  # nodes per turn
 GRADED = 2.0 ** -np.arange(1.0, 46.0)  # distances from a quarter or a limit angle, down to 3e-14
@@ -84,7 +84,7 @@ def peak(
 
     Raises ValueError for an unknown kind, or a quantity whose derivative by theta is not derived.
     """
-    slope = _slope_name(name)
+    slope = _slope_name(name, omega is not None)
     if kind not in KINDS:
         raise ValueError(f"kind = {kind!r}: it is one of {', '.join(KINDS)}")
     low, high = (float(angle) for angle in theta)
@@ -101,20 +101,17 @@ def peak(
     for start in range(0, count, BLOCK):
         block = {n: column[start : start + BLOCK] for n, column in columns.items()}
         parts.append(_peaks(name, slope, kind, Designs(block, branch, (low, high))))
-    return _shaped(
-        parts, shape, [n for n in PARAMETERS[1:] if n in needs or (n == "omega0" and wanted.state)]
-    )
+    return _shaped(parts, shape, needs)
 
 
-def _slope_name(name: str) -> str:
+def _slope_name(name: str, state: bool) -> str:
     """The derivative by theta of a name; ValueError where there is none."""
-    base, _, wrt = name.partition("_wrt_")
-    parameters = ["theta", *(wrt.split("_") if wrt else [])]
-    slope = f"{base}_wrt_{'_'.join(parameters)}"
-    known = {row.name for row in quantities()}
-    if slope.replace("_omega_", "_omega0_").removesuffix("_omega") not in known and slope not in known:
-        request((name,), {}, 1, "standard")  # an unknown name is the better complaint
-        raise ValueError(f"peak of {name}: its derivative by theta is not derived")
+    quantity(name, state)
+    slope = sensitivity(name, "theta")
+    try:
+        quantity(slope, state)
+    except ValueError:
+        raise ValueError(f"peak of {name}: its derivative by theta is not derived") from None
     return slope
 
 
@@ -271,8 +268,7 @@ def _mark_limits(
     name: str, kind: str, result: dict[str, Any], value: Array, nodes: Array, ends: list[tuple[int, float]]
 ) -> None:
     """An extremum at a limit angle has status 2; what has no bound there is infinite."""
-    base = name.partition("_wrt_")[0]
-    bounded = base in BOUNDED and "_wrt_" not in name
+    bounded = name in BOUNDED
     for row, end in ends:
         usable = np.isfinite(value[row])
         if not usable.any() or result["status"][row] != 0:
@@ -292,19 +288,13 @@ def _mark_limits(
 def _gradient(name: str, kind: str, designs: Designs, result: Mapping[str, Any]) -> dict[str, Array]:
     """The partial derivatives at the extreme angle."""
     parameters = [n for n in designs.columns if n in INPUTS]
-    names = tuple(_sensitivity(name, p) for p in parameters)
+    names = tuple(sensitivity(name, p) for p in parameters)
     rows = np.arange(len(result["theta"]))
     found = _values(names, designs, rows, np.asarray(result["theta"]))
     sign = np.sign(result["value"]) if kind == "absmax" else 1.0
     usable = (result["status"] == 0) & np.isfinite(result["value"])
     with np.errstate(invalid="ignore"):
         return {p: np.where(usable, sign * found[n], np.nan) for p, n in zip(parameters, names, strict=True)}
-
-
-def _sensitivity(name: str, parameter: str) -> str:
-    base, _, wrt = name.partition("_wrt_")
-    order = (*PARAMETERS[:4], "omega0", "omega", "alpha")
-    return f"{base}_wrt_{'_'.join(sorted([*(wrt.split('_') if wrt else []), parameter], key=order.index))}"
 
 
 def _shaped(parts: list[dict[str, Any]], shape: tuple[int, ...], parameters: list[str]) -> dict[str, Any]:

@@ -8,6 +8,8 @@ from functools import cache
 from importlib import import_module
 from typing import NamedTuple
 
+from .names import joined, parts
+
 
 class Quantity(NamedTuple):
     """One name that can be asked for."""
@@ -41,10 +43,8 @@ def quantity(name: str, state: bool = False) -> Quantity:
 
 def law_name(name: str) -> str:
     """The name under the law of a name under a state: omega stands in the place of omega0."""
-    base, wrt, parameters = name.partition("_wrt_")
-    if not wrt:
-        return name
-    return base + wrt + "_".join("omega0" if p == "omega" else p for p in parameters.split("_"))
+    base, parameters = parts(name)
+    return joined(base, ("omega0" if p == "omega" else p for p in parameters))
 
 
 def _unknown(name: str, state: bool) -> str:

@@ -15,8 +15,8 @@ from tests.compiler.coverage_set import POINTS, coverage
 from tests.compiler.programs import POINT, committed, in_doubles
 from tests.truth import ulp_error
 
-LINES = (Line("sine", "sin", ("x",)), Line("cosine", "cos", ("x",)))
-PROGRAM = Program(("x",), LINES, ("sine", "cosine"), {})
+LINES = (Line("sine_of_x", "sin", ("x",)), Line("cosine_of_x", "cos", ("x",)))
+PROGRAM = Program(("x",), LINES, ("sine_of_x", "cosine_of_x"), {})
 EXPANDED = expand_trigonometry(PROGRAM, constants())
 LIMIT = constants().limit
 
@@ -67,11 +67,11 @@ def test_sine_and_cosine_are_gone():
     assert not {"sin", "cos"} & {line.op for line in validate(EXPANDED).lines}
 
 
-SINE_ALONE = expand_trigonometry(Program(("x",), LINES[:1], ("sine",), {}), constants())
+SINE_ALONE = expand_trigonometry(Program(("x",), LINES[:1], ("sine_of_x",), {}), constants())
 
 
 def test_nothing_is_left_over():
-    assert validate(SINE_ALONE).outputs == ("sine",)
+    assert validate(SINE_ALONE).outputs == ("sine_of_x",)
 
 
 def test_both_of_an_angle_share_the_work():
@@ -79,7 +79,7 @@ def test_both_of_an_angle_share_the_work():
 
 
 def test_another_angle_has_lines_of_its_own():
-    program = Program(("x", "y"), (LINES[0], Line("other", "sin", ("y",))), ("sine", "other"), {})
+    program = Program(("x", "y"), (LINES[0], Line("other", "sin", ("y",))), ("sine_of_x", "other"), {})
     assert len(expand_trigonometry(program, constants()).lines) == 2 * len(SINE_ALONE.lines)
 
 

@@ -3,13 +3,13 @@
 import math
 
 import pytest
-from desaxe.derive.build import INPUTS, _define_constant, public_names
-from desaxe.derive.quantities import FACTS, QUANTITIES, SECOND_ORDER, build_sheet
-from desaxe.derive.sheet import PARAMETERS
-from desaxe.generated.index import NAMES
 
 from desaxe.compiler.interpret import run_in_doubles
 from desaxe.compiler.program import validate
+from desaxe.derive.build import INPUTS, _define_constant, public_names
+from desaxe.derive.quantities import FACTS, QUANTITIES, SECOND_ORDER, build_sheet
+from desaxe.generated.index import NAMES
+from desaxe.names import PARAMETERS
 from tests.derive.derived import derivation
 from tests.truth import all_names
 

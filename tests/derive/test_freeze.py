@@ -4,14 +4,14 @@ import math
 
 import pytest
 import sympy as sp
-from desaxe.derive.freeze import freeze
-from desaxe.derive.sheet import Sheet, symbol
-from desaxe.derive.stable import le, lt, select
-from desaxe.derive.units import LENGTH
 
 from desaxe.compiler.interpret import run_in_doubles
 from desaxe.compiler.program import validate
 from desaxe.compiler.text import with_short_temporaries, write_lines
+from desaxe.derive.freeze import freeze
+from desaxe.derive.sheet import Sheet, symbol
+from desaxe.derive.stable import le, lt, select
+from desaxe.derive.units import LENGTH
 
 x, y, z = map(symbol, "xyz")
 INPUTS = ("x", "y", "z")

@@ -3,6 +3,7 @@
 import mpmath
 import pytest
 import sympy as sp
+
 from desaxe.derive import loop
 from desaxe.derive.loop import AB, BC, CLOSURE, S, branch, ec, phi, r, rod_partials, slider, solved, theta, u
 

@@ -4,9 +4,9 @@ import math
 
 import mpmath
 import pytest
-from desaxe.derive.polynomials import BITS, trigonometry
 
 from desaxe._kernels import constants
+from desaxe.derive.polynomials import BITS, trigonometry
 
 HALF_BIT = 2.0**-53
 ANGLES = [math.pi / 4 * k / 200 for k in range(1, 201)]

@@ -3,11 +3,11 @@
 from functools import cache
 
 import pytest
-from desaxe.derive.quantities import QUANTITIES
-from desaxe.derive.report import CONCENTRIC, GENERAL, report
 
 from desaxe.compiler.passes.pipeline import PASSES, optimise
 from desaxe.compiler.passes.slicing import keep_outputs
+from desaxe.derive.quantities import QUANTITIES
+from desaxe.derive.report import CONCENTRIC, GENERAL, report
 from tests.derive.derived import derivation
 
 

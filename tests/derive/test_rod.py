@@ -3,6 +3,7 @@
 import mpmath
 import pytest
 import sympy as sp
+
 from desaxe.derive.quantities import build_sheet
 from desaxe.derive.rod import RodFunction, read_rod_function, resolve_rod
 from desaxe.derive.units import Unit

@@ -2,8 +2,10 @@
 
 import pytest
 import sympy as sp
-from desaxe.derive.sheet import PARAMETERS, Equation, Sheet, derivative_name, symbol
+
+from desaxe.derive.sheet import Equation, Sheet, symbol
 from desaxe.derive.units import LENGTH, Unit
+from desaxe.names import PARAMETERS, sensitivity
 
 theta, ec, AB = map(symbol, ("theta", "ec", "AB"))
 a, b, c = map(symbol, "abc")
@@ -41,7 +43,7 @@ def test_the_chain_rule(name, parameter):
 def test_the_chain_rule_twice(pair):
     sheet = toy()
     sheet.derivative("c", pair[0])
-    second = sheet.derivative(derivative_name("c", pair[0]), pair[1])
+    second = sheet.derivative(sensitivity("c", pair[0]), pair[1])
     assert equal(expanded(sheet, second), expanded(sheet, c).diff(*map(symbol, pair)))
 
 
@@ -121,7 +123,7 @@ def test_only_what_is_needed_is_ordered():
     ],
 )
 def test_the_parameters_of_a_derivative_stand_in_one_order(name, parameter, new):
-    assert derivative_name(name, parameter) == new
+    assert sensitivity(name, parameter) == new
 
 
 def test_the_order_of_the_parameters():

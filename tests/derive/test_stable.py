@@ -3,6 +3,7 @@
 import mpmath
 import pytest
 import sympy as sp
+
 from desaxe.derive import stable
 from desaxe.derive.stable import chain_rule_form, recollected
 

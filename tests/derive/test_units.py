@@ -5,10 +5,10 @@ import re
 from functools import cache
 
 import pytest
-from desaxe.derive.units import ANGLE, JERK, NONE, PARAMETER_UNITS, Unit, unit_text
 
 from desaxe._program import _text
 from desaxe.compiler.interpret import run_in_doubles
+from desaxe.derive.units import ANGLE, JERK, NONE, PARAMETER_UNITS, Unit, unit_text
 
 POINT = {"theta": 1.1, "ec": 0.02, "AB": 0.125, "BC": 0.35, "omega0": 157.0, "alpha": -3.0, "branch": 1.0}
 SCALED = {

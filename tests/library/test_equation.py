@@ -5,9 +5,9 @@ import random
 import mpmath
 import pytest
 import sympy as sp
-from desaxe.derive.quantities import QUANTITIES
 
 import desaxe as dx
+from desaxe.derive.quantities import QUANTITIES
 
 POINT = {"theta": 0.7, "ec": -0.03, "AB": 0.125, "BC": 0.35, "omega0": 12.0, "alpha": 5.0}
 FIRST = [

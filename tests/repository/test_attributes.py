@@ -6,8 +6,8 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from desaxe.derive.write import render
 
+from desaxe.derive.write import render
 from tests.derive.derived import derivation
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -12,6 +12,7 @@ from .._labels import input_attributes
 from .._peak import peak
 from .._program import digest
 from ..catalogue import quantity
+from ..names import sensitivity
 from .progress import Steps
 from .read import Claim, Content, Peak
 from .values import Value
@@ -140,9 +141,7 @@ def _peak_attributes(one: Peak, state: bool) -> dict[str, str]:
 
 
 def _slope_attributes(one: Peak, parameter: str, state: bool) -> dict[str, str]:
-    base, _, others = one.quantity.partition("_wrt_")
-    parameters = sorted([*(others.split("_") if others else []), parameter], key=ORDER.index)
-    unit = quantity(f"{base}_wrt_{'_'.join(parameters)}", state).unit
+    unit = quantity(sensitivity(one.quantity, parameter), state).unit
     return {"units": unit, "long_name": f"derivative of the peak by {parameter}"}
 
 

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from .._program import program_of
 from ..catalogue import law_name, quantity
 from ..inputs import INPUTS
+from ..names import sensitivity
 from . import schema
 from .printed import Printed, read_percentage, read_printed
 from .schema import SceneError, shown
@@ -243,8 +244,7 @@ def _peak(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> Pea
 
 def _slope(key: str, name: str, state: bool) -> str:
     """The derivative of a quantity by theta, which a peak needs."""
-    base, _, parameters = name.partition("_wrt_")
-    slope = "_".join([f"{base}_wrt_theta", *([parameters] if parameters else [])])
+    slope = sensitivity(name, "theta")
     try:
         quantity(slope, state)
     except ValueError:

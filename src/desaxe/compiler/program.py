@@ -8,15 +8,16 @@ Canonical form, which every pass may assume and must keep (`validate`):
   * every name is assigned once, before it is used, and is no input;
   * every operation is in the table, with its number and types of arguments;
   * every line is reached from an output.
-A constant is a Python float (f64), int (i64) or bool; a float constant is finite or NaN.
+A constant is a Python float (f64), int (i64) or bool.
 """
 
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from .operations import OPERATIONS, result_type
+from .operations import HELPERS, MATH_NAMES, OPERATIONS, result_type
 
 Argument = str | float | int | bool
+RESERVED = frozenset((*HELPERS, *MATH_NAMES))
 
 
 class Note(NamedTuple):
@@ -72,7 +73,8 @@ def validate(program: Program) -> Program:
     for output in program.outputs:
         if output not in types:
             raise ProgramError(f"output {output!r} is never assigned")
-    unused = [line.name for line in program.lines if line.name not in reached(program)]
+    wanted = reached(program)
+    unused = [line.name for line in program.lines if line.name not in wanted]
     if unused:
         raise ProgramError(f"unused lines: {', '.join(unused)}")
     return program
@@ -82,6 +84,8 @@ def _validate_line(line: Line, types: Mapping[str, str]) -> None:
     operation = OPERATIONS.get(line.op)
     if line.name in types:
         raise ProgramError(f"{line.name!r} is assigned twice")
+    if line.name in RESERVED:
+        raise ProgramError(f"{line.name!r} is the name of a function that a program calls")
     if operation is None:
         raise ProgramError(f"{line.name!r}: unknown operation {line.op!r}")
     if len(line.args) != operation.arity:

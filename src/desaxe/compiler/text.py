@@ -181,7 +181,7 @@ def _note(comment: str) -> Note | None:
 def _free_names(tree: ast.expr) -> Iterable[str]:
     called = {node.func.id for node in ast.walk(tree) if isinstance(node, ast.Call)}  # type: ignore[attr-defined]
     for node in ast.walk(tree):
-        if isinstance(node, ast.Name) and node.id not in called and node.id != "nan":
+        if isinstance(node, ast.Name) and node.id not in (*called, "nan", "inf"):
             yield node.id
 
 
@@ -220,7 +220,7 @@ class _Reader:
     def _argument(self, tree: ast.expr) -> Argument:
         """A name, a constant, or a new temporary that holds the expression."""
         if isinstance(tree, ast.Name):
-            return float("nan") if tree.id == "nan" else tree.id
+            return float(tree.id) if tree.id in ("nan", "inf") else tree.id
         if isinstance(tree, ast.Constant) and isinstance(tree.value, (bool, int, float)):
             return tree.value
         match tree:

@@ -36,6 +36,9 @@ def optimise(
     program: Program, fixed: Mapping[str, float] | None = None, without: Collection[str] = ()
 ) -> tuple[Program, list[Step]]:
     """The program with `fixed` inputs bound, after every pass not switched off; the cost after each."""
+    unknown = set(without) - {step.name for step in PASSES}
+    if unknown:
+        raise ValueError(f"no pass {', '.join(sorted(unknown))}: {', '.join(step.name for step in PASSES)}")
     steps = [Step("sliced", cost_of(program))]
     program = bind_constants(program, fixed or {})
     for step in PASSES:

@@ -1,0 +1,39 @@
+"""Names of sensitivities: `a_C_wrt_ec_BC` is the quantity `a_C` by the parameters `ec` and `BC`.
+
+Parameters stand in one order. A parameter may have an underscore in its own name, so names are
+taken apart and put together here and nowhere else.
+"""
+
+from collections.abc import Iterable
+
+# The order in which parameters stand in a name; omega, of a given state, stands in omega0's place.
+PARAMETERS = ("theta", "ec", "AB", "BC", "omega0", "alpha")
+ORDER = ("theta", "ec", "AB", "BC", "omega0", "omega", "alpha")
+_JOINT = "_wrt_"
+
+
+def parts(name: str) -> tuple[str, tuple[str, ...]]:
+    """The quantity and the parameters of a name: `("a_C", ("ec", "BC"))`.
+
+    What follows `_wrt_` and is no parameter stays whole, as a parameter that nobody knows.
+    """
+    base, joint, rest = name.partition(_JOINT)
+    found: list[str] = []
+    while joint and rest:
+        known = [p for p in ORDER if rest == p or rest.startswith(f"{p}_")]
+        parameter = max(known, key=len, default=rest)
+        found.append(parameter)
+        rest = rest[len(parameter) + 1 :]
+    return base, tuple(found)
+
+
+def sensitivity(name: str, *parameters: str) -> str:
+    """The name of the derivative of a name by more parameters, in their order."""
+    base, before = parts(name)
+    return joined(base, sorted((*before, *parameters), key=ORDER.index))
+
+
+def joined(base: str, parameters: Iterable[str]) -> str:
+    """A quantity and parameters, in the order given, as one name."""
+    wrt = "_".join(parameters)
+    return f"{base}{_JOINT}{wrt}" if wrt else base

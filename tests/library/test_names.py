@@ -1,0 +1,27 @@
+"""Names of sensitivities: taken apart and put together in one place."""
+
+import pytest
+
+from desaxe.names import ORDER, PARAMETERS, joined, parts, sensitivity
+
+
+@pytest.mark.parametrize(
+    ("name", "base", "parameters"),
+    [
+        ("a_C", "a_C", ()),
+        ("a_C_wrt_ec", "a_C", ("ec",)),
+        ("alpha_BC_wrt_BC_alpha", "alpha_BC", ("BC", "alpha")),
+        ("V_C_wrt_omega0_omega0", "V_C", ("omega0", "omega0")),
+        ("V_C_wrt_omega", "V_C", ("omega",)),
+        ("Y_wrt_theta_nothing_known", "Y", ("theta", "nothing_known")),
+    ],
+)
+def test_parts(name, base, parameters):
+    assert parts(name) == (base, parameters)
+    assert joined(base, parameters) == name
+
+
+def test_parameters_stand_in_one_order():
+    assert sensitivity("a_C", "BC", "theta") == "a_C_wrt_theta_BC"
+    assert sensitivity("a_C_wrt_alpha", "ec") == "a_C_wrt_ec_alpha"
+    assert set(PARAMETERS) == set(ORDER) - {"omega"}
