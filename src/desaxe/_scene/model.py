@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from .peaks import PeakResult
 from .progress import Progress
 from .read import Content, plain_data, read
-from .run import CheckResult, FeasibilityResult, run
+from .run import CheckResult, FeasibilityResult, Run, run
 from .schema import SceneError as SceneError
 from .text import report
 
@@ -40,7 +40,8 @@ class SceneResult:
 
     def report(self) -> str:
         """The text that `desaxe run` prints."""
-        return report(self.scene.content, self)
+        run = Run(self.dataset, self.checks, self.peaks, self.feasibility, self.files)
+        return report(self.scene.content, run)
 
     def __str__(self) -> str:
         return self.report()

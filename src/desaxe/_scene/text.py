@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from math import degrees
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,22 +9,19 @@ from ..catalogue import quantity
 from ..inputs import INPUTS
 from .peaks import WORDS, ClaimResult, PeakResult
 from .read import Content, Peak
-from .run import CheckResult, FeasibilityResult, group_names
-
-if TYPE_CHECKING:
-    from .model import SceneResult
+from .run import CheckResult, FeasibilityResult, Run, group_names
 
 ROWS = 24  # of a table; a longer one is thinned out
 GAPS = 5  # designs that cannot turn fully
 
 
-def report(content: Content, result: "SceneResult") -> str:
+def report(content: Content, result: Run) -> str:
     """The whole report."""
     parts = [content.title] if content.title else []
     parts += [_checks(result.checks)] if result.checks else []
     parts += [_feasibility(result.feasibility)] if result.feasibility else []
     parts += [_peak(found) for found in result.peaks]
-    parts += [_values(result)] if result.dataset is not None else []
+    parts += [_values(content, result)] if result.dataset is not None else []
     parts += [_files(content, result)] if result.files else []
     return "\n\n".join(parts)
 
@@ -193,14 +189,14 @@ def _design(inputs: dict[str, float]) -> str:
 # ---- values and files ----------------------------------------------------------------------------
 
 
-def _values(result: "SceneResult") -> str:
+def _values(content: Content, result: Run) -> str:
     """What the labelled result holds."""
     assert result.dataset is not None
     shape = " x ".join(f"{name} ({size})" for name, size in result.dataset.sizes.items())
-    return f"Values\n  {', '.join(result.scene.outputs)} over {shape or 'one point'}"
+    return f"Values\n  {', '.join(content.outputs)} over {shape or 'one point'}"
 
 
-def _files(content: Content, result: "SceneResult") -> str:
+def _files(content: Content, result: Run) -> str:
     """A line for each file that was written."""
     rows: list[tuple[str, str]] = []
     pictures = [f"{picture.quantity} over {picture.over}" for picture in content.pictures]
