@@ -15,6 +15,8 @@ from .quantities import FACTS, QUANTITIES, SECOND_ORDER, build_sheet
 from .sheet import Sheet, symbol
 
 INPUTS = (*PARAMETERS, "branch")
+# What is needed -> the line that is 0 where there is such a thing, else NaN.
+GUARDS = {"D": "no_effect_on_rod", "omega2": "no_effect_on_motion"}
 
 
 class Derivation(NamedTuple):
@@ -67,13 +69,13 @@ def _define_constant(sheet: Sheet, name: str, base: str, value: object) -> None:
     if value != 0:
         raise ValueError(f"{name} is the constant {value}")
     needs = set(sheet.ordered((base,)))
-    still = "no_effect_on_rod" if "D" in needs else "no_effect_on_motion"
+    still = next((guard for what, guard in GUARDS.items() if what in needs), "")
     unit = sheet.equations[base].unit
     if unit is None:
         raise ValueError(f"{base} has no unit")
     sheet.define(
         name,
-        symbol(still),
+        symbol(still) if still else value,
         unit=unit.over(*parts(name)[1]),
         meaning=f"0: {base} does not depend on it",
         rigid=True,

@@ -12,9 +12,10 @@ import sympy as sp
 from desaxe.names import PARAMETERS, parts
 
 from .loop import AB, BC, branch, ec, slider, solved, theta, u
-from .motion import LAW, alpha, omega
+from .motion import LAW, alpha, omega, omega0
 
 S = sp.Symbol("S", real=True)
+SPEED = sp.Piecewise((-1, omega0 < 0), (1, True)) * sp.sqrt(LAW)  # omega, turning the way omega0 points
 LATEX_NAMES = {
     "phi": r"\varphi", "delta": r"\delta", "omega": r"\omega", "omega_BC": r"\omega_{BC}",
     "alpha_BC": r"\alpha_{BC}", "theta": r"\theta", "ec": "e_c", "omega0": r"\omega_0", "alpha": r"\alpha",
@@ -40,9 +41,9 @@ class EquationText(NamedTuple):
 def equation(name: str) -> EquationText:
     """The equation of a quantity or sensitivity: SymPy expression, LaTeX, and its stable steps.
 
-    The expression is in `theta, ec, AB, BC, omega0, alpha, branch` (SI, radians), under paper A's
-    law omega^2 = omega0^2 + 2 alpha theta for omega0 >= 0. `steps` are the lines that are computed.
-    Raises ValueError for an unknown name.
+    The expression is in `theta, ec, AB, BC, omega0, alpha, branch` (SI, radians), under paper A's law
+    omega^2 = omega0^2 + 2 alpha theta; the LaTeX writes omega for it. `steps` are the lines that are
+    computed. Raises ValueError for an unknown name.
     """
     from desaxe.catalogue import quantity
 
@@ -53,9 +54,17 @@ def equation(name: str) -> EquationText:
         base, parameters = parts(name)
         expression = closed_form(base)
         for parameter in parameters:
-            expression = expression.diff(_parameter(parameter))
+            expression = _derivative(expression, parameter)
     latex = f"{latex_name(name)} = {sp.latex(expression, symbol_names=_latex_symbols())}"
-    return EquationText(name, expression, latex, known.unit, known.meaning, known.source, _steps(name))
+    return EquationText(
+        name, expression.subs(omega, SPEED), latex, known.unit, known.meaning, known.source, _steps(name)
+    )
+
+
+def _derivative(expression: sp.Expr, parameter: str) -> sp.Expr:
+    """The total derivative: omega d(omega) = d(omega^2)/2."""
+    p = _parameter(parameter)
+    return expression.diff(p) + expression.diff(omega) * LAW.diff(p) / (2 * omega)
 
 
 def _parameter(name: str) -> sp.Symbol:
@@ -90,12 +99,10 @@ def closed_form(base: str) -> sp.Expr:
             "V_C": _rate(position, 1),
             "a_C": _rate(position, 2),
             "j_C": _rate(position, 3),
-        }[base]
-    return (
-        sp.simplify(found).subs(omega, sp.sqrt(LAW))
-        if base in ("V_B", "a_B")
-        else found.subs(omega, sp.sqrt(LAW))
-    )
+        }.get(base)
+    if found is None:
+        raise LookupError(f"{base} has no closed form here yet")
+    return sp.simplify(found) if base in ("V_B", "a_B") else found
 
 
 def _rate(expression: sp.Expr, turns: int) -> sp.Expr:
@@ -138,4 +145,4 @@ def _subscripted(name: str) -> str:
 
 
 def _latex_symbols() -> dict[sp.Symbol, str]:
-    return {_parameter(name): LATEX_NAMES.get(name, name) for name in (*PARAMETERS, "branch")}
+    return {_parameter(name): LATEX_NAMES.get(name, name) for name in (*PARAMETERS, "omega", "branch")}

@@ -1,5 +1,6 @@
 """`evaluate` over arrays: broadcast, run in blocks, put the answers where they are wanted."""
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -15,8 +16,10 @@ from .inputs import INPUTS
 
 Array = NDArray[Any]
 
-# Below this many points plain Python ends before a kernel has been compiled.
+# A request is answered in plain Python until so many points of it have been asked for in this process:
+# nobody pays a compilation for a hundred points, and nobody waits for ever who asks again and again.
 BREAK_EVEN = 2_000
+_ASKED: Counter[KernelKey] = Counter()
 
 
 def evaluate_arrays(
@@ -44,7 +47,13 @@ def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str])
         from .units import in_si
 
         value = in_si(name, value)
+    if np.ma.is_masked(value):
+        raise TypeError(f"{name}: a masked array; fill it first, for example with .filled(np.nan)")
     array = np.asarray(value)
+    if array.dtype.kind == "U":
+        from .units import in_si
+
+        array = np.array([in_si(name, text) for text in array.reshape(-1).tolist()]).reshape(array.shape)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name}: real numbers are wanted, got an array of {array.dtype}")
     array = array.astype(np.float64, copy=False)
@@ -128,10 +137,18 @@ def _fill(
     if not columns:
         for out, value in zip(outs, point_for(key).run(scalars), strict=True):
             out[...] = value
-    elif outs[0].size < BREAK_EVEN and not is_ready(key):
+    elif _is_early(key, outs[0].size):
         _fill_by_points(key, scalars, columns, outs)
     else:
         run_in_blocks(kernel_for(key), {**scalars, **columns}, outs, threads)
+
+
+def _is_early(key: KernelKey, size: int) -> bool:
+    """Whether plain Python still pays."""
+    if is_ready(key):
+        return False
+    _ASKED[key] += size
+    return _ASKED[key] < BREAK_EVEN
 
 
 def _fill_by_points(

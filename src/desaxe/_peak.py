@@ -16,7 +16,7 @@ from ._arrays import as_array, broadcast_shape
 from ._evaluate import evaluate
 from ._feasibility import theta_intervals
 from ._program import program_of
-from ._request import request
+from ._request import as_number, request
 from .catalogue import quantity
 from .inputs import INPUTS
 from .names import sensitivity
@@ -87,9 +87,7 @@ def peak(
     slope = _slope_name(name, omega is not None)
     if kind not in KINDS:
         raise ValueError(f"kind = {kind!r}: it is one of {', '.join(KINDS)}")
-    low, high = (float(angle) for angle in theta)
-    if not -np.inf < low <= high < np.inf:
-        raise ValueError(f"theta = ({low}, {high}): a finite range, its lower end first")
+    low, high = _range(theta, name)
     given = {"ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
     wanted = request((name, slope), given, branch, accuracy)
     needs = [n for n in program_of(wanted.names, wanted.state).inputs if n not in ("theta", "branch")]
@@ -102,6 +100,18 @@ def peak(
         block = {n: column[start : start + BLOCK] for n, column in columns.items()}
         parts.append(_peaks(name, slope, kind, Designs(block, branch, (low, high))))
     return _shaped(parts, shape, needs)
+
+
+def _range(theta: Any, name: str) -> tuple[float, float]:
+    """The ends of the range of crank angles."""
+    try:
+        first, last = theta
+    except (TypeError, ValueError):
+        raise ValueError(f"theta = {theta!r}: a range (lower end, upper end) is wanted") from None
+    low, high = (as_number("theta", end, ("theta",), (name,)) for end in (first, last))
+    if low is None or high is None or low > high:
+        raise ValueError(f"theta = ({first}, {last}): two angles, the lower one first")
+    return low, high
 
 
 def _slope_name(name: str, state: bool) -> str:
@@ -129,6 +139,7 @@ def _peaks(name: str, slope: str, kind: str, designs: Designs) -> dict[str, Any]
     best_value, best_theta = _best(kind, value, nodes, candidate_rows, at_roots, candidates)
     result: dict[str, Any] = {"value": best_value, "theta": best_theta, "status": _status(status)}
     _mark_limits(name, kind, result, value, nodes, ends)
+    result["theta"] = np.where(np.isnan(result["value"]), np.nan, result["theta"])
     result["gradient"] = _gradient(name, kind, designs, result)
     if kind == "absmax":
         result["value"] = np.abs(result["value"])
@@ -247,13 +258,19 @@ def _best(
     every = np.arange(len(value))
     column = np.argmax(_score(kind, value), axis=1)
     best_value, best_theta = value[every, column].copy(), nodes[every, column].copy()
-    order = np.argsort(_score(kind, at_roots), kind="stable")  # the best of a row is written last
+    score = _score(kind, at_roots)
+    best_root = np.full(len(value), -np.inf)
+    np.maximum.at(best_root, rows, score)
+    # Of roots that share the best value but for rounding, the one at the smallest angle.
+    shares = np.flatnonzero(score >= best_root[rows] - 1e-14 * np.abs(best_root[rows]))
+    order = shares[np.argsort(-roots[shares], kind="stable")]  # the smallest angle is written last
     winner = np.full(len(value), -1)
     winner[rows[order]] = order
     known = winner >= 0
     better = np.zeros(len(value), bool)
     # An extremum that a node happens to hit counts as refined: it has the same value.
-    better[known] = _score(kind, at_roots[winner[known]]) >= _score(kind, best_value[known])
+    nearly = _score(kind, best_value[known])
+    better[known] = score[winner[known]] >= nearly - 1e-14 * np.abs(nearly)
     best_value[better], best_theta[better] = at_roots[winner[better]], roots[winner[better]]
     return best_value, best_theta
 
@@ -290,7 +307,7 @@ def _gradient(name: str, kind: str, designs: Designs, result: Mapping[str, Any])
     parameters = [n for n in designs.columns if n in INPUTS]
     names = tuple(sensitivity(name, p) for p in parameters)
     rows = np.arange(len(result["theta"]))
-    found = _values(names, designs, rows, np.asarray(result["theta"]))
+    found = _values(names, designs, rows, np.nan_to_num(result["theta"]))
     sign = np.sign(result["value"]) if kind == "absmax" else 1.0
     usable = (result["status"] == 0) & np.isfinite(result["value"])
     with np.errstate(invalid="ignore"):

@@ -27,8 +27,8 @@ def check_border(given: Mapping[str, Any], branch: Any, threads: int | None = No
     number = isinstance(branch, (int, float)) or _is_numpy_number(branch)
     if isinstance(branch, bool) or not number or branch not in (1, -1):
         raise ValueError(f"branch = {branch!r}: it is +1 or -1")
-    if threads is not None and threads < 1:
-        raise ValueError(f"threads = {threads}: at least 1")
+    if threads is not None and (not isinstance(threads, int) or threads < 1):
+        raise ValueError(f"threads = {threads}: a whole number, at least 1")
 
 
 def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accuracy: str) -> Request:

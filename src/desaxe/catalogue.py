@@ -8,7 +8,7 @@ from functools import cache
 from importlib import import_module
 from typing import NamedTuple
 
-from .names import joined, parts
+from .names import PARAMETERS, joined, parts, sensitivity
 
 
 class Quantity(NamedTuple):
@@ -56,6 +56,13 @@ def _unknown(name: str, state: bool) -> str:
         return (
             f"{name!r} has no meaning for a given state omega=: ask for {name.replace('omega0', 'omega')!r}"
         )
+    base, parameters = parts(law_name(name))
+    if set(parameters) <= set(PARAMETERS) and base in _names():
+        ordered = sensitivity(base, *parameters)
+        if ordered in _names():
+            return f"{name!r}: the parameters of a sensitivity stand in one order, {ordered!r}"
+        if len(parameters) > 1:
+            return f"{name!r}: this derivative is not derived (second order: Y, V_C, a_C, omega_BC, alpha_BC)"
     near = get_close_matches(name, _names(), 3, 0.5)
     hint = f"; did you mean {', '.join(near)}?" if near else ""
     return f"unknown quantity {name!r}{hint} (desaxe.quantities() lists them all)"

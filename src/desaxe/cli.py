@@ -48,7 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("desaxe: interrupted", file=sys.stderr)
         return INTERRUPTED
-    except (UsageError, MissingExtraError, ValueError, TypeError, OSError) as error:
+    except (UsageError, MissingExtraError, ValueError, TypeError, OSError, MemoryError) as error:
         print(f"desaxe: error: {_one_line(error)}", file=sys.stderr)
         return 2
 
@@ -317,7 +317,7 @@ examples:
 
 def _add_errata(commands: Any) -> None:
     parser = _add(commands, "errata", "what the papers print, and what of it is right", _ERRATA, _errata)
-    parser.add_argument("--document", metavar="LETTER", help="A, B or C")
+    parser.add_argument("--document", metavar="LETTER", type=str.upper, help="the paper: A")
     parser.add_argument(
         "--verdict", metavar="WORD", help="correct, typo, sign, wrong claim, not reproducible"
     )

@@ -1,19 +1,44 @@
-"""Units at the border: text such as "10 mm" and pint quantities become SI numbers (extra `units`)."""
+"""Units at the border: text such as "10 mm" and pint quantities become SI numbers (extra `units`).
 
+Text is read as an exact fraction, converted exactly and rounded once, so that "350 mm" is the same
+double as 0.350. The unit must say the same as the input's own, angle included: "25 Hz" is no angular
+speed, although to a unit library a radian is nothing.
+"""
+
+from fractions import Fraction
 from functools import cache
 from typing import Any
 
-from ._quantity_text import quantity_text
+from ._quantity_text import quantity_text, split_quantity
 from .extras import MissingExtraError, needed
 from .inputs import INPUTS
+
+EXAMPLES = {
+    "m": '"125 mm"',
+    "rad": '"60 deg"',
+    "rad/s": '"1500 rpm", "25 turn/s" or "157 rad/s"',
+    "rad/s^2": '"10 rad/s^2"',
+}
 
 
 @cache
 def registry() -> Any:
-    """pint's registry; revolutions per minute are turns of 2 pi."""
+    """The registry of units that floats are converted with."""
+    return _registry(float)
+
+
+@cache
+def _exact_registry() -> Any:
+    return _registry(Fraction)
+
+
+def _registry(number: type) -> Any:
     with needed("a value with a unit"):
         import pint
-    return pint.UnitRegistry()
+    units: Any = pint.UnitRegistry(non_int_type=number)
+    units.define("@alias revolution = rev")
+    units.define("@alias revolutions_per_minute = RPM")
+    return units
 
 
 def in_si(name: str, value: Any) -> Any:
@@ -25,13 +50,40 @@ def in_unit(name: str, value: Any, unit: str) -> Any:
     """The magnitude of a text or pint quantity in a unit."""
     if isinstance(value, str):
         plain = _plain_number(value)
-        if plain is not None:
-            return plain
-        value = _parsed(name, value)
+        return float(exact(name, value, unit)) if plain is None else plain
+    if not _says_the_same(value, unit):
+        raise ValueError(f"{name} = {value}: {_wanted(unit)}")
+    return value.to(unit).magnitude
+
+
+def exact(name: str, text: str, unit: str) -> Fraction:
+    """The number that a text with a unit is in another unit, exactly (pi to 50 digits)."""
     try:
-        return value.to(unit).magnitude
-    except Exception as error:
-        raise ValueError(f"{name} = {value}: not a quantity in {unit} ({error})") from None
+        number, own = split_quantity(text)
+        if not own:
+            return Fraction(number)
+        quantity = _exact_registry().Quantity(Fraction(number), quantity_text(f"1 {own}")[2:])
+    except MissingExtraError:
+        raise
+    except ValueError as error:
+        raise ValueError(f"{name} = {text!r}: {error}") from None
+    except Exception:
+        raise ValueError(f"{name} = {text!r}: unknown unit; {_wanted(unit)}") from None
+    if not _says_the_same(quantity, unit):
+        raise ValueError(f"{name} = {text!r}: {_wanted(unit)}")
+    return Fraction(quantity.to(unit).magnitude)
+
+
+def _says_the_same(quantity: Any, unit: str) -> bool:
+    """Whether both are made of the same base units, radians among them."""
+    own = quantity.to_root_units().units
+    wanted = (1 * quantity._REGISTRY.Unit(unit)).to_root_units().units
+    return dict(own._units) == dict(wanted._units)
+
+
+def _wanted(unit: str) -> str:
+    example = EXAMPLES.get(unit)
+    return f"it must be a quantity in {unit}" + (f", such as {example}" if example else "")
 
 
 def _plain_number(text: str) -> float | None:
@@ -39,12 +91,3 @@ def _plain_number(text: str) -> float | None:
         return float(text)
     except ValueError:
         return None
-
-
-def _parsed(name: str, text: str) -> Any:
-    try:
-        return registry().Quantity(quantity_text(text))
-    except MissingExtraError:
-        raise
-    except Exception as error:
-        raise ValueError(f"{name} = {text!r}: cannot be read as a number with a unit ({error})") from None

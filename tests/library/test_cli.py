@@ -85,7 +85,7 @@ COMPLAINTS = {
     "bad value": (["point", "a_C", "AB=-1", *POINT[:2], *POINT[3:]], "it must be a finite length >= 0"),
     "list": (["point", "Y", "theta=[1,2]"], "theta=[1,2]: it must be a number"),
     "decimal comma": (["point", "Y", "theta=1,5"], "theta=1,5: it must be a number"),
-    "unit of another kind": (["point", "Y", "theta=1kg", *POINT[1:]], "not a quantity in rad"),
+    "unit of another kind": (["point", "Y", "theta=1kg", *POINT[1:]], "it must be a quantity in rad"),
     "no such branch": (["point", "Y", "branch=2"], "branch=2: it is 1 or -1"),
     "no such option": (["point", "--exact"], "unrecognized arguments: --exact"),
     "no such command": (["frobnicate"], "invalid choice: 'frobnicate'"),
@@ -107,12 +107,17 @@ def test_complaint(complaint, capsys):
     assert err.count("\n") == 1
 
 
+def test_errata_of_a_paper_in_small_letters(capsys):
+    assert main(["errata", "--document", "a", "--verdict", "sign"]) == 0
+    assert "3 entries: 3 sign" in capsys.readouterr().out
+
+
 def test_scene_that_is_wrong(tmp_path, capsys):
     path = tmp_path / "press.toml"
     path.write_text('outputs = ["a_C"]\n[mechanism]\nec = { start = 0, stop = "3 kg", num = 3 }\n')
     assert main(["run", str(path)]) == 2
     err = capsys.readouterr().err
-    assert 'press.toml: mechanism.ec.stop = "3 kg": not a quantity in m' in err
+    assert 'press.toml: mechanism.ec.stop = "3 kg": it must be a quantity in m' in err
     assert err.count("\n") == 1
 
 

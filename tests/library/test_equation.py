@@ -15,9 +15,9 @@ FIRST = [
 ]
 
 
-def number(expression):
+def number(expression, point=POINT):
     values = {
-        sp.Symbol(name, real=True): sp.Float(value, 40) for name, value in {**POINT, "branch": 1}.items()
+        sp.Symbol(name, real=True): sp.Float(value, 40) for name, value in {**point, "branch": 1}.items()
     }
     return mpmath.mpf(str(expression.subs(values).doit().evalf(30)))
 
@@ -32,6 +32,16 @@ def test_derivatives_of_closed_forms():
         assert float(number(dx.equation(name).expression)) == pytest.approx(
             dx.evaluate(name, **POINT), rel=1e-12
         ), name
+
+
+@pytest.mark.parametrize(
+    "name", ["V_C", "j_C", "omega_BC_wrt_ec", "V_C_wrt_theta", "V_C_wrt_omega0", "omega"]
+)
+def test_turning_backwards(name):
+    back = {**POINT, "omega0": -12.0}
+    assert float(number(dx.equation(name).expression, back)) == pytest.approx(
+        dx.evaluate(name, **back), rel=1e-12
+    )
 
 
 def test_text():

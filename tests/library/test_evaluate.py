@@ -10,6 +10,7 @@ import re
 import subprocess
 import sys
 import tempfile
+from collections import Counter
 
 import numpy as np
 import pytest
@@ -429,7 +430,6 @@ REFUSED = [
     ("V_C", {"theta": 1j}, TypeError, "theta: real numbers are wanted"),
     ("V_C", {"theta": True}, TypeError, "theta: real numbers are wanted, got an array of bool"),
     ("V_C", {"theta": np.array([True])}, TypeError, "theta: .*, got an array of bool"),
-    ("V_C", {"theta": ["1 deg"]}, TypeError, "theta: real numbers are wanted"),
     ("V_C", {"theta": np.array([1j])}, TypeError, "theta: .*, got an array of complex128"),
     ("V_C", {"theta": [None]}, TypeError, "theta: real numbers are wanted"),
     ("V_C", {"AB": np.array([-1.0, -2.0])}, ValueError, "AB: every value is bad, the first is -1.0; "),
@@ -442,7 +442,7 @@ REFUSED = [
     ("V_C", {"branch": np.array([1, -1])}, (TypeError, ValueError), "branch = .*: it is"),
     ("V_C", {"accuracy": "perfect"}, ValueError, "accuracy = 'perfect': it is one of standard"),
     ("V_C", {"omega": 3.0}, ValueError, r"give omega0= \(the law\) or omega= \(a state\), not both"),
-    ("V_C", {"threads": 0}, ValueError, "threads = 0: at least 1"),
+    ("V_C", {"threads": 0}, ValueError, "threads = 0: a whole number, at least 1"),
     (["V_C", 7], {}, TypeError, "the name of a quantity is a str, got 7"),
     ("V_C", {"length": 3.0}, TypeError, "length"),
 ]
@@ -506,6 +506,19 @@ def test_a_quantity_of_pint():
     assert math.isclose(dx.evaluate("Y", **POINT | {"ec": length}), dx.evaluate("Y", **POINT), rel_tol=1e-15)
 
 
+@pytest.mark.parametrize(
+    ("text", "number"),
+    [("350 mm", 0.35), ("35 cm", 0.35), ("0.03 m", 0.03), ("220 mm", 0.22), ("3e2 mm", 0.3)],
+)
+def test_text_is_the_double_of_the_si_number(text, number):
+    assert dx.evaluate("margin", ec=0.0, AB=0.0, BC=text) == number
+
+
+def test_a_list_of_text():
+    found = dx.evaluate("Y", **POINT | {"theta": ["0 deg", "90 deg"]})
+    assert np.allclose(found, dx.evaluate("Y", **POINT | {"theta": np.radians([0, 90])}), rtol=1e-14)
+
+
 def test_an_array_of_pint():
     angles = dx.units.registry().Quantity([0, 90, 180], "deg")
     found = dx.evaluate("Y", **POINT | {"theta": angles})
@@ -515,11 +528,15 @@ def test_an_array_of_pint():
 @pytest.mark.parametrize(
     ("name", "text", "complaint"),
     [
-        ("ec", "3 kg", "ec = 3 kilogram: not a quantity in m"),
-        ("theta", "3 mm", "theta = 3 millimeter: not a quantity in rad"),
+        ("ec", "3 kg", "ec = '3 kg': it must be a quantity in m"),
+        ("theta", "3 mm", "theta = '3 mm': it must be a quantity in rad"),
         ("AB", "-10 mm", r"AB = -0\.01: it must be a finite length >= 0"),
-        ("ec", "ten", "ec = 'ten': cannot be read as a number with a unit"),
+        ("ec", "ten", "ec = 'ten': it must be a number, or a number with a unit"),
         ("ec", "", "ec = ''"),
+        ("omega0", "25 Hz", "omega0 = '25 Hz': it must be a quantity in rad/s, such as \"1500 rpm\""),
+        ("omega0", "1500 min^-1", "it must be a quantity in rad/s"),
+        ("theta", "60 %", "it must be a quantity in rad"),
+        ("theta", "1,5 rad", "it must be a number, or a number with a unit"),
         ("theta", "nan", "theta = nan: it must be a finite number"),
     ],
 )
@@ -541,9 +558,27 @@ def test_both_ways_give_the_same(monkeypatch, size):
     assert all(close(found[0][name], found[1][name]) for name in found[0])
 
 
+def test_points_asked_for_again_and_again_are_compiled(monkeypatch):
+    asked = []
+    monkeypatch.setattr(_arrays, "_ASKED", Counter())
+    monkeypatch.setattr(_arrays, "is_ready", lambda key: False)
+    monkeypatch.setattr(_arrays, "run_in_blocks", lambda *arguments: asked.append(arguments))
+    monkeypatch.setattr(_arrays, "kernel_for", lambda key: key)
+    theta, ec = columns(_arrays.BREAK_EVEN // 3)
+    for calls in (0, 0, 0, 1):
+        dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)
+        assert len(asked) == calls
+
+
+def test_a_masked_array_is_refused():
+    with pytest.raises(TypeError, match="theta: a masked array; fill it first"):
+        dx.evaluate("V_C", **POINT | {"theta": np.ma.masked_invalid([0.1, math.nan])})
+
+
 def test_a_few_points_are_not_compiled(monkeypatch):
     monkeypatch.setattr(_arrays, "is_ready", lambda key: False)
     monkeypatch.setattr(_arrays, "kernel_for", None)
+    monkeypatch.setattr(_arrays, "_ASKED", Counter())
     theta, ec = columns(_arrays.BREAK_EVEN - 1)
     assert np.isfinite(dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)).all()
 

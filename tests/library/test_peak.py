@@ -116,6 +116,21 @@ def test_designs_broadcast_and_what_cannot_be_is_told():
     assert found["value"][1, 1] == pytest.approx(one["value"], rel=1e-14)
 
 
+def test_of_two_equal_peaks_the_first_is_told():
+    assert dx.peak("V_C", ec=0.0, **MACHINE)["theta"] == pytest.approx(1.26120, abs=1e-5)
+    assert dx.peak("a_C", ec=0.0, kind="max", **MACHINE)["theta"] < np.pi
+
+
+def test_where_there_is_no_peak_there_is_no_angle():
+    found = dx.peak("a_C", ec=1.0, **MACHINE)
+    assert math.isnan(found["value"])
+    assert math.isnan(found["theta"])
+
+
+def test_the_range_takes_units():
+    assert dx.peak("a_C", ec=0.1, theta=("0 deg", "90 deg"), **MACHINE)["theta"] <= np.pi / 2
+
+
 def test_a_state_has_a_peak_too():
     law = dx.peak("a_C", ec=0.1, **MACHINE)
     state = dx.peak("a_C", ec=0.1, AB=0.125, BC=0.35, omega=OMEGA)
@@ -128,6 +143,7 @@ def test_a_state_has_a_peak_too():
     [
         ({"kind": "largest"}, "kind = 'largest': it is one of absmax, max, min"),
         ({"theta": (1.0, 0.0)}, r"theta = \(1.0, 0.0\)"),
+        ({"theta": 1.0}, r"theta = 1.0: a range \(lower end, upper end\) is wanted"),
         ({"AB": -1.0}, "AB = -1.0"),
     ],
 )

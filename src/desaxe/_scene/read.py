@@ -18,6 +18,8 @@ from .values import Value, design_of, number_of, only_inputs, values_of
 
 SECTIONS = ("mechanism", "motion")
 
+PICTURES = (".png", ".svg", ".pdf")
+
 
 class Check(NamedTuple):
     """One printed value, and the inputs at which it is to be computed."""
@@ -118,10 +120,7 @@ def read(data: Mapping[str, Any]) -> Content:
         _require_for_grid("outputs", outputs, inputs)
     if not (outputs or file.peak or file.check or file.picture):
         raise SceneError("nothing is asked for: give outputs = [...], [[peak]], [[check]] or [[picture]]")
-    if file.results.data is not None and not (outputs or file.peak):
-        raise SceneError(
-            f"results.data = {shown(file.results.data)}: there is nothing to write, give outputs = [...]"
-        )
+    _require_names(file)
     checks = [
         c for index, table in enumerate(file.check, 1) for c in _checks(f"check #{index}", table, inputs)
     ]
@@ -131,6 +130,19 @@ def read(data: Mapping[str, Any]) -> Content:
         file.title, outputs, file.accuracy, branch, inputs,
         tuple(checks), tuple(peaks), tuple(pictures), file.results.data,
     )  # fmt: skip
+
+
+def _require_names(file: schema.SceneFile) -> None:
+    """The names of files say what is written into them."""
+    data = file.results.data
+    if data is not None and not data.endswith(".nc"):
+        raise SceneError(f"results.data = {shown(data)}: NetCDF is written, so its name must end in .nc")
+    if data is not None and not (file.outputs or file.peak):
+        raise SceneError(f"results.data = {shown(data)}: there is nothing to write, give outputs = [...]")
+    for index, picture in enumerate(file.picture, 1):
+        if not picture.file.lower().endswith(PICTURES):
+            allowed = ", ".join(PICTURES)
+            raise SceneError(f"picture #{index}.file = {shown(picture.file)}: must end in one of {allowed}")
 
 
 # ---- values of inputs ----------------------------------------------------------------------------

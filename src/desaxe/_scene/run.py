@@ -187,13 +187,18 @@ def _data_file(path: Path, dataset: "xr.Dataset | None", peaks: tuple[PeakResult
     steps.next(f"writing {path}")
     path.parent.mkdir(parents=True, exist_ok=True)
     parts: list[tuple[str | None, xr.Dataset]] = [(None, dataset)] if dataset is not None else []
-    parts += zip(group_names(peaks), (found.dataset for found in peaks), strict=True)
+    parts += zip(group_names(peaks), (_apart(found.dataset) for found in peaks), strict=True)
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=".desaxe-") as folder:
         staged = Path(folder) / path.name
         for group, part in parts:
             part.to_netcdf(staged, mode="a" if staged.exists() else "w", group=group, engine="h5netcdf")
         os.replace(staged, path)
     return path
+
+
+def _apart(peaks: "xr.Dataset") -> "xr.Dataset":
+    """Peaks under dimensions of their own: a group may not share one of another length with its parent."""
+    return peaks.rename({name: f"peak_{name}" for name in peaks.dims})
 
 
 def group_names(peaks: tuple[PeakResult, ...]) -> list[str]:

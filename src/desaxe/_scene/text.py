@@ -1,7 +1,7 @@
 """The report of a scene as text for a terminal, at most 100 columns wide."""
 
 from collections.abc import Sequence
-from math import degrees
+from math import degrees, pi
 
 import numpy as np
 
@@ -83,9 +83,12 @@ def _feasibility(found: FeasibilityResult) -> str:
     for one in found.infeasible[:GAPS]:
         design = ", ".join(f"{name} = {number(one.design[name])} m" for name in axes)
         gaps = " and ".join(f"{degrees(a):.2f} to {degrees(b):.2f}" for a, b in one.gaps)
-        lines.append(
-            f"  infeasible at part of the turn: {design} cannot be assembled for theta from {gaps} deg"
-        )
+        if any(b - a >= 2.0 * pi for a, b in one.gaps):
+            lines.append(f"  infeasible: {design} cannot be assembled at any angle")
+        else:
+            lines.append(
+                f"  infeasible at part of the turn: {design} cannot be assembled for theta from {gaps} deg"
+            )
     more = found.designs - found.turning - GAPS
     return "\n".join(lines + ([f"  and {more} more"] if more > 0 else []))
 
@@ -193,7 +196,8 @@ def _values(content: Content, result: Run) -> str:
     """What the labelled result holds."""
     assert result.dataset is not None
     shape = " x ".join(f"{name} ({size})" for name, size in result.dataset.sizes.items())
-    return f"Values\n  {', '.join(content.outputs)} over {shape or 'one point'}"
+    kept = "" if content.data is not None else '\n  not kept in a file: give [results] data = "out/values.nc"'
+    return f"Values\n  {', '.join(content.outputs)} over {shape or 'one point'}{kept}"
 
 
 def _files(content: Content, result: Run) -> str:

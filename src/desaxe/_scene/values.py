@@ -1,11 +1,12 @@
 """The values of inputs as they are written in a scene, in SI units."""
 
 from collections.abc import Iterable, Mapping
+from fractions import Fraction
 from math import isfinite
 
 from .._quantity_text import quantity_text
 from ..inputs import INPUTS, is_good
-from ..units import in_si
+from ..units import exact, in_si
 from . import schema
 from .schema import SceneError, shown
 
@@ -47,21 +48,28 @@ def _from_text(key: str, name: str, written: str) -> float:
 
 def _spread(key: str, name: str, written: schema.Range) -> tuple[float, ...]:
     """The values of a range, both ends included."""
-    start = number_of(f"{key}.start", name, written.start)
-    stop = number_of(f"{key}.stop", name, written.stop)
+    for end in ("start", "stop"):
+        number_of(f"{key}.{end}", name, getattr(written, end))
+    start, stop = _exactly(name, written.start), _exactly(name, written.stop)
     if (written.num is None) == (written.step is None):
         raise SceneError(f"{key}: a range has start, stop, and either num (how many) or step (how far apart)")
     last = written.num - 1 if written.num is not None else _steps(key, name, written, stop - start)
     if last >= MOST:
         raise SceneError(f"{key}: {last + 1} values are too many, at most {MOST}")
-    return (*(start + (stop - start) * k / last for k in range(last)), stop)
+    return (*(float(start + (stop - start) * k / last) for k in range(last)), float(stop))
 
 
-def _steps(key: str, name: str, written: schema.Range, length: float) -> int:
+def _exactly(name: str, written: float | str) -> Fraction:
+    """A number as it is written, so that the values of a range are those a person would write."""
+    return exact(name, written if isinstance(written, str) else repr(float(written)), INPUTS[name].unit)
+
+
+def _steps(key: str, name: str, written: schema.Range, length: Fraction) -> int:
     # A step of a length may be negative, which the length itself may not.
     alike = "ec" if name in ("AB", "BC") else name
-    step = number_of(f"{key}.step", alike, written.step or 0.0)
-    count = length / step if step else 0.0
+    number_of(f"{key}.step", alike, written.step or 0.0)
+    step = _exactly(name, written.step or 0.0)
+    count = float(length / step) if step else 0.0
     if not (isfinite(count) and count > 0.5 and abs(count - round(count)) < 1e-6):
         raise SceneError(
             f"{key}.step = {shown(written.step)}: it must lead from start to stop in a whole number of steps"
