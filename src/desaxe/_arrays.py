@@ -27,6 +27,7 @@ def evaluate_arrays(
 ) -> dict[str, Array]:
     """The answers by the names asked for, in the broadcast shape."""
     inputs = tuple(name for name in program_of(wanted.names, wanted.state).inputs if name != "branch")
+    _refuse_other_dimensions({name: given[name] for name in inputs})
     arrays = {name: as_array(name, given[name], inputs, wanted.shown) for name in inputs}
     shape = broadcast_shape(arrays)
     places = places_for(wanted.shown, shape, out)
@@ -36,6 +37,14 @@ def evaluate_arrays(
         columns = {name: _column(a, shape) for name, a in arrays.items() if a.size != 1}
         _fill(wanted, scalars, columns, [b.reshape(-1) for b in buffers.values()], threads)
     return delivered(places, buffers, out is None)
+
+
+def _refuse_other_dimensions(given: Mapping[str, Any]) -> None:
+    """Labelled arrays pair by the names of their dimensions, which arrays here do not have."""
+    labels = {name: value.dims for name, value in given.items() if getattr(value, "dims", ())}
+    if len(set(labels.values())) > 1:
+        told = ", ".join(f"{name} {dims}" for name, dims in labels.items())
+        raise ValueError(f"labelled arrays of different dimensions: {told}; use grid, or pass their .values")
 
 
 def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]) -> Array:

@@ -14,6 +14,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
+import xarray
 
 import desaxe as dx
 from desaxe import _arrays, _cache, _kernels
@@ -568,6 +569,13 @@ def test_points_asked_for_again_and_again_are_compiled(monkeypatch):
     for calls in (0, 0, 0, 1):
         dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)
         assert len(asked) == calls
+
+
+def test_labelled_arrays_of_other_dimensions_are_refused():
+    theta, ec = xarray.DataArray([0.1, 0.2], dims="t"), xarray.DataArray([0.0, 0.01], dims="e")
+    with pytest.raises(ValueError, match=r"theta \('t',\), ec \('e',\); use grid"):
+        dx.evaluate("V_C", **POINT | {"theta": theta, "ec": ec})
+    assert dx.evaluate("V_C", **POINT | {"theta": theta}).shape == (2,)
 
 
 def test_a_masked_array_is_refused():
