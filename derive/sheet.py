@@ -45,11 +45,22 @@ class Sheet:
         self._resolvers = resolvers
         self._derivatives: dict[tuple[str, str], sp.Expr] = {}
 
-    def define(self, name: str, expression: sp.Expr, **more: object) -> sp.Symbol:
-        """Add an equation; its symbol."""
+    def define(
+        self,
+        name: str,
+        expression: sp.Expr | int,
+        *,
+        unit: Unit | None = None,
+        meaning: str = "",
+        source: str = "",
+        differentiate: sp.Expr | None = None,
+        rigid: bool = False,
+    ) -> sp.Symbol:
+        """Add an equation (see `Equation` for what is said of it); its symbol."""
         if name in self.equations:
             raise ValueError(f"{name} is defined twice")
-        self.equations[name] = Equation(sp.sympify(expression), **more)  # type: ignore[arg-type]
+        equation = Equation(sp.sympify(expression), unit, meaning, source, differentiate, rigid)
+        self.equations[name] = equation
         return symbol(name)
 
     def equation(self, name: str) -> Equation | None:

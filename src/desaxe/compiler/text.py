@@ -64,10 +64,10 @@ def spell(line: Line, text: dict[str, tuple[str, int]], column: str) -> tuple[st
     if column == "numba" and line.op in ("and", "or"):
         precedence = 8  # & and | bind tighter than comparisons
     if line.op == "copy":
-        return text.get(line.args[0]) or _plain(line.args[0])  # type: ignore[arg-type]
+        return _inside(line.args[0], text)
     parts = []
     for position, argument in enumerate(line.args):
-        part, inner = text.get(argument) or _plain(argument)  # type: ignore[arg-type]
+        part, inner = _inside(argument, text)
         parts.append(f"({part})" if _wants_parentheses(precedence, inner, position, line.op) else part)
     return template.format(*parts), precedence
 
@@ -79,6 +79,12 @@ def _wants_parentheses(outer: int, inner: int, position: int, op: str) -> bool:
     if op in ("add", "sub", "mul", "div"):
         return inner < outer or (inner == outer and position == 1)
     return inner <= outer
+
+
+def _inside(argument: Argument, text: dict[str, tuple[str, int]]) -> tuple[str, int]:
+    """What is written where an argument stands: the expression of a temporary, else itself."""
+    found = text.get(argument) if isinstance(argument, str) else None
+    return found or _plain(argument)
 
 
 def _plain(value: Argument) -> tuple[str, int]:
@@ -179,7 +185,8 @@ def _note(comment: str) -> Note | None:
 
 
 def _free_names(tree: ast.expr) -> Iterable[str]:
-    called = {node.func.id for node in ast.walk(tree) if isinstance(node, ast.Call)}  # type: ignore[attr-defined]
+    calls = (node.func for node in ast.walk(tree) if isinstance(node, ast.Call))
+    called = {function.id for function in calls if isinstance(function, ast.Name)}
     for node in ast.walk(tree):
         if isinstance(node, ast.Name) and node.id not in (*called, "nan", "inf"):
             yield node.id

@@ -1,0 +1,39 @@
+"""Both ways that arrays can take, plain Python and a compiled kernel, and how their answers are compared."""
+
+import math
+
+import numpy as np
+
+import desaxe as dx
+from desaxe import _arrays
+
+SIZES = {"AB": 0.125, "BC": 0.35, "omega0": 157.0}
+POINT = {"theta": 1.1, "ec": 0.01, **SIZES}
+EPSILON = 2.0**-52
+
+
+def take_way(monkeypatch, name):
+    monkeypatch.setattr(_arrays, "BREAK_EVEN", 0 if name == "compiled" else 10**9)
+    monkeypatch.setattr(_arrays, "is_ready", lambda key: name == "compiled")
+
+
+def columns(*shape):
+    """Angles and eccentricities of a shape."""
+    count = math.prod(shape)
+    theta = np.linspace(-4, 7, count).reshape(shape)
+    return theta, np.linspace(-0.05, 0.1, count).reshape(shape)
+
+
+def one_by_one(name, theta, ec):
+    """The same, a number at a time, in the broadcast shape."""
+    theta, ec = np.broadcast_arrays(theta, ec)
+    out = np.empty(theta.shape)
+    for index in np.ndindex(theta.shape):
+        out[index] = dx.evaluate(name, theta=float(theta[index]), ec=float(ec[index]), **SIZES)
+    return out
+
+
+def close(found, wanted):
+    """To 4 ulp of the largest value: a kernel's sine may differ from the C library's by one."""
+    scale = np.nanmax(np.abs(wanted), initial=0.0)
+    return np.allclose(found, wanted, rtol=0, atol=4 * EPSILON * scale, equal_nan=True)
