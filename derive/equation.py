@@ -34,6 +34,10 @@ class EquationText(NamedTuple):
     source: str
     steps: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        source = f" ({self.source})" if self.source else ""
+        return f"{self.name} [{self.unit}], {self.meaning}{source}\n{self.name} = {self.expression}"
+
     def _repr_latex_(self) -> str:
         return f"$\\displaystyle {self.latex}$"
 

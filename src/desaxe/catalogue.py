@@ -20,15 +20,29 @@ class Quantity(NamedTuple):
     source: str = ""
 
 
+class Catalogue(tuple[Quantity, ...]):
+    """Quantities that show themselves as a table."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        rows = [("name", "unit", "meaning", "source"), *self]
+        widths = [max(len(row[i]) for row in rows) for i in range(3)]
+        return "\n".join(
+            "  ".join([*(cell.ljust(w) for cell, w in zip(row, widths, strict=False)), row[3]]).rstrip()
+            for row in rows
+        )
+
+
 @cache
 def _names() -> dict[str, tuple[str, ...]]:
     names: dict[str, tuple[str, ...]] = import_module("desaxe.generated.index").NAMES
     return names
 
 
-def quantities() -> tuple[Quantity, ...]:
+def quantities() -> Catalogue:
     """Every quantity and sensitivity that can be asked for, in order: name, unit, meaning, source."""
-    return tuple(Quantity(name, *row) for name, row in _names().items())
+    return Catalogue(Quantity(name, *row) for name, row in _names().items())
 
 
 def quantity(name: str, state: bool = False) -> Quantity:

@@ -51,6 +51,7 @@ def test_text():
     assert found.steps[-1].startswith("V_C_wrt_ec = ")
     assert found._repr_latex_().startswith("$")
     assert dx.equation("a_C").source == "A (19)"
+    assert repr(found).startswith("V_C_wrt_ec [1/s], derivative of V_C by ec\nV_C_wrt_ec = ")
 
 
 def test_unknown():

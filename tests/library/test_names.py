@@ -2,6 +2,7 @@
 
 import pytest
 
+import desaxe as dx
 from desaxe.names import ORDER, PARAMETERS, joined, parts, sensitivity
 
 
@@ -25,3 +26,10 @@ def test_parameters_stand_in_one_order():
     assert sensitivity("a_C", "BC", "theta") == "a_C_wrt_theta_BC"
     assert sensitivity("a_C_wrt_alpha", "ec") == "a_C_wrt_ec_alpha"
     assert set(PARAMETERS) == set(ORDER) - {"omega"}
+
+
+def test_the_catalogue_shows_itself_as_a_table():
+    lines = repr(dx.quantities()).splitlines()
+    assert len(lines) == 1 + len(dx.quantities())
+    assert lines[0].split() == ["name", "unit", "meaning", "source"]
+    assert next(line for line in lines if line.startswith("a_C ")).split()[1] == "m/s^2"
