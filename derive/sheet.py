@@ -97,9 +97,8 @@ class Sheet:
         """The derivative of the equation of a name, in the derivatives of what stands in it."""
         equation = self.equations[name]
         expression = equation.expression if equation.differentiate is None else equation.differentiate
-        if expression.is_Pow and expression.exp == sp.Rational(
-            1, 2
-        ):  # share the root: (sqrt f)' = f'/(2 sqrt f)
+        if expression.is_Pow and expression.exp == sp.Rational(1, 2):
+            # (sqrt f)' = f'/(2 sqrt f): the root is shared
             return self._total(expression.base, parameter) / (2 * symbol(name))
         return self._total(expression, parameter)
 

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._kernels import KernelKey, is_ready, kernel_for, key_of, point_for
+from ._kernels import KernelKey, is_ready, kernel_for, key_of
+from ._point import point_of
 from ._program import program_of
 from ._request import Request, as_number
 from ._threads import run_in_blocks
@@ -144,7 +145,7 @@ def _fill(
     """Fill flat outputs from scalars and flat columns."""
     key = key_of(wanted, scalars, columns, dict.fromkeys(columns, 0), axes=1)
     if not columns:
-        for out, value in zip(outs, point_for(key).run(scalars), strict=True):
+        for out, value in zip(outs, point_of(key.names, key.state, key.fixed).run(scalars), strict=True):
             out[...] = value
     elif _is_early(key, outs[0].size):
         _fill_by_points(key, scalars, columns, outs)
@@ -164,7 +165,7 @@ def _fill_by_points(
     key: KernelKey, scalars: dict[str, float], columns: dict[str, Array], outs: list[Array]
 ) -> None:
     """Plain Python, point by point: nobody pays a compilation for a hundred points."""
-    point = point_for(key)
+    point = point_of(key.names, key.state, key.fixed)
     good = {name: _is_good(name, column) for name, column in columns.items()}
     safe = {name: np.where(good[name], column, np.nan).tolist() for name, column in columns.items()}
     for index, here in enumerate(zip(*safe.values(), strict=True)):

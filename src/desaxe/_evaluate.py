@@ -5,23 +5,11 @@ array, `_arrays` takes over.
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any
 
-from . import _program
-from ._request import Request, as_number, check_border, request, standstill
-from .compiler.emit_python import compile_python
-from .compiler.passes.pipeline import optimise
+from ._point import Point, point_of
+from ._request import as_number, check_border, request, standstill
 from .inputs import is_good
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-
-class Point(NamedTuple):
-    """A request ready for single points: its function and the inputs that it takes, in order."""
-
-    function: "Callable[..., tuple[Any, ...]]"
-    inputs: tuple[str, ...]
 
 
 def evaluate(
@@ -70,7 +58,9 @@ def evaluate(
         given["omega0"] = standstill(wanted)
     point = _POINTS.get(key)
     if point is None:
-        point = _POINTS[key] = _point(request(wanted, given, branch, accuracy))
+        asked = request(wanted, given, branch, accuracy)
+        fixed = (("branch", float(asked.branch)),)
+        point = _POINTS[key] = point_of(asked.names, asked.state, fixed)
     values = []
     for name in point.inputs:
         value = given[name]
@@ -89,8 +79,3 @@ def evaluate(
 
 
 _POINTS: dict[tuple[Any, ...], Point] = {}
-
-
-def _point(wanted: Request) -> Point:
-    program, _ = optimise(_program.program_of(wanted.names, wanted.state), {"branch": float(wanted.branch)})
-    return Point(compile_python(program), program.inputs)

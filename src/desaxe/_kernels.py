@@ -15,16 +15,14 @@ from pathlib import Path
 from threading import Lock
 from typing import Any, NamedTuple
 
-from . import _cache, _program
+from . import _cache
+from ._point import cut
 from ._request import Request
 from .compiler.emit_numba import emit_numba
-from .compiler.emit_python import compile_python
 from .compiler.kernel import hoist
 from .compiler.passes.guard import guard_inputs
 from .compiler.passes.number import number_values
-from .compiler.passes.pipeline import optimise
 from .compiler.passes.trigonometry import Trigonometry, expand_trigonometry
-from .compiler.program import Program
 from .inputs import LEAST
 
 # A scalar of 0 for one of these makes whole terms vanish, so it is folded into the kernel.
@@ -51,17 +49,6 @@ class CompiledKernel(NamedTuple):
     def run(self, values: Mapping[str, Any], outs: Sequence[Any]) -> None:
         """Fill the outputs."""
         self.function(*(values[name] for name, _ in self.axis_of), *outs)
-
-
-class PlainPoint(NamedTuple):
-    """The same for one point, in plain Python."""
-
-    function: Callable[..., tuple[Any, ...]]
-    inputs: tuple[str, ...]
-
-    def run(self, values: Mapping[str, float]) -> tuple[Any, ...]:
-        """The outputs."""
-        return self.function(*(values[name] for name in self.inputs))
 
 
 @cache
@@ -94,18 +81,6 @@ def _largest(angles: Any) -> float:
     return largest if largest < np.inf else float(np.abs(angles[np.isfinite(angles)]).max(initial=0.0))
 
 
-@cache
-def _cut(key: KernelKey) -> Program:
-    return optimise(_program.program_of(key.names, key.state), dict(key.fixed))[0]
-
-
-@cache
-def point_for(key: KernelKey) -> PlainPoint:
-    """The plain function of a key."""
-    program = _cut(key)
-    return PlainPoint(compile_python(program), program.inputs)
-
-
 _LOADED: dict[KernelKey, CompiledKernel] = {}
 _LOCK = Lock()
 
@@ -127,7 +102,7 @@ def kernel_for(key: KernelKey) -> CompiledKernel:
 
 def source_of(key: KernelKey) -> str:
     """The text of the kernel's module."""
-    program = _cut(key)
+    program = cut(key.names, key.state, key.fixed)
     axes = dict(key.axis_of)
     guarded = guard_inputs(program, [name for name in program.inputs if name in axes], LEAST, {})
     if not key.far:
@@ -140,7 +115,7 @@ def source_of(key: KernelKey) -> str:
 
 def _load(key: KernelKey) -> CompiledKernel:
     axes = dict(key.axis_of)
-    order = tuple((name, axes.get(name)) for name in _cut(key).inputs)
+    order = tuple((name, axes.get(name)) for name in cut(key.names, key.state, key.fixed).inputs)
     source = source_of(key)
     path = _cache.folder().path / f"kernel_{hashlib.sha256(source.encode()).hexdigest()[:20]}.py"
     with _cache.locked(path):

@@ -250,3 +250,23 @@ def test_an_array_of_pint():
 def test_a_unit_that_does_not_fit_is_refused(name, text, complaint):
     with pytest.raises(ValueError, match=complaint):
         dx.evaluate("V_C", **POINT | {name: text})
+
+
+@pytest.mark.parametrize(
+    "name", ["V_C_wrt_alpha", "omega_BC_wrt_alpha", "V_C_wrt_theta_alpha", "a_C_wrt_alpha_alpha"]
+)
+def test_a_derivative_that_a_state_makes_zero_is_nan_without_a_mechanism(name):
+    """Zero would pretend to be a derivative."""
+    state = {"theta": 1.57, "AB": 0.125, "BC": 0.35, "omega": 10.0}
+    assert dx.evaluate(name, ec=0.0, **state) == 0.0
+    assert math.isnan(dx.evaluate(name, ec=0.3, **state))
+    assert np.isnan(dx.evaluate(name, ec=[0.0, 0.3], **state)).tolist() == [False, True]
+
+
+def test_a_derivative_that_constant_speed_makes_zero_is_nan_without_a_mechanism(way):
+    design = {"theta": [1.57, 1.57], "AB": 0.125, "BC": 0.35, "omega0": 10.0, "ec": [0.0, 0.3]}
+    assert np.isnan(dx.evaluate("V_C_wrt_omega0_omega0", **design)).tolist() == [False, True]
+
+
+def test_a_derivative_of_the_crank_alone_needs_no_mechanism():
+    assert dx.evaluate("V_B_X_wrt_alpha", theta=1.57, AB=0.125, omega=10.0) == 0.0

@@ -1,9 +1,9 @@
 """Constant folding: compute what is fixed, drop terms with a factor 0 and factors 1.
 
 A scene that fixes `ec = 0` or `alpha = 0` loses whole terms here. `0 * x` becomes 0: this assumes
-that x is finite wherever the result matters, which holds because an infeasible point is reported
-by its status and every value that needs the rod still passes through the square root that is NaN
-there. Otherwise no result changes by a bit (but the sign of a zero may).
+that x is finite wherever the result matters; an output that vanishes altogether would forget where
+it is NaN, and whoever fixes the input has to see to that. Otherwise no result changes by a bit (but
+the sign of a zero may).
 """
 
 from ..interpret import ieee
