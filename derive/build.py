@@ -2,36 +2,44 @@
 
 from typing import NamedTuple
 
+import sympy as sp
+
 from desaxe.compiler.passes.number import number_values
 from desaxe.compiler.passes.slicing import drop_unused
 from desaxe.compiler.passes.trigonometry import Trigonometry
 from desaxe.compiler.program import Program, validate
-from desaxe.names import PARAMETERS, parts, sensitivity
+from desaxe.names import CENTRES, LOADS, PARAMETERS, parts, sensitivity
 
+from .dynamics import FORCES, LUMPS, centres_sheet
 from .freeze import freeze
 from .motion import state_sheet
 from .polynomials import trigonometry
 from .quantities import FACTS, QUANTITIES, SECOND_ORDER, build_sheet
 from .sheet import Sheet, symbol
 
-INPUTS = (*PARAMETERS, "branch")
-# What is needed -> the line that is 0 where there is such a thing, else NaN.
+INPUTS = (*PARAMETERS, *LOADS, "branch")
+# A constant 0 is NaN where what its quantity needs does not exist: what is needed -> the line that is
+# 0 where it is there, else NaN. Any other derivative that has lost a need of its quantity, likewise.
 GUARDS = {"D": "no_effect_on_rod", "omega2": "no_effect_on_motion"}
+KEEPS = {"D": "no_effect_on_rod", "omega2": "not_stalled"}
+# Computed for the library, but nothing that one asks for by name.
+INTERNAL = ("force_status", *KEEPS.values())
 
 
 class Derivation(NamedTuple):
-    """What is written: the law's program, the state's lines, public names, sine and cosine."""
+    """What is written: the law's program, its overlays, public names, sine and cosine."""
 
     program: Program
     frozen: Program  # the same before equal values were merged
-    state: Program
+    state: Program  # the lines of a given state
+    centres: Program  # the lines of centres of mass that are halfway along their links
     names: tuple[str, ...]
     trigonometry: Trigonometry
 
 
 def public_names() -> tuple[str, ...]:
     """Every name that can be asked for: quantities, sensitivities, facts."""
-    first = [sensitivity(q, p) for q in QUANTITIES for p in PARAMETERS]
+    first = [sensitivity(q, p) for q in QUANTITIES for p in parameters_of(q)]
     second = [
         sensitivity(sensitivity(q, p), t)
         for q in SECOND_ORDER
@@ -41,16 +49,25 @@ def public_names() -> tuple[str, ...]:
     return (*QUANTITIES, *FACTS, *first, *second)
 
 
+def parameters_of(quantity: str) -> tuple[str, ...]:
+    """What a quantity may depend on."""
+    return (*PARAMETERS, *LOADS) if quantity in FORCES else PARAMETERS
+
+
 def build() -> Derivation:
     """Derive everything."""
     sheet = build_sheet()
     for name in public_names():
         _derive(sheet, name)
-    state = state_sheet()
+    state, centres = state_sheet(), centres_sheet()
     motion = tuple(name for name in state.equations if sheet.equation(name) is not None)
-    program = freeze(sheet, INPUTS, (*public_names(), *motion))
-    state_program = freeze(state, ("omega", "alpha"), motion)
-    return Derivation(_finished(program), program, _finished(state_program), public_names(), trigonometry())
+    moving = tuple(name for name in centres.equations if name not in CENTRES)
+    program = freeze(sheet, INPUTS, (*public_names(), *INTERNAL, *motion, *moving))
+    overlays = (
+        _finished(freeze(state, ("omega", "alpha"), motion)),
+        _finished(freeze(centres, ("AB", "BC"), (*CENTRES, *moving))),
+    )
+    return Derivation(_finished(program), program, *overlays, public_names(), trigonometry())
 
 
 def _derive(sheet: Sheet, name: str) -> None:
@@ -62,24 +79,37 @@ def _derive(sheet: Sheet, name: str) -> None:
         so_far = sensitivity(so_far, parameter)
         if value.is_number and so_far not in sheet.equations:
             _define_constant(sheet, so_far, base, value)
+    _keep_needs(sheet, name, base)
 
 
-def _define_constant(sheet: Sheet, name: str, base: str, value: object) -> None:
-    """A derivative that is 0: NaN all the same where there is no mechanism or no motion."""
-    if value != 0:
-        raise ValueError(f"{name} is the constant {value}")
+def _keep_needs(sheet: Sheet, name: str, base: str) -> None:
+    """Make a value NaN where what its quantity needs is not there, if it does not use it itself.
+
+    A force is one of the whole mechanism, even where its formula has the crank alone.
+    """
+    wanted, own = set(sheet.ordered((base,))), set(sheet.ordered((name,)))
+    if base in FORCES and base not in LUMPS:
+        wanted.add("D")
+    lost = [KEEPS[what] for what in KEEPS if what in wanted and what not in own and KEEPS[what] not in own]
+    equation = sheet.equations[name]
+    if lost and name not in FACTS and not equation.rigid:
+        plain = equation.expression if equation.differentiate is None else equation.differentiate
+        guarded = sp.Add(equation.expression, *map(symbol, lost), evaluate=False)
+        sheet.equations[name] = equation._replace(expression=guarded, differentiate=plain)
+
+
+def _define_constant(sheet: Sheet, name: str, base: str, value: sp.Expr) -> None:
+    """A derivative that is a number: NaN all the same where there is no mechanism or no motion."""
     needs = set(sheet.ordered((base,)))
-    still = next((guard for what, guard in GUARDS.items() if what in needs), "")
+    still = next((symbol(guard) for what, guard in GUARDS.items() if what in needs), sp.Integer(0))
     unit = sheet.equations[base].unit
     if unit is None:
         raise ValueError(f"{base} has no unit")
+    what = f"derivative of {base} by {parts(name)[1][-1]}" if value else f"0: {base} does not depend on it"
     sheet.define(
-        name,
-        symbol(still) if still else value,
-        unit=unit.over(*parts(name)[1]),
-        meaning=f"0: {base} does not depend on it",
-        rigid=True,
-    )
+        name, sp.Add(value, still, evaluate=False) if value else still,
+        unit=unit.over(*parts(name)[1]), meaning=what, rigid=True,
+    )  # fmt: skip
 
 
 def _finished(program: Program) -> Program:

@@ -14,6 +14,8 @@ from desaxe.compiler.program import Argument, Line, Program, type_of
 
 from .sheet import Sheet
 
+STATUSES = tuple(float(number) for number in range(7))  # small whole numbers that a status can be
+
 
 def freeze(sheet: Sheet, inputs: Sequence[str], outputs: Sequence[str]) -> Program:
     """The program that computes these names of the sheet from these inputs."""
@@ -120,7 +122,7 @@ def _is_status(argument: Argument, types: dict[str, str]) -> bool:
     """Whether it is one of the whole numbers of a status."""
     if isinstance(argument, str):
         return types[argument] == "i64"
-    return argument in (0.0, 1.0, 2.0, 3.0, 4.0)
+    return argument in STATUSES
 
 
 def _signed(term: sp.Expr) -> tuple[int, sp.Expr]:

@@ -112,6 +112,7 @@ def state_sheet() -> Sheet:
     sheet.define("omega2", omega**2, unit=UNITS["omega2"], meaning="square of the crank's speed")
     sheet.define("stalled", lt(omega2, 0), unit=NONE, meaning="never: a given speed is real")
     sheet.define("turn", select(le(0, omega), 1, -1), unit=NONE, meaning="way of turning")
+    sheet.define("not_stalled", 0)
     for parameters in (*_omega_rates(), *_omega_second_rates()):
         _define_rate(sheet, "omega", parameters, int(parameters == ("omega0",)))
     for parameters in SQUARE_RATES:

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import sympy as sp
 
+from .dynamics import FORCES, define_dynamics, prove, resolve_ratio
 from .geometry import POSITION, resolve_geometry
 from .loop import AB, BC, branch, ec, r, theta, u
 from .motion import alpha, define_law, omega, omega2, time_derivative, turn
@@ -21,6 +22,7 @@ from .stable import (
     W,
     abs_sin,
     absolute,
+    assembled,
     atan2,
     cos_theta,
     ec_side,
@@ -49,19 +51,24 @@ from .units import (
     Unit,
 )
 
-QUANTITIES = (
+KINEMATICS = (
     "phi", "delta", "Y", "s", "V_B_X", "V_B_Y", "V_B", "a_B_X", "a_B_Y", "a_B", "omega", "omega_BC",
     "alpha_BC", "V_C", "a_C", "j_C", "transmission_angle", "pressure_angle",
 )  # fmt: skip
+QUANTITIES = (*KINEMATICS, *FORCES)
 SECOND_ORDER = ("Y", "V_C", "a_C", "omega_BC", "alpha_BC")
 FACTS = ("status", "margin")
+STATUS = (
+    "0 ok, 1 cannot be assembled here, 2 change point, 3 stalled, 4 bad input, "
+    "5 friction jams: no balance of forces, 6 friction: two balances of forces"
+)
 
 S, phi = symbol("S"), symbol("phi")
 
 
 def build_sheet() -> Sheet:
     """The whole sheet under paper A's law of motion."""
-    sheet = Sheet((resolve_rod, resolve_geometry))
+    sheet = Sheet((resolve_rod, resolve_geometry, resolve_ratio))
     _define_crank(sheet)
     _define_rod(sheet)
     define_law(sheet)
@@ -70,6 +77,8 @@ def build_sheet() -> Sheet:
     _define_slider_motion(sheet)
     _define_stroke(sheet)
     _define_facts(sheet)
+    define_dynamics(sheet)
+    prove(sheet)
     return sheet
 
 
@@ -233,11 +242,9 @@ def _rate(base: str, order: int) -> sp.Expr:
 def _define_facts(sheet: Sheet) -> None:
     """Margin and status; NaN compares false, so what cannot be computed is not assembled."""
     _exact_sum(sheet, "margin", -AB, -sheet.define("abs_ec", absolute(ec)), "BC - AB - |ec|, rounded once")
-    assembled = select(lt(0, D), select(symbol("stalled"), 3, 0), select(eq(D, 0), 2, 1))
-    sheet.define(
-        "status", assembled, unit=NONE,
-        meaning="0 ok, 1 cannot be assembled here, 2 change point, 3 stalled, 4 bad input",
-    )  # fmt: skip
+    sheet.define("status", assembled(0), unit=NONE, meaning=STATUS)
     # A derivative that is 0 wherever there is anything to differentiate.
-    sheet.define("no_effect_on_rod", select(le(0, D), 0, sp.Symbol("nan", real=True)))
+    sheet.define("no_effect_on_rod", select(le(0, D), 0, sp.Symbol("nan", real=True)), rigid=True)
+    not_stalled = select(le(0, symbol("omega2_law")), 0, sp.Symbol("nan", real=True))
+    sheet.define("not_stalled", select(eq(alpha * theta, 0), 0, not_stalled), rigid=True)
     sheet.define("no_effect_on_motion", select(eq(omega2, omega2), 0, sp.Symbol("nan", real=True)))

@@ -82,10 +82,12 @@ class Sheet:
         if name == parameter:
             return sp.Integer(1)
         equation = self.equation(name)
-        if equation is None or equation.rigid:
-            return sp.Integer(0)
         new = sensitivity(name, parameter)
-        if self.equation(new) is None:
+        if equation is None and new not in self.equations:  # another input
+            return sp.Integer(0)
+        if equation is not None and equation.rigid:
+            return sp.Integer(0)
+        if equation is not None and self.equation(new) is None:
             expression = self.chain_rule(name, parameter)
             if expression.is_number:
                 return expression

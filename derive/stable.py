@@ -38,6 +38,12 @@ atan2, absolute = sp.Function("atan2"), sp.Function("abs")
 two_sum_error = sp.Function("two_sum_error")
 
 
+def assembled(ok: sp.Expr | int) -> sp.Expr:
+    """The status of a point: `ok` where the mechanism can be assembled and has not stalled."""
+    stalled = sp.Symbol("stalled", real=True)
+    return select(lt(0, D), select(stalled, 3, ok), select(eq(D, 0), 2, 1))
+
+
 def phi_by_theta(order: int) -> sp.Symbol:
     """The symbol of the `order`-th derivative of the rod angle with respect to the crank angle."""
     return sp.Symbol("phi" + "_wrt" * bool(order) + "_theta" * order, real=True)

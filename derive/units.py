@@ -1,20 +1,27 @@
-"""Units of quantities and of their derivatives, as exponents of m, s and rad."""
+"""Units of quantities and of their derivatives, as exponents of m, s, rad and kg."""
 
 from typing import NamedTuple
 
 
 class Unit(NamedTuple):
-    """Exponents; `Unit(1, -2)` is m/s^2."""
+    """Exponents; `Unit(1, -2)` is m/s^2. `name` is what it is called, if that says more."""
 
     m: int = 0
     s: int = 0
     rad: int = 0
+    kg: int = 0
+    name: str = ""
+
+    @property
+    def exponents(self) -> dict[str, int]:
+        """The exponents that are not 0, by base unit."""
+        return {base: power for base, power in self._asdict().items() if base != "name" and power}
 
     def over(self, *parameters: str) -> "Unit":
         """The unit of a derivative by these parameters."""
         unit = self
         for parameter in parameters:
-            unit = Unit(*(a - b for a, b in zip(unit, PARAMETER_UNITS[parameter], strict=True)))
+            unit = Unit(*(a - b for a, b in zip(unit[:4], PARAMETER_UNITS[parameter][:4], strict=True)))
         return unit
 
 
@@ -26,6 +33,14 @@ ACCELERATION = Unit(1, -2)
 JERK = Unit(1, -3)
 ANGULAR_SPEED = Unit(0, -1, 1)
 ANGULAR_ACCELERATION = Unit(0, -2, 1)
+PER_TIME2 = Unit(s=-2)
+MASS = Unit(kg=1)
+MASS_MOMENT = Unit(1, kg=1)
+INERTIA = Unit(2, kg=1)
+FORCE = Unit(1, -2, kg=1)
+TORQUE = Unit(2, -2, kg=1)
+ENERGY = Unit(2, -2, kg=1, name="J")
+POWER = Unit(2, -3, kg=1, name="W")
 
 PARAMETER_UNITS = {
     "theta": ANGLE,
@@ -34,14 +49,23 @@ PARAMETER_UNITS = {
     "BC": LENGTH,
     "omega0": ANGULAR_SPEED,
     "alpha": ANGULAR_ACCELERATION,
+    **dict.fromkeys(("m_crank", "m_rod", "m_slider"), MASS),
+    **dict.fromkeys(("I_crank", "I_rod"), INERTIA),
+    **dict.fromkeys(("r_crank", "r_rod"), LENGTH),
+    **dict.fromkeys(("F_X", "F_Y"), FORCE),
+    **dict.fromkeys(("g_X", "g_Y"), ACCELERATION),
+    "mu": NONE,
 }
 
 
 def unit_text(unit: Unit) -> str:
-    """As pint and UDUNITS both read it: `m/s^2/rad`, `1`."""
-    above = [_power(name, power) for name, power in unit._asdict().items() if power > 0]
-    below = [_power(name, -power) for name, power in unit._asdict().items() if power < 0]
-    return "/".join(["*".join(above) or "1", *below])
+    """As pint and UDUNITS both read it: `m/s^2/rad`, `N*m`, `1`."""
+    powers = {"N": 0, "kg": 0, "m": 0, "s": 0, "rad": 0, **unit.exponents}
+    if powers["kg"] == 1 and powers["s"] <= -2:  # a force is in it
+        powers.update(N=1, kg=0, m=powers["m"] - 1, s=powers["s"] + 2)
+    above = [_power(name, power) for name, power in powers.items() if power > 0]
+    below = [_power(name, -power) for name, power in powers.items() if power < 0]
+    return unit.name or "/".join(["*".join(above) or "1", *below])
 
 
 def _power(name: str, power: int) -> str:

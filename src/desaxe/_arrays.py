@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from ._kernels import KernelKey, is_ready, kernel_for, key_of
 from ._point import point_of
-from ._program import program_of
 from ._request import Request, as_number
 from ._threads import run_in_blocks
 from .compiler.passes.guard import BAD_INPUT
@@ -27,9 +26,9 @@ def evaluate_arrays(
     wanted: Request, given: Mapping[str, Any], threads: int | None, out: Any
 ) -> dict[str, Array]:
     """The answers by the names asked for, in the broadcast shape."""
-    inputs = tuple(name for name in program_of(wanted.names, wanted.state).inputs if name != "branch")
-    _refuse_other_dimensions({name: given[name] for name in inputs})
-    arrays = {name: as_array(name, given[name], inputs, wanted.shown) for name in inputs}
+    inputs = wanted.inputs
+    _refuse_other_dimensions({name: given.get(name) for name in inputs})
+    arrays = {name: as_array(name, given.get(name), inputs, wanted.shown) for name in inputs}
     shape = broadcast_shape(arrays)
     places = places_for(wanted.shown, shape, out)
     buffers = {name: buffer_for(name, place, arrays.values()) for name, place in places.items()}
@@ -145,7 +144,7 @@ def _fill(
     """Fill flat outputs from scalars and flat columns."""
     key = key_of(wanted, scalars, columns, dict.fromkeys(columns, 0), axes=1)
     if not columns:
-        for out, value in zip(outs, point_of(key.names, key.state, key.fixed).run(scalars), strict=True):
+        for out, value in zip(outs, point_of(key.names, key.form, key.fixed).run(scalars), strict=True):
             out[...] = value
     elif _is_early(key, outs[0].size):
         _fill_by_points(key, scalars, columns, outs)
@@ -165,13 +164,14 @@ def _fill_by_points(
     key: KernelKey, scalars: dict[str, float], columns: dict[str, Array], outs: list[Array]
 ) -> None:
     """Plain Python, point by point: nobody pays a compilation for a hundred points."""
-    point = point_of(key.names, key.state, key.fixed)
+    point = point_of(key.names, key.form, key.fixed)
     good = {name: _is_good(name, column) for name, column in columns.items()}
     safe = {name: np.where(good[name], column, np.nan).tolist() for name, column in columns.items()}
     for index, here in enumerate(zip(*safe.values(), strict=True)):
         answer = point.run({**scalars, **dict(zip(safe, here, strict=True))})
         for out, value in zip(outs, answer, strict=True):
             out[index] = value
-    if "status" in key.names:
-        bad = ~np.logical_and.reduce(list(good.values()))
-        outs[key.names.index("status")][bad] = BAD_INPUT
+    bad = ~np.logical_and.reduce(list(good.values()))
+    for out in outs:
+        if out.dtype == np.int8:  # a status
+            out[bad] = BAD_INPUT

@@ -8,8 +8,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from ._point import Point, point_of
-from ._request import as_number, check_border, request, standstill
+from ._request import as_number, check_border, is_steady, request, standstill
 from .inputs import is_good
+from .names import LOADS
 
 
 def evaluate(
@@ -22,6 +23,18 @@ def evaluate(
     omega0: Any = None,
     alpha: Any = 0.0,
     omega: Any = None,
+    m_crank: Any = None,
+    m_rod: Any = None,
+    m_slider: Any = None,
+    I_crank: Any = None,
+    I_rod: Any = None,
+    r_crank: Any = None,
+    r_rod: Any = None,
+    F_X: Any = None,
+    F_Y: Any = None,
+    g_X: Any = None,
+    g_Y: Any = None,
+    mu: Any = None,
     branch: int = 1,
     accuracy: str = "standard",
     threads: int | None = None,
@@ -41,26 +54,48 @@ def evaluate(
     omega    crank speed at this instant, instead of omega0: a given state, whose sensitivities with
              respect to theta hold omega fixed, and which has `_wrt_omega`
     branch   +1 (the papers) or -1: on which side of the crank pin the slider is
+    m_crank, m_rod, m_slider   masses [kg]
+    I_crank, I_rod     moments of inertia about the centre of mass [kg m^2]
+    r_crank, r_rod     centres of mass: from A towards B, from B towards C [m]; half of AB and BC where
+                       they are not given, and then a derivative by AB or BC moves them too
+    F_X, F_Y, g_X, g_Y external force on the slider [N], gravity [m/s^2]
+    mu       Coulomb friction of the slider's guide, against its motion or the one that alpha starts
     threads  for arrays: how many threads share the work, all that pay without
     out      for arrays: where to put the answer, an array or a dict name -> array
 
-    What the wanted names do not need may be left out. A number may carry its unit: "10 mm", or a
-    pint quantity. An infeasible point gives NaN; ask for `status` to learn why: 0 ok, 1 cannot be
-    assembled here, 2 at a change point, 3 stalled, 4 bad input (an array's element only). Raises
-    ValueError for an unknown name or a bad value, TypeError for a missing input.
+    What the wanted names do not need may be left out; masses and loads are 0 without. A number may
+    carry its unit: "10 mm", or a pint quantity. An infeasible point gives NaN; ask for `status` to learn
+    why: 0 ok, 1 cannot be assembled here, 2 at a change point, 3 stalled, 4 bad input (an array's element
+    only), and where a force or mu is asked about 5 friction jams (no forces balance) or 6 two sets of
+    forces balance. Raises ValueError for an unknown name or a bad value, TypeError for a missing input.
     """
     given = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
+    if not (
+        m_crank is None
+        and m_rod is None
+        and m_slider is None
+        and I_crank is None
+        and I_rod is None
+        and r_crank is None
+        and r_rod is None
+        and F_X is None
+        and F_Y is None
+        and g_X is None
+        and g_Y is None
+        and mu is None
+    ):
+        loads = (m_crank, m_rod, m_slider, I_crank, I_rod, r_crank, r_rod, F_X, F_Y, g_X, g_Y, mu)
+        given.update((name, load) for name, load in zip(LOADS, loads, strict=True) if load is not None)
     wanted = (names,) if isinstance(names, str) else tuple(dict.fromkeys(names))
     if threads is not None or (omega is not None and omega0 is not None) or type(branch) is not int:
         check_border(given, branch, threads)
-    key = wanted, omega is not None, branch, accuracy
+    key = wanted, tuple(given), omega is not None, is_steady(alpha), branch, accuracy
     if omega0 is None and omega is None and "status" in wanted:
         given["omega0"] = standstill(wanted)
     point = _POINTS.get(key)
     if point is None:
         asked = request(wanted, given, branch, accuracy)
-        fixed = (("branch", float(asked.branch)),)
-        point = _POINTS[key] = point_of(asked.names, asked.state, fixed)
+        point = _POINTS[key] = point_of(asked.names, asked.form, asked.fixed)
     values = []
     for name in point.inputs:
         value = given[name]

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from ._arrays import as_array, buffer_for, delivered, places_for
 from ._kernels import kernel_for, key_of
-from ._program import program_of
-from ._request import Request, check_border, request, standstill
+from ._request import Request, check_border, check_inputs, request, standstill
 from ._threads import run_in_blocks
 from .inputs import INPUTS
 
@@ -63,10 +62,8 @@ def grid(
 
 def _given(names: Sequence[str], inputs: Mapping[str, Any]) -> dict[str, Any]:
     """The inputs with their defaults; a TypeError for one that there is not."""
-    for name in inputs:
-        if name not in INPUTS:
-            raise TypeError(f"grid() has no input {name!r}: {', '.join(INPUTS)}")
-    given = {"alpha": 0.0, **inputs}
+    check_inputs("grid", inputs, tuple(INPUTS))
+    given = dict(inputs)
     if given.get("omega0") is None and given.get("omega") is None:
         given["omega0"] = standstill(names)
     return given
@@ -83,7 +80,7 @@ def _filled(
     wanted: Request, axes: Mapping[str, Array], dimensions: Sequence[str], threads: int | None, out: Any
 ) -> dict[str, Array]:
     """The answers over these dimensions, from one loop nest in their order."""
-    inputs = [name for name in program_of(wanted.names, wanted.state).inputs if name != "branch"]
+    inputs = wanted.inputs
     missing = [name for name in inputs if name not in axes]
     if missing:
         raise TypeError(f"{', '.join(wanted.shown)}: {missing[0]} is missing (needed: {', '.join(inputs)})")

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 
 from . import _cache
 from ._point import cut
+from ._program import Form
 from ._request import Request
 from .compiler.emit_numba import emit_numba
 from .compiler.kernel import hoist
@@ -24,16 +25,17 @@ from .compiler.passes.guard import guard_inputs
 from .compiler.passes.number import number_values
 from .compiler.passes.trigonometry import Trigonometry, expand_trigonometry
 from .inputs import LEAST
+from .names import LOADS
 
 # A scalar of 0 for one of these makes whole terms vanish, so it is folded into the kernel.
-STRUCTURAL_ZEROS = ("ec", "alpha")
+STRUCTURAL_ZEROS = ("ec", "alpha", *LOADS)
 
 
 class KernelKey(NamedTuple):
-    """What a kernel is: its outputs, motion, fixed inputs and the axis of every other input."""
+    """What a kernel is: its outputs, form, fixed inputs and the axis of every other input."""
 
     names: tuple[str, ...]
-    state: bool
+    form: Form
     fixed: tuple[tuple[str, float], ...]
     axis_of: tuple[tuple[str, int], ...]
     axes: int
@@ -67,8 +69,8 @@ def key_of(
     """The key of a request whose scalars and columns are known."""
     far = _largest(columns.get("theta", scalars.get("theta", 0.0))) > constants().limit
     zeros = [(name, 0.0) for name in STRUCTURAL_ZEROS if scalars.get(name) == 0.0]
-    fixed = (("branch", float(wanted.branch)), *zeros)
-    return KernelKey(wanted.names, wanted.state, fixed, tuple(sorted(axis_of.items())), axes, far)
+    fixed = (*wanted.fixed, *zeros)
+    return KernelKey(wanted.names, wanted.form, fixed, tuple(sorted(axis_of.items())), axes, far)
 
 
 def _largest(angles: Any) -> float:
@@ -102,20 +104,20 @@ def kernel_for(key: KernelKey) -> CompiledKernel:
 
 def source_of(key: KernelKey) -> str:
     """The text of the kernel's module."""
-    program = cut(key.names, key.state, key.fixed)
+    program = cut(key.names, key.form, key.fixed)
     axes = dict(key.axis_of)
     guarded = guard_inputs(program, [name for name in program.inputs if name in axes], LEAST, {})
     if not key.far:
         guarded = number_values(expand_trigonometry(guarded, constants()))
     kernel = hoist(guarded, {name: axes.get(name) for name in program.inputs}, key.axes)
     fixed = ", ".join(f"{name} = {value:g}" for name, value in key.fixed)
-    motion = "a given state" if key.state else "paper A's law"
+    motion = "a given state" if key.form.state else "paper A's law"
     return emit_numba(kernel, f"desaxe kernel: {', '.join(key.names)}; {motion}; {fixed}.")
 
 
 def _load(key: KernelKey) -> CompiledKernel:
     axes = dict(key.axis_of)
-    order = tuple((name, axes.get(name)) for name in cut(key.names, key.state, key.fixed).inputs)
+    order = tuple((name, axes.get(name)) for name in cut(key.names, key.form, key.fixed).inputs)
     source = source_of(key)
     path = _cache.folder().path / f"kernel_{hashlib.sha256(source.encode()).hexdigest()[:20]}.py"
     with _cache.locked(path):

@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 from ._arrays import as_array, broadcast_shape
 from ._evaluate import evaluate
 from ._feasibility import theta_intervals
-from ._program import program_of
-from ._request import as_number, request
+from ._request import as_number, check_inputs, request
 from .catalogue import quantity
 from .inputs import INPUTS
-from .names import sensitivity
+from .names import LOADS, sensitivity
 
 Array = NDArray[np.float64]
 
@@ -61,12 +60,13 @@ def peak(
     kind: str = "absmax",
     theta: tuple[float, float] = (0.0, 2.0 * np.pi),
     accuracy: str = "standard",
+    **loads: Any,
 ) -> dict[str, Any]:
     """The extreme value of a quantity over the crank angle; designs broadcast like NumPy.
 
     kind    "absmax" (the largest magnitude), "max" or "min"
     theta   range of crank angles [rad]; its ends count
-    others  as in `evaluate`
+    others  as in `evaluate`, masses and loads among them
 
     Gives a dict, floats for one design and arrays for many:
 
@@ -88,10 +88,11 @@ def peak(
     if kind not in KINDS:
         raise ValueError(f"kind = {kind!r}: it is one of {', '.join(KINDS)}")
     low, high = _range(theta, name)
-    given = {"ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
+    given = {"ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega, **loads}
+    check_inputs("peak", loads, LOADS)
     wanted = request((name, slope), given, branch, accuracy)
-    needs = [n for n in program_of(wanted.names, wanted.state).inputs if n not in ("theta", "branch")]
-    arrays = {n: as_array(n, given[n], needs, (name,)) for n in needs}
+    needs = [n for n in wanted.inputs if n != "theta"]
+    arrays = {n: as_array(n, given.get(n), needs, (name,)) for n in needs}
     shape = broadcast_shape(arrays)
     columns = {n: np.broadcast_to(a, shape).reshape(-1) for n, a in arrays.items()}
     count = int(np.prod(shape))

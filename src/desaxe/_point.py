@@ -4,13 +4,14 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
-from ._program import program_of
+from ._program import Form, program_of
 from .compiler.emit_python import compile_python
 from .compiler.passes.pipeline import optimise
 from .compiler.passes.slicing import keep_outputs
-from .compiler.program import Line, Program, reached
+from .compiler.program import Line, Program, names_in, renamed
 
-NO_EFFECT = "Y_wrt_omega0"  # 0 where the mechanism can be assembled, else NaN
+# What an output may lose when inputs are fixed -> the line that is 0 where there is such a thing, else NaN.
+KEPT = {"D": "no_effect_on_rod", "omega2_law": "not_stalled"}
 
 
 class Point(NamedTuple):
@@ -25,26 +26,43 @@ class Point(NamedTuple):
 
 
 @cache
-def cut(names: tuple[str, ...], state: bool, fixed: tuple[tuple[str, float], ...]) -> Program:
+def cut(names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...]) -> Program:
     """The program of these names with some inputs fixed, after all passes.
 
-    A sensitivity that vanishes altogether then (V_C by alpha for a given state) is 0 only where the
-    mechanism can be assembled, like one that is 0 from the start.
+    A value that loses what it depended on (V_C by alpha for a given state, the torque of a massless
+    rod) is still NaN where the mechanism cannot be assembled, or has stalled.
     """
-    program = program_of(names, state)
+    program = program_of(names, form)
     result = optimise(program, dict(fixed))[0]
-    constant = [line.name for line in result.lines if line.name in names and line.args == (0.0,)]
-    vanished = [name for name in constant if "D" in reached(program._replace(outputs=(name,)))]
-    if not vanished:
+    before, after = _needs(program), _needs(result)
+    kept = {"D"} if dict(fixed).get("alpha") == 0.0 else set(KEPT)  # a crank at constant speed never stalls
+    lost = {name: (before[name] & kept) - after[name] for name in names}
+    if not any(lost.values()):
         return result
-    wide = program_of((*names, NO_EFFECT), state)
-    lines = [line for line in wide.lines if line.name not in vanished]
-    lines += [Line(name, "copy", (NO_EFFECT,)) for name in vanished]
+    wide = program_of((*names, *KEPT.values()), form)
+    wide = renamed(wide, {name: f"{name}_alone" for name in names if lost[name]})
+    lines = list(wide.lines)
+    for name in names:
+        value = f"{name}_alone"
+        for need in sorted(lost[name]):
+            lines.append(Line(f"{value}_{need}", "add", (value, KEPT[need])))
+            value = lines[-1].name
+        if lost[name]:
+            lines.append(Line(name, "copy", (value,)))
     return optimise(keep_outputs(wide._replace(lines=tuple(lines)), names), dict(fixed))[0]
 
 
+def _needs(program: Program) -> dict[str, frozenset[str]]:
+    """Which of the names in KEPT each line depends on."""
+    needs: dict[str, frozenset[str]] = dict.fromkeys(program.inputs, frozenset())
+    for line in program.lines:
+        own = frozenset({line.name} & set(KEPT))
+        needs[line.name] = own.union(*(needs[name] for name in names_in(line.args)))
+    return needs
+
+
 @cache
-def point_of(names: tuple[str, ...], state: bool, fixed: tuple[tuple[str, float], ...]) -> Point:
+def point_of(names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...]) -> Point:
     """The function that computes them."""
-    program = cut(names, state, fixed)
+    program = cut(names, form, fixed)
     return Point(compile_python(program), program.inputs)

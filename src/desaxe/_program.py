@@ -7,11 +7,19 @@ the first answer of a process comes quickly.
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
+from typing import NamedTuple
 
 from .compiler.passes.bind import overlay
 from .compiler.passes.slicing import keep_outputs
 from .compiler.program import Program
 from .compiler.text import ProgramText
+
+
+class Form(NamedTuple):
+    """Which form of the program: what stands in place of the law and of given centres of mass."""
+
+    state: bool = False  # a given state instead of paper A's law
+    halves: tuple[str, ...] = ()  # centres of mass halfway along their links
 
 
 @cache
@@ -23,12 +31,16 @@ def _text(name: str) -> ProgramText:
 
 
 @cache
-def program_of(names: tuple[str, ...], state: bool = False) -> Program:
-    """The program of these names (those of the law), under the law or for a given state."""
+def program_of(names: tuple[str, ...], form: Form = Form()) -> Program:
+    """The program of these names (those of the law), in one form."""
     program = _text("program").read(names)
-    if not state:
-        return program
-    return keep_outputs(overlay(program, _text("state").read()), names)
+    if form.state:
+        program = keep_outputs(overlay(program, _text("state").read()), names)
+    for centre in form.halves:
+        halfway = _text("centres").read()
+        own = [name for name in halfway.outputs if name.startswith(centre)]
+        program = keep_outputs(overlay(program, keep_outputs(halfway, own)), names)
+    return program
 
 
 @cache

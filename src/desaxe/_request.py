@@ -4,20 +4,27 @@ from collections.abc import Iterable, Mapping, Sequence
 from math import inf
 from typing import Any, NamedTuple
 
-from ._program import program_of
+from ._point import cut
+from ._program import Form, program_of
 from .catalogue import law_name, quantity
 from .inputs import INPUTS, is_good
+from .names import CENTRES, LOADS
 
 ACCURACIES = ("standard",)
 
 
 class Request(NamedTuple):
-    """What is asked for: the names as the user says them, the same under the law, state, branch."""
+    """What is asked for: the names as the user says them, those of the program, its form, what is fixed."""
 
     shown: tuple[str, ...]
     names: tuple[str, ...]
-    state: bool
-    branch: int
+    form: Form
+    fixed: tuple[tuple[str, float], ...]
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """The inputs that it needs."""
+        return cut(self.names, self.form, self.fixed).inputs
 
 
 def check_border(given: Mapping[str, Any], branch: Any, threads: int | None = None) -> None:
@@ -32,7 +39,7 @@ def check_border(given: Mapping[str, Any], branch: Any, threads: int | None = No
 
 
 def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accuracy: str) -> Request:
-    """The request, checked; its names are those of the law."""
+    """The request, checked. What is not given and has no effect by default is fixed, and costs nothing."""
     check_border(given, branch)
     state = given.get("omega") is not None
     if accuracy not in ACCURACIES:
@@ -40,7 +47,29 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
     for name in names:
         quantity(name, state)
     shown = tuple(names)
-    return Request(shown, tuple(law_name(name) if state else name for name in shown), state, int(branch))
+    own = tuple(law_name(name) if state else name for name in shown)
+    inputs = program_of(own).inputs
+    if "status" in own and ("mu" in inputs or given.get("mu") is not None):
+        own = tuple("force_status" if name == "status" else name for name in own)
+        inputs = program_of(own).inputs
+    absent = [name for name in inputs if name in LOADS and given.get(name) is None]
+    zeros = [(name, 0.0) for name in absent if name not in CENTRES]
+    if "alpha" in inputs and is_steady(given.get("alpha")):
+        zeros.append(("alpha", 0.0))
+    halves = tuple(name for name in CENTRES if name in absent)
+    return Request(shown, own, Form(state, halves), (("branch", float(branch)), *zeros))
+
+
+def is_steady(alpha: Any) -> bool:
+    """Whether no acceleration is given, or a plain 0."""
+    return alpha is None or (type(alpha) is float and alpha == 0.0)
+
+
+def check_inputs(caller: str, given: Iterable[str], allowed: Sequence[str]) -> None:
+    """Refuse an input that there is not."""
+    for name in given:
+        if name not in allowed:
+            raise TypeError(f"{caller}() has no input {name!r}: {', '.join(allowed)}")
 
 
 def standstill(names: Iterable[str]) -> float | None:

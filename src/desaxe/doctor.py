@@ -197,7 +197,7 @@ def _assembly() -> Iterator[str]:
 
     columns = dict.fromkeys(INPUTS, np.ones(8))
     wanted = request(NAMES, {"omega0": 1.0}, 1, "standard")
-    key = key_of(wanted, {"alpha": 0.0}, columns, dict.fromkeys(INPUTS, 0), axes=1)
+    key = key_of(wanted, {}, columns, dict.fromkeys(INPUTS, 0), axes=1)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "desaxe_doctor_kernel.py"
         path.write_text(source_of(key), encoding="utf-8")

@@ -16,6 +16,7 @@ class Input(NamedTuple):
 
 # The smallest length that is more than nothing: a rod of 0 is no rod.
 _TINY = 5e-324
+_INERTIA = "a finite moment of inertia >= 0"
 
 INPUTS = {
     row.name: row
@@ -27,6 +28,18 @@ INPUTS = {
         Input("omega0", "rad/s", "angular speed of the crank at theta = 0"),
         Input("alpha", "rad/s^2", "angular acceleration of the crank, constant"),
         Input("omega", "rad/s", "angular speed of the crank at this instant, instead of omega0"),
+        Input("m_crank", "kg", "mass of the crank", 0.0, "a finite mass >= 0"),
+        Input("m_rod", "kg", "mass of the connecting rod", 0.0, "a finite mass >= 0"),
+        Input("m_slider", "kg", "mass of the slider", 0.0, "a finite mass >= 0"),
+        Input("I_crank", "kg*m^2", "moment of inertia of the crank about its centre of mass", 0.0, _INERTIA),
+        Input("I_rod", "kg*m^2", "moment of inertia of the rod about its centre of mass", 0.0, _INERTIA),
+        Input("r_crank", "m", "from the crank centre towards the crank pin: the crank's centre of mass"),
+        Input("r_rod", "m", "from the crank pin towards the slider: the rod's centre of mass"),
+        Input("F_X", "N", "external force on the slider along X"),
+        Input("F_Y", "N", "external force on the slider along Y"),
+        Input("g_X", "m/s^2", "gravity along X"),
+        Input("g_Y", "m/s^2", "gravity along Y"),
+        Input("mu", "1", "Coulomb friction coefficient of the slider's guide", 0.0, "a finite number >= 0"),
     )
 }
 LEAST = {name: row.least for name, row in INPUTS.items() if row.least is not None}

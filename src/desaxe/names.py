@@ -6,9 +6,14 @@ taken apart and put together here and nowhere else.
 
 from collections.abc import Iterable
 
-# The order in which parameters stand in a name; omega, of a given state, stands in omega0's place.
+# Geometry and motion; then the bodies and what acts on them, which only forces and energies need.
 PARAMETERS = ("theta", "ec", "AB", "BC", "omega0", "alpha")
-ORDER = ("theta", "ec", "AB", "BC", "omega0", "omega", "alpha")
+LOADS = (
+    "m_crank", "m_rod", "m_slider", "I_crank", "I_rod", "r_crank", "r_rod", "F_X", "F_Y", "g_X", "g_Y", "mu",
+)  # fmt: skip
+CENTRES = ("r_crank", "r_rod")  # half of AB and of BC where they are not given
+# The order in which parameters stand in a name; omega, of a given state, stands in omega0's place.
+ORDER = ("theta", "ec", "AB", "BC", "omega0", "omega", "alpha", *LOADS)
 _JOINT = "_wrt_"
 
 

@@ -7,7 +7,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from .._program import program_of
+from .._program import Form, program_of
 from ..catalogue import law_name, quantity
 from ..inputs import INPUTS
 from ..names import sensitivity
@@ -169,7 +169,7 @@ def _needs(names: Iterable[str], inputs: Mapping[str, Any]) -> tuple[str, ...]:
     """The inputs that quantities need, under the law or for a given state."""
     state = "omega" in inputs
     law = tuple(law_name(name) if state else name for name in names)
-    return tuple(name for name in program_of(law, state).inputs if name != "branch")
+    return tuple(name for name in program_of(law, Form(state)).inputs if name != "branch")
 
 
 def _require(key: str, needs: Iterable[str], what: str, inputs: Mapping[str, Any]) -> list[str]:

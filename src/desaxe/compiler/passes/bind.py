@@ -21,7 +21,7 @@ def bind_constants(program: Program, constants: Mapping[str, float]) -> Program:
 
 
 def overlay(program: Program, other: Program) -> Program:
-    """The program with the lines of `other` in place of its own lines of the same names.
+    """The program with the lines of `other` in place of its own lines and inputs of the same names.
 
     Precondition: `other` needs nothing that the program computes. Effect: its lines come first;
     its inputs join the program's; an input of `other` that the program computes is no longer
@@ -32,6 +32,7 @@ def overlay(program: Program, other: Program) -> Program:
     fresh = renamed(other, {line.name: f"_{line.name}" for line in other.lines if line.name not in kept})
     replaced = {line.name for line in fresh.lines} | set(other.inputs)
     lines = fresh.lines + tuple(line for line in program.lines if line.name not in replaced)
-    inputs = program.inputs + tuple(name for name in other.inputs if name not in program.inputs)
+    inputs = tuple(name for name in program.inputs if name not in replaced - set(other.inputs))
+    inputs += tuple(name for name in other.inputs if name not in inputs)
     notes = {**program.notes, **other.notes}
     return drop_unused(program._replace(inputs=inputs, lines=lines, notes=notes))

@@ -20,7 +20,7 @@ def guard_inputs(
     """The program in which a bad element of one of these inputs is NaN, and `status` says 4.
 
     Effect: an input that is infinite or NaN, below its `least` value or of a magnitude above its
-    `largest` is replaced by NaN where it is used. Where `status` is an output it becomes 4.
+    `largest` is replaced by NaN where it is used. An output that is a status becomes 4.
     """
     checked = [name for name in inputs if name in program.inputs]
     lines: list[Line] = []
@@ -32,8 +32,10 @@ def guard_inputs(
         lines.append(
             line._replace(args=tuple(safe.get(a, a) if isinstance(a, str) else a for a in line.args))
         )
-    if "status" in program.outputs and checked:
-        lines = _with_status(lines, checked)
+    types = {line.name: line.type for line in program.lines}
+    for name in program.outputs:
+        if types.get(name) == "i64" and checked:
+            lines = _with_status(lines, checked, name)
     notes = {**program.notes, **{good: Note("", f"{name}, NaN where bad") for name, good in safe.items()}}
     outputs = tuple(safe.get(name, name) for name in program.outputs)  # an output may be an input
     return drop_unused(program._replace(lines=tuple(lines), notes=notes, outputs=outputs))
@@ -54,9 +56,9 @@ def _check(name: str, least: float | None, largest: float | None) -> list[Line]:
     return [*lines, Line(f"{name}_good", "select", (good, name, nan))]
 
 
-def _with_status(lines: list[Line], checked: list[str]) -> list[Line]:
-    """The lines with `status` read as 4 wherever a checked input is not good."""
-    lines = [line._replace(name="status_if_good") if line.name == "status" else line for line in lines]
+def _with_status(lines: list[Line], checked: list[str], status: str) -> list[Line]:
+    """The lines with the status read as 4 wherever a checked input is not good."""
+    lines = [line._replace(name=f"{status}_if_good") if line.name == status else line for line in lines]
     good = ""
     for name in checked:
         own = Line(f"{name}_counts", "eq", (f"{name}_good", f"{name}_good"), "bool")
@@ -64,4 +66,4 @@ def _with_status(lines: list[Line], checked: list[str]) -> list[Line]:
         if good:
             lines.append(Line(f"good_to_{name}", "and", (good, own.name), "bool"))
         good = f"good_to_{name}" if good else own.name
-    return [*lines, Line("status", "select", (good, "status_if_good", BAD_INPUT), "i64")]
+    return [*lines, Line(status, "select", (good, f"{status}_if_good", BAD_INPUT), "i64")]

@@ -1,0 +1,224 @@
+"""Forces, torque and energies, in lumped masses: short, and without cancellation.
+
+The rod moves like two point masses at B and C with its mass and its centre of mass, less a moment of
+inertia by which those exceed its own (`I_lumping`, paper B (31) to (33), which leave it out). Written
+so, what turns with the crank falls out of the torque at constant speed by itself, the guide's force has
+one term for each cause, and only rates of phi and Y enter that keep their digits next to a change
+point. Each equation is proved equal to the solved free bodies (`bodies`) when it is derived.
+
+Friction at the guide is -mu |N_C| against the slider's motion. N_C = N0 + k |N_C|, where N0 is the
+normal force without friction and k = branch tan(phi) mu sigma, has one solution for -1 <= k sign(N0) < 1,
+which has N0's sign; none above (the friction jams) and two below.
+"""
+
+import sympy as sp
+
+from desaxe.names import CENTRES, PARAMETERS, parts, sensitivity
+
+from . import bodies
+from .loop import AB, BC, branch, ec
+from .sheet import Equation, Sheet, symbol
+from .stable import assembled, cos_theta, eq, le, lt, sec_phi, select, sin_theta, tan_phi
+from .units import (
+    ENERGY,
+    FORCE,
+    INERTIA,
+    LENGTH,
+    MASS,
+    MASS_MOMENT,
+    NONE,
+    PER_TIME2,
+    POWER,
+    TORQUE,
+    Unit,
+)
+
+FORCES = (
+    "T_in", "F_A_X", "F_A_Y", "F_B_X", "F_B_Y", "F_C_X", "F_C_Y", "N_C", "F_friction", "F_shaking_X",
+    "F_shaking_Y", "M_shaking", "power_in", "kinetic_energy", "potential_energy", "M_eff", "m_rotating",
+    "m_reciprocating", "I_lumping",
+)  # fmt: skip
+
+LUMPS = FORCES[-3:]  # of the links alone, without a mechanism
+
+alpha, omega, omega2, nan, Y, a_C, alpha_BC = map(
+    symbol, ("alpha", "omega", "omega2", "nan", "Y", "a_C", "alpha_BC")
+)
+m_crank, m_rod, m_slider, I_crank, I_rod = (
+    bodies.m_crank, bodies.m_rod, bodies.m_slider, bodies.I_crank, bodies.I_rod,
+)  # fmt: skip
+r_crank, r_rod, mu = bodies.r_crank, bodies.r_rod, symbol("mu")
+(F_X, F_Y), (g_X, g_Y) = bodies.LOAD, bodies.GRAVITY
+phi_1, Y_1, inv_S = symbol("phi_wrt_theta"), symbol("Y_wrt_theta"), symbol("inv_S")
+
+
+def resolve_ratio(sheet: Sheet, name: str) -> Equation | None:
+    """tan(phi) and 1/S by a parameter, from that of phi: no difference of large terms."""
+    base, parameters = parts(name)
+    if base not in ("tan_phi", "inv_S") or len(parameters) != 1 or parameters[0] not in PARAMETERS[:4]:
+        return None
+    by_phi = sheet.derivative("phi", parameters[0])
+    expression = sec_phi**2 * by_phi
+    if base == "inv_S":
+        expression = -sec_phi * inv_S**2 if parameters == ("BC",) else inv_S * tan_phi * by_phi
+    unit = Unit(m=-1) if base == "inv_S" else NONE
+    return Equation(expression, unit.over(*parameters), f"derivative of {base} by {parameters[0]}")
+
+
+def centres_sheet() -> Sheet:
+    """The equations of centres of mass that are halfway along their links, and move with them."""
+    sheet = Sheet(())
+    for centre, length in zip(CENTRES, (AB, BC), strict=True):
+        sheet.define(centre, length / 2, unit=LENGTH, meaning=f"half of {length}")
+        by_length = sensitivity(centre, str(length))
+        sheet.define(by_length, sp.Rational(1, 2), unit=NONE, meaning=f"derivative of {centre} by {length}")
+    return sheet
+
+
+def define_dynamics(sheet: Sheet) -> None:
+    """All forces and energies, after the motion."""
+    _define_lumps(sheet)
+    _define_loads(sheet)
+    _define_friction(sheet)
+    _define_joints(sheet)
+    _define_frame(sheet)
+    _define_energies(sheet)
+
+
+def _define_lumps(sheet: Sheet) -> None:
+    """Where the masses are; a centre of mass that is given does not move with its link's length."""
+    for centre, length in zip(CENTRES, ("AB", "BC"), strict=True):
+        sheet.define(sensitivity(centre, length), 0, unit=NONE, meaning=f"derivative of {centre} by {length}")
+    at_B = sheet.define("m_at_B", m_rod * ((BC - r_rod) / BC), unit=MASS, meaning="the rod's mass at B",
+                        source="B (32)")  # fmt: skip
+    at_C = sheet.define(
+        "m_at_C", m_rod * (r_rod / BC), unit=MASS, meaning="the rod's mass at C", source="B (33)"
+    )
+    sheet.define("m_rotating", at_B + m_crank * r_crank / AB, unit=MASS, source="B (36)",
+                 meaning="rotating mass, as if at the crank pin")  # fmt: skip
+    sheet.define("m_reciprocating", m_slider + at_C, unit=MASS, meaning="reciprocating mass", source="B (34)")
+    sheet.define("I_lumping", m_rod * r_rod * (BC - r_rod) - I_rod, unit=INERTIA,
+                 meaning="moment of inertia by which two point masses at B and C exceed the rod's own")  # fmt: skip
+    sheet.define(
+        "swing", m_crank * r_crank + at_B * AB, unit=MASS_MOMENT, meaning="mass moment that turns with AB"
+    )
+    sheet.define("I_turning", I_crank + m_crank * r_crank**2 + at_B * AB**2, unit=INERTIA,
+                 meaning="moment of inertia about A that turns with AB")  # fmt: skip
+    sheet.define("m_turning", m_crank + at_B, unit=MASS, meaning="mass that turns with AB")
+
+
+m_at_B, m_at_C, m_reciprocating, I_lumping, swing, I_turning, m_turning = map(
+    symbol, ("m_at_B", "m_at_C", "m_reciprocating", "I_lumping", "swing", "I_turning", "m_turning")
+)
+
+
+def _define_loads(sheet: Sheet) -> None:
+    """What the motion takes, without friction."""
+    sheet.define("out_X", alpha * cos_theta - omega2 * sin_theta, unit=PER_TIME2,
+                 meaning="acceleration along X of a point of the crank, per distance from A")  # fmt: skip
+    sheet.define("out_Y", -(alpha * sin_theta + omega2 * cos_theta), unit=PER_TIME2,
+                 meaning="acceleration along Y of a point of the crank, per distance from A")  # fmt: skip
+    sheet.define("thrust_smooth", m_reciprocating * (a_C - g_Y) - F_Y, unit=FORCE,
+                 meaning="force along Y on the reciprocating mass, without friction")  # fmt: skip
+    sheet.define("rod_twist", I_lumping * alpha_BC * inv_S, unit=FORCE,
+                 meaning="side force for the rod's moment of inertia")  # fmt: skip
+    sheet.define("lean", branch * tan_phi, unit=NONE, meaning="side force per thrust")
+    sheet.define("N_smooth", lean * thrust_smooth + rod_twist - m_reciprocating * g_X - F_X, unit=FORCE,
+                 meaning="normal force at the guide, without friction")  # fmt: skip
+
+
+lean, thrust_smooth, rod_twist, N_smooth, out_X, out_Y = map(
+    symbol, ("lean", "thrust_smooth", "rod_twist", "N_smooth", "out_X", "out_Y")
+)
+N_C, F_friction, thrust, side_push, T_in = map(symbol, ("N_C", "F_friction", "thrust", "side_push", "T_in"))
+
+
+def _sign(x: sp.Expr) -> sp.Expr:
+    return select(lt(0, x), 1, select(lt(x, 0), -1, 0))
+
+
+def _define_friction(sheet: Sheet) -> None:
+    """The normal force that is consistent with the friction which it causes."""
+    way = sheet.define("way", select(eq(omega, 0), alpha, omega), rigid=True)
+    sliding = sheet.define("sliding", _sign(Y_1) * _sign(way), unit=NONE, rigid=True,
+                           meaning="sigma: the slider's way of sliding, or of starting")  # fmt: skip
+    pressed = sheet.define("pressed", _sign(N_smooth), unit=NONE, rigid=True, meaning="sign of N_C")
+    wedge = sheet.define("wedge", lean * mu * sliding * pressed, unit=NONE,
+                         meaning="share of N_C that friction itself causes")  # fmt: skip
+    normal = N_smooth / (1 - wedge)
+    alone = sp.Function("and")(le(-1, wedge), lt(wedge, 1))
+    sheet.define("N_C", select(alone, normal, nan), unit=FORCE, differentiate=normal, source="C (link 4)",
+                 meaning="force of the guide on the slider along X")  # fmt: skip
+    sheet.define("F_friction", -mu * sliding * pressed * N_C, unit=FORCE, source="C (matrix, mu)",
+                 meaning="friction of the guide on the slider along Y")  # fmt: skip
+    balance = select(lt(wedge, 1), select(lt(wedge, -1), 6, 0), 5)
+    sheet.define("force_status", assembled(balance), unit=NONE, meaning="status where forces are asked for")
+
+
+def _define_joints(sheet: Sheet) -> None:
+    """Forces at C, B and A, each on the link that comes later on the way from the frame to the slider."""
+    sheet.define("thrust", thrust_smooth - F_friction, unit=FORCE, meaning="axial force on the lumped slider")
+    sheet.define(
+        "side_push", lean * thrust + rod_twist, unit=FORCE, meaning="force to the side on the lumped slider"
+    )
+    rows = (
+        ("F_C_X", m_at_C * g_X - side_push, "force of the rod on the slider along X", "C (link 4)"),
+        ("F_C_Y", m_slider * (a_C - g_Y) - F_Y - F_friction, "force of the rod on the slider along Y",
+         "C (link 4)"),
+        ("F_B_X", m_at_B * (AB * out_X - g_X) - side_push, "force of the crank on the rod along X",
+         "C (link 3)"),
+        ("F_B_Y", m_at_B * (AB * out_Y - g_Y) + thrust, "force of the crank on the rod along Y", "C (link 3)"),
+        ("F_A_X", swing * out_X - m_turning * g_X - side_push, "force of the frame on the crank along X",
+         "C (link 2)"),
+        ("F_A_Y", swing * out_Y - m_turning * g_Y + thrust, "force of the frame on the crank along Y",
+         "C (link 2)"),
+    )  # fmt: skip
+    for name, expression, meaning, source in rows:
+        sheet.define(name, expression, unit=FORCE, meaning=meaning, source=source)
+    weight = swing * (g_X * cos_theta - g_Y * sin_theta)
+    torque = I_turning * alpha + Y_1 * thrust - I_lumping * phi_1 * alpha_BC - weight
+    sheet.define("T_in", torque, unit=TORQUE, source="C (link 2)",
+                 meaning="torque that the drive applies to the crank")  # fmt: skip
+    sheet.define("power_in", T_in * omega, unit=POWER, meaning="power that the drive puts in, T_in omega")
+
+
+def _define_frame(sheet: Sheet) -> None:
+    """What the mechanism does to the frame: the loads less what its motion takes."""
+    m_total = sheet.define("m_total", m_turning + m_reciprocating, unit=MASS, meaning="mass of all links")
+    sheet.define("F_shaking_X", m_total * g_X + F_X - swing * out_X, unit=FORCE,
+                 meaning="force of the mechanism on the frame along X")  # fmt: skip
+    sheet.define("F_shaking_Y", m_total * g_Y + F_Y - swing * out_Y - m_reciprocating * a_C, unit=FORCE,
+                 source="B (46)", meaning="force of the mechanism on the frame along Y")  # fmt: skip
+    spun = I_turning * alpha + branch * I_lumping * alpha_BC
+    pulled = Y * (m_reciprocating * g_X + F_X) + ec * (m_reciprocating * (g_Y - a_C) + F_Y)
+    weight = swing * (g_X * cos_theta - g_Y * sin_theta)
+    sheet.define("M_shaking", weight + pulled - spun, unit=TORQUE,
+                 meaning="moment of the mechanism and its drive on the frame, about A")  # fmt: skip
+
+
+def _define_energies(sheet: Sheet) -> None:
+    M_eff = sheet.define("M_eff", I_turning + m_reciprocating * Y_1**2 - I_lumping * phi_1**2, unit=INERTIA,
+                         meaning="effective moment of inertia at the crank")  # fmt: skip
+    sheet.define("kinetic_energy", M_eff * omega2 / 2, unit=ENERGY, meaning="kinetic energy of all links")
+    height = swing * (g_X * sin_theta + g_Y * cos_theta) + m_reciprocating * (g_Y * Y - ec * g_X)
+    sheet.define("potential_energy", -height, unit=ENERGY, meaning="potential energy of gravity, 0 at A")
+
+
+# What is held against the solved free bodies; N_C with friction as a given force.
+PROVED = {name: symbol(name) for name in FORCES[:12] if name not in ("N_C", "F_friction")}
+PROVED |= {"N_C": side_push - m_reciprocating * g_X - F_X}
+PROVED |= {name: symbol(name) for name in ("M_eff", "potential_energy")}
+
+
+def prove(sheet: Sheet) -> None:
+    """Every force, torque and energy against the free bodies, or the derivation stops."""
+    for name, expression in PROVED.items():
+        bodies.prove(name, _written_out(sheet, expression))
+
+
+def _written_out(sheet: Sheet, expression: sp.Expr) -> sp.Expr:
+    """The expression in the symbols of the free bodies: names of this file replaced by their equations."""
+    kept = {*bodies.KINEMATICS, *bodies.KEPT}
+    while names := [s for s in expression.free_symbols - kept if s.name in sheet.equations]:
+        expression = expression.subs({s: sheet.equations[s.name].expression for s in names})
+    return expression
