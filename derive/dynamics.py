@@ -52,6 +52,11 @@ r_crank, r_rod, mu = bodies.r_crank, bodies.r_rod, symbol("mu")
 phi_1, Y_1, inv_S = symbol("phi_wrt_theta"), symbol("Y_wrt_theta"), symbol("inv_S")
 
 
+m_at_B, m_at_C, m_reciprocating, I_lumping, swing, I_turning, m_turning = map(
+    symbol, ("m_at_B", "m_at_C", "m_reciprocating", "I_lumping", "swing", "I_turning", "m_turning")
+)
+
+
 def resolve_ratio(sheet: Sheet, name: str) -> Equation | None:
     """tan(phi) and 1/S by a parameter, from that of phi: no difference of large terms."""
     base, parameters = parts(name)
@@ -88,28 +93,37 @@ def define_dynamics(sheet: Sheet) -> None:
 def _define_lumps(sheet: Sheet) -> None:
     """Where the masses are; a centre of mass that is given does not move with its link's length."""
     for centre, length in zip(CENTRES, ("AB", "BC"), strict=True):
-        sheet.define(sensitivity(centre, length), 0, unit=NONE, meaning=f"derivative of {centre} by {length}")
-    at_B = sheet.define("m_at_B", m_rod * ((BC - r_rod) / BC), unit=MASS, meaning="the rod's mass at B",
-                        source="B (32)")  # fmt: skip
-    at_C = sheet.define(
-        "m_at_C", m_rod * (r_rod / BC), unit=MASS, meaning="the rod's mass at C", source="B (33)"
-    )
-    sheet.define("m_rotating", at_B + m_crank * r_crank / AB, unit=MASS, source="B (36)",
-                 meaning="rotating mass, as if at the crank pin")  # fmt: skip
-    sheet.define("m_reciprocating", m_slider + at_C, unit=MASS, meaning="reciprocating mass", source="B (34)")
-    sheet.define("I_lumping", m_rod * r_rod * (BC - r_rod) - I_rod, unit=INERTIA,
-                 meaning="moment of inertia by which two point masses at B and C exceed the rod's own")  # fmt: skip
-    sheet.define(
-        "swing", m_crank * r_crank + at_B * AB, unit=MASS_MOMENT, meaning="mass moment that turns with AB"
-    )
-    sheet.define("I_turning", I_crank + m_crank * r_crank**2 + at_B * AB**2, unit=INERTIA,
-                 meaning="moment of inertia about A that turns with AB")  # fmt: skip
-    sheet.define("m_turning", m_crank + at_B, unit=MASS, meaning="mass that turns with AB")
+        meaning = f"derivative of {centre} by {length}"
+        sheet.define(sensitivity(centre, length), 0, unit=NONE, meaning=meaning)
+    _define_share(sheet, "m_crank_at_B", m_crank, r_crank, AB, "the crank's mass as if at B", "B (35)")
+    _define_share(sheet, "m_at_C", m_rod, r_rod, BC, "the rod's mass at C", "B (33)")
+    sheet.define("m_at_B", m_rod * ((BC - r_rod) / BC), unit=MASS, meaning="the rod's mass at B",
+                 source="B (32)")  # fmt: skip
+    sheet.define(sensitivity("m_at_B", "BC"), -symbol(sensitivity("m_at_C", "BC")), unit=MASS.over("BC"),
+                 meaning="derivative of m_at_B by BC")  # fmt: skip
+    rows = (
+        ("m_rotating", m_at_B + symbol("m_crank_at_B"), MASS, "rotating mass, as if at the crank pin", "B (36)"),
+        ("m_reciprocating", m_slider + m_at_C, MASS, "reciprocating mass", "B (34)"),
+        ("I_lumping", m_rod * r_rod * (BC - r_rod) - I_rod, INERTIA,
+         "moment of inertia by which two point masses at B and C exceed the rod's own", ""),
+        ("swing", m_crank * r_crank + m_at_B * AB, MASS_MOMENT, "mass moment that turns with AB", ""),
+        ("I_turning", I_crank + m_crank * r_crank**2 + m_at_B * AB**2, INERTIA,
+         "moment of inertia about A that turns with AB", ""),
+        ("m_turning", m_crank + m_at_B, MASS, "mass that turns with AB", ""),
+    )  # fmt: skip
+    for name, expression, unit, meaning, source in rows:
+        sheet.define(name, expression, unit=unit, meaning=meaning, source=source)
 
 
-m_at_B, m_at_C, m_reciprocating, I_lumping, swing, I_turning, m_turning = map(
-    symbol, ("m_at_B", "m_at_C", "m_reciprocating", "I_lumping", "swing", "I_turning", "m_turning")
-)
+def _define_share(
+    sheet: Sheet, name: str, mass: sp.Symbol, centre: sp.Symbol, length: sp.Symbol, meaning: str, source: str
+) -> None:
+    """mass centre/length, whose derivative by the length is exactly 0 where the centre moves with it."""
+    sheet.define(name, mass * (centre / length), unit=MASS, meaning=meaning, source=source)
+    moved = symbol(sensitivity(centre.name, length.name)) * length - centre
+    by_length = sensitivity(name, length.name)
+    sheet.define(by_length, mass * moved / length**2, unit=MASS.over(length.name),
+                 meaning=f"derivative of {name} by {length}")  # fmt: skip
 
 
 def _define_loads(sheet: Sheet) -> None:
@@ -167,7 +181,8 @@ def _define_joints(sheet: Sheet) -> None:
          "C (link 4)"),
         ("F_B_X", m_at_B * (AB * out_X - g_X) - side_push, "force of the crank on the rod along X",
          "C (link 3)"),
-        ("F_B_Y", m_at_B * (AB * out_Y - g_Y) + thrust, "force of the crank on the rod along Y", "C (link 3)"),
+        ("F_B_Y", m_at_B * (AB * out_Y - g_Y) + thrust, "force of the crank on the rod along Y",
+         "C (link 3)"),
         ("F_A_X", swing * out_X - m_turning * g_X - side_push, "force of the frame on the crank along X",
          "C (link 2)"),
         ("F_A_Y", swing * out_Y - m_turning * g_Y + thrust, "force of the frame on the crank along Y",

@@ -9,8 +9,10 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from desaxe.names import PARAMETERS, parts
+from desaxe.names import LOADS, PARAMETERS, parts
 
+from . import bodies
+from .dynamics import FORCES, LUMPS, mu
 from .loop import AB, BC, branch, ec, slider, solved, theta, u
 from .motion import LAW, alpha, omega, omega0
 
@@ -19,7 +21,7 @@ SPEED = sp.Piecewise((-1, omega0 < 0), (1, True)) * sp.sqrt(LAW)  # omega, turni
 LATEX_NAMES = {
     "phi": r"\varphi", "delta": r"\delta", "omega": r"\omega", "omega_BC": r"\omega_{BC}",
     "alpha_BC": r"\alpha_{BC}", "theta": r"\theta", "ec": "e_c", "omega0": r"\omega_0", "alpha": r"\alpha",
-    "transmission_angle": r"\mu", "pressure_angle": r"|\varphi|", "branch": r"\sigma",
+    "transmission_angle": r"\gamma", "mu": r"\mu", "pressure_angle": r"|\varphi|", "branch": r"\sigma",
 }  # fmt: skip
 
 
@@ -78,6 +80,8 @@ def _parameter(name: str) -> sp.Symbol:
 @cache
 def closed_form(base: str) -> sp.Expr:
     """The textbook form of a quantity, by time derivatives of the solved loop."""
+    if base in FORCES:
+        return _force(base)
     across = solved()[u]
     height = sp.sqrt(BC**2 - across**2)
     position = solved()[slider].subs(S, height)
@@ -109,6 +113,50 @@ def closed_form(base: str) -> sp.Expr:
     return sp.simplify(found) if base in ("V_B", "a_B") else found
 
 
+def _force(base: str) -> sp.Expr:
+    """A force or energy, from the solved free bodies; friction in proportion to the normal force."""
+    if base in LUMPS:
+        return _lump(base)
+    if base == "power_in":
+        return closed_form("T_in") * omega
+    if base == "kinetic_energy":
+        return closed_form("M_eff") * omega**2 / 2
+    pushed = bodies.solution()["N_C"]
+    smooth = pushed.subs(bodies.F_friction, 0)
+    sliding = _sign(closed_form("V_C").diff(omega) * sp.Piecewise((alpha, sp.Eq(omega, 0)), (omega, True)))
+    pressed = _sign(_in_parameters(smooth))
+    wedge = -sp.diff(pushed, bodies.F_friction) * mu * sliding * pressed
+    normal = smooth / (1 - wedge)
+    friction = -mu * sliding * pressed * normal
+    found = {"N_C": normal, "F_friction": friction}.get(base)
+    if found is None:
+        found = bodies.solution()[base].subs(bodies.F_friction, friction)
+    return _in_parameters(found)
+
+
+def _lump(base: str) -> sp.Expr:
+    at_B, at_C = bodies.m_rod * (BC - bodies.r_rod) / BC, bodies.m_rod * bodies.r_rod / BC
+    return {
+        "m_rotating": at_B + bodies.m_crank * bodies.r_crank / AB,
+        "m_reciprocating": bodies.m_slider + at_C,
+        "I_lumping": bodies.m_rod * bodies.r_rod * (BC - bodies.r_rod) - bodies.I_rod,
+    }[base]
+
+
+def _sign(x: sp.Expr) -> sp.Expr:
+    """Its sign, constant but for jumps."""
+    return sp.Piecewise((-1, x < 0), (0, sp.Eq(x, 0)), (1, True))
+
+
+def _in_parameters(expression: sp.Expr) -> sp.Expr:
+    """An expression of the free bodies in the parameters alone."""
+    across = solved()[u]
+    height = sp.sqrt(BC**2 - across**2)
+    values = {u: across, bodies.S: height, bodies.omega2: omega**2}
+    angles = {bodies.sin_theta: sp.sin(theta), bodies.cos_theta: sp.cos(theta)}
+    return expression.subs({**values, **angles})
+
+
 def _rate(expression: sp.Expr, turns: int) -> sp.Expr:
     """A time derivative: d(theta)/dt = omega, d(omega)/dt = alpha."""
     for _ in range(turns):
@@ -135,7 +183,7 @@ def latex_name(name: str) -> str:
     r"""`a_C_wrt_ec` as \frac{\partial a_C}{\partial e_c}."""
     base, by = parts(name)
     top = LATEX_NAMES.get(base) or _subscripted(base)
-    parameters = [LATEX_NAMES.get(p, p) for p in by]
+    parameters = [LATEX_NAMES.get(p) or _subscripted(p) for p in by]
     if not parameters:
         return top
     order = f"^{{{len(parameters)}}}" if len(parameters) > 1 else ""
@@ -149,4 +197,5 @@ def _subscripted(name: str) -> str:
 
 
 def _latex_symbols() -> dict[sp.Symbol, str]:
-    return {_parameter(name): LATEX_NAMES.get(name, name) for name in (*PARAMETERS, "omega", "branch")}
+    names = (*PARAMETERS, *LOADS, "omega", "branch")
+    return {_parameter(name): LATEX_NAMES.get(name) or _subscripted(name) for name in names}

@@ -34,6 +34,10 @@ def second(name: str) -> tuple[str, ...]:
     return tuple(sensitivity(sensitivity(name, p), q) for p, q in pairs)
 
 
+JOINTS = tuple(f"F_{joint}_{axis}" for joint in "ABC" for axis in "XY")
+GUIDE = ("N_C", "F_friction")
+FRAME = ("F_shaking_X", "F_shaking_Y", "M_shaking")
+
 GROUPS = (
     Group(
         "position",
@@ -55,5 +59,10 @@ GROUPS = (
             *(name for quantity in (*ROD_ANGLES, *ROD_RATES) for name in first(quantity)),
             *(name for quantity in ROD_RATES if quantity in SECOND_ORDER for name in second(quantity)),
         ),
+    ),
+    Group(
+        "forces",
+        "torque, forces at the joints, the guide and on the frame, with their status",
+        ("T_in", *JOINTS, *GUIDE, *FRAME, "force_status"),
     ),
 )

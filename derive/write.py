@@ -26,6 +26,7 @@ from desaxe.compiler.passes.trigonometry import Trigonometry, expand_trigonometr
 from desaxe.compiler.program import Program
 from desaxe.compiler.text import write_function
 from desaxe.inputs import LEAST
+from desaxe.names import CENTRES, LOADS
 
 from .build import Derivation
 from .groups import GROUPS, Group
@@ -82,7 +83,7 @@ _STATE = """What a given state (omega, alpha) puts in place of the law's lines o
 A derivative by omega carries the name of omega0's, in whose place omega stands."""
 
 
-_CENTRES = """What centres of mass halfway along their links put in place of inputs and lines of the same names.
+_CENTRES = """What centres of mass halfway along their links put in place of inputs and lines.
 
 A derivative by a length then includes that of the centre."""
 
@@ -141,7 +142,7 @@ def _group(derivation: Derivation, group: Group, digest: str) -> str:
         "    SI units and radians, a mapping name -> array. An infeasible or bad element is NaN,\n"
         f"    and so is one with |theta| > {derivation.trigonometry.limit:.0f} rad.\n    "
     )
-    return emit_numba_with_front(kernel, banner, front)
+    return emit_numba_with_front(kernel, banner, front, {"alpha", *LOADS} - set(CENTRES))
 
 
 # ---- the folder ---------------------------------------------------------------------------------

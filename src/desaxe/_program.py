@@ -30,8 +30,11 @@ def _text(name: str) -> ProgramText:
     return ProgramText((Path(spec.origin).parent / f"{name}.py").read_text(encoding="utf-8"))
 
 
+LAW = Form()  # paper A's law, every centre of mass given
+
+
 @cache
-def program_of(names: tuple[str, ...], form: Form = Form()) -> Program:
+def program_of(names: tuple[str, ...], form: Form = LAW) -> Program:
     """The program of these names (those of the law), in one form."""
     program = _text("program").read(names)
     if form.state:

@@ -3,7 +3,7 @@
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from desaxe._program import program_of
+from desaxe._program import Form, program_of
 from desaxe.compiler.passes.bind import bind_constants, overlay
 from desaxe.compiler.passes.slicing import keep_outputs
 from desaxe.compiler.program import Line, Note, Program, validate
@@ -80,7 +80,7 @@ def test_a_state_that_the_law_gives_means_the_same():
     names = ("omega", "V_C", "a_C", "j_C", "alpha_BC_wrt_ec")
     law = committed(*names)
     omega = exactly(law, POINT)["omega"]
-    state = keep_outputs(validate(program_of(names, state=True)), names)
+    state = keep_outputs(validate(program_of(names, Form(state=True))), names)
     assert "omega0" not in state.inputs
     found, wanted = exactly(state, POINT | {"omega": omega}), exactly(law, POINT)
     assert all(abs(found[name] / wanted[name] - 1) < 1e-45 for name in names)

@@ -13,6 +13,7 @@ import xarray
 
 import desaxe as dx
 from desaxe import _arrays, _cache, _kernels
+from desaxe._program import Form
 from tests.library.ways import POINT, SIZES, close, columns, take_way
 
 # ---- both ways, threads, far angles, a state -----------------------------------------------------
@@ -193,7 +194,7 @@ def test_a_folder_without_permission_is_a_warning(tmp_path, monkeypatch):
 def test_a_kernel_of_another_version_is_not_taken_for_this_one(tmp_path, monkeypatch):
     """A version with other limits: the same request, another kernel."""
     monkeypatch.setattr(_cache, "folder", lambda: _cache.Folder(tmp_path, True))
-    key = _kernels.KernelKey(("V_B_X",), True, (("branch", 1.0),), (("AB", 0),), 1)
+    key = _kernels.KernelKey(("V_B_X",), Form(state=True), (("branch", 1.0),), (("AB", 0),), 1)
     values, out = {"theta": 0.0, "omega": 2.0, "AB": np.array([-0.5])}, np.empty(1)
     _kernels._load(key).run(values, [out])
     assert math.isnan(out[0])

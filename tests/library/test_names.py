@@ -3,7 +3,7 @@
 import pytest
 
 import desaxe as dx
-from desaxe.names import ORDER, PARAMETERS, joined, parts, sensitivity
+from desaxe.names import LOADS, ORDER, PARAMETERS, joined, parts, sensitivity
 
 
 @pytest.mark.parametrize(
@@ -14,6 +14,8 @@ from desaxe.names import ORDER, PARAMETERS, joined, parts, sensitivity
         ("alpha_BC_wrt_BC_alpha", "alpha_BC", ("BC", "alpha")),
         ("V_C_wrt_omega0_omega0", "V_C", ("omega0", "omega0")),
         ("V_C_wrt_omega", "V_C", ("omega",)),
+        ("F_B_X_wrt_F_X", "F_B_X", ("F_X",)),
+        ("T_in_wrt_BC_m_rod", "T_in", ("BC", "m_rod")),
         ("Y_wrt_theta_nothing_known", "Y", ("theta", "nothing_known")),
     ],
 )
@@ -25,7 +27,8 @@ def test_parts(name, base, parameters):
 def test_parameters_stand_in_one_order():
     assert sensitivity("a_C", "BC", "theta") == "a_C_wrt_theta_BC"
     assert sensitivity("a_C_wrt_alpha", "ec") == "a_C_wrt_ec_alpha"
-    assert set(PARAMETERS) == set(ORDER) - {"omega"}
+    assert sensitivity("T_in_wrt_mu", "BC") == "T_in_wrt_BC_mu"
+    assert {*PARAMETERS, *LOADS} == set(ORDER) - {"omega"}
 
 
 def test_the_catalogue_shows_itself_as_a_table():

@@ -8,6 +8,7 @@ module compiles when it is imported, or loads what an earlier process compiled; 
 kept on disk, it compiles in every process.
 """
 
+from collections.abc import Container
 from textwrap import wrap
 
 from .kernel import Kernel, level_program
@@ -31,10 +32,11 @@ def emit_numba(kernel: Kernel, docstring: str) -> str:
     return "\n\n".join([_header(kernel, docstring, []), *_helpers(kernel), _function(kernel)])
 
 
-def emit_numba_with_front(kernel: Kernel, docstring: str, front: str) -> str:
+def emit_numba_with_front(kernel: Kernel, docstring: str, front: str, optional: Container[str] = ()) -> str:
     """The same with a function `evaluate(...)` that broadcasts like NumPy; `front` is its docstring.
 
-    Precondition: one axis, along which every input but `branch` varies.
+    Precondition: one axis, along which every input but `branch` varies. Inputs that are `optional` are
+    0 by default; those after them that are not are keywords.
     """
     numpy_names = ("ascontiguousarray", "broadcast_arrays", "empty", "float64", "int8")
     used = [name for name in numpy_names if name != "int8" or "i64" in kernel.types.values()]
@@ -42,7 +44,7 @@ def emit_numba_with_front(kernel: Kernel, docstring: str, front: str) -> str:
         _header(kernel, docstring, used),
         *_helpers(kernel),
         _function(kernel),
-        _front(kernel, front),
+        _front(kernel, front, optional),
     ]
     return "\n\n".join(parts)
 
@@ -115,10 +117,10 @@ def _level(kernel: Kernel, level: int) -> list[str]:
     return [INDENT * (level + 1) + line for line in write_lines(program, "numba")]
 
 
-def _front(kernel: Kernel, docstring: str) -> str:
+def _front(kernel: Kernel, docstring: str, optional: Container[str]) -> str:
     """`evaluate(...)`: broadcast, allocate, run, give back a mapping."""
     axes = [name for name, axis in kernel.inputs.items() if axis is not None]
-    parameters = [f"{name}=0.0" if name == "alpha" else name for name in axes]
+    parameters = _with_defaults(axes, optional)
     parameters += ["branch=1.0"] if "branch" in kernel.inputs else []
     arguments = [f"flat[{axes.index(name)}]" if name in axes else name for name in kernel.inputs]
     names = ", ".join(f'"{name}"' for name in kernel.outputs)
@@ -134,3 +136,13 @@ def _front(kernel: Kernel, docstring: str) -> str:
     ]
     head = f"OUTPUTS = ({names},)\n\n\ndef evaluate({', '.join(parameters)}):"
     return "\n".join([head, *(INDENT + line for line in body)]) + "\n"
+
+
+def _with_defaults(names: list[str], optional: Container[str]) -> list[str]:
+    """Parameters of a function; a star stands before the first that has no default after one that has."""
+    found: list[str] = []
+    for name in names:
+        if name not in optional and found and found[-1].endswith("=0.0") and "*" not in found:
+            found.append("*")
+        found.append(f"{name}=0.0" if name in optional else name)
+    return found
