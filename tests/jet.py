@@ -98,10 +98,10 @@ def _merge(left: tuple[int, ...], right: tuple[int, ...]) -> tuple[int, ...]:
 
 
 @contextmanager
-def precision(bits: int) -> Iterator[None]:
-    """Arithmetic with so many bits, and power series in time up to the jerk."""
+def precision(bits: int, terms: int = 4) -> Iterator[None]:
+    """Arithmetic with so many bits, and power series in time of so many terms: four go up to the jerk."""
     before = ctx.prec, ctx.cap
-    ctx.prec, ctx.cap = bits, 4
+    ctx.prec, ctx.cap = bits, terms
     try:
         yield
     finally:
@@ -130,3 +130,11 @@ def limit(x: mpmath.mpf) -> mpmath.mpf:
     if x == 0 or not mpmath.isfinite(x) or abs(mpmath.mag(x)) < _REST_MAGNITUDE:
         return x
     return mpmath.mpf(0) if mpmath.mag(x) < 0 else mpmath.sign(x) * mpmath.inf
+
+
+def tendency(x: arb, still: bool = False) -> int | None:
+    """The sign of what a number is, or becomes when the crank stops; None if the enclosure does not tell."""
+    smallest = arb(2) ** -_REST_MAGNITUDE if still else _NOTHING
+    if x.is_finite() and (x == 0 or abs(x) < smallest):
+        return 0
+    return 1 if x > 0 else -1 if x < 0 else None
