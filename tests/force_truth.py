@@ -238,12 +238,10 @@ def _shaking(at: Point, bits: int) -> dict[str, Jet] | None:
         balance = mechanism and _solve(_equations(mechanism, 0), at.still)
         if not mechanism or not balance:
             return None
-        x, y = (p.rate(0) for p in mechanism.C)
-        moment = balance["T_in"] + y * balance["N_C"] - x * balance["F_friction"]
         return {
             "F_shaking_X": (balance["F_A_X"] + balance["N_C"]).times(-1),
-            "F_shaking_Y": (balance["F_A_Y"] + balance["F_friction"]).times(-1),
-            "M_shaking": moment.times(-1),
+            "F_shaking_Y": balance["F_A_Y"].times(-1),
+            "M_shaking": (balance["T_in"] + mechanism.C[1].rate(0) * balance["N_C"]).times(-1),
         }
 
 
@@ -318,8 +316,8 @@ def _point(
 
 
 def _value(jet: Jet | None, by: tuple[int, ...], bits: int, digits: int) -> mpmath.mpf | None:
-    """A partial derivative, if it has so many digits; where there is no value, there is no derivative."""
-    if jet is None or not _leading(jet).is_finite():
+    """A partial derivative, if it has so many digits."""
+    if jet is None:
         return None
     with precision(bits):
         return settled(jet.partial(by), digits)

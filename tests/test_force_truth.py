@@ -368,6 +368,17 @@ def test_law_follows_from_state(name):
     assert all(agree(law[p], state[p]) for p in ("ec", "AB", "BC", *OTHERS))
 
 
+@pytest.mark.parametrize("theta", [2.0, -2.0])
+def test_law_that_starts_from_rest(theta):
+    """After 2 rad at 4 rad/s^2 the speed is 4, whichever way the crank was driven."""
+    law = AT_REST | {"theta": theta, "omega0": 0.0, "alpha": math.copysign(4.0, theta), "mu": 0.25}
+    state = law | {"omega": 4.0}
+    for name in FORCES:
+        assert agree(truth(name, **law), truth(name, **state)), name
+        assert truth(f"{name}_wrt_omega0", **law) == 0
+        assert agree(truth(f"{name}_wrt_BC", **law), truth(f"{name}_wrt_BC", **state))
+
+
 def balances_by_trial(point):
     """The normal forces N at which a slider without friction, loaded with the friction of N, is pushed by N.
 
