@@ -7,7 +7,7 @@ are solved for the forces as they stand, by elimination in Taylor polynomials in
 
     truth("T_in_wrt_m_rod", theta=1.0, ec=0.01, AB=0.125, BC=0.35, omega0=157.0, m_rod=2.0, g_Y=-9.81)
     conditions("T_in", theta=1.0, ec=0.01, AB=0.125, BC=0.35, omega0=157.0, m_rod=2.0)
-    force_balances(theta=1.0, ec=0.3, AB=0.125, BC=0.35, omega=1.0, F_X=1.0, mu=4.0)           # 0, 1 or 2
+    force_balances(theta=0.2, ec=0.3, AB=0.125, BC=0.35, omega=1.0, F_X=1.0, mu=4.0)           # 0, 1 or 2
 
 Here ``truth``, ``truth_all`` and ``conditions`` know the kinematic names too. What is not given is 0, a
 centre of mass (``r_crank``, ``r_rod``) the middle of its link: derivatives by AB and BC then move it; given,
