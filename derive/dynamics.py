@@ -102,7 +102,8 @@ def _define_lumps(sheet: Sheet) -> None:
     sheet.define(sensitivity("m_at_B", "BC"), -symbol(sensitivity("m_at_C", "BC")), unit=MASS.over("BC"),
                  meaning="derivative of m_at_B by BC")  # fmt: skip
     rows = (
-        ("m_rotating", m_at_B + symbol("m_crank_at_B"), MASS, "rotating mass, as if at the crank pin", "B (36)"),
+        ("m_rotating", m_at_B + symbol("m_crank_at_B"), MASS, "rotating mass, as if at the crank pin",
+         "B (36)"),
         ("m_reciprocating", m_slider + m_at_C, MASS, "reciprocating mass", "B (34)"),
         ("I_lumping", m_rod * r_rod * (BC - r_rod) - I_rod, INERTIA,
          "moment of inertia by which two point masses at B and C exceed the rod's own", ""),
