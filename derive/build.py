@@ -18,10 +18,9 @@ from .quantities import FACTS, QUANTITIES, SECOND_ORDER, build_sheet
 from .sheet import Sheet, symbol
 
 INPUTS = (*PARAMETERS, *LOADS, "branch")
-# A constant 0 is NaN where what its quantity needs does not exist: what is needed -> the line that is
-# 0 where it is there, else NaN. Any other derivative that has lost a need of its quantity, likewise.
-GUARDS = {"D": "no_effect_on_rod", "omega2": "no_effect_on_motion"}
-KEEPS = {"D": "no_effect_on_rod", "omega2": "not_stalled"}
+# What a quantity may need -> the line that is 0 where it is there, else NaN. A derivative that has lost
+# a need of its quantity is still NaN where that is not there.
+KEEPS = {"D": "no_effect_on_rod", "omega2": "not_stalled", "N_C": "one_balance"}
 # Computed for the library, but nothing that one asks for by name.
 INTERNAL = ("force_status", *KEEPS.values())
 
@@ -92,24 +91,21 @@ def _keep_needs(sheet: Sheet, name: str, base: str) -> None:
         wanted.add("D")
     lost = [KEEPS[what] for what in KEEPS if what in wanted and what not in own and KEEPS[what] not in own]
     equation = sheet.equations[name]
-    if lost and name not in FACTS and not equation.rigid:
+    if lost and name not in FACTS:
         plain = equation.expression if equation.differentiate is None else equation.differentiate
-        guarded = sp.Add(equation.expression, *map(symbol, lost), evaluate=False)
+        terms = [*([equation.expression] if equation.expression != 0 else []), *map(symbol, lost)]
+        guarded = sp.Add(*terms, evaluate=False) if len(terms) > 1 else terms[0]
         sheet.equations[name] = equation._replace(expression=guarded, differentiate=plain)
 
 
 def _define_constant(sheet: Sheet, name: str, base: str, value: sp.Expr) -> None:
-    """A derivative that is a number: NaN all the same where there is no mechanism or no motion."""
-    needs = set(sheet.ordered((base,)))
-    still = next((symbol(guard) for what, guard in GUARDS.items() if what in needs), sp.Integer(0))
+    """A derivative that is a number."""
     unit = sheet.equations[base].unit
     if unit is None:
         raise ValueError(f"{base} has no unit")
-    what = f"derivative of {base} by {parts(name)[1][-1]}" if value else f"0: {base} does not depend on it"
-    sheet.define(
-        name, sp.Add(value, still, evaluate=False) if value else still,
-        unit=unit.over(*parts(name)[1]), meaning=what, rigid=True,
-    )  # fmt: skip
+    by = parts(name)[1]
+    what = f"derivative of {base} by {', '.join(by)}" if value else f"0: {base} does not depend on it"
+    sheet.define(name, value, unit=unit.over(*by), meaning=what)
 
 
 def _finished(program: Program) -> Program:

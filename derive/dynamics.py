@@ -149,7 +149,8 @@ N_C, F_friction, thrust, side_push, T_in = map(symbol, ("N_C", "F_friction", "th
 
 
 def _sign(x: sp.Expr) -> sp.Expr:
-    return select(lt(0, x), 1, select(lt(x, 0), -1, 0))
+    """Its sign; 0 of 0 and NaN of NaN."""
+    return select(lt(0, x), 1, select(lt(x, 0), -1, x))
 
 
 def _define_friction(sheet: Sheet) -> None:
@@ -166,6 +167,7 @@ def _define_friction(sheet: Sheet) -> None:
                  meaning="force of the guide on the slider along X")  # fmt: skip
     sheet.define("F_friction", -mu * sliding * pressed * N_C, unit=FORCE, source="C (matrix, mu)",
                  meaning="friction of the guide on the slider along Y")  # fmt: skip
+    sheet.define("one_balance", select(alone, 0, nan), rigid=True)
     balance = select(lt(wedge, 1), select(lt(wedge, -1), 6, 0), 5)
     sheet.define("force_status", assembled(balance), unit=NONE, meaning="status where forces are asked for")
 

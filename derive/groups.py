@@ -63,6 +63,6 @@ GROUPS = (
     Group(
         "forces",
         "torque, forces at the joints, the guide and on the frame, with their status",
-        ("T_in", *JOINTS, *GUIDE, *FRAME, "force_status"),
+        ("T_in", *JOINTS, *GUIDE, *FRAME, "status"),
     ),
 )

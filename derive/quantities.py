@@ -247,4 +247,3 @@ def _define_facts(sheet: Sheet) -> None:
     sheet.define("no_effect_on_rod", select(le(0, D), 0, sp.Symbol("nan", real=True)), rigid=True)
     not_stalled = select(le(0, symbol("omega2_law")), 0, sp.Symbol("nan", real=True))
     sheet.define("not_stalled", select(eq(alpha * theta, 0), 0, not_stalled), rigid=True)
-    sheet.define("no_effect_on_motion", select(eq(omega2, omega2), 0, sp.Symbol("nan", real=True)))

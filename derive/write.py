@@ -23,7 +23,7 @@ from desaxe.compiler.passes.number import number_values
 from desaxe.compiler.passes.pipeline import optimise
 from desaxe.compiler.passes.slicing import keep_outputs
 from desaxe.compiler.passes.trigonometry import Trigonometry, expand_trigonometry
-from desaxe.compiler.program import Program
+from desaxe.compiler.program import Program, renamed
 from desaxe.compiler.text import write_function
 from desaxe.inputs import LEAST
 from desaxe.names import CENTRES, LOADS
@@ -130,7 +130,7 @@ def _trigonometry(constants: Trigonometry, digest: str) -> str:
 
 def _group(derivation: Derivation, group: Group, digest: str) -> str:
     program = derivation.program
-    sliced, _ = optimise(keep_outputs(program, group.outputs), dict(group.fixed))
+    sliced, _ = optimise(_cut(program, group.outputs), dict(group.fixed))
     inputs = [name for name in sliced.inputs if name != "branch"]
     guarded = guard_inputs(sliced, inputs, LEAST, {"theta": derivation.trigonometry.limit})
     axis_of = {name: None if name == "branch" else 0 for name in sliced.inputs}
@@ -143,6 +143,16 @@ def _group(derivation: Derivation, group: Group, digest: str) -> str:
         f"    and so is one with |theta| > {derivation.trigonometry.limit:.0f} rad.\n    "
     )
     return emit_numba_with_front(kernel, banner, front, {"alpha", *LOADS} - set(CENTRES))
+
+
+def _cut(program: Program, outputs: tuple[str, ...]) -> Program:
+    """The program of these outputs; where friction plays a part, `status` knows of it."""
+    sliced = keep_outputs(program, outputs)
+    if "mu" not in sliced.inputs or "status" not in outputs:
+        return sliced
+    wide = keep_outputs(program, [name if name != "status" else "force_status" for name in outputs])
+    notes = {**wide.notes, "status": wide.notes["force_status"]}
+    return renamed(wide, {"force_status": "status"})._replace(outputs=outputs, notes=notes)
 
 
 # ---- the folder ---------------------------------------------------------------------------------

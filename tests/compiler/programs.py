@@ -26,6 +26,8 @@ TYPES = {"f": "f64", "b": "bool"}
 NO_JUMPS = tuple(op for op in OPERATIONS if op not in ("copysign", "atan2", "floor"))
 
 POINT = {"theta": 1.1, "ec": 0.02, "AB": 0.125, "BC": 0.35, "omega0": 157.0, "alpha": -3.0, "branch": 1.0}
+LINKS = {"m_crank": 1.5, "m_rod": 0.7, "m_slider": 0.9, "I_crank": 0.02, "I_rod": 0.01, "mu": 0.2}
+LOADS = {"r_crank": 0.03, "r_rod": 0.2, "F_X": 30.0, "F_Y": -50.0, "g_X": 2.0, "g_Y": -9.0}
 
 
 class _Builder:

@@ -6,20 +6,23 @@ import pytest
 
 from desaxe.compiler.interpret import run_in_doubles
 from desaxe.compiler.program import validate
-from desaxe.derive.build import INPUTS, _define_constant, public_names
-from desaxe.derive.quantities import FACTS, QUANTITIES, SECOND_ORDER, build_sheet
+from desaxe.derive import bodies
+from desaxe.derive.build import INPUTS, public_names
+from desaxe.derive.dynamics import FORCES
+from desaxe.derive.quantities import FACTS, KINEMATICS, SECOND_ORDER
 from desaxe.generated.index import NAMES
-from desaxe.names import PARAMETERS
+from desaxe.names import LOADS, PARAMETERS
+from tests.compiler.programs import LINKS, POINT
+from tests.compiler.programs import LOADS as LOADED
 from tests.derive.derived import derivation
+from tests.force_truth import force_names
 from tests.truth import all_names
-
-POINT = {"theta": 1.1, "ec": 0.02, "AB": 0.125, "BC": 0.35, "omega0": 157.0, "alpha": -3.0, "branch": 1.0}
 
 
 def test_how_many_names():
     first, second = len(PARAMETERS), len(PARAMETERS) * (len(PARAMETERS) + 1) // 2
-    assert (len(QUANTITIES), len(SECOND_ORDER), len(FACTS)) == (18, 5, 2)
-    assert len(public_names()) == 18 * (1 + first) + 5 * second + 2
+    assert (len(KINEMATICS), len(FORCES), len(SECOND_ORDER), len(FACTS)) == (18, 19, 5, 2)
+    assert len(public_names()) == 18 * (1 + first) + 19 * (1 + first + len(LOADS)) + 5 * second + 2
 
 
 def test_no_name_comes_twice():
@@ -27,7 +30,7 @@ def test_no_name_comes_twice():
 
 
 def test_they_are_the_names_of_the_truth():
-    assert set(public_names()) == {*all_names(), "status"}
+    assert set(public_names()) == {*all_names(), *force_names(), "status"}
 
 
 def test_they_are_the_names_that_can_be_asked_for():
@@ -37,10 +40,11 @@ def test_they_are_the_names_that_can_be_asked_for():
 def test_the_programs_are_canonical():
     assert validate(derivation().program).inputs == INPUTS
     assert validate(derivation().state).inputs == ("omega",)
+    assert validate(derivation().centres).inputs == ("AB", "BC")
 
 
 def test_every_name_is_computed():
-    found = run_in_doubles(derivation().program, POINT)
+    found = run_in_doubles(derivation().program, POINT | LINKS | LOADED)
     assert not [name for name in public_names() if not math.isfinite(found[name])]
 
 
@@ -52,13 +56,19 @@ def test_every_public_name_says_what_it_is():
 def test_every_quantity_of_the_papers_says_where():
     notes = derivation().program.notes
     own = ("j_C", "transmission_angle", "pressure_angle", "alpha_BC", "omega_BC")
-    assert not [name for name in QUANTITIES if not notes[name].source and name not in own]
+    assert not [name for name in KINEMATICS if not notes[name].source and name not in own]
 
 
 def test_the_state_replaces_lines_of_the_law():
     assert set(derivation().state.outputs) <= {line.name for line in derivation().program.lines}
 
 
-def test_a_derivative_that_is_a_constant_but_not_0_is_refused():
-    with pytest.raises(ValueError, match="Y_wrt_ec is the constant 2"):
-        _define_constant(build_sheet(), "Y_wrt_ec", "Y", 2)
+def test_the_centres_replace_inputs_and_lines_of_the_law():
+    known = {line.name for line in derivation().program.lines} | set(INPUTS)
+    assert set(derivation().centres.outputs) <= known
+
+
+def test_what_the_free_bodies_do_not_give_is_refused():
+    with pytest.raises(ArithmeticError, match="T_in is not what the free bodies give"):
+        bodies.prove("T_in", bodies.solution()["T_in"] + bodies.m_rod * bodies.r_rod**2 * bodies.alpha)
+    bodies.prove("T_in", bodies.solution()["T_in"])

@@ -8,20 +8,40 @@ import pytest
 
 from desaxe._program import _text
 from desaxe.compiler.interpret import run_in_doubles
-from desaxe.derive.units import ANGLE, JERK, NONE, PARAMETER_UNITS, Unit, unit_text
+from desaxe.derive.units import (
+    ANGLE,
+    ENERGY,
+    FORCE,
+    JERK,
+    NONE,
+    PARAMETER_UNITS,
+    POWER,
+    TORQUE,
+    Unit,
+    unit_text,
+)
 
 POINT = {"theta": 1.1, "ec": 0.02, "AB": 0.125, "BC": 0.35, "omega0": 157.0, "alpha": -3.0, "branch": 1.0}
+POINT |= {"m_crank": 1.5, "m_rod": 0.7, "m_slider": 0.9, "I_crank": 0.02, "I_rod": 0.01, "mu": 0.2}
+POINT |= {"r_crank": 0.03, "r_rod": 0.2, "F_X": 30.0, "F_Y": -50.0, "g_X": 2.0, "g_Y": -9.0}
+# The power of a base unit in each input.
 SCALED = {
-    "m": {"ec": 1, "AB": 1, "BC": 1},
-    "s": {"omega0": -1, "alpha": -2},
+    "m": {"ec": 1, "AB": 1, "BC": 1, "r_crank": 1, "r_rod": 1, "I_crank": 2, "I_rod": 2}
+    | {"F_X": 1, "F_Y": 1, "g_X": 1, "g_Y": 1},
+    "s": {"omega0": -1, "alpha": -2, "F_X": -2, "F_Y": -2, "g_X": -2, "g_Y": -2},
+    "kg": {"m_crank": 1, "m_rod": 1, "m_slider": 1, "I_crank": 1, "I_rod": 1, "F_X": 1, "F_Y": 1},
 }
+NAMED = {"J": "N*m", "W": "N*m/s"}
 
 
 def powers(unit):
-    """`m/s^2/rad` as {"m": 1, "s": -2, "rad": -1}."""
-    found = {"m": 0, "s": 0, "rad": 0}
-    for sign, name, power in re.findall(r"([*/]|^)(m|s|rad)(?:\^(\d+))?(?=[*/]|$)", unit):
-        found[name] += (-1 if sign == "/" else 1) * int(power or 1)
+    """`m/s^2/rad` as {"m": 1, "s": -2, "rad": -1}; N is kg m/s^2."""
+    found = {"m": 0, "s": 0, "rad": 0, "kg": 0}
+    bases = {name: {name: 1} for name in found} | {"N": {"kg": 1, "m": 1, "s": -2}}
+    terms = re.findall(r"([*/]|^)(m|s|rad|kg|N)(?:\^(\d+))?(?=[*/]|$)", NAMED.get(unit, unit))
+    for sign, name, power in terms:
+        for base, exponent in bases[name].items():
+            found[base] += (-1 if sign == "/" else 1) * int(power or 1) * exponent
     return found
 
 
@@ -41,7 +61,7 @@ def number(value):
     return float(value) if isinstance(value, (bool, int)) else value
 
 
-@pytest.mark.parametrize("unit", ["m", "s"])
+@pytest.mark.parametrize("unit", SCALED)
 def test_every_named_line_scales_as_its_unit_says(unit):
     before, after = values(), values(unit)
     notes = program("program").notes
@@ -61,9 +81,9 @@ def test_every_named_line_has_a_value_to_scale():
 
 
 def test_every_unit_can_be_read():
-    for name in ("program", "state"):
+    for name in ("program", "state", "centres"):
         for note in program(name).notes.values():
-            assert unit_text(Unit(**powers(note.unit))) == note.unit
+            assert unit_text(Unit(**powers(note.unit))) == NAMED.get(note.unit, note.unit)
 
 
 def test_the_state_has_the_units_of_the_law():
@@ -79,6 +99,13 @@ def test_the_state_has_the_units_of_the_law():
         (JERK, "m/s^3"),
         (Unit(-1, -2, -1), "1/m/s^2/rad"),
         (Unit(1, 2, 0), "m*s^2"),
+        (TORQUE, "N*m"),
+        (TORQUE.over("theta"), "N*m/rad"),
+        (TORQUE.over("m_rod"), "m^2/s^2"),
+        (TORQUE.over("alpha"), "kg*m^2/rad"),
+        (FORCE.over("BC"), "N/m"),
+        (ENERGY, "J"),
+        (POWER.over("ec"), "N/s"),
     ],
 )
 def test_the_text_of_a_unit(unit, text):

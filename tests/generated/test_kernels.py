@@ -13,6 +13,7 @@ from desaxe.generated.program import law
 import desaxe as dx
 from desaxe._kernels import constants
 from desaxe._program import _text
+from tests.compiler.programs import LINKS, LOADS
 
 NAMES = [group.name for group in GROUPS]
 OUTPUTS = {group.name: group.outputs for group in GROUPS}
@@ -37,6 +38,11 @@ def points(count, seed=7):
         "BC": BC,
         "omega0": rng.choice([-1, 1], count) * rng.uniform(50, 200, count),
         "alpha": rng.uniform(-50, 50, count),
+        **{name: rng.uniform(0.1, 2.0, count) for name in ("m_crank", "m_rod", "m_slider")},
+        **{name: rng.uniform(0.001, 0.1, count) for name in ("I_crank", "I_rod")},
+        **{name: rng.uniform(-50, 50, count) for name in ("F_X", "F_Y", "g_X", "g_Y")},
+        **{"r_crank": BC * rng.uniform(-0.2, 0.5, count), "r_rod": BC * rng.uniform(0, 1, count)},
+        "mu": rng.uniform(0, 0.3, count),
     }
     columns["ec"][::7] = 2 * BC[::7]
     return columns
@@ -111,15 +117,17 @@ def test_the_status_of_a_bad_element_is_4(name):
 def test_an_angle_beyond_the_written_out_sine_is_nan(group):
     limit = constants().limit
     theta = np.array([limit, math.nextafter(limit, math.inf), -2 * limit])
-    found = evaluate(group, theta=theta, ec=0.0, AB=0.125, BC=0.35, omega0=10.0, alpha=0.0)
+    centres = {"r_crank": 0.06, "r_rod": 0.2}
+    found = evaluate(group, theta=theta, ec=0.0, AB=0.125, BC=0.35, omega0=10.0, alpha=0.0, **centres)
     first = OUTPUTS[group][0]
     assert np.isnan(found[first]).tolist() == [False, True, True]
 
 
 @pytest.mark.parametrize("group", NAMES)
 def test_numbers_and_integers_are_taken(group):
-    found = evaluate(group, theta=1, ec=0, AB=1, BC=3, omega0=2, alpha=0)
-    wanted = evaluate(group, theta=1.0, ec=0.0, AB=1.0, BC=3.0, omega0=2.0, alpha=0.0)
+    point = {"theta": 1, "ec": 0, "AB": 1, "BC": 3, "omega0": 2, "alpha": 0, "m_rod": 5, "r_crank": 0, "r_rod": 2}
+    found = evaluate(group, **point)
+    wanted = evaluate(group, **{name: float(value) for name, value in point.items()})
     assert all(found[name].shape == () and found[name] == wanted[name] for name in OUTPUTS[group])
 
 
@@ -136,5 +144,7 @@ def test_the_text_itself_runs_as_python(branch):
     names = _text("program").outputs()
     public = [quantity.name for quantity in dx.quantities()]
     for point in feasible_points(25):
-        found = dict(zip(names, law(**point, branch=float(branch)), strict=True))
-        assert {name: found[name] for name in public} == dx.evaluate(public, **point, branch=branch)
+        found = dict(zip(names, law(**point, **LINKS, **LOADS, branch=float(branch)), strict=True))
+        found["status"] = found["force_status"]
+        wanted = dx.evaluate(public, **point, **LINKS, **LOADS, branch=branch)
+        assert {name: found[name] for name in public} == wanted

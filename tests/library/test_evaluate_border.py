@@ -124,7 +124,7 @@ REFUSED = [
         "V_C",
         {"theta": None},
         TypeError,
-        r"V_C: theta is missing \(needed: theta, ec, AB, BC, omega0\)",
+        r"V_C: theta is missing \(needed: theta, ec, AB, BC, omega0(, alpha)?\)",
     ),
     ("V_C", {"omega0": None}, TypeError, "omega0 is missing"),
     ("V_C", {"AB": -0.1}, ValueError, re.escape("AB = -0.1: it must be a finite length >= 0")),
