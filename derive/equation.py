@@ -15,6 +15,7 @@ from . import bodies
 from .dynamics import FORCES, LUMPS, mu
 from .loop import AB, BC, branch, ec, slider, solved, theta, u
 from .motion import LAW, alpha, omega, omega0
+from .stable import cos_theta, sin_theta
 
 S = sp.Symbol("S", real=True)
 SPEED = sp.Piecewise((-1, omega0 < 0), (1, True)) * sp.sqrt(LAW)  # omega, turning the way omega0 points
@@ -153,7 +154,7 @@ def _in_parameters(expression: sp.Expr) -> sp.Expr:
     across = solved()[u]
     height = sp.sqrt(BC**2 - across**2)
     values = {u: across, bodies.S: height, bodies.omega2: omega**2}
-    angles = {bodies.sin_theta: sp.sin(theta), bodies.cos_theta: sp.cos(theta)}
+    angles = {sin_theta: sp.sin(theta), cos_theta: sp.cos(theta)}
     return expression.subs({**values, **angles})
 
 

@@ -19,10 +19,11 @@ class Unit(NamedTuple):
 
     def over(self, *parameters: str) -> "Unit":
         """The unit of a derivative by these parameters."""
-        unit = self
+        powers = self[:4]
         for parameter in parameters:
-            unit = Unit(*(a - b for a, b in zip(unit[:4], PARAMETER_UNITS[parameter][:4], strict=True)))
-        return unit
+            m, s, rad, kg = (a - b for a, b in zip(powers, PARAMETER_UNITS[parameter][:4], strict=True))
+            powers = m, s, rad, kg
+        return Unit(*powers) if parameters else self
 
 
 NONE = Unit()
