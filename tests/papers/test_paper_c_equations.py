@@ -1,0 +1,205 @@
+"""Paper C: the equations of its links, its matrix, and what it says of them."""
+
+import itertools
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+import desaxe as dx
+from tests.papers import newton_euler_c as ne
+from tests.papers import paper_c as C
+from tests.papers.newton_euler_c import State
+from tests.papers.states_c import STATES, WEIGHTLESS, at_rest, force_scale, report, symbols
+
+TINY = mpf(10) ** -35
+SOLVED = [symbols(state) for state in WEIGHTLESS]
+LINKS = {
+    "link2_x": (C.link2_x, ("F12x", "F32x", "aG2x")),
+    "link2_y": (C.link2_y, ("F12y", "F32y", "aG2y")),
+    "link2_moment": (C.link2_moment, ("T12", "F12x", "F12y", "F32x", "F32y", "R12x", "R12y", "alpha2")),
+    "link3_x": (C.link3_x, ("F43x", "F32x", "aG3x")),
+    "link3_y": (C.link3_y, ("F43y", "F32y", "aG3y")),
+    "link3_moment": (
+        C.link3_moment,
+        ("F43x", "F43y", "F32x", "F32y", "R43x", "R43y", "R23x", "R23y", "alpha3"),
+    ),
+    "link4_x": (C.link4_x, ("F43x", "FPx", "aG4x")),
+    "link4_y": (C.link4_y, ("F14y", "F43y", "FPy")),
+}
+
+
+@pytest.fixture(autouse=True)
+def many_digits():
+    with mp.workdps(2 * ne.DIGITS):
+        yield
+
+
+@pytest.mark.parametrize("link", LINKS)
+def test_link_equation(link):
+    equation, needed = LINKS[link]
+    for v in SOLVED:
+        scale = force_scale(v) + abs(v["T12"])
+        assert abs(equation(v)) < TINY * scale
+        for name in needed:  # the equation sees each of its symbols: none may be reversed
+            assert abs(equation(v | {name: -v[name]})) > mpf(10) ** -6 * abs(v[name]) > 0
+
+
+def test_link4_friction_term():
+    for state in WEIGHTLESS:
+        for friction in (mpf("0.2"), mpf("-0.2")):
+            v = symbols(state, friction)
+            assert abs(C.link4_x(v)) < TINY * force_scale(v)
+            assert abs(C.link4_x(v | {"F14x": -v["F14x"]})) > mpf("0.1") * abs(v["F14y"])
+
+
+def test_link4_moment():
+    """Any arms: the printed terms are the moments of F14, of -F43 and of FP."""
+    for v in SOLVED:
+        arms = {
+            "R14x": mpf(1),
+            "R14y": mpf(2),
+            "R34x": mpf(3),
+            "R34y": mpf(-1),
+            "RPx": mpf(-2),
+            "RPy": mpf(5),
+        }
+        total = mpf(0)
+        for joint, force, sign in (("R14", "F14", 1), ("R34", "F43", -1), ("RP", "FP", 1)):
+            arm = arms[joint + "x"], arms[joint + "y"]
+            total += sign * ne.moment(arm, (v[force + "x"], v[force + "y"]))
+        assert abs(C.link4_moment(v | arms) - total) < TINY * force_scale(v)
+        assert total != 0
+
+
+def test_link4_does_not_turn():
+    for state in STATES:
+        along, across = ne.by_theta(ne.slider, state)[1:], ne.acceleration(ne.slider, state)[1]
+        assert along[0][1] == along[1][1] == across == 0
+        assert ne.acceleration(ne.slider, state)[0] != 0
+
+
+def test_link4_third_equation():
+    """0 = 0 where all forces meet in the slider's centre; elsewhere it places the guide's force."""
+    for v in SOLVED:
+        assert C.link4_moment(v) == 0
+        offset = v | {"R34x": mpf("0.01"), "R34y": mpf("0.02")}
+        needed = (mpf("0.01") * v["F43y"] - mpf("0.02") * v["F43x"]) / v["F14y"]
+        assert abs(C.link4_moment(offset)) > 0
+        assert abs(C.link4_moment(offset | {"R14x": needed})) < TINY * force_scale(v)
+
+
+ROWS = [f"row{number}" for number in range(1, 9)]
+
+
+@pytest.mark.parametrize("row", ROWS)
+def test_matrix_row(row):
+    number = ROWS.index(row)
+    for state, v in list(zip(WEIGHTLESS, SOLVED, strict=True))[:8]:
+        for friction in (mpf("0.3"), mpf("-0.3")):
+            mine = ne.matrix(state, friction)
+            for column, printed in enumerate(C.printed_matrix(v, friction)[number]):
+                assert abs(printed - mine[number, column]) < TINY
+
+
+def test_right_hand_side():
+    for state, v in zip(WEIGHTLESS, SOLVED, strict=True):
+        mine, printed = ne.right_hand_side(state), C.printed_right_hand_side(v)
+        assert all(abs(p - q) < TINY * (1 + abs(q)) for p, q in zip(printed, mine, strict=True))
+        assert all(q != 0 for q in mine)
+
+
+def test_order_of_the_unknowns():
+    for v in SOLVED:
+        A, b = C.printed_matrix(v), C.printed_right_hand_side(v)
+        x = [v[name] for name in C.UNKNOWNS]
+
+        def residual(x, A=A, b=b):
+            return max(abs(mp.fdot(row, x) - right) for row, right in zip(A, b, strict=True))
+
+        scale = force_scale(v) + abs(v["T12"])
+        assert residual(x) < TINY * scale
+        for i, j in itertools.combinations(range(8), 2):
+            swapped = list(x)
+            swapped[i], swapped[j] = x[j], x[i]
+            assert residual(swapped) > mpf(10) ** -6 * abs(x[i] - x[j])
+
+
+def test_friction_needs_a_sign():
+    """One sign of +-mu opposes sliding, the other drives it; which, depends on the motion and on F14y."""
+    right = set()
+    for state in STATES:
+        forces = [ne.solve(state, sign * mpf("0.1")) for sign in (1, -1)]
+        powers = [found["F14x"] * ne.sliding(state) for found in forces]
+        assert powers[0] * powers[1] < 0
+        right.add((1 if powers[0] < 0 else -1, ne.sliding(state)))
+        kept = ne.balances(state._replace(mu=0.1))
+        assert [found["F14x"] * ne.sliding(state) < 0 for found in kept] == [True]
+    assert right == set(itertools.product((1, -1), (1, -1)))
+
+
+def test_no_vertical_force_no_friction():
+    """The case of the listing: FPy = 0 and mu = 0 leave no F14x and a guide force equal to F43y."""
+    for state in WEIGHTLESS:
+        v = symbols(state._replace(F_X=0.0))
+        assert v["F14x"] == v["FPy"] == 0
+        assert abs(v["F14y"] - v["F43y"]) < TINY * force_scale(v)
+    listing = C.run_listing()
+    assert listing["A"][6].tolist() == [0, 0, 0, 0, -1, 0, 0, 0]
+    assert listing["B"][7] == 0
+
+
+def test_balance_of_forces_is_not_zero():
+    """Sum F = 0 and sum M = 0 hold at rest only; the equations that follow, and the listing, have m a."""
+    held = symbols(at_rest(report()))
+    assert held["F12x"] + held["F32x"] == held["F43y"] - held["F32y"] == 0
+    listing = C.run_listing()
+    assert listing["B"][[1, 3, 4]] == pytest.approx([4.0984, 1.6508, 8.3689], abs=5e-5)
+    for v in SOLVED:
+        assert abs(v["F12x"] + v["F32x"]) > 0
+        assert abs(v["F12x"] + v["F32x"] - v["m2"] * v["aG2x"]) < TINY * force_scale(v)
+
+
+def test_inverse_solves_the_system():
+    """With right arms the matrix has an inverse wherever the rod is not across the slider axis."""
+    for state, v in zip(WEIGHTLESS, SOLVED, strict=True):
+        with mp.workdps(ne.DIGITS):
+            x = mp.inverse(mp.matrix(C.printed_matrix(v))) * mp.matrix(C.printed_right_hand_side(v))
+        scale = force_scale(v) + abs(v["T12"])
+        assert all(abs(x[n] - v[name]) < mpf(10) ** -30 * scale for n, name in enumerate(C.UNKNOWNS))
+        reach = abs(v["R43x"] - v["R23x"])  # the determinant, by expansion: the rod's reach along the axis
+        assert abs(abs(mp.det(ne.matrix(state))) - reach) < mpf(10) ** -30
+
+
+def test_inverse_of_the_listing_does_not_exist():
+    A = C.run_listing()["A"]
+    assert np.linalg.matrix_rank(A) == 7
+    exact = mp.matrix(A.tolist())
+    assert mp.det(exact) == 0
+    assert np.linalg.matrix_rank(C.run_listing(C.corrected_listing())["A"]) == 8
+
+
+def test_anticlockwise_is_positive():
+    """A positive torque alone starts the crank towards growing theta, anticlockwise in these axes."""
+    for state in STATES:
+        free = State(*at_rest(state))._replace(F_X=0.0, F_Y=0.0, g_X=0.0, g_Y=0.0, alpha=1.0)
+        torque = ne.solve(free)["T12"]
+        assert torque > 0
+        assert abs(torque - ne.effective_inertia(free)) < TINY * torque
+        pin, turned, _ = ne.by_theta(ne.pin, free)
+        assert ne.moment(pin, turned) > 0
+
+
+def test_accelerations_are_those_of_the_package():
+    """The free bodies' kinematics against the package's, through the mapping of the frames."""
+    names = ["Y", "a_C", "a_B_X", "a_B_Y", "alpha_BC"]
+    for state in STATES:
+        motion = {
+            name: getattr(state, name) for name in ("theta", "ec", "AB", "BC", "omega", "alpha", "branch")
+        }
+        got = dx.evaluate(names, **motion)
+        pin, block = ne.acceleration(ne.pin, state), ne.acceleration(ne.slider, state)
+        assert got["Y"] == pytest.approx(float(ne.slider(state, mpf(state.theta))[0]), rel=1e-11)
+        assert (got["a_B_Y"], got["a_B_X"]) == pytest.approx(tuple(map(float, pin)), rel=1e-11)
+        assert got["a_C"] == pytest.approx(float(block[0]), rel=1e-9)
+        assert -state.branch * got["alpha_BC"] == pytest.approx(float(ne.rod_acceleration(state)), rel=1e-9)
