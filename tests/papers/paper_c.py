@@ -270,6 +270,15 @@ def printed_sinusoid(t: Any, cos: Any) -> Any:
     return 350 * (1 - cos(30 * t))
 
 
+TORQUES = {"3.1.1": 250, "3.2.2": 500}  # N mm, constant
+
+SENTENCES = (  # of Sec. 1, Sec. 3 and Sec. 3 again
+    "A force of 50N was applied on point A in the global negative-X direction.",
+    "a torque of 250 N mm was applied on the crank AB to get the required percentage increment in the"
+    " velocity.",
+    "Velocity and acceleration plots of output A are plotted for both 250 and 500 N mm",
+)
+
 CONTENTS = {
     "1": "Static Force Analysis",
     "2": "Validation of Static Force Analysis",

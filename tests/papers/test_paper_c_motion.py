@@ -1,0 +1,112 @@
+"""Paper C's driven motions: end states to more than 20 digits, and what proves them.
+
+`end_by_quadrature(mechanism(kind), torque, "2.25", guess)` made those of constant torque, by energy and a
+quadrature of time; `drive(mechanism(kind), sinusoid, 2, 600)` those of the sinusoid, by Gauss collocation
+with 16 stages. 400 steps give the same to 23 digits or more.
+"""
+
+import pytest
+from mpmath import mp, mpf
+
+from tests.papers import motion_c as motion
+from tests.papers.newton_euler_c import State
+from tests.papers.paper_c import printed_sinusoid
+
+DIGITS = 40
+END_STATES = {  # theta in rad and omega in rad/s at t_end, from rest at theta = 0; torques in N mm
+    ("listed", "250"): ("16.25207478536987175390701624", "17.67162285424095678715265256"),
+    ("listed", "500"): ("32.02273553512032978149988532", "22.26084254801895974447372602"),
+    ("listed", "sinusoid"): ("18.00544745927572635317085209", "15.16825515367741590441145599"),
+    ("thin", "250"): ("14.46575323228637666634562134", "12.68574930596173662060065634"),
+    ("thin", "500"): ("29.63993471224841312795403437", "21.19167149419049162713268120"),
+    ("thin", "sinusoid"): ("16.45321826589247317996342477", "17.91980975023314671752558665"),
+    ("bars", "250"): ("14.20807320229523459063545661", "10.23569204768671933304246190"),
+    ("bars", "500"): ("29.09474976932627961392285181", "26.86907494159027327206568430"),
+    ("bars", "sinusoid"): ("16.08627058006324953273720262", "21.70057600135986985274410919"),
+}
+CONSTANT = [key for key in END_STATES if key[1] != "sinusoid"]
+
+
+@pytest.fixture(autouse=True)
+def many_digits():
+    with mp.workdps(DIGITS):
+        yield
+
+
+def moments_of_inertia(kind):
+    """I_crank and I_rod about z, kg m2: as listed, of thin rods, of the steel bars with the listed masses."""
+    if kind == "thin":
+        return mpf("0.7637") * mpf("0.14") ** 2 / 12, mpf("1.559464") * mpf("0.31") ** 2 / 12
+    listed, bars = ("80.6e-6", "166.8085e-6"), ("1758.8819486842615e-6", "14559.334820459452e-6")
+    return tuple(map(mpf, {"listed": listed, "bars": bars}[kind]))
+
+
+def mechanism(kind):
+    """The report's links at theta = 0, at rest and free of forces: decimals as printed."""
+    lengths = {"ec": mpf("0.06"), "AB": mpf("0.14"), "BC": mpf("0.31")}
+    masses = {"m_crank": mpf("0.7637"), "m_rod": mpf("1.559464"), "m_slider": mpf("1.95025")}
+    turning = dict(zip(("I_crank", "I_rod"), moments_of_inertia(kind), strict=True))
+    centres = {"r_crank": mpf("0.07"), "r_rod": mpf("0.155")}
+    return State(theta=mpf(0), omega=mpf(0), alpha=mpf(0), **lengths, **masses, **turning, **centres)
+
+
+def t_end(torque):
+    """The report's simulation time, s."""
+    return mpf(2) if torque == "sinusoid" else mpf("2.25")
+
+
+def sinusoid(t):
+    """The printed torque in N m, 30t in radians."""
+    return printed_sinusoid(t, mp.cos) / 1000
+
+
+def pair(key):
+    """A stored end state."""
+    return tuple(map(mpf, END_STATES[key]))
+
+
+@pytest.mark.parametrize("key", CONSTANT, ids="-".join)
+def test_end_state_balances_energy(key):
+    """Work of the torque = kinetic energy, to the last digit stored."""
+    (theta, omega), torque = pair(key), mpf(key[1]) / 1000
+    stored = motion.inertia(mechanism(key[0]), theta)[0] * omega**2 / 2
+    assert abs(stored - torque * theta) < mpf(10) ** -24 * stored
+
+
+def test_end_state_comes_at_its_time():
+    """The quadrature of time up to the stored angle, by other pieces than those that made it."""
+    theta, omega = pair(("bars", "250"))
+    late = motion.time_to(mechanism("bars"), mpf("0.25"), theta, pieces_per_radian=3) - mpf("2.25")
+    assert abs(late * omega) < mpf(10) ** -24
+
+
+@pytest.mark.parametrize("key", [("listed", "250"), ("bars", "sinusoid")], ids="-".join)
+def test_stretch_leads_to_the_end_state(key):
+    """Backwards from the end by collocation and forwards again by other steps: the state returns."""
+    state, end, span = mechanism(key[0]), t_end(key[1]), mpf("0.02")
+    torque = sinusoid if key[1] == "sinusoid" else lambda t: mpf(key[1]) / 1000
+    before = motion.step(state, torque, end, -span / 4, pair(key), 30, 16)
+    start = end - span / 4
+    again = motion.step(state, torque, start, span / 8, before, 30, 16)
+    again = motion.step(state, torque, start + span / 8, span / 8, again, 30, 16)
+    assert max(abs(a - b) for a, b in zip(again, pair(key), strict=True)) < mpf(10) ** -22
+
+
+def test_two_methods_agree_from_the_start():
+    """Collocation from rest and the quadrature of time meet, at 0.2 s."""
+    state, torque = mechanism("listed"), mpf("0.25")
+    theta, omega = motion.drive(state, lambda t: torque, mpf("0.2"), 6)
+    assert abs(motion.time_to(state, torque, theta) - mpf("0.2")) < mpf(10) ** -24
+    assert abs(motion.speed_at(state, torque, theta) - omega) < mpf(10) ** -23
+    assert theta == pytest.approx(0.28318304953937277)
+
+
+def test_work_of_the_sinusoid():
+    """One step under the printed sinusoid: the integral of T omega dt is the kinetic energy gained."""
+    state, span, at = mechanism("bars"), mpf("0.05"), (mpf(0), mpf(0))
+    gauss = motion.rule(16, 30)
+    speeds = [motion.step(state, sinusoid, mpf(0), span * node, at, 30, 16)[1] for node in gauss.nodes]
+    powers = [sinusoid(span * node) * speed for node, speed in zip(gauss.nodes, speeds, strict=True)]
+    theta, omega = motion.step(state, sinusoid, mpf(0), span, at, 30, 16)
+    stored = motion.inertia(state, theta)[0] * omega**2 / 2
+    assert abs(span * mp.fdot(gauss.weights, powers) - stored) < mpf(10) ** -20 * stored
