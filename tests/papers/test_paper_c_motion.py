@@ -110,3 +110,18 @@ def test_work_of_the_sinusoid():
     theta, omega = motion.step(state, sinusoid, mpf(0), span, at, 30, 16)
     stored = motion.inertia(state, theta)[0] * omega**2 / 2
     assert abs(span * mp.fdot(gauss.weights, powers) - stored) < mpf(10) ** -20 * stored
+
+
+def test_inertias_decide_the_end_states():
+    """Three digits in the ledger; which moments of inertia the simulation had changes the first or second."""
+    listed = [float(value) for torque in ("250", "500") for value in pair(("listed", torque))]
+    bars = [float(value) for torque in ("250", "500") for value in pair(("bars", torque))]
+    assert [round(value, 3) for value in listed] == [16.252, 17.672, 32.023, 22.261]
+    assert [round(value, 3) for value in bars] == [14.208, 10.236, 29.095, 26.869]
+    assert all(abs(a - b) > 0.08 * a for a, b in zip(listed, bars, strict=True))
+
+
+def test_sinusoid_ends_within_a_period():
+    ends = [round(float(value), 3) for kind in ("listed", "bars") for value in pair((kind, "sinusoid"))]
+    assert ends == [18.005, 15.168, 16.086, 21.701]
+    assert 9 < t_end("sinusoid") * 30 / (2 * mp.pi) < 10
