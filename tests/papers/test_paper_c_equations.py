@@ -161,7 +161,7 @@ def test_balance_of_forces_is_not_zero():
 
 
 def test_frame_does_not_move():
-    """A, taken as the centre of mass of a crank, has no acceleration in any motion; nor has the slider axis."""
+    """A crank with its centre of mass at A has no acceleration in any motion; nor has the slider's axis."""
     for state in STATES:
         assert ne.acceleration(ne.crank_centre, state._replace(r_crank=0.0)) == (0, 0)
         assert ne.acceleration(ne.slider, state)[1] == 0
