@@ -1,0 +1,368 @@
+"""Paper B: its kinematic equations, 1 to 30."""
+
+import pytest
+from mpmath import mp, mpf
+
+import desaxe as dx
+from tests.papers import loop
+from tests.papers import paper_b as B
+from tests.papers.designs import agrees, close, exact_point, float_point, package, scale_of
+from tests.papers.designs_b import STEADY, by_theta, case, exact_case, off, other_rate, same_rate
+
+# --- the crank ------------------------------------------------------------------------------------
+
+
+def test_eq1():
+    for motion in STEADY:
+        with mp.workdps(loop.DIGITS):
+            start = motion._replace(theta=0.0)
+            t = mpf(motion.theta) / mpf(motion.omega0)
+            assert close(B.printed_eq1(mpf(motion.omega0), t), loop.crank_angle(start, t), 0, 30)
+            assert close(B.printed_eq1(mpf(motion.omega0), t), mpf(motion.theta), 0, 30)
+
+
+def test_eq2a():
+    for motion in STEADY:
+        turning = loop.rate(lambda t, at=motion: loop.crank_angle(at, t), 1)
+        assert close(B.printed_eq2a(mpf(motion.omega0)), turning, 0, 30)
+        assert B.printed_eq2a(motion.omega0) == package("omega", motion)
+
+
+def pin_speed(q, p):
+    """Speed of the crank pin, m/s."""
+    return p.m.sqrt(q("V_B_X") ** 2 + q("V_B_Y") ** 2)
+
+
+def test_eq2b():
+    agrees(lambda p: B.printed_eq2b(p.omega, p.AB), pin_speed, "velocity", STEADY)
+    agrees(lambda p: B.corrected_eq2b_middle(p.AB, p.omega), pin_speed, "velocity", STEADY)
+    for motion in STEADY:
+        p = float_point(motion)
+        speed = package("V_B", motion)
+        assert B.printed_eq2b(p.omega, p.AB) == pytest.approx(speed, rel=1e-12)
+        assert abs(B.printed_eq2b_middle(p.omega, p.omega) - speed) > 1e-3 * speed
+        doubled = package("V_B", motion._replace(AB=2 * motion.AB, BC=2 * motion.BC, ec=2 * motion.ec))
+        assert doubled == pytest.approx(2 * speed, rel=1e-12)
+
+
+def test_eq3():
+    agrees(
+        lambda p: B.printed_eq3(p.omega, p.AB),
+        lambda q, p: p.m.sqrt(q("a_B_X") ** 2 + q("a_B_Y") ** 2),
+        "acceleration",
+        STEADY,
+    )
+
+
+# --- position -------------------------------------------------------------------------------------
+
+
+def test_eq4():
+    agrees(lambda p: B.printed_eq4(case(p), B.printed_eq22(case(p))), lambda q, p: q("Y"), "length", STEADY)
+
+
+def test_eq5a():
+    for motion in STEADY:
+        with mp.workdps(loop.DIGITS):
+            assert close(B.printed_eq5a(exact_case(motion)), loop.pin(motion)[0], motion.AB, 30)
+
+
+def test_eq5b():
+    for motion in STEADY:
+        with mp.workdps(loop.DIGITS):
+            h = B.printed_eq5b(exact_case(motion), loop.rod_angle(motion))
+            assert close(h, loop.pin(motion)[0], motion.AB, 30)
+        h = B.printed_eq5b(case(float_point(motion)), package("phi", motion))
+        assert close(h, loop.pin(motion)[0], scale_of("length", motion), 12)
+
+
+def test_eq6():
+    agrees(lambda p: B.printed_eq6(case(p)), lambda q, p: p.m.sin(q("phi")), "angle", STEADY)
+
+
+def test_eq7():
+    agrees(lambda p: B.printed_eq7(case(p)), lambda q, p: p.m.cos(q("phi")), "angle", STEADY)
+
+
+def test_eq8():
+    agrees(lambda p: B.printed_eq8(case(p)), lambda q, p: q("Y"), "length", STEADY)
+
+
+def paper_s(q, p):
+    """The paper's s from the slider's place, m."""
+    return B.printed_eq9(case(p), q("Y"))
+
+
+def test_eq9():
+    """The package measures s from the outer dead centre, the paper from k + c: they differ by a constant."""
+
+    def from_dead_centre(p):
+        return p.AB + p.BC - p.m.sqrt((p.AB + p.BC) ** 2 - p.ec**2)
+
+    for motion in STEADY:
+        p = float_point(motion)
+        difference = paper_s(lambda name, at=motion: package(name, at), p) - package("s", motion)
+        assert difference == pytest.approx(from_dead_centre(p), rel=0, abs=1e-12 * scale_of("length", motion))
+        with mp.workdps(loop.DIGITS):
+            p = exact_point(motion)
+            outer = motion._replace(theta=B.dead_centres(p.ec, p.AB, p.BC, mp)[0])
+            least = paper_s(lambda name, at=outer: loop.truth(name, at), p)
+            assert close(least, from_dead_centre(p), p.AB, 30)
+            assert least > 0
+
+
+def test_eq10():
+    agrees(lambda p: B.corrected_eq10(case(p)), paper_s, "length", STEADY)
+    off(lambda p: B.printed_eq10(case(p)), paper_s)
+    same_rate(B.printed_eq12, B.corrected_eq10, "length")
+    other_rate(B.printed_eq12, B.printed_eq10)
+
+
+# --- velocity and acceleration of the slider ------------------------------------------------------
+
+
+def chained(name, rate, sign, kind):
+    """df/dtheta dtheta/dt is df/dt: from the loop to 30 digits and from the package."""
+    for motion in STEADY:
+        scale = scale_of(kind, motion)
+        with mp.workdps(loop.DIGITS):
+            got = B.chain(sign * loop.partial(name, "theta", motion), loop.omega(motion))
+            assert close(got, sign * loop.truth(rate, motion), scale, 30)
+        got = B.chain(sign * package(f"{name}_wrt_theta", motion), package("omega", motion))
+        assert close(got, sign * loop.truth(rate, motion), scale, 12)
+
+
+def test_eq11():
+    chained("Y", "V_C", -1, "velocity")
+
+
+def test_eq12():
+    same_rate(B.printed_eq12, B.corrected_eq10, "length")
+    agrees(
+        lambda p: B.printed_eq12(case(p)), lambda q, p: -q("V_C") / p.omega, "length", STEADY
+    )  # the chain rule backwards
+
+
+def test_eq13():
+    agrees(lambda p: B.printed_eq13(case(p)), lambda q, p: -q("V_C"), "velocity", STEADY)
+
+
+def test_eq14():
+    chained("V_C", "a_C", -1, "acceleration")
+
+
+def test_eq15():
+    agrees(lambda p: sum(B.printed_eq15(case(p))), lambda q, p: -q("V_C"), "velocity", STEADY)
+    agrees(lambda p: B.printed_eq15(case(p))[0], lambda q, p: -q("V_B_Y"), "velocity", STEADY)
+
+
+def test_eq16():
+    agrees(lambda p: B.printed_eq16(*B.printed_eq15(case(p))), lambda q, p: -q("V_C"), "velocity", STEADY)
+    for motion in STEADY:
+        with mp.workdps(loop.DIGITS):
+            q = exact_case(motion)
+            rates = [by_theta(lambda r, n=n: B.printed_eq15(r)[n], q) for n in (0, 1)]
+            want = -loop.truth("a_C", motion) / q.omega
+            assert close(B.printed_eq16(*rates), want, scale_of("velocity", motion), 30)
+
+
+def test_eq17():
+    same_rate(B.corrected_eq17, lambda q: B.printed_eq15(q)[0], "velocity")
+    other_rate(B.printed_eq17, lambda q: B.printed_eq15(q)[0])
+    agrees(lambda p: B.printed_eq17(case(p)), lambda q, p: q("a_B_Y") / p.omega, "velocity", STEADY)
+
+
+def test_eq18():
+    same_rate(B.corrected_eq18, lambda q: B.printed_eq15(q)[1], "velocity")
+    other_rate(B.printed_eq18, lambda q: B.printed_eq15(q)[1])
+    other_rate(lambda q: B.eq18(q, 1, 3, 5), lambda q: B.printed_eq15(q)[1])  # signs alone do not mend it
+    other_rate(lambda q: B.eq18(q, -1, 1, 3), lambda q: B.printed_eq15(q)[1])  # nor exponents alone
+
+
+def in_other_units(q, per_metre):
+    """The case with its lengths in another unit."""
+    return q._replace(e=q.e * per_metre, k=q.k * per_metre, c=q.c * per_metre)
+
+
+def test_dimensions_of_eq18_and_eq20():
+    """An acceleration in mm/s2 is 1000 times that in m/s2: not so as printed."""
+    for motion in STEADY:
+        q = case(float_point(motion))
+        for printed, corrected in (
+            (B.printed_eq18, B.corrected_eq18),
+            (B.printed_eq20, B.corrected_eq20),
+        ):
+            assert corrected(in_other_units(q, 1000)) == pytest.approx(1000 * corrected(q), rel=1e-9)
+            assert printed(in_other_units(q, 1000)) != pytest.approx(1000 * printed(q), rel=1e-3)
+
+
+def test_eq19():
+    agrees(
+        lambda p: B.printed_eq19(case(p), B.corrected_eq17(case(p)), B.corrected_eq18(case(p))),
+        lambda q, p: -q("a_C"),
+        "acceleration",
+        STEADY,
+    )
+
+
+def test_eq20():
+    agrees(lambda p: B.corrected_eq20(case(p)), lambda q, p: -q("a_C"), "acceleration", STEADY)
+    off(lambda p: B.printed_eq20(case(p)), lambda q, p: -q("a_C"))
+    off(lambda p: B.printed_eq20(case(p)), lambda q, p: q("a_C"))  # nor is it d2x/dt2
+    agrees(lambda p: -sum(B.a_s_terms(case(p), 1, 3)), lambda q, p: q("a_C"), "acceleration", STEADY)
+    for motion in STEADY:
+        q = case(float_point(motion))
+        assembled = B.printed_eq19(q, B.printed_eq17(q), B.printed_eq18(q))
+        third = q.omega**2 * q.k**2 * q.cos**2 * q.side**2 / q.root(5)
+        assert assembled == pytest.approx(B.printed_eq20(q), rel=1e-9, abs=1e-9 * third)
+
+
+# --- the rod --------------------------------------------------------------------------------------
+
+
+def test_eq21():
+    agrees(
+        lambda p: B.printed_eq21(case(p))[0] + B.printed_eq21(case(p))[1] * p.m.sin(p.theta),
+        lambda q, p: p.m.sin(q("phi")),
+        "angle",
+        STEADY,
+    )
+
+
+def test_eq22():
+    agrees(lambda p: B.printed_eq22(case(p)), lambda q, p: q("phi"), "angle", STEADY)
+
+
+def test_eq23():
+    chained("phi", "omega_BC", 1, "rate")
+
+
+def test_eq24():
+    agrees(
+        lambda p: B.printed_eq24(case(p)),
+        lambda q, p: p.m.cos(q("phi")) * q("omega_BC") / p.omega,
+        "angle",
+        STEADY,
+    )
+
+
+def test_eq25():
+    agrees(
+        lambda p: B.printed_eq25(case(p), B.printed_eq22(case(p))),
+        lambda q, p: q("omega_BC") / p.omega,
+        "angle",
+        STEADY,
+    )
+
+
+def test_eq26():
+    agrees(
+        lambda p: B.printed_eq26(case(p), B.printed_eq22(case(p))), lambda q, p: q("omega_BC"), "rate", STEADY
+    )
+
+
+def test_eq27():
+    agrees(lambda p: B.printed_eq27(case(p)), lambda q, p: q("omega_BC"), "rate", STEADY)
+
+
+def test_eq28():
+    chained("omega_BC", "alpha_BC", 1, "rate2")
+
+
+def test_eq29():
+    same_rate(B.corrected_eq29, B.printed_eq27, "rate")
+    other_rate(B.printed_eq29, B.printed_eq27)
+
+
+def test_eq30():
+    agrees(lambda p: B.corrected_eq30(case(p)), lambda q, p: q("alpha_BC"), "rate2", STEADY)
+    off(lambda p: B.printed_eq30(case(p)), lambda q, p: q("alpha_BC"))
+
+
+# --- what the text of Sec. 2 says -----------------------------------------------------------------
+
+
+def test_text_crank_has_no_offset():
+    for motion in STEADY:
+        other = motion._replace(ec=-motion.ec / 3)
+        for name in ("V_B_X", "V_B_Y", "a_B_X", "a_B_Y"):
+            assert package(name, other) == package(name, motion)
+            assert loop.truth(name, other) == loop.truth(name, motion)
+        for name in ("Y", "V_C", "a_C", "phi", "omega_BC", "alpha_BC"):
+            assert loop.truth(name, other) != pytest.approx(float(loop.truth(name, motion)), rel=1e-6)
+
+
+def test_text_x_is_not_the_distance():
+    for motion in STEADY:
+        with mp.workdps(loop.DIGITS):
+            distance = mp.hypot(*loop.slider(motion))
+            q = exact_case(motion)
+            assert close(mp.sqrt(B.printed_eq8(q) ** 2 + q.e**2), distance, 0, 30)
+            assert distance - B.printed_eq8(q) > mpf("1e-7") * distance
+
+
+def test_text_alpha_is_not_from_eq4():
+    """Eq. 4 gives cos(alpha) only, the same for either side of the axis; Eq. 6 tells the side."""
+    for motion in STEADY:
+        q = exact_case(motion)
+        with mp.workdps(loop.DIGITS):
+            alpha = B.printed_eq22(q)
+            assert B.printed_eq4(q, alpha) == B.printed_eq4(q, -alpha)
+            assert abs(mp.sin(alpha) - mp.sin(-alpha)) > mpf("1e-3") * abs(mp.sin(alpha))
+            assert close(mp.sin(alpha), B.printed_eq6(q), 1, 30)
+
+
+def test_text_eq27_follows_from_eq7():
+    """Eq. 26 with the cosine of Eq. 7 is Eq. 27; with the sine of Eq. 5b it is not."""
+    for motion in STEADY:
+        q = exact_case(motion)
+        with mp.workdps(loop.DIGITS):
+            top = q.omega * B.printed_eq24(q)
+            assert close(top / B.printed_eq7(q), B.printed_eq27(q), abs(q.omega), 30)
+            by_5b = top / ((B.printed_eq5a(q) + q.e) / q.c)
+            assert abs(by_5b - B.printed_eq27(q)) > mpf("1e-3") * abs(B.printed_eq27(q))
+
+
+def test_text_rod_velocity_is_a_turning():
+    """v_c and a_c keep their value when all lengths are scaled: rad/s and rad/s2, not m/s and m/s2."""
+    for motion in STEADY:
+        large = motion._replace(AB=10 * motion.AB, BC=10 * motion.BC, ec=10 * motion.ec)
+        for name in ("omega_BC", "alpha_BC"):
+            assert package(name, large) == pytest.approx(package(name, motion), rel=1e-9)
+            assert close(loop.truth(name, large), loop.truth(name, motion), 0, 12)
+        assert B.printed_eq27(case(float_point(large))) == pytest.approx(
+            package("omega_BC", motion), rel=1e-9
+        )
+
+
+def test_text_differentiating_eq9_not_the_stroke():
+    """The stroke is one number for a design; what is differentiated is the position s."""
+    for motion in STEADY:
+        q = exact_case(motion)
+        with mp.workdps(loop.DIGITS):
+            assert by_theta(lambda r: B.corrected_eq49(r.e, r.k, r.c, mp), q) == 0
+            assert close(by_theta(B.corrected_eq10, q), B.printed_eq12(q), q.k, 30)
+            assert abs(B.printed_eq12(q)) > mpf("1e-6") * q.k
+
+
+def test_same_x_as_paper_a():
+    """Eqs. 6 to 8 with the offset in them stand in paper A, received in 2012."""
+    from tests.papers import paper_a as A
+
+    for motion in STEADY:
+        with mp.workdps(loop.DIGITS):
+            p = exact_point(motion)
+            assert close(A.printed_eq7(*p.design, mp), B.printed_eq8(case(p)), p.AB, 30)
+            assert close(A.printed_eq6(*p.design, mp), B.printed_eq22(case(p)), 1, 30)
+
+
+def test_no_mechanism_where_the_root_is_imaginary():
+    """Eq. 7's bracket is negative exactly where the package reports that nothing can be assembled."""
+    seen = set()
+    for motion in STEADY:
+        for ec in (motion.ec, motion.BC, -motion.BC, 2 * motion.BC):
+            q = case(float_point(motion._replace(ec=ec)))
+            impossible = dx.evaluate(("Y", "status"), **motion._replace(ec=ec)._asdict())["status"] == 1
+            assert impossible == (q.square < 0)
+            seen.add(bool(impossible))
+    assert seen == {True, False}
