@@ -15,6 +15,24 @@ TABLE_1 = {"omega": 251.0, "k": 0.040, "c": 0.064, "M_k": 0.2, "M_c": 0.5, "M_s"
 OFFSETS = (0.0, 0.010, 0.020)  # m: the offsets of Figs. 15 and 16; Table 1 has the last
 TABLE_2 = {"omega": 20.994, "k": 0.0381, "c": 0.1524, "M_2": 7.0, "M_3": 1.543}
 
+# Extremes of the drive's torque T_in over a turn for Table 1 at 251 rad/s, by offset (m): angle of the
+# greatest (rad), greatest (N m), angle of the least, least. "two masses": the paper's model with all centres
+# of mass in the middle, m_3 = 0.8 + 0.5/2 kg and m_2 = (0.2 + 0.5)/2 kg; "uniform rod": the rod as it is,
+# I = m c^2/12 about its middle. Found as roots of the numerical derivative of the power of `free_bodies`,
+# in 30 digits.
+EXTREMES = {
+    ("two masses", 0.000): (0.582227033979491, 105.085984315876149, 5.7009582732001, -105.085984315876149),
+    ("two masses", 0.010): (0.549388353915099, 130.389782867258802, 1.52879119437994, -133.749406467785917),
+    ("two masses", 0.020): (0.58538581445154, 185.297356630532596, 1.48226578804059, -316.061112782418534),
+    ("uniform rod", 0.000): (0.588467817329228, 108.124729415759808, 5.69471748985036, -108.124729415759808),
+    ("uniform rod", 0.010): (0.556437626960137, 132.618770007908116, 1.5432889528245, -133.001863176798823),
+    ("uniform rod", 0.020): (0.591308611495623, 185.9212484006624, 1.48906041686415, -310.573243798830402),
+}
+TABLE_1_BODIES = {
+    "two masses": Bodies(m_crank=0.35, r_crank=TABLE_1["k"], m_slider=1.05),
+    "uniform rod": Bodies(m_crank=0.2, m_rod=0.5, m_slider=0.8, I_rod=0.5 * TABLE_1["c"] ** 2 / 12),
+}
+
 STEADY = [motion._replace(alpha=0.0) for motion in DESIGNS]  # the paper's crank turns at constant speed
 
 
@@ -121,30 +139,24 @@ def unbalanced(formula, expected):
             assert abs(formula(q, m_2, m_3) - want) > 1e-6 * abs(want)
 
 
-def around(function, steps=1440):
-    """Where a function is greatest and least over a turn, and the values: (angle, value) twice."""
-    angles = [2 * math.pi * n / steps for n in range(steps)]
-    values = [function(angle) for angle in angles]
-    greatest, least = (angles[values.index(pick(values))] for pick in (max, min))
-    width = 2 * math.pi / steps
-    return refined(function, greatest, width, 1), refined(function, least, width, -1)
-
-
-def refined(function, angle, width, sign):
-    """The extremum next to an angle by golden section, in doubles: value to rounding, angle to its root."""
-    golden = (math.sqrt(5) - 1) / 2
-    a, b = angle - width, angle + width
-    while b - a > 1e-9:
-        c, d = b - golden * (b - a), a + golden * (b - a)
-        if sign * function(c) > sign * function(d):
-            b = d
-        else:
-            a = c
-    middle = (a + b) / 2
-    return middle, function(middle)
+def sweep(steps=3600):
+    """Crank angles of a whole turn, rad."""
+    return [2 * math.pi * n / steps for n in range(steps)]
 
 
 def in_stroke(e, k, c, theta):
     """+1 where the slider moves outwards at this crank angle, -1 where inwards; the crank turns forwards."""
     outer, inner = B.dead_centres(e, k, c)
     return -1 if (theta - outer) % (2 * math.pi) < inner - outer else 1
+
+
+def peaks_by_stroke(function, e, k, c):
+    """Greatest size of a function of theta in the inward (return) and in the outward (advance) stroke."""
+    angles = sweep()
+    sizes = [(in_stroke(e, k, c, angle), abs(function(angle))) for angle in angles]
+    return tuple(max(size for stroke, size in sizes if stroke == sign) for sign in (-1, 1))
+
+
+def excess(motion, masses, inertia):
+    """By how much two point masses at the pins exceed the rod's moment of inertia about its centre, kg m2."""
+    return mpf(masses.m_c) * mpf(masses.c_2) * (mpf(motion.BC) - mpf(masses.c_2)) - inertia

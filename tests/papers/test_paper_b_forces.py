@@ -9,16 +9,19 @@ from tests.papers import free_bodies, loop
 from tests.papers import paper_b as B
 from tests.papers.designs import close, float_point
 from tests.papers.designs_b import (
+    EXTREMES,
     LOADED,
     OFFSETS,
     STEADY,
     TABLE_1,
+    TABLE_1_BODIES,
     TABLE_2,
     balanced,
     case,
     equivalent,
     exact_case,
     exact_masses,
+    excess,
     force_scale,
     lumped,
     off,
@@ -128,11 +131,6 @@ def rest_of_mass(q, masses):
     """What of crank and rod is not at the pin, kg: at the crank centre and at the slider."""
     w = exact_masses(masses)
     return w.m_k * (1 - w.k_1 / q.k) + B.printed_eq33(q, w)
-
-
-def excess(motion, masses, inertia):
-    """By how much two point masses at the pins exceed the rod's moment of inertia about its centre, kg m2."""
-    return mpf(masses.m_c) * mpf(masses.c_2) * (mpf(motion.BC) - mpf(masses.c_2)) - inertia
 
 
 def test_lumped_rod_turns_too_heavily():
@@ -469,23 +467,6 @@ def test_existing_model_has_the_dead_centres_right():
 
 
 # --- reference numbers ----------------------------------------------------------------------------
-
-# Extremes of the drive's torque T_in over a turn for Table 1 at 251 rad/s, by offset (m): angle of the
-# greatest (rad), greatest (N m), angle of the least, least. "two masses": the paper's model, m_3 = 0.8 + 0.5/2 kg and
-# m_2 = 0.1 + 0.5/2 kg; "uniform rod": the rod as it is, I = m c^2/12 about its middle. Found as roots of the
-# numerical derivative of the power of `free_bodies`, in 30 digits.
-EXTREMES = {
-    ("two masses", 0.000): (0.582227033979491, 105.085984315876149, 5.7009582732001, -105.085984315876149),
-    ("two masses", 0.010): (0.549388353915099, 130.389782867258802, 1.52879119437994, -133.749406467785917),
-    ("two masses", 0.020): (0.58538581445154, 185.297356630532596, 1.48226578804059, -316.061112782418534),
-    ("uniform rod", 0.000): (0.588467817329228, 108.124729415759808, 5.69471748985036, -108.124729415759808),
-    ("uniform rod", 0.010): (0.556437626960137, 132.618770007908116, 1.5432889528245, -133.001863176798823),
-    ("uniform rod", 0.020): (0.591308611495623, 185.9212484006624, 1.48906041686415, -310.573243798830402),
-}
-TABLE_1_BODIES = {
-    "two masses": Bodies(m_crank=0.35, r_crank=TABLE_1["k"], m_slider=1.05),
-    "uniform rod": Bodies(m_crank=0.2, m_rod=0.5, m_slider=0.8, I_rod=0.5 * TABLE_1["c"] ** 2 / 12),
-}
 
 
 @pytest.mark.parametrize("rod", ["two masses", "uniform rod"])
