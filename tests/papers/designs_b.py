@@ -150,9 +150,9 @@ def in_stroke(e, k, c, theta):
     return -1 if (theta - outer) % (2 * math.pi) < inner - outer else 1
 
 
-def peaks_by_stroke(function, e, k, c):
+def peaks_by_stroke(function, e, k, c, steps=3600):
     """Greatest size of a function of theta in the inward (return) and in the outward (advance) stroke."""
-    angles = sweep()
+    angles = sweep(steps)
     sizes = [(in_stroke(e, k, c, angle), abs(function(angle))) for angle in angles]
     return tuple(max(size for stroke, size in sizes if stroke == sign) for sign in (-1, 1))
 

@@ -1,5 +1,6 @@
 """Paper B: equivalent masses, forces and torques, Eqs. 31 to 48, and the existing model, Eqs. 52 and 53."""
 
+import itertools
 import math
 
 import pytest
@@ -141,7 +142,10 @@ def test_lumped_rod_turns_too_heavily():
             two = B.printed_eq32(q, w) * w.c_2**2 + B.printed_eq33(q, w) * (q.c - w.c_2) ** 2
             inertia = w.m_c * q.c**2 / 17
             assert close(two - inertia, excess(motion, masses, inertia), two, 30)
-            about_C = inertia + w.m_c * (q.c - w.c_2) ** 2
+            about_B, about_C = (inertia + w.m_c * d**2 for d in (w.c_2, q.c - w.c_2))
+            assert close(
+                B.printed_eq33(q, w) * q.c**2 - about_B, excess(motion, masses, inertia), about_B, 30
+            )
             assert close(
                 B.printed_eq32(q, w) * q.c**2 - about_C, excess(motion, masses, inertia), about_C, 30
             )
@@ -391,9 +395,9 @@ def test_eq48_is_virtual_work():
 # --- the existing model ---------------------------------------------------------------------------
 
 
-def with_long_rod(function, ratio):
-    """A function of a case for a crank of 1 and a rod of 1/ratio without an offset, at 0.9 rad."""
-    return function(B.Case(mpf("0.9"), mpf(0), mpf(1), 1 / mpf(ratio), mpf(1), mp))
+def with_long_rod(function, ratio, theta="0.9"):
+    """A function of a case for a crank of 1 and a rod of 1/ratio without an offset."""
+    return function(B.Case(mpf(theta), mpf(0), mpf(1), 1 / mpf(ratio), mpf(1), mp))
 
 
 def test_eq52():
@@ -415,13 +419,14 @@ def test_eq52():
 def test_eq53():
     """To first order in k/c this is the inertia torque: the drive's torque reversed."""
     with mp.workdps(loop.DIGITS):
-        for ratio in ("1e-5", "1e-7"):
-            exact = -with_long_rod(lambda q: B.drive_torque(q, 1), ratio)
-            printed = with_long_rod(lambda q: B.printed_eq53(q, 1), ratio)
+        for ratio, theta in itertools.product(("1e-5", "1e-7"), ("0.9", "2.0", "4.0")):
+            exact = -with_long_rod(lambda q: B.drive_torque(q, 1), ratio, theta)
+            printed = with_long_rod(lambda q: B.printed_eq53(q, 1), ratio, theta)
             assert abs(printed - exact) < 2 * mpf(ratio) ** 2
-            assert abs(printed + mp.sin(mpf("1.8")) / 2) > mpf(ratio) / 10  # the terms with k/c do count
-            half = with_long_rod(lambda q: B.printed_eq53(q, 1) + q.k * q.sin / (4 * q.c), ratio)
-            assert abs(half - exact) > mpf(ratio) / 10  # nor would another coefficient of sin(theta) do
+            without = mp.sin(2 * mpf(theta)) / 2
+            assert abs(printed + without) > mpf(ratio) / 10  # the terms with k/c do count
+            doubled = printed + mpf(ratio) * mp.sin(mpf(theta)) / 4
+            assert abs(doubled - exact) > mpf(ratio) / 10  # nor would another coefficient of sin(theta) do
 
 
 def worst(approximate, exact):

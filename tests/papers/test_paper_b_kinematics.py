@@ -116,6 +116,7 @@ def test_eq10():
     off(lambda p: B.printed_eq10(case(p)), paper_s)
     same_rate(B.printed_eq12, B.corrected_eq10, "length")
     other_rate(B.printed_eq12, B.printed_eq10)
+    assert all(B.printed_eq10(case(float_point(motion))) > motion.BC for motion in STEADY)
 
 
 # --- velocity and acceleration of the slider ------------------------------------------------------

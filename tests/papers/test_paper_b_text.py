@@ -1,5 +1,6 @@
 """Paper B: its tables, the numbers in its text, and what it claims."""
 
+import itertools
 import math
 
 import pytest
@@ -252,12 +253,21 @@ def test_return_is_faster():
         assert peak == pytest.approx(size, rel=1e-5)
 
 
+def outer_or_inner(sign):
+    """The dead centre from which a stroke of Table 1 starts: the inward one (-1) from the outer."""
+    return B.dead_centres(E, K, C)[0 if sign == -1 else 1]
+
+
 def test_acceleration_changes_sign_within_each_stroke():
     """Every stroke starts with an acceleration along it and ends with one against it."""
     for sign, share in ((-1, 0.546), (1, 0.286)):
         stroke = [angle for angle in sweep() if in_stroke(E, K, C, angle) == sign]
         along = [math.copysign(1, B.corrected_eq20(case_1(angle))) for angle in stroke]
         assert along.count(1) / len(along) == pytest.approx(share, abs=1e-3)
+        first = min(range(len(stroke)), key=lambda n: (stroke[n] - outer_or_inner(sign)) % TURN)
+        ordered = along[first:] + along[:first]
+        assert ordered[0] == -sign == -ordered[-1]
+        assert sum(x != y for x, y in itertools.pairwise(ordered)) == 1
     back, away = peaks_by_stroke(lambda angle: B.corrected_eq20(case_1(angle)), E, K, C)
     assert (round(back), round(away)) == (6816, 4173)
 
@@ -308,6 +318,15 @@ def test_pin_and_centre_are_two_places():
             q, m_2, m_3 = equivalent(motion, masses)
             total = B.printed_eq46a(q, m_2, m_3, B.corrected_eq20(q))
             assert close(mp.hypot(*total), shaking, shaking, 30)
+
+
+def test_captions_of_figs_11_and_12():
+    """Eq. 38 is a cosine and Eq. 39 a sine: of two reactions at most one can be the horizontal one."""
+    along = harmonics(lambda angle: B.printed_eq38(case_1(angle), M_2))
+    across = harmonics(lambda angle: B.printed_eq39(case_1(angle), M_2))
+    size = M_2 * SPEED**2 * K
+    assert along[0] == pytest.approx((-size, 0), abs=1e-9 * size)
+    assert across[0] == pytest.approx((0, -size), abs=1e-9 * size)
 
 
 def shaking_force(theta, e):
@@ -418,6 +437,35 @@ def test_torque_claims():
     assert fits["printed_torque_corrected_acceleration"] == [True, True, False, False, False, False]
     assert fits["right"] == [False, False, False, False, False, False]
     assert fits["right_without_rod"] == [True, True, False, False, True, False]
+
+
+def test_torque_search():
+    """Of all signs in Eq. 20, masses with or without the rod, both torques and two rods one is near."""
+    forms = {"printed": B.printed_eq48, "corrected": B.corrected_eq48}
+    near = set()
+    for c in (C, 3.2 * K):
+        for masses in ((M_2, M_3), (TABLE_1["M_k"], TABLE_1["M_s"])):
+            for signs in itertools.product((1, -1), repeat=3):
+                for name, form in forms.items():
+                    if all_near(c, masses, signs, form):
+                        near.add((c, masses, signs, name))
+    assert near == {(C, (0.2, 0.8), (-1, 1, 1), "corrected")}
+
+
+def all_near(c, masses, signs, form):
+    """Whether the peaks of both strokes are within a tenth of all claims."""
+
+    def torque(q):
+        a_s = sum(sign * term for sign, term in zip(signs, B.a_s_terms(q, 1, 3), strict=True))
+        return form(q, B.printed_eq46b(q, *masses, a_s))
+
+    return all(
+        within(peak, claim)
+        for e, claims in zip(OFFSETS, CLAIMED, strict=True)
+        for peak, claim in zip(
+            peaks_by_stroke(lambda angle, e=e: torque(case_1(angle, e, c)), e, K, c, 720), claims, strict=True
+        )
+    )
 
 
 def test_torque_e0():
