@@ -1,0 +1,63 @@
+"""docs/ERRATA.md: generated from the ledgers, fresh, and complete."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from desaxe import _errata
+from desaxe._errata import VERDICTS, entries, markdown
+
+PAGE = Path(__file__).resolve().parents[2] / "docs/ERRATA.md"
+
+
+def test_page_is_fresh():
+    fresh = PAGE.read_text("utf-8") == markdown() + "\n"
+    assert fresh, "docs/ERRATA.md is stale: run `desaxe errata --markdown > docs/ERRATA.md`"
+
+
+@pytest.mark.parametrize("entry", entries(), ids=lambda entry: entry.id)
+def test_entry_is_on_the_page(entry):
+    """In the list or in the table; a bar in a table is escaped."""
+    page = markdown()
+    printed = entry.printed if entry.verdict != "correct" else entry.printed.replace("|", "\\|")
+    assert f"`{printed}`" in page
+    mark = f"**{entry.id}** (" if entry.verdict != "correct" else f"| {entry.id} |"
+    assert page.count(mark) == 1
+    if entry.verdict != "correct":
+        block = page[page.index(mark) :].split("\n\n**")[0]
+        assert f"): **{entry.verdict}**\n" in block
+        assert all(f"- {word}: " in block for word in ("printed", "instead", "because"))
+
+
+def test_no_backtick_breaks_a_code_span():
+    assert not [entry.id for entry in entries() if "`" in entry.printed + entry.corrected]
+
+
+def test_counts():
+    page = markdown()
+    for letter, ledger in _errata._ledgers().items():
+        counts = [sum(entry.verdict == verdict for entry in ledger) for verdict in VERDICTS]
+        line = " | ".join(map(str, [*counts, len(ledger)]))
+        assert f"| [{letter}](#paper-{letter.lower()}) | {line} |" in page
+        assert f"\n## Paper {letter}\n" in page
+
+
+def test_tables_have_as_many_cells_as_heads():
+    for line in markdown().splitlines():
+        if line.startswith("|"):
+            cells = len(re.findall(r"(?<!\\)\|", line)) - 1
+            assert cells == (len(VERDICTS) + 2 if line.count("|") == len(VERDICTS) + 3 else 4)
+
+
+def test_every_ledger_names_its_paper():
+    for letter, sheet in _errata._sheets().items():
+        assert sheet.get("title", "").isascii(), letter
+        assert sheet.get("title"), f"ledger {letter} begins with title = '...' and notes = [...]"
+        assert sheet.get("notes"), f"ledger {letter} begins with title = '...' and notes = [...]"
+        assert all(note.isascii() for note in sheet["notes"])
+        assert set(sheet) == {"title", "notes", "entry"}
+
+
+def test_plain_text_is_escaped():
+    assert _errata._plain("a*b_c <d> [e] _f_") == r"a\*b_c \<d\> \[e\] \_f\_"
