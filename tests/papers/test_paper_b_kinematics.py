@@ -41,6 +41,7 @@ def test_eq2b():
         speed = package("V_B", motion)
         assert B.printed_eq2b(p.omega, p.AB) == pytest.approx(speed, rel=1e-12)
         assert abs(B.printed_eq2b_middle(p.omega, p.omega) - speed) > 1e-3 * speed
+        assert B.printed_eq2b_middle(p.omega, p.omega) == pytest.approx(speed * p.omega / p.AB, rel=1e-12)
         doubled = package("V_B", motion._replace(AB=2 * motion.AB, BC=2 * motion.BC, ec=2 * motion.ec))
         assert doubled == pytest.approx(2 * speed, rel=1e-12)
 
@@ -116,6 +117,12 @@ def test_eq10():
     off(lambda p: B.printed_eq10(case(p)), paper_s)
     same_rate(B.printed_eq12, B.corrected_eq10, "length")
     other_rate(B.printed_eq12, B.printed_eq10)
+    agrees(
+        lambda p: B.printed_eq10(case(p)) - 2 * (p.BC * p.m.cos(B.printed_eq22(case(p)))),
+        paper_s,
+        "length",
+        STEADY,
+    )
     assert all(B.printed_eq10(case(float_point(motion))) > motion.BC for motion in STEADY)
 
 
@@ -176,6 +183,7 @@ def test_eq17():
 def test_eq18():
     same_rate(B.corrected_eq18, lambda q: B.printed_eq15(q)[1], "velocity")
     other_rate(B.printed_eq18, lambda q: B.printed_eq15(q)[1])
+    same_rate(lambda q: -q.square * B.printed_eq18(q), lambda q: B.printed_eq15(q)[1], "velocity")
     other_rate(lambda q: B.eq18(q, 1, 3, 5), lambda q: B.printed_eq15(q)[1])  # signs alone do not mend it
     other_rate(lambda q: B.eq18(q, -1, 1, 3), lambda q: B.printed_eq15(q)[1])  # nor exponents alone
 
@@ -207,6 +215,12 @@ def test_eq19():
 
 
 def test_eq20():
+    def mended(p):
+        """The printed form with its last two terms multiplied by the bracket, all reversed."""
+        q = case(p)
+        return -(B.printed_eq20(q) + q.omega**2 * q.k * q.cos) * q.square + q.omega**2 * q.k * q.cos
+
+    agrees(mended, lambda q, p: -q("a_C"), "acceleration", STEADY)
     agrees(lambda p: B.corrected_eq20(case(p)), lambda q, p: -q("a_C"), "acceleration", STEADY)
     off(lambda p: B.printed_eq20(case(p)), lambda q, p: -q("a_C"))
     off(lambda p: B.printed_eq20(case(p)), lambda q, p: q("a_C"))  # nor is it d2x/dt2
@@ -273,11 +287,20 @@ def test_eq28():
 def test_eq29():
     same_rate(B.corrected_eq29, B.printed_eq27, "rate")
     other_rate(B.printed_eq29, B.printed_eq27)
+    same_rate(
+        lambda q: -2 * q.omega * q.k * q.sin / q.root(1) - B.printed_eq29(q), B.printed_eq27, "rate"
+    )  # the first fraction twice, less the printed form: its second sign reversed
 
 
 def test_eq30():
     agrees(lambda p: B.corrected_eq30(case(p)), lambda q, p: q("alpha_BC"), "rate2", STEADY)
     off(lambda p: B.printed_eq30(case(p)), lambda q, p: q("alpha_BC"))
+    agrees(
+        lambda p: B.printed_eq30(case(p)),
+        lambda q, p: 2 * q("a_B_X") / (p.BC * p.m.cos(q("phi"))) - q("alpha_BC"),
+        "rate2",
+        STEADY,
+    )
 
 
 # --- what the text of Sec. 2 says -----------------------------------------------------------------
