@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from desaxe.compiler.passes.double_double import DoubleTrigonometry
 from desaxe.compiler.passes.number import number_values
 from desaxe.compiler.passes.slicing import drop_unused
 from desaxe.compiler.passes.trigonometry import Trigonometry
@@ -13,7 +14,7 @@ from desaxe.names import CENTRES, LOADS, PARAMETERS, parts, sensitivity
 from .dynamics import FORCES, LUMPS, centres_sheet
 from .freeze import freeze
 from .motion import state_sheet
-from .polynomials import trigonometry
+from .polynomials import double_trigonometry, trigonometry
 from .quantities import FACTS, QUANTITIES, SECOND_ORDER, build_sheet
 from .sheet import Sheet, symbol
 
@@ -34,6 +35,7 @@ class Derivation(NamedTuple):
     centres: Program  # the lines of centres of mass that are halfway along their links
     names: tuple[str, ...]
     trigonometry: Trigonometry
+    double_trigonometry: DoubleTrigonometry  # the same to twice the digits
 
 
 def public_names() -> tuple[str, ...]:
@@ -66,7 +68,8 @@ def build() -> Derivation:
         _finished(freeze(state, ("omega", "alpha"), motion)),
         _finished(freeze(centres, ("AB", "BC"), (*CENTRES, *moving))),
     )
-    return Derivation(_finished(program), program, *overlays, public_names(), trigonometry())
+    angles = trigonometry(), double_trigonometry()
+    return Derivation(_finished(program), program, *overlays, public_names(), *angles)
 
 
 def _derive(sheet: Sheet, name: str) -> None:

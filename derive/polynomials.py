@@ -11,31 +11,61 @@ from collections.abc import Callable
 
 from mpmath import mp, mpf
 
+from desaxe.compiler.passes.double_double import DoubleTrigonometry
 from desaxe.compiler.passes.trigonometry import Trigonometry
 
-BITS = 33  # of each part of pi/2: a whole number below 2^20 times a part is exact
+TURNS = 20  # bits of the number of quarters; a part of pi/2 has the others of 53, so products are exact
 PARTS = 4  # so that angles next to a multiple of pi/2 keep all their digits
 TERMS = 6
 EXCHANGES = 8
+
+# For twice the digits. A coefficient whose term is below 2^-53 of the first needs no low part.
+DOUBLE_TURNS = 26
+DOUBLE_PARTS = 5
+DOUBLE_TERMS = 13
 
 
 def trigonometry() -> Trigonometry:
     """The constants, rounded to doubles."""
     with mp.workdps(60):
         return Trigonometry(
-            limit=float(mp.floor(2**20 * mp.pi / 2)),
+            limit=float(mp.floor(2**TURNS * mp.pi / 2)),
             two_over_pi=float(2 / mp.pi),
-            pi_half=_parts(mp.pi / 2),
+            pi_half=_parts(mp.pi / 2, TURNS, PARTS),
             sine=_rounded(_minimax(_sine_rest, lambda z: mp.sin(mp.sqrt(z)) / (mp.sqrt(z) * z), TERMS)),
             cosine=_rounded(_minimax(_cosine_rest, lambda z: mp.cos(mp.sqrt(z)) / z**2, TERMS)),
         )
 
 
-def _parts(value: mpf) -> tuple[float, ...]:
-    """The value as a sum of doubles of BITS bits each; the last part is a full double."""
+def double_trigonometry() -> DoubleTrigonometry:
+    """The constants for twice the digits: Taylor's, which are short enough."""
+    with mp.workdps(100):
+        first = [(-1) ** k / mp.factorial(2 * k + 1) for k in range(1, DOUBLE_TERMS + 1)]
+        second = [(-1) ** k / mp.factorial(2 * k) for k in range(2, DOUBLE_TERMS + 2)]
+        return DoubleTrigonometry(
+            limit=float(mp.floor(2**DOUBLE_TURNS * mp.pi / 2)),
+            two_over_pi=float(2 / mp.pi),
+            pi_half=_parts(mp.pi / 2, DOUBLE_TURNS, DOUBLE_PARTS),
+            sine=_in_two(first),
+            cosine=_in_two(second),
+        )
+
+
+def _in_two(coefficients: list[mpf]) -> tuple[tuple[float, float], ...]:
+    """High and low parts; no low part where the term is small against the first."""
+    largest, found = (mp.pi / 4) ** 2, []
+    for k, coefficient in enumerate(coefficients):
+        small = abs(coefficient / coefficients[0]) * largest**k < mpf(2) ** -53
+        high = float(coefficient)
+        found.append((high, 0.0 if small else float(coefficient - high)))
+    return tuple(found)
+
+
+def _parts(value: mpf, turns: int, count: int) -> tuple[float, ...]:
+    """The value as a sum of doubles, each with room for `turns` bits; the last part is a full double."""
     parts = []
-    for _ in range(PARTS - 1):
-        scale = mpf(2) ** (BITS - 1 - mp.floor(mp.log(value, 2)))
+    for _ in range(count - 1):
+        scale = mpf(2) ** (52 - turns - mp.floor(mp.log(value, 2)))
         part = mp.floor(value * scale) / scale
         parts.append(float(part))
         value -= part

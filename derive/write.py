@@ -22,7 +22,7 @@ from desaxe.compiler.passes.guard import guard_inputs
 from desaxe.compiler.passes.number import number_values
 from desaxe.compiler.passes.pipeline import optimise
 from desaxe.compiler.passes.slicing import keep_outputs
-from desaxe.compiler.passes.trigonometry import Trigonometry, expand_trigonometry
+from desaxe.compiler.passes.trigonometry import expand_trigonometry
 from desaxe.compiler.program import Program, renamed
 from desaxe.compiler.text import write_function
 from desaxe.inputs import LEAST
@@ -66,7 +66,7 @@ def render(derivation: Derivation) -> dict[str, str]:
         "state.py": _program(derivation.state, "state", _STATE, digest),
         "centres.py": _program(derivation.centres, "centres", _CENTRES, digest),
         "index.py": _index(derivation, digest),
-        "trigonometry.py": _trigonometry(derivation.trigonometry, digest),
+        "trigonometry.py": _trigonometry(derivation, digest),
     }
     for group in GROUPS:
         files[f"{group.name}.py"] = _group(derivation, group, digest)
@@ -122,10 +122,16 @@ def _index(derivation: Derivation, digest: str) -> str:
     return f'"""{banner}"""\n\nNAMES = {{\n' + "\n".join(rows) + "\n}\n"
 
 
-def _trigonometry(constants: Trigonometry, digest: str) -> str:
-    banner = _banner("Minimax polynomials of sine and cosine on |y| <= pi/4, and pi/2 in parts.", digest)
-    rows = "\n".join(f"    {name!r}: {value!r}," for name, value in constants._asdict().items())
-    return f'"""{banner}"""\n\nCONSTANTS = {{\n{rows}\n}}\n'
+def _trigonometry(derivation: Derivation, digest: str) -> str:
+    what = "Polynomials of sine and cosine on |y| <= pi/4, and pi/2 in parts; DOUBLE has twice the digits."
+    tables = {"CONSTANTS": derivation.trigonometry, "DOUBLE": derivation.double_trigonometry}
+    texts = [
+        f"{name} = {{\n"
+        + "\n".join(f"    {key!r}: {value!r}," for key, value in table._asdict().items())
+        + "\n}\n"
+        for name, table in tables.items()
+    ]
+    return f'"""{_banner(what, digest)}"""\n\n' + "\n".join(texts)
 
 
 def _group(derivation: Derivation, group: Group, digest: str) -> str:

@@ -144,7 +144,9 @@ def _fill(
     """Fill flat outputs from scalars and flat columns."""
     key = key_of(wanted, scalars, columns, dict.fromkeys(columns, 0), axes=1)
     if not columns:
-        for out, value in zip(outs, point_of(key.names, key.form, key.fixed).run(scalars), strict=True):
+        for out, value in zip(
+            outs, point_of(key.names, key.form, key.fixed, key.accuracy).run(scalars), strict=True
+        ):
             out[...] = value
     elif _is_early(key, outs[0].size):
         _fill_by_points(key, scalars, columns, outs)
@@ -164,7 +166,7 @@ def _fill_by_points(
     key: KernelKey, scalars: dict[str, float], columns: dict[str, Array], outs: list[Array]
 ) -> None:
     """Plain Python, point by point: nobody pays a compilation for a hundred points."""
-    point = point_of(key.names, key.form, key.fixed)
+    point = point_of(key.names, key.form, key.fixed, key.accuracy)
     good = {name: _is_good(name, column) for name, column in columns.items()}
     safe = {name: np.where(good[name], column, np.nan).tolist() for name, column in columns.items()}
     for index, here in enumerate(zip(*safe.values(), strict=True)):

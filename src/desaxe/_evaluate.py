@@ -95,7 +95,7 @@ def evaluate(
     point = _POINTS.get(key)
     if point is None:
         asked = request(wanted, given, branch, accuracy)
-        point = _POINTS[key] = point_of(asked.names, asked.form, asked.fixed)
+        point = _POINTS[key] = point_of(asked.names, asked.form, asked.fixed, accuracy)
     values = []
     for name in point.inputs:
         value = given[name]

@@ -8,22 +8,22 @@ together do not compile the same kernel into each other's way.
 import hashlib
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache
-from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from threading import Lock
 from typing import Any, NamedTuple
 
 from . import _cache
+from ._constants import constants, double_constants
 from ._point import cut
 from ._program import Form
 from ._request import Request
 from .compiler.emit_numba import emit_numba
 from .compiler.kernel import hoist
+from .compiler.passes.double_double import double_digits
 from .compiler.passes.guard import guard_inputs
 from .compiler.passes.number import number_values
-from .compiler.passes.trigonometry import Trigonometry, expand_trigonometry
+from .compiler.passes.trigonometry import expand_trigonometry
 from .inputs import LEAST
 from .names import LOADS
 
@@ -39,6 +39,7 @@ class KernelKey(NamedTuple):
     fixed: tuple[tuple[str, float], ...]
     axis_of: tuple[tuple[str, int], ...]
     axes: int
+    accuracy: str = "standard"
     far: bool = False  # some angle is beyond what the written-out sine and cosine reduce exactly
 
 
@@ -53,12 +54,6 @@ class CompiledKernel(NamedTuple):
         self.function(*(values[name] for name, _ in self.axis_of), *outs)
 
 
-@cache
-def constants() -> Trigonometry:
-    """The constants of the written-out sine and cosine, from generated/."""
-    return Trigonometry(**import_module("desaxe.generated.trigonometry").CONSTANTS)
-
-
 def key_of(
     wanted: Request,
     scalars: Mapping[str, float],
@@ -70,7 +65,8 @@ def key_of(
     far = _largest(columns.get("theta", scalars.get("theta", 0.0))) > constants().limit
     zeros = [(name, 0.0) for name in STRUCTURAL_ZEROS if scalars.get(name) == 0.0]
     fixed = (*wanted.fixed, *zeros)
-    return KernelKey(wanted.names, wanted.form, fixed, tuple(sorted(axis_of.items())), axes, far)
+    axis = tuple(sorted(axis_of.items()))
+    return KernelKey(wanted.names, wanted.form, fixed, axis, axes, wanted.accuracy, far)
 
 
 def _largest(angles: Any) -> float:
@@ -106,9 +102,14 @@ def source_of(key: KernelKey) -> str:
     """The text of the kernel's module."""
     program = cut(key.names, key.form, key.fixed)
     axes = dict(key.axis_of)
-    guarded = guard_inputs(program, [name for name in program.inputs if name in axes], LEAST, {})
-    if not key.far:
-        guarded = number_values(expand_trigonometry(guarded, constants()))
+    varying = [name for name in program.inputs if name in axes]
+    if key.accuracy == "extended":
+        guarded = guard_inputs(program, varying, LEAST, {"theta": double_constants().limit})
+        guarded = double_digits(guarded, double_constants())
+    else:
+        guarded = guard_inputs(program, varying, LEAST, {})
+        if not key.far:
+            guarded = number_values(expand_trigonometry(guarded, constants()))
     kernel = hoist(guarded, {name: axes.get(name) for name in program.inputs}, key.axes)
     fixed = ", ".join(f"{name} = {value:g}" for name, value in key.fixed)
     motion = "a given state" if key.form.state else "paper A's law"

@@ -4,8 +4,10 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
+from ._constants import double_constants
 from ._program import Form, program_of
 from .compiler.emit_python import compile_python
+from .compiler.passes.double_double import double_digits
 from .compiler.passes.pipeline import optimise
 from .compiler.passes.slicing import keep_outputs
 from .compiler.program import Line, Program, names_in, renamed
@@ -62,7 +64,11 @@ def _needs(program: Program) -> dict[str, frozenset[str]]:
 
 
 @cache
-def point_of(names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...]) -> Point:
+def point_of(
+    names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...], accuracy: str = "standard"
+) -> Point:
     """The function that computes them."""
     program = cut(names, form, fixed)
+    if accuracy == "extended":
+        program = double_digits(program, double_constants())
     return Point(compile_python(program), program.inputs)

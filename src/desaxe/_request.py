@@ -10,7 +10,7 @@ from .catalogue import law_name, quantity
 from .inputs import INPUTS, is_good
 from .names import CENTRES, LOADS
 
-ACCURACIES = ("standard",)
+ACCURACIES = ("standard", "extended")
 
 
 class Request(NamedTuple):
@@ -20,6 +20,7 @@ class Request(NamedTuple):
     names: tuple[str, ...]
     form: Form
     fixed: tuple[tuple[str, float], ...]
+    accuracy: str = "standard"
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -57,7 +58,7 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
     if "alpha" in inputs and is_steady(given.get("alpha")):
         zeros.append(("alpha", 0.0))
     halves = tuple(name for name in CENTRES if name in absent)
-    return Request(shown, own, Form(state, halves), (("branch", float(branch)), *zeros))
+    return Request(shown, own, Form(state, halves), (("branch", float(branch)), *zeros), accuracy)
 
 
 def is_steady(alpha: Any) -> bool:

@@ -34,6 +34,7 @@ TEXT = '''def coverage(x, y, z):
     wholes = floor(x * 3.0) + floor(-y)
     signed = copysign(x, y - z) * copysign(2.0, z)
     lost = x + y + two_sum_error(x, y) * 0.5
+    lost_too = x * y + two_product_error(x, y) * 0.5
     least = x if x < y else y
     chosen = x if x < y else (y if y <= z else z)
     chosen_early = (x if x < y else y) - (y if z < y else z)

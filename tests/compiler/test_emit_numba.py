@@ -8,7 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from desaxe._kernels import constants
+from desaxe._constants import constants
 from desaxe.compiler.emit_numba import emit_numba
 from desaxe.compiler.kernel import hoist
 from desaxe.compiler.passes.guard import guard_inputs

@@ -6,7 +6,7 @@ import random
 import mpmath
 import pytest
 
-from desaxe._kernels import constants
+from desaxe._constants import constants
 from desaxe.compiler.emit_python import compile_python
 from desaxe.compiler.passes.number import number_values
 from desaxe.compiler.passes.trigonometry import expand_trigonometry

@@ -5,7 +5,7 @@ import math
 import mpmath
 import pytest
 
-from desaxe._kernels import constants
+from desaxe._constants import constants
 from desaxe.derive.polynomials import BITS, trigonometry
 
 HALF_BIT = 2.0**-53

@@ -11,7 +11,7 @@ from desaxe.derive.groups import GROUPS
 from desaxe.generated.program import law
 
 import desaxe as dx
-from desaxe._kernels import constants
+from desaxe._constants import constants
 from desaxe._program import _text
 from tests.compiler.programs import LINKS, LOADS
 

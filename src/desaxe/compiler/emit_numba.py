@@ -12,7 +12,7 @@ from collections.abc import Container
 from textwrap import wrap
 
 from .kernel import Kernel, level_program
-from .operations import HELPERS, OPERATIONS
+from .operations import HELPERS, NUMBA_HELPERS, OPERATIONS
 from .program import Program
 from .text import INDENT, WIDTH, write_lines
 
@@ -57,6 +57,8 @@ def _header(kernel: Kernel, docstring: str, numpy_names: list[str]) -> str:
     from_numpy = sorted({*numpy_names, *constants, *(called & _NUMPY_CALLS)})
     imports = [f"from math import {', '.join(calls)}\n"] if calls else []
     imports.append("from numba import njit, types")
+    if any(line.op in NUMBA_HELPERS for line in lines):
+        imports.append("from numba.extending import intrinsic")
     imports += [f"from numpy import {', '.join(from_numpy)}"] if from_numpy else []
     given = [_INPUT] if any(axis is not None for axis in kernel.inputs.values()) else []
     return "\n".join([f'"""{docstring}"""\n', *imports, "", *given])
@@ -64,7 +66,11 @@ def _header(kernel: Kernel, docstring: str, numpy_names: list[str]) -> str:
 
 def _helpers(kernel: Kernel) -> list[str]:
     used = {line.op for lines in kernel.levels for line in lines}
-    return [f'@njit(error_model="numpy")\n{HELPERS[name]}' for name in HELPERS if name in used]
+    return [
+        NUMBA_HELPERS.get(name, f'@njit(error_model="numpy")\n{HELPERS[name]}')
+        for name in HELPERS
+        if name in used
+    ]
 
 
 def _called(op: str) -> str:

@@ -6,6 +6,7 @@ functions such as ``mpmath.mp``; it is how the tests tell what a pass did to the
 
 import math
 from collections.abc import Mapping
+from fractions import Fraction
 from typing import Any
 
 from .operations import OPERATIONS
@@ -61,6 +62,13 @@ def _two_sum_error(a: float, b: float) -> float:
     return (a - (total - of_b)) + (b - of_b)
 
 
+def _two_product_error(a: float, b: float) -> float:
+    product = a * b
+    if product - product != 0.0:
+        return math.nan
+    return float(Fraction(a) * Fraction(b) - Fraction(product))
+
+
 _IEEE: dict[str, Any] = {
     "copy": lambda a: a,
     "add": lambda a, b: a + b,
@@ -76,6 +84,7 @@ _IEEE: dict[str, Any] = {
     "floor": lambda a: float(math.floor(a)) if a - a == 0.0 and a else a,
     "copysign": math.copysign,
     "two_sum_error": _two_sum_error,
+    "two_product_error": _two_product_error,
     "lt": lambda a, b: a < b,
     "le": lambda a, b: a <= b,
     "eq": lambda a, b: a == b,

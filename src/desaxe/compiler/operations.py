@@ -71,6 +71,10 @@ OPERATIONS: dict[str, Operation] = dict(
         _row(
             "two_sum_error", "fff", "two_sum_error({0}, {1})", CALL, 5, lambda mp, a, b: a * 0, commutes=True
         ),
+        _row(
+            "two_product_error", "fff", "two_product_error({0}, {1})", CALL, 1, lambda mp, a, b: a * 0,
+            commutes=True,
+        ),
         _row("lt", "ffb", "{0} < {1}", 6, 1, lambda mp, a, b: a < b),
         _row("le", "ffb", "{0} <= {1}", 6, 1, lambda mp, a, b: a <= b),
         _row("eq", "ffb", "{0} == {1}", 6, 1, lambda mp, a, b: a == b, commutes=True),
@@ -89,6 +93,17 @@ HELPERS = {
     total = a + b
     of_b = total - a
     return (a - (total - of_b)) + (b - of_b)
+''',
+    "two_product_error": '''def two_product_error(a, b):
+    """What rounding took from a * b, exactly (Dekker: both factors in halves, whose products are exact)."""
+    product = a * b
+    wide = 134217729.0 * a
+    a_high = wide - (wide - a)
+    a_low = a - a_high
+    wide = 134217729.0 * b
+    b_high = wide - (wide - b)
+    b_low = b - b_high
+    return a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low)
 ''',
     "divide": '''def divide(a, b):
     """a / b with the IEEE 754 answers that Python refuses to give."""
@@ -111,6 +126,24 @@ HELPERS = {
     "whole": '''def whole(a):
     """The floor as a float; infinities, NaN and the sign of a zero stay."""
     return float(floor(a)) if a - a == 0.0 and a else a
+''',
+}
+# A helper that numba spells in its own way: a fused multiply-add keeps the whole product.
+NUMBA_HELPERS = {
+    "two_product_error": '''@intrinsic
+def fused(typingctx, a, b, c):
+    """a * b + c, rounded once."""
+
+    def code(context, builder, signature, args):
+        return builder.fma(*args)
+
+    return types.float64(types.float64, types.float64, types.float64), code
+
+
+@njit(error_model="numpy")
+def two_product_error(a, b):
+    """What rounding took from a * b, exactly."""
+    return fused(a, b, -(a * b))
 ''',
 }
 MATH_NAMES = ("atan2", "copysign", "cos", "fabs", "floor", "inf", "nan", "sin", "sqrt")

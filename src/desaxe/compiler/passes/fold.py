@@ -87,4 +87,12 @@ def _two_sum_error(line: Line) -> Line | Argument:
     return 0.0 if _is(line.args[0], 0.0) or _is(line.args[1], 0.0) else line
 
 
-_RULES = {"add": _add, "sub": _sub, "mul": _mul, "div": _div, "two_sum_error": _two_sum_error}
+def _two_product_error(line: Line) -> Line | Argument:
+    exact = any(_is(a, number) for a in line.args for number in (0.0, 1.0, -1.0, 2.0, 0.5))
+    return 0.0 if exact else line
+
+
+_RULES = {
+    "add": _add, "sub": _sub, "mul": _mul, "div": _div,
+    "two_sum_error": _two_sum_error, "two_product_error": _two_product_error,
+}  # fmt: skip

@@ -1,0 +1,19 @@
+"""The constants of the written-out sine and cosine, from generated/."""
+
+from functools import cache
+from importlib import import_module
+
+from .compiler.passes.double_double import DoubleTrigonometry
+from .compiler.passes.trigonometry import Trigonometry
+
+
+@cache
+def constants() -> Trigonometry:
+    """Those of doubles."""
+    return Trigonometry(**import_module("desaxe.generated.trigonometry").CONSTANTS)
+
+
+@cache
+def double_constants() -> DoubleTrigonometry:
+    """Those of twice the digits."""
+    return DoubleTrigonometry(**import_module("desaxe.generated.trigonometry").DOUBLE)
