@@ -54,7 +54,7 @@ def _header(kernel: Kernel, docstring: str, numpy_names: list[str]) -> str:
     called = {_called(line.op) for line in lines} - {""}
     calls = sorted(called - _NUMPY_CALLS)
     constants = {str(a) for line in lines for a in line.args if isinstance(a, float) and a - a != 0.0}
-    from_numpy = sorted({*numpy_names, *constants, *(called & _NUMPY_CALLS)})
+    from_numpy = sorted({*numpy_names, *constants, *(called & _NUMPY_CALLS), *(["uint64"] * (kernel.axes > 0))})
     imports = [f"from math import {', '.join(calls)}\n"] if calls else []
     imports.append("from numba import njit, types")
     if any(line.op in NUMBA_HELPERS for line in lines):
@@ -108,8 +108,11 @@ def _parameters(kernel: Kernel) -> list[str]:
 def _body(kernel: Kernel) -> list[str]:
     lines = _level(kernel, 0)
     for axis in range(kernel.axes):
-        # The length is read from an output: an axis may have no input that is needed.
-        lines.append(f"{INDENT * (axis + 1)}for i{axis} in range(out_{kernel.outputs[0]}.shape[{axis}]):")
+        # The length is read from an output: an axis may have no input that is needed. An index that has no
+        # sign cannot count from the end: where LLVM has to allow for that, it mistakes arrays that lie
+        # next to each other in memory for overlapping ones, and a long loop then runs one by one.
+        length = f"uint64(out_{kernel.outputs[0]}.shape[{axis}])"
+        lines.append(f"{INDENT * (axis + 1)}for i{axis} in range({length}):")
         pad = INDENT * (axis + 2)
         lines += [f"{pad}{name} = {name}_axis[i{axis}]" for name, on in kernel.inputs.items() if on == axis]
         lines += _level(kernel, axis + 1)
