@@ -54,7 +54,9 @@ def _header(kernel: Kernel, docstring: str, numpy_names: list[str]) -> str:
     called = {_called(line.op) for line in lines} - {""}
     calls = sorted(called - _NUMPY_CALLS)
     constants = {str(a) for line in lines for a in line.args if isinstance(a, float) and a - a != 0.0}
-    from_numpy = sorted({*numpy_names, *constants, *(called & _NUMPY_CALLS), *(["uint64"] * (kernel.axes > 0))})
+    from_numpy = sorted(
+        {*numpy_names, *constants, *(called & _NUMPY_CALLS), *(["uint64"] * (kernel.axes > 0))}
+    )
     imports = [f"from math import {', '.join(calls)}\n"] if calls else []
     imports.append("from numba import njit, types")
     if any(line.op in NUMBA_HELPERS for line in lines):
