@@ -14,7 +14,7 @@ from desaxe.names import CENTRES, LOADS, PARAMETERS, parts, sensitivity
 from .dynamics import FORCES, LUMPS, centres_sheet
 from .freeze import freeze
 from .motion import state_sheet
-from .polynomials import double_trigonometry, trigonometry
+from .polynomials import double_trigonometry, single_trigonometry, trigonometry
 from .quantities import FACTS, QUANTITIES, SECOND_ORDER, build_sheet
 from .sheet import Sheet, symbol
 
@@ -35,7 +35,8 @@ class Derivation(NamedTuple):
     centres: Program  # the lines of centres of mass that are halfway along their links
     names: tuple[str, ...]
     trigonometry: Trigonometry
-    double_trigonometry: DoubleTrigonometry  # the same to twice the digits
+    single_trigonometry: Trigonometry  # for float32
+    double_trigonometry: DoubleTrigonometry  # to twice the digits
 
 
 def public_names() -> tuple[str, ...]:
@@ -68,7 +69,7 @@ def build() -> Derivation:
         _finished(freeze(state, ("omega", "alpha"), motion)),
         _finished(freeze(centres, ("AB", "BC"), (*CENTRES, *moving))),
     )
-    angles = trigonometry(), double_trigonometry()
+    angles = trigonometry(), single_trigonometry(), double_trigonometry()
     return Derivation(_finished(program), program, *overlays, public_names(), *angles)
 
 

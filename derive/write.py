@@ -123,8 +123,12 @@ def _index(derivation: Derivation, digest: str) -> str:
 
 
 def _trigonometry(derivation: Derivation, digest: str) -> str:
-    what = "Polynomials of sine and cosine on |y| <= pi/4, and pi/2 in parts; DOUBLE has twice the digits."
-    tables = {"CONSTANTS": derivation.trigonometry, "DOUBLE": derivation.double_trigonometry}
+    what = "Polynomials of sine and cosine on |y| <= pi/4, and pi/2 in parts, for three accuracies."
+    tables = {
+        "CONSTANTS": derivation.trigonometry,
+        "SINGLE": derivation.single_trigonometry,
+        "DOUBLE": derivation.double_trigonometry,
+    }
     texts = [
         f"{name} = {{\n"
         + "\n".join(f"    {key!r}: {value!r}," for key, value in table._asdict().items())

@@ -14,6 +14,12 @@ def constants() -> Trigonometry:
 
 
 @cache
+def single_constants() -> Trigonometry:
+    """Those of float32."""
+    return Trigonometry(**import_module("desaxe.generated.trigonometry").SINGLE)
+
+
+@cache
 def double_constants() -> DoubleTrigonometry:
     """Those of twice the digits."""
     return DoubleTrigonometry(**import_module("desaxe.generated.trigonometry").DOUBLE)

@@ -24,7 +24,7 @@ def grid(
     names: str | Sequence[str],
     *,
     branch: int = 1,
-    accuracy: str = "standard",
+    accuracy: str | float = "standard",
     threads: int | None = None,
     out: Any = None,
     **inputs: Any,

@@ -14,7 +14,7 @@ from threading import Lock
 from typing import Any, NamedTuple
 
 from . import _cache
-from ._constants import constants, double_constants
+from ._constants import constants, double_constants, single_constants
 from ._point import cut
 from ._program import Form
 from ._request import Request
@@ -62,7 +62,8 @@ def key_of(
     axes: int,
 ) -> KernelKey:
     """The key of a request whose scalars and columns are known."""
-    far = _largest(columns.get("theta", scalars.get("theta", 0.0))) > constants().limit
+    limit = single_constants().limit if wanted.accuracy == "fast" else constants().limit
+    far = _largest(columns.get("theta", scalars.get("theta", 0.0))) > limit
     zeros = [(name, 0.0) for name in STRUCTURAL_ZEROS if scalars.get(name) == 0.0]
     fixed = (*wanted.fixed, *zeros)
     axis = tuple(sorted(axis_of.items()))
@@ -103,7 +104,11 @@ def source_of(key: KernelKey) -> str:
     program = cut(key.names, key.form, key.fixed)
     axes = dict(key.axis_of)
     varying = [name for name in program.inputs if name in axes]
-    if key.accuracy == "extended":
+    single = key.accuracy == "fast" and not key.far
+    if single:
+        guarded = guard_inputs(program, varying, LEAST, {})
+        guarded = number_values(expand_trigonometry(guarded, single_constants(), light=True))
+    elif key.accuracy == "extended":
         guarded = guard_inputs(program, varying, LEAST, {"theta": double_constants().limit})
         guarded = double_digits(guarded, double_constants())
     else:
@@ -113,7 +118,7 @@ def source_of(key: KernelKey) -> str:
     kernel = hoist(guarded, {name: axes.get(name) for name in program.inputs}, key.axes)
     fixed = ", ".join(f"{name} = {value:g}" for name, value in key.fixed)
     motion = "a given state" if key.form.state else "paper A's law"
-    return emit_numba(kernel, f"desaxe kernel: {', '.join(key.names)}; {motion}; {fixed}.")
+    return emit_numba(kernel, f"desaxe kernel: {', '.join(key.names)}; {motion}; {fixed}.", single)
 
 
 def _load(key: KernelKey) -> CompiledKernel:

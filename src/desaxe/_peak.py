@@ -41,10 +41,12 @@ class Designs(NamedTuple):
     columns: dict[str, Array]
     branch: int
     theta: tuple[float, float]
+    accuracy: str
 
     def at(self, rows: NDArray[np.intp], theta: Array) -> dict[str, Any]:
         """The inputs of the designs `rows`, one angle each."""
-        return {"theta": theta, "branch": self.branch, **{n: c[rows] for n, c in self.columns.items()}}
+        fixed = {"branch": self.branch, "accuracy": self.accuracy}
+        return {"theta": theta, **fixed, **{n: c[rows] for n, c in self.columns.items()}}
 
 
 def peak(
@@ -59,7 +61,7 @@ def peak(
     branch: int = 1,
     kind: str = "absmax",
     theta: tuple[float, float] = (0.0, 2.0 * np.pi),
-    accuracy: str = "standard",
+    accuracy: str | float = "standard",
     **loads: Any,
 ) -> dict[str, Any]:
     """The extreme value of a quantity over the crank angle; designs broadcast like NumPy.
@@ -99,7 +101,7 @@ def peak(
     parts = []
     for start in range(0, count, BLOCK):
         block = {n: column[start : start + BLOCK] for n, column in columns.items()}
-        parts.append(_peaks(name, slope, kind, Designs(block, branch, (low, high))))
+        parts.append(_peaks(name, slope, kind, Designs(block, branch, (low, high), wanted.accuracy)))
     return _shaped(parts, shape, needs)
 
 

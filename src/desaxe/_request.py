@@ -4,13 +4,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from math import inf
 from typing import Any, NamedTuple
 
+from ._accuracy import accuracy_of
 from ._point import cut
 from ._program import Form, program_of
 from .catalogue import law_name, quantity
 from .inputs import INPUTS, is_good
 from .names import CENTRES, LOADS
-
-ACCURACIES = ("standard", "extended")
 
 
 class Request(NamedTuple):
@@ -39,12 +38,11 @@ def check_border(given: Mapping[str, Any], branch: Any, threads: int | None = No
         raise ValueError(f"threads = {threads}: a whole number, at least 1")
 
 
-def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accuracy: str) -> Request:
+def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accuracy: Any) -> Request:
     """The request, checked. What is not given and has no effect by default is fixed, and costs nothing."""
     check_border(given, branch)
     state = given.get("omega") is not None
-    if accuracy not in ACCURACIES:
-        raise ValueError(f"accuracy = {accuracy!r}: it is one of {', '.join(ACCURACIES)}")
+    kept = accuracy_of(accuracy)
     for name in names:
         quantity(name, state)
     shown = tuple(names)
@@ -58,7 +56,7 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
     if "alpha" in inputs and is_steady(given.get("alpha")):
         zeros.append(("alpha", 0.0))
     halves = tuple(name for name in CENTRES if name in absent)
-    return Request(shown, own, Form(state, halves), (("branch", float(branch)), *zeros), accuracy)
+    return Request(shown, own, Form(state, halves), (("branch", float(branch)), *zeros), kept)
 
 
 def is_steady(alpha: Any) -> bool:

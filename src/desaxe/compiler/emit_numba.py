@@ -13,7 +13,7 @@ from textwrap import wrap
 
 from .kernel import Kernel, level_program
 from .operations import HELPERS, NUMBA_HELPERS, OPERATIONS
-from .program import Program
+from .program import Argument, Program
 from .text import INDENT, WIDTH, write_lines
 
 _TYPES = {"f64": "float64", "i64": "int8"}  # a status is stored as int8
@@ -27,9 +27,32 @@ except RuntimeError:  # numba found no folder that it can write to
 _INPUT = 'axis = types.Array(types.float64, 1, "C", readonly=True)\n'
 
 
-def emit_numba(kernel: Kernel, docstring: str) -> str:
-    """The source of the module."""
-    return "\n\n".join([_header(kernel, docstring, []), *_helpers(kernel), _function(kernel)])
+def emit_numba(kernel: Kernel, docstring: str, single: bool = False) -> str:
+    """The source of the module; `single` computes in float32, from doubles to doubles."""
+    if not single:
+        return "\n\n".join([_header(kernel, docstring, []), *_helpers(kernel), _function(kernel)])
+    kernel, constants = _named_constants(kernel)
+    rows = "\n".join(f"{name} = float32({value!r})" for value, name in constants.items())
+    names = ["float32", *(word for word in ("inf", "nan") if word in map(repr, constants))]
+    return "\n\n".join(
+        [_header(kernel, docstring, names) + rows + "\n", *_helpers(kernel), _function(kernel, "float32")]
+    )
+
+
+def _named_constants(kernel: Kernel) -> tuple[Kernel, dict[float, str]]:
+    """The kernel with its real constants as names: numba takes a number in the text for a double."""
+    names: dict[float, str] = {}
+
+    def named(argument: Argument) -> Argument:
+        if not isinstance(argument, float):
+            return argument
+        known = next((n for value, n in names.items() if repr(value) == repr(argument)), "")
+        return known or names.setdefault(argument, f"k{len(names)}")
+
+    levels = tuple(
+        tuple(line._replace(args=tuple(map(named, line.args))) for line in lines) for lines in kernel.levels
+    )
+    return kernel._replace(levels=levels), names
 
 
 def emit_numba_with_front(kernel: Kernel, docstring: str, front: str, optional: Container[str] = ()) -> str:
@@ -81,7 +104,7 @@ def _called(op: str) -> str:
     return name if bracket and name not in HELPERS else ""
 
 
-def _function(kernel: Kernel) -> str:
+def _function(kernel: Kernel, cast: str = "") -> str:
     """The loops as a plain function, and `kernel`, that function compiled."""
     types = ["types.float64" if axis is None else "axis" for axis in kernel.inputs.values()]
     shape = ", ".join([":"] * (kernel.axes - 1) + ["::1"])
@@ -93,7 +116,7 @@ def _function(kernel: Kernel) -> str:
             "def loops(",
             *(f"{INDENT}{name}," for name in names),
             "):",
-            *_body(kernel),
+            *_body(kernel, cast),
             "\n\nsignature = types.void(",
             *(INDENT + row for row in rows),
             ")",
@@ -107,8 +130,10 @@ def _parameters(kernel: Kernel) -> list[str]:
     return [name if axis is None else f"{name}_axis" for name, axis in kernel.inputs.items()]
 
 
-def _body(kernel: Kernel) -> list[str]:
-    lines = _level(kernel, 0)
+def _body(kernel: Kernel, cast: str) -> list[str]:
+    """The loops; every input is cast where it is read."""
+    scalars = [name for name, axis in kernel.inputs.items() if axis is None and cast]
+    lines = [f"{INDENT}{name} = {cast}({name})" for name in scalars] + _level(kernel, 0)
     for axis in range(kernel.axes):
         # The length is read from an output: an axis may have no input that is needed. An index that has no
         # sign cannot count from the end: where LLVM has to allow for that, it mistakes arrays that lie
@@ -116,7 +141,8 @@ def _body(kernel: Kernel) -> list[str]:
         length = f"uint64(out_{kernel.outputs[0]}.shape[{axis}])"
         lines.append(f"{INDENT * (axis + 1)}for i{axis} in range({length}):")
         pad = INDENT * (axis + 2)
-        lines += [f"{pad}{name} = {name}_axis[i{axis}]" for name, on in kernel.inputs.items() if on == axis]
+        read = f"{cast}({{0}}_axis[i{axis}])" if cast else f"{{0}}_axis[i{axis}]"
+        lines += [f"{pad}{name} = {read.format(name)}" for name, on in kernel.inputs.items() if on == axis]
         lines += _level(kernel, axis + 1)
     index = ", ".join(f"i{axis}" for axis in range(kernel.axes))
     pad = INDENT * (kernel.axes + 1)

@@ -21,13 +21,14 @@ class Trigonometry(NamedTuple):
     cosine: tuple[float, ...]
 
 
-def expand_trigonometry(program: Program, constants: Trigonometry) -> Program:
+def expand_trigonometry(program: Program, constants: Trigonometry, light: bool = False) -> Program:
     """The program without sin and cos.
 
     Precondition: |angle| <= constants.limit wherever the result matters. Effect: each `sin` and
-    `cos` becomes arithmetic; both of the same angle share all of it. Error at most 1 ulp.
+    `cos` becomes arithmetic; both of the same angle share all of it. Error at most 1 ulp; a `light`
+    one drops what the reduction rounds away, for some ulp x (1 + condition).
     """
-    writer = _Writer(constants)
+    writer = _Light(constants) if light else _Writer(constants)
     for line in program.lines:
         if line.op in ("sin", "cos"):
             writer.lines.append(line._replace(op="copy", args=(writer.of_angle(line.args[0], line.op),)))
@@ -114,3 +115,27 @@ class _Writer:
             "sin": self.line("select", lower, self.line("neg", across), across),
             "cos": self.line("select", behind, self.line("neg", along), along),
         }
+
+
+class _Light(_Writer):
+    """Without second words."""
+
+    def _reduced(self, angle: Argument, quarters: str) -> tuple[str, str]:
+        rest: Argument = angle
+        for part in self.constants.pi_half:
+            rest = self.line("sub", rest, self.line("mul", quarters, part))
+        return str(rest), ""
+
+    def _sine(self, y: str, low: str) -> str:
+        """y + y z P(z)."""
+        z = self.line("mul", y, y)
+        return self.line(
+            "add", y, self.line("mul", self.line("mul", y, z), self._polynomial(z, self.constants.sine))
+        )
+
+    def _cosine(self, y: str, low: str) -> str:
+        """1 - z/2 + z^2 Q(z)."""
+        z = self.line("mul", y, y)
+        whole = self.line("sub", 1.0, self.line("mul", 0.5, z))
+        quartic = self.line("mul", self.line("mul", z, z), self._polynomial(z, self.constants.cosine))
+        return self.line("add", whole, quartic)
