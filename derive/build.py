@@ -69,8 +69,15 @@ def build() -> Derivation:
         _finished(freeze(state, ("omega", "alpha"), motion)),
         _finished(freeze(centres, ("AB", "BC"), (*CENTRES, *moving))),
     )
-    angles = trigonometry(), single_trigonometry(), double_trigonometry()
-    return Derivation(_finished(program), program, *overlays, public_names(), *angles)
+    return Derivation(
+        _finished(program),
+        program,
+        *overlays,
+        public_names(),
+        trigonometry(),
+        single_trigonometry(),
+        double_trigonometry(),
+    )
 
 
 def _derive(sheet: Sheet, name: str) -> None:

@@ -18,11 +18,12 @@ from desaxe.compiler.cost import cost_of
 from desaxe.compiler.emit_numba import emit_numba_with_front
 from desaxe.compiler.kernel import hoist
 from desaxe.compiler.operations import HELPERS, MATH_NAMES
+from desaxe.compiler.passes.double_double import DoubleTrigonometry
 from desaxe.compiler.passes.guard import guard_inputs
 from desaxe.compiler.passes.number import number_values
 from desaxe.compiler.passes.pipeline import optimise
 from desaxe.compiler.passes.slicing import keep_outputs
-from desaxe.compiler.passes.trigonometry import expand_trigonometry
+from desaxe.compiler.passes.trigonometry import Trigonometry, expand_trigonometry
 from desaxe.compiler.program import Program, renamed
 from desaxe.compiler.text import write_function
 from desaxe.inputs import LEAST
@@ -124,7 +125,7 @@ def _index(derivation: Derivation, digest: str) -> str:
 
 def _trigonometry(derivation: Derivation, digest: str) -> str:
     what = "Polynomials of sine and cosine on |y| <= pi/4, and pi/2 in parts, for three accuracies."
-    tables = {
+    tables: dict[str, Trigonometry | DoubleTrigonometry] = {
         "CONSTANTS": derivation.trigonometry,
         "SINGLE": derivation.single_trigonometry,
         "DOUBLE": derivation.double_trigonometry,

@@ -6,6 +6,8 @@ last digits of the inputs change anyway is not counted against it.
 
 from typing import Any
 
+from ._constants import double_constants
+
 # Accuracy -> the error that it keeps; the fastest one first.
 BOUNDS = {"fast": 8 * 2.0**-24, "standard": 8 * 2.0**-52, "extended": 2 * 2.0**-52}
 
@@ -20,3 +22,10 @@ def accuracy_of(asked: Any) -> str:
     if not kept:
         raise ValueError(f"accuracy = {asked!r}: the smallest error is {BOUNDS['extended']:.2g}")
     return kept
+
+
+def check_angle(accuracy: str, theta: float) -> None:
+    """Refuse an angle that the accuracy cannot reduce exactly."""
+    if accuracy == "extended" and abs(theta) > double_constants().limit:
+        reach = f"accuracy='extended' reaches |theta| <= {double_constants().limit:.0f} rad"
+        raise ValueError(f"theta = {theta!r}: {reach}")

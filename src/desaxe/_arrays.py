@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ._constants import double_constants
 from ._kernels import KernelKey, is_ready, kernel_for, key_of
 from ._point import point_of
 from ._request import Request, as_number
@@ -168,6 +169,8 @@ def _fill_by_points(
     """Plain Python, point by point: nobody pays a compilation for a hundred points."""
     point = point_of(key.names, key.form, key.fixed, key.accuracy)
     good = {name: _is_good(name, column) for name, column in columns.items()}
+    if key.accuracy == "extended" and "theta" in good:
+        good["theta"] &= np.abs(columns["theta"]) <= double_constants().limit
     safe = {name: np.where(good[name], column, np.nan).tolist() for name, column in columns.items()}
     for index, here in enumerate(zip(*safe.values(), strict=True)):
         answer = point.run({**scalars, **dict(zip(safe, here, strict=True))})

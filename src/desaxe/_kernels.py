@@ -14,6 +14,7 @@ from threading import Lock
 from typing import Any, NamedTuple
 
 from . import _cache
+from ._accuracy import check_angle
 from ._constants import constants, double_constants, single_constants
 from ._point import cut
 from ._program import Form
@@ -62,6 +63,7 @@ def key_of(
     axes: int,
 ) -> KernelKey:
     """The key of a request whose scalars and columns are known."""
+    check_angle(wanted.accuracy, scalars.get("theta", 0.0))
     limit = single_constants().limit if wanted.accuracy == "fast" else constants().limit
     far = _largest(columns.get("theta", scalars.get("theta", 0.0))) > limit
     zeros = [(name, 0.0) for name in STRUCTURAL_ZEROS if scalars.get(name) == 0.0]

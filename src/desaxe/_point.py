@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
+from ._accuracy import check_angle
 from ._constants import double_constants
 from ._program import Form, program_of
 from .compiler.emit_python import compile_python
@@ -69,6 +70,15 @@ def point_of(
 ) -> Point:
     """The function that computes them."""
     program = cut(names, form, fixed)
-    if accuracy == "extended":
-        program = double_digits(program, double_constants())
-    return Point(compile_python(program), program.inputs)
+    if accuracy != "extended":
+        return Point(compile_python(program), program.inputs)
+    function = compile_python(double_digits(program, double_constants()))
+    if "theta" not in program.inputs:
+        return Point(function, program.inputs)
+    place = program.inputs.index("theta")
+
+    def checked(*values: float) -> tuple[Any, ...]:
+        check_angle(accuracy, values[place])
+        return function(*values)
+
+    return Point(checked, program.inputs)

@@ -147,7 +147,12 @@ REFUSED = [
     ("V_C", {"branch": "1"}, ValueError, r"branch = '1': it is \+1 or -1"),
     ("V_C", {"branch": [1, -1]}, (TypeError, ValueError), r"branch = \[1, -1\]: it is \+1 or -1"),
     ("V_C", {"branch": np.array([1, -1])}, (TypeError, ValueError), "branch = .*: it is"),
-    ("V_C", {"accuracy": "perfect"}, ValueError, "accuracy = 'perfect': it is one of fast, standard, extended"),
+    (
+        "V_C",
+        {"accuracy": "perfect"},
+        ValueError,
+        "accuracy = 'perfect': it is one of fast, standard, extended",
+    ),
     ("V_C", {"omega": 3.0}, ValueError, r"give omega0= \(the law\) or omega= \(a state\), not both"),
     ("V_C", {"threads": 0}, ValueError, "threads = 0: a whole number, at least 1"),
     (["V_C", 7], {}, TypeError, "the name of a quantity is a str, got 7"),

@@ -115,8 +115,8 @@ class _Writer:
             one, other = (a, b) if b.single else (b, a)
             high, low = self.two_sum(one.high, other.high)
             return self.quick(high, self.line("add", one.low, low))
-        high, rest = self.two_sum(a.high, b.high), self.two_sum(a.low, b.low)
-        first = self.quick(high.high, self.line("add", high.low, rest.high))
+        sums, rest = self.two_sum(a.high, b.high), self.two_sum(a.low, b.low)
+        first = self.quick(sums.high, self.line("add", sums.low, rest.high))
         return self.quick(first.high, self.line("add", rest.low, first.low))
 
     def neg(self, a: Pair) -> Pair:
