@@ -72,7 +72,8 @@ def point_of(
     program = cut(names, form, fixed)
     if accuracy != "extended":
         return Point(compile_python(program), program.inputs)
-    function = compile_python(double_digits(program, double_constants()))
+    program = double_digits(program, double_constants())
+    function = compile_python(program)
     if "theta" not in program.inputs:
         return Point(function, program.inputs)
     place = program.inputs.index("theta")
