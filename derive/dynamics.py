@@ -129,9 +129,9 @@ def _define_share(
 
 def _define_loads(sheet: Sheet) -> None:
     """What the motion takes, without friction."""
-    sheet.define("out_X", alpha * cos_theta - omega2 * sin_theta, unit=PER_TIME2,
+    sheet.define("crank_X", alpha * cos_theta - omega2 * sin_theta, unit=PER_TIME2,
                  meaning="acceleration along X of a point of the crank, per distance from A")  # fmt: skip
-    sheet.define("out_Y", -(alpha * sin_theta + omega2 * cos_theta), unit=PER_TIME2,
+    sheet.define("crank_Y", -(alpha * sin_theta + omega2 * cos_theta), unit=PER_TIME2,
                  meaning="acceleration along Y of a point of the crank, per distance from A")  # fmt: skip
     sheet.define("thrust_smooth", m_reciprocating * (a_C - g_Y) - F_Y, unit=FORCE,
                  meaning="force along Y on the reciprocating mass, without friction")  # fmt: skip
@@ -142,8 +142,8 @@ def _define_loads(sheet: Sheet) -> None:
                  meaning="normal force at the guide, without friction")  # fmt: skip
 
 
-lean, thrust_smooth, rod_twist, N_smooth, out_X, out_Y = map(
-    symbol, ("lean", "thrust_smooth", "rod_twist", "N_smooth", "out_X", "out_Y")
+lean, thrust_smooth, rod_twist, N_smooth, crank_X, crank_Y = map(
+    symbol, ("lean", "thrust_smooth", "rod_twist", "N_smooth", "crank_X", "crank_Y")
 )
 N_C, F_friction, thrust, side_push, T_in = map(symbol, ("N_C", "F_friction", "thrust", "side_push", "T_in"))
 
@@ -182,13 +182,13 @@ def _define_joints(sheet: Sheet) -> None:
         ("F_C_X", m_at_C * g_X - side_push, "force of the rod on the slider along X", "C (link 4)"),
         ("F_C_Y", m_slider * (a_C - g_Y) - F_Y - F_friction, "force of the rod on the slider along Y",
          "C (link 4)"),
-        ("F_B_X", m_at_B * (AB * out_X - g_X) - side_push, "force of the crank on the rod along X",
+        ("F_B_X", m_at_B * (AB * crank_X - g_X) - side_push, "force of the crank on the rod along X",
          "C (link 3)"),
-        ("F_B_Y", m_at_B * (AB * out_Y - g_Y) + thrust, "force of the crank on the rod along Y",
+        ("F_B_Y", m_at_B * (AB * crank_Y - g_Y) + thrust, "force of the crank on the rod along Y",
          "C (link 3)"),
-        ("F_A_X", swing * out_X - m_turning * g_X - side_push, "force of the frame on the crank along X",
+        ("F_A_X", swing * crank_X - m_turning * g_X - side_push, "force of the frame on the crank along X",
          "C (link 2)"),
-        ("F_A_Y", swing * out_Y - m_turning * g_Y + thrust, "force of the frame on the crank along Y",
+        ("F_A_Y", swing * crank_Y - m_turning * g_Y + thrust, "force of the frame on the crank along Y",
          "C (link 2)"),
     )  # fmt: skip
     for name, expression, meaning, source in rows:
@@ -203,9 +203,9 @@ def _define_joints(sheet: Sheet) -> None:
 def _define_frame(sheet: Sheet) -> None:
     """What the mechanism does to the frame: the loads less what its motion takes."""
     m_total = sheet.define("m_total", m_turning + m_reciprocating, unit=MASS, meaning="mass of all links")
-    sheet.define("F_shaking_X", m_total * g_X + F_X - swing * out_X, unit=FORCE,
+    sheet.define("F_shaking_X", m_total * g_X + F_X - swing * crank_X, unit=FORCE,
                  meaning="force of the mechanism on the frame along X")  # fmt: skip
-    sheet.define("F_shaking_Y", m_total * g_Y + F_Y - swing * out_Y - m_reciprocating * a_C, unit=FORCE,
+    sheet.define("F_shaking_Y", m_total * g_Y + F_Y - swing * crank_Y - m_reciprocating * a_C, unit=FORCE,
                  source="B (46)", meaning="force of the mechanism on the frame along Y")  # fmt: skip
     spun = I_turning * alpha + branch * I_lumping * alpha_BC
     pulled = Y * (m_reciprocating * g_X + F_X) + ec * (m_reciprocating * (g_Y - a_C) + F_Y)

@@ -72,3 +72,8 @@ def test_what_the_free_bodies_do_not_give_is_refused():
     with pytest.raises(ArithmeticError, match="T_in is not what the free bodies give"):
         bodies.prove("T_in", bodies.solution()["T_in"] + bodies.m_rod * bodies.r_rod**2 * bodies.alpha)
     bodies.prove("T_in", bodies.solution()["T_in"])
+
+
+def test_no_name_is_one_that_a_kernel_gives_its_arrays():
+    names = [*INPUTS, *(line.name for line in derivation().program.lines)]
+    assert not [name for name in names if name.startswith("out_") or name.endswith("_axis")]

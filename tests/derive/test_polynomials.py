@@ -5,8 +5,8 @@ import math
 import mpmath
 import pytest
 
-from desaxe._constants import constants
-from desaxe.derive.polynomials import BITS, trigonometry
+from desaxe._constants import constants, double_constants, single_constants
+from desaxe.derive.polynomials import double_trigonometry, single_trigonometry, trigonometry
 
 HALF_BIT = 2.0**-53
 ANGLES = [math.pi / 4 * k / 200 for k in range(1, 201)]
@@ -37,15 +37,46 @@ def test_the_cosine(made):
     assert worst(mpmath.cos, form) < HALF_BIT / 4
 
 
-def test_the_parts_of_a_quarter_add_up(made):
+# Constants, digits of the numbers that they reduce, bits of pi/2 in all.
+REDUCTIONS = {
+    "double": (trigonometry, 53, 150),
+    "single": (single_trigonometry, 24, 50),
+    "twice": (double_trigonometry, 53, 160),
+}
+
+
+@pytest.mark.parametrize("kind", REDUCTIONS)
+def test_the_parts_of_a_quarter_add_up(kind):
+    make, _, bits = REDUCTIONS[kind]
     with mpmath.workdps(60):
-        assert abs(sum(map(mpmath.mpf, made.pi_half)) - mpmath.pi / 2) < mpmath.mpf(2) ** -150
+        assert abs(sum(map(mpmath.mpf, make().pi_half)) - mpmath.pi / 2) < mpmath.mpf(2) ** -bits
 
 
-def test_whole_quarters_times_a_part_are_exact(made):
+@pytest.mark.parametrize("kind", REDUCTIONS)
+def test_whole_quarters_times_a_part_are_exact(kind):
     """All parts but the last are so short that a product with a whole number up to the limit is exact."""
+    make, digits, _ = REDUCTIONS[kind]
+    made = make()
     quarters = math.ceil(made.limit * made.two_over_pi)
     for part in made.pi_half[:-1]:
-        mantissa = int(math.ldexp(math.frexp(part)[0], BITS))
-        assert math.ldexp(mantissa, -BITS) == math.frexp(part)[0]
-        assert (mantissa * quarters).bit_length() <= 53
+        mantissa, _ = math.frexp(part)[0].as_integer_ratio()
+        assert (mantissa * quarters).bit_length() <= digits
+
+
+def test_those_of_twice_the_digits_are_taylors():
+    made = double_trigonometry()
+    assert made == double_constants()
+    with mpmath.workdps(60):
+        for k, (high, low) in enumerate(made.sine, 1):
+            error = abs(mpmath.mpf(high) + low - (-1) ** k / mpmath.factorial(2 * k + 1))
+            assert error * (mpmath.pi / 4) ** (2 * k) < 2.0**-105
+        for k, (high, low) in enumerate(made.cosine, 2):
+            error = abs(mpmath.mpf(high) + low - (-1) ** k / mpmath.factorial(2 * k))
+            assert error * (mpmath.pi / 4) ** (2 * k) < 2.0**-105
+
+
+def test_those_of_float32():
+    made = single_trigonometry()
+    assert made == single_constants()
+    sine = worst(mpmath.sin, lambda y: y + y**3 * mpmath.polyval(made.sine[::-1], y * y))
+    assert HALF_BIT < sine < 2.0**-26
