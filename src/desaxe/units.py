@@ -18,6 +18,10 @@ EXAMPLES = {
     "rad": '"60 deg"',
     "rad/s": '"1500 rpm", "25 turn/s" or "157 rad/s"',
     "rad/s^2": '"10 rad/s^2"',
+    "kg": '"0.5 kg"',
+    "kg*m^2": '"80.6 kg mm2"',
+    "N": '"50 N"',
+    "m/s^2": '"9.81 m/s^2"',
 }
 
 
@@ -82,6 +86,8 @@ def _says_the_same(quantity: Any, unit: str) -> bool:
 
 
 def _wanted(unit: str) -> str:
+    if unit == "1":
+        return "it must be a plain number, such as 0.1"
     example = EXAMPLES.get(unit)
     return f"it must be a quantity in {unit}" + (f", such as {example}" if example else "")
 

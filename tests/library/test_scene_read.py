@@ -80,6 +80,68 @@ MISTAKES = {
     "missing input": ("motion.omega0", None, ["outputs", "needs motion.omega0, which is missing"]),
     "missing length": ("mechanism.BC", None, ["outputs", "needs mechanism.BC, which is missing"]),
     "law and state": ("motion.omega", 3, ["motion.omega = 3", "not both"]),
+    "unknown mass": (
+        "masses.m_piston",
+        1,
+        ["masses.m_piston = 1", "unknown key", "allowed: m_crank, m_rod, m_slider, I_crank, I_rod, r_crank"],
+    ),
+    "load among the masses": ("masses.mu", 0.1, ["masses.mu = 0.1", "unknown key"]),
+    "loads that are no table": ("loads", [1], ["loads = [1]", "a table, [loads]"]),
+    "negative mass": ("masses.m_rod", "-1 kg", ['masses.m_rod = "-1 kg"', "a finite mass >= 0"]),
+    "truth for a mass": ("masses.m_rod", True, ["masses.m_rod = true", '"0.5 kg"']),
+    "negative friction": ("loads.mu", -0.1, ["loads.mu = -0.1", "a finite number >= 0"]),
+    "force in kilograms": ("loads.F_Y", ["5 kg"], ['loads.F_Y #1 = "5 kg"', 'in N, such as "50 N"']),
+    "inertia in other units": (
+        "masses.I_rod",
+        "1 kg m",
+        ["masses.I_rod", 'in kg*m^2, such as "80.6 kg mm2"'],
+    ),
+    "friction with a unit": ("loads.mu", "1 N", ['loads.mu = "1 N"', "a plain number, such as 0.1"]),
+    "step of a mass that misses the end": (
+        "masses.m_rod",
+        {"start": "1 kg", "stop": 0, "step": "-0.3 kg"},
+        ['masses.m_rod.step = "-0.3 kg"', "whole number of steps"],
+    ),
+    "step that is not finite": (
+        "masses.m_rod",
+        {"start": 0, "stop": 1, "step": math.inf},
+        ["masses.m_rod.step = inf", "a finite number"],
+    ),
+    "step in other units": (
+        "masses.m_rod",
+        {"start": 0, "stop": 1, "step": "1 mm"},
+        ['masses.m_rod.step = "1 mm"', "a quantity in kg"],
+    ),
+    "sensitivity by nothing known": (
+        "peak",
+        [{**PEAK, "sensitivities": ["m_piston"]}],
+        ["peak #1.sensitivities.m_piston: unknown input"],
+    ),
+    "sensitivity that there is not": (
+        "peak",
+        [{**PEAK, "sensitivities": ["m_rod"]}],
+        ["peak #1.sensitivities: a_C has no sensitivity by m_rod, it does not depend on it"],
+    ),
+    "sensitivity by theta": (
+        "peak",
+        [{**PEAK, "sensitivities": ["theta"]}],
+        ["a_C has no sensitivity by theta, a peak is taken over it"],
+    ),
+    "sensitivity by a centre that is not given": (
+        "peak",
+        [{"quantity": "T_in", "sensitivities": ["r_rod"]}],
+        ["peak #1.sensitivities: r_rod is half a length", "give masses.r_rod"],
+    ),
+    "baseline that changes nothing": (
+        "peak",
+        [{**PEAK, "baseline": {"ec": 0, "m_rod": 1}}],
+        ["peak #1.baseline.m_rod: the peak does not depend on it"],
+    ),
+    "claim that changes nothing": (
+        "peak",
+        [{**PEAK, "baseline": {"ec": 0}, "claim": [{"at": {"ec": 0.1, "mu": 1}, "increase": "3 %"}]}],
+        ["peak #1.claim #1.at.mu: the peak does not depend on it"],
+    ),
     "unknown quantity of a peak": (
         "peak",
         [{"quantity": "aC"}],
@@ -235,6 +297,28 @@ def test_values_of_inputs():
     assert inputs["omega0"] == pytest.approx(50 * math.pi, rel=1e-15)
     backwards = {"start": 0.5, "stop": 0.2, "step": "-100 mm"}
     assert dx.scene(changed("mechanism.BC", backwards)).inputs["BC"] == pytest.approx([0.5, 0.4, 0.3, 0.2])
+
+
+def test_masses_and_loads():
+    data = {
+        **SMALL,
+        "masses": {
+            "m_rod": ["500 g", 1],
+            "I_rod": "80.6 kg mm2",
+            "r_rod": "-2 cm",
+            "m_slider": {"start": "1 kg", "stop": 0, "step": "-500 g"},
+        },
+        "loads": {"F_Y": "-50 N", "g_X": "9.81 m/s2", "mu": "10 %"},
+    }
+    inputs = dx.scene(data).inputs
+    assert inputs["m_rod"] == (0.5, 1.0)
+    assert inputs["m_slider"] == (1.0, 0.5, 0.0)
+    assert [inputs[name] for name in ("I_rod", "r_rod")] == [80.6e-6, -0.02]
+    assert [inputs[name] for name in ("F_Y", "g_X", "mu")] == [-50.0, 9.81, 0.1]
+    assert list(inputs)[-7:] == ["m_rod", "I_rod", "r_rod", "m_slider", "F_Y", "g_X", "mu"]
+    again = {**data, "masses": {**data["masses"], "m_rod": [0.5, "1 kg"]}}
+    assert dx.scene(again) == dx.scene(data)
+    assert dx.scene({**data, "loads": {**data["loads"], "mu": 0.2}}) != dx.scene(data)
 
 
 @pytest.mark.parametrize(

@@ -63,6 +63,97 @@ def test_given_state():
     assert not found.status.any()
 
 
+PRESS = {
+    "outputs": ["T_in", "N_C"],
+    "mechanism": {"ec": "20 mm", "AB": "40 mm", "BC": "64 mm"},
+    "motion": {"theta": {"start": 0, "stop": "360 deg", "num": 9}, "omega0": "2400 rpm"},
+    "masses": {"m_rod": "0.5 kg", "m_slider": [0.4, 0.8]},
+    "loads": {"F_Y": "-50 N", "mu": [0, 0.1]},
+}
+PRESSED = {"AB": 0.04, "BC": 0.064, "omega0": 80 * math.pi, "m_rod": 0.5, "F_Y": -50.0}
+
+
+def test_masses_and_loads_are_axes(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    dataset = dx.scene({**PRESS, "results": {"data": "press.nc"}}).run().dataset
+    assert dataset.T_in.dims == ("theta", "m_slider", "mu")
+    assert (dataset.T_in.units, dataset.m_slider.units, dataset.mu.units) == ("N*m", "kg", "1")
+    assert (dataset.F_Y.units, float(dataset.F_Y)) == ("N", -50.0)
+    point = {**PRESSED, "theta": math.pi / 2, "ec": 0.02, "m_slider": 0.8, "mu": 0.1}
+    assert float(dataset.T_in.sel(m_slider=0.8, mu=0.1)[2]) == pytest.approx(
+        dx.evaluate("T_in", **point), rel=1e-12
+    )
+    with xarray.open_dataset(tmp_path / "press.nc", engine="h5netcdf") as written:
+        xarray.testing.assert_equal(written.load(), dataset)
+        assert written.T_in.units == "N*m"
+
+
+def test_masses_and_loads_in_peaks():
+    peak = {
+        "quantity": "T_in",
+        "over": {"m_slider": [0.4, 0.8], "ec": [0, "10 mm"]},
+        "baseline": {"ec": 0, "m_slider": 0.4, "mu": 0},
+        "sensitivities": ["ec", "m_rod", "F_X", "I_rod", "mu"],
+        "claim": [{"at": {"ec": "10 mm", "m_slider": 0.8, "F_Y": 0}, "increase": "99 %"}],
+    }
+    result = dx.scene({**PRESS, "outputs": [], "peak": [peak], "loads": {"F_Y": "-50 N"}}).run()
+    found = result.peaks[0].dataset
+    assert found.value.dims == ("m_slider", "ec")
+    design = {**PRESSED, "F_X": 0.0, "I_rod": 0.0, "mu": 0.0}
+    alone = dx.peak("T_in", ec=0.01, m_slider=0.8, **design)
+    assert float(found.value[1, 1]) == pytest.approx(alone["value"], rel=1e-12)
+    for name in peak["sensitivities"]:
+        slope = float(found[f"value_wrt_{name}"][1, 1])
+        assert slope == pytest.approx(alone["gradient"][name], rel=1e-9), name
+    assert found.value_wrt_m_rod.units == "m^2/s^2"
+    base = dx.peak("T_in", ec=0.0, m_slider=0.4, **design)["value"]
+    claimed = dx.peak("T_in", ec=0.01, m_slider=0.8, **{**design, "F_Y": 0.0})["value"]
+    assert result.peaks[0].claims[0].computed == pytest.approx(100 * (claimed / base - 1), rel=1e-9)
+    line = next(line for line in str(result).splitlines() if "d/d(m_rod)" in line)
+    assert line.split()[-5:] == ["d/d(ec)", "d/d(m_rod)", "d/d(F_X)", "d/d(I_rod)", "d/d(mu)"]
+
+
+def test_what_points_to_the_side_has_either_sign_at_ec_0():
+    peak = {"quantity": "T_in", "over": {"ec": [0, 0.01]}, "sensitivities": ["ec", "g_X", "m_rod", "F_X"]}
+    masses = {"m_rod": 0.5, "m_slider": 0.8}
+    result = dx.scene({**PRESS, "outputs": [], "masses": masses, "loads": {}, "peak": [peak]}).run()
+    assert result.peaks[0].mirrored.tolist() == [True, False]
+    row = next(line for line in str(result).splitlines() if line.split()[:1] == ["0"]).split()
+    assert [cell.startswith("+-") for cell in row[3:]] == [True, True, False, False]
+    assert row[-1] == "0"  # F_X turns nothing without friction
+    assert "such a slope is + at one and - at the other" in str(result)
+    pulled = {**PRESS, "outputs": [], "masses": masses, "loads": {"g_X": 9.81}, "peak": [peak]}
+    assert not dx.scene(pulled).run().peaks[0].mirrored.any()
+
+
+def test_checks_at_masses_and_loads():
+    at = {"theta": "90 deg", "m_slider": "0.8 kg", "mu": 1.5}
+    checks = [
+        {"at": {**at, "mu": 0}, "printed": {"T_in": "-310.97 N m", "m_reciprocating": "1.05 kg"}},
+        {"at": at, "printed": {"status": 6}},
+        {"at": {**at, "omega0": "-2400 rpm"}, "printed": {"status": 5}},
+    ]
+    point = {**PRESSED, "theta": math.pi / 2, "ec": 0.02, "m_slider": 0.8}
+    result = dx.scene({**PRESS, "outputs": [], "check": checks}).run()
+    computed = [check.computed for check in result.checks]
+    assert computed == pytest.approx([dx.evaluate("T_in", **point), 1.05, 6, 5])
+
+
+def test_pictures_of_forces(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    family = {"quantity": "T_in", "file": "torque.png", "family": {"m_slider": [0.4, 0.8]}, "at": {"mu": 0}}
+    other = {"quantity": "N_C", "file": "guide.png", "over": "mu", "at": {"theta": 1, "m_slider": 1}}
+    dx.scene({**PRESS, "outputs": [], "picture": [family, other]}).run()
+    assert {path.name for path in tmp_path.iterdir()} == {"torque.png", "guide.png"}
+
+
+def test_picture_that_needs_less_than_the_outputs(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    picture = {"quantity": "phi", "file": "phi.png", "family": {"ec": [0, 0.05]}}
+    result = dx.scene({**SMALL, "outputs": ["phi", "V_C"], "picture": [picture]}).run()
+    assert [path.name for path in result.files] == ["phi.png"]
+
+
 def test_large_grid_in_blocks(monkeypatch):
     whole = dx.scene(SMALL).run().dataset
     monkeypatch.setattr(scene_run, "BLOCK", 5)

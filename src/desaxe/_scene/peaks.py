@@ -21,7 +21,11 @@ if TYPE_CHECKING:
     import xarray as xr
 
 DESIGNS = 1_000  # designs of a peak between two reports of progress
-ORDER = ("theta", "ec", "AB", "BC", "omega0", "omega", "alpha")  # of the parameters of a sensitivity
+SIDEWAYS = ("ec", "F_X", "g_X")  # change sign where the mechanism is mirrored at the Y axis
+STATUS = (
+    "0 ok, 1 infeasible, 2 at a limit angle or change point or where friction turns round, 3 stalled, "
+    "4 bad input, 5 friction jams at some angles, 6 friction has two balances of forces at some angles"
+)
 WORDS = {"absmax": "largest magnitude", "max": "maximum", "min": "minimum"}
 
 
@@ -38,7 +42,8 @@ class PeakResult(NamedTuple):
 
     `dataset` has over the designs' dimensions: `value`, `theta`, `status`, `value_wrt_<parameter>`
     and, where there is a baseline, `increase` over it in percent. `mirrored` tells the designs with
-    ec = 0 that reach the peak at -theta as well, where the derivative by ec has the other sign.
+    ec = 0 that reach the peak at -theta as well, where the derivatives by what points to the side
+    (ec, F_X, g_X) have the other sign.
     """
 
     peak: Peak
@@ -86,8 +91,10 @@ def _found(
         steps.next(f"peaks of {one.quantity}")
         batch: dict[str, Any] = {name: column[start : start + DESIGNS] for name, column in columns.items()}
         found = peak(one.quantity, kind=one.kind, theta=one.theta, **batch, **options)
-        slopes = {f"value_wrt_{name}": slope for name, slope in found.pop("gradient").items()}
-        parts.append({**found, **slopes})
+        gradient = found.pop("gradient")
+        for name in one.sensitivities:  # by what has no effect, such as F_X without friction
+            gradient.setdefault(name, np.where(np.isfinite(found["value"]), 0.0, np.nan))
+        parts.append({**found, **{f"value_wrt_{name}": slope for name, slope in gradient.items()}})
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
@@ -122,9 +129,7 @@ def _labelled(one: Peak, content: Content, arrays: Mapping[str, NDArray[Any]]) -
     attributes = {
         "value": _peak_attributes(one, state),
         "theta": {"units": "rad", "long_name": "crank angle of the peak"},
-        "status": {
-            "long_name": "0 ok, 1 infeasible, 2 at a limit angle or change point, 3 stalled, 4 bad input"
-        },
+        "status": {"long_name": STATUS},
         "increase": {"units": "percent", "long_name": "increase over the baseline"},
         **{name: _slope_attributes(one, name.removeprefix("value_wrt_"), state) for name in slopes},
     }

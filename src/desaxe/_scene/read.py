@@ -10,13 +10,20 @@ from typing import Any, NamedTuple
 from .._program import Form, program_of
 from ..catalogue import law_name, quantity
 from ..inputs import INPUTS
-from ..names import sensitivity
+from ..names import CENTRES, LOADS, sensitivity
 from . import schema
 from .printed import Printed, read_percentage, read_printed
 from .schema import SceneError, shown
 from .values import Value, design_of, number_of, only_inputs, values_of
 
-SECTIONS = ("mechanism", "motion")
+SECTIONS: dict[str, type[schema.Section]] = {
+    "mechanism": schema.Mechanism,
+    "motion": schema.Motion,
+    "masses": schema.Masses,
+    "loads": schema.Loads,
+}
+OPTIONAL = ("alpha", *LOADS)  # 0 where they are not given, or half of a length
+SENSITIVITIES = ("ec", "AB", "BC")  # of a peak, those on which it depends, unless others are asked for
 
 PICTURES = (".png", ".svg", ".pdf")
 
@@ -149,7 +156,7 @@ def _require_names(file: schema.SceneFile) -> None:
 
 
 def _inputs(data: Mapping[str, Any], file: schema.SceneFile) -> dict[str, Value]:
-    """The inputs of [mechanism] and [motion] in the order in which they stand in the file."""
+    """The inputs of the sections in the order in which they stand in the file."""
     order = [(section, name) for section in data if section in SECTIONS for name in data[section]]
     tables = [(f"{section}.{name}", name, getattr(getattr(file, section), name)) for section, name in order]
     return {name: values_of(key, name, written) for key, name, written in tables if name in INPUTS}
@@ -166,17 +173,19 @@ def _known(key: str, name: str, state: bool) -> None:
 
 
 def _needs(names: Iterable[str], inputs: Mapping[str, Any]) -> tuple[str, ...]:
-    """The inputs that quantities need, under the law or for a given state."""
+    """The inputs that quantities can use, under the law or for a given state."""
     state = "omega" in inputs
     law = tuple(law_name(name) if state else name for name in names)
+    if "mu" in inputs:  # then the status tells what the friction does, too
+        law = tuple("force_status" if name == "status" else name for name in law)
     return tuple(name for name in program_of(law, Form(state)).inputs if name != "branch")
 
 
 def _require(key: str, needs: Iterable[str], what: str, inputs: Mapping[str, Any]) -> list[str]:
-    """Those of the needed inputs that are given; SceneError for one that is missing (alpha is 0)."""
+    """Those of the needed inputs that are given; SceneError for one that is missing."""
     for name in needs:
-        if name not in inputs and name != "alpha":
-            section = "mechanism" if name in schema.Mechanism.__struct_fields__ else "motion"
+        if name not in inputs and name not in OPTIONAL:
+            section = next(s for s, table in SECTIONS.items() if name in table.__struct_fields__)
             raise SceneError(f"{key}: {what} needs {section}.{name}, which is missing")
     return [name for name in needs if name in inputs]
 
@@ -226,7 +235,7 @@ def _peak(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> Pea
     over = {n: values_of(f"{key}.over.{n}", n, written) for n, written in table.over.items()}
     if "theta" in over:
         raise SceneError(f"{key}.over.theta: a peak is taken over theta; its range is {key}.theta")
-    there = _with(inputs, over)
+    there = _completed(key, table, _with(inputs, over))
     _known(f"{key}.quantity", name, "omega" in there)
     slope = _slope(f"{key}.quantity", name, "omega" in there)
     needed = _require(
@@ -247,11 +256,37 @@ def _peak(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> Pea
         _claim(f"{key}.claim #{index}", claim, axes, fixed, bool(base))
         for index, claim in enumerate(table.claim, 1)
     )
-    only_inputs(f"{key}.sensitivities", table.sensitivities)
-    wanted = tuple(n for n in table.sensitivities if n in needed)
+    wanted = _sensitivities(f"{key}.sensitivities", table, needed)
     angles = _angles(key, table, inputs)
     at_base = design_of(f"{key}.baseline", table.baseline or {})
     return Peak(table.title, name, table.kind, axes, fixed, angles, at_base, base, claims, wanted)
+
+
+def _completed(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> dict[str, Value]:
+    """The inputs, with 0 for those that only the baseline, a claim or a sensitivity names."""
+    found = dict(inputs)
+    named: dict[str, Iterable[str]]
+    named = {f"{key}.sensitivities": table.sensitivities or (), f"{key}.baseline": table.baseline or ()}
+    named |= {f"{key}.claim #{index}.at": claim.at for index, claim in enumerate(table.claim, 1)}
+    for place, names in named.items():
+        for name in names:
+            if name in CENTRES and name not in found:
+                raise SceneError(f"{place}: {name} is half a length unless it is given: give masses.{name}")
+            if name in OPTIONAL:
+                found.setdefault(name, 0.0)
+    return found
+
+
+def _sensitivities(key: str, table: schema.PeakTable, needed: Iterable[str]) -> tuple[str, ...]:
+    """The parameters of the wanted sensitivities."""
+    if table.sensitivities is None:
+        return tuple(name for name in SENSITIVITIES if name in needed)
+    only_inputs(key, table.sensitivities)
+    for name in table.sensitivities:
+        if name not in needed:
+            reason = "a peak is taken over it" if name == "theta" else "it does not depend on it"
+            raise SceneError(f"{key}: {table.quantity} has no sensitivity by {name}, {reason}")
+    return table.sensitivities
 
 
 def _slope(key: str, name: str, state: bool) -> str:
@@ -282,6 +317,9 @@ def _other_design(
 ) -> dict[str, float]:
     """All inputs of a design that says only what is different."""
     design = {**fixed, **design_of(key, written)}
+    for name in written:
+        if name not in axes and name not in fixed:
+            raise SceneError(f"{key}.{name}: the peak does not depend on it")
     for name in axes:
         if name not in design:
             raise SceneError(f"{key}: {name} has {len(axes[name])} values, one is wanted: give {key}.{name}")

@@ -215,8 +215,9 @@ def _picture(picture: Picture, content: Content, steps: Steps) -> Path:
     from ..plot import curves, save
 
     steps.next(f"drawing {picture.file}")
-    # With the names of the outputs the kernel of the grid serves here too.
-    names = content.outputs if picture.quantity in content.outputs else (picture.quantity,)
+    # With the names of the outputs the kernel of the grid serves here too, where all inputs are the same.
+    shared = picture.quantity in content.outputs and set(picture.inputs) == set(content.inputs)
+    names = content.outputs if shared else (picture.quantity,)
     options: dict[str, Any] = {"branch": content.branch, "accuracy": content.accuracy}
     dataset: Any = grid(names, **options, **_arrays(picture.inputs))
     axes: Any = curves(dataset, picture.quantity, over=picture.over, family=picture.family)[0].axes

@@ -13,7 +13,7 @@ class SceneError(ValueError):
     """A scene that cannot be used; the message names the key, its value and what is allowed."""
 
 
-_NUMBER = 'a number in SI units, or text with a unit such as "125 mm"'
+_NUMBER = 'a number in SI units, or text with a unit such as "125 mm" or "0.5 kg"'
 _WORDS = "a list of names of quantities"
 
 Text = Annotated[str, Meta(description="text")]
@@ -44,7 +44,7 @@ class Range(Section, frozen=True):
 
 
 _VALUES = (
-    'a number in SI units, text with a unit such as "125 mm", a list of these, '
+    'a number in SI units, text with a unit such as "125 mm" or "0.5 kg", a list of these, '
     "or a range {start = ..., stop = ..., num = ...} (or step instead of num)"
 )
 Values = Annotated[float | str | tuple[Number, ...] | Range, Meta(description=_VALUES)]
@@ -68,6 +68,28 @@ class Motion(Section, frozen=True):
     omega0: Values | None = None
     omega: Values | None = None
     alpha: Values | None = None
+
+
+class Masses(Section, frozen=True):
+    """`[masses]`: masses, moments of inertia and centres of mass; halfway along the links without these."""
+
+    m_crank: Values | None = None
+    m_rod: Values | None = None
+    m_slider: Values | None = None
+    I_crank: Values | None = None
+    I_rod: Values | None = None
+    r_crank: Values | None = None
+    r_rod: Values | None = None
+
+
+class Loads(Section, frozen=True):
+    """`[loads]`: the force on the slider, gravity, and the friction of the guide."""
+
+    F_X: Values | None = None
+    F_Y: Values | None = None
+    g_X: Values | None = None  # noqa: N815
+    g_Y: Values | None = None  # noqa: N815
+    mu: Values | None = None
 
 
 class CheckTable(Section, frozen=True):
@@ -98,7 +120,7 @@ class PeakTable(Section, frozen=True):
     over: Axes = {}
     theta: Angles | None = None
     baseline: Design | None = None
-    sensitivities: Annotated[tuple[str, ...], Meta(description="a list of inputs")] = ("ec", "AB", "BC")
+    sensitivities: Annotated[tuple[str, ...] | None, Meta(description="a list of inputs")] = None
     claim: Annotated[tuple[ClaimTable, ...], Meta(description="a list of tables, [[peak.claim]]")] = ()
     title: Text = ""
 
@@ -128,6 +150,8 @@ class SceneFile(Section, frozen=True):
     accuracy: Accuracy = "standard"
     mechanism: Annotated[Mechanism, Meta(description="a table, [mechanism]")] = Mechanism()
     motion: Annotated[Motion, Meta(description="a table, [motion]")] = Motion()
+    masses: Annotated[Masses, Meta(description="a table, [masses]")] = Masses()
+    loads: Annotated[Loads, Meta(description="a table, [loads]")] = Loads()
     check: Annotated[tuple[CheckTable, ...], Meta(description="a list of tables, [[check]]")] = ()
     peak: Annotated[tuple[PeakTable, ...], Meta(description="a list of tables, [[peak]]")] = ()
     picture: Annotated[tuple[PictureTable, ...], Meta(description="a list of tables, [[picture]]")] = ()

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..catalogue import quantity
 from ..inputs import INPUTS
-from .peaks import WORDS, ClaimResult, PeakResult
+from .peaks import SIDEWAYS, WORDS, ClaimResult, PeakResult
 from .read import Content, Peak
 from .run import CheckResult, FeasibilityResult, Run, group_names
 
@@ -135,9 +135,10 @@ def _peak_rows(found: PeakResult) -> list[list[str]]:
 
 
 def _slope(found: PeakResult, name: str, index: tuple[int, ...]) -> str:
-    """A sensitivity; of either sign by ec where two angles share the peak."""
+    """A sensitivity; of either sign by what points to the side where two angles share the peak."""
     value = found.dataset[f"value_wrt_{name}"].values[index]
-    return f"+-{number(abs(value))}" if name == "ec" and found.mirrored[index] else number(value)
+    both = value != 0.0 and name in SIDEWAYS and found.mirrored[index]
+    return f"+-{number(abs(value))}" if both else number(value)
 
 
 def _thinned(indices: list[tuple[int, ...]]) -> list[tuple[int, ...]]:
@@ -149,9 +150,11 @@ def _thinned(indices: list[tuple[int, ...]]) -> list[tuple[int, ...]]:
 
 STATUS_WORDS = {
     1: "cannot be assembled at any of these angles",
-    2: "reached at a limit angle or change point, where there is no gradient",
+    2: "reached at a limit angle or change point, or where friction turns round: no gradient there",
     3: "stalled at all of these angles",
     4: "bad input",
+    5: "jammed by friction at some of these angles, where no forces balance; the peak is of the others",
+    6: "with two balances of forces at some of these angles (friction); the peak is of the others",
 }
 
 
@@ -163,9 +166,9 @@ def _remarks(found: PeakResult) -> list[str]:
         for code, words in STATUS_WORDS.items()
         if code in status
     ]
-    if found.mirrored.any():
+    if found.mirrored.any() and any(name in SIDEWAYS for name in found.peak.sensitivities):
         lines.append(
-            "  +-: at ec = 0 the peak is at theta and at -theta, and d/d(ec) is + at one and - at the other"
+            "  +-: at ec = 0 the peak is at theta and at -theta; such a slope is + at one and - at the other"
         )
     if status.size > ROWS:
         lines.append(f"  {ROWS} of {status.size} designs are shown")

@@ -65,9 +65,11 @@ def _exactly(name: str, written: float | str) -> Fraction:
 
 
 def _steps(key: str, name: str, written: schema.Range, length: Fraction) -> int:
-    # A step of a length may be negative, which the length itself may not.
-    alike = "ec" if name in ("AB", "BC") else name
-    number_of(f"{key}.step", alike, written.step or 0.0)
+    # A step may be negative, where the input itself may not.
+    if isinstance(written.step, str):
+        _from_text(f"{key}.step", name, written.step)
+    elif not isfinite(written.step or 0.0):
+        raise SceneError(f"{key}.step = {shown(written.step)}: it must be a finite number")
     step = _exactly(name, written.step or 0.0)
     count = float(length / step) if step else 0.0
     if not (isfinite(count) and count > 0.5 and abs(count - round(count)) < 1e-6):
