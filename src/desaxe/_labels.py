@@ -13,7 +13,10 @@ from .inputs import INPUTS
 if TYPE_CHECKING:
     import xarray as xr
 
-STATUS_FLAGS = ("ok", "cannot_be_assembled", "change_point", "stalled", "bad_input")
+STATUS_FLAGS = (
+    "ok", "cannot_be_assembled", "change_point", "stalled", "bad_input",
+    "no_force_balance", "two_force_balances",
+)  # fmt: skip
 
 
 def attributes(name: str, state: bool = False) -> dict[str, Any]:

@@ -17,7 +17,8 @@ from .extras import MissingExtraError, needed
 
 SIGNS = """\
 signs: Y points along the slider axis towards the slider, theta turns from +Y towards +X;
-       V_C and a_C are positive along +Y (away from the crank), the slider axis is at X = -ec."""
+       V_C and a_C are positive along +Y (away from the crank), the slider axis is at X = -ec;
+       forces are positive along +X and +Y, torques like theta."""
 
 INTERRUPTED = 130  # as a shell reports it
 
@@ -123,11 +124,24 @@ inputs (SI units and radians, or any unit written behind the number):
   omega    speed at this instant, instead of omega0
   branch   1 (default) or -1: on which side of the crank pin the slider is
 
+masses and loads, for forces, torques and energies (0 by default):
+  m_crank, m_rod, m_slider  masses                      m_rod=0.5kg
+  I_crank, I_rod            about the centre of mass    I_rod="80.6 kg mm2"
+  r_crank, r_rod            centre of mass, from A towards B and from B towards C;
+                            half of AB and of BC by default
+  F_X, F_Y                  force on the slider         F_Y=-50N
+  g_X, g_Y                  gravity                     g_X=-9.81m/s2
+  mu                        friction of the guide       mu=0.1
+
+Where a value is NaN the status says why: 1 cannot be assembled here, 2 change point, 3 stalled,
+5 friction jams (no balance of forces), 6 friction has two balances of forces.
+
 {SIGNS}
 
 examples:
   desaxe point a_C theta=60deg ec=10mm AB=125mm BC=300mm omega0=1500rpm
   desaxe point V_C,a_C,a_C_wrt_ec theta=60deg ec=0 AB=.125 BC=.35 omega0=157.08
+  desaxe point T_in,N_C theta=60deg ec=10mm AB=125mm BC=0.3 omega0=0 F_Y=-50N
   desaxe point margin ec=220mm AB=125mm BC=350mm --json
   desaxe point --list                        all names, with units and meanings"""
 
@@ -254,10 +268,12 @@ A scene is a TOML file. It is data only: nothing in it is executed. Its keys:
   title, outputs = ["V_C", "a_C"] (over the grid of all lists and ranges below), accuracy
   [mechanism]     AB, BC, ec, branch
   [motion]        theta, omega0 or omega, alpha
+  [masses]        m_crank, m_rod, m_slider, I_crank, I_rod, r_crank, r_rod
+  [loads]         F_X, F_Y, g_X, g_Y, mu
                   each a number (SI), "125 mm", a list, or { start = , stop = , num = or step = }
   [[check]]       printed = { a_C = "-994 m/s2" }, at = { theta = "60 deg" }, source, title, digits
   [[peak]]        quantity, kind (absmax, max or min), over = { ec = [0, "50 mm"] },
-                  theta = [from, to], baseline = { ec = 0 }, sensitivities = ["ec", "AB"], title
+                  theta = [from, to], baseline = { ec = 0 }, sensitivities = ["ec", "m_rod"], title
   [[peak.claim]]  at = { ec = "150 mm" }, increase = "33 %", source
   [[picture]]     file, quantity, over = "theta", family = { ec = [0, "50 mm"] }, at, title
   [results]       data = "out/values.nc" (NetCDF; the peaks are groups in it)
@@ -267,6 +283,7 @@ Files are written relative to the current directory. Pictures and values need th
 
 examples:
   desaxe run examples/compactor.toml
+  desaxe run examples/feeder.toml
   desaxe run my_press.toml > report.txt"""
 
 
@@ -312,19 +329,27 @@ _ERRATA = """\
 examples:
   desaxe errata                       every equation, listing line and claim that was looked at
   desaxe errata --document A          of one paper
-  desaxe errata --verdict sign        those with a wrong sign"""
+  desaxe errata --verdict sign        those with a wrong sign
+  desaxe errata --markdown            everything as a page in Markdown"""
 
 
 def _add_errata(commands: Any) -> None:
     parser = _add(commands, "errata", "what the papers print, and what of it is right", _ERRATA, _errata)
-    parser.add_argument("--document", metavar="LETTER", type=str.upper, help="the paper: A")
+    parser.add_argument("--document", metavar="LETTER", type=str.upper, help="the paper: A, B or C")
     parser.add_argument(
         "--verdict", metavar="WORD", help="correct, typo, sign, wrong claim, not reproducible"
     )
-    parser.add_argument("--json", action="store_true", help="print JSON")
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument("--json", action="store_true", help="print JSON")
+    form.add_argument("--markdown", action="store_true", help="print all entries as a page in Markdown")
 
 
 def _errata(options: argparse.Namespace) -> int:
+    if options.markdown:
+        if options.document is not None or options.verdict is not None:
+            raise UsageError("--markdown prints all entries: leave --document and --verdict out")
+        print(import_module("desaxe._errata").markdown())
+        return 0
     from ._errata import entries, table
 
     found = entries(document=options.document, verdict=options.verdict)

@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 
 import desaxe as dx
-from desaxe import cli, doctor
+from desaxe import _errata, cli, doctor
 from desaxe.cli import main
+from desaxe.inputs import INPUTS
 
 COMPACTOR = str(Path(__file__).parents[2] / "examples" / "compactor.toml")
 POINT = ["theta=60deg", "ec=10mm", "AB=125mm", "BC=300mm", "omega0=1500rpm"]
@@ -69,6 +70,28 @@ def test_point_with_branch_and_state(capsys):
     assert value == dx.evaluate("a_C", **point)
 
 
+def test_point_with_masses_and_loads(capsys):
+    loads = ["m_rod=0.5kg", "I_rod=80.6 kg mm2", "r_rod=10cm", "F_Y=-50N", "g_X=9.81m/s2", "mu=0.1"]
+    assert main(["point", "T_in", *POINT, *loads]) == 0
+    name, _, value, unit, *_ = capsys.readouterr().out.split()
+    point = {"theta": "60 deg", "ec": 0.01, "AB": 0.125, "BC": 0.3, "omega0": "1500 rpm"}
+    loads = {"m_rod": 0.5, "I_rod": 80.6e-6, "r_rod": 0.1, "F_Y": -50.0, "g_X": 9.81, "mu": 0.1}
+    assert (name, unit) == ("T_in", "N*m")
+    assert float(value) == pytest.approx(dx.evaluate("T_in", **point, **loads), rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("speed", "status"),
+    [("60rpm", "6: friction: two balances of forces"), ("-60rpm", "5: friction jams: no balance of forces")],
+)
+def test_point_tells_what_friction_does(speed, status, capsys):
+    design = ["theta=90deg", "ec=20mm", "AB=40mm", "BC=64mm", f"omega0={speed}", "m_slider=1kg"]
+    assert main(["point", "T_in", *design, "mu=1.5"]) == 0
+    assert capsys.readouterr().out.endswith(f"status {status}\n")
+    assert main(["point", "T_in", *design]) == 0
+    assert "status" not in capsys.readouterr().out
+
+
 def test_list_of_names(capsys):
     assert main(["point", "--list"]) == 0
     lines = capsys.readouterr().out.splitlines()
@@ -86,6 +109,10 @@ COMPLAINTS = {
     "list": (["point", "Y", "theta=[1,2]"], "theta=[1,2]: it must be a number"),
     "decimal comma": (["point", "Y", "theta=1,5"], "theta=1,5: it must be a number"),
     "unit of another kind": (["point", "Y", "theta=1kg", *POINT[1:]], "it must be a quantity in rad"),
+    "force in kilograms": (["point", "T_in", *POINT, "m_rod=1", "F_Y=5kg"], 'in N, such as "50 N"'),
+    "mass of a force": (["point", "T_in", *POINT, "m_rod=5N"], "it must be a quantity in kg"),
+    "negative mass": (["point", "T_in", *POINT, "m_rod=-5kg"], "it must be a finite mass >= 0"),
+    "friction with a unit": (["point", "T_in", *POINT, "m_rod=1", "mu=0.1N"], "a plain number, such as 0.1"),
     "no such branch": (["point", "Y", "branch=2"], "branch=2: it is 1 or -1"),
     "no such option": (["point", "--exact"], "unrecognized arguments: --exact"),
     "no such command": (["frobnicate"], "invalid choice: 'frobnicate'"),
@@ -93,6 +120,8 @@ COMPLAINTS = {
     "no such file": (["run", "missing.toml"], "missing.toml: No such file or directory"),
     "no such verdict": (["errata", "--verdict", "maybe"], "unknown verdict 'maybe'"),
     "no such document": (["errata", "--document", "Z"], "unknown document 'Z'"),
+    "two forms": (["errata", "--json", "--markdown"], "not allowed with argument"),
+    "part of a page": (["errata", "--markdown", "--document", "A"], "leave --document and --verdict out"),
 }
 
 
@@ -146,6 +175,14 @@ def test_help_has_signs_and_examples(capsys):
     out = capsys.readouterr().out
     assert "V_C and a_C are positive along +Y" in out
     assert "desaxe point a_C theta=60deg ec=10mm AB=125mm BC=300mm omega0=1500rpm" in out
+    assert "5 friction jams" in out
+
+
+@pytest.mark.parametrize("command", ["point", "run"])
+def test_help_names_all_inputs(command, capsys):
+    main([command, "--help"])
+    words = set(re.findall(r"\w+", capsys.readouterr().out))
+    assert words >= set(INPUTS)
 
 
 def test_no_command_gives_help(capsys):
@@ -166,6 +203,12 @@ def test_errata(capsys):
     found = json.loads(capsys.readouterr().out)
     assert found
     assert {entry["verdict"] for entry in found} == {"sign"}
+
+
+def test_errata_as_a_page(monkeypatch, capsys):
+    monkeypatch.setattr(_errata, "markdown", lambda: "| what they print |", raising=False)
+    assert main(["errata", "--markdown"]) == 0
+    assert capsys.readouterr().out == "| what they print |\n"
 
 
 def test_derive_hands_its_options_on(monkeypatch):

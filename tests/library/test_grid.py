@@ -42,8 +42,19 @@ def test_attributes():
     assert grid["V_C_wrt_ec"].attrs["units"] == "1/s"
     assert grid["theta"].attrs["units"] == "rad"
     assert grid["a_C"].attrs["long_name"] == "acceleration of the slider"
-    assert grid["status"].attrs["flag_values"].tolist() == [0, 1, 2, 3, 4]
-    assert len(grid["status"].attrs["flag_meanings"].split()) == 5
+    assert grid["status"].attrs["flag_values"].tolist() == [0, 1, 2, 3, 4, 5, 6]
+    assert len(grid["status"].attrs["flag_meanings"].split()) == 7
+
+
+def test_status_of_friction_and_its_flags():
+    design = {"ec": 0.02, "AB": 0.04, "BC": 0.064, "omega0": [-1.0, 1.0], "m_slider": 1.0}
+    grid = dx.grid("T_in", theta=[0.0, np.pi / 2], mu=[0.0, 1.5], **design)
+    assert grid["T_in"].dims == ("theta", "mu", "omega0")
+    flags = np.array(grid["status"].attrs["flag_meanings"].split())[grid["status"].values]
+    assert (flags[0] == "ok").all()
+    assert (flags[1, 0] == "ok").all()
+    assert flags[1, 1].tolist() == ["no_force_balance", "two_force_balances"]
+    assert np.isnan(grid["T_in"].values[1, 1]).all()
 
 
 def test_netcdf_there_and_back(tmp_path):
@@ -60,6 +71,25 @@ def test_units_survive_pint():
     assert with_units["a_C"].pint.to("km/h/s").pint.magnitude[0, 0] == pytest.approx(
         3.6 * grid["a_C"].values[0, 0]
     )
+
+
+def test_units_of_forces_and_energies_survive_pint():
+    names = ["T_in", "F_B_X", "power_in", "kinetic_energy", "M_eff", "m_rotating", "T_in_wrt_m_rod"]
+    masses = {"m_rod": [0.5, 1.0], "I_rod": 1e-4, "g_Y": -9.81, "mu": 0.1}
+    grid = dx.grid(names, theta=THETA, ec=0.1, **MACHINE, **masses)
+    with_units = grid.pint.quantify()
+    for name, unit, factor in (
+        ("T_in", "N*mm", 1e3),
+        ("F_B_X", "kN", 1e-3),
+        ("power_in", "kW", 1e-3),
+        ("kinetic_energy", "kJ", 1e-3),
+        ("M_eff", "kg*mm^2", 1e6),
+        ("m_rotating", "g", 1e3),
+        ("T_in_wrt_m_rod", "N*mm/g", 1.0),
+        ("I_rod", "kg*mm^2", 1e6),
+        ("mu", "percent", 100.0),
+    ):
+        np.testing.assert_allclose(with_units[name].pint.to(unit).pint.magnitude, factor * grid[name].values)
 
 
 def test_out_needs_no_labels():
