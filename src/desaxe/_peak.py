@@ -3,50 +3,27 @@
 For each design: a sweep that is graded towards the quarters and the limit angles, where peaks are
 as narrow as the root of the margin; every change of sign of the exact derivative by theta is
 bracketed and refined; ends of the range and of feasible arcs count. By the envelope theorem the
-gradient of the extreme value is the partial derivative at the extreme angle.
+gradient of the extreme value is the partial derivative at the extreme angle. Friction makes kinks
+and jumps, where it has none, and arcs in which no forces balance, towards which they grow without bound.
 """
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._arrays import as_array, broadcast_shape
-from ._evaluate import evaluate
-from ._feasibility import theta_intervals
+from ._peak_sweep import Array, Designs, sweep, values_at
 from ._request import as_number, check_inputs, request
 from .catalogue import quantity
-from .inputs import INPUTS
 from .names import LOADS, sensitivity
-
-Array = NDArray[np.float64]
 
 KINDS = ("absmax", "max", "min")
 BLOCK = 4096  # designs at a time
-UNIFORM = 240  # nodes per turn
-GRADED = 2.0 ** -np.arange(1.0, 46.0)  # distances from a quarter or a limit angle, down to 3e-14
 STEPS = 80  # of a refinement; it ends when every bracket is down to a last bit
-
-# These stay finite at a limit angle, where S = 0; all other quantities of the rod grow without bound.
-BOUNDED = (
-    "phi", "delta", "Y", "s", "transmission_angle", "pressure_angle",
-    "V_B", "V_B_X", "V_B_Y", "a_B", "a_B_X", "a_B_Y", "omega",
-)  # fmt: skip
-
-
-class Designs(NamedTuple):
-    """Flat arrays of the inputs of every design, what is fixed for all, and the range of theta."""
-
-    columns: dict[str, Array]
-    branch: int
-    theta: tuple[float, float]
-    accuracy: str
-
-    def at(self, rows: NDArray[np.intp], theta: Array) -> dict[str, Any]:
-        """The inputs of the designs `rows`, one angle each."""
-        fixed = {"branch": self.branch, "accuracy": self.accuracy}
-        return {"theta": theta, **fixed, **{n: c[rows] for n, c in self.columns.items()}}
+SMOOTH = 1e-6  # of the median slope: what is left of the slope at the top of a smooth peak is less
+JAMS, TWO_BALANCES = 5, 6  # the status where friction leaves no balance of forces, or two
 
 
 def peak(
@@ -77,9 +54,12 @@ def peak(
     theta     the crank angle where it is reached
     gradient  dict parameter -> exact derivative of the value (ec, AB, BC, omega0 or omega, alpha, as
               far as the quantity depends on them); NaN where the value is not finite or is reached
-              at a limit angle
+              at a limit angle, or where friction turns round or begins to jam
     status    0 ok, 1 cannot be assembled anywhere in the range, 2 reached at a limit angle or change
-              point, 3 stalled in all of the range, 4 bad input
+              point, or at an angle at which the friction turns round, 3 stalled in all of the range,
+              4 bad input; 5 friction jams at some of the angles (no forces balance), 6 two sets of
+              forces balance at some: the value is that of all others, inf where it grows without
+              bound towards those at which friction jams
 
     Where two angles share the extreme value, as by symmetry at ec = 0, one of them is told, and the
     gradient is the one-sided derivative there.
@@ -93,7 +73,13 @@ def peak(
     given = {"ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega, **loads}
     check_inputs("peak", loads, LOADS)
     wanted = request((name, slope), given, branch, accuracy)
-    needs = [n for n in wanted.inputs if n != "theta"]
+    parameters = [n for n in wanted.inputs if n != "theta"]
+    if "omega0" not in parameters and omega0 is None and omega is None:
+        given["omega0"] = 0.0  # which only the status uses
+    if "mu" not in parameters:
+        given["mu"] = None  # what friction does matters to forces only
+    told = request((name, slope, "status"), given, branch, accuracy).inputs
+    needs = [*parameters, *(n for n in told if n not in (*parameters, "theta"))]
     arrays = {n: as_array(n, given.get(n), needs, (name,)) for n in needs}
     shape = broadcast_shape(arrays)
     columns = {n: np.broadcast_to(a, shape).reshape(-1) for n, a in arrays.items()}
@@ -101,8 +87,9 @@ def peak(
     parts = []
     for start in range(0, count, BLOCK):
         block = {n: column[start : start + BLOCK] for n, column in columns.items()}
-        parts.append(_peaks(name, slope, kind, Designs(block, branch, (low, high), wanted.accuracy)))
-    return _shaped(parts, shape, needs)
+        designs = Designs(block, branch, wanted.accuracy, (low, high), tuple(parameters))
+        parts.append(_peaks(name, slope, kind, designs))
+    return _shaped(parts, shape, parameters)
 
 
 def _range(theta: Any, name: str) -> tuple[float, float]:
@@ -133,72 +120,27 @@ def _slope_name(name: str, state: bool) -> str:
 
 def _peaks(name: str, slope: str, kind: str, designs: Designs) -> dict[str, Any]:
     rows = np.arange(next(iter(designs.columns.values())).size)
-    nodes, ends = _nodes(designs)
-    swept = _values((name, slope, "status"), designs, np.repeat(rows, nodes.shape[1]), nodes.reshape(-1))
+    nodes, ends = sweep(designs)
+    swept = values_at((name, slope, "status"), designs, np.repeat(rows, nodes.shape[1]), nodes.reshape(-1))
     value, rate, status = (swept[n].reshape(nodes.shape) for n in (name, slope, "status"))
     candidate_rows, candidates = _refined(slope, designs, nodes, rate)
     # Every node counts as well: the ends of the range and of arcs are among them.
-    at_roots = _values((name,), designs, candidate_rows, candidates)[name]
+    brink_rows, brinks, codes = _brinks(designs, nodes, status)
+    candidate_rows, candidates = np.append(candidate_rows, brink_rows), np.append(candidates, brinks)
+    at_roots = values_at((name,), designs, candidate_rows, candidates)[name]
     best_value, best_theta = _best(kind, value, nodes, candidate_rows, at_roots, candidates)
     result: dict[str, Any] = {"value": best_value, "theta": best_theta, "status": _status(status)}
-    _mark_limits(name, kind, result, value, nodes, ends)
+    _mark_limits(kind, result, value, nodes, ends)
+    turns = _turns(slope, designs, result, rate)
+    turns[brink_rows[result["theta"][brink_rows] == brinks]] = True
+    jams = brink_rows[(result["theta"][brink_rows] == brinks) & (codes == JAMS)]
+    result["value"][jams] = np.copysign(np.inf, result["value"][jams])
+    result["status"][turns & (result["status"] == 0)] = 2
     result["theta"] = np.where(np.isnan(result["value"]), np.nan, result["theta"])
-    result["gradient"] = _gradient(name, kind, designs, result)
+    result["gradient"] = _gradient(name, kind, designs, result, turns)
     if kind == "absmax":
         result["value"] = np.abs(result["value"])
     return result
-
-
-def _values(names: tuple[str, ...], designs: Designs, rows: NDArray[np.intp], theta: Array) -> dict[str, Any]:
-    found: dict[str, Any] = evaluate(list(names), **designs.at(rows, theta))
-    return found
-
-
-def _nodes(designs: Designs) -> tuple[Array, list[tuple[int, float]]]:
-    """Crank angles to sweep for each design, ascending, and its limit angles inside the range."""
-    low, high = designs.theta
-    turns = max(1.0, (high - low) / (2.0 * np.pi))
-    marks = [low, high]
-    marks += [
-        np.pi * (0.5 + k) for k in range(int(np.floor(low / np.pi)) - 1, int(np.ceil(high / np.pi)) + 1)
-    ]
-    common = np.concatenate([np.linspace(low, high, int(UNIFORM * turns) + 1), *map(_around, marks)])
-    limits = _limit_angles(designs)
-    ends = [(row, angle) for row, angles in enumerate(limits) for angle in angles]
-    width = max((len(angles) for angles in limits), default=0)
-    own = np.full((len(limits), width * (2 * GRADED.size + 1)), low)
-    for row, angles in enumerate(limits):
-        near = np.concatenate([_around(angle) for angle in angles]) if angles else np.empty(0)
-        own[row, : near.size] = near
-    both = np.concatenate([np.broadcast_to(common, (len(limits), common.size)), own], axis=1)
-    return np.sort(np.clip(both, low, high), axis=1), ends
-
-
-def _around(angle: float) -> Array:
-    return np.concatenate([angle - GRADED, [angle], angle + GRADED])
-
-
-def _limit_angles(designs: Designs) -> list[list[float]]:
-    """For each design the angles in the range at which it stops being feasible, or stalls."""
-    low, high = designs.theta
-    columns = designs.columns
-    count = next(iter(columns.values())).size
-    margins = np.zeros(count)
-    lengths = [columns[n] for n in ("ec", "AB", "BC") if n in columns]
-    if len(lengths) == 3:
-        ec, AB, BC = lengths
-        margins = BC - AB - np.abs(ec)
-    found: list[list[float]] = [[] for _ in range(count)]
-    for row in np.flatnonzero(margins < 0.0):
-        for interval in theta_intervals(*(float(c[row]) for c in lengths)):
-            for end in interval:
-                first = end + 2.0 * np.pi * np.ceil((low - end) / (2.0 * np.pi))
-                found[row] += list(np.arange(first, high + 1e-12, 2.0 * np.pi))
-    if "alpha" in columns and "omega0" in columns:
-        for row in np.flatnonzero(columns["alpha"] != 0.0):
-            stop = float(-(columns["omega0"][row] ** 2) / (2.0 * columns["alpha"][row]))
-            found[row] += [stop] if low < stop < high else []
-    return found
 
 
 # ---- refinement ---------------------------------------------------------------------------------
@@ -211,7 +153,7 @@ def _refined(slope: str, designs: Designs, nodes: Array, rate: Array) -> tuple[N
     rows, columns = np.nonzero(change)
     a, b = nodes[rows, columns], nodes[rows, columns + 1]
     fa, fb = rate[rows, columns], rate[rows, columns + 1]
-    return rows, _roots(lambda theta: _values((slope,), designs, rows, theta)[slope], a, b, fa, fb)
+    return rows, _roots(lambda theta: values_at((slope,), designs, rows, theta)[slope], a, b, fa, fb)
 
 
 def _roots(function: Any, a: Array, b: Array, fa: Array, fb: Array) -> Array:
@@ -279,23 +221,26 @@ def _best(
 
 
 def _status(status: NDArray[np.int8]) -> NDArray[np.int8]:
-    """0 where any angle is ok, else what is wrong at the first."""
+    """What friction does at some of the angles; else 0 where any is ok, else what is wrong at the first."""
     usable = ((status == 0) | (status == 2)).any(axis=1)
-    return np.where(usable, np.int8(0), status[:, 0]).astype(np.int8)
+    found = np.where(usable, np.int8(0), status[:, 0]).astype(np.int8)
+    for code in (TWO_BALANCES, JAMS):
+        found[(status == code).any(axis=1)] = code
+    return found
 
 
 def _mark_limits(
-    name: str, kind: str, result: dict[str, Any], value: Array, nodes: Array, ends: list[tuple[int, float]]
+    kind: str, result: dict[str, Any], value: Array, nodes: Array, ends: list[tuple[int, float]]
 ) -> None:
     """An extremum at a limit angle has status 2; what has no bound there is infinite."""
-    bounded = name in BOUNDED
     for row, end in ends:
         usable = np.isfinite(value[row])
-        if not usable.any() or result["status"][row] != 0:
+        if not usable.any():
             continue
         near = np.flatnonzero(usable)[np.argmin(np.abs(nodes[row, usable] - end))]
         if abs(nodes[row, near] - end) > 1e-6:
             continue
+        bounded = not _grows(nodes[row, usable], value[row, usable], end, value[row, near])
         at_end = result["theta"][row] == nodes[row, near]
         grows = not bounded and _score(kind, value[row, near]) >= _score(kind, result["value"][row])
         if at_end or grows:
@@ -305,14 +250,53 @@ def _mark_limits(
                 result["value"][row] = np.copysign(np.inf, value[row, near])
 
 
-def _gradient(name: str, kind: str, designs: Designs, result: Mapping[str, Any]) -> dict[str, Array]:
+def _grows(nodes: Array, value: Array, end: float, last: float) -> bool:
+    """Whether a quantity grows without bound towards an end: as the distance to a negative power."""
+    away = np.abs(nodes - end)
+    farther = value[np.argmin(np.abs(np.log2(np.maximum(away, 1e-16)) + 20.0))]  # 2^-20 away
+    return bool(abs(last) > 16.0 * abs(farther))
+
+
+def _brinks(
+    designs: Designs, nodes: Array, status: NDArray[np.int8]
+) -> tuple[NDArray[np.intp], Array, NDArray[np.int8]]:
+    """The last angles before friction leaves no balance of forces, or two: rows, angles and status beyond."""
+    fine, bad = status == 0, (status == JAMS) | (status == TWO_BALANCES)
+    rows, columns = np.nonzero((fine[:, :-1] & bad[:, 1:]) | (bad[:, :-1] & fine[:, 1:]))
+    forth = fine[rows, columns]
+    inside = np.where(forth, nodes[rows, columns], nodes[rows, columns + 1])
+    beyond = np.where(forth, nodes[rows, columns + 1], nodes[rows, columns])
+    for _ in range(60 if rows.size else 0):
+        middle = 0.5 * (inside + beyond)
+        balanced = values_at(("status",), designs, rows, middle)["status"] == 0
+        inside, beyond = np.where(balanced, middle, inside), np.where(balanced, beyond, middle)
+    return rows, inside, values_at(("status",), designs, rows, beyond)["status"]
+
+
+def _turns(slope: str, designs: Designs, result: Mapping[str, Any], rate: Array) -> NDArray[np.bool_]:
+    """Which extrema are at a kink or jump, whose angle moves with the design."""
+    if not designs.rubs:
+        return np.zeros(len(rate), np.bool_)
+    low, high = designs.theta
+    rows = np.arange(len(rate))
+    theta = result["theta"]
+    left = np.abs(values_at((slope,), designs, rows, np.nan_to_num(theta))[slope])
+    steep = np.sort(np.where(np.isfinite(rate), np.abs(rate), np.inf), axis=1)
+    usual = steep[rows, np.isfinite(steep).sum(axis=1) // 2]
+    turns: NDArray[np.bool_] = (left > SMOOTH * usual) & (theta != low) & (theta != high)
+    return turns
+
+
+def _gradient(
+    name: str, kind: str, designs: Designs, result: Mapping[str, Any], turns: NDArray[np.bool_]
+) -> dict[str, Array]:
     """The partial derivatives at the extreme angle."""
-    parameters = [n for n in designs.columns if n in INPUTS]
+    parameters = designs.parameters
     names = tuple(sensitivity(name, p) for p in parameters)
     rows = np.arange(len(result["theta"]))
-    found = _values(names, designs, rows, np.nan_to_num(result["theta"]))
+    found = values_at(names, designs, rows, np.nan_to_num(result["theta"]))
     sign = np.sign(result["value"]) if kind == "absmax" else 1.0
-    usable = (result["status"] == 0) & np.isfinite(result["value"])
+    usable = np.isin(result["status"], (0, JAMS, TWO_BALANCES)) & ~turns & np.isfinite(result["value"])
     with np.errstate(invalid="ignore"):
         return {p: np.where(usable, sign * found[n], np.nan) for p, n in zip(parameters, names, strict=True)}
 

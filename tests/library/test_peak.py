@@ -107,6 +107,32 @@ def test_a_mechanism_that_cannot_turn():
     assert lowest["status"] == 2
 
 
+def test_a_stall_is_an_end_but_no_pole():
+    """At the stall a_C is alpha dY/dtheta, finite, although nothing goes on beyond."""
+    found = dx.peak("a_C", ec=0.01, AB=0.04, BC=0.1, omega0=10.0, alpha=-50.0, kind="max", theta=(0.0, 2.0))
+    slope = dx.evaluate("V_C", theta=1.0, ec=0.01, AB=0.04, BC=0.1, omega=1.0)
+    assert found["theta"] == pytest.approx(1.0, abs=1e-9)
+    assert found["value"] == pytest.approx(-50.0 * slope, rel=1e-9)
+    assert found["status"] == 2
+
+
+def test_what_needs_no_motion_and_what_is_nothing():
+    """Statics: virtual work, T_in = -F_Y dY/dtheta. No speed is needed, and a given one changes nothing."""
+    design = {"ec": 0.06, "AB": 0.14, "BC": 0.31}
+    speed = dx.peak("V_C", omega0=1.0, **design)
+    for motion in ({}, {"omega0": 0.0}, {"omega0": OMEGA}):
+        torque = dx.peak("T_in", F_Y=-50.0, **design, **motion)
+        assert torque["value"] == pytest.approx(50.0 * speed["value"], rel=1e-13)
+        assert torque["theta"] == pytest.approx(speed["theta"], abs=1e-9)
+        assert torque["gradient"]["F_Y"] == pytest.approx(-speed["value"], rel=1e-13)
+        assert torque["gradient"]["ec"] == pytest.approx(50.0 * speed["gradient"]["ec"], rel=1e-9)
+        assert "omega0" not in torque["gradient"]
+    assert dx.peak("T_in", **design)["value"] == 0.0
+    crank = dx.peak("T_in", m_crank=2.0, g_Y=-10.0, **design)
+    assert crank["value"] == pytest.approx(2.0 * 10.0 * 0.07)
+    assert dx.peak("V_B", omega0=3.0, **design)["value"] == pytest.approx(0.42)
+
+
 def test_designs_broadcast_and_what_cannot_be_is_told():
     found = dx.peak("a_C", ec=[[0.0], [0.15], [0.9]], AB=[0.125, 0.1], BC=0.35, omega0=OMEGA)
     assert found["value"].shape == found["theta"].shape == found["gradient"]["AB"].shape == (3, 2)

@@ -343,6 +343,21 @@ def test_infeasible_peaks_are_told():
     assert "1 reached at a limit angle or change point" in text
 
 
+def test_what_friction_does_to_peaks_is_told():
+    peak = {"quantity": "T_in", "over": {"mu": [0, 0.5, 1.5]}}
+    text = str(dx.scene({**PRESS, "outputs": [], "masses": {"m_slider": 1}, "peak": [peak]}).run())
+    assert "1 jammed by friction at some angles (no balance of forces)" in text
+    assert "1 with two balances of forces at some angles (friction)" in text
+    assert max(map(len, text.splitlines())) <= 100
+
+
+def test_peaks_of_what_the_lengths_do_not_change():
+    data = {**SMALL, "outputs": [], "peak": [{"quantity": "V_B"}]}
+    found = dx.scene(data).run().peaks[0].dataset
+    assert found.value.values == pytest.approx([0.125 * 50 * math.pi] * 2)
+    assert [name for name in found if name.startswith("value_wrt_")] == ["value_wrt_AB", "value_wrt_omega0"]
+
+
 def test_files_are_whole_or_not_there(tmp_path, monkeypatch):
     """An interrupted run leaves the old file as it was."""
     monkeypatch.chdir(tmp_path)

@@ -23,7 +23,8 @@ SECTIONS: dict[str, type[schema.Section]] = {
     "loads": schema.Loads,
 }
 OPTIONAL = ("alpha", *LOADS)  # 0 where they are not given, or half of a length
-SENSITIVITIES = ("ec", "AB", "BC")  # of a peak, those on which it depends, unless others are asked for
+LENGTHS = ("ec", "AB", "BC")
+SENSITIVITIES = LENGTHS  # of a peak, those on which it depends, unless others are asked for
 
 PICTURES = (".png", ".svg", ".pdf")
 
@@ -192,7 +193,7 @@ def _require(key: str, needs: Iterable[str], what: str, inputs: Mapping[str, Any
 
 def _require_for_grid(key: str, names: tuple[str, ...], inputs: Mapping[str, Any]) -> list[str]:
     """The same for a grid, which has `status` and `margin` too; they need no speed."""
-    always = [name for name in _needs(("status", "margin"), inputs) if name in ("theta", "ec", "AB", "BC")]
+    always = [name for name in _needs(("status", "margin"), inputs) if name in ("theta", *LENGTHS)]
     needs = dict.fromkeys([*_needs(names, inputs), *always])
     return _require(key, needs, ", ".join(names), inputs)
 
@@ -244,9 +245,11 @@ def _peak(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> Pea
     for n in over:
         if n not in needed:
             raise SceneError(f"{key}.over.{n}: {name} does not depend on it")
-    ordered = [n for n in over if n in needed] + [n for n in needed if n not in over]
+    # Whether the mechanism can be assembled at all depends on its lengths.
+    lengths = _require(f"{key}.quantity", [n for n in LENGTHS if n not in needed], name, there)
+    ordered = dict.fromkeys((*over, *needed, *lengths))
     axes = {n: value for n in ordered if isinstance(value := there[n], tuple)}
-    fixed = {n: value for n in needed if isinstance(value := there[n], float)}
+    fixed = {n: value for n in ordered if isinstance(value := there[n], float)}
     base = (
         _other_design(f"{key}.baseline", table.baseline or {}, axes, fixed)
         if table.baseline is not None

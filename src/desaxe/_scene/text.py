@@ -41,7 +41,7 @@ def table(rows: Sequence[Sequence[str]], left: int = 0) -> list[str]:
 
 def number(value: float) -> str:
     """A number in six digits."""
-    return f"{float(value):.6g}"
+    return f"{float(value) + 0.0:.6g}"  # and no -0
 
 
 # ---- printed values ------------------------------------------------------------------------------
@@ -153,8 +153,8 @@ STATUS_WORDS = {
     2: "reached at a limit angle or change point, or where friction turns round: no gradient there",
     3: "stalled at all of these angles",
     4: "bad input",
-    5: "jammed by friction at some of these angles, where no forces balance; the peak is of the others",
-    6: "with two balances of forces at some of these angles (friction); the peak is of the others",
+    5: "jammed by friction at some angles (no balance of forces); the peak is of the others",
+    6: "with two balances of forces at some angles (friction); the peak is of the others",
 }
 
 

@@ -1,0 +1,94 @@
+"""Peaks of forces and torques, and what friction does to them: kinks, jumps, angles at which it jams."""
+
+import math
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+
+ENGINE = {"AB": 0.04, "BC": 0.064, "m_rod": 0.5, "m_slider": 0.8}
+THETA = np.linspace(0, 2 * np.pi, 100_001)
+NAMES = ("T_in", "N_C", "F_friction", "F_B_Y", "power_in")
+
+
+def swept(name, kind, **design):
+    """The best of a hundred thousand angles, those where it is NaN aside."""
+    values = dx.evaluate(name, theta=THETA, **design)
+    choose = {"max": np.nanmax, "min": np.nanmin, "absmax": lambda v: np.nanmax(np.abs(v))}[kind]
+    return choose(values)
+
+
+@pytest.mark.parametrize("kind", ["max", "min", "absmax"])
+@pytest.mark.parametrize("name", NAMES)
+def test_no_sweep_finds_a_better_one(name, kind):
+    """At jumps and ends, which no sweep hits, the peak is a little beyond the sweep."""
+    for ec, mu, omega0 in ((0.01, 0.0, 251.0), (0.01, 0.1, -251.0), (0.02, 0.5, 251.0), (0.02, 1.0, -251.0)):
+        design = {**ENGINE, "ec": ec, "mu": mu, "omega0": omega0}
+        best = swept(name, kind, **design)
+        found = dx.peak(name, kind=kind, **design)["value"]
+        beyond = best - found if kind == "min" else found - best
+        assert beyond >= -1e-13 * abs(best)
+        if math.isfinite(found):
+            assert beyond <= 1e-3 * abs(best), (ec, mu, omega0)
+
+
+@pytest.mark.parametrize("parameter", ["ec", "AB", "BC", "omega0", "m_rod", "m_slider", "mu"])
+def test_gradient_with_friction(parameter):
+    """Against differences of peaks, also where friction jams at other angles (the last design)."""
+    for ec, mu, omega0, status in ((0.01, 0.1, 251.0, 0), (0.02, 0.5, 251.0, 6), (0.02, 1.0, -251.0, 5)):
+        design = {**ENGINE, "ec": ec, "mu": mu, "omega0": omega0}
+        found = dx.peak("T_in", **design)
+        step = 1e-6 * abs(design[parameter])
+        near = design[parameter] + step * np.array([-1.0, 1.0])
+        low, high = dx.peak("T_in", **{**design, parameter: near})["value"]
+        assert found["status"] == status
+        assert found["gradient"][parameter] == pytest.approx((high - low) / (2 * step), rel=1e-6)
+
+
+def test_a_jump_at_the_dead_centre():
+    """There friction turns round: the peak is its value on one side, and moves with the design."""
+    design = {**ENGINE, "ec": 0.02, "mu": 0.1, "omega0": -251.0}
+    found = dx.peak("F_friction", kind="max", **design)
+    dead_centre = math.pi - math.asin(0.02 / (0.064 - 0.04))
+    assert found["theta"] == pytest.approx(dead_centre, abs=1e-12)
+    sides = dx.evaluate("F_friction", theta=dead_centre + np.array([-1e-10, 1e-10]), **design)
+    assert sides[0] * sides[1] < 0
+    assert found["value"] == pytest.approx(sides.max(), rel=1e-8)
+    assert found["status"] == 2
+    assert all(math.isnan(slope) for slope in found["gradient"].values())
+
+
+def test_a_torque_without_bound_where_friction_jams():
+    """It jams where mu |tan phi| = 1, and the torque grows without bound towards there."""
+    found = dx.peak("T_in", ec=0.0, mu=1.5, omega0=251.0, **ENGINE)
+    phi = math.atan(1 / 1.5)
+    assert found["value"] == math.inf
+    assert found["theta"] == pytest.approx(math.asin(0.064 * math.sin(phi) / 0.04), abs=1e-12)
+    assert found["status"] == 5
+    assert all(math.isnan(slope) for slope in found["gradient"].values())
+    lowest = dx.peak("T_in", kind="min", ec=0.0, mu=1.5, omega0=251.0, **ENGINE)
+    assert math.isfinite(lowest["value"])
+    assert lowest["status"] == 5
+
+
+def test_an_arc_with_one_balance_ends_where_a_second_appears():
+    """There the force is finite, and half of what it would be without friction."""
+    design = {**ENGINE, "ec": 0.01, "omega0": 251.0}
+    found = dx.peak("N_C", kind="max", mu=1.0, **design)
+    without = dx.evaluate("N_C", theta=found["theta"], **design)
+    assert dx.evaluate("phi", theta=found["theta"], ec=0.01, AB=0.04, BC=0.064) == pytest.approx(math.pi / 4)
+    assert found["value"] == pytest.approx(without / 2, rel=1e-9)
+    assert found["status"] == 5  # elsewhere it jams
+    assert all(math.isnan(slope) for slope in found["gradient"].values())
+
+
+def test_only_where_forces_balance():
+    """Within these angles nothing balances once; outside of them nothing is wrong."""
+    design = {**ENGINE, "ec": 0.0, "mu": 1.5, "omega0": 251.0}
+    found = dx.peak("T_in", theta=(1.2, 1.4), **design)
+    assert math.isnan(found["value"])
+    assert math.isnan(found["theta"])
+    assert found["status"] in (5, 6)
+    assert dx.peak("T_in", theta=(0.0, 1.0), **design)["status"] == 0
+    assert dx.peak("a_C", **design)["status"] == 0
