@@ -9,7 +9,7 @@ import pytest
 from matplotlib.colors import to_hex
 
 import desaxe as dx
-from desaxe.plot import curves, save
+from desaxe.plot import curves, polar, save
 
 THETA = np.linspace(0, 2 * np.pi, 181)
 MACHINE = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
@@ -88,6 +88,94 @@ def test_many_curves_get_a_colour_bar(tmp_path):
     save(axes.figure, tmp_path / "many.png")
 
 
+PRESS = {"AB": 0.04, "BC": 0.064, "omega0": 251.0, "m_rod": 0.5, "m_slider": 0.8, "theta": THETA}
+
+
+def test_torques():
+    dataset = dx.grid(["T_in", "M_eff"], ec=[0, 0.01, 0.02], **PRESS)
+    lines = curves(dataset, "T_in")
+    assert lines[0].axes.get_ylabel() == "torque that the drive applies to the crank, T_in [N m]"
+    np.testing.assert_array_equal(lines[2].get_ydata(), dataset.T_in.values[2])
+    assert curves(dataset, "M_eff")[0].axes.get_ylabel().endswith("M_eff [kg m$^{2}$]")
+
+
+def test_over_a_mass_and_a_long_label():
+    dataset = dx.grid("F_shaking_X", ec=0.01, m_crank=[0.0, 0.1, 0.2], **{**PRESS, "theta": 1.0})
+    (line,) = curves(dataset, "F_shaking_X", over="m_crank")
+    assert line.axes.get_xlabel() == "mass of the crank, m_crank [kg]"
+    assert line.axes.get_ylabel() == "force of the mechanism on the frame along X,\nF_shaking_X [N]"
+
+
+@pytest.mark.parametrize("draw", [curves, polar])
+def test_friction_that_jams_does_not_squash_the_rest(draw):
+    jammed = dx.grid("T_in", ec=0.02, mu=[1.0, 1.5], **{**PRESS, "theta": np.linspace(0, 2 * np.pi, 20_001)})
+    assert float(jammed.T_in.max()) > 1e5
+    lines = draw(jammed, "T_in")
+    low, high = lines[0].axes.get_ylim()
+    assert np.isnan(lines[0].get_ydata()).any()
+    assert -1000 < low < float(jammed.T_in.quantile(0.05, skipna=True))
+    assert float(jammed.T_in.quantile(0.8, skipna=True)) < high < 2000
+
+
+def test_polar():
+    dataset = dx.grid("T_in", ec=[0, 0.01, 0.02], **PRESS)
+    lines = polar(dataset, "T_in", family="ec")
+    axes = lines[0].axes
+    np.testing.assert_array_equal(lines[1].get_xdata(), THETA)
+    np.testing.assert_array_equal(lines[1].get_ydata(), dataset.T_in.values[1])
+    assert texts(axes.get_legend()) == ["0", "0.01", "0.02"]
+    assert axes.get_xlabel().split("\n") == [
+        "torque that the drive applies to the crank, T_in [N m]",
+        "over the crank angle, theta [deg]",
+    ]
+    circle = axes.lines[-1]
+    assert set(circle.get_ydata()) == {0.0}
+    low, high = axes.get_ylim()
+    assert low < float(dataset.T_in.min())
+    assert high > float(dataset.T_in.max())
+
+
+def test_polar_turns_like_the_crank():
+    """At theta = 0 the crank is up, at 90 deg at the right."""
+    axes = polar(dx.grid("T_in", ec=0.01, **PRESS), "T_in")[0].axes
+    assert axes.get_legend() is None
+    up, right = (axes.transData.transform((angle, 0.0)) for angle in (0.0, np.pi / 2))
+    centre = axes.transAxes.transform((0.5, 0.5))
+    assert up[0] == pytest.approx(centre[0])
+    assert up[1] > centre[1]
+    assert right[0] > centre[0]
+    assert right[1] == pytest.approx(centre[1])
+
+
+def test_polar_of_a_joint_force():
+    dataset = dx.grid(["F_B_X", "F_B_Y"], ec=0.01, **PRESS)
+    (line,) = polar(dataset, ("F_B_X", "F_B_Y"))
+    np.testing.assert_allclose(line.get_ydata(), np.hypot(dataset.F_B_X, dataset.F_B_Y))
+    assert line.axes.get_xlabel().startswith("magnitude of the force of the crank on the rod, F_B [N]\n")
+    assert line.axes.get_ylim()[0] == 0.0
+    assert list(line.axes.lines) == [line]
+
+
+def test_polar_on_given_axes():
+    figure = matplotlib.figure.Figure()
+    dataset = dx.grid("T_in", ec=[0, 0.01], **PRESS)
+    axes = figure.add_subplot(projection="polar")
+    assert polar(dataset, "T_in", ax=axes) == list(axes.lines)[:2]
+    with pytest.raises(ValueError, match="polar Axes are wanted"):
+        polar(dataset, "T_in", ax=figure.add_subplot())
+    with pytest.raises(ValueError, match="two components of a vector, got 1"):
+        polar(dataset, ("T_in",))
+    with pytest.raises(ValueError, match="T_in has no dimension 'theta', it has: ec"):
+        polar(dataset.isel(theta=0), "T_in")
+
+
+@pytest.mark.parametrize("draw", [curves, polar])
+def test_nothing_but_gaps_or_nought(draw, tmp_path):
+    for ec, m_slider in ((1.0, 0.8), (0.0, 0.0)):
+        dataset = dx.grid("T_in", ec=ec, **{**PRESS, "m_slider": m_slider, "m_rod": 0.0})
+        save(draw(dataset, "T_in")[0].figure, tmp_path / "empty.png")
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [
@@ -134,6 +222,7 @@ import numpy as np
 import desaxe as dx
 dataset = dx.grid(["a_C"], ec=[0, 0.1], theta=np.linspace(0, 6, 9), AB=0.125, BC=0.35, omega0=1)
 dx.plot.curves(dataset, "a_C")
+dx.plot.polar(dataset, "a_C")
 print("matplotlib.pyplot" in sys.modules)
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -145,3 +234,5 @@ def test_missing_extra(monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(ImportError, match=r"plot\.curves needs matplotlib.*'desaxe\[plot\]'"):
         curves(family([0, 0.1]), "a_C")
+    with pytest.raises(ImportError, match=r"plot\.polar needs matplotlib"):
+        polar(family([0, 0.1]), "a_C")

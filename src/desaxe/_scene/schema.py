@@ -87,8 +87,8 @@ class Loads(Section, frozen=True):
 
     F_X: Values | None = None
     F_Y: Values | None = None
-    g_X: Values | None = None  # noqa: N815
-    g_Y: Values | None = None  # noqa: N815
+    g_X: Values | None = None
+    g_Y: Values | None = None
     mu: Values | None = None
 
 

@@ -1,6 +1,7 @@
 """Pictures of labelled results (extra `plot`); pyplot and its global state are never touched."""
 
 from .families import curves as curves
-from .families import save as save
+from .files import save as save
+from .round import polar as polar
 
-__all__ = ["curves", "save"]
+__all__ = ["curves", "polar", "save"]
