@@ -3,8 +3,8 @@
     python examples/paper_b.py out/
 
 The paper calls AB, BC, ec, phi, Y by k, c, e, alpha, x, measures s = k + c - x, and counts the slider's
-velocity and acceleration as those of s. Solid curves are the mechanism's own, dashed ones the paper's torque
-(48), which lets two point masses stand for the links and leaves the force of the guide out.
+velocity and acceleration as those of s. Solid curves are the mechanism's own; dashed ones are the paper's
+torque (48), with the wrong lever (`desaxe errata --document B` has more), and its existing model (52), (53).
 """
 
 import sys

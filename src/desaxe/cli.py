@@ -345,13 +345,13 @@ def _add_errata(commands: Any) -> None:
 
 
 def _errata(options: argparse.Namespace) -> int:
+    from ._errata import entries, markdown, table
+
     if options.markdown:
         if options.document is not None or options.verdict is not None:
             raise UsageError("--markdown prints all entries: leave --document and --verdict out")
-        print(import_module("desaxe._errata").markdown())
+        print(markdown())
         return 0
-    from ._errata import entries, table
-
     found = entries(document=options.document, verdict=options.verdict)
     print(json.dumps([entry._asdict() for entry in found], indent=2) if options.json else table(found))
     return 0

@@ -74,7 +74,7 @@ MISTAKES = {
     "no rod": ("mechanism.BC", 0, ["mechanism.BC = 0", "a finite length > 0"]),
     "not finite": ("motion.omega0", math.inf, ["motion.omega0 = inf", "a finite number"]),
     "no such branch": ("mechanism.branch", 2, ["mechanism.branch = 2", "1 (the papers) or -1"]),
-    "no such accuracy": ("accuracy", "best", ['accuracy = "best"', '"standard"']),
+    "no such accuracy": ("accuracy", "best", ['accuracy = "best"', '"standard" or "extended"']),
     "outputs that are no list": ("outputs", "a_C", ['outputs = "a_C"', "a list of names of quantities"]),
     "unknown output": ("outputs", ["V_C", "aC"], ['outputs #2 = "aC"', "did you mean a_C"]),
     "missing input": ("motion.omega0", None, ["outputs", "needs motion.omega0, which is missing"]),

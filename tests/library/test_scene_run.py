@@ -154,6 +154,25 @@ def test_picture_that_needs_less_than_the_outputs(tmp_path, monkeypatch):
     assert [path.name for path in result.files] == ["phi.png"]
 
 
+def test_accuracy_reaches_values_peaks_and_checks():
+    check = {"at": {"theta": 1.5, "ec": 0.05}, "printed": {"a_C": 1}}
+    data = {**SMALL, "peak": [{"quantity": "a_C"}], "check": [check]}
+    standard, extended = (dx.scene({**data, "accuracy": word}).run() for word in ("standard", "extended"))
+    point = {"AB": 0.125, "BC": 0.35, "omega0": 50 * math.pi, "accuracy": "extended"}
+    assert extended.checks[0].computed == dx.evaluate("a_C", theta=1.5, ec=0.05, **point)
+    theta = extended.dataset.theta.values
+    for k, ec in enumerate((0.0, 0.05)):
+        np.testing.assert_array_equal(
+            extended.dataset.a_C[k], dx.evaluate("a_C", theta=theta, ec=ec, **point)
+        )
+        assert float(extended.peaks[0].dataset.value[k]) == dx.peak("a_C", ec=ec, **point)["value"]
+        there = float(extended.peaks[0].dataset.theta[k])
+        assert float(extended.peaks[0].dataset.value[k]) == abs(
+            dx.evaluate("a_C", theta=np.array([there]), ec=ec, **point)[0]
+        )
+    assert standard.checks[0].computed == pytest.approx(extended.checks[0].computed, rel=1e-13)
+
+
 def test_large_grid_in_blocks(monkeypatch):
     whole = dx.scene(SMALL).run().dataset
     monkeypatch.setattr(scene_run, "BLOCK", 5)
