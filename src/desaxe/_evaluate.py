@@ -94,7 +94,7 @@ def evaluate(
         check_border(given, branch, threads)
     key = wanted, tuple(given), omega is not None, is_steady(alpha), branch, accuracy
     if omega0 is None and omega is None and "status" in wanted:
-        given["omega0"] = standstill(wanted)
+        given["omega0"] = standstill(wanted, given)
     point = _POINTS.get(key)
     if point is None:
         asked = request(wanted, given, branch, accuracy)

@@ -65,7 +65,7 @@ def _given(names: Sequence[str], inputs: Mapping[str, Any]) -> dict[str, Any]:
     check_inputs("grid", inputs, tuple(INPUTS))
     given = dict(inputs)
     if given.get("omega0") is None and given.get("omega") is None:
-        given["omega0"] = standstill(names)
+        given["omega0"] = standstill(names, given)
     return given
 
 

@@ -71,12 +71,10 @@ def check_inputs(caller: str, given: Iterable[str], allowed: Sequence[str]) -> N
             raise TypeError(f"{caller}() has no input {name!r}: {', '.join(allowed)}")
 
 
-def standstill(names: Iterable[str]) -> float | None:
+def standstill(names: Iterable[str], given: Mapping[str, Any]) -> float | None:
     """The speed to take where none is given: 0 where only `status` would use it, else None."""
     others = tuple(name for name in names if name not in ("status", "margin"))
-    for name in others:
-        quantity(name)
-    return None if others and "omega0" in program_of(others).inputs else 0.0
+    return None if others and "omega0" in request(others, given, 1, "standard").inputs else 0.0
 
 
 def as_number(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]) -> float | None:

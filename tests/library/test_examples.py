@@ -1,6 +1,7 @@
-"""The examples about forces, run as they stand."""
+"""README's ten lines and the examples about forces, run as they stand."""
 
 import contextlib
+import re
 import runpy
 from pathlib import Path
 
@@ -10,6 +11,14 @@ import pytest
 import desaxe as dx
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def test_ten_lines():
+    text = (EXAMPLES.parent / "README.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"## Ten lines\n\n```python\n(.*?)```", text, re.DOTALL)
+    names = {}
+    exec(compile(code, "README.md", "exec"), names)
+    assert names["press"]["m_slider"] == 0.8
 
 
 @pytest.fixture(scope="module")

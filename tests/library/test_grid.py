@@ -119,6 +119,19 @@ def test_a_position_needs_no_motion():
     assert (grid["status"] == 0).all()
 
 
+def test_statics_need_no_motion():
+    """Where nothing has a mass and nothing rubs; by virtual work T_in = -F_Y dY/dtheta."""
+    design = {"ec": 0.06, "AB": 0.14, "BC": 0.31}
+    grid = dx.grid("T_in", theta=THETA, F_Y=[-50.0, 0.0], **design)
+    assert "omega0" not in grid
+    assert (grid["status"] == 0).all()
+    speed = dx.evaluate("V_C", theta=THETA, omega0=1.0, **design)
+    np.testing.assert_allclose(grid["T_in"].sel(F_Y=-50.0), 50.0 * speed, rtol=1e-12)
+    for needs_a_speed in ({"m_rod": 1.0}, {"mu": 0.1}):
+        with pytest.raises(TypeError, match="omega0 is missing"):
+            dx.grid("T_in", theta=THETA, F_Y=-50.0, **design, **needs_a_speed)
+
+
 @pytest.mark.parametrize(
     ("arguments", "error", "words"),
     [
