@@ -74,7 +74,13 @@ MISTAKES = {
     "no rod": ("mechanism.BC", 0, ["mechanism.BC = 0", "a finite length > 0"]),
     "not finite": ("motion.omega0", math.inf, ["motion.omega0 = inf", "a finite number"]),
     "no such branch": ("mechanism.branch", 2, ["mechanism.branch = 2", "1 (the papers) or -1"]),
-    "no such accuracy": ("accuracy", "best", ['accuracy = "best"', '"standard" or "extended"']),
+    "no such accuracy": ("accuracy", "best", ['accuracy = "best"', "one of fast, standard, extended"]),
+    "accuracy out of reach": ("accuracy", 1e-20, ["accuracy = 1e-20: the smallest error is"]),
+    "accuracy that is no error": (
+        "accuracy",
+        [1],
+        ["accuracy = [1]", '"extended", or an error such as 1e-9'],
+    ),
     "outputs that are no list": ("outputs", "a_C", ['outputs = "a_C"', "a list of names of quantities"]),
     "unknown output": ("outputs", ["V_C", "aC"], ['outputs #2 = "aC"', "did you mean a_C"]),
     "missing input": ("motion.omega0", None, ["outputs", "needs motion.omega0, which is missing"]),
@@ -297,6 +303,12 @@ def test_values_of_inputs():
     assert inputs["omega0"] == pytest.approx(50 * math.pi, rel=1e-15)
     backwards = {"start": 0.5, "stop": 0.2, "step": "-100 mm"}
     assert dx.scene(changed("mechanism.BC", backwards)).inputs["BC"] == pytest.approx([0.5, 0.4, 0.3, 0.2])
+
+
+def test_an_accuracy_is_a_name_or_an_error():
+    assert dx.scene({**SMALL, "accuracy": 1e-9}) == dx.scene(SMALL)
+    assert dx.scene({**SMALL, "accuracy": 1e-15}) == dx.scene({**SMALL, "accuracy": "extended"})
+    assert dx.scene({**SMALL, "accuracy": "fast"}) != dx.scene(SMALL)
 
 
 def test_masses_and_loads():

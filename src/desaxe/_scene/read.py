@@ -7,6 +7,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from .._accuracy import accuracy_of
 from .._program import Form, program_of
 from ..catalogue import law_name, quantity
 from ..inputs import INPUTS
@@ -135,9 +136,17 @@ def read(data: Mapping[str, Any]) -> Content:
     peaks = [_peak(f"peak #{index}", table, inputs) for index, table in enumerate(file.peak, 1)]
     pictures = [_picture(f"picture #{index}", table, inputs) for index, table in enumerate(file.picture, 1)]
     return Content(
-        file.title, outputs, file.accuracy, branch, inputs,
+        file.title, outputs, _accuracy(file.accuracy), branch, inputs,
         tuple(checks), tuple(peaks), tuple(pictures), file.results.data,
     )  # fmt: skip
+
+
+def _accuracy(written: str | float) -> str:
+    """One of the accuracies, or the fastest one that keeps an error."""
+    try:
+        return accuracy_of(written)
+    except ValueError as error:
+        raise SceneError(f"accuracy = {shown(written)}: {str(error).partition(': ')[2]}") from None
 
 
 def _require_names(file: schema.SceneFile) -> None:

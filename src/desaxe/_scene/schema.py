@@ -26,7 +26,9 @@ Printed = Annotated[float | str, Meta(description='text as it is printed, such a
 Percent = Annotated[float | str, Meta(description='a percentage such as "33 %"')]
 Branch = Annotated[Literal[1, -1], Meta(description="1 (the papers) or -1")]
 Kind = Annotated[Literal["absmax", "max", "min"], Meta(description="one of absmax, max, min")]
-Accuracy = Annotated[Literal["standard", "extended"], Meta(description='"standard" or "extended"')]
+Accuracy = Annotated[
+    str | float, Meta(description='"fast", "standard", "extended", or an error such as 1e-9')
+]
 Angles = Annotated[tuple[Number, Number], Meta(description='two angles such as ["0 deg", "360 deg"]')]
 
 
