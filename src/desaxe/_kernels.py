@@ -20,7 +20,8 @@ from ._point import cut
 from ._program import Form
 from ._request import Request
 from .compiler.emit_numba import emit_numba
-from .compiler.kernel import hoist
+from .compiler.kernel import tabulate
+from .compiler.passes.both_ways import both_ways
 from .compiler.passes.double_double import double_digits
 from .compiler.passes.guard import guard_inputs
 from .compiler.passes.number import number_values
@@ -117,7 +118,10 @@ def source_of(key: KernelKey) -> str:
         guarded = guard_inputs(program, varying, LEAST, {})
         if not key.far:
             guarded = number_values(expand_trigonometry(guarded, constants()))
-    kernel = hoist(guarded, {name: axes.get(name) for name in program.inputs}, key.axes)
+    if "theta" in axes and key.axes > 1:
+        outside = [name for name in guarded.inputs if axes.get(name) != axes["theta"]]
+        guarded = number_values(both_ways(guarded, outside))
+    kernel = tabulate(guarded, {name: axes.get(name) for name in guarded.inputs}, key.axes)
     fixed = ", ".join(f"{name} = {value:g}" for name, value in key.fixed)
     motion = "a given state" if key.form.state else "paper A's law"
     return emit_numba(kernel, f"desaxe kernel: {', '.join(key.names)}; {motion}; {fixed}.", single)

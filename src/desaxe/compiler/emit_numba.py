@@ -8,12 +8,12 @@ module compiles when it is imported, or loads what an earlier process compiled; 
 kept on disk, it compiles in every process.
 """
 
-from collections.abc import Container
+from collections.abc import Container, Mapping
 from textwrap import wrap
 
 from .kernel import Kernel, level_program
 from .operations import HELPERS, NUMBA_HELPERS, OPERATIONS
-from .program import Argument, Program
+from .program import Argument, Line, Program
 from .text import INDENT, WIDTH, write_lines
 
 _TYPES = {"f64": "float64", "i64": "int8"}  # a status is stored as int8
@@ -73,10 +73,11 @@ def emit_numba_with_front(kernel: Kernel, docstring: str, front: str, optional: 
 
 
 def _header(kernel: Kernel, docstring: str, numpy_names: list[str]) -> str:
-    lines = [line for lines in kernel.levels for line in lines]
+    lines = _all_lines(kernel)
     called = {_called(line.op) for line in lines} - {""}
     calls = sorted(called - _NUMPY_CALLS)
     constants = {str(a) for line in lines for a in line.args if isinstance(a, float) and a - a != 0.0}
+    numpy_names = [*numpy_names, *(["empty"] if kernel.tables else [])]
     from_numpy = sorted(
         {*numpy_names, *constants, *(called & _NUMPY_CALLS), *(["uint64"] * (kernel.axes > 0))}
     )
@@ -89,8 +90,14 @@ def _header(kernel: Kernel, docstring: str, numpy_names: list[str]) -> str:
     return "\n".join([f'"""{docstring}"""\n', *imports, "", *given])
 
 
+def _all_lines(kernel: Kernel) -> list[Line]:
+    """The lines of all loops, tables included."""
+    kernels = [*(table.kernel for table in kernel.tables), kernel]
+    return [line for each in kernels for lines in each.levels for line in lines]
+
+
 def _helpers(kernel: Kernel) -> list[str]:
-    used = {line.op for lines in kernel.levels for line in lines}
+    used = {line.op for line in _all_lines(kernel)}
     return [
         NUMBA_HELPERS.get(name, f'@njit(error_model="numpy")\n{HELPERS[name]}')
         for name in HELPERS
@@ -131,22 +138,45 @@ def _parameters(kernel: Kernel) -> list[str]:
 
 
 def _body(kernel: Kernel, cast: str) -> list[str]:
-    """The loops; every input is cast where it is read."""
+    """The loops, those of the tables first; every input is cast where it is read."""
     scalars = [name for name, axis in kernel.inputs.items() if axis is None and cast]
-    lines = [f"{INDENT}{name} = {cast}({name})" for name in scalars] + _level(kernel, 0)
-    for axis in range(kernel.axes):
+    lines = [f"{INDENT}{name} = {cast}({name})" for name in scalars]
+    everywhere = tuple(range(kernel.axes))
+    for table in kernel.tables:
+        shape = ", ".join(f"out_{kernel.outputs[0]}.shape[{axis}]" for axis in table.along)
+        lines += [f"{INDENT}{name}_table = empty(({shape},))" for name in table.kernel.outputs]
+        lines += _loops(table.kernel, cast, table.along, kernel.outputs[0], {}, "{}_table")
+    reads = {name: table.along for table in kernel.tables for name in table.kernel.outputs}
+    return lines + _loops(kernel, cast, everywhere, kernel.outputs[0], reads, "out_{}")
+
+
+def _loops(
+    kernel: Kernel,
+    cast: str,
+    along: tuple[int, ...],
+    measure: str,
+    reads: Mapping[str, tuple[int, ...]],
+    store: str,
+) -> list[str]:
+    """One loop nest over some axes; lengths are those of the output `measure`."""
+    lines = _level(kernel, 0)
+    for depth, axis in enumerate(along):
         # The length is read from an output: an axis may have no input that is needed. An index that has no
         # sign cannot count from the end: where LLVM has to allow for that, it mistakes arrays that lie
         # next to each other in memory for overlapping ones, and a long loop then runs one by one.
-        length = f"uint64(out_{kernel.outputs[0]}.shape[{axis}])"
-        lines.append(f"{INDENT * (axis + 1)}for i{axis} in range({length}):")
-        pad = INDENT * (axis + 2)
+        lines.append(f"{INDENT * (depth + 1)}for i{axis} in range(uint64(out_{measure}.shape[{axis}])):")
+        pad = INDENT * (depth + 2)
         read = f"{cast}({{0}}_axis[i{axis}])" if cast else f"{{0}}_axis[i{axis}]"
-        lines += [f"{pad}{name} = {read.format(name)}" for name, on in kernel.inputs.items() if on == axis]
-        lines += _level(kernel, axis + 1)
-    index = ", ".join(f"i{axis}" for axis in range(kernel.axes))
-    pad = INDENT * (kernel.axes + 1)
-    return lines + [f"{pad}out_{name}[{index}] = {name}" for name in kernel.outputs]
+        lines += [f"{pad}{name} = {read.format(name)}" for name, on in kernel.inputs.items() if on == depth]
+        rows = ((name, on) for name, on in reads.items() if on[-1] == axis)
+        lines += [f"{pad}{name} = {name}_table[{_index(on)}]" for name, on in rows]
+        lines += _level(kernel, depth + 1)
+    pad = INDENT * (len(along) + 1)
+    return lines + [f"{pad}{store.format(name)}[{_index(along)}] = {name}" for name in kernel.outputs]
+
+
+def _index(along: tuple[int, ...]) -> str:
+    return ", ".join(f"i{axis}" for axis in along)
 
 
 def _level(kernel: Kernel, level: int) -> list[str]:

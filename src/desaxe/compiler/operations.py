@@ -103,7 +103,7 @@ HELPERS = {
     wide = 134217729.0 * b
     b_high = wide - (wide - b)
     b_low = b - b_high
-    return a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low)
+    return a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low) + 0.0
 ''',
     "divide": '''def divide(a, b):
     """a / b with the IEEE 754 answers that Python refuses to give."""
