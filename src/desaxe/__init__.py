@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from ._inverse import inverse as inverse
     from ._peak import peak as peak
     from ._scene import scene as scene
+    from ._simulate import simulate as simulate
     from .catalogue import quantities as quantities
 
 # Public name -> the room it lives in; `equation` is SymPy's and comes with the extra `derive`.
@@ -28,6 +29,7 @@ _ROOMS = {
     "inverse": "desaxe._inverse",
     "feasibility": "desaxe._feasibility",
     "scene": "desaxe._scene",
+    "simulate": "desaxe._simulate",
     "quantities": "desaxe.catalogue",
     "equation": "desaxe.derive.equation",
 }
@@ -43,6 +45,7 @@ __all__ = [
     "plot",
     "quantities",
     "scene",
+    "simulate",
 ]
 
 

@@ -13,6 +13,7 @@ EXTRAS = {
     "pint": "units",
     "msgspec": "scene",
     "tqdm": "scene",
+    "scipy": "simulate",
     "desaxe.derive": "derive",
 }
 

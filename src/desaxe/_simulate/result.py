@@ -1,0 +1,60 @@
+"""What a simulation gives: a dict that shows itself on one screen."""
+
+from typing import Any, NamedTuple
+
+DONE, REST, LIMIT, JAMS, FAILED, NO_INERTIA, NO_START = range(7)
+WORDS = {
+    DONE: "reached its end",
+    REST: "at rest: the torque cannot move the crank",
+    LIMIT: "reached a limit angle",
+    JAMS: "the friction jams",
+    FAILED: "the integration failed",
+    NO_INERTIA: "the effective inertia vanishes at a dead centre",
+    NO_START: "a bad input, or no mechanism at the start",
+}
+
+
+class Event(NamedTuple):
+    """Something that happens at an instant: kind, time [s], crank angle [rad], speed [rad/s].
+
+    `which` says more: outer or inner dead centre, what the friction does.
+    """
+
+    kind: str
+    t: float
+    theta: float
+    omega: float
+    which: str = ""
+
+
+class Simulation(dict[str, Any]):
+    """The histories by name, and `events`, `status`, `message`, `energy_residual`, `work`, `solution`."""
+
+    def __repr__(self) -> str:
+        lines = [f"simulation: {self['message']}"]
+        for name, value in self.items():
+            if name in ("message", "events", "solution"):
+                continue
+            lines.append(f"  {name:16} {_shown(value)}")
+        events = self.get("events", [])
+        lines += [f"  {_event(event)}" for event in events[:12]]
+        if len(events) > 12:
+            lines.append(f"  ... {len(events) - 12} more events")
+        return "\n".join(lines)
+
+
+def _shown(value: Any) -> str:
+    shape = getattr(value, "shape", ())
+    if not shape:
+        return f"{value:.6g}"
+    known = value[value == value]  # no NaN
+    if not known.size:
+        return f"{shape}"
+    return (
+        f"{shape}  {value.flat[0]:.6g} ... {value.flat[-1]:.6g}, from {known.min():.6g} to {known.max():.6g}"
+    )
+
+
+def _event(event: Event) -> str:
+    which = f" ({event.which})" if event.which else ""
+    return f"t = {event.t:.6g} s: {event.kind}{which}, theta = {event.theta:.6g}, omega = {event.omega:.6g}"
