@@ -2,6 +2,8 @@
 
 import math
 import re
+import subprocess
+import sys
 from itertools import pairwise
 
 import mpmath
@@ -299,6 +301,31 @@ def test_energy_with_friction_through_every_kink():
     assert found["energy_residual"] < 1e-9
 
 
+def test_kinks_at_one_instant_are_all_met():
+    """With ec = 0 and no rod mass the normal force changes its side just at the dead centres."""
+    design = {"AB": 0.14, "BC": 0.31, "ec": 0.0, "m_crank": 1.0, "m_slider": 1.0, "mu": 0.3}
+    found = dx.simulate(torque=0.05, t_end=3.0, **design)
+    told = [event.theta / math.pi for event in found["events"] if event.kind == "dead centre"]
+    assert told == pytest.approx([1.0, 2.0, 3.0, 4.0][: len(told)], abs=1e-12)
+    assert len(told) >= 4
+    assert found["energy_residual"] < 1e-9
+
+
+def test_a_jam_on_the_way_is_told_at_once():
+    """Next to a change point the rod is nearly across: |N| grows without bound."""
+    found = dx.simulate(torque=0.5, t_end=2.0, omega_start=10.0, mu=0.1, **{**PRESS, "BC": 0.2 + 1e-8})
+    assert (found["status"], kinds(found)[-1]) == (3, "friction jams")
+    assert "no forces balance" in found["message"]
+    design = {"AB": 0.14, "BC": 0.21, "ec": 0.06, "I_crank": 0.05, "m_slider": 0.01, "mu": 1.5, "F_Y": -3.0}
+    found = dx.simulate(torque=2.0, t_end=5.0, theta0=-0.1, omega_start=5.0, **design)
+    assert "two sets of forces balance" in found["message"]
+
+
+def test_an_angle_that_is_a_dead_centre_is_both():
+    found = dx.simulate(torque=0.25, t_end=3.0, until=math.pi - math.asin(0.06 / 0.17), **PRESS)
+    assert kinds(found) == ["dead centre", "angle"]
+
+
 def test_friction_that_jams_is_told():
     design = {"AB": 0.14, "BC": 0.21, "ec": 0.06, "I_crank": 0.001, "mu": 2.0, "F_Y": -10.0}
     found = dx.simulate(torque=1.0, t_end=5.0, theta0=0.9, omega_start=2.0, **design)
@@ -423,3 +450,17 @@ def test_the_solution_ends_with_the_motion():
     found = dx.simulate(torque=0.25, t_end=1.0, until=1.0, **PRESS)
     with pytest.raises(ValueError, match="where the motion ends"):
         found["solution"](1.0)
+
+
+def test_without_scipy_one_line_says_what_to_install():
+    code = "import sys; sys.modules['scipy'] = None; import desaxe as dx; dx.simulate"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    last = done.stderr.strip().splitlines()[-1]
+    assert last.endswith("simulate needs scipy: python -m pip install 'desaxe[simulate]'")
+
+
+def test_scipy_is_not_loaded_before_it_is_needed():
+    point = "theta=1.0, ec=0.0, AB=1.0, BC=2.0"
+    code = f"import sys, desaxe as dx; dx.evaluate('Y', {point}); print('scipy' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"

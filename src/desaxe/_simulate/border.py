@@ -125,13 +125,13 @@ def model_of(values: Mapping[str, float], branch: int, theta0: float, drive: Dri
     model = Model(values, branch, Chart(*arc, 0.0), drive) if isfinite(arc[0] - arc[1]) else None
     if model is None:
         model = Model(values, branch, FREE, drive)
-    elif _grows(values) and theta_intervals(*lengths) != [(0.0, TURN)]:
+    elif grows(values) and theta_intervals(*lengths) != [(0.0, TURN)]:
         model = Model(values, branch, Chart(*arc, 0.5 * (arc[1] - arc[0])), drive)
     _check_inertia(model, theta0)
     return model
 
 
-def _grows(values: Mapping[str, float]) -> bool:
+def grows(values: Mapping[str, float]) -> bool:
     """Whether the effective inertia grows without bound at a limit angle.
 
     There the mass that counts is m_slider BC^2 + m_rod r_rod^2 + I_rod, for the slider moves and the rod

@@ -19,6 +19,7 @@ from .border import (
     scalar,
 )
 from .history import told
+from .many import is_array, simulate_many
 from .model import Load, Model
 from .result import Simulation
 from .run import Run, Tolerance
@@ -56,6 +57,7 @@ def simulate(
     until: Any = None,
     max_step: Any = None,
     max_steps: int = 1_000_000,
+    threads: int | None = None,
 ) -> Simulation:
     """The motion of the crank under a torque.
 
@@ -72,18 +74,25 @@ def simulate(
     until        crank angle or angles [rad]: the first that is reached ends the motion
     max_step     longest step [s], for loads that act briefly
     max_steps    more steps than this are a failure
+    threads      for many designs: how many threads share them, all there are without
 
     Gives a dict that shows itself on one screen:
 
     t, theta, omega, alpha, <names>   histories, as far as the motion goes
     events           named tuples (kind, t, theta, omega, which): "dead centre", "standstill", "angle",
-                     "limit", "friction jams", "break-away"
+                     "limit", "friction jams", "break-away", "no inertia"
     status, message  0 reached t_end or an angle, 1 at rest for good, 2 at a limit angle, 3 friction jams,
                      4 integration failed, 5 the effective inertia vanishes at a dead centre
     energy_residual  |kinetic + potential - work - initial| at most, relative to all work done or the largest
                      kinetic energy
     work             of torque, loads and friction, gravity not included [J]
     solution         function t -> dict of theta and omega, anywhere up to the end
+
+    Many designs at once: lengths, masses, constant loads, theta0, omega_start and a constant torque may be
+    arrays that broadcast like NumPy. All run in compiled code (numba compiles a torque function), without
+    friction. Histories then have the shape (designs..., times), 101 instants without `times`, NaN where a
+    motion has ended. status (also 6: bad input, or no mechanism at the start), energy_residual, work and
+    t_last, where each ends, have the shape of the designs; there are no events and no solution.
 
     Equation: M_eff alpha + M_eff' omega^2/2 = torque - static torque - friction (paper C, section 3).
     Raises ValueError where no motion can start (no mechanism there, no inertia) and for a bad value.
@@ -93,25 +102,39 @@ def simulate(
         "I_crank": I_crank, "I_rod": I_rod, "r_crank": r_crank, "r_rod": r_rod, "F_X": F_X, "F_Y": F_Y,
         "g_X": g_X, "g_Y": g_Y, "mu": mu,
     }  # fmt: skip
-    check_border({}, branch)
+    check_border({}, branch, threads)
     wanted = check_names(names)
     end = scalar("t_end", t_end, "s", TINY, "a finite time > 0")
+    longest = inf if max_step is None else scalar("max_step", max_step, "s", TINY, "a finite time > 0")
     instants, angles, rtol = read_times(times, end), read_until(until), read_rtol(rtol)
+    starts = {"theta0": theta0, "omega_start": omega_start, "torque": torque}
+    if any(map(is_array, (*given.values(), *starts.values()))):
+        _check_many(method, atol, until)
+        how = (rtol, end, longest, max_steps)
+        return simulate_many(given, starts, int(branch), wanted, instants, how, threads)
     start = scalar("theta0", theta0, "rad"), scalar("omega_start", omega_start, "rad/s")
     drive = drive_of(torque, F_X, F_Y)
     values = design_values(given)
     model = model_of(values, int(branch), start[0], drive)
-    how = Tolerance(
+    tolerance = Tolerance(
         read_method(method),
         rtol,
         _atol(atol, rtol, model, *start, end),
-        inf if max_step is None else scalar("max_step", max_step, "s", TINY, "a finite time > 0"),
+        longest,
         max_steps,
     )
     v = start[1] * sqrt(model.inertia(start[0]))
-    run = Run(model, np.array([model.chart.q(start[0]), v, 0.0]), end, angles, how).to_the_end()
+    run = Run(model, np.array([model.chart.q(start[0]), v, 0.0]), end, angles, tolerance).to_the_end()
     shown = {**values, "branch": branch, "F_X": drive.F_X, "F_Y": drive.F_Y}
     return told(run, wanted, instants, shown)
+
+
+def _check_many(method: str, atol: Any, until: Any) -> None:
+    """What is for one design at a time."""
+    given = {"method": method != "DOP853", "atol": atol is not None, "until": until is not None}
+    for name, there in given.items():
+        if there:
+            raise ValueError(f"{name}= is for one design at a time: many run by DOP853 to t_end")
 
 
 def _atol(atol: Any, rtol: float, model: Model, theta: float, omega: float, t_end: float) -> Any:

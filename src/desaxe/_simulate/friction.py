@@ -9,13 +9,17 @@ with alpha_free the acceleration without friction: one solution, which has the s
 -1 <= K sign(N_free) < 1; none above (the friction jams) and two below.
 """
 
-from math import copysign
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from itertools import pairwise
+from math import copysign, inf
+from typing import NamedTuple
 
 from .law import Smooth
 from .model import Model
 
+JAMS_AT = 1.0 - 1e-6  # of K sign(N): a million times the force without friction is as good as none
 NOISE = 1e-12  # of the terms of N_free: below it, its sign is rounding
+WAITS = 2000  # instants at which a crank held by friction is asked whether the torque can move it
 
 
 class Contact(NamedTuple):
@@ -46,7 +50,7 @@ class Contact(NamedTuple):
     def solutions(self) -> int:
         """How many sets of forces balance."""
         share = self.wedge * self.pressed
-        return 0 if share >= 1.0 else 2 if share < -1.0 else 1
+        return 0 if share >= JAMS_AT else 2 if share < -1.0 else 1
 
 
 def contact(
@@ -89,7 +93,7 @@ class Rubbing(Smooth):
         return self.at(t, theta, branch, omega).torque(self.pressed)
 
 
-def ways_to_start(model: Model, t: float, theta: float, branch: float) -> list[tuple[float, Any]]:
+def ways_to_start(model: Model, t: float, theta: float, branch: float) -> list[tuple[float, Contact]]:
     """Which ways the crank starts from rest: (way, the guide), of those that its own friction allows."""
     found = []
     for way in (1.0, -1.0):
@@ -97,3 +101,28 @@ def ways_to_start(model: Model, t: float, theta: float, branch: float) -> list[t
         if here.solutions == 1 and here.alpha * way > 0.0:
             found.append((way, here))
     return found
+
+
+def breaks_away(model: Model, theta: float, branch: float, start: float, t_end: float) -> float | None:
+    """When torque or load, which change with time, move a crank at rest; None if they do not.
+
+    Asked at many instants: a push that is over sooner than that is not noticed.
+    """
+    ways = [(way, side_ahead(model, theta, branch, way)) for way in (1.0, -1.0)]
+
+    def moves(t: float) -> bool:
+        here = ((way, contact(model, t, theta, branch, 0.0, way, side)) for way, side in ways)
+        return max(way * c.alpha if c.solutions == 1 else -inf for way, c in here) > 0.0
+
+    instants = [start + (t_end - start) * k / WAITS for k in range(WAITS)] + [t_end]
+    for before, after in pairwise(instants):
+        if moves(after):
+            return _first(moves, before, after)
+    return None
+
+
+def _first(moves: Callable[[float], bool], a: float, b: float) -> float:
+    """The first instant in a bracket at which something holds, to the last digit."""
+    while a < (middle := 0.5 * (a + b)) < b:
+        a, b = (a, middle) if moves(middle) else (middle, b)
+    return b

@@ -12,7 +12,8 @@ from .._evaluate import evaluate
 from .law import state_of
 from .model import Model
 from .result import FAILED, LIMIT, Simulation
-from .run import Q, Run, V, W
+from .run import Run
+from .watch import Q, V, W
 
 Array = NDArray[np.float64]
 SAMPLES = 1001  # instants told where none are given

@@ -1,0 +1,136 @@
+"""The compiled module of a family of designs: its functions from the Program, and DOP853 behind them."""
+
+import hashlib
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache, lru_cache
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from threading import Lock
+from types import ModuleType
+from typing import Any, NamedTuple
+
+from .. import _cache
+from .._point import cut
+from .._program import Form
+from ..compiler.operations import HELPERS
+from ..compiler.program import Program
+from ..compiler.text import INDENT, with_short_temporaries, write_lines
+from . import compiled
+from .model import MOVING, STILL, UNLOADED
+
+LINE = "# ---- compiled"
+_HEADER = '''"""{what}"""
+
+from math import asin, atan2, copysign, cos, fabs, inf, nan, pi, sin, sqrt
+
+from numba import njit, types
+from numpy import empty, floor, nextafter
+'''
+_NUMBER = "def torque(t, theta, omega, number):\n    return number\n"
+_FUNCTION = "def torque(t, theta, omega, number):\n    return given_torque(t, theta, omega)\n"
+_NJIT = '@njit(error_model="numpy")\n'
+_SIGNATURE = """rows, row = types.float64[:, ::1], types.float64[::1]
+signature = types.void(
+    rows, rows, row, row, rows, row, row, row, row, rows, rows, row, rows, rows, rows, types.int8[::1], rows
+)
+"""
+_COMPILE = 'kernel = njit(signature, {}error_model="numpy", nogil=True)(designs)\n'
+_ONCE = _COMPILE.format("")
+_KEPT = f"""try:
+    {_COMPILE.format("cache=True, ")}except RuntimeError:  # no folder that numba can write to
+    {_ONCE}"""
+
+
+class Family(NamedTuple):
+    """What designs have in common: the form of the program, and what is 0 in all of them."""
+
+    form: Form
+    fixed: tuple[tuple[str, float], ...]
+
+    def program(self, names: Sequence[str], *zeros: str) -> Program:
+        """The program of some names."""
+        return cut(tuple(names), self.form, tuple((dict(self.fixed) | dict.fromkeys(zeros, 0.0)).items()))
+
+    @property
+    def programs(self) -> Mapping[str, Program]:
+        """The functions of a module, by name."""
+        return {
+            "still": self.program(STILL, *UNLOADED),
+            "moving": self.program(MOVING, *UNLOADED),
+            "potential": self.program(("potential_energy",), *UNLOADED),
+        }
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """The inputs that differ from design to design, in the order of a row."""
+        used = {name for program in self.programs.values() for name in program.inputs}
+        return tuple(sorted(used - {"theta", "branch"}))
+
+
+@cache
+def source_of(family: Family, given_torque: bool) -> str:
+    """The text of the module."""
+    inputs = {name: f"p[{at}]" for at, name in enumerate(family.inputs)}
+    parts = [
+        _HEADER.format(what=f"desaxe: the motion of many designs; p has {', '.join(inputs)}."),
+        _NJIT + HELPERS["two_sum_error"],
+        *(_function(name, program, inputs) for name, program in family.programs.items()),
+        _NJIT + (_FUNCTION if given_torque else _NUMBER),
+        _integrator(),
+        _SIGNATURE,
+        _ONCE if given_torque else _KEPT,
+    ]
+    return "\n\n".join(parts)
+
+
+def _function(name: str, program: Program, places: Mapping[str, str]) -> str:
+    """A program as a jitted function of angle, branch and the row of a design."""
+    rows = [f"{i} = {places[i]}" for i in program.inputs if i in places]
+    rows += write_lines(with_short_temporaries(program), "numba")
+    rows.append(f"return {', '.join(program.outputs)}")
+    return "\n".join([f"{_NJIT}def {name}(theta, branch, p):", *(INDENT + row for row in rows)]) + "\n"
+
+
+def _integrator() -> str:
+    """What numba compiles of `compiled`: every function jitted, and the last one with its signature."""
+    text = Path(str(compiled.__file__)).read_text(encoding="utf-8")
+    functions = text.partition(LINE)[2].partition("\n")[2].strip().split("\ndef ")
+    *helpers, last = [function.removeprefix("def ") for function in functions]
+    bare = [f"{_NJIT}def {function.strip()}\n" for function in helpers]
+    return "\n\n".join([*bare, f"def {last.strip()}\n"]).replace(": Any", "").replace(") -> Any:", "):")
+
+
+_LOCK = Lock()
+
+
+@lru_cache(maxsize=32)
+def kernel_of(family: Family, given_torque: Any) -> Callable[..., None]:
+    """The compiled loop over designs, from memory, from disk, or compiled now."""
+    source = source_of(family, given_torque is not None)
+    with _LOCK:
+        if given_torque is not None:
+            module = ModuleType("desaxe_designs")
+            module.__dict__["given_torque"] = given_torque
+            exec(compile(source, "<desaxe designs>", "exec"), module.__dict__)
+            return _kernel(module)
+        path = _cache.folder().path / f"designs_{hashlib.sha256(source.encode()).hexdigest()[:20]}.py"
+        with _cache.locked(path):
+            if not path.exists():
+                _cache.write(path, source)
+            return _kernel(_loaded(path))
+
+
+def _loaded(path: Path) -> ModuleType:
+    spec = spec_from_file_location(f"desaxe_{path.stem}", path)
+    if spec is None or spec.loader is None:
+        raise ImportError(f"cannot load {path}")
+    module = module_from_spec(spec)
+    sys.modules[spec.name] = module  # numba finds the module by its name when it loads machine code
+    spec.loader.exec_module(module)
+    return module
+
+
+def _kernel(module: ModuleType) -> Callable[..., None]:
+    kernel: Callable[..., None] = module.kernel
+    return kernel
