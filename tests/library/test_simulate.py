@@ -210,6 +210,31 @@ def test_a_limit_angle_ends_the_motion(masses):
         assert found["alpha"][-1] == pytest.approx(slope, rel=2e-2)
 
 
+def test_a_load_that_grows_without_bound_at_a_limit():
+    """On a massless slider: F_Y Y' is infinite there, its work is not."""
+    design = {"AB": 0.1, "BC": 0.15, "ec": -0.06, "m_crank": 0.3, "I_crank": 0.0009, "F_Y": 10.0}
+    found = dx.simulate(torque=0.0, t_end=1.0, theta0=0.3, omega_start=-70.0, **design)
+    last = math.asin((0.06 - 0.15) / 0.1)
+    assert found["status"] == 2
+    assert found["theta"][-1] == pytest.approx(last, rel=1e-12)
+    assert found["energy_residual"] < 1e-9
+    inertia = 0.0009 + 0.3 * 0.05**2
+    lost = 10.0 * (dx.evaluate("Y", theta=0.3, ec=-0.06, AB=0.1, BC=0.15) - 0.1 * math.cos(last))
+    assert found["omega"][-1] == pytest.approx(-math.sqrt(70.0**2 - 2.0 * lost / inertia), rel=1e-6)
+
+
+def test_steps_that_end_next_to_a_limit():
+    """Designs whose steps fall anywhere: each reaches its limit angle, at a time that tells no steps."""
+    for omega in np.linspace(3.0, 3.4, 9).tolist():
+        loose, tight = (
+            dx.simulate(torque=0.25, t_end=3.0, theta0=0.1, omega_start=omega, rtol=rtol, **ROCKER)
+            for rtol in (1e-9, 1e-11)
+        )
+        assert loose["status"] == tight["status"] == 2
+        assert loose["t"][-1] == pytest.approx(tight["t"][-1], abs=3e-9)
+        assert loose["energy_residual"] < 1e-9
+
+
 def test_a_swing_between_limits_goes_on():
     found = dx.simulate(torque=lambda t, theta, omega: -2.0 * theta, t_end=5.0, theta0=0.5, **ROCKER)
     assert found["status"] == 0

@@ -66,7 +66,8 @@ def simulate(
     theta0, omega_start   crank angle [rad] and speed [rad/s] at t = 0
     AB, BC, ec, branch, masses, centres of mass, gravity, mu   as in `evaluate`
     F_X, F_Y     external force on the slider [N]: numbers or functions (t, theta, omega)
-    names        quantities and sensitivities of a given state to tell along the motion
+    names        quantities and sensitivities of a given state to tell along the motion, by `evaluate`: NaN at
+                 a limit angle, and where no or two sets of forces balance the acceleration as given
     rtol, atol   tolerances of the integration; atol for the angle [rad], sqrt(kinetic energy) and work, by
                  default rtol times 0.001 rad and a hundredth of the energy that start and loads suggest
     method       one of SciPy's integrators: DOP853, RK45, RK23, Radau, BDF, LSODA

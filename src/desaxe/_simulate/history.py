@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .._evaluate import evaluate
 from .law import state_of
 from .model import Model
-from .result import FAILED, LIMIT, Simulation
+from .result import FAILED, LIMIT, REST, Simulation
 from .run import Run
 from .watch import Q, V, W
 
@@ -29,7 +29,8 @@ def told(run: Run, names: Sequence[str], times: Any, given: Mapping[str, Any]) -
         result |= evaluate(list(names), theta=theta, omega=omega, alpha=alpha, **{**given, **loads})
     result["events"] = run.events
     result["status"], result["message"] = run.status, run.message
-    result["energy_residual"] = energy_residual(run.model, run.accepted)
+    accepted = run.accepted[:-1] if run.status == LIMIT else run.accepted  # there Y has half its digits
+    result["energy_residual"] = energy_residual(run.model, accepted)
     result["work"] = float(run.y[W])
     result["solution"] = Solution(run)
     return result
@@ -75,9 +76,12 @@ def _histories(run: Run, t: Array, without_alpha: bool = False) -> tuple[Array, 
 def _set_end(run: Run, t: Array, theta: Array, omega: Array, alpha: Array) -> None:
     """The event that ends the motion is where it says, not where the interpolant comes to.
 
-    At a limit angle itself M_eff is infinite: there theta'' = -half sin(q) q'^2.
+    At a limit angle itself M_eff is infinite: there theta'' = -half sin(q) q'^2. What rests
+    has no acceleration.
     """
     ends = np.flatnonzero(t >= run.t)
+    if run.status == REST:
+        alpha[ends] = 0.0
     theta[ends], omega[ends] = run.events[-1].theta, run.events[-1].omega
     if run.status == LIMIT and run.model.chart.half:
         last = run.pieces[-1]

@@ -13,10 +13,11 @@ from .friction import Contact, Rubbing, breaks_away, contact, side_ahead, ways_t
 from .law import Law, Resting, Smooth, State, state_of
 from .model import Model
 from .result import DONE, FAILED, JAMS, LIMIT, REST, Event
-from .watch import JAMMED, LOST, NEVER, STANDSTILL, Found, Mark, Q, Step, V, events_in, marks_of
+from .watch import JAMMED, LOST, NEVER, SHORT, STANDSTILL, Found, Mark, Q, Step, V, events_in, marks_of, root
 
 Array = NDArray[np.float64]
 SAME = 1e-9  # of a step: events so close together are one instant
+AT_LIMIT = 1e-9  # rad: so near to a limit a load on a massless slider has grown without bound
 CHATTER = 20  # standstills in a row, all within a millionth of the time
 
 
@@ -207,12 +208,16 @@ class Run:
             if here.solutions != 1 or 1.0 - law.pressed * here.wedge < 1e-3:
                 self._jam(0)
                 return
+        for mark in self.marks:
+            if mark.kind == "limit" and abs(mark.angle - state.theta) < AT_LIMIT:
+                self._tell_end(Found(self.t, mark, Q, float(self.y[Q])))
+                return
         where = f"at t = {self.t:.6g} s, theta = {state.theta:.6g}, omega = {state.omega:.6g}"
         self.stop(FAILED, f"the integration failed {where}: {reason}")
 
     def _meet_all(self, step: Step) -> bool:
         """Note the events of a step; whether the motion is cut at one of them."""
-        events = events_in(step, self.model, self.marks, self.left)
+        events = [e for e in events_in(step, self.model, self.marks, self.left) if e.t <= self.t_end]
         while events:
             now = [event for event in events if event.t - events[0].t <= SAME * (step.end - step.t)]
             events = events[len(now) :]
@@ -284,17 +289,32 @@ class Run:
 
     def _cut(self, found: Found, step: Step) -> tuple[float, Array]:
         """The instant of an event and the state there, integrated to, not interpolated."""
+        if found.mark.kind == "limit":
+            return self._cut_at_limit(found, step)
+        t = found.t
+        for _ in range(2):
+            y = self._step_to(step, t)
+            if found.place < 0:
+                return t, y
+            slope = step.law.rate(t, y)[found.place]
+            miss = (found.value - y[found.place]) / slope if slope else 0.0
+            t = min(max(t + miss, step.t), step.end)
+        y[found.place] = found.value
+        return t, y
+
+    def _cut_at_limit(self, found: Found, step: Step) -> tuple[float, Array]:
+        """The same at a limit angle, next to which S and the rates lose their digits.
+
+        Integrated to a little before it; the interpolant tells what is left.
+        """
         t, y = found.t, step.inside(found.t)
-        if found.mark.kind != "limit":  # next to a limit angle the rates are less exact than the interpolant
-            for _ in range(2):
-                y = self._step_to(step, t)
-                if found.place < 0:
-                    break
-                slope = step.law.rate(t, y)[found.place]
-                miss = (found.value - y[found.place]) / slope if slope else 0.0
-                t = min(max(t + miss, step.t), step.end)
-        if found.place >= 0:
-            y[found.place] = found.value
+        short = found.value - copysign(SHORT, found.value - step.y[Q])
+        if (step.y[Q] - short) * (found.value - short) < 0.0:
+            near = root(lambda t: float(step.inside(t)[Q]) - short, step.t, t)
+            off = self._step_to(step, near) - step.inside(near)
+            t -= float(off[Q]) * (t - near) / (found.value - short)
+            y += off
+        y[Q] = found.value
         return t, y
 
     def _step_to(self, step: Step, t: float) -> Array:

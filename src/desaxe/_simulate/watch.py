@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from itertools import pairwise
-from math import ceil, floor, inf
+from math import ceil, copysign, floor, inf
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +18,7 @@ from .result import DONE, JAMS, LIMIT, NO_INERTIA
 
 Array = NDArray[np.float64]
 INSIDE = (0.25, 0.5, 0.75)  # of a step: where events are looked for besides its ends
+SHORT = 2e-3  # of q: so far from a limit angle S keeps ten digits
 NEAR = 1e-9  # rad: an angle that a stretch starts from is not reached at once
 Q, V, W = range(3)
 NEVER = -1  # of an event that does not end the motion
@@ -88,6 +89,8 @@ def events_in(step: Step, model: Model, marks: list[Mark], left: float) -> list[
     thetas = [model.chart.place(q)[0] for q in samples.y[:, Q].tolist()]
     for mark in marks:
         found += _passages(step, model, mark, samples, thetas, left)
+        if mark.kind == "limit" and model.chart.half:
+            found += _just_ahead(step, model, mark)
     if isinstance(step.law, Rubbing):
         found += _kinks(step, step.law, model, samples)
     return sorted(found, key=lambda event: event.t)
@@ -112,6 +115,18 @@ def _passages(
             q = angle if limit else chart.q(angle)
             t = root(lambda t, there: float(step.inside(t)[Q]) - there, *times, q)
             yield Found(t, mark, Q, q)
+
+
+def _just_ahead(step: Step, model: Model, mark: Mark) -> Iterator[Found]:
+    """A limit angle so close ahead of a step that none can start there: it is read off the interpolant."""
+    end = model.chart.ends[mark.which == "last"]
+    before, now = (float(step.inside(t)[Q]) for t in (step.end - 1e-3 * (step.end - step.t), step.end))
+    gap = end - now
+    if not 0.0 < gap * copysign(1.0, end) < SHORT or gap * (now - before) <= 0.0:
+        return
+    far = step.end + 2e-3 * (step.end - step.t) * gap / (now - before)
+    if (end - float(step.inside(far)[Q])) * gap < 0.0:
+        yield Found(root(lambda t: float(step.inside(t)[Q]) - end, step.end, far), mark, Q, end)
 
 
 def _between(a: float, b: float, angle: float, turns: bool) -> list[float]:
