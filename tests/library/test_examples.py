@@ -71,3 +71,11 @@ def test_figures_of_paper_b(tmp_path, capsys):
     assert sorted(path.name for path in (tmp_path / "new").iterdir()) == names
     assert [Path(line.partition(" - ")[0]).name for line in lines] == names
     assert lines[-1].endswith("Comparing torque with existing model at e = 0 mm")
+
+
+def test_figures_of_paper_c(tmp_path, capsys):
+    script = runpy.run_path(str(EXAMPLES / "paper_c.py"))
+    script["main"](str(tmp_path / "new"))
+    names = [f"paper_c_{number:02}.png" for number in range(5, 12)]
+    assert sorted(path.name for path in (tmp_path / "new").iterdir()) == names
+    assert [Path(line.partition(" - ")[0]).name for line in capsys.readouterr().out.splitlines()] == names

@@ -5,9 +5,12 @@ quadrature of time; `drive(mechanism(kind), sinusoid, 2, 600)` those of the sinu
 with 16 stages. 400 steps give the same to 23 digits or more.
 """
 
+import math
+
 import pytest
 from mpmath import mp, mpf
 
+import desaxe as dx
 from tests.papers import motion_c as motion
 from tests.papers.newton_euler_c import State
 from tests.papers.paper_c import printed_sinusoid
@@ -24,6 +27,7 @@ END_STATES = {  # theta in rad and omega in rad/s at t_end, from rest at theta =
     ("bars", "500"): ("29.09474976932627961392285181", "26.86907494159027327206568430"),
     ("bars", "sinusoid"): ("16.08627058006324953273720262", "21.70057600135986985274410919"),
 }
+INPUTS = ("ec", "AB", "BC", "m_crank", "m_rod", "m_slider", "I_crank", "I_rod", "r_crank", "r_rod")
 CONSTANT = [key for key in END_STATES if key[1] != "sinusoid"]
 
 
@@ -125,3 +129,22 @@ def test_sinusoid_ends_within_a_period():
     ends = [round(float(value), 3) for kind in ("listed", "bars") for value in pair((kind, "sinusoid"))]
     assert ends == [18.005, 15.168, 16.086, 21.701]
     assert 9 < t_end("sinusoid") * 30 / (2 * mp.pi) < 10
+
+
+@pytest.mark.parametrize("key", END_STATES, ids="-".join)
+def test_simulated_end_state(key):
+    """The package's motion from rest, in doubles, reaches the stored end state."""
+    kind, torque = key
+    links = {name: float(value) for name, value in mechanism(kind)._asdict().items() if name in INPUTS}
+    drive = (
+        (lambda t, theta, omega: 0.35 * (1 - math.cos(30 * t)))
+        if torque == "sinusoid"
+        else float(torque) / 1000
+    )
+    run = dx.simulate(
+        torque=drive, t_end=float(t_end(torque)), theta0=0.0, omega_start=0.0, **links, rtol=1e-11
+    )
+    theta, omega = map(float, pair(key))
+    assert run["theta"][-1] == pytest.approx(theta, abs=1e-7)
+    assert run["omega"][-1] == pytest.approx(omega, abs=1e-7)
+    assert abs(run["energy_residual"]) < 1e-9
