@@ -9,7 +9,7 @@ from ._point import cut
 from ._program import Form, program_of
 from .catalogue import law_name, quantity
 from .inputs import INPUTS, is_good
-from .names import CENTRES, LOADS
+from .names import CENTRES, LOADS, parts
 
 
 class Request(NamedTuple):
@@ -55,8 +55,15 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
     zeros = [(name, 0.0) for name in absent if name not in CENTRES]
     if "alpha" in inputs and is_steady(given.get("alpha")):
         zeros.append(("alpha", 0.0))
-    halves = tuple(name for name in CENTRES if name in absent)
+    halves = tuple(name for name in CENTRES if given.get(name) is None and _moves(name, own))
     return Request(shown, own, Form(state, halves), (("branch", float(branch)), *zeros), kept)
+
+
+def _moves(centre: str, names: tuple[str, ...]) -> bool:
+    """Whether these names need a centre of mass, or only how it moves with its link."""
+    program = program_of(names)
+    lines = (line.name for line in program.lines)
+    return centre in program.inputs or any(parts(name)[0] == centre for name in lines)
 
 
 def is_steady(alpha: Any) -> bool:

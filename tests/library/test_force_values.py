@@ -81,6 +81,14 @@ def test_values_and_all_first_sensitivities(geometry, kind):
         assert not misses(dx.evaluate(names_for(point), **point), point), point
 
 
+@pytest.mark.parametrize("parameter", ["AB", "BC"])
+def test_a_derivative_that_moves_a_centre_alone(parameter):
+    """Asked for by itself, it may need how the centre of mass moves, though not where that is."""
+    for point in points("slowing down", "halves", 2):
+        for name in (name for name in force_names() if name.endswith(f"_wrt_{parameter}")):
+            assert not misses({name: dx.evaluate(name, **point)}, point), (name, point)
+
+
 @pytest.mark.parametrize("kind", ["smooth", "friction", "halves"])
 def test_a_kernel_is_as_right_as_a_point(kind):
     """The same through the compiled loop; the sensitivities of the torque stand for all."""
