@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from . import plot as plot
+    from ._enclose import enclose as enclose
     from ._evaluate import evaluate as evaluate
     from ._feasibility import feasibility as feasibility
     from ._grid import grid as grid
@@ -27,6 +28,7 @@ _ROOMS = {
     "grid": "desaxe._grid",
     "peak": "desaxe._peak",
     "inverse": "desaxe._inverse",
+    "enclose": "desaxe._enclose",
     "feasibility": "desaxe._feasibility",
     "scene": "desaxe._scene",
     "simulate": "desaxe._simulate",
@@ -36,6 +38,7 @@ _ROOMS = {
 _MODULES = ("plot",)
 
 __all__ = [
+    "enclose",
     "equation",
     "evaluate",
     "feasibility",

@@ -15,7 +15,10 @@ from typing import Any, NamedTuple
 from .extras import EXTRAS
 
 RUNTIME = ("numpy", "numba", "llvmlite")
-OPTIONAL = ("sympy", "mpmath", "xarray", "h5netcdf", "h5py", "matplotlib", "pint", "msgspec", "tqdm", "scipy")
+OPTIONAL = (
+    "sympy", "mpmath", "xarray", "h5netcdf", "h5py", "matplotlib", "pint", "msgspec", "tqdm", "scipy",
+    "python-flint",
+)  # fmt: skip
 FEATURES = ("sse2", "sse4.2", "avx", "avx2", "fma", "avx512f", "neon", "sve")  # as LLVM calls them
 NAMES = ("V_C", "a_C")
 INPUTS = ("theta", "ec", "AB", "BC", "omega0")

@@ -14,6 +14,8 @@ EXTRAS = {
     "msgspec": "scene",
     "tqdm": "scene",
     "scipy": "simulate",
+    "flint": "rigorous",
+    "python-flint": "rigorous",
     "desaxe.derive": "derive",
 }
 
