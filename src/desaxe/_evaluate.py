@@ -39,6 +39,7 @@ def evaluate(
     accuracy: str | float = "standard",
     threads: int | None = None,
     out: Any = None,
+    quality: bool = False,
 ) -> Any:
     """Values of quantities and sensitivities, at one point or over arrays that broadcast like NumPy.
 
@@ -65,6 +66,8 @@ def evaluate(
              float32; or the error that you can bear, such as 1e-9, for the fastest that keeps it
     threads  for arrays: how many threads share the work, all that pay without
     out      for arrays: where to put the answer, an array or a dict name -> array
+    quality  True: for each name, in place of the value, an object with `value`, `conditions` (input ->
+             |input/value d value/d input|), `error_bound` (of the rounding) and `digits`
 
     What the wanted names do not need may be left out; masses and loads are 0 without. A number may
     carry its unit: "10 mm", or a pint quantity. An infeasible point gives NaN; ask for `status` to learn
@@ -89,6 +92,10 @@ def evaluate(
     ):
         loads = (m_crank, m_rod, m_slider, I_crank, I_rod, r_crank, r_rod, F_X, F_Y, g_X, g_Y, mu)
         given.update((name, load) for name, load in zip(LOADS, loads, strict=True) if load is not None)
+    if quality:
+        from ._quality import evaluate_quality
+
+        return evaluate_quality(names, given, branch, accuracy, threads, out)
     wanted = (names,) if isinstance(names, str) else tuple(dict.fromkeys(names))
     if threads is not None or (omega is not None and omega0 is not None) or type(branch) is not int:
         check_border(given, branch, threads)

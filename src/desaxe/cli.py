@@ -143,6 +143,7 @@ examples:
   desaxe point V_C,a_C,a_C_wrt_ec theta=60deg ec=0 AB=.125 BC=.35 omega0=157.08
   desaxe point T_in,N_C theta=60deg ec=10mm AB=125mm BC=0.3 omega0=0 F_Y=-50N
   desaxe point margin ec=220mm AB=125mm BC=350mm --json
+  desaxe point V_C theta=1 ec=0 AB=.125 BC=.35 omega0=157 --quality     with conditions and digits
   desaxe point --list                        all names, with units and meanings"""
 
 
@@ -153,6 +154,7 @@ def _add_point(commands: Any) -> None:
     )
     parser.add_argument("--json", action="store_true", help="print JSON")
     parser.add_argument("--list", action="store_true", help="print the quantities that can be asked for")
+    parser.add_argument("--quality", action="store_true", help="print conditions and digits as well")
 
 
 def _point(options: argparse.Namespace) -> int:
@@ -165,9 +167,11 @@ def _point(options: argparse.Namespace) -> int:
     values: dict[str, Any] = evaluate(names, **inputs)
     rows = {name: quantity(name, "omega" in inputs) for name in names}
     status = _status(values, inputs)
+    worth = _qualities(names, inputs) if options.quality else {}
     if options.json:
         found: dict[str, Any] = {
             name: {"value": _json_number(values[name]), "unit": row.unit, "meaning": row.meaning}
+            | (_json_quality(worth[name]) if name in worth else {})
             for name, row in rows.items()
         }
         print(json.dumps({**found, **({"status": _status_words()[status]} if status else {})}, indent=2))
@@ -181,7 +185,19 @@ def _point(options: argparse.Namespace) -> int:
         print(f"{text:{width}}   {row.meaning}")
     if status:
         print(f"status {status}: {_status_words()[status]}")
+    for name, its in worth.items():
+        print(f"\n{name}: {its.digits:.1f} digits, rounding error at most {its.error_bound:.1e}")
+        for parameter, condition in its.conditions.items():
+            print(f"  1 % of {parameter:8} changes it by {condition:.3g} %")
     return 0
+
+
+def _qualities(names: list[str], inputs: dict[str, Any]) -> dict[str, Any]:
+    """What each number is worth."""
+    from . import evaluate
+
+    found: dict[str, Any] = evaluate([n for n in names if n != "status"], **inputs, quality=True)
+    return found
 
 
 def _list() -> int:
@@ -253,6 +269,12 @@ def _status_words() -> dict[int, str]:
 
     parts = (part.split(" ", 1) for part in quantity("status").meaning.split(", "))
     return {int(code): words for code, words in parts}
+
+
+def _json_quality(its: Any) -> dict[str, Any]:
+    conditions = {parameter: _json_number(condition) for parameter, condition in its.conditions.items()}
+    numbers = {"error_bound": _json_number(its.error_bound), "digits": _json_number(its.digits)}
+    return {"conditions": conditions, **numbers}
 
 
 def _json_number(value: float) -> float | None:
