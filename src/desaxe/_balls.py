@@ -116,6 +116,8 @@ class _Run:
             return _LOGIC[op](*here)
         if None in here:  # as NaN compares
             return False
+        if op == "eq" and here[0] is here[1]:  # a copy
+            return True
         (a, b), (c, d) = (self._ends(argument, x) for argument, x in zip(args, here, strict=True))
         if op == "eq":
             return True if a == b == c == d else False if b < c or d < a else None

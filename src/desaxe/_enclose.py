@@ -10,7 +10,7 @@ until that bound is as good as a value that is attained.
 from collections.abc import Sequence
 from heapq import heappop, heappush
 from itertools import islice, product
-from math import inf, isfinite, nan, nextafter
+from math import inf, isfinite, nan, nextafter, pi
 from typing import Any, NamedTuple
 
 from flint import arb, ctx
@@ -30,6 +30,7 @@ EXACT = "standard"  # a request has an accuracy; over balls it says nothing
 CORNERS = 64  # of the box, looked at first
 MORE_BITS = (BITS, 512, 2048)  # for the value at a point
 ENOUGH = 64  # bits of it
+TURN = (0.0, nextafter(2 * pi, inf))  # not less than one
 LAST_BIT = 2.0**-52
 SMALLEST = 2.0**-1073
 
@@ -136,7 +137,18 @@ def _function(name: str, given: dict[str, Any], branch: int) -> Function:
         full = _program(request((name, *slopes), plain, branch, EXACT))
     else:
         full = with_derivatives(program, varying)
-    return Function(program, full, varying, fixed, tuple(own[p] for p in varying))
+    whole = tuple(_turned(own[p]) if p == "theta" and _turns(program) else own[p] for p in varying)
+    return Function(program, full, varying, fixed, whole)
+
+
+def _turns(program: Program) -> bool:
+    """Whether only sine and cosine see theta."""
+    return all(line.op in ("sin", "cos") for line in program.lines if "theta" in line.args)
+
+
+def _turned(theta: Interval) -> Interval:
+    """Of many turns one is enough."""
+    return TURN if theta[1] - theta[0] > TURN[1] else theta
 
 
 def _program(wanted: Request) -> Program:

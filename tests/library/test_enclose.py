@@ -323,6 +323,24 @@ def test_friction_that_may_jam():
     assert dx.enclose("F_shaking_X", **box)["status"] == 0
 
 
+def test_many_turns_are_as_one():
+    """Unless the law counts them."""
+    one = dx.enclose("a_C", theta=TURN, **SIZES)
+    many = dx.enclose("a_C", theta=(-1e9, 1e12), **SIZES)
+    assert many["tight"]
+    assert many["boxes"] < 2 * one["boxes"]
+    assert (many["lower"], many["upper"]) == pytest.approx((one["lower"], one["upper"]), rel=3e-6)
+    faster = dx.enclose("a_C", theta=(0.0, 12.0), **SIZES, alpha=100.0)
+    assert faster["tight"]
+    assert faster["lower"] < 1.05 * one["lower"]
+
+
+def test_a_derivative_by_a_speed_that_may_vanish():
+    found = dx.enclose("V_C_wrt_omega0", theta=(1.0, 1.01), ec=0.05, AB=0.125, BC=0.35, omega0=(-3.0, 3.0))
+    slopes = [dx.evaluate("Y_wrt_theta", theta=t, ec=0.05, AB=0.125, BC=0.35) for t in (1.0, 1.01)]
+    assert [found["upper"], found["lower"]] == pytest.approx(slopes, rel=1e-14)
+
+
 # ---- how -------------------------------------------------------------------------------------------
 
 
