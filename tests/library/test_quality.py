@@ -54,7 +54,7 @@ def near_the_change_point():
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_bound_holds(kind):
-    for point in draw(kind, 12):
+    for point in draw(kind, 8):
         assert not too_small(dx.evaluate(names_for(point), **point, quality=True), point), point
 
 
