@@ -19,7 +19,7 @@ import sympy as sp
 import desaxe as dx
 
 try:
-    from tests.truth import relative_error, truth
+    from desaxe.audit.truth import relative_error, truth
 except ModuleNotFoundError as missing:
     raise SystemExit(f"the benchmarks need {missing.name}: python -m pip install -e '.[dev]'") from None
 

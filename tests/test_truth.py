@@ -6,7 +6,7 @@ import math
 import mpmath
 import pytest
 
-from tests.truth import (
+from desaxe.audit.truth import (
     LAW,
     QUANTITIES,
     SECOND_ORDER,

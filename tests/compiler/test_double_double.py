@@ -9,12 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from desaxe._constants import double_constants
+from desaxe.audit.truth import ulp_error
 from desaxe.compiler.passes import double_double
 from desaxe.compiler.passes.double_double import double_digits
 from desaxe.compiler.program import Line, Program, validate
 from tests.compiler.coverage_set import POINTS, coverage
 from tests.compiler.programs import in_doubles
-from tests.truth import ulp_error
 
 DIGITS = 2.0**-100
 

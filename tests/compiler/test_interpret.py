@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from desaxe.audit.truth import relative_error, truth
 from desaxe.compiler.interpret import run_exactly, run_in_doubles
 from desaxe.compiler.program import Line, Program
 from tests.compiler.programs import INPUTS, POINT, committed, exactly, in_doubles, program_of_nested, programs
-from tests.truth import relative_error, truth
 
 ANY = st.floats(allow_nan=True, allow_infinity=True)
 

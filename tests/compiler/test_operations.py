@@ -11,13 +11,13 @@ import mpmath
 import numpy as np
 import pytest
 
+from desaxe.audit.truth import ulp_error
 from desaxe.compiler.emit_numba import emit_numba
 from desaxe.compiler.interpret import ieee
 from desaxe.compiler.kernel import hoist
 from desaxe.compiler.operations import HELPERS, MATH_NAMES, OPERATIONS, result_type
 from desaxe.compiler.program import Line, Program
 from tests.compiler.programs import same_bits
-from tests.truth import ulp_error
 
 TINY, LEAST, MOST = 5e-324, 2.2250738585072014e-308, 1.7976931348623157e308
 EDGES = (0.0, 1.0, 0.5, 2.5, 1e16, TINY, LEAST, MOST, math.inf, math.nan)

@@ -7,13 +7,13 @@ import mpmath
 import pytest
 
 from desaxe._constants import constants
+from desaxe.audit.truth import ulp_error
 from desaxe.compiler.emit_python import compile_python
 from desaxe.compiler.passes.number import number_values
 from desaxe.compiler.passes.trigonometry import expand_trigonometry
 from desaxe.compiler.program import Line, Program, validate
 from tests.compiler.coverage_set import POINTS, coverage
 from tests.compiler.programs import POINT, committed, in_doubles
-from tests.truth import ulp_error
 
 LINES = (Line("sine_of_x", "sin", ("x",)), Line("cosine_of_x", "cos", ("x",)))
 PROGRAM = Program(("x",), LINES, ("sine_of_x", "cosine_of_x"), {})

@@ -4,6 +4,8 @@ import math
 
 import pytest
 
+from desaxe.audit.force_truth import force_names
+from desaxe.audit.truth import all_names
 from desaxe.compiler.interpret import run_in_doubles
 from desaxe.compiler.program import validate
 from desaxe.derive import bodies
@@ -15,8 +17,6 @@ from desaxe.names import LOADS, PARAMETERS
 from tests.compiler.programs import LINKS, POINT
 from tests.compiler.programs import LOADS as LOADED
 from tests.derive.derived import derivation
-from tests.force_truth import force_names
-from tests.truth import all_names
 
 
 def test_how_many_names():

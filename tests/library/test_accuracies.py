@@ -8,8 +8,8 @@ import pytest
 
 import desaxe as dx
 from desaxe._accuracy import BOUNDS, accuracy_of
+from desaxe.audit.truth import LAW, all_names, conditions, relative_error, truth_all, ulp_error
 from tests.library.points import draw
-from tests.truth import LAW, all_names, conditions, relative_error, truth_all, ulp_error
 
 NAMES = [
     name

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from tests.force_truth import (
+from desaxe.audit.force_truth import (
     OTHERS,
     PARAMETERS,
     STATE_PARAMETERS,
@@ -20,8 +20,8 @@ from tests.force_truth import (
     force_names,
     truth_all,
 )
+from desaxe.audit.truth import relative_error
 from tests.library.points import draw
-from tests.truth import relative_error
 
 PROMISE = 8 * 2.0**-52
 CENTRES = ("r_crank", "r_rod")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from tests.truth import truth
+from desaxe.audit.truth import truth
 
 OMEGA = 157.08
 MACHINE = {"AB": 0.125, "BC": 0.35, "omega0": OMEGA}

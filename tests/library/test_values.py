@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import desaxe as dx
+from desaxe.audit.truth import LAW, STATE, all_names, conditions, relative_error, truth_all
 from tests.library.points import draw
-from tests.truth import LAW, STATE, all_names, conditions, relative_error, truth_all
 
 PROMISE = 8 * 2.0**-52
 

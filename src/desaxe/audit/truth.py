@@ -31,7 +31,7 @@ from itertools import combinations_with_replacement
 import mpmath
 from flint import arb, arb_series
 
-from tests.jet import BITS, REST, Jet, limit, precision, settled, sign
+from desaxe.audit.jet import BITS, REST, Jet, limit, precision, settled, sign
 
 LAW = ("theta", "ec", "AB", "BC", "omega0", "alpha")
 STATE = ("theta", "ec", "AB", "BC", "omega", "alpha")

@@ -1,7 +1,7 @@
 """The truth about forces, torques and energies at one point, to as many digits as are asked for.
 
 Nothing here is shared with the package, and nothing is derived: the places of the three centres of mass are
-power series in time, from the raw loop closure of tests/truth.py; their second coefficients are the
+power series in time, from the raw loop closure of src/desaxe/audit/truth.py; their second coefficients are the
 accelerations, and Newton's and Euler's equations of the three free bodies, moments about the centres of mass,
 are solved for the forces as they stand, by elimination in Taylor polynomials in the parameters.
 
@@ -29,9 +29,9 @@ from typing import NamedTuple
 import mpmath
 from flint import arb, arb_series
 
-from tests import truth as kinematic
-from tests.jet import BITS, REST, Jet, limit, precision, settled, sign, tendency
-from tests.truth import LAW, STATE, loop, split, stands_still, turning
+from desaxe.audit import truth as kinematic
+from desaxe.audit.jet import BITS, REST, Jet, limit, precision, settled, sign, tendency
+from desaxe.audit.truth import LAW, STATE, loop, split, stands_still, turning
 
 BODIES = ("m_crank", "m_rod", "m_slider", "I_crank", "I_rod", "r_crank", "r_rod")
 OTHERS = (*BODIES, "F_X", "F_Y", "g_X", "g_Y", "mu")

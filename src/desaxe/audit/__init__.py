@@ -1,0 +1,1 @@
+"""What desaxe computes, measured against a truth that shares nothing with it."""
