@@ -5,7 +5,6 @@ from contextlib import contextmanager
 
 EXTRAS = {
     "sympy": "derive",
-    "mpmath": "derive",
     "xarray": "labelled",
     "h5netcdf": "labelled",
     "h5py": "labelled",
@@ -16,6 +15,7 @@ EXTRAS = {
     "scipy": "simulate",
     "flint": "rigorous",
     "python-flint": "rigorous",
+    "mpmath": "rigorous",
     "desaxe.derive": "derive",
 }
 

@@ -70,6 +70,22 @@ def test_the_compiler_imports_nothing_above_it_and_nothing_that_must_be_installe
     assert not [pair for pair in pairs if not (is_standard(pair[1]) or is_in(pair[1], "desaxe.compiler"))]
 
 
+def test_the_oracle_shares_nothing_with_what_it_judges():
+    """Only with the other two files of it."""
+    rooms = [f"desaxe.audit.{name}" for name in ("jet", "truth", "force_truth")]
+    pairs = [pair for pair in imports_of("desaxe", inside="desaxe.audit") if pair[0] in rooms]
+    assert {pair[0] for pair in pairs} == set(rooms)
+    assert not [
+        pair for pair in pairs if not (is_standard(pair[1]) or is_in(pair[1], "mpmath", "flint", *rooms))
+    ]
+
+
+def test_families_are_drawn_without_a_look_at_the_package():
+    pairs = [pair for pair in imports_of("desaxe") if pair[0] == "desaxe.audit.families"]
+    assert pairs
+    assert not [pair for pair in pairs if not (is_standard(pair[1]) or is_in(pair[1], "mpmath"))]
+
+
 @pytest.mark.parametrize("name", ["_evaluate", "_program", "catalogue", "inputs", "extras"])
 def test_what_one_point_loads_imports_the_standard_library_and_its_own_kind(name):
     tree = ast.parse((ROOMS["desaxe"] / f"{name}.py").read_text(encoding="utf-8"))

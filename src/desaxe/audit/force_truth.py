@@ -1,9 +1,9 @@
 """The truth about forces, torques and energies at one point, to as many digits as are asked for.
 
 Nothing here is shared with the package, and nothing is derived: the places of the three centres of mass are
-power series in time, from the raw loop closure of src/desaxe/audit/truth.py; their second coefficients are the
-accelerations, and Newton's and Euler's equations of the three free bodies, moments about the centres of mass,
-are solved for the forces as they stand, by elimination in Taylor polynomials in the parameters.
+power series in time, from the raw loop closure of truth.py; their second coefficients are the accelerations,
+and Newton's and Euler's equations of the three free bodies, moments about the centres of mass, are solved for
+the forces as they stand, by elimination in Taylor polynomials in the parameters.
 
     truth("T_in_wrt_m_rod", theta=1.0, ec=0.01, AB=0.125, BC=0.35, omega0=157.0, m_rod=2.0, g_Y=-9.81)
     conditions("T_in", theta=1.0, ec=0.01, AB=0.125, BC=0.35, omega0=157.0, m_rod=2.0)
@@ -22,16 +22,16 @@ Where the mechanism cannot be assembled or folds, everything that needs its shap
 everything that needs its speed.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import mpmath
 from flint import arb, arb_series
 
-from desaxe.audit import truth as kinematic
-from desaxe.audit.jet import BITS, REST, Jet, limit, precision, settled, sign, tendency
-from desaxe.audit.truth import LAW, STATE, loop, split, stands_still, turning
+from . import truth as kinematic
+from .jet import BITS, REST, Jet, limit, precision, settled, sign, tendency
+from .truth import LAW, STATE, loop, split, stands_still, turning
 
 BODIES = ("m_crank", "m_rod", "m_slider", "I_crank", "I_rod", "r_crank", "r_rod")
 OTHERS = (*BODIES, "F_X", "F_Y", "g_X", "g_Y", "mu")
@@ -51,13 +51,14 @@ Equation = tuple[dict[str, Jet], Jet]  # unknown -> coefficient, and the right-h
 class Point(NamedTuple):
     """One point, and the parameters (by number, repeated for higher orders) to differentiate by."""
 
-    values: tuple[float | None, ...]
+    values: tuple[Any, ...]  # a centre of mass that is not given is None
     law: bool
     branch: int
     by: tuple[int, ...]
 
     @property
     def still(self) -> bool:
+        """Whether the crank stands still."""
         return stands_still(self.values[0], *self.values[4:6], self.law)
 
     @property
@@ -250,9 +251,9 @@ def _kinetic_energy(mechanism: Mechanism) -> Jet:
     given, (B_X, B_Y), (C_X, C_Y) = mechanism.given, mechanism.B, mechanism.C
     x, y, length = C_X - B_X, C_Y - B_Y, given["BC"].inverse()
     rod_turns = (y.rate(0) * x.rate(1) - x.rate(0) * y.rate(1)) * length * length
-    speeds = ((given["I_crank"], mechanism.theta.rate(1)), (given["I_rod"], rod_turns))
+    speeds = [(given["I_crank"], mechanism.theta.rate(1)), (given["I_rod"], rod_turns)]
     centres = (("m_crank", mechanism.crank), ("m_rod", mechanism.rod), ("m_slider", mechanism.C))
-    speeds += tuple((given[mass], p.rate(1)) for mass, place in centres for p in place)
+    speeds += [(given[mass], p.rate(1)) for mass, place in centres for p in place]
     twice = sum((mass * speed * speed for mass, speed in speeds), Jet({}, x.order))
     return twice * _constant(arb("0.5"), twice)
 
@@ -285,7 +286,7 @@ def _masses(at: Point, bits: int) -> dict[str, Jet]:
         }
 
 
-_GROUPS = {
+_GROUPS: dict[str, Callable[[Point, int], dict[str, Jet] | None]] = {
     **dict.fromkeys(TOUCHED, _touched),
     **dict.fromkeys(SHAKING, _shaking),
     **dict.fromkeys(ENERGIES, _energies),
@@ -323,7 +324,7 @@ def _value(jet: Jet | None, by: tuple[int, ...], bits: int, digits: int) -> mpma
         return settled(jet.partial(by), digits)
 
 
-def truth(name: str, *, digits: int = 50, **point: float | None) -> mpmath.mpf:
+def truth(name: str, *, digits: int = 50, **point: Any) -> mpmath.mpf:
     """One quantity or sensitivity (``q``, ``q_wrt_p``, ``q_wrt_p_p``, ...) with so many correct digits."""
     law = point.get("omega") is None
     if name.partition("_wrt_")[0] not in FORCES:
@@ -341,12 +342,12 @@ def truth(name: str, *, digits: int = 50, **point: float | None) -> mpmath.mpf:
     return mpmath.mpf("nan")
 
 
-def truth_all(names: Iterable[str], **point: float | None) -> dict[str, mpmath.mpf]:
+def truth_all(names: Iterable[str], **point: Any) -> dict[str, mpmath.mpf]:
     """Many names at one point; the work is shared."""
     return {name: truth(name, **point) for name in names}
 
 
-def force_balances(**point: float | None) -> int | None:
+def force_balances(**point: Any) -> int | None:
     """How many force balances there are: 0, 1 or 2; None where there is no mechanism, or no motion."""
     at = _point((), **point)
     for bits in BITS[-1:] if at.still else BITS:
@@ -361,7 +362,7 @@ def force_names(parameters: tuple[str, ...] = PARAMETERS) -> list[str]:
     return [*FORCES, *(f"{q}_wrt_{p}" for q in FORCES for p in parameters)]
 
 
-def conditions(name: str, gap: str = "margin", others: Iterable[str] = (), **point: float | None) -> float:
+def conditions(name: str, gap: str = "margin", others: Iterable[str] = (), **point: Any) -> float:
     """Sum of |x/f df/dx| over theta, AB, BC, omega0 (or omega), alpha and a gap, as for kinematic names.
 
     That is what the promise of accuracy counts. Others of the inputs (``OTHERS`` for all) count if asked for

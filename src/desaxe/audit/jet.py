@@ -39,6 +39,7 @@ class Jet:
         return Jet(terms, self.order)
 
     def times(self, factor: int) -> "Jet":
+        """This jet times a whole number."""
         return Jet({monomial: a * factor for monomial, a in self.terms.items()}, self.order)
 
     def __sub__(self, other: "Jet") -> "Jet":
@@ -53,15 +54,18 @@ class Jet:
         return result
 
     def sqrt(self) -> "Jet":
+        """Its square root."""
         taylor, inverse = [self.terms[()].sqrt()], self.terms[()].rsqrt() ** 2
         for k in range(self.order):
             taylor.append(taylor[k] * inverse * (1 - 2 * k) / (2 * k + 2))
         return self.compose(taylor)
 
     def inverse(self) -> "Jet":
+        """One over it."""
         return self.compose([-((-1 / self.terms[()]) ** (k + 1)) for k in range(self.order + 1)])
 
     def sin_cos(self) -> tuple["Jet", ...]:
+        """Its sine and its cosine."""
         sine, cosine = self.terms[()].sin(), self.terms[()].cos()
         cycles = (sine, cosine, -sine, -cosine), (cosine, -sine, -cosine, sine)
         taylors = ([c[k % 4] / math.factorial(k) for k in range(self.order + 1)] for c in cycles)
@@ -109,6 +113,7 @@ def precision(bits: int, terms: int = 4) -> Iterator[None]:
 
 
 def sign(x: float | arb) -> int:
+    """-1 or 1; 1 at zero."""
     return -1 if x < 0 else 1
 
 

@@ -27,11 +27,12 @@ from collections.abc import Callable, Iterable
 from fractions import Fraction
 from functools import lru_cache
 from itertools import combinations_with_replacement
+from typing import Any
 
 import mpmath
 from flint import arb, arb_series
 
-from desaxe.audit.jet import BITS, REST, Jet, limit, precision, settled, sign
+from .jet import BITS, REST, Jet, limit, precision, settled, sign
 
 LAW = ("theta", "ec", "AB", "BC", "omega0", "alpha")
 STATE = ("theta", "ec", "AB", "BC", "omega", "alpha")
@@ -156,7 +157,7 @@ def all_names(parameters: tuple[str, ...] = LAW) -> list[str]:
     return [*QUANTITIES, *first, *(f"{q}_wrt_{p}_{r}" for p, r in pairs for q in SECOND_ORDER)]
 
 
-def truth_all(names: Iterable[str], **point: float) -> dict[str, mpmath.mpf]:
+def truth_all(names: Iterable[str], **point: Any) -> dict[str, mpmath.mpf]:
     """Many names at one point; the work is shared."""
     return {name: truth(name, **point) for name in names}
 
@@ -166,7 +167,7 @@ def conditions(
     gap: str = "margin",
     others: tuple[str, ...] = (),
     oracle: Callable[..., mpmath.mpf] = truth,
-    **point: float,
+    **point: Any,
 ) -> float:
     """Sum of |x/f df/dx| over theta, AB, BC, omega0 (or omega), alpha and a gap, an input in place of ec.
 
