@@ -81,7 +81,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action=_Version, help="print the version and leave")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=_Parser)
-    for add in (_add_point, _add_run, _add_derive, _add_errata, _add_doctor):
+    for add in (_add_point, _add_run, _add_derive, _add_errata, _add_audit, _add_doctor):
         add(commands)
     return parser
 
@@ -325,7 +325,7 @@ def _scene(options: argparse.Namespace) -> int:
     return 0
 
 
-# ---- derive, errata, doctor ----------------------------------------------------------------------
+# ---- derive, errata, audit, doctor ---------------------------------------------------------------
 
 _DERIVE = """\
 The same command as `python -m derive` from the repository root.
@@ -377,6 +377,32 @@ def _errata(options: argparse.Namespace) -> int:
     found = entries(document=options.document, verdict=options.verdict)
     print(json.dumps([entry._asdict() for entry in found], indent=2) if options.json else table(found))
     return 0
+
+
+_AUDIT = """\
+Every accuracy of desaxe beside NumPy, numba, mpmath and (if installed) heyoka on the textbook's formula, at
+generic points and in families of points where formulas lose their digits. The truth is the loop closure in
+ball arithmetic. It takes some minutes; the points are the same every time. Needs the extras `rigorous`,
+`derive` and, for the picture, `plot`.
+
+examples:
+  desaxe audit --quick        fewer points, half a minute at most
+  desaxe audit -o report      writes report/accuracy.md and report/accuracy.png too"""
+
+
+def _add_audit(commands: Any) -> None:
+    parser = _add(commands, "audit", "time and error of every accuracy, measured here", _AUDIT, _audit)
+    parser.add_argument("--quick", action="store_true", help="fewer points")
+    parser.add_argument(
+        "-o", metavar="FOLDER", dest="folder", help="write accuracy.md and accuracy.png there"
+    )
+
+
+def _audit(options: argparse.Namespace) -> int:
+    with needed("desaxe audit"):
+        from .audit.command import command
+
+        return command(options.quick, options.folder)
 
 
 _DOCTOR = """\

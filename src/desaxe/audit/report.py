@@ -1,0 +1,155 @@
+"""What an audit found, as Markdown that reads well as plain text too."""
+
+from collections.abc import Callable, Iterator, Sequence
+
+from .contenders import NAMES
+from .errors import TOP, ULPS, Statistics
+from .families import FAMILIES
+from .run import GENERIC, SEED, Audit
+
+PICTURE = "accuracy.png"
+CLEARLY = 0.95  # a time is shorter only if by this much: the rest is noise
+
+READING = """\
+**Time** is that of one generic point in a long array, on one core, as a multiple of what
+`accuracy="standard"` takes; the best of several rounds, with everyone in turn.
+
+**Share of the promise.** `standard` promises 8 ulp x (1 + the sum of the value's condition numbers): what the
+last digits of the inputs change anyway is not counted. 1 is that promise just kept, 0.01 a hundredth of it,
+1000 three digits lost that the inputs do have. Values whose promise leaves no digit are left out.
+
+**Plain ulp.** The error in units of the value's last bit, whatever its condition: 0.5 is correctly rounded,
+`extended` promises 2. Even an exact formula, evaluated in doubles, loses here what the inputs' last digits
+move. Errors below 2^-96 of the value's scale count as half an ulp at most; exact zeros have no ulp and are
+left out.
+
+`none` is the top of either scale: no digit is right, or there is no number where there is a value.
+"""
+
+
+def report(found: Audit) -> str:
+    """The whole page."""
+    parts = [
+        "# Accuracy and time, measured",
+        f"![Worst error over time, for every contender]({PICTURE})",
+        _made(found),
+        READING.rstrip(),
+        "## Overview",
+        overview(found),
+        "\n".join(_dominated(found)),
+        "## Share of the promise, worst (median)",
+        by_family(found, share_of),
+        "## Plain ulp, worst (median)",
+        by_family(found, ulp_of),
+        "## The families",
+        "\n".join(f"* **{_title(name)}**: {_says(name)}" for name in FAMILIES),
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def overview(found: Audit) -> str:
+    """One row for each contender."""
+    head = [
+        "",
+        "time",
+        "generic: median",
+        "worst",
+        "hardest family",
+        "worst",
+        "plain ulp: generic",
+        "anywhere",
+    ]
+    rows = []
+    for one in found.who:
+        generic, (family, share) = found.errors[one.name][GENERIC], found.hardest(one.name)
+        shares = [number(x, TOP / ULPS) for x in (generic.median, generic.worst, share)]
+        ulps = [number(x, TOP) for x in (generic.worst_ulp, found.worst_ulp(one.name))]
+        rows.append([one.name, _times(found, one.name), *shares[:2], _title(family), shares[2], *ulps])
+    return table(head, rows)
+
+
+def _made(found: Audit) -> str:
+    effort = found.effort
+    branches = "both branches" if len(effort.branches) > 1 else "branch +1"
+    absent = "" if "heyoka" in found.ratios else " heyoka is not installed here, so it was not measured."
+    return (
+        f"Made by `desaxe audit`: {', '.join(NAMES)} at {effort.points} points of each family, {branches},\n"
+        f"seed {SEED}; time over {effort.timed} points. The truth is the loop closure in ball arithmetic,\n"
+        f"which shares nothing with any contender. NumPy, numba, heyoka and mpmath evaluate the textbook's\n"
+        f"closed form (`desaxe.equation`).{absent}\n\n"
+        f"{found.machine}."
+    )
+
+
+def by_family(found: Audit, cell: Callable[[Statistics], str]) -> str:
+    """One row for each family, one column for each contender."""
+    head = ["", *(one.name for one in found.who)]
+    rows = [
+        [_title(family), *(cell(found.errors[one.name][family]) for one in found.who)] for family in FAMILIES
+    ]
+    return table(head, rows)
+
+
+def share_of(found: Statistics) -> str:
+    """Worst and median share of the promise."""
+    return f"{number(found.worst, TOP / ULPS)} ({number(found.median, TOP / ULPS)})"
+
+
+def ulp_of(found: Statistics) -> str:
+    """Worst and median error in ulp."""
+    return f"{number(found.worst_ulp, TOP)} ({number(found.median_ulp, TOP)})"
+
+
+def number(x: float, top: float) -> str:
+    """Two digits at most; `none` at the top of the scale."""
+    if x >= top:
+        return "none"
+    if x >= 9.95e3:
+        return f"{x:.0e}".replace("e+0", "e").replace("e+", "e")
+    return f"{x:.0f}" if x >= 9.95 else f"{x:.1f}" if x >= 0.95 else f"{x:.2g}" if x >= 0.001 else "<0.001"
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A Markdown table in even columns."""
+    wide = [max(len(row[column]) for row in (head, *rows)) for column in range(len(head))]
+    lines = [" | ".join(f"{text:{w}}" for text, w in zip(row, wide, strict=True)) for row in (head, *rows)]
+    rule = "|".join("-" * (w + 2) for w in wide)
+    return "\n".join(f"| {line} |" for line in (lines[0], *lines[1:])).replace("\n", f"\n|{rule}|\n", 1)
+
+
+def measures(found: Audit, name: str) -> dict[str, float]:
+    """The three errors that are drawn over time."""
+    generic = found.errors[name][GENERIC].worst
+    return {
+        "at generic points": generic,
+        "in the hardest family": found.hardest(name)[1],
+        "in plain ulp": found.worst_ulp(name),
+    }
+
+
+def beaten_by(found: Audit, name: str, measure: str) -> list[str]:
+    """Who is clearly faster and no less accurate."""
+    mine, limit = measures(found, name)[measure], CLEARLY * found.ratios[name]
+    return [n for n, time in found.ratios.items() if time <= limit and measures(found, n)[measure] <= mine]
+
+
+def _dominated(found: Audit) -> Iterator[str]:
+    """Who takes longer and errs no less than somebody else, measure by measure."""
+    yield "Dominated, that is slower than another whose worst error is no larger:\n"
+    for measure in measures(found, found.who[0].name):
+        beaten = [name for name in found.ratios if beaten_by(found, name, measure)]
+        by = [f"{name} (by {', '.join(beaten_by(found, name, measure))})" for name in beaten]
+        yield f"* {measure}: {'; '.join(by) or 'nobody'}"
+
+
+def _times(found: Audit, name: str) -> str:
+    ratio = found.ratios[name]
+    return f"{ratio:.2g}" if ratio < 100 else number(ratio, float("inf"))
+
+
+def _title(family: str) -> str:
+    return family.replace("_", " ")
+
+
+def _says(family: str) -> str:
+    return " ".join((FAMILIES[family].__doc__ or "").split())

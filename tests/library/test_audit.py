@@ -1,0 +1,192 @@
+"""`desaxe audit`: a quick one has every row, tells the truth about standard, and writes its files."""
+
+import math
+import re
+import sys
+from itertools import islice
+
+import numpy as np
+import pytest
+
+from desaxe.audit import contenders as contenders_module
+from desaxe.audit.command import text, write
+from desaxe.audit.contenders import INPUTS, NAMES, contenders
+from desaxe.audit.errors import TOP, ULPS, Judge, Statistics, cases
+from desaxe.audit.families import FAMILIES, points
+from desaxe.audit.report import beaten_by, measures, number, report, table
+from desaxe.audit.run import GENERIC, QUICK, Audit, audit
+from desaxe.audit.times import times
+from desaxe.cli import main
+
+ALWAYS = ("desaxe fast", "desaxe standard", "desaxe extended", "NumPy lambdify", "numba", "mpmath 50 digits")
+
+
+def found_without(name):
+    """What is installed, were it not for one package."""
+    return lambda asked: None if asked == name else object()
+
+
+@pytest.fixture(scope="module")
+def found():
+    """A quick audit, as where heyoka is not installed: what it says does not depend on the machine."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(contenders_module, "find_spec", found_without("heyoka"))
+        return audit(QUICK._replace(points=6, timed=4000, rounds=1))
+
+
+def test_everyone_is_measured_in_every_family(found):
+    assert tuple(one.name for one in found.who) == tuple(found.ratios) == tuple(found.errors) == ALWAYS
+    assert all(list(families) == list(FAMILIES) for families in found.errors.values())
+    assert found.ratios["desaxe standard"] == 1.0
+    assert all(0 < ratio < math.inf for ratio in found.ratios.values())
+
+
+def test_standard_keeps_its_promise_at_generic_points(found):
+    generic = found.errors["desaxe standard"][GENERIC]
+    assert 0 < generic.median <= generic.worst <= 1
+    assert generic.values == 6 * len(NAMES)
+
+
+def test_extended_keeps_its_promise_at_generic_points(found):
+    assert found.errors["desaxe extended"][GENERIC].worst_ulp <= 2
+
+
+def test_the_textbook_loses_its_digits_at_the_change_point(found):
+    textbook, ours = (found.errors[name]["change_point"] for name in ("NumPy lambdify", "desaxe standard"))
+    assert ours.worst <= 1 < 1e6 < textbook.worst
+
+
+def test_the_tables_have_all_rows(found):
+    page, shown = report(found), text(found)
+    for name in ALWAYS:
+        assert f"\n| {name} " in page
+        assert f"\n| {name} " in shown
+    for family in FAMILIES:
+        assert len(re.findall(rf"^\| {family.replace('_', ' ')} +\|", page, re.M)) == 2
+        assert f"* **{family.replace('_', ' ')}**: " in page
+    assert "heyoka is not installed here" in page
+    assert "CPU " in found.machine
+    assert "numba 0." in found.machine
+
+
+def test_the_files_are_written(found, tmp_path):
+    page, picture = write(found, tmp_path / "new" / "folder")
+    assert (page.name, picture.name) == ("accuracy.md", "accuracy.png")
+    assert page.read_text(encoding="utf-8") == report(found)
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert sorted(path.name for path in page.parent.iterdir()) == ["accuracy.md", "accuracy.png"]
+
+
+def test_the_command(monkeypatch, capsys, tmp_path, found):
+    asked = []
+    monkeypatch.setattr("desaxe.audit.command.audit", lambda effort, watch: asked.append(effort) or found)
+    assert main(["audit", "--quick", "-o", str(tmp_path)]) == 0
+    shown = capsys.readouterr().out
+    assert asked == [QUICK]
+    assert shown.startswith(text(found))
+    assert (tmp_path / "accuracy.png").is_file()
+
+
+@pytest.mark.parametrize(
+    ("module", "extra"), [("flint", "rigorous"), ("mpmath", "rigorous"), ("matplotlib.figure", "plot")]
+)
+def test_a_missing_extra_is_told(monkeypatch, capsys, module, extra):
+    for name in [name for name in sys.modules if name.startswith("desaxe.audit")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, module, None)
+    assert main(["audit", "--quick", "-o", "nowhere"]) == 2
+    remedy = f"python -m pip install 'desaxe[{extra}]'"
+    assert capsys.readouterr().err == f"desaxe: error: desaxe audit needs {module}: {remedy}\n"
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_points_are_the_same_every_time(family):
+    assert list(points(family, 3, seed=7)) == list(points(family, 3, seed=7)) != list(points(family, 3))
+
+
+def test_all_contenders_compute_the_same():
+    """At generic points of the other branch, to float32; heyoka too where it is installed."""
+    at = list(islice((point for point in points(GENERIC, 400) if point["branch"] == -1), 40))
+    inputs = np.tile([[point[name] for point in at] for name in INPUTS], 60)
+    rows = {}
+    for one in contenders():
+        some = inputs[:, :40].copy() if one.few else inputs
+        answers = one.make(-1)(some, np.empty((len(NAMES), some.shape[1])))
+        rows[one.name] = np.array(list(answers))[:, :40]
+    scale = np.abs(rows["desaxe extended"]).max(axis=1, keepdims=True)
+    for name, values in rows.items():
+        assert np.abs(values - rows["desaxe extended"]).max() < np.inf, name
+        assert (np.abs(values - rows["desaxe extended"]) / scale).max() < 1e-4, name
+
+
+def test_an_exact_answer_has_no_error_and_none_is_the_top():
+    some = cases(GENERIC, 2, 0, (1,))
+    judge = Judge(contenders()[1])
+    judge.runs[1] = lambda inputs, _: exactly(some, inputs)
+    assert judge.statistics(some).worst <= 0.5 / ULPS
+    for value in (math.nan, math.inf, 1e300):
+        judge.runs[1] = lambda inputs, _, value=value: np.full((len(NAMES), inputs.shape[1]), value)
+        assert judge.statistics(some).worst == TOP / ULPS
+
+
+def exactly(some, inputs):
+    rows = np.array([[float(case.exact[name]) for case in some] for name in NAMES])
+    return np.tile(rows, inputs.shape[1] // len(some))
+
+
+def test_a_promise_counts_conditions():
+    """At a dead centre V_C is nothing but the last digits of the inputs; a_C is not."""
+    for case in cases("dead_centre", 3, 0, (1,)):
+        assert case.bounds["V_C"] > 1e9 * case.bounds["a_C"]
+
+
+def test_cases_stay_on_the_branches_wanted():
+    assert {case.point["branch"] for case in cases(GENERIC, 12, 0, (1,))} == {1}
+    assert {case.point["branch"] for case in cases(GENERIC, 12, 0, (1, -1))} == {1, -1}
+
+
+def test_times_are_of_everyone():
+    who = [one for one in contenders() if one.name in ("NumPy lambdify", "mpmath 50 digits")]
+    taken = times(who, 3000, 1, 0)
+    assert taken["mpmath 50 digits"] > taken["NumPy lambdify"] > 0
+
+
+def made_up(errors):
+    """An audit of three, with these times and errors."""
+    who = tuple(one._replace(name=name) for one, name in zip(contenders(), errors, strict=False))
+    statistics = {
+        name: {GENERIC: Statistics(e, e, e, e, 1), "dead_centre": Statistics(2 * e, e, e, e, 1)}
+        for name, (_, e) in errors.items()
+    }
+    return Audit(QUICK, "machine", who, {name: time for name, (time, _) in errors.items()}, statistics)
+
+
+def test_who_is_beaten_by_whom():
+    found = made_up({"quick": (1.0, 5.0), "slow": (2.0, 5.0), "exact": (9.0, 0.5), "noise": (0.99, 7.0)})
+    assert measures(found, "exact") == {
+        "at generic points": 0.5, "in the hardest family": 1.0, "in plain ulp": 0.5
+    }  # fmt: skip
+    beaten = {name: beaten_by(found, name, "in plain ulp") for name in found.ratios}
+    assert beaten == {"quick": [], "slow": ["quick"], "exact": [], "noise": []}
+
+
+@pytest.mark.parametrize(
+    ("x", "shown"),
+    [
+        (0.0, "<0.001"),
+        (0.0123, "0.012"),
+        (0.5, "0.5"),
+        (1.0, "1.0"),
+        (14.2, "14"),
+        (2.4e7, "2e7"),
+        (9e15, "none"),
+    ],
+)
+def test_numbers_are_short(x, shown):
+    assert number(x, 1e15) == shown
+
+
+def test_a_table_is_even():
+    assert table(["", "b"], [["aaa", "1"], ["c", "22"]]) == (
+        "|     | b  |\n|-----|----|\n| aaa | 1  |\n| c   | 22 |"
+    )
