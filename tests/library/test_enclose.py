@@ -20,11 +20,11 @@ from desaxe import _balls
 from desaxe._differentiate import with_derivatives
 from desaxe._point import cut
 from desaxe._program import LAW as LAW_FORM
+from desaxe.audit.force_truth import force_names, truth
+from desaxe.audit.truth import LAW, STATE, all_names
 from desaxe.extras import MissingExtraError
-from tests.force_truth import force_names, truth
 from tests.library.points import draw
 from tests.library.test_force_values import bodies, points
-from tests.truth import LAW, STATE, all_names
 
 TURN = (0.0, 2 * math.pi)
 SIZES = {"ec": 0.05, "AB": 0.125, "BC": 0.35, "omega0": 157.0}

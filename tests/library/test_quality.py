@@ -10,12 +10,12 @@ import pytest
 
 import desaxe as dx
 from desaxe import cli
-from tests.force_truth import FORCES, OTHERS
-from tests.force_truth import conditions as force_conditions
-from tests.force_truth import truth as force_truth
+from desaxe.audit.force_truth import FORCES, OTHERS
+from desaxe.audit.force_truth import conditions as force_conditions
+from desaxe.audit.force_truth import truth as force_truth
+from desaxe.audit.truth import LAW, QUANTITIES, SECOND_ORDER, STATE, conditions, truth
 from tests.library.points import draw
 from tests.library.test_force_values import points
-from tests.truth import LAW, QUANTITIES, SECOND_ORDER, STATE, conditions, truth
 
 POINT = {"theta": 1.1, "ec": 0.01, "AB": 0.125, "BC": 0.35, "omega0": 157.0}
 PROMISE = 8 * 2.0**-52

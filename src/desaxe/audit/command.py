@@ -38,7 +38,7 @@ def text(found: Audit) -> str:
 
 def write(found: Audit, folder: Path) -> list[Path]:
     """accuracy.md and accuracy.png in a folder, which is made if need be."""
-    from ..plot.families import save
+    from ..plot.files import save
     from .picture import draw
 
     folder.mkdir(parents=True, exist_ok=True)
