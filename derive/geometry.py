@@ -1,13 +1,14 @@
 """Partial derivatives of the rod angle phi and the slider position Y, of any order that is needed.
 
 Y = AB cos(theta) + branch S is the solved loop. Lengths are differentiated first, theta last (see
-`rod`).
+`rod`); derivatives of Y by theta alone go through Y itself (see `folded`).
 """
 
 import sympy as sp
 
 from desaxe.names import parts
 
+from .folded import slider_rate
 from .loop import AB, BC, ec, slider, solved
 from .rod import UNITS, RodFunction, read_rod_function
 from .sheet import Equation, Sheet
@@ -34,6 +35,8 @@ def resolve_geometry(sheet: Sheet, name: str) -> Equation | None:
         for _ in range(turns):
             expression = _by_theta(expression)
         expression = sp.factor_terms(expression)
+        if base == "Y" and not lengths:
+            expression = slider_rate(turns, expression)
     return Equation(expression, unit.over(*parameters), f"derivative of {base} by {', '.join(parameters)}")
 
 

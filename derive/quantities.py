@@ -9,6 +9,7 @@ from itertools import pairwise
 import sympy as sp
 
 from .dynamics import FORCES, define_dynamics, prove, resolve_ratio
+from .folded import FOLDED_AREA, folded, folded_area, prove_folded
 from .geometry import POSITION, resolve_geometry
 from .loop import AB, BC, branch, ec, r, theta, u
 from .motion import alpha, define_law, omega, omega2, time_derivative, turn
@@ -16,28 +17,33 @@ from .rod import resolve_rod
 from .sheet import Sheet, symbol
 from .stable import (
     CRANK_PIN,
+    HEIGHT_AREA,
+    LESS,
+    MARGIN_AREA,
     OFFSET,
+    AB_out,
     D,
-    E,
-    W,
     abs_sin,
     absolute,
     assembled,
     atan2,
+    copysign,
     cos_theta,
-    ec_side,
+    crank_eps,
     eps,
     eq,
     le,
     lt,
-    margin_side,
-    reach_side,
+    margin_area,
+    pin_side,
+    prove_height,
     sec_phi,
     select,
     side,
     sin_theta,
     tan_phi,
     two_sum_error,
+    u_straight,
 )
 from .units import (
     ACCELERATION,
@@ -68,6 +74,8 @@ S, phi = symbol("S"), symbol("phi")
 
 def build_sheet() -> Sheet:
     """The whole sheet under paper A's law of motion."""
+    prove_height()
+    prove_folded()
     sheet = Sheet((resolve_rod, resolve_geometry, resolve_ratio))
     _define_crank(sheet)
     _define_rod(sheet)
@@ -103,32 +111,29 @@ def _define_crank(sheet: Sheet) -> None:
 
 
 def _define_rod(sheet: Sheet) -> None:
-    """E, W and their root in the stable variables; the ratios that everything else is made of."""
-    sheet.define("ec_side", side * ec, unit=LENGTH, meaning="eccentricity towards the crank's side")
-    _exact_sum(sheet, "margin_side", -AB, -ec_side, "m: BC - AB - sigma ec")
-    _exact_sum(sheet, "reach_side", AB, ec_side, "n: BC + AB + sigma ec")
+    """BC - |u| and the rod's height in the stable variables; the ratios that everything else is made of."""
+    sheet.define("u_straight", OFFSET)
+    sheet.define("pin_side", copysign(1, u_straight), unit=NONE, meaning="nu: the sign of u")
+    sheet.define("AB_out", copysign(AB, sin_theta * u_straight), unit=LENGTH, meaning="sigma nu AB")
+    out = sheet.define("ec_out", pin_side * ec, unit=LENGTH, meaning="nu ec")
+    _exact_sum(sheet, "margin_out", -AB_out, -out, "q: BC - nu (ec + sigma AB)")
+    sheet.define("crank_eps", AB_out * eps)
     near_quarter = sheet.define("near_quarter", le(sp.Float(0.5), abs_sin))
-    low, high = sheet.define("BC_less_ec", BC - ec_side), sheet.define("BC_plus_ec", BC + ec_side)
-    forms = {
-        E: (margin_side + AB * eps, low - AB * abs_sin, "BC - sigma u"),
-        W: (reach_side - AB * eps, high + AB * abs_sin, "BC + sigma u"),
-    }
-    for name, (near, far, meaning) in forms.items():
-        sheet.define(name.name, select(near_quarter, near, far), unit=LENGTH, meaning=meaning)
-    # E + W = 2 BC: the smaller one gives the other, and their roundings do not add up in the product.
-    less = sheet.define("less", select(lt(E, W), E, W), unit=LENGTH, meaning="the smaller of E and W")
-    sheet.define("D", less * (2 * BC - less), unit=Unit(m=2), meaning="BC^2 - u^2 = E W", source="B (7)")
+    sheet.define("BC_less_ec", BC - out)
+    sheet.define("less", select(near_quarter, *LESS), unit=LENGTH, meaning="BC - |u|")
+    sheet.define("D", HEIGHT_AREA, unit=Unit(m=2), meaning="BC^2 - u^2", source="B (7)")
     sheet.define("S", sp.sqrt(D), unit=LENGTH, meaning="BC cos(phi), the rod's height", source="B (7)")
     sheet.define("inv_S", 1 / S, unit=Unit(m=-1), meaning="1 / S")
-    pin_side = sheet.define("pin_side", AB + ec_side)  # exact where they nearly cancel
+    beyond = sheet.define("pin_out", AB_out + out)  # exact where they nearly cancel
     sheet.define(
-        "u", select(near_quarter, side * (pin_side - AB * eps), OFFSET), unit=LENGTH, source="A (6)",
+        "u", select(near_quarter, pin_side * (beyond - crank_eps), u_straight), unit=LENGTH, source="A (6)",
         meaning="BC sin(phi), crank pin from the slider axis",
     )  # fmt: skip
+    sheet.define("margin_area", MARGIN_AREA, unit=Unit(m=2), meaning="m n = BC^2 - (AB + sigma ec)^2")
     sheet.define("crank_ratio", AB * r, unit=NONE, meaning="AB / S")
-    sheet.define("ec_ratio", ec_side * r, unit=NONE, meaning="sigma ec / S")
-    sheet.define("margin_ratio", (margin_side * r) * symbol("reach_ratio"), unit=NONE, meaning="m n / S^2")
-    sheet.define("reach_ratio", reach_side * r, unit=NONE, meaning="n / S")
+    sheet.define("offset_ratio", ec * r, unit=NONE, meaning="ec / S")
+    sheet.define("ec_ratio", side * symbol("offset_ratio"), unit=NONE, meaning="sigma ec / S")
+    sheet.define("margin_ratio", margin_area * r**2, unit=NONE, meaning="m n / S^2")
     sheet.define("tan_phi", u * r, unit=NONE, meaning="tan(phi) = u / S")
     sheet.define("sec_phi", BC * r, unit=NONE, meaning="1 / cos(phi) = BC / S")
 
@@ -186,7 +191,17 @@ def _define_crank_motion(sheet: Sheet) -> None:
 
 def _define_slider_motion(sheet: Sheet) -> None:
     """Rates of the slider and the rod: time derivatives of Y and phi along the motion."""
-    sheet.define("Y", POSITION, unit=LENGTH, meaning="slider position along the slider axis", source="A (7)")
+    height = sheet.define("side_height", branch * S)
+    straight = sheet.define("Y_straight", AB * cos_theta + height)
+    sheet.define("folded", lt(2 * absolute(straight), S))
+    sheet.define("folded_area", FOLDED_AREA, unit=Unit(m=2), meaning="S^2 - (AB cos(theta))^2")
+    sheet.define(
+        "Y", select(folded, folded_area / (height - AB * cos_theta), straight), unit=LENGTH,
+        meaning="slider position along the slider axis", source="A (7)", differentiate=POSITION,
+    )  # fmt: skip
+    # What Y' is made of: where Y is small, itself and ec; where u is, the height and u.
+    sheet.define("lever_X", select(folded, ec, u))
+    sheet.define("lever_Y", select(folded, symbol("Y"), height))
     rows = (
         ("V_C", "Y", 1, SPEED, "velocity of the slider", "A (11)"),
         ("a_C", "Y", 2, ACCELERATION, "acceleration of the slider", "A (19)"),

@@ -4,11 +4,11 @@ Next to the change point BC = AB + |ec| the textbook form D = BC^2 - u^2 loses e
 its derivatives lose them even if D itself is exact: they are differences of large terms. Two
 steps repair that, both exact algebra.
 
-1. With sigma = sign(sin theta) ("side"), a = |sin theta| and eps = 1 - a = cos^2/(1 + a):
-   D = E W,  E = BC - sigma u = m + AB eps,  W = BC + sigma u = n - AB eps, where
-   m = BC - AB - sigma ec (the margin on this side) and n = BC + AB + sigma ec are exact sums.
-   Away from the quarter (a < 1/2) E and W are summed from BC -+ sigma ec, which is exact there
-   when |ec| is near BC.
+1. With sigma = sign(sin theta) ("side"), nu = sign(u) ("pin_side"), a = |sin theta| and
+   eps = 1 - a = cos^2/(1 + a): BC - |u| = q + sigma nu AB eps, where q = BC - nu (ec + sigma AB) is an
+   exact sum, the margin where both signs are those of ec. Away from the quarter (a < 1/2) BC - |u| is
+   summed from BC - nu ec, which is exact there when |ec| is near BC. D = S^2 = (BC - |u|)(2 BC - (BC - |u|)),
+   and q (2 BC - q) = m n, with m = BC - AB - sigma ec and n = BC + AB + sigma ec, whichever sign nu has.
 2. The crank-angle derivatives of the rod angle are rational in these; their numerators, written as
    polynomials in m n, sigma ec and AB, have coefficients that factor into a and eps, and the terms
    that cancelled are gone. `recollected` does that, and proves its result against the chain rule.
@@ -21,11 +21,12 @@ from functools import cache
 
 import sympy as sp
 
-from .loop import AB, CRANK, r, rod_partials, solved, theta, u
+from .loop import AB, BC, CRANK, ec, r, rod_partials, solved, theta, u
 
 sin_theta, cos_theta, side, abs_sin, eps = sp.symbols("sin_theta cos_theta side abs_sin eps", real=True)
-ec_side, margin_side, reach_side = sp.symbols("ec_side margin_side reach_side", real=True)
-E, W, D = sp.symbols("E W D", real=True)
+pin_side, AB_out, ec_out, margin_out = sp.symbols("pin_side AB_out ec_out margin_out", real=True)
+u_straight, crank_eps, BC_less_ec, less, D = sp.symbols("u_straight crank_eps BC_less_ec less D", real=True)
+margin_area, offset_ratio = sp.symbols("margin_area offset_ratio", real=True)
 crank_ratio, margin_ratio, ec_ratio = sp.symbols("crank_ratio margin_ratio ec_ratio", real=True)
 tan_phi, sec_phi = sp.symbols("tan_phi sec_phi", real=True)
 
@@ -33,9 +34,14 @@ TRIGONOMETRY = {sp.sin(theta): sin_theta, sp.cos(theta): cos_theta}
 CRANK_PIN = CRANK.subs(TRIGONOMETRY)
 OFFSET = solved()[u].subs(TRIGONOMETRY)  # u, from the solved loop
 
+# BC - |u| next to the quarters and elsewhere, D and m n from them.
+LESS = (margin_out + crank_eps, BC_less_ec - pin_side * (AB * sin_theta))
+HEIGHT_AREA = less * (2 * BC - less)
+MARGIN_AREA = margin_out * (2 * BC - margin_out)
+
 select, lt, le, eq = (sp.Function(name) for name in ("select", "lt", "le", "eq"))
-atan2, absolute = sp.Function("atan2"), sp.Function("abs")
-two_sum_error = sp.Function("two_sum_error")
+atan2, absolute, copysign = sp.Function("atan2"), sp.Function("abs"), sp.Function("copysign")
+two_sum_error, two_product_error = sp.Function("two_sum_error"), sp.Function("two_product_error")
 
 
 def assembled(ok: sp.Expr | int) -> sp.Expr:
@@ -97,7 +103,8 @@ def phi_rate(order: int) -> sp.Expr:
     if order == 1:
         return crank_ratio * cos_theta
     if order == 2:
-        return recollected(order)
+        without_side = recollected(order).subs(ec_ratio, side * offset_ratio).subs(abs_sin, side * sin_theta)
+        return sp.factor_terms(sp.expand(without_side).subs(side**2, 1))
     in_ratios = (
         chain_rule_form(order).subs({u: tan_phi / r, sin_theta: side * abs_sin}).subs(AB, crank_ratio / r)
     )
@@ -145,3 +152,36 @@ def _prove(order: int, result: sp.Expr) -> None:
     textbook = _numerator(order) * crank_ratio * (cos_theta if order % 2 else side)
     if sp.expand(result.subs(abs_sin, 1 - eps) - textbook) != 0:
         raise ArithmeticError(f"the recollected derivative of phi of order {order} is not the chain rule's")
+
+
+def written_out(expression: sp.Expr) -> sp.Expr:
+    """An expression of lengths in AB, BC, ec, eps and the signs sigma and nu, expanded."""
+    definitions = {
+        less: LESS[0],
+        margin_area: MARGIN_AREA,
+        margin_out: BC - AB_out - ec_out,
+        BC_less_ec: BC - ec_out,
+        crank_eps: AB_out * eps,
+        AB_out: side * pin_side * AB,
+        ec_out: pin_side * ec,
+        u: OFFSET,
+        sin_theta: side * (1 - eps),
+    }
+    for name, value in definitions.items():
+        expression = expression.subs(name, value)
+    plain = sp.Poly(sp.expand(expression), side, pin_side)
+    for square in (side**2 - 1, pin_side**2 - 1):
+        plain = plain.rem(sp.Poly(square, side, pin_side))
+    return sp.expand(plain.as_expr())
+
+
+def prove_height() -> None:
+    """The stable forms of BC - |u|, D and m n are what they are said to be, or the derivation stops."""
+    zeros = {
+        "BC - |u|": LESS[0] - LESS[1],
+        "D": HEIGHT_AREA - (BC**2 - u**2),
+        "m n": MARGIN_AREA - (BC**2 - (AB + side * ec) ** 2),
+    }
+    for name, difference in zeros.items():
+        if written_out(difference) != 0:
+            raise ArithmeticError(f"the stable form of {name} is not {name}")
