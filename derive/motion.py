@@ -18,7 +18,7 @@ from desaxe.names import sensitivity
 
 from .loop import theta
 from .sheet import Sheet, symbol
-from .stable import eq, le, lt, select
+from .stable import eq, le, lt, select, two_product_error
 from .units import ANGULAR_SPEED, NONE, Unit
 
 omega, omega2, omega0, alpha, turn, nan = map(symbol, ("omega", "omega2", "omega0", "alpha", "turn", "nan"))
@@ -42,7 +42,7 @@ def time_derivative(expression: sp.Expr, by_theta: dict[sp.Symbol, sp.Expr]) -> 
 def define_law(sheet: Sheet) -> None:
     """omega, omega^2 and their derivatives under paper A's law."""
     constant_speed = eq(alpha * theta, 0)  # NaN where theta is: it must not be lost here
-    sheet.define("omega2_law", LAW, unit=UNITS["omega2"], meaning="omega^2 by the law", source="A listing")
+    _define_square(sheet)
     sheet.define(
         "stalled", lt(symbol("omega2_law"), 0), unit=NONE, meaning="the crank stopped before this angle"
     )
@@ -67,6 +67,24 @@ def define_law(sheet: Sheet) -> None:
     for parameters in SQUARE_RATES:
         _define_rate(sheet, "omega2", parameters, LAW.diff(*map(symbol, parameters)))
     _define_powers(sheet)
+
+
+def _define_square(sheet: Sheet) -> None:
+    """omega^2 by the law, with its sign and its digits where the crank nearly stops.
+
+    Where the two terms nearly cancel their sum is exact (Sterbenz), so only the products' roundings count.
+    """
+    start, gained = sheet.define("omega2_start", omega0**2), sheet.define("omega2_gained", 2 * alpha * theta)
+    rounded = two_product_error(omega0, omega0) + two_product_error(2 * alpha, theta)
+    total, lost = sheet.define("omega2_total", start + gained), sheet.define("omega2_lost", rounded)
+    sheet.define(
+        "omega2_law",
+        total + lost,
+        unit=UNITS["omega2"],
+        meaning="omega^2 by the law",
+        source="A listing",
+        differentiate=LAW,
+    )
 
 
 def _define_powers(sheet: Sheet) -> None:
