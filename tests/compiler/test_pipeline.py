@@ -78,12 +78,12 @@ def test_operations_of_a_sine():
 
 
 COUNTS = [
-    (("Y",), {"branch": 1.0}, 42),
-    (("V_C",), {"branch": 1.0}, 67),
-    (("V_C",), CONCENTRIC, 41),
-    (("a_C",), {"branch": 1.0}, 81),
+    (("Y",), {"branch": 1.0}, 45),
+    (("V_C",), {"branch": 1.0}, 77),
+    (("V_C",), CONCENTRIC, 48),
+    (("a_C",), {"branch": 1.0}, 88),
     (("a_C",), CONCENTRIC, 52),
-    (("Y", "V_C", "a_C"), {"branch": 1.0}, 88),
+    (("Y", "V_C", "a_C"), {"branch": 1.0}, 94),
     (("margin",), {}, 9),
     (("margin",), {"ec": 0.0}, 4),
 ]
