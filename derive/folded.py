@@ -19,7 +19,7 @@ from .loop import AB, BC, branch, ec, r, slider, u
 from .stable import (
     chain_rule_form,
     cos_theta,
-    crank_eps,
+    crank_drop,
     crank_ratio,
     ec_out,
     eps,
@@ -34,7 +34,7 @@ from .stable import (
 folded, folded_area = sp.symbols("folded folded_area", real=True)
 lever_X, lever_Y = sp.symbols("lever_X lever_Y", real=True)
 
-FOLDED_AREA = margin_area + 2 * ec_out * crank_eps
+FOLDED_AREA = margin_area - 2 * ec_out * crank_drop
 LEVERS = (ec, slider), (u, branch / r)  # where folded, elsewhere
 
 

@@ -29,14 +29,17 @@ from .stable import (
     atan2,
     copysign,
     cos_theta,
-    crank_eps,
+    crank_drop,
     eps,
     eq,
     le,
+    less_by,
+    less_from,
     lt,
     margin_area,
     pin_side,
     prove_height,
+    rounding,
     sec_phi,
     select,
     side,
@@ -117,16 +120,21 @@ def _define_rod(sheet: Sheet) -> None:
     sheet.define("AB_out", copysign(AB, sin_theta * u_straight), unit=LENGTH, meaning="sigma nu AB")
     out = sheet.define("ec_out", pin_side * ec, unit=LENGTH, meaning="nu ec")
     _exact_sum(sheet, "margin_out", -AB_out, -out, "q: BC - nu (ec + sigma AB)")
-    sheet.define("crank_eps", AB_out * eps)
+    sheet.define("crank_drop", -AB_out * eps)
     near_quarter = sheet.define("near_quarter", le(sp.Float(0.5), abs_sin))
     sheet.define("BC_less_ec", BC - out)
-    sheet.define("less", select(near_quarter, *LESS), unit=LENGTH, meaning="BC - |u|")
+    for name, near, far in zip(("less_from", "less_by"), *LESS, strict=True):
+        sheet.define(name, select(near_quarter, near, far))
+    # At the last angle that the rod reaches, the sine's last bit must not decide whether it does.
+    reach = sheet.define("less_straight", less_from - less_by)
+    within = lt(absolute(reach), rounding(less_by))
+    sheet.define("less", select(within, absolute(reach), reach), unit=LENGTH, meaning="BC - |u|")
     sheet.define("D", HEIGHT_AREA, unit=Unit(m=2), meaning="BC^2 - u^2", source="B (7)")
     sheet.define("S", sp.sqrt(D), unit=LENGTH, meaning="BC cos(phi), the rod's height", source="B (7)")
     sheet.define("inv_S", 1 / S, unit=Unit(m=-1), meaning="1 / S")
     beyond = sheet.define("pin_out", AB_out + out)  # exact where they nearly cancel
     sheet.define(
-        "u", select(near_quarter, pin_side * (beyond - crank_eps), u_straight), unit=LENGTH, source="A (6)",
+        "u", select(near_quarter, pin_side * (beyond + crank_drop), u_straight), unit=LENGTH, source="A (6)",
         meaning="BC sin(phi), crank pin from the slider axis",
     )  # fmt: skip
     sheet.define("margin_area", MARGIN_AREA, unit=Unit(m=2), meaning="m n = BC^2 - (AB + sigma ec)^2")

@@ -25,7 +25,8 @@ from .loop import AB, BC, CRANK, ec, r, rod_partials, solved, theta, u
 
 sin_theta, cos_theta, side, abs_sin, eps = sp.symbols("sin_theta cos_theta side abs_sin eps", real=True)
 pin_side, AB_out, ec_out, margin_out = sp.symbols("pin_side AB_out ec_out margin_out", real=True)
-u_straight, crank_eps, BC_less_ec, less, D = sp.symbols("u_straight crank_eps BC_less_ec less D", real=True)
+u_straight, crank_drop, BC_less_ec, less, D = sp.symbols("u_straight crank_drop BC_less_ec less D", real=True)
+less_from, less_by = sp.symbols("less_from less_by", real=True)
 margin_area, offset_ratio = sp.symbols("margin_area offset_ratio", real=True)
 crank_ratio, margin_ratio, ec_ratio = sp.symbols("crank_ratio margin_ratio ec_ratio", real=True)
 tan_phi, sec_phi = sp.symbols("tan_phi sec_phi", real=True)
@@ -34,14 +35,15 @@ TRIGONOMETRY = {sp.sin(theta): sin_theta, sp.cos(theta): cos_theta}
 CRANK_PIN = CRANK.subs(TRIGONOMETRY)
 OFFSET = solved()[u].subs(TRIGONOMETRY)  # u, from the solved loop
 
-# BC - |u| next to the quarters and elsewhere, D and m n from them.
-LESS = (margin_out + crank_eps, BC_less_ec - pin_side * (AB * sin_theta))
+# BC - |u| is less_from - less_by, next to the quarters and elsewhere; D and m n.
+LESS = (margin_out, crank_drop), (BC_less_ec, pin_side * (AB * sin_theta))
 HEIGHT_AREA = less * (2 * BC - less)
 MARGIN_AREA = margin_out * (2 * BC - margin_out)
 
 select, lt, le, eq = (sp.Function(name) for name in ("select", "lt", "le", "eq"))
 atan2, absolute, copysign = sp.Function("atan2"), sp.Function("abs"), sp.Function("copysign")
 two_sum_error, two_product_error = sp.Function("two_sum_error"), sp.Function("two_product_error")
+rounding = sp.Function("rounding")
 
 
 def assembled(ok: sp.Expr | int) -> sp.Expr:
@@ -157,11 +159,11 @@ def _prove(order: int, result: sp.Expr) -> None:
 def written_out(expression: sp.Expr) -> sp.Expr:
     """An expression of lengths in AB, BC, ec, eps and the signs sigma and nu, expanded."""
     definitions = {
-        less: LESS[0],
+        less: margin_out - crank_drop,
         margin_area: MARGIN_AREA,
         margin_out: BC - AB_out - ec_out,
         BC_less_ec: BC - ec_out,
-        crank_eps: AB_out * eps,
+        crank_drop: -AB_out * eps,
         AB_out: side * pin_side * AB,
         ec_out: pin_side * ec,
         u: OFFSET,
@@ -178,7 +180,7 @@ def written_out(expression: sp.Expr) -> sp.Expr:
 def prove_height() -> None:
     """The stable forms of BC - |u|, D and m n are what they are said to be, or the derivation stops."""
     zeros = {
-        "BC - |u|": LESS[0] - LESS[1],
+        "BC - |u|": (LESS[0][0] - LESS[0][1]) - (LESS[1][0] - LESS[1][1]),
         "D": HEIGHT_AREA - (BC**2 - u**2),
         "m n": MARGIN_AREA - (BC**2 - (AB + side * ec) ** 2),
     }

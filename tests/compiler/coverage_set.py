@@ -35,6 +35,7 @@ TEXT = '''def coverage(x, y, z):
     signed = copysign(x, y - z) * copysign(2.0, z)
     lost = x + y + two_sum_error(x, y) * 0.5
     lost_too = x * y + two_product_error(x, y) * 0.5
+    lost_at_most = x + y + rounding(x) * 0.5
     least = x if x < y else y
     chosen = x if x < y else (y if y <= z else z)
     chosen_early = (x if x < y else y) - (y if z < y else z)

@@ -85,6 +85,7 @@ _IEEE: dict[str, Any] = {
     "copysign": math.copysign,
     "two_sum_error": _two_sum_error,
     "two_product_error": _two_product_error,
+    "rounding": lambda a: 2.0**-51 * math.fabs(a),
     "lt": lambda a, b: a < b,
     "le": lambda a, b: a <= b,
     "eq": lambda a, b: a == b,

@@ -4,7 +4,8 @@ A row says what an operation means (its exact reference), how each language spel
 costs and where it is undefined. A new operation, or a new language, is a change to this table.
 
 `exact` is the meaning over the real numbers, computed by a namespace of high-precision functions
-(``mpmath.mp`` in the tests); the error terms of two-sum and two-product are exactly 0 there.
+(``mpmath.mp`` in the tests); the error terms of two-sum and two-product are exactly 0 there,
+and so is `rounding`, a bound of such terms.
 `python` and `numba` are templates over the argument texts. Plain Python raises where IEEE 754
 arithmetic answers inf or NaN, so its division and square root are guarded in the template.
 `precedence` is that of the spelling in the readable text form; calls bind tightest.
@@ -75,6 +76,7 @@ OPERATIONS: dict[str, Operation] = dict(
             "two_product_error", "fff", "two_product_error({0}, {1})", CALL, 1, lambda mp, a, b: a * 0,
             commutes=True,
         ),
+        _row("rounding", "ff", "rounding({0})", CALL, 1.5, lambda mp, a: a * 0),
         _row("lt", "ffb", "{0} < {1}", 6, 1, lambda mp, a, b: a < b),
         _row("le", "ffb", "{0} <= {1}", 6, 1, lambda mp, a, b: a <= b),
         _row("eq", "ffb", "{0} == {1}", 6, 1, lambda mp, a, b: a == b, commutes=True),
@@ -104,6 +106,10 @@ HELPERS = {
     b_high = wide - (wide - b)
     b_low = b - b_high
     return a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low) + 0.0
+''',
+    "rounding": '''def rounding(a):
+    """What rounding may take from a number of this size in four operations."""
+    return 4.440892098500626e-16 * fabs(a)
 ''',
     "divide": '''def divide(a, b):
     """a / b with the IEEE 754 answers that Python refuses to give."""

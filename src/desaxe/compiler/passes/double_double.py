@@ -46,7 +46,7 @@ def double_digits(program: Program, constants: DoubleTrigonometry) -> Program:
 
     Precondition: |angle| <= constants.limit wherever the result matters. Effect: values that are
     finite keep about 100 bits; comparisons look at high parts; an infinity may become NaN. Error terms
-    of two-sum and two-product are 0, because the sums and products themselves keep them.
+    of two-sum and two-product are 0, because the sums and products themselves keep them; so is `rounding`.
     """
     writer = _Writer(program, constants)
     for line in program.lines:
@@ -92,7 +92,7 @@ class _Writer:
         """The pair of one operation."""
         if op in ("sin", "cos"):
             return self.turned(self.of(args[0]))[op]
-        if op in ("two_sum_error", "two_product_error"):
+        if op in ("two_sum_error", "two_product_error", "rounding"):
             return Pair(0.0)
         return _RULES[op](self, *map(self.of, args))
 
