@@ -64,9 +64,7 @@ def kernel_of(*names, **axis_of):
 def test_what_needs_only_the_angle_stays_out_of_the_inner_loops():
     kernel = kernel_of(*KINEMATICS, theta=0, ec=1, BC=2)
     levels = level_of(kernel)
-    assert {
-        levels[name] for name in ("sin_theta", "cos_theta", "side", "abs_sin", "eps", "omega", "turn")
-    } <= {0, 1}
+    assert {levels[name] for name in ("sin_theta", "cos_theta", "abs_sin", "eps", "omega", "turn")} <= {0, 1}
     assert not {"sin", "cos"} & {line.op for line in (*kernel.levels[2], *kernel.levels[3])}
 
 

@@ -78,12 +78,12 @@ def test_operations_of_a_sine():
 
 
 COUNTS = [
-    (("Y",), {"branch": 1.0}, 45),
-    (("V_C",), {"branch": 1.0}, 77),
-    (("V_C",), CONCENTRIC, 48),
-    (("a_C",), {"branch": 1.0}, 88),
-    (("a_C",), CONCENTRIC, 52),
-    (("Y", "V_C", "a_C"), {"branch": 1.0}, 94),
+    (("Y",), {"branch": 1.0}, 50),
+    (("V_C",), {"branch": 1.0}, 82),
+    (("V_C",), CONCENTRIC, 53),
+    (("a_C",), {"branch": 1.0}, 93),
+    (("a_C",), CONCENTRIC, 57),
+    (("Y", "V_C", "a_C"), {"branch": 1.0}, 99),
     (("margin",), {}, 9),
     (("margin",), {"ec": 0.0}, 4),
 ]
