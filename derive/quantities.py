@@ -126,9 +126,9 @@ def _define_rod(sheet: Sheet) -> None:
     for name, near, far in zip(("less_from", "less_by"), *LESS, strict=True):
         sheet.define(name, select(near_quarter, near, far))
     # At the last angle that the rod reaches, the sine's last bit must not decide whether it does.
-    reach = sheet.define("less_straight", less_from - less_by)
-    within = lt(absolute(reach), rounding(less_by))
-    sheet.define("less", select(within, absolute(reach), reach), unit=LENGTH, meaning="BC - |u|")
+    reach, unsure = sheet.define("less_rounded", less_from - less_by), rounding(less_by)
+    surely = select(lt(absolute(reach), unsure), unsure, reach)
+    sheet.define("less", surely, unit=LENGTH, meaning="BC - |u|, at least what rounding may take from it")
     sheet.define("D", HEIGHT_AREA, unit=Unit(m=2), meaning="BC^2 - u^2", source="B (7)")
     sheet.define("S", sp.sqrt(D), unit=LENGTH, meaning="BC cos(phi), the rod's height", source="B (7)")
     sheet.define("inv_S", 1 / S, unit=Unit(m=-1), meaning="1 / S")
