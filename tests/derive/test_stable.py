@@ -79,3 +79,16 @@ def test_the_curvature_next_to_the_change_point_keeps_its_digits():
     """At the quarter, m > 0 is all that is left of it: -side crank_ratio margin_ratio."""
     at_quarter = recollected(2).subs({stable.eps: 0, stable.abs_sin: 1})
     assert sp.expand(at_quarter + stable.side * stable.crank_ratio * stable.margin_ratio) == 0
+
+
+def test_a_height_gone_wrong_is_refused(monkeypatch):
+    monkeypatch.setattr(stable, "HEIGHT_AREA", stable.less * stable.BC)
+    with pytest.raises(ArithmeticError, match="the stable form of D is not D"):
+        stable.prove_height()
+
+
+def test_a_rod_summed_wrongly_is_refused(monkeypatch):
+    near, (start, drop) = stable.LESS
+    monkeypatch.setattr(stable, "LESS", (near, (start, -drop)))
+    with pytest.raises(ArithmeticError, match=r"BC - \|u\|"):
+        stable.prove_height()
