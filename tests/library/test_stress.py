@@ -16,10 +16,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import desaxe as dx
+from desaxe.audit.truth import LAW, conditions, truth, ulp_error
 from tests import force_truth
 from tests.library.families import FAMILIES, Rng, points, rescaled
 from tests.library.ways import take_way
-from tests.truth import LAW, conditions, truth, ulp_error
 
 NAMES = [
     q + tail
