@@ -135,14 +135,16 @@ def eccentric_as_crank(rng: Rng) -> Point:
 def dead_centre(rng: Rng) -> Point:
     """Crank and rod in line, to the last double and the next ones."""
     ec, AB, BC = sizes(rng)
-    stretched = side(rng)  # or folded
-    while abs(ec) >= abs(AB + stretched * BC):
+    along = rng.choice((AB + BC, BC - AB))
+    while abs(ec) >= abs(along):
         ec, AB, BC = sizes(rng)
+        along = rng.choice((AB + BC, BC - AB))
     with mpmath.workdps(40):
-        upwards = mpmath.asin(-ec / (mpmath.mpf(AB) + stretched * mpmath.mpf(BC)))
-        up = side(rng)  # the slider is at (AB +- BC) cos(theta), the pin at AB cos(theta)
-        theta = float((upwards if up > 0 else mpmath.pi - upwards) + 2 * mpmath.pi * rng.randrange(-1, 2))
-    branch = stretched * up
+        theta = -mpmath.asin(
+            mpmath.mpf(ec) / (mpmath.mpf(AB) + BC if along == AB + BC else mpmath.mpf(AB) - BC)
+        )
+        theta = float(theta + mpmath.pi * rng.randrange(-2, 3))
+    branch = rng.choice((-1, 1))
     for _ in range(rng.randrange(3)):
         theta = math.nextafter(theta, side(rng) * math.inf)
     return point(rng, theta, ec, AB, BC) | {"branch": branch}
@@ -238,11 +240,11 @@ def nearly_stalled(rng: Rng) -> Point:
     at = generic(rng)
     while at["theta"] == 0:
         at = generic(rng)
-    at["alpha"] = (
-        -(at["omega0"] ** 2)
-        / (2 * at["theta"])
-        * (1 - rng.choice((1, 1, 1, -1)) * log_uniform(rng, 1e-16, 1e-2))
-    )
+    most = -(at["omega0"] ** 2) / (2 * at["theta"])
+    if rng.random() < 0.3:  # the last double before it stalls, or the first after
+        at["alpha"] = rng.choice((most, math.nextafter(most, 0), math.nextafter(most, 2 * most)))
+    else:
+        at["alpha"] = most * (1 - rng.choice((1, 1, 1, -1)) * log_uniform(rng, 1e-16, 1e-2))
     return at
 
 
