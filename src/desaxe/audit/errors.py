@@ -21,6 +21,7 @@ ULPS = 8  # of the promise of standard
 TOP = 2.0**53  # ulp: no digit is right, or there is no number
 FLOOR = mpmath.mpf(2) ** -96  # of the scale, for errors in plain ulp
 DRAWS = 50  # at most, for each point that is taken
+FAR = 1000.0  # rad
 ENOUGH = 2048  # points in an array, so that desaxe compiles instead of computing them one by one
 DEGREES = {"V_C": 1, "a_C": 2, "a_C_wrt_ec": 2}  # of the crank's speed, in the scale
 RANGE = mpmath.mpf(2) ** -1022, mpmath.mpf(2) ** 1024
@@ -96,8 +97,11 @@ class Judge:
     def _answers(self, family: Sequence[Case]) -> list[Any]:
         """A row of values for each point."""
         answers: list[Any] = [None] * len(family)
-        for branch in {case.point["branch"] for case in family}:
-            chosen = [index for index, case in enumerate(family) if case.point["branch"] == branch]
+        groups: dict[tuple[int, bool], list[int]] = {}
+        for index, case in enumerate(family):
+            far = abs(case.point["theta"]) > FAR  # one such angle makes a whole array another kernel's
+            groups.setdefault((case.point["branch"], far), []).append(index)
+        for (branch, _), chosen in groups.items():
             rows = self._run(branch, [family[index].point for index in chosen])
             for index, row in zip(chosen, rows.T.tolist(), strict=True):
                 answers[index] = row

@@ -23,6 +23,9 @@ last digits of the inputs change anyway is not counted. 1 is that promise just k
 move. Errors below 2^-96 of the value's scale count as half an ulp at most; exact zeros have no ulp and are
 left out.
 
+Far angles, beyond a few hundred turns, `fast` computes as `standard` does. 50 digits are not enough for the
+textbook's formula everywhere.
+
 `none` is the top of either scale: no digit is right, or there is no number where there is a value.
 """
 
@@ -74,9 +77,9 @@ def _made(found: Audit) -> str:
     absent = "" if "heyoka" in found.ratios else " heyoka is not installed here, so it was not measured."
     return (
         f"Made by `desaxe audit`: {', '.join(NAMES)} at {effort.points} points of each family, {branches},\n"
-        f"seed {SEED}; time over {effort.timed} points. The truth is the loop closure in ball arithmetic,\n"
-        f"which shares nothing with any contender. NumPy, numba, heyoka and mpmath evaluate the textbook's\n"
-        f"closed form (`desaxe.equation`).{absent}\n\n"
+        f"seed {SEED}; time over {effort.timed} points, {effort.rounds} rounds. The truth is the loop\n"
+        f"closure in ball arithmetic, which shares nothing with any contender. NumPy, numba, heyoka and\n"
+        f"mpmath evaluate the textbook's closed form (`desaxe.equation`).{absent}\n\n"
         f"{found.machine}."
     )
 
@@ -135,10 +138,13 @@ def beaten_by(found: Audit, name: str, measure: str) -> list[str]:
 
 def _dominated(found: Audit) -> Iterator[str]:
     """Who takes longer and errs no less than somebody else, measure by measure."""
-    yield "Dominated, that is slower than another whose worst error is no larger:\n"
+    yield "Dominated, that is slower than another whose worst error is no larger, by the fastest such:\n"
     for measure in measures(found, found.who[0].name):
         beaten = [name for name in found.ratios if beaten_by(found, name, measure)]
-        by = [f"{name} (by {', '.join(beaten_by(found, name, measure))})" for name in beaten]
+        by = [
+            f"{name} (by {min(beaten_by(found, name, measure), key=found.ratios.__getitem__)})"
+            for name in beaten
+        ]
         yield f"* {measure}: {'; '.join(by) or 'nobody'}"
 
 

@@ -26,8 +26,8 @@ class Effort(NamedTuple):
     rounds: int
 
 
-FULL = Effort(points=500, branches=(1, -1), timed=1_000_000, rounds=9)
-QUICK = Effort(points=12, branches=(1,), timed=200_000, rounds=3)
+FULL = Effort(points=500, branches=(1, -1), timed=250_000, rounds=100)
+QUICK = Effort(points=12, branches=(1,), timed=250_000, rounds=8)
 
 
 class Audit(NamedTuple):

@@ -1,5 +1,6 @@
 """How long contenders take for a point, all in one process, in turns, on one core."""
 
+import random
 import time
 from collections.abc import Sequence
 
@@ -9,17 +10,22 @@ from .contenders import INPUTS, NAMES, Array, Contender
 from .families import points
 
 DRAWN = 2000  # different points; they are repeated
-FEW = 100  # for those who are slow
+FEW = 20  # for those who are slow
 
 
 def times(who: Sequence[Contender], count: int, rounds: int, seed: int) -> dict[str, float]:
-    """Seconds for one generic point: the best of several rounds, each with everyone in turn."""
+    """Seconds for one generic point: the best of several rounds, each with everyone in turn.
+
+    The order changes from round to round: who comes after a slow one finds the caches cold.
+    """
     inputs, outputs = _inputs(count, seed), np.empty((len(NAMES), count))
     few, few_outputs = np.ascontiguousarray(inputs[:, :FEW]), np.empty((len(NAMES), FEW))
     runs = {one.name: one.make(1) for one in who}
     best = dict.fromkeys(runs, float("inf"))
+    turns, rng = list(who), random.Random(seed)
     for number in range(rounds + 1):
-        for one in who:
+        rng.shuffle(turns)
+        for one in turns:
             work = (few, few_outputs) if one.few else (inputs, outputs)
             started = time.perf_counter()
             runs[one.name](*work)
