@@ -136,7 +136,7 @@ def exactly(some, inputs):
 
 def test_a_promise_counts_conditions():
     """At a dead centre V_C is nothing but the last digits of the inputs; a_C is not."""
-    found = cases("dead_centre", 12, 0, (1,))
+    found = cases("dead_centre", 12, 0, (1, -1))
     assert sum(case.bounds["V_C"] > 1e9 * case.bounds["a_C"] for case in found) > 6
 
 

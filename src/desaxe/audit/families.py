@@ -135,16 +135,14 @@ def eccentric_as_crank(rng: Rng) -> Point:
 def dead_centre(rng: Rng) -> Point:
     """Crank and rod in line, to the last double and the next ones."""
     ec, AB, BC = sizes(rng)
-    along = rng.choice((AB + BC, BC - AB))
-    while abs(ec) >= abs(along):
+    stretched = side(rng)  # or folded
+    while abs(ec) >= abs(AB + stretched * BC):
         ec, AB, BC = sizes(rng)
-        along = rng.choice((AB + BC, BC - AB))
     with mpmath.workdps(40):
-        theta = -mpmath.asin(
-            mpmath.mpf(ec) / (mpmath.mpf(AB) + BC if along == AB + BC else mpmath.mpf(AB) - BC)
-        )
-        theta = float(theta + mpmath.pi * rng.randrange(-2, 3))
-    branch = rng.choice((-1, 1))
+        upwards = mpmath.asin(-ec / (mpmath.mpf(AB) + stretched * mpmath.mpf(BC)))
+        up = side(rng)  # the slider is at (AB +- BC) cos(theta), the pin at AB cos(theta)
+        theta = float((upwards if up > 0 else mpmath.pi - upwards) + 2 * mpmath.pi * rng.randrange(-1, 2))
+    branch = stretched * up
     for _ in range(rng.randrange(3)):
         theta = math.nextafter(theta, side(rng) * math.inf)
     return point(rng, theta, ec, AB, BC) | {"branch": branch}
