@@ -7,7 +7,6 @@ only if the margin keeps its own.
 
 import itertools
 import math
-import sys
 
 import mpmath
 import pytest
@@ -136,14 +135,3 @@ def test_last_feasible_angles(ec, AB, BC, side):
     for distance in [0.0, *(10.0**-k for k in range(3, 17))]:
         at = point(end - side * distance, ec, AB, BC)
         assert not feasible(at) or not misses(at), at
-
-
-def test_scaling_by_powers_of_two_is_exact():
-    """Neither the unit of length nor that of time leaves a trace, up to overflow."""
-    at = point(QUARTER - 1e-6, 0.225, 0.125, 0.35 * (1 + 1e-9))
-    plain = dx.evaluate(NAMES, **at)
-    for power in (-300, -100, 100, 300):
-        unit = 2.0**power
-        scaled = dx.evaluate(["Y", "V_C", "a_C"], **at | {p: at[p] * unit for p in ("ec", "AB", "BC")})
-        assert scaled == {name: plain[name] * unit for name in scaled}
-        assert all(sys.float_info.min < abs(value) < math.inf for value in scaled.values())
