@@ -380,10 +380,10 @@ def _errata(options: argparse.Namespace) -> int:
 
 
 _AUDIT = """\
-Every accuracy of desaxe beside NumPy, numba, mpmath and (if installed) heyoka on the textbook's formula, at
-generic points and in families of points where formulas lose their digits. The truth is the loop closure in
-ball arithmetic. It takes some minutes; the points are the same every time. Needs the extras `rigorous`,
-`derive` and, for the picture, `plot`.
+Every accuracy of desaxe beside NumPy, numba, mpmath and (if installed) heyoka on the textbook's
+formula, at generic points and in families of points where formulas lose their digits. The truth is
+the loop closure in ball arithmetic. It takes a minute or two; the points are the same every time.
+Needs the extras `rigorous`, `derive` and, for the picture, `plot`.
 
 examples:
   desaxe audit --quick        fewer points, half a minute at most

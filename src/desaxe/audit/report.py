@@ -8,6 +8,7 @@ from .families import FAMILIES
 from .run import GENERIC, SEED, Audit
 
 PICTURE = "accuracy.png"
+PLAIN = "in plain ulp"
 CLEARLY = 0.95  # a time is shorter only if by this much: the rest is noise
 
 READING = """\
@@ -126,7 +127,7 @@ def measures(found: Audit, name: str) -> dict[str, float]:
     return {
         "at generic points": generic,
         "in the hardest family": found.hardest(name)[1],
-        "in plain ulp": found.worst_ulp(name),
+        PLAIN: found.worst_ulp(name),
     }
 
 
@@ -138,9 +139,12 @@ def beaten_by(found: Audit, name: str, measure: str) -> list[str]:
 
 def _dominated(found: Audit) -> Iterator[str]:
     """Who takes longer and errs no less than somebody else, measure by measure."""
-    yield "Dominated, that is slower than another whose worst error is no larger, by the fastest such:\n"
+    yield "Dominated, that is slower than another whose worst error is no larger, by the fastest; who has"
+    yield "no digit right at some point is left out:\n"
     for measure in measures(found, found.who[0].name):
-        beaten = [name for name in found.ratios if beaten_by(found, name, measure)]
+        top = TOP if measure == PLAIN else TOP / ULPS
+        some = [name for name in found.ratios if measures(found, name)[measure] < top]
+        beaten = [name for name in some if beaten_by(found, name, measure)]
         by = [
             f"{name} (by {min(beaten_by(found, name, measure), key=found.ratios.__getitem__)})"
             for name in beaten
