@@ -63,7 +63,8 @@ def evaluate(
     mu       Coulomb friction of the slider's guide, against its motion or the one that alpha starts
     accuracy "standard": within 8 ulp x (1 + the sum of condition numbers), next to singular points too;
              "extended": within 2 ulp, in pairs of doubles, some 7 times the time; "fast": for arrays, in
-             float32; or the error that you can bear, such as 1e-9, for the fastest that keeps it
+             float32, for points that are far from singular ones; or the error that you can bear, such as
+             1e-14, for the cheaper of the first two that keeps it
     threads  for arrays: how many threads share the work, all that pay without
     out      for arrays: where to put the answer, an array or a dict name -> array
     quality  True: for each name, in place of the value, an object with `value`, `conditions` (input ->

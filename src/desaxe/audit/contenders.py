@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import evaluate
-from .._accuracy import BOUNDS
+from .._accuracy import ACCURACIES
 
 NAMES = ("V_C", "a_C", "a_C_wrt_ec")
 INPUTS = ("theta", "ec", "AB", "BC", "omega0", "alpha")
@@ -35,7 +35,7 @@ class Contender(NamedTuple):
 
 def contenders() -> list[Contender]:
     """All of them that can be had here; heyoka is asked only if it is installed."""
-    found = [Contender(f"desaxe {tier}", _desaxe(tier), "desaxe") for tier in BOUNDS]
+    found = [Contender(f"desaxe {tier}", _desaxe(tier), "desaxe") for tier in ACCURACIES]
     found += [Contender("NumPy lambdify", _numpy), Contender("numba", _numba)]
     if find_spec("heyoka") is not None:
         found.append(Contender("heyoka", _heyoka(fast_math=False)))
