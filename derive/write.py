@@ -109,7 +109,7 @@ def _package(digest: str) -> str:
 def _program(program: Program, name: str, what: str, digest: str) -> str:
     text = write_function(program, name, what.partition("\n")[0])
     called = [word for word in MATH_NAMES if f"{word}(" in text or f" {word}" in text.replace("# ", "#")]
-    helper = f"\n\n{HELPERS['two_sum_error']}" if "two_sum_error(" in text else ""
+    helper = "".join(f"\n\n{source}" for name, source in HELPERS.items() if f"{name}(" in text)
     imports = f"from math import {', '.join(called)}\n" if called else ""
     banner = _banner(what, digest, f"{cost_of(program).operations} operations")
     return f'"""{banner}"""\n\n{imports}{helper}\n\n{text}'

@@ -9,8 +9,10 @@ PARTLY   undefined at some point of the box, perhaps: a root of what may be nega
          friction that may jam
 JUMPS    may be discontinuous in the box: a condition with two different sides is not decided
 
-The side of the crank is chosen once for a box: with sigma = 1 or -1 for sign(sin theta), and
-sigma sin(theta) for |sin(theta)|, all equations of the derivation are identities for either sigma.
+The signs of sin(theta) and of u are chosen once for a box: with sigma = 1 or -1 for the one, sigma
+sin(theta) for |sin(theta)| and nu = 1 or -1 for the other, all equations of the derivation are identities
+for either sigma and nu. So they are for either answer to the questions whether the crank is near a quarter
+and whether it and the rod fold back on each other, if it is the same answer everywhere.
 """
 
 from collections.abc import Callable, Mapping
@@ -27,8 +29,8 @@ Value = Any  # an arb, None where it is undefined in all of the box; a bool, Non
 PARTLY, JUMPS = 1, 2
 BITS = 128
 # Selects whose sides are the same function.
-SAME = ("E", "W", "u", "bend", "phi_wrt_theta_theta_theta", "phi_wrt_theta_theta_theta_theta")
-EITHER = ("lt", ("E", "W"))  # all that is made of the smaller one is symmetric in them
+SAME = ("bend", "phi_wrt_theta_theta_theta", "phi_wrt_theta_theta_theta_theta")
+NEAR_QUARTER = ("le", (0.5, "abs_sin"))
 
 
 class Enclosure(NamedTuple):
@@ -62,6 +64,7 @@ class _Run:
         self.scope: dict[str, Value] = {name: ball(box[name]) for name in program.inputs}
         self.flags: dict[str, int] = {}
         self.conditions: dict[Argument, Line] = {}
+        self.out = 1  # sigma nu
 
     def step(self, line: Line) -> None:
         name, op, args, kind = line
@@ -99,13 +102,22 @@ class _Run:
 
     def _number(self, line: Line, here: list[Any]) -> Value:
         name, op, args, _ = line
-        if name == "abs_sin":
+        if original(name) == "abs_sin":
             return here[0] * self._sigma()
+        if name == "AB_out":
+            self.out = self._out(here[1])
+        if name == "pin_side":
+            return arb(self.out * self._sigma())
+        if original(name) == "AB_out":
+            return here[0] * self.out
         if op == "mul" and args[0] == args[1]:
             return (here[0] * here[0]).nonnegative_part()
         if op == "atan2" and args[0] == "S":  # S is not negative: no half turn is lost
             return arb.pi() / 2 - arb.atan2(here[1], here[0])
         return _NUMBERS[op](*here)
+
+    def _out(self, x: Any) -> int:
+        return 1 if x.mid() >= 0 else -1
 
     def _sigma(self) -> int:
         return -1 if self.scope["sin_theta"] < 0 else 1
@@ -121,7 +133,7 @@ class _Run:
         (a, b), (c, d) = (self._ends(argument, x) for argument, x in zip(args, here, strict=True))
         if op == "eq":
             return True if a == b == c == d else False if b < c or d < a else None
-        if (op, args) == EITHER:
+        if (op, args) == NEAR_QUARTER or (op, args[1]) == ("lt", "S"):  # either answer will do
             return bool(here[0].mid() < here[1].mid())
         if op == "lt":
             return True if b < c else False if a >= d else None
@@ -200,5 +212,8 @@ _NUMBERS: dict[str, Callable[..., Any]] = {
     "sin": lambda a: a.sin(),
     "cos": lambda a: a.cos(),
     "atan2": arb.atan2,
+    "copysign": lambda a, b: a if b > 0 else -a if b < 0 else a.union(-a),  # of a positive a
     "two_sum_error": lambda a, b: arb(0),  # nothing is rounded
+    "two_product_error": lambda a, b: arb(0),
+    "rounding": lambda a: arb(0),
 }

@@ -79,7 +79,7 @@ def _abs(chain: _Chain, line: Line) -> Step:
     (a,) = line.args
     slope = chain.slope(a)
     if line.name == "abs_sin":  # the side that the whole box was given
-        return "mul", ("side", slope)
+        return "copysign", (slope, a)  # the balls know the sign
     below = chain.new("lt", a, 0.0, type="bool")
     return "select", (below, chain.new("neg", slope), slope)
 
@@ -119,4 +119,8 @@ _RULES: Mapping[str, Callable[[_Chain, Line], Step]] = {
     "atan2": _atan2,
     "select": lambda chain, line: ("select", (line.args[0], *map(chain.slope, line.args[1:]))),
     "two_sum_error": lambda chain, line: ("copy", (0.0,)),
+    "two_product_error": lambda chain, line: ("copy", (0.0,)),
+    "rounding": lambda chain, line: ("copy", (0.0,)),
+    # The sign of the second is constant but for jumps; the balls know which it is.
+    "copysign": lambda chain, line: ("copysign", (chain.slope(line.args[0]), line.args[1])),
 }

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from .. import _cache
 from .._point import cut
 from .._program import Form
-from ..compiler.operations import HELPERS
+from ..compiler.emit_numba import helper_sources
 from ..compiler.program import Program
 from ..compiler.text import INDENT, with_short_temporaries, write_lines
 from . import compiled
@@ -25,6 +25,7 @@ _HEADER = '''"""{what}"""
 from math import asin, atan2, copysign, cos, fabs, inf, nan, pi, sin, sqrt
 
 from numba import njit, types
+from numba.extending import intrinsic
 from numpy import empty, floor, nextafter
 '''
 _NUMBER = "def torque(t, theta, omega, number):\n    return number\n"
@@ -74,7 +75,7 @@ def source_of(family: Family, given_torque: bool) -> str:
     inputs = {name: f"p[{at}]" for at, name in enumerate(family.inputs)}
     parts = [
         _HEADER.format(what=f"desaxe: the motion of many designs; p has {', '.join(inputs)}."),
-        _NJIT + HELPERS["two_sum_error"],
+        *helper_sources({line.op for program in family.programs.values() for line in program.lines}),
         *(_function(name, program, inputs) for name, program in family.programs.items()),
         _NJIT + (_FUNCTION if given_torque else _NUMBER),
         _integrator(),

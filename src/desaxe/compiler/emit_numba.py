@@ -96,13 +96,17 @@ def _all_lines(kernel: Kernel) -> list[Line]:
     return [line for each in kernels for lines in each.levels for line in lines]
 
 
-def _helpers(kernel: Kernel) -> list[str]:
-    used = {line.op for line in _all_lines(kernel)}
+def helper_sources(operations: Container[str]) -> list[str]:
+    """The functions that the spellings of these operations call."""
     return [
         NUMBA_HELPERS.get(name, f'@njit(error_model="numpy")\n{HELPERS[name]}')
         for name in HELPERS
-        if name in used
+        if name in operations
     ]
+
+
+def _helpers(kernel: Kernel) -> list[str]:
+    return helper_sources({line.op for line in _all_lines(kernel)})
 
 
 def _called(op: str) -> str:
