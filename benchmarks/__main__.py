@@ -53,9 +53,11 @@ def main() -> None:
 
 
 def textbook(names: tuple[str, ...]) -> Callable[..., Any]:
-    """The closed forms as a NumPy function of INPUTS."""
-    fixed = {sp.Symbol("alpha", real=True): 0, sp.Symbol("branch", real=True): 1}
-    symbols = [sp.Symbol(name, real=True) for name in INPUTS]
+    """The closed forms as a NumPy function of INPUTS; the crank turns forwards, at constant speed."""
+    speed = sp.Symbol("omega0", positive=True)
+    fixed = {"alpha": 0, "branch": 1, "omega0": speed}
+    fixed = {sp.Symbol(name, real=True): value for name, value in fixed.items()}
+    symbols = [*(sp.Symbol(name, real=True) for name in INPUTS[:-1]), speed]
     expressions = [dx.equation(name).expression.subs(fixed) for name in names]
     function: Callable[..., Any] = sp.lambdify(symbols, expressions, "numpy", cse=True)
     return function

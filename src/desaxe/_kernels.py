@@ -21,7 +21,6 @@ from ._program import Form
 from ._request import Request
 from .compiler.emit_numba import emit_numba
 from .compiler.kernel import tabulate
-from .compiler.passes.both_ways import both_ways
 from .compiler.passes.double_double import double_digits
 from .compiler.passes.guard import guard_inputs
 from .compiler.passes.number import number_values
@@ -118,9 +117,6 @@ def source_of(key: KernelKey) -> str:
         guarded = guard_inputs(program, varying, LEAST, {})
         if not key.far:
             guarded = number_values(expand_trigonometry(guarded, constants()))
-    if "theta" in axes and key.axes > 1:
-        outside = [name for name in guarded.inputs if axes.get(name) != axes["theta"]]
-        guarded = number_values(both_ways(guarded, outside))
     kernel = tabulate(guarded, {name: axes.get(name) for name in guarded.inputs}, key.axes)
     fixed = ", ".join(f"{name} = {value:g}" for name, value in key.fixed)
     motion = "a given state" if key.form.state else "paper A's law"

@@ -75,7 +75,11 @@ def check_inputs(caller: str, given: Iterable[str], allowed: Sequence[str]) -> N
     """Refuse an input that there is not."""
     for name in given:
         if name not in allowed:
-            raise TypeError(f"{caller}() has no input {name!r}: {', '.join(allowed)}")
+            from difflib import get_close_matches
+
+            near = get_close_matches(name, allowed, 1, 0.5)
+            hint = f"did you mean {near[0]}? " if near else ""
+            raise TypeError(f"{caller}() has no input {name!r}; {hint}There are {', '.join(allowed)}")
 
 
 def standstill(names: Iterable[str], given: Mapping[str, Any]) -> float | None:

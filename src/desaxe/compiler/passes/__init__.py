@@ -4,7 +4,6 @@
 `slicing`    keeps only what the wanted outputs reach
 `fold`       computes what is constant, drops terms with a factor 0 and factors 1
 `number`     gives the same value the same name
-`both_ways`  computes what depends on a sign alone for both signs
 `trigonometry`, `double_double`  write sine and cosine out; keep twice the digits
 `guard`      gives a bad element of an array NaN and its status
 `pipeline`   runs them in order, with a report
