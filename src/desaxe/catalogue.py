@@ -6,7 +6,7 @@ The names are read from generated/index.py, where the derivation wrote them. Und
 
 from functools import cache
 from importlib import import_module
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from .names import PARAMETERS, joined, parts, sensitivity
 
@@ -21,9 +21,12 @@ class Quantity(NamedTuple):
 
 
 class Catalogue(tuple[Quantity, ...]):
-    """Quantities that show themselves as a table."""
+    """Quantities that show themselves as a table; `catalogue["T_in"]` is one of them by name."""
 
     __slots__ = ()
+
+    def __getitem__(self, place: Any) -> Any:
+        return quantity(place) if isinstance(place, str) else super().__getitem__(place)
 
     def __repr__(self) -> str:
         rows = [("name", "unit", "meaning", "source"), *self]
@@ -77,6 +80,13 @@ def _unknown(name: str, state: bool) -> str:
             return f"{name!r}: the parameters of a sensitivity stand in one order, {ordered!r}"
         if len(parameters) > 1:
             return f"{name!r}: this derivative is not derived (second order: Y, V_C, a_C, omega_BC, alpha_BC)"
-    near = get_close_matches(name, _names(), 3, 0.5)
+    near = (
+        get_close_matches(name, _names(), 3, 0.5)
+        or [
+            known
+            for known, (_, meaning, _) in _names().items()
+            if f" {name.lower()}" in f" {meaning.lower()}"
+        ][:3]
+    )
     hint = f"; did you mean {', '.join(near)}?" if near else ""
     return f"unknown quantity {name!r}{hint} (desaxe.quantities() lists them all)"

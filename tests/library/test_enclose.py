@@ -17,11 +17,12 @@ from hypothesis import strategies as st
 
 import desaxe as dx
 from desaxe import _balls
-from desaxe._differentiate import with_derivatives
+from desaxe._differentiate import _RULES, with_derivatives
 from desaxe._point import cut
 from desaxe._program import LAW as LAW_FORM
 from desaxe.audit.force_truth import force_names, truth
 from desaxe.audit.truth import LAW, STATE, all_names
+from desaxe.compiler.operations import OPERATIONS
 from desaxe.extras import MissingExtraError
 from tests.library.points import draw
 from tests.library.test_force_values import bodies, points
@@ -449,3 +450,10 @@ def test_without_the_extra(monkeypatch):
     monkeypatch.setitem(sys.modules, "flint", None)
     with pytest.raises(MissingExtraError, match=r"desaxe\[rigorous\]"):
         dx.enclose  # noqa: B018
+
+
+def test_every_operation_has_its_rules():
+    """A new operation of numbers must say what it is over balls, and what its derivative is."""
+    numbers = {op for op, row in OPERATIONS.items() if row.signature[-1] == "f" or op == "copy"}
+    assert numbers - set(_balls._NUMBERS) <= {"floor"}  # of the written-out sine alone
+    assert numbers - set(_RULES) <= {"floor"}

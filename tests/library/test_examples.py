@@ -1,4 +1,4 @@
-"""README's first session and the examples about forces, run as they stand."""
+"""README's first steps and the examples about forces, run as they stand."""
 
 import contextlib
 import re
@@ -13,9 +13,9 @@ import desaxe as dx
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
-def test_the_first_session():
+def test_the_first_steps():
     text = (EXAMPLES.parent / "README.md").read_text(encoding="utf-8")
-    (code,) = re.findall(r"## A first session\n\n```python\n(.*?)```", text, re.DOTALL)
+    (code,) = re.findall(r"## First steps\n\n```python\n(.*?)```", text, re.DOTALL)
     names = {}
     exec(compile(code, "README.md", "exec"), names)
     assert names["press"]["m_slider"] == 0.8

@@ -36,3 +36,10 @@ def test_the_catalogue_shows_itself_as_a_table():
     assert len(lines) == 1 + len(dx.quantities())
     assert lines[0].split() == ["name", "unit", "meaning", "source"]
     assert next(line for line in lines if line.startswith("a_C ")).split()[1] == "m/s^2"
+
+
+def test_a_quantity_by_name():
+    assert dx.quantities()["T_in"].unit == "N*m"
+    assert dx.quantities()[0].name == "phi"
+    with pytest.raises(ValueError, match="did you mean T_in"):
+        dx.quantities()["torque"]
