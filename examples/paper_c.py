@@ -30,8 +30,15 @@ def main(folder: str) -> None:
     times = wavy["t"]
     torque = {"t": times, "T_in": np.array([wave(t, 0.0, 0.0) for t in times])}
     draw(folder, 9, "Sinusoidal Torque on input crank", "T_in", "N m", {"350 (1 - cos 30 t) N mm": torque})
-    draw(folder, 10, "X-Component of Velocity of Slider D", "V_C", "m/s", {"sinusoidal": wavy})
-    draw(folder, 11, "X-Component of Acceleration of Slider D", "a_C", "m/s²", {"sinusoidal": wavy})
+    draw(folder, 10, "X-Component of Velocity of Slider D", "V_C", "m/s", {"350 (1 - cos 30 t) N mm": wavy})
+    draw(
+        folder,
+        11,
+        "X-Component of Acceleration of Slider D",
+        "a_C",
+        "m/s²",
+        {"350 (1 - cos 30 t) N mm": wavy},
+    )
 
 
 def wave(t: float, theta: float, omega: float) -> float:
@@ -55,8 +62,7 @@ def draw(folder, number, title, name, unit, courses):
     axes.set(xlabel="t [s]", ylabel=f"{name} [{unit}]", xlim=(0.0, None))
     axes.set_title(f"Paper C, figure {number}: {title}", loc="left")
     axes.grid(True, color="0.9")
-    if len(courses) > 1:
-        axes.legend(frameon=False)
+    axes.legend(frameon=False)
     print(dx.plot.save(axes.figure, f"{folder}/paper_c_{number:02}.png"), "-", title)
 
 
