@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from threading import Lock
+from types import ModuleType
 from typing import Any, NamedTuple
 
 from . import _cache
@@ -131,15 +132,15 @@ def _load(key: KernelKey) -> CompiledKernel:
     with _cache.locked(path):
         if not path.exists():
             _cache.write(path, source)
-        return CompiledKernel(_module_function(path), order)
+        return CompiledKernel(module_at(path).kernel, order)
 
 
-def _module_function(path: Path) -> Callable[..., None]:
+def module_at(path: Path) -> ModuleType:
+    """The module of a file in the cache folder, under a name that numba can find it by."""
     spec = spec_from_file_location(f"desaxe_{path.stem}", path)
     if spec is None or spec.loader is None:
         raise ImportError(f"cannot load {path}")
     module = module_from_spec(spec)
     sys.modules[spec.name] = module  # numba finds the module by its name when it loads machine code
     spec.loader.exec_module(module)
-    function: Callable[..., None] = module.kernel
-    return function
+    return module

@@ -449,7 +449,7 @@ def test_without_the_extra(monkeypatch):
         monkeypatch.delitem(sys.modules, module)
     monkeypatch.setitem(sys.modules, "flint", None)
     with pytest.raises(MissingExtraError, match=r"desaxe\[rigorous\]"):
-        dx.enclose  # noqa: B018
+        dx.enclose("Y", theta=1.0, **SIZES)
 
 
 def test_every_operation_has_its_rules():

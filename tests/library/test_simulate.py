@@ -81,7 +81,9 @@ def test_a_constant_torque_works_by_the_angle():
 
 
 def test_the_torque_that_the_motion_takes_is_the_torque_given():
-    torque = lambda t, theta, omega: 0.4 * math.cos(3.0 * t) - 0.02 * omega  # noqa: E731
+    def torque(t, theta, omega):
+        return 0.4 * math.cos(3.0 * t) - 0.02 * omega
+
     found = dx.simulate(torque=torque, t_end=2.0, names=["T_in"], mu=0.2, **LOADED)
     given = [torque(*row) for row in zip(found["t"], found["theta"], found["omega"], strict=True)]
     resting = (found["omega"] == 0.0) & (found["alpha"] == 0.0)
@@ -257,7 +259,9 @@ def test_a_crank_without_inertia_ends_before_a_dead_centre():
 
 
 def test_a_torque_that_jumps_with_the_way_of_turning_is_told():
-    brake = lambda t, theta, omega: -math.copysign(2.0, omega)  # noqa: E731
+    def brake(t, theta, omega):
+        return -math.copysign(2.0, omega)
+
     found = dx.simulate(torque=brake, t_end=5.0, omega_start=5.0, **PRESS)
     assert found["status"] == 4
     assert "chatters at standstill" in found["message"]
@@ -363,7 +367,10 @@ def test_friction_that_jams_is_told():
 
 def test_names_are_those_of_evaluate():
     names = ["V_C", "N_C", "T_in_wrt_m_slider", "Y_wrt_ec"]
-    load = lambda t, theta, omega: 3.0 + t  # noqa: E731
+
+    def load(t, theta, omega):
+        return 3.0 + t
+
     found = dx.simulate(torque=0.25, t_end=1.0, names=names, F_Y=load, mu=0.1, **PRESS)
     state = {"theta": found["theta"], "omega": found["omega"], "alpha": found["alpha"]}
     again = dx.evaluate(names, **state, F_Y=3.0 + found["t"], mu=0.1, **PRESS)
@@ -465,7 +472,9 @@ def test_nothing_moves_without_inertia():
 
 
 def test_a_torque_without_a_value_later_is_told_when_it_is_reached():
-    late = lambda t, theta, omega: 0.1 if t < 0.5 else math.nan  # noqa: E731
+    def late(t, theta, omega):
+        return 0.1 if t < 0.5 else math.nan
+
     with pytest.raises(ValueError, match=r"torque gave nan at t = 0\.[5-9]"):
         dx.simulate(torque=late, t_end=1.0, **PRESS)
     assert dx.simulate(torque=late, t_end=1.0, until=0.05, max_step=0.05, **PRESS)["status"] == 0

@@ -142,7 +142,7 @@ def read(data: Mapping[str, Any]) -> Content:
 
 
 def _accuracy(written: str | float) -> str:
-    """One of the accuracies, or the fastest one that keeps an error."""
+    """One of the accuracies, or the cheapest one that keeps an error everywhere."""
     try:
         return accuracy_of(written)
     except ValueError as error:

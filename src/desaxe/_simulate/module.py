@@ -1,16 +1,15 @@
 """The compiled module of a family of designs: its functions from the Program, and DOP853 behind them."""
 
 import hashlib
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, lru_cache
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from threading import Lock
 from types import ModuleType
 from typing import Any, NamedTuple
 
 from .. import _cache
+from .._kernels import module_at
 from .._point import cut
 from .._program import Form
 from ..compiler.emit_numba import helper_sources
@@ -119,17 +118,7 @@ def kernel_of(family: Family, given_torque: Any) -> Callable[..., None]:
         with _cache.locked(path):
             if not path.exists():
                 _cache.write(path, source)
-            return _kernel(_loaded(path))
-
-
-def _loaded(path: Path) -> ModuleType:
-    spec = spec_from_file_location(f"desaxe_{path.stem}", path)
-    if spec is None or spec.loader is None:
-        raise ImportError(f"cannot load {path}")
-    module = module_from_spec(spec)
-    sys.modules[spec.name] = module  # numba finds the module by its name when it loads machine code
-    spec.loader.exec_module(module)
-    return module
+            return _kernel(module_at(path))
 
 
 def _kernel(module: ModuleType) -> Callable[..., None]:

@@ -75,7 +75,10 @@ def _numba(branch: int) -> Run:
 
     plain = njit(error_model="numpy")(_textbook().function(NAMES, branch))
 
-    def loop(theta, ec, AB, BC, omega0, alpha, V_C, a_C, a_C_wrt_ec):  # type: ignore[no-untyped-def]
+    def loop(
+        theta: Array, ec: Array, AB: Array, BC: Array, omega0: Array, alpha: Array,
+        V_C: Array, a_C: Array, a_C_wrt_ec: Array,
+    ) -> None:  # fmt: skip
         for i in range(theta.size):
             V_C[i], a_C[i], a_C_wrt_ec[i] = plain(theta[i], ec[i], AB[i], BC[i], omega0[i], alpha[i])
 
