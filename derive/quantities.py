@@ -47,6 +47,8 @@ from .stable import (
     tan_phi,
     two_sum_error,
     u_straight,
+    where_close,
+    wide_margins,
 )
 from .units import (
     ACCELERATION,
@@ -115,6 +117,7 @@ def _define_crank(sheet: Sheet) -> None:
 
 def _define_rod(sheet: Sheet) -> None:
     """BC - |u| and the rod's height in the stable variables; the ratios that everything else is made of."""
+    sheet.define("roomy", wide_margins(), unit=NONE, meaning="margins are wide: plain forms will do")
     sheet.define("u_straight", OFFSET)
     sheet.define("pin_side", copysign(1, u_straight), unit=NONE, meaning="nu: the sign of u")
     sheet.define("AB_out", copysign(AB, sin_theta * u_straight), unit=LENGTH, meaning="sigma nu AB")
@@ -128,14 +131,20 @@ def _define_rod(sheet: Sheet) -> None:
     # At the last angle that the rod reaches, the sine's last bit must not decide whether it does.
     reach, unsure = sheet.define("less_rounded", less_from - less_by), rounding(less_by)
     surely = select(lt(absolute(reach), unsure), unsure, reach)
-    sheet.define("less", surely, unit=LENGTH, meaning="BC - |u|, at least what rounding may take from it")
+    room = BC - absolute(symbol("u_straight"))
+    sheet.define(
+        "less",
+        where_close(surely, room),
+        unit=LENGTH,
+        meaning="BC - |u|, at least what rounding may take from it",
+    )
     sheet.define("D", HEIGHT_AREA, unit=Unit(m=2), meaning="BC^2 - u^2", source="B (7)")
     sheet.define("S", sp.sqrt(D), unit=LENGTH, meaning="BC cos(phi), the rod's height", source="B (7)")
     sheet.define("inv_S", 1 / S, unit=Unit(m=-1), meaning="1 / S")
     beyond = sheet.define("pin_out", AB_out + out)  # exact where they nearly cancel
     sheet.define(
-        "u", select(near_quarter, pin_side * (beyond + crank_drop), u_straight), unit=LENGTH, source="A (6)",
-        meaning="BC sin(phi), crank pin from the slider axis",
+        "u", where_close(select(near_quarter, pin_side * (beyond + crank_drop), u_straight), u_straight),
+        unit=LENGTH, source="A (6)", meaning="BC sin(phi), crank pin from the slider axis",
     )  # fmt: skip
     sheet.define("margin_area", MARGIN_AREA, unit=Unit(m=2), meaning="m n = BC^2 - (AB + sigma ec)^2")
     sheet.define("crank_ratio", AB * r, unit=NONE, meaning="AB / S")
@@ -204,12 +213,12 @@ def _define_slider_motion(sheet: Sheet) -> None:
     sheet.define("folded", lt(2 * absolute(straight), S))
     sheet.define("folded_area", FOLDED_AREA, unit=Unit(m=2), meaning="S^2 - (AB cos(theta))^2")
     sheet.define(
-        "Y", select(folded, folded_area / (height - AB * cos_theta), straight), unit=LENGTH,
-        meaning="slider position along the slider axis", source="A (7)", differentiate=POSITION,
+        "Y", where_close(select(folded, folded_area / (height - AB * cos_theta), straight), straight),
+        unit=LENGTH, meaning="slider position along the slider axis", source="A (7)", differentiate=POSITION,
     )  # fmt: skip
     # What Y' is made of: where Y is small, itself and ec; where u is, the height and u.
-    sheet.define("lever_X", select(folded, ec, u))
-    sheet.define("lever_Y", select(folded, symbol("Y"), height))
+    sheet.define("lever_X", where_close(select(folded, ec, u), u))
+    sheet.define("lever_Y", where_close(select(folded, symbol("Y"), height), height))
     rows = (
         ("V_C", "Y", 1, SPEED, "velocity of the slider", "A (11)"),
         ("a_C", "Y", 2, ACCELERATION, "acceleration of the slider", "A (19)"),

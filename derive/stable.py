@@ -45,6 +45,24 @@ atan2, absolute, copysign = sp.Function("atan2"), sp.Function("abs"), sp.Functio
 two_sum_error, two_product_error = sp.Function("two_sum_error"), sp.Function("two_product_error")
 rounding = sp.Function("rounding")
 
+# Where AB + |ec| is below this share of BC, and not so many times the difference of AB and |ec|, no form
+# cancels, and the plain ones will do.
+ROOMY, APART = sp.Float(0.75), 8
+LARGEST = sp.Float(1.7976931348623157e308, 17)
+roomy = sp.Symbol("roomy", real=True)
+
+
+def where_close(stable: sp.Expr, plain: sp.Expr) -> sp.Expr:
+    """The stable form where margins may be close, the plain one in a roomy design."""
+    return select(roomy, plain, stable)
+
+
+def wide_margins() -> sp.Expr:
+    """Whether a design is roomy; if it is, all its lengths are good."""
+    size, both = absolute(ec), sp.Function("and")
+    wide, apart = lt(AB + size, ROOMY * BC), lt(AB + size, APART * absolute(AB - size))
+    return both(both(both(wide, apart), le(0, AB)), lt(BC, LARGEST))
+
 
 def assembled(ok: sp.Expr | int) -> sp.Expr:
     """The status of a point: `ok` where the mechanism can be assembled and has not stalled."""
@@ -106,12 +124,43 @@ def phi_rate(order: int) -> sp.Expr:
         return crank_ratio * cos_theta
     if order == 2:
         without_side = recollected(order).subs(ec_ratio, side * offset_ratio).subs(abs_sin, side * sin_theta)
-        return sp.factor_terms(sp.expand(without_side).subs(side**2, 1))
+        return where_close(sp.factor_terms(sp.expand(without_side).subs(side**2, 1)), chained(order))
+    plain = _plain(order)
+    return where_close(select(le(absolute(margin_ratio), 1), recollected(order), plain), chained(order))
+
+
+def _plain(order: int) -> sp.Expr:
+    """The chain rule's own form in ratios, by powers of the crank's."""
     in_ratios = (
         chain_rule_form(order).subs({u: tan_phi / r, sin_theta: side * abs_sin}).subs(AB, crank_ratio / r)
     )
-    plain = sp.collect(sp.expand(in_ratios), crank_ratio, sp.factor).subs(side * abs_sin, sin_theta)
-    return select(le(absolute(margin_ratio), 1), recollected(order), plain)
+    return sp.collect(sp.expand(in_ratios), crank_ratio, sp.factor).subs(side * abs_sin, sin_theta)
+
+
+@cache
+def chained(order: int) -> sp.Expr:
+    """The same in the derivatives of lower orders, which is the shortest; proved like the others.
+
+    With k = AB/S and t = tan(phi): phi'' = phi'^2 t - k sin(theta), and t' = (1 + t^2) phi', k' = k t phi'.
+    """
+    first, second, third = (phi_by_theta(n) for n in (1, 2, 3))
+    lift = first**2 * tan_phi - second  # k sin(theta)
+    rates = {first: second, second: third, tan_phi: (1 + tan_phi**2) * first}
+    if order == 2:
+        result = first**2 * tan_phi - crank_ratio * sin_theta
+    elif order == 3:
+        result = sp.factor(_rate(first**2 * tan_phi, rates) - (lift * tan_phi * first + first))
+    else:
+        result = sp.factor_terms(_rate(chained(order - 1), rates))
+    known = {phi_by_theta(n): chain_rule_form(n) for n in range(1, order)}
+    known |= {tan_phi: u * r, crank_ratio: AB * r}
+    if sp.expand(result.subs(known) - chain_rule_form(order)) != 0:
+        raise ArithmeticError(f"the chained derivative of phi of order {order} is not the chain rule's")
+    return result
+
+
+def _rate(expression: sp.Expr, rates: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
+    return sp.Add(*(expression.diff(symbol) * rate for symbol, rate in rates.items()))
 
 
 def _numerator(order: int) -> sp.Expr:

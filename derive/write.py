@@ -19,6 +19,7 @@ from desaxe.compiler.emit_numba import emit_numba_with_front
 from desaxe.compiler.kernel import hoist
 from desaxe.compiler.operations import HELPERS, MATH_NAMES
 from desaxe.compiler.passes.double_double import DoubleTrigonometry
+from desaxe.compiler.passes.fuse import fuse_products
 from desaxe.compiler.passes.guard import guard_inputs
 from desaxe.compiler.passes.number import number_values
 from desaxe.compiler.passes.pipeline import optimise
@@ -145,7 +146,7 @@ def _group(derivation: Derivation, group: Group, digest: str) -> str:
     inputs = [name for name in sliced.inputs if name != "branch"]
     guarded = guard_inputs(sliced, inputs, LEAST, {"theta": derivation.trigonometry.limit})
     axis_of = {name: None if name == "branch" else 0 for name in sliced.inputs}
-    guarded = number_values(expand_trigonometry(guarded, derivation.trigonometry))
+    guarded = fuse_products(number_values(expand_trigonometry(guarded, derivation.trigonometry)))
     kernel = hoist(guarded, axis_of, 1)
     banner = _banner(f"numba kernel: {group.what}.", digest, f"{cost_of(guarded).operations} operations")
     front = (

@@ -200,6 +200,16 @@ _LOGIC: dict[str, Callable[..., bool | None]] = {
     "or": lambda a, b: _not(_and(_not(a), _not(b))),
     "not": _not,
 }
+
+
+def _turned(sine: Any, cosine: Any, quarters: Any) -> Any:
+    """The sine after so many quarter turns: of all that an unsure number of them may give."""
+    whole = quarters.unique_fmpz()
+    if whole is None:
+        return sine.union(-sine).union(cosine).union(-cosine)
+    return (sine, cosine, -sine, -cosine)[int(whole) % 4]
+
+
 _NUMBERS: dict[str, Callable[..., Any]] = {
     "copy": lambda a: a,
     "add": lambda a, b: a + b,
@@ -216,4 +226,6 @@ _NUMBERS: dict[str, Callable[..., Any]] = {
     "two_sum_error": lambda a, b: arb(0),  # nothing is rounded
     "two_product_error": lambda a, b: arb(0),
     "rounding": lambda a: arb(0),
+    "muladd": lambda a, b, c: a * b + c,
+    "turned": _turned,
 }

@@ -108,6 +108,12 @@ def _same(chain: _Chain, line: Line) -> Step:
     return line.op, tuple(map(chain.slope, line.args))
 
 
+def _muladd(chain: _Chain, line: Line) -> Step:
+    a, b, c = line.args
+    inner = chain.new("muladd", chain.slope(a), b, chain.slope(c))
+    return "muladd", (a, chain.slope(b), inner)
+
+
 _RULES: Mapping[str, Callable[[_Chain, Line], Step]] = {
     **dict.fromkeys(("copy", "add", "sub", "neg"), _same),
     "mul": _mul,
@@ -121,6 +127,8 @@ _RULES: Mapping[str, Callable[[_Chain, Line], Step]] = {
     "two_sum_error": lambda chain, line: ("copy", (0.0,)),
     "two_product_error": lambda chain, line: ("copy", (0.0,)),
     "rounding": lambda chain, line: ("copy", (0.0,)),
+    "muladd": _muladd,
+    "turned": lambda chain, line: ("turned", (*map(chain.slope, line.args[:2]), line.args[2])),
     # The sign of the second is constant but for jumps; the balls know which it is.
     "copysign": lambda chain, line: ("copysign", (chain.slope(line.args[0]), line.args[1])),
 }

@@ -1,6 +1,7 @@
 """`grid`: the outer product of its arguments, as a labelled xarray.Dataset."""
 
 from collections.abc import Mapping, Sequence
+from math import prod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 Array = NDArray[Any]
 ALWAYS = ("status", "margin")
 LENGTHS = ("ec", "AB", "BC")  # what the margin depends on
+LONG_ENOUGH = 1_000  # points of the innermost loop: a shorter one costs as much to start as to run
 
 
 def grid(
@@ -92,7 +94,31 @@ def _filled(
         order = list(dimensions) or [""]
         scalars = {name: float(axes[name].reshape(-1)[0]) for name in inputs if name not in order}
         columns = {name: np.ascontiguousarray(axes[name]) for name in inputs if name in order}
-        key = key_of(wanted, scalars, columns, {name: order.index(name) for name in columns}, len(order))
-        outs = [buffer if dimensions else buffer.reshape(1) for buffer in buffers.values()]
+        places_of = {name: order.index(name) for name in columns}
+        sizes = _joined(order, columns, places_of, shape or (1,))
+        key = key_of(wanted, scalars, columns, places_of, len(sizes))
+        outs = [buffer.reshape(sizes) for buffer in buffers.values()]
         run_in_blocks(kernel_for(key), {**scalars, **columns}, outs, threads)
     return delivered(places, buffers, False)
+
+
+def _joined(
+    order: Sequence[str], columns: dict[str, Array], axis_of: dict[str, int], shape: tuple[int, ...]
+) -> tuple[int, ...]:
+    """Join the last axes to one that is long enough to vectorise; the lengths of the axes then.
+
+    Effect: `columns` along the joined axes have a value for each point of them, and `axis_of` follows. The
+    crank angle is never joined: its sine and cosine must not be computed again for every design.
+    """
+    first = len(order) - 1
+    if order[first] == "theta":
+        return shape
+    while first > 0 and prod(shape[first:]) < LONG_ENOUGH and order[first - 1] != "theta":
+        first -= 1
+    rest = shape[first:]
+    for name, axis in axis_of.items():
+        if axis >= first:
+            spread = [-1 if place == axis - first else 1 for place in range(len(rest))]
+            columns[name] = np.broadcast_to(columns[name].reshape(spread), rest).reshape(-1)
+            axis_of[name] = first
+    return (*shape[:first], prod(rest))

@@ -17,15 +17,18 @@ from typing import Any, NamedTuple
 from . import _cache
 from ._accuracy import check_angle
 from ._constants import constants, double_constants, single_constants
-from ._point import cut
+from ._point import cut, plain_form
 from ._program import Form
 from ._request import Request
 from .compiler.emit_numba import emit_numba
-from .compiler.kernel import tabulate
+from .compiler.forms import in_two_forms, parted
+from .compiler.kernel import Kernel, tabulate
 from .compiler.passes.double_double import double_digits
+from .compiler.passes.fuse import fuse_products
 from .compiler.passes.guard import guard_inputs
 from .compiler.passes.number import number_values
 from .compiler.passes.trigonometry import expand_trigonometry
+from .compiler.program import Program
 from .inputs import LEAST
 from .names import LOADS
 
@@ -87,6 +90,16 @@ _LOADED: dict[KernelKey, CompiledKernel] = {}
 _LOCK = Lock()
 
 
+LENGTHS = ("ec", "AB", "BC")
+
+
+def _is_seen(program: Program, angle: str) -> bool:
+    """Whether a bad value of an input may be seen by more than sine and cosine, which make it NaN."""
+    types = {line.name: line.type for line in program.lines}
+    status = any(types.get(name) == "i64" for name in program.outputs)
+    return status or any(angle in line.args and line.op not in ("sin", "cos") for line in program.lines)
+
+
 def is_ready(key: KernelKey) -> bool:
     """Whether the kernel is in memory already."""
     return key in _LOADED
@@ -102,26 +115,44 @@ def kernel_for(key: KernelKey) -> CompiledKernel:
     return found
 
 
-def source_of(key: KernelKey) -> str:
-    """The text of the kernel's module."""
+def is_single(key: KernelKey) -> bool:
+    """Whether the kernel computes in float32."""
+    return key.accuracy == "fast" and not key.far
+
+
+def kernel_of(key: KernelKey) -> Kernel:
+    """The loop nest of a key."""
     program = cut(key.names, key.form, key.fixed)
     axes = dict(key.axis_of)
     varying = [name for name in program.inputs if name in axes]
-    single = key.accuracy == "fast" and not key.far
-    if single:
-        guarded = guard_inputs(program, varying, LEAST, {})
-        guarded = number_values(expand_trigonometry(guarded, single_constants(), light=True))
-    elif key.accuracy == "extended":
+    if key.accuracy == "extended":
         guarded = guard_inputs(program, varying, LEAST, {"theta": double_constants().limit})
         guarded = double_digits(guarded, double_constants())
     else:
-        guarded = guard_inputs(program, varying, LEAST, {})
-        if not key.far:
-            guarded = number_values(expand_trigonometry(guarded, constants()))
+        guarded = _for_loops(guard_inputs(program, varying, LEAST, {}), key)
+    plain = plain_form(key.names, key.form, key.fixed) if key.accuracy == "standard" else None
+    if plain is not None:
+        own = [name for name in varying if name not in LENGTHS and _is_seen(plain, name)]
+        plain = guard_inputs(plain, own, LEAST, {})  # in a roomy design all lengths are good
+        guarded = in_two_forms(_for_loops(plain, key), guarded, cut(("roomy",), key.form, key.fixed))
     kernel = tabulate(guarded, {name: axes.get(name) for name in guarded.inputs}, key.axes)
+    return kernel if plain is None else parted(kernel, len(key.names))
+
+
+def _for_loops(program: Program, key: KernelKey) -> Program:
+    """The program as a loop wants it: no calls, and products in one instruction with their sums."""
+    if not key.far:
+        trigonometry = single_constants() if is_single(key) else constants()
+        program = number_values(expand_trigonometry(program, trigonometry))
+    return fuse_products(program)
+
+
+def source_of(key: KernelKey) -> str:
+    """The text of the kernel's module."""
+    kernel = kernel_of(key)
     fixed = ", ".join(f"{name} = {value:g}" for name, value in key.fixed)
     motion = "a given state" if key.form.state else "paper A's law"
-    return emit_numba(kernel, f"desaxe kernel: {', '.join(key.names)}; {motion}; {fixed}.", single)
+    return emit_numba(kernel, f"desaxe kernel: {', '.join(key.names)}; {motion}; {fixed}.", is_single(key))
 
 
 def _load(key: KernelKey) -> CompiledKernel:

@@ -8,6 +8,7 @@ from ._accuracy import check_angle
 from ._constants import double_constants
 from ._program import Form, program_of
 from .compiler.emit_python import compile_python
+from .compiler.forms import in_two_forms
 from .compiler.passes.double_double import double_digits
 from .compiler.passes.pipeline import optimise
 from .compiler.passes.slicing import keep_outputs
@@ -55,6 +56,14 @@ def cut(names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...]
     return optimise(keep_outputs(wide._replace(lines=tuple(lines)), names), dict(fixed))[0]
 
 
+@cache
+def plain_form(names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...]) -> Program | None:
+    """The program in plain forms, for roomy designs; None where it is no other than `cut` gives."""
+    plain = cut(names, form._replace(roomy=True), fixed)
+    same = repr(plain.lines) == repr(cut(names, form, fixed).lines)  # by their text: NaN is NaN there
+    return None if same else plain
+
+
 def _needs(program: Program) -> dict[str, frozenset[str]]:
     """Which of the names in KEPT each line depends on."""
     needs: dict[str, frozenset[str]] = dict.fromkeys(program.inputs, frozenset())
@@ -71,7 +80,7 @@ def point_of(
     """The function that computes them."""
     program = cut(names, form, fixed)
     if accuracy != "extended":
-        return Point(compile_python(program), program.inputs)
+        return Point(_by_room(names, form, fixed), program.inputs)
     program = double_digits(program, double_constants())
     function = compile_python(program)
     if "theta" not in program.inputs:
@@ -83,3 +92,28 @@ def point_of(
         return function(*values)
 
     return Point(checked, program.inputs)
+
+
+def _by_room(
+    names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...]
+) -> Callable[..., tuple[Any, ...]]:
+    """The function of the plain form where a design is roomy, of the stable one elsewhere.
+
+    The stable one is made when the first point needs it.
+    """
+    plain, stable = plain_form(names, form, fixed), cut(names, form, fixed)
+    if plain is None:
+        return compile_python(stable)
+    tested = in_two_forms(plain, plain._replace(lines=(), outputs=()), cut(("roomy",), form, fixed))
+    first = compile_python(tested._replace(inputs=stable.inputs))
+    careful: list[Callable[..., tuple[Any, ...]]] = []
+
+    def function(*values: float) -> tuple[Any, ...]:
+        answers = first(*values)
+        if answers[-1]:
+            return answers[:-1]
+        if not careful:
+            careful.append(compile_python(stable))
+        return careful[0](*values)
+
+    return function

@@ -9,17 +9,18 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-from .compiler.passes.bind import overlay
+from .compiler.passes.bind import assume, overlay
 from .compiler.passes.slicing import keep_outputs
 from .compiler.program import Program
 from .compiler.text import ProgramText
 
 
 class Form(NamedTuple):
-    """Which form of the program: what stands in place of the law and of given centres of mass."""
+    """Which form of the program: for which way of giving the motion and the loads, and for which designs."""
 
     state: bool = False  # a given state instead of paper A's law
     halves: tuple[str, ...] = ()  # centres of mass halfway along their links
+    roomy: bool = False  # plain forms, for designs with AB + |ec| < 3/4 BC, where nothing cancels
 
 
 @cache
@@ -36,7 +37,7 @@ LAW = Form()  # paper A's law, every centre of mass given
 @cache
 def program_of(names: tuple[str, ...], form: Form = LAW) -> Program:
     """The program of these names (those of the law), in one form."""
-    program = _text("program").read(names)
+    program = assume(_text("program").read(names), {"roomy": form.roomy})
     if form.state:
         program = keep_outputs(overlay(program, _text("state").read()), names)
     for centre in form.halves:

@@ -36,6 +36,8 @@ TEXT = '''def coverage(x, y, z):
     lost = x + y + two_sum_error(x, y) * 0.5
     lost_too = x * y + two_product_error(x, y) * 0.5
     lost_at_most = x + y + rounding(x) * 0.5
+    sum_of_product = muladd(x, y, z) - x * muladd(y, z, x)
+    quarter_turns = turned(x, y, floor(z)) + turned(x, y, -1.0)
     least = x if x < y else y
     chosen = x if x < y else (y if y <= z else z)
     chosen_early = (x if x < y else y) - (y if z < y else z)

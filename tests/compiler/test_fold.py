@@ -74,7 +74,7 @@ def test_what_is_not_neutral_stays(nested):
 
 @pytest.mark.parametrize("op", [op for op, row in OPERATIONS.items() if set(row.signature) == {"f"}])
 def test_constants_are_computed_as_they_would_be(op):
-    args = (0.7, 1.3)[: OPERATIONS[op].arity]
+    args = (0.7, 1.3, 2.0)[: OPERATIONS[op].arity]
     folded = only_line(fold_constants(program_of_nested((op, *args))))
     assert folded == ("copy", in_doubles(program_of_nested((op, *args)), {"x": 0, "y": 0, "z": 0})["out"])
 

@@ -28,10 +28,12 @@ REFERENCE = {
     "copy": lambda a: a, "add": np.add, "sub": np.subtract, "mul": np.multiply, "div": np.divide,
     "neg": np.negative, "abs": np.abs, "sqrt": np.sqrt, "sin": np.sin, "cos": np.cos, "atan2": np.arctan2,
     "floor": np.floor, "copysign": np.copysign, "lt": np.less, "le": np.less_equal, "eq": np.equal,
+    "muladd": lambda a, b, c: np.add(np.multiply(a, b), c),
     "and": np.logical_and, "or": np.logical_or, "not": np.logical_not, "select": np.where,
 }  # fmt: skip
 ERRORS = ("two_sum_error", "two_product_error", "rounding")  # exactly 0 over the reals
-CALLED = ("sin", "cos", "atan2")  # each library rounds these in its own way
+CALLED = ("sin", "cos", "atan2", "muladd")  # each library rounds these in its own way
+WHOLE = ("turned",)  # its last argument is a whole number
 
 
 def arguments(op):
@@ -41,9 +43,12 @@ def arguments(op):
     """
     extreme = (TINY, LEAST, MOST) if op == "two_product_error" else ()
     floats = [value for value in FLOATS if abs(value) not in extreme]
-    return itertools.product(
-        *(BOOLS if letter == "b" else floats for letter in OPERATIONS[op].signature[:-1])
-    )
+    if op == "muladd":  # where a product overflows, a fused sum may not
+        floats = [value for value in floats if abs(value) <= 1e150]
+    choices = [BOOLS if letter == "b" else floats for letter in OPERATIONS[op].signature[:-1]]
+    if op in WHOLE:
+        choices[-1] = [-6.0, -5.0, -4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 1e6]
+    return itertools.product(*choices)
 
 
 def ordinary(op, count=50):
@@ -63,7 +68,7 @@ def agree(op, got, wanted):
     return same_bits(got, wanted)
 
 
-@pytest.mark.parametrize("op", [op for op in OPS if op not in ERRORS])
+@pytest.mark.parametrize("op", [op for op in OPS if op not in (*ERRORS, *WHOLE)])
 def test_ieee_answers_are_those_of_numpy(op):
     with np.errstate(all="ignore"):
         wrong = [a for a in arguments(op) if not agree(op, ieee(op, *a), float(REFERENCE[op](*a)))]
@@ -125,7 +130,20 @@ def test_the_numba_spelling_is_ieee(op):
     assert not [a for a, got in answers if not agree(op, got, float(ieee(op, *a)))]
 
 
-@pytest.mark.parametrize("op", [op for op in OPS if op not in ERRORS])
+def test_quarter_turns_go_round():
+    sine, cosine = 0.25, 0.75
+    found = [ieee("turned", sine, cosine, float(quarters)) for quarters in range(-4, 8)]
+    assert found == [sine, cosine, -sine, -cosine] * 3
+
+
+def test_a_product_and_a_sum_round_twice_at_most():
+    for a, b, c in ordinary("muladd"):
+        exact = Fraction(a) * Fraction(b) + Fraction(c)
+        for got in (ieee("muladd", a, b, c), float(by_numba("muladd", [(a, b, c)])[0])):
+            assert abs(Fraction(got) - exact) <= Fraction(math.ulp(a * b) / 2 + math.ulp(got) / 2)
+
+
+@pytest.mark.parametrize("op", [op for op in OPS if op not in (*ERRORS, *WHOLE, "muladd")])
 def test_ieee_rounds_the_exact_meaning(op):
     with mpmath.workdps(50):
         for point in ordinary(op):

@@ -11,7 +11,8 @@ kept on disk, it compiles in every process.
 from collections.abc import Container, Mapping
 from textwrap import wrap
 
-from .kernel import Kernel, level_program
+from .emit_close import inner_loops, is_mixed, scratch
+from .kernel import Kernel, close_programs, level_program
 from .operations import HELPERS, NUMBA_HELPERS, OPERATIONS
 from .program import Argument, Line, Program
 from .text import INDENT, WIDTH, write_lines
@@ -77,7 +78,8 @@ def _header(kernel: Kernel, docstring: str, numpy_names: list[str]) -> str:
     called = {_called(line.op) for line in lines} - {""}
     calls = sorted(called - _NUMPY_CALLS)
     constants = {str(a) for line in lines for a in line.args if isinstance(a, float) and a - a != 0.0}
-    numpy_names = [*numpy_names, *(["empty"] if kernel.tables else [])]
+    numpy_names = [*numpy_names, *(["empty"] if kernel.tables or is_mixed(kernel) else [])]
+    numpy_names += [name for name in ("int8",) if is_mixed(kernel) and "i64" in _output_types(kernel)]
     from_numpy = sorted(
         {*numpy_names, *constants, *(called & _NUMPY_CALLS), *(["uint64"] * (kernel.axes > 0))}
     )
@@ -93,7 +95,9 @@ def _header(kernel: Kernel, docstring: str, numpy_names: list[str]) -> str:
 def _all_lines(kernel: Kernel) -> list[Line]:
     """The lines of all loops, tables included."""
     kernels = [*(table.kernel for table in kernel.tables), kernel]
-    return [line for each in kernels for lines in each.levels for line in lines]
+    bodies = [level_program(each, level) for each in kernels for level in range(each.axes + 1)]
+    bodies += close_programs(kernel) if kernel.close else ()
+    return [line for body in bodies for line in body.lines]
 
 
 def helper_sources(operations: Container[str]) -> list[str]:
@@ -145,6 +149,7 @@ def _body(kernel: Kernel, cast: str) -> list[str]:
     """The loops, those of the tables first; every input is cast where it is read."""
     scalars = [name for name, axis in kernel.inputs.items() if axis is None and cast]
     lines = [f"{INDENT}{name} = {cast}({name})" for name in scalars]
+    lines += [INDENT + row for row in scratch(kernel)]
     everywhere = tuple(range(kernel.axes))
     for table in kernel.tables:
         shape = ", ".join(f"out_{kernel.outputs[0]}.shape[{axis}]" for axis in table.along)
@@ -152,6 +157,10 @@ def _body(kernel: Kernel, cast: str) -> list[str]:
         lines += _loops(table.kernel, cast, table.along, kernel.outputs[0], {}, "{}_table")
     reads = {name: table.along for table in kernel.tables for name in table.kernel.outputs}
     return lines + _loops(kernel, cast, everywhere, kernel.outputs[0], reads, "out_{}")
+
+
+def _output_types(kernel: Kernel) -> set[str]:
+    return {kernel.types.get(name, "f64") for name in kernel.outputs}
 
 
 def _loops(
@@ -163,18 +172,20 @@ def _loops(
     store: str,
 ) -> list[str]:
     """One loop nest over some axes; lengths are those of the output `measure`."""
-    lines = _level(kernel, 0)
+    lines = _indented(level_program(kernel, 0), 1)
     for depth, axis in enumerate(along):
         # The length is read from an output: an axis may have no input that is needed. An index that has no
         # sign cannot count from the end: where LLVM has to allow for that, it mistakes arrays that lie
         # next to each other in memory for overlapping ones, and a long loop then runs one by one.
-        lines.append(f"{INDENT * (depth + 1)}for i{axis} in range(uint64(out_{measure}.shape[{axis}])):")
-        pad = INDENT * (depth + 2)
+        length = f"uint64(out_{measure}.shape[{axis}])"
         read = f"{cast}({{0}}_axis[i{axis}])" if cast else f"{{0}}_axis[i{axis}]"
-        lines += [f"{pad}{name} = {read.format(name)}" for name, on in kernel.inputs.items() if on == depth]
-        rows = ((name, on) for name, on in reads.items() if on[-1] == axis)
-        lines += [f"{pad}{name} = {name}_table[{_index(on)}]" for name, on in rows]
-        lines += _level(kernel, depth + 1)
+        loads = {name: read.format(name) for name, on in kernel.inputs.items() if on == depth}
+        loads |= {name: f"{name}_table[{_index(on)}]" for name, on in reads.items() if on[-1] == axis}
+        if kernel.close is not None and depth == len(along) - 1:
+            return lines + [INDENT * (depth + 1) + row for row in inner_loops(kernel, length, loads)]
+        lines.append(f"{INDENT * (depth + 1)}for i{axis} in range({length}):")
+        lines += [f"{INDENT * (depth + 2)}{name} = {text}" for name, text in loads.items()]
+        lines += _indented(level_program(kernel, depth + 1), depth + 2)
     pad = INDENT * (len(along) + 1)
     return lines + [f"{pad}{store.format(name)}[{_index(along)}] = {name}" for name in kernel.outputs]
 
@@ -183,9 +194,8 @@ def _index(along: tuple[int, ...]) -> str:
     return ", ".join(f"i{axis}" for axis in along)
 
 
-def _level(kernel: Kernel, level: int) -> list[str]:
-    program: Program = level_program(kernel, level)
-    return [INDENT * (level + 1) + line for line in write_lines(program, "numba")]
+def _indented(program: Program, depth: int) -> list[str]:
+    return [INDENT * depth + line for line in write_lines(program, "numba")]
 
 
 def _front(kernel: Kernel, docstring: str, optional: Container[str]) -> str:

@@ -69,6 +69,11 @@ def _two_product_error(a: float, b: float) -> float:
     return float(Fraction(a) * Fraction(b) - Fraction(product))
 
 
+def _turned(sine: float, cosine: float, quarters: float) -> float:
+    value = cosine if quarters % 2.0 == 1.0 else sine
+    return -value if quarters % 4.0 >= 2.0 else value
+
+
 _IEEE: dict[str, Any] = {
     "copy": lambda a: a,
     "add": lambda a, b: a + b,
@@ -86,6 +91,8 @@ _IEEE: dict[str, Any] = {
     "two_sum_error": _two_sum_error,
     "two_product_error": _two_product_error,
     "rounding": lambda a: 2.0**-51 * math.fabs(a),
+    "muladd": lambda a, b, c: a * b + c,
+    "turned": _turned,
     "lt": lambda a, b: a < b,
     "le": lambda a, b: a <= b,
     "eq": lambda a, b: a == b,

@@ -29,6 +29,20 @@ class Kernel(NamedTuple):
     types: Mapping[str, str]
     notes: Mapping[str, Note]
     tables: tuple["Table", ...] = ()
+    close: "Close | None" = None
+
+
+class Close(NamedTuple):
+    """What the innermost loop does instead of its own lines at points where a test fails.
+
+    `outputs` are the names that hold the kernel's outputs there. The test is a line of the innermost
+    loop, which has `test_lines`, or of an outer one, which has none.
+    """
+
+    test: str
+    lines: tuple[Line, ...]
+    outputs: tuple[str, ...]
+    test_lines: tuple[Line, ...]
 
 
 class Table(NamedTuple):
@@ -61,10 +75,26 @@ def _placed(program: Program, axis_of: Mapping[str, int | None], axes: int) -> K
 def level_program(kernel: Kernel, level: int) -> Program:
     """One level as a program of its own: its outputs are what deeper levels and the result need."""
     own = {line.name for line in kernel.levels[level]}
-    deeper = {name for lines in kernel.levels[level + 1 :] for line in lines for name in names_in(line.args)}
+    results: tuple[str, ...] = kernel.outputs
+    lines = [line for lines in kernel.levels[level + 1 :] for line in lines]
+    if kernel.close is not None:
+        results += kernel.close.test, *kernel.close.outputs
+        lines += kernel.close.lines if level < kernel.axes else ()
+    deeper = {name for line in lines for name in names_in(line.args)}
     needed = [line.name for line in kernel.levels[level] if line.name in deeper]
-    outputs = tuple(needed + [name for name in kernel.outputs if name in own and name not in deeper])
+    outputs = tuple(needed + [name for name in dict.fromkeys(results) if name in own and name not in deeper])
     return Program((), kernel.levels[level], outputs, kernel.notes)
+
+
+def close_programs(kernel: Kernel) -> tuple[Program, Program]:
+    """The test and the lines of `close` as programs of their own."""
+    close = kernel.close
+    if close is None:
+        raise ValueError("this kernel has one form")
+    own = {line.name for line in close.lines}
+    outputs = tuple(name for name in dict.fromkeys(close.outputs) if name in own)
+    test = Program((), close.test_lines, (close.test,), kernel.notes)
+    return test, Program((), close.lines, outputs, kernel.notes)
 
 
 READ = 2.0  # what reading a value from a table costs, in additions

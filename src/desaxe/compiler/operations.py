@@ -77,6 +77,11 @@ OPERATIONS: dict[str, Operation] = dict(
             commutes=True,
         ),
         _row("rounding", "ff", "rounding({0})", CALL, 1.5, lambda mp, a: a * 0),
+        _row("muladd", "ffff", "muladd({0}, {1}, {2})", CALL, 1, lambda mp, a, b, c: a * b + c),
+        _row(
+            "turned", "ffff", "turned({0}, {1}, {2})", CALL, 4,
+            lambda mp, sine, cosine, quarters: (sine, cosine, -sine, -cosine)[int(quarters) % 4],
+        ),
         _row("lt", "ffb", "{0} < {1}", 6, 1, lambda mp, a, b: a < b),
         _row("le", "ffb", "{0} <= {1}", 6, 1, lambda mp, a, b: a <= b),
         _row("eq", "ffb", "{0} == {1}", 6, 1, lambda mp, a, b: a == b, commutes=True),
@@ -111,6 +116,15 @@ HELPERS = {
     """What rounding may take from a number of this size in four operations."""
     return 4.440892098500626e-16 * fabs(a)
 ''',
+    "muladd": '''def muladd(a, b, c):
+    """a * b + c."""
+    return a * b + c
+''',
+    "turned": '''def turned(sine, cosine, quarters):
+    """The sine of an angle and a whole number of quarter turns, from the angle's sine and cosine."""
+    value = cosine if quarters % 2.0 == 1.0 else sine
+    return -value if quarters % 4.0 >= 2.0 else value
+''',
     "divide": '''def divide(a, b):
     """a / b with the IEEE 754 answers that Python refuses to give."""
     if b:
@@ -134,8 +148,41 @@ HELPERS = {
     return float(floor(a)) if a - a == 0.0 and a else a
 ''',
 }
-# A helper that numba spells in its own way: a fused multiply-add keeps the whole product.
+# Helpers that numba spells in its own way: with a fused multiply-add, which keeps the whole product, where
+# there is one, and with the bits of a number, in which a sign costs no comparison.
 NUMBA_HELPERS = {
+    "muladd": '''@intrinsic
+def muladd(typingctx, a, b, c):
+    """a * b + c, rounded once where the machine can, else twice."""
+
+    kind = max((a, b, c), key=lambda given: given.bitwidth)
+
+    def code(context, builder, signature, args):
+        a, b, c = args
+        return builder.fadd(builder.fmul(a, b, flags=("contract",)), c, flags=("contract",))
+
+    return kind(kind, kind, kind), code
+''',
+    "turned": '''@intrinsic
+def turned(typingctx, sine, cosine, quarters):
+    """The sine of an angle and a whole number of quarter turns, from the angle's sine and cosine."""
+    kind = max((sine, cosine, quarters), key=lambda given: given.bitwidth)
+    wide = kind.bitwidth
+    whole = types.int64 if wide == 64 else types.int32
+
+    def code(context, builder, signature, args):
+        sine, cosine, quarters = args
+        integer = context.get_value_type(whole)
+        # Beyond 2^52 (2^23) the last bits of a number are those of the whole number that was added.
+        shift = context.get_constant(kind, 1.5 * 2.0 ** (52 if wide == 64 else 23))
+        bits = builder.bitcast(builder.fadd(quarters, shift), integer)
+        odd = builder.trunc(bits, context.get_value_type(types.boolean))
+        value = builder.bitcast(builder.select(odd, cosine, sine), integer)
+        sign = builder.shl(builder.lshr(bits, integer(1)), integer(wide - 1))
+        return builder.bitcast(builder.xor(value, sign), args[0].type)
+
+    return kind(kind, kind, kind), code
+''',
     "two_product_error": '''@intrinsic
 def fused(typingctx, a, b, c):
     """a * b + c, rounded once."""

@@ -1,4 +1,4 @@
-"""Fix inputs to constants, or put other lines in place of given ones."""
+"""Fix inputs or conditions to constants, or put other lines in place of given ones."""
 
 from collections.abc import Mapping
 
@@ -36,3 +36,16 @@ def overlay(program: Program, other: Program) -> Program:
     inputs += tuple(name for name in other.inputs if name not in inputs)
     notes = {**program.notes, **other.notes}
     return drop_unused(program._replace(inputs=inputs, lines=lines, notes=notes))
+
+
+def assume(program: Program, facts: Mapping[str, bool]) -> Program:
+    """The program where some conditions are known; `fold` then drops the other side of their selects.
+
+    An output that is such a condition stays as it is.
+    """
+    facts = {name: known for name, known in facts.items() if name not in program.outputs}
+    lines = (
+        line._replace(args=tuple(facts.get(a, a) if isinstance(a, str) else a for a in line.args))
+        for line in program.lines
+    )
+    return drop_unused(program._replace(lines=tuple(lines)))

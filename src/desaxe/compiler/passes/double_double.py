@@ -171,6 +171,11 @@ class _Writer:
         none = self.line("eq", root, 0.0, kind="bool")
         return self.quick(root, self.line("select", none, 0.0, step))
 
+    def quarter_turned(self, sine: Pair, cosine: Pair, quarters: Pair) -> Pair:
+        """Both words turn alike; the number of quarters is whole."""
+        words = ((sine.high, cosine.high), (sine.low, cosine.low))
+        return Pair(*(self.line("turned", a, b, quarters.high) for a, b in words))
+
     # ---- signs and choices -----------------------------------------------------------------------
 
     def size(self, a: Pair) -> Pair:
@@ -281,6 +286,8 @@ _RULES: Mapping[str, Callable[..., Pair]] = {
     "add": _Writer.add,
     "sub": _Writer.sub,
     "mul": _Writer.mul,
+    "muladd": lambda writer, a, b, c: writer.add(writer.mul(a, b), c),
+    "turned": _Writer.quarter_turned,
     "div": _Writer.div,
     "neg": _Writer.neg,
     "abs": _Writer.size,

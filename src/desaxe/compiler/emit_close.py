@@ -1,0 +1,95 @@
+"""The innermost loop of a kernel in two forms: the plain one for all points, the stable one for the rest.
+
+Where the test belongs to an outer loop, it picks the loop. Where it changes from point to point, a block of
+points runs through the plain loop, which counts those that fail the test; they are gathered, run
+through the stable loop, and put back. So both loops are free of branches, and vectorise, and a few points
+next to singular ones cost little.
+"""
+
+from collections.abc import Mapping
+
+from .kernel import Close, Kernel, close_programs, level_program
+from .text import INDENT, write_lines
+
+BLOCK = 512  # points: their inputs and outputs stay in the first-level cache
+
+
+def is_mixed(kernel: Kernel) -> bool:
+    """Whether the test changes along the innermost axis."""
+    return kernel.close is not None and bool(kernel.close.test_lines)
+
+
+def scratch(kernel: Kernel) -> list[str]:
+    """Where the points of a block that fail the test are kept: places, inputs, outputs."""
+    if not is_mixed(kernel):
+        return []
+    names = [*_kept(kernel), *(f"out_{name}" for name in kernel.outputs)]
+    whole = {f"out_{name}" for name in kernel.outputs if kernel.types.get(name) == "i64"}
+    rows = [f"{name}_kept = empty({BLOCK}{', int8' if name in whole else ''})" for name in names]
+    return [f"place = empty({BLOCK}, uint64)", *rows]
+
+
+def _kept(kernel: Kernel) -> list[str]:
+    """The inputs and tables that change along the innermost axis."""
+    last = kernel.axes - 1
+    tables = (name for table in kernel.tables if table.along[-1] == last for name in table.kernel.outputs)
+    return [*(name for name, axis in kernel.inputs.items() if axis == last), *tables]
+
+
+def inner_loops(kernel: Kernel, length: str, loads: Mapping[str, str]) -> list[str]:
+    """The text of the innermost loop over `length` points; `loads` has what each of them reads."""
+    if kernel.close is None:
+        raise ValueError("this kernel has one form")
+    read = [f"{name} = {text}" for name, text in loads.items()]
+    plain = [
+        *read,
+        *write_lines(level_program(kernel, kernel.axes), "numba"),
+        *_stores(kernel, kernel.outputs),
+    ]
+    if is_mixed(kernel):
+        return _mixed(kernel, kernel.close, length, loads, plain)
+    stable = [*read, *write_lines(close_programs(kernel)[1], "numba"), *_stores(kernel, kernel.close.outputs)]
+    loop = f"for i{kernel.axes - 1} in range({length}):"
+    return [
+        f"if {kernel.close.test}:",
+        *_under(loop, plain, 1),
+        "else:",
+        *_under(loop, stable, 1),
+    ]
+
+
+def _stores(kernel: Kernel, values: tuple[str, ...]) -> list[str]:
+    index = ", ".join(f"i{axis}" for axis in range(kernel.axes))
+    return [f"out_{name}[{index}] = {value}" for name, value in zip(kernel.outputs, values, strict=True)]
+
+
+def _mixed(
+    kernel: Kernel, close: Close, length: str, loads: Mapping[str, str], plain: list[str]
+) -> list[str]:
+    """Blocks: all points in the plain form, then those that fail the test in the stable one."""
+    last, names = kernel.axes - 1, _kept(kernel)
+    test, stable = (write_lines(program, "numba") for program in close_programs(kernel))
+    found = [f"{name}_kept[count] = {name}" for name in names]
+    found += [f"place[count] = i{last}", "count += uint64(1)"]
+    index = ", ".join([*(f"i{axis}" for axis in range(last)), "place[k]"])
+    block = f"for i{last} in range(start, stop):"
+    again = [f"{name} = {name}_kept[k]" for name in names] + stable
+    pairs = list(zip(kernel.outputs, close.outputs, strict=True))
+    again += [f"out_{name}_kept[k] = {value}" for name, value in pairs]
+    return [
+        f"length = {length}",
+        f"for start in range(uint64(0), length, uint64({BLOCK})):",
+        f"{INDENT}stop = min(start + uint64({BLOCK}), length)",
+        f"{INDENT}close = 0",
+        *_under(block, [*plain, f"close += 0 if {close.test} else 1"], 1),
+        f"{INDENT}if close:",
+        f"{INDENT * 2}count = uint64(0)",
+        *_under(block, [*(f"{name} = {text}" for name, text in loads.items()), *test], 2),
+        *(INDENT * 3 + row for row in _under(f"if not {close.test}:", found, 0)),
+        *_under("for k in range(count):", again, 2),
+        *_under("for k in range(count):", [f"out_{n}[{index}] = out_{n}_kept[k]" for n, _ in pairs], 2),
+    ]
+
+
+def _under(head: str, body: list[str], depth: int) -> list[str]:
+    return [INDENT * depth + head, *(INDENT * (depth + 1) + row for row in body)]

@@ -1,0 +1,57 @@
+"""Two forms of one program: plain lines for most points, stable ones for those that a test keeps back.
+
+A design with wide margins needs none of the care that one next to its change point does. `in_two_forms`
+puts both forms and the test into one program, so that they share what they have in common; `parted`
+takes the innermost loop of its kernel apart again. The value at a point depends on that point alone.
+"""
+
+from collections.abc import Iterable
+
+from .kernel import Close, Kernel
+from .passes.number import number_values
+from .program import Line, Program, names_in, renamed
+
+_SUFFIX = "_close"
+
+
+def in_two_forms(plain: Program, stable: Program, test: Program) -> Program:
+    """One program: the outputs of `plain`, that of `test`, and those of `stable` under other names.
+
+    Precondition: `plain` and `stable` have the same outputs and hold the same values, where the test
+    holds up to rounding; `test` has one output, a condition. Equal lines are computed once.
+    """
+    outputs = (*plain.outputs, *test.outputs, *(f"{name}{_SUFFIX}" for name in stable.outputs))
+    named = {line.name: f"{line.name}_test" for line in test.lines if line.name not in test.outputs}
+    parts = [renamed(test, named), plain, renamed(stable, {n: f"{n}{_SUFFIX}" for n in _names(stable)})]
+    aliases = [Line(f"{n}{_SUFFIX}", "copy", (n,)) for n in stable.outputs if n in stable.inputs]
+    lines = tuple(line for part in parts for line in part.lines)
+    inputs = dict.fromkeys(name for part in (stable, plain, test) for name in part.inputs)
+    notes = {**plain.notes, **test.notes}
+    notes |= {f"{name}{_SUFFIX}": note for name, note in stable.notes.items() if name not in notes}
+    return number_values(Program(tuple(inputs), (*lines, *aliases), outputs, notes))
+
+
+def _names(program: Program) -> Iterable[str]:
+    return (line.name for line in program.lines)
+
+
+def parted(kernel: Kernel, count: int) -> Kernel:
+    """The kernel of such a program with the stable lines of its innermost loop set apart.
+
+    Precondition: `count` is the number of outputs of one form. Postcondition: the outputs are those of
+    the plain form; `close` has the rest.
+    """
+    outputs, (test, *stable) = kernel.outputs[:count], kernel.outputs[count:]
+    *outer, inner = kernel.levels
+    plain_lines = _reaching(inner, (*outputs, test))
+    close = Close(test, _reaching(inner, stable), tuple(stable), _reaching(inner, (test,)))
+    return kernel._replace(levels=(*outer, plain_lines), outputs=outputs, close=close)
+
+
+def _reaching(lines: tuple[Line, ...], outputs: Iterable[str]) -> tuple[Line, ...]:
+    """The lines that the outputs need."""
+    wanted = set(outputs)
+    for line in reversed(lines):
+        if line.name in wanted:
+            wanted.update(names_in(line.args))
+    return tuple(line for line in lines if line.name in wanted)
