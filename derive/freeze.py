@@ -61,7 +61,7 @@ class _Freezer:
         """A name or a constant that holds the expression."""
         if expression.is_Symbol:
             return float("nan") if expression.name == "nan" else str(expression.name)
-        if expression.is_Integer or expression.is_Float:
+        if expression.is_Integer or expression.is_Float or expression is sp.oo:
             return float(expression)
         if expression.is_Rational:
             return float(expression.p) / float(expression.q)

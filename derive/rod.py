@@ -65,7 +65,19 @@ def resolve_rod(sheet: Sheet, name: str) -> Equation | None:
     if rod is None or not (rod.by or rod.turns):
         return None
     expression = in_ratios(_followed(rod)) if rod.by else _height(rod.turns)
-    return Equation(sp.factor_terms(expression), rod.unit, rod.meaning)
+    return Equation(_shortest(expression), rod.unit, rod.meaning)
+
+
+def _shortest(expression: sp.Expr) -> sp.Expr:
+    """Factored, each factor by Horner in tan(phi), unless that takes a division."""
+    factored = sp.factor(expression)
+    if factored.has(1 / BC) and not expression.has(1 / BC):
+        return sp.factor_terms(expression)
+    return sp.Mul(*(_nested(factor) for factor in sp.Mul.make_args(factored)))
+
+
+def _nested(factor: sp.Expr) -> sp.Expr:
+    return sp.horner(factor, tan_phi) if factor.is_Add and factor.is_polynomial(tan_phi) else factor
 
 
 def _followed(rod: RodFunction) -> sp.Expr:

@@ -48,7 +48,6 @@ rounding = sp.Function("rounding")
 # Where AB + |ec| is below this share of BC, and not so many times the difference of AB and |ec|, no form
 # cancels, and the plain ones will do.
 ROOMY, APART = sp.Float(0.75), 8
-LARGEST = sp.Float(1.7976931348623157e308, 17)
 roomy = sp.Symbol("roomy", real=True)
 
 
@@ -61,7 +60,7 @@ def wide_margins() -> sp.Expr:
     """Whether a design is roomy; if it is, all its lengths are good."""
     size, both = absolute(ec), sp.Function("and")
     wide, apart = lt(AB + size, ROOMY * BC), lt(AB + size, APART * absolute(AB - size))
-    return both(both(both(wide, apart), le(0, AB)), lt(BC, LARGEST))
+    return both(both(both(wide, apart), le(0, AB)), lt(BC, sp.oo))
 
 
 def assembled(ok: sp.Expr | int) -> sp.Expr:

@@ -130,7 +130,7 @@ def kernel_of(key: KernelKey) -> Kernel:
         guarded = double_digits(guarded, double_constants())
     else:
         guarded = _for_loops(guard_inputs(program, varying, LEAST, {}), key)
-    plain = plain_form(key.names, key.form, key.fixed) if key.accuracy == "standard" else None
+    plain = plain_form(key.names, key.form, key.fixed) if key.accuracy != "extended" else None
     if plain is not None:
         own = [name for name in varying if name not in LENGTHS and _is_seen(plain, name)]
         plain = guard_inputs(plain, own, LEAST, {})  # in a roomy design all lengths are good

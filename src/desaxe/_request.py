@@ -1,6 +1,7 @@
 """The border: what is asked for and what is given, checked once, with errors that name the culprit."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
 from math import inf
 from typing import Any, NamedTuple
 
@@ -59,6 +60,7 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
     return Request(shown, own, Form(state, halves), (("branch", float(branch)), *zeros), kept)
 
 
+@cache
 def _moves(centre: str, names: tuple[str, ...]) -> bool:
     """Whether these names need a centre of mass, or only how it moves with its link."""
     program = program_of(names)

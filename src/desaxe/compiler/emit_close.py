@@ -36,8 +36,11 @@ def _kept(kernel: Kernel) -> list[str]:
     return [*(name for name, axis in kernel.inputs.items() if axis == last), *tables]
 
 
-def inner_loops(kernel: Kernel, length: str, loads: Mapping[str, str]) -> list[str]:
-    """The text of the innermost loop over `length` points; `loads` has what each of them reads."""
+def inner_loops(kernel: Kernel, length: str, loads: Mapping[str, str], cast: str) -> list[str]:
+    """The text of the innermost loop over `length` points; `loads` has what each of them reads.
+
+    `cast` is applied to what is read back from the points kept; "" for none.
+    """
     if kernel.close is None:
         raise ValueError("this kernel has one form")
     read = [f"{name} = {text}" for name, text in loads.items()]
@@ -47,7 +50,7 @@ def inner_loops(kernel: Kernel, length: str, loads: Mapping[str, str]) -> list[s
         *_stores(kernel, kernel.outputs),
     ]
     if is_mixed(kernel):
-        return _mixed(kernel, kernel.close, length, loads, plain)
+        return _mixed(kernel, kernel.close, length, loads, plain, cast)
     stable = [*read, *write_lines(close_programs(kernel)[1], "numba"), *_stores(kernel, kernel.close.outputs)]
     loop = f"for i{kernel.axes - 1} in range({length}):"
     return [
@@ -64,7 +67,7 @@ def _stores(kernel: Kernel, values: tuple[str, ...]) -> list[str]:
 
 
 def _mixed(
-    kernel: Kernel, close: Close, length: str, loads: Mapping[str, str], plain: list[str]
+    kernel: Kernel, close: Close, length: str, loads: Mapping[str, str], plain: list[str], cast: str
 ) -> list[str]:
     """Blocks: all points in the plain form, then those that fail the test in the stable one."""
     last, names = kernel.axes - 1, _kept(kernel)
@@ -73,7 +76,8 @@ def _mixed(
     found += [f"place[count] = i{last}", "count += uint64(1)"]
     index = ", ".join([*(f"i{axis}" for axis in range(last)), "place[k]"])
     block = f"for i{last} in range(start, stop):"
-    again = [f"{name} = {name}_kept[k]" for name in names] + stable
+    kept = f"{cast}({{}}_kept[k])" if cast else "{}_kept[k]"
+    again = [f"{name} = {kept.format(name)}" for name in names] + stable
     pairs = list(zip(kernel.outputs, close.outputs, strict=True))
     again += [f"out_{name}_kept[k] = {value}" for name, value in pairs]
     return [

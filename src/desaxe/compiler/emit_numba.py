@@ -50,10 +50,17 @@ def _named_constants(kernel: Kernel) -> tuple[Kernel, dict[float, str]]:
         known = next((n for value, n in names.items() if repr(value) == repr(argument)), "")
         return known or names.setdefault(argument, f"k{len(names)}")
 
-    levels = tuple(
-        tuple(line._replace(args=tuple(map(named, line.args))) for line in lines) for lines in kernel.levels
-    )
-    return kernel._replace(levels=levels), names
+    def body(lines: tuple[Line, ...]) -> tuple[Line, ...]:
+        return tuple(line._replace(args=tuple(map(named, line.args))) for line in lines)
+
+    def nest(kernel: Kernel) -> Kernel:
+        close = kernel.close
+        if close is not None:
+            close = close._replace(lines=body(close.lines), test_lines=body(close.test_lines))
+        tables = tuple(table._replace(kernel=nest(table.kernel)) for table in kernel.tables)
+        return kernel._replace(levels=tuple(map(body, kernel.levels)), tables=tables, close=close)
+
+    return nest(kernel), names
 
 
 def emit_numba_with_front(kernel: Kernel, docstring: str, front: str, optional: Container[str] = ()) -> str:
@@ -180,9 +187,10 @@ def _loops(
         length = f"uint64(out_{measure}.shape[{axis}])"
         read = f"{cast}({{0}}_axis[i{axis}])" if cast else f"{{0}}_axis[i{axis}]"
         loads = {name: read.format(name) for name, on in kernel.inputs.items() if on == depth}
-        loads |= {name: f"{name}_table[{_index(on)}]" for name, on in reads.items() if on[-1] == axis}
+        tables = {name: f"{name}_table[{_index(on)}]" for name, on in reads.items() if on[-1] == axis}
+        loads |= {name: f"{cast}({text})" if cast else text for name, text in tables.items()}
         if kernel.close is not None and depth == len(along) - 1:
-            return lines + [INDENT * (depth + 1) + row for row in inner_loops(kernel, length, loads)]
+            return lines + [INDENT * (depth + 1) + row for row in inner_loops(kernel, length, loads, cast)]
         lines.append(f"{INDENT * (depth + 1)}for i{axis} in range({length}):")
         lines += [f"{INDENT * (depth + 2)}{name} = {text}" for name, text in loads.items()]
         lines += _indented(level_program(kernel, depth + 1), depth + 2)
