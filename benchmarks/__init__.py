@@ -1,1 +1,1 @@
-"""Run time against error, in one run on one core: `python -m benchmarks`."""
+"""Run time against error, beside everyone else, in one run: `python -m benchmarks`."""

@@ -1,110 +1,122 @@
-"""`python -m benchmarks`: desaxe beside NumPy and numba on the textbook formula, time and error.
-
-The contenders do the same work in the same process on one core, in turns; the table has the ratio
-of the fastest of several rounds. The textbook formula is the closed form of `desaxe.equation`,
-lambdified with common subexpressions. Errors are against the tests' oracle.
-"""
+"""`python -m benchmarks`: desaxe beside everyone else at the same works, time and error, in one run."""
 
 import argparse
-import platform
-import time
-from collections.abc import Callable, Mapping
-from typing import Any
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-import llvmlite.binding
-import numba
-import numpy as np
-import sympy as sp
+from .work import BY_KEY, WORKS
 
-import desaxe as dx
+if TYPE_CHECKING:
+    from .measure import Data
 
-try:
-    from desaxe.audit.truth import relative_error, truth
-except ModuleNotFoundError as missing:
-    raise SystemExit(f"the benchmarks need {missing.name}: python -m pip install -e '.[dev]'") from None
-
-KINEMATICS = ("V_C", "a_C")
-SENSITIVITIES = tuple(f"{q}_wrt_{p}" for q in KINEMATICS for p in ("theta", "ec", "AB", "BC"))
-INPUTS = ("theta", "ec", "AB", "BC", "omega0")
-WORK = {
-    "V_C, a_C": KINEMATICS,
-    "V_C, a_C and 8 first sensitivities": (*KINEMATICS, *SENSITIVITIES),
-}
-DISTANCES = (1e-2, 1e-4, 1e-6)
+ROOT = Path(__file__).parents[1]
+RESULTS = Path(__file__).parent / "results" / "measured.json"
+README = ROOT / "README.md"
+DOCS = ROOT / "docs"
+PAGE = DOCS / "benchmarks.md"
+EPILOG = """\
+examples:
+  python -m benchmarks --quick                 everything once, small, in a minute
+  python -m benchmarks --only point --only grid
+  python -m benchmarks --write                 the committed figures afresh: results, page, pictures, README
+"""
 
 
 def main() -> None:
-    """Print both tables."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
-    parser.add_argument("--points", type=int, default=1_000_000)
-    parser.add_argument("--rounds", type=int, default=7)
-    options = parser.parse_args()
-    versions = f"desaxe {dx.__version__}, numba {numba.__version__}, NumPy {np.__version__}"
-    print(f"{platform.machine()}, {llvmlite.binding.get_host_cpu_name()}, {versions}\n")
-    print(f"time at {options.points} random points, one core, as a multiple of desaxe's\n")
-    print("| work | NumPy lambdify | numba on it | desaxe |\n|---|---|---|---|")
-    for title, names in WORK.items():
-        print(_row(title, _times(names, options.points, options.rounds)))
-    print("\nworst relative error of V_C, a_C next to the change point AB = 1, BC = 1.5, ec = -0.5\n")
-    print("| distance | NumPy lambdify | desaxe |\n|---|---|---|")
-    for distance in DISTANCES:
-        textbook, ours = _errors(distance)
-        print(f"| {distance:g} rad | {textbook:.1e} | {ours:.1e} |")
+    """Measure and print; write if asked to."""
+    options = _parser().parse_args()
+    if options.list:
+        print(_listed())
+    elif options.again:
+        _write(json.loads(RESULTS.read_text(encoding="utf-8")))
+    else:
+        _measure(options)
 
 
-def textbook(names: tuple[str, ...]) -> Callable[..., Any]:
-    """The closed forms as a NumPy function of INPUTS; the crank turns forwards, at constant speed."""
-    speed = sp.Symbol("omega0", positive=True)
-    fixed = {"alpha": 0, "branch": 1, "omega0": speed}
-    fixed = {sp.Symbol(name, real=True): value for name, value in fixed.items()}
-    symbols = [*(sp.Symbol(name, real=True) for name in INPUTS[:-1]), speed]
-    expressions = [dx.equation(name).expression.subs(fixed) for name in names]
-    function: Callable[..., Any] = sp.lambdify(symbols, expressions, "numpy", cse=True)
-    return function
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks",
+        description="desaxe beside NumPy, numba, numexpr, JAX, CasADi, heyoka and C at the same works on one core "
+        "(and on all): time as a multiple of desaxe's, error against the truth. Peers come with the extra `peers`; "
+        "whoever is not installed is left out.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    keys = [work.key for work in WORKS]
+    parser.add_argument(
+        "--only", action="append", choices=keys, metavar="WORK", help="this work alone; repeatable"
+    )
+    parser.add_argument(
+        "--quick", action="store_true", help="small works, few rounds, no cold starts: a minute"
+    )
+    parser.add_argument("--points", type=_positive, metavar="N", help="points of the works at random points")
+    parser.add_argument("--rounds", type=_positive, metavar="N", help="rounds of each work (9; quick: 2)")
+    parser.add_argument(
+        "--list", action="store_true", help="the works and the contenders, and who is not installed"
+    )
+    parser.add_argument(
+        "--write", action="store_true", help="write results, page, pictures and README's table"
+    )
+    parser.add_argument(
+        "--again", action="store_true", help="write them from the stored results, measure nothing"
+    )
+    return parser
 
 
-def _points(count: int) -> dict[str, Any]:
-    rng = np.random.default_rng(1)
-    ranges = {"theta": (-7.0, 7.0), "ec": (-0.05, 0.05), "AB": (0.1, 0.15), "BC": (0.3, 0.4)}
-    return {name: rng.uniform(*ends, count) for name, ends in ranges.items()}
+def _positive(text: str) -> int:
+    count = int(text)
+    if count < 1:
+        raise argparse.ArgumentTypeError(f"{text}: at least 1 is needed")
+    return count
 
 
-def _times(names: tuple[str, ...], count: int, rounds: int) -> dict[str, float]:
-    columns = _points(count)
-    plain = textbook(names)
-    compiled = numba.njit(error_model="numpy")(plain)
-    out = {name: np.empty(count) for name in names}
-    contenders: Mapping[str, Callable[[], Any]] = {
-        "NumPy": lambda: plain(*columns.values(), 157.08),
-        "numba": lambda: compiled(*columns.values(), 157.08),
-        "desaxe": lambda: dx.evaluate(list(names), **columns, omega0=157.08, out=out, threads=1),
-    }
-    best = dict.fromkeys(contenders, float("inf"))
-    for _ in range(rounds):
-        for name, run in contenders.items():
-            started = time.perf_counter()
-            run()
-            best[name] = min(best[name], time.perf_counter() - started)
-    return best
+def _listed() -> str:
+    from .contenders import CONTENDERS
+
+    works = [f"  {work.key:11}{work.title}" for work in WORKS]
+    missing = {one.name: "" if one.is_here else f"not here: needs {one.needs}" for one in CONTENDERS}
+    return "\n".join(
+        ["works", *works, "contenders", *(f"  {n:18}{why}".rstrip() for n, why in missing.items())]
+    )
 
 
-def _row(title: str, times: Mapping[str, float]) -> str:
-    return f"| {title} | " + " | ".join(f"{times[name] / times['desaxe']:.1f}" for name in times) + " |"
+def _measure(options: argparse.Namespace) -> None:
+    try:
+        from .measure import BRIEF, FULL, measure
+    except ModuleNotFoundError as missing:
+        raise SystemExit(f"the benchmarks need {missing.name}: python -m pip install -e '.[dev]'") from None
+    from desaxe._scene.progress import progress_bar
+
+    from .report import terminal
+
+    partly = options.only or options.quick or options.points
+    if options.write and partly:
+        raise SystemExit("--write stores a whole run: without --only, --quick and --points")
+    effort = BRIEF if options.quick else FULL
+    effort = effort._replace(points=options.points, rounds=options.rounds or effort.rounds)
+    works = [BY_KEY[key] for key in options.only] if options.only else WORKS
+    with progress_bar() as watch:
+        data = measure(works, effort, watch)
+    print(terminal(data))
+    if options.write:
+        RESULTS.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+        _write(data)
 
 
-def _errors(distance: float) -> tuple[float, float]:
-    """The worst error of the textbook formula, and ours, on both sides of the quarter."""
-    plain = textbook(KINEMATICS)
-    worst = [0.0, 0.0]
-    for side in (1, -1):
-        point = {"theta": -np.pi / 2 + side * distance, "ec": -0.5, "AB": 1.0, "BC": 1.5, "omega0": 1.0}
-        ours = dx.evaluate(list(KINEMATICS), **point)
-        theirs = dict(zip(KINEMATICS, plain(*point.values()), strict=True))
-        for name in KINEMATICS:
-            exact = truth(name, **point)
-            for place, value in enumerate((theirs[name], ours[name])):
-                worst[place] = max(worst[place], float(relative_error(float(value), exact)))
-    return worst[0], worst[1]
+def _write(data: "Data") -> None:
+    """The page, its pictures, README's table."""
+    from desaxe.plot.files import save
+
+    from .picture import errors_over_time, time_over_points
+    from .report import GROWTH_PICTURE, PICTURE, page, with_table
+
+    PAGE.write_text(page(data), encoding="utf-8")
+    README.write_text(with_table(README.read_text(encoding="utf-8"), data), encoding="utf-8")
+    save(errors_over_time(data), DOCS / PICTURE, dpi=130)
+    save(time_over_points(data), DOCS / GROWTH_PICTURE, dpi=130)
+    for path in (PAGE, README, DOCS / PICTURE, DOCS / GROWTH_PICTURE):
+        print(f"wrote {path.relative_to(ROOT)}")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,81 @@
+"""The limits of the machine: storing a work's answer, and what a root, a division, a sine and cosine cost.
+
+These run over a column that stays in the first cache, in loops that numba vectorises; sine and cosine are
+the ones that desaxe writes into its loops.
+"""
+
+import math
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numba
+import numpy as np
+
+from desaxe._constants import constants
+from desaxe._kernels import module_at
+from desaxe.compiler.emit_numba import emit_numba
+from desaxe.compiler.kernel import tabulate
+from desaxe.compiler.passes.number import number_values
+from desaxe.compiler.passes.trigonometry import expand_trigonometry
+from desaxe.compiler.text import read_function
+
+from ..work import TURNS, Array, Inputs, Work
+from . import Run
+
+BOTH = "def both(theta):\n    sine = sin(theta)\n    cosine = cos(theta)\n    return sine, cosine\n"
+
+
+def prepare(work: Work, inputs: Inputs, out: Sequence[Array] | None, threads: int) -> Run:
+    """Fill an answer's memory, or run over a column again and again."""
+    del threads
+    if work.kind == "limit":
+        return _repeated(work.key, inputs.columns["theta"])
+    shape = inputs.shape
+
+    def fill() -> Sequence[Array]:
+        places = out or [np.empty(shape) for _ in work.names]
+        for place in places:
+            place.fill(1.0)
+        return places
+
+    return fill
+
+
+def _repeated(key: str, column: Array) -> Run:
+    """TURNS times over the column."""
+    kernel = {"sqrt": _roots, "divide": _quotients}[key] if key != "sincos" else _sines()
+    compiled = kernel if key == "sincos" else numba.njit(error_model="numpy")(kernel)
+    answers = [np.empty(column.size), np.empty(column.size)]
+
+    def turns(x: Array, y: Array, z: Array, count: int) -> None:
+        for _ in range(count):
+            compiled(x, y, z)
+
+    loop = numba.njit(turns)
+
+    def run() -> Sequence[Array]:
+        loop(column, *answers, TURNS)
+        return answers
+
+    return run
+
+
+def _roots(x: Array, y: Array, _: Array) -> None:
+    for i in range(x.size):
+        y[i] = math.sqrt(x[i])
+
+
+def _quotients(x: Array, y: Array, _: Array) -> None:
+    for i in range(x.size):
+        y[i] = 1.0 / x[i]
+
+
+def _sines() -> Any:
+    """The loop that desaxe would compile for a sine and a cosine."""
+    program = number_values(expand_trigonometry(read_function(BOTH), constants()))
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "sines.py")
+        path.write_text(emit_numba(tabulate(program, {"theta": 0}, 1), "Both."), encoding="utf-8")
+        return module_at(path).kernel

@@ -1,0 +1,250 @@
+"""What a run found, as the page docs/benchmarks.md and as README's table; times are ratios, always."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from desaxe.audit.errors import TOP, ULPS
+from desaxe.audit.report import number, table
+
+from .contenders import LIMITS, STANDARD
+from .measure import Data
+from .work import BY_KEY, TURNS
+
+PICTURE, GROWTH_PICTURE = "benchmarks.png", "benchmarks-points.png"
+COMMAND = "python -m benchmarks --write"
+BEGIN = f"<!-- written by `{COMMAND}`: begin -->"
+END = "<!-- end -->"
+SHOWN = {  # in README: the work and its column
+    "point": "`V_C, a_C`",
+    "first": "+ 8 sensitivities",
+    "grid": "grid, labelled",
+    "grid_out": "grid into `out=`",
+    "peak": "8,192 peaks",
+}
+READING = f"""\
+All times are multiples of what `accuracy="standard"` takes at the same work in the same run: 5 means five times
+as long as desaxe. Every contender has a process of its own on the same core (affinity set); they take turns, one
+at a time, and each time is the best round. Compilation is not counted in these, it has a table of its own.
+
+Everyone but desaxe computes the textbook's closed form (`desaxe.equation`) at constant speed, as its own users
+would run it well: numbers are put in before compiling, inputs lie as it wants them, answers go into memory that is
+there where it can write into such. heyoka derives its own sensitivities, which is faster than SymPy's
+code; on grids and sweeps heyoka and CasADi get blocks of 8,192 points. C is a nest of loops
+with each subexpression in the outermost loop that knows its inputs, from `gcc -O3 -march=native`; with `-ffast-math` its sines
+are in loops of their own, which gcc vectorises. On the labelled grid the others give plain arrays, without labels and status.
+Next to peaks, refined by desaxe with their gradient, the others take the best of 720 angles.
+`{LIMITS}` fills the memory of the answer and computes nothing.
+"""
+
+
+def page(data: Data) -> str:
+    """The whole page."""
+    parts = ["# Time against error, beside everyone else", _made(data), READING.rstrip()]
+    parts += ["## One core", by_contender(data, data["one core"]), _refusals(data["one core"])]
+    parts += ["## Error", f"![Worst error over time, for every contender]({PICTURE})", _errors(data)]
+    if "all cores" in data:
+        parts += ["## All cores", _all_cores(data)]
+    parts += ["## What a scene does not need", _operations(data)]
+    if "growth" in data:
+        parts += [
+            "## Number of points",
+            f"![Time per point over their number]({GROWTH_PICTURE})",
+            _growth(data),
+        ]
+    parts += ["## Compilation, cold start, memory", _starts(data)]
+    parts += ["## The limits of the machine", _limits(data)]
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def readme_table(data: Data) -> str:
+    """What stands between the markers in README."""
+    head = ["time as a multiple of `standard`'s", *SHOWN.values(), "error: generic", "next to a change point"]
+    rows = []
+    for name in [*data["who"], LIMITS]:
+        cells = [_ratio(data["one core"][key], name) for key in SHOWN]
+        found = data["errors"].get(name)
+        rows.append(
+            [name, *cells, *(_share(found[f][0]) if found else "" for f in ("generic", "change_point"))]
+        )
+    return table(head, rows)
+
+
+def with_table(readme: str, data: Data) -> str:
+    """README with the table of this data."""
+    before, begin, rest = readme.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not begin or not end:
+        raise ValueError(f"README.md has no {BEGIN} ... {END}")
+    return f"{before}{BEGIN}\n\n{readme_table(data)}\n\n{END}{after}"
+
+
+def terminal(data: Data) -> str:
+    """What a run prints."""
+    parts = [
+        data["machine"],
+        by_contender(data, data["one core"]),
+        _refusals(data["one core"]),
+        _errors(data),
+    ]
+    if "all cores" in data:
+        parts.append(_all_cores(data))
+    if "growth" in data:
+        parts.append(_growth(data))
+    parts += [_starts(data), _operations(data), _limits(data)]
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def ratio(works: Mapping[str, Any], name: str, by: str = STANDARD) -> float:
+    """Time as a multiple of somebody's; NaN where one of them has none."""
+    mine, base = works.get(name, {}).get("seconds"), works.get(by, {}).get("seconds")
+    return mine / base if mine and base else float("nan")
+
+
+def digits(x: float) -> str:
+    """A ratio with two digits, three from 100."""
+    return "" if x != x else f"{x:.2f}" if x < 0.95 else f"{x:.1f}" if x < 9.95 else f"{x:,.0f}"
+
+
+def by_contender(data: Data, works: Mapping[str, Any]) -> str:
+    """A row for each contender, a column for each work, and what the columns are."""
+    rows = [[name, *(_ratio(found, name) for found in works.values())] for name in [*data["who"], LIMITS]]
+    titles = "\n".join(f"* **{key}**: {BY_KEY[key].title}{_many(data, key)}" for key in works)
+    return f"{table(['', *works], rows)}\n\n{titles}"
+
+
+def _many(data: Data, key: str) -> str:
+    return f" ({data['points'][key]:,} points)" if BY_KEY[key].is_of_points else ""
+
+
+def _ratio(works: Mapping[str, Any], name: str) -> str:
+    return digits(ratio(works, name))
+
+
+def _share(x: float) -> str:
+    return number(x, TOP / ULPS)
+
+
+def _made(data: Data) -> str:
+    absent = f" Not installed there: {', '.join(data['absent'])}." if data["absent"] else ""
+    return f"Made by `{COMMAND}`, {data['rounds']} rounds, on\n{data['machine']}.{absent}"
+
+
+def _refusals(works: Mapping[str, Any]) -> str:
+    told = [
+        f"* {name} did not do `{key}`: {found['refused']}"
+        for key, raced in works.items()
+        for name, found in raced.items()
+        if "refused" in found
+    ]
+    return "\n".join(told)
+
+
+def _errors(data: Data) -> str:
+    families = list(next(iter(data["errors"].values())))
+    head = ["worst error (median)", *(name.replace("_", " ") for name in families)]
+    rows = [
+        [name, *(f"{_share(found[f][0])} ({_share(found[f][1])})" for f in families)]
+        for name, found in data["errors"].items()
+    ]
+    return (
+        f"{table(head, rows)}\n\n"
+        "Of V_C, a_C and a_C_wrt_ec, as a multiple of what the inputs' last digits excuse: 8 ulp x (1 + the sum of\n"
+        "the condition numbers), against the loop closure in ball arithmetic. `none`: no digit is right somewhere."
+    )
+
+
+def _all_cores(data: Data) -> str:
+    many = data["all cores"]
+
+    def gain(key: str, name: str) -> str:
+        both = {"one": data["one core"][key].get(name, {}), "all": many[key].get(name, {})}
+        return digits(ratio(both, "one", "all"))
+
+    names = [*data["who"], LIMITS]
+    speed = table(
+        ["one core's time over all cores'", *many], [[n, *(gain(k, n) for k in many)] for n in names]
+    )
+    return f"{table(['', *many], [[n, *(_ratio(many[k], n) for k in many)] for n in names])}\n\n{speed}"
+
+
+def _operations(data: Data) -> str:
+    """desaxe's time at works of different size, beside their operations."""
+    works = {key: data["one core"][key].get(STANDARD, {}).get("seconds") for key in data["operations"]}
+    known = {key: seconds / data["points"][key] for key, seconds in works.items() if seconds}
+    if "concentric" not in known:
+        return ""
+    base, least = known["concentric"], data["operations"]["concentric"]
+    rows = [
+        [
+            BY_KEY[k].title,
+            str(data["operations"][k]),
+            digits(data["operations"][k] / least),
+            digits(known[k] / base),
+        ]
+        for k in known
+        if BY_KEY[k].is_of_points
+    ]
+    head = ["desaxe standard", "operations at a point", "as a multiple", "time at a point, as a multiple"]
+    return (
+        f"{table(head, rows)}\n\nOperations as the frozen program has them, a sine or a root counted as one."
+    )
+
+
+def _growth(data: Data) -> str:
+    sizes = [size for size, found in data["growth"].items() if STANDARD in found]
+    rows = [
+        [
+            name,
+            *(digits(data["growth"][s].get(name, float("nan")) / data["growth"][s][STANDARD]) for s in sizes),
+        ]
+        for name in data["who"]
+    ]
+    return table(["V_C, a_C at so many points", *(f"{int(size):,}" for size in sizes)], rows)
+
+
+def _starts(data: Data) -> str:
+    """Compilation as seconds over desaxe's, memory as megabytes over the answer's own."""
+    works = {
+        key: found for key, found in data["one core"].items() if key in ("point", "first", "grid", "peak")
+    }
+    head = ["", *(f"compile {key}" for key in works), *(f"memory {key}" for key in works)]
+    began = data.get("starts", {})
+    if began:
+        head += ["first start", "second start"]
+    rows = []
+    for name in data["who"]:
+        cells = [digits(_over(found, name, "first")) for found in works.values()]
+        cells += [_megabytes(found.get(name, {})) for found in works.values()]
+        cells += [
+            digits(began[name][when] / began[STANDARD]["second"]) for when in ("first", "second") if began
+        ]
+        rows.append([name, *cells])
+    return (
+        f"{table(head, rows)}\n\n"
+        "Compilation with the first call, as a multiple of desaxe standard's; starts, from a new process to 10,000\n"
+        "points, as multiples of desaxe standard's second start, which finds its kernel on disk. Memory: megabytes\n"
+        "that a call needs beyond its inputs and the memory given for its answers."
+    )
+
+
+def _over(found: Mapping[str, Any], name: str, what: str) -> float:
+    mine, base = found.get(name, {}).get(what), found.get(STANDARD, {}).get(what)
+    return mine / base if mine and base else float("nan")
+
+
+def _megabytes(found: Mapping[str, Any]) -> str:
+    return f"{max(0.0, found['memory']):.0f}" if "memory" in found else ""
+
+
+def _limits(data: Data) -> str:
+    each = {key: seconds / (1024 * TURNS) for key, seconds in data["limits"].items()}
+    known = [(key, data["one core"][key].get(STANDARD, {}).get("seconds")) for key in ("concentric", "point", "first")
+             if key in data["one core"]]  # fmt: skip
+    rows = [
+        [BY_KEY[limit].title, *(digits(s / data["points"][key] / each[limit]) for key, s in known if s)]
+        for limit in each
+    ]
+    head = ["desaxe standard's time at a point, in", *(key for key, s in known if s)]
+    return (
+        f"{table(head, rows)}\n\nEach in a loop over 1,024 doubles that stay in the first cache, vectorised."
+    )

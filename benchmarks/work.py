@@ -1,0 +1,155 @@
+"""What is computed: the works that every contender is given, and their inputs.
+
+A work has axes. Random points have one, which every input runs along; a grid has one for each input. Inputs
+that are one number for all points are known when the work is prepared, so whoever can folds them.
+"""
+
+from collections.abc import Callable, Mapping
+from itertools import combinations_with_replacement
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+
+PARAMETERS = ("theta", "ec", "AB", "BC")
+KINEMATICS = ("V_C", "a_C")
+FIRST = tuple(f"{q}_wrt_{p}" for q in KINEMATICS for p in PARAMETERS)
+SECOND = tuple(
+    f"{q}_wrt_{p}_{r}" for q in KINEMATICS for p, r in combinations_with_replacement(PARAMETERS, 2)
+)
+OMEGA0 = 157.08  # rad/s
+RANGES = {"theta": (-7.0, 7.0), "ec": (-0.05, 0.05), "AB": (0.1, 0.15), "BC": (0.3, 0.4)}
+ANGLES = 720  # of a sweep
+TURNS = 1000  # through a column, where the machine itself is measured
+MILLION = 1_000_000
+
+
+class Inputs(NamedTuple):
+    """Each input's column and the axis that it runs along, and the inputs that are numbers."""
+
+    columns: Mapping[str, Array]
+    axis: Mapping[str, int]
+    scalars: Mapping[str, float]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of the answer."""
+        sizes = {axis: self.columns[name].size for name, axis in self.axis.items()}
+        return tuple(sizes[axis] for axis in sorted(sizes))
+
+    def broadcast(self) -> dict[str, Array]:
+        """The columns as views that broadcast to the shape."""
+        last = len(self.shape) - 1
+        return {n: c.reshape((-1,) + (1,) * (last - self.axis[n])) for n, c in self.columns.items()}
+
+
+class Work(NamedTuple):
+    """What is asked for, and how its inputs are made from a number of points (None: its own number)."""
+
+    key: str
+    title: str
+    names: tuple[str, ...]
+    inputs: Callable[[int], Inputs]
+    points: int  # by default
+    quick: int  # for a quick run
+    kind: str = "values"  # or "grid", with labels; "peak"; "limit", of the machine
+    given: bool = True  # the caller gives the memory for the answer
+    every_core: bool = False  # measured on all cores too
+
+    @property
+    def is_of_points(self) -> bool:
+        """Whether it can be had at any number of points."""
+        return self.inputs in (_random, _concentric)
+
+
+def _drawn(names: tuple[str, ...], count: int) -> dict[str, Array]:
+    rng = np.random.default_rng(1)
+    return {name: rng.uniform(*RANGES[name], count) for name in names}
+
+
+def _random(count: int) -> Inputs:
+    return Inputs(_drawn(PARAMETERS, count), dict.fromkeys(PARAMETERS, 0), {"omega0": OMEGA0})
+
+
+def _concentric(count: int) -> Inputs:
+    names = ("theta", "AB", "BC")
+    return Inputs(_drawn(names, count), dict.fromkeys(names, 0), {"ec": 0.0, "omega0": OMEGA0})
+
+
+def _angles() -> Array:
+    return np.linspace(0.0, 2.0 * np.pi, ANGLES)
+
+
+def _sweep(count: int) -> Inputs:
+    """One mechanism through one turn."""
+    theta = np.linspace(0.0, 2.0 * np.pi, count)
+    return Inputs({"theta": theta}, {"theta": 0}, {"ec": 0.01, "AB": 0.125, "BC": 0.35, "omega0": OMEGA0})
+
+
+def _sweeps(count: int) -> Inputs:
+    """So many points: mechanisms of their own, each through the same turn."""
+    designs = _drawn(PARAMETERS[1:], max(1, count // ANGLES))
+    axis = {**dict.fromkeys(designs, 0), "theta": 1}
+    return Inputs({**designs, "theta": _angles()}, axis, {"omega0": OMEGA0})
+
+
+def _grid(count: int) -> Inputs:
+    """720 x 32 x 16 x 16, or fewer angles and fewer mechanisms."""
+    share = (count / (ANGLES * 32 * 16 * 16)) ** 0.25
+    sizes = {n: max(2, round(size * share)) for n, size in zip(PARAMETERS, (ANGLES, 32, 16, 16), strict=True)}
+    ends = {**RANGES, "theta": (0.0, 2.0 * np.pi)}
+    columns = {name: np.linspace(*ends[name], size) for name, size in sizes.items()}
+    return Inputs(columns, {name: k for k, name in enumerate(PARAMETERS)}, {"omega0": OMEGA0})
+
+
+def _designs(count: int) -> Inputs:
+    names = PARAMETERS[1:]
+    return Inputs(_drawn(names, count), dict.fromkeys(names, 0), {"omega0": OMEGA0})
+
+
+def _registers(count: int) -> Inputs:
+    """A column that stays in the first cache."""
+    column = np.random.default_rng(1).uniform(0.5, 2.0, min(count, 1024))
+    return Inputs({"theta": column}, {"theta": 0}, {})
+
+
+def swept(inputs: Inputs, theta_first: bool) -> Inputs:
+    """What a dense grid of 720 angles makes of designs: another axis, before or after theirs."""
+    axis = {**dict.fromkeys(inputs.columns, int(theta_first)), "theta": int(not theta_first)}
+    return Inputs({**inputs.columns, "theta": _angles()}, axis, inputs.scalars)
+
+
+def largest(values: Array, points: Inputs) -> list[Array]:
+    """The largest magnitude of each row of a dense grid, and its angle."""
+    magnitude = np.abs(values)
+    where = magnitude.argmax(axis=1)
+    return [np.take_along_axis(magnitude, where[:, None], 1)[:, 0], points.columns["theta"][where]]
+
+
+GRID = ANGLES * 32 * 16 * 16
+WORKS = (
+    Work("point", "V_C, a_C at random points", KINEMATICS, _random, MILLION, 40_000, every_core=True),
+    Work("first", "the same with 8 first sensitivities", (*KINEMATICS, *FIRST), _random, MILLION, 20_000,
+         every_core=True),
+    Work("second", "the same with 20 second sensitivities too", (*KINEMATICS, *FIRST, *SECOND), _random,
+         MILLION // 4, 10_000),
+    Work("audited", "V_C, a_C, a_C_wrt_ec at random points", (*KINEMATICS, "a_C_wrt_ec"), _random, MILLION,
+         20_000),
+    Work("concentric", "V_C alone, concentric (ec = 0)", ("V_C",), _concentric, MILLION, 40_000),
+    Work("sweep", "V_C, a_C of one mechanism at 720 angles", KINEMATICS, _sweep, ANGLES, ANGLES),
+    Work("sweeps", "V_C, a_C of 2,048 mechanisms at 720 angles", KINEMATICS, _sweeps, 2048 * ANGLES,
+         32 * ANGLES),
+    Work("grid", "a_C on a grid of 720 x 32 x 16 x 16, labelled and allocated", ("a_C",), _grid, GRID, 60_000,
+         kind="grid", given=False, every_core=True),
+    Work("grid_out", "the same grid into memory of the caller", ("a_C",), _grid, GRID, 60_000, kind="grid",
+         every_core=True),
+    Work("peak", "peak of a_C over theta for 8,192 designs, refined (others: the best of 720 angles)", ("a_C",),
+         _designs, 8192, 64, kind="peak", given=False),
+)  # fmt: skip
+LIMITS = tuple(
+    Work(name, title, (name,), _registers, 1024, 1024, kind="limit")
+    for name, title in (("sqrt", "a square root"), ("divide", "a division"), ("sincos", "sine and cosine"))
+)
+BY_KEY = {work.key: work for work in (*WORKS, *LIMITS)}
