@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .work import BY_KEY, WORKS
+from .work import BRIEF, BY_KEY, WORKS
 
 if TYPE_CHECKING:
     from .measure import Data
@@ -15,9 +15,14 @@ RESULTS = Path(__file__).parent / "results" / "measured.json"
 README = ROOT / "README.md"
 DOCS = ROOT / "docs"
 PAGE = DOCS / "benchmarks.md"
+DESCRIPTION = """\
+desaxe beside NumPy, numba, numexpr, JAX, CasADi, heyoka and C at the same works, on one core and on all:
+time as a multiple of desaxe's, error against the truth. The peers come with the extra `peers`, C with gcc;
+whoever is not installed is left out.
+"""
 EPILOG = """\
 examples:
-  python -m benchmarks --quick                 everything once, small, in a minute
+  python -m benchmarks --quick                 a look at everyone, in a minute
   python -m benchmarks --only point --only grid
   python -m benchmarks --write                 the committed figures afresh: results, page, pictures, README
 """
@@ -37,9 +42,7 @@ def main() -> None:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks",
-        description="desaxe beside NumPy, numba, numexpr, JAX, CasADi, heyoka and C at the same works on one core "
-        "(and on all): time as a multiple of desaxe's, error against the truth. Peers come with the extra `peers`; "
-        "whoever is not installed is left out.",
+        description=DESCRIPTION,
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -48,7 +51,7 @@ def _parser() -> argparse.ArgumentParser:
         "--only", action="append", choices=keys, metavar="WORK", help="this work alone; repeatable"
     )
     parser.add_argument(
-        "--quick", action="store_true", help="small works, few rounds, no cold starts: a minute"
+        "--quick", action="store_true", help="five small works, few rounds, no cold starts: a minute"
     )
     parser.add_argument("--points", type=_positive, metavar="N", help="points of the works at random points")
     parser.add_argument("--rounds", type=_positive, metavar="N", help="rounds of each work (9; quick: 2)")
@@ -83,7 +86,7 @@ def _listed() -> str:
 
 def _measure(options: argparse.Namespace) -> None:
     try:
-        from .measure import BRIEF, FULL, measure
+        from .measure import FULL, QUICK, measure
     except ModuleNotFoundError as missing:
         raise SystemExit(f"the benchmarks need {missing.name}: python -m pip install -e '.[dev]'") from None
     from desaxe._scene.progress import progress_bar
@@ -93,9 +96,9 @@ def _measure(options: argparse.Namespace) -> None:
     partly = options.only or options.quick or options.points
     if options.write and partly:
         raise SystemExit("--write stores a whole run: without --only, --quick and --points")
-    effort = BRIEF if options.quick else FULL
+    effort = QUICK if options.quick else FULL
     effort = effort._replace(points=options.points, rounds=options.rounds or effort.rounds)
-    works = [BY_KEY[key] for key in options.only] if options.only else WORKS
+    works = [BY_KEY[key] for key in options.only or ()] or (BRIEF if options.quick else WORKS)
     with progress_bar() as watch:
         data = measure(works, effort, watch)
     print(terminal(data))

@@ -1,4 +1,4 @@
-"""Everyone's errors at the same points, judged by the audit: `desaxe.audit.errors` against `desaxe.audit.truth`.
+"""Everyone's errors at the same points, judged by the audit: by its `errors` against its `truth`.
 
 The points are generic ones and ones next to a change point, at the speed that the works have.
 """

@@ -15,13 +15,13 @@ from desaxe._program import Form
 from desaxe._scene.progress import Progress, Steps
 from desaxe.compiler.cost import cost_of
 
+from . import growth
 from .contenders import CONTENDERS, LIMITS, MACHINE
 from .errors import FAMILIES, cases, errors
-from .growth import QUICK, SIZES, growth
 from .race import Found, race, racers
 from .starts import starts
+from .work import BRIEF, WORKS, Work
 from .work import LIMITS as MACHINE_WORKS
-from .work import WORKS, Work
 
 PACKAGES = ("desaxe", "numpy", "numba", "llvmlite", "sympy", "numexpr", "jax", "casadi", "heyoka")
 Data = dict[str, Any]
@@ -43,12 +43,12 @@ class Effort(NamedTuple):
 
 
 FULL = Effort(quick=False, rounds=9)
-BRIEF = Effort(quick=True, rounds=2, judged=10)
+QUICK = Effort(quick=True, rounds=2, judged=10)
 
 
 def measure(works: Sequence[Work], effort: Effort, watch: Progress | None = None) -> Data:
     """Race everyone at these works; all else (cores, growth, starts) belongs to a run of all works."""
-    whole = len(works) == len(WORKS)
+    whole = len(works) == len(BRIEF if effort.quick else WORKS)
     here, cores = [one for one in CONTENDERS if one.is_here], _cores()
     several = [work for work in works if work.every_core and len(cores) > 1 and not effort.quick]
     steps = Steps(len(works) + len(several) + 3 * whole + 2, watch)
@@ -80,7 +80,9 @@ def measure(works: Sequence[Work], effort: Effort, watch: Progress | None = None
             }
             if whole:
                 steps.next("how the time grows")
-                data["growth"] = growth(who, QUICK if effort.quick else SIZES, effort.rounds)
+                data["growth"] = growth.growth(
+                    who, growth.QUICK if effort.quick else growth.SIZES, effort.rounds
+                )
             limits[LIMITS].stop()
         if several:
             with racers([*here, MACHINE], cores) as who:

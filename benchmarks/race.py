@@ -1,4 +1,4 @@
-"""Contenders in turns: each in its own process, one at a time, round by round, so that noise meets all alike."""
+"""Contenders in turns, each in its own process, one at a time: so that noise meets all of them alike."""
 
 import random
 from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -22,18 +22,22 @@ SHOWN = {  # in README: the work and its column
     "peak": "8,192 peaks",
 }
 READING = f"""\
-All times are multiples of what `accuracy="standard"` takes at the same work in the same run: 5 means five times
-as long as desaxe. Every contender has a process of its own on the same core (affinity set); they take turns, one
-at a time, and each time is the best round. Compilation is not counted in these, it has a table of its own.
+All times are multiples of what `accuracy="standard"` takes at the same work in the same run: 5 means five
+times as long as desaxe. Every contender has a process of its own on the same core (affinity set); they take
+turns, one at a time, and each time is the best round. Compilation is not in these times: it has a table.
 
-Everyone but desaxe computes the textbook's closed form (`desaxe.equation`) at constant speed, as its own users
-would run it well: numbers are put in before compiling, inputs lie as it wants them, answers go into memory that is
-there where it can write into such. heyoka derives its own sensitivities, which is faster than SymPy's
-code; on grids and sweeps heyoka and CasADi get blocks of 8,192 points. C is a nest of loops
-with each subexpression in the outermost loop that knows its inputs, from `gcc -O3 -march=native`; with `-ffast-math` its sines
-are in loops of their own, which gcc vectorises. On the labelled grid the others give plain arrays, without labels and status.
-Next to peaks, refined by desaxe with their gradient, the others take the best of 720 angles.
-`{LIMITS}` fills the memory of the answer and computes nothing.
+Everyone but desaxe computes the textbook's closed form (`desaxe.equation`) at constant speed, as its own
+users would run it well: numbers are put in before compiling, inputs lie as it wants them, and answers go into
+memory that is there already where it can write into such.
+
+* heyoka derives its own sensitivities (`diff_tensors`), faster ones than SymPy's; on grids, sweeps and peaks
+  it and CasADi get blocks of 8,192 points.
+* C is a nest of loops from SymPy's printer with each shared subexpression in the outermost loop that knows
+  its inputs, one call of `sincos`, no call of `pow`, by `gcc -O3 -march=native`. With `-ffast-math` its sines
+  have loops of their own over strips, which gcc vectorises (`libmvec`).
+* On the labelled grid the others give plain arrays; desaxe gives an xarray.Dataset with status and margin.
+* Of a peak the others take the best of 720 angles; desaxe refines it, with its gradient.
+* `{LIMITS}` fills the memory of the answer and computes nothing.
 """
 
 
@@ -148,8 +152,9 @@ def _errors(data: Data) -> str:
     ]
     return (
         f"{table(head, rows)}\n\n"
-        "Of V_C, a_C and a_C_wrt_ec, as a multiple of what the inputs' last digits excuse: 8 ulp x (1 + the sum of\n"
-        "the condition numbers), against the loop closure in ball arithmetic. `none`: no digit is right somewhere."
+        "Of V_C, a_C and a_C_wrt_ec, as a multiple of what the inputs' last digits excuse, 8 ulp x (1 + the\n"
+        "sum of the condition numbers), against the loop closure in ball arithmetic. `none`: somewhere no\n"
+        "digit is right."
     )
 
 
@@ -221,9 +226,9 @@ def _starts(data: Data) -> str:
         rows.append([name, *cells])
     return (
         f"{table(head, rows)}\n\n"
-        "Compilation with the first call, as a multiple of desaxe standard's; starts, from a new process to 10,000\n"
-        "points, as multiples of desaxe standard's second start, which finds its kernel on disk. Memory: megabytes\n"
-        "that a call needs beyond its inputs and the memory given for its answers."
+        "Compilation with the first call, as a multiple of desaxe standard's. Starts, from a new process to\n"
+        "10,000 points, as multiples of desaxe standard's second start, which finds its kernel on disk.\n"
+        "Memory: megabytes that a call needs beyond its inputs and the memory given for its answers."
     )
 
 
@@ -238,8 +243,8 @@ def _megabytes(found: Mapping[str, Any]) -> str:
 
 def _limits(data: Data) -> str:
     each = {key: seconds / (1024 * TURNS) for key, seconds in data["limits"].items()}
-    known = [(key, data["one core"][key].get(STANDARD, {}).get("seconds")) for key in ("concentric", "point", "first")
-             if key in data["one core"]]  # fmt: skip
+    raced = {key: data["one core"].get(key, {}) for key in ("concentric", "point", "first")}
+    known = [(key, found.get(STANDARD, {}).get("seconds")) for key, found in raced.items()]
     rows = [
         [BY_KEY[limit].title, *(digits(s / data["points"][key] / each[limit]) for key, s in known if s)]
         for limit in each

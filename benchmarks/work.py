@@ -145,7 +145,7 @@ WORKS = (
          kind="grid", given=False, every_core=True),
     Work("grid_out", "the same grid into memory of the caller", ("a_C",), _grid, GRID, 60_000, kind="grid",
          every_core=True),
-    Work("peak", "peak of a_C over theta for 8,192 designs, refined (others: the best of 720 angles)", ("a_C",),
+    Work("peak", "peak of a_C over theta for 8,192 designs (others: the best of 720 angles)", ("a_C",),
          _designs, 8192, 64, kind="peak", given=False),
 )  # fmt: skip
 LIMITS = tuple(
@@ -153,3 +153,4 @@ LIMITS = tuple(
     for name, title in (("sqrt", "a square root"), ("divide", "a division"), ("sincos", "sine and cosine"))
 )
 BY_KEY = {work.key: work for work in (*WORKS, *LIMITS)}
+BRIEF = tuple(BY_KEY[key] for key in ("point", "first", "concentric", "grid_out", "peak"))  # of a quick run

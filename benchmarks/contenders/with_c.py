@@ -1,8 +1,8 @@
 """C from SymPy's printer, as its users write it: a nest of loops, compiled by gcc and called by ctypes.
 
-Common subexpressions are shared, each computed in the outermost loop that knows its inputs; powers of roots
-are products, never calls of `pow`. Sine and cosine come from one call of `sincos`; with fast math they have loops
-of their own over strips, which gcc vectorises with the C library's `libmvec`.
+Common subexpressions are shared, each computed in the outermost loop that knows its inputs; powers of
+roots are products, never calls of `pow`. Sine and cosine come from one call of `sincos`; with fast math
+they have loops of their own over strips, which gcc vectorises with the C library's `libmvec`.
 """
 
 import ctypes

@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from ..formulas import lambdified
 from ..work import Array, Inputs, Work, largest, swept
 from . import Run
@@ -15,7 +17,8 @@ def prepare(work: Work, inputs: Inputs, out: Sequence[Array] | None, threads: in
     columns = points.broadcast().values()
 
     def values() -> Sequence[Array]:
-        answers: Sequence[Array] = function(*columns)
+        with np.errstate(all="ignore"):
+            answers: Sequence[Array] = function(*columns)
         return answers
 
     def peak() -> Sequence[Array]:

@@ -1,0 +1,48 @@
+"""The works: their shapes, and what the blocks of a broadcast make of them."""
+
+import numpy as np
+import pytest
+
+from benchmarks.blocks import POINTS, block_size, filled, peaks
+from benchmarks.work import BY_KEY, GRID, WORKS, swept
+
+
+def test_the_grid_is_the_one_that_is_stated():
+    assert BY_KEY["grid"].inputs(GRID).shape == (720, 32, 16, 16)
+
+
+@pytest.mark.parametrize("work", WORKS, ids=lambda work: work.key)
+def test_inputs_broadcast_to_the_shape(work):
+    inputs = work.inputs(work.quick)
+    assert np.broadcast_shapes(*(column.shape for column in inputs.broadcast().values())) == inputs.shape
+    assert {*inputs.columns, *inputs.scalars} >= {"theta", "AB", "BC"} - (
+        {"theta"} if work.kind == "peak" else set()
+    )
+
+
+@pytest.mark.parametrize("key", ["point", "sweeps", "grid", "peak"])
+def test_blocks_see_every_point_once(key):
+    inputs = BY_KEY[key].inputs(30_000)
+    inputs = swept(inputs, theta_first=False) if key == "peak" else inputs
+
+    def added(rows, found):
+        found[0] = rows.sum(axis=0)
+
+    (total,) = filled(inputs, added, [np.zeros(inputs.shape)])
+    wanted = sum(np.broadcast_to(column, inputs.shape) for column in inputs.broadcast().values())
+    np.testing.assert_allclose(total, wanted, rtol=1e-14)
+    assert block_size(inputs) <= POINTS
+
+
+def test_peaks_of_blocks_are_those_of_the_whole():
+    inputs = swept(BY_KEY["peak"].inputs(100), theta_first=False)
+    columns = inputs.broadcast()
+
+    def wave(rows, found):
+        ec, AB, _, theta = rows
+        found[0] = AB * np.cos(theta) + ec
+
+    values, angles = peaks(inputs, wave)
+    dense = columns["AB"] * np.cos(columns["theta"]) + columns["ec"]
+    np.testing.assert_array_equal(values, np.abs(dense).max(axis=1))
+    np.testing.assert_array_equal(angles, columns["theta"][np.abs(dense).argmax(axis=1)])
