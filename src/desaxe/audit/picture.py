@@ -69,6 +69,7 @@ def draw(found: Audit) -> "Figure":
     marks = [
         figure.axes[0].plot([], [], MARKERS[kind], color=COLOURS[kind], markersize=7, label=text)[0]
         for kind, text in KINDS.items()
+        if any(one.kind == kind for one in found.who)
     ]
     figure.axes[0].legend(handles=marks, loc="upper right", bbox_to_anchor=(1.0, 0.78), frameon=False)
     figure.draw_without_rendering()  # now it is known how large the panels are
