@@ -10,7 +10,7 @@ from .child import serve
 from .contenders import Contender
 from .work import Work
 
-PATIENCE = 4.0  # seconds for one contender at one work: the slow ones have fewer rounds
+PATIENCE = 3.0  # seconds for one contender at one work: the slow ones have fewer rounds
 FEWEST = 2  # rounds all the same
 
 

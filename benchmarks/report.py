@@ -24,7 +24,8 @@ SHOWN = {  # in README: the work and its column
 READING = f"""\
 All times are multiples of what `accuracy="standard"` takes at the same work in the same run: 5 means five
 times as long as desaxe. Every contender has a process of its own on the same core (affinity set); they take
-turns, one at a time, and each time is the best round. Compilation is not in these times: it has a table.
+turns, one at a time, and each time is the best round: the processor's time on one core, the clock's on all.
+Compilation is not in these times: it has a table of its own.
 
 Everyone but desaxe computes the textbook's closed form (`desaxe.equation`) at constant speed, as its own
 users would run it well: numbers are put in before compiling, inputs lie as it wants them, and answers go into
