@@ -1,6 +1,6 @@
 """Blocks for those who want every input as a column of its own: each block is written out, then computed.
 
-A block has so many points that its columns stay in the second cache.
+A block is as large as suits heyoka best: it costs a call, and its columns should stay in the caches.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -9,7 +9,7 @@ import numpy as np
 
 from .work import Array, Inputs, largest
 
-POINTS = 8192
+POINTS = 131_072
 Answer = Callable[[Array, Array], None]  # rows of inputs, rows for outputs
 
 

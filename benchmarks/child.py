@@ -22,7 +22,12 @@ THREADS = ("OMP_NUM_THREADS", "NUMEXPR_NUM_THREADS", "NUMEXPR_MAX_THREADS", "NUM
 
 
 def serve(connection: Connection, name: str, cores: Sequence[int]) -> None:
-    """Answer until there is nothing more to do; an exception is answered as its text."""
+    """Answer until there is nothing more to do, or nobody who asks; an exception is answered as its text."""
+    with suppress(EOFError):
+        _serve(connection, name, cores)
+
+
+def _serve(connection: Connection, name: str, cores: Sequence[int]) -> None:
     keep_to(cores)
     from .contenders import BY_NAME
 

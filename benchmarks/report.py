@@ -32,7 +32,7 @@ users would run it well: numbers are put in before compiling, inputs lie as it w
 memory that is there already where it can write into such.
 
 * heyoka derives its own sensitivities (`diff_tensors`), faster ones than SymPy's; on grids, sweeps and peaks
-  it and CasADi get blocks of 8,192 points.
+  it and CasADi get blocks of 131,072 points.
 * C is a nest of loops from SymPy's printer with each shared subexpression in the outermost loop that knows
   its inputs, one call of `sincos`, no call of `pow`, by `gcc -O3 -march=native`. With `-ffast-math` its sines
   have loops of their own over strips, which gcc vectorises (`libmvec`).
@@ -130,8 +130,12 @@ def _share(x: float) -> str:
 
 
 def _made(data: Data) -> str:
-    absent = f" Not installed there: {', '.join(data['absent'])}." if data["absent"] else ""
-    return f"Made by `{COMMAND}`, {data['rounds']} rounds, on\n{data['machine']}.{absent}"
+    return f"Made by `{COMMAND}`, {data['rounds']} rounds, on\n{data['machine']}{_absent(data)}."
+
+
+def _absent(data: Data) -> str:
+    """Who is left out, and what it needs."""
+    return f"\nnot installed, and left out: {', '.join(data['absent'])}" if data["absent"] else ""
 
 
 def _refusals(works: Mapping[str, Any]) -> str:
