@@ -21,6 +21,7 @@ SHOWN = {  # in README: the work and its column
     "grid_out": "grid into `out=`",
     "peak": "8,192 peaks",
 }
+QUIET = "The clock counts what else a machine does: these two tables mean something where that was nothing."
 READING = f"""\
 All times are multiples of what `accuracy="standard"` takes at the same work in the same run: 5 means five
 times as long as desaxe. Every contender has a process of its own on the same core (affinity set); they take
@@ -174,7 +175,7 @@ def _all_cores(data: Data) -> str:
     speed = table(
         ["one core's time over all cores'", *many], [[n, *(gain(k, n) for k in many)] for n in names]
     )
-    return f"{table(['', *many], [[n, *(_ratio(many[k], n) for k in many)] for n in names])}\n\n{speed}"
+    return f"{table(['', *many], [[n, *(_ratio(many[k], n) for k in many)] for n in names])}\n\n{speed}\n\n{QUIET}"
 
 
 def _operations(data: Data) -> str:
