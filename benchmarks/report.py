@@ -175,7 +175,8 @@ def _all_cores(data: Data) -> str:
     speed = table(
         ["one core's time over all cores'", *many], [[n, *(gain(k, n) for k in many)] for n in names]
     )
-    return f"{table(['', *many], [[n, *(_ratio(many[k], n) for k in many)] for n in names])}\n\n{speed}\n\n{QUIET}"
+    shares = table(["", *many], [[n, *(_ratio(many[k], n) for k in many)] for n in names])
+    return f"{shares}\n\n{speed}\n\n{QUIET}"
 
 
 def _operations(data: Data) -> str:
