@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from desaxe.compiler.passes.double_double import DoubleTrigonometry
+from desaxe.compiler.passes.double_angles import DoubleTrigonometry
 from desaxe.compiler.passes.number import number_values
 from desaxe.compiler.passes.slicing import drop_unused
 from desaxe.compiler.passes.trigonometry import Trigonometry

@@ -62,6 +62,12 @@ def define_law(sheet: Sheet) -> None:
         meaning="angular speed of the crank",
         source="A listing",
     )
+    sheet.define(
+        "inv_omega",
+        select(eq(theta, 0), 0, 1 / omega),
+        unit=Unit(0, 1, -1),
+        meaning="1 / omega, 0 at the start",
+    )
     for parameters, value in {**_omega_rates(), **_omega_second_rates()}.items():
         _define_rate(sheet, "omega", parameters, value)
     for parameters in SQUARE_RATES:
@@ -98,6 +104,20 @@ def _define_powers(sheet: Sheet) -> None:
     _define_rate(sheet, "omega_alpha", ("alpha",), select(eq(alpha, 0), omega, moving))
 
 
+def define_speed_by_alpha(sheet: Sheet, name: str, by_theta: sp.Symbol) -> None:
+    """The derivative of by_theta omega by alpha: by_theta theta/omega, of which the two ends come last.
+
+    theta/omega by itself may be too small for a double where their product with a large by_theta is not.
+    """
+    plain, unit = sheet.chain_rule(name, "alpha"), sheet.equations[name].unit
+    assert unit is not None
+    per_turn = sheet.define(f"{name}_per_theta", by_theta * symbol("inv_omega"))
+    meaning = f"derivative of {name} by alpha"
+    sheet.define(
+        f"{name}_wrt_alpha", per_turn * theta, unit=unit.over("alpha"), meaning=meaning, differentiate=plain
+    )
+
+
 def _define_rate(sheet: Sheet, name: str, parameters: tuple[str, ...], value: sp.Expr | int) -> None:
     meaning = f"derivative of {name} by {', '.join(parameters)}"
     sheet.define(sensitivity(name, *parameters), value, unit=UNITS[name].over(*parameters), meaning=meaning)
@@ -131,6 +151,8 @@ def state_sheet() -> Sheet:
     sheet.define("stalled", lt(omega2, 0), unit=NONE, meaning="never: a given speed is real")
     sheet.define("turn", select(le(0, omega), 1, -1), unit=NONE, meaning="way of turning")
     sheet.define("not_stalled", 0)
+    sheet.define("inv_omega", 0)  # where alpha does not change omega
+    sheet.define("near_start", lt(1, 0))  # never: a state does not depend on how it came about
     for parameters in (*_omega_rates(), *_omega_second_rates()):
         _define_rate(sheet, "omega", parameters, int(parameters == ("omega0",)))
     for parameters in SQUARE_RATES:

@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 from mpmath import mp, mpf
 
-from desaxe.compiler.passes.double_double import DoubleTrigonometry
+from desaxe.compiler.passes.double_angles import DoubleTrigonometry
 from desaxe.compiler.passes.trigonometry import Trigonometry
 
 TURNS = 20  # bits of the number of quarters; a part of pi/2 has the others of 53, so products are exact
@@ -24,10 +24,11 @@ SINGLE_TURNS = 10
 SINGLE_PARTS = 3
 SINGLE_TERMS = 3
 
-# For twice the digits. A coefficient whose term is below 2^-53 of the first needs no low part.
-DOUBLE_TURNS = 26
+# For twice the digits, with a third word: a term needs as many words as it is larger than 2^-130 or so.
+DOUBLE_TURNS = 30
 DOUBLE_PARTS = 5
-DOUBLE_TERMS = 13
+DOUBLE_TERMS = 17
+DOUBLE_STEPS = (2.0**-28, 2.0**-80)  # of the first term: smaller ones need two words, one word
 
 
 def trigonometry() -> Trigonometry:
@@ -54,24 +55,28 @@ def _trigonometry(turns: int, parts: int, terms: int, digits: int) -> Trigonomet
 def double_trigonometry() -> DoubleTrigonometry:
     """The constants for twice the digits: Taylor's, which are short enough."""
     with mp.workdps(100):
-        first = [(-1) ** k / mp.factorial(2 * k + 1) for k in range(1, DOUBLE_TERMS + 1)]
-        second = [(-1) ** k / mp.factorial(2 * k) for k in range(2, DOUBLE_TERMS + 2)]
+        sine = [(-1) ** k / mp.factorial(2 * k + 1) for k in range(DOUBLE_TERMS)]
+        cosine = [-((-1) ** k) / mp.factorial(2 * k + 2) for k in range(DOUBLE_TERMS)]
         return DoubleTrigonometry(
             limit=float(mp.floor(2**DOUBLE_TURNS * mp.pi / 2)),
             two_over_pi=float(2 / mp.pi),
             pi_half=_parts(mp.pi / 2, DOUBLE_TURNS, DOUBLE_PARTS),
-            sine=_in_two(first),
-            cosine=_in_two(second),
+            sine=_in_words(sine),
+            cosine=_in_words(cosine),
+            complement="eps",
+            gap="less",
         )
 
 
-def _in_two(coefficients: list[mpf]) -> tuple[tuple[float, float], ...]:
-    """High and low parts; no low part where the term is small against the first."""
+def _in_words(coefficients: list[mpf]) -> tuple[tuple[float, ...], ...]:
+    """Each coefficient in as many words as its term needs."""
     largest, found = (mp.pi / 4) ** 2, []
     for k, coefficient in enumerate(coefficients):
-        small = abs(coefficient / coefficients[0]) * largest**k < mpf(2) ** -53
-        high = float(coefficient)
-        found.append((high, 0.0 if small else float(coefficient - high)))
+        size = abs(coefficient / coefficients[0]) * largest**k
+        words: list[float] = []
+        for _ in range(1 + sum(size >= step for step in DOUBLE_STEPS)):
+            words.append(float(coefficient - sum(map(mpf, words))))
+        found.append(tuple(words))
     return tuple(found)
 
 

@@ -12,7 +12,7 @@ from .dynamics import FORCES, define_dynamics, prove, resolve_ratio
 from .folded import FOLDED_AREA, folded, folded_area, prove_folded
 from .geometry import POSITION, resolve_geometry
 from .loop import AB, BC, branch, ec, r, theta, u
-from .motion import alpha, define_law, omega, omega2, time_derivative, turn
+from .motion import alpha, define_law, define_speed_by_alpha, omega, omega2, time_derivative, turn
 from .rod import resolve_rod
 from .sheet import Sheet, symbol
 from .stable import (
@@ -50,6 +50,7 @@ from .stable import (
     where_close,
     wide_margins,
 )
+from .start import define_start
 from .units import (
     ACCELERATION,
     ANGLE,
@@ -88,6 +89,7 @@ def build_sheet() -> Sheet:
     _define_angles(sheet)
     _define_crank_motion(sheet)
     _define_slider_motion(sheet)
+    define_start(sheet)
     _define_stroke(sheet)
     _define_facts(sheet)
     define_dynamics(sheet)
@@ -228,6 +230,8 @@ def _define_slider_motion(sheet: Sheet) -> None:
     )
     for name, base, order, unit, meaning, source in rows:
         sheet.define(name, _rate(base, order), unit=unit, meaning=meaning, source=source)
+    for name, base in (("V_C", "Y"), ("omega_BC", "phi")):
+        define_speed_by_alpha(sheet, name, symbol(f"{base}_wrt_theta"))
 
 
 def _define_stroke(sheet: Sheet) -> None:

@@ -43,7 +43,7 @@ MARGIN_AREA = margin_out * (2 * BC - margin_out)
 select, lt, le, eq = (sp.Function(name) for name in ("select", "lt", "le", "eq"))
 atan2, absolute, copysign = sp.Function("atan2"), sp.Function("abs"), sp.Function("copysign")
 two_sum_error, two_product_error = sp.Function("two_sum_error"), sp.Function("two_product_error")
-rounding = sp.Function("rounding")
+rounding, finer = sp.Function("rounding"), sp.Function("finer")
 
 # Where AB + |ec| is below this share of BC, and not so many times the difference of AB and |ec|, no form
 # cancels, and the plain ones will do.

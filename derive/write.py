@@ -18,7 +18,7 @@ from desaxe.compiler.cost import cost_of
 from desaxe.compiler.emit_numba import emit_numba_with_front
 from desaxe.compiler.kernel import hoist
 from desaxe.compiler.operations import HELPERS, MATH_NAMES
-from desaxe.compiler.passes.double_double import DoubleTrigonometry
+from desaxe.compiler.passes.double_angles import DoubleTrigonometry
 from desaxe.compiler.passes.fuse import fuse_products
 from desaxe.compiler.passes.guard import guard_inputs
 from desaxe.compiler.passes.number import number_values

@@ -199,6 +199,7 @@ _LOGIC: dict[str, Callable[..., bool | None]] = {
     "and": _and,
     "or": lambda a, b: _not(_and(_not(a), _not(b))),
     "not": _not,
+    "finer": lambda a: False,
 }
 
 
@@ -225,7 +226,7 @@ _NUMBERS: dict[str, Callable[..., Any]] = {
     "copysign": lambda a, b: a if b > 0 else -a if b < 0 else a.union(-a),  # of a positive a
     "two_sum_error": lambda a, b: arb(0),  # nothing is rounded
     "two_product_error": lambda a, b: arb(0),
+    "mul_add": lambda a, b, c: _product(a, b) + c,
     "rounding": lambda a: arb(0),
-    "muladd": lambda a, b, c: a * b + c,
     "turned": _turned,
 }

@@ -3,7 +3,7 @@
 from functools import cache
 from importlib import import_module
 
-from .compiler.passes.double_double import DoubleTrigonometry
+from .compiler.passes.double_angles import DoubleTrigonometry
 from .compiler.passes.trigonometry import Trigonometry
 
 

@@ -70,6 +70,12 @@ def _mul(chain: _Chain, line: Line) -> Step:
     return "add", (chain.new("mul", chain.slope(a), b), chain.new("mul", a, chain.slope(b)))
 
 
+def _mul_add(chain: _Chain, line: Line) -> Step:
+    a, b, c = line.args
+    first = chain.new("mul_add", chain.slope(a), b, chain.slope(c))
+    return "mul_add", (a, chain.slope(b), first)
+
+
 def _div(chain: _Chain, line: Line) -> Step:
     a, b = line.args
     return "div", (chain.new("sub", chain.slope(a), chain.new("mul", line.name, chain.slope(b))), b)
@@ -108,15 +114,10 @@ def _same(chain: _Chain, line: Line) -> Step:
     return line.op, tuple(map(chain.slope, line.args))
 
 
-def _muladd(chain: _Chain, line: Line) -> Step:
-    a, b, c = line.args
-    inner = chain.new("muladd", chain.slope(a), b, chain.slope(c))
-    return "muladd", (a, chain.slope(b), inner)
-
-
 _RULES: Mapping[str, Callable[[_Chain, Line], Step]] = {
     **dict.fromkeys(("copy", "add", "sub", "neg"), _same),
     "mul": _mul,
+    "mul_add": _mul_add,
     "div": _div,
     "abs": _abs,
     "sqrt": _sqrt,
@@ -127,7 +128,6 @@ _RULES: Mapping[str, Callable[[_Chain, Line], Step]] = {
     "two_sum_error": lambda chain, line: ("copy", (0.0,)),
     "two_product_error": lambda chain, line: ("copy", (0.0,)),
     "rounding": lambda chain, line: ("copy", (0.0,)),
-    "muladd": _muladd,
     "turned": lambda chain, line: ("turned", (*map(chain.slope, line.args[:2]), line.args[2])),
     # The sign of the second is constant but for jumps; the balls know which it is.
     "copysign": lambda chain, line: ("copysign", (chain.slope(line.args[0]), line.args[1])),

@@ -122,7 +122,7 @@ def is_single(key: KernelKey) -> bool:
 
 def kernel_of(key: KernelKey) -> Kernel:
     """The loop nest of a key."""
-    program = cut(key.names, key.form, key.fixed)
+    program = cut(key.names, key.form, key.fixed, key.accuracy)
     axes = dict(key.axis_of)
     varying = [name for name in program.inputs if name in axes]
     if key.accuracy == "extended":

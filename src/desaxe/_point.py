@@ -9,7 +9,7 @@ from ._constants import double_constants
 from ._program import Form, program_of
 from .compiler.emit_python import compile_python
 from .compiler.forms import in_two_forms
-from .compiler.passes.double_double import double_digits
+from .compiler.passes.double_double import double_digits, with_finer_forms
 from .compiler.passes.pipeline import optimise
 from .compiler.passes.slicing import keep_outputs
 from .compiler.program import Line, Program, names_in, renamed
@@ -30,20 +30,22 @@ class Point(NamedTuple):
 
 
 @cache
-def cut(names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...]) -> Program:
+def cut(
+    names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...], accuracy: str = "standard"
+) -> Program:
     """The program of these names with some inputs fixed, after all passes.
 
     A value that loses what it depended on (V_C by alpha for a given state, the torque of a massless
     rod) is still NaN where the mechanism cannot be assembled, or has stalled.
     """
-    program = program_of(names, form)
+    program = _finer(program_of(names, form), accuracy)
     result = optimise(program, dict(fixed))[0]
     before, after = _needs(program), _needs(result)
     kept = {"D"} if dict(fixed).get("alpha") == 0.0 else set(KEPT)  # a crank at constant speed never stalls
     lost = {name: (before[name] & kept) - after[name] for name in names}
     if not any(lost.values()):
         return result
-    wide = program_of((*names, *KEPT.values()), form)
+    wide = _finer(program_of((*names, *KEPT.values()), form), accuracy)
     wide = renamed(wide, {name: f"{name}_alone" for name in names if lost[name]})
     lines = list(wide.lines)
     for name in names:
@@ -64,6 +66,10 @@ def plain_form(names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float
     return None if same else plain
 
 
+def _finer(program: Program, accuracy: str) -> Program:
+    return with_finer_forms(program) if accuracy == "extended" else program
+
+
 def _needs(program: Program) -> dict[str, frozenset[str]]:
     """Which of the names in KEPT each line depends on."""
     needs: dict[str, frozenset[str]] = dict.fromkeys(program.inputs, frozenset())
@@ -78,7 +84,7 @@ def point_of(
     names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...], accuracy: str = "standard"
 ) -> Point:
     """The function that computes them."""
-    program = cut(names, form, fixed)
+    program = cut(names, form, fixed, accuracy)
     if accuracy != "extended":
         return Point(_by_room(names, form, fixed), program.inputs)
     program = double_digits(program, double_constants())

@@ -35,8 +35,8 @@ TEXT = '''def coverage(x, y, z):
     signed = copysign(x, y - z) * copysign(2.0, z)
     lost = x + y + two_sum_error(x, y) * 0.5
     lost_too = x * y + two_product_error(x, y) * 0.5
+    added = mul_add(x + y, -z, x - y) + mul_add(x, y, mul_add(-x, y, z))
     lost_at_most = x + y + rounding(x) * 0.5
-    sum_of_product = muladd(x, y, z) - x * muladd(y, z, x)
     quarter_turns = turned(x, y, floor(z)) + turned(x, y, -1.0)
     least = x if x < y else y
     chosen = x if x < y else (y if y <= z else z)
@@ -48,6 +48,7 @@ TEXT = '''def coverage(x, y, z):
     neither = 1.0 if not (x < y or y < z) else 0.0
     negated = 1.0 if (not x < y) and not y <= z else 0.0
     equal = 1.0 if x == y or x + y == z else 0.0
+    plainer = x - y if finer(x < y) else y - z
     state = 3 if x < y else (1 if y < z else 0)
     missing = nan if x < -1000.0 else x
     return {outputs}

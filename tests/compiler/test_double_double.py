@@ -12,6 +12,7 @@ from desaxe._constants import double_constants
 from desaxe.audit.truth import ulp_error
 from desaxe.compiler.passes import double_double
 from desaxe.compiler.passes.double_double import double_digits
+from desaxe.compiler.passes.fold import fold_constants
 from desaxe.compiler.program import Line, Program, validate
 from tests.compiler.coverage_set import POINTS, coverage
 from tests.compiler.programs import in_doubles
@@ -57,6 +58,7 @@ OPERATIONS = {
     "sub that cancels": ("sub", ("third", "root_x")),
     "mul": ("mul", ("third", "difference")),
     "mul by a double": ("mul", ("x", "third")),
+    "mul_add": ("mul_add", ("third", "product", "x")),
     "mul by a power of 2": ("mul", (-0.25, "third")),
     "div": ("div", ("third", "difference")),
     "div of a double": ("div", ("x", "third")),
@@ -142,6 +144,67 @@ def test_what_is_a_double_stays_one():
     lines = (Line("twice", "mul", (2.0, "x")), Line("size", "abs", ("twice",)), Line("r", "neg", ("size",)))
     wide = double_digits(Program(("x",), lines, ("r",), {}), double_constants())
     assert [line.op for line in wide.lines] == ["mul", "abs", "neg"]
+
+
+SINE = [Line("sine", "sin", ("x",)), Line("by", "mul", ("a", "sine"))]
+COMPLEMENT = [
+    *SINE[:1],
+    *(Line("cosine", "cos", ("x",)), Line("square", "mul", ("cosine", "cosine"))),
+    *(Line("size", "abs", ("sine",)), Line("whole", "add", ("size", 1.0))),
+    *(Line("eps", "div", ("square", "whole")), Line("by", "mul", ("a", "eps"))),
+]
+GAP = [Line("near", "sub", ("y", "z")), Line("less", "sub", ("near", "by"))]
+
+
+@pytest.mark.parametrize("terms", [SINE, COMPLEMENT])
+def test_a_gap_keeps_twice_the_digits_where_all_but_the_last_bits_cancel(terms):
+    """(y - z) - a sin(x), with y - z so near to a sin(x) that two words of either have nothing left."""
+    rng = random.Random("gap")
+    for _ in range(100):
+        point = {"x": rng.uniform(-7, 7), "a": rng.uniform(0.1, 50.0), "y": 0.0, "z": 0.0}
+        for cut in (53, 80, 105):
+            with mpmath.workdps(90):
+                product = exactly(terms, point)
+                point["y"] = float(product)
+                rest = mpmath.ldexp(mpmath.floor(mpmath.ldexp(point["y"] - product, cut)), -cut)
+                point["z"] = float(rest)
+                exact = exactly([*terms, *GAP], point)
+                lost = abs(in_pairs([*terms, *GAP], point) - exact)
+                assert lost <= abs(product) * 2.0**-126 + abs(exact) * 2.0**-100, point
+
+
+def test_other_differences_keep_two_words():
+    """The third word is for the gap alone: any other name costs, and keeps, no more than a pair."""
+    plain = [*SINE, *GAP[:1], GAP[1]._replace(name="other")]
+    lines = [*SINE, *GAP]
+    made = [
+        double_digits(Program(("x", "a", "y", "z"), tuple(some), (some[-1].name,), {}), double_constants())
+        for some in (plain, lines)
+    ]
+    assert len(made[0].lines) < len(made[1].lines)
+
+
+def test_finer_forms_are_taken_before_folding():
+    lines = (
+        Line("less", "lt", ("x", "y"), "bool"),
+        Line("fine", "finer", ("less",), "bool"),
+        Line("r", "select", ("fine", "x", "y")),
+    )
+    program = Program(("x", "y"), lines, ("r",), {})
+    fine, plain = double_double.with_finer_forms(program), fold_constants(program)
+    for x, y in ((1.0, 2.0), (2.0, 1.0)):
+        assert in_doubles(fine, {"x": x, "y": y})["r"] == min(x, y)
+        assert in_doubles(plain, {"x": x, "y": y})["r"] == y
+
+
+def test_a_sign_costs_no_rounding():
+    lines = (
+        Line("sign", "copysign", (1.0, "y")),
+        Line("turned", "select", (True, "sign", -1.0)),
+        Line("r", "mul", ("turned", "x")),
+    )
+    wide = double_digits(Program(("x", "y"), lines, ("r",), {}), double_constants())
+    assert [line.op for line in wide.lines] == ["copysign", "mul"]
 
 
 def test_an_infeasible_point_stays_nan():

@@ -33,6 +33,10 @@ FOLDED = [
     (("mul", "x", 0.0), ("copy", 0.0)),
     (("mul", "x", 1.0), ("copy", "x")),
     (("mul", -1.0, "x"), ("neg", "x")),
+    (("mul_add", "x", 0.0, "y"), ("copy", "y")),
+    (("mul_add", "x", "y", 0.0), ("mul", "x", "y")),
+    (("mul_add", "x", 1.0, 0.0), ("copy", "x")),
+    (("finer", LESS), ("copy", False)),
     (("div", "x", 1.0), ("copy", "x")),
     (("div", 0.0, "x"), ("copy", 0.0)),
     (("two_sum_error", "x", 0.0), ("copy", 0.0)),
@@ -50,6 +54,7 @@ KEPT = [
     ("add", "x", 1.0),
     ("sub", 1.0, "x"),
     ("mul", "x", 2.0),
+    ("mul_add", "x", 2.0, "y"),
     ("div", 1.0, "x"),
     ("mul", math.nan, "x"),
     ("select", LESS, "x", "y"),
@@ -74,7 +79,7 @@ def test_what_is_not_neutral_stays(nested):
 
 @pytest.mark.parametrize("op", [op for op, row in OPERATIONS.items() if set(row.signature) == {"f"}])
 def test_constants_are_computed_as_they_would_be(op):
-    args = (0.7, 1.3, 2.0)[: OPERATIONS[op].arity]
+    args = (0.7, 1.3, -0.2)[: OPERATIONS[op].arity]
     folded = only_line(fold_constants(program_of_nested((op, *args))))
     assert folded == ("copy", in_doubles(program_of_nested((op, *args)), {"x": 0, "y": 0, "z": 0})["out"])
 

@@ -145,6 +145,16 @@ def test_units_leave_no_trace(family, unit):
         }
 
 
+@pytest.mark.parametrize("rate", [-400, 400])
+def test_units_of_time_and_tiny_angles(rate):
+    """theta/omega may be too small for a double where the derivative of V_C by alpha is not."""
+    names = ["V_C_wrt_alpha", "omega_BC_wrt_alpha"]
+    for at in points("tiny_angle", 60, seed=5):
+        scaled = rescaled(at, rate, rate)
+        values = dx.evaluate(names, **scaled)
+        assert [name for name in names if not is_kept(name, values[name], scaled)] == [], scaled
+
+
 ODD = (
     0.0,
     -0.0,

@@ -90,8 +90,8 @@ _IEEE: dict[str, Any] = {
     "copysign": math.copysign,
     "two_sum_error": _two_sum_error,
     "two_product_error": _two_product_error,
+    "mul_add": lambda a, b, c: a * b + c,
     "rounding": lambda a: 2.0**-51 * math.fabs(a),
-    "muladd": lambda a, b, c: a * b + c,
     "turned": _turned,
     "lt": lambda a, b: a < b,
     "le": lambda a, b: a <= b,
@@ -99,5 +99,6 @@ _IEEE: dict[str, Any] = {
     "and": lambda a, b: a and b,
     "or": lambda a, b: a or b,
     "not": lambda a: not a,
+    "finer": lambda a: False,
     "select": lambda c, a, b: a if c else b,
 }

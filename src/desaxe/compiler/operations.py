@@ -5,7 +5,8 @@ costs and where it is undefined. A new operation, or a new language, is a change
 
 `exact` is the meaning over the real numbers, computed by a namespace of high-precision functions
 (``mpmath.mp`` in the tests); the error terms of two-sum and two-product are exactly 0 there,
-and so is `rounding`, a bound of such terms.
+and so is `rounding`, a bound of such terms. `finer` guards a form of the same value that is of use to
+`double_digits` alone, which makes it its argument; everywhere else it is false.
 `python` and `numba` are templates over the argument texts. Plain Python raises where IEEE 754
 arithmetic answers inf or NaN, so its division and square root are guarded in the template.
 `precedence` is that of the spelling in the readable text form; calls bind tightest.
@@ -76,8 +77,8 @@ OPERATIONS: dict[str, Operation] = dict(
             "two_product_error", "fff", "two_product_error({0}, {1})", CALL, 1, lambda mp, a, b: a * 0,
             commutes=True,
         ),
+        _row("mul_add", "ffff", "mul_add({0}, {1}, {2})", CALL, 1, lambda mp, a, b, c: a * b + c),
         _row("rounding", "ff", "rounding({0})", CALL, 1.5, lambda mp, a: a * 0),
-        _row("muladd", "ffff", "muladd({0}, {1}, {2})", CALL, 1, lambda mp, a, b, c: a * b + c),
         _row(
             "turned", "ffff", "turned({0}, {1}, {2})", CALL, 4,
             lambda mp, sine, cosine, quarters: (sine, cosine, -sine, -cosine)[int(quarters) % 4],
@@ -88,6 +89,7 @@ OPERATIONS: dict[str, Operation] = dict(
         _row("and", "bbb", "{0} and {1}", 4, 0.5, lambda mp, a, b: a and b, numba="{0} & {1}"),
         _row("or", "bbb", "{0} or {1}", 3, 0.5, lambda mp, a, b: a or b, numba="{0} | {1}"),
         _row("not", "bb", "not {0}", 5, 0.5, lambda mp, a: not a),
+        _row("finer", "bb", "finer({0})", CALL, 0, lambda mp, a: False),
         _row("select", "bTTT", "{1} if {0} else {2}", 1, 1, lambda mp, c, a, b: a if c else b),
     ]
 )  # fmt: skip
@@ -112,13 +114,17 @@ HELPERS = {
     b_low = b - b_high
     return a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low) + 0.0
 ''',
+    "mul_add": '''def mul_add(a, b, c):
+    """a * b + c, rounded as often as the machine likes."""
+    return a * b + c
+''',
+    "finer": '''def finer(a):
+    """Whether to take a form that twice the digits are needed to tell from the plain one: not here."""
+    return False
+''',
     "rounding": '''def rounding(a):
     """What rounding may take from a number of this size in four operations."""
     return 4.440892098500626e-16 * fabs(a)
-''',
-    "muladd": '''def muladd(a, b, c):
-    """a * b + c."""
-    return a * b + c
 ''',
     "turned": '''def turned(sine, cosine, quarters):
     """The sine of an angle and a whole number of quarter turns, from the angle's sine and cosine."""
@@ -151,8 +157,8 @@ HELPERS = {
 # Helpers that numba spells in its own way: with a fused multiply-add, which keeps the whole product, where
 # there is one, and with the bits of a number, in which a sign costs no comparison.
 NUMBA_HELPERS = {
-    "muladd": '''@intrinsic
-def muladd(typingctx, a, b, c):
+    "mul_add": '''@intrinsic
+def mul_add(typingctx, a, b, c):
     """a * b + c, rounded once where the machine can, else twice."""
 
     kind = max((a, b, c), key=lambda given: given.bitwidth)

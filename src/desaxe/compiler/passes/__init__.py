@@ -7,4 +7,6 @@
 `trigonometry`, `double_double`  write sine and cosine out; keep twice the digits
 `guard`      gives a bad element of an array NaN and its status
 `pipeline`   runs them in order, with a report
+
+`double_double` is made of `expansions` (sums of doubles), `pairs` and `double_angles`.
 """

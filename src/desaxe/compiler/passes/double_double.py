@@ -6,39 +6,19 @@ multiply-add) and is kept. The loop stays straight-line code without branches, s
 the plain one. Where a low part is known to be 0, as for inputs and constants, nothing is done for it.
 
 The pass keeps twice the digits of the program it is given, no more: it belongs on a program that is
-stable to begin with. Relative errors of one operation are below 2^-100, cancelling sums included.
-Source of the algorithms: Dekker 1971; Knuth; Joldes, Muller, Popescu 2017.
+stable to begin with. One difference needs more: of BC - |u|, at the last double inside a limit angle,
+half of the digits of a pair cancel. So this gap, and what it is made of, is formed in three words.
 """
 
-from collections.abc import Callable, Mapping
-from typing import NamedTuple
-
-from ..program import Argument, Line, Program
+from ..program import Argument, Line, Program, names_in
+from .double_angles import DoubleTrigonometry
+from .expansions import Pair, Words
 from .fold import fold_constants
 from .number import number_values
+from .pairs import RULES, Pairs
 from .slicing import drop_unused
 
-
-class DoubleTrigonometry(NamedTuple):
-    """Constants of sine and cosine to twice the digits, made by the derivation; high and low parts."""
-
-    limit: float  # of |angle|; beyond it the reduction is wrong
-    two_over_pi: float
-    pi_half: tuple[float, ...]
-    sine: tuple[tuple[float, float], ...]
-    cosine: tuple[tuple[float, float], ...]
-
-
-class Pair(NamedTuple):
-    """The sum of two names or constants; a low part of 0.0 is none at all."""
-
-    high: Argument
-    low: Argument = 0.0
-
-    @property
-    def single(self) -> bool:
-        """Whether the high part is all there is."""
-        return self.low == 0.0 and not isinstance(self.low, str)
+WIDE = ("copy", "add", "sub", "neg", "mul", "select")  # what three words are kept through
 
 
 def double_digits(program: Program, constants: DoubleTrigonometry) -> Program:
@@ -47,6 +27,7 @@ def double_digits(program: Program, constants: DoubleTrigonometry) -> Program:
     Precondition: |angle| <= constants.limit wherever the result matters. Effect: values that are
     finite keep about 100 bits; comparisons look at high parts; an infinity may become NaN. Error terms
     of two-sum and two-product are 0, because the sums and products themselves keep them; so is `rounding`.
+    The line constants.complement is known to be 1 - |sine|, and is taken from the angle.
     """
     writer = _Writer(program, constants)
     for line in program.lines:
@@ -55,245 +36,105 @@ def double_digits(program: Program, constants: DoubleTrigonometry) -> Program:
     return drop_unused(number_values(fold_constants(wide)))
 
 
-class _Writer:
-    """Appends lines; knows the pair of every name."""
+def with_finer_forms(program: Program) -> Program:
+    """The program with `finer(x)` as x: it takes the forms that only twice the digits need.
+
+    Precondition: not folded yet, which makes them false.
+    """
+    lines = (line._replace(op="copy") if line.op == "finer" else line for line in program.lines)
+    return program._replace(lines=tuple(lines))
+
+
+class _Writer(Pairs):
+    """Appends lines; knows the pair of every name, and the three words of what the gap is made of."""
 
     def __init__(self, program: Program, constants: DoubleTrigonometry) -> None:
-        self.constants = constants
-        self.lines: list[Line] = []
+        super().__init__(constants)
         self.pairs: dict[str, Pair] = {name: Pair(name) for name in program.inputs}
-        self.types: dict[str, str] = dict.fromkeys(program.inputs, "f64")
-        self.angles: dict[Pair, dict[str, Pair]] = {}
+        self.types |= dict.fromkeys(program.inputs, "f64")
+        self.words: dict[str, Words] = {}
+        self.wide = _made_of(program, constants.gap)
+        self.sizes: set[Argument] = set()  # what is not negative
 
     def assign(self, line: Line) -> None:
         """Write a line of the plain program; its high part gets its name."""
-        if line.type != "f64" or line.op in ("lt", "le", "eq"):
-            args = tuple(self.of(a).high if isinstance(a, str) else a for a in line.args)
-            self.lines.append(line._replace(args=args))
-            self.pairs[line.name], self.types[line.name] = Pair(line.name), line.type
+        self.types[line.name] = line.type
+        if line.type != "f64":
+            self.lines.append(self.decided(line))
+            self.pairs[line.name] = Pair(line.name)
             return
-        result = self.computed(line.op, line.args)
+        words = self.in_three_words(line)
+        if words:
+            self.words[line.name] = words
+        result = self.pair_of(line, words)
         self.lines.append(Line(line.name, "copy", (result.high,)))
-        self.types[line.name] = "f64"
-        self.pairs[line.name] = result._replace(high=line.name)
+        self.pairs[line.name] = result._replace(high=line.name) if isinstance(result.high, str) else result
+        if _is_sign(line, self.signs):
+            self.signs.add(line.name)
+        if line.op == "abs":
+            self.sizes.add(line.name)
+
+    def decided(self, line: Line) -> Line:
+        """A line that is no real number: it looks at high parts. No size is below 0."""
+        args = tuple(self.of(a).high if isinstance(a, str) else a for a in line.args)
+        if line.op == "lt" and args[0] in self.sizes and args[1] == 0.0:
+            return line._replace(op="copy", args=(False,))
+        return line._replace(args=args)
+
+    def pair_of(self, line: Line, words: Words) -> Pair:
+        """The pair of a line whose words, if it has any, are known."""
+        if words and line.name == self.constants.gap:
+            return self.after_cancelling(words)
+        if words and (line.name == self.constants.complement or line.op == "sin"):
+            return Pair(*words[:2])
+        if line.op == "cos":
+            return self.turned(self.of(line.args[0])).cos
+        if line.op in ("two_sum_error", "two_product_error", "rounding"):
+            return Pair(0.0)
+        return RULES[line.op](self, *map(self.of, line.args))
 
     def of(self, argument: Argument) -> Pair:
         """The pair of an argument; truth values and whole numbers are their own."""
         return self.pairs[argument] if isinstance(argument, str) else Pair(argument)
 
-    def line(self, op: str, *args: Argument, kind: str = "f64") -> str:
-        """One more line of doubles."""
-        name = f"_d{len(self.lines)}"
-        self.lines.append(Line(name, op, args, kind))
-        self.types[name] = kind
-        return name
+    def words_of(self, argument: Argument) -> Words:
+        """All words of an argument that there are."""
+        if isinstance(argument, str) and argument in self.words:
+            return self.words[argument]
+        pair = self.of(argument)
+        return (pair.high,) if pair.single else tuple(pair)
 
-    def computed(self, op: str, args: tuple[Argument, ...]) -> Pair:
-        """The pair of one operation."""
-        if op in ("sin", "cos"):
-            return self.turned(self.of(args[0]))[op]
-        if op in ("two_sum_error", "two_product_error", "rounding"):
-            return Pair(0.0)
-        return _RULES[op](self, *map(self.of, args))
-
-    # ---- sums ------------------------------------------------------------------------------------
-
-    def two_sum(self, a: Argument, b: Argument) -> Pair:
-        """a + b, exactly."""
-        return Pair(self.line("add", a, b), self.line("two_sum_error", a, b))
-
-    def quick(self, a: Argument, b: Argument) -> Pair:
-        """a + b, exactly, where a is the larger one."""
-        total = self.line("add", a, b)
-        return Pair(total, self.line("sub", b, self.line("sub", total, a)))
-
-    def add(self, a: Pair, b: Pair) -> Pair:
-        """a + b; what cancels loses nothing."""
-        if a.single and b.single:
-            return self.two_sum(a.high, b.high)
-        if a.single or b.single:
-            one, other = (a, b) if b.single else (b, a)
-            high, low = self.two_sum(one.high, other.high)
-            return self.quick(high, self.line("add", one.low, low))
-        sums, rest = self.two_sum(a.high, b.high), self.two_sum(a.low, b.low)
-        first = self.quick(sums.high, self.line("add", sums.low, rest.high))
-        return self.quick(first.high, self.line("add", rest.low, first.low))
-
-    def neg(self, a: Pair) -> Pair:
-        """-a."""
-        return Pair(self.line("neg", a.high), 0.0 if a.single else self.line("neg", a.low))
-
-    def sub(self, a: Pair, b: Pair) -> Pair:
-        """a - b."""
-        return self.add(a, self.neg(b))
-
-    # ---- products --------------------------------------------------------------------------------
-
-    def mul(self, a: Pair, b: Pair) -> Pair:
-        """a b."""
-        product = self.line("mul", a.high, b.high)
-        if _is_power_of_two(a) or _is_power_of_two(b):  # nothing is rounded
-            factor, other = (a, b) if _is_power_of_two(a) else (b, a)
-            return Pair(product, 0.0 if other.single else self.line("mul", factor.high, other.low))
-        error = self.line("two_product_error", a.high, b.high)
-        if a.single and b.single:
-            return Pair(product, error)
-        return self.quick(product, self.line("add", error, self.cross(a, b)))
-
-    def cross(self, a: Pair, b: Pair) -> Argument:
-        """The sum of high times low."""
-        parts = [(a.high, b.low)] * (not b.single) + [(b.high, a.low)] * (not a.single)
-        products = [self.line("mul", high, low) for high, low in parts]
-        return products[0] if len(products) == 1 else self.line("add", *products)
-
-    def div(self, a: Pair, b: Pair) -> Pair:
-        """a / b: a quotient of doubles, and what its residual adds to it."""
-        if _is_power_of_two(b):
-            return self.mul(a, Pair(1.0 / float(b.high)))
-        inverse = self.line("div", 1.0, b.high)
-        quotient = self.line("mul", a.high, inverse)
-        product = Pair(self.line("mul", quotient, b.high), self.line("two_product_error", quotient, b.high))
-        rest = self.line("sub", self.line("sub", a.high, product.high), product.low)
-        if not a.single:
-            rest = self.line("add", rest, a.low)
-        if not b.single:
-            rest = self.line("sub", rest, self.line("mul", quotient, b.low))
-        return self.quick(quotient, self.line("mul", rest, inverse))
-
-    def sqrt(self, a: Pair) -> Pair:
-        """The square root: Newton's step from that of the high part; 0 of 0."""
-        root = self.line("sqrt", a.high)
-        square = Pair(self.line("mul", root, root), self.line("two_product_error", root, root))
-        rest = self.line("sub", self.line("sub", a.high, square.high), square.low)
-        if not a.single:
-            rest = self.line("add", rest, a.low)
-        step = self.line("div", rest, self.line("mul", 2.0, root))
-        none = self.line("eq", root, 0.0, kind="bool")
-        return self.quick(root, self.line("select", none, 0.0, step))
-
-    def quarter_turned(self, sine: Pair, cosine: Pair, quarters: Pair) -> Pair:
-        """Both words turn alike; the number of quarters is whole."""
-        words = ((sine.high, cosine.high), (sine.low, cosine.low))
-        return Pair(*(self.line("turned", a, b, quarters.high) for a, b in words))
-
-    # ---- signs and choices -----------------------------------------------------------------------
-
-    def size(self, a: Pair) -> Pair:
-        """|a|."""
-        if a.single:
-            return Pair(self.line("abs", a.high))
-        below = self.line("lt", a.high, 0.0, kind="bool")
-        return self.select(Pair(below), self.neg(a), a)
-
-    def copysign(self, a: Pair, b: Pair) -> Pair:
-        """|a| with the sign of b."""
-        high = self.line("copysign", a.high, b.high)
-        if a.single:
-            return Pair(high)
-        turned = self.line("eq", high, a.high, kind="bool")
-        return Pair(high, self.line("select", turned, a.low, self.line("neg", a.low)))
-
-    def select(self, condition: Pair, a: Pair, b: Pair) -> Pair:
-        """a where the condition holds, else b."""
-        high = self.line("select", condition.high, a.high, b.high)
-        if a.single and b.single:
-            return Pair(high)
-        return Pair(high, self.line("select", condition.high, a.low, b.low))
-
-    def floor(self, a: Pair) -> Pair:
-        """The floor of the high part."""
-        return Pair(self.line("floor", a.high))
-
-    # ---- angles ----------------------------------------------------------------------------------
-
-    def atan2(self, y: Pair, x: Pair) -> Pair:
-        """The angle of doubles, and what is left of it, small enough to be its own tangent."""
-        angle = self.line("atan2", y.high, x.high)
-        turned = self.turned(Pair(angle))
-        across = self.sub(self.mul(y, turned["cos"]), self.mul(x, turned["sin"]))
-        along = self.line(
-            "add", self.line("mul", x.high, turned["cos"].high), self.line("mul", y.high, turned["sin"].high)
-        )
-        step = self.line("div", across.high, along)
-        none = self.line("eq", along, 0.0, kind="bool")
-        return self.quick(angle, self.line("select", none, 0.0, step))
-
-    def turned(self, angle: Pair) -> dict[str, Pair]:
-        """Sine and cosine of an angle, once."""
-        if angle not in self.angles:
-            scaled = self.line("mul", angle.high, self.constants.two_over_pi)
-            quarters = self.line("floor", self.line("add", scaled, 0.5))
-            y = self._reduced(angle, quarters)
-            z = self.mul(y, y)
-            cubic = self.mul(self.mul(y, z), self._polynomial(z, self.constants.sine))
-            quartic = self.mul(self.mul(z, z), self._polynomial(z, self.constants.cosine))
-            whole = self.add(Pair(1.0), self.mul(Pair(-0.5), z))
-            self.angles[angle] = self._placed(quarters, self.larger(y, cubic), self.larger(whole, quartic))
-        return self.angles[angle]
-
-    def larger(self, a: Pair, b: Pair) -> Pair:
-        """a + b where a is the larger one and they do not cancel."""
-        high, low = self.quick(a.high, b.high)
-        for part in (a, b):
-            low = low if part.single else self.line("add", low, part.low)
-        return self.quick(high, low)
-
-    def _reduced(self, angle: Pair, quarters: str) -> Pair:
-        """angle - quarters pi/2; each product but the last is exact."""
-        first, *others = self.constants.pi_half
-        result = Pair(self.line("sub", angle.high, self.line("mul", quarters, first)), angle.low)  # exact
-        for part in others:
-            result = self.add(result, Pair(self.line("neg", self.line("mul", quarters, part))))
-        return result
-
-    def _polynomial(self, z: Pair, coefficients: tuple[tuple[float, float], ...]) -> Pair:
-        """Horner: in doubles where the terms are small, in pairs where they are not."""
-        *rest, (value, _) = coefficients
-        total = Pair(value)
-        for high, low in reversed(rest):
-            if low:
-                total = self.larger(Pair(high, low), self.mul(z, total))
-            else:
-                product = self.line("mul", total.high, z.high)
-                total = Pair(self.line("add", product, high))
-        return total
-
-    def _placed(self, quarters: str, sine: Pair, cosine: Pair) -> dict[str, Pair]:
-        """Swap and sign by the quarter, which is counted modulo 4 in floats."""
-        rounds = self.line("floor", self.line("mul", quarters, 0.25))
-        quarter = self.line("sub", quarters, self.line("mul", 4.0, rounds))
-        odd = Pair(self.line("eq", self.line("abs", self.line("sub", quarter, 2.0)), 1.0, kind="bool"))
-        across, along = self.select(odd, cosine, sine), self.select(odd, sine, cosine)
-        lower = Pair(self.line("le", 2.0, quarter, kind="bool"))
-        away = self.line("abs", self.line("sub", quarter, 1.5))
-        behind = Pair(self.line("eq", away, 0.5, kind="bool"))
-        return {
-            "sin": self.select(lower, self.neg(across), across),
-            "cos": self.select(behind, self.neg(along), along),
-        }
+    def in_three_words(self, line: Line) -> Words:
+        """The words of the sine, of 1 - |sine| and of what the gap is made of; none of other lines."""
+        if line.op == "sin":
+            return self.turned(self.of(line.args[0])).sin
+        if line.name == self.constants.complement and self.angles:
+            return next(reversed(self.angles.values())).complement
+        if line.name not in self.wide:
+            return ()
+        if line.op == "select":
+            return self.chosen(self.of(line.args[0]).high, *map(self.words_of, line.args[1:]))
+        words = [self.words_of(a) for a in line.args]
+        if line.op == "mul":
+            for sign, other in (words, words[::-1]):
+                if sign[0] in self.signs:
+                    return tuple(self.line("mul", sign[0], word) for word in other)
+            return self.product(*words)
+        if line.op == "neg" or line.op == "sub":
+            words[-1] = self.negative(words[-1])
+        return self.sum_of(*words)
 
 
-def _is_power_of_two(a: Pair) -> bool:
-    """Whether it is a constant that scales without rounding."""
-    if not (a.single and isinstance(a.high, float)) or a.high == 0.0:
-        return False
-    ratio = abs(a.high).as_integer_ratio()
-    return all(part & (part - 1) == 0 for part in ratio)
+def _made_of(program: Program, gap: str) -> set[str]:
+    """The lines that the gap is a sum, a product or a choice of, itself included."""
+    wanted = {gap}
+    for line in reversed(program.lines):
+        if line.name in wanted and line.op in WIDE:
+            wanted.update(names_in(line.args[line.op == "select" :]))
+    return {line.name for line in program.lines if line.name in wanted and line.op in WIDE}
 
 
-_RULES: Mapping[str, Callable[..., Pair]] = {
-    "copy": lambda writer, a: a,
-    "add": _Writer.add,
-    "sub": _Writer.sub,
-    "mul": _Writer.mul,
-    "muladd": lambda writer, a, b, c: writer.add(writer.mul(a, b), c),
-    "turned": _Writer.quarter_turned,
-    "div": _Writer.div,
-    "neg": _Writer.neg,
-    "abs": _Writer.size,
-    "sqrt": _Writer.sqrt,
-    "atan2": _Writer.atan2,
-    "floor": _Writer.floor,
-    "copysign": _Writer.copysign,
-    "select": _Writer.select,
-}
+def _is_sign(line: Line, signs: set[Argument]) -> bool:
+    """Whether a line is 1 or -1, whatever its inputs."""
+    values = {"copysign": line.args[:1], "select": line.args[1:], "neg": line.args, "copy": line.args}
+    return line.op in values and all(value in signs for value in values[line.op])

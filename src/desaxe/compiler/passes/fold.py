@@ -92,7 +92,14 @@ def _two_product_error(line: Line) -> Line | Argument:
     return 0.0 if exact else line
 
 
+def _mul_add(line: Line) -> Line | Argument:
+    a, b, c = line.args
+    if _is(a, 0.0) or _is(b, 0.0):
+        return c
+    return _mul(line._replace(op="mul", args=(a, b))) if _is(c, 0.0) else line
+
+
 _RULES = {
-    "add": _add, "sub": _sub, "mul": _mul, "div": _div,
+    "add": _add, "sub": _sub, "mul": _mul, "div": _div, "mul_add": _mul_add, "finer": lambda line: False,
     "two_sum_error": _two_sum_error, "two_product_error": _two_product_error,
 }  # fmt: skip

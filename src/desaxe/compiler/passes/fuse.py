@@ -7,7 +7,7 @@ from .slicing import drop_unused
 
 
 def fuse_products(program: Program) -> Program:
-    """The program with `muladd` for each sum or difference that has a product of its own.
+    """The program with `mul_add` for each sum or difference that has a product of its own.
 
     Precondition: error terms are lines still (after this pass the sum and the product that they belong to
     must stand as they are). Effect: one rounding less, and one operation, for each; last bits change. A
@@ -43,11 +43,11 @@ class _Fuser:
         minus = line.op == "sub"
         if first in self.free:
             negative, second = _negative(line.name, second) if minus else ([], second)
-            return [*negative, line._replace(op="muladd", args=(*self.free[str(first)], second))]
+            return [*negative, line._replace(op="mul_add", args=(*self.free[str(first)], second))]
         if second in self.free:
             a, b = self.free[str(second)]
             negative, a = _negative(line.name, a) if minus else ([], a)
-            return [*negative, line._replace(op="muladd", args=(a, b, first))]
+            return [*negative, line._replace(op="mul_add", args=(a, b, first))]
         return [line]
 
 

@@ -1,0 +1,136 @@
+"""Numbers as sums of two or three doubles: what their arithmetic is made of.
+
+What an addition or a product rounds away is itself a double (two-sum; two-product by a fused multiply-add)
+and is kept as a lower word. All of it is straight-line code without branches.
+Source of the algorithms: Dekker 1971; Knuth; Joldes, Muller, Popescu 2017.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from ..program import Argument, Line
+
+
+class Pair(NamedTuple):
+    """The sum of two names or constants; a low part of 0.0 is none at all."""
+
+    high: Argument
+    low: Argument = 0.0
+
+    @property
+    def single(self) -> bool:
+        """Whether the high part is all there is."""
+        return _is_nothing(self.low)
+
+
+Words = tuple[Argument, ...]  # a sum of up to three, the larger ones first
+
+
+def _is_nothing(argument: Argument) -> bool:
+    return argument == 0.0 and not isinstance(argument, str)
+
+
+class Expansions:
+    """Appends lines; sums and products that lose nothing, or what is below the third word."""
+
+    def __init__(self) -> None:
+        self.lines: list[Line] = []
+        self.types: dict[str, str] = {}
+
+    def line(self, op: str, *args: Argument, kind: str = "f64") -> str:
+        """One more line of doubles."""
+        name = f"_d{len(self.lines)}"
+        self.lines.append(Line(name, op, args, kind))
+        self.types[name] = kind
+        return name
+
+    # ---- exact -----------------------------------------------------------------------------------
+
+    def two_sum(self, a: Argument, b: Argument) -> Pair:
+        """a + b, exactly."""
+        return Pair(self.line("add", a, b), self.line("two_sum_error", a, b))
+
+    def quick(self, a: Argument, b: Argument) -> Pair:
+        """a + b, exactly, where a is the larger one."""
+        total = self.line("add", a, b)
+        return Pair(total, self.line("sub", b, self.line("sub", total, a)))
+
+    def two_product(self, a: Argument, b: Argument) -> Pair:
+        """a b, exactly."""
+        return Pair(self.line("mul", a, b), self.line("two_product_error", a, b))
+
+    # ---- up to three words -----------------------------------------------------------------------
+
+    def negative(self, words: Words) -> Words:
+        """The words of -a."""
+        return tuple(self.line("neg", word) for word in words)
+
+    def chosen(self, condition: Argument, first: Words, second: Words) -> Words:
+        """The words of the first where the condition holds, else those of the second."""
+        count = max(len(first), len(second))
+        pairs = zip(_padded(first, count), _padded(second, count), strict=True)
+        return tuple(self.line("select", condition, a, b) for a, b in pairs)
+
+    def sum_of(self, *numbers: Words, ordered: bool = False) -> Words:
+        """Three words of a sum; `ordered`: of two numbers, the first of which is the larger one."""
+        levels = [[number[size] for number in numbers if len(number) > size] for size in range(3)]
+        return self.by_size(levels, ordered)
+
+    def product(self, a: Words, b: Words) -> Words:
+        """Three words of a product."""
+        levels = self.product_levels(_padded(a, 3), _padded(b, 3))
+        return self.by_size(levels)
+
+    def product_levels(self, a: Words, b: Words) -> list[list[Argument]]:
+        """The terms of a product of three words each, by size."""
+        levels: list[list[Argument]] = [[], [], []]
+        for i, x in enumerate(a):
+            for j, y in enumerate(b):
+                if i + j > 2 or _is_nothing(x) or _is_nothing(y):
+                    continue
+                levels[i + j].append(self.line("mul", x, y))
+                if i + j < 2:
+                    levels[i + j + 1].append(self.line("two_product_error", x, y))
+        return levels
+
+    def by_size(self, levels: Sequence[Sequence[Argument]], ordered: bool = False) -> Words:
+        """The words of the sum of all terms: those of a level are some 53 bits below the level before.
+
+        What each addition rounds away goes to the level below; there is none below the last.
+        """
+        words: list[Argument] = []
+        lost: list[Argument] = []
+        for size, level in enumerate(levels[:-1]):
+            terms, lost = [*level, *lost], []
+            total: Argument = terms[0] if terms else 0.0
+            for term in terms[1:]:
+                pair = self.quick(total, term) if ordered and size == 0 else self.two_sum(total, term)
+                total = pair.high
+                lost.append(pair.low)
+            words.append(total)
+        return (*words, self.plain_sum([*levels[-1], *lost]))
+
+    def plain_sum(self, terms: Sequence[Argument]) -> Argument:
+        """The sum in doubles."""
+        total: Argument = terms[0] if terms else 0.0
+        for term in terms[1:]:
+            total = self.line("add", total, term)
+        return total
+
+    def ordered(self, words: Words) -> Words:
+        """The same sum in words that do not overlap, where the first is the largest by far."""
+        first, second, third = words
+        high = self.quick(first, second)
+        return (high.high, *self.quick(high.low, third))
+
+    def after_cancelling(self, words: Words) -> Pair:
+        """The sum of three words whose first may be nothing, to twice the digits."""
+        first, second, third = _padded(words, 3)
+        lower = self.two_sum(second, third)
+        upper = self.two_sum(first, lower.high)
+        rest = self.two_sum(upper.low, lower.low)
+        return self.two_sum(upper.high, rest.high)
+
+
+def _padded(words: Words, count: int) -> Words:
+    return (*words, *[0.0] * (count - len(words)))
