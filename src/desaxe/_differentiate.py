@@ -22,7 +22,7 @@ def with_derivatives(program: Program, parameters: tuple[str, ...]) -> Program:
     lines = list(program.lines)
     outputs = list(program.outputs)
     for parameter in parameters:
-        chain = _Chain(parameter)
+        chain = Chain(parameter)
         for line in program.lines:
             chain.through(line)
         lines += chain.lines
@@ -32,11 +32,12 @@ def with_derivatives(program: Program, parameters: tuple[str, ...]) -> Program:
     return optimise(program._replace(lines=tuple(lines), outputs=tuple(outputs)))[0]
 
 
-class _Chain:
-    """The lines of the derivative by one parameter."""
+class Chain:
+    """The lines of the derivative by one parameter; the rules are those for balls, or others."""
 
-    def __init__(self, parameter: str) -> None:
+    def __init__(self, parameter: str, rules: "Mapping[str, Rule] | None" = None) -> None:
         self.parameter = parameter
+        self.rules = RULES if rules is None else rules
         self.lines: list[Line] = []
         self.slopes: dict[str, str] = {}
 
@@ -51,7 +52,7 @@ class _Chain:
         if line.type != "f64" or not any(self.slope(a) for a in line.args):
             return
         name = f"{_PREFIX}{line.name}{_JOINT}{self.parameter}"
-        op, args = _RULES[line.op](self, line)
+        op, args = self.rules[line.op](self, line)
         self.lines.append(Line(name, op, args))
         self.slopes[line.name] = name
 
@@ -63,25 +64,26 @@ class _Chain:
 
 
 Step = tuple[str, tuple[Argument, ...]]
+Rule = Callable[[Chain, Line], Step]
 
 
-def _mul(chain: _Chain, line: Line) -> Step:
+def _mul(chain: Chain, line: Line) -> Step:
     a, b = line.args
     return "add", (chain.new("mul", chain.slope(a), b), chain.new("mul", a, chain.slope(b)))
 
 
-def _mul_add(chain: _Chain, line: Line) -> Step:
+def _mul_add(chain: Chain, line: Line) -> Step:
     a, b, c = line.args
     first = chain.new("mul_add", chain.slope(a), b, chain.slope(c))
     return "mul_add", (a, chain.slope(b), first)
 
 
-def _div(chain: _Chain, line: Line) -> Step:
+def _div(chain: Chain, line: Line) -> Step:
     a, b = line.args
     return "div", (chain.new("sub", chain.slope(a), chain.new("mul", line.name, chain.slope(b))), b)
 
 
-def _abs(chain: _Chain, line: Line) -> Step:
+def _abs(chain: Chain, line: Line) -> Step:
     (a,) = line.args
     slope = chain.slope(a)
     if line.name == "abs_sin":  # the side that the whole box was given
@@ -90,31 +92,31 @@ def _abs(chain: _Chain, line: Line) -> Step:
     return "select", (below, chain.new("neg", slope), slope)
 
 
-def _sqrt(chain: _Chain, line: Line) -> Step:
+def _sqrt(chain: Chain, line: Line) -> Step:
     return "div", (chain.slope(line.args[0]), chain.new("mul", 2.0, line.name))
 
 
-def _sin(chain: _Chain, line: Line) -> Step:
+def _sin(chain: Chain, line: Line) -> Step:
     (a,) = line.args
     return "mul", (chain.new("cos", a), chain.slope(a))
 
 
-def _cos(chain: _Chain, line: Line) -> Step:
+def _cos(chain: Chain, line: Line) -> Step:
     (a,) = line.args
     return "neg", (chain.new("mul", chain.new("sin", a), chain.slope(a)),)
 
 
-def _atan2(chain: _Chain, line: Line) -> Step:
+def _atan2(chain: Chain, line: Line) -> Step:
     y, x = line.args
     turned = chain.new("sub", chain.new("mul", x, chain.slope(y)), chain.new("mul", y, chain.slope(x)))
     return "div", (turned, chain.new("add", chain.new("mul", x, x), chain.new("mul", y, y)))
 
 
-def _same(chain: _Chain, line: Line) -> Step:
+def _same(chain: Chain, line: Line) -> Step:
     return line.op, tuple(map(chain.slope, line.args))
 
 
-_RULES: Mapping[str, Callable[[_Chain, Line], Step]] = {
+RULES: Mapping[str, Rule] = {
     **dict.fromkeys(("copy", "add", "sub", "neg"), _same),
     "mul": _mul,
     "mul_add": _mul_add,

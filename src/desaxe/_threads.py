@@ -1,7 +1,7 @@
 """Blocks of the outermost axis, shared by threads; the answer is the same for any number of them."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from itertools import pairwise
@@ -42,4 +42,15 @@ def run_in_blocks(
         kernel.run(part, [out[start:stop] for out in outs])
 
     for done in [_pool(count).submit(block, a, b) for a, b in pairwise(edges)]:
+        done.result()
+
+
+def run_parts(part: Callable[[int, int], None], length: int, threads: int | None, least: int) -> None:
+    """Run `part(start, stop)` over a length in as many parts as threads, none shorter than `least`."""
+    count = max(1, min(threads or available(), length // least))
+    if count == 1:
+        part(0, length)
+        return
+    edges = [length * k // count for k in range(count + 1)]
+    for done in [_pool(count).submit(part, a, b) for a, b in pairwise(edges)]:
         done.result()

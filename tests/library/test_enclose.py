@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 import desaxe as dx
 from desaxe import _balls
-from desaxe._differentiate import _RULES, with_derivatives
+from desaxe._differentiate import RULES, with_derivatives
 from desaxe._point import cut
 from desaxe._program import LAW as LAW_FORM
 from desaxe.audit.force_truth import force_names, truth
@@ -456,4 +456,4 @@ def test_every_operation_has_its_rules():
     """A new operation of numbers must say what it is over balls, and what its derivative is."""
     numbers = {op for op, row in OPERATIONS.items() if row.signature[-1] == "f" or op == "copy"}
     assert numbers - set(_balls._NUMBERS) <= {"floor"}  # of the written-out sine alone
-    assert numbers - set(_RULES) <= {"floor"}
+    assert numbers - set(RULES) <= {"floor"}

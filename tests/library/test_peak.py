@@ -178,9 +178,6 @@ def test_bad_arguments(arguments, words):
         dx.peak("a_C", **{"ec": 0.0, **MACHINE, **arguments})
 
 
-@pytest.mark.parametrize(
-    ("name", "words"), [("a_D", "unknown quantity 'a_D'"), ("Y_wrt_ec_ec", "derivative by theta")]
-)
-def test_names_without_a_slope(name, words):
-    with pytest.raises(ValueError, match=words):
-        dx.peak(name, ec=0.0, **MACHINE)
+def test_an_unknown_name():
+    with pytest.raises(ValueError, match="unknown quantity 'a_D'"):
+        dx.peak("a_D", ec=0.0, **MACHINE)

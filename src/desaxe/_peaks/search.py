@@ -1,0 +1,260 @@
+"""The search for the extreme value of each design, in plain loops: numba compiles the text below the line.
+
+It stands in a module behind the functions `sweep`, `points` and `finish`, which are written from the
+Program of the quantity at hand (`module`). Designs of one group share their nodes; they go through in
+blocks whose arrays stay in the cache, and every loop over a block is one that vectorises:
+
+sweep     value and slope at the nodes
+bound     between two nodes, at most how good an extremum can be, if there can be one: where the slope
+          changes sign, or where the cubic through both values and slopes nearly has an extremum
+divide    what may beat the best node is looked at again at three angles in between
+refine    Newton's method on the slope, whose derivative is that of the quartic through five slopes at first,
+          then the secant; the bracket is halved where a step would leave it, does not shrink, or goes to
+          an extremum of the other sort
+choose    the best of the refined extrema and the nodes, ends of the range among them; of extrema that are
+          equal but for rounding the first
+
+A NaN wins no comparison: angles at which a quantity has no value take no part.
+
+columns   the inputs of the designs, a row each; order has the designs group by group
+kind      0 the largest magnitude, 1 the largest, 2 the smallest value
+out       rows: value, derivative by theta, gradient (of the magnitude for kind 0)
+"""
+
+from math import fabs, inf, nan
+from typing import Any
+
+from numpy import empty, int64, uint64
+
+from .stand_ins import WORK, finish, points, sweep
+
+# ---- compiled ------------------------------------------------------------------------------------
+
+BLOCK = 128  # designs
+TIE = 1e-14  # values that differ by less are equal
+DIP = 0.25  # of the steeper end: half is usual, less means that the slope may vanish in between
+EPS = 2.220446049250313e-16
+STEPS = 100  # a bracket of any width is down to its last bit before
+
+
+def score(kind: int, value: float) -> float:
+    """What is to be made as large as possible."""
+    return fabs(value) if kind == 0 else (value if kind == 1 else -value)
+
+
+def gather(count: Any, chosen: Any, columns: Any, block: Any) -> None:
+    """The inputs of chosen designs, next to each other."""
+    for p in range(columns.shape[0]):
+        source, target = columns[p], block[p]
+        for i in range(count):
+            target[i] = source[chosen[i]]
+
+
+def bound(
+    kind: int, count: Any, nodes: Any, value: Any, slope: Any, best: Any, theta: Any, upper: Any
+) -> None:
+    """The best node of each design, and the bounds between nodes: NaN where no extremum is."""
+    for i in range(uint64(count)):
+        best[i], theta[i] = -inf, nan
+    for j in range(nodes.size):
+        here, row = nodes[j], value[j]
+        for i in range(uint64(count)):
+            new = score(kind, row[i])
+            better = new > best[i]
+            best[i] = new if better else best[i]
+            theta[i] = here if better else theta[i]
+    for j in range(1, nodes.size):
+        width = nodes[j] - nodes[j - 1]
+        per_width = 1.0 / width if width > 0.0 else 0.0
+        value_a, value_b, slope_a, slope_b, row = value[j - 1], value[j], slope[j - 1], slope[j], upper[j]
+        for i in range(uint64(count)):
+            a, b = slope_a[i], slope_b[i]
+            middle = 1.5 * per_width * (value_b[i] - value_a[i]) - 0.25 * (a + b)  # slope of the cubic
+            rising = a > 0.0
+            more = fabs(a) if fabs(a) > fabs(b) else fabs(b)
+            dips = (middle if rising else -middle) < DIP * more
+            top_a = score(kind, value_a[i]) + width * fabs(a)
+            top_b = score(kind, value_b[i]) + width * fabs(b)
+            row[i] = (top_a if top_a < top_b else top_b) if (rising != (b > 0.0)) | dips else nan
+
+
+def candidates(count: Any, nodes: Any, upper: Any, best: Any, places: Any, owners: Any) -> int:
+    """The intervals that may hold something better than the best node: their start, their owner."""
+    found = 0
+    for j in range(1, nodes.size):
+        row = upper[j]
+        for i in range(count):
+            places[found], owners[found] = j - 1, i
+            found += 1 if row[i] >= best[i] else 0
+    return found
+
+
+def interior(count: Any, nodes: Any, places: Any, theta: Any) -> None:
+    """Three angles inside of each interval."""
+    for c in range(count):
+        a, b = nodes[places[c]], nodes[places[c] + 1]
+        theta[0, c], theta[1, c], theta[2, c] = a + 0.25 * (b - a), 0.5 * (a + b), b - 0.25 * (b - a)
+
+
+def zero_of_quartic(g0: float, g1: float, g2: float, g3: float, g4: float, s: float) -> Any:
+    """Where the quartic with these values at 0, 1, 2, 3, 4 is 0, from a guess s; and its slope there."""
+    a1 = g1 - g0
+    b1, b2, b3 = g2 - g1, g3 - g2, g4 - g3
+    a2 = 0.5 * (b1 - a1)
+    c2 = 0.5 * (b2 - b1)
+    a3 = (c2 - a2) / 3.0
+    a4 = (0.5 * (b3 - b2) - c2 - (c2 - a2)) / 12.0
+    k3 = a3 - 6.0 * a4
+    k2 = a2 - 3.0 * a3 + 11.0 * a4
+    k1 = a1 - a2 + 2.0 * a3 - 6.0 * a4
+    slope = nan
+    for _ in range(3):
+        slope = k1 + s * (2.0 * k2 + s * (3.0 * k3 + s * 4.0 * a4))
+        s -= (g0 + s * (k1 + s * (k2 + s * (k3 + s * a4)))) / slope
+    return s, slope
+
+
+def brackets(
+    kind: int, count: Any, nodes: Any, places: Any, owners: Any, best: Any,
+    value: Any, slope: Any, thetas: Any, values: Any, slopes: Any, roots: Any, whose: Any,
+) -> int:  # fmt: skip
+    """The brackets of slopes that change sign, each as a column of `roots`.
+
+    Rows: low, high, guess, sign of the slope at low, width, 1 when done, last step, derivative of the
+    slope, and angle and slope of the step before.
+    """
+    found = 0
+    for c in range(count):
+        j, i = places[c], owners[c]
+        low, value_low, slope_low = nodes[j], value[j, i], slope[j, i]
+        for k in range(4):
+            if k < 3:
+                high, value_high, slope_high = thetas[k, c], values[k, c], slopes[k, c]
+            else:
+                high, value_high, slope_high = nodes[j + 1], value[j + 1, i], slope[j + 1, i]
+            change = (slope_low > 0.0) != (slope_high > 0.0)
+            if change and slope_low == slope_low and slope_high == slope_high:
+                width = high - low
+                top_low = score(kind, value_low) + width * fabs(slope_low)
+                top_high = score(kind, value_high) + width * fabs(slope_high)
+                if min(top_low, top_high) >= best[i]:
+                    part = slope_low / (slope_low - slope_high)
+                    place, bend = zero_of_quartic(
+                        slope[j, i], slopes[0, c], slopes[1, c], slopes[2, c], slope[j + 1, i], k + part
+                    )
+                    inside = k <= place <= k + 1.0
+                    roots[0, found], roots[1, found] = low, high
+                    roots[2, found] = low + ((place - k) if inside else part) * width
+                    roots[3, found] = 1.0 if slope_low > 0.0 else -1.0
+                    roots[4, found], roots[5, found], roots[6, found] = width, 0.0, width
+                    roots[7, found] = (bend if inside else slope_high - slope_low) / width
+                    roots[8, found], roots[9, found] = nan, nan
+                    whose[found] = i
+                    found += 1
+            low, value_low, slope_low = high, value_high, slope_high
+    return found
+
+
+def newton(count: Any, roots: Any, slope: Any) -> int:
+    """One step for every root that is not done; how many are still to do.
+
+    The slope's derivative is that of the quartic at first, then the one that the last two slopes tell.
+    """
+    lows, highs, theta, signs, widths, done, last, bends, thetas, slopes = (
+        roots[0], roots[1], roots[2], roots[3], roots[4], roots[5], roots[6], roots[7], roots[8], roots[9],
+    )  # fmt: skip
+    for i in range(uint64(count)):
+        x, s, sign = theta[i], slope[i], signs[i]
+        up = s * sign > 0.0
+        low, high = (x if up else lows[i]), (highs[i] if up else x)
+        secant = (s - slopes[i]) / (x - thetas[i])
+        bend = secant if fabs(secant) < inf else bends[i]
+        step = -s / bend
+        new = x + step
+        size = fabs(step)
+        good = (low <= new) & (new <= high) & (bend * sign < 0.0) & (size <= 0.5 * last[i])
+        room = fabs(new) + widths[i]
+        near = good & (size <= 4.0 * EPS * room)
+        near = near | (good & (size * last[i] <= EPS * room * widths[i]) & (last[i] < widths[i]))
+        closed = (high - low <= EPS * (fabs(low) + fabs(high))) | (s == 0.0)
+        new = x if closed else (new if good else 0.5 * (low + high))
+        going = done[i] == 0.0
+        theta[i] = new if going else x
+        thetas[i], slopes[i], bends[i] = x, s, bend
+        last[i] = size if good else high - low
+        lows[i], highs[i] = low, high
+        done[i] = 1.0 if near | closed else done[i]
+    left = 0
+    for i in range(uint64(count)):
+        left += 1 if done[i] == 0.0 else 0
+    return left
+
+
+def choose(
+    kind: int, count: Any, roots: Any, whose: Any, value: Any, best: Any, theta: Any, taken: Any
+) -> None:
+    """The angle of the best of the roots, if it is as good as the best node."""
+    for c in range(count):
+        i = whose[c]
+        new = score(kind, value[c])
+        best[i] = new if new > best[i] else best[i]
+        taken[i] = 0
+    for c in range(count):
+        i = whose[c]
+        if taken[i] == 0 and score(kind, value[c]) >= best[i] - TIE * fabs(best[i]):
+            theta[i], taken[i] = roots[2, c], 1
+
+
+def search(
+    columns: Any, order: Any, starts: Any, nodes: Any, node_starts: Any, kind: int, theta: Any, out: Any
+) -> None:
+    """The extreme value of every design: its angle and what `finish` computes there."""
+    inputs, results = columns.shape[0], out.shape[0]
+    longest, most = 1, 1
+    for g in range(starts.size - 1):
+        longest = max(longest, node_starts[g + 1] - node_starts[g])
+        most = max(most, min(BLOCK, starts[g + 1] - starts[g]))
+    value, slope, upper = (empty((longest, most)), empty((longest, most)), empty((longest, most)))
+    block, work, found = empty((inputs, most)), empty((WORK, most)), empty((results, most))
+    best, here, taken = empty(most), empty(most), empty(most, int64)
+    room = longest * most + 1
+    places, owners, whose = empty(room, int64), empty(room, int64), empty(4 * room, int64)
+    wide = 64
+    inner = empty((3, wide)), empty((3, wide)), empty((3, wide))
+    own, roots = empty((inputs, wide)), empty((10, wide))
+    for g in range(starts.size - 1):
+        grid = nodes[node_starts[g] : node_starts[g + 1]]
+        for start in range(starts[g], starts[g + 1], BLOCK):
+            stop = min(start + BLOCK, starts[g + 1])
+            count = stop - start
+            gather(count, order[start:stop], columns, block)
+            sweep(count, grid, block, work, value, slope)
+            bound(kind, count, grid, value, slope, best, here, upper)
+            some = candidates(count, grid, upper, best, places, owners)
+            if 4 * some > wide:
+                wide = 8 * some + 64
+                inner = empty((3, wide)), empty((3, wide)), empty((3, wide))
+                own, roots = empty((inputs, wide)), empty((10, wide))
+            thetas, values, slopes = inner
+            gather(some, owners, block, own)
+            interior(some, grid, places, thetas)
+            points(3, some, thetas, own, values, slopes)
+            ready = brackets(
+                kind, some, grid, places, owners, best,
+                value, slope, thetas, values, slopes, roots, whose,
+            )  # fmt: skip
+            gather(ready, whose, block, own)
+            left, step = ready, 0
+            while left > 0 and step < STEPS:
+                points(1, ready, roots[2:3], own, values, slopes)
+                left = newton(ready, roots, slopes[0])
+                step += 1
+            choose(kind, ready, roots, whose, values[0], best, here, taken)
+            finish(count, here, block, found)
+            for i in range(count):
+                theta[order[start + i]] = here[i]
+            for r in range(results):
+                row, target = found[r], out[r]
+                for i in range(count):
+                    turned = kind == 0 and r > 1 and found[0, i] < 0.0
+                    target[order[start + i]] = -row[i] if turned else row[i]
