@@ -80,7 +80,7 @@ def peak(
         given["omega0"] = 0.0 if "omega0" not in plan.parameters else None  # which only the status uses
     arrays = {n: as_array(n, given.get(n), plan.needs, (name,)) for n in plan.needs}
     shape = broadcast_shape(arrays)
-    columns = {n: np.broadcast_to(a, shape).reshape(-1) for n, a in arrays.items()}
+    columns = {n: _flat(a, shape) for n, a in arrays.items()}
     designs = Designs(columns, branch, ends, "mu" in plan.parameters)
     found = _peaks(name, kind, _search(plan, arrays, ends), designs, threads)
     return _shaped(found, shape)
@@ -96,6 +96,11 @@ def _range(theta: Any, name: str) -> tuple[float, float]:
     if low is None or high is None or low > high:
         raise ValueError(f"theta = ({first}, {last}): two angles, the lower one first")
     return low, high
+
+
+def _flat(array: Array, shape: tuple[int, ...]) -> Array:
+    """A value for each design."""
+    return np.broadcast_to(array, shape).reshape(-1) if shape else array.reshape(1)
 
 
 class _Plan(NamedTuple):
@@ -182,6 +187,8 @@ def _peaks(name: str, kind: str, search: Search, designs: Designs, threads: int 
 
 def _good(designs: Designs) -> dict[str, Array]:
     """The inputs, NaN where they are bad: one that is would give a finite, wrong answer."""
+    if designs.size == 1:
+        return designs.columns  # checked where it came in
     good = {}
     for name, column in designs.columns.items():
         least = INPUTS[name].least
@@ -197,6 +204,9 @@ def _classed(designs: Designs, rows: NDArray[np.intp]) -> Groups:
         numbers = np.zeros(rows.size, np.int16)
     else:
         numbers = classes(*lengths)
+    if rows.size == 1 or (numbers == numbers[0]).all():
+        nodes = shared_nodes(int(numbers[0]), *designs.theta)
+        return Groups(rows, np.array([0, rows.size]), nodes, np.array([0, nodes.size]))
     places = np.argsort(numbers, kind="stable")
     numbers = numbers[places]
     first = np.flatnonzero(np.diff(numbers, prepend=-1))

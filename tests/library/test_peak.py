@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
+from desaxe._peaks.module import _LOADED, _on_disk
 from desaxe.audit.truth import truth
 
 OMEGA = 157.08
@@ -181,3 +182,148 @@ def test_bad_arguments(arguments, words):
 def test_an_unknown_name():
     with pytest.raises(ValueError, match="unknown quantity 'a_D'"):
         dx.peak("a_D", ec=0.0, **MACHINE)
+
+
+# ---- completeness, other ways of the same, sensitivities without a derived slope ------------------
+
+
+def random_designs(seed, count, near):
+    """Lengths, speed and law; `near` draws margins down to 2^-45 crank lengths."""
+    rng = np.random.default_rng(seed)
+    AB = rng.uniform(0.05, 2.0, count)
+    margin = 2.0 ** -rng.uniform(0.0, 45.0, count) if near else rng.uniform(0.05, 4.0, count)
+    ec = rng.uniform(-1.0, 1.0, count) * AB * (rng.uniform(size=count) > 0.15)  # some are centric
+    omega0 = rng.choice([-1.0, 1.0], count) * rng.uniform(1.0, 200.0, count)
+    alpha = rng.uniform(-0.07, 0.5, count) * omega0**2 * (rng.uniform(size=count) > 0.5)
+    return {"ec": ec, "AB": AB, "BC": AB + np.abs(ec) + margin * AB, "omega0": omega0, "alpha": alpha}
+
+
+def dense_angles():
+    """A uniform sweep, and one graded towards both quarters: 60 angles an octave of distance."""
+    graded = 2.0 ** -np.arange(0.0, 40.0, 1 / 15)
+    quarters = [q + side * graded for q in (np.pi / 2, 3 * np.pi / 2) for side in (-1, 1)]
+    every = np.concatenate([np.linspace(0.0, 2 * np.pi, 1501), *quarters])
+    return np.sort(every[(every >= 0.0) & (every <= 2 * np.pi)])
+
+
+@pytest.mark.parametrize("near", [False, True])
+@pytest.mark.parametrize("name", ["V_C", "a_C", "j_C", "alpha_BC", "a_C_wrt_ec"])
+def test_no_extremum_is_missed(name, near):
+    """Hundreds of random designs against thousands of angles each, close to the change point too."""
+    designs, theta = random_designs(3, 200, near), dense_angles()
+    branch = -1 if near else 1
+    columns = {n: column[:, None] for n, column in designs.items()}
+    swept = dx.evaluate(name, theta=theta, branch=branch, **columns)
+    scale = np.nanmax(np.abs(swept), axis=1)
+    for kind, best in (
+        ("max", np.nanmax(swept, axis=1)),
+        ("min", np.nanmin(swept, axis=1)),
+        ("absmax", scale),
+    ):
+        found = dx.peak(name, kind=kind, branch=branch, **designs)["value"]
+        short = (found - best if kind == "min" else best - found) / scale
+        assert short.max() <= 1e-13, np.argmax(short)
+
+
+def test_two_maxima_next_to_the_inner_dead_centre():
+    """For BC/AB a little below 4 the acceleration has two maxima there; at 4 they become one."""
+    ratio = np.linspace(3.3, 4.1, 400)
+    found = dx.peak("a_C", ec=0.0, AB=1.0, BC=ratio, omega0=1.0, kind="max")
+    centre = 1.0 - 1.0 / ratio  # a_C at theta = pi
+    assert np.all(found["value"] >= centre * (1.0 - 1e-15))
+    apart = np.abs(found["theta"] - np.pi) > 1e-6
+    assert np.all(apart[ratio < 3.999])
+    assert not apart[ratio > 4.001].any()
+    theta = found["theta"][ratio < 3.99]
+    for angle, value, BC in zip(theta[::40], found["value"][ratio < 3.99][::40], ratio[::40], strict=False):
+        _, exact = exact_peak(2, angle, 0.0, 1.0, BC)
+        assert abs(value / exact - 1) < 1e-14
+
+
+@pytest.mark.parametrize("threads", [2, 3])
+def test_the_same_for_any_number_of_threads(threads):
+    designs = random_designs(5, 5000, False)
+    one, more = (dx.peak("a_C", threads=n, **designs) for n in (1, threads))
+    for name in ("value", "theta", "status"):
+        assert np.array_equal(one[name], more[name], equal_nan=True)
+    for name, slope in one["gradient"].items():
+        assert np.array_equal(slope, more["gradient"][name], equal_nan=True)
+
+
+@pytest.mark.parametrize("name", ["a_C", "j_C"])
+def test_compiled_and_plain_agree(name):
+    """A few designs run in plain Python, thousands compiled: the same text, but for the sine's last bit."""
+    designs = random_designs(7, 1000, True)
+    many = dx.peak(name, **designs)
+    _LOADED.clear()
+    _on_disk.cache_clear()
+    for k in range(0, 1000, 50):
+        one = dx.peak(name, **{n: float(column[k]) for n, column in designs.items()})
+        assert one["value"] == pytest.approx(many["value"][k], rel=4e-15)
+        assert one["status"] == many["status"][k]
+
+
+@pytest.mark.parametrize(
+    ("name", "near"), [("Y_wrt_ec_ec", 1e-7), ("a_C_wrt_ec_BC", 1e-7), ("T_in_wrt_m_slider", 1e-7)]
+)
+def test_sensitivities_have_peaks_too(name, near):
+    """Where no derivative by theta is derived, it is that of the program; so is a missing gradient."""
+    design = {"ec": 0.04, "AB": 0.125, "BC": 0.35, "omega0": 20.0}
+    design |= {"m_rod": 0.5, "m_slider": 0.8} if name.startswith("T_in") else {}
+    swept = np.abs(dx.evaluate(name, theta=np.linspace(0, 2 * np.pi, 20_001), **design)).max()
+    found = dx.peak(name, **design)
+    assert swept <= found["value"] * (1 + 1e-15)
+    assert found["value"] == pytest.approx(swept, rel=near)
+    for parameter in ("ec", "BC"):
+        step = 1e-6
+        up, down = (
+            dx.peak(name, **{**design, parameter: design[parameter] + s})["value"] for s in (step, -step)
+        )
+        assert found["gradient"][parameter] == pytest.approx((up - down) / (2 * step), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("name", "order", "design"),
+    [
+        ("a_C", 2, (0.15, 0.125, 0.35)),
+        ("a_C", 2, (0.5, 1.0, 1.5 + 2.0**-20)),
+        ("V_C", 1, (-0.1, 0.125, 0.35)),
+        ("j_C", 3, (0.3, 1.0, 1.3 + 2.0**-10)),
+    ],
+)
+def test_gradient_is_exact(name, order, design):
+    """Against differences of the peak in 50 digits."""
+    found = dx.peak(name, **dict(zip(("ec", "AB", "BC"), design, strict=True)), omega0=1.0)
+    with mpmath.workdps(60):
+        exact = [mpmath.mpf(x) for x in design]
+        step = mpmath.mpf(10) ** -25
+        sign = mpmath.sign(rate(order, *exact)(mpmath.mpf(found["theta"])))
+        for place, parameter in enumerate(("ec", "AB", "BC")):
+            ends = []
+            for side in (1, -1):
+                moved = list(exact)
+                moved[place] += side * step
+                theta = mpmath.findroot(rate(order + 1, *moved), mpmath.mpf(found["theta"]))
+                ends.append(sign * rate(order, *moved)(theta))
+            slope = (ends[0] - ends[1]) / (2 * step)
+            assert found["gradient"][parameter] == pytest.approx(float(slope), rel=1e-9), parameter
+
+
+def test_the_curve_up_to_the_edge_of_feasibility():
+    """Values and slopes exist up to the last eccentricity; beyond it the acceleration has no bound."""
+    ec = 0.225 + np.array([-1e-3, -1e-6, -1e-9, -1e-12, 1e-12, 1e-6])
+    found = dx.peak("a_C", ec=ec, **MACHINE)
+    assert found["status"].tolist() == [0, 0, 0, 0, 2, 2]
+    assert np.isfinite(found["value"][:4]).all()
+    assert np.isfinite(found["gradient"]["ec"][:4]).all()
+    assert np.isinf(found["value"][4:]).all()
+    assert np.isnan(found["gradient"]["ec"][4:]).all()
+    assert np.all(np.diff(found["value"][:4]) > 0.0)
+
+
+def test_bad_designs_disturb_no_other():
+    found = dx.peak("a_C", ec=[0.1, np.nan, 0.1, 0.1], AB=[0.125, 0.125, -0.1, 0.125], BC=0.35, omega0=OMEGA)
+    assert found["status"].tolist() == [0, 4, 4, 0]
+    assert np.isnan(found["value"][1:3]).all()
+    assert found["value"][0] == found["value"][3]
+    assert np.isnan(found["gradient"]["ec"][1:3]).all()

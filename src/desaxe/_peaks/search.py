@@ -34,6 +34,10 @@ BLOCK = 128  # designs
 TIE = 1e-14  # values that differ by less are equal
 DIP = 0.25  # of the steeper end: half is usual, less means that the slope may vanish in between
 EPS = 2.220446049250313e-16
+# Rows of a root: its bracket, the slope's sign at the low end, the bracket's first width, how far it is, the
+# slope's derivative, angle and slope of the step before; and what it begins with.
+LOW, HIGH, THETA, SIGN, WIDTH, DONE, LAST, BEND, PREVIOUS, SLOPE = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
+BEFORE, AFTER, FIRST, FIFTH, ROWS = 10, 11, 12, 16, 17
 STEPS = 100  # a bracket of any width is down to its last bit before
 
 
@@ -73,9 +77,10 @@ def bound(
             rising = a > 0.0
             more = fabs(a) if fabs(a) > fabs(b) else fabs(b)
             dips = (middle if rising else -middle) < DIP * more
-            top_a = score(kind, value_a[i]) + width * fabs(a)
-            top_b = score(kind, value_b[i]) + width * fabs(b)
-            row[i] = (top_a if top_a < top_b else top_b) if (rising != (b > 0.0)) | dips else nan
+            steepest = fabs(middle) if fabs(middle) > more else more
+            top_a, top_b = score(kind, value_a[i]), score(kind, value_b[i])
+            top = (top_a if top_a > top_b else top_b) + width * steepest
+            row[i] = top if (rising != (b > 0.0)) | dips else nan
 
 
 def candidates(count: Any, nodes: Any, upper: Any, best: Any, places: Any, owners: Any) -> int:
@@ -96,63 +101,89 @@ def interior(count: Any, nodes: Any, places: Any, theta: Any) -> None:
         theta[0, c], theta[1, c], theta[2, c] = a + 0.25 * (b - a), 0.5 * (a + b), b - 0.25 * (b - a)
 
 
-def zero_of_quartic(g0: float, g1: float, g2: float, g3: float, g4: float, s: float) -> Any:
-    """Where the quartic with these values at 0, 1, 2, 3, 4 is 0, from a guess s; and its slope there."""
-    a1 = g1 - g0
-    b1, b2, b3 = g2 - g1, g3 - g2, g4 - g3
-    a2 = 0.5 * (b1 - a1)
-    c2 = 0.5 * (b2 - b1)
-    a3 = (c2 - a2) / 3.0
-    a4 = (0.5 * (b3 - b2) - c2 - (c2 - a2)) / 12.0
-    k3 = a3 - 6.0 * a4
-    k2 = a2 - 3.0 * a3 + 11.0 * a4
-    k1 = a1 - a2 + 2.0 * a3 - 6.0 * a4
-    slope = nan
-    for _ in range(3):
-        slope = k1 + s * (2.0 * k2 + s * (3.0 * k3 + s * 4.0 * a4))
-        s -= (g0 + s * (k1 + s * (k2 + s * (k3 + s * a4)))) / slope
-    return s, slope
-
-
 def brackets(
-    kind: int, count: Any, nodes: Any, places: Any, owners: Any, best: Any,
-    value: Any, slope: Any, thetas: Any, values: Any, slopes: Any, roots: Any, whose: Any,
-) -> int:  # fmt: skip
-    """The brackets of slopes that change sign, each as a column of `roots`.
-
-    Rows: low, high, guess, sign of the slope at low, width, 1 when done, last step, derivative of the
-    slope, and angle and slope of the step before.
-    """
+    count: Any,
+    nodes: Any,
+    places: Any,
+    owners: Any,
+    slope: Any,
+    thetas: Any,
+    slopes: Any,
+    roots: Any,
+    whose: Any,
+) -> int:
+    """The brackets in which the slope changes sign: a column of `roots` each, rows LOW to FIFTH."""
     found = 0
     for c in range(count):
         j, i = places[c], owners[c]
-        low, value_low, slope_low = nodes[j], value[j, i], slope[j, i]
+        low, before, last = nodes[j], slope[j, i], slope[j + 1, i]
         for k in range(4):
-            if k < 3:
-                high, value_high, slope_high = thetas[k, c], values[k, c], slopes[k, c]
-            else:
-                high, value_high, slope_high = nodes[j + 1], value[j + 1, i], slope[j + 1, i]
-            change = (slope_low > 0.0) != (slope_high > 0.0)
-            if change and slope_low == slope_low and slope_high == slope_high:
-                width = high - low
-                top_low = score(kind, value_low) + width * fabs(slope_low)
-                top_high = score(kind, value_high) + width * fabs(slope_high)
-                if min(top_low, top_high) >= best[i]:
-                    part = slope_low / (slope_low - slope_high)
-                    place, bend = zero_of_quartic(
-                        slope[j, i], slopes[0, c], slopes[1, c], slopes[2, c], slope[j + 1, i], k + part
-                    )
-                    inside = k <= place <= k + 1.0
-                    roots[0, found], roots[1, found] = low, high
-                    roots[2, found] = low + ((place - k) if inside else part) * width
-                    roots[3, found] = 1.0 if slope_low > 0.0 else -1.0
-                    roots[4, found], roots[5, found], roots[6, found] = width, 0.0, width
-                    roots[7, found] = (bend if inside else slope_high - slope_low) / width
-                    roots[8, found], roots[9, found] = nan, nan
-                    whose[found] = i
-                    found += 1
-            low, value_low, slope_low = high, value_high, slope_high
+            high = thetas[k, c] if k < 3 else nodes[j + 1]
+            after = slopes[k, c] if k < 3 else last
+            if (before > 0.0) != (after > 0.0) and before == before and after == after:
+                roots[LOW, found], roots[HIGH, found] = low, high
+                roots[THETA, found], roots[WIDTH, found] = k, high - low
+                roots[BEFORE, found], roots[AFTER, found] = before, after
+                roots[FIRST, found], roots[FIFTH, found] = slope[j, i], last
+                for m in range(3):
+                    roots[FIRST + 1 + m, found] = slopes[m, c]
+                whose[found] = i
+                found += 1
+            low, before = high, after
     return found
+
+
+def quartic(k0: float, k1: float, k2: float, k3: float, k4: float, s: float) -> float:
+    """k0 + k1 s + ... + k4 s^4."""
+    return k0 + s * (k1 + s * (k2 + s * (k3 + s * k4)))
+
+
+def quartic_slope(k1: float, k2: float, k3: float, k4: float, s: float) -> float:
+    """Its derivative."""
+    return k1 + s * (2.0 * k2 + s * (3.0 * k3 + s * (4.0 * k4)))
+
+
+def begin(count: Any, roots: Any) -> None:
+    """The first guess: where the quartic through the five slopes is 0, and its derivative there.
+
+    Before: THETA has the number of the bracket among the four. After: every row from SIGN to SLOPE.
+    """
+    lows, thetas, widths, befores, afters = (
+        roots[LOW],
+        roots[THETA],
+        roots[WIDTH],
+        roots[BEFORE],
+        roots[AFTER],
+    )
+    first, second, third, fourth, fifth = (
+        roots[FIRST], roots[FIRST + 1], roots[FIRST + 2], roots[FIRST + 3], roots[FIFTH],
+    )  # fmt: skip
+    bends = roots[BEND]
+    for i in range(uint64(count)):
+        g0, g1, g2, g3, g4 = first[i], second[i], third[i], fourth[i], fifth[i]
+        a1, b1, b2, b3 = g1 - g0, g2 - g1, g3 - g2, g4 - g3
+        a2, c2 = 0.5 * (b1 - a1), 0.5 * (b2 - b1)
+        a3 = (c2 - a2) * (1.0 / 3.0)
+        a4 = (0.5 * (b3 - b2) - c2 - (c2 - a2)) * (1.0 / 12.0)
+        k1, k2, k3 = a1 - a2 + 2.0 * a3 - 6.0 * a4, a2 - 3.0 * a3 + 11.0 * a4, a3 - 6.0 * a4
+        k, width, low, before, after = thetas[i], widths[i], lows[i], befores[i], afters[i]
+        part = before / (before - after)
+        s = k + part
+        s -= quartic(g0, k1, k2, k3, a4, s) / quartic_slope(k1, k2, k3, a4, s)
+        s -= quartic(g0, k1, k2, k3, a4, s) / quartic_slope(k1, k2, k3, a4, s)
+        bend = quartic_slope(k1, k2, k3, a4, s)
+        s -= quartic(g0, k1, k2, k3, a4, s) / bend
+        inside = (k <= s) & (s <= k + 1.0)
+        place, secant = s - k, after - before
+        thetas[i] = low + (place if inside else part) * width
+        bends[i] = (bend if inside else secant) / width
+    signs, done, lasts, previous, slopes = (
+        roots[SIGN], roots[DONE], roots[LAST], roots[PREVIOUS], roots[SLOPE],
+    )  # fmt: skip
+    for i in range(uint64(count)):
+        signs[i] = 1.0 if befores[i] > 0.0 else -1.0
+        lasts[i] = widths[i]
+        done[i], previous[i], slopes[i] = 0.0, nan, nan
 
 
 def newton(count: Any, roots: Any, slope: Any) -> int:
@@ -160,30 +191,30 @@ def newton(count: Any, roots: Any, slope: Any) -> int:
 
     The slope's derivative is that of the quartic at first, then the one that the last two slopes tell.
     """
-    lows, highs, theta, signs, widths, done, last, bends, thetas, slopes = (
-        roots[0], roots[1], roots[2], roots[3], roots[4], roots[5], roots[6], roots[7], roots[8], roots[9],
-    )  # fmt: skip
+    lows, highs, theta, signs, widths = roots[LOW], roots[HIGH], roots[THETA], roots[SIGN], roots[WIDTH]
+    done, last, bends, thetas, slopes = roots[DONE], roots[LAST], roots[BEND], roots[PREVIOUS], roots[SLOPE]
     for i in range(uint64(count)):
-        x, s, sign = theta[i], slope[i], signs[i]
+        # Everything is read before anything is chosen: a read that depends on a choice stays a branch.
+        x, s, sign, width, was_done = theta[i], slope[i], signs[i], widths[i], done[i]
+        low, high, bend, before = lows[i], highs[i], bends[i], last[i]
         up = s * sign > 0.0
-        low, high = (x if up else lows[i]), (highs[i] if up else x)
+        low, high = (x if up else low), (high if up else x)
         secant = (s - slopes[i]) / (x - thetas[i])
-        bend = secant if fabs(secant) < inf else bends[i]
+        bend = secant if fabs(secant) < inf else bend
         step = -s / bend
         new = x + step
         size = fabs(step)
-        good = (low <= new) & (new <= high) & (bend * sign < 0.0) & (size <= 0.5 * last[i])
-        room = fabs(new) + widths[i]
-        near = good & (size <= 4.0 * EPS * room)
-        near = near | (good & (size * last[i] <= EPS * room * widths[i]) & (last[i] < widths[i]))
-        closed = (high - low <= EPS * (fabs(low) + fabs(high))) | (s == 0.0)
-        new = x if closed else (new if good else 0.5 * (low + high))
-        going = done[i] == 0.0
-        theta[i] = new if going else x
+        good = (low <= new) & (new <= high) & (bend * sign < 0.0) & (size <= 0.5 * before)
+        room = EPS * (fabs(new) + width)
+        near = good & ((size <= 4.0 * room) | ((size * before <= room * width) & (before < width)))
+        between, span = 0.5 * (low + high), high - low
+        closed = (span <= EPS * (fabs(low) + fabs(high))) | (s == 0.0)
+        new = new if good else between
+        theta[i] = x if closed | (was_done > 0.0) else new
         thetas[i], slopes[i], bends[i] = x, s, bend
-        last[i] = size if good else high - low
+        last[i] = size if good else span
         lows[i], highs[i] = low, high
-        done[i] = 1.0 if near | closed else done[i]
+        done[i] = 1.0 if near | closed else was_done
     left = 0
     for i in range(uint64(count)):
         left += 1 if done[i] == 0.0 else 0
@@ -202,7 +233,7 @@ def choose(
     for c in range(count):
         i = whose[c]
         if taken[i] == 0 and score(kind, value[c]) >= best[i] - TIE * fabs(best[i]):
-            theta[i], taken[i] = roots[2, c], 1
+            theta[i], taken[i] = roots[THETA, c], 1
 
 
 def search(
@@ -221,7 +252,7 @@ def search(
     places, owners, whose = empty(room, int64), empty(room, int64), empty(4 * room, int64)
     wide = 64
     inner = empty((3, wide)), empty((3, wide)), empty((3, wide))
-    own, roots = empty((inputs, wide)), empty((10, wide))
+    own, roots = empty((inputs, wide)), empty((ROWS, wide))
     for g in range(starts.size - 1):
         grid = nodes[node_starts[g] : node_starts[g + 1]]
         for start in range(starts[g], starts[g + 1], BLOCK):
@@ -234,19 +265,17 @@ def search(
             if 4 * some > wide:
                 wide = 8 * some + 64
                 inner = empty((3, wide)), empty((3, wide)), empty((3, wide))
-                own, roots = empty((inputs, wide)), empty((10, wide))
+                own, roots = empty((inputs, wide)), empty((ROWS, wide))
             thetas, values, slopes = inner
             gather(some, owners, block, own)
             interior(some, grid, places, thetas)
             points(3, some, thetas, own, values, slopes)
-            ready = brackets(
-                kind, some, grid, places, owners, best,
-                value, slope, thetas, values, slopes, roots, whose,
-            )  # fmt: skip
+            ready = brackets(some, grid, places, owners, slope, thetas, slopes, roots, whose)
+            begin(ready, roots)
             gather(ready, whose, block, own)
             left, step = ready, 0
             while left > 0 and step < STEPS:
-                points(1, ready, roots[2:3], own, values, slopes)
+                points(1, ready, roots[THETA : THETA + 1], own, values, slopes)
                 left = newton(ready, roots, slopes[0])
                 step += 1
             choose(kind, ready, roots, whose, values[0], best, here, taken)
