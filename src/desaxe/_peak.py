@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 from ._arrays import as_array, broadcast_shape
 from ._constants import constants
 from ._kernels import STRUCTURAL_ZEROS
-from ._peaks import special
+from ._peaks import WITHOUT_COURSE, special
 from ._peaks.module import Groups, run
 from ._peaks.nodes import Array, classes, shared_nodes
 from ._peaks.programs import Search, is_derived, needs_own
 from ._peaks.special import Designs
 from ._request import Request, as_number, check_border, check_inputs, is_steady, request
-from .catalogue import law_name
+from .catalogue import law_name, quantity
 from .inputs import INPUTS
 from .names import LOADS, sensitivity
 
@@ -124,8 +124,11 @@ def _plan(name: str, given: dict[str, Any], branch: int, accuracy: Any) -> _Plan
 
 
 def _new_plan(name: str, given: dict[str, Any], branch: int, accuracy: Any) -> _Plan:
-    slope = sensitivity(name, "theta")
+    if name in WITHOUT_COURSE:
+        raise ValueError(f"{name} has no peak over theta")
     state = given["omega"] is not None
+    quantity(name, state)
+    slope = sensitivity(name, "theta")
     names = (name, slope) if is_derived(law_name(slope) if state else slope) else (name,)
     wanted = request(names, given, branch, accuracy)
     parameters = tuple(n for n in wanted.inputs if n != "theta")

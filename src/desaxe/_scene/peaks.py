@@ -12,6 +12,7 @@ from .._labels import input_attributes
 from .._peak import peak
 from .._program import digest
 from ..catalogue import quantity
+from ..inputs import INPUTS
 from ..names import sensitivity
 from .progress import Steps
 from .read import Claim, Content, Peak
@@ -146,7 +147,10 @@ def _peak_attributes(one: Peak, state: bool) -> dict[str, str]:
 
 
 def _slope_attributes(one: Peak, parameter: str, state: bool) -> dict[str, str]:
-    unit = quantity(sensitivity(one.quantity, parameter), state).unit
+    try:
+        unit = quantity(sensitivity(one.quantity, parameter), state).unit
+    except ValueError:  # a derivative that only a peak has
+        unit = f"{quantity(one.quantity, state).unit}/({INPUTS[parameter].unit})"
     return {"units": unit, "long_name": f"derivative of the peak by {parameter}"}
 
 

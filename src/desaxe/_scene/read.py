@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from .._accuracy import accuracy_of
+from .._peaks import WITHOUT_COURSE
 from .._program import Form, program_of
 from ..catalogue import law_name, quantity
 from ..inputs import INPUTS
@@ -302,14 +303,14 @@ def _sensitivities(key: str, table: schema.PeakTable, needed: Iterable[str]) -> 
 
 
 def _slope(key: str, name: str, state: bool) -> str:
-    """The derivative of a quantity by theta, which a peak needs."""
+    """The derivative of a quantity by theta, whose inputs a peak needs; itself where there is none."""
+    if name in WITHOUT_COURSE:
+        raise SceneError(f"{key} = {shown(name)}: it has no peak over theta")
     slope = sensitivity(name, "theta")
     try:
         quantity(slope, state)
     except ValueError:
-        raise SceneError(
-            f"{key} = {shown(name)}: it has no peak, its derivative by theta is not derived"
-        ) from None
+        return name
     return slope
 
 
