@@ -7,7 +7,8 @@ blocks whose arrays stay in the cache, and every loop over a block is one that v
 sweep     value and slope at the nodes
 bound     between two nodes, at most how good an extremum can be, if there can be one: where the slope
           changes sign, or where the cubic through both values and slopes nearly has an extremum
-divide    what may beat the best node is looked at again at three angles in between
+divide    what may beat the best node is looked at again at three angles in between; towards an end that is
+          itself an extremum, or nearly, they are graded: two maxima close to each other have one between
 refine    Newton's method on the slope, whose derivative is that of the quartic through five slopes at first,
           then the secant; the bracket is halved where a step would leave it, does not shrink, or goes to
           an extremum of the other sort
@@ -33,6 +34,7 @@ from .stand_ins import WORK, finish, points, sweep
 BLOCK = 128  # designs
 TIE = 1e-14  # values that differ by less are equal
 DIP = 0.25  # of the steeper end: half is usual, less means that the slope may vanish in between
+FLAT = 0.02  # an end that much flatter than the other may be an extremum itself, with others next to it
 EPS = 2.220446049250313e-16
 # Rows of a root: its bracket, the slope's sign at the low end, the bracket's first width, how far it is, the
 # slope's derivative, angle and slope of the step before; and what it begins with.
@@ -80,7 +82,8 @@ def bound(
             steepest = fabs(middle) if fabs(middle) > more else more
             top_a, top_b = score(kind, value_a[i]), score(kind, value_b[i])
             top = (top_a if top_a > top_b else top_b) + width * steepest
-            row[i] = top if (rising != (b > 0.0)) | dips else nan
+            less = fabs(a) if fabs(a) < fabs(b) else fabs(b)
+            row[i] = top if (rising != (b > 0.0)) | dips | (less < FLAT * more) else nan
 
 
 def candidates(count: Any, nodes: Any, upper: Any, best: Any, places: Any, owners: Any) -> int:
@@ -94,24 +97,26 @@ def candidates(count: Any, nodes: Any, upper: Any, best: Any, places: Any, owner
     return found
 
 
-def interior(count: Any, nodes: Any, places: Any, theta: Any) -> None:
-    """Three angles inside of each interval."""
+def interior(count: Any, nodes: Any, places: Any, owners: Any, slope: Any, theta: Any, even: Any) -> None:
+    """Three angles inside of each interval: even, or graded towards an end that is flat."""
     for c in range(count):
-        a, b = nodes[places[c]], nodes[places[c] + 1]
-        theta[0, c], theta[1, c], theta[2, c] = a + 0.25 * (b - a), 0.5 * (a + b), b - 0.25 * (b - a)
+        j, i = places[c], owners[c]
+        low, width = nodes[j], nodes[j + 1] - nodes[j]
+        a, b = fabs(slope[j, i]), fabs(slope[j + 1, i])
+        even[c] = 0 if a < FLAT * b or b < FLAT * a else 1
+        if even[c] == 1:
+            first, second, third = 0.25, 0.5, 0.75
+        elif a < b:
+            first, second, third = 1.0 / 512.0, 1.0 / 32.0, 0.25
+        else:
+            first, second, third = 0.75, 31.0 / 32.0, 511.0 / 512.0
+        theta[0, c], theta[1, c], theta[2, c] = low + first * width, low + second * width, low + third * width
 
 
 def brackets(
-    count: Any,
-    nodes: Any,
-    places: Any,
-    owners: Any,
-    slope: Any,
-    thetas: Any,
-    slopes: Any,
-    roots: Any,
-    whose: Any,
-) -> int:
+    count: Any, nodes: Any, places: Any, owners: Any, slope: Any, thetas: Any, slopes: Any, even: Any,
+    roots: Any, whose: Any,
+) -> int:  # fmt: skip
     """The brackets in which the slope changes sign: a column of `roots` each, rows LOW to FIFTH."""
     found = 0
     for c in range(count):
@@ -122,7 +127,7 @@ def brackets(
             after = slopes[k, c] if k < 3 else last
             if (before > 0.0) != (after > 0.0) and before == before and after == after:
                 roots[LOW, found], roots[HIGH, found] = low, high
-                roots[THETA, found], roots[WIDTH, found] = k, high - low
+                roots[THETA, found], roots[WIDTH, found] = (k if even[c] == 1 else -1), high - low
                 roots[BEFORE, found], roots[AFTER, found] = before, after
                 roots[FIRST, found], roots[FIFTH, found] = slope[j, i], last
                 for m in range(3):
@@ -146,7 +151,7 @@ def quartic_slope(k1: float, k2: float, k3: float, k4: float, s: float) -> float
 def begin(count: Any, roots: Any) -> None:
     """The first guess: where the quartic through the five slopes is 0, and its derivative there.
 
-    Before: THETA has the number of the bracket among the four. After: every row from SIGN to SLOPE.
+    Before: THETA has the number of the bracket among four even ones, or -1. After: rows SIGN to SLOPE are set.
     """
     lows, thetas, widths, befores, afters = (
         roots[LOW],
@@ -173,7 +178,7 @@ def begin(count: Any, roots: Any) -> None:
         s -= quartic(g0, k1, k2, k3, a4, s) / quartic_slope(k1, k2, k3, a4, s)
         bend = quartic_slope(k1, k2, k3, a4, s)
         s -= quartic(g0, k1, k2, k3, a4, s) / bend
-        inside = (k <= s) & (s <= k + 1.0)
+        inside = (k >= 0.0) & (k <= s) & (s <= k + 1.0)
         place, secant = s - k, after - before
         thetas[i] = low + (place if inside else part) * width
         bends[i] = (bend if inside else secant) / width
@@ -250,6 +255,7 @@ def search(
     best, here, taken = empty(most), empty(most), empty(most, int64)
     room = longest * most + 1
     places, owners, whose = empty(room, int64), empty(room, int64), empty(4 * room, int64)
+    even = empty(room, int64)
     wide = 64
     inner = empty((3, wide)), empty((3, wide)), empty((3, wide))
     own, roots = empty((inputs, wide)), empty((ROWS, wide))
@@ -268,9 +274,9 @@ def search(
                 own, roots = empty((inputs, wide)), empty((ROWS, wide))
             thetas, values, slopes = inner
             gather(some, owners, block, own)
-            interior(some, grid, places, thetas)
+            interior(some, grid, places, owners, slope, thetas, even)
             points(3, some, thetas, own, values, slopes)
-            ready = brackets(some, grid, places, owners, slope, thetas, slopes, roots, whose)
+            ready = brackets(some, grid, places, owners, slope, thetas, slopes, even, roots, whose)
             begin(ready, roots)
             gather(ready, whose, block, own)
             left, step = ready, 0
