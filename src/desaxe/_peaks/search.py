@@ -151,7 +151,7 @@ def quartic_slope(k1: float, k2: float, k3: float, k4: float, s: float) -> float
 def begin(count: Any, roots: Any) -> None:
     """The first guess: where the quartic through the five slopes is 0, and its derivative there.
 
-    Before: THETA has the number of the bracket among four even ones, or -1. After: rows SIGN to SLOPE are set.
+    Before: THETA has the bracket's number among four even ones, or -1. After: rows SIGN to SLOPE are set.
     """
     lows, thetas, widths, befores, afters = (
         roots[LOW],
