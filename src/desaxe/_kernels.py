@@ -29,6 +29,7 @@ from .compiler.passes.guard import guard_inputs
 from .compiler.passes.number import number_values
 from .compiler.passes.trigonometry import expand_trigonometry
 from .compiler.program import Program
+from .compiler.reductions import emit_reduced
 from .inputs import LEAST
 from .names import LOADS
 
@@ -46,6 +47,7 @@ class KernelKey(NamedTuple):
     axes: int
     accuracy: str = "standard"
     far: bool = False  # some angle is beyond what the written-out sine and cosine reduce exactly
+    reduce: tuple[str, ...] = ()  # what is taken of the innermost axis: max, mean, ...
 
 
 class CompiledKernel(NamedTuple):
@@ -152,18 +154,27 @@ def source_of(key: KernelKey) -> str:
     kernel = kernel_of(key)
     fixed = ", ".join(f"{name} = {value:g}" for name, value in key.fixed)
     motion = "a given state" if key.form.state else "paper A's law"
-    return emit_numba(kernel, f"desaxe kernel: {', '.join(key.names)}; {motion}; {fixed}.", is_single(key))
+    docstring = f"desaxe kernel: {', '.join(key.names)}; {motion}; {fixed}."
+    if key.reduce:
+        return emit_reduced(kernel, key.reduce, docstring, is_single(key))
+    return emit_numba(kernel, docstring, is_single(key))
+
+
+def path_of(source: str) -> Path:
+    """Where the module of a kernel is kept."""
+    return _cache.folder().path / f"kernel_{hashlib.sha256(source.encode()).hexdigest()[:20]}.py"
 
 
 def _load(key: KernelKey) -> CompiledKernel:
     axes = dict(key.axis_of)
     order = tuple((name, axes.get(name)) for name in cut(key.names, key.form, key.fixed).inputs)
     source = source_of(key)
-    path = _cache.folder().path / f"kernel_{hashlib.sha256(source.encode()).hexdigest()[:20]}.py"
+    path = path_of(source)
     with _cache.locked(path):
         if not path.exists():
             _cache.write(path, source)
-        return CompiledKernel(module_at(path).kernel, order)
+        module = module_at(path)
+        return CompiledKernel(module.reduced if key.reduce else module.kernel, order)
 
 
 def module_at(path: Path) -> ModuleType:
