@@ -29,18 +29,22 @@ def run_in_blocks(
     kernel: CompiledKernel, values: Mapping[str, Any], outs: Sequence[Any], threads: int | None
 ) -> None:
     """Run the kernel over its outermost axis in as many blocks as there are threads."""
-    length, size = outs[0].shape[0], outs[0].size
-    count = max(1, min(threads or available(), size // LEAST_BLOCK, length))
-    if count == 1:
-        kernel.run(values, outs)
-        return
-    edges = [length * k // count for k in range(count + 1)]
     outer = {name for name, axis in kernel.axis_of if axis == 0}
 
     def block(start: int, stop: int) -> None:
         part = {name: v[start:stop] if name in outer else v for name, v in values.items()}
         kernel.run(part, [out[start:stop] for out in outs])
 
+    in_blocks(block, outs[0].shape[0], outs[0].size, threads)
+
+
+def in_blocks(block: Callable[[int, int], None], length: int, points: int, threads: int | None) -> None:
+    """Call `block(start, stop)` for as many parts of an axis as there are threads that pay."""
+    count = max(1, min(threads or available(), points // LEAST_BLOCK, length))
+    if count == 1:
+        block(0, length)
+        return
+    edges = [length * k // count for k in range(count + 1)]
     for done in [_pool(count).submit(block, a, b) for a, b in pairwise(edges)]:
         done.result()
 
