@@ -149,13 +149,13 @@ def _fill(
             outs, point_of(key.names, key.form, key.fixed, key.accuracy).run(scalars), strict=True
         ):
             out[...] = value
-    elif _is_early(key, outs[0].size):
-        _fill_by_points(key, scalars, columns, outs)
+    elif is_early(key, outs[0].size):
+        fill_by_points(key, scalars, columns, outs)
     else:
         run_in_blocks(kernel_for(key), {**scalars, **columns}, outs, threads)
 
 
-def _is_early(key: KernelKey, size: int) -> bool:
+def is_early(key: KernelKey, size: int) -> bool:
     """Whether plain Python still pays."""
     if is_ready(key):
         return False
@@ -163,7 +163,7 @@ def _is_early(key: KernelKey, size: int) -> bool:
     return _ASKED[key] < BREAK_EVEN
 
 
-def _fill_by_points(
+def fill_by_points(
     key: KernelKey, scalars: dict[str, float], columns: dict[str, Array], outs: list[Array]
 ) -> None:
     """Plain Python, point by point: nobody pays a compilation for a hundred points."""
