@@ -1,14 +1,16 @@
 """`grid`: the outer product of its arguments, as a labelled xarray.Dataset."""
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from math import prod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._arrays import as_array, buffer_for, delivered, places_for
-from ._kernels import kernel_for, key_of
+from ._arrays import as_array, buffer_for, delivered, fill_by_points, is_early, places_for
+from ._kernels import KernelKey, kernel_for, key_of
+from ._point import point_of
 from ._request import Request, check_border, check_inputs, request, standstill
 from ._threads import run_in_blocks
 from .inputs import INPUTS
@@ -29,6 +31,7 @@ def grid(
     accuracy: str | float = "standard",
     threads: int | None = None,
     out: Any = None,
+    reduce: Mapping[str, str | Sequence[str]] | None = None,
     **inputs: Any,
 ) -> "xr.Dataset | dict[str, Array]":
     """Quantities over the outer product of the inputs, as an xarray.Dataset with units.
@@ -41,6 +44,11 @@ def grid(
     returned as a dict, and xarray is not needed. Otherwise needs the extra `labelled`. Raises as
     `evaluate` does, and for an input of more than one dimension.
 
+    `reduce={"theta": "absmax"}` (max, min, absmax, mean, rms, or a list of these) reduces an axis
+    without storing the grid: the Dataset has `a_C_absmax` over the other axes, `a_C_absmax_theta`,
+    where the largest or smallest sample is, and `a_C_skipped`, how many points along the axis have no
+    value. The extremes are those of the samples; `peak` refines them.
+
         dx.grid(["a_C"], theta=th, ec=ecs, AB=.125, BC=bcs, omega0=157.08).a_C.max("theta")
     """
     wanted = (names,) if isinstance(names, str) else tuple(dict.fromkeys(names))
@@ -49,6 +57,15 @@ def grid(
     shown = wanted if out is not None else tuple(dict.fromkeys((*wanted, *ALWAYS)))
     axes = {name: _axis(name, value, shown) for name, value in given.items() if value is not None}
     dimensions = [name for name in inputs if name in axes and axes[name].ndim]
+    if reduce is not None:
+        if out is not None:
+            raise TypeError("reduce= and out=: give one of them")
+        from ._reduce import reduced_grid
+
+        asked = request(wanted, given, branch, accuracy)
+        _require(asked, axes)
+        whole = partial(_filled, asked, axes, dimensions, threads, None)
+        return reduced_grid(asked, axes, dimensions, reduce, branch, threads, whole)
     if out is not None:
         return _filled(request(wanted, given, branch, accuracy), axes, dimensions, threads, out)
     from ._labels import labelled
@@ -82,10 +99,8 @@ def _filled(
     wanted: Request, axes: Mapping[str, Array], dimensions: Sequence[str], threads: int | None, out: Any
 ) -> dict[str, Array]:
     """The answers over these dimensions, from one loop nest in their order."""
+    _require(wanted, axes)
     inputs = wanted.inputs
-    missing = [name for name in inputs if name not in axes]
-    if missing:
-        raise TypeError(f"{', '.join(wanted.shown)}: {missing[0]} is missing (needed: {', '.join(inputs)})")
     shape = tuple(axes[name].size for name in dimensions)
     places = places_for(wanted.shown, shape, out)
     buffers = {name: buffer_for(name, place, axes.values()) for name, place in places.items()}
@@ -98,7 +113,10 @@ def _filled(
         sizes = _joined(order, columns, places_of, shape or (1,))
         key = key_of(wanted, scalars, columns, places_of, len(sizes))
         outs = [buffer.reshape(sizes) for buffer in buffers.values()]
-        run_in_blocks(kernel_for(key), {**scalars, **columns}, outs, threads)
+        if is_early(key, outs[0].size):
+            _fill_small(key, scalars, columns, places_of, outs)
+        else:
+            run_in_blocks(kernel_for(key), {**scalars, **columns}, outs, threads)
     return delivered(places, buffers, False)
 
 
@@ -118,7 +136,38 @@ def _joined(
     rest = shape[first:]
     for name, axis in axis_of.items():
         if axis >= first:
-            spread = [-1 if place == axis - first else 1 for place in range(len(rest))]
-            columns[name] = np.broadcast_to(columns[name].reshape(spread), rest).reshape(-1)
+            columns[name] = _spread(columns[name], axis - first, rest)
             axis_of[name] = first
     return (*shape[:first], prod(rest))
+
+
+def _fill_small(
+    key: KernelKey,
+    scalars: dict[str, float],
+    columns: Mapping[str, Array],
+    axis_of: Mapping[str, int],
+    outs: Sequence[Array],
+) -> None:
+    """Plain Python, point by point, as for a small array."""
+    if not columns:
+        point = point_of(key.names, key.form, key.fixed, key.accuracy)
+        for out, value in zip(outs, point.run(scalars), strict=True):
+            out[...] = value
+        return
+    shape = outs[0].shape
+    wide = {name: _spread(column, axis_of[name], shape) for name, column in columns.items()}
+    fill_by_points(key, scalars, wide, [out.reshape(-1) for out in outs])
+
+
+def _spread(column: Array, axis: int, shape: tuple[int, ...]) -> Array:
+    """The values along one axis, repeated for each point of a shape, in its order."""
+    return np.broadcast_to(
+        column.reshape([-1 if k == axis else 1 for k in range(len(shape))]), shape
+    ).reshape(-1)
+
+
+def _require(wanted: Request, axes: Mapping[str, Array]) -> None:
+    missing = [name for name in wanted.inputs if name not in axes]
+    if missing:
+        needed = ", ".join(wanted.inputs)
+        raise TypeError(f"{', '.join(wanted.shown)}: {missing[0]} is missing (needed: {needed})")
