@@ -36,7 +36,7 @@ def reduction_of(asked: Any, dimensions: Sequence[str], names: Sequence[str]) ->
         raise TypeError(
             f'reduce = {asked!r}: one axis and what is taken of it, such as {{"theta": "absmax"}}'
         )
-    ((axis, kinds),) = asked.items()
+    axis, kinds = next(iter(asked.items()))
     if axis not in dimensions:
         there = ", ".join(dimensions) or "none"
         raise ValueError(f"reduce: {axis!r} is no axis of this grid; {_near(axis, dimensions)}axes: {there}")
@@ -133,7 +133,7 @@ def _of_whole(
 def _place(kind: str, rows: Array, good: Array) -> Array:
     if not rows.shape[-1]:
         return np.full(rows.shape[:-1], -1)
-    turned = {"max": rows, "min": -rows, "absmax": np.abs(rows)}[kind]
+    turned: Array = np.abs(rows) if kind == "absmax" else -rows if kind == "min" else rows
     # Before the first -inf that is a number there may be one that stands for a NaN.
     found = np.argmax(np.where(good, turned, -np.inf) + np.where(good, 0.0, -np.inf), axis=-1)
     found = np.where(np.take_along_axis(good, found[..., None], -1)[..., 0], found, np.argmax(good, axis=-1))

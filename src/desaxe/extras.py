@@ -8,6 +8,7 @@ EXTRAS = {
     "xarray": "labelled",
     "h5netcdf": "labelled",
     "h5py": "labelled",
+    "zarr": "zarr",
     "matplotlib": "plot",
     "pint": "units",
     "msgspec": "scene",

@@ -5,8 +5,10 @@ schema     the keys of a scene file, their types and what they mean
 values     numbers with units, lists and ranges as SI numbers
 printed    values as a paper prints them, to be compared digit by digit
 read       a file or mapping, checked, as Content
+json_schema  the same for editors
 run        Content -> grid, checks, files
 peaks      its peaks over designs
+write      files: NetCDF, Zarr, CSV, npz
 text       the report
 progress   told while it runs
 """

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from .._accuracy import accuracy_of
 from .._peaks import WITHOUT_COURSE
 from .._program import Form, program_of
+from .._reduce import Reduction, reduction_of
 from ..catalogue import law_name, quantity
 from ..inputs import INPUTS
 from ..names import CENTRES, LOADS, sensitivity
@@ -29,6 +30,7 @@ LENGTHS = ("ec", "AB", "BC")
 SENSITIVITIES = LENGTHS  # of a peak, those on which it depends, unless others are asked for
 
 PICTURES = (".png", ".svg", ".pdf")
+DATA = (".nc", ".zarr", ".csv", ".npz")
 
 
 class Check(NamedTuple):
@@ -88,6 +90,8 @@ class Content(NamedTuple):
     peaks: tuple[Peak, ...]
     pictures: tuple[Picture, ...]
     data: str | None
+    reduction: Reduction | None = None
+    threads: int | None = None
 
 
 def plain_data(source: str | PathLike[str] | Mapping[str, Any]) -> dict[str, Any]:
@@ -139,6 +143,7 @@ def read(data: Mapping[str, Any]) -> Content:
     return Content(
         file.title, outputs, _accuracy(file.accuracy), branch, inputs,
         tuple(checks), tuple(peaks), tuple(pictures), file.results.data,
+        _reduction(file, outputs, inputs), file.threads,
     )  # fmt: skip
 
 
@@ -150,11 +155,27 @@ def _accuracy(written: str | float) -> str:
         raise SceneError(f"accuracy = {shown(written)}: {str(error).partition(': ')[2]}") from None
 
 
+def _reduction(
+    file: schema.SceneFile, outputs: tuple[str, ...], inputs: Mapping[str, Value]
+) -> Reduction | None:
+    """What is taken of which axis instead of storing the grid."""
+    if not file.reduce:
+        return None
+    if not outputs:
+        raise SceneError("reduce: there is nothing to reduce, give outputs = [...]")
+    axes = [name for name, value in inputs.items() if isinstance(value, tuple)]
+    try:
+        return reduction_of(file.reduce, axes, outputs)
+    except (ValueError, TypeError) as error:
+        raise SceneError(str(error)) from None
+
+
 def _require_names(file: schema.SceneFile) -> None:
     """The names of files say what is written into them."""
     data = file.results.data
-    if data is not None and not data.endswith(".nc"):
-        raise SceneError(f"results.data = {shown(data)}: NetCDF is written, so its name must end in .nc")
+    if data is not None and not data.endswith(DATA):
+        ends = ", ".join(DATA)
+        raise SceneError(f"results.data = {shown(data)}: its name must end in one of {ends}")
     if data is not None and not (file.outputs or file.peak):
         raise SceneError(f"results.data = {shown(data)}: there is nothing to write, give outputs = [...]")
     for index, picture in enumerate(file.picture, 1):

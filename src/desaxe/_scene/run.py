@@ -1,13 +1,11 @@
 """Running a scene: values over the grid, peaks, checks, feasibility, files."""
 
-import os
-import tempfile
 from collections.abc import Mapping
 from importlib import import_module
 from itertools import pairwise
 from math import pi, prod
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +18,7 @@ from .peaks import PeakResult, batches, columns_of, peaks_of, provenance
 from .progress import Progress, Steps
 from .read import Check, Content, Picture
 from .values import Value
+from .write import rooms_of, write
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -68,13 +67,20 @@ class Run(NamedTuple):
 def run(content: Content, watch: Progress | None) -> Run:
     """Compute, draw and write all that a scene asks for."""
     _require_rooms(content)
-    blocks = _blocks(content.inputs) if content.outputs else []
+    blocks = _blocks(content) if content.outputs else []
     parts = sum(batches(one) for one in content.peaks)
     steps = Steps(len(blocks) + parts + len(content.pictures) + (content.data is not None), watch)
     checks = tuple(_check(check, content) for check in content.checks)
     dataset = _values(content, blocks, steps) if content.outputs else None
     peaks = tuple(peaks_of(one, content, steps) for one in content.peaks)
-    files = [_data_file(Path(content.data), dataset, peaks, steps)] if content.data is not None else []
+    files = []
+    if content.data is not None:
+        steps.next(f"writing {content.data}")
+        files = write(
+            Path(content.data),
+            dataset,
+            dict(zip(group_names(peaks), (f.dataset for f in peaks), strict=True)),
+        )
     files += [_picture(picture, content, steps) for picture in content.pictures]
     steps.next("")
     return Run(dataset, checks, peaks, _feasibility(content.inputs), tuple(files))
@@ -84,9 +90,7 @@ def _require_rooms(content: Content) -> None:
     """Fail at the start, not at the end, where an optional dependency is missing."""
     rooms = {"outputs": "xarray"} if content.outputs else {}
     rooms |= {"[[peak]]": "xarray"} if content.peaks else {}
-    rooms |= (
-        {"results.data": "h5netcdf", "the file of results.data": "h5py"} if content.data is not None else {}
-    )
+    rooms |= rooms_of(content.data) if content.data is not None else {}
     rooms |= (
         {"[[picture]]": "matplotlib", "the values of a [[picture]]": "xarray"} if content.pictures else {}
     )
@@ -98,18 +102,23 @@ def _require_rooms(content: Content) -> None:
 # ---- the grid ------------------------------------------------------------------------------------
 
 
-def _blocks(inputs: Mapping[str, Value]) -> list[tuple[int, int]]:
+def _blocks(content: Content) -> list[tuple[int, int]]:
     """Where to cut the first axis, so that a large grid can report how far it is."""
-    lengths = [len(value) for value in inputs.values() if isinstance(value, tuple)]
-    first = lengths[0] if lengths else 1
+    lengths = [len(value) for value in content.inputs.values() if isinstance(value, tuple)]
+    first = lengths[0] if lengths and content.reduction is None else 1
     count = max(1, min(first, prod(lengths) // BLOCK))
     return list(pairwise(first * k // count for k in range(count + 1)))
 
 
 def _values(content: Content, blocks: list[tuple[int, int]], steps: Steps) -> "xr.Dataset":
     """The wanted outputs over the outer product of all inputs."""
-    options: dict[str, Any] = {"branch": content.branch, "accuracy": content.accuracy}
+    options = grid_options(content)
     arrays = _arrays(content.inputs)
+    if content.reduction is not None:
+        axis, kinds = content.reduction
+        steps.next("values")
+        reduced: Any = grid(content.outputs, reduce={axis: kinds}, **options, **arrays)
+        return cast("xr.Dataset", reduced.assign_attrs(provenance(content)))
     first = next((name for name, value in arrays.items() if isinstance(value, np.ndarray)), "")
     whole: Any = None
     for start, stop in blocks:
@@ -136,6 +145,11 @@ def _longer(part: "xr.Dataset", first: str, values: NDArray[np.float64]) -> "xr.
     }
     coordinates = {**part.coords, first: (first, values, part[first].attrs)}
     return xarray.Dataset(empty, coordinates, part.attrs)
+
+
+def grid_options(content: Content) -> dict[str, Any]:
+    """What a grid of this scene is told besides its inputs."""
+    return {"branch": content.branch, "accuracy": content.accuracy, "threads": content.threads}
 
 
 def _arrays(inputs: Mapping[str, Value]) -> dict[str, Any]:
@@ -182,25 +196,6 @@ def _gaps(intervals: list[tuple[float, float]]) -> tuple[tuple[float, float], ..
 # ---- files ---------------------------------------------------------------------------------------
 
 
-def _data_file(path: Path, dataset: "xr.Dataset | None", peaks: tuple[PeakResult, ...], steps: Steps) -> Path:
-    """Everything labelled in one NetCDF file: the grid at its root, each peak a group of its own."""
-    steps.next(f"writing {path}")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    parts: list[tuple[str | None, xr.Dataset]] = [(None, dataset)] if dataset is not None else []
-    parts += zip(group_names(peaks), (_apart(found.dataset) for found in peaks), strict=True)
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix=".desaxe-") as folder:
-        staged = Path(folder) / path.name
-        for group, part in parts:
-            part.to_netcdf(staged, mode="a" if staged.exists() else "w", group=group, engine="h5netcdf")
-        os.replace(staged, path)
-    return path
-
-
-def _apart(peaks: "xr.Dataset") -> "xr.Dataset":
-    """Peaks under dimensions of their own: a group may not share one of another length with its parent."""
-    return peaks.rename({name: f"peak_{name}" for name in peaks.dims})
-
-
 def group_names(peaks: tuple[PeakResult, ...]) -> list[str]:
     """A name for each peak, such as `peak_absmax_a_C`; further ones of the same kind get a number."""
     names: list[str] = []
@@ -218,8 +213,7 @@ def _picture(picture: Picture, content: Content, steps: Steps) -> Path:
     # With the names of the outputs the kernel of the grid serves here too, where all inputs are the same.
     shared = picture.quantity in content.outputs and set(picture.inputs) == set(content.inputs)
     names = content.outputs if shared else (picture.quantity,)
-    options: dict[str, Any] = {"branch": content.branch, "accuracy": content.accuracy}
-    dataset: Any = grid(names, **options, **_arrays(picture.inputs))
+    dataset: Any = grid(names, **grid_options(content), **_arrays(picture.inputs))
     axes: Any = curves(dataset, picture.quantity, over=picture.over, family=picture.family)[0].axes
     title = picture.title or content.title
     if title:

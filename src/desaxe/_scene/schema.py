@@ -8,6 +8,9 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 import msgspec
 from msgspec import Meta, Struct
 
+from ..compiler.reductions import KINDS
+from ..inputs import INPUTS
+
 
 class SceneError(ValueError):
     """A scene that cannot be used; the message names the key, its value and what is allowed."""
@@ -50,8 +53,25 @@ _VALUES = (
     "or a range {start = ..., stop = ..., num = ...} (or step instead of num)"
 )
 Values = Annotated[float | str | tuple[Number, ...] | Range, Meta(description=_VALUES)]
-Design = Annotated[dict[str, Number], Meta(description="a table of inputs, such as { ec = 0 }")]
-Axes = Annotated[dict[str, Values], Meta(description='a table of inputs, such as { ec = [0, "50 mm"] }')]
+_INPUT_NAMES = {"propertyNames": {"enum": list(INPUTS)}}
+Design = Annotated[
+    dict[str, Number],
+    Meta(description="a table of inputs, such as { ec = 0 }", extra_json_schema=_INPUT_NAMES),
+]
+Axes = Annotated[
+    dict[str, Values],
+    Meta(description='a table of inputs, such as { ec = [0, "50 mm"] }', extra_json_schema=_INPUT_NAMES),
+]
+Reduced = Annotated[
+    dict[
+        str,
+        Annotated[str | tuple[str, ...], Meta(description=f"one of {', '.join(KINDS)}, or a list of these")],
+    ],
+    Meta(
+        description='a table axis = what is taken of it, such as { theta = "absmax" }',
+        extra_json_schema=_INPUT_NAMES,
+    ),
+]
 
 
 class Mechanism(Section, frozen=True):
@@ -139,7 +159,7 @@ class PictureTable(Section, frozen=True):
 
 
 class Results(Section, frozen=True):
-    """`[results]`: where the labelled values go, a NetCDF file."""
+    """`[results]`: where the labelled values go: .nc (NetCDF), .zarr, .csv or .npz (NumPy)."""
 
     data: File | None = None
 
@@ -150,6 +170,8 @@ class SceneFile(Section, frozen=True):
     title: Text = ""
     outputs: Annotated[tuple[Name, ...], Meta(description=_WORDS)] = ()
     accuracy: Accuracy = "standard"
+    reduce: Reduced = {}
+    threads: Count | None = None
     mechanism: Annotated[Mechanism, Meta(description="a table, [mechanism]")] = Mechanism()
     motion: Annotated[Motion, Meta(description="a table, [motion]")] = Motion()
     masses: Annotated[Masses, Meta(description="a table, [masses]")] = Masses()

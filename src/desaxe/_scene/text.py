@@ -210,7 +210,8 @@ def _files(content: Content, result: Run) -> str:
     if content.data is not None:
         rows += [("", "the values")] if result.dataset is not None else []
         rows += [("", f"group {name}") for name in group_names(result.peaks)]
-        rows[0] = (str(result.files[0]), rows[0][1])
+        data = result.files[: len(result.files) - len(pictures)]
+        rows = [(str(path), what) for path, (_, what) in zip([*data, *[""] * len(rows)], rows, strict=False)]
     paths = result.files[len(result.files) - len(pictures) :]
     rows += [(str(path), what) for path, what in zip(paths, pictures, strict=True)]
     return "\n".join(["Written", *table(rows, left=2)])
