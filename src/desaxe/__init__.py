@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from . import plot as plot
+    from ._compile import compile as compile
     from ._enclose import enclose as enclose
     from ._evaluate import evaluate as evaluate
+    from ._explain import explain as explain
     from ._feasibility import feasibility as feasibility
     from ._grid import grid as grid
     from ._inverse import inverse as inverse
@@ -31,6 +33,8 @@ _ROOMS = {
     "enclose": "desaxe._enclose",
     "feasibility": "desaxe._feasibility",
     "scene": "desaxe._scene",
+    "explain": "desaxe._explain",
+    "compile": "desaxe._compile",
     "simulate": "desaxe._simulate",
     "quantities": "desaxe.catalogue",
     "equation": "desaxe.derive.equation",
@@ -38,9 +42,11 @@ _ROOMS = {
 _MODULES = ("plot",)
 
 __all__ = [
+    "compile",
     "enclose",
     "equation",
     "evaluate",
+    "explain",
     "feasibility",
     "grid",
     "inverse",

@@ -48,6 +48,12 @@ def program_of(names: tuple[str, ...], form: Form = LAW) -> Program:
 
 
 @cache
+def whole_program() -> Program:
+    """Every line of the derivation, under the law."""
+    return _text("program").read()
+
+
+@cache
 def digest() -> str:
     """What identifies the derivation and the compiler that wrote generated/."""
     from importlib import import_module

@@ -104,11 +104,11 @@ def reduced(
     else:
         kernel = kernel_for(key)
         outer = {name for name, axis in kernel.axis_of if axis == 0}
-        values = [{**scalars, **columns}[name] for name, _ in kernel.axis_of]
+        given: dict[str, Any] = {**scalars, **columns}
         names = [name for name, _ in kernel.axis_of]
 
         def block(start: int, stop: int) -> None:
-            part = [v[start:stop] if n in outer else v for n, v in zip(names, values, strict=True)]
+            part = [given[n][start:stop] if n in outer else given[n] for n in names]
             kernel.function(*part, length, *(out[start:stop] for out in outs.values()))
 
         in_blocks(block, next(iter(outs.values())).shape[0], prod(shape) * length, threads)

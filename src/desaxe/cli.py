@@ -57,6 +57,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _run(words: list[str]) -> int:
     if words[:1] == ["derive"]:  # its options are its own
         return _derive(words[1:])
+    if words[:1] == ["point"]:  # options may stand anywhere among its words
+        words = ["point", *sorted(words[1:], key=lambda word: not word.startswith("--"))]
     parser = _parser()
     options = parser.parse_args(words)
     run: Callable[[argparse.Namespace], int] | None = getattr(options, "run", None)
@@ -81,7 +83,17 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action=_Version, help="print the version and leave")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=_Parser)
-    for add in (_add_point, _add_run, _add_derive, _add_errata, _add_audit, _add_doctor):
+    for add in (
+        _add_point,
+        _add_scene,
+        _add_run,
+        _add_explain,
+        _add_compile,
+        _add_derive,
+        _add_errata,
+        _add_audit,
+        _add_doctor,
+    ):
         add(commands)
     return parser
 
@@ -287,7 +299,9 @@ def _json_number(value: float) -> float | None:
 _RUN = """\
 A scene is a TOML file. It is data only: nothing in it is executed. Its keys:
 
-  title, outputs = ["V_C", "a_C"] (over the grid of all lists and ranges below), accuracy
+  title, outputs = ["V_C", "a_C"] (over the grid of all lists and ranges below), accuracy, threads
+  [reduce]        theta = "absmax" (max, min, absmax, mean, rms, or a list of these): of each output
+                  over this axis, without storing the grid
   [mechanism]     AB, BC, ec, branch
   [motion]        theta, omega0 or omega, alpha
   [masses]        m_crank, m_rod, m_slider, I_crank, I_rod, r_crank, r_rod
@@ -298,15 +312,93 @@ A scene is a TOML file. It is data only: nothing in it is executed. Its keys:
                   theta = [from, to], baseline = { ec = 0 }, sensitivities = ["ec", "m_rod"], title
   [[peak.claim]]  at = { ec = "150 mm" }, increase = "33 %", source
   [[picture]]     file, quantity, over = "theta", family = { ec = [0, "50 mm"] }, at, title
-  [results]       data = "out/values.nc" (NetCDF; the peaks are groups in it)
+  [results]       data = "out/values.nc" (NetCDF; the peaks are groups in it), .zarr, .csv or .npz
 
-Files are written relative to the current directory. Pictures and values need the extras `plot` and
-`labelled`.
+`desaxe scene --schema > scene.schema.json` and a first line `#:schema scene.schema.json` let editors
+complete and check these keys. Files are written relative to the current directory. Pictures and
+values need the extras `plot` and `labelled`.
 
 examples:
   desaxe run examples/compactor.toml
   desaxe run examples/feeder.toml
   desaxe run my_press.toml > report.txt"""
+
+
+_SCENE = """\
+examples:
+  desaxe scene my_press.toml                     says what is wrong with it, or nothing
+  desaxe scene --schema > scene.schema.json      for editors: #:schema scene.schema.json"""
+
+
+def _add_scene(commands: Any) -> None:
+    parser = _add(commands, "scene", "check a scene file without running it", _SCENE, _check_scene)
+    parser.add_argument("scene", metavar="SCENE", nargs="?", help="path of a TOML file")
+    parser.add_argument("--schema", action="store_true", help="print the JSON schema of scene files")
+
+
+def _check_scene(options: argparse.Namespace) -> int:
+    if options.schema == (options.scene is not None):
+        raise UsageError("which scene? give the path of a file, or --schema")
+    if options.schema:
+        from ._scene.json_schema import json_schema_text
+
+        print(json_schema_text(), end="")
+        return 0
+    from . import scene
+
+    found = scene(options.scene)
+    print(f"{options.scene}: fine" + (f", {', '.join(found.outputs)}" if found.outputs else ""))
+    return 0
+
+
+_EXPLAIN = """\
+What a run will do, without doing it: what is skipped and why, operations at each point after each
+pass, what runs in which loop, whether it is compiled, expected time and memory.
+
+examples:
+  desaxe explain examples/compactor.toml
+  desaxe explain my_press.toml --json"""
+
+
+def _add_explain(commands: Any) -> None:
+    parser = _add(
+        commands, "explain", "the plan of a scene, as a database explains a query", _EXPLAIN, _explain
+    )
+    parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+
+
+def _explain(options: argparse.Namespace) -> int:
+    from . import explain
+
+    plan = explain(options.scene)
+    print(plan.to_json() if options.json else plan)
+    return 0
+
+
+_COMPILE = """\
+Writes a module of its own, which imports NumPy and numba and nothing of desaxe, with `point(...)`,
+`evaluate(...)` and `run()`. What the scene gives as a number is folded in; its lists and ranges are
+the arguments.
+
+example:
+  desaxe compile my_press.toml -o my_kernels.py"""
+
+
+def _add_compile(commands: Any) -> None:
+    parser = _add(
+        commands, "compile", "write the kernels of a scene as a module of its own", _COMPILE, _compile
+    )
+    parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
+    parser.add_argument("-o", metavar="FILE", dest="file", required=True, help="the module, FILE.py")
+
+
+def _compile(options: argparse.Namespace) -> int:
+    from . import compile as compile_scene
+
+    place = compile_scene(options.scene, options.file)
+    print(f"{place}: {len(place.read_text(encoding='utf-8').splitlines())} lines")
+    return 0
 
 
 def _add_run(commands: Any) -> None:

@@ -98,7 +98,7 @@ def test_squares_of_any_scale():
 
 
 def test_the_sum_keeps_what_rounding_takes():
-    # V_C is 20 m/s and its mean over a whole turn is 0: by symmetry exactly so, but for the samples' rounding.
+    # V_C is 20 m/s; its mean over angles that are symmetric to 0 is 0, exactly.
     theta = np.arange(-100_000, 100_001) * 2.0**-15
     found = dx.grid("V_C", reduce={"theta": "mean"}, theta=theta, ec=0.0, BC=0.35, **MACHINE)
     assert abs(float(found.V_C_mean)) < 1e-22

@@ -1,0 +1,51 @@
+"""Time and memory before anything runs, from what operations cost.
+
+The table of operations has each cost in additions; a loop that vectorises spends about the same time
+on each of these, whatever the kernel: 0.024 to 0.038 ns on a core with AVX-512 from one kernel to the
+next, from 82 additions a point to 1034. `python -m benchmarks.startup` measures the rest.
+"""
+
+from collections.abc import Sequence
+from math import prod
+from typing import NamedTuple
+
+from .loops import Loop
+
+ADDITION = 0.03e-9  # s, in a vectorised loop on one core
+STORE = 0.4e-9  # s to write a double that does not stay in the cache
+PLAIN = 40e-9  # s for an operation in plain Python, with what surrounds it
+PLAIN_POINT = 2e-6  # s for a point besides its operations
+IMPORT = 0.35  # s for numba in a process that has not used it yet
+LOAD = 0.03  # s to load a kernel that an earlier process compiled
+COMPILE = 0.3  # s to compile a kernel, and for each of its lines
+COMPILE_LINE = 2e-3
+
+
+class Estimate(NamedTuple):
+    """Seconds of the loops on one core and on `threads`, before the first result, and bytes."""
+
+    one_core: float
+    threads: int
+    first: float
+    again: float
+    bytes: int
+
+
+def loops_time(loops: Sequence[Loop], stored: int) -> float:
+    """Seconds on one core, from the operations and the doubles that are stored."""
+    return sum(loop.runs * loop.cost for loop in loops) * ADDITION + stored * STORE
+
+
+def plain_time(operations: int, points: int) -> float:
+    """Seconds in plain Python."""
+    return points * (PLAIN_POINT + operations * PLAIN)
+
+
+def compile_time(loops: Sequence[Loop]) -> float:
+    """Seconds that the first process waits for a kernel."""
+    return COMPILE + COMPILE_LINE * sum(loop.operations for loop in loops)
+
+
+def bytes_of(doubles: int, small: int, shape: Sequence[int]) -> int:
+    """Bytes of a result: arrays of doubles and of int8 over a shape."""
+    return (8 * doubles + small) * prod(shape)
