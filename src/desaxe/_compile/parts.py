@@ -121,7 +121,7 @@ def evaluate_function(
             "        return dict(zip(OUTPUTS, point(*(float(a) for a in arrays)), strict=True))",
             "    flat = [ascontiguousarray(a).reshape(-1) for a in arrays]",
             "    out = {name: empty(arrays[0].shape, kind) for name, kind in OUTPUTS.items()}",
-            "    places = [array.reshape(-1) for array in out.values()]",
+            "    places = [place.reshape(-1) for place in out.values()]",
             "",
             "    def block(start, stop):",
             "        point_kernel(*(a[start:stop] for a in flat), *(a[start:stop] for a in places))",
@@ -213,7 +213,7 @@ def run_reduced_function(
         f'    at = append(AXES["{last}"], nan)  # -1: nowhere',
     ]
     if not rest:
-        lines.append("    places = [array[0] for array in places]")
+        lines.append("    places = [place[0] for place in places]")
     lines.append("    return {")
     for index, (name, kind) in enumerate(shown):
         if name.endswith("_count") and kind == "int64":

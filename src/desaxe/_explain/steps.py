@@ -35,7 +35,7 @@ WHAT = {
     "number": "what is computed twice is computed once",
     "unused": "lines that nothing needs any more",
     "keep": "NaN is kept where the mechanism cannot be assembled",
-    "write out": "sine, cosine, checks of inputs in plain arithmetic: loops vectorise",
+    "write out": "sine, cosine and checks as arithmetic: loops vectorise",
 }
 
 

@@ -52,12 +52,16 @@ def _unit(unit: str) -> str:
 
 
 def _cut(line: str) -> str:
-    return line if len(line) <= WIDTH + 2 else line[: WIDTH - 2].rstrip(" .,") + " ..."
+    if len(line) <= WIDTH + 2:
+        return line
+    return line[: line.rindex(" ", 0, WIDTH - 2)].rstrip(" ,;") + ", ..."
 
 
 def _wrapped(word: str, parts: list[str]) -> list[str]:
-    rows = wrap(", ".join(parts), WIDTH - 11, break_long_words=False)
-    return [f"  {word if not index else '':8} {row}" for index, row in enumerate(rows)]
+    """Parts after a word; only a single part is broken inside."""
+    whole = [part.replace(" ", "\xa0") for part in parts] if len(parts) > 1 else parts
+    rows = wrap(", ".join(whole), WIDTH - 11, break_long_words=False)
+    return [f"  {word if not index else '':8} {row}".replace("\xa0", " ") for index, row in enumerate(rows)]
 
 
 def _skipped(plan: Mapping[str, Any]) -> str:
@@ -125,13 +129,13 @@ def _share(value: float) -> str:
 
 
 def _values(loop: Mapping[str, Any]) -> str:
-    """The named values of a loop, and its expensive operations."""
+    """The expensive operations of a loop, and its named values."""
     dear = [
         f"{count} {op}" for op, count in loop["kinds"].items() if op in ("sqrt", "div", "sin", "cos", "atan2")
     ]
     named = [name for name in loop["values"] if not name[1:].isdigit()]
-    more = ", ..." if len(named) > 4 else ""
-    return ", ".join(named[:4]) + more + (f" ({', '.join(dear)})" if dear else "")
+    told = [", ".join(dear)] if dear else []
+    return "; ".join(told + ([", ".join(named)] if named else []))
 
 
 def _how(plan: Mapping[str, Any]) -> str:
@@ -142,7 +146,7 @@ def _how(plan: Mapping[str, Any]) -> str:
     if run["way"] == "compiled":
         told = {
             "memory": "in this process already",
-            "disk": "compiled by an earlier process, loaded from disk",
+            "disk": "on disk, from an earlier process",
             "no": "not compiled yet; kept on disk afterwards",
         }[run["cached"]]
         threads = f"{run['threads']} threads" if run["threads"] > 1 else "one thread"
