@@ -299,7 +299,7 @@ def _json_number(value: float) -> float | None:
 _RUN = """\
 A scene is a TOML file. It is data only: nothing in it is executed. Its keys:
 
-  title, outputs = ["V_C", "a_C"] (over the grid of all lists and ranges below), accuracy, threads
+  title, accuracy, threads, outputs = ["V_C", "a_C"] (over the grid of all lists and ranges)
   [reduce]        theta = "absmax" (max, min, absmax, mean, rms, or a list of these): of each output
                   over this axis, without storing the grid
   [mechanism]     AB, BC, ec, branch

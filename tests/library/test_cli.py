@@ -17,7 +17,7 @@ from desaxe.inputs import INPUTS
 
 COMPACTOR = str(Path(__file__).parents[2] / "examples" / "compactor.toml")
 POINT = ["theta=60deg", "ec=10mm", "AB=125mm", "BC=300mm", "omega0=1500rpm"]
-COMMANDS = ("point", "run", "derive", "errata", "audit", "doctor")
+COMMANDS = ("point", "scene", "run", "explain", "compile", "derive", "errata", "audit", "doctor")
 
 
 def test_point(capsys):
@@ -61,6 +61,16 @@ def test_point_in_json(capsys):
     found = json.loads(capsys.readouterr().out)
     assert found["a_C"]["value"] is None
     assert found["status"] == "cannot be assembled here"
+
+
+def test_options_of_point_stand_anywhere(capsys):
+    texts = set()
+    for place in range(len(POINT) + 2):
+        words = ["a_C", *POINT]
+        words.insert(place, "--json")
+        assert main(["point", *words]) == 0
+        texts.add(capsys.readouterr().out)
+    assert len(texts) == 1
 
 
 def test_point_with_branch_and_state(capsys):
@@ -149,6 +159,34 @@ def test_scene_that_is_wrong(tmp_path, capsys):
     err = capsys.readouterr().err
     assert 'press.toml: mechanism.ec.stop = "3 kg": it must be a quantity in m' in err
     assert err.count("\n") == 1
+
+
+def test_scene_that_is_fine(tmp_path, capsys):
+    assert main(["scene", COMPACTOR]) == 0
+    assert capsys.readouterr().out == f"{COMPACTOR}: fine, V_C, a_C, omega_BC, alpha_BC\n"
+    assert main(["scene"]) == 2
+    assert "give the path of a file, or --schema" in capsys.readouterr().err
+    wrong = tmp_path / "wrong.toml"
+    wrong.write_text('outputs = ["a_D"]', encoding="utf-8")
+    assert main(["scene", str(wrong)]) == 2
+    assert "did you mean" in capsys.readouterr().err
+
+
+def test_explain(capsys):
+    assert main(["explain", COMPACTOR]) == 0
+    text = capsys.readouterr().out
+    assert text == f"{dx.explain(COMPACTOR)}\n"
+    assert main(["explain", COMPACTOR, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["operations"]["per_point"] > 0
+
+
+def test_compile(tmp_path, capsys):
+    place = tmp_path / "kernels.py"
+    assert main(["compile", COMPACTOR, "-o", str(place)]) == 0
+    out = capsys.readouterr().out
+    text = place.read_text(encoding="utf-8")
+    assert out == f"{place}: {len(text.splitlines())} lines\n"
+    compile(text, "kernels.py", "exec")
 
 
 def test_run(tmp_path, monkeypatch, capsys):

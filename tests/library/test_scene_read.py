@@ -17,7 +17,11 @@ from tests.library.scenes import COMPACTOR, SMALL, changed
 
 PEAK = {"quantity": "a_C"}
 MISTAKES = {
-    "data file of another kind": ("results.data", "x.csv", ['results.data = "x.csv"', "must end in .nc"]),
+    "data file of another kind": (
+        "results.data",
+        "x.xls",
+        ['results.data = "x.xls"', "must end in one of .nc, .zarr"],
+    ),
     "picture of an unknown kind": (
         "picture",
         [{"quantity": "a_C", "file": "x.xyz"}],

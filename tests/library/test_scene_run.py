@@ -392,3 +392,51 @@ def test_files_are_whole_or_not_there(tmp_path, monkeypatch):
         scene.run()
     assert Path("values.nc").read_bytes() == before
     assert [path.name for path in tmp_path.iterdir()] == ["values.nc"]
+
+
+# ---- reductions and files of other kinds ----------------------------------------------------------
+
+
+def test_reduced_outputs():
+    reduced = {**SMALL, "reduce": {"theta": ["absmax", "rms"]}, "threads": 2}
+    result = dx.scene(reduced).run()
+    whole = dx.scene(SMALL).run().dataset
+    assert result.dataset.a_C_absmax.dims == ("ec",)
+    np.testing.assert_array_equal(result.dataset.a_C_absmax, np.abs(whole.a_C).max("theta"))
+    assert result.dataset.attrs["title"] == "small"
+    assert "V_C, a_C (absmax, rms over theta) over ec (2)" in str(result)
+
+
+def test_data_in_every_format(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    scene = {**SMALL, "peak": [{"quantity": "a_C"}]}
+    for name in ("a.nc", "a.zarr", "a.csv", "a.npz"):
+        for _ in range(2):  # an earlier file is replaced
+            result = dx.scene({**scene, "results": {"data": name}}).run()
+        assert result.files[0] == Path(name)
+        assert f"{name} " in str(result)
+    dataset, peaks = result.dataset, result.peaks[0].dataset
+    with xarray.open_zarr(tmp_path / "a.zarr", consolidated=False) as written:
+        xarray.testing.assert_equal(written.load(), dataset)
+    with np.load(tmp_path / "a.npz") as written:
+        np.testing.assert_array_equal(written["a_C"], dataset.a_C)
+        np.testing.assert_array_equal(written["peak_absmax_a_C/value"], peaks.value)
+    lines = (tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[0] == "ec [m],theta [rad],V_C [m/s],a_C [m/s^2],status,margin [m]"
+    rows = np.array([line.split(",") for line in lines[1:]], dtype=float)
+    np.testing.assert_array_equal(rows[:, 3], dataset.a_C.values.reshape(-1))
+    np.testing.assert_array_equal(rows[:, 0], np.repeat(dataset.ec.values, 5))
+    np.testing.assert_array_equal(rows[:, 5], np.repeat(dataset.margin.values, 5))
+    assert (
+        (tmp_path / "a_peak_absmax_a_C.csv").read_text(encoding="utf-8").startswith("ec [m],value [m/s^2],")
+    )
+    assert not list(tmp_path.glob(".desaxe-*"))
+
+
+def test_missing_zarr(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(sys.modules, "zarr", None)
+    with pytest.raises(
+        ImportError, match=r"results\.data needs zarr: python -m pip install 'desaxe\[zarr\]'"
+    ):
+        dx.scene({**SMALL, "results": {"data": "a.zarr"}}).run()

@@ -200,7 +200,9 @@ def _values(content: Content, result: Run) -> str:
     assert result.dataset is not None
     shape = " x ".join(f"{name} ({size})" for name, size in result.dataset.sizes.items())
     kept = "" if content.data is not None else '\n  not kept in a file: give [results] data = "out/values.nc"'
-    return f"Values\n  {', '.join(content.outputs)} over {shape or 'one point'}{kept}"
+    taken = content.reduction
+    of = f" ({', '.join(taken.kinds)} over {taken.axis})" if taken else ""
+    return f"Values\n  {', '.join(content.outputs)}{of} over {shape or 'one point'}{kept}"
 
 
 def _files(content: Content, result: Run) -> str:
