@@ -314,9 +314,9 @@ A scene is a TOML file. It is data only: nothing in it is executed. Its keys:
   [[picture]]     file, quantity, over = "theta", family = { ec = [0, "50 mm"] }, at, title
   [results]       data = "out/values.nc" (NetCDF; the peaks are groups in it), .zarr, .csv or .npz
 
-`desaxe scene --schema > scene.schema.json` and a first line `#:schema scene.schema.json` let editors
-complete and check these keys. Files are written relative to the current directory. Pictures and
-values need the extras `plot` and `labelled`.
+`desaxe scene --schema > scene.schema.json` and a first line `#:schema scene.schema.json` let
+editors complete and check these keys. Files are written relative to the current directory. Pictures
+and values need the extras `plot` and `labelled`.
 
 examples:
   desaxe run examples/compactor.toml
