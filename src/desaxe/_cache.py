@@ -2,9 +2,7 @@
 
 import atexit
 import os
-import shutil
 import sys
-import tempfile
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -25,6 +23,9 @@ class Folder(NamedTuple):
 @cache
 def folder() -> Folder:
     """The first place that can be written: $DESAXE_CACHE_DIR, the user's cache, else a temporary one."""
+    import shutil
+    import tempfile
+
     for path in _candidates():
         with suppress(OSError):
             path.mkdir(parents=True, exist_ok=True)
@@ -54,6 +55,8 @@ def _candidates() -> list[Path]:
 
 def write(path: Path, text: str) -> None:
     """Write a file so that no reader ever sees a part of it."""
+    import tempfile
+
     handle, name = tempfile.mkstemp(dir=path.parent, suffix=".new")
     try:
         with os.fdopen(handle, "w", encoding="utf-8") as file:

@@ -2,9 +2,12 @@
 
 from functools import cache
 from importlib import import_module
+from typing import TYPE_CHECKING
 
-from .compiler.passes.double_angles import DoubleTrigonometry
 from .compiler.passes.trigonometry import Trigonometry
+
+if TYPE_CHECKING:
+    from .compiler.passes.double_angles import DoubleTrigonometry
 
 
 @cache
@@ -20,6 +23,8 @@ def single_constants() -> Trigonometry:
 
 
 @cache
-def double_constants() -> DoubleTrigonometry:
+def double_constants() -> "DoubleTrigonometry":
     """Those of twice the digits."""
+    from .compiler.passes.double_angles import DoubleTrigonometry
+
     return DoubleTrigonometry(**import_module("desaxe.generated.trigonometry").DOUBLE)

@@ -9,7 +9,6 @@ from ._constants import double_constants
 from ._program import Form, program_of
 from .compiler.emit_python import compile_python
 from .compiler.forms import in_two_forms
-from .compiler.passes.double_double import double_digits, with_finer_forms
 from .compiler.passes.pipeline import optimise
 from .compiler.passes.slicing import keep_outputs
 from .compiler.program import Line, Program, names_in, renamed
@@ -67,7 +66,11 @@ def plain_form(names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float
 
 
 def _finer(program: Program, accuracy: str) -> Program:
-    return with_finer_forms(program) if accuracy == "extended" else program
+    if accuracy != "extended":
+        return program
+    from .compiler.passes.double_double import with_finer_forms
+
+    return with_finer_forms(program)
 
 
 def _needs(program: Program) -> dict[str, frozenset[str]]:
@@ -87,6 +90,8 @@ def point_of(
     program = cut(names, form, fixed, accuracy)
     if accuracy != "extended":
         return Point(_by_room(names, form, fixed), program.inputs)
+    from .compiler.passes.double_double import double_digits
+
     program = double_digits(program, double_constants())
     function = compile_python(program)
     if "theta" not in program.inputs:

@@ -6,7 +6,6 @@ functions such as ``mpmath.mp``; it is how the tests tell what a pass did to the
 
 import math
 from collections.abc import Mapping
-from fractions import Fraction
 from typing import Any
 
 from .operations import OPERATIONS
@@ -63,6 +62,8 @@ def _two_sum_error(a: float, b: float) -> float:
 
 
 def _two_product_error(a: float, b: float) -> float:
+    from fractions import Fraction  # with decimal and re: a large import for a rare constant
+
     product = a * b
     if product - product != 0.0:
         return math.nan
