@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from ._point import Point, point_of
-from ._request import as_number, check_border, is_steady, request, standstill
-from .inputs import is_good
+from ._request import as_number, check_border, check_inputs, is_steady, request, standstill
+from .inputs import INPUTS, is_good
 from .names import LOADS
 
 
@@ -40,6 +40,7 @@ def evaluate(
     threads: int | None = None,
     out: Any = None,
     quality: bool = False,
+    **unknown: Any,
 ) -> Any:
     """Values of quantities and sensitivities, at one point or over arrays that broadcast like NumPy.
 
@@ -77,6 +78,8 @@ def evaluate(
     only), and where a force or mu is asked about 5 friction jams (no forces balance) or 6 two sets of
     forces balance. Raises ValueError for an unknown name or a bad value, TypeError for a missing input.
     """
+    if unknown:
+        check_inputs("evaluate", unknown, (*INPUTS, "branch", "accuracy", "threads", "out", "quality"))
     given = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
     if not (
         m_crank is None

@@ -81,7 +81,7 @@ def grid(
 
 def _given(names: Sequence[str], inputs: Mapping[str, Any]) -> dict[str, Any]:
     """The inputs with their defaults; a TypeError for one that there is not."""
-    check_inputs("grid", inputs, tuple(INPUTS))
+    check_inputs("grid", inputs, (*INPUTS, "branch", "accuracy", "threads", "out", "reduce"))
     given = dict(inputs)
     if given.get("omega0") is None and given.get("omega") is None:
         given["omega0"] = standstill(names, given)
