@@ -54,13 +54,18 @@ def _candidates() -> list[Path]:
 
 
 def write(path: Path, text: str) -> None:
+    """Write a text so that no reader ever sees a part of it."""
+    write_bytes(path, text.encode())
+
+
+def write_bytes(path: Path, data: bytes) -> None:
     """Write a file so that no reader ever sees a part of it."""
     import tempfile
 
     handle, name = tempfile.mkstemp(dir=path.parent, suffix=".new")
     try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
         os.replace(name, path)
     except BaseException:
         with suppress(OSError):

@@ -14,7 +14,7 @@ from threading import Lock
 from types import ModuleType
 from typing import Any, NamedTuple
 
-from . import _cache
+from . import _cache, _machine_code
 from ._accuracy import check_angle
 from ._constants import constants, double_constants, single_constants
 from ._point import cut, plain_form
@@ -171,10 +171,15 @@ def _load(key: KernelKey) -> CompiledKernel:
     source = source_of(key)
     path = path_of(source)
     with _cache.locked(path):
+        kept = _machine_code.load(path)
+        if kept is not None:
+            return CompiledKernel(kept, order)
         if not path.exists():
             _cache.write(path, source)
         module = module_at(path)
-        return CompiledKernel(module.reduced if key.reduce else module.kernel, order)
+        function = module.reduced if key.reduce else module.kernel
+        _machine_code.save(function, path)
+        return CompiledKernel(function, order)
 
 
 def module_at(path: Path) -> ModuleType:
