@@ -15,8 +15,8 @@ ADDITION = 0.03e-9  # s, in a vectorised loop on one core
 STORE = 0.4e-9  # s to write a double that does not stay in the cache
 PLAIN = 40e-9  # s for an operation in plain Python, with what surrounds it
 PLAIN_POINT = 2e-6  # s for a point besides its operations
-IMPORT = 0.35  # s for numba in a process that has not used it yet
-LOAD = 0.03  # s to load a kernel that an earlier process compiled
+IMPORT = 0.6  # s for numba and its tables in a process that has not used it yet
+LOAD = 0.06  # s to load a kernel that an earlier process compiled
 COMPILE = 0.3  # s to compile a kernel, and for each of its lines
 COMPILE_LINE = 2e-3
 

@@ -5,11 +5,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import prod
 from os import PathLike
+from pathlib import Path
 from typing import Any
 
 from .. import _arrays
 from .._constants import double_constants
 from .._kernels import KernelKey, is_ready, is_single, kernel_of, path_of, source_of
+from .._machine_code import SUFFIX
 from .._point import cut
 from .._program import digest
 from .._scene import Scene
@@ -156,9 +158,8 @@ def _run(content: Content, found: GridKernel, loops: list[Loop], compiled: bool)
     one = estimate.loops_time(loops, 0 if content.reduction else points * outs)
     length = found.sizes[0]
     threads = max(1, min(content.threads or available(), points // LEAST_BLOCK, length))
-    first = {"memory": 0.0, "disk": estimate.IMPORT + estimate.LOAD}.get(
-        cached, estimate.IMPORT + estimate.compile_time(loops)
-    )
+    load = estimate.LOAD + (0.0 if _stands_alone(Path(path)) else estimate.IMPORT)
+    first = {"memory": 0.0, "disk": load}.get(cached, estimate.IMPORT + estimate.compile_time(loops))
     return {
         "way": "compiled" if compiled else "plain Python",
         "break_even": _arrays.BREAK_EVEN,
@@ -182,8 +183,13 @@ def _cached(key: KernelKey) -> tuple[str, str]:
     path = path_of(source_of(key))
     if is_ready(key):
         return "memory", str(path)
-    kept = any(path.parent.glob(f"__pycache__/{path.stem}*.nbi"))
+    kept = _stands_alone(path) or any(path.parent.glob(f"__pycache__/{path.stem}*.nbi"))
     return ("disk" if kept else "no"), str(path)
+
+
+def _stands_alone(path: Path) -> bool:
+    """Whether machine code is kept that numba is not needed for."""
+    return path.with_suffix(SUFFIX).exists()
 
 
 def _memory(content: Content, found: GridKernel) -> dict[str, int]:

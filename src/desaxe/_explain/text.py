@@ -142,7 +142,7 @@ def _how(plan: Mapping[str, Any]) -> str:
     """How it runs, how long, how much memory."""
     run, seconds = plan["run"], plan["run"]["seconds"]
     lines = ["Execution"]
-    points = f"{plan['points']:,} points"
+    points = f"{plan['points']:,} point{'s' if plan['points'] != 1 else ''}"
     if run["way"] == "compiled":
         told = {
             "memory": "in this process already",
@@ -157,7 +157,7 @@ def _how(plan: Mapping[str, Any]) -> str:
         )
         numbers = [one["name"] for one in plan["inputs"] if one.get("value")]
         if numbers:
-            lines += _wrapped("reuse", [f"other values of {', '.join(numbers)} compile nothing new"])
+            lines += _wrapped("reuse", [f"other values of {', '.join(numbers)} (but 0) compile nothing new"])
     else:
         lines.append("  kernel   none: plain Python over math, nothing is compiled, numba is not imported")
         lines.append(f"  why      {points}; below {run['break_even']:,} a compilation does not pay")
