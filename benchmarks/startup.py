@@ -1,9 +1,9 @@
 """`python -m benchmarks.startup`: what a new process waits for before its first answer.
 
 Each row is the median of several new processes, which take turns. A kernel that an earlier process
-compiled is loaded from disk; what numba needs for that (its own import, and the tables of types that
-it fills before the first kernel, which import scipy.linalg where SciPy is installed) is shown apart
-from what is ours: reading the program, cutting it, and loading the machine code.
+compiled is loaded from disk, without numba where it stands alone. What numba would need for that is
+shown too: its own import, and the tables of types that it fills before the first kernel, which import
+scipy.linalg where SciPy is installed.
 """
 
 import argparse
