@@ -203,10 +203,7 @@ def _good(designs: Designs) -> dict[str, Array]:
 def _classed(designs: Designs, rows: NDArray[np.intp]) -> Groups:
     """The designs by their classes, which share nodes."""
     lengths = [designs.columns[n][rows] for n in ("ec", "AB", "BC") if n in designs.columns]
-    if len(lengths) < 3:
-        numbers = np.zeros(rows.size, np.int16)
-    else:
-        numbers = classes(*lengths)
+    numbers = np.zeros(rows.size, np.int16) if len(lengths) < 3 else classes(*lengths)
     if rows.size == 1 or (numbers == numbers[0]).all():
         nodes = shared_nodes(int(numbers[0]), *designs.theta)
         return Groups(rows, np.array([0, rows.size]), nodes, np.array([0, nodes.size]))
