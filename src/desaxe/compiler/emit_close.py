@@ -11,7 +11,52 @@ from collections.abc import Mapping
 from .kernel import Close, Kernel, close_programs, level_program
 from .text import INDENT, write_lines
 
-BLOCK = 512  # points: their inputs and outputs stay in the first-level cache
+# Rooms on the stack: the compiler knows that nothing else points there, and nothing has to be allocated.
+ROOMS = """@intrinsic
+def room(typingctx):
+    \"\"\"Room for the numbers of one block, on the stack.\"\"\"
+
+    def code(context, builder, signature, args):
+        kind = context.get_value_type(types.float64)
+        return builder.alloca(kind, size=context.get_constant(types.int64, SIZE))
+
+    return types.CPointer(types.float64)(), code
+
+
+@intrinsic
+def put(typingctx, room, place, value):
+    \"\"\"Keep a value at a place of a room.\"\"\"
+
+    def code(context, builder, signature, args):
+        room, place, value = args
+        builder.store(value, builder.gep(room, [place]))
+        return context.get_dummy_value()
+
+    return types.none(room, types.uint64, types.float64), code
+
+
+@intrinsic
+def get(typingctx, room, place):
+    \"\"\"The value at a place of a room.\"\"\"
+
+    def code(context, builder, signature, args):
+        return builder.load(builder.gep(args[0], [args[1]]))
+
+    return types.float64(room, types.uint64), code
+"""
+STACK = 32_768  # numbers that all rooms together may take
+APART = 72  # numbers between rooms: at a multiple of 4096 bytes a store holds up loads from other rooms
+
+
+def block_of(kernel: Kernel) -> int:
+    """Points of a block: their inputs and outputs stay in the first-level cache, and on the stack."""
+    rooms = 1 + len(_kept(kernel)) + len(kernel.outputs)
+    return max(16, min(512, (STACK // rooms - APART) // 16 * 16))
+
+
+def rooms(kernel: Kernel) -> str:
+    """The source of what a mixed kernel calls besides operations."""
+    return ROOMS.replace("SIZE", str(block_of(kernel) + APART))
 
 
 def is_mixed(kernel: Kernel) -> bool:
@@ -24,9 +69,7 @@ def scratch(kernel: Kernel) -> list[str]:
     if not is_mixed(kernel):
         return []
     names = [*_kept(kernel), *(f"out_{name}" for name in kernel.outputs)]
-    whole = {f"out_{name}" for name in kernel.outputs if kernel.types.get(name) == "i64"}
-    rows = [f"{name}_kept = empty({BLOCK}{', int8' if name in whole else ''})" for name in names]
-    return [f"place = empty({BLOCK}, uint64)", *rows]
+    return ["place = room()", *(f"{name}_kept = room()" for name in names)]
 
 
 def _kept(kernel: Kernel) -> list[str]:
@@ -72,18 +115,19 @@ def _mixed(
     """Blocks: all points in the plain form, then those that fail the test in the stable one."""
     last, names = kernel.axes - 1, _kept(kernel)
     test, stable = (write_lines(program, "numba") for program in close_programs(kernel))
-    found = [f"{name}_kept[count] = {name}" for name in names]
-    found += [f"place[count] = i{last}", "count += uint64(1)"]
-    index = ", ".join([*(f"i{axis}" for axis in range(last)), "place[k]"])
+    found = [f"put({name}_kept, count, {name})" for name in names]
+    found += [f"put(place, count, i{last})", "count += uint64(1)"]
+    index = ", ".join([*(f"i{axis}" for axis in range(last)), "uint64(get(place, k))"])
     block = f"for i{last} in range(start, stop):"
-    kept = f"{cast}({{}}_kept[k])" if cast else "{}_kept[k]"
+    kept = f"{cast}(get({{}}_kept, k))" if cast else "get({}_kept, k)"
     again = [f"{name} = {kept.format(name)}" for name in names] + stable
     pairs = list(zip(kernel.outputs, close.outputs, strict=True))
-    again += [f"out_{name}_kept[k] = {value}" for name, value in pairs]
+    again += [f"put(out_{name}_kept, k, {value})" for name, value in pairs]
+    back = [f"out_{name}[{index}] = get(out_{name}_kept, k)" for name, _ in pairs]
     return [
         f"length = {length}",
-        f"for start in range(uint64(0), length, uint64({BLOCK})):",
-        f"{INDENT}stop = min(start + uint64({BLOCK}), length)",
+        f"for start in range(uint64(0), length, uint64({block_of(kernel)})):",
+        f"{INDENT}stop = min(start + uint64({block_of(kernel)}), length)",
         f"{INDENT}close = 0",
         *_under(block, [*plain, f"close += 0 if {close.test} else 1"], 1),
         f"{INDENT}if close:",
@@ -91,7 +135,7 @@ def _mixed(
         *_under(block, [*(f"{name} = {text}" for name, text in loads.items()), *test], 2),
         *(INDENT * 3 + row for row in _under(f"if not {close.test}:", found, 0)),
         *_under("for k in range(count):", again, 2),
-        *_under("for k in range(count):", [f"out_{n}[{index}] = out_{n}_kept[k]" for n, _ in pairs], 2),
+        *_under("for k in range(count):", back, 2),
     ]
 
 

@@ -11,7 +11,7 @@ kept on disk, it compiles in every process.
 from collections.abc import Container, Mapping
 from textwrap import wrap
 
-from .emit_close import inner_loops, is_mixed, scratch
+from .emit_close import inner_loops, is_mixed, rooms, scratch
 from .kernel import Kernel, close_programs, level_program
 from .operations import HELPERS, NUMBA_HELPERS, OPERATIONS
 from .program import Argument, Line, Program
@@ -85,14 +85,13 @@ def _header(kernel: Kernel, docstring: str, numpy_names: list[str]) -> str:
     called = {_called(line.op) for line in lines} - {""}
     calls = sorted(called - _NUMPY_CALLS)
     constants = {str(a) for line in lines for a in line.args if isinstance(a, float) and a - a != 0.0}
-    numpy_names = [*numpy_names, *(["empty"] if kernel.tables or is_mixed(kernel) else [])]
-    numpy_names += [name for name in ("int8",) if is_mixed(kernel) and "i64" in _output_types(kernel)]
+    numpy_names = [*numpy_names, *(["empty"] if kernel.tables else [])]
     from_numpy = sorted(
         {*numpy_names, *constants, *(called & _NUMPY_CALLS), *(["uint64"] * (kernel.axes > 0))}
     )
     imports = [f"from math import {', '.join(calls)}\n"] if calls else []
     imports.append("from numba import njit, types")
-    if any(line.op in NUMBA_HELPERS for line in lines):
+    if is_mixed(kernel) or any(line.op in NUMBA_HELPERS for line in lines):
         imports.append("from numba.extending import intrinsic")
     imports += [f"from numpy import {', '.join(from_numpy)}"] if from_numpy else []
     given = [_INPUT] if any(axis is not None for axis in kernel.inputs.values()) else []
@@ -117,7 +116,8 @@ def helper_sources(operations: Container[str]) -> list[str]:
 
 
 def _helpers(kernel: Kernel) -> list[str]:
-    return helper_sources({line.op for line in _all_lines(kernel)})
+    sources = helper_sources({line.op for line in _all_lines(kernel)})
+    return [*sources, rooms(kernel)] if is_mixed(kernel) else sources
 
 
 def _called(op: str) -> str:
@@ -164,10 +164,6 @@ def _body(kernel: Kernel, cast: str) -> list[str]:
         lines += _loops(table.kernel, cast, table.along, kernel.outputs[0], {}, "{}_table")
     reads = {name: table.along for table in kernel.tables for name in table.kernel.outputs}
     return lines + _loops(kernel, cast, everywhere, kernel.outputs[0], reads, "out_{}")
-
-
-def _output_types(kernel: Kernel) -> set[str]:
-    return {kernel.types.get(name, "f64") for name in kernel.outputs}
 
 
 def _loops(
