@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from . import plot as plot
     from ._compile import compile as compile
+    from ._design.events import events as events
     from ._enclose import enclose as enclose
     from ._evaluate import evaluate as evaluate
     from ._explain import explain as explain
@@ -31,6 +32,7 @@ _ROOMS = {
     "peak": "desaxe._peak",
     "inverse": "desaxe._inverse",
     "enclose": "desaxe._enclose",
+    "events": "desaxe._design.events",
     "feasibility": "desaxe._feasibility",
     "scene": "desaxe._scene",
     "explain": "desaxe._explain",
@@ -47,6 +49,7 @@ __all__ = [
     "equation",
     "evaluate",
     "explain",
+    "events",
     "feasibility",
     "grid",
     "inverse",

@@ -1,0 +1,39 @@
+"""One root of a function of one number, in plain Python."""
+
+from collections.abc import Callable
+from math import copysign, ulp
+
+STEPS = 200
+
+
+def root(function: Callable[[float], float], a: float, b: float) -> float:
+    """Where the function changes its sign between a and b, to the last bits (Chandrupatla's method).
+
+    An end at which it is 0 is the root. The caller sees to it that the signs differ.
+    """
+    fa, fb = function(a), function(b)
+    if fa == 0.0 or fb == 0.0:
+        return a if fa == 0.0 else b
+    c, fc, fraction = a, fa, 0.5
+    for _ in range(STEPS):
+        x = a + fraction * (b - a)
+        fx = function(x)
+        if copysign(1.0, fx) == copysign(1.0, fa):
+            c, fc = a, fa
+        else:
+            c, b, fc, fb = b, a, fb, fa
+        a, fa = x, fx
+        best = a if abs(fa) < abs(fb) else b
+        least = 2.0 * ulp(best)
+        if abs(b - a) <= least or fa == 0.0:
+            break
+        fraction = min(max(_fraction(a, b, c, fa, fb, fc), least / abs(b - a)), 1.0 - least / abs(b - a))
+    return a if abs(fa) < abs(fb) else b
+
+
+def _fraction(a: float, b: float, c: float, fa: float, fb: float, fc: float) -> float:
+    """Where to look next: by inverse quadratic interpolation if that is safe, else in the middle."""
+    xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
+    if not (phi * phi < xi and (1.0 - phi) * (1.0 - phi) < 1.0 - xi):
+        return 0.5
+    return fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
