@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from . import plot as plot
     from ._compile import compile as compile
     from ._design.events import events as events
+    from ._design.optimize import optimize as optimize
     from ._enclose import enclose as enclose
     from ._evaluate import evaluate as evaluate
     from ._explain import explain as explain
@@ -33,6 +34,7 @@ _ROOMS = {
     "inverse": "desaxe._inverse",
     "enclose": "desaxe._enclose",
     "events": "desaxe._design.events",
+    "optimize": "desaxe._design.optimize",
     "feasibility": "desaxe._feasibility",
     "scene": "desaxe._scene",
     "explain": "desaxe._explain",
@@ -53,6 +55,7 @@ __all__ = [
     "feasibility",
     "grid",
     "inverse",
+    "optimize",
     "peak",
     "plot",
     "quantities",

@@ -14,6 +14,7 @@ EXTRAS = {
     "msgspec": "scene",
     "tqdm": "scene",
     "scipy": "simulate",
+    "SALib": "design",
     "flint": "rigorous",
     "python-flint": "rigorous",
     "mpmath": "rigorous",
@@ -26,13 +27,16 @@ class MissingExtraError(ImportError):
 
 
 @contextmanager
-def needed(what: str) -> Iterator[None]:
-    """Turn the ImportError of an optional dependency into the line that says what to install."""
+def needed(what: str, extra: str | None = None) -> Iterator[None]:
+    """Turn the ImportError of an optional dependency into the line that says what to install.
+
+    The extra is the one that has the dependency, or the one named here.
+    """
     try:
         yield
     except ModuleNotFoundError as error:
-        extra = EXTRAS.get((error.name or "").partition(".")[0]) or EXTRAS.get(error.name or "")
-        if extra is None:
+        known = EXTRAS.get((error.name or "").partition(".")[0]) or EXTRAS.get(error.name or "")
+        if known is None:
             raise
-        remedy = f"python -m pip install 'desaxe[{extra}]'"
+        remedy = f"python -m pip install 'desaxe[{extra or known}]'"
         raise MissingExtraError(f"{what} needs {error.name}: {remedy}") from None

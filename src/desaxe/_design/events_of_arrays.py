@@ -15,7 +15,9 @@ Array = NDArray[np.float64]
 HALVINGS = 55  # of a turn: down to the last bits
 
 
-def events_of_arrays(given: dict[str, Any], branch: int, with_speed: bool) -> dict[str, Any]:
+def events_of_arrays(
+    given: dict[str, Any], branch: int, with_speed: bool, with_velocities: bool = True
+) -> dict[str, Any]:
     """The answers in the broadcast shape of the inputs; see `events`."""
     inputs = {n: as_array(n, value, tuple(given), ("events",)) for n, value in given.items()}
     shape = broadcast_shape(inputs)
@@ -35,7 +37,7 @@ def events_of_arrays(given: dict[str, Any], branch: int, with_speed: bool) -> di
     result |= _rod_places(ec, AB, bad | (margin < 0.0))
     gradient = {n: dict(zip(LENGTHS, slopes, strict=True)) for n, (_, slopes, _) in known.items()}
     turns = (status == 0) | (status == 2)
-    for name, direction in VELOCITIES.items():
+    for name, direction in VELOCITIES.items() if with_velocities else ():
         value, theta, slopes = _velocities(known, direction * branch, branch, turns, (ec, AB, BC, omega))
         result |= {name: value, f"theta_{name}": theta}
         gradient[name] = slopes if with_speed else {p: slopes[p] for p in LENGTHS}

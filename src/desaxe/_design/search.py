@@ -1,0 +1,202 @@
+"""The search behind `optimize`: scan, SLSQP from the best places, and the last digits from the optimality conditions.
+
+Made as small as possible is the largest of the problem's pieces (one, mostly), in the variable t:
+
+    minimise t   subject to   t >= piece_i(z),   limit_j(z) >= 0,   0 <= z <= 1
+
+At an optimum sum w_i grad piece_i = sum lambda_j grad limit_j with w, lambda >= 0 and sum w = 1
+(Karush, Kuhn, Tucker): lambda_j is what the optimum gains from relaxing limit j.
+"""
+
+from collections.abc import Sequence
+from itertools import product
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.optimize import minimize, nnls, root
+from scipy.stats import qmc
+
+from .problem import EQUAL, Array, Functions, Limit, Piece, Space
+
+SCAN = 7  # 2^7 designs are looked at first
+NEAR = 1e-6  # of its scale: a limit that is so near is active
+STEPS = 200
+WORST = 1e3  # of the scale: what a design counts that cannot be judged
+
+
+class Found(NamedTuple):
+    """A candidate for the optimum, in the variables from 0 to 1."""
+
+    z: Array
+    value: float  # of the largest piece
+    violation: float  # of the limits, in their scales
+    residual: float  # of the optimality conditions, relative
+    multipliers: Array  # of the limits, then of the lower and upper ends of the variables
+
+
+class Search:
+    """One problem: pieces to make small, limits to keep."""
+
+    def __init__(self, space: Space, pieces: Sequence[Piece], limits: Sequence[Limit], seed: int) -> None:
+        self.space, self.pieces, self.limits, self.seed = space, tuple(pieces), tuple(limits), seed
+        rows = [(p.measure, p.sign, 0.0) for p in pieces] + [(c.measure, c.sign, c.bound) for c in limits]
+        self.functions = Functions(space, rows)
+        self.count = len(self.pieces)
+        self.equal = np.array([c.side == EQUAL for c in limits], bool)
+        self.scan()
+
+    # ---- where to start ---------------------------------------------------------------------------
+
+    def scan(self) -> None:
+        """Designs all over the space; the scale of every function from them."""
+        n = len(self.space.names)
+        spread = qmc.Sobol(n, rng=self.seed) if "rng" in _parameters(qmc.Sobol) else qmc.Sobol(n, seed=self.seed)
+        corners = np.array(list(product((0.0, 1.0), repeat=min(n, 6))))
+        corners = np.hstack([corners, np.full((len(corners), n - corners.shape[1]), 0.5)])
+        self.places = np.vstack([spread.random_base2(SCAN), corners, np.full((1, n), 0.5)])
+        found = self.functions(self.places).value
+        sizes = np.where(np.isfinite(found), np.abs(found), np.nan)
+        known = np.isfinite(sizes).any(axis=0)
+        middle = np.array([np.nanmedian(s) if k else 1.0 for s, k in zip(sizes.T, known, strict=True)])
+        bounds = np.array([0.0] * self.count + [abs(c.bound) for c in self.limits])
+        self.scale = np.where(np.maximum(middle, bounds) > 0.0, np.maximum(middle, bounds), 1.0)
+        self.scale[: self.count] = self.scale[: self.count].max()
+        self.scanned = found / self.scale
+
+    def starts(self, count: int) -> list[Array]:
+        """The best places of the scan, not all in one corner."""
+        value = self.scanned[:, : self.count].max(axis=1)
+        violation = self._violation(self.scanned[:, self.count :])
+        value = np.where(np.isfinite(value), value, WORST)
+        order = np.lexsort((value, np.round(violation, 9)))
+        chosen: list[Array] = []
+        for place in self.places[order]:
+            if all(np.linalg.norm(place - other) > 0.1 for other in chosen):
+                chosen.append(place)
+            if len(chosen) == count:
+                break
+        return chosen
+
+    def _violation(self, limits: Array) -> Array:
+        wrong = np.where(self.equal, np.abs(limits), np.maximum(-limits, 0.0))
+        wrong = np.where(np.isnan(limits), WORST, wrong)
+        total: Array = wrong.max(axis=-1) if wrong.shape[-1] else np.zeros(wrong.shape[:-1])
+        return total
+
+    # ---- one run ----------------------------------------------------------------------------------
+
+    def scaled(self, z: Array) -> tuple[Array, Array]:
+        """Scaled values and slopes of all functions at one place; finite ones always."""
+        found = self.functions(np.clip(z, 0.0, 1.0))
+        value, slope = found.value[0] / self.scale, found.slope[0] / self.scale[:, None]
+        bad = ~np.isfinite(value)
+        value = np.where(bad, np.where(np.arange(value.size) < self.count, WORST, -WORST), value)
+        return value, np.where(np.isfinite(slope), slope, 0.0)
+
+    def run(self, start: Array) -> Found:
+        """SLSQP from one place, then the last digits."""
+        n, m = len(start), self.count
+        several = m > 1
+        first = self.scaled(start)[0][:m].max()
+        z0 = np.append(start, first) if several else start
+
+        def sides(z: Array) -> tuple[Array, Array]:
+            """What must stay positive, and its slopes."""
+            value, slope = self.scaled(z[:n])
+            if not several:
+                return value[m:], slope[m:]
+            over = np.vstack([np.hstack([-slope[:m], np.ones((m, 1))]), np.pad(slope[m:], ((0, 0), (0, 1)))])
+            return np.append(z[n] - value[:m], value[m:]), over
+
+        kinds = np.append(np.zeros(m if several else 0, bool), self.equal)
+        constraints = [
+            {"type": name, "fun": lambda z, k=kind: sides(z)[0][k], "jac": lambda z, k=kind: sides(z)[1][k]}
+            for name, kind in (("ineq", ~kinds), ("eq", kinds))
+            if kind.any()
+        ]
+        top = np.append(np.zeros(n), 1.0)
+        answer = minimize(
+            (lambda z: z[n]) if several else (lambda z: self.scaled(z)[0][0]),
+            z0,
+            jac=(lambda z: top) if several else (lambda z: self.scaled(z)[1][0]),
+            method="SLSQP",
+            bounds=[(0.0, 1.0)] * n + [(None, None)] * several,
+            constraints=constraints,
+            options={"maxiter": STEPS, "ftol": 1e-14},
+        )
+        return self.polished(self.judged(np.clip(answer.x[:n], 0.0, 1.0)))
+
+    # ---- optimality -------------------------------------------------------------------------------
+
+    def judged(self, z: Array) -> Found:
+        """How good a place is, and the multipliers that come nearest to the optimality conditions."""
+        n, m = len(z), self.count
+        value, slope = self.scaled(z)
+        pieces, limits = value[:m], value[m:]
+        largest = pieces.max()
+        live = pieces >= largest - NEAR * max(1.0, abs(largest))
+        active = (np.abs(limits) <= NEAR) | self.equal
+        ends = np.vstack([np.eye(n), -np.eye(n)])
+        at_end = np.append(z <= NEAR, z >= 1.0 - NEAR)
+        normals = np.vstack([slope[m:][active], -slope[m:][active & self.equal], ends[at_end]])
+        size = max(float(np.linalg.norm(slope[:m][live], axis=1).max()), 1e-300)
+        # Columns: the weights of the live pieces, then the multipliers; the last row: the weights' sum.
+        columns = np.vstack([slope[:m][live] / size, -normals])
+        weigh = np.append(np.full(live.sum(), 1.0), np.zeros(len(normals)))
+        matrix = np.vstack([columns.T, weigh])
+        solution, _ = nnls(matrix, np.append(np.zeros(n), 1.0))
+        residual = float(np.linalg.norm(matrix @ solution - np.append(np.zeros(n), 1.0)))
+        found = solution[live.sum() :] * size * self.scale[0]
+        many, some = int(active.sum()), int((active & self.equal).sum())
+        multipliers = np.zeros(len(self.limits) + 2 * n)
+        own = np.zeros(len(self.limits))
+        own[active] = found[:many]
+        own[active & self.equal] -= found[many : many + some]
+        multipliers[: len(own)] = own / self.scale[m:]
+        multipliers[len(own) :][at_end] = found[many + some :]
+        violation = float(self._violation(limits))
+        return Found(z, float(largest * self.scale[0]), violation, residual, multipliers)
+
+    def polished(self, found: Found) -> Found:
+        """The optimality conditions with these limits active, solved for the last digits."""
+        n, m = len(found.z), self.count
+        value, slope = self.scaled(found.z)
+        live = np.flatnonzero(value[:m] >= value[:m].max() - 1e-4 * max(1.0, abs(value[:m].max())))
+        lambdas = found.multipliers[: len(self.limits)]
+        active = np.flatnonzero(self.equal | ((np.abs(value[m:]) <= NEAR) & (lambdas != 0.0)))
+        free = np.flatnonzero((found.z > NEAR) & (found.z < 1.0 - NEAR))
+        fixed = np.where(found.z <= NEAR, 0.0, np.where(found.z >= 1.0 - NEAR, 1.0, found.z))
+        if not free.size or len(live) - 1 + len(active) > free.size:
+            return self._better(found, fixed)
+
+        def place(y: Array) -> Array:
+            z = fixed.copy()
+            z[free] = y[: free.size]
+            return z
+
+        size = max(float(np.abs(slope[live]).max()), 1e-300)
+
+        def conditions(y: Array) -> Array:
+            value, slope = self.scaled(place(y))
+            weights = np.append(1.0 - y[free.size : free.size + live.size - 1].sum(), y[free.size :][: live.size - 1])
+            forces = y[free.size + live.size - 1 :]
+            balance = weights @ slope[live] / size - forces @ slope[m + active]
+            return np.concatenate([balance[free], value[live[1:]] - value[live[0]], value[m + active]])
+
+        weights = np.full(live.size - 1, 1.0 / live.size)
+        begin = np.concatenate([found.z[free], weights, lambdas[active] * self.scale[m + active] / size / self.scale[0]])
+        answer = root(conditions, begin, method="hybr", options={"xtol": 1e-13, "maxfev": 60})
+        z = place(answer.x)
+        moved = bool(np.abs(z - found.z).max() < 1e-2) and bool(((z >= 0.0) & (z <= 1.0)).all())
+        return self._better(found, z) if moved else found
+
+    def _better(self, found: Found, z: Array) -> Found:
+        other = self.judged(z)
+        worth = other.violation <= max(found.violation, 1e-9) and other.residual <= max(found.residual, 1e-9)
+        return other if worth else found
+
+
+def _parameters(function: Any) -> Any:
+    from inspect import signature
+
+    return signature(function).parameters
