@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from . import plot as plot
     from ._compile import compile as compile
+    from ._design.design_map import design_map as design_map
     from ._design.events import events as events
     from ._design.optimize import optimize as optimize
     from ._enclose import enclose as enclose
@@ -33,6 +34,7 @@ _ROOMS = {
     "peak": "desaxe._peak",
     "inverse": "desaxe._inverse",
     "enclose": "desaxe._enclose",
+    "design_map": "desaxe._design.design_map",
     "events": "desaxe._design.events",
     "optimize": "desaxe._design.optimize",
     "feasibility": "desaxe._feasibility",
@@ -47,6 +49,7 @@ _MODULES = ("plot",)
 
 __all__ = [
     "compile",
+    "design_map",
     "enclose",
     "equation",
     "evaluate",

@@ -11,18 +11,32 @@ CHANGE_POINT_ULPS = 4  # |margin| within so many last bits of BC is called a cha
 def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
     """Where a design can be assembled.
 
-    ec, AB, BC: numbers (or text with a unit) in metres. Gives a dict:
+    ec, AB, BC: numbers (or text with a unit) in metres, or arrays, which broadcast like NumPy. Gives a dict:
 
     margin           BC - AB - |ec| [m], of the doubles given, rounded once
     gradient         its derivatives by ec, AB, BC (at ec = 0 that by ec is taken as 0)
     can_turn         whether the crank can turn fully (margin >= 0)
     theta_intervals  list of (first, last) crank angles [rad] in which it can be assembled; an
                      interval that crosses 2 pi goes on beyond it. [(0, 2 pi)] where it can turn
-    kind             "crank" (turns fully), "change point", "rocker" (turns partly), "none"
+    kind             "crank" (turns fully), "change point" (|margin| within 4 last bits of BC), "rocker"
+                     (turns partly), "none"
+    grashof          whether the shorter of crank and rod can turn fully: |ec| <= |BC - AB|
+    status           0 the crank turns fully, 1 it does not, 2 at a change point (margin = 0), 4 bad input
+
+    For arrays each is an array: `theta_intervals` has two intervals in its last two axes, NaN where there
+    are fewer, and `kind` is "bad input" where a length is none. `design_map` labels outer products.
 
     Raises ValueError for a bad value. Source: paper A (6), where |u| <= BC.
+
+        >>> import desaxe as dx
+        >>> found = dx.feasibility(ec=0.1, AB=0.125, BC=0.35)
+        >>> found["kind"], found["can_turn"], found["margin"]
+        ('crank', True, 0.125)
     """
-    lengths = {name: _number(name, value) for name, value in (("ec", ec), ("AB", AB), ("BC", BC))}
+    given = {"ec": ec, "AB": AB, "BC": BC}
+    lengths = {name: as_number(name, value, tuple(given), ("feasibility",)) for name, value in given.items()}
+    if None in lengths.values():
+        return _of_arrays(given)
     ec, AB, BC = lengths.values()
     margin = fsum((BC, -AB, -abs(ec)))
     intervals = theta_intervals(ec, AB, BC)
@@ -35,14 +49,18 @@ def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
         "can_turn": margin >= 0.0,
         "theta_intervals": intervals,
         "kind": kind,
+        "grashof": fsum((max(AB, BC), -min(AB, BC), -abs(ec))) >= 0.0,
+        "status": 2 if margin == 0.0 else 0 if margin > 0.0 else 1,
     }
 
 
-def _number(name: str, value: Any) -> float:
-    number = as_number(name, value, ("ec", "AB", "BC"), ("feasibility",))
-    if number is None:
-        raise TypeError(f"{name}: feasibility takes numbers, got {type(value).__name__}")
-    return number
+def _of_arrays(given: dict[str, Any]) -> dict[str, Any]:
+    from ._arrays import as_array, broadcast_shape
+    from ._design.feasible import of_arrays
+
+    arrays = {name: as_array(name, value, tuple(given), ("feasibility",)) for name, value in given.items()}
+    broadcast_shape(arrays)
+    return of_arrays(*arrays.values())
 
 
 def theta_intervals(ec: float, AB: float, BC: float) -> list[tuple[float, float]]:
