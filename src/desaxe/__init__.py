@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from ._design.design_map import design_map as design_map
     from ._design.events import events as events
     from ._design.optimize import optimize as optimize
+    from ._design.synthesize import synthesize as synthesize
     from ._enclose import enclose as enclose
     from ._evaluate import evaluate as evaluate
     from ._explain import explain as explain
@@ -37,6 +38,7 @@ _ROOMS = {
     "design_map": "desaxe._design.design_map",
     "events": "desaxe._design.events",
     "optimize": "desaxe._design.optimize",
+    "synthesize": "desaxe._design.synthesize",
     "feasibility": "desaxe._feasibility",
     "scene": "desaxe._scene",
     "explain": "desaxe._explain",
@@ -64,6 +66,7 @@ __all__ = [
     "quantities",
     "scene",
     "simulate",
+    "synthesize",
 ]
 
 
