@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ._design.events import events as events
     from ._design.optimize import optimize as optimize
     from ._design.synthesize import synthesize as synthesize
+    from ._design.tolerance import tolerance as tolerance
     from ._enclose import enclose as enclose
     from ._evaluate import evaluate as evaluate
     from ._explain import explain as explain
@@ -39,6 +40,7 @@ _ROOMS = {
     "events": "desaxe._design.events",
     "optimize": "desaxe._design.optimize",
     "synthesize": "desaxe._design.synthesize",
+    "tolerance": "desaxe._design.tolerance",
     "feasibility": "desaxe._feasibility",
     "scene": "desaxe._scene",
     "explain": "desaxe._explain",
@@ -67,6 +69,7 @@ __all__ = [
     "scene",
     "simulate",
     "synthesize",
+    "tolerance",
 ]
 
 
