@@ -13,8 +13,11 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from . import plot as plot
     from ._compile import compile as compile
+    from ._design.counterweight import counterweight as counterweight
     from ._design.design_map import design_map as design_map
     from ._design.events import events as events
+    from ._design.flywheel import flywheel as flywheel
+    from ._design.harmonics import harmonics as harmonics
     from ._design.optimize import optimize as optimize
     from ._design.synthesize import synthesize as synthesize
     from ._design.tolerance import tolerance as tolerance
@@ -41,6 +44,9 @@ _ROOMS = {
     "optimize": "desaxe._design.optimize",
     "synthesize": "desaxe._design.synthesize",
     "tolerance": "desaxe._design.tolerance",
+    "harmonics": "desaxe._design.harmonics",
+    "counterweight": "desaxe._design.counterweight",
+    "flywheel": "desaxe._design.flywheel",
     "feasibility": "desaxe._feasibility",
     "scene": "desaxe._scene",
     "explain": "desaxe._explain",
@@ -53,6 +59,7 @@ _MODULES = ("plot",)
 
 __all__ = [
     "compile",
+    "counterweight",
     "design_map",
     "enclose",
     "equation",
@@ -60,7 +67,9 @@ __all__ = [
     "explain",
     "events",
     "feasibility",
+    "flywheel",
     "grid",
+    "harmonics",
     "inverse",
     "optimize",
     "peak",

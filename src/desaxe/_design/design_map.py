@@ -19,9 +19,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def design_map(
-    names: Any = (), *, branch: int = 1, derivatives: bool = False, **inputs: Any
-) -> "xr.Dataset":
+def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, **inputs: Any) -> "xr.Dataset":
     """Quantities of designs over the outer product of the inputs, as an xarray.Dataset with units.
 
     names        of quantities of a design: "margin", those of `events`, and peaks such as ("absmax", "a_C"),
@@ -40,7 +38,9 @@ def design_map(
     check_inputs("design_map", inputs, known)
     one = isinstance(names, (str, tuple)) and bool(names)
     wanted: Sequence[Measure] = [checked(name) for name in ([names] if one else names)]
-    axes = {n: as_array(n, value, LENGTHS, ("design_map",)) for n, value in inputs.items() if value is not None}
+    axes = {
+        n: as_array(n, value, LENGTHS, ("design_map",)) for n, value in inputs.items() if value is not None
+    }
     for name in LENGTHS:
         if name not in axes:
             as_array(name, None, LENGTHS, ("design_map",))
@@ -49,7 +49,9 @@ def design_map(
             raise ValueError(f"{name}: a map takes numbers and 1-d arrays, got the shape {axis.shape}")
     dimensions = [name for name, axis in axes.items() if axis.ndim]
     shape = tuple(axes[name].size for name in dimensions)
-    open_axes = {n: _along(axis, dimensions.index(n) if axis.ndim else None, len(shape)) for n, axis in axes.items()}
+    open_axes = {
+        n: _along(axis, dimensions.index(n) if axis.ndim else None, len(shape)) for n, axis in axes.items()
+    }
     designs = {n: np.broadcast_to(a, shape).reshape(-1) for n, a in open_axes.items()}
     variables = _feasible(designs, shape, dimensions)
     for measure, found in measured(wanted, designs, branch).items():
@@ -57,8 +59,15 @@ def design_map(
         attributes = {"units": unit_of(measure), "long_name": _meaning(measure)}
         variables[name] = (dimensions, np.reshape(found.value, shape), attributes)
         for p, slope in found.gradient.items() if derivatives else ():
-            told = {"units": f"{unit_of(measure)}/({INPUTS[p].unit})", "long_name": f"{_meaning(measure)}, by {p}"}
-            variables[f"{name}_wrt_{p}"] = (dimensions, np.broadcast_to(slope, designs["ec"].shape).reshape(shape), told)
+            told = {
+                "units": f"{unit_of(measure)}/({INPUTS[p].unit})",
+                "long_name": f"{_meaning(measure)}, by {p}",
+            }
+            variables[f"{name}_wrt_{p}"] = (
+                dimensions,
+                np.broadcast_to(slope, designs["ec"].shape).reshape(shape),
+                told,
+            )
     with needed("design_map"):
         import xarray
     coordinates = {n: ((n,) if axis.ndim else (), axis, input_attributes(n)) for n, axis in axes.items()}
@@ -77,7 +86,11 @@ def _feasible(designs: dict[str, Any], shape: tuple[int, ...], dimensions: list[
         "kind": (kinds, tuple(kind.replace(" ", "_") for kind in KINDS), "how the crank can move"),
     }
     variables: dict[str, Any] = {
-        "margin": (dimensions, found["margin"].reshape(shape), {"units": "m", "long_name": "margin BC - AB - |ec|"}),
+        "margin": (
+            dimensions,
+            found["margin"].reshape(shape),
+            {"units": "m", "long_name": "margin BC - AB - |ec|"},
+        ),
         "can_turn": (dimensions, found["can_turn"].reshape(shape), {"long_name": "the crank turns fully"}),
     }
     for name, (codes, meanings, told) in flags.items():

@@ -22,13 +22,18 @@ def events_of_arrays(
     inputs = {n: as_array(n, value, tuple(given), ("events",)) for n, value in given.items()}
     shape = broadcast_shape(inputs)
     ec, AB, BC, omega = (np.broadcast_to(a, shape) for a in inputs.values())
-    bad = ~(np.isfinite(ec) & np.isfinite(AB) & np.isfinite(BC) & np.isfinite(omega) & (AB >= 0.0) & (BC > 0.0))
+    bad = ~(
+        np.isfinite(ec) & np.isfinite(AB) & np.isfinite(BC) & np.isfinite(omega) & (AB >= 0.0) & (BC > 0.0)
+    )
     ec, AB, BC, omega = (np.where(bad, np.nan, a) for a in (ec, AB, BC, omega))
     turn = branch * np.where(omega < 0.0, -1, 1)
     with np.errstate(all="ignore"):
         known = placed(closed_form(ec, AB, BC, arrays()), branch, 1)
         advance, back = known["advance_angle"], known["return_angle"]
-        for name, (ahead, behind) in {"advance_angle": (advance, back), "return_angle": (back, advance)}.items():
+        for name, (ahead, behind) in {
+            "advance_angle": (advance, back),
+            "return_angle": (back, advance),
+        }.items():
             known[name] = _turned(turn, ahead, behind)
         margin = sum_of_three(BC, -AB, -np.abs(ec))
     status = np.select([bad, margin < 0.0, margin == 0.0], [4, 1, 2], 0).astype(np.int8)

@@ -83,5 +83,7 @@ def _pair(name: str, value: Any) -> tuple[float, float] | None:
 def _number(name: str, value: Any) -> float:
     number = as_number(name, value, (name,), ("tolerance",))
     if number is None:
-        raise TypeError(f"{name} = {value!r}: a number, a pair (value, tolerance) or a distribution is wanted")
+        raise TypeError(
+            f"{name} = {value!r}: a number, a pair (value, tolerance) or a distribution is wanted"
+        )
     return number

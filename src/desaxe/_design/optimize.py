@@ -151,7 +151,9 @@ def _limits(keep: Mapping[Any, Any]) -> list[Limit]:
         measure = checked(key)
         pair = bounds if isinstance(bounds, (tuple, list)) else (bounds, bounds)
         if len(pair) != 2:
-            raise ValueError(f"keep: {text_of(measure)} = {bounds!r}: a pair (low, high) or a number is wanted")
+            raise ValueError(
+                f"keep: {text_of(measure)} = {bounds!r}: a pair (low, high) or a number is wanted"
+            )
         low, high = (None if end is None else _in_si(measure, end) for end in pair)
         if low is not None and high is not None and low >= high:
             if low > high:
@@ -232,7 +234,9 @@ def solved(goal: Goal, space: Space, limits: list[Limit], starts: int, seed: int
         if found.violation > SATISFIED:
             break
         history.append((edge, abs(found.value)))
-        at_edge = any(limit.key is None and m for limit, m in zip(search.limits, found.multipliers, strict=False))
+        at_edge = any(
+            limit.key is None and m for limit, m in zip(search.limits, found.multipliers, strict=False)
+        )
         if not at_edge or _power(history) > GROWS:
             break
         places = [found.z]
@@ -274,7 +278,11 @@ def _told(
         status = UNBOUNDED if _power(history) > GROWS else EDGE
     elif found.residual > SETTLED:
         status = UNSURE
-    value = -goal.sense * found.value if isinstance(goal.measure, str) or goal.measure[0] != "absmax" else found.value
+    value = (
+        -goal.sense * found.value
+        if isinstance(goal.measure, str) or goal.measure[0] != "absmax"
+        else found.value
+    )
     if isinstance(goal.measure, tuple) and goal.measure[0] == "absmax":
         value = abs(value)
     if edge:
@@ -299,13 +307,18 @@ def _named(space: Space, found: Found, search: Search) -> tuple[dict[Any, str], 
     """Which limits hold the optimum back, and their multipliers, by name."""
     n, count = len(space.names), len(search.limits)
     active: dict[Any, str] = {}
-    multipliers: dict[Any, float] = {limit.key: 0.0 for limit in search.limits} | dict.fromkeys(space.names, 0.0)
+    multipliers: dict[Any, float] = {limit.key: 0.0 for limit in search.limits} | dict.fromkeys(
+        space.names, 0.0
+    )
     for limit, multiplier in zip(search.limits, found.multipliers[:count], strict=True):
         if multiplier or limit.side == EQUAL:
             active[limit.key] = limit.side
             multipliers[limit.key] += float(-multiplier if limit.side == EQUAL else multiplier)
     width = space.high - space.low
-    for side, part in ((LOWER, found.multipliers[count : count + n]), (UPPER, found.multipliers[count + n :])):
+    for side, part in (
+        (LOWER, found.multipliers[count : count + n]),
+        (UPPER, found.multipliers[count + n :]),
+    ):
         for name, multiplier, wide in zip(space.names, part, width, strict=True):
             if multiplier:
                 active[name] = side
@@ -334,5 +347,7 @@ def _message(
         return f"the best is at the limit of turning itself, margin = BC - AB - |ec| = 0: {what} is bounded there, near {where}"
     if status == UNSURE:
         return f"the search ended at {where}, where the optimality conditions hold to {found.residual:.1g} only: more starts= may help"
-    held = ", ".join(f"{key if isinstance(key, str) else text_of(key)} ({side})" for key, side in active.items())
+    held = ", ".join(
+        f"{key if isinstance(key, str) else text_of(key)} ({side})" for key, side in active.items()
+    )
     return f"optimum at {where}" + (f", held back by {held}" if held else ", inside of all limits")

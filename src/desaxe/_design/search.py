@@ -50,7 +50,9 @@ class Search:
     def scan(self) -> None:
         """Designs all over the space; the scale of every function from them."""
         n = len(self.space.names)
-        spread = qmc.Sobol(n, rng=self.seed) if "rng" in _parameters(qmc.Sobol) else qmc.Sobol(n, seed=self.seed)
+        spread = (
+            qmc.Sobol(n, rng=self.seed) if "rng" in _parameters(qmc.Sobol) else qmc.Sobol(n, seed=self.seed)
+        )
         corners = np.array(list(product((0.0, 1.0), repeat=min(n, 6))))
         corners = np.hstack([corners, np.full((len(corners), n - corners.shape[1]), 0.5)])
         self.places = np.vstack([spread.random_base2(SCAN), corners, np.full((1, n), 0.5)])
@@ -178,13 +180,17 @@ class Search:
 
         def conditions(y: Array) -> Array:
             value, slope = self.scaled(place(y))
-            weights = np.append(1.0 - y[free.size : free.size + live.size - 1].sum(), y[free.size :][: live.size - 1])
+            weights = np.append(
+                1.0 - y[free.size : free.size + live.size - 1].sum(), y[free.size :][: live.size - 1]
+            )
             forces = y[free.size + live.size - 1 :]
             balance = weights @ slope[live] / size - forces @ slope[m + active]
             return np.concatenate([balance[free], value[live[1:]] - value[live[0]], value[m + active]])
 
         weights = np.full(live.size - 1, 1.0 / live.size)
-        begin = np.concatenate([found.z[free], weights, lambdas[active] * self.scale[m + active] / size / self.scale[0]])
+        begin = np.concatenate(
+            [found.z[free], weights, lambdas[active] * self.scale[m + active] / size / self.scale[0]]
+        )
         answer = root(conditions, begin, method="hybr", options={"xtol": 1e-13, "maxfev": 60})
         z = place(answer.x)
         moved = bool(np.abs(z - found.z).max() < 1e-2) and bool(((z >= 0.0) & (z <= 1.0)).all())

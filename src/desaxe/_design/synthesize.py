@@ -119,7 +119,9 @@ def synthesize(
     if slow_stroke not in (1, -1):
         raise ValueError(f"slow_stroke = {slow_stroke!r}: it is +1 (outward) or -1 (inward)")
     (third,) = given
-    H, ratio, value = (_wish(n, v) for n, v in (("stroke", stroke), ("time_ratio", time_ratio), (third, thirds[third])))
+    H, ratio, value = (
+        _wish(n, v) for n, v in (("stroke", stroke), ("time_ratio", time_ratio), (third, thirds[third]))
+    )
     if ratio < 1.0:
         raise ValueError(f"time_ratio = {ratio}: the longer over the shorter stroke is at least 1")
     if ratio >= 3.0:
@@ -157,7 +159,10 @@ def _told(third: str, value: float, slow_stroke: int, answer: Answer) -> dict[st
     count = len(answer.designs)
     message = f"{count} design{'s' if count != 1 else ''}"
     if not count:
-        message = answer.why or f"none: {third} = {value:g}, but there are designs of this stroke and time ratio {_range(answer)} only"
+        message = (
+            answer.why
+            or f"none: {third} = {value:g}, but there are designs of this stroke and time ratio {_range(answer)} only"
+        )
     elif answer.why:
         message = answer.why
     solutions = sorted(answer.designs, key=lambda design: design["BC"])
@@ -181,7 +186,7 @@ def _range(answer: Answer) -> str:
 def _of_rod(family: Family, BC: float) -> Answer:
     half = family.stroke / 2.0
     low, high = half, half / family.t if family.t else inf
-    if not low <= BC <= high or (BC == low and family.beta):
+    if not low <= BC <= high or (low == BC and family.beta):
         return Answer([], low, high)
     share = BC * sin(family.beta / 2.0)
     AB = sqrt((half - share) * (half + share)) / cos(family.beta / 2.0)
@@ -195,7 +200,12 @@ def _of_crank(family: Family, AB: float) -> Answer:
         if not isclose(AB, half, rel_tol=4e-16):
             return Answer([], half, half)
         design = {"ec": 0.0, "AB": AB, "BC": inf}
-        return Answer([design], half, half, "time_ratio = 1: ec = 0 and AB = stroke/2, with a rod of any length BC >= AB")
+        return Answer(
+            [design],
+            half,
+            half,
+            "time_ratio = 1: ec = 0 and AB = stroke/2, with a rod of any length BC >= AB",
+        )
     if not low <= AB < high:
         return Answer([], low, high)
     share = AB * cos(family.beta / 2.0)

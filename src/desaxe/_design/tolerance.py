@@ -16,7 +16,9 @@ from .inexact import DISTRIBUTIONS, Array, Inexact, read
 from .measures import UNITS, Measure, checked, measured
 
 BLOCK = 65536  # samples at a time
-STEP = 1e-3  # of a standard deviation or so: differences of exact gradients, where these are not derived again
+STEP = (
+    1e-3  # of a standard deviation or so: differences of exact gradients, where these are not derived again
+)
 PERCENTS = (0.135, 2.5, 50.0, 97.5, 99.865)
 BOXES = 2000  # of an enclosure
 MANY, SOME = 100_000, 10_000  # samples of a quantity at a point, and of a peak
@@ -255,7 +257,10 @@ def _worst_case(function: Function, value: float, slopes: Array, rough: Sequence
     if any(row.tolerance is None for row in rough):
         return None
     if function.at_point:
-        ranges = {row.name: (row.mean - float(row.tolerance or 0), row.mean + float(row.tolerance or 0)) for row in rough}
+        ranges = {
+            row.name: (row.mean - float(row.tolerance or 0), row.mean + float(row.tolerance or 0))
+            for row in rough
+        }
         found = _enclosed(str(function.measure), {**function.fixed, **ranges}, function.branch)
         if found is not None:
             return {"lower": found["lower"], "upper": found["upper"], "guaranteed": True}
