@@ -59,7 +59,7 @@ def closed_form(ec: Any, AB: Any, BC: Any, maths: Maths) -> dict[str, Known]:
 
 def _unscaled(known: Known, power: Any, maths: Maths) -> Known:
     value = maths.ldexp(known.value, -power * known.power)
-    return Known(value, tuple(maths.ldexp(s, power * (1 - known.power)) for s in known.slopes))  # type: ignore[arg-type]
+    return Known(value, tuple(maths.ldexp(s, power * (1 - known.power)) for s in known.slopes))
 
 
 def _sides(ec: Any, AB: Any, BC: Any, maths: Maths) -> Sides:
@@ -121,8 +121,8 @@ def _strokes(t: Sides, maths: Maths) -> dict[str, Known]:
     return {
         "stroke": Known(stroke, stroke_slopes, 1),
         "advance_angle": Known(pi + beta, beta_slopes),
-        "return_angle": Known(pi - beta, tuple(-s for s in beta_slopes)),  # type: ignore[arg-type]
-        "time_ratio": Known(1.0 + 2.0 * abs(beta) / short, tuple(grows * s for s in beta_slopes)),  # type: ignore[arg-type]
+        "return_angle": Known(pi - beta, tuple(-s for s in beta_slopes)),
+        "time_ratio": Known(1.0 + 2.0 * abs(beta) / short, tuple(grows * s for s in beta_slopes)),
     }
 
 

@@ -34,7 +34,8 @@ def counterweight(
     angle             from the crank to the counterweight [rad], positive like theta; pi is opposite the crank
     mass              [kg], given the radius
     counter_rotating  dict product, angle: of a second weight that turns against the crank, from the Y axis at
-                      theta = 0 [rad, positive like theta], and balances what is left of the first harmonic
+                      theta = 0 [rad, positive like theta], and balances the part of the first harmonic
+                      that turns so; with along="both" nothing of that harmonic is left then
     before, after     dicts X, Y (amplitudes of the first harmonic [N]), largest (in any direction), second
                       (the same of the second harmonic, which no such weight changes), peak (the largest
                       shaking force over the turn)

@@ -96,7 +96,7 @@ def placed(known: dict[str, Known], branch: int, turn: int) -> dict[str, Known]:
 def rod_places(ec: float, AB: float, stuck: bool) -> dict[str, float]:
     """Where the rod leans most, and least."""
     steep = copysign(pi / 2, ec) if ec else pi / 2
-    flat = -PLAIN.atan2(ec, PLAIN.sqrt((AB - ec) * (AB + ec))) if abs(ec) <= AB else -steep
+    flat = -PLAIN.atan2(ec, PLAIN.sqrt(AB - ec) * PLAIN.sqrt(AB + ec)) if abs(ec) <= AB else -steep
     return {
         "theta_max_pressure_angle": nan if stuck else steep,
         "theta_min_pressure_angle": nan if stuck else flat,
@@ -104,7 +104,7 @@ def rod_places(ec: float, AB: float, stuck: bool) -> dict[str, float]:
 
 
 def _velocity(
-    ends: tuple[float, float], side: int, branch: int, omega: float, lengths: dict[str, float]
+    ends: tuple[float, float], side: int, branch: int, omega: float, lengths: dict[str, Any]
 ) -> tuple[float, float, dict[str, float]]:
     """The largest |V_C| between two dead centres: value, crank angle, derivatives."""
 

@@ -30,11 +30,8 @@ def events_of_arrays(
     with np.errstate(all="ignore"):
         known = placed(closed_form(ec, AB, BC, arrays()), branch, 1)
         advance, back = known["advance_angle"], known["return_angle"]
-        for name, (ahead, behind) in {
-            "advance_angle": (advance, back),
-            "return_angle": (back, advance),
-        }.items():
-            known[name] = _turned(turn, ahead, behind)
+        known["advance_angle"] = _turned(turn, advance, back)
+        known["return_angle"] = _turned(turn, back, advance)
         margin = sum_of_three(BC, -AB, -np.abs(ec))
     status = np.select([bad, margin < 0.0, margin == 0.0], [4, 1, 2], 0).astype(np.int8)
     result: dict[str, Any] = {name: np.asarray(value) for name, (value, _, _) in known.items()}
@@ -52,14 +49,14 @@ def events_of_arrays(
 def _turned(turn: NDArray[np.int_], ahead: Known, behind: Known) -> Known:
     """The one where the crank turns this way, the other where it turns that way."""
     slopes = (np.where(turn > 0, a, b) for a, b in zip(ahead.slopes, behind.slopes, strict=True))
-    return Known(np.where(turn > 0, ahead.value, behind.value), tuple(slopes))  # type: ignore[arg-type]
+    return Known(np.where(turn > 0, ahead.value, behind.value), tuple(slopes))
 
 
 def _rod_places(ec: Array, AB: Array, stuck: NDArray[np.bool_]) -> dict[str, Array]:
     """Where the rod leans most, and least."""
     steep = np.where(ec < 0.0, -np.pi / 2, np.pi / 2)
     with np.errstate(invalid="ignore"):
-        flat = np.where(np.abs(ec) <= AB, -np.arctan2(ec, np.sqrt((AB - ec) * (AB + ec))), -steep)
+        flat = np.where(np.abs(ec) <= AB, -np.arctan2(ec, np.sqrt(AB - ec) * np.sqrt(AB + ec)), -steep)
     return {
         "theta_max_pressure_angle": np.where(stuck, np.nan, steep),
         "theta_min_pressure_angle": np.where(stuck, np.nan, flat),

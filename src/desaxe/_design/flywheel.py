@@ -4,8 +4,8 @@ A constant drive torque, the mean of what the loads take over a turn, leaves the
 
     (J + M_eff(theta)) omega(theta)^2/2 = C + W(theta),   W = integral of (mean - T_load) dtheta
 
-in crank, flywheel (J) and mechanism. J is the least for which (fastest - slowest)/mean speed is as wanted, the mean
-speed being (fastest + slowest)/2. The textbook's first order, J = (max - min of the integral of T_in
+in crank, flywheel (J) and mechanism. J is the least for which (fastest - slowest)/mean speed is as wanted,
+the mean speed being (fastest + slowest)/2. The textbook's first order, J = (max - min of the integral of T_in
 - mean)/(fluctuation omega0^2) at constant speed, is told beside it.
 """
 
@@ -24,8 +24,8 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
     """Torque ripple over a turn, and the flywheel for a wanted fluctuation of speed.
 
     fluctuation  (fastest - slowest)/mean speed that is allowed, such as 0.02
-    inputs       of one design with masses and loads, as in `evaluate`; omega0 is the mean speed. F_X and F_Y may
-                 be functions of theta (arrays in, arrays out)
+    inputs       of one design with masses and loads, as in `evaluate`; omega0 is the mean speed. F_X and
+                 F_Y may be functions of theta (arrays in, arrays out)
 
     Gives a dict:
 
@@ -37,7 +37,8 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
                            fluctuates as wanted under a constant torque; 0 if none is needed. With friction
                            that of first order
     inertia_first_order    energy_fluctuation/(fluctuation omega0^2) [kg m2], the textbook's estimate
-    fluctuation_without    the fluctuation without a flywheel; infinite if the crank would stop, NaN with friction
+    fluctuation_without    the fluctuation without a flywheel; infinite if the crank would stop, NaN with
+                           friction
     theta_fastest, theta_slowest   where the crank turns fastest and slowest with it [rad]
 
     At 16384 equal steps of the turn, integrals by the fast Fourier transform. Raises as `harmonics` does, and
@@ -90,7 +91,7 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
 
 
 def _integral(torque: Array) -> Array:
-    """The integral over theta of what differs from the mean, itself of mean 0; of a smooth periodic function."""
+    """The integral over theta of what differs from the mean, itself of mean 0."""
     c = np.fft.rfft(torque)
     c[0] = 0.0
     c[1:] /= 1j * np.arange(1, len(c))

@@ -26,8 +26,8 @@ def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> 
     points             steps of the turn that this took
 
     Equal steps and the fast Fourier transform: for a crank that turns with some margin the error falls
-    geometrically with the steps, towards the change point ever slower. Raises ValueError where the crank cannot
-    turn fully or a value is missing.
+    geometrically with the steps, towards the change point ever slower. Raises ValueError where the crank
+    cannot turn fully or a value is missing.
 
         >>> import desaxe as dx
         >>> found = dx.harmonics("a_C", ec=0, AB=0.1, BC=0.4, omega0=10.0)

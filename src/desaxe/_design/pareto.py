@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 
 from .measures import measured
-from .optimize import FOUND, NONE, UNSURE, Goal, lower_limits, solved, upper_limits
+from .optimize import solved
 from .problem import Limit, Space
+from .verdict import FOUND, NONE, UNSURE
+from .wishes import Goal, lower_limits, upper_limits
 
 
 def front(

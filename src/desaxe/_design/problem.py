@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .measures import Measure, measured
+from .measures import measured
 
 Array = NDArray[np.float64]
 LOWER, UPPER, EQUAL = "lower", "upper", "equal"
@@ -25,7 +25,7 @@ class Limit(NamedTuple):
 class Piece(NamedTuple):
     """One of the smooth functions, sign * measure, whose largest is made as small as possible."""
 
-    measure: Measure
+    measure: Any  # a measure, or a function of designs
     sign: float
 
 

@@ -1,4 +1,4 @@
-"""The search behind `optimize`: scan, SLSQP from the best places, and the last digits from the optimality conditions.
+"""The search behind `optimize`: scan, SLSQP from the best places, last digits from the optimality conditions.
 
 Made as small as possible is the largest of the problem's pieces (one, mostly), in the variable t:
 
@@ -58,8 +58,7 @@ class Search:
         self.places = np.vstack([spread.random_base2(SCAN), corners, np.full((1, n), 0.5)])
         found = self.functions(self.places).value
         sizes = np.where(np.isfinite(found), np.abs(found), np.nan)
-        known = np.isfinite(sizes).any(axis=0)
-        middle = np.array([np.nanmedian(s) if k else 1.0 for s, k in zip(sizes.T, known, strict=True)])
+        middle = np.array([np.nanmedian(s) if np.isfinite(s).any() else 1.0 for s in sizes.T])
         bounds = np.array([0.0] * self.count + [abs(c.bound) for c in self.limits])
         self.scale = np.where(np.maximum(middle, bounds) > 0.0, np.maximum(middle, bounds), 1.0)
         self.scale[: self.count] = self.scale[: self.count].max()
@@ -75,9 +74,7 @@ class Search:
         for place in self.places[order]:
             if all(np.linalg.norm(place - other) > 0.1 for other in chosen):
                 chosen.append(place)
-            if len(chosen) == count:
-                break
-        return chosen
+        return chosen[:count]
 
     def _violation(self, limits: Array) -> Array:
         wrong = np.where(self.equal, np.abs(limits), np.maximum(-limits, 0.0))
@@ -89,14 +86,14 @@ class Search:
 
     def scaled(self, z: Array) -> tuple[Array, Array]:
         """Scaled values and slopes of all functions at one place; finite ones always."""
-        found = self.functions(np.clip(z, 0.0, 1.0))
+        found = self.functions(np.clip(np.nan_to_num(z, nan=0.5), 0.0, 1.0))
         value, slope = found.value[0] / self.scale, found.slope[0] / self.scale[:, None]
         bad = ~np.isfinite(value)
         value = np.where(bad, np.where(np.arange(value.size) < self.count, WORST, -WORST), value)
         return value, np.where(np.isfinite(slope), slope, 0.0)
 
     def run(self, start: Array) -> Found:
-        """SLSQP from one place, then the last digits."""
+        """SLSQP from one place."""
         n, m = len(start), self.count
         several = m > 1
         first = self.scaled(start)[0][:m].max()
@@ -126,7 +123,7 @@ class Search:
             constraints=constraints,
             options={"maxiter": STEPS, "ftol": 1e-14},
         )
-        return self.polished(self.judged(np.clip(answer.x[:n], 0.0, 1.0)))
+        return self.judged(np.clip(np.nan_to_num(answer.x[:n], nan=0.5), 0.0, 1.0))
 
     # ---- optimality -------------------------------------------------------------------------------
 
@@ -161,7 +158,7 @@ class Search:
 
     def polished(self, found: Found) -> Found:
         """The optimality conditions with these limits active, solved for the last digits."""
-        n, m = len(found.z), self.count
+        m = self.count
         value, slope = self.scaled(found.z)
         live = np.flatnonzero(value[:m] >= value[:m].max() - 1e-4 * max(1.0, abs(value[:m].max())))
         lambdas = found.multipliers[: len(self.limits)]

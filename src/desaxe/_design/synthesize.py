@@ -15,6 +15,7 @@ for each angle above the least.
 """
 
 from collections.abc import Callable
+from itertools import pairwise
 from math import asin, cos, inf, isclose, pi, sin, sqrt, tan
 from typing import Any, NamedTuple
 
@@ -161,7 +162,7 @@ def _told(third: str, value: float, slow_stroke: int, answer: Answer) -> dict[st
     if not count:
         message = (
             answer.why
-            or f"none: {third} = {value:g}, but there are designs of this stroke and time ratio {_range(answer)} only"
+            or f"none: {third} = {value:g}, designs of this stroke and time ratio have it {_range(answer)}"
         )
     elif answer.why:
         message = answer.why
@@ -229,7 +230,7 @@ def _of_lean(family: Family, angle: float) -> Answer:
     ends = [family.t**2, least, 1.0]
     if excess(least) >= 0.0:
         return Answer([family.design(least)], low, pi / 2)
-    found = [root(excess, a, b) for a, b in zip(ends, ends[1:], strict=False)]
+    found = [root(excess, a, b) for a, b in pairwise(ends)]
     return Answer([family.design(x) for x in found], low, pi / 2)
 
 

@@ -24,7 +24,7 @@ def of_peak(family: "Family", wanted: float, omega0: float) -> "Answer":
 
     def height(x: Any) -> Any:
         rows = [family.design(float(at)) for at in np.atleast_1d(x)]
-        lengths = {name: np.array([row[name] for row in rows]) for name in ("ec", "AB", "BC")}
+        lengths: dict[str, Any] = {name: np.array([row[name] for row in rows]) for name in ("ec", "AB", "BC")}
         return peak("a_C", omega0=omega0, **lengths)["value"]
 
     def at(x: float) -> float:
@@ -40,16 +40,18 @@ def of_peak(family: "Family", wanted: float, omega0: float) -> "Answer":
         for k in np.flatnonzero(np.sign(excess[:-1]) * np.sign(excess[1:]) < 0)
     ]
     k = int(np.argmin(excess))
-    least = _lowest(at, float(x[max(k - 1, 0)]), float(x[min(k + 1, len(x) - 1)]))
+    a, b = float(x[max(k - 1, 0)]), float(x[min(k + 1, len(x) - 1)])
+    bottom = _lowest(at, a, b)
+    least = at(bottom)
     if not family.beta:  # the least is that of an endless rod
         least = family.stroke / 2.0 * omega0**2
-    elif not found and wanted > least:
-        found = _both_sides(at, wanted, float(x[max(k - 1, 0)]), float(x[min(k + 1, len(x) - 1)]))
+    elif not found and wanted >= least:  # both crossings are next to the bottom
+        found = [root(lambda place: at(place) - wanted, *ends) for ends in ((a, bottom), (bottom, b))]
     return Answer([family.design(place) for place in found], least, np.inf)
 
 
 def _lowest(function: Any, a: float, b: float) -> float:
-    """The least value between a and b, by golden sections."""
+    """Where it is least between a and b, by golden sections."""
     golden = (sqrt(5.0) - 1.0) / 2.0
     c, d = b - golden * (b - a), a + golden * (b - a)
     fc, fd = function(c), function(d)
@@ -62,14 +64,4 @@ def _lowest(function: Any, a: float, b: float) -> float:
             a, c, fc = c, d, fd
             d = a + golden * (b - a)
             fd = function(d)
-    return float(min(fc, fd))
-
-
-def _both_sides(function: Any, wanted: float, a: float, b: float) -> list[float]:
-    """The crossings on both sides of a bottom that the grid stepped over."""
-    places = np.linspace(a, b, 65)
-    excess = np.array([function(float(place)) - wanted for place in places])
-    return [
-        root(lambda place: function(place) - wanted, float(places[k]), float(places[k + 1]))
-        for k in np.flatnonzero(np.sign(excess[:-1]) * np.sign(excess[1:]) < 0)
-    ]
+    return c if fc < fd else d

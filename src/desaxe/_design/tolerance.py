@@ -29,11 +29,11 @@ class Function(NamedTuple):
 
     measure: Measure
     at_point: bool
-    fixed: Mapping[str, float]
+    fixed: Mapping[str, Any]
     varying: tuple[str, ...]
     branch: int
 
-    def values(self, columns: Mapping[str, Array]) -> Array:
+    def values(self, columns: Mapping[str, Any]) -> Array:
         """Over samples; NaN where there is none."""
         if self.at_point:
             found = evaluate(str(self.measure), branch=self.branch, **self.fixed, **columns)
@@ -41,7 +41,7 @@ class Function(NamedTuple):
             found = measured([self.measure], {**self.fixed, **columns}, self.branch)[self.measure].value
         return np.asarray(found, float)
 
-    def slopes(self, columns: Mapping[str, Array]) -> Array:
+    def slopes(self, columns: Mapping[str, Any]) -> Array:
         """The exact first derivatives over samples, one column for each input that varies."""
         if self.at_point:
             names = [sensitivity(str(self.measure), p) for p in self.varying]
@@ -51,7 +51,7 @@ class Function(NamedTuple):
         size = len(next(iter(columns.values())))
         return np.stack([np.broadcast_to(gradient.get(p, 0.0), (size,)) for p in self.varying], -1)
 
-    def bends(self, centre: Mapping[str, float], steps: Sequence[float]) -> tuple[Array, bool]:
+    def bends(self, centre: Mapping[str, Any], steps: Sequence[float]) -> tuple[Array, bool]:
         """The second derivatives at a place, and whether all are exact."""
         n = len(self.varying)
         pairs = [(i, j) for i in range(n) for j in range(i, n)]
@@ -89,8 +89,8 @@ def tolerance(
 
     name          a quantity at a crank angle, as for `evaluate` ("a_C", with theta=), or one of a whole
                   design: "stroke", "time_ratio", ..., or a peak such as ("absmax", "a_C")
-    inputs        each a number (exact), a pair (value, tolerance), which means value +- tolerance, the same as
-                  a text "10 mm +- 0.1 mm", or a distribution of scipy.stats, frozen. (`enclose`, other than
+    inputs        each a number (exact), a pair (value, tolerance), meaning value +- tolerance, the same as a
+                  text "10 mm +- 0.1 mm", or a distribution of scipy.stats, frozen. (`enclose`, other than
                   here, takes pairs (low, high).)
     distribution  within a tolerance: "normal", the tolerance being so many `sigmas`, or "uniform"
     samples       of the Monte Carlo, by default 100000, or 10000 of a peak
@@ -106,10 +106,11 @@ def tolerance(
     monte_carlo    dict mean, std, mean_error, std_error (one standard error each), least, largest,
                    percentiles (dict percent -> value), samples, infeasible (share of samples without value)
     contributions  dict input -> share of the first-order variance, the largest first
-    sobol          dict input -> dict first, total, first_error, total_error (95 %): shares of the variance due
-                   to an input alone, and with its interactions (SALib)
-    worst_case     dict lower, upper, guaranteed: with every input anywhere within its tolerance, by `enclose` where
-                   that can be asked (extra `rigorous`), else from the derivatives; None for distributions
+    sobol          dict input -> dict first, total, first_error, total_error (95 %): shares of the variance
+                   due to an input alone, and with its interactions (SALib)
+    worst_case     dict lower, upper, guaranteed: with every input anywhere within its tolerance, by
+                   `enclose` where that can be asked (extra `rigorous`), else from the derivatives; None
+                   for distributions
     agreement      dict of what should agree: mean and std, second order against Monte Carlo, in standard
                    errors; linearity, first against second order std, relative; contributions against Sobol's
                    first indices, the largest difference

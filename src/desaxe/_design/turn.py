@@ -40,7 +40,7 @@ class Turn:
             )
 
     def values(self, names: Sequence[str], points: int, **other: float) -> dict[str, Array]:
-        """The quantities at `points` equal steps from theta = 0; other inputs take the place of those given."""
+        """The quantities at `points` equal steps from theta = 0; `other` inputs replace those given."""
         theta = 2.0 * pi * np.arange(points) / points
         loads = {
             n: np.broadcast_to(np.asarray(f(theta), float), theta.shape) for n, f in self.functions.items()
@@ -55,14 +55,16 @@ class Turn:
             )
         return {name: found[name] for name in names}
 
-    def spectrum(self, names: Sequence[str], least: int = LEAST) -> tuple[dict[str, Array], float]:
+    def spectrum(
+        self, names: Sequence[str], least: int = LEAST
+    ) -> tuple[dict[str, NDArray[np.complex128]], float]:
         """Complex Fourier coefficients c_0, c_1, ... of exp(i n theta), and their error.
 
         Steps are halved until that changes the lower half of the coefficients by no more than rounding. What
         it changed is the error of the coarser ones, so it bounds that of the finer.
         """
         points = max(LEAST, 1 << (2 * least - 1).bit_length())
-        before: dict[str, Array] = {}
+        before: dict[str, NDArray[np.complex128]] = {}
         while True:
             now = {n: np.fft.rfft(v) / v.size for n, v in self.values(names, points).items()}
             half = points // 4

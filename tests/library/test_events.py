@@ -1,0 +1,274 @@
+"""Dead centres, strokes and extremes against roots of the raw loop closure at 50 digits."""
+
+import math
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import assume, example, given
+from hypothesis import strategies as st
+
+import desaxe as dx
+
+DESIGNS = [
+    (0.02, 0.04, 0.064), (-0.02, 0.04, 0.064), (0.0, 0.125, 0.35), (1e-9, 0.125, 0.35), (1e-300, 0.125, 0.35),
+    (0.2249, 0.125, 0.35), (0.225 - 1e-12, 0.125, 0.35), (-(0.225 - 1e-15), 0.125, 0.35), (0.1, 1e-6, 0.35),
+    (0.3, 2.0**-40, 0.35), (2.0**-30, 1.0, 1.0 + 2.0**-29), (0.0, 1.0, 1.0 + 2.0**-52), (5.0, 0.5, 1e6),
+    (1e-180, 2e-180, 4e-180), (1e180, 2e180, 4e180),
+]  # fmt: skip
+SLOPES = (
+    "theta_outer", "theta_inner", "Y_outer", "Y_inner", "stroke", "advance_angle", "return_angle", "time_ratio",
+    "max_pressure_angle", "min_transmission_angle",
+)  # fmt: skip
+LENGTHS = ("ec", "AB", "BC")
+
+
+class Oracle:
+    """Where the slider stops: dY/dtheta = 0 on the raw loop, |C - B| = BC, by bisection between quarters."""
+
+    def __init__(self, ec, AB, BC):
+        self.ec, self.AB, self.BC = mp.mpf(ec), mp.mpf(AB), mp.mpf(BC)
+        self.outer, self.inner = self.stop(-1), self.stop(1)
+        self.stroke = self.Y(self.outer) - self.Y(self.inner)
+        self.back = self.inner - self.outer
+        self.ahead = 2 * mp.pi - self.back
+        self.ratio = max(self.ahead / self.back, self.back / self.ahead)
+
+    def rise(self, theta):
+        """From B up to C."""
+        return mp.sqrt(self.BC**2 - (self.ec + self.AB * mp.sin(theta)) ** 2)
+
+    def Y(self, theta):
+        return self.AB * mp.cos(theta) + self.rise(theta)
+
+    def slope(self, theta):
+        """(C - B) . (dC - dB) = 0 gives dY, here times the rod's rise."""
+        across = self.ec + self.AB * mp.sin(theta)
+        return -self.rise(theta) * self.AB * mp.sin(theta) - across * self.AB * mp.cos(theta)
+
+    def stop(self, quarter):
+        a, b = quarter * mp.pi / 2, (quarter + 2) * mp.pi / 2
+        left = mp.sign(self.slope(a))
+        for _ in range(190):
+            middle = (a + b) / 2
+            if mp.sign(self.slope(middle)) == left:
+                a = middle
+            else:
+                b = middle
+        return (a + b) / 2
+
+    def quantities(self):
+        steep = mp.pi / 2 * (1 if self.ec >= 0 else -1)
+        pressure = abs(mp.asin((self.ec + self.AB * mp.sin(steep)) / self.BC))
+        return {
+            "theta_outer": self.outer, "theta_inner": self.inner, "Y_outer": self.Y(self.outer),
+            "Y_inner": self.Y(self.inner), "stroke": self.stroke, "advance_angle": self.ahead,
+            "return_angle": self.back, "time_ratio": self.ratio, "max_pressure_angle": pressure,
+            "min_transmission_angle": mp.pi / 2 - pressure,
+        }  # fmt: skip
+
+
+def close(value, exact, bound):
+    """Relative, or absolute where the exact value is far below 1."""
+    return abs(mp.mpf(value) - exact) <= bound * abs(exact)
+
+
+@pytest.mark.parametrize(("ec", "AB", "BC"), DESIGNS)
+def test_values(ec, AB, BC):
+    with mp.workdps(60 if AB > 1e-100 else 420):
+        oracle = Oracle(ec, AB, BC)
+        exact = oracle.quantities()
+        found = dx.events(ec=ec, AB=AB, BC=BC)
+        arrays = dx.events(ec=np.array([ec, 0.0]), AB=AB, BC=BC)
+        for name, value in exact.items():
+            tiny = name == "theta_outer" and abs(ec) < 1e-20 * AB  # the bisection ends at 1e-57
+            for own in (found[name], float(arrays[name][0])):
+                assert close(own, value, 2e-15) or (tiny and abs(own - value) < 1e-50), name
+    assert found["status"] == 0
+    assert found["slow_stroke"] == (ec > 0) - (ec < 0)
+
+
+@pytest.mark.parametrize(
+    ("ec", "AB", "BC"), [*DESIGNS[:2], *DESIGNS[5:7], (0.1, 1e-6, 0.35), (-3e-3, 0.1, 0.11)]
+)
+def test_gradients(ec, AB, BC):
+    names = (
+        "theta_outer",
+        "theta_inner",
+        "Y_outer",
+        "Y_inner",
+        "stroke",
+        "advance_angle",
+        "return_angle",
+        "time_ratio",
+    )
+    with mp.workdps(60):
+        h = mp.mpf(2) ** -90
+        found = dx.events(ec=ec, AB=AB, BC=BC)["gradient"]
+        for k, parameter in enumerate(LENGTHS):
+            up, down = (
+                [mp.mpf(x) + (j == k) * side * h for j, x in enumerate((ec, AB, BC))] for side in (1, -1)
+            )
+            up, down = Oracle(*up).quantities(), Oracle(*down).quantities()
+            for name in SLOPES:
+                exact = (up[name] - down[name]) / (2 * h)
+                assert close(found[name][parameter], exact, 1e-13), (name, parameter)
+
+
+@pytest.mark.parametrize(
+    ("ec", "AB", "BC"), [*DESIGNS[:3], DESIGNS[5], (0.05, 0.01, 0.35), (-0.1, 0.3, 0.41)]
+)
+@pytest.mark.parametrize("omega0", [157.0, -3.0])
+@pytest.mark.parametrize("branch", [1, -1])
+def test_velocities_are_the_peaks(ec, AB, BC, omega0, branch):
+    design = {"ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "branch": branch}
+    found = dx.events(**design)
+    for name, kind in (
+        ("V_outward", "max" if branch > 0 else "min"),
+        ("V_inward", "min" if branch > 0 else "max"),
+    ):
+        top = dx.peak("V_C", kind=kind, **design)
+        assert found[name] == pytest.approx(abs(top["value"]), rel=1e-13)
+        assert math.cos(found[f"theta_{name}"] - top["theta"]) == pytest.approx(1.0, abs=1e-12)
+        if ec:  # else the peak is one of two
+            for p, slope in top["gradient"].items():
+                sign = math.copysign(1.0, top["value"])
+                assert found["gradient"][name][p] == pytest.approx(
+                    sign * slope, rel=1e-6, abs=1e-8 * omega0**2
+                )
+    assert "omega0" not in dx.events(**{**design, "omega0": None})["gradient"]["V_inward"]
+
+
+lengths = st.floats(1e-3, 1e3)
+
+
+@given(AB=lengths, BC=lengths, share=st.floats(-1.0, 1.0))
+@example(AB=1.0, BC=2.0, share=1.0)
+@example(AB=1.0, BC=1.0, share=0.0)
+def test_symmetries(AB, BC, share):
+    assume(BC >= AB)
+    ec = share * (BC - AB)
+    assume(dx.feasibility(ec=ec, AB=AB, BC=BC)["can_turn"])
+    one, other = dx.events(ec=ec, AB=AB, BC=BC), dx.events(ec=-ec, AB=AB, BC=BC)
+    for name in ("stroke", "time_ratio", "Y_outer", "Y_inner", "max_pressure_angle"):
+        assert one[name] == other[name]
+    assert (one["advance_angle"], one["slow_stroke"]) == (other["return_angle"], -other["slow_stroke"])
+    assert one["theta_outer"] == -other["theta_outer"]
+    assert one["advance_angle"] + one["return_angle"] == pytest.approx(2 * math.pi, rel=1e-15)
+    assert one["V_outward"] == pytest.approx(other["V_inward"], rel=1e-9)
+    large = dx.events(ec=1024 * ec, AB=1024 * AB, BC=1024 * BC)
+    assert large["stroke"] == 1024 * one["stroke"]
+    assert large["time_ratio"] == one["time_ratio"]
+    assert 1.0 <= one["time_ratio"] < 3.0
+
+
+def test_in_line():
+    found = dx.events(ec=0.0, AB=0.125, BC=0.35)
+    assert (found["stroke"], found["time_ratio"], found["slow_stroke"]) == (0.25, 1.0, 0)
+    assert (found["theta_outer"], found["theta_inner"]) == (0.0, math.pi)
+    assert found["gradient"]["stroke"] == {"ec": 0.0, "AB": 2.0, "BC": 0.0}
+
+
+def test_change_points():
+    found = dx.events(ec=0.25, AB=0.5, BC=0.75)
+    assert found["status"] == 2
+    assert (found["Y_inner"], found["theta_inner"]) == (0.0, math.pi / 2)
+    assert found["stroke"] == pytest.approx(math.sqrt(1.25**2 - 0.25**2), rel=1e-15)
+    assert found["gradient"]["stroke"]["ec"] == math.inf
+    # Towards it the largest speed is AB omega (1 + sqrt(BC/AB)), from below.
+    assert found["V_inward"] == pytest.approx(0.5 * (1 + math.sqrt(1.5)), rel=1e-12)
+    equal = dx.events(ec=0.0, AB=0.5, BC=0.5)
+    assert (equal["stroke"], equal["time_ratio"], equal["theta_inner"]) == (1.0, 1.0, math.pi)
+
+
+def test_status_next_to_the_limit():
+    ec = 0.35 - 0.125
+    edge = [np.nextafter(ec, 0), ec, np.nextafter(ec, 1)]
+    exact = [mp.mpf(0.35) - mp.mpf(0.125) - mp.mpf(e) for e in edge]
+    wanted = [0 if m > 0 else 2 if m == 0 else 1 for m in exact]
+    assert dx.events(ec=edge, AB=0.125, BC=0.35)["status"].tolist() == wanted
+    assert [dx.events(ec=e, AB=0.125, BC=0.35)["status"] for e in edge] == wanted
+
+
+def test_a_crank_that_only_rocks_has_dead_centres_but_no_stroke():
+    lengths = {"ec": 0.1, "AB": 0.5, "BC": 0.3}
+    long_crank = dx.events(**lengths)
+    assert long_crank["status"] == 1
+    for name in ("outer", "inner"):
+        Y, slope = dx.evaluate(
+            ["Y", "Y_wrt_theta"], theta=long_crank[f"theta_{name}"], ec=0.1, AB=0.5, BC=0.3
+        ).values()
+        assert slope == pytest.approx(0.0, abs=1e-15)
+        assert pytest.approx(long_crank[f"Y_{name}"], rel=1e-14) == Y
+    assert all(math.isnan(long_crank[n]) for n in ("stroke", "time_ratio", "advance_angle", "V_inward"))
+    assert math.isnan(dx.events(ec=0.9, AB=0.5, BC=0.3)["theta_outer"])
+
+
+@pytest.mark.parametrize("omega0", [251.0, -251.0])
+@pytest.mark.parametrize("branch", [1, -1])
+def test_advance_is_outward(branch, omega0):
+    """Sampled: the share of a turn in which the slider moves away from the crank."""
+    design = {"ec": 0.02, "AB": 0.04, "BC": 0.064, "branch": branch}
+    theta = (np.arange(200_000) + 0.5) * 2 * np.pi / 200_000
+    outward = np.mean(branch * dx.evaluate("V_C", theta=theta, omega0=omega0, **design) > 0)
+    found = dx.events(omega0=omega0, **design)
+    assert found["advance_angle"] == pytest.approx(2 * np.pi * outward, abs=1e-4)
+    assert found["slow_stroke"] == (1 if outward > 0.5 else -1)
+    for name in ("outer", "inner"):
+        at = dx.evaluate("Y", theta=found[f"theta_{name}"], **design)
+        assert at == pytest.approx(found[f"Y_{name}"], rel=1e-14)
+        assert -math.pi / 2 <= found[f"theta_{name}"] <= 1.5 * math.pi
+
+
+def test_paper_b():
+    """Table 1: the dead centres at -11.087 and 123.557 deg, 225.355 deg outward, 134.645 inward; 88.79 mm."""
+    found = dx.events(ec="20 mm", AB="40 mm", BC="64 mm", omega0="2400 rpm")
+    degrees = [
+        round(math.degrees(found[n]), 3)
+        for n in ("theta_outer", "theta_inner", "advance_angle", "return_angle")
+    ]
+    assert degrees == [-11.087, 123.557, 225.355, 134.645]
+    assert round(found["stroke"] * 1e3, 2) == 88.79
+    assert round(dx.events(ec=0.01, AB=0.04, BC=0.064)["stroke"] * 1e3, 2) == 81.70
+    assert round(dx.events(ec=0.02, AB=0.04, BC=0.064, omega0=251.0)["V_inward"], 2) == 16.97
+    assert round(dx.events(ec=0.02, AB=0.04, BC=0.064, omega0=251.0)["V_outward"], 2) == 10.49
+
+
+def flat(result):
+    """Names and values, gradients among them."""
+    for name, value in result.items():
+        if name != "gradient":
+            yield name, value
+    for name, slopes in result["gradient"].items():
+        for parameter, slope in slopes.items():
+            yield f"{name} by {parameter}", slope
+
+
+def test_arrays_agree_with_numbers_and_keep_bad_ones_apart():
+    ec = np.array([0.02, -0.02, 0.0, 0.03, np.nan, 0.0239])
+    for branch in (1, -1):
+        for omega0 in (251.0, -251.0):
+            many = dx.events(ec=ec, AB=0.04, BC=[[0.064], [0.08]], branch=branch, omega0=omega0)
+            assert many["status"].tolist() == [[0, 0, 0, 1, 4, 0], [0, 0, 0, 0, 4, 0]]
+            for i, BC in enumerate((0.064, 0.08)):
+                for j in (0, 1, 2, 3, 5):
+                    one = dx.events(ec=ec[j], AB=0.04, BC=BC, branch=branch, omega0=omega0)
+                    for name, value in flat(one):
+                        own = dict(flat(many))[name][i, j]
+                        assert own == pytest.approx(value, rel=1e-7, abs=1e-9, nan_ok=True), name
+    assert np.isnan(many["stroke"][0, 4])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "words"),
+    [
+        ({"BC": 0.0}, ValueError, r"BC = 0\.0: it must be a finite length > 0"),
+        ({"AB": -1.0}, ValueError, r"AB = -1\.0: it must be a finite length >= 0"),
+        ({"ec": None}, TypeError, "events: ec is missing"),
+        ({"branch": 2}, ValueError, "branch = 2"),
+        ({"ec": "10 kg"}, ValueError, "ec = '10 kg': it must be a quantity in m"),
+    ],
+)
+def test_bad_arguments(arguments, error, words):
+    with pytest.raises(error, match=words):
+        dx.events(**{"ec": 0.0, "AB": 0.1, "BC": 0.3, **arguments})

@@ -1,0 +1,213 @@
+"""Optima against a fine scan, their multipliers against optima with moved limits, and where there is none."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+
+A = {"AB": 0.125, "BC": 0.350, "omega0": 157.08}
+
+
+def test_the_optimum_at_a_bound_of_the_margin():
+    best = dx.optimize(
+        maximize=("absmax", "a_C"), over={"ec": (0, 0.25)}, keep={"margin": (0.005, None)}, **A
+    )
+    assert best["ec"] == pytest.approx(0.22, abs=1e-9)
+    assert best["value"] == pytest.approx(dx.peak("a_C", ec=0.22, **A)["value"], rel=1e-9)
+    assert best["active"] == {"margin": "lower"}
+    assert (best["status"], best["multipliers"]["ec"]) == (0, 0.0)
+    # Relaxing the margin by d lets ec grow by d.
+    slope = dx.peak("a_C", ec=0.22, **A)["gradient"]["ec"]
+    assert best["multipliers"]["margin"] == pytest.approx(slope, rel=1e-6)
+    assert "margin (lower)" in best["message"]
+
+
+def test_at_a_bound_of_a_parameter_and_units():
+    best = dx.optimize(
+        maximize=("absmax", "V_C"), over={"ec": ("0 mm", "150 mm")}, keep={"margin": ("5 mm", None)}, **A
+    )
+    assert best["ec"] == pytest.approx(0.15, abs=1e-12)
+    assert best["active"] == {"ec": "upper"}
+    assert best["multipliers"] == {
+        "margin": 0.0,
+        "ec": pytest.approx(dx.peak("V_C", ec=0.15, **A)["gradient"]["ec"]),
+    }
+
+
+def test_paper_a_has_no_highest_peak():
+    found = dx.optimize(maximize=("absmax", "a_C"), over={"ec": (0, 0.25)}, **A)
+    assert (found["status"], found["value"]) == (2, np.inf)
+    same = dx.optimize(maximize=("absmax", "a_C"), over={"ec": (0, 0.25)}, keep={"margin": (0, None)}, **A)
+    assert same["status"] == 2
+    assert found["ec"] == pytest.approx(0.225, abs=1e-6)
+    assert "grows without bound" in found["message"]
+    # The rod is flung round there in one direction: the acceleration has no bound along +Y only.
+    assert dx.optimize(maximize=("max", "a_C"), over={"ec": (0, 0.25)}, **A)["value"] == np.inf
+    down = dx.optimize(minimize=("min", "a_C"), over={"ec": (0, 0.25)}, **A)
+    assert (down["status"], np.isfinite(down["value"])) == (3, True)
+
+
+def test_what_is_bounded_at_the_limit_of_turning():
+    """Paper A: max |V_C| stays below AB omega (1 + sqrt(BC/AB)) = 52.5 m/s."""
+    found = dx.optimize(maximize=("absmax", "V_C"), over={"ec": (0, 0.25)}, **A)
+    assert found["status"] == 3
+    assert found["value"] == pytest.approx(0.125 * 157.08 * (1 + np.sqrt(2.8)), rel=1e-4)
+    assert found["ec"] == pytest.approx(0.225, abs=1e-9)
+    assert "bounded" in found["message"]
+
+
+def test_a_kink_between_two_signs():
+    """The largest speed is least in line, where both strokes share it."""
+    found = dx.optimize(minimize=("absmax", "V_C"), over={"ec": (-0.1, 0.2)}, **A)
+    assert found["ec"] == pytest.approx(0.0, abs=1e-9)
+    assert (found["status"], found["active"]) == (0, {})
+
+
+def scanned(kind, name, ec, BC, keep, sense):
+    """The best of a fine grid, by values alone."""
+    ec, BC = np.meshgrid(ec, BC, indexing="ij")
+    value = dx.peak(name, kind=kind, ec=ec, BC=BC, AB=0.125, omega0=157.08)["value"]
+    ratio = dx.events(ec=ec, AB=0.125, BC=BC)["time_ratio"]
+    value = np.where((0.35 - 0.125 > 0) & (ratio >= keep), sense * value, -np.inf)
+    best = np.unravel_index(np.argmax(value), value.shape)
+    return ec[best], BC[best], sense * value[best]
+
+
+def test_against_a_scan_and_moved_limits():
+    ec, BC = np.linspace(0.0, 0.15, 301), np.linspace(0.3, 0.5, 201)
+    wanted = scanned("absmax", "a_C", ec, BC, 1.2, -1)
+    problem = {
+        "minimize": ("absmax", "a_C"),
+        "over": {"ec": (0.0, 0.15), "BC": (0.3, 0.5)},
+        "AB": 0.125,
+        "omega0": 157.08,
+    }
+    best = dx.optimize(keep={"time_ratio": (1.2, None)}, **problem)
+    assert best["status"] == 0
+    assert best["value"] <= wanted[2]
+    assert best["value"] == pytest.approx(wanted[2], rel=2e-3)
+    assert (best["ec"], best["BC"]) == (
+        pytest.approx(wanted[0], abs=2e-3),
+        pytest.approx(wanted[1], abs=5e-3),
+    )
+    d = 1e-4
+    looser = dx.optimize(keep={"time_ratio": (1.2 - d, None)}, **problem)
+    tighter = dx.optimize(keep={"time_ratio": (1.2 + d, None)}, **problem)
+    gain = (tighter["value"] - looser["value"]) / (2 * d)
+    assert best["multipliers"]["time_ratio"] == pytest.approx(gain, rel=1e-4)
+    wider = dx.optimize(
+        keep={"time_ratio": (1.2, None)}, **{**problem, "over": {"ec": (0.0, 0.15 + d), "BC": (0.3, 0.5)}}
+    )
+    assert best["multipliers"]["ec"] == pytest.approx((best["value"] - wider["value"]) / d, rel=5e-3)
+
+
+def test_equal_and_upper_limits():
+    problem = {
+        "minimize": ("absmax", "a_C"),
+        "over": {"AB": (0.05, 0.2), "BC": (0.3, 0.5)},
+        "ec": 0.05,
+        "omega0": 157.08,
+    }
+    best = dx.optimize(keep={"stroke": 0.25, "max_pressure_angle": (None, "30 deg")}, **problem)
+    assert dx.events(ec=0.05, AB=best["AB"], BC=best["BC"])["stroke"] == pytest.approx(0.25, rel=1e-9)
+    more = dx.optimize(keep={"stroke": 0.2501, "max_pressure_angle": (None, "30 deg")}, **problem)
+    assert best["multipliers"]["stroke"] == pytest.approx((best["value"] - more["value"]) / 1e-4, rel=1e-2)
+    fast = dx.optimize(
+        maximize="time_ratio", over={"ec": (0, 0.2)}, keep={("absmax", "V_C"): (None, 25.0)}, **A
+    )
+    assert dx.peak("V_C", ec=fast["ec"], **A)["value"] == pytest.approx(25.0, rel=1e-9)
+    assert fast["active"] == {("absmax", "V_C"): "upper"}
+
+
+def test_over_masses():
+    press = {"ec": 0.01, "AB": 0.04, "BC": 0.1, "omega0": 100.0, "m_slider": 0.5}
+    best = dx.optimize(minimize=("absmax", "F_B_Y"), over={"m_rod": (0.1, 2.0)}, **press)
+    assert best["active"] == {"m_rod": "lower"}
+    assert best["m_rod"] == 0.1
+
+
+@pytest.mark.parametrize(
+    "goal",
+    [
+        {"minimize": "max_pressure_angle"}, {"maximize": "min_transmission_angle"}, {"minimize": "time_ratio"},
+        {"maximize": "margin"},
+    ],
+)  # fmt: skip
+def test_kinks_at_no_eccentricity(goal):
+    best = dx.optimize(over={"ec": (-0.1, 0.2)}, **goal, **A)
+    assert best["ec"] == pytest.approx(0.0, abs=1e-12)
+    assert (best["status"], best["active"]) == (0, {})
+
+
+def test_inside_of_all_limits():
+    """Against golden sections: the rod's largest pressure angle of a wanted stroke and time ratio has a least."""
+    wanted = dx.synthesize(stroke=0.1, time_ratio=1.3, max_pressure_angle=0.1)["limits"][
+        "max_pressure_angle"
+    ][0]
+    over = {"ec": (0.0, 0.2), "AB": (0.01, 0.1), "BC": (0.05, 0.4)}
+    best = dx.optimize(minimize="max_pressure_angle", over=over, keep={"stroke": 0.1, "time_ratio": 1.3})
+    assert best["value"] == pytest.approx(wanted, rel=1e-10)
+    assert set(best["active"]) == {"stroke", "time_ratio"}
+
+
+def test_no_design_keeps_the_limits():
+    found = dx.optimize(
+        maximize="stroke", over={"ec": (0, 0.3)}, keep={"margin": (0.5, None)}, AB=0.125, BC=0.35
+    )
+    assert found["status"] == 1
+    assert "margin misses its lower limit by 0.275" in found["message"]
+    assert np.isnan(found["value"])
+
+
+def test_pareto_front():
+    found = dx.optimize(
+        minimize=("absmax", "a_C"), maximize="time_ratio", over={"ec": (0, 0.1), "BC": (0.25, 0.5)}, points=5,
+        AB=0.125, omega0=157.08,
+    )  # fmt: skip
+    peak, ratio = found["value"][("absmax", "a_C")], found["value"]["time_ratio"]
+    assert len(peak) == 5
+    order = np.argsort(peak)
+    assert (np.diff(ratio[order]) > 0).all()  # none is beaten
+    for ec, BC, value, T in zip(found["ec"], found["BC"], peak, ratio, strict=True):
+        assert dx.peak("a_C", ec=ec, BC=BC, AB=0.125, omega0=157.08)["value"] == pytest.approx(
+            value, rel=1e-9
+        )
+        assert dx.events(ec=ec, BC=BC, AB=0.125)["time_ratio"] == pytest.approx(T, rel=1e-9)
+    # Nothing of a scan beats a design of the front.
+    ec, BC = (g.reshape(-1) for g in np.meshgrid(np.linspace(0, 0.1, 41), np.linspace(0.25, 0.5, 41)))
+    every = dx.peak("a_C", ec=ec, BC=BC, AB=0.125, omega0=157.08)["value"]
+    ratios = dx.events(ec=ec, BC=BC, AB=0.125)["time_ratio"]
+    for value, T in zip(peak, ratio, strict=True):
+        assert not ((every < value * (1 - 1e-6)) & (ratios > T * (1 + 1e-6))).any()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "words"),
+    [
+        ({"maximize": None}, TypeError, "say what to maximize"),
+        ({"maximize": "strok"}, ValueError, "'strok' is no quantity of a design; did you mean 'stroke'"),
+        ({"maximize": ("absmax", "a_D")}, ValueError, "unknown quantity 'a_D'"),
+        ({"over": {"ecc": (0, 1)}}, TypeError, "no input 'ecc'; did you mean ec"),
+        ({"over": {"ec": (1, 0)}}, ValueError, r"over: ec = \(1, 0\): the lower bound first"),
+        ({"over": {}}, ValueError, "over= is empty"),
+        ({"over": {"ec": (0, float("inf"))}}, ValueError, "two finite bounds are wanted"),
+        ({"keep": {"ec": (0, 1)}}, ValueError, "keep: ec is a parameter"),
+        ({"keep": {"margin": (2, 1)}}, ValueError, r"keep: margin = \(2, 1\): the lower bound first"),
+        ({"AB": None}, TypeError, "optimize: AB is missing"),
+        ({"ec": 0.1}, ValueError, "ec is in over= and fixed"),
+    ],
+)
+def test_bad_arguments(arguments, error, words):
+    with pytest.raises(error, match=words):
+        dx.optimize(**{"maximize": "stroke", "over": {"ec": (0, 0.1)}, **A, **arguments})
+
+
+def test_without_scipy_one_line_says_what_to_install():
+    code = "import sys; sys.modules['scipy'] = None; import desaxe as dx; dx.optimize"
+    run = subprocess.run([sys.executable, "-c", code], check=False, capture_output=True, text=True)
+    last = run.stderr.strip().splitlines()[-1]
+    assert "optimize needs scipy" in last
+    assert last.endswith("python -m pip install 'desaxe[design]'")
