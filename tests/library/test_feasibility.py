@@ -65,5 +65,40 @@ def test_kind(ec, AB, BC, kind, turns):
 def test_bad_lengths():
     with pytest.raises(ValueError, match=r"BC = 0\.0: it must be a finite length > 0"):
         dx.feasibility(ec=0.0, AB=0.1, BC=0.0)
-    with pytest.raises(TypeError, match="ec: feasibility takes numbers"):
-        dx.feasibility(ec=[0.0], AB=0.1, BC=0.3)
+    with pytest.raises(ValueError, match="the shapes do not broadcast"):
+        dx.feasibility(ec=[0.0, 0.1], AB=[0.1, 0.1, 0.1], BC=0.3)
+
+
+def test_arrays_are_many_numbers():
+    ec = np.array([0.1, -0.1, 0.0, 0.225, 0.23, -0.23, 0.45, -0.45, 0.48, 2.0, 0.475, np.nan])[:, None, None]
+    AB, BC = np.array([0.125, 0.5, 0.0, 0.35])[:, None], np.array([0.35, 0.1])
+    many = dx.feasibility(ec=ec, AB=AB, BC=BC)
+    for i, j, k in np.ndindex(len(ec) - 1, len(AB), len(BC)):
+        one = dx.feasibility(ec=ec[i, 0, 0], AB=AB[j, 0], BC=BC[k])
+        for name in ("margin", "can_turn", "kind", "grashof", "status"):
+            assert many[name][i, j, k] == one[name], name
+        for name, slope in one["gradient"].items():
+            assert many["gradient"][name][i, j, k] == slope
+        intervals = [tuple(ends) for ends in many["theta_intervals"][i, j, k] if np.isfinite(ends[0])]
+        assert len(intervals) == len(one["theta_intervals"])
+        np.testing.assert_allclose(intervals, np.reshape(one["theta_intervals"], (-1, 2)), rtol=1e-15)
+    assert (many["status"][-1] == 4).all()
+    assert (many["kind"][-1] == "bad input").all()
+
+
+def test_status_next_to_the_limit_is_that_of_the_exact_margin():
+    ec = np.nextafter(0.225, [0, 0.225, 1])
+    exact = [Fraction(0.35) - Fraction(0.125) - Fraction(e) for e in ec]
+    wanted = [0 if m > 0 else 2 if m == 0 else 1 for m in exact]
+    found = dx.feasibility(ec=ec, AB=0.125, BC=0.35)
+    assert found["status"].tolist() == wanted
+    assert found["kind"].tolist() == ["change point"] * 3
+    assert [dx.feasibility(ec=e, AB=0.125, BC=0.35)["status"] for e in ec] == wanted
+
+
+def test_the_shorter_one_turns():
+    """Grashof: against the sweep of the crank, and of the rod as a crank."""
+    for ec, AB, BC in [(0.1, 0.5, 0.35), (0.2, 0.5, 0.35), (0.1, 0.125, 0.35), (0.3, 0.125, 0.35)]:
+        short, long = sorted((AB, BC))
+        turns = dx.feasibility(ec=ec, AB=short, BC=long)["can_turn"]
+        assert dx.feasibility(ec=ec, AB=AB, BC=BC)["grashof"] == turns

@@ -7,7 +7,7 @@ import numpy as np
 
 from .._request import check_border
 from ..extras import needed
-from .problem import UPPER, Array, Limit, Space
+from .problem import LOWER, UPPER, Array, Limit, Space
 from .wishes import Goal, goals_of, limits_of, lower_limits, problems, space_of
 
 with needed("optimize", "design"):
@@ -107,9 +107,20 @@ def _best(
     candidates = []
     for pieces in problems(goal):
         search = Search(space, pieces, limits, seed)
-        candidates += [(search.run(start), search) for start in [*places, *search.starts(starts)]]
-    found, search = min(candidates, key=lambda pair: (max(pair[0].violation, SATISFIED), pair[0].value))
+        begin = [*places, *search.starts(starts)]
+        candidates += [(search.run(start), search) for start in begin]
+        # Towards the limit of turning a search may stall, so steep does it get: look along that limit too.
+        near, _ = min(candidates, key=_rank)
+        for number, limit in enumerate(limits):
+            if limit.side == LOWER and limit.key in (None, "margin"):
+                candidates.append((search.run(search.at_limit(near.z, number), number), search))
+    found, search = min(candidates, key=_rank)
     return search.polished(found), search
+
+
+def _rank(candidate: tuple["Found", "Search"]) -> tuple[float, float]:
+    found = candidate[0]
+    return max(found.violation, SATISFIED), found.value
 
 
 def _power(history: list[tuple[float, float]]) -> float:

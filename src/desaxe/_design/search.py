@@ -76,6 +76,13 @@ class Search:
                 chosen.append(place)
         return chosen[:count]
 
+    def at_limit(self, z: Array, number: int) -> Array:
+        """The nearest place at which a limit is met exactly, if it is linear."""
+        value, slope = self.scaled(z)
+        row = self.count + number
+        step: Array = slope[row] * value[row] / max(float(slope[row] @ slope[row]), 1e-300)
+        return np.clip(z - step, 0.0, 1.0)
+
     def _violation(self, limits: Array) -> Array:
         wrong = np.where(self.equal, np.abs(limits), np.maximum(-limits, 0.0))
         wrong = np.where(np.isnan(limits), WORST, wrong)
@@ -92,8 +99,8 @@ class Search:
         value = np.where(bad, np.where(np.arange(value.size) < self.count, WORST, -WORST), value)
         return value, np.where(np.isfinite(slope), slope, 0.0)
 
-    def run(self, start: Array) -> Found:
-        """SLSQP from one place."""
+    def run(self, start: Array, pinned: int | None = None) -> Found:
+        """SLSQP from one place; on the limit of this number, if there is one that pins it."""
         n, m = len(start), self.count
         several = m > 1
         first = self.scaled(start)[0][:m].max()
@@ -108,6 +115,8 @@ class Search:
             return np.append(z[n] - value[:m], value[m:]), over
 
         kinds = np.append(np.zeros(m if several else 0, bool), self.equal)
+        if pinned is not None:
+            kinds[pinned - len(self.limits)] = True
         constraints = [
             {"type": name, "fun": lambda z, k=kind: sides(z)[0][k], "jac": lambda z, k=kind: sides(z)[1][k]}
             for name, kind in (("ineq", ~kinds), ("eq", kinds))

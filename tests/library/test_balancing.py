@@ -1,0 +1,164 @@
+"""Harmonics against series and sums by hand, counterweights as bodies, flywheels in a simulated motion."""
+
+import math
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+
+PRESS = {"ec": 0.01, "AB": 0.04, "BC": 0.064, "omega0": 251.0, "m_rod": 0.5, "m_slider": 0.8, "m_crank": 0.3}
+ANGLES = (np.arange(4096) + 0.5) * 2 * np.pi / 4096
+
+
+def by_sums(name, order, **inputs):
+    """Coefficients by the midpoint rule at other angles."""
+    value = dx.evaluate(name, theta=ANGLES, **inputs)
+    scale = 1 if order == 0 else 2
+    return scale * np.mean(value * np.cos(order * ANGLES)), scale * np.mean(value * np.sin(order * ANGLES))
+
+
+@pytest.mark.parametrize("name", ["F_shaking_X", "F_shaking_Y", "T_in", "a_C", "a_C_wrt_ec"])
+def test_harmonics_by_sums(name):
+    inputs = {k: v for k, v in PRESS.items() if name not in ("a_C", "a_C_wrt_ec") or not k.startswith("m_")}
+    found = dx.harmonics(name, orders=5, **inputs)
+    for n in range(6):
+        cosine, sine = by_sums(name, n, **inputs)
+        assert found["cos"][n] == pytest.approx(cosine, abs=5 * found["error"])
+        assert found["sin"][n] == pytest.approx(sine, abs=5 * found["error"])
+    np.testing.assert_allclose(
+        found["amplitude"] * np.cos(found["phase"]), found["cos"], atol=1e-12 * found["amplitude"].max()
+    )
+    value = dx.evaluate(name, theta=ANGLES, **inputs)
+    series = sum(
+        found["cos"][n] * np.cos(n * ANGLES) + found["sin"][n] * np.sin(n * ANGLES) for n in range(6)
+    )
+    assert found["remainder"] == pytest.approx(np.sqrt(np.mean((value - series) ** 2)), rel=1e-9)
+
+
+def test_the_series_of_textbooks():
+    """In line: a_C = -AB omega^2 (cos theta + A2 cos 2 theta - A4 cos 4 theta + ...), l = AB/BC,
+    A2 = l + l^3/4 + 15 l^5/128 + ..., A4 = l^3/4 + 3 l^5/16 + ...
+    """  # noqa: D205
+    l = 0.05  # noqa: E741
+    found = dx.harmonics("a_C", ec=0, AB=0.1, BC=2.0, omega0=10.0)
+    assert found["cos"][1] == pytest.approx(-10.0, rel=1e-14)
+    assert found["cos"][2] == pytest.approx(-10.0 * (l + l**3 / 4 + 15 * l**5 / 128), rel=1e-8)
+    assert found["cos"][4] == pytest.approx(10.0 * (l**3 / 4 + 3 * l**5 / 16), rel=1e-4)
+    assert np.abs(found["sin"]).max() < 10 * found["error"]
+
+
+def test_next_to_the_change_point_the_stated_error_holds():
+    design = {"ec": 0.0239999, "AB": 0.04, "BC": 0.064, "omega0": 10.0}
+    found = dx.harmonics("V_C", orders=3, **design)
+    fine = (np.arange(2**20) + 0.5) * 2 * np.pi / 2**20
+    value = dx.evaluate("V_C", theta=fine, **design)
+    for n in range(1, 4):
+        assert found["cos"][n] == pytest.approx(
+            2 * np.mean(value * np.cos(n * fine)), abs=found["error"] + 1e-14
+        )
+
+
+def with_weight(product, angle):
+    """The machine with a counterweight as a second crank would be: opposite, as a change of r_crank; else by hand."""
+    force = dx.evaluate(["F_shaking_X", "F_shaking_Y"], theta=ANGLES, **PRESS)
+    size = product * PRESS["omega0"] ** 2
+    return force["F_shaking_X"] + size * np.sin(ANGLES + angle), force["F_shaking_Y"] + size * np.cos(
+        ANGLES + angle
+    )
+
+
+def first(force):
+    return 2 * np.mean(force * np.exp(-1j * ANGLES))
+
+
+@pytest.mark.parametrize("along", ["both", "X", "Y"])
+def test_counterweight(along):
+    found = dx.counterweight(along=along, radius="50 mm", **PRESS)
+    X, Y = with_weight(found["product"], found["angle"])
+    assert abs(first(X)) == pytest.approx(found["after"]["X"], abs=1e-9)
+    assert abs(first(Y)) == pytest.approx(found["after"]["Y"], abs=1e-9)
+    assert np.hypot(X, Y).max() == pytest.approx(found["after"]["peak"], rel=1e-5)
+    assert found["mass"] == pytest.approx(found["product"] / 0.05)
+    if along != "both":
+        assert found["after"][along] < 1e-9
+    else:
+        second = found["counter_rotating"]
+        size = second["product"] * PRESS["omega0"] ** 2
+        assert abs(first(X + size * np.sin(second["angle"] - ANGLES))) < 1e-9
+        assert abs(first(Y + size * np.cos(second["angle"] - ANGLES))) < 1e-9
+        # No other weight leaves a smaller first harmonic.
+        for product, angle in ((1.05, 0.0), (0.95, 0.0), (1.0, 0.05), (1.0, -0.05)):
+            X, Y = with_weight(product * found["product"], found["angle"] + angle)
+            turned = (first(Y) + 1j * first(X)) / 2, np.conj(first(Y) - 1j * first(X)) / 2
+            assert sum(map(abs, turned)) > found["after"]["largest"]
+
+
+def test_a_counterweight_is_a_crank_with_its_mass_on_the_other_side():
+    """A body of the library, at the angle pi: r_crank < 0."""
+    light = {"ec": 0.0, "AB": 0.05, "BC": 0.2, "omega0": 100.0, "m_slider": 0.4}
+    found = dx.counterweight(**light)
+    assert found["product"] == pytest.approx(0.4 * 0.05 / 2, rel=1e-12)
+    assert found["angle"] == pytest.approx(math.pi)
+    assert found["balanced"] == pytest.approx(0.5, rel=1e-12)
+    balanced = dx.counterweight(m_crank=1.0, r_crank=-found["product"], **light)
+    assert balanced["before"]["largest"] == pytest.approx(found["after"]["largest"], rel=1e-12)
+    assert balanced["product"] == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.parametrize("fluctuation", [0.02, 0.2])
+def test_a_flywheel_in_a_simulated_motion(fluctuation):
+    def load(theta):
+        return -500.0 * np.where(np.sin(theta) < 0, np.sin(theta) ** 2, 0.0)
+
+    machine = {**PRESS, "I_rod": 1e-3}
+    found = dx.flywheel(fluctuation=fluctuation, F_Y=load, **machine)
+    mean = machine.pop("omega0")
+    start = found["theta_fastest"]
+    run = dx.simulate(
+        torque=found["mean_torque"], F_Y=lambda t, theta, omega: float(load(theta)), theta0=start, rtol=1e-10,
+        omega_start=mean * (1 + fluctuation / 2), I_crank=found["inertia"], t_end=0.06, **machine,
+    )  # fmt: skip
+    fastest, slowest = run["omega"].max(), run["omega"].min()
+    assert (fastest + slowest) / 2 == pytest.approx(mean, rel=1e-5)
+    assert (fastest - slowest) / mean == pytest.approx(fluctuation, rel=1e-4)
+    slow = run["theta"][np.argmin(run["omega"])]
+    assert math.cos(slow - found["theta_slowest"]) > 0.999
+    # The textbook's estimate holds to first order in the fluctuation.
+    assert found["inertia_first_order"] == pytest.approx(found["inertia"], rel=3 * fluctuation)
+
+
+def test_torques_and_energy_by_sums():
+    found = dx.flywheel(fluctuation=0.02, **PRESS)
+    torque = dx.evaluate("T_in", theta=ANGLES, **PRESS)
+    assert found["mean_torque"] == pytest.approx(0.0, abs=1e-9)  # nothing but masses
+    assert found["ripple"] == pytest.approx(np.ptp(torque), rel=1e-5)
+    assert found["max_torque"] == pytest.approx(dx.peak("T_in", kind="max", **PRESS)["value"], rel=1e-6)
+    stored = np.cumsum(torque) * 2 * np.pi / 4096
+    assert found["energy_fluctuation"] == pytest.approx(np.ptp(stored), rel=1e-4)
+    # The energy that goes to and fro is the kinetic energy at constant speed.
+    energy = dx.evaluate("kinetic_energy", theta=ANGLES, **PRESS)
+    assert found["energy_fluctuation"] == pytest.approx(np.ptp(energy), rel=1e-5)
+    heavy = dx.flywheel(fluctuation=0.02, I_crank=10.0, **PRESS)
+    assert heavy["inertia"] == 0.0
+    assert heavy["fluctuation_without"] < 0.02
+    assert dx.flywheel(fluctuation=0.02, mu=0.1, **PRESS)["mean_torque"] > 0.0
+
+
+def test_bad_arguments():
+    with pytest.raises(ValueError, match="harmonics: the crank cannot turn fully, margin = -0.005"):
+        dx.harmonics("Y", ec=0.23, AB=0.125, BC=0.35)
+    with pytest.raises(TypeError, match="F_Y: harmonics takes a number or a function of theta"):
+        dx.harmonics("T_in", F_Y=[1.0, 2.0], **PRESS)
+    with pytest.raises(TypeError, match="no input 'alpha'"):
+        dx.harmonics("a_C", alpha=1.0, ec=0.0, AB=0.1, BC=0.3, omega0=1.0)
+    with pytest.raises(ValueError, match=r"no value at theta = .* \(status 5\)"):
+        dx.harmonics("T_in", mu=4.0, **PRESS)
+    with pytest.raises(ValueError, match="along = 'Z'"):
+        dx.counterweight(along="Z", **PRESS)
+    with pytest.raises(ValueError, match="omega0 is missing or 0"):
+        dx.counterweight(ec=0, AB=0.1, BC=0.3)
+    with pytest.raises(ValueError, match="fluctuation = 3"):
+        dx.flywheel(fluctuation=3, **PRESS)
+    with pytest.raises(TypeError, match="harmonics: .*BC is missing|BC is missing"):
+        dx.harmonics("Y", ec=0.0, AB=0.1)

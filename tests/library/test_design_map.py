@@ -1,0 +1,64 @@
+"""Maps of designs: what is feasible, labelled; the same values as one by one; there and back through a file."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import desaxe as dx
+
+ECS, RODS = np.linspace(-0.3, 0.3, 7), np.array([0.1, 0.3, 0.4])
+
+
+@pytest.fixture(scope="module")
+def plane():
+    names = ["stroke", "max_pressure_angle", ("absmax", "a_C")]
+    return dx.design_map(names, ec=ECS, BC=RODS, AB="125 mm", omega0=157.08, derivatives=True)
+
+
+def test_values_are_those_of_each_design(plane):
+    assert plane.stroke.dims == ("ec", "BC")
+    for ec in ECS:
+        for BC in RODS:
+            here = plane.sel(ec=ec, BC=BC)
+            feasible = dx.feasibility(ec=ec, AB=0.125, BC=BC)
+            assert float(here.margin) == feasible["margin"]
+            assert bool(here.can_turn) == feasible["can_turn"]
+            assert int(here.status) == feasible["status"]
+            meanings = here.kind.attrs["flag_meanings"].split()
+            assert meanings[int(here.kind)].replace("_", " ") == feasible["kind"]
+            events = dx.events(ec=ec, AB=0.125, BC=BC)
+            assert float(here.stroke) == pytest.approx(events["stroke"], rel=1e-14, nan_ok=True)
+            slope = events["gradient"]["stroke"]["BC"]
+            assert float(here.stroke_wrt_BC) == pytest.approx(slope, rel=1e-12, nan_ok=True)
+            if feasible["can_turn"]:
+                peak = dx.peak("a_C", ec=ec, AB=0.125, BC=BC, omega0=157.08)
+                assert float(here.absmax_a_C) == pytest.approx(peak["value"], rel=1e-13)
+
+
+def test_labels(plane):
+    assert plane.stroke.attrs["units"] == "m"
+    assert plane.absmax_a_C.attrs == {
+        "units": "m/s^2",
+        "long_name": "largest magnitude over a turn: " + dx.quantities()["a_C"].meaning,
+    }
+    assert plane.stroke_wrt_BC.attrs["units"] == "m/(m)"
+    assert plane.status.dtype == np.int8
+    assert len(plane.kind.attrs["flag_values"]) == len(plane.kind.attrs["flag_meanings"].split()) == 5
+    assert plane.AB.attrs["units"] == "m"
+    assert set(dx.design_map(ec=ECS, AB=0.125, BC=0.35).data_vars) == {"margin", "can_turn", "status", "kind"}
+
+
+def test_there_and_back(plane, tmp_path):
+    plane.to_netcdf(tmp_path / "map.nc", engine="h5netcdf")
+    xr.testing.assert_identical(xr.load_dataset(tmp_path / "map.nc", engine="h5netcdf"), plane)
+
+
+def test_bad_arguments():
+    with pytest.raises(TypeError, match="design_map: BC is missing"):
+        dx.design_map("stroke", ec=0.0, AB=0.1)
+    with pytest.raises(ValueError, match="ec: a map takes numbers and 1-d arrays"):
+        dx.design_map("stroke", ec=np.zeros((2, 2)), AB=0.1, BC=0.3)
+    with pytest.raises(ValueError, match="did you mean 'stroke'"):
+        dx.design_map("strokes", ec=ECS, AB=0.1, BC=0.3)
+    with pytest.raises(TypeError, match="no input 'theta'"):
+        dx.design_map("stroke", ec=ECS, AB=0.1, BC=0.3, theta=0.0)

@@ -1,0 +1,151 @@
+"""Scatter by four ways that share little: derivatives, Monte Carlo, Sobol's indices, enclosures; and known cases."""
+
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import desaxe as dx
+
+POINT = {"theta": 1.0, "ec": (0.1, 1e-3), "AB": "125 mm ± 0.1 mm", "BC": (0.35, 1e-3), "omega0": 157.08}
+
+
+@pytest.fixture(scope="module")
+def point():
+    return dx.tolerance("a_C", **POINT)
+
+
+def test_the_ways_agree(point):
+    assert abs(point["agreement"]["mean"]) < 4
+    assert abs(point["agreement"]["std"]) < 4
+    assert point["agreement"]["contributions"] < 0.02
+    assert abs(point["agreement"]["linearity"]) < 1e-3
+    assert point["second_order"]["exact"]
+    worst, drawn = point["worst_case"], point["monte_carlo"]
+    assert worst["guaranteed"]
+    assert worst["lower"] < drawn["percentiles"][0.135] < drawn["percentiles"][99.865] < worst["upper"]
+    assert (point["status"], drawn["infeasible"]) == (0, 0.0)
+
+
+def test_values_by_hand(point):
+    """With differences of evaluate alone."""
+    centre = {"theta": 1.0, "ec": 0.1, "AB": 0.125, "BC": 0.35, "omega0": 157.08}
+    std = {"ec": 1e-3 / 3, "AB": 1e-4 / 3, "BC": 1e-3 / 3}
+    variance, bend = 0.0, 0.0
+    for name, s in std.items():
+        up, down = (dx.evaluate("a_C", **{**centre, name: centre[name] + side * 1e-5}) for side in (1, -1))
+        middle = dx.evaluate("a_C", **centre)
+        assert point["gradient"][name] == pytest.approx((up - down) / 2e-5, rel=1e-4)
+        variance += ((up - down) / 2e-5 * s) ** 2
+        bend += 0.5 * (up - 2 * middle + down) / 1e-10 * s**2
+    assert point["value"] == middle
+    assert point["first_order"]["std"] == pytest.approx(math.sqrt(variance), rel=1e-4)
+    assert point["second_order"]["mean"] - middle == pytest.approx(bend, rel=1e-2)
+    assert list(point["contributions"]) == ["ec", "BC", "AB"]
+    assert sum(point["contributions"].values()) == pytest.approx(1.0)
+
+
+def test_a_curved_quantity():
+    """Y's slope by theta is 0 at the dead centre: the first order sees nothing, the second all.
+
+    Y - Y_o = -k theta^2/2: mean -k s^2/2, standard deviation k s^2/sqrt(2) of a normal theta.
+    """
+    found = dx.tolerance("Y", theta=(0.0, 0.03), ec=0.0, AB=0.1, BC=0.4, samples=200_000, sobol=0)
+    k, s = 0.1 * (1 + 0.25), 0.01
+    assert found["first_order"]["std"] == 0.0
+    assert found["second_order"]["mean"] == pytest.approx(0.5 - k * s**2 / 2, rel=1e-12)
+    assert found["second_order"]["std"] == pytest.approx(k * s**2 / math.sqrt(2), rel=1e-9)
+    assert abs(found["agreement"]["mean"]) < 4
+    assert found["monte_carlo"]["std"] == pytest.approx(found["second_order"]["std"], rel=0.02)
+    assert found["monte_carlo"]["largest"] <= 0.5
+
+
+def test_uniform_and_given_distributions():
+    """The margin is linear: its variance is the sum of theirs."""
+    given = {"ec": stats.gamma(4.0, scale=0.001), "AB": (0.1, 0.003), "BC": 0.4}
+    found = dx.tolerance("margin", distribution="uniform", sobol=0, samples=50_000, **given)
+    wanted = math.sqrt(4.0 * 0.001**2 + 0.003**2 / 3)
+    assert found["first_order"]["std"] == pytest.approx(wanted, rel=1e-12)
+    assert found["second_order"] == {
+        "mean": pytest.approx(0.296),
+        "std": pytest.approx(wanted),
+        "exact": False,
+    }
+    assert found["monte_carlo"]["std"] == pytest.approx(wanted, rel=0.02)
+    assert found["worst_case"] is None
+    uniform = dx.tolerance("margin", distribution="uniform", ec=0.01, AB=(0.1, 0.003), BC=0.4, sobol=0)
+    assert uniform["monte_carlo"]["largest"] <= uniform["worst_case"]["upper"] == pytest.approx(0.293)
+
+
+def test_of_a_design_and_of_forces():
+    stroke = dx.tolerance("stroke", ec=(0.02, 1e-3), AB=(0.04, 5e-5), BC=0.064)
+    assert abs(stroke["agreement"]["std"]) < 4
+    assert stroke["agreement"]["contributions"] < 0.02
+    h = 1e-5
+    at = [dx.events(ec=0.02 + d, AB=0.04, BC=0.064)["stroke"] for d in (-h, 0, h)]
+    bend = (at[0] - 2 * at[1] + at[2]) / h**2
+    ab = dx.tolerance("stroke", ec=(0.02, 1e-3), AB=0.04, BC=0.064, sobol=0)["second_order"]["mean"] - at[1]
+    assert ab == pytest.approx(0.5 * bend * (1e-3 / 3) ** 2, rel=1e-4)
+    press = {"AB": (0.04, 5e-5), "BC": 0.064, "omega0": 100.0, "m_slider": (0.8, 0.05)}
+    torque = dx.tolerance("T_in", theta=1.0, ec=(0.01, 1e-3), **press)
+    assert abs(torque["agreement"]["std"]) < 4
+    assert next(iter(torque["contributions"])) == "m_slider"
+    peak = dx.tolerance(
+        ("absmax", "a_C"), ec=(0.1, 0.01), AB=(0.125, 5e-4), BC=0.35, omega0=157.08, samples=4000
+    )
+    assert abs(peak["agreement"]["std"]) < 4
+
+
+def test_samples_without_a_value_are_counted():
+    found = dx.tolerance("Y", theta=math.pi / 2, ec=(0.22, 0.03), AB=0.125, BC=0.35, sobol=64, samples=2000)
+    assert found["status"] == 2
+    share = stats.norm.sf(0.225, 0.22, 0.01)
+    assert found["monte_carlo"]["infeasible"] == pytest.approx(share, abs=0.04)
+
+
+def test_one_input_and_seeds():
+    one = {"theta": 1.0, "ec": (0.1, 1e-3), "AB": 0.125, "BC": 0.35}
+    first, again, other = (dx.tolerance("Y", samples=100, seed=seed, **one) for seed in (0, 0, 1))
+    assert first == again
+    assert first["monte_carlo"]["mean"] != other["monte_carlo"]["mean"]
+    assert first["sobol"]["ec"]["total"] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "words"),
+    [
+        ({"ec": 0.1, "AB": 0.125, "BC": 0.35}, ValueError, "every input is exact"),
+        ({"ec": (0.1, -1e-3)}, ValueError, "ec: a tolerance of -0.001"),
+        ({"ec": (0.1, 1e-3, 0)}, ValueError, r"a pair \(value, tolerance\) is wanted"),
+        ({"distribution": "flat"}, ValueError, "distribution = 'flat'"),
+        ({"sobol": 100}, ValueError, "sobol = 100: a power of two"),
+        ({"samples": 1}, ValueError, "samples = 1"),
+        ({"AC": 1.0}, TypeError, "no input 'AC'"),
+        ({"ec": [0.1, 0.2, 0.3]}, ValueError, "a pair"),
+        ({"AB": np.array([0.1, 0.2])}, TypeError, "AB = .*a number, a pair"),
+    ],
+)
+def test_bad_arguments(arguments, error, words):
+    with pytest.raises(error, match=words):
+        dx.tolerance("a_C", **{**POINT, **arguments})
+
+
+def test_bad_names():
+    with pytest.raises(ValueError, match="theta: stroke is of a whole turn"):
+        dx.tolerance("stroke", theta=1.0, ec=(0.1, 0.01), AB=0.1, BC=0.4)
+    with pytest.raises(ValueError, match="unknown quantity 'a_D'"):
+        dx.tolerance("a_D", **POINT)
+
+
+def test_without_salib_one_line_says_what_to_install():
+    code = (
+        "import sys; sys.modules['SALib'] = None; import desaxe as dx; "
+        "dx.tolerance('margin', ec=(0.1, 0.01), AB=0.1, BC=(0.4, 0.01), samples=10)"
+    )
+    run = subprocess.run([sys.executable, "-c", code], check=False, capture_output=True, text=True)
+    last = run.stderr.strip().splitlines()[-1]
+    assert "sobol=0 leaves them out" in last
+    assert last.endswith("python -m pip install 'desaxe[design]'")
