@@ -29,7 +29,7 @@ def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
     Raises ValueError for a bad value. Source: paper A (6), where |u| <= BC.
 
         >>> import desaxe as dx
-        >>> found = dx.feasibility(ec=0.1, AB=0.125, BC=0.35)
+        >>> found = dx.feasibility(ec=0.125, AB=0.125, BC=0.375)
         >>> found["kind"], found["can_turn"], found["margin"]
         ('crank', True, 0.125)
     """

@@ -26,9 +26,8 @@ def test_harmonics_by_sums(name):
         cosine, sine = by_sums(name, n, **inputs)
         assert found["cos"][n] == pytest.approx(cosine, abs=5 * found["error"])
         assert found["sin"][n] == pytest.approx(sine, abs=5 * found["error"])
-    np.testing.assert_allclose(
-        found["amplitude"] * np.cos(found["phase"]), found["cos"], atol=1e-12 * found["amplitude"].max()
-    )
+    along = found["amplitude"] * np.cos(found["phase"])
+    np.testing.assert_allclose(along, found["cos"], atol=1e-12 * found["amplitude"].max())
     value = dx.evaluate(name, theta=ANGLES, **inputs)
     series = sum(
         found["cos"][n] * np.cos(n * ANGLES) + found["sin"][n] * np.sin(n * ANGLES) for n in range(6)
@@ -60,7 +59,7 @@ def test_next_to_the_change_point_the_stated_error_holds():
 
 
 def with_weight(product, angle):
-    """The machine with a counterweight as a second crank would be: opposite, as a change of r_crank; else by hand."""
+    """The shaking force with a mass on the crank, by its centrifugal force."""
     force = dx.evaluate(["F_shaking_X", "F_shaking_Y"], theta=ANGLES, **PRESS)
     size = product * PRESS["omega0"] ** 2
     return force["F_shaking_X"] + size * np.sin(ANGLES + angle), force["F_shaking_Y"] + size * np.cos(
@@ -148,7 +147,7 @@ def test_torques_and_energy_by_sums():
 def test_bad_arguments():
     with pytest.raises(ValueError, match="harmonics: the crank cannot turn fully, margin = -0.005"):
         dx.harmonics("Y", ec=0.23, AB=0.125, BC=0.35)
-    with pytest.raises(TypeError, match="F_Y: harmonics takes a number or a function of theta"):
+    with pytest.raises(TypeError, match=r"F_Y: harmonics takes a number or a function of theta"):
         dx.harmonics("T_in", F_Y=[1.0, 2.0], **PRESS)
     with pytest.raises(TypeError, match="no input 'alpha'"):
         dx.harmonics("a_C", alpha=1.0, ec=0.0, AB=0.1, BC=0.3, omega0=1.0)
@@ -160,5 +159,5 @@ def test_bad_arguments():
         dx.counterweight(ec=0, AB=0.1, BC=0.3)
     with pytest.raises(ValueError, match="fluctuation = 3"):
         dx.flywheel(fluctuation=3, **PRESS)
-    with pytest.raises(TypeError, match="harmonics: .*BC is missing|BC is missing"):
+    with pytest.raises(TypeError, match="harmonics: BC is missing"):
         dx.harmonics("Y", ec=0.0, AB=0.1)

@@ -1,4 +1,4 @@
-"""Maps of designs: what is feasible, labelled; the same values as one by one; there and back through a file."""
+"""Maps of designs: labelled, the same values as one by one, there and back through a file."""
 
 import numpy as np
 import pytest

@@ -12,13 +12,14 @@ import desaxe as dx
 
 DESIGNS = [
     (0.02, 0.04, 0.064), (-0.02, 0.04, 0.064), (0.0, 0.125, 0.35), (1e-9, 0.125, 0.35),
-    (1e-300, 0.125, 0.35), (0.2249, 0.125, 0.35), (0.225 - 1e-12, 0.125, 0.35), (-(0.225 - 1e-15), 0.125, 0.35), (0.1, 1e-6, 0.35),
-    (0.3, 2.0**-40, 0.35), (2.0**-30, 1.0, 1.0 + 2.0**-29), (0.0, 1.0, 1.0 + 2.0**-52), (5.0, 0.5, 1e6),
+    (1e-300, 0.125, 0.35), (0.2249, 0.125, 0.35), (0.225 - 1e-12, 0.125, 0.35),
+    (-(0.225 - 1e-15), 0.125, 0.35), (0.1, 1e-6, 0.35), (0.3, 2.0**-40, 0.35),
+    (2.0**-30, 1.0, 1.0 + 2.0**-29), (0.0, 1.0, 1.0 + 2.0**-52), (5.0, 0.5, 1e6),
     (1e-180, 2e-180, 4e-180), (1e180, 2e180, 4e180),
 ]  # fmt: skip
 SLOPES = (
-    "theta_outer", "theta_inner", "Y_outer", "Y_inner", "stroke", "advance_angle", "return_angle", "time_ratio",
-    "max_pressure_angle", "min_transmission_angle",
+    "theta_outer", "theta_inner", "Y_outer", "Y_inner", "stroke", "advance_angle", "return_angle",
+    "time_ratio", "max_pressure_angle", "min_transmission_angle",
 )  # fmt: skip
 LENGTHS = ("ec", "AB", "BC")
 

@@ -81,7 +81,7 @@ def test_arrays_are_many_numbers():
             assert many["gradient"][name][i, j, k] == slope
         intervals = [tuple(ends) for ends in many["theta_intervals"][i, j, k] if np.isfinite(ends[0])]
         assert len(intervals) == len(one["theta_intervals"])
-        np.testing.assert_allclose(intervals, np.reshape(one["theta_intervals"], (-1, 2)), rtol=1e-15)
+        np.testing.assert_allclose(intervals, one["theta_intervals"], rtol=1e-15)
     assert (many["status"][-1] == 4).all()
     assert (many["kind"][-1] == "bad input").all()
 

@@ -1,4 +1,4 @@
-"""Scatter by four ways that share little: derivatives, Monte Carlo, Sobol's indices, enclosures; and known cases."""
+"""Scatter by derivatives, Monte Carlo, Sobol's indices and enclosures, against each other and known cases."""
 
 import math
 import subprocess

@@ -15,6 +15,7 @@ import numpy as np
 from .turn import Turn
 
 ALONG = {"both": 0.0, "Y": 1.0, "X": -1.0}
+POINTS = 8192  # among which the largest force is looked for
 FORCES = ("F_shaking_X", "F_shaking_Y")
 
 
@@ -60,7 +61,7 @@ def counterweight(
     forward, backward = Y + 1j * X, np.conj(Y) + 1j * np.conj(X)  # of exp(i n theta), of exp(-i n theta)
     weight = -(forward[1] + ALONG[along] * np.conj(backward[1]))
     left = forward[1] + weight
-    forces = turn.values(FORCES, 2 * (len(X) - 1))
+    forces = turn.values(FORCES, max(POINTS, 2 * (len(X) - 1)))
     z = forces["F_shaking_Y"] + 1j * forces["F_shaking_X"]
     turned = z + weight * np.exp(2j * pi * np.arange(z.size) / z.size)
     before = _told(forward[1], backward[1], forward[2], backward[2], z)
