@@ -145,7 +145,7 @@ def test_torques_and_energy_by_sums():
 
 
 def test_bad_arguments():
-    with pytest.raises(ValueError, match="harmonics: the crank cannot turn fully, margin = -0.005"):
+    with pytest.raises(ValueError, match=r"harmonics: the crank cannot turn fully, margin = -0\.005"):
         dx.harmonics("Y", ec=0.23, AB=0.125, BC=0.35)
     with pytest.raises(TypeError, match=r"F_Y: harmonics takes a number or a function of theta"):
         dx.harmonics("T_in", F_Y=[1.0, 2.0], **PRESS)

@@ -7,12 +7,12 @@ import numpy as np
 
 from .._request import check_border
 from ..extras import needed
-from .problem import LOWER, UPPER, Array, Limit, Space
+from .problem import UPPER, Array, Limit, Space
 from .wishes import Goal, goals_of, limits_of, lower_limits, problems, space_of
 
 with needed("optimize", "design"):
     from .search import Found, Search
-    from .verdict import SATISFIED, told
+    from .verdict import SATISFIED, SETTLED, told
 
 EDGES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # of the rod: how near to the limit of turning the search goes
 GROWS = 0.2  # the power of the margin from which growth towards the limit is no rounding
@@ -111,9 +111,9 @@ def _best(
         candidates += [(search.run(start), search) for start in begin]
         # Towards the limit of turning a search may stall, so steep does it get: look along that limit too.
         near, _ = min(candidates, key=_rank)
-        for number, limit in enumerate(limits):
-            if limit.side == LOWER and limit.key in (None, "margin"):
-                candidates.append((search.run(search.at_limit(near.z, number), number), search))
+        stalled = near.residual > SETTLED or search.is_near_margin(near.z)
+        for number in search.margins() if stalled else ():
+            candidates.append((search.run(search.at_limit(near.z, number), number), search))
     found, search = min(candidates, key=_rank)
     return search.polished(found), search
 

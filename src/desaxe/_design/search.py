@@ -16,11 +16,13 @@ import numpy as np
 from scipy.optimize import minimize, nnls, root
 from scipy.stats import qmc
 
-from .problem import EQUAL, Array, Functions, Limit, Piece, Space
+from .problem import EQUAL, LOWER, Array, Functions, Limit, Piece, Space
 
 SCAN = 7  # 2^7 designs are looked at first
 NEAR = 1e-6  # of its scale: a limit that is so near is active
-STEPS = 200
+CLOSE = 0.01  # of its scale: a margin that makes the functions steep
+STEPS = 100
+FLAT = 1e-10  # of the scale: a smaller gain ends a run
 WORST = 1e3  # of the scale: what a design counts that cannot be judged
 
 
@@ -76,6 +78,16 @@ class Search:
                 chosen.append(place)
         return chosen[:count]
 
+    def margins(self) -> list[int]:
+        """The numbers of the lower limits of the margin, implied or asked for."""
+        keys = (None, "margin")
+        return [k for k, limit in enumerate(self.limits) if limit.side == LOWER and limit.key in keys]
+
+    def is_near_margin(self, z: Array) -> bool:
+        """Whether the crank can hardly turn any more."""
+        value = self.scaled(z)[0][self.count :]
+        return any(value[number] < CLOSE for number in self.margins())
+
     def at_limit(self, z: Array, number: int) -> Array:
         """The nearest place at which a limit is met exactly, if it is linear."""
         value, slope = self.scaled(z)
@@ -130,9 +142,15 @@ class Search:
             method="SLSQP",
             bounds=[(0.0, 1.0)] * n + [(None, None)] * several,
             constraints=constraints,
-            options={"maxiter": STEPS, "ftol": 1e-14},
+            options={"maxiter": STEPS, "ftol": FLAT},
         )
-        return self.judged(np.clip(np.nan_to_num(answer.x[:n], nan=0.5), 0.0, 1.0))
+        z = np.clip(np.nan_to_num(answer.x[:n], nan=0.5), 0.0, 1.0)
+        found = self.judged(z)
+        for number in self.margins():
+            if self.scaled(z)[0][self.count + number] < 0.0:  # overshot
+                other = self.judged(self.at_limit(z, number))
+                found = min(found, other, key=lambda each: each.violation)
+        return found
 
     # ---- optimality -------------------------------------------------------------------------------
 
