@@ -52,7 +52,8 @@ def optimize(
                  wanted value would gain, of either sign
     status       0 an optimum; 1 no design keeps the limits; 2 no optimum: the objective grows without
                  bound towards the limit of turning; 3 the best is at that limit itself, and nearly
-                 reached at the design told; 4 the search did not settle
+                 reached at the design told; 4 the best found, where the optimality conditions do not hold:
+                 at a kink, where two peaks of one sign share the extreme value, or unfinished
     message      the same in words
     residual     of the optimality conditions, relative
 

@@ -21,6 +21,7 @@ from .problem import EQUAL, LOWER, Array, Functions, Limit, Piece, Space
 SCAN = 7  # 2^7 designs are looked at first
 NEAR = 1e-6  # of its scale: a limit that is so near is active
 CLOSE = 0.01  # of its scale: a margin that makes the functions steep
+LEVEL = 1e-6  # scaled slopes below this are none
 STEPS = 100
 FLAT = 1e-10  # of the scale: a smaller gain ends a run
 WORST = 1e3  # of the scale: what a design counts that cannot be judged
@@ -165,7 +166,7 @@ class Search:
         ends = np.vstack([np.eye(n), -np.eye(n)])
         at_end = np.append(z <= NEAR, z >= 1.0 - NEAR)
         normals = np.vstack([slope[m:][active], -slope[m:][active & self.equal], ends[at_end]])
-        size = max(float(np.linalg.norm(slope[:m][live], axis=1).max()), 1e-300)
+        size = max(float(np.linalg.norm(slope[:m][live], axis=1).max()), LEVEL)
         # Columns: the weights of the live pieces, then the multipliers; the last row: the weights' sum.
         columns = np.vstack([slope[:m][live] / size, -normals])
         weigh = np.append(np.full(live.sum(), 1.0), np.zeros(len(normals)))

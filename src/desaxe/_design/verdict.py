@@ -89,7 +89,7 @@ def _message(
     if status == UNSURE:
         return (
             f"the search ended at {where}, where the optimality conditions hold to {found.residual:.1g} "
-            "only: more starts= may help"
+            "only: two peaks may share the extreme value there (a kink); else more starts= may help"
         )
     names = {key: key if isinstance(key, str) else text_of(key) for key in active}
     held = ", ".join(f"{names[key]} ({side})" for key, side in active.items())
