@@ -66,6 +66,15 @@ def test_a_kink_between_two_signs():
     assert (found["status"], found["active"]) == (0, {})
 
 
+def test_a_kink_between_two_angles():
+    """In line, the largest acceleration along +Y is reached at two angles; either side of it is worse."""
+    found = dx.optimize(minimize=("max", "a_C"), over={"ec": (-0.1, 0.14)}, **A)
+    assert found["ec"] == pytest.approx(0.0, abs=1e-6)
+    assert (found["status"], found["active"]) == (0, {})
+    assert "at a kink" in found["message"]
+    assert np.isnan(found["multipliers"]["ec"])
+
+
 def scanned(kind, name, ec, BC, keep, sense):
     """The best of a fine grid, by values alone."""
     ec, BC = np.meshgrid(ec, BC, indexing="ij")

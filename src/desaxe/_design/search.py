@@ -21,6 +21,8 @@ from .problem import EQUAL, LOWER, Array, Functions, Limit, Piece, Space
 SCAN = 7  # 2^7 designs are looked at first
 NEAR = 1e-6  # of its scale: a limit that is so near is active
 CLOSE = 0.01  # of its scale: a margin that makes the functions steep
+PROBES = 400  # of a search without derivatives
+BROKEN = 1e-8  # of its scale: how far that may break a limit
 LEVEL = 1e-6  # scaled slopes below this are none
 STEPS = 100
 FLAT = 1e-10  # of the scale: a smaller gain ends a run
@@ -35,6 +37,7 @@ class Found(NamedTuple):
     violation: float  # of the limits, in their scales
     residual: float  # of the optimality conditions, relative
     multipliers: Array  # of the limits, then of the lower and upper ends of the variables
+    kink: bool = False  # not settled, and yet nothing better is near
 
 
 class Search:
@@ -152,6 +155,27 @@ class Search:
                 other = self.judged(self.at_limit(z, number))
                 found = min(found, other, key=lambda each: each.violation)
         return found
+
+    def probed(self, found: Found) -> Found:
+        """From a place that is not settled, without derivatives (COBYLA): peaks may tie there in a kink."""
+        m = self.count
+        both = np.flatnonzero(self.equal)
+
+        def limits(z: Array) -> Array:
+            value = self.scaled(z)[0][m:]
+            return np.concatenate([value, -value[both], z, 1.0 - z])
+
+        answer = minimize(
+            lambda z: self.scaled(z)[0][:m].max(),
+            found.z,
+            method="COBYLA",
+            constraints=[{"type": "ineq", "fun": limits}],
+            options={"rhobeg": 0.01, "tol": 1e-9, "maxiter": PROBES},
+        )
+        other = self.judged(np.clip(answer.x, 0.0, 1.0))
+        better = other.violation <= BROKEN and other.value < found.value
+        gain = (found.value - other.value) / self.scale[0] if better else 0.0
+        return (other if better else found)._replace(kink=bool(gain <= BROKEN))
 
     # ---- optimality -------------------------------------------------------------------------------
 

@@ -26,7 +26,7 @@ def told(goal: Goal, space: Space, found: Found, search: Search, grows: bool) ->
         status = NONE
     elif edge:
         status = UNBOUNDED if grows else EDGE
-    elif found.residual > SETTLED:
+    elif found.residual > SETTLED and not found.kink:
         status = UNSURE
     size = isinstance(goal.measure, tuple) and goal.measure[0] == "absmax"
     value = abs(found.value) if size else -goal.sense * found.value
@@ -36,7 +36,9 @@ def told(goal: Goal, space: Space, found: Found, search: Search, grows: bool) ->
         value = goal.sense * np.inf
         multipliers = dict.fromkeys(multipliers, np.nan)
     if status == NONE:
-        value, multipliers = np.nan, dict.fromkeys(multipliers, np.nan)
+        value = np.nan
+    if status == NONE or found.kink:
+        multipliers = dict.fromkeys(multipliers, np.nan)
     return {
         **design,
         "value": float(value),
@@ -89,11 +91,12 @@ def _message(
     if status == UNSURE:
         return (
             f"the search ended at {where}, where the optimality conditions hold to {found.residual:.1g} "
-            "only: two peaks may share the extreme value there (a kink); else more starts= may help"
+            "only: more starts= may help"
         )
     names = {key: key if isinstance(key, str) else text_of(key) for key in active}
     held = ", ".join(f"{names[key]} ({side})" for key, side in active.items())
-    return f"optimum at {where}" + (f", held back by {held}" if held else ", inside of all limits")
+    kink = ", at a kink, where two peaks share the extreme value" if found.kink else ""
+    return f"optimum at {where}{kink}" + (f", held back by {held}" if held else ", inside of all limits")
 
 
 def _missed(found: Found, search: Search) -> str:
