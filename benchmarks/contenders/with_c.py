@@ -20,7 +20,7 @@ from ..formulas import forms, symbol
 from ..work import Array, Inputs, Work, swept
 from . import Run
 
-OPTIONS = ("-O3", "-march=native", "-shared", "-fPIC", "-fopenmp")
+OPTIONS = ("-O3", "-march=native", "-fPIC", "-fopenmp")
 FAST = ("-ffast-math",)
 HIGHEST = 8  # power that is written as a product
 STRIP = 512  # points whose sines are computed ahead
@@ -74,10 +74,12 @@ def prepare(work: Work, inputs: Inputs, out: Sequence[Array] | None, threads: in
 
 def _compiled(source: str, fast_math: bool) -> ctypes._CFuncPtr:
     with tempfile.TemporaryDirectory() as folder:
-        text, library = Path(folder, "work.c"), Path(folder, "work.so")
+        text, code, library = (Path(folder, f"work.{end}") for end in ("c", "o", "so"))
         text.write_text(source, encoding="utf-8")
         options = (*OPTIONS, *(FAST if fast_math else ()))
-        subprocess.run(["gcc", *options, str(text), "-o", str(library), "-lm"], check=True)
+        subprocess.run(["gcc", *options, "-c", str(text), "-o", str(code)], check=True)
+        # Linked without -ffast-math, which would flush subnormal numbers of the whole process to zero.
+        subprocess.run(["gcc", *OPTIONS, "-shared", str(code), "-o", str(library), "-lm"], check=True)
         function = ctypes.CDLL(str(library)).work
     function.restype = None
     return function

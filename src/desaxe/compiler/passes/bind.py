@@ -39,13 +39,26 @@ def overlay(program: Program, other: Program) -> Program:
 
 
 def assume(program: Program, facts: Mapping[str, bool]) -> Program:
-    """The program where some conditions are known; `fold` then drops the other side of their selects.
+    """The program where some conditions are known: of their selects the side that is taken is left.
 
-    An output that is such a condition stays as it is.
+    A temporary that is the side taken of a named line gets its name. An output that is such a condition
+    stays as it is.
     """
     facts = {name: known for name, known in facts.items() if name not in program.outputs}
-    lines = (
-        line._replace(args=tuple(facts.get(a, a) if isinstance(a, str) else a for a in line.args))
-        for line in program.lines
-    )
-    return drop_unused(program._replace(lines=tuple(lines)))
+    taken: dict[str, str] = {}  # named line -> the temporary that holds its value
+    lines = []
+    for line in program.lines:
+        if line.op != "select" or line.args[0] not in facts:
+            lines.append(line)
+            continue
+        side = line.args[1 if facts[str(line.args[0])] else 2]
+        if isinstance(side, str) and _is_temporary(side, program) and side not in taken.values():
+            taken[line.name] = side
+        else:
+            lines.append(line._replace(op="copy", args=(side,)))
+    named = renamed(program._replace(lines=tuple(lines)), {side: name for name, side in taken.items()})
+    return drop_unused(named)
+
+
+def _is_temporary(name: str, program: Program) -> bool:
+    return name not in program.notes and name not in program.outputs and name not in program.inputs
