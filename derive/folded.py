@@ -44,7 +44,7 @@ def slider_rate(order: int, straight: sp.Expr) -> sp.Expr:
     if order not in slider_rates():
         return straight
     through_Y = slider_rates()[order]
-    return where_close(select(folded, through_Y, straight), straight) if order == 3 else through_Y
+    return where_close(through_Y, straight) if order == 3 else through_Y
 
 
 @cache

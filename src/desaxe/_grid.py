@@ -110,7 +110,7 @@ def _filled(
         scalars = {name: float(axes[name].reshape(-1)[0]) for name in inputs if name not in order}
         columns = {name: np.ascontiguousarray(axes[name]) for name in inputs if name in order}
         places_of = {name: order.index(name) for name in columns}
-        sizes = _joined(order, columns, places_of, shape or (1,))
+        sizes = join_axes(order, columns, places_of, shape or (1,))
         key = key_of(wanted, scalars, columns, places_of, len(sizes))
         outs = [buffer.reshape(sizes) for buffer in buffers.values()]
         if is_early(key, outs[0].size):
@@ -120,7 +120,7 @@ def _filled(
     return delivered(places, buffers, False)
 
 
-def _joined(
+def join_axes(
     order: Sequence[str], columns: dict[str, Array], axis_of: dict[str, int], shape: tuple[int, ...]
 ) -> tuple[int, ...]:
     """Join the last axes to one that is long enough to vectorise; the lengths of the axes then.

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 SUFFIX = ".code"
-LIBRARY = ("atan2", "cos", "floor", "sin", "sqrt")  # of the C library
+LIBRARY = ("atan2", "cos", "floor", "floorf", "sin", "sqrt", "sqrtf")  # of the C library
 Kernel = Callable[..., None]
 
 

@@ -33,7 +33,7 @@ class Estimate(NamedTuple):
 
 def loops_time(loops: Sequence[Loop], stored: int) -> float:
     """Seconds on one core, from the operations and the doubles that are stored."""
-    return sum(loop.runs * loop.cost for loop in loops) * ADDITION + stored * STORE
+    return sum(loop.runs * loop.cost for loop in loops if not loop.close) * ADDITION + stored * STORE
 
 
 def plain_time(operations: int, points: int) -> float:

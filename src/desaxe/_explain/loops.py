@@ -14,7 +14,8 @@ class Loop(NamedTuple):
     """A straight line of operations and how often it runs.
 
     `along` are the axes that it runs over, the outermost first; a `table` runs before the main loops
-    and keeps what they read. `cost` is the operations' throughput in additions.
+    and keeps what they read. `cost` is the operations' throughput in additions. A `close` one runs in the
+    innermost loop instead of what the plain form has there, for the designs whose margins are not wide.
     """
 
     table: bool
@@ -24,11 +25,12 @@ class Loop(NamedTuple):
     cost: float
     kinds: Mapping[str, int]
     values: tuple[str, ...]
+    close: bool = False
 
     @property
     def work(self) -> int:
-        """Operations in all."""
-        return self.runs * self.operations
+        """Operations in all; what close designs take comes on top."""
+        return 0 if self.close else self.runs * self.operations
 
 
 def loops_of(kernel: Kernel, axes: Sequence[str], sizes: Sequence[int]) -> list[Loop]:
@@ -37,7 +39,11 @@ def loops_of(kernel: Kernel, axes: Sequence[str], sizes: Sequence[int]) -> list[
     for table in kernel.tables:
         own = [axes[axis] for axis in table.along]
         found += _nest(table.kernel, own, [sizes[axis] for axis in table.along], True)
-    return found + _nest(kernel, axes, sizes, False)
+    found += _nest(kernel, axes, sizes, False)
+    if kernel.close is not None:
+        loop = _loop(kernel.close.lines, False, tuple(axes), prod(sizes), kernel)
+        found.append(loop._replace(close=True))
+    return found
 
 
 def _nest(kernel: Kernel, axes: Sequence[str], sizes: Sequence[int], table: bool) -> list[Loop]:

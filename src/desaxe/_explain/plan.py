@@ -110,10 +110,10 @@ def _input(name: str, value: float | tuple[float, ...]) -> dict[str, Any]:
 
 def _grid(content: Content) -> dict[str, Any]:
     """The grid of the outputs: its passes, its loops, how it runs."""
-    found = grid_kernel(content)
+    found = grid_kernel(content, joined=True)
     compiled = is_ready(found.key) or found.points >= _arrays.BREAK_EVEN
     loops = _compiled_loops(found) if compiled else _plain_loops(found)
-    straight = sum(loop.operations for loop in loops)
+    straight = sum(loop.operations for loop in loops if not loop.close)
     total = sum(loop.work for loop in loops)
     fixed = found.key.fixed
     steps = steps_of(found.request, fixed, straight)

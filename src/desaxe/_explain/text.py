@@ -113,6 +113,10 @@ def _loops(plan: Mapping[str, Any]) -> str:
         else:
             depth = len([axis for axis in loop["along"] if axis])
             place = "  " * max(0, depth - 1) + (f"for each {loop['along'][-1]}" if depth else "once")
+        if loop["close"]:
+            rows.append(["  " * depth + "or, if close", "", str(loop["operations"]), "instead"])
+            names.append("the stable form, where margins are narrow")
+            continue
         rows.append([place, f"{loop['runs']:,}", str(loop["operations"]), _share(loop["per_point"])])
         names.append(_values(loop))
     counts = plan["operations"]

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .._grid import join_axes
 from .._kernels import KernelKey, key_of
 from .._request import Request, request
 from .read import Content
@@ -24,8 +25,11 @@ class GridKernel(NamedTuple):
         return prod(self.sizes)
 
 
-def grid_kernel(content: Content) -> GridKernel:
-    """The kernel of the outputs (and, where they are stored, of the status)."""
+def grid_kernel(content: Content, joined: bool = False) -> GridKernel:
+    """The kernel of the outputs (and, where they are stored, of the status).
+
+    `joined`: with short last axes as one, the way that a grid runs.
+    """
     dimensions = [name for name, value in content.inputs.items() if isinstance(value, tuple)]
     names = list(content.outputs)
     if content.reduction is None:
@@ -46,8 +50,11 @@ def grid_kernel(content: Content) -> GridKernel:
     scalars = {name: float(np.asarray(given.get(name, 0.0)).reshape(-1)[0]) for name in needed}
     columns = {name: np.array(given[name]) for name in asked.inputs if name in dimensions}
     places = {name: order.index(name) for name in columns}
+    sizes = tuple(np.size(given[name]) if name else 1 for name in order)
+    if joined and content.reduction is None:
+        sizes = join_axes(order, columns, places, sizes)
+        order = [*order[: len(sizes) - 1], " x ".join(order[len(sizes) - 1 :])]
     key = key_of(asked, scalars, columns, places, len(order))
     if content.reduction is not None:
         key = key._replace(reduce=content.reduction.kinds)
-    sizes = [np.size(given[name]) if name else 1 for name in order]
-    return GridKernel(asked, tuple(order), tuple(sizes), key)
+    return GridKernel(asked, tuple(order), sizes, key)
