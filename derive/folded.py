@@ -26,7 +26,6 @@ from .stable import (
     in_theta,
     margin_area,
     phi_by_theta,
-    select,
     sin_theta,
     where_close,
     written_out,

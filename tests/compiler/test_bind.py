@@ -1,10 +1,11 @@
 """Binding: an input becomes a constant; overlaying: a program's lines take the place of others."""
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from desaxe._program import Form, program_of
-from desaxe.compiler.passes.bind import bind_constants, overlay
+from desaxe.compiler.passes.bind import assume, bind_constants, overlay
 from desaxe.compiler.passes.slicing import keep_outputs
 from desaxe.compiler.program import Line, Note, Program, validate
 from tests.compiler.programs import POINT, committed, exactly, points, programs, same
@@ -84,3 +85,31 @@ def test_a_state_that_the_law_gives_means_the_same():
     assert "omega0" not in state.inputs
     found, wanted = exactly(state, POINT | {"omega": omega}), exactly(law, POINT)
     assert all(abs(found[name] / wanted[name] - 1) < 1e-45 for name in names)
+
+
+CHOICE = (
+    Line("wide", "lt", ("x", "y"), "bool"),
+    Line("_1", "neg", ("x",)),
+    Line("_2", "abs", ("y",)),
+    Line("u", "select", ("wide", "_1", "_2")),
+    Line("out", "mul", ("u", "u")),
+)
+
+
+@pytest.mark.parametrize(("known", "op"), [(True, "neg"), (False, "abs")])
+def test_a_known_condition_leaves_the_side_that_is_taken_under_its_name(known, op):
+    program = Program(("x", "y"), CHOICE, ("out",), {"u": Note("m", "a length")})
+    found = validate(assume(program, {"wide": known}))
+    assert [(line.name, line.op) for line in found.lines] == [("u", op), ("out", "mul")]
+    assert found.notes == program.notes
+
+
+def test_a_side_with_a_name_of_its_own_keeps_it():
+    program = Program(("x", "y"), CHOICE, ("out",), {"u": Note("m", ""), "_1": Note("m", "")})
+    found = validate(assume(program, {"wide": True}))
+    assert [(line.name, line.op) for line in found.lines] == [("_1", "neg"), ("u", "copy"), ("out", "mul")]
+
+
+def test_an_output_that_is_the_condition_stays():
+    program = Program(("x", "y"), CHOICE, ("wide",), {})
+    assert assume(program, {"wide": True}).lines == CHOICE[:1]

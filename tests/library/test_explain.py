@@ -90,7 +90,8 @@ def test_counts_are_those_of_the_kernel():
     nests = [*(table.kernel for table in kernel.tables), kernel]
     lines = [line for nest in nests for level in nest.levels for line in level if line.op != "copy"]
     *loops, close = plan["loops"]
-    assert close["close"] and close["operations"] == len(kernel.close.lines)
+    assert close["close"]
+    assert close["operations"] == len(kernel.close.lines)
     assert plan["operations"]["straight"] == len(lines)
     assert sum(loop["operations"] for loop in loops) == len(lines)
     total = sum(loop["operations"] * loop["runs"] for loop in loops)

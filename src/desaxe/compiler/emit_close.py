@@ -44,14 +44,15 @@ def get(typingctx, room, place):
 
     return types.float64(room, types.uint64), code
 """
+BIGGEST = 512  # points of a block: their inputs and outputs stay in the first-level cache
 STACK = 32_768  # numbers that all rooms together may take
 APART = 72  # numbers between rooms: at a multiple of 4096 bytes a store holds up loads from other rooms
 
 
 def block_of(kernel: Kernel) -> int:
-    """Points of a block: their inputs and outputs stay in the first-level cache, and on the stack."""
+    """Points of a block, so many that the rooms fit on the stack."""
     rooms = 1 + len(_kept(kernel)) + len(kernel.outputs)
-    return max(16, min(512, (STACK // rooms - APART) // 16 * 16))
+    return max(16, min(BIGGEST, (STACK // rooms - APART) // 16 * 16))
 
 
 def rooms(kernel: Kernel) -> str:

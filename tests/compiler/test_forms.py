@@ -1,0 +1,86 @@
+"""Two forms in one kernel: a point gets the one that its own test says, wherever it stands."""
+
+import numpy as np
+import pytest
+
+from desaxe.compiler.emit_close import BIGGEST, block_of, is_mixed
+from desaxe.compiler.emit_numba import emit_numba
+from desaxe.compiler.forms import in_two_forms, parted
+from desaxe.compiler.kernel import hoist, tabulate
+from desaxe.compiler.program import Line, Program, validate
+
+# The forms differ on purpose, so that a result tells which one it is from.
+PLAIN = Program(("x", "y"), (Line("s", "sin", ("x",)), Line("out", "add", ("s", "y"))), ("out", "x"), {})
+STABLE = Program(("x", "y"), (Line("s", "sin", ("x",)), Line("out", "sub", ("s", "y"))), ("out", "x"), {})
+TEST = Program(("y",), (Line("t", "abs", ("y",)), Line("fine", "lt", ("t", 1.0), "bool")), ("fine",), {})
+BOTH = in_two_forms(PLAIN, STABLE, TEST)
+
+
+def kernel_for(axis_of, axes, place=hoist):
+    kernel = parted(place(BOTH, axis_of, axes), 2)
+    scope = {}
+    exec(emit_numba(kernel, "two forms"), scope)
+
+    def run(x, y, *outs):
+        scope["kernel"](*({"x": x, "y": y}[name] for name in kernel.inputs), *outs)
+
+    return kernel, run
+
+
+def wanted(x, y):
+    return np.where(np.abs(y) < 1, np.sin(x) + y, np.sin(x) - y)
+
+
+def test_equal_lines_are_computed_once():
+    assert [line.op for line in validate(BOTH).lines].count("sin") == 1
+
+
+@pytest.mark.parametrize("size", [1, 7, 511, 512, 513, 3_000])
+@pytest.mark.parametrize("share", [0.0, 0.01, 0.5, 1.0])
+def test_each_point_has_the_form_that_its_test_says(size, share):
+    kernel, run = kernel_for({"x": 0, "y": 0}, 1)
+    assert is_mixed(kernel)
+    rng = np.random.default_rng(size)
+    x = rng.uniform(-3, 3, size)
+    y = np.where(rng.random(size) < share, 2.0, 0.5)
+    out, echo = np.full(size, np.nan), np.full(size, np.nan)
+    run(x, y, out, echo)
+    assert np.array_equal(out, wanted(x, y))
+    assert np.array_equal(echo, x)
+
+
+@pytest.mark.parametrize("place", [hoist, tabulate])
+def test_a_test_of_an_outer_axis_picks_the_loop(place):
+    kernel, run = kernel_for({"y": 0, "x": 1}, 2, place)
+    assert not is_mixed(kernel)
+    x, y = np.linspace(-3, 3, 40), np.array([0.5, 2.0, -0.1, np.nan])
+    out, echo = np.empty((4, 40)), np.empty((4, 40))
+    run(x, y, out, echo)
+    assert np.array_equal(out, wanted(x, y[:, None]), equal_nan=True)
+
+
+@pytest.mark.parametrize("place", [hoist, tabulate])
+def test_tables_and_blocks_go_together(place):
+    kernel, run = kernel_for({"x": 1, "y": 0}, 2, place)
+    other, again = kernel_for({"x": 0, "y": 1}, 2, place)
+    assert is_mixed(other)
+    assert not is_mixed(kernel)
+    x, y = np.linspace(-3, 3, 9), np.linspace(-2, 2, 700)
+    (out, echo), (turned, echoed) = ([np.empty(s), np.empty(s)] for s in ((700, 9), (9, 700)))
+    run(x, y, out, echo)
+    again(x, y, turned, echoed)
+    assert np.array_equal(out.T, turned)
+
+
+def test_a_test_that_is_not_known_is_not_passed():
+    _, run = kernel_for({"x": 0, "y": 0}, 1)
+    out, echo = np.zeros(3), np.zeros(3)
+    run(np.zeros(3), np.array([0.5, np.nan, 0.25]), out, echo)
+    assert np.array_equal(out, [0.5, np.nan, 0.25], equal_nan=True)
+
+
+def test_rooms_fit_on_the_stack():
+    kernel, _ = kernel_for({"x": 0, "y": 0}, 1)
+    assert block_of(kernel) == BIGGEST
+    wide = kernel._replace(outputs=tuple(f"out{k}" for k in range(600)))
+    assert 16 <= block_of(wide) < 64
