@@ -14,7 +14,8 @@ import numpy as np
 
 import desaxe as dx
 
-from .__main__ import textbook
+from .formulas import lambdified
+from .work import Inputs
 
 DESIGNS, ANGLES, SPEED = 8_192, 720, 157.08
 BLOCKS = (16, 32, 64, DESIGNS)  # designs at a time: what fits in the caches is best, all at once is plain
@@ -46,14 +47,15 @@ def random_designs(count: int) -> dict[str, Any]:
 
 def grid_of(designs: Mapping[str, Any], block: int) -> Callable[[], Any]:
     """The dense grid, some designs at a time."""
-    function = textbook(("a_C",))
     theta = np.linspace(0.0, 2.0 * np.pi, ANGLES)
+    columns = {"theta": theta, **designs}
+    function = lambdified(("a_C",), Inputs(columns, dict.fromkeys(columns, 0), {"omega0": SPEED}), "numpy")
 
     def run() -> Any:
         found = np.empty(DESIGNS)
         for start in range(0, DESIGNS, block):
             part = [column[start : start + block, None] for column in designs.values()]
-            (values,) = function(theta, *part, SPEED)
+            (values,) = function(theta, *part)
             found[start : start + block] = np.abs(values).max(axis=1)
         return found
 

@@ -14,6 +14,7 @@ from .._point import cut
 from .._program import Form
 from ..catalogue import quantity
 from ..compiler.passes.double_double import double_digits
+from ..compiler.passes.fuse import fuse_products
 from ..compiler.passes.number import number_values
 from ..compiler.passes.pipeline import optimise
 from ..compiler.passes.slicing import keep_outputs
