@@ -53,6 +53,10 @@ def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str])
     number = as_number(name, value, inputs, names)
     if number is not None:
         return np.array(number)
+    if hasattr(value, "dims"):
+        from .units import unlabelled
+
+        value = unlabelled(name, value)
     if hasattr(value, "magnitude"):
         from .units import in_si
 

@@ -60,6 +60,19 @@ def in_unit(name: str, value: Any, unit: str) -> Any:
     return value.to(unit).magnitude
 
 
+def unlabelled(name: str, array: Any) -> Any:
+    """What a labelled array holds; a pint quantity where its attribute `units` is not the input's unit."""
+    unit = array.attrs.get("units", INPUTS[name].unit)
+    if unit == INPUTS[name].unit or hasattr(array.data, "magnitude"):
+        return array.data
+    try:
+        return registry().Quantity(array.values, unit)
+    except MissingExtraError:
+        raise
+    except Exception:
+        raise ValueError(f"{name} in {unit!r}: unknown unit; {_wanted(INPUTS[name].unit)}") from None
+
+
 def exact(name: str, text: str, unit: str) -> Fraction:
     """The number that a text with a unit is in another unit, exactly (pi to 50 digits)."""
     try:
