@@ -76,7 +76,8 @@ def grid(
         found = _filled(request(some, given, branch, accuracy), axes, along, threads, None)
         arrays.update({name: (along, array) for name, array in found.items()})
     coordinates = {name: axes[name] for name in inputs if name in axes}
-    return labelled({n: arrays[n] for n in shown}, coordinates, branch, given.get("omega") is not None)
+    state = given.get("omega") is not None
+    return labelled({n: arrays[n] for n in shown}, coordinates, branch, state, accuracy)
 
 
 def _given(names: Sequence[str], inputs: Mapping[str, Any]) -> dict[str, Any]:

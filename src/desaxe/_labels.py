@@ -1,6 +1,7 @@
 """Names, units and CF attributes for labelled results."""
 
 from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +18,9 @@ STATUS_FLAGS = (
     "ok", "cannot_be_assembled", "change_point", "stalled", "bad_input",
     "no_force_balance", "two_force_balances",
 )  # fmt: skip
+
+
+CONVENTIONS = "CF-1.11"
 
 
 def attributes(name: str, state: bool = False) -> dict[str, Any]:
@@ -36,17 +40,37 @@ def input_attributes(name: str) -> dict[str, str]:
     return {"units": INPUTS[name].unit, "long_name": INPUTS[name].meaning}
 
 
+@cache
+def source() -> str:
+    """What made a dataset: this version, and the formulas it was made with."""
+    from . import __version__
+    from ._program import digest
+
+    return f"desaxe {__version__}, derivation {digest()[:16]}"
+
+
 def labelled(
     values: Mapping[str, tuple[Sequence[str], NDArray[Any]]],
     inputs: Mapping[str, NDArray[Any]],
     branch: int,
     state: bool,
+    accuracy: str | float = "standard",
 ) -> "xr.Dataset":
     """A Dataset of values by name (dimensions, array); a 1-d input is a dimension, a number is not."""
     with needed("a labelled result"):
         import xarray
     variables = {name: (dims, array, attributes(name, state)) for name, (dims, array) in values.items()}
+    for name, (_, _, told) in variables.items():
+        if "status" in variables and name not in ("status", "margin"):
+            told["ancillary_variables"] = "status"
     coordinates = {
         name: ((name,) if array.ndim else (), array, input_attributes(name)) for name, array in inputs.items()
     }
-    return xarray.Dataset(variables, coordinates, {"title": "offset slider-crank", "branch": branch})
+    about = {
+        "title": "offset slider-crank",
+        "source": source(),
+        "Conventions": CONVENTIONS,
+        "branch": branch,
+        "accuracy": accuracy,
+    }
+    return xarray.Dataset(variables, coordinates, about)

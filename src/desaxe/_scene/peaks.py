@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._evaluate import evaluate
-from .._labels import input_attributes
+from .._labels import CONVENTIONS, input_attributes, source
 from .._peak import peak
-from .._program import digest
 from ..catalogue import quantity
 from ..inputs import INPUTS
 from ..names import sensitivity
@@ -162,7 +161,5 @@ def columns_of(inputs: Mapping[str, Value]) -> dict[str, NDArray[np.float64]]:
 
 def provenance(content: Content) -> dict[str, str]:
     """Attributes that say where a dataset comes from."""
-    from .. import __version__
-
     title = {"title": content.title} if content.title else {}
-    return {**title, "source": f"desaxe {__version__}, derivation {digest()[:16]}"}
+    return {**title, "source": source(), "Conventions": CONVENTIONS}
