@@ -1,0 +1,178 @@
+"""Labelled grids in the hands of someone used to xarray: selecting, units, flags, files, plots."""
+
+import subprocess
+import sys
+
+import cf_xarray  # noqa: F401  the accessor .cf
+import numpy as np
+import pint
+import pint_xarray
+import pytest
+import xarray as xr
+
+import desaxe as dx
+
+THETA = np.linspace(0.0, 2 * np.pi, 13)
+MACHINE = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
+
+
+@pytest.fixture(scope="module")
+def grid():
+    return dx.grid(["a_C", "a_C_wrt_ec"], theta=THETA, ec=[0.0, 0.1, 0.24], **MACHINE)
+
+
+def test_every_variable_says_what_it_is(grid):
+    for name, array in grid.variables.items():
+        assert array.attrs["long_name"], name
+        assert name == "status" or array.attrs["units"], name
+    assert grid.a_C_wrt_ec.attrs["units"] == "1/s^2"
+    assert grid.a_C.attrs["references"]
+
+
+def test_the_dataset_says_where_it_comes_from(grid):
+    assert grid.attrs["source"].startswith(f"desaxe {dx.__version__}, derivation ")
+    assert (grid.attrs["branch"], grid.attrs["accuracy"]) == (1, "standard")
+    other = dx.grid("a_C", theta=THETA, ec=0.0, branch=-1, accuracy="extended", **MACHINE)
+    assert (other.attrs["branch"], other.attrs["accuracy"]) == (-1, "extended")
+
+
+def test_a_dataset_can_be_asked_for_again_by_what_it_says(grid):
+    """Coordinates and attributes are all that `grid` was told."""
+    names = [name for name in grid.data_vars if name not in ("status", "margin")]
+    inputs = {name: grid[name] for name in (*grid.dims, *(n for n in grid.coords if n not in grid.dims))}
+    again = dx.grid(names, branch=grid.branch, accuracy=grid.accuracy, **inputs)
+    xr.testing.assert_identical(again, grid)
+
+
+def test_selecting(grid):
+    row = grid.sel(ec=0.1).sel(theta=1.5, method="nearest")
+    assert row.a_C.item() == dx.evaluate("a_C", theta=float(row.theta), ec=0.1, **MACHINE)
+    turning = grid.where(grid.margin >= 0, drop=True)
+    assert turning.ec.values.tolist() == [0.0, 0.1]
+    assert grid.a_C.max("theta").dims == ("ec",)
+    assert grid.to_dataframe().loc[(0.0, 0.1), "BC"] == 0.35
+
+
+# ---- flags -----------------------------------------------------------------------------------------
+
+
+def test_cf_flags(grid):
+    stuck = grid.status.cf == "cannot_be_assembled"
+    assert stuck.sum("theta").values.tolist() == [0, 0, int(np.isnan(grid.a_C.sel(ec=0.24)).sum())]
+    assert int(stuck.sum()) > 0
+    flags = grid.status.cf.flags
+    assert (flags.ok == (grid.status == 0)).all()
+    assert len(flags) == 7
+
+
+def test_cf_brings_the_status_along(grid):
+    assert set(grid.cf["a_C"].coords) == {"theta", "ec", "status"}
+
+
+# ---- files -----------------------------------------------------------------------------------------
+
+
+def test_netcdf_there_and_back(grid, tmp_path):
+    grid.to_netcdf(tmp_path / "grid.nc")
+    with xr.open_dataset(tmp_path / "grid.nc") as file:
+        again = file.load()
+    unchanged(again, grid)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_zarr_there_and_back(grid, tmp_path, version):
+    grid.to_zarr(tmp_path / "grid.zarr", zarr_format=version, consolidated=False)
+    with xr.open_zarr(tmp_path / "grid.zarr", consolidated=False) as store:
+        again = store.load()
+    unchanged(again, grid)
+
+
+def unchanged(again, grid):
+    xr.testing.assert_identical(again, grid)
+    assert again.status.dtype == np.int8
+    assert tuple(again.a_C.dims) == tuple(grid.a_C.dims)
+    assert ((again.status.cf == "cannot_be_assembled") == (grid.status == 1)).all()
+
+
+# ---- units -----------------------------------------------------------------------------------------
+
+
+def test_pint_there_and_back(grid):
+    with_units = grid.pint.quantify()
+    assert with_units.a_C.pint.units == pint_xarray.unit_registry("m/s^2").units
+    units = pint_xarray.unit_registry
+    shown = with_units.pint.to({"theta": units.deg, "ec": units.mm, "a_C": "km/s^2"})
+    bare = shown.pint.dequantify(format="~C")
+    np.testing.assert_allclose(bare.theta, np.degrees(THETA), rtol=1e-15)
+    np.testing.assert_allclose(bare.a_C.values, grid.a_C.values / 1000.0, rtol=1e-15)
+    assert (bare.theta.attrs["units"], bare.a_C.attrs["units"]) == ("deg", "km/s**2")
+    plain = with_units.pint.dequantify(format="~C")
+    np.testing.assert_array_equal(plain.a_C, grid.a_C)
+    assert plain.a_C.attrs["units"] == "m/s**2"
+
+
+DEGREES = np.array([0.0, 90.0, 180.0])
+REGISTRY = pint.UnitRegistry()
+
+
+@pytest.mark.parametrize(
+    "theta",
+    [
+        ["0 deg", "90 deg", "180 deg"],
+        DEGREES * REGISTRY.deg,
+        DEGREES * pint_xarray.unit_registry.deg,
+        xr.DataArray(DEGREES, dims="theta", attrs={"units": "deg"}),
+        xr.DataArray(DEGREES * REGISTRY.deg, dims="theta"),
+        xr.DataArray(np.radians(DEGREES), dims="theta", attrs={"units": "rad"}),
+        xr.DataArray(np.radians(DEGREES), dims="theta"),
+    ],
+    ids=["text", "pint", "pint-xarray", "units", "quantified", "radians", "bare"],
+)
+def test_units_at_the_border(theta):
+    found = dx.grid("a_C", theta=theta, ec="10 mm", AB=125 * REGISTRY.mm, BC="0.35 m", omega0="1500 rpm")
+    np.testing.assert_allclose(found.theta, np.radians(DEGREES), rtol=1e-15)
+    assert found.theta.attrs["units"] == "rad"
+    assert (found.ec.item(), found.AB.item(), found.BC.item()) == (0.01, 0.125, 0.35)
+    assert found.omega0.item() == pytest.approx(50 * np.pi, rel=1e-15)
+
+
+def test_a_coordinate_in_other_units_is_converted_everywhere():
+    ec = xr.DataArray(np.array([0.0, 100.0]), dims="ec", attrs={"units": "mm"})
+    metres = dx.evaluate("a_C", theta=1.0, ec=np.array([0.0, 0.1]), **MACHINE)
+    np.testing.assert_array_equal(dx.evaluate("a_C", theta=1.0, ec=ec, **MACHINE), metres)
+    assert dx.evaluate("a_C", theta=1.0, ec=ec[1], **MACHINE) == metres[1]
+
+
+@pytest.mark.parametrize(
+    ("unit", "words"),
+    [("kg", "theta = .*it must be a quantity in rad"), ("of a turn", "theta in 'of a turn': unknown unit")],
+)
+def test_units_that_do_not_fit(unit, words):
+    with pytest.raises(ValueError, match=words):
+        dx.grid("Y", theta=xr.DataArray(DEGREES, dims="t", attrs={"units": unit}), ec=0, AB=0.1, BC=0.3)
+
+
+# ---- plots that xarray and hvplot make ----------------------------------------------------------------
+
+
+def test_xarray_plots(grid):
+    from matplotlib.figure import Figure
+
+    axes = Figure().add_subplot()
+    grid.a_C.plot.line(x="theta", ax=axes)
+    assert axes.get_xlabel().startswith("crank angle")
+    assert axes.get_ylabel().replace("\n", " ") == "acceleration of the slider [m/s^2]"
+
+
+def test_hvplot():
+    """In a process of its own: its imports warn of each other."""
+    code = """
+import numpy as np
+import hvplot.xarray
+import desaxe as dx
+grid = dx.grid("a_C", theta=np.linspace(0, 6, 9), ec=[0, 0.1], AB=0.125, BC=0.35, omega0=157.08)
+curves = grid.a_C.hvplot.line(x="theta", by="ec")
+print(type(curves).__name__, len(curves), curves.kdims[0].name)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["NdOverlay", "2", "ec"]
