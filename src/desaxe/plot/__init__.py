@@ -1,7 +1,24 @@
-"""Pictures of labelled results (extra `plot`); pyplot and its global state are never touched."""
+"""Pictures of labelled results (extra `plot`); pyplot and its global state are never touched.
 
+curves      a quantity over one input, one curve for each value of another
+panels      several quantities over one input, one above the other
+polar       a torque or force over the crank angle
+design_map  a quantity over two inputs, what is infeasible hatched
+tornado     what a change of each input does, by exact sensitivities
+mechanism   crank, rod and slider to scale at a crank angle
+animate     the same as it turns, beside a quantity's curve
+save        a figure or animation to a file
+
+Each draws on `ax=`, or on a new Figure, and returns what it drew.
+"""
+
+from .bars import tornado as tornado
 from .families import curves as curves
 from .files import save as save
+from .maps import design_map as design_map
+from .moving import animate as animate
+from .panels import panels as panels
 from .round import polar as polar
+from .sketch import mechanism as mechanism
 
-__all__ = ["curves", "polar", "save"]
+__all__ = ["animate", "curves", "design_map", "mechanism", "panels", "polar", "save", "tornado"]

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..extras import needed
-from .parts import chosen, drawn, label_of, shown, worth_showing
+from .parts import chosen, drawn, finish_axis, fixed_inputs, label_of, shown, worth_showing
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,7 +29,8 @@ def curves(
     name     the quantity
     over     the dimension along the horizontal axis; angles are shown in degrees
     family   the dimension that tells the curves apart; by default the other one, if there is one
-    ax       where to draw: a matplotlib Axes; by default a new Figure (`lines[0].figure`)
+    ax       where to draw: a matplotlib Axes; by default a new Figure (`lines[0].figure`), whose title tells
+             the inputs that are numbers
 
     Labels and units come from the dataset. Points that are infeasible, or at which friction jams, are
     gaps. A curve may grow without bound towards its gaps, so the vertical axis is that of the curves
@@ -39,24 +40,19 @@ def curves(
     with needed("plot.curves"):
         from matplotlib.figure import Figure
     array = chosen(dataset, name, over, family)
-    beside = ax is None
+    own = ax is None
     ax = Figure(figsize=SIZE, layout="constrained").add_subplot() if ax is None else ax
-    lines = drawn(ax, shown(array[over]), array, beside)
-    _finish(ax, array, over, lines)
+    lines = draw(ax, array, over, beside=own)
+    if own:
+        ax.set_title(fixed_inputs(array), loc="left", fontsize="medium")
     return lines
 
 
-def _finish(ax: "Axes", array: "xr.DataArray", over: str, lines: "list[Line2D]") -> None:
-    """Labels, ticks, limits."""
-    ax.set_xlabel(label_of(array[over]))
+def draw(ax: "Axes", array: "xr.DataArray", over: str, beside: bool | None) -> "list[Line2D]":
+    """The curves of (family, over) or (over), with labels, ticks and limits."""
+    lines = drawn(ax, shown(array[over]), array, beside)
+    finish_axis(ax.xaxis, array[over])
     ax.set_ylabel(label_of(array))
-    horizontal = shown(array[over])
-    if horizontal.size > 1:
-        ax.set_xlim(float(horizontal.min()), float(horizontal.max()))
-    if array[over].attrs.get("units") == "rad" and np.ptp(horizontal) >= 180.0:
-        from matplotlib.ticker import MaxNLocator
-
-        ax.xaxis.set_major_locator(MaxNLocator(9, steps=[1, 3, 4.5, 6, 9, 10]))
     limits = worth_showing([np.asarray(line.get_ydata(), dtype=np.float64) for line in lines])
     if limits is not None:
         ax.set_ylim(*limits)
@@ -64,3 +60,4 @@ def _finish(ax: "Axes", array: "xr.DataArray", over: str, lines: "list[Line2D]")
     ax.set_axisbelow(True)
     for side in ("top", "right"):
         ax.spines[side].set_visible(False)
+    return lines

@@ -14,35 +14,47 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
+BLUE, ORANGE = "#0072B2", "#D55E00"  # of Okabe and Ito, told apart by the colour-blind
 MOST_IN_LEGEND = 10  # curves; more get a colour bar
 WIDE = 58  # letters of a label in one line
+TITLE = 80  # and of a title
 
 
 def chosen(dataset: "xr.Dataset", name: str, over: str, family: str | None) -> "xr.DataArray":
     """The quantity with the dimensions (family, over) or (over)."""
     if name not in dataset:
         raise ValueError(f"no {name!r} in this dataset, it has: {', '.join(map(str, dataset.data_vars))}")
+    if family is None:
+        rest = [str(dim) for dim in dataset[name].dims if dim != over]
+        family = rest[0] if len(rest) == 1 else None
+    if family == over:
+        raise ValueError(f"family = {family!r}: it must be another dimension than over")
+    return choose(dataset, name, [*([family] if family else []), over])
+
+
+def choose(dataset: "xr.Dataset", name: str, dims: Sequence[str]) -> "xr.DataArray":
+    """The quantity with these dimensions, and no others."""
+    if name not in dataset:
+        raise ValueError(f"no {name!r} in this dataset, it has: {', '.join(map(str, dataset.data_vars))}")
     array = dataset[name]
-    for dim in (over, family):
-        if dim is not None and dim not in array.dims:
+    for dim in reversed(dims):
+        if dim not in array.dims:
             raise ValueError(
                 f"{name} has no dimension {dim!r}, it has: {', '.join(map(str, array.dims)) or 'none'}"
             )
-    if family == over:
-        raise ValueError(f"family = {family!r}: it must be another dimension than over")
-    rest = [str(dim) for dim in array.dims if dim not in (over, family)]
-    if family is None and len(rest) == 1:
-        family, rest = rest[0], []
+    rest = [str(dim) for dim in array.dims if dim not in dims]
     if rest:
         wanted = ", ".join(f"{dim}=..." for dim in rest)
         raise ValueError(
             f"{name} varies with {', '.join(rest)} too: choose a value first, dataset.sel({wanted})"
         )
-    return array.transpose(*([family] if family else []), over)
+    return array.transpose(*dims)
 
 
-def drawn(ax: "Axes", horizontal: NDArray[np.float64], array: "xr.DataArray", beside: bool) -> "list[Line2D]":
-    """The curves of (family, over) or (over), with a legend where they are a family."""
+def drawn(
+    ax: "Axes", horizontal: NDArray[np.float64], array: "xr.DataArray", beside: bool | None
+) -> "list[Line2D]":
+    """The curves of (family, over) or (over); of a family with a legend, beside them or among them."""
     family = array[array.dims[0]] if array.ndim > 1 else None
     members = [None] if family is None else family
     lines: list[Line2D] = []
@@ -51,7 +63,7 @@ def drawn(ax: "Axes", horizontal: NDArray[np.float64], array: "xr.DataArray", be
     ):
         label = None if member is None else f"{float(shown(member)):.6g}"
         lines += ax.plot(horizontal, values, color=colour, linewidth=1.6, label=label)
-    if family is not None:
+    if family is not None and beside is not None:
         _explain(ax, family, lines, beside)
     return lines
 
@@ -89,16 +101,55 @@ def unit_of(array: "xr.DataArray") -> str:
     unit = str(array.attrs.get("units", ""))
     if unit == "rad" and array.ndim == 1 and array.name in array.dims:
         return "[deg]"
-    raised = re.sub(r"\^(-?[0-9]+)", r"$^{\1}$", unit).replace("*", " ")
-    return f"[{raised}]" if unit and unit != "1" else ""
+    return raised(unit)
+
+
+def raised(unit: str) -> str:
+    """A unit in brackets, its powers raised; nothing for a plain number."""
+    powers = re.sub(r"\^(-?[0-9]+)", r"$^{\1}$", unit).replace("*", " ")
+    return f"[{powers}]" if unit and unit != "1" else ""
+
+
+def meaning_of(array: "xr.DataArray") -> str:
+    """What a quantity is, in a few words."""
+    told = str(array.attrs.get("long_name", ""))
+    peak, colon, rest = told.partition(" over a turn: ")
+    return f"{peak} of the {rest}" if colon else told.partition(",")[0].partition(":")[0]
+
+
+def fixed_inputs(array: "xr.DataArray", width: int = TITLE) -> str:
+    """The inputs that are numbers, for a title."""
+    told = []
+    for name, value in array.coords.items():
+        if value.ndim == 0 and "units" in value.attrs:
+            in_degrees = value.attrs["units"] == "rad"
+            unit = "[deg]" if in_degrees else raised(str(value.attrs["units"]))
+            told.append(f"{name} = {float(shown(value)):.6g} {unit[1:-1]}".rstrip().replace(" ", "\u00a0"))
+    return textwrap.fill(", ".join(told), width)
+
+
+def finish_axis(axis: Any, input_: "xr.DataArray") -> None:
+    """Label, limits and ticks of an axis along an input; angles in degrees that divide a turn."""
+    values = shown(input_)
+    vertical = axis.axis_name == "y"
+    (axis.axes.set_ylabel if vertical else axis.axes.set_xlabel)(label_of(input_))
+    if values.size > 1:
+        limits = float(values.min()), float(values.max())
+        (axis.axes.set_ylim if vertical else axis.axes.set_xlim)(*limits)
+    if input_.attrs.get("units") == "rad" and np.ptp(values) >= 180.0:
+        from matplotlib.ticker import MaxNLocator
+
+        axis.set_major_locator(MaxNLocator(9, steps=[1, 3, 4.5, 6, 9, 10]))
 
 
 def label_of(array: "xr.DataArray") -> str:
     """Meaning, name and unit; a long one in several lines."""
-    meaning = str(array.attrs.get("long_name", "")).partition(",")[0].partition(":")[0]
+    meaning = meaning_of(array)
     symbol = f"{array.name} {unit_of(array)}".rstrip()
     if not meaning:
         return symbol
+    if meaning.replace(" ", "_") == array.name:
+        return f"{meaning} {unit_of(array)}".rstrip()
     whole = f"{meaning}, {symbol}"
     return whole if len(whole) <= WIDE else f"{textwrap.fill(f'{meaning},', WIDE)}\n{symbol}"
 

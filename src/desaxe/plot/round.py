@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..extras import needed
-from .parts import chosen, drawn, label_of, worth_showing
+from .parts import chosen, drawn, fixed_inputs, label_of, worth_showing
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 SIZE = (6.4, 6.0)  # inches
+TITLE = 56  # letters in a line
 
 
 def polar(
@@ -46,6 +47,8 @@ def polar(
         raise ValueError("ax: polar Axes are wanted, such as figure.add_subplot(projection='polar')")
     lines = drawn(axes, np.asarray(array["theta"].values, dtype=np.float64), array, beside)
     _finish(axes, array, lines)
+    if beside:
+        axes.set_title(fixed_inputs(array, TITLE), loc="left", fontsize="medium", pad=12)
     return lines
 
 

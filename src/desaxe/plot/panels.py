@@ -1,0 +1,57 @@
+"""Several quantities over one input, one above the other."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from ..extras import needed
+from .families import draw
+from .parts import chosen, fixed_inputs, meaning_of, unit_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.lines import Line2D
+
+WIDTH, HEIGHT = 8.0, 1.9  # inches: of all, of a panel
+ALWAYS = ("status", "margin")
+
+
+def panels(
+    dataset: "xr.Dataset",
+    names: Sequence[str] | None = None,
+    *,
+    over: str = "theta",
+    family: str | None = None,
+    ax: Any = None,
+) -> "dict[str, list[Line2D]]":
+    """Draw several quantities over one input, one above the other; returns the lines by name.
+
+    dataset  the result of `desaxe.grid` or of a scene
+    names    the quantities, from top to bottom; by default all that vary with `over`
+    over     the dimension along the horizontal axis; angles are shown in degrees
+    family   the dimension that tells the curves apart; by default the other one, if there is one
+    ax       where to draw: a matplotlib Axes for each name; by default those of a new Figure
+
+    Labels, gaps and complaints are those of `curves`.
+    """
+    with needed("plot.panels"):
+        from matplotlib.figure import Figure
+    if names is None:
+        names = [str(n) for n, a in dataset.data_vars.items() if over in a.dims and n not in ALWAYS]
+    arrays = [chosen(dataset, name, over, family) for name in names]
+    if not arrays:
+        raise ValueError(f"nothing in this dataset varies with {over!r}")
+    if ax is None:
+        figure = Figure(figsize=(WIDTH, 0.8 + HEIGHT * len(arrays)), layout="constrained")
+        axes = list(figure.subplots(len(arrays), sharex=True, squeeze=False)[:, 0])
+        figure.suptitle(fixed_inputs(arrays[0]), x=0.01, ha="left", fontsize="medium")
+    else:
+        axes = list(ax)
+    drawn = {}
+    for place, (array, axis) in enumerate(zip(arrays, axes, strict=True)):
+        lines = draw(axis, array, over, beside=True if place == 0 else None)
+        axis.set_title(meaning_of(array), loc="left", fontsize="small", color="0.3")
+        axis.set_ylabel(f"{array.name} {unit_of(array)}".rstrip())
+        if place < len(arrays) - 1:
+            axis.set_xlabel("")
+        drawn[str(array.name)] = lines
+    return drawn
