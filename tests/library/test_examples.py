@@ -63,19 +63,19 @@ def test_feeder_writes_its_files(feeder):
     assert text.isascii()
 
 
-def test_figures_of_paper_b(tmp_path, capsys):
-    script = runpy.run_path(str(EXAMPLES / "paper_b.py"))
+@pytest.mark.parametrize(("paper", "first", "last"), [("a", 9, 12), ("b", 5, 18), ("c", 5, 11)])
+def test_figures_of_the_papers(paper, first, last, tmp_path, capsys):
+    script = runpy.run_path(str(EXAMPLES / f"paper_{paper}.py"))
     script["main"](str(tmp_path / "new"))
     lines = capsys.readouterr().out.splitlines()
-    names = [f"paper_b_{number:02}.png" for number in range(5, 19)]
+    names = [f"paper_{paper}_{number:02}.png" for number in range(first, last + 1)]
     assert sorted(path.name for path in (tmp_path / "new").iterdir()) == names
     assert [Path(line.partition(" - ")[0]).name for line in lines] == names
-    assert lines[-1].endswith("Comparing torque with existing model at e = 0 mm")
 
 
-def test_figures_of_paper_c(tmp_path, capsys):
-    script = runpy.run_path(str(EXAMPLES / "paper_c.py"))
-    script["main"](str(tmp_path / "new"))
-    names = [f"paper_c_{number:02}.png" for number in range(5, 12)]
-    assert sorted(path.name for path in (tmp_path / "new").iterdir()) == names
-    assert [Path(line.partition(" - ")[0]).name for line in capsys.readouterr().out.splitlines()] == names
+def test_figures_of_paper_b_say_which_offset():
+    draw = runpy.run_path(str(EXAMPLES / "paper_b.py"))["draw"]
+    for number in range(5, 15):
+        assert draw(number).get_title(loc="left").endswith(", e = 20 mm")
+    assert draw(16).get_legend().get_title().get_text() == "ec [m]"
+    assert draw(17).get_title(loc="left").endswith("e = 0 mm")
