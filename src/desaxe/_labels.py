@@ -1,6 +1,6 @@
 """Names, units and CF attributes for labelled results."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -49,6 +49,31 @@ def source() -> str:
     return f"desaxe {__version__}, derivation {digest()[:16]}"
 
 
+def provenance(
+    names: Iterable[str],
+    inputs: Mapping[str, NDArray[Any]],
+    branch: int,
+    accuracy: str | float = "standard",
+    title: str = "offset slider-crank",
+) -> dict[str, Any]:
+    """Attributes of a dataset: what was asked for, and what answered."""
+    axes = [name for name, array in inputs.items() if array.ndim]
+    fixed = [
+        f"{name} = {array.item()!r} {INPUTS[name].unit}".removesuffix(" 1")
+        for name, array in inputs.items()
+        if not array.ndim
+    ]
+    scene = ", ".join(names) + (f" over {', '.join(axes)}" if axes else "")
+    return {
+        "title": title,
+        "scene": "; ".join(part for part in (scene, ", ".join(fixed)) if part),
+        "source": source(),
+        "Conventions": CONVENTIONS,
+        "branch": branch,
+        "accuracy": accuracy,
+    }
+
+
 def labelled(
     values: Mapping[str, tuple[Sequence[str], NDArray[Any]]],
     inputs: Mapping[str, NDArray[Any]],
@@ -66,11 +91,6 @@ def labelled(
     coordinates = {
         name: ((name,) if array.ndim else (), array, input_attributes(name)) for name, array in inputs.items()
     }
-    about = {
-        "title": "offset slider-crank",
-        "source": source(),
-        "Conventions": CONVENTIONS,
-        "branch": branch,
-        "accuracy": accuracy,
-    }
+    names = [name for name in values if name not in ("status", "margin")]
+    about = provenance(names, inputs, branch, accuracy)
     return xarray.Dataset(variables, coordinates, about)

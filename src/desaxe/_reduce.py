@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ._arrays import is_early
 from ._kernels import kernel_for, key_of
-from ._labels import attributes, input_attributes, labelled
+from ._labels import attributes, input_attributes, labelled, provenance
 from ._request import Request
 from ._threads import in_blocks
 from .compiler.reductions import EXTREMES, KINDS, outputs_of
@@ -74,6 +74,7 @@ def reduced_grid(
     kept = {name: axis for name, axis in axes.items() if name != reduction.axis}
     told = reduced_attributes(wanted.shown, reduction, input_attributes(reduction.axis), state)
     dataset = labelled({}, kept, branch, state)
+    dataset.attrs |= provenance(arrays, kept, branch, wanted.accuracy)
     return dataset.assign({name: (*found, told[name]) for name, found in arrays.items()})
 
 

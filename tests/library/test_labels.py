@@ -32,8 +32,19 @@ def test_every_variable_says_what_it_is(grid):
 def test_the_dataset_says_where_it_comes_from(grid):
     assert grid.attrs["source"].startswith(f"desaxe {dx.__version__}, derivation ")
     assert (grid.attrs["branch"], grid.attrs["accuracy"]) == (1, "standard")
-    other = dx.grid("a_C", theta=THETA, ec=0.0, branch=-1, accuracy="extended", **MACHINE)
-    assert (other.attrs["branch"], other.attrs["accuracy"]) == (-1, "extended")
+    assert grid.attrs["scene"] == (
+        "a_C, a_C_wrt_ec over theta, ec; AB = 0.125 m, BC = 0.35 m, omega0 = 157.08 rad/s"
+    )
+    options = {"branch": -1, "accuracy": "extended", **MACHINE}
+    for other in (
+        dx.grid("a_C", theta=THETA, ec=0.0, **options),
+        dx.grid("a_C", theta=THETA, ec=[0.0, 0.1], reduce={"theta": "max"}, **options),
+    ):
+        assert (other.attrs["branch"], other.attrs["accuracy"]) == (-1, "extended")
+        assert other.attrs["scene"].startswith("a_C")
+    plane = dx.design_map("stroke", ec=[0.0, 0.1], AB=0.125, BC=0.35)
+    assert plane.attrs["source"] == grid.attrs["source"]
+    assert plane.attrs["scene"] == "stroke over ec; AB = 0.125 m, BC = 0.35 m"
 
 
 def test_a_dataset_can_be_asked_for_again_by_what_it_says(grid):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._arrays import as_array
-from .._labels import STATUS_FLAGS, input_attributes
+from .._labels import STATUS_FLAGS, input_attributes, provenance
 from .._request import check_border, check_inputs
 from ..catalogue import quantity
 from ..extras import needed
@@ -71,7 +71,9 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
     with needed("design_map"):
         import xarray
     coordinates = {n: ((n,) if axis.ndim else (), axis, input_attributes(n)) for n, axis in axes.items()}
-    return xarray.Dataset(variables, coordinates, {"title": "offset slider-crank designs", "branch": branch})
+    names = ["_".join(measure) if not isinstance(measure, str) else measure for measure in wanted]
+    about = provenance(names, axes, branch, title="offset slider-crank designs")
+    return xarray.Dataset(variables, coordinates, about)
 
 
 def _along(axis: Any, place: int | None, count: int) -> Any:
