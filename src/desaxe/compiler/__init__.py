@@ -9,6 +9,7 @@
     kernel       a loop nest whose bodies are Programs
     emit_python  a Program as plain Python over `math`
     emit_numba   a Kernel as a self-contained numba module
+    emit_javascript  a Program as a JavaScript function
 
 Imports point downwards in this list and never out of the room. To add an operation, add its row; a
 language, its column and an emitter; a pass, its module and its entry in `passes.pipeline.PASSES`.

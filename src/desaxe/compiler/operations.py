@@ -7,7 +7,7 @@ costs and where it is undefined. A new operation, or a new language, is a change
 (``mpmath.mp`` in the tests); the error terms of two-sum and two-product are exactly 0 there,
 and so is `rounding`, a bound of such terms. `finer` guards a form of the same value that is of use to
 `double_digits` alone, which makes it its argument; everywhere else it is false.
-`python` and `numba` are templates over the argument texts. Plain Python raises where IEEE 754
+`python`, `numba` and `javascript` are templates over the argument texts. Plain Python raises where IEEE 754
 arithmetic answers inf or NaN, so its division and square root are guarded in the template.
 `precedence` is that of the spelling in the readable text form; calls bind tightest.
 """
@@ -27,6 +27,7 @@ class Operation(NamedTuple):
     precedence: int
     python: str  # plain Python with IEEE 754 answers
     numba: str
+    javascript: str  # what it spells in its own way stands in parentheses: its precedences are its own
     cost: float  # relative to one addition, throughput in a vectorised loop
     exact: Callable[..., Any]  # exact(mp, *args)
     undefined: str = ""  # where the real function has no value
@@ -43,7 +44,8 @@ def _row(
 ) -> tuple[str, Operation]:
     python = more.pop("python", text)
     numba = more.pop("numba", text)
-    return name, Operation(name, signature, text, precedence, python, numba, cost, exact, **more)
+    javascript = more.pop("javascript", text)
+    return name, Operation(name, signature, text, precedence, python, numba, javascript, cost, exact, **more)
 
 
 OPERATIONS: dict[str, Operation] = dict(
@@ -86,11 +88,20 @@ OPERATIONS: dict[str, Operation] = dict(
         _row("lt", "ffb", "{0} < {1}", 6, 1, lambda mp, a, b: a < b),
         _row("le", "ffb", "{0} <= {1}", 6, 1, lambda mp, a, b: a <= b),
         _row("eq", "ffb", "{0} == {1}", 6, 1, lambda mp, a, b: a == b, commutes=True),
-        _row("and", "bbb", "{0} and {1}", 4, 0.5, lambda mp, a, b: a and b, numba="{0} & {1}"),
-        _row("or", "bbb", "{0} or {1}", 3, 0.5, lambda mp, a, b: a or b, numba="{0} | {1}"),
-        _row("not", "bb", "not {0}", 5, 0.5, lambda mp, a: not a),
+        _row(
+            "and", "bbb", "{0} and {1}", 4, 0.5, lambda mp, a, b: a and b,
+            numba="{0} & {1}", javascript="({0} && {1})",
+        ),
+        _row(
+            "or", "bbb", "{0} or {1}", 3, 0.5, lambda mp, a, b: a or b,
+            numba="{0} | {1}", javascript="({0} || {1})",
+        ),
+        _row("not", "bb", "not {0}", 5, 0.5, lambda mp, a: not a, javascript="!({0})"),
         _row("finer", "bb", "finer({0})", CALL, 0, lambda mp, a: False),
-        _row("select", "bTTT", "{1} if {0} else {2}", 1, 1, lambda mp, c, a, b: a if c else b),
+        _row(
+            "select", "bTTT", "{1} if {0} else {2}", 1, 1, lambda mp, c, a, b: a if c else b,
+            javascript="({0} ? {1} : {2})",
+        ),
     ]
 )  # fmt: skip
 
@@ -204,6 +215,46 @@ def two_product_error(a, b):
     """What rounding took from a * b, exactly."""
     return fused(a, b, -(a * b))
 ''',
+}
+# The same functions in JavaScript, whose arithmetic is that of IEEE 754 as it stands. It has no fused
+# multiply-add, so that Dekker's product stays, and no copysign.
+JAVASCRIPT_HELPERS = {
+    "copysign": """function copysign(size, sign) {
+  return sign < 0 || Object.is(sign, -0) ? -fabs(size) : fabs(size);
+}
+""",
+    "two_sum_error": """function two_sum_error(a, b) {
+  const total = a + b, of_b = total - a;
+  return (a - (total - of_b)) + (b - of_b);
+}
+""",
+    "two_product_error": """function two_product_error(a, b) {
+  const product = a * b;
+  let wide = 134217729 * a;
+  const a_high = wide - (wide - a), a_low = a - a_high;
+  wide = 134217729 * b;
+  const b_high = wide - (wide - b), b_low = b - b_high;
+  return a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low) + 0;
+}
+""",
+    "rounding": """function rounding(a) {
+  return 4.440892098500626e-16 * fabs(a);
+}
+""",
+    "mul_add": """function mul_add(a, b, c) {
+  return a * b + c;
+}
+""",
+    "finer": """function finer(a) {
+  return false;
+}
+""",
+    "turned": """function turned(sine, cosine, quarters) {
+  const turn = quarters - 4 * floor(quarters / 4);
+  const value = turn % 2 === 1 ? cosine : sine;
+  return turn >= 2 ? -value : value;
+}
+""",
 }
 MATH_NAMES = ("atan2", "copysign", "cos", "fabs", "floor", "inf", "nan", "sin", "sqrt")
 

@@ -1,0 +1,116 @@
+"""JavaScript: one function that answers, bit for bit, as the interpretation of the program does."""
+
+import math
+
+import mpmath
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from desaxe.catalogue import quantities
+from desaxe.compiler.emit_javascript import emit_javascript
+from desaxe.compiler.operations import HELPERS, JAVASCRIPT_HELPERS
+from desaxe.compiler.program import Line, Note, Program
+from tests.compiler.coverage_set import NAMES, POINTS, coverage
+from tests.compiler.javascript import in_javascript
+from tests.compiler.programs import (
+    ANY_OPS,
+    INPUTS,
+    LINKS,
+    LOADS,
+    POINT,
+    WITH_NAN,
+    committed,
+    exactly,
+    in_doubles,
+    program_of_nested,
+    programs,
+    same_bits,
+)
+
+# What IEEE 754 fixes to the last bit: a sine is as good as the library that computes it.
+FIXED = tuple(op for op in ANY_OPS if op not in ("sin", "cos", "atan2"))
+ANY = st.floats(allow_nan=True, allow_infinity=True)
+
+
+def test_the_coverage_set_against_exact():
+    found = in_javascript(coverage(), POINTS)
+    for point, answers in zip(POINTS, found, strict=True):
+        with mpmath.workdps(30):
+            wanted = exactly(coverage(), point)
+            x, y = map(mpmath.mpf, (point["x"], point["y"]))
+            wanted["lost"] += (x + y - mpmath.mpf(point["x"] + point["y"])) / 2
+            size = max(1, *map(abs, point.values()))
+            wrong = [n for n in NAMES if abs(answers[n] - wanted[n]) > 4e-16 * max(size, abs(wanted[n]))]
+        assert not wrong, point
+
+
+def test_the_coverage_set_against_the_interpretation():
+    for point, answers in zip(POINTS, in_javascript(coverage(), POINTS), strict=True):
+        wanted = in_doubles(coverage(), point)
+        assert {n for n in NAMES if not same_bits(answers[n], wanted[n])} <= {"waves", "angle"}
+
+
+@given(
+    programs(WITH_NAN, FIXED), st.lists(st.fixed_dictionaries(dict.fromkeys(INPUTS, ANY)), min_size=8, max_size=8)
+)
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+def test_no_bit_differs_from_the_interpretation(program, points):
+    for point, answers in zip(points, in_javascript(program, points), strict=True):
+        wanted = in_doubles(program, point)
+        assert all(same_bits(answers[name], wanted[name]) for name in program.outputs), point
+
+
+def test_the_error_of_a_product_is_whole():
+    """What plain Python says with fractions, JavaScript says by splitting."""
+    program = program_of_nested(("two_product_error", "x", "y"))
+    values = (0.1, -1 / 3, math.pi, 1e150, 2.0**-300 * 1.1, 12345.678901234567)
+    points = [{"x": a, "y": b, "z": 0.0} for a in values for b in values]
+    found = in_javascript(program, points)
+    assert [one["out"] for one in found] == [in_doubles(program, point)["out"] for point in points]
+    assert any(one["out"] for one in found)
+
+
+def test_every_name_of_the_committed_program():
+    """Nothing in it is a word that JavaScript keeps for itself, and all of it has the same digits."""
+    program = committed(*(row.name for row in quantities()))
+    point = POINT | LINKS | LOADS
+    (answers,) = in_javascript(program, [point])
+    wanted = in_doubles(program, point)
+    far = [n for n in wanted if not math.isclose(answers[n], wanted[n], rel_tol=1e-12, abs_tol=1e-12)]
+    assert not far
+
+
+@pytest.mark.parametrize(
+    ("nested", "text"),
+    [
+        (("select", ("lt", "x", "y"), ("select", ("lt", "y", "z"), 1.0, 2.0), "z"),
+         "(x < y ? (y < z ? 1.0 : 2.0) : z)"),
+        (("select", ("and", ("or", ("lt", "x", "y"), ("lt", "y", "z")), ("le", "z", "x")), 1.0, "z"),
+         "(((x < y || y < z) && z <= x) ? 1.0 : z)"),
+        (("select", ("not", ("and", ("lt", "x", "y"), ("eq", "y", "z"))), 1.0, "z"),
+         "(!((x < y && y == z)) ? 1.0 : z)"),
+        (("mul", ("neg", ("neg", "x")), ("select", ("lt", "x", "y"), "x", "y")), "-(-x) * (x < y ? x : y)"),
+        (("sub", "x", ("neg", "y")), "x - -y"),
+    ],
+)  # fmt: skip
+def test_precedence(nested, text):
+    assert f"  const out = {text};\n" in emit_javascript(program_of_nested(nested))
+
+
+def test_golden():
+    lines = (Line("u", "add", ("x", "y")), Line("v", "div", ("u", "y")))
+    program = Program(("x", "y"), lines, ("v", "u"), {"u": Note("m", "their sum", "A (1)")})
+    assert emit_javascript(program, "ratio") == (
+        "function ratio(x, y) {\n"
+        "  const u = x + y; // m | their sum | A (1)\n"
+        "  const v = u / y;\n"
+        "  return [v, u];\n"
+        "}\n"
+    )
+
+
+def test_every_helper_that_is_called_is_there():
+    """IEEE arithmetic needs no guards; everything else that Python calls has its own spelling."""
+    guards = {"divide", "root", "sine", "cosine", "whole"}
+    assert set(JAVASCRIPT_HELPERS) == set(HELPERS) - guards | {"copysign"}
