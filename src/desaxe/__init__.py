@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from ._enclose import enclose as enclose
     from ._evaluate import evaluate as evaluate
     from ._explain import explain as explain
+    from ._explore import explore as explore
     from ._feasibility import feasibility as feasibility
     from ._grid import grid as grid
     from ._inverse import inverse as inverse
@@ -47,6 +48,7 @@ _ROOMS = {
     "harmonics": "desaxe._design.harmonics",
     "counterweight": "desaxe._design.counterweight",
     "flywheel": "desaxe._design.flywheel",
+    "explore": "desaxe._explore",
     "feasibility": "desaxe._feasibility",
     "scene": "desaxe._scene",
     "explain": "desaxe._explain",
@@ -66,6 +68,7 @@ __all__ = [
     "evaluate",
     "events",
     "explain",
+    "explore",
     "feasibility",
     "flywheel",
     "grid",

@@ -89,6 +89,7 @@ def _parser() -> argparse.ArgumentParser:
         _add_run,
         _add_explain,
         _add_compile,
+        _add_explore,
         _add_derive,
         _add_errata,
         _add_audit,
@@ -414,6 +415,32 @@ def _scene(options: argparse.Namespace) -> int:
     with progress_bar() as progress:
         result = wanted.run(progress)
     print(result)
+    return 0
+
+
+# ---- explore -------------------------------------------------------------------------------------
+
+_EXPLORE = """\
+One HTML file that needs no network: open it in a browser, or send it to somebody. Needs the extra `explore`.
+
+examples:
+  desaxe explore examples/compactor.toml
+  desaxe explore examples/feeder.toml -o feeder.html --names T_in,F_shaking_Y"""
+
+
+def _add_explore(commands: Any) -> None:
+    what = "write a page on which the designs of a scene can be looked at and changed"
+    parser = _add(commands, "explore", what, _EXPLORE, _explore)
+    parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
+    parser.add_argument("-o", metavar="FILE", dest="file", default="explorer.html", help="explorer.html without")
+    parser.add_argument("--names", metavar="NAMES", help="the quantities that the page knows, beside the scene's")
+
+
+def _explore(options: argparse.Namespace) -> int:
+    from . import explore
+
+    names = options.names.split(",") if options.names else None
+    print(explore(options.scene, options.file, names=names))
     return 0
 
 

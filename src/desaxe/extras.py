@@ -13,6 +13,7 @@ EXTRAS = {
     "pint": "units",
     "msgspec": "scene",
     "tqdm": "scene",
+    "plotly": "explore",
     "scipy": "simulate",
     "SALib": "design",
     "flint": "rigorous",

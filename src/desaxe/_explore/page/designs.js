@@ -1,0 +1,104 @@
+// Designs and what is computed of them. A design is an object input -> value in SI units.
+
+const HOME = {}; // name -> [the quantity whose function computes it, its place among the answers]
+for (const [base, { names }] of Object.entries(CONTENT.functions)) {
+  names.forEach((name, place) => (HOME[name] = [base, place]));
+}
+const TURN = 2 * Math.PI;
+const SAMPLES = 721;
+
+function answers(base, design, theta) {
+  const args = CONTENT.functions[base].inputs.map((name) => (name === "theta" ? theta : design[name]));
+  return FUNCTIONS[base](...args);
+}
+
+function valueAt(name, design, theta) {
+  const [base, place] = HOME[name];
+  return answers(base, design, theta)[place];
+}
+
+const statusAt = (design, theta) => valueAt("status", design, theta);
+const marginOf = (design) => valueAt("margin", design, 0);
+
+function isGood(name, value) {
+  const least = CONTENT.inputs[name].least;
+  return Number.isFinite(value) && (least === null || value >= least);
+}
+
+function evenAngles() {
+  const [from, to] = CONTENT.theta;
+  return Array.from({ length: SAMPLES }, (_, k) => from + ((to - from) * k) / (SAMPLES - 1));
+}
+
+// Angles at which no arc can be missed, however short: the crank pin is farthest from the slider axis at
+// the quarters, where every gap has its middle, and on the axis where sin(theta) = -ec/AB.
+function tellingAngles(design, from, to) {
+  const zero = Math.asin(-design.ec / design.AB);
+  const found = [];
+  for (const angle of [Math.PI / 2, -Math.PI / 2, zero, Math.PI - zero]) {
+    if (Number.isNaN(angle)) continue;
+    const first = Math.ceil((from - angle) / TURN);
+    for (let k = first; angle + k * TURN <= to; k++) found.push(angle + k * TURN);
+  }
+  return found;
+}
+
+// The last double on each side of a border between two angles, on one of which `inside` holds.
+function border(inside, a, b) {
+  const wanted = inside(a);
+  for (;;) {
+    const middle = a + (b - a) / 2;
+    if (middle === a || middle === b) return [a, b];
+    if (inside(middle) === wanted) a = middle;
+    else b = middle;
+  }
+}
+
+// The angles of a curve: even ones, telling ones, and both sides of each border.
+function anglesOf(inside, design, from, to, even) {
+  const angles = [...even, ...tellingAngles(design, from, to)].sort((a, b) => a - b);
+  const found = [];
+  angles.forEach((angle, k) => {
+    if (k && inside(angle) !== inside(angles[k - 1])) found.push(...border(inside, angles[k - 1], angle));
+    found.push(angle);
+  });
+  return found;
+}
+
+// A quantity over the crank angle: null where it has no value, so that no line is drawn there.
+function curve(name, design) {
+  const [from, to] = CONTENT.theta;
+  const inside = (theta) => Number.isFinite(valueAt(name, design, theta));
+  const theta = anglesOf(inside, design, from, to, evenAngles());
+  const value = theta.map((angle) => valueAt(name, design, angle)).map((v) => (Number.isFinite(v) ? v : null));
+  return { theta, value };
+}
+
+// The arcs of one turn in which the linkage cannot be assembled, as [from, to].
+function gaps(design) {
+  const stuck = (theta) => statusAt(design, theta) === 1;
+  const even = Array.from({ length: 181 }, (_, k) => (TURN * k) / 180);
+  const angles = anglesOf(stuck, design, 0, TURN, even);
+  const found = [];
+  angles.forEach((angle, k) => {
+    if (!stuck(angle)) return;
+    if (k && stuck(angles[k - 1])) found.at(-1)[1] = angle;
+    else found.push([angle, angle]);
+  });
+  const whole = found.length === 1 && found[0][0] === 0 && found[0][1] === TURN;
+  if (!whole && found.length > 1 && found[0][0] === 0 && found.at(-1)[1] === TURN) {
+    found.at(-1)[1] = TURN + found.shift()[1]; // a gap across theta = 0 is one gap
+  }
+  return found;
+}
+
+// What tells one of several designs from the others.
+function labelsOf(designs) {
+  const names = Object.keys(CONTENT.inputs);
+  const differing = names.filter((name) => designs.some((design) => design[name] !== designs[0][name]));
+  return designs.map((design) =>
+    differing.length
+      ? differing.map((name) => `${plainSymbol(name, false)} = ${shownInput(name, design[name])}`).join(", ")
+      : "this design",
+  );
+}

@@ -1,0 +1,89 @@
+// What can be taken away: the scene, the values, a picture.
+
+function offer(name, type, data) {
+  const link = document.createElement("a");
+  link.href = typeof data === "string" && data.startsWith("data:") ? data : URL.createObjectURL(new Blob([data], { type }));
+  link.download = name;
+  link.click();
+  if (link.href.startsWith("blob:")) setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+const SECTIONS = [
+  ["mechanism", ["ec", "AB", "BC"]],
+  ["motion", ["omega0", "omega", "alpha"]],
+  ["masses", ["m_crank", "m_rod", "m_slider", "I_crank", "I_rod", "r_crank", "r_rod"]],
+  ["loads", ["F_X", "F_Y", "g_X", "g_Y", "mu"]],
+];
+
+// The designs as one scene, where they differ in one input; else the one that is being changed.
+function sceneText() {
+  const { designs, shown } = state;
+  const differing = Object.keys(CONTENT.inputs).filter((n) => designs.some((d) => d[n] !== designs[0][n]));
+  const kept = differing.length === 1 ? designs : designs.slice(0, 1);
+  const valueOf = (name) => (differing.length === 1 && name === differing[0]
+    ? `[${[...new Set(kept.map((d) => d[name]))].join(", ")}]`
+    : `${kept[0][name]}`);
+  const lines = ["# Written by the explorer page of desaxe, in SI units and radians: desaxe run scene.toml", ""];
+  lines.push(`title = ${JSON.stringify(CONTENT.title)}`, `outputs = ${JSON.stringify([...new Set(shown)])}`);
+  for (const [section, names] of SECTIONS) {
+    const given = names.filter((name) => name in CONTENT.inputs);
+    if (!given.length) continue;
+    lines.push("", `[${section}]`, ...given.map((name) => `${name} = ${valueOf(name)} # ${CONTENT.inputs[name].unit}`));
+    if (section === "mechanism") lines.push(`branch = ${CONTENT.branch}`);
+    if (section === "motion") {
+      const [from, to] = CONTENT.theta;
+      lines.push(`theta = { start = ${from}, stop = ${to}, num = ${SAMPLES} }`);
+    }
+  }
+  return lines.join("\n") + "\n";
+}
+
+// One row an angle; nothing where there is no value. Digits are all that a double has.
+function valuesText() {
+  const labels = labelsOf(state.designs);
+  const names = [...new Set([...state.shown, "status"])];
+  const columns = state.designs.flatMap((design, k) => names.map((name) => ({ design, name, label: labels[k] })));
+  const titleOf = ({ name, label }) => `"${name} [${CONTENT.quantities[name].unit}] (${label})"`;
+  const printed = (value) => (Number.isFinite(value) ? String(value) : "");
+  const rows = evenAngles().map((theta) =>
+    [theta, ...columns.map(({ design, name }) => printed(valueAt(name, design, theta)))].join(","),
+  );
+  return [['"theta [rad]"', ...columns.map(titleOf)].join(","), ...rows].join("\n") + "\n";
+}
+
+const loaded = (source) =>
+  new Promise((done, failed) => {
+    const image = new Image();
+    image.onload = () => done(image);
+    image.onerror = failed;
+    image.src = source;
+  });
+
+// The mechanism above the two charts, twice as fine as a screen.
+async function pictureData() {
+  const width = 900, scale = 2, look = palette();
+  const svg = document.querySelector("#mechanism svg");
+  const plots = charts.map((_, index) => document.getElementById(`plot-${index}`));
+  const drawn = await loaded(`data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg.outerHTML)}`);
+  const images = [];
+  for (const plot of plots) images.push(await loaded(await Plotly.toImage(plot, { format: "png", width, height: 340, scale })));
+  const canvas = document.createElement("canvas"), tall = +svg.getAttribute("height");
+  Object.assign(canvas, { width: width * scale, height: (tall + 30 + 340 * images.length) * scale });
+  const pen = canvas.getContext("2d");
+  pen.scale(scale, scale);
+  pen.fillStyle = look.panel;
+  pen.fillRect(0, 0, canvas.width, canvas.height);
+  pen.fillStyle = look.ink;
+  pen.font = "600 16px system-ui, sans-serif";
+  pen.fillText(CONTENT.title, 12, 22);
+  pen.drawImage(drawn, (width - +svg.getAttribute("width")) / 2, 30, +svg.getAttribute("width"), tall);
+  images.forEach((image, k) => pen.drawImage(image, 0, 30 + tall + 340 * k, width, 340));
+  return canvas.toDataURL("image/png");
+}
+
+function listenToFiles() {
+  const on = (id, action) => document.getElementById(id).addEventListener("click", action);
+  on("save-scene", () => offer("scene.toml", "application/toml", sceneText()));
+  on("save-csv", () => offer("values.csv", "text/csv", valuesText()));
+  on("save-png", async () => offer("picture.png", "image/png", await pictureData()));
+}

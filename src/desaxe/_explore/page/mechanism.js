@@ -1,0 +1,106 @@
+// The mechanism to scale. Y points to the right and X down, so that theta turns clockwise.
+
+const NAMESPACE = "http://www.w3.org/2000/svg";
+
+// Where everything is in one design at one angle [m]; C is missing where the rod does not reach.
+function jointsAt(design, theta) {
+  const B = [design.AB * Math.cos(theta), design.AB * Math.sin(theta)];
+  const Y = valueAt("Y", design, theta);
+  return { A: [0, 0], B, C: Number.isFinite(Y) ? [Y, -design.ec] : null };
+}
+
+// Metres to pixels, so that every position of every design fits.
+function viewOf(designs, width, height) {
+  const reach = (pick) => Math.max(...designs.map(pick));
+  const crank = reach((d) => d.AB), far = reach((d) => d.AB + d.BC);
+  const body = 0.1 * far;
+  const [low, high] = CONTENT.branch > 0 ? [-crank, far] : [-far, crank];
+  const up = Math.max(crank, reach((d) => d.ec)) + body, down = Math.max(crank, reach((d) => -d.ec)) + body;
+  const scale = Math.min((width - 16) / (high - low + 2 * body), (height - 44) / (up + down));
+  const left = width / 2 - ((low + high) / 2) * scale, top = 8 + up * scale + (height - 44 - (up + down) * scale) / 2;
+  return { scale, width, height, place: ([Y, X]) => [left + Y * scale, top + X * scale] };
+}
+
+function drawMechanism(designs, theta) {
+  const box = document.getElementById("mechanism");
+  const width = box.clientWidth || 600, height = Math.max(220, Math.min(330, width * 0.62));
+  const view = viewOf(designs, width, height);
+  const look = palette();
+  const parts = [...designs.keys()].reverse().map((k) => linkage(designs[k], theta, view, look, k));
+  const svg =
+    `<svg xmlns="${NAMESPACE}" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}" ` +
+    `font-family="system-ui, sans-serif" font-size="12" role="img" aria-label="${spoken(designs[0], theta)}">` +
+    `${frame(designs[0], theta, view, look)}${parts.join("")}${scaleBar(view, look)}</svg>`;
+  box.innerHTML = svg;
+}
+
+function spoken(design, theta) {
+  return `Mechanism at a crank angle of ${degrees(theta, 1)}; ${statusWords(design, theta) || "assembled"}`;
+}
+
+const path = (points) => points.map((p, k) => `${k ? "L" : "M"}${p.map((v) => v.toFixed(2)).join(" ")}`).join("");
+const stroked = (d, colour, wide, more = "") =>
+  `<path d="${d}" fill="none" stroke="${colour}" stroke-width="${wide}" stroke-linecap="round" ${more}/>`;
+const disc = ([x, y], r, fill, stroke) =>
+  `<circle cx="${x.toFixed(2)}" cy="${y.toFixed(2)}" r="${r}" fill="${fill}" stroke="${stroke}" stroke-width="1.5"/>`;
+const text = ([x, y], words, colour, more = "") => `<text x="${x}" y="${y}" fill="${colour}" ${more}>${words}</text>`;
+
+// What stands still: the slider axis, the axis through A, the crank circle, the frame.
+function frame(design, theta, { place, scale, width }, look) {
+  const [ax, ay] = place([0, 0]), axis = place([0, -design.ec])[1], r = design.AB * scale;
+  const arc = Math.min(r * 0.45, 34), turn = theta % TURN;
+  const end = [ax + arc * Math.cos(turn), ay + arc * Math.sin(turn)];
+  const sweep = `M${ax + arc} ${ay}A${arc} ${arc} 0 ${Math.abs(turn) > Math.PI ? 1 : 0} ${turn < 0 ? 0 : 1} ${end.join(" ")}`;
+  const half = turn / 2, tag = [ax + (arc + 10) * Math.cos(half) - 4, ay + (arc + 10) * Math.sin(half) + 4];
+  const parts = [
+    stroked(path([[8, axis], [width - 8, axis]]), look.line, 1, 'stroke-dasharray="10 3 2 3"'),
+    `<circle cx="${ax}" cy="${ay}" r="${r}" fill="none" stroke="${look.line}" stroke-dasharray="2 4"/>`,
+    stroked(path([[ax, ay], [ax + Math.max(r, arc) + 12, ay]]), look.line, 1),
+    stroked(sweep, look.soft, 1.2), text(tag, "θ", look.soft),
+    `<path d="M${ax} ${ay}l-9 15h18z" fill="${look.panel}" stroke="${look.soft}" stroke-width="1.5"/>`,
+    stroked(path([[ax - 14, ay + 15], [ax + 14, ay + 15]]), look.soft, 1.5),
+  ];
+  if (Math.abs(ay - axis) > 14) {
+    const x = Math.max(14, ax - r - 16);
+    parts.push(stroked(path([[x, ay], [x, axis]]), look.soft, 1), stroked(path([[x - 4, ay], [ax - 18, ay]]), look.line, 1));
+    parts.push(text([x + 4, (ay + axis) / 2 + 4], "ec", look.soft));
+  }
+  return parts.join("");
+}
+
+function linkage(design, theta, { place, scale }, look, index) {
+  const halo = `font-weight="600" paint-order="stroke" stroke="${look.panel}" stroke-width="4"`;
+  const { A, B, C } = jointsAt(design, theta), colour = look.curves[index % look.curves.length];
+  const [a, b] = [place(A), place(B)], current = index === 0;
+  const wide = current ? 6 : 3;
+  const parts = [];
+  if (C) {
+    const c = place(C), w = current ? 34 : 28, h = current ? 22 : 18;
+    parts.push(stroked(path([b, c]), colour, wide));
+    parts.push(
+      `<rect x="${c[0] - w / 2}" y="${c[1] - h / 2}" width="${w}" height="${h}" rx="3" fill="${look.panel}" ` +
+        `stroke="${colour}" stroke-width="${current ? 2.5 : 1.5}"/>`,
+    );
+    parts.push(disc(c, current ? 4 : 2.5, look.panel, colour));
+    if (current) parts.push(text([c[0] - 4, c[1] - 16], "C", look.ink));
+  } else if (current) {
+    const r = design.BC * scale;
+    parts.push(`<circle cx="${b[0]}" cy="${b[1]}" r="${r}" fill="none" stroke="${look.bad}" stroke-width="1.2" stroke-dasharray="6 5"/>`);
+    const on = [b[0], place([0, -design.ec])[1]], side = Math.sign(on[1] - b[1]) || 1;
+    parts.push(stroked(path([b, [b[0], b[1] + side * r]]), look.bad, 3));
+    parts.push(text([b[0] + 8, b[1] + (side * r) / 2], "the rod does not reach", look.bad, halo));
+  }
+  parts.push(stroked(path([a, b]), colour, wide + 1));
+  parts.push(disc(a, current ? 5 : 3, look.panel, colour), disc(b, current ? 5 : 3, look.panel, colour));
+  if (current) parts.push(text([a[0] - 16, a[1] - 7], "A", look.ink), text([b[0] + 8, b[1] - 8], "B", look.ink));
+  return `<g opacity="${current ? 1 : 0.6}">${parts.join("")}</g>`;
+}
+
+function scaleBar({ scale, width, height }, look) {
+  const [length] = [1, 2, 5].map((m) => niceBelow((width / 4) / scale, m)).sort((p, q) => q - p);
+  const end = 12 + length * scale, y = height - 12;
+  const bar = `M12 ${y - 4}v8M12 ${y}H${end}M${end} ${y - 4}v8`;
+  return stroked(bar, look.soft, 1.2) + text([end + 6, y + 4], shownInput("BC", length), look.soft);
+}
+
+const niceBelow = (limit, m) => m * 10 ** Math.floor(Math.log10(limit / m));
