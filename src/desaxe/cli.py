@@ -432,8 +432,12 @@ def _add_explore(commands: Any) -> None:
     what = "write a page on which the designs of a scene can be looked at and changed"
     parser = _add(commands, "explore", what, _EXPLORE, _explore)
     parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
-    parser.add_argument("-o", metavar="FILE", dest="file", default="explorer.html", help="explorer.html without")
-    parser.add_argument("--names", metavar="NAMES", help="the quantities that the page knows, beside the scene's")
+    parser.add_argument(
+        "-o", metavar="FILE", dest="file", default="explorer.html", help="explorer.html without"
+    )
+    parser.add_argument(
+        "--names", metavar="NAMES", help="the quantities that the page knows, beside the scene's"
+    )
 
 
 def _explore(options: argparse.Namespace) -> int:
