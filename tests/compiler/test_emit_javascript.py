@@ -52,7 +52,8 @@ def test_the_coverage_set_against_the_interpretation():
 
 
 @given(
-    programs(WITH_NAN, FIXED), st.lists(st.fixed_dictionaries(dict.fromkeys(INPUTS, ANY)), min_size=8, max_size=8)
+    programs(WITH_NAN, FIXED),
+    st.lists(st.fixed_dictionaries(dict.fromkeys(INPUTS, ANY)), min_size=8, max_size=8),
 )
 @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_no_bit_differs_from_the_interpretation(program, points):

@@ -107,7 +107,7 @@ def _function(base: str, names: Iterable[str], given: Mapping[str, Value], branc
 
 def _request(names: tuple[str, ...], given: Mapping[str, Value], branch: int) -> Request:
     """The request in which every input that is given can be changed: no value of it is built in."""
-    return request(names, {name: 1.0 for name in given} | {"theta": 1.0}, branch, "standard")
+    return request(names, dict.fromkeys(given, 1.0) | {"theta": 1.0}, branch, "standard")
 
 
 def _angles(given: Mapping[str, Value]) -> tuple[float, float]:

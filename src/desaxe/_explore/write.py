@@ -35,7 +35,7 @@ def page(content: Content) -> str:
         "title": escape(content.title),
         "style": _asset("style.css"),
         "plotly": get_plotlyjs(),
-        "content": json.dumps(_data(content), ensure_ascii=False).replace("</", "<\\/"),
+        "content": json.dumps(_data(content), ensure_ascii=False).replace("<", "\\u003c"),
         "program": _program(content),
         "scripts": "\n".join(_asset(f"{name}.js") for name in SCRIPTS),
     }
@@ -79,5 +79,5 @@ def _about(name: str, unit: str, meaning: str) -> dict[str, Any]:
 
 def _status_words() -> dict[str, str]:
     """Code -> words, from the meaning of `status` in the catalogue."""
-    found = (part.split(" ", 1) for part in quantity("status").meaning.split(", "))
-    return {code: words for code, words in found}
+    found = (part.partition(" ") for part in quantity("status").meaning.split(", "))
+    return {code: words for code, _, words in found}

@@ -89,7 +89,7 @@ function layoutOf(name, range, look, designs) {
     },
     yaxis: {
       ...axis, title: { text: `${symbol(name)}${unit ? ` [${unit}]` : ""}`, standoff: 4 }, tickformat: "~g",
-      exponentformat: "power", ...(range ? { range, autorange: false } : { autorange: true }),
+      exponentformat: "power", automargin: true, ...(range ? { range, autorange: false } : { autorange: true }),
     },
     shapes: [cursor(state.theta, look)],
     uirevision: name,

@@ -2,12 +2,16 @@
 
 const CONTENT = JSON.parse(document.getElementById("content").textContent);
 
-// How many of the shown unit make one SI unit.
+// The shown unit, and how many of it make one SI unit.
 const SHOWN = { m: ["mm", 1000], "rad/s": ["rpm", 30 / Math.PI], rad: ["°", 180 / Math.PI] };
 const shownUnit = (unit) => (SHOWN[unit] ?? [printedUnit(unit)])[0];
 const toShown = (unit, value) => value * (SHOWN[unit]?.[1] ?? 1);
-// Divided, so that 125 mm is the double nearest to 0.125.
-const toSI = (unit, value) => value / (SHOWN[unit]?.[1] ?? 1);
+
+// In SI units. By its digits where the unit is a thousandth, so that 62.3 mm is the double nearest to 0.0623.
+function toSI(unit, value) {
+  const many = SHOWN[unit]?.[1] ?? 1;
+  return many === 1000 && /^-?[\d.]+$/.test(value) ? Number(`${value}e-3`) : value / many;
+}
 
 const SUPERSCRIPT = { 2: "²", 3: "³", 4: "⁴", 5: "⁵" };
 const GREEK = { theta: "θ", alpha: "α", omega: "ω", omega0: "ω₀", phi: "φ", delta: "δ", mu: "μ" };

@@ -1,0 +1,37 @@
+"""A real browser for the tests of the page: a Chromium, which pip alone cannot bring."""
+
+import os
+import shutil
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import sync_playwright
+
+NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+MISSING = (
+    "the tests of the explorer page drive a Chromium, and there is none: "
+    "`python -m playwright install chromium` (or a system's package `chromium`), or name one in DESAXE_BROWSER"
+)
+
+
+def browser_path(own):
+    """The browser to drive: that of DESAXE_BROWSER, of the system, or Playwright's own.
+
+    The test fails, with what to install, where there is none.
+    """
+    named = os.environ.get("DESAXE_BROWSER")
+    found = [named] if named else [*filter(None, map(shutil.which, NAMES)), own]
+    path = next((path for path in found if Path(path).exists()), None)
+    return path or pytest.fail(MISSING, pytrace=False)
+
+
+@contextmanager
+def started():
+    """A browser that is running."""
+    with sync_playwright() as playwright:
+        path = browser_path(playwright.chromium.executable_path)
+        # A container's user may not be allowed to make a sandbox; the page is our own.
+        browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        yield browser
+        browser.close()

@@ -1,0 +1,308 @@
+"""The page in a real browser: its controls, what it says, what it draws, what it gives away."""
+
+import csv
+import io
+import math
+
+import pytest
+
+import desaxe as dx
+
+MINUS, NONE = "\u2212", "\u2013"
+FINITE = "(k) => desaxe.curve(desaxe.state.shown[0], desaxe.state.designs[k]).value.map((v) => v !== null)"
+
+
+def design(page, k=0):
+    return page.evaluate(f"desaxe.state.designs[{k}]")
+
+
+def verdict(page):
+    return page.inner_text("#verdict-kind"), page.inner_text("#verdict-words")
+
+
+def drawn_lines(page, chart=0):
+    """How many pieces each drawn curve has."""
+    traces = f"[...document.querySelectorAll('#plot-{chart} .scatterlayer .trace')]"
+    return page.evaluate(
+        f"{traces}.map((trace) => trace.querySelectorAll('.js-line').length).filter(Boolean)"
+    )
+
+
+def settle(page):
+    """Until what was asked for is drawn."""
+    page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+
+def reading(page, name):
+    """The values of a row under the cursor, as numbers."""
+    cells = page.locator(f"#readings tr[data-name='{name}'] td:not(.unit)").all_inner_texts()
+    return [float(text.replace(MINUS, "-")) if text != NONE else None for text in cells]
+
+
+def test_it_says_what_it_shows(visit, one_design):
+    page = visit(one_design)
+    assert verdict(page)[0] == "Turns fully"
+    assert "225 mm" in page.inner_text("#margin-words")
+    value = dx.evaluate("a_C", theta=math.pi / 3, **design(page))
+    assert reading(page, "a_C") == [pytest.approx(value, rel=1e-7)]
+    titles = [page.locator(f"#plot-{k} .ytitle").text_content().replace("\u200b", "") for k in (0, 1)]
+    assert titles == ["aC [m/s²]", "∂aC/∂ec [1/s²]"]
+
+
+def test_a_slider_by_keyboard(visit, one_design):
+    page = visit(one_design)
+    page.focus("#slide-ec")
+    before = reading(page, "a_C")
+    for _ in range(3):
+        page.keyboard.press("ArrowRight")
+    settle(page)
+    step = float(page.get_attribute("#slide-ec", "step")) / 1000
+    assert design(page)["ec"] == pytest.approx(3 * step, rel=1e-12)
+    assert float(page.input_value("#number-ec")) == pytest.approx(3000 * step)
+    value = dx.evaluate("a_C", theta=math.pi / 3, **design(page))
+    assert reading(page, "a_C") == [pytest.approx(value, rel=1e-7)] != before
+
+
+def test_a_slider_by_mouse(visit, one_design):
+    page = visit(one_design)
+    box = page.locator("#slide-BC").bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] * 0.9, box["y"] + box["height"] / 2, steps=5)
+    page.mouse.up()
+    settle(page)
+    assert 0.6 < design(page)["BC"] < 0.66
+
+
+def test_a_typed_number_is_the_double_that_was_meant(visit, one_design):
+    page = visit(one_design)
+    page.fill("#number-AB", "62.3")
+    page.fill("#number-omega0", "3000")
+    page.fill("#number-alpha", "-7.5")
+    settle(page)
+    found = design(page)
+    assert (found["AB"], found["alpha"]) == (0.0623, -7.5)
+    assert found["omega0"] == pytest.approx(100 * math.pi, rel=1e-15)
+
+
+def test_a_bad_number_is_refused_in_words(visit, one_design):
+    page = visit(one_design)
+    page.fill("#number-BC", "-3")
+    settle(page)
+    assert design(page)["BC"] == 0.35
+    assert page.inner_text("#wrong-BC") == "It must be a finite length > 0."
+    assert page.get_attribute("#number-BC", "aria-invalid") == "true"
+    page.keyboard.press("Tab")
+    assert page.input_value("#number-BC") == "350"
+    assert page.inner_text("#wrong-BC") == ""
+
+
+def test_the_crank_turns_by_keys(visit, one_design):
+    page = visit(one_design)
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("Shift+ArrowRight")
+    assert page.inner_text("#theta-shown") == "71°"
+    page.keyboard.press("Space")
+    page.wait_for_function("desaxe.state.theta > 1.5")
+    page.keyboard.press("Space")
+    stopped = page.evaluate("desaxe.state.theta")
+    page.wait_for_timeout(100)
+    assert page.evaluate("desaxe.state.theta") == stopped
+
+
+def test_everything_can_be_reached_by_tab(visit, one_design):
+    page = visit(one_design)
+    reached = set()
+    for _ in range(40):
+        page.keyboard.press("Tab")
+        reached.add(page.evaluate("document.activeElement.id"))
+    inputs = {
+        f"{kind}-{name}" for kind in ("slide", "number") for name in ("AB", "BC", "ec", "omega0", "alpha")
+    }
+    buttons = {"play", "theta", "keep", "save-scene", "save-csv", "save-png", "theme"}
+    assert inputs | buttons | {"quantity-0", "by-0", "quantity-1", "by-1"} <= reached
+
+
+def test_every_control_has_a_name(visit, several_designs):
+    nameless = """[...document.querySelectorAll('main input, main select, main button')]
+        .filter((e) => !(e.labels?.length || e.getAttribute('aria-label') || e.textContent.trim()))
+        .map((e) => e.outerHTML)"""
+    assert visit(several_designs).evaluate(nameless) == []
+
+
+def test_an_infeasible_design(visit, one_design):
+    page = visit(one_design)
+    page.fill("#number-ec", "240")
+    settle(page)
+    kind, words = verdict(page)
+    assert kind == "Cannot turn fully"
+    assert "from 61.64° to 118.36°" in words
+    assert drawn_lines(page) == [2]
+    page.evaluate("document.activeElement.blur()")
+    for _ in range(3):
+        page.keyboard.press("Shift+ArrowRight")
+    assert page.inner_text("#theta-shown") == "90°"
+    assert reading(page, "a_C") == [None]
+    assert "the crank pin is 365 mm from the slider axis" in page.inner_text("#readings .why")
+    assert "does not reach" in page.inner_text("#mechanism")
+
+
+def test_no_curve_where_nothing_can_be_assembled(visit, one_design):
+    page = visit(one_design)
+    page.fill("#number-ec", "900")
+    settle(page)
+    assert verdict(page)[0] == "Cannot be assembled"
+    assert not any(page.evaluate(FINITE, 0))
+    assert drawn_lines(page) == []
+    assert page.inner_text("#note-0") == "No curve: this has no value at any of these angles."
+
+
+def test_a_gap_narrower_than_a_sample_is_no_line(visit, one_design):
+    """A hundredth of a degree, in which no sample of the even ones lies but the quarter itself."""
+    page = visit(one_design)
+    page.fill("#number-ec", "225.000001")
+    settle(page)
+    assert verdict(page)[0] == "Cannot turn fully"
+    assert drawn_lines(page, 1) == [2]
+
+
+@pytest.mark.parametrize("ec", [225.0, 230.0, 300.0, -250.0])
+def test_a_curve_is_where_evaluate_has_a_value(ec, visit, one_design):
+    page = visit(one_design)
+    page.fill("#number-ec", str(ec))
+    settle(page)
+    curve = page.evaluate("desaxe.curve('V_C', desaxe.state.designs[0])")
+    values = [dx.evaluate("V_C", theta=theta, **design(page)) for theta in curve["theta"]]
+    assert [v is not None for v in curve["value"]] == [math.isfinite(v) for v in values]
+    assert curve["theta"] == sorted(curve["theta"])
+
+
+def test_a_crank_that_stalls(visit, one_design):
+    page = visit(one_design)
+    page.fill("#number-alpha", "-4000")
+    settle(page)
+    omega0 = design(page)["omega0"]
+    assert f"stalls at {math.degrees(omega0**2 / 8000):.2f}°" in verdict(page)[1]
+    curve = page.evaluate("desaxe.curve('V_C', desaxe.state.designs[0])")
+    last = max(t for t, v in zip(curve["theta"], curve["value"], strict=True) if v is not None)
+    assert last == pytest.approx(omega0**2 / 8000, rel=1e-9)
+
+
+def test_several_designs_are_compared(visit, several_designs):
+    page = visit(several_designs)
+    labels = page.locator("#designs .label").all_inner_texts()
+    assert [label.partition(" (")[0] for label in labels] == ["ec = 0 mm", "ec = 100 mm", "ec = 230 mm"]
+    titles = [mark.get_attribute("title") for mark in page.locator("#designs .badge").all()]
+    assert titles == ["Turns fully", "Turns fully", "Cannot turn fully"]
+    assert sorted(drawn_lines(page)) == [1, 1, 2]
+    wanted = [dx.evaluate("V_C", theta=math.pi / 3, **design(page, k)) for k in range(3)]
+    assert reading(page, "V_C") == [pytest.approx(v, rel=1e-7) for v in wanted]
+    page.click("[data-take='2']")
+    assert verdict(page)[0] == "Cannot turn fully"
+    page.click("[data-drop='1']")
+    page.click("#keep")
+    assert len(reading(page, "V_C")) == 3
+
+
+def test_any_quantity_and_sensitivity(visit, one_design):
+    page = visit(one_design)
+    for option in page.locator("#quantity-0 option").all():
+        page.select_option("#quantity-0", option.get_attribute("value"))
+        settle(page)
+        assert drawn_lines(page), option.get_attribute("value")
+    page.select_option("#quantity-0", "omega_BC")
+    page.select_option("#by-0", "omega_BC_wrt_AB")
+    settle(page)
+    value = dx.evaluate("omega_BC_wrt_AB", theta=math.pi / 3, **design(page))
+    assert reading(page, "omega_BC_wrt_AB") == [pytest.approx(value, rel=1e-7)]
+
+
+def test_values_follow_the_pointer(visit, one_design):
+    page = visit(one_design)
+    box = page.locator("#plot-0 .nsewdrag").bounding_box()
+    page.mouse.move(box["x"] + box["width"] * 0.75, box["y"] + box["height"] / 2)
+    page.wait_for_function("desaxe.state.theta > 4.6 && desaxe.state.theta < 4.8")
+    value = dx.evaluate("a_C", theta=page.evaluate("desaxe.state.theta"), **design(page))
+    assert reading(page, "a_C") == [pytest.approx(value, rel=1e-7)]
+
+
+def saved(page, button):
+    with page.expect_download() as waiting:
+        page.click(button)
+    return waiting.value
+
+
+def test_the_scene_runs(visit, several_designs, tmp_path):
+    page = visit(several_designs)
+    download = saved(page, "#save-scene")
+    assert download.suggested_filename == "scene.toml"
+    download.save_as(tmp_path / "scene.toml")
+    scene = dx.scene(tmp_path / "scene.toml")
+    assert scene.inputs["ec"] == (0.0, 0.1, 0.23)
+    assert scene.outputs == ("a_C", "a_C_wrt_ec")
+    dataset = scene.run().dataset
+    curve = page.evaluate("desaxe.valuesText()")
+    rows = list(csv.reader(io.StringIO(curve)))
+    column = [float(row[1]) for row in rows[1:]]
+    assert column == pytest.approx(dataset["a_C"].isel(ec=0).values, rel=1e-11)
+
+
+def test_the_scene_of_a_feeder_comes_back(visit, folder, tmp_path):
+    page = visit(dx.explore("examples/feeder.toml", folder / "feeder.html"))
+    saved(page, "#save-scene").save_as(tmp_path / "scene.toml")
+    again, before = dx.scene(tmp_path / "scene.toml"), dx.scene("examples/feeder.toml")
+    assert {n: v for n, v in again.inputs.items() if n not in ("theta", "alpha")} == {
+        n: v for n, v in before.inputs.items() if n != "theta"
+    }
+    assert page.evaluate("desaxe.state.shown") == ["T_in", "N_C"]
+    page.click("#more summary")
+    page.fill("#number-m_slider", "2")
+    settle(page)
+    wanted = dx.evaluate("T_in", theta=page.evaluate("desaxe.state.theta"), **design(page))
+    assert reading(page, "T_in")[0] == pytest.approx(wanted, rel=1e-7)
+
+
+def test_the_table_of_values_has_every_digit(visit, several_designs, tmp_path):
+    page = visit(several_designs)
+    saved(page, "#save-csv").save_as(tmp_path / "values.csv")
+    head, *rows = csv.reader(io.StringIO((tmp_path / "values.csv").read_text()))
+    assert head[:3] == ["theta [rad]", "a_C [m/s^2] (ec = 0 mm)", "a_C_wrt_ec [1/s^2] (ec = 0 mm)"]
+    assert len(rows) == 721
+    for row in rows[::60]:
+        for k in range(3):
+            value = dx.evaluate("a_C", theta=float(row[0]), **design(page, k))
+            text = row[1 + 3 * k]
+            assert (text == "") == math.isnan(value)
+            assert not text or float(text) == pytest.approx(value, rel=1e-12)
+
+
+def test_the_picture_is_one(visit, several_designs, tmp_path):
+    saved(visit(several_designs), "#save-png").save_as(tmp_path / "picture.png")
+    data = (tmp_path / "picture.png").read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    width, height = (int.from_bytes(data[at : at + 4]) for at in (16, 20))
+    assert width == 1800
+    assert height > 1500
+    assert len(data) > 50_000  # not an empty one
+
+
+@pytest.mark.parametrize("width", [390, 360, 768, 1024])
+def test_it_fits_the_screen(width, visit, several_designs):
+    page = visit(several_designs, width, 844, has_touch=True, is_mobile=width < 700)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    outside = f"""[...document.querySelectorAll('main section, main button, main input, main select, .plot')]
+        .filter((e) => e.getClientRects().length && e.getBoundingClientRect().right > {width} + 1)
+        .map((e) => e.id)"""
+    assert page.evaluate(outside) == []
+    small = """[...document.querySelectorAll('main button[id], main select')]
+        .filter((e) => e.getBoundingClientRect().height < 30).map((e) => e.id)"""
+    assert page.evaluate(small) == []
+
+
+def test_light_and_dark(visit, one_design):
+    page = visit(one_design, color_scheme="dark")
+    colour = "getComputedStyle(document.body).backgroundColor"
+    dark = page.evaluate(colour)
+    page.click("#theme")
+    assert page.evaluate(colour) != dark
+    assert page.inner_text("#theme") == "Dark"
