@@ -11,7 +11,7 @@ from playwright.sync_api import sync_playwright
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 MISSING = (
     "the tests of the explorer page drive a Chromium, and there is none: "
-    "`python -m playwright install chromium` (or a system's package `chromium`), or name one in DESAXE_BROWSER"
+    "`python -m playwright install chromium`, or a system's package `chromium`, or name one in DESAXE_BROWSER"
 )
 
 

@@ -34,7 +34,7 @@ function showChoice(index) {
   const by = document.getElementById(`by-${index}`);
   const words = (own) => {
     const over = CONTENT.quantities[own].by.map((p) => plainSymbol(p, false)).join(", ");
-    return over ? `its sensitivity to ${over}` : "the value";
+    return over ? `∂/∂${over}: its sensitivity` : "the value";
   };
   by.innerHTML = CONTENT.functions[base].names.map((own) => `<option value="${own}">${words(own)}</option>`).join("");
   by.value = name;
@@ -49,7 +49,8 @@ function drawChart(index) {
     name: labels[k],
     mode: "lines",
     connectgaps: false,
-    line: { color: look.curves[k % look.curves.length], width: k ? 1.8 : 2.6, dash: DASHES[k % DASHES.length] },
+    // Every sample is drawn: a simplified line has corners in a large picture.
+    line: { simplify: false, color: look.curves[k % look.curves.length], width: k ? 1.8 : 2.6, dash: DASHES[k % DASHES.length] },
     hovertemplate: `%{y:.6~g}`,
   }));
   const range = heightOf(curves.flatMap(({ value }) => value));
@@ -58,7 +59,7 @@ function drawChart(index) {
   Plotly.react(plot, traces.reverse(), layoutOf(name, range, look, labels.length), {
     displaylogo: false,
     responsive: true,
-    modeBarButtonsToRemove: ["select2d", "lasso2d", "toImage"],
+    modeBarButtons: [["zoom2d", "pan2d", "autoScale2d", "resetScale2d"]],
     displayModeBar: "hover",
   });
   const nothing = curves.every(({ value }) => value.every((v) => v === null));
@@ -79,13 +80,14 @@ function layoutOf(name, range, look, designs) {
     plot_bgcolor: "rgba(0,0,0,0)",
     font: { family: "system-ui, sans-serif", size: 12.5, color: look.ink },
     hovermode: "x unified",
+    modebar: { bgcolor: look.panel, color: look.soft, activecolor: look.ink },
     hoverlabel: { bgcolor: look.panel, bordercolor: look.line, font: { color: look.ink } },
     showlegend: designs > 1,
     legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom", traceorder: "reversed" },
     xaxis: {
       ...axis, range: [from, to + 1e-6], title: { text: "crank angle θ [°]", standoff: 6 }, zeroline: false,
       tickmode: to - from >= 180 && to - from <= 721 ? "linear" : "auto", dtick: to - from > 361 ? 90 : 45,
-      hoverformat: ".4~f",
+      unifiedhovertitle: { text: "θ = %{x:.4~f}°" },
     },
     yaxis: {
       ...axis, title: { text: `${symbol(name)}${unit ? ` [${unit}]` : ""}`, standoff: 4 }, tickformat: "~g",

@@ -2,15 +2,20 @@
 
 const CONTENT = JSON.parse(document.getElementById("content").textContent);
 
-// The shown unit, and how many of it make one SI unit.
-const SHOWN = { m: ["mm", 1000], "rad/s": ["rpm", 30 / Math.PI], rad: ["°", 180 / Math.PI] };
+// The shown unit, how many of it make one SI unit, and the power of ten where it is one.
+const SHOWN = {
+  m: ["mm", 1e3, "e-3"],
+  "kg*m^2": ["kg·mm²", 1e6, "e-6"],
+  "rad/s": ["rpm", 30 / Math.PI],
+  rad: ["°", 180 / Math.PI],
+};
 const shownUnit = (unit) => (SHOWN[unit] ?? [printedUnit(unit)])[0];
 const toShown = (unit, value) => value * (SHOWN[unit]?.[1] ?? 1);
 
-// In SI units. By its digits where the unit is a thousandth, so that 62.3 mm is the double nearest to 0.0623.
+// In SI units. By its digits where that is a power of ten, so that 62.3 mm is the double nearest to 0.0623.
 function toSI(unit, value) {
-  const many = SHOWN[unit]?.[1] ?? 1;
-  return many === 1000 && /^-?[\d.]+$/.test(value) ? Number(`${value}e-3`) : value / many;
+  const [, many, power] = SHOWN[unit] ?? ["", 1];
+  return power && /^-?[\d.]+$/.test(value) ? Number(`${value}${power}`) : value / many;
 }
 
 const SUPERSCRIPT = { 2: "²", 3: "³", 4: "⁴", 5: "⁵" };
