@@ -44,6 +44,7 @@ const stroked = (d, colour, wide, more = "") =>
 const disc = ([x, y], r, fill, stroke) =>
   `<circle cx="${x.toFixed(2)}" cy="${y.toFixed(2)}" r="${r}" fill="${fill}" stroke="${stroke}" stroke-width="1.5"/>`;
 const text = ([x, y], words, colour, more = "") => `<text x="${x}" y="${y}" fill="${colour}" ${more}>${words}</text>`;
+const halo = (look) => `paint-order="stroke" stroke="${look.panel}" stroke-width="4" stroke-linejoin="round"`;
 
 // What stands still: the slider axis, the axis through A, the crank circle, the frame.
 function frame(design, theta, { place, scale, width }, look) {
@@ -69,7 +70,6 @@ function frame(design, theta, { place, scale, width }, look) {
 }
 
 function linkage(design, theta, { place, scale }, look, index) {
-  const halo = `font-weight="600" paint-order="stroke" stroke="${look.panel}" stroke-width="4"`;
   const { A, B, C } = jointsAt(design, theta), colour = look.curves[index % look.curves.length];
   const [a, b] = [place(A), place(B)], current = index === 0;
   const wide = current ? 6 : 3;
@@ -82,17 +82,17 @@ function linkage(design, theta, { place, scale }, look, index) {
         `stroke="${colour}" stroke-width="${current ? 2.5 : 1.5}"/>`,
     );
     parts.push(disc(c, current ? 4 : 2.5, look.panel, colour));
-    if (current) parts.push(text([c[0] - 4, c[1] - 16], "C", look.ink));
+    if (current) parts.push(text([c[0] - 4, c[1] - 16], "C", look.ink, halo(look)));
   } else if (current) {
     const r = design.BC * scale;
     parts.push(`<circle cx="${b[0]}" cy="${b[1]}" r="${r}" fill="none" stroke="${look.bad}" stroke-width="1.2" stroke-dasharray="6 5"/>`);
     const on = [b[0], place([0, -design.ec])[1]], side = Math.sign(on[1] - b[1]) || 1;
     parts.push(stroked(path([b, [b[0], b[1] + side * r]]), look.bad, 3));
-    parts.push(text([b[0] + 8, b[1] + (side * r) / 2], "the rod does not reach", look.bad, halo));
+    parts.push(text([b[0] + 8, b[1] + (side * r) / 2], "the rod does not reach", look.bad, `font-weight="600" ${halo(look)}`));
   }
   parts.push(stroked(path([a, b]), colour, wide + 1));
   parts.push(disc(a, current ? 5 : 3, look.panel, colour), disc(b, current ? 5 : 3, look.panel, colour));
-  if (current) parts.push(text([a[0] - 16, a[1] - 7], "A", look.ink), text([b[0] + 8, b[1] - 8], "B", look.ink));
+  if (current) parts.push(text([a[0] - 16, a[1] - 7], "A", look.ink, halo(look)), text([b[0] + 8, b[1] - 8], "B", look.ink, halo(look)));
   return `<g opacity="${current ? 1 : 0.6}">${parts.join("")}</g>`;
 }
 
