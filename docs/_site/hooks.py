@@ -4,10 +4,13 @@ A line `<!-- desaxe: WHAT ARGUMENTS -->` is replaced by what the function of tha
 """
 
 import inspect
+import io
 import re
 from html import escape
 
-from latex2mathml.converter import convert
+import matplotlib
+from matplotlib.font_manager import FontProperties
+from matplotlib.mathtext import math_to_image
 from sympy import latex
 
 import desaxe as dx
@@ -37,13 +40,14 @@ def _about(row):
 
 
 def closure():
-    """The vector loop, from the file that the derivation starts from."""
+    """The vector loop along X and along Y, from the file that the derivation starts from."""
     from desaxe.derive import loop
     from desaxe.derive.equation import LATEX_NAMES
 
     names = {symbol: LATEX_NAMES[symbol.name] for symbol in (loop.theta, loop.ec, loop.phi, loop.branch)}
-    crank, rod, slider = (latex(v, symbol_names=names) for v in (loop.CRANK, loop.ROD, loop.SLIDER))
-    return _math(f"{crank} + {rod} - {slider} = 0")
+    sides = zip(loop.CRANK + loop.ROD, loop.SLIDER, strict=True)
+    rows = [" = ".join(latex(side, symbol_names=names) for side in pair) for pair in sides]
+    return "\n\n".join(map(_math, rows))
 
 
 def steps(name):
@@ -52,8 +56,23 @@ def steps(name):
 
 
 def _math(text):
-    """LaTeX as MathML, which browsers show without a script."""
-    return f'<div class="equation">{convert(text, display="block")}</div>'
+    """LaTeX as a drawing, which needs neither a script nor a font, and its source to copy."""
+    file = io.BytesIO()
+    with matplotlib.rc_context({"mathtext.fontset": "cm", "svg.fonttype": "path"}):
+        math_to_image(f"${_spaced(text)}$", file, prop=FontProperties(size=16), format="svg")
+    drawing = file.getvalue().decode().partition("-//W3C//DTD")[2].partition(">")[2]
+    drawing = re.sub(
+        r"<metadata>.*?</metadata>|<!--.*?-->|<g id=\"patch_1\">.*?</g>", "", drawing, flags=re.S
+    )
+    drawing = re.sub(r"\s*\n\s*", " ", drawing).replace("<svg", '<svg role="img" fill="currentColor"', 1)
+    source = f"<details><summary>LaTeX</summary><pre><code>{escape(text)}</code></pre></details>"
+    return f'<div class="equation" aria-label="{escape(text)}">{drawing}</div>{source}'
+
+
+def _spaced(text):
+    """The same as it is best drawn: plain parentheses about a letter, room in front of a function."""
+    text = re.sub(r"\\left\((\\?\w+) *\\right\)", r"(\1)", text)
+    return re.sub(r"(?<=\S) (\\(?:sin|cos)\b)", r" \\,\1", text)
 
 
 def api():
