@@ -1,7 +1,7 @@
 """`evaluate` over arrays: broadcast, run in blocks, put the answers where they are wanted."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from ._point import point_of
 from ._request import Request, as_number
 from ._threads import run_in_blocks
 from .compiler.passes.guard import BAD_INPUT
-from .inputs import INPUTS
+from .inputs import INPUTS, is_good
 
 Array = NDArray[Any]
 
@@ -32,7 +32,7 @@ def evaluate_arrays(
     arrays = {name: as_array(name, given.get(name), inputs, wanted.shown) for name in inputs}
     shape = broadcast_shape(arrays)
     places = places_for(wanted.shown, shape, out)
-    buffers = {name: buffer_for(name, place, arrays.values()) for name, place in places.items()}
+    buffers = places if out is None else buffers_for(places, arrays.values())
     if all(buffer.size for buffer in buffers.values()):
         scalars = {name: float(a.reshape(-1)[0]) for name, a in arrays.items() if a.size == 1}
         columns = {name: _column(a, shape) for name, a in arrays.items() if a.size != 1}
@@ -50,7 +50,7 @@ def _refuse_other_dimensions(given: Mapping[str, Any]) -> None:
 
 def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]) -> Array:
     """An input as a float64 array; an error that names it if it is missing, no number or wholly bad."""
-    number = as_number(name, value, inputs, names)
+    number = None if type(value) is np.ndarray else as_number(name, value, inputs, names)
     if number is not None:
         return np.array(number)
     if hasattr(value, "dims"):
@@ -71,13 +71,10 @@ def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str])
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name}: real numbers are wanted, got an array of {array.dtype}")
     array = array.astype(np.float64, copy=False)
-    if array.size and not _is_good(name, array[(slice(0, 1),) * array.ndim]).any():
-        good = _is_good(name, array)
-        if not good.any():
-            first = array.reshape(-1)[0]
-            raise ValueError(
-                f"{name}: every value is bad, the first is {first}; it must be {INPUTS[name].limit}"
-            )
+    if array.size and not is_good(name, array.item(0)) and not _is_good(name, array).any():
+        raise ValueError(
+            f"{name}: every value is bad, the first is {array.item(0)}; it must be {INPUTS[name].limit}"
+        )
     return array
 
 
@@ -120,8 +117,12 @@ def dtype_of(name: str) -> np.dtype[Any]:
     return np.dtype(np.int8 if name == "status" else np.float64)
 
 
-def buffer_for(name: str, place: Array, inputs: Iterable[Array]) -> Array:
-    """The place itself where a kernel can write into it, else an array to be copied from."""
+def buffers_for(places: Mapping[str, Array], inputs: Collection[Array]) -> dict[str, Array]:
+    """The places themselves where a kernel can write into them, else arrays to be copied from."""
+    return {name: _buffer_for(name, place, inputs) for name, place in places.items()}
+
+
+def _buffer_for(name: str, place: Array, inputs: Iterable[Array]) -> Array:
     direct = place.flags.c_contiguous and place.flags.aligned and place.dtype == dtype_of(name)
     overlaps = any(np.may_share_memory(place, array) for array in inputs)
     return place if direct and not overlaps else np.empty(place.shape, dtype_of(name))

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ._point import Point, point_of
-from ._request import as_number, check_border, check_inputs, is_steady, request, standstill
+from ._request import Request, as_number, check_border, check_inputs, is_steady, request, standstill
 from .inputs import INPUTS, is_good
 from .names import LOADS
 
@@ -107,10 +107,11 @@ def evaluate(
     key = wanted, tuple(given), omega is not None, is_steady(alpha), branch, accuracy
     if omega0 is None and omega is None and "status" in wanted:
         given["omega0"] = standstill(wanted, given)
-    point = _POINTS.get(key)
-    if point is None:
+    known = _KNOWN.get(key)
+    if known is None:
         asked = request(wanted, given, branch, accuracy)
-        point = _POINTS[key] = point_of(asked.names, asked.form, asked.fixed, asked.accuracy)
+        known = _KNOWN[key] = asked, point_of(asked.names, asked.form, asked.fixed, asked.accuracy)
+    asked, point = known
     values = []
     for name in point.inputs:
         value = given[name]
@@ -119,7 +120,7 @@ def evaluate(
             if value is None:  # not a number: an array
                 from ._arrays import evaluate_arrays
 
-                answers = evaluate_arrays(request(wanted, given, branch, accuracy), given, threads, out)
+                answers = evaluate_arrays(asked, given, threads, out)
                 return answers[names] if isinstance(names, str) else answers
         values.append(value)
     if out is not None:
@@ -128,4 +129,4 @@ def evaluate(
     return answer[0] if isinstance(names, str) else dict(zip(wanted, answer, strict=True))
 
 
-_POINTS: dict[tuple[Any, ...], Point] = {}
+_KNOWN: dict[tuple[Any, ...], tuple[Request, Point]] = {}

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._arrays import as_array, buffer_for, delivered, fill_by_points, is_early, places_for
+from ._arrays import as_array, buffers_for, delivered, fill_by_points, is_early, places_for
 from ._kernels import KernelKey, kernel_for, key_of
 from ._point import point_of
 from ._request import Request, check_border, check_inputs, request, standstill
@@ -104,7 +104,7 @@ def _filled(
     inputs = wanted.inputs
     shape = tuple(axes[name].size for name in dimensions)
     places = places_for(wanted.shown, shape, out)
-    buffers = {name: buffer_for(name, place, axes.values()) for name, place in places.items()}
+    buffers = places if out is None else buffers_for(places, axes.values())
     if all(shape):
         # At least one axis, so that a grid of numbers alone goes the same way.
         order = list(dimensions) or [""]

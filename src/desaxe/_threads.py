@@ -43,19 +43,14 @@ def run_in_blocks(
 
 
 def in_blocks(block: Callable[[int, int], None], length: int, points: int, threads: int | None) -> None:
-    """Call `block(start, stop)` for as many parts of an axis as there are threads that pay."""
-    count = max(1, min(threads or available(), points // LEAST_BLOCK, length))
-    if count == 1:
-        block(0, length)
-        return
-    edges = [length * k // count for k in range(count + 1)]
-    for done in [_pool(count).submit(block, a, b) for a, b in pairwise(edges)]:
-        done.result()
+    """Call `block(start, stop)` for as many parts of an axis as there are threads that pay for its points."""
+    run_parts(block, length, threads, max(1, LEAST_BLOCK * length // max(points, 1)))
 
 
 def run_parts(part: Callable[[int, int], None], length: int, threads: int | None, least: int) -> None:
-    """Run `part(start, stop)` over a length in as many parts as threads, none shorter than `least`."""
-    count = max(1, min(threads or available(), length // least))
+    """Call `part(start, stop)` for as many parts of a length as there are threads, none shorter than `least`."""
+    most = length // least
+    count = min(threads or available(), most) if most > 1 else 1
     if count == 1:
         part(0, length)
         return
