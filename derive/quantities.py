@@ -130,9 +130,16 @@ def _define_rod(sheet: Sheet) -> None:
     sheet.define("BC_less_ec", BC - out)
     for name, near, far in zip(("less_from", "less_by"), *LESS, strict=True):
         sheet.define(name, select(near_quarter, near, far))
-    # At the last angle that the rod reaches, the sine's last bit must not decide whether it does.
-    reach, unsure = sheet.define("less_rounded", less_from - less_by), rounding(less_by)
-    surely = select(lt(absolute(reach), unsure), unsure, reach)
+    # At the last angle that the rod reaches, the sine's last bit must not decide whether it does: what
+    # is undecided here is seen to with twice the digits.
+    reach = sheet.define("less_rounded", less_from - less_by, unit=LENGTH, meaning="BC - |u|, rounded")
+    unsure = sheet.define(
+        "less_unsure", rounding(less_by), unit=LENGTH, meaning="what rounding may take from BC - |u|"
+    )
+    undecided = sheet.define(
+        "undecided", lt(absolute(reach), unsure), unit=NONE, meaning="whether the rod reaches is not known"
+    )
+    surely = select(undecided, unsure, reach)
     room = BC - absolute(symbol("u_straight"))
     sheet.define(
         "less",

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._constants import double_constants
-from ._kernels import KernelKey, is_ready, kernel_for, key_of
+from ._kernels import KernelKey, is_ready, key_of
 from ._point import point_of
 from ._request import Request, as_number
 from ._threads import run_in_blocks
@@ -157,7 +157,7 @@ def _fill(
     elif is_early(key, outs[0].size):
         fill_by_points(key, scalars, columns, outs)
     else:
-        run_in_blocks(kernel_for(key), {**scalars, **columns}, outs, threads)
+        run_in_blocks(key, {**scalars, **columns}, outs, threads)
 
 
 def is_early(key: KernelKey, size: int) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._arrays import as_array, buffers_for, delivered, fill_by_points, is_early, places_for
-from ._kernels import KernelKey, kernel_for, key_of
+from ._kernels import KernelKey, key_of
 from ._point import point_of
 from ._request import Request, check_border, check_inputs, request, standstill
 from ._threads import run_in_blocks
@@ -117,7 +117,7 @@ def _filled(
         if is_early(key, outs[0].size):
             _fill_small(key, scalars, columns, places_of, outs)
         else:
-            run_in_blocks(kernel_for(key), {**scalars, **columns}, outs, threads)
+            run_in_blocks(key, {**scalars, **columns}, outs, threads)
     return delivered(places, buffers, False)
 
 

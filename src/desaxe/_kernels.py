@@ -53,12 +53,12 @@ class KernelKey(NamedTuple):
 class CompiledKernel(NamedTuple):
     """A kernel and the order of its inputs; an input that is a scalar has no axis."""
 
-    function: Callable[..., None]
+    function: Callable[..., int | None]
     axis_of: tuple[tuple[str, int | None], ...]
 
-    def run(self, values: Mapping[str, Any], outs: Sequence[Any]) -> None:
-        """Fill the outputs."""
-        self.function(*(values[name] for name, _ in self.axis_of), *outs)
+    def run(self, values: Mapping[str, Any], outs: Sequence[Any]) -> int:
+        """Fill the outputs; the answer is how many points hang on rounding."""
+        return self.function(*(values[name] for name, _ in self.axis_of), *outs) or 0
 
 
 def key_of(
@@ -122,6 +122,16 @@ def is_single(key: KernelKey) -> bool:
     return key.accuracy == "fast" and not key.far
 
 
+def has_undecided(key: KernelKey) -> bool:
+    """Whether points that hang on rounding are counted."""
+    return key.accuracy == "standard" and not key.reduce and plain_of(key) is not None
+
+
+def plain_of(key: KernelKey) -> Program | None:
+    """The plain form of a key's program, where it has two."""
+    return plain_form(key.names, key.form, key.fixed) if key.accuracy != "extended" else None
+
+
 def kernel_of(key: KernelKey) -> Kernel:
     """The loop nest of a key."""
     program = cut(key.names, key.form, key.fixed, key.accuracy)
@@ -131,8 +141,10 @@ def kernel_of(key: KernelKey) -> Kernel:
         guarded = guard_inputs(program, varying, LEAST, {"theta": double_constants().limit})
         guarded = double_digits(guarded, double_constants())
     else:
+        if has_undecided(key):
+            program = cut((*key.names, "undecided"), key.form, key.fixed)
         guarded = _for_loops(guard_inputs(program, varying, LEAST, {}), key)
-    plain = plain_form(key.names, key.form, key.fixed) if key.accuracy != "extended" else None
+    plain = plain_of(key)
     if plain is not None:
         own = [name for name in varying if name not in LENGTHS and _is_seen(plain, name)]
         plain = guard_inputs(plain, own, LEAST, {})  # in a roomy design all lengths are good

@@ -8,7 +8,7 @@ ordinary way.
 
 A kernel's native arguments are those of numba's calling convention: a pointer for the answer and one
 for an error, then each number, and of each array (meminfo, parent, size, itemsize, data, shape,
-strides). Our kernels answer nothing and raise nothing.
+strides). Our kernels answer a count or nothing, and raise nothing.
 """
 
 import ctypes
@@ -21,7 +21,7 @@ from typing import Any
 
 SUFFIX = ".code"
 LIBRARY = ("atan2", "cos", "floor", "floorf", "sin", "sqrt", "sqrtf")  # of the C library
-Kernel = Callable[..., None]
+Kernel = Callable[..., int]
 
 
 def _machine() -> dict[str, str]:
@@ -118,7 +118,7 @@ def _function(address: int, ranks: list[int], engine: Any) -> Kernel:
         kinds += [ctypes.c_double] if rank < 0 else array
     native = ctypes.CFUNCTYPE(ctypes.c_int, *kinds)(address)
 
-    def kernel(*arguments: Any) -> None:
+    def kernel(*arguments: Any) -> int:
         flat: list[Any] = []
         for given, rank in zip(arguments, ranks, strict=True):
             if rank < 0:
@@ -128,6 +128,7 @@ def _function(address: int, ranks: list[int], engine: Any) -> Kernel:
                 flat += [None, None, given.size, given.itemsize, given.ctypes.data, *shape, *strides]
         answer, error = ctypes.c_void_p(), ctypes.c_void_p()
         native(ctypes.addressof(answer), ctypes.addressof(error), *flat)
+        return answer.value or 0
 
     _ENGINES.append(engine)
     return kernel

@@ -17,10 +17,13 @@ from .compiler.program import Line, Program, names_in, renamed
 KEPT = {"D": "no_effect_on_rod", "omega2_law": "not_stalled"}
 
 
+Function = Callable[..., tuple[Any, ...]]
+
+
 class Point(NamedTuple):
     """A request ready for single points: its function and the inputs that it takes, in order."""
 
-    function: Callable[..., tuple[Any, ...]]
+    function: Function
     inputs: tuple[str, ...]
 
     def run(self, values: Mapping[str, float]) -> tuple[Any, ...]:
@@ -105,26 +108,29 @@ def point_of(
     return Point(checked, program.inputs)
 
 
-def _by_room(
-    names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...]
-) -> Callable[..., tuple[Any, ...]]:
-    """The function of the plain form where a design is roomy, of the stable one elsewhere.
+def _by_room(names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...]) -> Function:
+    """The function that goes by what a point needs.
 
-    The stable one is made when the first point needs it.
+    That is the plain form in a roomy design, the stable one elsewhere, and twice the digits where
+    rounding decides whether the rod reaches. The latter two are made when the first point needs them.
     """
     plain, stable = plain_form(names, form, fixed), cut(names, form, fixed)
     if plain is None:
         return compile_python(stable)
+    inputs = stable.inputs
     tested = in_two_forms(plain, plain._replace(lines=(), outputs=()), cut(("roomy",), form, fixed))
-    first = compile_python(tested._replace(inputs=stable.inputs))
-    careful: list[Callable[..., tuple[Any, ...]]] = []
+    first = compile_python(tested._replace(inputs=inputs))
+    second = cache(lambda: compile_python(cut((*names, "undecided"), form, fixed)._replace(inputs=inputs)))
+    third = cache(lambda: point_of(names, form, fixed, "extended"))
 
     def function(*values: float) -> tuple[Any, ...]:
         answers = first(*values)
-        if answers[-1]:
-            return answers[:-1]
-        if not careful:
-            careful.append(compile_python(stable))
-        return careful[0](*values)
+        if not answers[-1]:
+            answers = second()(*values)
+            if answers[-1]:
+                given = dict(zip(inputs, values, strict=True))
+                if abs(given["theta"]) <= double_constants().limit:
+                    return third().run(given)
+        return answers[:-1]
 
     return function

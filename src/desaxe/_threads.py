@@ -6,7 +6,7 @@ from functools import cache
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from ._kernels import CompiledKernel
+from ._kernels import KernelKey, kernel_for
 
 if TYPE_CHECKING:
     from concurrent.futures import ThreadPoolExecutor
@@ -30,14 +30,19 @@ def _pool(threads: int) -> "ThreadPoolExecutor":
 
 
 def run_in_blocks(
-    kernel: CompiledKernel, values: Mapping[str, Any], outs: Sequence[Any], threads: int | None
+    key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any], threads: int | None
 ) -> None:
-    """Run the kernel over its outermost axis in as many blocks as there are threads."""
+    """Run the kernel of a key over its outermost axis in as many blocks as there are threads."""
+    kernel = kernel_for(key)
     outer = {name for name, axis in kernel.axis_of if axis == 0}
 
     def block(start: int, stop: int) -> None:
         part = {name: v[start:stop] if name in outer else v for name, v in values.items()}
-        kernel.run(part, [out[start:stop] for out in outs])
+        places = [out[start:stop] for out in outs]
+        if kernel.run(part, places):
+            from ._undecided import decide
+
+            decide(key, part, places)
 
     in_blocks(block, outs[0].shape[0], outs[0].size, threads)
 
@@ -48,7 +53,7 @@ def in_blocks(block: Callable[[int, int], None], length: int, points: int, threa
 
 
 def run_parts(part: Callable[[int, int], None], length: int, threads: int | None, least: int) -> None:
-    """Call `part(start, stop)` for as many parts of a length as there are threads, none shorter than `least`."""
+    """Call `part(start, stop)` for parts of a length, one a thread, none shorter than `least`."""
     most = length // least
     count = min(threads or available(), most) if most > 1 else 1
     if count == 1:

@@ -84,3 +84,18 @@ def test_rooms_fit_on_the_stack():
     assert block_of(kernel) == BIGGEST
     wide = kernel._replace(outputs=tuple(f"out{k}" for k in range(600)))
     assert 16 <= block_of(wide) < 64
+
+
+@pytest.mark.parametrize("axes", [{"x": 0, "y": 0}, {"y": 0, "x": 1}])
+def test_a_kernel_tells_how_many_of_its_points_are_undecided(axes):
+    """Of those in the stable form alone, in loops that a block or an outer axis picks."""
+    low = Line("low", "lt", ("x", 0.0), "bool")
+    unsure = STABLE._replace(lines=(*STABLE.lines, low), outputs=(*STABLE.outputs, "low"))
+    kernel = parted(hoist(in_two_forms(PLAIN, unsure, TEST), axes, len(set(axes.values()))), 2)
+    scope = {}
+    exec(emit_numba(kernel, "two forms"), scope)
+    x, y = np.linspace(-3, 3, 60), np.where(np.arange(60) % 3, 0.5, 2.0)
+    shape = (60,) if axes["x"] == axes["y"] else (60, 60)
+    close = np.broadcast_to(y if len(shape) == 1 else y[:, None], shape) >= 1
+    outs = np.empty(shape), np.empty(shape)
+    assert scope["kernel"](*({"x": x, "y": y}[n] for n in kernel.inputs), *outs) == (close & (x < 0)).sum()

@@ -34,7 +34,6 @@ def test_points_asked_for_again_and_again_are_compiled(monkeypatch):
     monkeypatch.setattr(_arrays, "_ASKED", Counter())
     monkeypatch.setattr(_arrays, "is_ready", lambda key: False)
     monkeypatch.setattr(_arrays, "run_in_blocks", lambda *arguments: asked.append(arguments))
-    monkeypatch.setattr(_arrays, "kernel_for", lambda key: key)
     theta, ec = columns(_arrays.BREAK_EVEN // 3)
     for calls in (0, 0, 0, 1):
         dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)
@@ -55,7 +54,7 @@ def test_a_masked_array_is_refused():
 
 def test_a_few_points_are_not_compiled(monkeypatch):
     monkeypatch.setattr(_arrays, "is_ready", lambda key: False)
-    monkeypatch.setattr(_arrays, "kernel_for", None)
+    monkeypatch.setattr(_arrays, "run_in_blocks", None)
     monkeypatch.setattr(_arrays, "_ASKED", Counter())
     theta, ec = columns(_arrays.BREAK_EVEN - 1)
     assert np.isfinite(dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)).all()

@@ -88,21 +88,31 @@ def inner_loops(kernel: Kernel, length: str, loads: Mapping[str, str], cast: str
     if kernel.close is None:
         raise ValueError("this kernel has one form")
     read = [f"{name} = {text}" for name, text in loads.items()]
+    tally = [f"tally += 1 if {kernel.close.undecided} else 0"] if kernel.close.undecided else []
     plain = [
         *read,
         *write_lines(level_program(kernel, kernel.axes), "numba"),
         *_stores(kernel, kernel.outputs),
     ]
     if is_mixed(kernel):
-        return _mixed(kernel, kernel.close, length, loads, plain, cast)
-    stable = [*read, *write_lines(close_programs(kernel)[1], "numba"), *_stores(kernel, kernel.close.outputs)]
+        return _mixed(kernel, kernel.close, length, loads, plain, tally, cast)
+    lines = write_lines(close_programs(kernel)[1], "numba")
+    stable = [*read, *lines, *tally, *_stores(kernel, kernel.close.outputs)]
     loop = f"for i{kernel.axes - 1} in range({length}):"
     return [
         f"if {kernel.close.test}:",
         *_under(loop, plain, 1),
         "else:",
-        *_under(loop, stable, 1),
+        *(INDENT + row for row in _tallied(_under(loop, stable, 0), tally)),
     ]
+
+
+def _tallied(loop: list[str], tally: list[str]) -> list[str]:
+    """A loop that counts undecided points, in a number of its own.
+
+    Where it adds to one from outside, numba counts references to arrays, and calls its runtime for it.
+    """
+    return ["tally = 0", *loop, "undecided += tally"] if tally else loop
 
 
 def _stores(kernel: Kernel, values: tuple[str, ...]) -> list[str]:
@@ -111,7 +121,13 @@ def _stores(kernel: Kernel, values: tuple[str, ...]) -> list[str]:
 
 
 def _mixed(
-    kernel: Kernel, close: Close, length: str, loads: Mapping[str, str], plain: list[str], cast: str
+    kernel: Kernel,
+    close: Close,
+    length: str,
+    loads: Mapping[str, str],
+    plain: list[str],
+    tally: list[str],
+    cast: str,
 ) -> list[str]:
     """Blocks: all points in the plain form, then those that fail the test in the stable one."""
     last, names = kernel.axes - 1, _kept(kernel)
@@ -121,7 +137,7 @@ def _mixed(
     index = ", ".join([*(f"i{axis}" for axis in range(last)), "uint64(get(place, k))"])
     block = f"for i{last} in range(start, stop):"
     kept = f"{cast}(get({{}}_kept, k))" if cast else "get({}_kept, k)"
-    again = [f"{name} = {kept.format(name)}" for name in names] + stable
+    again = [f"{name} = {kept.format(name)}" for name in names] + stable + tally
     pairs = list(zip(kernel.outputs, close.outputs, strict=True))
     again += [f"put(out_{name}_kept, k, {value})" for name, value in pairs]
     back = [f"out_{name}[{index}] = get(out_{name}_kept, k)" for name, _ in pairs]
@@ -135,7 +151,7 @@ def _mixed(
         f"{INDENT * 2}count = uint64(0)",
         *_under(block, [*(f"{name} = {text}" for name, text in loads.items()), *test], 2),
         *(INDENT * 3 + row for row in _under(f"if not {close.test}:", found, 0)),
-        *_under("for k in range(count):", again, 2),
+        *(INDENT * 2 + row for row in _tallied(_under("for k in range(count):", again, 0), tally)),
         *_under("for k in range(count):", back, 2),
     ]
 

@@ -1,5 +1,7 @@
 """A Kernel as a self-contained numba module: `kernel(*inputs, *outputs)` fills the outputs.
 
+A kernel in two forms answers how many points hang on rounding.
+
 Rules that numba's issue tracker teaches: every option is a literal in the module and every helper
 stands in it (its cache does not see changes elsewhere); ``error_model="numpy"``, so that a division
 by zero is an infinity; no fast-math flag, which would erase the NaN of an infeasible point;
@@ -139,12 +141,17 @@ def _function(kernel: Kernel, cast: str = "") -> str:
             *(f"{INDENT}{name}," for name in names),
             "):",
             *_body(kernel, cast),
-            "\n\nsignature = types.void(",
+            f"\n\nsignature = types.{'int64' if counts(kernel) else 'void'}(",
             *(INDENT + row for row in rows),
             ")",
             _COMPILE,
         ]
     )
+
+
+def counts(kernel: Kernel) -> bool:
+    """Whether the kernel answers how many of its points hang on rounding."""
+    return kernel.close is not None and kernel.close.undecided is not None
 
 
 def _parameters(kernel: Kernel) -> list[str]:
@@ -157,13 +164,15 @@ def _body(kernel: Kernel, cast: str) -> list[str]:
     scalars = [name for name, axis in kernel.inputs.items() if axis is None and cast]
     lines = [f"{INDENT}{name} = {cast}({name})" for name in scalars]
     lines += [INDENT + row for row in scratch(kernel)]
+    lines += [f"{INDENT}undecided = 0"] if counts(kernel) else []
     everywhere = tuple(range(kernel.axes))
     for table in kernel.tables:
         shape = ", ".join(f"out_{kernel.outputs[0]}.shape[{axis}]" for axis in table.along)
         lines += [f"{INDENT}{name}_table = empty(({shape},))" for name in table.kernel.outputs]
         lines += _loops(table.kernel, cast, table.along, kernel.outputs[0], {}, "{}_table")
     reads = {name: table.along for table in kernel.tables for name in table.kernel.outputs}
-    return lines + _loops(kernel, cast, everywhere, kernel.outputs[0], reads, "out_{}")
+    lines += _loops(kernel, cast, everywhere, kernel.outputs[0], reads, "out_{}")
+    return [*lines, f"{INDENT}return undecided"] if counts(kernel) else lines
 
 
 def _loops(

@@ -17,8 +17,9 @@ _SUFFIX = "_close"
 def in_two_forms(plain: Program, stable: Program, test: Program) -> Program:
     """One program: the outputs of `plain`, that of `test`, and those of `stable` under other names.
 
-    Precondition: `plain` and `stable` have the same outputs and hold the same values, where the test
-    holds up to rounding; `test` has one output, a condition. Equal lines are computed once.
+    Precondition: `stable` has the outputs of `plain`, which hold the same values, where the test
+    holds up to rounding, and maybe one more: whether they hang on rounding; `test` has one output, a
+    condition. Equal lines are computed once.
     """
     outputs = (*plain.outputs, *test.outputs, *(f"{name}{_SUFFIX}" for name in stable.outputs))
     named = {line.name: f"{line.name}_test" for line in test.lines if line.name not in test.outputs}
@@ -41,10 +42,11 @@ def parted(kernel: Kernel, count: int) -> Kernel:
     Precondition: `count` is the number of outputs of one form. Postcondition: the outputs are those of
     the plain form; `close` has the rest.
     """
-    outputs, (test, *stable) = kernel.outputs[:count], kernel.outputs[count:]
+    outputs, (test, *results) = kernel.outputs[:count], kernel.outputs[count:]
+    stable, undecided = tuple(results[:count]), (*results[count:], None)[0]
     *outer, inner = kernel.levels
     plain_lines = _reaching(inner, (*outputs, test))
-    close = Close(test, _reaching(inner, stable), tuple(stable), _reaching(inner, (test,)))
+    close = Close(test, _reaching(inner, results), stable, _reaching(inner, (test,)), undecided)
     return kernel._replace(levels=(*outer, plain_lines), outputs=outputs, close=close)
 
 

@@ -36,13 +36,15 @@ class Close(NamedTuple):
     """What the innermost loop does instead of its own lines at points where a test fails.
 
     `outputs` are the names that hold the kernel's outputs there. The test is a line of the innermost
-    loop, which has `test_lines`, or of an outer one, which has none.
+    loop, which has `test_lines`, or of an outer one, which has none. Points at which `undecided` holds are
+    counted: what the kernel says of them hangs on rounding.
     """
 
     test: str
     lines: tuple[Line, ...]
     outputs: tuple[str, ...]
     test_lines: tuple[Line, ...]
+    undecided: str | None = None
 
 
 class Table(NamedTuple):
@@ -78,7 +80,7 @@ def level_program(kernel: Kernel, level: int) -> Program:
     results: tuple[str, ...] = kernel.outputs
     lines = [line for lines in kernel.levels[level + 1 :] for line in lines]
     if kernel.close is not None:
-        results += kernel.close.test, *kernel.close.outputs
+        results += kernel.close.test, *_results(kernel.close)
         lines += kernel.close.lines if level < kernel.axes else ()
     deeper = {name for line in lines for name in names_in(line.args)}
     needed = [line.name for line in kernel.levels[level] if line.name in deeper]
@@ -92,9 +94,13 @@ def close_programs(kernel: Kernel) -> tuple[Program, Program]:
     if close is None:
         raise ValueError("this kernel has one form")
     own = {line.name for line in close.lines}
-    outputs = tuple(name for name in dict.fromkeys(close.outputs) if name in own)
+    outputs = tuple(name for name in dict.fromkeys(_results(close)) if name in own)
     test = Program((), close.test_lines, (close.test,), kernel.notes)
     return test, Program((), close.lines, outputs, kernel.notes)
+
+
+def _results(close: Close) -> tuple[str, ...]:
+    return close.outputs if close.undecided is None else (*close.outputs, close.undecided)
 
 
 READ = 2.0  # what reading a value from a table costs, in additions
