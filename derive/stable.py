@@ -46,8 +46,8 @@ two_sum_error, two_product_error = sp.Function("two_sum_error"), sp.Function("tw
 rounding, finer = sp.Function("rounding"), sp.Function("finer")
 
 # Where AB + |ec| is below this share of BC, and not so many times the difference of AB and |ec|, no form
-# cancels, and the plain ones will do.
-ROOMY, APART = sp.Float(0.75), 8
+# cancels by much, and the plain ones will do: they err by a few tenths of what the promise allows.
+ROOMY, APART = sp.Float(0.875), 64
 roomy = sp.Symbol("roomy", real=True)
 
 

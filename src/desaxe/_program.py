@@ -20,7 +20,7 @@ class Form(NamedTuple):
 
     state: bool = False  # a given state instead of paper A's law
     halves: tuple[str, ...] = ()  # centres of mass halfway along their links
-    roomy: bool = False  # plain forms, for designs with AB + |ec| < 3/4 BC, where nothing cancels
+    roomy: bool = False  # plain forms, for designs with AB + |ec| < 7/8 BC, where nothing cancels
 
 
 @cache

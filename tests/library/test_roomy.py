@@ -13,7 +13,7 @@ from desaxe._request import request
 from tests.library.test_stress import NAMES, compiled, is_kept
 from tests.library.ways import take_way
 
-ROOMY, APART = 0.75, 8
+ROOMY, APART = 0.875, 64
 
 
 def edges(count=60):
