@@ -18,12 +18,15 @@ MISSING = (
 def browser_path(own):
     """The browser to drive: that of DESAXE_BROWSER, of the system, or Playwright's own.
 
-    The test fails, with what to install, where there is none.
+    Where there is none the test is skipped with what to install, or fails where `CI` is set: there the
+    page must not go untested.
     """
     named = os.environ.get("DESAXE_BROWSER")
     found = [named] if named else [*filter(None, map(shutil.which, NAMES)), own]
     path = next((path for path in found if Path(path).exists()), None)
-    return path or pytest.fail(MISSING, pytrace=False)
+    if path is None and os.environ.get("CI"):
+        pytest.fail(MISSING, pytrace=False)
+    return path or pytest.skip(MISSING)
 
 
 @contextmanager

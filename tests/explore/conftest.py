@@ -1,5 +1,7 @@
 """The browser, pages of it, and the files that they are open on."""
 
+from contextlib import contextmanager
+
 import pytest
 
 import desaxe as dx
@@ -33,6 +35,20 @@ def several_designs(folder):
 @pytest.fixture
 def visit(browser):
     """Open a file in a page of some size; at the end of the test it must not have complained."""
+    with visiting(browser) as visit:
+        yield visit
+
+
+@pytest.fixture(scope="session")
+def standing(browser, one_design):
+    """A page of the one design that stays open, for tests that change nothing on it."""
+    with visiting(browser) as visit:
+        yield visit(one_design)
+
+
+@contextmanager
+def visiting(browser):
+    """What opens pages, and closes them at the end."""
     contexts, complaints = [], []
 
     def visit(path, width=1360, height=900, **options):

@@ -13,6 +13,7 @@ from tests.library.points import draw
 BOUND = 1e-13
 QUARTER = math.pi / 2
 MOTION = {"omega0": 157.0, "alpha": -3.0}
+BACKWARDS, STEADY = {"omega0": -60.0, "alpha": 40.0}, {"omega0": -157.0, "alpha": 0.0}
 BODIES = {
     "m_crank": 0.2, "m_rod": 0.5, "m_slider": 0.8, "I_crank": 3e-5, "I_rod": 2e-4, "r_rod": 0.1,
     "F_X": 20.0, "F_Y": -50.0, "g_Y": -9.81,
@@ -30,13 +31,21 @@ def generic(kind, count):
         yield {"alpha": 0.0, **point}
 
 
-def change_points():
+def change_points(branch, motions):
     """At the change point, next to it, and where the rod is a little longer or too short."""
+    turning = itertools.cycle(motions)
     for side, k, power in itertools.product((1, -1), range(1, 10, 2), (None, 20, 35, 50)):
         for away in (10.0**-k, -(10.0**-k)):
             AB, ec = 0.125, side * 0.2249999940395355
             BC = AB + abs(ec) if power is None else (AB + abs(ec)) * (1 + away * 2.0**-power / abs(away))
-            yield {"theta": side * QUARTER + away, "ec": ec, "AB": AB, "BC": BC, **MOTION, "branch": 1}
+            yield {
+                "theta": side * QUARTER + away,
+                "ec": ec,
+                "AB": AB,
+                "BC": BC,
+                **next(turning),
+                "branch": branch,
+            }
 
 
 def with_bodies(count):
@@ -53,7 +62,10 @@ CASES = {
     "a state": lambda: list(generic("state", 60)),
     "from rest": lambda: list(generic("from rest", 40)),
     "at a steady speed": lambda: list(generic("steady", 40)),
-    "next to a change point": lambda: list(change_points()),
+    "backwards": lambda: list(generic("backwards", 40)),
+    "slowing down": lambda: list(generic("slowing down", 40)),
+    "next to a change point": lambda: list(change_points(1, [MOTION, BACKWARDS, STEADY])),
+    "next to it on the other branch": lambda: list(change_points(-1, [BACKWARDS, MOTION])),
     "forces": lambda: list(with_bodies(30)),
 }
 
@@ -110,11 +122,10 @@ def test_the_check_sees_an_error():
         {"ec": -0.2250000001, "AB": 0.125, "BC": 0.35},
     ],
 )
-def test_gaps_and_kind_are_those_of_feasibility(lengths, visit, one_design):
+def test_gaps_and_kind_are_those_of_feasibility(lengths, standing):
     """A gap between two samples is found, too."""
     design = {**lengths, "omega0": 1.0, "alpha": 0.0}
-    page = visit(one_design)
-    gaps, kind = page.evaluate("(d) => [desaxe.gaps(d), desaxe.kindOf(d)]", design)
+    gaps, kind = standing.evaluate("(d) => [desaxe.gaps(d), desaxe.kindOf(d)]", design)
     wanted = dx.feasibility(**lengths)
     assert kind == wanted["kind"]
     turn, arcs = 2 * math.pi, wanted["theta_intervals"]

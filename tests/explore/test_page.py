@@ -3,6 +3,7 @@
 import csv
 import io
 import math
+import re
 
 import pytest
 
@@ -166,13 +167,11 @@ def test_a_gap_narrower_than_a_sample_is_no_line(visit, one_design):
     assert drawn_lines(page, 1) == [2]
 
 
-@pytest.mark.parametrize("ec", [225.0, 230.0, 300.0, -250.0])
-def test_a_curve_is_where_evaluate_has_a_value(ec, visit, one_design):
-    page = visit(one_design)
-    page.fill("#number-ec", str(ec))
-    settle(page)
-    curve = page.evaluate("desaxe.curve('V_C', desaxe.state.designs[0])")
-    values = [dx.evaluate("V_C", theta=theta, **design(page)) for theta in curve["theta"]]
+@pytest.mark.parametrize("ec", [0.225, 0.2250000001, 0.23, 0.3, -0.25, -0.475])
+def test_a_curve_is_where_evaluate_has_a_value(ec, standing):
+    lengths = {**design(standing), "ec": ec}
+    curve = standing.evaluate("(d) => desaxe.curve('V_C', d)", lengths)
+    values = [dx.evaluate("V_C", theta=theta, **lengths) for theta in curve["theta"]]
     assert [v is not None for v in curve["value"]] == [math.isfinite(v) for v in values]
     assert curve["theta"] == sorted(curve["theta"])
 
@@ -202,6 +201,70 @@ def test_several_designs_are_compared(visit, several_designs):
     page.click("[data-drop='1']")
     page.click("#keep")
     assert len(reading(page, "V_C")) == 3
+    assert page.inner_text("#export-note") == ""
+    page.fill("#number-AB", "110")
+    settle(page)
+    assert "differ in more than one input" in page.inner_text("#export-note")
+
+
+def test_a_few_huge_values_do_not_hide_the_others(visit, one_design):
+    """Next to a limit angle, and at the narrow peak of a design next to its change point."""
+    page = visit(one_design)
+    height = "document.getElementById('plot-1').layout.yaxis.range"
+    for ec, note in (("240", "next to a limit angle"), ("224.9999999", "A narrow peak of")):
+        page.fill("#number-ec", ec)
+        settle(page)
+        curve = page.evaluate("desaxe.curve('a_C_wrt_ec', desaxe.state.designs[0]).value")
+        low, high = page.evaluate(height)
+        assert max(abs(v) for v in curve if v is not None) > 100 * (high - low)
+        assert note in page.inner_text("#note-1")
+        drawn = page.evaluate("document.querySelector('#plot-1 .js-line').getAttribute('d')")
+        assert max(abs(float(v)) for v in re.findall(r"-?[\d.]+(?:e[-+]?\d+)?", drawn)) < 1e7
+
+
+def test_what_changes_is_said(visit, one_design):
+    page = visit(one_design)
+    page.keyboard.press("ArrowRight")
+    page.wait_for_function("document.getElementById('said').textContent.startsWith('At 61°')")
+    value = dx.evaluate("a_C", theta=page.evaluate("desaxe.state.theta"), **design(page))
+    assert f"a_C = {f'{value:.5g}'.replace('-', MINUS)} m/s²" in page.text_content("#said")
+    page.fill("#number-ec", "900")
+    page.wait_for_function("document.getElementById('said').textContent.includes('a_C = no value')")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_what_is_read_stands_out(scheme, visit, one_design):
+    """WCAG 2: text 4.5 to 1 against what it stands on, curves and the edges of controls 3 to 1."""
+    page = visit(one_design, color_scheme=scheme)
+    style = "(n) => getComputedStyle(document.documentElement).getPropertyValue(`--${n}`).trim()"
+    colour = {
+        n: page.evaluate(style, n) for n in ("page", "panel", "ink", "soft", "good", "warn", "bad", "edge")
+    }
+    curves = [page.evaluate(style, f"curve-{k}") for k in range(1, 7)]
+    text = [(name, ground) for name in ("ink", "soft", "good", "warn", "bad") for ground in ("page", "panel")]
+    assert [pair for pair in text if contrast(*(colour[n] for n in pair)) < 4.5] == []
+    assert [c for c in (*curves, colour["edge"]) if contrast(c, colour["panel"]) < 3] == []
+
+
+def contrast(one, other):
+    """Of two colours such as #1b2330."""
+    lights = []
+    for colour in (one, other):
+        parts = [int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)]
+        linear = [p / 12.92 if p <= 0.04045 else ((p + 0.055) / 1.055) ** 2.4 for p in parts]
+        lights.append(0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2])
+    return (max(lights) + 0.05) / (min(lights) + 0.05)
+
+
+def test_a_finger_reads_a_curve_and_moves_the_page(visit, several_designs):
+    page = visit(several_designs, 390, 844, has_touch=True, is_mobile=True)
+    page.locator("#plot-0").scroll_into_view_if_needed()
+    assert page.locator(".modebar-btn").count() == 0  # they would lie on the legend
+    box = page.locator("#plot-0 .bglayer").bounding_box()
+    page.touchscreen.tap(box["x"] + box["width"] * 0.75, box["y"] + box["height"] / 2)
+    page.wait_for_function("desaxe.state.theta > 4.5 && desaxe.state.theta < 4.9")
+    touch = "getComputedStyle(document.querySelector('#plot-0 .nsewdrag') ?? document.body).touchAction"
+    assert page.evaluate(touch) != "none"
 
 
 def test_any_quantity_and_sensitivity(visit, one_design):

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from .._point import cut
 from .._request import Request, request
-from ..catalogue import Quantity, quantity
+from ..catalogue import Quantity, quantities, quantity
 from ..compiler.emit_javascript import emit_javascript
 from ..inputs import INPUTS
 from ..names import LOADS, PARAMETERS, joined, parts
@@ -87,16 +87,12 @@ def _grouped(wanted: Iterable[str], given: Mapping[str, Value]) -> dict[str, lis
 def _sensitivities(base: str, given: Mapping[str, Value]) -> list[str]:
     """Those by the motion's parameters, and by the masses and loads that are given."""
     state = "omega" in given
-    motion = ["omega" if state and p == "omega0" else p for p in PARAMETERS]
-    found = []
-    for parameter in (*motion, *(load for load in LOADS if load in given)):
-        name = joined(base, (parameter,))
-        try:
-            quantity(name, state)
-        except ValueError:
-            continue
-        found.append(name)
-    return found
+    known = {row.name for row in quantities()}
+    by = [*PARAMETERS, *(load for load in LOADS if load in given)]
+    names = [(p, joined(base, (p,))) for p in by]
+    return [
+        joined(base, ("omega",)) if state and p == "omega0" else name for p, name in names if name in known
+    ]
 
 
 def _function(base: str, names: Iterable[str], given: Mapping[str, Value], branch: int) -> Function:

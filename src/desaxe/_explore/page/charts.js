@@ -2,6 +2,7 @@
 
 const DASHES = ["solid", "dash", "dot", "dashdot", "longdash", "longdashdot"];
 const charts = [...document.querySelectorAll(".chart")];
+const touched = matchMedia("(hover: none)").matches; // a finger over a chart moves the page
 
 function palette() {
   const style = getComputedStyle(document.documentElement);
@@ -43,35 +44,41 @@ function showChoice(index) {
 function drawChart(index) {
   const name = state.shown[index], look = palette(), labels = labelsOf(state.designs);
   const curves = state.designs.map((design) => curve(name, design));
+  const range = heightOf(curves.map(({ value }) => value));
   const traces = curves.map(({ theta, value }, k) => ({
     x: theta.map((angle) => (angle * 180) / Math.PI),
-    y: value,
+    y: range ? value.map((v) => drawable(v, range)) : value,
+    customdata: value,
     name: labels[k],
     mode: "lines",
     connectgaps: false,
     // Every sample is drawn: a simplified line has corners in a large picture.
     line: { simplify: false, color: look.curves[k % look.curves.length], width: k ? 1.8 : 2.6, dash: DASHES[k % DASHES.length] },
-    hovertemplate: `%{y:.6~g}`,
+    hovertemplate: `%{customdata:.6~g}`,
   }));
-  const range = heightOf(curves.flatMap(({ value }) => value));
   const plot = document.getElementById(`plot-${index}`);
   plot.setAttribute("aria-label", `${CONTENT.quantities[name].meaning} over the crank angle`);
   Plotly.react(plot, traces.reverse(), layoutOf(name, range, look, labels.length), {
     displaylogo: false,
     responsive: true,
     modeBarButtons: [["zoom2d", "pan2d", "autoScale2d", "resetScale2d"]],
-    displayModeBar: "hover",
+    displayModeBar: touched ? false : "hover",
   });
-  const nothing = curves.every(({ value }) => value.every((v) => v === null));
-  setText(
-    `note-${index}`,
-    nothing ? "No curve: this has no value at any of these angles." : range ? "Peaks at a limit angle are cut off: Autoscale shows them." : "",
-  );
+  setText(`note-${index}`, noteOf(name, curves.map(({ value }) => value), range));
+}
+
+function noteOf(name, curves, range) {
+  const known = curves.flat().filter((v) => v !== null);
+  if (!known.length) return "No curve: this has no value at any of these angles.";
+  if (!range) return "";
+  if (curves.some((value) => value.includes(null))) return "It grows next to a limit angle, and is cut off there.";
+  const peak = known.reduce((most, v) => (Math.abs(v) > Math.abs(most) ? v : most));
+  return `A narrow peak of ${digits(peak, 3)} ${printedUnit(CONTENT.quantities[name].unit)} is cut off.`;
 }
 
 function layoutOf(name, range, look, designs) {
   const unit = printedUnit(CONTENT.quantities[name].unit);
-  const axis = { gridcolor: look.line, zerolinecolor: look.soft, linecolor: look.line, zerolinewidth: 1 };
+  const axis = { fixedrange: touched, gridcolor: look.line, zerolinecolor: look.soft, linecolor: look.line, zerolinewidth: 1 };
   const [from, to] = CONTENT.theta.map((angle) => (angle * 180) / Math.PI);
   return {
     height: 300,
@@ -80,6 +87,7 @@ function layoutOf(name, range, look, designs) {
     plot_bgcolor: "rgba(0,0,0,0)",
     font: { family: "system-ui, sans-serif", size: 12.5, color: look.ink },
     hovermode: "x unified",
+    dragmode: touched ? false : "zoom",
     modebar: { bgcolor: look.panel, color: look.soft, activecolor: look.ink },
     hoverlabel: { bgcolor: look.panel, bordercolor: look.line, font: { color: look.ink } },
     showlegend: designs > 1,
@@ -94,7 +102,7 @@ function layoutOf(name, range, look, designs) {
       exponentformat: "power", automargin: true, ...(range ? { range, autorange: false } : { autorange: true }),
     },
     shapes: [cursor(state.theta, look)],
-    uirevision: name,
+    uirevision: `${name} ${Boolean(range)}`,
   };
 }
 
@@ -103,15 +111,27 @@ function cursor(theta, look) {
   return { type: "line", x0: x, x1: x, y0: 0, y1: 1, yref: "paper", line: { color: look.soft, width: 1, dash: "dot" } };
 }
 
-// A range of the vertical axis where a few values next to a limit angle would hide all others.
-function heightOf(values) {
-  const sizes = values.filter((v) => v !== null).map(Math.abs).sort((a, b) => a - b);
-  if (sizes.length < 20) return null;
-  const most = 2.5 * sizes[Math.floor(sizes.length * 0.95)];
-  if (sizes.at(-1) <= 2 * most || most === 0) return null;
-  const inside = values.filter((v) => v !== null && Math.abs(v) <= most);
-  const [low, high] = [Math.min(...inside, 0), Math.max(...inside, 0)], room = 0.08 * (high - low);
+// A range of the vertical axis where a few values would hide all others: next to a limit angle, where a
+// curve ends, or at a very narrow peak next to a change point. Null where everything can be seen.
+function heightOf(curves) {
+  const known = curves.map((value) => value.filter((v) => v !== null));
+  const seen = known.flatMap((values, k) => usual(values, values.length < curves[k].length ? 5 : 100));
+  if (seen.length === known.flat().length) return null;
+  const [low, high] = [Math.min(...seen, 0), Math.max(...seen, 0)], room = 0.08 * (high - low);
   return [low - room, high + room];
+}
+
+// Far outside of the picture a line is drawn to a nearer place: a browser has few digits for places.
+function drawable(value, [low, high]) {
+  const far = 1e4 * (high - low);
+  return value === null ? null : Math.max(low - far, Math.min(high + far, value));
+}
+
+// All values, unless one has many times the size of most: then those without such a size.
+function usual(values, times) {
+  const sizes = values.map(Math.abs).sort((a, b) => a - b);
+  const most = sizes[Math.floor(sizes.length * 0.85)];
+  return sizes.length < 20 || sizes.at(-1) <= times * most ? values : values.filter((v) => Math.abs(v) <= 2.5 * most);
 }
 
 function moveCursor() {

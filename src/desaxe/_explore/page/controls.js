@@ -68,7 +68,7 @@ function showControls(source) {
     const shown = toShown(CONTENT.inputs[name].unit, value);
     const number = document.getElementById(`number-${name}`), range = document.getElementById(`slide-${name}`);
     if (number !== source && document.activeElement !== number) {
-      number.value = Number(shown.toPrecision(10));
+      number.value = Number(shown.toPrecision(8));
       number.setAttribute("aria-invalid", "false");
       setText(`wrong-${name}`, "");
     }
@@ -96,6 +96,8 @@ function showDesigns() {
   };
   document.getElementById("designs").innerHTML = state.designs.map((_, k) => item(k)).join("");
   document.getElementById("keep").disabled = state.designs.length >= look.curves.length;
+  const one = "The designs differ in more than one input: the scene has the one that is changed above.";
+  setText("export-note", differingInputs(state.designs).length > 1 ? one : "");
 }
 
 function listenToDesigns() {

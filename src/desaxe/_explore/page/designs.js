@@ -6,6 +6,7 @@ for (const [base, { names }] of Object.entries(CONTENT.functions)) {
 }
 const TURN = 2 * Math.PI;
 const SAMPLES = 721;
+const NEARER = [1, 2, 3, 4, 5, 6, 7, 8].map((k) => 4 ** -k); // of a step towards a border
 
 function answers(base, design, theta) {
   const args = CONTENT.functions[base].inputs.map((name) => (name === "theta" ? theta : design[name]));
@@ -54,12 +55,18 @@ function border(inside, a, b) {
   }
 }
 
-// The angles of a curve: even ones, telling ones, and both sides of each border.
+// The angles of a curve: even ones, telling ones, both sides of each border, and ever denser ones towards it
+// from where there are values, which may grow there.
 function anglesOf(inside, design, from, to, even) {
   const angles = [...even, ...tellingAngles(design, from, to)].sort((a, b) => a - b);
   const found = [];
   angles.forEach((angle, k) => {
-    if (k && inside(angle) !== inside(angles[k - 1])) found.push(...border(inside, angles[k - 1], angle));
+    const before = angles[k - 1];
+    if (k && inside(angle) !== inside(before)) {
+      const [last, first] = border(inside, before, angle);
+      const near = NEARER.map((part) => (inside(angle) ? first + (angle - first) * part : last - (last - before) * part));
+      found.push(...[...near, last, first].sort((a, b) => a - b));
+    }
     found.push(angle);
   });
   return found;
@@ -92,10 +99,14 @@ function gaps(design) {
   return found;
 }
 
+// The inputs in which not all of the designs agree.
+function differingInputs(designs) {
+  return Object.keys(CONTENT.inputs).filter((name) => designs.some((design) => design[name] !== designs[0][name]));
+}
+
 // What tells one of several designs from the others.
 function labelsOf(designs) {
-  const names = Object.keys(CONTENT.inputs);
-  const differing = names.filter((name) => designs.some((design) => design[name] !== designs[0][name]));
+  const differing = differingInputs(designs);
   return designs.map((design) =>
     differing.length
       ? differing.map((name) => `${plainSymbol(name, false)} = ${shownInput(name, design[name])}`).join(", ")

@@ -18,7 +18,7 @@ const SECTIONS = [
 // The designs as one scene, where they differ in one input; else the one that is being changed.
 function sceneText() {
   const { designs, shown } = state;
-  const differing = Object.keys(CONTENT.inputs).filter((n) => designs.some((d) => d[n] !== designs[0][n]));
+  const differing = differingInputs(designs);
   const kept = differing.length === 1 ? designs : designs.slice(0, 1);
   const valueOf = (name) => (differing.length === 1 && name === differing[0]
     ? `[${[...new Set(kept.map((d) => d[name]))].join(", ")}]`

@@ -29,6 +29,14 @@ function showTurn(source) {
   document.getElementById("theta-shown").textContent = degrees(state.theta, 1);
   drawMechanism(state.designs, state.theta);
   readings();
+  sayLater();
+}
+
+// What the charts show of the design that is changed, for those who cannot see it: once all is at rest.
+let saying = 0;
+function sayLater() {
+  clearTimeout(saying);
+  saying = setTimeout(() => state.playing || setText("said", spokenValues(state.designs[0], state.theta)), 600);
 }
 
 function change(name, value, source) {
@@ -41,6 +49,7 @@ function show(index, name) {
   showChoice(index);
   drawChart(index);
   readings();
+  sayLater();
 }
 
 function turnTo(theta, source) {

@@ -66,6 +66,14 @@ function showVerdict(design) {
   bar.style.width = `${Math.max(Math.abs(part) * 50, 0.5)}%`;
 }
 
+function spokenValues(design, theta) {
+  const values = [...new Set(state.shown)].map((name) => {
+    const value = valueAt(name, design, theta), unit = printedUnit(CONTENT.quantities[name].unit);
+    return `${symbol(name, false)} = ${Number.isFinite(value) ? `${digits(value, 5)} ${unit}` : "no value"}`;
+  });
+  return `At ${degrees(theta, 1)}: ${values.join(", ")}`;
+}
+
 function setText(id, text) {
   const element = document.getElementById(id);
   if (element.textContent !== text) element.textContent = text; // what has not changed is not said again
