@@ -263,8 +263,19 @@ def test_a_finger_reads_a_curve_and_moves_the_page(visit, several_designs):
     box = page.locator("#plot-0 .bglayer").bounding_box()
     page.touchscreen.tap(box["x"] + box["width"] * 0.75, box["y"] + box["height"] / 2)
     page.wait_for_function("desaxe.state.theta > 4.5 && desaxe.state.theta < 4.9")
-    touch = "getComputedStyle(document.querySelector('#plot-0 .nsewdrag') ?? document.body).touchAction"
-    assert page.evaluate(touch) != "none"
+    before = page.evaluate("scrollY")
+    swipe_up(page, box["x"] + box["width"] / 2, box["y"] + box["height"] / 2, 100)
+    page.wait_for_function(f"scrollY > {before} + 40")
+
+
+def swipe_up(page, x, y, length):
+    finger = page.context.new_cdp_session(page)
+    for k in range(11):
+        at = {"x": x, "y": y - length * k / 10}
+        finger.send(
+            "Input.dispatchTouchEvent", {"type": "touchMove" if k else "touchStart", "touchPoints": [at]}
+        )
+    finger.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
 
 
 def test_any_quantity_and_sensitivity(visit, one_design):
