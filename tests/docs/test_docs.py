@@ -1,15 +1,22 @@
-"""The documentation: every Python block runs, the site builds without a warning."""
+"""The documentation: every block of code runs, what it shows is true, the site builds without a warning."""
 
+import ast
 import os
 import re
+import shlex
 import subprocess
 import sys
+from importlib.metadata import metadata
 from pathlib import Path
 
 import pytest
 
+import desaxe as dx
+from desaxe.cli import main
+
 ROOT = Path(__file__).resolve().parents[2]
-BLOCK = re.compile(r"^```python\n(.*?)^```", re.S | re.M)
+BLOCK = re.compile(r'^```(python|console|toml title="(?P<file>[\w.]+)")\n(?P<text>.*?)^```', re.S | re.M)
+SHOWN = re.compile(r"^(?P<code>\S.*?) +# = (?P<text>.*)$", re.M)
 PAGES = sorted(
     path.relative_to(ROOT).as_posix() for path in [*(ROOT / "docs").glob("*.md"), ROOT / "README.md"]
 )
@@ -17,59 +24,101 @@ WITH_BLOCKS = [page for page in PAGES if BLOCK.search((ROOT / page).read_text(en
 
 
 @pytest.mark.parametrize("page", WITH_BLOCKS)
-def test_its_python_runs(page, tmp_path, monkeypatch):
-    """In the order of the page, as one program; what it writes goes elsewhere."""
+def test_its_code_runs(page, tmp_path, monkeypatch, capsys):
+    """In the order of the page, as one session; what it writes goes elsewhere."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setenv("MPLBACKEND", "agg")
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
     text, scope = (ROOT / page).read_text(encoding="utf-8"), {}
+    known = set(sys.modules)
     for block in BLOCK.finditer(text):
-        line = text.count("\n", 0, block.start(1))
-        exec(compile("\n" * line + block[1], page, "exec"), scope)
+        if block[1] == "python":
+            run_python(block["text"], scope, page, text.count("\n", 0, block.start("text")))
+        elif block["file"]:
+            (tmp_path / block["file"]).write_text(block["text"], encoding="utf-8")
+        else:
+            run_console(block["text"], capsys)
+    for name in set(sys.modules) - known:  # modules that the page has written
+        if str(tmp_path) in str(getattr(sys.modules[name], "__file__", "")):
+            del sys.modules[name]
 
 
-def test_the_pages_that_should_have_python_do():
-    wanted = {
-        "README",
-        *(f"docs/{name}" for name in ("index", "howto", "choose", "coming-from", "promise", "scene")),
-    }
-    assert wanted <= {page.removesuffix(".md") for page in WITH_BLOCKS}
+def run_python(text, scope, page, line):
+    """A block, and then each `code  # = text` in it, whose value must be what is shown."""
+    exec(compile("\n" * line + text, page, "exec"), scope)
+    for shown in SHOWN.finditer(text):
+        value = eval(shown["code"], scope)
+        assert looks_like(value, shown["text"]), (page, shown[0], value)
 
 
-@pytest.fixture(scope="module")
-def site(tmp_path_factory):
-    """The site, built as strictly as there is."""
-    folder = tmp_path_factory.mktemp("site")
-    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(folder)]
+def looks_like(value, text):
+    """Whether a value is what is printed, numbers to the digits that are."""
+    if isinstance(value, (tuple, list)):
+        wanted = ast.literal_eval(text)
+        return len(value) == len(wanted) and all(
+            looks_like(v, repr(w)) for v, w in zip(value, wanted, strict=True)
+        )
+    if isinstance(value, float) and re.fullmatch(r"-?[\d.]+(e-?\d+)?", text):
+        digits = len(re.sub(r"^-?0*\.?0*|e.*|\.", "", text))
+        return float(f"{value:.{digits}g}") == float(text)
+    return str(value) == text or repr(value) == text
+
+
+def test_the_check_sees_an_error():
+    assert looks_like(0.25298698, "0.253")
+    assert not looks_like(0.25298698, "0.2531")
+    assert looks_like((1, 2.0004), "(1, 2.0)")
+    assert not looks_like((1, 2.0004), "(1, 2.1)")
+    assert not looks_like("rocker", "'crank'")
+
+
+def run_console(text, capsys):
+    """Every line: a command of ours, or an installation of extras that there are."""
+    for line in text.splitlines():
+        words = shlex.split(line, comments=True)
+        if words[:4] == ["python", "-m", "pip", "install"]:
+            extras = set(re.search(r"\[(.*)\]", words[-1])[1].split(","))
+            assert extras <= set(metadata("desaxe").get_all("Provides-Extra"))
+            continue
+        assert words[0] == "desaxe", line
+        assert main(words[1:]) == 0, line
+        assert capsys.readouterr().out, line
+
+
+def test_every_block_that_could_run_does():
+    """The kinds of blocks that are left are for reading."""
+    left = {}
+    for page in PAGES:
+        text = BLOCK.sub("", (ROOT / page).read_text(encoding="utf-8"))
+        left[page] = set(re.findall(r"^```(\w+)$", text, re.M))
+    assert set().union(*left.values()) <= {"text", "matlab"}, left
+    wanted = ("index", "howto", "design", "forces", "pictures", "choose", "coming-from", "promise", "scene")
+    assert {"README.md", *(f"docs/{name}.md" for name in wanted)} <= set(WITH_BLOCKS)
+
+
+def test_the_site(tmp_path):
+    """Built as strictly as there is; what is generated stands in it, and links lead somewhere."""
+    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(tmp_path)]
     plain = os.environ | {"NO_MKDOCS_2_WARNING": "1"}
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, env=plain, check=False)
     assert done.returncode == 0, done.stderr
     assert "WARNING" not in done.stderr
-    return folder
+    pages = {path.parent.name: path.read_text(encoding="utf-8") for path in tmp_path.rglob("index.html")}
+    assert {Path(page).stem for page in PAGES if page.startswith("docs/")} - {"index"} <= set(pages)
+    assert not [name for name, text in pages.items() if "<!-- desaxe:" in text]
+    assert pages["derivation"].count('class="equation"') > 25
+    assert all(f'id="desaxe{name}"' in pages["api"] for name in dx.__all__)
+    assert all(f'id="desaxeplot{name}"' in pages["api"] for name in dx.plot.__all__)
+    assert "m_slider" in pages["scene"]
+    assert broken_links(tmp_path) == []
 
 
-def test_every_page_is_there(site):
-    pages = {path.parent.name for path in site.rglob("index.html")}
-    assert {Path(page).stem for page in PAGES if page.startswith("docs/")} - {"index"} <= pages
-
-
-def test_what_is_generated_stands_in_it(site):
-    text = {
-        name: (site / name / "index.html").read_text(encoding="utf-8")
-        for name in ("derivation", "api", "scene")
-    }
-    assert not [name for name in text if "desaxe: " in re.sub(r"<pre>.*?</pre>", "", text[name], flags=re.S)]
-    assert text["derivation"].count('class="equation"') == 12
-    import desaxe as dx
-
-    assert all(f"desaxe.{name}" in text["api"] for name in dx.__all__)
-    assert "m_slider" in text["scene"]
-
-
-def test_links_lead_somewhere(site):
-    """To files that are in the site, or out of it."""
+def broken_links(site):
+    """Links to what is not in the site; those out of it are let be."""
     broken = []
     for page in site.rglob("index.html"):
         links = re.findall(r'(?:href|src)="([^"#?]+)', page.read_text(encoding="utf-8"))
         local = [link for link in links if not re.match(r"[a-z]+:|//|/", link)]
-        broken += [(page.name, link) for link in local if not (page.parent / link).exists()]
-    assert not broken
+        broken += [(page.parent.name, link) for link in local if not (page.parent / link).exists()]
+    return broken

@@ -1,0 +1,150 @@
+"""Functions, scene files, quantities and inputs, from their docstrings, types and tables."""
+
+import inspect
+import re
+from html import escape
+
+import desaxe as dx
+from desaxe._explain.plan import Plan
+from desaxe._quality import Quality
+from desaxe._scene import schema
+from desaxe._scene.model import Scene, SceneResult
+from desaxe._scene.read import SECTIONS
+from desaxe._simulate.result import Event, Simulation
+from desaxe.catalogue import Quantity
+from desaxe.catalogue import quantities as catalogue
+from desaxe.derive.equation import EquationText
+from desaxe.inputs import INPUTS
+from desaxe.names import parts
+
+# What the functions give, where it is not a float, an array, a plain dict or a Dataset.
+RETURNED = (Quality, Quantity, EquationText, Simulation, Event, Scene, SceneResult, Plan)
+
+
+def summary():
+    """Every public name and the first line of what it says about itself."""
+    rows = [f"| [`{n}`](#{n.replace('.', '')}) | {_first(v)} |" for n, v in _public().items()]
+    return "\n".join(["| name | what it is for |", "|---|---|", *rows])
+
+
+def api():
+    """Every public function: how it is called, and its docstring as it stands."""
+    return "\n\n".join(f"## {name}\n\n{_entry(name, value)}" for name, value in _public().items())
+
+
+def _public():
+    """Each public name, those of a public module after it."""
+    found = {}
+    for name in dx.__all__:
+        value = found[f"desaxe.{name}"] = getattr(dx, name)
+        if inspect.ismodule(value):
+            found |= {f"desaxe.{name}.{own}": getattr(value, own) for own in value.__all__}
+    return found
+
+
+def _first(value):
+    return inspect.getdoc(value).partition("\n")[0].replace("|", "\\|")
+
+
+def _entry(name, value):
+    called = "" if inspect.ismodule(value) else _verbatim(_call(name, value)) + "\n\n"
+    return called + _verbatim(inspect.getdoc(value))
+
+
+def _call(name, value):
+    """The signature without the names of modules, a parameter a line where it is long."""
+    given = inspect.signature(value)
+    rows = [_short(p) for p in given.parameters.values()]
+    kinds = [p.kind for p in given.parameters.values()]
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    if keyword in kinds:
+        rows.insert(kinds.index(keyword), "*")
+    back = _short(inspect.formatannotation(given.return_annotation).strip("'"))
+    whole = f"{name}({', '.join(rows)}) -> {back}"
+    return (
+        whole
+        if len(whole) < 100
+        else f"{name}(\n" + "".join(f"    {row},\n" for row in rows) + f") -> {back}"
+    )
+
+
+def _short(text):
+    return re.sub(r"\b(?:[a-z_]\w*\.)+(?=[A-Z])", "", str(text))
+
+
+def returned():
+    """The classes of what comes back, with their own methods and properties."""
+    return "\n\n".join(f"### {c.__name__}\n\n{_verbatim(_class_text(c))}" for c in RETURNED)
+
+
+def _class_text(found):
+    own = {
+        name: value
+        for name, value in vars(found).items()
+        if not name.startswith("_") and (callable(value) or isinstance(value, property))
+    }
+    rows = [
+        f".{name}{'()' * callable(value)}  {_first(value)}" for name, value in own.items() if _is_told(value)
+    ]
+    fields = getattr(found, "_fields", ())
+    if fields and not any(field in inspect.getdoc(found).split() for field in fields):
+        rows.append(f"A named tuple: {', '.join(fields)}")
+    return "\n".join([inspect.getdoc(found), *([""] * bool(rows)), *rows])
+
+
+def _is_told(value):
+    return bool(inspect.getdoc(value)) and not isinstance(value, type(Event.t))
+
+
+def _verbatim(text):
+    """Docstrings are laid out by hand, in columns."""
+    return f'<pre class="docstring"><code>{escape(text)}</code></pre>'
+
+
+def scene():
+    """The keys of a scene file, from the types that check it."""
+    top = _keys(schema.SceneFile, leave=(*SECTIONS, "check", "peak", "picture", "results"))
+    tables = [
+        *((f"[{name}]", table) for name, table in SECTIONS.items()),
+        ("[[check]]", schema.CheckTable), ("[[peak]]", schema.PeakTable),
+        ("[[peak.claim]]", schema.ClaimTable), ("[[picture]]", schema.PictureTable),
+        ("[results]", schema.Results),
+    ]  # fmt: skip
+    return "\n\n".join(
+        ["## At the top", top, *(f"## {head}\n\n{_doc(t)}\n\n{_keys(t)}" for head, t in tables)]
+    )
+
+
+def _doc(table):
+    """What a table is for, without its own name in front."""
+    return inspect.getdoc(table).partition(": ")[2].capitalize()
+
+
+def _keys(table, leave=()):
+    fields = [field for field in schema.msgspec.structs.fields(table) if field.name not in leave]
+    rows = [f"| `{f.name}` | {_key(f.name, f.type)} | {'needed' if f.required else ''} |" for f in fields]
+    return "\n".join(["| key | what it is | |", "|---|---|---|", *rows])
+
+
+def _key(name, kind):
+    known = INPUTS.get(name)
+    words = schema._allowed(kind).replace("|", "\\|")
+    return f"{known.meaning} [{known.unit}]" if known else words
+
+
+def quantities():
+    """Every quantity; its sensitivities have a name each, too."""
+    rows = [row for row in catalogue() if not parts(row.name)[1]]
+    return "\n".join(
+        ["| name | unit | meaning | paper |", "|---|---|---|---|"]
+        + [f"| `{r.name}` | {r.unit} | {r.meaning.replace('|', chr(92) + '|')} | {r.source} |" for r in rows]
+    )
+
+
+def inputs():
+    """Every input."""
+    rows = [f"| `{r.name}` | {r.unit} | {r.meaning} | {r.limit} |" for r in INPUTS.values()]
+    return "\n".join(["| name | unit | meaning | limit |", "|---|---|---|---|", *rows])
+
+
+WRITERS = (summary, api, returned, scene, quantities, inputs)
