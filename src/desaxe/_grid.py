@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from functools import partial
 from math import prod
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,31 @@ Array = NDArray[Any]
 ALWAYS = ("status", "margin")
 LENGTHS = ("ec", "AB", "BC")  # what the margin depends on
 LONG_ENOUGH = 1_000  # points of the innermost loop: a shorter one costs as much to start as to run
+
+
+@overload
+def grid(
+    names: str | Sequence[str],
+    *,
+    branch: int = 1,
+    accuracy: str | float = "standard",
+    threads: int | None = None,
+    out: None = None,
+    reduce: Mapping[str, str | Sequence[str]] | None = None,
+    **inputs: Any,
+) -> "xr.Dataset": ...
+
+
+@overload
+def grid(
+    names: str | Sequence[str],
+    *,
+    branch: int = 1,
+    accuracy: str | float = "standard",
+    threads: int | None = None,
+    out: Array | Mapping[str, Array],
+    **inputs: Any,
+) -> dict[str, Array]: ...
 
 
 def grid(
