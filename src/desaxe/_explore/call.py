@@ -29,6 +29,8 @@ def explore(
             ec, AB, BC [m], omega0 (or omega) [rad/s], alpha [rad/s^2], masses and loads, each a number,
             text with a unit, or a list, whose values are compared
     path    the file to write
+    branch  of inputs: +1 (the papers) or -1; a scene has its own, and its own title
+    title   what the page is headed with
     names   the quantities that the page knows, each with its first sensitivities; without it those of
             the motion, drive torque and guide force where masses or loads are given, and those that the
             scene names
