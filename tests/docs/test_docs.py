@@ -9,6 +9,7 @@ import sys
 from importlib.metadata import metadata
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import desaxe as dx
@@ -54,6 +55,7 @@ def run_python(text, scope, page, line):
 
 def looks_like(value, text):
     """Whether a value is what is printed, numbers to the digits that are."""
+    value = value.tolist() if isinstance(value, np.ndarray) else value
     if isinstance(value, (tuple, list)):
         wanted = ast.literal_eval(text)
         return len(value) == len(wanted) and all(
