@@ -1,7 +1,6 @@
-"""README's first steps and the examples about forces, run as they stand."""
+"""The examples about forces, run as they stand."""
 
 import contextlib
-import re
 import runpy
 from pathlib import Path
 
@@ -11,14 +10,6 @@ import pytest
 import desaxe as dx
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-
-
-def test_the_first_steps():
-    text = (EXAMPLES.parent / "README.md").read_text(encoding="utf-8")
-    (code,) = re.findall(r"## First steps\n\n```python\n(.*?)```", text, re.DOTALL)
-    names = {}
-    exec(compile(code, "README.md", "exec"), names)
-    assert names["press"]["m_slider"] == 0.8
 
 
 @pytest.fixture(scope="module")
