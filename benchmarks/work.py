@@ -73,6 +73,23 @@ def _random(count: int) -> Inputs:
     return Inputs(_drawn(PARAMETERS, count), dict.fromkeys(PARAMETERS, 0), {"omega0": OMEGA0})
 
 
+def _with_close(count: int, share: float) -> Inputs:
+    """Some of the rods are but a twentieth longer than they must be for the crank to turn."""
+    points = _random(count)
+    columns = points.columns
+    close = np.random.default_rng(2).random(count) < share
+    shortest = columns["AB"] + np.abs(columns["ec"])
+    return points._replace(columns={**columns, "BC": np.where(close, 1.05 * shortest, columns["BC"])})
+
+
+def _mixed(count: int) -> Inputs:
+    return _with_close(count, 0.02)
+
+
+def _close(count: int) -> Inputs:
+    return _with_close(count, 1.0)
+
+
 def _concentric(count: int) -> Inputs:
     names = ("theta", "AB", "BC")
     return Inputs(_drawn(names, count), dict.fromkeys(names, 0), {"ec": 0.0, "omega0": OMEGA0})
@@ -137,6 +154,9 @@ WORKS = (
          MILLION // 4, 10_000),
     Work("audited", "V_C, a_C, a_C_wrt_ec at random points", (*KINEMATICS, "a_C_wrt_ec"), _random, MILLION,
          20_000),
+    Work("mixed", "V_C, a_C at random points, of which one in 50 is of a design close to its change point",
+         KINEMATICS, _mixed, MILLION, 40_000),
+    Work("close", "the same where all are", KINEMATICS, _close, MILLION, 40_000),
     Work("concentric", "V_C alone, concentric (ec = 0)", ("V_C",), _concentric, MILLION, 40_000),
     Work("sweep", "V_C, a_C of one mechanism at 720 angles", KINEMATICS, _sweep, ANGLES, ANGLES),
     Work("sweeps", "V_C, a_C of 2,048 mechanisms at 720 angles", KINEMATICS, _sweeps, 2048 * ANGLES,
