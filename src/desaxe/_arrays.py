@@ -1,26 +1,19 @@
 """`evaluate` over arrays: broadcast, run in blocks, put the answers where they are wanted."""
 
-from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._constants import double_constants
-from ._kernels import KernelKey, is_ready, key_of
+from ._few_points import are_good, fill_by_points, is_early
+from ._kernels import key_of
 from ._point import point_of
 from ._request import Request, as_number
 from ._threads import run_in_blocks
-from .compiler.passes.guard import BAD_INPUT
 from .inputs import INPUTS, is_good
 
 Array = NDArray[Any]
-
-# A request is answered in plain Python until so many points of it have been asked for in this process:
-# nobody pays a compilation for a hundred points, and nobody waits for ever who asks again and again.
-BREAK_EVEN = 2_000
-_ASKED: Counter[KernelKey] = Counter()
 
 
 def evaluate_arrays(
@@ -71,17 +64,11 @@ def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str])
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name}: real numbers are wanted, got an array of {array.dtype}")
     array = array.astype(np.float64, copy=False)
-    if array.size and not is_good(name, array.item(0)) and not _is_good(name, array).any():
+    if array.size and not is_good(name, array.item(0)) and not are_good(name, array).any():
         raise ValueError(
             f"{name}: every value is bad, the first is {array.item(0)}; it must be {INPUTS[name].limit}"
         )
     return array
-
-
-def _is_good(name: str, array: Array) -> NDArray[np.bool_]:
-    least = INPUTS[name].least
-    good: NDArray[np.bool_] = np.isfinite(array)
-    return good if least is None else good & (array >= least)
 
 
 def broadcast_shape(arrays: Mapping[str, Array]) -> tuple[int, ...]:
@@ -158,30 +145,3 @@ def _fill(
         fill_by_points(key, scalars, columns, outs)
     else:
         run_in_blocks(key, {**scalars, **columns}, outs, threads)
-
-
-def is_early(key: KernelKey, size: int) -> bool:
-    """Whether plain Python still pays."""
-    if is_ready(key):
-        return False
-    _ASKED[key] += size
-    return _ASKED[key] < BREAK_EVEN
-
-
-def fill_by_points(
-    key: KernelKey, scalars: dict[str, float], columns: dict[str, Array], outs: list[Array]
-) -> None:
-    """Plain Python, point by point: nobody pays a compilation for a hundred points."""
-    point = point_of(key.names, key.form, key.fixed, key.accuracy)
-    good = {name: _is_good(name, column) for name, column in columns.items()}
-    if key.accuracy == "extended" and "theta" in good:
-        good["theta"] &= np.abs(columns["theta"]) <= double_constants().limit
-    safe = {name: np.where(good[name], column, np.nan).tolist() for name, column in columns.items()}
-    for index, here in enumerate(zip(*safe.values(), strict=True)):
-        answer = point.run({**scalars, **dict(zip(safe, here, strict=True))})
-        for out, value in zip(outs, answer, strict=True):
-            out[index] = value
-    bad = ~np.logical_and.reduce(list(good.values()))
-    for out in outs:
-        if out.dtype == np.int8:  # a status
-            out[bad] = BAD_INPUT

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from ._arrays import as_array, buffers_for, delivered, fill_by_points, is_early, places_for
+from ._arrays import as_array, buffers_for, delivered, places_for
+from ._few_points import fill_by_points, is_early
 from ._kernels import KernelKey, key_of
 from ._point import point_of
 from ._request import Request, check_border, check_inputs, request, standstill

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ._arrays import is_early
+from ._few_points import is_early
 from ._kernels import kernel_for, key_of
 from ._labels import attributes, input_attributes, labelled, provenance
 from ._request import Request

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from ._constants import double_constants
+from ._few_points import fill_by_points, is_early
 from ._kernels import KernelKey, kernel_for
-from ._request import Request
 
 FINDING = ("less_rounded", "less_unsure")  # BC - |u|, and what rounding may take from it
 SPARE = 2.0  # times that, because a kernel may round in another way than the one that counted
@@ -33,16 +33,24 @@ def decide(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any]) -> No
 def _decide(
     key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any], axis_of: Mapping[str, int]
 ) -> None:
-    from ._arrays import evaluate_arrays  # which hands its undecided points to this module
-
     reach, unsure = (np.empty(outs[0].shape) for _ in FINDING)
     kernel_for(key._replace(names=FINDING)).run(values, [reach, unsure])
     undecided = np.abs(reach) <= SPARE * unsure
-    if undecided.any():
-        places = np.nonzero(undecided)
-        given = {n: value[places[axis_of[n]]] if n in axis_of else value for n, value in values.items()}
-        known = np.abs(given["theta"]) <= double_constants().limit  # no angle that it cannot reduce
-        shown = tuple("status" if o.dtype == np.int8 else n for n, o in zip(key.names, outs, strict=True))
-        answers = evaluate_arrays(Request(shown, key.names, key.form, key.fixed, "extended"), given, 1, None)
-        for out, name in zip(outs, shown, strict=True):
-            out[places] = np.where(known, answers[name], out[places])
+    places = np.nonzero(undecided)
+    chosen = {n: value[places[axis_of[n]]] if n in axis_of else value for n, value in values.items()}
+    known = np.abs(chosen["theta"]) <= double_constants().limit  # not all angles can be reduced as well
+    if places[0].size and np.any(known):
+        answers = [np.empty(places[0].size, out.dtype) for out in outs]
+        _answer(key, chosen, answers, [name for name in values if name in axis_of])
+        for out, answer in zip(outs, answers, strict=True):
+            out[places] = np.where(known, answer, out[places])
+
+
+def _answer(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any], flat: Sequence[str]) -> None:
+    """Fill flat outputs from values, of which some are flat columns, with twice the digits."""
+    exact = key._replace(accuracy="extended", axis_of=tuple((name, 0) for name in sorted(flat)), axes=1)
+    if is_early(exact, outs[0].size):
+        scalars = {name: value for name, value in values.items() if name not in flat}
+        fill_by_points(exact, scalars, {name: values[name] for name in flat}, outs)
+    else:
+        kernel_for(exact).run(values, outs)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe import _arrays
+from desaxe import _few_points
 from desaxe._cache import locked
 from desaxe._scene import SceneError
 from tests.library.scenes import COMPACTOR, SMALL
@@ -130,7 +130,7 @@ def inputs_of(scene):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_run_is_the_scene(name, alone, monkeypatch):
-    monkeypatch.setattr(_arrays, "BREAK_EVEN", 0 if points_of(SCENES[name]) else 10**9)
+    monkeypatch.setattr(_few_points, "BREAK_EVEN", 0 if points_of(SCENES[name]) else 10**9)
     dataset = dx.scene(SCENES[name]).run().dataset
     found = alone[name]["run"]
     assert set(found) == set(dataset.data_vars) - {"margin"}
@@ -141,7 +141,7 @@ def test_run_is_the_scene(name, alone, monkeypatch):
 
 @pytest.mark.parametrize("name", [name for name in SCENES if name != "no_axis"])
 def test_arrays_are_those_of_evaluate(name, alone, monkeypatch):
-    monkeypatch.setattr(_arrays, "BREAK_EVEN", 0)
+    monkeypatch.setattr(_few_points, "BREAK_EVEN", 0)
     points = points_of(SCENES[name])
     names = list(alone[name]["arrays"])
     arrays = {n: np.array(v) for n, v in points.items()}

@@ -12,14 +12,14 @@ import pytest
 import xarray
 
 import desaxe as dx
-from desaxe import _arrays, _cache, _kernels
+from desaxe import _arrays, _cache, _few_points, _kernels
 from desaxe._program import Form
 from tests.library.ways import POINT, SIZES, close, columns, take_way
 
 # ---- both ways, threads, far angles, a state -----------------------------------------------------
 
 
-@pytest.mark.parametrize("size", [_arrays.BREAK_EVEN - 1, _arrays.BREAK_EVEN])
+@pytest.mark.parametrize("size", [_few_points.BREAK_EVEN - 1, _few_points.BREAK_EVEN])
 def test_both_ways_give_the_same(monkeypatch, size):
     theta, ec = columns(size)
     found = []
@@ -31,10 +31,10 @@ def test_both_ways_give_the_same(monkeypatch, size):
 
 def test_points_asked_for_again_and_again_are_compiled(monkeypatch):
     asked = []
-    monkeypatch.setattr(_arrays, "_ASKED", Counter())
-    monkeypatch.setattr(_arrays, "is_ready", lambda key: False)
+    monkeypatch.setattr(_few_points, "_ASKED", Counter())
+    monkeypatch.setattr(_few_points, "is_ready", lambda key: False)
     monkeypatch.setattr(_arrays, "run_in_blocks", lambda *arguments: asked.append(arguments))
-    theta, ec = columns(_arrays.BREAK_EVEN // 3)
+    theta, ec = columns(_few_points.BREAK_EVEN // 3)
     for calls in (0, 0, 0, 1):
         dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)
         assert len(asked) == calls
@@ -53,10 +53,10 @@ def test_a_masked_array_is_refused():
 
 
 def test_a_few_points_are_not_compiled(monkeypatch):
-    monkeypatch.setattr(_arrays, "is_ready", lambda key: False)
+    monkeypatch.setattr(_few_points, "is_ready", lambda key: False)
     monkeypatch.setattr(_arrays, "run_in_blocks", None)
-    monkeypatch.setattr(_arrays, "_ASKED", Counter())
-    theta, ec = columns(_arrays.BREAK_EVEN - 1)
+    monkeypatch.setattr(_few_points, "_ASKED", Counter())
+    theta, ec = columns(_few_points.BREAK_EVEN - 1)
     assert np.isfinite(dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)).all()
 
 

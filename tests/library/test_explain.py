@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe import _arrays, _kernels
+from desaxe import _few_points, _kernels
 from desaxe._kernels import kernel_of
 from desaxe._scene.kernels import grid_kernel
 from tests.library.scenes import COMPACTOR, SMALL
@@ -113,11 +113,11 @@ def _size(axis):
 
 def test_the_break_even_is_the_one_that_holds(monkeypatch):
     monkeypatch.setattr(_kernels, "_load", None)  # whoever compiles fails
-    points = {"start": 0, "stop": 1, "num": _arrays.BREAK_EVEN - 1}
+    points = {"start": 0, "stop": 1, "num": _few_points.BREAK_EVEN - 1}
     few = free(CONCENTRIC, "motion", "theta", points)
     assert dx.explain(few)["run"]["way"] == "plain Python"
     dx.scene(few).run()
-    many = free(CONCENTRIC, "motion", "theta", {**points, "num": _arrays.BREAK_EVEN})
+    many = free(CONCENTRIC, "motion", "theta", {**points, "num": _few_points.BREAK_EVEN})
     assert dx.explain(many)["run"]["way"] == "compiled"
     with pytest.raises(TypeError):
         dx.scene(many).run()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe import _arrays, _kernels
+from desaxe import _few_points, _kernels
 from desaxe.compiler.reductions import LONGEST
 
 MACHINE = {"AB": 0.125, "omega0": 157.08}
@@ -116,7 +116,7 @@ def test_threads_change_nothing():
 def test_the_grid_is_never_stored(monkeypatch):
     from desaxe import _grid
 
-    monkeypatch.setattr(_arrays, "BREAK_EVEN", 0)
+    monkeypatch.setattr(_few_points, "BREAK_EVEN", 0)
     monkeypatch.setattr(_grid, "_filled", lambda *_: pytest.fail("the whole grid was computed"))
     found = dx.grid("a_C", reduce={"theta": "absmax"}, theta=TURN, ec=[0, 0.1], BC=0.35, **MACHINE)
     assert set(found.data_vars) == {"a_C_absmax", "a_C_absmax_theta", "a_C_skipped"}

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 import desaxe as dx
-from desaxe import _arrays
+from desaxe import _few_points
 
 SIZES = {"AB": 0.125, "BC": 0.35, "omega0": 157.0}
 POINT = {"theta": 1.1, "ec": 0.01, **SIZES}
@@ -13,8 +13,8 @@ EPSILON = 2.0**-52
 
 
 def take_way(monkeypatch, name):
-    monkeypatch.setattr(_arrays, "BREAK_EVEN", 0 if name == "compiled" else 10**9)
-    monkeypatch.setattr(_arrays, "is_ready", lambda key: name == "compiled")
+    monkeypatch.setattr(_few_points, "BREAK_EVEN", 0 if name == "compiled" else 10**9)
+    monkeypatch.setattr(_few_points, "is_ready", lambda key: name == "compiled")
 
 
 def columns(*shape):

@@ -8,7 +8,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from .. import _arrays
+from .. import _few_points
 from .._constants import double_constants
 from .._kernels import KernelKey, is_ready, is_single, kernel_of, path_of, source_of
 from .._machine_code import SUFFIX
@@ -111,7 +111,7 @@ def _input(name: str, value: float | tuple[float, ...]) -> dict[str, Any]:
 def _grid(content: Content) -> dict[str, Any]:
     """The grid of the outputs: its passes, its loops, how it runs."""
     found = grid_kernel(content, joined=True)
-    compiled = is_ready(found.key) or found.points >= _arrays.BREAK_EVEN
+    compiled = is_ready(found.key) or found.points >= _few_points.BREAK_EVEN
     loops = _compiled_loops(found) if compiled else _plain_loops(found)
     straight = sum(loop.operations for loop in loops if not loop.close)
     total = sum(loop.work for loop in loops)
@@ -162,7 +162,7 @@ def _run(content: Content, found: GridKernel, loops: list[Loop], compiled: bool)
     first = {"memory": 0.0, "disk": load}.get(cached, estimate.IMPORT + estimate.compile_time(loops))
     return {
         "way": "compiled" if compiled else "plain Python",
-        "break_even": _arrays.BREAK_EVEN,
+        "break_even": _few_points.BREAK_EVEN,
         "float32": is_single(found.key),
         "far_angles": found.key.far,
         "threads": threads if compiled else 1,
