@@ -130,6 +130,16 @@ def test_velocities_are_the_peaks(ec, AB, BC, omega0, branch):
     assert "omega0" not in dx.events(**{**design, "omega0": None})["gradient"]["V_inward"]
 
 
+@pytest.mark.parametrize("ec", [1e-3, -1e-9, 1e-14])
+def test_a_small_angle_keeps_its_digits_on_the_other_branch(ec):
+    """There the slider is nearest to the crank next to theta = 0."""
+    with mp.workdps(60):
+        exact = mp.asin(mp.mpf(ec) / (mp.mpf(0.35) - mp.mpf(0.125)))
+        assert close(dx.events(ec=ec, AB=0.125, BC=0.35, branch=-1)["theta_inner"], exact, 1e-15)
+        many = dx.events(ec=[ec, 0.0], AB=0.125, BC=0.35, branch=-1)["theta_inner"]
+        assert close(float(many[0]), exact, 1e-15)
+
+
 lengths = st.floats(1e-3, 1e3)
 
 

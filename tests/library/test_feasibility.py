@@ -39,6 +39,22 @@ def test_limit_angles_keep_their_digits(ec):
     assert last - 5 * math.pi / 2 == pytest.approx(-float(gap), abs=2e-15)
 
 
+@pytest.mark.parametrize("left", [1e-3, 1e-9, 1e-15])
+@pytest.mark.parametrize("side", [1, -1])
+def test_limit_angles_of_what_can_hardly_be_assembled(left, side):
+    """Where |ec| nearly is AB + BC only angles next to one quarter are left."""
+    ec, middle = side * (1.25 - left), side * -math.pi / 2 % (2 * math.pi)
+    (found,) = dx.feasibility(ec=ec, AB=0.5, BC=0.75)["theta_intervals"]
+    many = dx.feasibility(ec=[ec, 0.0], AB=0.5, BC=0.75)["theta_intervals"][0]
+    with mpmath.workdps(50):
+        away = float(mpmath.acos((abs(mpmath.mpf(ec)) - mpmath.mpf(0.75)) / mpmath.mpf(0.5)))
+    assert away > 0
+    for first, last in (found, many[0]):
+        assert first == pytest.approx(middle - away, abs=2e-15)
+        assert last == pytest.approx(middle + away, abs=2e-15)
+    assert np.isnan(many[1]).all()
+
+
 @pytest.mark.parametrize(
     ("ec", "AB", "BC"), [(0.225, 0.125, 0.35), (0.1, 0.2, 0.3), (-1 / 3, 0.1, 0.7), (1e-30, 1.0, 1.0)]
 )

@@ -48,7 +48,10 @@ class Sides(NamedTuple):
 
 
 def closed_form(ec: Any, AB: Any, BC: Any, maths: Maths) -> dict[str, Known]:
-    """Everything by name, for branch 1 and a crank that turns forwards; NaN where there is none."""
+    """Everything by name, for branch 1 and a crank that turns forwards; NaN where there is none.
+
+    `theta_inner` is told from pi on: on the other branch it is near 0, with all its digits.
+    """
     longest = maths.choose(AB > BC, AB, BC)
     power = -maths.exponent(maths.choose(abs(ec) > longest, abs(ec), longest))
     ec, AB, BC = (maths.ldexp(x, power) for x in (ec, AB, BC))
@@ -93,7 +96,7 @@ def _dead_centres(t: Sides, maths: Maths) -> dict[str, Known]:
     return {
         "theta_outer": Known(-maths.atan2(t.ec, t.outer), (-over(1.0, t.outer), turn, turn)),
         "theta_inner": Known(
-            pi - maths.atan2(sign * t.ec, t.inner), (-sign * over(1.0, t.inner), -inner_turn, inner_turn)
+            -maths.atan2(sign * t.ec, t.inner), (-sign * over(1.0, t.inner), -inner_turn, inner_turn)
         ),
         "Y_outer": Known(t.outer, (-lean, out, out), 1),
         "Y_inner": Known(sign * t.inner, (-sign * back, -into, into), 1),

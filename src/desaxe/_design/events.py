@@ -9,7 +9,8 @@ from .closed_form import LENGTHS, Known, closed_form
 from .maths import PLAIN, sum_of_three
 from .roots import root
 
-CHANGES_WITH_BRANCH = {"theta_outer": pi, "theta_inner": pi, "Y_outer": 0.0, "Y_inner": 0.0}
+HALF_TURN_ON = {"theta_outer": -1, "theta_inner": 1}  # name -> the branch on which it is near pi
+MIRRORED = (*HALF_TURN_ON, "Y_outer", "Y_inner")
 VELOCITIES = {"V_outward": 1, "V_inward": -1}  # name -> direction along the stroke
 
 
@@ -84,10 +85,10 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
 def placed(known: dict[str, Known], branch: int, turn: int) -> dict[str, Known]:
     """As it is on this branch: mirrored across X where it is -1, advance and return as the crank turns."""
     found = dict(known)
-    if branch < 0:
-        for name, half in CHANGES_WITH_BRANCH.items():
-            value, (a, b, c), power = known[name]
-            found[name] = Known(half - value, (-a, -b, -c), power)
+    for name in MIRRORED:
+        value, (a, b, c), power = known[name]
+        half = pi if HALF_TURN_ON.get(name) == branch else 0.0
+        found[name] = Known(half + branch * value, (branch * a, branch * b, branch * c), power)
     if turn < 0:
         found["advance_angle"], found["return_angle"] = known["return_angle"], known["advance_angle"]
     return found

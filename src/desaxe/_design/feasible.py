@@ -40,10 +40,11 @@ def of_arrays(ec: Array, AB: Array, BC: Array) -> dict[str, Any]:
 def _intervals(ec: Array, AB: Array, BC: Array) -> Array:
     """Two (first, last) each, NaN where there is none; see `desaxe._feasibility.theta_intervals`."""
     upper, lower = sum_of_three(BC, -AB, -ec), sum_of_three(BC, -AB, ec)
+    over, under = sum_of_three(BC, AB, -ec), sum_of_three(BC, AB, ec)
     with np.errstate(invalid="ignore", divide="ignore"):
-        top, bottom = (2.0 * np.arcsin(np.sqrt(np.maximum(-m, 0.0) / (2.0 * AB))) for m in (upper, lower))
-        least = np.minimum(upper, lower)
-        free, none = least >= 0.0, (AB == 0.0) | (least < -2.0 * AB)
+        top, bottom = _gap(upper, over, AB), _gap(lower, under, AB)
+        free = np.minimum(upper, lower) >= 0.0
+        none = (AB == 0.0) | ~(np.minimum(over, under) >= 0.0)
     quarter, turn = np.pi / 2, 2.0 * np.pi
     ahead = np.stack([np.stack([quarter + top, 2.5 * np.pi - top], -1), np.full((*top.shape, 2), np.nan)], -2)
     wraps = bottom < quarter
@@ -59,6 +60,13 @@ def _intervals(ec: Array, AB: Array, BC: Array) -> Array:
     )
     whole = np.full((*top.shape, 2, 2), np.nan)
     whole[..., 0, :] = 0.0, turn
-    cases = [free, none | np.isnan(least), bottom == 0.0, top == 0.0]
+    cases = [free, none, bottom == 0.0, top == 0.0]
     found = [whole, np.full_like(whole, np.nan), ahead, behind]
     return np.select([case[..., None, None] for case in cases], found, both)
+
+
+def _gap(margin: Array, rest: Array, AB: Array) -> Array:
+    """How far from a quarter the crank must stay; see `desaxe._feasibility`."""
+    narrow = 2.0 * np.arcsin(np.sqrt(np.maximum(-margin, 0.0) / (2.0 * AB)))
+    wide = np.pi - 2.0 * np.arcsin(np.sqrt(rest / (2.0 * AB)))
+    return np.where(-margin < AB, narrow, wide)
