@@ -91,6 +91,16 @@ def test_peak_acceleration():
     )
 
 
+@pytest.mark.parametrize(("ratio", "wanted"), [(1.001, 400.0), (1.02, 400.0), (1.3, 400.0), (2.9, 2e4)])
+def test_peak_acceleration_next_to_both_change_points(ratio, wanted):
+    """A high peak is reached twice, next to either end of the family, however long the rod is there."""
+    answer = dx.synthesize(stroke=0.7, time_ratio=ratio, peak_a_C=wanted, omega0=10.0)
+    assert len(answer["solutions"]) == 2
+    for design in answer["solutions"]:
+        has(design, 0.7, ratio, 1e-8)  # of lengths rounded to doubles, so near to the limit
+        assert dx.peak("a_C", omega0=10.0, **design)["value"] == pytest.approx(wanted, rel=1e-6)
+
+
 def test_in_line():
     (design,) = dx.synthesize(stroke=0.25, time_ratio=1, BC="350 mm")["solutions"]
     assert design == {"ec": 0.0, "AB": 0.125, "BC": 0.35}

@@ -92,7 +92,8 @@ def synthesize(
     stroke       distance between the dead centres [m]
     time_ratio   the longer over the shorter stroke, from 1 to below 3
     one of       BC, AB: lengths [m]; max_pressure_angle [rad], of the rod; peak_a_C: the largest magnitude of
-                 the slider's acceleration [m/s^2] at the constant speed omega0 [rad/s]
+                 the slider's acceleration [m/s^2] at the constant speed omega0 [rad/s] (of designs whose
+                 margin is more than 1e-9 of the rod)
     slow_stroke  +1: the slider is slow on its way outward (branch 1, crank turning forwards), ec > 0;
                  -1: inward, ec < 0: the mirror image
 

@@ -1,22 +1,26 @@
 """Designs of a wanted stroke, time ratio and largest acceleration: every crossing along the family."""
 
-from math import pi, sqrt
+from math import isclose, log10, sqrt
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .._peak import peak
+from .maths import sum_of_three
 from .roots import root
 
 if TYPE_CHECKING:
     from .synthesize import Answer, Family
 
-PLACES = 401
-NEAREST = 1e-9  # to the ends of the family, at which the acceleration grows without bound
+Array = NDArray[np.float64]
+PER_DECADE = 15  # places
+NEAREST = 1e-12  # to the ends of the family, at which the acceleration grows without bound
+TURNS = 1e-9  # of the rod: lengths rounded to doubles do not tell a smaller margin
 
 
 def of_peak(family: "Family", wanted: float, omega0: float) -> "Answer":
-    """Every design at which the largest |a_C| is as wanted; the least that there is."""
+    """Every design at which the largest |a_C| is as wanted, and the least that there is."""
     from .synthesize import Answer
 
     if omega0 == 0.0:
@@ -25,15 +29,14 @@ def of_peak(family: "Family", wanted: float, omega0: float) -> "Answer":
     def height(x: Any) -> Any:
         rows = [family.design(float(at)) for at in np.atleast_1d(x)]
         lengths: dict[str, Any] = {name: np.array([row[name] for row in rows]) for name in ("ec", "AB", "BC")}
-        return peak("a_C", omega0=omega0, **lengths)["value"]
+        margin = sum_of_three(lengths["BC"], -lengths["AB"], -lengths["ec"])
+        value = peak("a_C", omega0=omega0, **lengths)["value"]
+        return np.where(margin > TURNS * lengths["BC"], value, np.inf)
 
     def at(x: float) -> float:
         return float(height(x)[0])
 
-    low = family.t**2
-    # Graded towards both ends; without an offset the rod may be as long as one likes.
-    share = 0.5 * (1.0 - np.cos(np.linspace(0.0, pi, PLACES)[1:-1]))
-    x = low + (1.0 - low) * np.clip(share, NEAREST, 1.0 - NEAREST)
+    x = _places(family.t**2)
     excess = height(x) - wanted
     found = [
         root(lambda place: at(place) - wanted, float(x[k]), float(x[k + 1]))
@@ -47,7 +50,22 @@ def of_peak(family: "Family", wanted: float, omega0: float) -> "Answer":
         least = family.stroke / 2.0 * omega0**2
     elif not found and wanted >= least:  # both crossings are next to the bottom
         found = [root(lambda place: at(place) - wanted, *ends) for ends in ((a, bottom), (bottom, b))]
+    found = [place for place in found if isclose(at(place), wanted, rel_tol=1e-6)]  # no jump to infinity
     return Answer([family.design(place) for place in found], least, np.inf)
+
+
+def _places(low: float) -> Array:
+    """Ratios of crank and rod from `low` to 1, as dense towards either end as the acceleration is steep.
+
+    Without an offset, low = 0: the rod may be as long as one likes.
+    """
+    middle = 0.5 * (1.0 - low)
+    near = NEAREST * low or NEAREST
+    up, down = (
+        np.geomspace(first, middle, max(int(PER_DECADE * log10(middle / first)), 10))
+        for first in (near, min(NEAREST, 0.1 * middle))
+    )
+    return np.concatenate([low + up[:-1], 1.0 - down[::-1]])
 
 
 def _lowest(function: Any, a: float, b: float) -> float:
