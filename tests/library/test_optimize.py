@@ -192,6 +192,31 @@ def test_pareto_front():
         assert not ((every < value * (1 - 1e-6)) & (ratios > T * (1 + 1e-6))).any()
 
 
+def test_pareto_front_of_three():
+    """What the third objective can have is not what the best of the first leaves of it."""
+    found = dx.optimize(
+        maximize=(("absmax", "a_C"), "time_ratio"), minimize="max_pressure_angle",
+        over={"ec": (0, 0.2), "BC": (0.33, 0.5)}, keep={"margin": (0.005, None)}, points=3,
+        AB=0.125, omega0=157.08, starts=1,
+    )  # fmt: skip
+    lean = found["value"]["max_pressure_angle"]
+    assert lean.min() == pytest.approx(np.arcsin(0.125 / 0.5), rel=1e-9)  # in line, with the longest rod
+    assert lean.max() > 1.3
+    assert len(lean) >= 3
+    gains = np.stack([found["value"][("absmax", "a_C")] / 1e4, found["value"]["time_ratio"], -lean], axis=1)
+    for one in gains:
+        assert not ((gains >= one).all(axis=1) & (gains > one + 1e-6).any(axis=1)).any()
+    assert f"{len(lean)} designs" in found["message"]
+
+
+def test_how_far_a_design_is_from_turning():
+    found = dx.optimize(maximize="stroke", over={"ec": (0.23, 0.25)}, AB=0.125, BC=0.35)
+    assert found["status"] == 1
+    assert "the crank turns, by 0.005 at the nearest, ec = 0.23" in found["message"]
+    near = dx.optimize(maximize=("absmax", "a_C"), over={"ec": (0, 0.25)}, keep={"margin": (1e-9, None)}, **A)
+    assert "ec = 0.224999999" in near["message"]
+
+
 @pytest.mark.parametrize(
     ("arguments", "error", "words"),
     [
@@ -206,6 +231,12 @@ def test_pareto_front():
         ({"keep": {"margin": (2, 1)}}, ValueError, r"keep: margin = \(2, 1\): the lower bound first"),
         ({"AB": None}, TypeError, "optimize: AB is missing"),
         ({"ec": 0.1}, ValueError, "ec is in over= and fixed"),
+        ({"maximize": "a_C"}, ValueError, r"did you mean \('absmax', 'a_C'\)\?"),
+        ({"maximize": ("abs", "a_C")}, ValueError, r"did you mean \('absmax', 'a_C'\)\?"),
+        ({"over": "ec"}, TypeError, "over = 'ec': a dict is wanted"),
+        ({"keep": ("margin", 0.005)}, TypeError, r"keep = \('margin', 0.005\): a dict is wanted"),
+        ({"starts": 0}, ValueError, "starts = 0: a whole number, at least 1"),
+        ({"points": 1}, ValueError, "points = 1: a whole number, at least 2"),
     ],
 )
 def test_bad_arguments(arguments, error, words):

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._peak import KINDS, peak
-from ..catalogue import quantity
+from ..catalogue import quantities, quantity
 from .closed_form import LENGTHS
 from .events_of_arrays import events_of_arrays
 from .maths import sum_of_three
@@ -46,8 +46,20 @@ def checked(measure: Any) -> Measure:
         return measure
     from difflib import get_close_matches
 
-    near = get_close_matches(measure, UNITS, 1, 0.5) if isinstance(measure, str) else []
-    hint = f"did you mean {near[0]!r}? " if near else ""
+    hint = ""
+    if isinstance(measure, (tuple, list)) and len(measure) == 2 and isinstance(measure[0], str):
+        near = get_close_matches(measure[0], KINDS, 1, 0.5)
+        hint = f"did you mean {(near[0], measure[1])!r}? " if near else ""
+    elif isinstance(measure, str):
+        near = get_close_matches(measure, UNITS, 1, 0.5)
+        peaks = [] if near else get_close_matches(measure, (row.name for row in quantities()), 1, 0.8)
+        hint = (
+            f"did you mean {near[0]!r}? "
+            if near
+            else f"did you mean ('absmax', {peaks[0]!r})? "
+            if peaks
+            else ""
+        )
     raise ValueError(
         f"{measure!r} is no quantity of a design; {hint}There are {', '.join(UNITS)} and the peaks, "
         f'such as ("absmax", "a_C"), of the kinds {", ".join(KINDS)}'

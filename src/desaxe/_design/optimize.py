@@ -33,7 +33,7 @@ def optimize(
     """The design that makes a quantity as large or as small as possible, within limits.
 
     maximize, minimize  "margin", a name of `events` such as "stroke" or "time_ratio", or a peak over the
-                        crank angle as (kind, quantity): ("absmax", "a_C"). A list of several, or both, asks
+                        crank angle as (kind, quantity): ("absmax", "a_C"). Several of them, or both, ask
                         for the Pareto front: designs of which none is better than another in everything
     over                dict parameter -> (low, high): what may vary, lengths, speed or masses
     keep                dict of the same names -> (low, high), None where there is no limit; a number is to be
@@ -72,6 +72,9 @@ def optimize(
         (0.22, {'margin': 'lower'})
     """
     check_border({}, branch)
+    for name, number, least in (("starts", starts, 1), ("points", points, 2)):
+        if not isinstance(number, int) or number < least:
+            raise ValueError(f"{name} = {number!r}: a whole number, at least {least}")
     goals = goals_of(maximize, minimize)
     space = space_of(over, fixed, branch)
     limits = limits_of(keep or {})

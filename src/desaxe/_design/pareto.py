@@ -1,7 +1,8 @@
 """The Pareto front of several objectives: one is optimised while the others are held, step by step.
 
-The first objective is optimised under bounds on each of the others (epsilon constraints), which go from what
-the optimum of the first alone leaves of them to their own best. Designs that another one beats are left out.
+The first objective is optimised under bounds on each of the others (epsilon constraints), which go from the
+worst that the optimum of another one leaves of them to their own best. Designs that another one beats are
+left out.
 """
 
 from itertools import product
@@ -20,16 +21,16 @@ def front(
     goals: list[Goal], space: Space, limits: list[Limit], starts: int, seed: int, points: int
 ) -> dict[str, Any]:
     """Designs along the front; see `optimize`."""
-    if points < 2:
-        raise ValueError(f"points = {points}: at least the two ends of the front are wanted")
     alone = [solved(goal, space, limits, starts, seed) for goal in goals]
     unbounded = [result for result in alone if result["status"] not in (FOUND, UNSURE)]
     if unbounded:
         return _none(goals, space, unbounded[0])
+    senses = np.array([goal.sense for goal in goals])
     corners = np.array([_values(goals, space, result) for result in alone])
-    steps = [np.linspace(corners[0, k], corners[k, k], points) for k in range(1, len(goals))]
-    found = [alone[0]]
-    for bounds in list(product(*steps))[1:]:
+    worst = np.min(corners * senses, axis=0) * senses
+    steps = [np.linspace(worst[k], corners[k, k], points) for k in range(1, len(goals))]
+    found = [*alone]
+    for bounds in product(*steps):
         held = [*limits]
         for goal, bound in zip(goals[1:], bounds, strict=True):
             sides = lower_limits if goal.sense > 0 else upper_limits
@@ -38,14 +39,14 @@ def front(
         if result["status"] in (FOUND, UNSURE):
             found.append(result)
     values = np.array([_values(goals, space, result) for result in found])
-    rows = _best(values * np.array([goal.sense for goal in goals]))
+    rows = _best(values * senses)
     kept = [found[row] for row in rows]
     return {
         **{name: np.array([result[name] for result in kept]) for name in space.names},
         "value": {goal.measure: values[rows, k] for k, goal in enumerate(goals)},
         "status": np.array([result["status"] for result in kept], np.int8),
         "residual": np.array([result["residual"] for result in kept]),
-        "message": f"{len(rows)} designs on the Pareto front, of {len(found)} looked for",
+        "message": f"{len(rows)} design{'s' if len(rows) > 1 else ''} on the Pareto front",
     }
 
 

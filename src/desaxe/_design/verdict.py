@@ -77,7 +77,7 @@ def _message(
     status: int, goal: Goal, design: dict[str, float], found: Found, search: Search, active: dict[Any, str]
 ) -> str:
     what = text_of(goal.measure)
-    where = ", ".join(f"{name} = {value:.6g}" for name, value in design.items())
+    where = ", ".join(f"{name} = {value:.9g}" for name, value in design.items())
     limit = "margin = BC - AB - |ec| = 0"
     if status == NONE:
         return f"no design in over= keeps all limits: {_missed(found, search)} at the nearest, {where}"
@@ -104,6 +104,10 @@ def _missed(found: Found, search: Search) -> str:
     value = search.scaled(found.z)[0][search.count :]
     worst = int(np.argmax(np.where(search.equal, np.abs(value), -value)))
     limit = search.limits[worst]
-    key = "margin" if limit.key is None else text_of(checked(limit.key))
     short = abs(float(value[worst] * search.scale[search.count + worst]))
+    if limit.key is None:  # the implied one, which is kept with a little to spare
+        return (
+            f"margin = BC - AB - |ec| misses 0, from which on the crank turns, by {short - limit.bound:.3g}"
+        )
+    key = text_of(checked(limit.key))
     return f"{key} misses its {limit.side} limit by {short:.3g}"

@@ -8,7 +8,7 @@ import numpy as np
 from .._request import as_number, check_inputs
 from ..inputs import INPUTS
 from .closed_form import LENGTHS
-from .measures import Measure, checked, text_of, unit_of
+from .measures import UNITS, Measure, checked, text_of, unit_of
 from .problem import EQUAL, LOWER, UPPER, Limit, Piece, Space
 from .sides import sides_of
 
@@ -23,15 +23,25 @@ class Goal(NamedTuple):
 def goals_of(maximize: Any, minimize: Any) -> list[Goal]:
     goals = []
     for wanted, sense in ((maximize, 1), (minimize, -1)):
-        several = wanted if isinstance(wanted, list) else [] if wanted is None else [wanted]
-        goals += [Goal(checked(measure), sense) for measure in several]
+        goals += [Goal(checked(measure), sense) for measure in _several(wanted)]
     if not goals:
         raise TypeError('optimize: say what to maximize= or to minimize=, such as ("absmax", "a_C")')
     return goals
 
 
+def _several(wanted: Any) -> list[Any]:
+    """The objectives, of one or of a list of them; a pair (kind, quantity) is one."""
+    if wanted is None:
+        return []
+    many = isinstance(wanted, tuple) and (
+        len(wanted) != 2 or wanted[0] in UNITS or not isinstance(wanted[0], str)
+    )
+    return list(wanted) if many or isinstance(wanted, list) else [wanted]
+
+
 def space_of(over: Mapping[str, Any], fixed: Mapping[str, Any], branch: int) -> Space:
     known = tuple(name for name in INPUTS if name != "theta")
+    _check_mapping("over", over, "{'ec': (0, 0.1)}")
     check_inputs("optimize", over, known)
     check_inputs("optimize", fixed, known)
     if not over:
@@ -46,6 +56,11 @@ def space_of(over: Mapping[str, Any], fixed: Mapping[str, Any], branch: int) -> 
         raise TypeError(f"optimize: {missing[0]} is missing (in over= or as a number)")
     low, high = (np.array([pair[i] for pair in ends.values()]) for i in (0, 1))
     return Space(tuple(over), low, high, numbers, branch)
+
+
+def _check_mapping(name: str, given: Any, example: str) -> None:
+    if not isinstance(given, Mapping):
+        raise TypeError(f"{name} = {given!r}: a dict is wanted, such as {example}")
 
 
 def _pair(name: str, bounds: Any) -> tuple[float, float]:
@@ -67,6 +82,7 @@ def _number(name: str, value: Any) -> float:
 
 def limits_of(keep: Mapping[Any, Any]) -> list[Limit]:
     """The limits as functions that stay positive."""
+    _check_mapping("keep", keep, "{'margin': (0.005, None)}")
     limits: list[Limit] = []
     for key, bounds in keep.items():
         if key in INPUTS:
