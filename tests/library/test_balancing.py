@@ -144,6 +144,30 @@ def test_torques_and_energy_by_sums():
     assert dx.flywheel(fluctuation=0.02, mu=0.1, **PRESS)["mean_torque"] > 0.0
 
 
+def test_extremes_between_the_steps():
+    """Refined peaks, where there are such, and the kinetic energy that goes to and fro."""
+    found = dx.flywheel(fluctuation=0.02, **PRESS)
+    for kind in ("max", "min"):
+        peak = dx.peak("T_in", kind=kind, **PRESS)
+        assert found[f"{kind}_torque"] == pytest.approx(peak["value"], rel=1e-11)
+        assert found[f"theta_{kind}_torque"] == pytest.approx(peak["theta"], abs=1e-6)
+    energy = [dx.peak("kinetic_energy", kind=kind, **PRESS)["value"] for kind in ("max", "min")]
+    assert found["energy_fluctuation"] == pytest.approx(energy[0] - energy[1], rel=1e-10)
+    # Without a load (J + M_eff) omega^2 stays the same: the extremes of M_eff are those of the speed.
+    heavy, light = (dx.peak("M_eff", kind=kind, **PRESS)["value"] for kind in ("max", "min"))
+    ratio = math.sqrt((found["inertia"] + heavy) / (found["inertia"] + light))  # fastest over slowest
+    assert 2 * (ratio - 1) / (ratio + 1) == pytest.approx(0.02, rel=1e-9)
+
+
+def test_a_mechanism_without_masses():
+    """No inertia: a load stops it or flings it round, and without a load nothing happens."""
+    lengths = {"ec": 0, "AB": 0.05, "BC": 0.2, "omega0": 100.0}
+    assert dx.flywheel(fluctuation=0.02, **lengths)["inertia"] == 0.0
+    loaded = dx.flywheel(fluctuation=0.02, F_Y=lambda theta: -10 * np.sin(theta) ** 2, **lengths)
+    assert loaded["fluctuation_without"] == math.inf
+    assert loaded["inertia"] == pytest.approx(loaded["inertia_first_order"], rel=1e-3)
+
+
 def test_bad_arguments():
     with pytest.raises(ValueError, match=r"harmonics: the crank cannot turn fully, margin = -0\.005"):
         dx.harmonics("Y", ec=0.23, AB=0.125, BC=0.35)
@@ -157,6 +181,16 @@ def test_bad_arguments():
         dx.counterweight(along="Z", **PRESS)
     with pytest.raises(ValueError, match="omega0 is missing or 0"):
         dx.counterweight(ec=0, AB=0.1, BC=0.3)
+    with pytest.raises(ValueError, match="F_Y: a function of 16384 angles gave the shape"):
+        dx.flywheel(fluctuation=0.02, F_Y=lambda theta: np.ones(3), **PRESS)
+    with pytest.raises(ValueError, match="F_Y: the function gave nan"):
+        dx.flywheel(fluctuation=0.02, F_Y=lambda theta: np.nan, **PRESS)
+    with pytest.raises(ValueError, match="fluctuation = '2 %': a number above 0"):
+        dx.flywheel(fluctuation="2 %", **PRESS)
+    with pytest.raises(ValueError, match=r"orders = 2\.5: a whole number"):
+        dx.harmonics("a_C", orders=2.5, ec=0, AB=0.1, BC=0.3, omega0=1.0)
+    with pytest.raises(ValueError, match="status is no real number"):
+        dx.harmonics("status", ec=0, AB=0.1, BC=0.3, omega0=1.0)
     with pytest.raises(ValueError, match="fluctuation = 3"):
         dx.flywheel(fluctuation=3, **PRESS)
     with pytest.raises(TypeError, match="harmonics: BC is missing"):

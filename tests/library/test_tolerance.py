@@ -106,6 +106,45 @@ def test_samples_without_a_value_are_counted():
     assert found["monte_carlo"]["infeasible"] == pytest.approx(share, abs=0.04)
 
 
+@pytest.mark.parametrize(
+    ("name", "ec", "kink"),
+    [
+        ("time_ratio", 0.0, True),
+        (("max", "a_C"), 0.0, True),
+        ("stroke", 0.0, False),
+        ("time_ratio", 0.05, False),
+    ],
+)
+def test_a_kink_has_no_second_derivative(name, ec, kink):
+    """In line the time ratio is 1 on both sides of a kink; its worst case is at the ends all the same."""
+    lengths = {"AB": 0.125, "BC": 0.35}
+    speed = {"omega0": 157.08} if isinstance(name, tuple) else {}
+    found = dx.tolerance(name, ec=(ec, 3e-3), samples=500, sobol=0, **lengths, **speed)
+    assert found["status"] == (3 if kink else 0)
+    assert np.isnan(found["second_order"]["std"]) == np.isnan(found["agreement"]["std"]) == kink
+    assert np.isfinite(found["monte_carlo"]["std"])
+    if name == "time_ratio":
+        end = dx.events(ec=ec + 3e-3, **lengths)["time_ratio"]
+        assert found["worst_case"]["upper"] == pytest.approx(end, rel=1e-12)
+        assert found["worst_case"]["lower"] == pytest.approx(
+            1.0 if kink else dx.events(ec=ec - 3e-3, **lengths)["time_ratio"], rel=1e-12
+        )
+
+
+def test_percents():
+    one, other = (
+        dx.tolerance("margin", ec=0.1, AB="50 mm", BC=rod, samples=2, sobol=0)
+        for rod in (("350 mm", "2 %"), "350 mm +- 7 mm")
+    )
+    assert one["first_order"]["std"] == pytest.approx(other["first_order"]["std"], rel=1e-12)
+
+
+def test_nothing_is_told_of_what_has_no_value():
+    found = dx.tolerance("Y", theta=math.pi / 2, ec=(0.3, 1e-3), AB=0.125, BC=0.35, sobol=8, samples=10)
+    assert (found["status"], found["monte_carlo"]["infeasible"]) == (1, 1.0)
+    assert np.isnan(found["sobol"]["ec"]["first"])
+
+
 def test_one_input_and_seeds():
     one = {"theta": 1.0, "ec": (0.1, 1e-3), "AB": 0.125, "BC": 0.35}
     first, again, other = (dx.tolerance("Y", samples=100, seed=seed, **one) for seed in (0, 0, 1))
@@ -126,6 +165,13 @@ def test_one_input_and_seeds():
         ({"AC": 1.0}, TypeError, "no input 'AC'"),
         ({"ec": [0.1, 0.2, 0.3]}, ValueError, "a pair"),
         ({"AB": np.array([0.1, 0.2])}, TypeError, "AB = .*a number, a pair"),
+        ({"ec": (0.1, math.inf)}, ValueError, "ec: a tolerance of inf; it must be finite"),
+        ({"ec": (0.1, [1])}, TypeError, "ec = .*of numbers is wanted"),
+        ({"ec": "0.1 m +- x %"}, ValueError, "ec: a tolerance of 'x %'"),
+        ({"samples": "many"}, ValueError, "samples = 'many': a whole number"),
+        ({"sobol": 4.0}, ValueError, "sobol = 4.0: a power of two"),
+        ({"seed": -1}, ValueError, "seed = -1: a whole number"),
+        ({"sigmas": math.nan}, ValueError, "sigmas = nan"),
     ],
 )
 def test_bad_arguments(arguments, error, words):

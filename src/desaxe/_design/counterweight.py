@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from .turn import Turn
+from .turn import Turn, extreme
 
 ALONG = {"both": 0.0, "Y": 1.0, "X": -1.0}
 POINTS = 8192  # among which the largest force is looked for
@@ -87,7 +87,7 @@ def _told(f: Any, b: Any, f2: Any, b2: Any, z: Any) -> dict[str, float]:
         "Y": float(abs(f + np.conj(b))),
         "largest": float(abs(f) + abs(b)),
         "second": float(abs(f2) + abs(b2)),
-        "peak": float(np.abs(z).max()),
+        "peak": extreme(np.abs(z), 1.0)[0],
     }
 
 

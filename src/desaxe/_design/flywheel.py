@@ -9,13 +9,13 @@ the mean speed being (fastest + slowest)/2. The textbook's first order, J = (max
 - mean)/(fluctuation omega0^2) at constant speed, is told beside it.
 """
 
-from math import inf, isinf, pi
+from math import inf, isinf
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from .roots import root
-from .turn import Array, Turn
+from .turn import Array, Turn, extreme
 
 POINTS = 16384
 
@@ -41,16 +41,18 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
                            friction
     theta_fastest, theta_slowest   where the crank turns fastest and slowest with it [rad]
 
-    At 16384 equal steps of the turn, integrals by the fast Fourier transform. Raises as `harmonics` does, and
-    ValueError for a crank at rest.
+    At 16384 equal steps of the turn and by parabolas between them, integrals by the fast Fourier transform.
+    Raises as `harmonics` does, and ValueError for a crank at rest.
 
         >>> import desaxe as dx
         >>> found = dx.flywheel(fluctuation=0.02, ec=0, AB=0.05, BC=0.2, omega0=100.0, m_slider=0.4)
         >>> round(found["inertia"], 5), round(found["inertia_first_order"], 5)
         (0.02604, 0.02657)
     """
-    if not 0.0 < fluctuation < 2.0:
-        raise ValueError(f"fluctuation = {fluctuation}: between 0 and 2 (the crank stops)")
+    if not (isinstance(fluctuation, (int, float)) and 0.0 < fluctuation < 2.0):
+        raise ValueError(
+            f"fluctuation = {fluctuation!r}: a number above 0 and below 2, where the crank stops"
+        )
     turn = Turn("flywheel", inputs, branch)
     speed = turn.numbers.get("omega0")
     if not speed:
@@ -58,16 +60,16 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
     told = turn.values(["T_in", "M_eff"], POINTS)
     torque = told["T_in"]
     stored = _integral(torque)
-    theta = 2.0 * pi * np.arange(POINTS) / POINTS
-    energy = float(stored.max() - stored.min())
+    energy = extreme(stored, 1.0)[0] - extreme(stored, -1.0)[0]
+    (highest, theta_highest), (lowest, theta_lowest) = (extreme(torque, sign) for sign in (1.0, -1.0))
     estimate = energy / (fluctuation * speed**2)
     result = {
         "mean_torque": float(torque.mean()),
-        "max_torque": float(torque.max()),
-        "min_torque": float(torque.min()),
-        "theta_max_torque": float(theta[np.argmax(torque)]),
-        "theta_min_torque": float(theta[np.argmin(torque)]),
-        "ripple": float(torque.max() - torque.min()),
+        "max_torque": highest,
+        "min_torque": lowest,
+        "theta_max_torque": theta_highest,
+        "theta_min_torque": theta_lowest,
+        "ripple": highest - lowest,
         "energy_fluctuation": energy,
     }
     if turn.numbers.get("mu"):
@@ -85,8 +87,8 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
         "inertia": inertia,
         "inertia_first_order": estimate,
         "fluctuation_without": without,
-        "theta_fastest": float(theta[np.argmax(speeds)]),
-        "theta_slowest": float(theta[np.argmin(speeds)]),
+        "theta_fastest": extreme(speeds, 1.0)[1],
+        "theta_slowest": extreme(speeds, -1.0)[1],
     }
 
 
@@ -114,8 +116,10 @@ class Machine(NamedTuple):
 
         def excess(energy: float) -> float:
             omega = at(energy)
-            return float(omega.max() + omega.min()) / 2.0 - self.speed
+            return (extreme(omega, 1.0)[0] + extreme(omega, -1.0)[0]) / 2.0 - self.speed
 
+        if not (J + self.effective).any():
+            return np.full_like(self.work, self.speed)  # without inertia there is nothing to store
         low = -float(self.work.min())
         if excess(low) > 0.0:
             return at(low)  # it stops, and is faster than wanted elsewhere
@@ -125,10 +129,14 @@ class Machine(NamedTuple):
         return at(root(excess, low, high))
 
     def fluctuation(self, J: float) -> float:
-        """(fastest - slowest)/mean; infinite where it stops."""
+        """(fastest - slowest)/mean; infinite where it stops, or nothing has inertia."""
+        if not self.effective.any() and not self.work.any():
+            return 0.0  # neither inertia nor load: any speed is constant
+        if J + float(self.effective.min()) <= 0.0:
+            return inf
         omega = self.speeds(J)
-        slowest, fastest = float(omega.min()), float(omega.max())
-        if slowest <= 0.0 or isinf(fastest) or J + float(self.effective.min()) <= 0.0:
+        slowest, fastest = extreme(omega, -1.0)[0], extreme(omega, 1.0)[0]
+        if float(omega.min()) <= 0.0 or slowest <= 0.0 or isinf(fastest):
             return inf
         return (fastest - slowest) / (0.5 * (fastest + slowest))
 

@@ -35,8 +35,10 @@ def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> 
         [0.0, -10.0, -2.5403]
     """
     quantity(name)
-    if orders < 0:
-        raise ValueError(f"orders = {orders}: at least 0 is wanted")
+    if name == "status":
+        raise ValueError("status is no real number")
+    if not isinstance(orders, int) or orders < 0:
+        raise ValueError(f"orders = {orders!r}: a whole number, at least 0")
     turn = Turn("harmonics", inputs, branch)
     found, error = turn.spectrum([name], 4 * (orders + 1))
     c = found[name]

@@ -1,7 +1,7 @@
 """Inputs that are not known exactly: a value and its tolerance, or a distribution."""
 
 import re
-from math import sqrt
+from math import inf, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -52,8 +52,8 @@ def read(name: str, value: Any, distribution: str, sigmas: float) -> float | Ine
     if pair is None:
         return _number(name, value)
     nominal, tolerance = pair
-    if not tolerance >= 0.0:
-        raise ValueError(f"{name}: a tolerance of {tolerance:g}; it must be at least 0")
+    if not 0.0 <= tolerance < inf:
+        raise ValueError(f"{name}: a tolerance of {tolerance:g}; it must be finite and at least 0")
     if tolerance == 0.0:
         return nominal
     if distribution == "uniform":
@@ -73,11 +73,23 @@ def _pair(name: str, value: Any) -> tuple[float, float] | None:
     if len(value) != 2:
         raise ValueError(f"{name} = {value!r}: a pair (value, tolerance) is wanted")
     nominal = _number(name, value[0])
+    if isinstance(value[1], str) and value[1].strip().endswith("%"):
+        return nominal, _percent(name, value[1]) * abs(nominal)
     if isinstance(value[1], str) or hasattr(value[1], "magnitude"):
         from ..units import in_si
 
         return nominal, float(in_si(name, value[1]))
-    return nominal, float(value[1])
+    try:
+        return nominal, float(value[1])
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} = {value!r}: a pair (value, tolerance) of numbers is wanted") from None
+
+
+def _percent(name: str, text: str) -> float:
+    try:
+        return float(text.strip().removesuffix("%")) / 100.0
+    except ValueError:
+        raise ValueError(f"{name}: a tolerance of {text!r}; percents are written as '0.5 %'") from None
 
 
 def _number(name: str, value: Any) -> float:

@@ -1,7 +1,8 @@
 """`tolerance`: how far a quantity scatters when its inputs do, told in four ways that check each other."""
 
 from collections.abc import Mapping, Sequence
-from math import sqrt
+from itertools import product
+from math import inf, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,8 +20,10 @@ BLOCK = 65536  # samples at a time
 STEP = (
     1e-3  # of a standard deviation or so: differences of exact gradients, where these are not derived again
 )
+KINK = 0.1  # of the first-order change: slopes that jump by more have no derivative
 PERCENTS = (0.135, 2.5, 50.0, 97.5, 99.865)
 BOXES = 2000  # of an enclosure
+MOST_CORNERED = 10  # inputs
 MANY, SOME = 100_000, 10_000  # samples of a quantity at a point, and of a peak
 
 
@@ -51,8 +54,8 @@ class Function(NamedTuple):
         size = len(next(iter(columns.values())))
         return np.stack([np.broadcast_to(gradient.get(p, 0.0), (size,)) for p in self.varying], -1)
 
-    def bends(self, centre: Mapping[str, Any], steps: Sequence[float]) -> tuple[Array, bool]:
-        """The second derivatives at a place, and whether all are exact."""
+    def bends(self, centre: Mapping[str, Any], steps: Array) -> tuple[Array, bool]:
+        """The second derivatives at a place, NaN where there are none, and whether all are exact."""
         n = len(self.varying)
         pairs = [(i, j) for i in range(n) for j in range(i, n)]
         bends = np.empty((n, n))
@@ -62,11 +65,21 @@ class Function(NamedTuple):
             for (i, j), name in zip(pairs, names, strict=True):
                 bends[i, j] = bends[j, i] = found[name]
             return bends, True
+        near, change = self._differences(centre, steps)
+        far, _ = self._differences(centre, 2.0 * steps)
+        # Across a kink a difference over twice the steps is half as large.
+        if (np.abs(near - far) * np.outer(steps, steps) > KINK * change).any():
+            near[:] = np.nan
+        return near, False
+
+    def _differences(self, centre: Mapping[str, Any], steps: Array) -> tuple[Array, float]:
+        """Of the exact first derivatives, over the steps; and what these change the quantity by."""
+        n = len(self.varying)
         moves = np.vstack([np.diag(steps), -np.diag(steps)])
         middle = np.array([centre[p] for p in self.varying])
         slopes = self.slopes({p: middle[i] + moves[:, i] for i, p in enumerate(self.varying)})
-        bends = (slopes[:n] - slopes[n:]) / (2.0 * np.asarray(steps))[:, None]
-        return 0.5 * (bends + bends.T), False
+        bends = (slopes[:n] - slopes[n:]) / (2.0 * steps)[:, None]
+        return 0.5 * (bends + bends.T), float(np.abs(slopes * steps).max())
 
     @property
     def state(self) -> bool:
@@ -90,8 +103,8 @@ def tolerance(
     name          a quantity at a crank angle, as for `evaluate` ("a_C", with theta=), or one of a whole
                   design: "stroke", "time_ratio", ..., or a peak such as ("absmax", "a_C")
     inputs        each a number (exact), a pair (value, tolerance), meaning value +- tolerance, the same as a
-                  text "10 mm +- 0.1 mm", or a distribution of scipy.stats, frozen. (`enclose`, other than
-                  here, takes pairs (low, high).)
+                  text "10 mm +- 0.1 mm" or "10 mm +- 1 %", or a distribution of scipy.stats, frozen.
+                  (`enclose`, other than here, takes pairs (low, high).)
     distribution  within a tolerance: "normal", the tolerance being so many `sigmas`, or "uniform"
     samples       of the Monte Carlo, by default 100000, or 10000 of a peak
     sobol         base samples of the Sobol indices, a power of two; 0 leaves them out
@@ -109,12 +122,14 @@ def tolerance(
     sobol          dict input -> dict first, total, first_error, total_error (95 %): shares of the variance
                    due to an input alone, and with its interactions (SALib)
     worst_case     dict lower, upper, guaranteed: with every input anywhere within its tolerance, by
-                   `enclose` where that can be asked (extra `rigorous`), else from the derivatives; None
-                   for distributions
+                   `enclose` where that can be asked (extra `rigorous`), else from the middle and all
+                   corners, NaN where one has no value; None for distributions
     agreement      dict of what should agree: mean and std, second order against Monte Carlo, in standard
                    errors; linearity, first against second order std, relative; contributions against Sobol's
                    first indices, the largest difference
-    status         0 ok; 1 no value at the means; 2 some samples have none
+    status         0 ok; 1 no value at the means; 2 some samples have none, and then no Sobol indices; 3 a
+                   kink at the means, such as that of |ec| at ec = 0: derivatives tell little, and of
+                   second order nothing
 
     Inputs vary independently. Sobol indices need the extra `design`. Raises as `evaluate` does.
 
@@ -123,7 +138,7 @@ def tolerance(
         >>> list(found["contributions"]), round(1e6 * found["first_order"]["std"], 1)
         (['AB', 'ec'], 64.3)
     """
-    _check(distribution, sigmas, samples, sobol)
+    _check(distribution, sigmas, samples, sobol, seed)
     check_border(inputs, branch)
     check_inputs("tolerance", inputs, tuple(INPUTS))
     given = {n: read(n, v, distribution, sigmas) for n, v in inputs.items() if v is not None}
@@ -134,7 +149,8 @@ def tolerance(
     centre = {row.name: row.mean for row in rough}
     value = float(np.reshape(function.values({n: np.array([x]) for n, x in centre.items()}), -1)[0])
     slopes = function.slopes({n: np.array([x]) for n, x in centre.items()})[0]
-    bends, exact = function.bends(centre, [STEP * row.std for row in rough])
+    bends, exact = function.bends(centre, STEP * np.array([row.std for row in rough]))
+    kink = bool(np.isnan(bends).any()) and not np.isnan(value)
     first, second, shares = _propagated(value, slopes, bends, rough)
     drawn = _monte_carlo(function, rough, samples or (MANY if function.at_point else SOME), seed)
     indices = _sobol(function, rough, sobol, seed) if sobol else None
@@ -148,19 +164,21 @@ def tolerance(
         "sobol": indices,
         "worst_case": _worst_case(function, value, slopes, rough),
         "agreement": _agreement(first, second, drawn, shares, indices),
-        "status": 1 if np.isnan(value) else 2 if drawn["infeasible"] else 0,
+        "status": 1 if np.isnan(value) else 2 if drawn["infeasible"] else 3 if kink else 0,
     }
 
 
-def _check(distribution: str, sigmas: float, samples: int | None, sobol: int) -> None:
+def _check(distribution: str, sigmas: Any, samples: Any, sobol: Any, seed: Any) -> None:
     if distribution not in DISTRIBUTIONS:
         raise ValueError(f"distribution = {distribution!r}: it is one of {', '.join(DISTRIBUTIONS)}")
-    if not sigmas > 0.0:
-        raise ValueError(f"sigmas = {sigmas}: more than 0 is wanted")
-    if samples is not None and samples < 2:
-        raise ValueError(f"samples = {samples}: at least 2 are wanted")
-    if sobol < 0 or sobol & (sobol - 1):
-        raise ValueError(f"sobol = {sobol}: a power of two is wanted, or 0")
+    if not (isinstance(sigmas, (int, float)) and 0.0 < sigmas < inf):
+        raise ValueError(f"sigmas = {sigmas!r}: a finite number above 0 is wanted")
+    if samples is not None and (not isinstance(samples, int) or samples < 2):
+        raise ValueError(f"samples = {samples!r}: a whole number, at least 2")
+    if not isinstance(sobol, int) or sobol < 0 or sobol & (sobol - 1):
+        raise ValueError(f"sobol = {sobol!r}: a power of two is wanted, or 0")
+    if not isinstance(seed, int) or seed < 0:
+        raise ValueError(f"seed = {seed!r}: a whole number, at least 0")
 
 
 def _function(name: Any, given: Mapping[str, Any], branch: int) -> Function:
@@ -240,14 +258,14 @@ def _sobol(function: Function, rough: Sequence[Inexact], count: int, seed: int) 
         from SALib.analyze import sobol as analyse
         from SALib.sample import sobol as sample
     names = [row.name for row in rough]
-    if len(names) == 1:
-        return {names[0]: {"first": 1.0, "total": 1.0, "first_error": 0.0, "total_error": 0.0}}
     problem = {"num_vars": len(names), "names": names, "bounds": [[0.0, 1.0]] * len(names)}
     shares = sample.sample(problem, count, calc_second_order=False, seed=seed)
     shares = np.clip(shares, 1e-12, 1.0 - 1e-12)
     values = function.values({row.name: row.at(shares[:, i]) for i, row in enumerate(rough)})
     if not np.isfinite(values).all():
         return {n: dict.fromkeys(("first", "total", "first_error", "total_error"), np.nan) for n in names}
+    if len(names) == 1:
+        return {names[0]: {"first": 1.0, "total": 1.0, "first_error": 0.0, "total_error": 0.0}}
     centred = (values - values.mean()) / (values.std() or 1.0)
     found = analyse.analyze(problem, centred, calc_second_order=False, seed=seed)
     keys = {"first": "S1", "total": "ST", "first_error": "S1_conf", "total_error": "ST_conf"}
@@ -255,6 +273,7 @@ def _sobol(function: Function, rough: Sequence[Inexact], count: int, seed: int) 
 
 
 def _worst_case(function: Function, value: float, slopes: Array, rough: Sequence[Inexact]) -> Any:
+    """How far it goes within all tolerances; see `tolerance`."""
     if any(row.tolerance is None for row in rough):
         return None
     if function.at_point:
@@ -265,8 +284,16 @@ def _worst_case(function: Function, value: float, slopes: Array, rough: Sequence
         found = _enclosed(str(function.measure), {**function.fixed, **ranges}, function.branch)
         if found is not None:
             return {"lower": found["lower"], "upper": found["upper"], "guaranteed": True}
-    width = float(np.abs(slopes) @ np.array([row.tolerance for row in rough]))
-    return {"lower": value - width, "upper": value + width, "guaranteed": False}
+    found = np.append(function.values(_corners(rough, slopes)), value)
+    return {"lower": float(found.min()), "upper": float(found.max()), "guaranteed": False}
+
+
+def _corners(rough: Sequence[Inexact], slopes: Array) -> dict[str, Array]:
+    """Every input at either end of its tolerance; of very many inputs only where the derivatives point."""
+    sides = np.array(list(product((-1.0, 1.0), repeat=len(rough)))) if len(rough) <= MOST_CORNERED else None
+    if sides is None:
+        sides = np.sign(slopes) * np.array([[-1.0], [1.0]])
+    return {row.name: row.mean + sides[:, i] * float(row.tolerance or 0) for i, row in enumerate(rough)}
 
 
 def _enclosed(name: str, ranges: Mapping[str, Any], branch: int) -> dict[str, Any] | None:

@@ -42,9 +42,7 @@ class Turn:
     def values(self, names: Sequence[str], points: int, **other: float) -> dict[str, Array]:
         """The quantities at `points` equal steps from theta = 0; `other` inputs replace those given."""
         theta = 2.0 * pi * np.arange(points) / points
-        loads = {
-            n: np.broadcast_to(np.asarray(f(theta), float), theta.shape) for n, f in self.functions.items()
-        }
+        loads = {name: _loads(name, function, theta) for name, function in self.functions.items()}
         inputs: dict[str, Any] = {**self.numbers, **loads, **other}
         found = evaluate([*names, "status"], theta=theta, branch=self.branch, **inputs)
         bad = ~np.isfinite([found[name] for name in names]).all(axis=0)
@@ -74,6 +72,26 @@ class Turn:
             if error <= CONVERGED * size or points >= MOST:
                 return now, max(error, float(np.finfo(float).eps) * size)
             before, points = now, 2 * points
+
+
+def _loads(name: str, function: Callable[[Array], Any], theta: Array) -> Array:
+    """A load at these angles; an error that names it where it gives something else."""
+    found = np.asarray(function(theta), float)
+    if found.shape not in ((), theta.shape):
+        raise ValueError(f"{name}: a function of {theta.shape[0]} angles gave the shape {found.shape}")
+    if not np.isfinite(found).all():
+        raise ValueError(f"{name}: the function gave {found[~np.isfinite(found)].flat[0]}; it must be finite")
+    return np.broadcast_to(found, theta.shape)
+
+
+def extreme(values: Array, sign: float) -> tuple[float, float]:
+    """The largest (sign 1) or smallest (-1) value over a turn and its angle, by a parabola."""
+    k = int(np.argmax(sign * values))
+    before, top, after = (float(values[(k + i) % values.size]) for i in (-1, 0, 1))
+    bend = before - 2.0 * top + after
+    shift = 0.5 * (before - after) / bend if bend else 0.0
+    theta = 2.0 * pi * (k + shift) / values.size
+    return top - 0.25 * (before - after) * shift, theta % (2.0 * pi)
 
 
 def _number(caller: str, name: str, value: Any) -> float:
