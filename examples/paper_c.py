@@ -64,7 +64,7 @@ def draw(number, ax=None):
     axes.set(xlabel="t [s]", ylabel=f"{name} [{UNITS[name]}]", xlim=(0.0, None))
     axes.set_title(f"Paper C, figure {number}: {title}", loc="left", fontsize="medium")
     axes.grid(True, color="0.9")
-    axes.legend(framealpha=0.9)
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2, ncols=2, frameon=False)
     return axes
 
 

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 SIZE = (7.6, 5.2)  # inches
 LEVELS = 12
 GROWS = 1.0  # what lies further from most values than their range grows without bound
+LONG, APART = 0.2, 0.08  # shares of the axes: a line that is labelled, its label from others
 HATCH, SHADE, LINE = "////", "0.93", "0.25"
 FEASIBLE = (0, 2)  # status: ok, and at a change point
 GEOMETRIC = (0, 1, 2)  # what the lengths alone decide
@@ -46,7 +47,7 @@ def design_map(
     levels, extend = _levels(values)
     drawn = axes.contourf(across, up, _widened(values), levels, extend=extend, cmap="viridis")
     lines = axes.contour(across, up, _widened(values), levels, colors="w", linewidths=0.6)
-    axes.clabel(lines, lines.levels[::2], fontsize=7)
+    _label(axes, lines, across, up)
     _hatch(axes, across, up, edge)
     axes.figure.colorbar(drawn, ax=axes, label=label_of(array))
     finish_axis(axes.xaxis, array[x])
@@ -113,6 +114,24 @@ def _widened(values: NDArray[np.float64]) -> NDArray[np.float64]:
             beside[tuple(edge)] = np.nan
             wide = np.where(np.isnan(wide), beside, wide)
     return wide
+
+
+def _label(axes: Any, lines: Any, across: Any, up: Any) -> None:
+    """Every second line that is long enough gets its level, if there is room for it."""
+    from matplotlib.patheffects import withStroke
+
+    size = np.array([np.ptp(across) or 1.0, np.ptp(up) or 1.0])
+    taken: list[NDArray[np.float64]] = []
+    for pieces in lines.allsegs[::2]:
+        far = [np.append(0.0, np.cumsum(np.linalg.norm(np.diff(p / size, axis=0), axis=1))) for p in pieces]
+        if not pieces or max(path[-1] for path in far) < LONG:
+            continue
+        best = max(range(len(pieces)), key=lambda k: far[k][-1])
+        middle = pieces[best][np.searchsorted(far[best], 0.5 * far[best][-1])]
+        if all(np.linalg.norm((middle - other) / size) > APART for other in taken):
+            taken.append(middle)
+    for text in axes.clabel(lines, manual=[tuple(place) for place in taken], fontsize=7) if taken else ():
+        text.set_path_effects([withStroke(linewidth=1.5, foreground="0.2")])
 
 
 def _hatch(axes: Any, across: Any, up: Any, edge: NDArray[np.float64]) -> None:

@@ -54,4 +54,6 @@ def panels(
         if place < len(arrays) - 1:
             axis.set_xlabel("")
         drawn[str(array.name)] = lines
+    if ax is None:
+        figure.align_ylabels(axes)
     return drawn

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 BLUE, ORANGE = "#0072B2", "#D55E00"  # of Okabe and Ito, told apart by the colour-blind
 MOST_IN_LEGEND = 10  # curves; more get a colour bar
+BOUNDED = 2.5  # of the range of curves without gaps: others that stay within that are shown whole
 WIDE = 58  # letters of a label in one line
 TITLE = 80  # and of a title
 
@@ -77,21 +78,19 @@ def shown(array: "xr.DataArray") -> NDArray[np.float64]:
 def worth_showing(curves: Sequence[NDArray[np.float64]]) -> tuple[float, float] | None:
     """Where curves with gaps may grow without bound, the range to show; None where there is no gap.
 
-    It is that of the curves without gaps. Where each has some, it is that of most values, unless
-    this is nearly the range of all.
+    It is that of the curves without gaps. Where each has some, it is that of most values. If this is
+    nearly the range of all, nothing is cut.
     """
     whole = [values for values in curves if np.isfinite(values).all()]
-    if len(whole) == len(curves):
+    every = np.concatenate([values[np.isfinite(values)] for values in curves])
+    if len(whole) == len(curves) or not every.size:
         return None
     if whole:
         low, high = min(v.min() for v in whole), max(v.max() for v in whole)
     else:
-        every = np.concatenate([values[np.isfinite(values)] for values in curves])
-        if not every.size:
-            return None
         low, high = np.percentile(every, [5.0, 95.0])
-        if np.ptp(every) <= 2.0 * (high - low):
-            return None
+    if np.ptp(every) <= BOUNDED * (high - low):
+        return None
     room = 0.25 * (high - low) or 1.0
     return float(low - room), float(high + room)
 

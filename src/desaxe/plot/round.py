@@ -80,6 +80,8 @@ def _finish(axes: Any, array: "xr.DataArray", lines: "list[Line2D]") -> None:
         axes.plot(np.linspace(0.0, 2.0 * np.pi, 361), np.zeros(361), color="0.35", linewidth=1.0, zorder=1)
     axes.yaxis.set_major_locator(MaxNLocator(5))
     axes.set_xlabel(f"{label_of(array)}\nover the {label_of(array['theta'])}", labelpad=12)
+    for text in axes.yaxis.get_ticklabels():
+        text.set_bbox({"facecolor": "w", "edgecolor": "none", "alpha": 0.75, "pad": 0.8})
     axes.grid(True, color="0.9", linewidth=0.8)
     axes.set_axisbelow(True)
     axes.spines["polar"].set_visible(False)

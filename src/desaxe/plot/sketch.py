@@ -52,9 +52,15 @@ class Sketch:
         self.pins.set_data(points[:, 0], points[:, 1])
         self.slider.set_xy((-ec - BLOCK[0] * AB, Y - BLOCK[1] * AB))
         self.slider.set_visible(isfinite(Y))
-        along = np.array([sin(angle), cos(angle)])
-        beside: Any = (-13.0 * along, 13.0 * along, (0.0, 10.0 * self.branch))  # where no link is, in points
-        for text, place, offset in zip(self.names, points, beside, strict=True):
+        left = -1.0 if sin(angle) >= 0.0 else 1.0  # where the crank does not point to
+        edge = -ec + (BLOCK[0] * AB if pin[0] < -ec else -BLOCK[0] * AB), Y  # of the guide, away from the rod
+        anchors = (points[0], pin, edge)
+        beside: Any = (
+            (12.0 * left, 3.0),
+            (-12.0 * left, 0.0),
+            (9.0 if pin[0] < -ec else -9.0, 0.0),
+        )  # points
+        for text, place, offset in zip(self.names, anchors, beside, strict=True):
             text.xy = tuple(place)
             text.set_position(tuple(offset))
             text.set_visible(isfinite(place[1]))
