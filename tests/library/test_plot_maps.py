@@ -106,3 +106,14 @@ def test_complaints(plane, options, words):
         design_map(plane, **options)
     with pytest.raises(ValueError, match="stroke has no dimension"):
         design_map(plane.isel(ec=0), "stroke")
+
+
+def test_labels_of_levels_do_not_crowd():
+    """Next to a limit angle all levels meet."""
+    theta, ec = np.linspace(0, 2 * np.pi, 361), np.linspace(-0.3, 0.3, 61)
+    grid = dx.grid("a_C", theta=theta, ec=ec, AB=0.125, BC=0.35, omega0=157.08)
+    axes = dx.plot.design_map(grid, "a_C").axes
+    places = np.array([text.get_position() for text in axes.texts]) / [360.0, 0.6]
+    assert len(places) > 3
+    apart = np.linalg.norm(places[:, None] - places[None], axis=-1)
+    assert apart[np.triu_indices(len(places), 1)].min() > 0.07

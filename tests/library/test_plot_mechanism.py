@@ -117,3 +117,11 @@ def test_complaints(tmp_path):
     with pytest.raises(ValueError, match=r"written as \.gif or \.html"):
         save(movie, tmp_path / "a.xyz")
     save(movie, tmp_path / "a.gif", dpi=30)
+
+
+def test_names_of_joints_are_beside_the_links():
+    """Crank and rod in line: a name along them would be on the rod."""
+    sketch = dx.plot.mechanism(theta=0.0, ec=0.0, AB=0.125, BC=0.35)
+    for name in sketch.names:
+        across, up = name.get_position()
+        assert abs(across) > 2 * abs(up)

@@ -131,3 +131,22 @@ def test_missing_extra(monkeypatch, name, call):
         monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(ImportError, match=rf"plot\.{name} needs matplotlib.*'desaxe\[plot\]'"):
         call()
+
+
+def test_labels_of_panels_stand_in_one_column():
+    grid = dx.grid(["phi", "a_C"], theta=np.linspace(0, 6, 61), ec=0.1, AB=0.125, BC=0.35, omega0=157.08)
+    lines = dx.plot.panels(grid)
+    figure = lines["phi"][0].figure
+    figure.draw_without_rendering()
+    left = {round(line[0].axes.yaxis.label.get_window_extent().x1) for line in lines.values()}
+    assert len(left) == 1
+
+
+def test_a_bounded_curve_with_gaps_is_shown_whole():
+    """phi reaches pi/2 where the crank is stuck, and is bounded; the acceleration next to it is not."""
+    theta = np.linspace(0, 2 * np.pi, 721)
+    grid = dx.grid(["phi", "a_C"], theta=theta, ec=[0.0, 0.23], AB=0.125, BC=0.35, omega0=157.08)
+    for name, cut in (("phi", False), ("a_C", True)):
+        low, high = dx.plot.curves(grid, name)[0].axes.get_ylim()
+        values = grid[name].values
+        assert (np.nanmax(values) > high or np.nanmin(values) < low) == cut

@@ -284,8 +284,8 @@ def _worst_case(function: Function, value: float, slopes: Array, rough: Sequence
         found = _enclosed(str(function.measure), {**function.fixed, **ranges}, function.branch)
         if found is not None:
             return {"lower": found["lower"], "upper": found["upper"], "guaranteed": True}
-    found = np.append(function.values(_corners(rough, slopes)), value)
-    return {"lower": float(found.min()), "upper": float(found.max()), "guaranteed": False}
+    every = np.append(function.values(_corners(rough, slopes)), value)
+    return {"lower": float(every.min()), "upper": float(every.max()), "guaranteed": False}
 
 
 def _corners(rough: Sequence[Inexact], slopes: Array) -> dict[str, Array]:

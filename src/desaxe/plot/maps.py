@@ -140,10 +140,10 @@ def _hatch(axes: Any, across: Any, up: Any, edge: NDArray[np.float64]) -> None:
     if not (edge > 0.0).any():
         return
     top = float(edge.max()) + 1.0
-    region = axes.contourf(across, up, edge, [0.0, top], colors=[SHADE], hatches=[HATCH])
+    region = axes.contourf(across, up, edge, [0.0, top], colors=[SHADE], hatches=[HATCH], zorder=2.5)
     region.set_edgecolor("0.6")
     region.set_linewidth(0.0)
     if (edge <= 0.0).any():
-        axes.contour(across, up, edge, [0.0], colors=LINE, linewidths=1.2)
+        axes.contour(across, up, edge, [0.0], colors=LINE, linewidths=1.2, zorder=3)
     patch = Patch(facecolor=SHADE, edgecolor="0.6", hatch=HATCH, label="infeasible")
     axes.legend(handles=[patch], loc="best", framealpha=1.0)
