@@ -41,7 +41,10 @@ def test_labels(plane):
         "units": "m/s^2",
         "long_name": "largest magnitude over a turn: " + dx.quantities()["a_C"].meaning,
     }
-    assert plane.stroke_wrt_BC.attrs["units"] == "m/(m)"
+    assert plane.stroke_wrt_BC.attrs["units"] == "1"
+    assert plane.max_pressure_angle_wrt_ec.attrs["units"] == "rad/m"
+    assert plane.absmax_a_C_wrt_ec.attrs["units"] == "1/s^2"
+    assert plane.absmax_a_C_wrt_omega0.attrs["units"] == dx.quantities()["a_C_wrt_omega0"].unit
     assert plane.status.dtype == np.int8
     assert len(plane.kind.attrs["flag_values"]) == len(plane.kind.attrs["flag_meanings"].split()) == 5
     assert plane.AB.attrs["units"] == "m"

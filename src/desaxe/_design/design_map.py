@@ -11,6 +11,7 @@ from .._request import check_border, check_inputs
 from ..catalogue import quantity
 from ..extras import needed
 from ..inputs import INPUTS
+from ..names import sensitivity
 from .closed_form import LENGTHS
 from .feasible import KINDS, of_arrays
 from .measures import Measure, checked, measured, unit_of
@@ -60,7 +61,7 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
         variables[name] = (dimensions, np.reshape(found.value, shape), attributes)
         for p, slope in found.gradient.items() if derivatives else ():
             told = {
-                "units": f"{unit_of(measure)}/({INPUTS[p].unit})",
+                "units": _slope_unit(measure, p),
                 "long_name": f"{_meaning(measure)}, by {p}",
             }
             variables[f"{name}_wrt_{p}"] = (
@@ -103,6 +104,19 @@ def _feasible(designs: dict[str, Any], shape: tuple[int, ...], dimensions: list[
         }
         variables[name] = (dimensions, np.asarray(codes, np.int8).reshape(shape), attributes)
     return variables
+
+
+def _slope_unit(measure: Measure, parameter: str) -> str:
+    """The unit of a derivative, in its simplest form where it has a catalogued one or is a plain number."""
+    if not isinstance(measure, str):
+        try:
+            return quantity(sensitivity(measure[1], parameter)).unit
+        except ValueError:
+            pass
+    unit, by = unit_of(measure), INPUTS[parameter].unit
+    if unit == by:
+        return "1"
+    return f"{unit}/({by})" if "/" in by or "*" in by else f"{unit}/{by}"
 
 
 def _meaning(measure: Measure) -> str:
