@@ -171,9 +171,21 @@ def test_a_gap_narrower_than_a_sample_is_no_line(visit, one_design):
 def test_a_curve_is_where_evaluate_has_a_value(ec, standing):
     lengths = {**design(standing), "ec": ec}
     curve = standing.evaluate("(d) => desaxe.curve('V_C', d)", lengths)
-    values = [dx.evaluate("V_C", theta=theta, **lengths) for theta in curve["theta"]]
-    assert [v is not None for v in curve["value"]] == [math.isfinite(v) for v in values]
+    told = [
+        (value is not None, math.isfinite(dx.evaluate("V_C", theta=theta, **lengths)))
+        for theta, value in zip(curve["theta"], curve["value"], strict=True)
+        if not next_to_a_limit(theta, lengths)
+    ]
+    assert len(told) >= len(curve["theta"]) - 4
+    assert [ours for ours, _ in told] == [python for _, python in told]
     assert curve["theta"] == sorted(curve["theta"])
+
+
+def next_to_a_limit(theta, lengths):
+    """Whether it cannot be assembled a few doubles away: there the page, unlike Python, may not know."""
+    away = 4 * math.ulp(theta)
+    near = (dx.evaluate("status", theta=angle, **lengths) for angle in (theta - away, theta + away))
+    return len(set(near)) > 1
 
 
 def test_a_crank_that_stalls(visit, one_design):

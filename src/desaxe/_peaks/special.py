@@ -142,7 +142,7 @@ def complete(
     rows = np.arange(designs.size)
     swept = designs.values((name, "status"), np.repeat(rows, nodes.shape[1]), nodes.reshape(-1))
     value, status = (swept[n].reshape(nodes.shape) for n in (name, "status"))
-    jams, turns = _at_brinks(name, kind, designs, nodes, status, found)
+    jams, turns = _at_brinks(name, kind, designs, nodes, swept, found)
     found.status[:] = _status(status)
     _mark_limits(kind, found, value, nodes, ends)
     turns |= _turn(designs, found, nodes, value)
@@ -161,26 +161,28 @@ def score(kind: str, value: Array) -> Array:
 
 
 def _at_brinks(
-    name: str, kind: str, designs: Designs, nodes: Array, status: NDArray[np.int8], found: Found
+    name: str, kind: str, designs: Designs, nodes: Array, swept: dict[str, Any], found: Found
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Let the last angles before friction leaves no balance of forces, or two, take part.
 
     Which designs have their extremum where it jams, and which at either.
     """
+    value, status = (swept[n].reshape(nodes.shape) for n in (name, "status"))
     fine, bad = status == 0, (status == JAMS) | (status == TWO_BALANCES)
     rows, columns = np.nonzero((fine[:, :-1] & bad[:, 1:]) | (bad[:, :-1] & fine[:, 1:]))
     jams, turns = np.zeros(designs.size, np.bool_), np.zeros(designs.size, np.bool_)
     if not rows.size:
         return jams, turns
     forth = fine[rows, columns]
-    inside = np.where(forth, nodes[rows, columns], nodes[rows, columns + 1])
-    beyond = np.where(forth, nodes[rows, columns + 1], nodes[rows, columns])
+    here, there = (rows, columns + np.where(forth, 0, 1)), (rows, columns + np.where(forth, 1, 0))
+    inside, beyond, values, codes = nodes[here], nodes[there], value[here], status[there]
     for _ in range(60):
         middle = 0.5 * (inside + beyond)
-        balanced = designs.values(("status",), rows, middle)["status"] == 0
+        # Both of one call: at the brink rounding decides, and another program may round in another way.
+        at = designs.values((name, "status"), rows, middle)
+        balanced = at["status"] == 0
         inside, beyond = np.where(balanced, middle, inside), np.where(balanced, beyond, middle)
-    codes = designs.values(("status",), rows, beyond)["status"]
-    values = designs.values((name,), rows, inside)[name]
+        values, codes = np.where(balanced, at[name], values), np.where(balanced, codes, at["status"])
     for row, theta, value, code in zip(rows, inside, values, codes, strict=True):
         if score(kind, value) >= score(kind, found.value[row]):
             found.value[row], found.theta[row] = value, theta
