@@ -421,7 +421,8 @@ def _scene(options: argparse.Namespace) -> int:
 # ---- explore -------------------------------------------------------------------------------------
 
 _EXPLORE = """\
-One HTML file that needs no network: open it in a browser, or send it to somebody. Needs the extra `explore`.
+One HTML file that needs no network: open it in a browser, or send it to somebody.
+Needs the extra `explore`.
 
 examples:
   desaxe explore examples/compactor.toml
