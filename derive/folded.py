@@ -7,8 +7,12 @@ difference of large terms on the way back, and so are its derivatives. From the 
 
 which keeps every digit there; and Y itself, with the derivatives of phi, gives its derivatives:
 Y' = -branch (AB/S)(ec cos + Y sin) where Y is the small one, -branch (AB/S)(u cos + branch S sin) where u may
-be, and Y'' = -branch (phi' Y + u phi''), which is as short as any other form and cancels nowhere that the
-others do not.
+be, and Y'' = -branch (phi' Y + u phi''), which cancels nowhere that other forms do not.
+
+In a roomy design nothing cancels by much, and the shortest form will do. With the crank pin at
+(X, Z) = AB (cos, sin) and the area A = X u, whose derivative is A' = X^2 - Z u: m = A/S is -dS/dtheta, and
+
+    Y' = -(Z + branch m),      Y'' = -(X + branch (A' + m^2)/S).
 """
 
 from functools import cache
@@ -37,13 +41,26 @@ lever_X, lever_Y = sp.symbols("lever_X lever_Y", real=True)
 FOLDED_AREA = margin_area - 2 * ec_out * crank_drop
 LEVERS = (ec, slider), (u, branch / r)  # where folded, elsewhere
 
+pin_along, pin_across = sp.symbols("pin_along pin_across", real=True)
+pin_area, pin_area_rate, height_drop = sp.symbols("pin_area pin_area_rate height_drop", real=True)
+ROOMY = {
+    pin_along: AB * cos_theta,
+    pin_across: AB * sin_theta,
+    pin_area: pin_along * u,
+    pin_area_rate: pin_along**2 - pin_across * u,
+    height_drop: pin_area * r,
+}
+ROOMY_RATES = {
+    1: -(pin_across + branch * height_drop),
+    2: -(pin_along + branch * (pin_area_rate + height_drop**2) * r),
+}
+
 
 def slider_rate(order: int, straight: sp.Expr) -> sp.Expr:
     """The `order`-th derivative of Y by theta; `straight` is that of AB cos + branch S."""
     if order not in slider_rates():
         return straight
-    through_Y = slider_rates()[order]
-    return where_close(through_Y, straight) if order == 3 else through_Y
+    return where_close(slider_rates()[order], ROOMY_RATES.get(order, straight))
 
 
 @cache
@@ -62,6 +79,11 @@ def slider_rates() -> dict[int, sp.Expr]:
         for levers in LEVERS:
             by_levers = form.subs(rate, rates[1]).subs(dict(zip((lever_X, lever_Y), levers, strict=True)))
             _prove_rate(order, by_levers - textbook)
+        if order in ROOMY_RATES:
+            written = ROOMY_RATES[order]
+            for name, form in reversed(ROOMY.items()):
+                written = written.subs(name, form)
+            _prove_rate(order, written - textbook)
     return rates
 
 

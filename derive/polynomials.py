@@ -47,6 +47,7 @@ def _trigonometry(turns: int, parts: int, terms: int, digits: int) -> Trigonomet
             limit=float(mp.floor(2**turns * mp.pi / 2)),
             two_over_pi=float(2 / mp.pi),
             pi_half=_parts(mp.pi / 2, turns, parts, digits),
+            pi_half_words=_parts(mp.pi / 2, 0, 2, digits),
             sine=_rounded(_minimax(_sine_rest, lambda z: mp.sin(mp.sqrt(z)) / (mp.sqrt(z) * z), terms)),
             cosine=_rounded(_minimax(_cosine_rest, lambda z: mp.cos(mp.sqrt(z)) / z**2, terms)),
         )

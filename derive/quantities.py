@@ -9,7 +9,7 @@ from itertools import pairwise
 import sympy as sp
 
 from .dynamics import FORCES, define_dynamics, prove, resolve_ratio
-from .folded import FOLDED_AREA, folded, folded_area, prove_folded
+from .folded import FOLDED_AREA, ROOMY, folded, folded_area, prove_folded
 from .geometry import POSITION, resolve_geometry
 from .loop import AB, BC, branch, ec, r, theta, u
 from .motion import alpha, define_law, define_speed_by_alpha, omega, omega2, time_derivative, turn
@@ -147,7 +147,8 @@ def _define_rod(sheet: Sheet) -> None:
         unit=LENGTH,
         meaning="BC - |u|, at least what rounding may take from it",
     )
-    sheet.define("D", HEIGHT_AREA, unit=Unit(m=2), meaning="BC^2 - u^2", source="B (7)")
+    around = (BC - symbol("u_straight")) * (BC + symbol("u_straight"))
+    sheet.define("D", where_close(HEIGHT_AREA, around), unit=Unit(m=2), meaning="BC^2 - u^2", source="B (7)")
     sheet.define("S", sp.sqrt(D), unit=LENGTH, meaning="BC cos(phi), the rod's height", source="B (7)")
     sheet.define("inv_S", 1 / S, unit=Unit(m=-1), meaning="1 / S")
     beyond = sheet.define("pin_out", AB_out + out)  # exact where they nearly cancel
@@ -155,6 +156,8 @@ def _define_rod(sheet: Sheet) -> None:
         "u", where_close(select(near_quarter, pin_side * (beyond + crank_drop), u_straight), u_straight),
         unit=LENGTH, source="A (6)", meaning="BC sin(phi), crank pin from the slider axis",
     )  # fmt: skip
+    for name, form in ROOMY.items():
+        sheet.define(name.name, form)
     sheet.define("margin_area", MARGIN_AREA, unit=Unit(m=2), meaning="m n = BC^2 - (AB + sigma ec)^2")
     sheet.define("crank_ratio", AB * r, unit=NONE, meaning="AB / S")
     sheet.define("offset_ratio", ec * r, unit=NONE, meaning="ec / S")

@@ -229,4 +229,5 @@ _NUMBERS: dict[str, Callable[..., Any]] = {
     "mul_add": lambda a, b, c: _product(a, b) + c,
     "rounding": lambda a: arb(0),
     "turned": _turned,
+    "turned_cosine": lambda sine, cosine, quarters: _turned(cosine, -sine, quarters),
 }

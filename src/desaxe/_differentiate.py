@@ -116,6 +116,10 @@ def _same(chain: Chain, line: Line) -> Step:
     return line.op, tuple(map(chain.slope, line.args))
 
 
+def _turned(chain: Chain, line: Line) -> Step:
+    return line.op, (*map(chain.slope, line.args[:2]), line.args[2])
+
+
 RULES: Mapping[str, Rule] = {
     **dict.fromkeys(("copy", "add", "sub", "neg"), _same),
     "mul": _mul,
@@ -130,7 +134,8 @@ RULES: Mapping[str, Rule] = {
     "two_sum_error": lambda chain, line: ("copy", (0.0,)),
     "two_product_error": lambda chain, line: ("copy", (0.0,)),
     "rounding": lambda chain, line: ("copy", (0.0,)),
-    "turned": lambda chain, line: ("turned", (*map(chain.slope, line.args[:2]), line.args[2])),
+    "turned": _turned,
+    "turned_cosine": _turned,
     # The sign of the second is constant but for jumps; the balls know which it is.
     "copysign": lambda chain, line: ("copysign", (chain.slope(line.args[0]), line.args[1])),
 }

@@ -38,6 +38,7 @@ TEXT = '''def coverage(x, y, z):
     added = mul_add(x + y, -z, x - y) + mul_add(x, y, mul_add(-x, y, z))
     lost_at_most = x + y + rounding(x) * 0.5
     quarter_turns = turned(x, y, floor(z)) + turned(x, y, -1.0)
+    their_cosine = turned_cosine(x, y, floor(z)) + turned_cosine(x, y, 1.0)
     least = x if x < y else y
     chosen = x if x < y else (y if y <= z else z)
     chosen_early = (x if x < y else y) - (y if z < y else z)

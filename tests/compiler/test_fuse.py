@@ -20,13 +20,26 @@ def fused(*lines, outputs=("out",), notes=None):
     [
         ("add", ("p", "z"), [("mul_add", ("x", "y", "z"))]),
         ("add", ("z", "p"), [("mul_add", ("x", "y", "z"))]),
-        ("sub", ("p", "z"), [("neg", ("z",)), ("mul_add", ("x", "y", "out_minus"))]),
-        ("sub", ("z", "p"), [("neg", ("x",)), ("mul_add", ("out_minus", "y", "z"))]),
+        ("sub", ("p", "z"), [("neg", ("z",)), ("mul_add", ("x", "y", "out_term"))]),
+        ("sub", ("z", "p"), [("neg", ("x",)), ("mul_add", ("out_factor", "y", "z"))]),
         ("sub", ("p", 2.0), [("mul_add", ("x", "y", -2.0))]),
     ],
 )
 def test_a_product_goes_into_its_sum(op, args, wanted):
     assert [(line.op, line.args) for line in fused(Line("out", op, args)).lines] == wanted
+
+
+@pytest.mark.parametrize(
+    ("op", "args", "wanted"),
+    [
+        ("add", ("n", "z"), [("neg", ("x",)), ("mul_add", ("out_factor", "y", "z"))]),
+        ("sub", ("n", "z"), [("neg", ("x",)), ("neg", ("z",)), ("mul_add", ("out_factor", "y", "out_term"))]),
+        ("sub", ("z", "n"), [("mul_add", ("x", "y", "z"))]),
+    ],
+)
+def test_minus_a_product_goes_into_its_sum(op, args, wanted):
+    lines = fused(Line("n", "neg", ("p",)), Line("out", op, args)).lines
+    assert [(line.op, line.args) for line in lines] == wanted
 
 
 def test_a_product_that_is_used_twice_stays():

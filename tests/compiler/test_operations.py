@@ -34,7 +34,7 @@ REFERENCE["mul_add"] = lambda a, b, c: np.add(np.multiply(a, b), c)
 REFERENCE["finer"] = lambda a: False
 ERRORS = ("two_sum_error", "two_product_error", "rounding")  # exactly 0 over the reals
 CALLED = ("sin", "cos", "atan2")  # each library rounds these in its own way
-WHOLE = ("turned",)  # its last argument is a whole number
+WHOLE = ("turned", "turned_cosine")  # their last argument is a whole number
 
 
 def arguments(op):
@@ -136,6 +136,8 @@ def test_quarter_turns_go_round():
     sine, cosine = 0.25, 0.75
     found = [ieee("turned", sine, cosine, float(quarters)) for quarters in range(-4, 8)]
     assert found == [sine, cosine, -sine, -cosine] * 3
+    found = [ieee("turned_cosine", sine, cosine, float(quarters)) for quarters in range(-4, 8)]
+    assert found == [cosine, -sine, -cosine, sine] * 3
 
 
 @pytest.mark.parametrize("op", [op for op in OPS if op not in (*ERRORS, *WHOLE)])

@@ -75,6 +75,10 @@ def _turned(sine: float, cosine: float, quarters: float) -> float:
     return -value if quarters % 4.0 >= 2.0 else value
 
 
+def _turned_cosine(sine: float, cosine: float, quarters: float) -> float:
+    return _turned(cosine, -sine, quarters)
+
+
 _IEEE: dict[str, Any] = {
     "copy": lambda a: a,
     "add": lambda a, b: a + b,
@@ -94,6 +98,7 @@ _IEEE: dict[str, Any] = {
     "mul_add": lambda a, b, c: a * b + c,
     "rounding": lambda a: 2.0**-51 * math.fabs(a),
     "turned": _turned,
+    "turned_cosine": _turned_cosine,
     "lt": lambda a, b: a < b,
     "le": lambda a, b: a <= b,
     "eq": lambda a, b: a == b,

@@ -85,6 +85,10 @@ OPERATIONS: dict[str, Operation] = dict(
             "turned", "ffff", "turned({0}, {1}, {2})", CALL, 4,
             lambda mp, sine, cosine, quarters: (sine, cosine, -sine, -cosine)[int(quarters) % 4],
         ),
+        _row(
+            "turned_cosine", "ffff", "turned_cosine({0}, {1}, {2})", CALL, 2,
+            lambda mp, sine, cosine, quarters: (cosine, -sine, -cosine, sine)[int(quarters) % 4],
+        ),
         _row("lt", "ffb", "{0} < {1}", 6, 1, lambda mp, a, b: a < b),
         _row("le", "ffb", "{0} <= {1}", 6, 1, lambda mp, a, b: a <= b),
         _row("eq", "ffb", "{0} == {1}", 6, 1, lambda mp, a, b: a == b, commutes=True),
@@ -141,6 +145,11 @@ HELPERS = {
     """The sine of an angle and a whole number of quarter turns, from the angle's sine and cosine."""
     value = cosine if quarters % 2.0 == 1.0 else sine
     return -value if quarters % 4.0 >= 2.0 else value
+''',
+    "turned_cosine": '''def turned_cosine(sine, cosine, quarters):
+    """The cosine of an angle and a whole number of quarter turns, from the angle's sine and cosine."""
+    value = sine if quarters % 2.0 == 1.0 else cosine
+    return -value if (quarters + 1.0) % 4.0 >= 2.0 else value
 ''',
     "divide": '''def divide(a, b):
     """a / b with the IEEE 754 answers that Python refuses to give."""
@@ -200,6 +209,27 @@ def turned(typingctx, sine, cosine, quarters):
 
     return kind(kind, kind, kind), code
 ''',
+    "turned_cosine": '''@intrinsic
+def turned_cosine(typingctx, sine, cosine, quarters):
+    """The cosine of an angle and a whole number of quarter turns, from the angle's sine and cosine."""
+    kind = max((sine, cosine, quarters), key=lambda given: given.bitwidth)
+    wide = kind.bitwidth
+    whole = types.int64 if wide == 64 else types.int32
+
+    def code(context, builder, signature, args):
+        sine, cosine, quarters = args
+        integer = context.get_value_type(whole)
+        # Beyond 2^52 (2^23) the last bits of a number are those of the whole number that was added.
+        shift = context.get_constant(kind, 1.5 * 2.0 ** (52 if wide == 64 else 23))
+        bits = builder.bitcast(builder.fadd(quarters, shift), integer)
+        odd = builder.trunc(bits, context.get_value_type(types.boolean))
+        value = builder.bitcast(builder.select(odd, sine, cosine), integer)
+        after = builder.add(bits, integer(1))
+        sign = builder.shl(builder.lshr(after, integer(1)), integer(wide - 1))
+        return builder.bitcast(builder.xor(value, sign), args[0].type)
+
+    return kind(kind, kind, kind), code
+''',
     "two_product_error": '''@intrinsic
 def fused(typingctx, a, b, c):
     """a * b + c, rounded once."""
@@ -253,6 +283,12 @@ JAVASCRIPT_HELPERS = {
   const turn = quarters - 4 * floor(quarters / 4);
   const value = turn % 2 === 1 ? cosine : sine;
   return turn >= 2 ? -value : value;
+}
+""",
+    "turned_cosine": """function turned_cosine(sine, cosine, quarters) {
+  const turn = quarters - 4 * floor(quarters / 4);
+  const value = turn % 2 === 1 ? sine : cosine;
+  return turn === 1 || turn === 2 ? -value : value;
 }
 """,
 }

@@ -7,7 +7,7 @@ from .slicing import drop_unused
 
 
 def fuse_products(program: Program) -> Program:
-    """The program with `mul_add` for each sum or difference that has a product of its own.
+    """The program with `mul_add` for each sum or difference that has a product, or minus one, of its own.
 
     Precondition: error terms are lines still (after this pass the sum and the product that they belong to
     must stand as they are). Effect: one rounding less, and one operation, for each; last bits change. A
@@ -26,14 +26,14 @@ class _Fuser:
         uses = Counter(name for line in program.lines for name in names_in(line.args))
         kept = {*program.outputs, *program.notes}
         exact = {frozenset(line.args) for line in program.lines if line.op == "two_product_error"}
+        own = [line for line in program.lines if uses[line.name] == 1 and line.name not in kept]
         self.free = {
-            line.name: line.args
-            for line in program.lines
-            if line.op == "mul"
-            and uses[line.name] == 1
-            and line.name not in kept
-            and frozenset(line.args) not in exact
+            line.name: (line.args[0], line.args[1])
+            for line in own
+            if line.op == "mul" and frozenset(line.args) not in exact
         }
+        minus = {line.name: str(line.args[0]) for line in own if line.op == "neg"}
+        self.minus = {name: product for name, product in minus.items() if product in self.free}
 
     def of(self, line: Line) -> list[Line]:
         """The lines that stand in the place of one."""
@@ -41,18 +41,31 @@ class _Fuser:
             return [line]
         first, second = line.args
         minus = line.op == "sub"
-        if first in self.free:
-            negative, second = _negative(line.name, second) if minus else ([], second)
-            return [*negative, line._replace(op="mul_add", args=(*self.free[str(first)], second))]
-        if second in self.free:
-            a, b = self.free[str(second)]
-            negative, a = _negative(line.name, a) if minus else ([], a)
-            return [*negative, line._replace(op="mul_add", args=(a, b, first))]
+        if (product := self._product(first)) is not None:
+            return _fused(line, product, (second, minus))
+        if (product := self._product(second)) is not None:
+            a, b, negative = product
+            return _fused(line, (a, b, negative != minus), (first, False))
         return [line]
 
+    def _product(self, value: Argument) -> tuple[Argument, Argument, bool] | None:
+        """The factors of a product that is free to go, or of minus such a product."""
+        name = str(value)
+        factors = self.free.get(self.minus.get(name, name))
+        return None if factors is None else (*factors, name in self.minus)
 
-def _negative(name: str, value: Argument) -> tuple[list[Line], Argument]:
-    """The value with the other sign, and the line that takes: the instruction has the sign in it."""
-    if not isinstance(value, str):
-        return [], -value
-    return [Line(f"{name}_minus", "neg", (value,))], f"{name}_minus"
+
+def _fused(line: Line, product: tuple[Argument, Argument, bool], rest: tuple[Argument, bool]) -> list[Line]:
+    """The line as one instruction, after the lines of what has the other sign: it has the signs in it."""
+    (a, b, negative), (value, minus) = product, rest
+    signed = [(f"{line.name}_factor", a, negative), (f"{line.name}_term", value, minus)]
+    lines = [Line(name, "neg", (v,)) for name, v, other in signed if other and isinstance(v, str)]
+    a, value = (_signed(*each) for each in signed)
+    return [*lines, line._replace(op="mul_add", args=(a, b, value))]
+
+
+def _signed(name: str, value: Argument, negative: bool) -> Argument:
+    """The value, or what has the other sign."""
+    if not negative:
+        return value
+    return name if isinstance(value, str) else -value

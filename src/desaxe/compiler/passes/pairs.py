@@ -161,5 +161,8 @@ RULES: Mapping[str, Callable[..., Pair]] = {
     "floor": Pairs.floor,
     "copysign": Pairs.copysign,
     "turned": Pairs.quarter_turned,
+    "turned_cosine": lambda pairs, sine, cosine, quarters: pairs.quarter_turned(
+        cosine, pairs.neg(sine), quarters
+    ),
     "select": Pairs.select,
 }

@@ -2,7 +2,9 @@
 
 The angle is reduced by whole quarters q to |y| <= pi/4. pi/2 comes in parts so short that q times a
 part is exact: next to a multiple of pi/2, where the rod's geometry needs cos(theta) to its last digit,
-all differences are exact but the last, and nothing is lost.
+all differences are exact but the last, and nothing is lost. A program in plain forms has no such need: for
+it, two words of pi/2 do, which lose nothing where products are fused with their sums, and elsewhere what the
+angle's own last digit is worth.
 """
 
 from typing import NamedTuple
@@ -17,17 +19,19 @@ class Trigonometry(NamedTuple):
     limit: float  # of |angle|; beyond it the expansion is wrong
     two_over_pi: float
     pi_half: tuple[float, ...]
+    pi_half_words: tuple[float, float]
     sine: tuple[float, ...]
     cosine: tuple[float, ...]
 
 
-def expand_trigonometry(program: Program, constants: Trigonometry) -> Program:
+def expand_trigonometry(program: Program, constants: Trigonometry, plain: bool = False) -> Program:
     """The program without sin and cos.
 
-    Precondition: |angle| <= constants.limit wherever the result matters. Effect: each `sin` and
-    `cos` becomes arithmetic; both of the same angle share all of it. Error at most 2 ulp.
+    Precondition: |angle| <= constants.limit wherever the result matters; in a `plain` program the angle may
+    be wrong by half its last digit. Effect: each `sin` and `cos` becomes arithmetic; both of the same angle
+    share all of it. Error at most 2 ulp.
     """
-    writer = _Writer(constants)
+    writer = _Writer(constants, constants.pi_half_words if plain else constants.pi_half)
     for line in program.lines:
         if line.op in ("sin", "cos"):
             writer.lines.append(line._replace(op="copy", args=(writer.of_angle(line.args[0], line.op),)))
@@ -39,8 +43,9 @@ def expand_trigonometry(program: Program, constants: Trigonometry) -> Program:
 class _Writer:
     """Appends lines; knows which angles have been expanded."""
 
-    def __init__(self, constants: Trigonometry) -> None:
+    def __init__(self, constants: Trigonometry, pi_half: tuple[float, ...]) -> None:
         self.constants = constants
+        self.pi_half = pi_half
         self.lines: list[Line] = []
         self.known: dict[Argument, dict[str, str]] = {}
         self.count = 0
@@ -58,7 +63,7 @@ class _Writer:
             sides = self._sine(rest), self._cosine(rest)
             self.known[angle] = {
                 "sin": self.line("turned", *sides, quarters),
-                "cos": self.line("turned", *sides, self.line("add", quarters, 1.0)),
+                "cos": self.line("turned_cosine", *sides, quarters),
             }
         return self.known[angle][op]
 
@@ -67,9 +72,9 @@ class _Writer:
         return self.line("floor", self.line("add", turns, 0.5))
 
     def _reduced(self, angle: Argument, quarters: str) -> str:
-        """angle - quarters pi/2; the products are exact, and so is every difference that cancels."""
+        """angle - quarters pi/2; products with parts are exact, and so is every difference that cancels."""
         rest: Argument = angle
-        for part in self.constants.pi_half:
+        for part in self.pi_half:
             rest = self.line("sub", rest, self.line("mul", quarters, part))
         return str(rest)
 
