@@ -106,12 +106,15 @@ def dtype_of(name: str) -> np.dtype[Any]:
 
 def buffers_for(places: Mapping[str, Array], inputs: Collection[Array]) -> dict[str, Array]:
     """The places themselves where a kernel can write into them, else arrays to be copied from."""
-    return {name: _buffer_for(name, place, inputs) for name, place in places.items()}
+    return {
+        name: _buffer_for(name, place, [*inputs, *(p for n, p in places.items() if n != name)])
+        for name, place in places.items()
+    }
 
 
-def _buffer_for(name: str, place: Array, inputs: Iterable[Array]) -> Array:
+def _buffer_for(name: str, place: Array, others: Iterable[Array]) -> Array:
     direct = place.flags.c_contiguous and place.flags.aligned and place.dtype == dtype_of(name)
-    overlaps = any(np.may_share_memory(place, array) for array in inputs)
+    overlaps = any(np.may_share_memory(place, array) for array in others)
     return place if direct and not overlaps else np.empty(place.shape, dtype_of(name))
 
 

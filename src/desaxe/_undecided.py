@@ -35,7 +35,7 @@ def _decide(
 ) -> None:
     reach, unsure = (np.empty(outs[0].shape) for _ in FINDING)
     kernel_for(key._replace(names=FINDING)).run(values, [reach, unsure])
-    undecided = np.abs(reach) <= SPARE * unsure
+    undecided = (np.abs(reach) <= SPARE * unsure) & (unsure > 0.0)  # where that is 0, the reach is exact
     places = np.nonzero(undecided)
     chosen = {n: value[places[axis_of[n]]] if n in axis_of else value for n, value in values.items()}
     known = np.abs(chosen["theta"]) <= double_constants().limit  # not all angles can be reduced as well

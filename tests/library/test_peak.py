@@ -108,6 +108,28 @@ def test_a_mechanism_that_cannot_turn():
     assert lowest["status"] == 2
 
 
+@pytest.mark.parametrize("name", ["V_C", "a_C", "j_C"])
+@pytest.mark.parametrize("digits", [2, 17])
+def test_rates_of_a_mechanism_that_cannot_turn_have_no_bound(name, digits):
+    """Whichever side of the limit angle rounding puts its last double on; with round numbers, too."""
+    rng = np.random.default_rng(7)
+    ranges = (0.02, 0.3), (0.05, 0.4), (-0.4, 0.4)
+    AB, BC, ec = (np.round(rng.uniform(*ends, 1200), digits) for ends in ranges)
+    rockers = (BC < AB + np.abs(ec) - 1e-6) & (np.abs(ec) < AB + BC - 1e-6)
+    found = dx.peak(name, AB=AB[rockers], BC=BC[rockers], ec=ec[rockers], omega0=90.0)
+    assert np.count_nonzero(rockers) > 500
+    assert np.isinf(found["value"]).all()
+    assert (found["status"] == 2).all()
+
+
+def test_a_limit_angle_at_the_end_of_the_range_is_one():
+    """|ec| = BC: theta = 0 is assembled, and the last angle that is; rounding has no say in it."""
+    found = dx.peak("V_C", AB=np.linspace(0.1, 0.3, 601), BC=0.37, ec=0.37, omega0=90.0)
+    assert (found["status"] == 2).all()
+    assert np.isinf(found["value"]).all()
+
+
+
 def test_a_stall_is_an_end_but_no_pole():
     """At the stall a_C is alpha dY/dtheta, finite, although nothing goes on beyond."""
     found = dx.peak("a_C", ec=0.01, AB=0.04, BC=0.1, omega0=10.0, alpha=-50.0, kind="max", theta=(0.0, 2.0))

@@ -202,14 +202,15 @@ def _status(status: NDArray[np.int8]) -> NDArray[np.int8]:
 def _mark_limits(kind: str, found: Found, value: Array, nodes: Array, ends: list[tuple[int, float]]) -> None:
     """An extremum at a limit angle has status 2; what has no bound there is infinite."""
     for row, end in ends:
-        usable = np.isfinite(value[row])
+        usable = ~np.isnan(value[row])
         if not usable.any():
             continue
         near = np.flatnonzero(usable)[np.argmin(np.abs(nodes[row, usable] - end))]
         if abs(nodes[row, near] - end) > 1e-6:
             continue
         bounded = not _grows(nodes[row, usable], value[row, usable], end, value[row, near])
-        at_end = found.theta[row] == nodes[row, near]
+        # The search may have stopped beyond `near`, where only more digits tell that the rod does not reach.
+        at_end = abs(found.theta[row] - end) <= max(abs(nodes[row, near] - end), 0.5 * GRADED[-1])
         grows = not bounded and score(kind, value[row, near]) >= score(kind, found.value[row])
         if at_end or grows:
             found.status[row] = 2

@@ -26,6 +26,20 @@ _COMPILE = """try:
 except RuntimeError:  # numba found no folder that it can write to
     kernel = njit(signature, error_model="numpy", nogil=True)(loops)
 """
+# Without it, LLVM tests before a loop whether any two arrays overlap, and lets the loop run one by one where
+# that takes too many tests: from some twelve outputs on.
+_APART = """@intrinsic
+def apart(typingctx):
+    \"\"\"The promise that no array shares memory with one that is written to.\"\"\"
+
+    def code(context, builder, signature, args):
+        for argument in context.call_conv.get_arguments(builder.function):
+            if argument.type.is_pointer:
+                argument.add_attribute("noalias")
+        return context.get_dummy_value()
+
+    return types.none(), code
+"""
 # An input may be an array that must not be written to; numba's signature strings cannot say so.
 _INPUT = 'axis = types.Array(types.float64, 1, "C", readonly=True)\n'
 
@@ -93,7 +107,7 @@ def _header(kernel: Kernel, docstring: str, numpy_names: list[str]) -> str:
     )
     imports = [f"from math import {', '.join(calls)}\n"] if calls else []
     imports.append("from numba import njit, types")
-    if is_mixed(kernel) or any(line.op in NUMBA_HELPERS for line in lines):
+    if kernel.axes or any(line.op in NUMBA_HELPERS for line in lines):
         imports.append("from numba.extending import intrinsic")
     imports += [f"from numpy import {', '.join(from_numpy)}"] if from_numpy else []
     given = [_INPUT] if any(axis is not None for axis in kernel.inputs.values()) else []
@@ -119,6 +133,7 @@ def helper_sources(operations: Container[str]) -> list[str]:
 
 def _helpers(kernel: Kernel) -> list[str]:
     sources = helper_sources({line.op for line in _all_lines(kernel)})
+    sources += [_APART] if kernel.axes else []
     return [*sources, rooms(kernel)] if is_mixed(kernel) else sources
 
 
@@ -162,7 +177,8 @@ def _parameters(kernel: Kernel) -> list[str]:
 def _body(kernel: Kernel, cast: str) -> list[str]:
     """The loops, those of the tables first; every input is cast where it is read."""
     scalars = [name for name, axis in kernel.inputs.items() if axis is None and cast]
-    lines = [f"{INDENT}{name} = {cast}({name})" for name in scalars]
+    lines = [f"{INDENT}apart()"] if kernel.axes else []
+    lines += [f"{INDENT}{name} = {cast}({name})" for name in scalars]
     lines += [INDENT + row for row in scratch(kernel)]
     lines += [f"{INDENT}undecided = 0"] if counts(kernel) else []
     everywhere = tuple(range(kernel.axes))
