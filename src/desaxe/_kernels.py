@@ -148,7 +148,9 @@ def kernel_of(key: KernelKey) -> Kernel:
     if plain is not None:
         own = [name for name in varying if name not in LENGTHS and _is_seen(plain, name)]
         plain = guard_inputs(plain, own, LEAST, {})  # in a roomy design all lengths are good
-        guarded = in_two_forms(_for_loops(plain, key, plain=True), guarded, cut(("roomy",), key.form, key.fixed))
+        guarded = in_two_forms(
+            _for_loops(plain, key, plain=True), guarded, cut(("roomy",), key.form, key.fixed)
+        )
     kernel = tabulate(guarded, {name: axes.get(name) for name in guarded.inputs}, key.axes)
     return kernel if plain is None else parted(kernel, len(key.names))
 

@@ -129,7 +129,6 @@ def test_a_limit_angle_at_the_end_of_the_range_is_one():
     assert np.isinf(found["value"]).all()
 
 
-
 def test_a_stall_is_an_end_but_no_pole():
     """At the stall a_C is alpha dY/dtheta, finite, although nothing goes on beyond."""
     found = dx.peak("a_C", ec=0.01, AB=0.04, BC=0.1, omega0=10.0, alpha=-50.0, kind="max", theta=(0.0, 2.0))
