@@ -115,7 +115,7 @@ def test_rates_of_a_mechanism_that_cannot_turn_have_no_bound(name, digits):
     rng = np.random.default_rng(7)
     ranges = (0.02, 0.3), (0.05, 0.4), (-0.4, 0.4)
     AB, BC, ec = (np.round(rng.uniform(*ends, 1200), digits) for ends in ranges)
-    rockers = (BC < AB + np.abs(ec) - 1e-6) & (np.abs(ec) < AB + BC - 1e-6)
+    rockers = (AB + np.abs(ec) - 1e-6 > BC) & (np.abs(ec) < AB + BC - 1e-6)
     found = dx.peak(name, AB=AB[rockers], BC=BC[rockers], ec=ec[rockers], omega0=90.0)
     assert np.count_nonzero(rockers) > 500
     assert np.isinf(found["value"]).all()

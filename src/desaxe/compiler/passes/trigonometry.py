@@ -19,7 +19,7 @@ class Trigonometry(NamedTuple):
     limit: float  # of |angle|; beyond it the expansion is wrong
     two_over_pi: float
     pi_half: tuple[float, ...]
-    pi_half_words: tuple[float, float]
+    pi_half_words: tuple[float, ...]
     sine: tuple[float, ...]
     cosine: tuple[float, ...]
 
