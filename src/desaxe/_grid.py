@@ -15,13 +15,13 @@ from ._point import point_of
 from ._request import Request, check_border, check_inputs, request, standstill
 from ._threads import run_in_blocks
 from .inputs import INPUTS
+from .names import LENGTHS
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Array = NDArray[Any]
 ALWAYS = ("status", "margin")
-LENGTHS = ("ec", "AB", "BC")  # what the margin depends on
 LONG_ENOUGH = 1_000  # points of the innermost loop: a shorter one costs as much to start as to run
 
 

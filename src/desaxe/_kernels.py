@@ -31,7 +31,7 @@ from .compiler.passes.trigonometry import expand_trigonometry
 from .compiler.program import Program
 from .compiler.reductions import emit_reduced
 from .inputs import LEAST
-from .names import LOADS
+from .names import LENGTHS, LOADS
 
 # A scalar of 0 for one of these makes whole terms vanish, so it is folded into the kernel.
 STRUCTURAL_ZEROS = ("ec", "alpha", *LOADS)
@@ -90,9 +90,6 @@ def _largest(angles: Any) -> float:
 
 _LOADED: dict[KernelKey, CompiledKernel] = {}
 _LOCK = Lock()
-
-
-LENGTHS = ("ec", "AB", "BC")
 
 
 def _is_seen(program: Program, angle: str) -> bool:

@@ -19,10 +19,12 @@ from ._peaks.module import Groups, run
 from ._peaks.nodes import Array, classes, shared_nodes
 from ._peaks.programs import Search, is_derived, needs_own
 from ._peaks.special import Designs
+from ._point import plain_form
 from ._request import Request, as_number, check_border, check_inputs, is_steady, request
+from ._roomy import are_roomy
 from .catalogue import law_name, quantity
 from .inputs import INPUTS
-from .names import LOADS, sensitivity
+from .names import LENGTHS, LOADS, sensitivity
 
 KINDS = ("absmax", "max", "min")
 
@@ -169,7 +171,7 @@ def _peaks(name: str, kind: str, search: Search, designs: Designs, threads: int 
     ends = special.are_special(designs)
     rows = np.flatnonzero(~ends)
     if rows.size:
-        run(search, columns, _classed(designs, rows), number, theta, out, threads)
+        run(_in_form(search, columns, rows), columns, _classed(designs, rows), number, theta, out, threads)
     rows = np.flatnonzero(ends | np.isnan(out[0]) if rows.size else ends)
     for start in range(0, rows.size, special.BLOCK):
         part = rows[start : start + special.BLOCK]
@@ -188,6 +190,20 @@ def _peaks(name: str, kind: str, search: Search, designs: Designs, threads: int 
     return {"value": value, "theta": theta, "gradient": gradient, "status": status}
 
 
+def _in_form(search: Search, columns: dict[str, Array], rows: NDArray[np.intp]) -> Search:
+    """The search in plain forms, if those are shorter and all these designs are roomy.
+
+    A second one, for a few that are not, would take longer to compile than it saves.
+    """
+    names = search.name, sensitivity(search.name, "theta")
+    derived = tuple(name for name in names if is_derived(name))
+    known = all(name in columns for name in LENGTHS)
+    if search.extended or not known or plain_form(derived, search.form, search.fixed) is None:
+        return search
+    roomy = are_roomy({name: columns[name][rows] for name in LENGTHS}, search.form).all()
+    return search._replace(form=search.form._replace(roomy=True)) if roomy else search
+
+
 def _good(designs: Designs) -> dict[str, Array]:
     """The inputs, NaN where they are bad: one that is would give a finite, wrong answer."""
     if designs.size == 1:
@@ -202,7 +218,7 @@ def _good(designs: Designs) -> dict[str, Array]:
 
 def _classed(designs: Designs, rows: NDArray[np.intp]) -> Groups:
     """The designs by their classes, which share nodes."""
-    lengths = [designs.columns[n][rows] for n in ("ec", "AB", "BC") if n in designs.columns]
+    lengths = [designs.columns[n][rows] for n in LENGTHS if n in designs.columns]
     numbers = np.zeros(rows.size, np.int16) if len(lengths) < 3 else classes(*lengths)
     if rows.size == 1 or (numbers == numbers[0]).all():
         nodes = shared_nodes(int(numbers[0]), *designs.theta)

@@ -17,7 +17,7 @@ from ._arrays import as_array, broadcast_shape
 from ._evaluate import evaluate
 from ._request import check_border, request
 from .catalogue import quantity
-from .names import parts, sensitivity
+from .names import LENGTHS, parts, sensitivity
 
 Array = NDArray[np.float64]
 
@@ -25,7 +25,6 @@ PROMISE = BOUNDS["standard"]
 ROUNDED_ONCE = 2.0**-53
 SMALLEST = 2.0**-1074
 MOST_DIGITS = 17.0  # what it takes to write a double down
-LENGTHS = ("ec", "AB", "BC")
 
 
 class Quality(NamedTuple):

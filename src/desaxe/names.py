@@ -7,6 +7,7 @@ taken apart and put together here and nowhere else.
 from collections.abc import Iterable
 
 # Geometry and motion; then the bodies and what acts on them, which only forces and energies need.
+LENGTHS = ("ec", "AB", "BC")
 PARAMETERS = ("theta", "ec", "AB", "BC", "omega0", "alpha")
 LOADS = (
     "m_crank", "m_rod", "m_slider", "I_crank", "I_rod", "r_crank", "r_rod", "F_X", "F_Y", "g_X", "g_Y", "mu",

@@ -20,8 +20,6 @@ from typing import Any, NamedTuple
 
 from .maths import Maths, sum_of_three
 
-LENGTHS = ("ec", "AB", "BC")
-
 
 class Known(NamedTuple):
     """A value, its derivatives by ec, AB, BC, and the power of length that it is."""

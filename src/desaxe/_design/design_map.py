@@ -11,8 +11,7 @@ from .._request import check_border, check_inputs
 from ..catalogue import quantity
 from ..extras import needed
 from ..inputs import INPUTS
-from ..names import sensitivity
-from .closed_form import LENGTHS
+from ..names import LENGTHS, sensitivity
 from .feasible import KINDS, of_arrays
 from .measures import Measure, checked, measured, unit_of
 

@@ -5,7 +5,8 @@ from typing import Any
 
 from .._evaluate import evaluate
 from .._request import as_number, check_border
-from .closed_form import LENGTHS, Known, closed_form
+from ..names import LENGTHS
+from .closed_form import Known, closed_form
 from .maths import PLAIN, sum_of_three
 from .roots import root
 

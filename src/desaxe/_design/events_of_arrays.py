@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from .._arrays import as_array, broadcast_shape
 from .._evaluate import evaluate
-from .closed_form import LENGTHS, Known, closed_form
+from ..names import LENGTHS
+from .closed_form import Known, closed_form
 from .events import VELOCITIES, placed, stroke_ends
 from .maths import arrays, sum_of_three
 

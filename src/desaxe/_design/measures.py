@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .._peak import KINDS, peak
 from ..catalogue import quantities, quantity
-from .closed_form import LENGTHS
+from ..names import LENGTHS
 from .events_of_arrays import events_of_arrays
 from .maths import sum_of_three
 

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .closed_form import LENGTHS
+from ..names import LENGTHS
 from .maths import sum_of_three
 from .measures import Array, Measure, Measured, measured
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from .._request import as_number, check_inputs
 from ..inputs import INPUTS
-from .closed_form import LENGTHS
+from ..names import LENGTHS
 from .measures import UNITS, Measure, checked, text_of, unit_of
 from .problem import EQUAL, LOWER, UPPER, Limit, Piece, Space
 from .sides import sides_of

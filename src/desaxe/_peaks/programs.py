@@ -72,7 +72,7 @@ def programs_of(search: Search, written_out: bool) -> Programs:
         program = keep_outputs(whole, tuple(names))
         if search.far or not written_out:
             return program
-        return fuse_products(number_values(expand_trigonometry(program, constants())))
+        return fuse_products(number_values(expand_trigonometry(program, constants(), search.form.roomy)))
 
     finish = (value, slope, *gradient)
     if search.extended:

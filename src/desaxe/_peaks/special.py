@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from .._evaluate import evaluate
 from .._feasibility import theta_intervals
+from ..names import LENGTHS
 from .nodes import Array
 
 UNIFORM = 240  # nodes per turn
@@ -49,7 +50,7 @@ def are_special(designs: Designs) -> NDArray[np.bool_]:
     """Which designs cannot turn fully, stall in the range or near it, or rub."""
     columns = designs.columns
     special = np.full(designs.size, designs.rubs)
-    if all(name in columns for name in ("ec", "AB", "BC")):
+    if all(name in columns for name in LENGTHS):
         special |= ~(columns["BC"] - columns["AB"] - np.abs(columns["ec"]) > 0.0)
     if "alpha" in columns and "omega0" in columns:
         low, high = designs.theta
@@ -93,7 +94,7 @@ def _limit_angles(designs: Designs) -> list[list[float]]:
     low, high = designs.theta
     columns = designs.columns
     found: list[list[float]] = [[] for _ in range(designs.size)]
-    lengths = [columns[n] for n in ("ec", "AB", "BC") if n in columns]
+    lengths = [columns[n] for n in LENGTHS if n in columns]
     if len(lengths) == 3:
         ec, AB, BC = lengths
         for row in np.flatnonzero(BC - AB - np.abs(ec) < 0.0):
@@ -111,7 +112,7 @@ def _limit_angles(designs: Designs) -> list[list[float]]:
 def _dead_centres(designs: Designs) -> list[list[float]]:
     """For each design the angles in the range at which crank and rod are in line, on either branch."""
     low, high = designs.theta
-    ec, AB, BC = (designs.columns[n] for n in ("ec", "AB", "BC"))
+    ec, AB, BC = (designs.columns[n] for n in LENGTHS)
     with np.errstate(all="ignore"):
         sines = np.stack([-ec / (AB + BC), ec / (BC - AB)])
         angles = np.concatenate([np.arcsin(sines), np.pi - np.arcsin(sines)])

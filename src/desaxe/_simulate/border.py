@@ -10,12 +10,11 @@ import numpy as np
 from .._feasibility import theta_intervals
 from .._request import as_number
 from ..catalogue import quantity
-from ..names import CENTRES, LOADS
+from ..names import CENTRES, LENGTHS, LOADS
 from ..units import in_unit
 from .chart import FREE, TURN, Chart, arc_around, inside
 from .model import Drive, Load, Model
 
-LENGTHS = ("ec", "AB", "BC")
 METHODS = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
 OWN = {"t", "theta", "omega", "alpha", "status"}  # keys of the result that no name may take
 SMALL = 1e-4  # rad: so near to a dead centre without inertia no motion is followed

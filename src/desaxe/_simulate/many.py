@@ -16,9 +16,9 @@ from .._evaluate import evaluate
 from .._feasibility import theta_intervals
 from .._threads import _pool, available
 from ..inputs import LEAST
-from ..names import CENTRES, LOADS
+from ..names import CENTRES, LENGTHS, LOADS
 from ..units import in_unit
-from .border import LENGTHS, check_signature, grows
+from .border import check_signature, grows
 from .chart import TURN, arc_around, inside
 from .model import fixed_zeros, form_of
 from .module import Family, kernel_of

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..extras import needed
+from ..names import LENGTHS
 from .parts import choose, finish_axis, fixed_inputs, label_of, shown
 
 if TYPE_CHECKING:
@@ -19,7 +20,6 @@ LONG, APART = 0.2, 0.08  # shares of the axes: a line that is labelled, its labe
 HATCH, SHADE, LINE = "////", "0.93", "0.25"
 FEASIBLE = (0, 2)  # status: ok, and at a change point
 GEOMETRIC = (0, 1, 2)  # what the lengths alone decide
-LENGTHS = ("ec", "AB", "BC")
 
 
 def design_map(

@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..extras import needed
+from ..names import LENGTHS
 from .families import curves
 from .parts import ORANGE, shown
-from .sketch import LENGTHS, mechanism
+from .sketch import mechanism
 
 if TYPE_CHECKING:
     import xarray as xr

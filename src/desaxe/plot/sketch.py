@@ -9,6 +9,7 @@ import numpy as np
 from .._evaluate import evaluate
 from .._request import as_number, check_border
 from ..extras import needed
+from ..names import LENGTHS
 from .parts import BLUE, ORANGE
 
 if TYPE_CHECKING:
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 HEIGHT = 6.0  # inches
-LENGTHS = ("ec", "AB", "BC")
 BLOCK = (0.16, 0.22)  # half width and height of the slider, in cranks
 ANGLES = np.linspace(0.0, 2.0 * pi, 361)
 
