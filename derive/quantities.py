@@ -152,9 +152,11 @@ def _define_rod(sheet: Sheet) -> None:
     sheet.define("S", sp.sqrt(D), unit=LENGTH, meaning="BC cos(phi), the rod's height", source="B (7)")
     sheet.define("inv_S", 1 / S, unit=Unit(m=-1), meaning="1 / S")
     beyond = sheet.define("pin_out", AB_out + out)  # exact where they nearly cancel
+    # Its sign is right where |ec| is AB too, at the opposite quarter, where u is nothing but rounding else.
+    exact = sheet.define("u_exact", select(near_quarter, pin_side * (beyond + crank_drop), u_straight))
     sheet.define(
-        "u", where_close(select(near_quarter, pin_side * (beyond + crank_drop), u_straight), u_straight),
-        unit=LENGTH, source="A (6)", meaning="BC sin(phi), crank pin from the slider axis",
+        "u", where_close(exact, u_straight), unit=LENGTH, source="A (6)",
+        meaning="BC sin(phi), crank pin from the slider axis",
     )  # fmt: skip
     for name, form in ROOMY.items():
         sheet.define(name.name, form)
@@ -171,7 +173,9 @@ def _define_angles(sheet: Sheet) -> None:
     sheet.define(
         "phi", atan2(u, S), unit=ANGLE, meaning="angle of the rod to the slider axis", source="A (6)"
     )
-    across = sheet.define("side_u", select(lt(u, 0), -1, 1), unit=NONE, meaning="sign of u", rigid=True)
+    across = sheet.define(
+        "side_u", select(lt(symbol("u_exact"), 0), -1, 1), unit=NONE, meaning="sign of u", rigid=True
+    )
     sheet.define(
         "delta", atan2(S, u), unit=ANGLE, meaning="angle of the rod across the slider axis", source="A (5)",
         differentiate=-phi,

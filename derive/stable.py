@@ -45,9 +45,9 @@ atan2, absolute, copysign = sp.Function("atan2"), sp.Function("abs"), sp.Functio
 two_sum_error, two_product_error = sp.Function("two_sum_error"), sp.Function("two_product_error")
 rounding, finer = sp.Function("rounding"), sp.Function("finer")
 
-# Where AB + |ec| is below this share of BC, and not so many times the difference of AB and |ec|, no form
-# cancels by much, and the plain ones will do: they err by a few tenths of what the promise allows.
-ROOMY, APART = sp.Float(0.875), 64
+# Where AB + |ec| is below this share of BC, no form cancels by much, and the plain ones will do: they err by
+# a few tenths of what the promise allows.
+ROOMY = sp.Float(0.875)
 roomy = sp.Symbol("roomy", real=True)
 
 
@@ -58,9 +58,8 @@ def where_close(stable: sp.Expr, plain: sp.Expr) -> sp.Expr:
 
 def wide_margins() -> sp.Expr:
     """Whether a design is roomy; if it is, all its lengths are good."""
-    size, both = absolute(ec), sp.Function("and")
-    wide, apart = lt(AB + size, ROOMY * BC), lt(AB + size, APART * absolute(AB - size))
-    return both(both(both(wide, apart), le(0, AB)), lt(BC, sp.oo))
+    both = sp.Function("and")
+    return both(both(lt(AB + absolute(ec), ROOMY * BC), le(0, AB)), lt(BC, sp.oo))
 
 
 def assembled(ok: sp.Expr | int) -> sp.Expr:

@@ -9,6 +9,7 @@ import hashlib
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from importlib.util import module_from_spec, spec_from_file_location
+from math import prod
 from pathlib import Path
 from threading import Lock
 from types import ModuleType
@@ -75,7 +76,36 @@ def key_of(
     zeros = [(name, 0.0) for name in STRUCTURAL_ZEROS if scalars.get(name) == 0.0]
     fixed = (*wanted.fixed, *zeros)
     axis = tuple(sorted(axis_of.items()))
-    return KernelKey(wanted.names, wanted.form, fixed, axis, axes, wanted.accuracy, far)
+    key = KernelKey(wanted.names, wanted.form, fixed, axis, axes, wanted.accuracy, far)
+    if wanted.accuracy != "extended" and _pays_to_ask(columns, axis_of) and plain_of(key) is not None:
+        lengths = {name: columns.get(name, scalars.get(name)) for name in LENGTHS}
+        return key._replace(form=key.form._replace(roomy=_all_roomy(lengths, key.form)))
+    return key
+
+
+ASKED_AHEAD = 16  # points for each length that is looked at
+
+
+def _pays_to_ask(columns: Mapping[str, Any], axis_of: Mapping[str, int]) -> bool:
+    """Whether there are so few lengths and so many points that designs are better looked at ahead."""
+    sizes = {axis: columns[name].size for name, axis in axis_of.items()}
+    lengths = sum(columns[name].size for name in LENGTHS if name in columns)
+    return bool(lengths * ASKED_AHEAD <= prod(sizes.values()))
+
+
+def _all_roomy(lengths: Mapping[str, Any], form: Form) -> bool:
+    """Whether every design is roomy, as far as the extremes of the lengths tell."""
+    import numpy as np
+
+    from ._roomy import are_roomy
+
+    ec, AB, BC = (np.asarray(lengths[name]) for name in LENGTHS)
+    corners = {
+        "ec": np.abs(ec).max(),
+        "AB": np.array([[AB.min()], [AB.max()]]),
+        "BC": np.array([BC.min(), BC.max()]),
+    }
+    return bool(are_roomy(corners, form).all())
 
 
 def _largest(angles: Any) -> float:
@@ -140,16 +170,22 @@ def kernel_of(key: KernelKey) -> Kernel:
     else:
         if has_undecided(key):
             program = cut((*key.names, "undecided"), key.form, key.fixed)
-        guarded = _for_loops(guard_inputs(program, varying, LEAST, {}), key)
+        if key.form.roomy:
+            guarded = _plain_for_loops(program, varying, key)
+        else:
+            guarded = _for_loops(guard_inputs(program, varying, LEAST, {}), key)
     plain = plain_of(key)
     if plain is not None:
-        own = [name for name in varying if name not in LENGTHS and _is_seen(plain, name)]
-        plain = guard_inputs(plain, own, LEAST, {})  # in a roomy design all lengths are good
-        guarded = in_two_forms(
-            _for_loops(plain, key, plain=True), guarded, cut(("roomy",), key.form, key.fixed)
-        )
+        test = cut(("roomy",), key.form, key.fixed)
+        guarded = in_two_forms(_plain_for_loops(plain, varying, key), guarded, test)
     kernel = tabulate(guarded, {name: axes.get(name) for name in guarded.inputs}, key.axes)
     return kernel if plain is None else parted(kernel, len(key.names))
+
+
+def _plain_for_loops(program: Program, varying: Sequence[str], key: KernelKey) -> Program:
+    """The same of plain forms: in a roomy design all lengths are good."""
+    own = [name for name in varying if name not in LENGTHS and _is_seen(program, name)]
+    return _for_loops(guard_inputs(program, own, LEAST, {}), key, plain=True)
 
 
 def _for_loops(program: Program, key: KernelKey, plain: bool = False) -> Program:

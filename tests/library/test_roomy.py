@@ -13,7 +13,8 @@ from desaxe._request import request
 from tests.library.test_stress import NAMES, compiled, is_kept
 from tests.library.ways import take_way
 
-ROOMY, APART = 0.875, 64
+ROOMY = 0.875
+SIDES = [f"transmission_angle_wrt_{p}" for p in ("theta", "ec", "AB", "BC")]
 
 
 def edges(count=60):
@@ -23,7 +24,7 @@ def edges(count=60):
         BC, share = 10 ** rng.uniform(-3, 3), rng.uniform(0.05, 0.95)
         reach = ROOMY * BC * (1 + rng.choice((-1, 1)) * 2.0 ** -rng.randrange(3, 53))
         if rng.random() < 0.3:  # |ec| so near AB that u may cancel
-            share = 0.5 + rng.choice((-1, 1)) / (2 * APART) * (1 + rng.uniform(-1e-3, 1e-3))
+            share = 0.5 + rng.choice((-1, 0, 1)) * 10 ** rng.uniform(-17, -2)
         AB = reach * share
         quarter = math.pi / 2 * rng.randrange(-4, 5)
         theta = rng.choice((rng.uniform(-7, 7), quarter + rng.choice((-1, 1)) * 10 ** rng.uniform(-9, -1)))
@@ -35,11 +36,36 @@ def edges(count=60):
 
 def test_the_promise_holds_across_the_edge(monkeypatch):
     take_way(monkeypatch, "compiled")
-    rows = list(edges())
-    for row, by_kernel in zip(rows, compiled(NAMES, rows), strict=True):
-        plain = dx.evaluate(NAMES, **row)
+    rows, names = list(edges()), [*NAMES, *SIDES]
+    for row, by_kernel in zip(rows, compiled(names, rows), strict=True):
+        plain = dx.evaluate(names, **row)
         for values in (plain, by_kernel):
-            assert not {name: values[name] for name in NAMES if not is_kept(name, values[name], row)}, row
+            assert not {name: values[name] for name in names if not is_kept(name, values[name], row)}, row
+
+
+def eccentric_as_crank(count=60):
+    """Roomy designs with |ec| = AB or nearly, about the quarter at which the crank pin meets the axis."""
+    rng = random.Random(11)
+    for _ in range(count):
+        BC, side = 10 ** rng.uniform(-3, 3), rng.choice((-1, 1))
+        AB = BC * rng.choice((0.437, 0.2, 0.01))
+        ec = rng.choice(
+            (AB, math.nextafter(AB, 0), math.nextafter(AB, BC), AB * (1 - 10 ** rng.uniform(-15, -2)))
+        )
+        away = rng.choice((0.0, rng.choice((-1, 1)) * 10 ** rng.uniform(-12, -1)))
+        yield {
+            "theta": -side * math.pi / 2 + away, "ec": side * ec, "AB": AB, "BC": BC,
+            "omega0": rng.uniform(1, 100), "alpha": 0.0, "branch": rng.choice((1, -1)),
+        }  # fmt: skip
+
+
+def test_the_side_of_the_axis_is_known_where_the_pin_meets_it(monkeypatch):
+    take_way(monkeypatch, "compiled")
+    rows, names = list(eccentric_as_crank()), ["a_C", "alpha_BC", *SIDES]
+    for row, by_kernel in zip(rows, compiled(names, rows), strict=True):
+        plain = dx.evaluate(names, **row)
+        for values in (plain, by_kernel):
+            assert not {name: values[name] for name in names if not is_kept(name, values[name], row)}, row
 
 
 @pytest.mark.parametrize("where", ["kernel", "numbers"])

@@ -60,7 +60,8 @@ def module_text(scene: Scene, name: str = "my_kernels.py") -> str:
     if not content.outputs:
         raise SceneError(f"{scene.name or 'scene'}: nothing to compile, give outputs = [...]")
     found = grid_kernel(content)
-    key = _all_fixed(found.key, found, content.inputs)
+    anywhere = found.key.form._replace(roomy=False)  # the module takes other designs, too
+    key = _all_fixed(found.key._replace(form=anywhere), found, content.inputs)
     axes = {n: value for n in found.axes if isinstance(value := content.inputs.get(n), tuple)}
     state = found.request.form.state
     shown = found.request.shown

@@ -116,7 +116,7 @@ def _grid(content: Content) -> dict[str, Any]:
     straight = sum(loop.operations for loop in loops if not loop.close)
     total = sum(loop.work for loop in loops)
     fixed = found.key.fixed
-    steps = steps_of(found.request, fixed, straight)
+    steps = steps_of(found.key, found.request, straight)
     return {
         "points": found.points,
         "axes": [{"name": n, "size": s} for n, s in zip(found.axes, found.sizes, strict=True) if n],
@@ -165,6 +165,7 @@ def _run(content: Content, found: GridKernel, loops: list[Loop], compiled: bool)
         "break_even": _few_points.BREAK_EVEN,
         "float32": is_single(found.key),
         "far_angles": found.key.far,
+        "roomy": found.key.form.roomy,
         "threads": threads if compiled else 1,
         "cached": cached,
         "module": path,

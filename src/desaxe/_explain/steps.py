@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from itertools import pairwise
 from typing import Any, NamedTuple
 
+from .._kernels import KernelKey
 from .._point import cut
 from .._program import program_of, whole_program
 from .._request import Request
@@ -35,12 +36,14 @@ WHAT = {
     "number": "what is computed twice is computed once",
     "unused": "lines that nothing needs any more",
     "keep": "NaN is kept where the mechanism cannot be assembled",
+    "plain": "every design is roomy: shorter forms will do",
     "write out": "sine, cosine and checks as arithmetic: loops vectorise",
 }
 
 
-def steps_of(request: Request, fixed: tuple[tuple[str, float], ...], inside: int) -> list[Step]:
+def steps_of(key: KernelKey, request: Request, inside: int) -> list[Step]:
     """From the whole derivation to the kernel, in operations at each point; `inside` is the kernel's."""
+    fixed = key.fixed
     whole = len(whole_program().lines)
     program = program_of(request.names, request.form)
     _, costs = optimise(program, dict(fixed))
@@ -48,6 +51,8 @@ def steps_of(request: Request, fixed: tuple[tuple[str, float], ...], inside: int
     names = {"fold": "fold", "number": "number", "slice": "unused"}
     counts += [(names[step.name], step.cost.operations) for step in costs[1:]]
     counts.append(("keep", cost_of(cut(request.names, request.form, fixed)).operations))
+    if key.form.roomy:
+        counts.append(("plain", cost_of(cut(key.names, key.form, fixed)).operations))
     if inside != counts[-1][1]:
         counts.append(("write out", inside))
     steps = [Step("derivation", "every line of the derivation", whole, 0)]

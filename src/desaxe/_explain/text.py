@@ -161,7 +161,9 @@ def _how(plan: Mapping[str, Any]) -> str:
         )
         numbers = [one["name"] for one in plan["inputs"] if one.get("value")]
         if numbers:
-            lines += _wrapped("reuse", [f"other values of {', '.join(numbers)} (but 0) compile nothing new"])
+            while_roomy = " while AB + |ec| < 7/8 BC" if run["roomy"] else ""
+            reused = f"other values of {', '.join(numbers)} (but 0) compile nothing new{while_roomy}"
+            lines += _wrapped("reuse", [reused])
     else:
         lines.append("  kernel   none: plain Python over math, nothing is compiled, numba is not imported")
         lines.append(f"  why      {points}; below {run['break_even']:,} a compilation does not pay")
