@@ -109,7 +109,7 @@ def _define_crank(sheet: Sheet) -> None:
     sheet.define("sin_theta", sp.sin(theta), unit=NONE, meaning="sine of the crank angle")
     sheet.define("cos_theta", sp.cos(theta), unit=NONE, meaning="cosine of the crank angle")
     sheet.define(
-        "side", select(lt(sin_theta, 0), -1, 1), unit=NONE, meaning="sigma: which side the crank is on"
+        "side", copysign(1, sin_theta), unit=NONE, meaning="sigma: which side the crank is on", rigid=True
     )
     sheet.define("abs_sin", absolute(sin_theta), unit=NONE, meaning="|sin(theta)|")
     sheet.define(

@@ -49,7 +49,7 @@ def free(scene, section, name, value):
 def test_concentric_at_constant_speed():
     plan = dx.explain(CONCENTRIC)
     assert plan["run"]["way"] == "plain Python"
-    assert steps(plan) == {"derivation": 2210, "slice": 89, "fold": 62}
+    assert steps(plan) == {"derivation": 2226, "slice": 89, "fold": 62}
     assert plan["operations"] == {"straight": 62, "per_point": 62.0, "total": 62 * 721}
     saved = {one["what"]: one["saved"] for one in plan["skipped"]}
     assert saved == {"branch = +1": 2, "alpha = 0": 14, "ec = 0": 11}
@@ -205,8 +205,8 @@ Skipped
 
 Operations at each point after each pass
   pass         operations   saved
-  derivation         2210           every line of the derivation
-  slice                89    2121   only the lines that the wanted names reach
+  derivation         2226           every line of the derivation
+  slice                89    2137   only the lines that the wanted names reach
   fold                 62      27   fixed inputs folded in; terms with a factor 0 vanish
 
 Loops, from outside in

@@ -12,7 +12,7 @@ import sys
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import desaxe as dx
@@ -208,6 +208,7 @@ def test_odd_numbers_do_not_crash(at):
     st.integers(-50, 50),
     st.sampled_from((1, -1)),
 )
+@example(-0.0, 1.0, 0.5, 0, 1)  # the sign of a zero says on which side the crank is, everywhere the same
 @settings(max_examples=150, deadline=None)
 def test_any_margin(theta, crank, share, power, branch):
     """Any angle, any mechanism that turns fully, with a margin down to a last bit."""

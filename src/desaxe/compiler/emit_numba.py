@@ -30,7 +30,7 @@ except RuntimeError:  # numba found no folder that it can write to
 # that takes too many tests: from some twelve outputs on.
 _APART = """@intrinsic
 def apart(typingctx):
-    \"\"\"The promise that no array shares memory with one that is written to.\"\"\"
+    \"\"\"The promise that what is written to shares no memory with anything else.\"\"\"
 
     def code(context, builder, signature, args):
         for argument in context.call_conv.get_arguments(builder.function):

@@ -76,7 +76,8 @@ def _turned(sine: float, cosine: float, quarters: float) -> float:
 
 
 def _turned_cosine(sine: float, cosine: float, quarters: float) -> float:
-    return _turned(cosine, -sine, quarters)
+    value = sine if quarters % 2.0 == 1.0 else cosine
+    return -value if (quarters + 1.0) % 4.0 >= 2.0 else value
 
 
 _IEEE: dict[str, Any] = {
