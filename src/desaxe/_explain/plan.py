@@ -115,13 +115,12 @@ def _grid(content: Content) -> dict[str, Any]:
     loops = _compiled_loops(found) if compiled else _plain_loops(found)
     straight = sum(loop.operations for loop in loops if not loop.close)
     total = sum(loop.work for loop in loops)
-    fixed = found.key.fixed
     steps = steps_of(found.key, found.request, straight)
     return {
         "points": found.points,
         "axes": [{"name": n, "size": s} for n, s in zip(found.axes, found.sizes, strict=True) if n],
         "steps": [step._asdict() for step in steps],
-        "skipped": [one._asdict() for one in skipped_of(found.request, fixed, content.inputs)],
+        "skipped": [one._asdict() for one in skipped_of(found.key, found.request, content.inputs)],
         "loops": [_loop(loop, found.points) for loop in loops],
         "operations": {"straight": straight, "per_point": total / found.points, "total": total},
         "reduction": None if content.reduction is None else content.reduction._asdict(),

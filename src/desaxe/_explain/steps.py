@@ -62,11 +62,10 @@ def steps_of(key: KernelKey, request: Request, inside: int) -> list[Step]:
     return steps
 
 
-def skipped_of(
-    request: Request, fixed: tuple[tuple[str, float], ...], given: Mapping[str, Any]
-) -> list[Skipped]:
+def skipped_of(key: KernelKey, request: Request, given: Mapping[str, Any]) -> list[Skipped]:
     """What is skipped, and what each fixed input saves on its own: with it free, so much more is computed."""
-    least = _operations(request, fixed)
+    fixed = key.fixed
+    least = _operations(key, fixed)
     found = []
     absent = [name for name, value in fixed if name not in given and name in INPUTS and name != "alpha"]
     groups: list[tuple[tuple[str, ...], str, str]] = []
@@ -82,11 +81,11 @@ def skipped_of(
             groups.append(((name,), f"{name} = 0", _without(name)))
     for names, what, why in groups:
         free = tuple(pair for pair in fixed if pair[0] not in names)
-        found.append(Skipped(what, why, _operations(request, free) - least))
+        found.append(Skipped(what, why, _operations(key, free) - least))
     if absent:
         free = tuple(pair for pair in fixed if pair[0] not in absent)
         what = ", ".join(absent) + " = 0"
-        found.append(Skipped(what, "not given: their terms vanish", _operations(request, free) - least))
+        found.append(Skipped(what, "not given: their terms vanish", _operations(key, free) - least))
     for name in request.form.halves:
         length = "AB" if name == "r_crank" else "BC"
         found.append(Skipped(name, f"not given: half of {length}, moving with it", 0))
@@ -99,5 +98,5 @@ def _without(name: str) -> str:
     return meanings.get(name, f"no {INPUTS[name].meaning}") + ": its terms vanish"
 
 
-def _operations(request: Request, fixed: tuple[tuple[str, float], ...]) -> int:
-    return cost_of(cut(request.names, request.form, fixed)).operations
+def _operations(key: KernelKey, fixed: tuple[tuple[str, float], ...]) -> int:
+    return cost_of(cut(key.names, key.form, fixed)).operations

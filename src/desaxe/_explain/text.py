@@ -68,7 +68,8 @@ def _skipped(plan: Mapping[str, Any]) -> str:
     """What is not computed."""
     lines = ["Skipped"]
     for one in plan["skipped"]:
-        saved = f" ({one['saved']} operations a point)" if one["saved"] > 0 else ""
+        count = one["saved"]
+        saved = f" ({count} operation{'s' if count > 1 else ''} a point)" if count > 0 else ""
         rows = wrap(f"{one['what']}: {one['why']}{saved}", WIDTH - 2, subsequent_indent="  ")
         lines += ["  " + row for row in rows]
     return "\n".join(lines) if len(lines) > 1 else ""
