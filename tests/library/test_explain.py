@@ -93,7 +93,7 @@ def test_an_input_that_nothing_needs():
 
 @pytest.mark.parametrize("rods", [[0.34, 0.35], [0.19, 0.35]])
 def test_counts_are_those_of_the_kernel(rods):
-    """Where all designs are roomy there is one form; else a loop says what it does instead where they are not."""
+    """Where all designs are roomy there is one form; else a loop says what it does instead."""
     scene = free(DESIGNS, "mechanism", "BC", rods)
     plan = dx.explain(scene)
     found = grid_kernel(dx.scene(scene).content)
