@@ -104,6 +104,8 @@ class _Run:
         name, op, args, _ = line
         if original(name) == "abs_sin":
             return here[0] * self._sigma()
+        if name == "side":
+            return arb(self._sigma())
         if name == "AB_out":
             self.out = self._out(here[1])
         if name == "pin_side":
@@ -145,8 +147,6 @@ class _Run:
         return (x.lower(), x.upper()) if ends is None else (arb(ends[0]), arb(ends[1]))
 
     def _select(self, name: str, args: tuple[Argument, ...]) -> tuple[Value, int]:
-        if name == "side":
-            return arb(self._sigma()), 0
         condition, sides = args[0], args[1:]
         decided = self.value(condition)
         if decided is not None:

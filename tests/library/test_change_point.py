@@ -89,13 +89,16 @@ def test_eccentricity_near_the_rod(side, crank):
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("rod", [1e-3, 0.35, 10.0])
 def test_eccentricity_near_the_crank(side, rod):
-    """The eccentricity within a last bit of +-AB, at the opposite quarter: the pin meets the slider axis."""
-    crank = 0.7
+    """The eccentricity within a last bit of +-AB, at the opposite quarter: the pin meets the slider axis.
+
+    In a roomy design nothing else happens there, and only the margin counts as an input of its own.
+    """
+    crank, gaps = 0.7, ("margin", "crank") if rod < 1.4 else ("margin",)
     for ec, distance in itertools.product(
         (math.nextafter(crank, 0), crank, math.nextafter(crank, 1)), DISTANCES
     ):
         at = point(-side * QUARTER + distance, side * ec, crank, rod)
-        assert not feasible(at) or not misses(at, ("margin", "crank")), at
+        assert not feasible(at) or not misses(at, gaps), at
 
 
 @pytest.mark.parametrize("ratio", [10.0**k for k in range(4, 13)])
