@@ -18,10 +18,12 @@ from flint import arb, ctx
 from ._balls import BITS, PARTLY, Enclosure, Interval, ball, enclosures
 from ._differentiate import with_derivatives
 from ._point import cut
+from ._quantity_text import PLUS_MINUS
 from ._request import Request, as_number, check_border, check_inputs, request
 from .catalogue import quantity
 from .compiler.program import Program
-from .names import LOADS, sensitivity
+from .inputs import INPUTS
+from .names import sensitivity
 
 Box = tuple[Interval, ...]  # of the inputs that vary
 
@@ -33,6 +35,8 @@ ENOUGH = 64  # bits of it
 TURN = (0.0, nextafter(2 * pi, inf))  # not less than one
 LAST_BIT = 2.0**-52
 SMALLEST = 2.0**-1073
+TOLERANCE = "a value and its tolerance are what `tolerance` takes"
+ENDS = f'a number or a pair (low, high) is wanted, such as ("9.9 mm", "10.1 mm"); {TOLERANCE}'
 
 
 def enclose(
@@ -73,7 +77,7 @@ def enclose(
 
     Needs the extra `rigorous`. Raises ValueError for an unknown name, or `status`, or a bad value.
     """
-    check_inputs("enclose", loads, LOADS)
+    check_inputs("enclose", loads, (*INPUTS, "branch", "rtol", "boxes"))
     quantity(name, omega is not None)
     if name == "status":
         raise ValueError("status is no real number: the status of enclose tells it")
@@ -166,16 +170,20 @@ def _derived(names: Sequence[str], given: dict[str, Any]) -> bool:
 
 def _interval(name: str, value: Any, wanted: str) -> Interval:
     """A number or a pair, as a pair of doubles."""
+    if isinstance(value, str) and PLUS_MINUS.search(value):
+        raise ValueError(f"{name} = {value!r}: {ENDS}")
     number = None if isinstance(value, (tuple, list)) else as_number(name, value, (name,), (wanted,))
     if number is not None:
         return number, number
     try:
         first, last = value
     except (TypeError, ValueError):
-        raise ValueError(f"{name} = {value!r}: a number or a pair (low, high) is wanted") from None
+        raise ValueError(f"{name} = {value!r}: {ENDS}") from None
     low, high = (as_number(name, end, (name,), (wanted,)) for end in (first, last))
     if low is None or high is None or low > high:
-        raise ValueError(f"{name} = ({first}, {last}): two numbers are wanted, the lower one first")
+        raise ValueError(
+            f"{name} = ({first}, {last}): two numbers are wanted, the lower one first; {TOLERANCE}"
+        )
     return low, high
 
 

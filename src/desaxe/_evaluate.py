@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ._point import Point, point_of
-from ._request import Request, as_number, check_border, check_inputs, is_steady, request, standstill
+from ._request import Request, as_number, check_border, check_inputs, is_steady, request, several, standstill
 from .inputs import INPUTS, is_good
 from .names import LOADS
 
@@ -101,7 +101,7 @@ def evaluate(
         from ._quality import evaluate_quality
 
         return evaluate_quality(names, given, branch, accuracy, threads, out)
-    wanted = (names,) if isinstance(names, str) else tuple(dict.fromkeys(names))
+    wanted = (names,) if isinstance(names, str) else several(names)
     if threads is not None or (omega is not None and omega0 is not None) or type(branch) is not int:
         check_border(given, branch, threads)
     key = wanted, tuple(given), omega is not None, is_steady(alpha), branch, accuracy

@@ -3,11 +3,12 @@
 from math import asin, fsum, pi, sqrt, ulp
 from typing import Any
 
-from ._request import as_number
+from ._request import as_number, with_known_inputs
 
 CHANGE_POINT_ULPS = 4  # |margin| within so many last bits of BC is called a change-point design
 
 
+@with_known_inputs
 def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
     """Where a design can be assembled.
 

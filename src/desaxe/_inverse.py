@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ._arrays import as_array, broadcast_shape
 from ._evaluate import evaluate
+from ._request import with_known_inputs
 from .inputs import INPUTS, Input
 
 Array = NDArray[np.float64]
@@ -22,6 +23,7 @@ SLIDER_INPUTS = {
 }
 
 
+@with_known_inputs
 def inverse(
     *, Y: Any, ec: Any, AB: Any, BC: Any, branch: int = 1, V_C: Any = None, a_C: Any = None
 ) -> dict[str, Any]:

@@ -24,9 +24,10 @@ from ._request import Request, as_number, check_border, check_inputs, is_steady,
 from ._roomy import are_roomy
 from .catalogue import law_name, quantity
 from .inputs import INPUTS
-from .names import LENGTHS, LOADS, sensitivity
+from .names import LENGTHS, sensitivity
 
 KINDS = ("absmax", "max", "min")
+INPUTS_OF_PEAK = (*INPUTS, "branch", "kind", "accuracy", "threads")
 
 
 def peak(
@@ -71,11 +72,13 @@ def peak(
 
     Raises ValueError for an unknown quantity or kind.
     """
+    if not isinstance(name, str):
+        raise TypeError(f"peak: one name is wanted, such as 'a_C', got {name!r}")
     if kind not in KINDS:
         raise ValueError(f"kind = {kind!r}: it is one of {', '.join(KINDS)}")
     ends = _range(theta, name)
     given = {"ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega, **loads}
-    check_inputs("peak", loads, LOADS)
+    check_inputs("peak", loads, INPUTS_OF_PEAK)
     check_border(given, branch, threads)
     plan = _plan(name, given, branch, accuracy)
     if "omega0" in plan.needs and omega0 is None:

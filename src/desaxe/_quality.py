@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ._accuracy import BOUNDS, accuracy_of
 from ._arrays import as_array, broadcast_shape
 from ._evaluate import evaluate
-from ._request import check_border, request
+from ._request import check_border, request, several
 from .catalogue import quantity
 from .names import LENGTHS, parts, sensitivity
 
@@ -62,7 +62,7 @@ def evaluate_quality(
     rest = {"branch": branch, "threads": threads}
     if isinstance(names, str):
         return _quality(names, given, rest)
-    return {name: _quality(name, given, rest) for name in dict.fromkeys(names)}
+    return {name: _quality(name, given, rest) for name in several(names)}
 
 
 def _quality(name: str, given: Mapping[str, Any], rest: Mapping[str, Any]) -> Quality:

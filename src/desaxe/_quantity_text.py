@@ -9,6 +9,7 @@ import re
 _NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 _TERM = r"[^\W\d_]+(?:_[^\W\d_]+)*(?:(?:\^|\*\*)?-?[1-9])?|%|\u00b0"
 _UNIT = rf"(?:{_TERM})(?:\s*[*/]\s*(?:{_TERM})|\s+(?:{_TERM}))*"
+PLUS_MINUS = re.compile(r"\u00b1|\+-|\+/-")  # between a value and its tolerance
 _FORM = re.compile(rf"\s*({_NUMBER})\s*({_UNIT})?\s*")
 
 

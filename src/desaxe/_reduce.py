@@ -1,6 +1,5 @@
 """Reductions of one axis of a grid: largest, smallest, mean, ... without storing the grid."""
 
-import difflib
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from math import prod
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 from ._few_points import is_early
 from ._kernels import kernel_for, key_of
 from ._labels import attributes, input_attributes, labelled, provenance
+from ._meant import did_you_mean
 from ._request import Request
 from ._threads import in_blocks
 from .compiler.reductions import EXTREMES, KINDS, outputs_of
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[Any]
 Fill = Callable[[], dict[str, Array]]
+
+
+NO_STATUS = "a status has no largest or mean: leave it out, each name tells how many points it skipped"
 
 
 class Reduction(NamedTuple):
@@ -39,23 +42,18 @@ def reduction_of(asked: Any, dimensions: Sequence[str], names: Sequence[str]) ->
     axis, kinds = next(iter(asked.items()))
     if axis not in dimensions:
         there = ", ".join(dimensions) or "none"
-        raise ValueError(f"reduce: {axis!r} is no axis of this grid; {_near(axis, dimensions)}axes: {there}")
+        raise ValueError(
+            f"reduce: {axis!r} is no axis of this grid; {did_you_mean(str(axis), dimensions)}axes: {there}"
+        )
     kinds = (kinds,) if isinstance(kinds, str) else tuple(dict.fromkeys(kinds))
     for kind in kinds:
         if kind not in KINDS:
-            raise ValueError(f"reduce: {kind!r}: {_near(kind, tuple(KINDS))}allowed: {', '.join(KINDS)}")
+            raise ValueError(f"reduce: {kind!r}: {did_you_mean(str(kind), KINDS)}allowed: {', '.join(KINDS)}")
     if not kinds:
         raise ValueError(f"reduce: nothing is taken of {axis}; allowed: {', '.join(KINDS)}")
     if "status" in names:
-        raise ValueError(
-            "reduce: a status has no largest or mean; each reduced name tells how many it skipped"
-        )
+        raise ValueError(f"reduce: {NO_STATUS}")
     return Reduction(axis, kinds)
-
-
-def _near(word: Any, allowed: Sequence[str]) -> str:
-    near = difflib.get_close_matches(str(word), allowed, 1, 0.5)
-    return f"did you mean {near[0]}? " if near else ""
 
 
 def reduced_grid(

@@ -1,9 +1,9 @@
 """The border: what is asked for and what is given, checked once, with errors that name the culprit."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from functools import cache
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache, wraps
 from math import inf
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from ._accuracy import accuracy_of
 from ._point import cut
@@ -11,6 +11,9 @@ from ._program import Form, program_of
 from .catalogue import law_name, quantity
 from .inputs import INPUTS, is_good
 from .names import CENTRES, LOADS, parts
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 class Request(NamedTuple):
@@ -77,11 +80,41 @@ def check_inputs(caller: str, given: Iterable[str], allowed: Sequence[str]) -> N
     """Refuse an input that there is not."""
     for name in given:
         if name not in allowed:
-            from difflib import get_close_matches
+            raise _unknown_input(caller, name, allowed)
 
-            near = get_close_matches(name, allowed, 1, 0.5)
-            hint = f"did you mean {near[0]}? " if near else ""
-            raise TypeError(f"{caller}() has no input {name!r}; {hint}There are {', '.join(allowed)}")
+
+def _unknown_input(caller: str, name: str, allowed: Sequence[str]) -> TypeError:
+    from ._meant import did_you_mean
+
+    asked = did_you_mean(name, allowed)
+    there = f"{'There' if asked else 'there'} are {', '.join(allowed)}"
+    return TypeError(f"{caller}() has no input {name!r}; {asked}{there}")
+
+
+def with_known_inputs(function: Callable[P, T]) -> Callable[P, T]:
+    """The function; an input that it does not have is refused as `check_inputs` does."""
+
+    @wraps(function)
+    def checked(*args: P.args, **inputs: P.kwargs) -> T:
+        try:
+            return function(*args, **inputs)
+        except TypeError:
+            from inspect import signature
+
+            known = tuple(signature(function).parameters)
+            if all(name in known for name in inputs):
+                raise
+        raise _unknown_input(function.__name__, next(n for n in inputs if n not in known), known)
+
+    return checked
+
+
+def several(names: Any) -> tuple[str, ...]:
+    """The names of a list or anything else that holds them, each once."""
+    try:
+        return tuple(dict.fromkeys(names))
+    except TypeError:
+        raise TypeError(f"names = {names!r}: the name of a quantity or a list of names is wanted") from None
 
 
 def standstill(names: Iterable[str], given: Mapping[str, Any]) -> float | None:

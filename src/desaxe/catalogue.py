@@ -65,7 +65,7 @@ def law_name(name: str) -> str:
 
 
 def _unknown(name: str, state: bool) -> str:
-    from difflib import get_close_matches
+    from ._meant import meant
 
     if not state and law_name(name) in _names():
         return f"{name!r} needs a state: give omega= instead of omega0="
@@ -81,7 +81,7 @@ def _unknown(name: str, state: bool) -> str:
         if len(parameters) > 1:
             return f"{name!r}: this derivative is not derived (second order: Y, V_C, a_C, omega_BC, alpha_BC)"
     near = (
-        get_close_matches(name, _names(), 3, 0.5)
+        meant(name, _names(), 3)
         or [
             known
             for known, (_, meaning, _) in _names().items()

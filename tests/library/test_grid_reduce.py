@@ -158,5 +158,5 @@ def test_complaints(reduce, message):
 
 
 def test_a_status_is_not_reduced():
-    with pytest.raises(ValueError, match="tells how many it skipped"):
+    with pytest.raises(ValueError, match="leave it out, each name tells how many points it skipped"):
         dx.grid(["a_C", "status"], reduce={"theta": "max"}, theta=[0, 1], ec=0, BC=0.35, **MACHINE)

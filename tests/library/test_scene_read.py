@@ -28,6 +28,8 @@ MISTAKES = {
         ['picture #1.file = "x.xyz"', ".png, .svg, .pdf"],
     ),
     "unknown key": ("titel", "x", ["titel", "did you mean title?", "allowed: title, outputs"]),
+    "key in another case": ("mechanism.Bc", 1, ["mechanism.Bc = 1", "did you mean BC?"]),
+    "key by another word": ("motion.speed", 1, ["motion.speed = 1", "did you mean omega0?"]),
     "unknown key of a section": ("mechanism.CD", 1, ["mechanism.CD = 1", "allowed: AB, BC, ec, branch"]),
     "wrong type": ("title", 3, ["title = 3", "it must be text"]),
     "section that is no table": ("mechanism", 3, ["mechanism = 3", "a table, [mechanism]"]),

@@ -1,6 +1,7 @@
 """Designs from wishes: they have what was wished for, none is left out, and limits are the limits."""
 
 import math
+import re
 import subprocess
 import sys
 
@@ -110,6 +111,17 @@ def test_in_line():
     assert design["BC"] == pytest.approx(0.125 / math.sin(math.radians(20)), rel=1e-14)
     (design,) = dx.synthesize(stroke=0.25, time_ratio=1, peak_a_C=0.15, omega0=1.0)["solutions"]
     assert design["BC"] == pytest.approx(0.125**2 / 0.025, rel=1e-9)  # AB omega^2 (1 + AB/BC)
+
+
+def test_a_wish_out_of_reach_is_told_with_its_unit():
+    for wish, told in (
+        ({"max_pressure_angle": "30 deg"}, r"= 0.523599 rad, .* from 0.543636 to 1.5708 rad"),
+        ({"BC": "10 mm"}, r"BC = 0.01 m, .* from 0.125 to 1.66801 m"),
+        ({"peak_a_C": 1e-3, "omega0": 1.0}, r"= 0.001 m/s\^2, .* from [\d.]+ m/s\^2 on"),
+    ):
+        found = dx.synthesize(stroke="250 mm", time_ratio=1.1, **wish)
+        assert found["status"] == 1
+        assert re.fullmatch(f"none: .*{told}", found["message"])
 
 
 def test_no_time_ratio_of_three():

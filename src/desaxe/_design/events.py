@@ -4,7 +4,7 @@ from math import copysign, nan, pi
 from typing import Any
 
 from .._evaluate import evaluate
-from .._request import as_number, check_border
+from .._request import as_number, check_border, with_known_inputs
 from ..names import LENGTHS
 from .closed_form import Known, closed_form
 from .maths import PLAIN, sum_of_three
@@ -15,6 +15,7 @@ MIRRORED = (*HALF_TURN_ON, "Y_outer", "Y_inner")
 VELOCITIES = {"V_outward": 1, "V_inward": -1}  # name -> direction along the stroke
 
 
+@with_known_inputs
 def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) -> dict[str, Any]:
     """Dead centres, stroke, advance and return, and the extremes in between, of designs.
 

@@ -1,12 +1,12 @@
 """Inputs that are not known exactly: a value and its tolerance, or a distribution."""
 
-import re
 from math import inf, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .._quantity_text import PLUS_MINUS
 from .._request import as_number
 
 Array = NDArray[np.float64]
@@ -64,7 +64,7 @@ def read(name: str, value: Any, distribution: str, sigmas: float) -> float | Ine
 def _pair(name: str, value: Any) -> tuple[float, float] | None:
     """Value and tolerance from a pair or a text such as "10 mm +- 0.1 mm"; None where there is none."""
     if isinstance(value, str):
-        parts = re.split(r"±|\+-|\+/-", value)
+        parts = PLUS_MINUS.split(value)
         if len(parts) == 1:
             return None
         value = tuple(part.strip() for part in parts)

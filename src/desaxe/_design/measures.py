@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .._meant import meant
 from .._peak import KINDS, peak
 from ..catalogue import quantities, quantity
 from ..names import LENGTHS
@@ -44,15 +45,13 @@ def checked(measure: Any) -> Measure:
         return str(measure[0]), str(measure[1])
     if isinstance(measure, str) and measure in UNITS:
         return measure
-    from difflib import get_close_matches
-
     hint = ""
     if isinstance(measure, (tuple, list)) and len(measure) == 2 and isinstance(measure[0], str):
-        near = get_close_matches(measure[0], KINDS, 1, 0.5)
+        near = meant(measure[0], KINDS)
         hint = f"did you mean {(near[0], measure[1])!r}? " if near else ""
     elif isinstance(measure, str):
-        near = get_close_matches(measure, UNITS, 1, 0.5)
-        peaks = [] if near else get_close_matches(measure, (row.name for row in quantities()), 1, 0.8)
+        near = meant(measure, UNITS)
+        peaks = [] if near else meant(measure, (row.name for row in quantities()))
         hint = (
             f"did you mean {near[0]!r}? "
             if near
@@ -60,8 +59,9 @@ def checked(measure: Any) -> Measure:
             if peaks
             else ""
         )
+    there = f"{'There' if hint else 'there'} are {', '.join(UNITS)}"
     raise ValueError(
-        f"{measure!r} is no quantity of a design; {hint}There are {', '.join(UNITS)} and the peaks, "
+        f"{measure!r} is no quantity of a design; {hint}{there} and the peaks, "
         f'such as ("absmax", "a_C"), of the kinds {", ".join(KINDS)}'
     )
 

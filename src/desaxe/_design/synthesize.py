@@ -19,7 +19,7 @@ from itertools import pairwise
 from math import asin, cos, inf, isclose, pi, sin, sqrt, tan
 from typing import Any, NamedTuple
 
-from .._request import as_number
+from .._request import as_number, with_known_inputs
 from ..inputs import INPUTS, Input
 from .roots import root
 
@@ -76,6 +76,7 @@ class Answer(NamedTuple):
     why: str = ""
 
 
+@with_known_inputs
 def synthesize(
     *,
     stroke: Any,
@@ -159,11 +160,13 @@ def _wish(name: str, value: Any) -> float:
 
 def _told(third: str, value: float, slow_stroke: int, answer: Answer) -> dict[str, Any]:
     count = len(answer.designs)
+    unit = (WANTED.get(third) or INPUTS[third]).unit
     message = f"{count} design{'s' if count != 1 else ''}"
     if not count:
         message = (
             answer.why
-            or f"none: {third} = {value:g}, designs of this stroke and time ratio have it {_range(answer)}"
+            or f"none: {third} = {value:g} {unit}, designs of this stroke and time ratio have it "
+            + _range(answer, unit)
         )
     elif answer.why:
         message = answer.why
@@ -176,10 +179,10 @@ def _told(third: str, value: float, slow_stroke: int, answer: Answer) -> dict[st
     }
 
 
-def _range(answer: Answer) -> str:
+def _range(answer: Answer, unit: str) -> str:
     if answer.high == inf:
-        return f"from {answer.low:.6g} on"
-    return f"from {answer.low:.6g} to {answer.high:.6g}"
+        return f"from {answer.low:.6g} {unit} on"
+    return f"from {answer.low:.6g} to {answer.high:.6g} {unit}"
 
 
 # ---- one more wish ------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from .._accuracy import accuracy_of
 from .._peaks import WITHOUT_COURSE
 from .._program import Form, program_of
-from .._reduce import Reduction, reduction_of
+from .._reduce import NO_STATUS, Reduction, reduction_of
 from ..catalogue import law_name, quantity
 from ..inputs import INPUTS
 from ..names import CENTRES, LOADS, sensitivity
@@ -163,6 +163,8 @@ def _reduction(
         return None
     if not outputs:
         raise SceneError("reduce: there is nothing to reduce, give outputs = [...]")
+    if "status" in outputs:
+        raise SceneError(f'outputs #{outputs.index("status") + 1} = "status": with [reduce] {NO_STATUS}')
     axes = [name for name, value in inputs.items() if isinstance(value, tuple)]
     try:
         return reduction_of(file.reduce, axes, outputs)

@@ -1,13 +1,13 @@
 """What a scene file may hold: its keys, their types, and what is said where one is wrong."""
 
 from collections.abc import Iterator, Mapping
-from difflib import get_close_matches
 from types import UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import msgspec
 from msgspec import Meta, Struct
 
+from .._meant import did_you_mean
 from ..compiler.reductions import KINDS
 from ..inputs import INPUTS
 
@@ -202,8 +202,7 @@ def shown(value: Any) -> str:
 
 def hint(word: str, allowed: tuple[str, ...]) -> str:
     """The allowed words, the nearest one first where there is one near."""
-    near = get_close_matches(word, allowed, 1, 0.6)
-    return (f"did you mean {near[0]}? " if near else "") + f"allowed: {', '.join(allowed)}"
+    return f"{did_you_mean(word, allowed)}allowed: {', '.join(allowed)}"
 
 
 # ---- which key is wrong --------------------------------------------------------------------------

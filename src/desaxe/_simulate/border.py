@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .._feasibility import theta_intervals
-from .._request import as_number
+from .._request import as_number, several
 from ..catalogue import quantity
 from ..names import CENTRES, LENGTHS, LOADS
 from ..units import in_unit
@@ -56,7 +56,7 @@ def one(name: str, value: Any) -> float:
 
 def check_names(names: Any) -> tuple[str, ...]:
     """The names to tell: each a quantity or sensitivity of the state form."""
-    wanted = (names,) if isinstance(names, str) else tuple(dict.fromkeys(names))
+    wanted = (names,) if isinstance(names, str) else several(names)
     for name in wanted:
         if name in OWN - {"omega"}:
             raise ValueError(f"names: {name!r} is told already, for the simulation itself")

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .._request import check_border
+from .._request import check_border, with_known_inputs
 from .border import (
     check_names,
     design_values,
@@ -27,6 +27,7 @@ from .run import Run, Tolerance
 TINY = 5e-324
 
 
+@with_known_inputs
 def simulate(
     *,
     torque: Any,

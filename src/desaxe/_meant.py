@@ -1,0 +1,60 @@
+"""What somebody meant by a name that there is not: another spelling, or another word for the same."""
+
+from collections.abc import Iterable
+
+# What people call inputs and quantities -> their names here; the first that there is, is meant.
+WORDS = {
+    **dict.fromkeys(("eccentricity", "offset", "excentricity", "ecc", "e"), ("ec",)),
+    **dict.fromkeys(("crank", "crank_length", "crank_radius", "radius", "r"), ("AB",)),
+    **dict.fromkeys(("rod", "rod_length", "connecting_rod", "conrod", "coupler", "l"), ("BC",)),
+    **dict.fromkeys(("angle", "crank_angle", "theta"), ("theta", "theta0")),
+    **dict.fromkeys(
+        (
+            "speed",
+            "crank_speed",
+            "angular_speed",
+            "angular_velocity",
+            "rpm",
+            "w",
+            "omega0",
+            "omega_0",
+            "omega",
+        ),
+        ("omega0", "omega_start"),
+    ),
+    "angular_acceleration": ("alpha",),
+    "acceleration": ("a_C", "alpha"),
+    "velocity": ("V_C",),
+    **dict.fromkeys(("position", "displacement"), ("Y",)),
+    **dict.fromkeys(("friction", "friction_coefficient"), ("mu",)),
+    **dict.fromkeys(("crank_mass", "mass_crank"), ("m_crank",)),
+    **dict.fromkeys(("rod_mass", "mass_rod"), ("m_rod",)),
+    **dict.fromkeys(("slider_mass", "mass_slider", "piston_mass", "m_piston"), ("m_slider",)),
+    **dict.fromkeys(("force", "load"), ("F_Y",)),
+    **dict.fromkeys(("gravity", "g"), ("g_Y",)),
+    **dict.fromkeys(("drive", "moment", "t_in"), ("torque",)),
+    **dict.fromkeys(("duration", "time"), ("t_end",)),
+}
+
+
+def meant(word: str, allowed: Iterable[str], most: int = 1) -> list[str]:
+    """The names of those allowed that may be meant, the likeliest first; none where none is near.
+
+    Upper and lower case, which people mix up, count as the same.
+    """
+    from difflib import get_close_matches
+
+    by_case: dict[str, list[str]] = {}
+    for name in allowed:
+        by_case.setdefault(name.lower(), []).append(name)
+    key = word.lower()
+    spelled = [name for near in get_close_matches(key, by_case, most, 0.6) for name in by_case[near]]
+    same = [name for name in WORDS.get(key, ()) if name in by_case.get(name.lower(), ())]
+    found = spelled if key in by_case else [*same[:1], *spelled]
+    return list(dict.fromkeys(found))[:most]
+
+
+def did_you_mean(word: str, allowed: Iterable[str]) -> str:
+    """The question, and a space after it; nothing where no name is near."""
+    near = meant(word, allowed)
+    return f"did you mean {near[0]}? " if near else ""

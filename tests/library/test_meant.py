@@ -1,0 +1,114 @@
+"""What a user who took another name is told: the name that was meant, or none, and never a wrong one."""
+
+import inspect
+
+import pytest
+
+import desaxe as dx
+from desaxe._meant import WORDS, meant
+from desaxe.inputs import INPUTS
+
+SIZES = {"AB": 0.125, "BC": 0.35}
+RUN = {"torque": 1.0, "t_end": 1.0, "ec": 0.0, **SIZES}
+
+CALLS = {
+    "evaluate": lambda **wrong: dx.evaluate("a_C", **wrong),
+    "grid": lambda **wrong: dx.grid("a_C", **wrong),
+    "peak": lambda **wrong: dx.peak("a_C", **wrong),
+    "tolerance": lambda **wrong: dx.tolerance("a_C", **wrong),
+    "design_map": lambda **wrong: dx.design_map("stroke", **wrong),
+    "simulate": lambda **wrong: dx.simulate(**RUN, **wrong),
+    "events": lambda **wrong: dx.events(ec=0.0, **SIZES, **wrong),
+    "feasibility": lambda **wrong: dx.feasibility(**SIZES, **wrong),
+    "inverse": lambda **wrong: dx.inverse(Y=0.3, **SIZES, **wrong),
+    "synthesize": lambda **wrong: dx.synthesize(stroke=0.1, BC=0.3, **wrong),
+    "harmonics": lambda **wrong: dx.harmonics("a_C", **wrong),
+}
+
+
+@pytest.mark.parametrize(
+    ("call", "wrong", "name"),
+    [
+        ("evaluate", "eccentricity", "ec"),
+        ("evaluate", "ab", "AB"),
+        ("evaluate", "speed", "omega0"),
+        ("evaluate", "Theta", "theta"),
+        ("evaluate", "acuracy", "accuracy"),
+        ("grid", "eccentricity", "ec"),
+        ("grid", "crank", "AB"),
+        ("peak", "rod", "BC"),
+        ("tolerance", "offset", "ec"),
+        ("design_map", "bc", "BC"),
+        ("simulate", "omega0", "omega_start"),
+        ("simulate", "theta", "theta0"),
+        ("simulate", "m_piston", "m_slider"),
+        ("events", "omega", "omega0"),
+        ("feasibility", "e", "ec"),
+        ("inverse", "position", "Y"),
+        ("synthesize", "ratio", "time_ratio"),
+        ("harmonics", "friction", "mu"),
+    ],
+)
+def test_the_name_that_was_meant(call, wrong, name):
+    with pytest.raises(TypeError) as complaint:
+        CALLS[call](**{wrong: 0.1})
+    assert str(complaint.value).startswith(
+        f"{call}() has no input {wrong!r}; did you mean {name}? There are "
+    )
+    assert complaint.value.__cause__ is None
+    assert complaint.value.__context__ is None
+
+
+@pytest.mark.parametrize(("call", "wrong"), [("events", "theta"), ("grid", "foo"), ("evaluate", "x")])
+def test_no_guess_is_better_than_a_wrong_one(call, wrong):
+    with pytest.raises(TypeError, match=rf"{call}\(\) has no input '{wrong}'; there are .*ec, AB, BC"):
+        CALLS[call](**{wrong: 0.1})
+
+
+def test_other_errors_are_told_as_they_are():
+    with pytest.raises(TypeError, match="missing 1 required keyword-only argument: 'BC'"):
+        dx.events(ec=0.0, AB=0.1)
+    with pytest.raises(TypeError, match="takes 0 positional arguments"):
+        dx.events(0.1)
+
+
+def test_a_checked_function_looks_like_itself():
+    assert list(inspect.signature(dx.feasibility).parameters) == ["ec", "AB", "BC"]
+    assert dx.simulate.__name__ == "simulate"
+    assert "The motion of the crank" in dx.simulate.__doc__
+
+
+def test_the_table_leads_to_names_that_there_are():
+    there = {*INPUTS, *inspect.signature(dx.simulate).parameters, *(row.name for row in dx.quantities())}
+    assert {name for names in WORDS.values() for name in names} <= there
+    assert all(word == word.lower() for word in WORDS)
+
+
+def test_case_spelling_and_words():
+    assert meant("a_c", ("V_C", "a_C", "N_C"), 3)[0] == "a_C"
+    assert meant("crank_length", ("BC", "AB")) == ["AB"]
+    assert meant("crank_length", ("theta",)) == []
+    assert meant("omega", ("omega", "omega0")) == ["omega"]
+
+
+@pytest.mark.parametrize(
+    ("word", "name"), [("A_C", "a_C"), ("acceleration", "a_C"), ("velocity", "V_C"), ("position", "Y")]
+)
+def test_a_quantity_that_was_meant(word, name):
+    with pytest.raises(ValueError, match=rf"unknown quantity '{word}'; did you mean {name}[,?]"):
+        dx.evaluate(word, theta=1.0, ec=0.0, omega0=1.0, **SIZES)
+
+
+@pytest.mark.parametrize("names", [3, None, [["a_C"]]])
+def test_what_is_no_name_is_told(names):
+    point = {"theta": 1.0, "ec": 0.0, "omega0": 1.0, **SIZES}
+    for options in ({}, {"quality": True}):
+        with pytest.raises(TypeError, match=r"the name of a quantity or a list of names is wanted"):
+            dx.evaluate(names, **point, **options)
+    with pytest.raises(TypeError, match=r"the name of a quantity or a list of names is wanted"):
+        dx.simulate(**RUN, m_slider=1.0, names=names)
+
+
+def test_a_peak_is_that_of_one_name():
+    with pytest.raises(TypeError, match=r"peak: one name is wanted, such as 'a_C', got \['a_C'\]"):
+        dx.peak(["a_C"], ec=0.0, omega0=1.0, **SIZES)
