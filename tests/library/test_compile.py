@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -12,6 +13,7 @@ import pytest
 import desaxe as dx
 from desaxe import _few_points
 from desaxe._cache import locked
+from desaxe._compile import module_text
 from desaxe._scene import SceneError
 from tests.library.scenes import COMPACTOR, SMALL
 
@@ -232,6 +234,35 @@ def test_an_angle_beyond_reach_is_refused(tmp_path):
     found = module.evaluate(np.array([1.0, np.nan, np.inf]))
     assert found["status"].tolist() == [0, 4, 4]
     assert Path(module.__file__).parent == tmp_path
+    for call in (module.point, module.evaluate):
+        with pytest.raises(TypeError, match="theta = '60 deg': numbers in SI units are wanted, not text"):
+            call("60 deg")
+    with pytest.raises(TypeError, match="numbers in SI units are wanted"):
+        module.evaluate(["60 deg", "61 deg"])
+
+
+@pytest.mark.parametrize(
+    ("name", "better"),
+    [
+        ("kern", "kern.py"),
+        ("my-k.py", "my_k.py"),
+        ("2d.py", "kernels_2d.py"),
+        ("class.py", "kernels_class.py"),
+    ],
+)
+def test_a_name_that_python_cannot_import(name, better, tmp_path):
+    with pytest.raises(ValueError, match=rf"{name}: Python cannot import .*, but {better}, for example"):
+        dx.compile(SMALL, tmp_path / name)
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_count_of_operations_says_why_it_is_less_than_that_of_the_plan():
+    scene, plan = dx.scene(SCENES["one_axis"]), dx.explain(SCENES["one_axis"])
+    told = re.search(
+        r"A `point` takes (\d+) operations: a sine is one, the scene's numbers", module_text(scene)
+    )
+    assert int(told[1]) < plan["operations"]["straight"]
+    assert "(`desaxe compile` folds numbers in, and has fewer)" in str(plan)
 
 
 def test_a_scene_without_outputs(tmp_path):

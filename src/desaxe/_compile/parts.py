@@ -28,6 +28,14 @@ AFFINITY = """try:
 except ImportError:  # not on this system
     sched_getaffinity = None
 """
+DOUBLES = '''def doubles(**inputs):
+    """The inputs as arrays of doubles; text, which may carry a unit, is refused."""
+    arrays = {name: asarray(given) for name, given in inputs.items()}
+    for name, array in arrays.items():
+        if array.dtype.kind in "US":
+            raise TypeError(f"{name} = {inputs[name]!r}: numbers in SI units are wanted, not text")
+    return [asarray(array, float64) for array in arrays.values()]
+'''
 
 
 def described(names: Iterable[str], state: bool) -> list[str]:
@@ -54,9 +62,12 @@ def point_function(program: Program, shown: Sequence[str], state: bool) -> str:
     body = write_lines(with_short_temporaries(program), "python")
     returned = ", ".join(program.outputs)
     told = [*described(program.inputs, state), "", "Gives:", *described(shown, state)]
+    types = ", ".join(f"type({name})" for name in program.inputs)
+    check = [f"if str in ({types},):", f"    {_doubles(program.inputs)}  # says what is wrong"]
     lines = [
         f"def point({', '.join(program.inputs)}):",
         *_indented(docstring("One point in plain Python, nothing compiled: numbers in, a tuple out.", told)),
+        *_indented(check if program.inputs else []),
         *_indented(body),
         f"    return ({returned},)",
         "",
@@ -67,6 +78,10 @@ def point_function(program: Program, shown: Sequence[str], state: bool) -> str:
     names = [name for name in MATH_NAMES if _calls(words, name)]
     imports = [f"from math import {', '.join(names)}"] if names else []
     return "\n\n".join(['"""Points."""', *imports, *used, text])
+
+
+def _doubles(inputs: Iterable[str]) -> str:
+    return f"doubles({', '.join(f'{name}={name}' for name in inputs)})"
 
 
 def _indented(lines: Iterable[str]) -> list[str]:
@@ -115,7 +130,7 @@ def evaluate_function(
         [
             f"def evaluate({head}, threads=None):",
             *_indented(docstring(f"{', '.join(shown)} at points of your own.", told)),
-            f"    arrays = broadcast_arrays(*(asarray(given, float64) for given in ({head},)))",
+            f"    arrays = broadcast_arrays(*{_doubles(inputs)})",
             *check,
             "    if not arrays[0].ndim:",
             "        return dict(zip(OUTPUTS, point(*(float(a) for a in arrays)), strict=True))",
