@@ -5,12 +5,16 @@ with exit code 2.
 """
 
 import argparse
+import io
 import json
 import os
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import redirect_stdout
 from importlib import import_module
+from itertools import pairwise
 from math import isfinite
+from pathlib import Path
 from typing import Any, NoReturn
 
 from .extras import MissingExtraError, needed
@@ -230,16 +234,15 @@ def _names_and_inputs(words: Sequence[str]) -> tuple[list[str], dict[str, Any]]:
 
     names: list[str] = []
     inputs: dict[str, Any] = {}
-    for word in words:
+    for before, word in pairwise(["", *words]):
         key, equals, value = word.partition("=")
         if not equals:
+            _refuse_parted(before, word)
             names += [name for name in word.split(",") if name]
         elif key == "branch":
             inputs[key] = _branch(value)
         elif key not in INPUTS:
-            raise UsageError(
-                f"{word}: no input is called {key!r}, there are {', '.join([*INPUTS, 'branch'])}"
-            )
+            raise UsageError(f"{word}: no input is called {key!r}, {_inputs_near(key)}")
         elif key in inputs:
             raise UsageError(f"{word}: {key} is given twice")
         else:
@@ -247,6 +250,34 @@ def _names_and_inputs(words: Sequence[str]) -> tuple[list[str], dict[str, Any]]:
     if not names:
         raise UsageError("which quantity? give a name such as a_C (desaxe point --list shows all)")
     return list(dict.fromkeys(names)), inputs
+
+
+def _inputs_near(word: str) -> str:
+    """The inputs that there are, the one that may be meant first."""
+    from ._meant import did_you_mean
+    from .inputs import INPUTS
+
+    asked = did_you_mean(word, (*INPUTS, "branch"))
+    return f"{asked}{'There' if asked else 'there'} are {', '.join([*INPUTS, 'branch'])}"
+
+
+def _refuse_parted(before: str, word: str) -> None:
+    """A shell parts ec=10 mm into two words: tell how to write that, where the second one is a unit."""
+    from .catalogue import quantities
+
+    key, equals, value = before.partition("=")
+    if not equals or word in {row.name for row in quantities()}:
+        return
+    from .units import in_si
+
+    try:
+        float(value)
+        in_si(key, f"{value} {word}")
+    except (ValueError, KeyError, MissingExtraError):
+        return
+    raise UsageError(
+        f'{before} {word}: a value and its unit are one word, {before}{word} or "{before} {word}"'
+    )
 
 
 def _quantity(word: str, text: str) -> str:
@@ -442,10 +473,15 @@ def _add_explore(commands: Any) -> None:
 
 
 def _explore(options: argparse.Namespace) -> int:
-    from . import explore
+    from ._explore.call import content_of
+    from ._explore.content import left_out_text
+    from ._explore.write import write_page
 
-    names = options.names.split(",") if options.names else None
-    print(explore(options.scene, options.file, names=names))
+    found = content_of(options.scene, options.names.split(",") if options.names else None)
+    print(write_page(found, Path(options.file)))
+    left = left_out_text(found)
+    if left:
+        print(f"desaxe: not shown on the page: {left}", file=sys.stderr)
     return 0
 
 
@@ -467,8 +503,17 @@ def _add_derive(commands: Any) -> None:
 
 def _derive(words: list[str]) -> int:
     with needed("desaxe derive"):
-        code: int = import_module("desaxe.derive.__main__").main(words)
-    return code
+        run = import_module("desaxe.derive.__main__").main
+    if not {"-h", "--help"} & set(words):
+        code: int = run(words)
+        return code
+    shown = io.StringIO()
+    try:
+        with redirect_stdout(shown):
+            run(words)
+    finally:  # it calls itself as one calls it there
+        print(shown.getvalue().replace("python -m derive", "desaxe derive"), end="")
+    return 0
 
 
 _ERRATA = """\

@@ -45,6 +45,41 @@ def test_a_scene_brings_its_designs_and_its_names(tmp_path):
     assert page["title"].startswith("Paper A")
 
 
+def test_up_to_five_values_are_all_compared(tmp_path):
+    five = [0.0, 0.05, 0.1, 0.15, 0.2]
+    page = content_of(dx.explore(path=tmp_path / "a.html", **{**SIZES, "ec": five}))
+    assert [design["ec"] for design in page["designs"]] == five
+    assert page["left_out"] == ""
+
+
+@pytest.mark.parametrize(
+    ("ec", "rods", "told"),
+    [
+        ([0.0, 0.01, 0.02, 0.03, 0.04, 0.05], 0.35, "ec = 0.01, 0.04 m"),
+        ([0.0, 0.1], [0.35, 0.4, 0.45], "BC = 0.4, 0.45 m"),
+        ([0.01 * k for k in range(20)], [0.35, 0.4], "16 of the values of ec; BC = 0.4 m"),
+    ],
+)
+def test_values_that_are_left_out_are_told(ec, rods, told, tmp_path, capsys):
+    path = dx.explore(path=tmp_path / "a.html", **{**SIZES, "ec": ec, "BC": rods})
+    assert content_of(path)["left_out"] == told
+    scene = tmp_path / "a.toml"
+    lengths = f"ec = {ec}\nAB = 0.125\nBC = {rods}"
+    motion = "omega0 = 1\ntheta = [0, 1]"
+    scene.write_text(f'outputs = ["V_C"]\n[mechanism]\n{lengths}\n[motion]\n{motion}\n', encoding="utf-8")
+    assert main(["explore", str(scene), "-o", str(path)]) == 0
+    out, err = capsys.readouterr()
+    assert out == f"{path}\n"
+    assert err == f"desaxe: not shown on the page: {told}\n"
+
+
+def test_a_path_in_the_place_of_a_scene():
+    with pytest.raises(TypeError, match=r"not both \(path='x.html' is the page to write\)"):
+        dx.explore("x.html", **SIZES)
+    with pytest.raises(TypeError, match=r"not both \(ec, AB, BC, omega0 beside a scene\)"):
+        dx.explore("x.toml", **SIZES)
+
+
 def test_a_title_is_text(tmp_path):
     nasty = "</script><script>alert(1)</script> & co"
     text = dx.explore(path=tmp_path / "a.html", title=nasty, **SIZES).read_text(encoding="utf-8")

@@ -114,6 +114,20 @@ COMPLAINTS = {
     "no name": (["point"], "which quantity?"),
     "no such name": (["point", "aC", *POINT], "unknown quantity 'aC'; did you mean a_C?"),
     "no such input": (["point", "a_C", "CD=3"], "CD=3: no input is called 'CD', there are theta, ec"),
+    "input of another name": (
+        ["point", "a_C", "rod=3"],
+        "no input is called 'rod', did you mean BC? There are",
+    ),
+    "a unit apart": (
+        ["point", "a_C", "ec=10", "mm"],
+        "ec=10 mm: a value and its unit are one word, ec=10mm or",
+    ),
+    "a name after a number": (
+        ["point", "a_C", "theta=60", "a_c"],
+        "unknown quantity 'a_c'; did you mean a_C",
+    ),
+    "module without its ending": (["compile", COMPACTOR, "-o", "kern"], "but kern.py, for example"),
+    "module of no name": (["compile", COMPACTOR, "-o", "my-k.py"], "my-k.py: Python cannot import a module"),
     "input twice": (["point", "a_C", *POINT, "ec=3"], "ec=3: ec is given twice"),
     "missing input": (["point", "a_C", *POINT[:-1]], "a_C: omega0 is missing"),
     "bad value": (["point", "a_C", "AB=-1", *POINT[:2], *POINT[3:]], "it must be a finite length >= 0"),
@@ -207,6 +221,18 @@ def test_help(command, capsys):
     assert out.startswith("usage: ")
     assert max(map(len, out.splitlines())) <= 100
     assert err == ""
+
+
+def test_help_of_derive_calls_itself_by_its_name(capsys):
+    assert main(["derive", "--help"]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("usage: desaxe derive [-h] [--check] [--report]")
+    assert "python -m" not in out
+
+
+def test_a_name_that_is_a_unit_too_may_follow_a_number(capsys):
+    assert main(["point", "theta=60deg", "s", *POINT[1:]]) == 0
+    assert capsys.readouterr().out.startswith("s = ")
 
 
 def test_help_has_signs_and_examples(capsys):

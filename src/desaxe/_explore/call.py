@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping
 from os import PathLike
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from .._request import as_number, check_border, check_inputs
@@ -11,6 +12,7 @@ from ..names import LOADS
 from .content import Content, Value, content
 from .write import write_page
 
+TITLE = "Offset slider-crank"
 START = ("a_C", "a_C_wrt_ec")  # what the two charts show first where a scene names nothing
 
 
@@ -20,14 +22,15 @@ def explore(
     *,
     names: Iterable[str] | None = None,
     branch: int = 1,
-    title: str = "Offset slider-crank",
+    title: str = TITLE,
     **inputs: Any,
 ) -> Path:
     """Write an explorer page: one HTML file that needs no network, to be opened or sent to somebody.
 
     source  a scene (`desaxe.scene`, a TOML file or a mapping); or give inputs instead, as to `evaluate`:
             ec, AB, BC [m], omega0 (or omega) [rad/s], alpha [rad/s^2], masses and loads, each a number,
-            text with a unit, or a list, whose values are compared
+            text with a unit, or a list, whose values are compared (all of
+            up to five, four of more; the page says which are not shown)
     path    the file to write
     branch  of inputs: +1 (the papers) or -1; a scene has its own, and its own title
     title   what the page is headed with
@@ -43,15 +46,28 @@ def explore(
         dx.explore("examples/compactor.toml", "explorer.html")
         dx.explore(ec=["0 mm", "150 mm"], AB="125 mm", BC="350 mm", omega0="1500 rpm")
     """
+    return write_page(content_of(source, names, branch, title, inputs), Path(path))
+
+
+def content_of(
+    source: Any,
+    names: Iterable[str] | None = None,
+    branch: int = 1,
+    title: str = TITLE,
+    inputs: Mapping[str, Any] = MappingProxyType({}),
+) -> Content:
+    """The content of the page that `explore` writes for the same."""
     if source is None:
         check_border(inputs, branch)
         check_inputs("explore", inputs, tuple(INPUTS))
-        found = content(title, branch, {n: _value(n, v) for n, v in inputs.items()}, START, names)
-    elif inputs:
-        raise TypeError(f"explore: give a scene or inputs, not both ({', '.join(inputs)} beside a scene)")
-    else:
-        found = _of_scene(source, names)
-    return write_page(found, Path(path))
+        return content(title, branch, {n: _value(n, v) for n, v in inputs.items()}, START, names)
+    if inputs:
+        page = isinstance(source, (str, PathLike)) and Path(source).suffix != ".toml"
+        beside = (
+            f"path={str(source)!r} is the page to write" if page else f"{', '.join(inputs)} beside a scene"
+        )
+        raise TypeError(f"explore: give a scene or inputs, not both ({beside})")
+    return _of_scene(source, names)
 
 
 def _of_scene(source: Any, names: Iterable[str] | None) -> Content:
@@ -63,7 +79,7 @@ def _of_scene(source: Any, names: Iterable[str] | None) -> Content:
     inside = known.content
     asked = [*inside.outputs, *(peak.quantity for peak in inside.peaks)]
     asked += [picture.quantity for picture in inside.pictures]
-    title = inside.title or "Offset slider-crank"
+    title = inside.title or TITLE
     shown = [name for name in asked if name not in ("status", "margin")]
     return content(title, inside.branch, dict(inside.inputs), shown or START, names)
 

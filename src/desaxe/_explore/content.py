@@ -23,7 +23,9 @@ KINEMATICS = (
 FORCES = ("T_in", "N_C")
 STATE = ("status", "margin")
 SHAPE = ("ec", "AB", "BC")
-MOST_DESIGNS = 4  # that a page compares when it is opened
+MOST_DESIGNS = 5  # that a page compares when it is opened: a colour is left for one that is kept
+FROM_MANY = 4  # of more values than that, evenly chosen
+LISTED = 6  # values that are left out; of more it is told how many
 
 
 class Function(NamedTuple):
@@ -44,6 +46,7 @@ class Content(NamedTuple):
     designs: tuple[dict[str, float], ...]
     shown: tuple[str, ...]
     functions: tuple[Function, ...]
+    left_out: Mapping[str, tuple[float, ...]]  # input -> its values that no design has
 
     @property
     def quantities(self) -> list[Quantity]:
@@ -63,7 +66,26 @@ def content(
             raise TypeError(f"explore: {name} is missing (needed: ec, AB, BC, and omega0 or omega)")
     wanted = [*shown, *((*KINEMATICS, *(FORCES * _loaded(given))) if names is None else names)]
     functions = tuple(_function(base, own, given, branch) for base, own in _grouped(wanted, given).items())
-    return Content(title, branch, _angles(given), _designs(given), shown, functions)
+    designs = _designs(given)
+    left = {n: out for n, value in given.items() if n != "theta" and (out := _left_out(n, value, designs))}
+    return Content(title, branch, _angles(given), designs, shown, functions, left)
+
+
+def left_out_text(content: Content) -> str:
+    """Which of the values given no design of the page has; nothing where it has all."""
+    told = []
+    for name, values in content.left_out.items():
+        unit = INPUTS[name].unit
+        listed = f"{name} = {', '.join(f'{value:.6g}' for value in values)} {unit}".removesuffix(" 1")
+        told.append(listed if len(values) <= LISTED else f"{len(values)} of the values of {name}")
+    return "; ".join(told)
+
+
+def _left_out(name: str, value: Value, designs: Iterable[Mapping[str, float]]) -> tuple[float, ...]:
+    if not isinstance(value, tuple):
+        return ()
+    there = {design[name] for design in designs}
+    return tuple(dict.fromkeys(v for v in value if v not in there))
 
 
 def _loaded(given: Mapping[str, Value]) -> bool:
@@ -120,6 +142,6 @@ def _designs(given: Mapping[str, Value]) -> tuple[dict[str, float], ...]:
     if several is None:
         return (first,)
     values: Any = inputs[several]
-    count = min(len(values), MOST_DESIGNS)
+    count = len(values) if len(values) <= MOST_DESIGNS else FROM_MANY
     places = [round(k * (len(values) - 1) / (count - 1)) for k in range(count)]
     return tuple({**first, several: values[place]} for place in places)

@@ -12,7 +12,7 @@ from ..compiler.emit_javascript import HEADER
 from ..extras import needed
 from ..inputs import INPUTS
 from ..names import parts
-from .content import Content
+from .content import Content, left_out_text
 
 # In the order in which they build on each other.
 SCRIPTS = ("numbers", "designs", "words", "mechanism", "charts", "controls", "files", "main")
@@ -60,6 +60,7 @@ def _data(content: Content) -> dict[str, Any]:
         "branch": content.branch,
         "theta": content.theta,
         "designs": content.designs,
+        "left_out": left_out_text(content),
         "shown": content.shown,
         "inputs": {
             name: {"unit": row.unit, "meaning": row.meaning, "least": row.least, "limit": row.limit}

@@ -100,6 +100,7 @@ function listenToTheme() {
 charts.forEach(buildChooser);
 charts.forEach((_, index) => showChoice(index));
 buildControls();
+if (CONTENT.left_out) setText("left-out", `Not shown: ${CONTENT.left_out}`);
 listenToDesigns();
 listenToKeys();
 listenToTurning();
