@@ -355,6 +355,23 @@ def test_long_table_is_thinned():
     assert len(text.splitlines()) < 40
 
 
+@pytest.mark.parametrize("base", [{"ec": 5.0}, {"ec": 0, "AB": 1e-300}])
+def test_changes_from_nothing_and_from_next_to_nothing_leave_the_table_whole(base):
+    claim = {"at": {"ec": "50 mm"}, "increase": "33 %", "source": "somebody"}
+    peak = {"quantity": "a_C", "over": {"ec": [0, "50 mm"]}, "baseline": base, "claim": [claim]}
+    text = str(dx.scene({**SMALL, "outputs": [], "peak": [peak]}).run())
+    *_, first, second, said = (line for line in text.splitlines() if line.startswith("  "))
+    assert "nan %" not in text.lower()
+    assert max(map(len, text.splitlines())) <= 110
+    changes = [row.split()[3] for row in (first, second)]
+    if "AB" not in base:
+        assert changes == ["-", "-"]
+        assert said.endswith("somebody 33 %, but there is no finite change: DIFFERS")
+    else:
+        assert all(1e200 < float(change) < math.inf for change in changes)
+        assert said.endswith("DIFFERS")
+
+
 def test_infeasible_peaks_are_told():
     peak = {"quantity": "a_C", "over": {"ec": [0.1, 0.23, 9.0]}}
     text = str(dx.scene({**SMALL, "outputs": [], "peak": [peak]}).run())
@@ -405,6 +422,11 @@ def test_reduced_outputs():
     np.testing.assert_array_equal(result.dataset.a_C_absmax, np.abs(whole.a_C).max("theta"))
     assert result.dataset.attrs["title"] == "small"
     assert "V_C, a_C (absmax, rms over theta) over ec (2)" in str(result)
+
+
+def test_a_status_cannot_be_reduced():
+    with pytest.raises(ValueError, match=r'outputs #2 = "status": with \[reduce\] a status has no largest'):
+        dx.scene({**SMALL, "outputs": ["a_C", "status"], "reduce": {"theta": "max"}})
 
 
 def test_data_in_every_format(tmp_path, monkeypatch):

@@ -6,6 +6,8 @@ from typing import NamedTuple
 from .._quantity_text import spelled, split_quantity
 from .schema import SceneError, shown
 
+MOST_DIGITS = 15  # in front of the point; a larger number is told as a power of ten
+
 
 class Printed(NamedTuple):
     """A printed number: its value, the power of ten of its last digit, and its unit as written.
@@ -31,8 +33,9 @@ class Printed(NamedTuple):
         return self.rounded(computed) == self.value
 
     def text(self, value: Decimal) -> str:
-        """A value written like the printed one."""
-        return f"{value:f} {self.unit}".rstrip()
+        """A value written like the printed one; as a power of ten where that would fill the line."""
+        form = "f" if value.adjusted() < MOST_DIGITS else ".6e"
+        return f"{value:{form}} {self.unit}".rstrip()
 
 
 def read_printed(key: str, written: str | float, digits: int | None, unit: str) -> Printed:

@@ -1,7 +1,7 @@
 """The report of a scene as text for a terminal, at most 100 columns wide."""
 
 from collections.abc import Sequence
-from math import degrees, pi
+from math import degrees, isfinite, isnan, pi
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from .read import Content, Peak
 from .run import CheckResult, FeasibilityResult, Run, group_names
 
 ROWS = 24  # of a table; a longer one is thinned out
+HUGE = 1e6  # percent: more is told as a power of ten
 GAPS = 5  # designs that cannot turn fully
 
 
@@ -128,10 +129,16 @@ def _peak_rows(found: PeakResult) -> list[list[str]]:
     for index in _thinned(list(np.ndindex(dataset["value"].shape))):
         row = [number(dataset[name].values[i]) for name, i in zip(one.axes, index, strict=True)]
         row += [number(dataset["value"].values[index]), f"{degrees(dataset['theta'].values[index]):.3f}"]
-        row += [f"{dataset['increase'].values[index]:+.1f} %"] if base else []
+        row += [_percent(float(dataset["increase"].values[index]), 1, "+")] if base else []
         row += [_slope(found, name, index) for name in slopes]
         rows.append(row)
     return rows
+
+
+def _percent(value: float, places: int, sign: str = "") -> str:
+    """A change: a dash where there is none, a power of ten where it is huge, so that columns stay narrow."""
+    form = f"{sign}.{places}f" if abs(value) < HUGE else f"{sign}.3g"
+    return "-" if isnan(value) else f"{value:{form}} %"
 
 
 def _slope(found: PeakResult, name: str, index: tuple[int, ...]) -> str:
@@ -178,10 +185,12 @@ def _remarks(found: PeakResult) -> list[str]:
 def _claim(one: Peak, result: ClaimResult) -> str:
     claim = result.claim
     printed = claim.increase.text(claim.increase.value)
+    where = f"{_design(claim.at)} over {_design(one.at_baseline)}"
+    if not isfinite(result.computed):
+        return f"  increase of {where}: {claim.source} {printed}, but there is no finite change: DIFFERS"
     computed = claim.increase.text(claim.increase.rounded(result.computed))
     verdict = "agrees" if result.agrees else "DIFFERS"
-    where = f"{_design(claim.at)} over {_design(one.at_baseline)}"
-    full = f"{result.computed:.2f} %"
+    full = _percent(result.computed, 2)
     return f"  increase of {where}: {claim.source} {printed}, desaxe {computed} ({full}): {verdict}"
 
 
