@@ -18,6 +18,7 @@ from desaxe.cli import main
 ROOT = Path(__file__).resolve().parents[2]
 BLOCK = re.compile(r'^```(python|console|toml title="(?P<file>[\w.]+)")\n(?P<text>.*?)^```', re.S | re.M)
 SHOWN = re.compile(r"^(?P<code>\S.*?) +# = (?P<text>.*)$", re.M)
+PRINTED = re.compile(r"^print\((?P<code>.*)\)\n(?P<text>(?:# .*\n)+)", re.M)
 PAGES = sorted(
     path.relative_to(ROOT).as_posix() for path in [*(ROOT / "docs").glob("*.md"), ROOT / "README.md"]
 )
@@ -46,11 +47,14 @@ def test_its_code_runs(page, tmp_path, monkeypatch, capsys):
 
 
 def run_python(text, scope, page, line):
-    """A block, and then each `code  # = text` in it, whose value must be what is shown."""
+    """A block; then each `code  # = text` in it, and comments under a `print`, must be true."""
     exec(compile("\n" * line + text, page, "exec"), scope)
     for shown in SHOWN.finditer(text):
         value = eval(shown["code"], scope)
         assert looks_like(value, shown["text"]), (page, shown[0], value)
+    for printed in PRINTED.finditer(text):
+        words = re.sub(r"^# ", "", printed["text"], flags=re.M).split()
+        assert str(eval(printed["code"], scope)).split() == words, (page, printed[0])
 
 
 def looks_like(value, text):
@@ -75,6 +79,12 @@ def test_the_check_sees_an_error():
     assert not looks_like("rocker", "'crank'")
 
 
+def test_the_check_sees_what_is_not_printed():
+    run_python('print("a  b")\n# a\n# b\n', {}, "page", 0)
+    with pytest.raises(AssertionError):
+        run_python('print("a b")\n# a c\n', {}, "page", 0)
+
+
 def run_console(text, capsys):
     """Every line: a command of ours, or an installation of extras that there are."""
     for line in text.splitlines():
@@ -95,7 +105,10 @@ def test_every_block_that_could_run_does():
         text = BLOCK.sub("", (ROOT / page).read_text(encoding="utf-8"))
         left[page] = set(re.findall(r"^```(\w+)$", text, re.M))
     assert set().union(*left.values()) <= {"text", "matlab"}, left
-    wanted = ("index", "howto", "design", "forces", "pictures", "choose", "coming-from", "promise", "scene")
+    wanted = (
+        "index", "howto", "design", "forces", "pictures", "choose", "coming-from", "promise", "scene",
+        "quantities", "api",
+    )  # fmt: skip
     assert {"README.md", *(f"docs/{name}.md" for name in wanted)} <= set(WITH_BLOCKS)
 
 
