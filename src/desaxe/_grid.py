@@ -12,7 +12,7 @@ from ._arrays import as_array, buffers_for, delivered, places_for
 from ._few_points import fill_by_points, is_early
 from ._kernels import KernelKey, key_of
 from ._point import point_of
-from ._request import Request, check_border, check_inputs, request, standstill
+from ._request import Request, check_border, check_inputs, request, several, standstill
 from ._threads import run_in_blocks
 from .inputs import INPUTS
 from .names import LENGTHS
@@ -77,7 +77,7 @@ def grid(
 
         dx.grid(["a_C"], theta=th, ec=ecs, AB=.125, BC=bcs, omega0=157.08).a_C.max("theta")
     """
-    wanted = (names,) if isinstance(names, str) else tuple(dict.fromkeys(names))
+    wanted = (names,) if isinstance(names, str) else several(names)
     given = _given(wanted, inputs)
     check_border(given, branch, threads)
     shown = wanted if out is not None else tuple(dict.fromkeys((*wanted, *ALWAYS)))
