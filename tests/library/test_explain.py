@@ -214,7 +214,7 @@ Skipped
     operations a point)
   ec = 0: concentric: the slider's axis meets the crank's centre (1 operation a point)
 
-Operations at each point after each pass (`desaxe compile` folds numbers in, and has fewer)
+Operations at each point after each pass
   pass         operations   saved
   derivation         2226           every line of the derivation
   slice                89    2137   only the lines that the wanted names reach

@@ -29,12 +29,12 @@ except ImportError:  # not on this system
     sched_getaffinity = None
 """
 DOUBLES = '''def doubles(**inputs):
-    """The inputs as arrays of doubles; text, which may carry a unit, is refused."""
-    arrays = {name: asarray(given) for name, given in inputs.items()}
-    for name, array in arrays.items():
-        if array.dtype.kind in "US":
+    """The inputs in doubles; text, which may carry a unit, is refused."""
+    held = {name: asarray(given) for name, given in inputs.items()}
+    for name, numbers in held.items():
+        if numbers.dtype.kind in "US":
             raise TypeError(f"{name} = {inputs[name]!r}: numbers in SI units are wanted, not text")
-    return [asarray(array, float64) for array in arrays.values()]
+    return [asarray(numbers, float64) for numbers in held.values()]
 '''
 
 

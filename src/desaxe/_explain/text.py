@@ -91,12 +91,7 @@ def _passes(plan: Mapping[str, Any]) -> str:
     lines = table([row[:3] for row in rows], left=1)
     wide = max(map(len, lines))
     texts = [f"{line:{wide}}   {row[3]}".rstrip() for line, row in zip(lines, rows, strict=True)]
-    return "\n".join(
-        [
-            "Operations at each point after each pass (`desaxe compile` folds numbers in, and has fewer)",
-            *texts,
-        ]
-    )
+    return "\n".join(["Operations at each point after each pass", *texts])
 
 
 def _is_compiled(plan: Mapping[str, Any]) -> bool:

@@ -34,7 +34,7 @@ class Printed(NamedTuple):
 
     def text(self, value: Decimal) -> str:
         """A value written like the printed one; as a power of ten where that would fill the line."""
-        form = "f" if value.adjusted() < MOST_DIGITS else ".6e"
+        form = "f" if not value or value.adjusted() < MOST_DIGITS else ".6e"
         return f"{value:{form}} {self.unit}".rstrip()
 
 

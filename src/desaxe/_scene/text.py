@@ -129,15 +129,15 @@ def _peak_rows(found: PeakResult) -> list[list[str]]:
     for index in _thinned(list(np.ndindex(dataset["value"].shape))):
         row = [number(dataset[name].values[i]) for name, i in zip(one.axes, index, strict=True)]
         row += [number(dataset["value"].values[index]), f"{degrees(dataset['theta'].values[index]):.3f}"]
-        row += [_percent(float(dataset["increase"].values[index]), 1, "+")] if base else []
+        row += [_percent(float(dataset["increase"].values[index]))] if base else []
         row += [_slope(found, name, index) for name in slopes]
         rows.append(row)
     return rows
 
 
-def _percent(value: float, places: int, sign: str = "") -> str:
+def _percent(value: float) -> str:
     """A change: a dash where there is none, a power of ten where it is huge, so that columns stay narrow."""
-    form = f"{sign}.{places}f" if abs(value) < HUGE else f"{sign}.3g"
+    form = "+.1f" if abs(value) < HUGE else "+.3g"
     return "-" if isnan(value) else f"{value:{form}} %"
 
 
@@ -190,8 +190,8 @@ def _claim(one: Peak, result: ClaimResult) -> str:
         return f"  increase of {where}: {claim.source} {printed}, but there is no finite change: DIFFERS"
     computed = claim.increase.text(claim.increase.rounded(result.computed))
     verdict = "agrees" if result.agrees else "DIFFERS"
-    full = _percent(result.computed, 2)
-    return f"  increase of {where}: {claim.source} {printed}, desaxe {computed} ({full}): {verdict}"
+    full = f" ({result.computed:.2f} %)" if abs(result.computed) < HUGE else ""
+    return f"  increase of {where}: {claim.source} {printed}, desaxe {computed}{full}: {verdict}"
 
 
 def _design(inputs: dict[str, float]) -> str:
