@@ -76,11 +76,14 @@ def key_of(
     zeros = [(name, 0.0) for name in STRUCTURAL_ZEROS if scalars.get(name) == 0.0]
     fixed = (*wanted.fixed, *zeros)
     axis = tuple(sorted(axis_of.items()))
-    key = KernelKey(wanted.names, wanted.form, fixed, axis, axes, wanted.accuracy, far)
-    if wanted.accuracy != "extended" and _pays_to_ask(columns, axis_of) and plain_of(key) is not None:
-        lengths = {name: columns.get(name, scalars.get(name)) for name in LENGTHS}
-        return key._replace(form=key.form._replace(roomy=_all_roomy(lengths, key.form)))
-    return key
+    form = wanted.form
+    if wanted.accuracy != "extended" and _pays_to_ask(columns, axis_of):
+        from ._roomy import all_roomy  # and NumPy with it
+
+        lengths = (columns.get(name, scalars.get(name)) for name in LENGTHS)
+        if plain_form(wanted.names, form, fixed) is not None and all_roomy(form, *lengths):
+            form = form._replace(roomy=True)
+    return KernelKey(wanted.names, form, fixed, axis, axes, wanted.accuracy, far)
 
 
 ASKED_AHEAD = 16  # points for each length that is looked at
@@ -88,24 +91,9 @@ ASKED_AHEAD = 16  # points for each length that is looked at
 
 def _pays_to_ask(columns: Mapping[str, Any], axis_of: Mapping[str, int]) -> bool:
     """Whether there are so few lengths and so many points that designs are better looked at ahead."""
-    sizes = {axis: columns[name].size for name, axis in axis_of.items()}
     lengths = sum(columns[name].size for name in LENGTHS if name in columns)
+    sizes = {axis: columns[name].size for name, axis in axis_of.items()}
     return bool(lengths * ASKED_AHEAD <= prod(sizes.values()))
-
-
-def _all_roomy(lengths: Mapping[str, Any], form: Form) -> bool:
-    """Whether every design is roomy, as far as the extremes of the lengths tell."""
-    import numpy as np
-
-    from ._roomy import are_roomy
-
-    ec, AB, BC = (np.asarray(lengths[name]) for name in LENGTHS)
-    corners = {
-        "ec": np.abs(ec).max(),
-        "AB": np.array([[AB.min()], [AB.max()]]),
-        "BC": np.array([BC.min(), BC.max()]),
-    }
-    return bool(are_roomy(corners, form).all())
 
 
 def _largest(angles: Any) -> float:
