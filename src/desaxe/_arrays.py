@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ._axes import Loops, loops_over, spread
 from ._few_points import are_good, fill_by_points, is_early
 from ._kernels import key_of
 from ._point import point_of
@@ -28,8 +29,8 @@ def evaluate_arrays(
     buffers = places if out is None else buffers_for(places, arrays.values())
     if all(buffer.size for buffer in buffers.values()):
         scalars = {name: float(a.reshape(-1)[0]) for name, a in arrays.items() if a.size == 1}
-        columns = {name: _column(a, shape) for name, a in arrays.items() if a.size != 1}
-        _fill(wanted, scalars, columns, [b.reshape(-1) for b in buffers.values()], threads)
+        loops = loops_over({name: a for name, a in arrays.items() if a.size != 1}, shape)
+        fill(wanted, scalars, loops, list(buffers.values()), threads)
     return delivered(places, buffers, out is None)
 
 
@@ -126,25 +127,23 @@ def delivered(places: Mapping[str, Array], buffers: Mapping[str, Array], fresh: 
     return {name: place[()] if fresh and not place.ndim else place for name, place in places.items()}
 
 
-def _column(array: Array, shape: tuple[int, ...]) -> Array:
-    return np.ascontiguousarray(np.broadcast_to(array, shape)).reshape(-1)
-
-
-def _fill(
+def fill(
     wanted: Request,
     scalars: dict[str, float],
-    columns: dict[str, Array],
-    outs: list[Array],
+    loops: Loops,
+    outs: Sequence[Array],
     threads: int | None,
 ) -> None:
-    """Fill flat outputs from scalars and flat columns."""
-    key = key_of(wanted, scalars, columns, dict.fromkeys(columns, 0), axes=1)
+    """Fill outputs, which are contiguous, from scalars and what varies along loops."""
+    sizes, columns, axis_of = loops
+    key = key_of(wanted, scalars, columns, axis_of, len(sizes))
+    outs = [out.reshape(sizes) for out in outs]
     if not columns:
-        for out, value in zip(
-            outs, point_of(key.names, key.form, key.fixed, key.accuracy).run(scalars), strict=True
-        ):
+        point = point_of(key.names, key.form, key.fixed, key.accuracy)
+        for out, value in zip(outs, point.run(scalars), strict=True):
             out[...] = value
     elif is_early(key, outs[0].size):
-        fill_by_points(key, scalars, columns, outs)
+        wide = {name: spread(column, axis_of[name], sizes) for name, column in columns.items()}
+        fill_by_points(key, scalars, wide, [out.reshape(-1) for out in outs])
     else:
         run_in_blocks(key, {**scalars, **columns}, outs, threads)

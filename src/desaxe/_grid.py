@@ -8,12 +8,9 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from ._arrays import as_array, buffers_for, delivered, places_for
-from ._few_points import fill_by_points, is_early
-from ._kernels import KernelKey, key_of
-from ._point import point_of
+from ._arrays import as_array, buffers_for, delivered, fill, places_for
+from ._axes import Loops, spread
 from ._request import Request, check_border, check_inputs, request, several, standstill
-from ._threads import run_in_blocks
 from .inputs import INPUTS
 from .names import LENGTHS
 
@@ -138,12 +135,7 @@ def _filled(
         columns = {name: np.ascontiguousarray(axes[name]) for name in inputs if name in order}
         places_of = {name: order.index(name) for name in columns}
         sizes = join_axes(order, columns, places_of, shape or (1,))
-        key = key_of(wanted, scalars, columns, places_of, len(sizes))
-        outs = [buffer.reshape(sizes) for buffer in buffers.values()]
-        if is_early(key, outs[0].size):
-            _fill_small(key, scalars, columns, places_of, outs)
-        else:
-            run_in_blocks(key, {**scalars, **columns}, outs, threads)
+        fill(wanted, scalars, Loops(sizes, columns, places_of), list(buffers.values()), threads)
     return delivered(places, buffers, False)
 
 
@@ -163,34 +155,9 @@ def join_axes(
     rest = shape[first:]
     for name, axis in axis_of.items():
         if axis >= first:
-            columns[name] = _spread(columns[name], axis - first, rest)
+            columns[name] = spread(columns[name], axis - first, rest)
             axis_of[name] = first
     return (*shape[:first], prod(rest))
-
-
-def _fill_small(
-    key: KernelKey,
-    scalars: dict[str, float],
-    columns: Mapping[str, Array],
-    axis_of: Mapping[str, int],
-    outs: Sequence[Array],
-) -> None:
-    """Plain Python, point by point, as for a small array."""
-    if not columns:
-        point = point_of(key.names, key.form, key.fixed, key.accuracy)
-        for out, value in zip(outs, point.run(scalars), strict=True):
-            out[...] = value
-        return
-    shape = outs[0].shape
-    wide = {name: _spread(column, axis_of[name], shape) for name, column in columns.items()}
-    fill_by_points(key, scalars, wide, [out.reshape(-1) for out in outs])
-
-
-def _spread(column: Array, axis: int, shape: tuple[int, ...]) -> Array:
-    """The values along one axis, repeated for each point of a shape, in its order."""
-    return np.broadcast_to(
-        column.reshape([-1 if k == axis else 1 for k in range(len(shape))]), shape
-    ).reshape(-1)
 
 
 def _require(wanted: Request, axes: Mapping[str, Array]) -> None:
