@@ -16,6 +16,8 @@ from .inputs import INPUTS, is_good
 
 Array = NDArray[Any]
 
+FLOAT, STATUS = np.dtype(np.float64), np.dtype(np.int8)
+
 
 def evaluate_arrays(
     wanted: Request, given: Mapping[str, Any], threads: int | None, out: Any
@@ -28,7 +30,7 @@ def evaluate_arrays(
     places = places_for(wanted.shown, shape, out)
     buffers = places if out is None else buffers_for(places, arrays.values())
     if all(buffer.size for buffer in buffers.values()):
-        scalars = {name: float(a.reshape(-1)[0]) for name, a in arrays.items() if a.size == 1}
+        scalars = {name: a.item() for name, a in arrays.items() if a.size == 1}
         loops = loops_over({name: a for name, a in arrays.items() if a.size != 1}, shape)
         fill(wanted, scalars, loops, list(buffers.values()), threads)
     return delivered(places, buffers, out is None)
@@ -36,7 +38,7 @@ def evaluate_arrays(
 
 def _refuse_other_dimensions(given: Mapping[str, Any]) -> None:
     """Labelled arrays pair by the names of their dimensions, which arrays here do not have."""
-    labels = {name: value.dims for name, value in given.items() if getattr(value, "dims", ())}
+    labels = {name: value.dims for name, value in given.items() if hasattr(value, "dims") and value.dims}
     if len(set(labels.values())) > 1:
         told = ", ".join(f"{name} {dims}" for name, dims in labels.items())
         raise ValueError(f"labelled arrays of different dimensions: {told}; use grid, or pass their .values")
@@ -44,6 +46,8 @@ def _refuse_other_dimensions(given: Mapping[str, Any]) -> None:
 
 def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]) -> Array:
     """An input as a float64 array; an error that names it if it is missing, no number or wholly bad."""
+    if type(value) is np.ndarray and value.dtype == FLOAT:
+        return _not_wholly_bad(name, value)
     number = None if type(value) is np.ndarray else as_number(name, value, inputs, names)
     if number is not None:
         return np.array(number)
@@ -64,7 +68,10 @@ def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str])
         array = np.array([in_si(name, text) for text in array.reshape(-1).tolist()]).reshape(array.shape)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name}: real numbers are wanted, got an array of {array.dtype}")
-    array = array.astype(np.float64, copy=False)
+    return _not_wholly_bad(name, array.astype(FLOAT, copy=False))
+
+
+def _not_wholly_bad(name: str, array: Array) -> Array:
     if array.size and not is_good(name, array.item(0)) and not are_good(name, array).any():
         raise ValueError(
             f"{name}: every value is bad, the first is {array.item(0)}; it must be {INPUTS[name].limit}"
@@ -102,7 +109,7 @@ def places_for(names: Sequence[str], shape: tuple[int, ...], out: Any) -> dict[s
 
 def dtype_of(name: str) -> np.dtype[Any]:
     """int8 for a status, float64 for all else."""
-    return np.dtype(np.int8 if name == "status" else np.float64)
+    return STATUS if name == "status" else FLOAT
 
 
 def buffers_for(places: Mapping[str, Array], inputs: Collection[Array]) -> dict[str, Array]:

@@ -92,7 +92,7 @@ ASKED_AHEAD = 16  # points for each length that is looked at
 def _pays_to_ask(columns: Mapping[str, Any], axis_of: Mapping[str, int]) -> bool:
     """Whether there are so few lengths and so many points that designs are better looked at ahead."""
     lengths = sum(columns[name].size for name in LENGTHS if name in columns)
-    sizes = {axis: columns[name].size for name, axis in axis_of.items()}
+    sizes = {axis: columns[name].size for name, axis in axis_of.items()} if lengths else {}
     return bool(lengths * ASKED_AHEAD <= prod(sizes.values()))
 
 

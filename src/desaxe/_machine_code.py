@@ -125,7 +125,8 @@ def _function(address: int, ranks: list[int], engine: Any) -> Kernel:
                 flat.append(given)
             else:
                 shape, strides = given.shape, given.strides
-                flat += [None, None, given.size, given.itemsize, given.ctypes.data, *shape, *strides]
+                data = given.__array_interface__["data"][0]  # `ctypes.data` takes three times as long
+                flat += [None, None, given.size, given.itemsize, data, *shape, *strides]
         answer, error = ctypes.c_void_p(), ctypes.c_void_p()
         native(ctypes.addressof(answer), ctypes.addressof(error), *flat)
         return answer.value or 0
