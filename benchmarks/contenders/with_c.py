@@ -57,8 +57,8 @@ def prepare(work: Work, inputs: Inputs, out: Sequence[Array] | None, threads: in
     peak = work.kind == "peak"
     points = swept(inputs, theta_first=True) if peak else inputs
     function = _compiled(_source(work.names, points, peak, threads, fast_math), fast_math)
-    columns, sizes = list(points.columns.values()), (ctypes.c_long * len(points.shape))(*points.shape)
-    held = [column.ctypes.data_as(ctypes.c_void_p) for column in columns]
+    sizes = (ctypes.c_long * len(points.shape))(*points.shape)
+    held = [column.ctypes.data_as(ctypes.c_void_p) for column in points.columns.values()]  # and the arrays
 
     def run() -> Sequence[Array]:
         if peak:
@@ -68,7 +68,6 @@ def prepare(work: Work, inputs: Inputs, out: Sequence[Array] | None, threads: in
         function(sizes, *held, *(place.ctypes.data_as(ctypes.c_void_p) for place in places))
         return places
 
-    run.columns = columns  # type: ignore[attr-defined]  # alive as long as the function
     return run
 
 

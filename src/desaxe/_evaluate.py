@@ -64,7 +64,7 @@ def evaluate(
     mu       Coulomb friction of the slider's guide, against its motion or the one that alpha starts; where
              nothing moves or starts there is none: give a tiny omega0 for the torque that sets it going
     accuracy "standard": within 8 ulp x (1 + the sum of condition numbers), next to singular points too;
-             "extended": within 2 ulp, in pairs of doubles, 4 to 17 times the time; "fast": for arrays, in
+             "extended": within 2 ulp, in pairs of doubles, 3 to 16 times the time; "fast": for arrays, in
              float32, for points that are far from singular ones; or the error that you can bear, such as
              1e-14, for the cheaper of the first two that keeps it
     threads  for arrays: how many threads share the work, all that pay without

@@ -36,6 +36,7 @@ from .names import LENGTHS, LOADS
 
 # A scalar of 0 for one of these makes whole terms vanish, so it is folded into the kernel.
 STRUCTURAL_ZEROS = ("ec", "alpha", *LOADS)
+ASKED_AHEAD = 16  # points for each length: then designs are looked at ahead of the kernel
 
 
 class KernelKey(NamedTuple):
@@ -84,9 +85,6 @@ def key_of(
         if plain_form(wanted.names, form, fixed) is not None and all_roomy(form, *lengths):
             form = form._replace(roomy=True)
     return KernelKey(wanted.names, form, fixed, axis, axes, wanted.accuracy, far)
-
-
-ASKED_AHEAD = 16  # points for each length that is looked at
 
 
 def _pays_to_ask(columns: Mapping[str, Any], axis_of: Mapping[str, int]) -> bool:

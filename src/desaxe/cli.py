@@ -12,11 +12,11 @@ import sys
 from collections.abc import Callable, Sequence
 from contextlib import redirect_stdout
 from importlib import import_module
-from itertools import pairwise
 from math import isfinite
 from pathlib import Path
 from typing import Any, NoReturn
 
+from ._words import UsageError, names_and_inputs
 from .extras import MissingExtraError, needed
 
 SIGNS = """\
@@ -25,10 +25,6 @@ signs: Y points along the slider axis towards the slider, theta turns from +Y to
        forces are positive along +X and +Y, torques like theta."""
 
 INTERRUPTED = 130  # as a shell reports it
-
-
-class UsageError(Exception):
-    """The command line cannot be understood."""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -180,7 +176,7 @@ def _point(options: argparse.Namespace) -> int:
     from . import evaluate
     from .catalogue import quantity
 
-    names, inputs = _names_and_inputs(options.words)
+    names, inputs = names_and_inputs(options.words)
     values: dict[str, Any] = evaluate(names, **inputs)
     rows = {name: quantity(name, "omega" in inputs) for name in names}
     status = _status(values, inputs)
@@ -226,73 +222,6 @@ def _list() -> int:
         source = f" ({row.source})" if row.source else ""
         print(f"{row.name:{wide[0]}}  {row.unit:{wide[1]}}  {row.meaning}{source}")
     return 0
-
-
-def _names_and_inputs(words: Sequence[str]) -> tuple[list[str], dict[str, Any]]:
-    """Words with an = are inputs, all others names."""
-    from .inputs import INPUTS
-
-    names: list[str] = []
-    inputs: dict[str, Any] = {}
-    for before, word in pairwise(["", *words]):
-        key, equals, value = word.partition("=")
-        if not equals:
-            _refuse_parted(before, word)
-            names += [name for name in word.split(",") if name]
-        elif key == "branch":
-            inputs[key] = _branch(value)
-        elif key not in INPUTS:
-            raise UsageError(f"{word}: no input is called {key!r}, {_inputs_near(key)}")
-        elif key in inputs:
-            raise UsageError(f"{word}: {key} is given twice")
-        else:
-            inputs[key] = _quantity(word, value)
-    if not names:
-        raise UsageError("which quantity? give a name such as a_C (desaxe point --list shows all)")
-    return list(dict.fromkeys(names)), inputs
-
-
-def _inputs_near(word: str) -> str:
-    """The inputs that there are, the one that may be meant first."""
-    from ._meant import did_you_mean
-    from .inputs import INPUTS
-
-    asked = did_you_mean(word, (*INPUTS, "branch"))
-    return f"{asked}{'There' if asked else 'there'} are {', '.join([*INPUTS, 'branch'])}"
-
-
-def _refuse_parted(before: str, word: str) -> None:
-    """A shell parts ec=10 mm into two words: tell how to write that, where the second one is a unit."""
-    from .catalogue import quantities
-
-    key, equals, value = before.partition("=")
-    if not equals or word in {row.name for row in quantities()}:
-        return
-    from .units import in_si
-
-    try:
-        float(value)
-        in_si(key, f"{value} {word}")
-    except (ValueError, KeyError, MissingExtraError):
-        return
-    raise UsageError(
-        f'{before} {word}: a value and its unit are one word, {before}{word} or "{before} {word}"'
-    )
-
-
-def _quantity(word: str, text: str) -> str:
-    from ._quantity_text import quantity_text
-
-    try:
-        return quantity_text(text)
-    except ValueError as error:
-        raise UsageError(f"{word}: {error}") from None
-
-
-def _branch(text: str) -> int:
-    if text not in ("1", "+1", "-1"):
-        raise UsageError(f"branch={text}: it is 1 or -1")
-    return int(text)
 
 
 def _status(values: dict[str, Any], inputs: dict[str, Any]) -> int:

@@ -2,6 +2,8 @@
 
 import ast
 import math
+import platform
+import re
 from functools import cache
 
 import mpmath
@@ -13,6 +15,7 @@ from desaxe.compiler.emit_numba import emit_numba
 from desaxe.compiler.kernel import hoist
 from desaxe.compiler.passes.guard import guard_inputs
 from desaxe.compiler.passes.trigonometry import expand_trigonometry
+from desaxe.compiler.program import Line, Program
 from desaxe.inputs import INPUTS, LEAST
 from tests.compiler.coverage_set import NAMES, POINTS, coverage
 from tests.compiler.programs import committed, exactly, in_doubles, program_of_nested
@@ -189,3 +192,20 @@ def test_each_axis_is_one_loop():
     functions = [node for node in ast.parse(grid_source(3)).body if isinstance(node, ast.FunctionDef)]
     (loops,) = (node for node in functions if node.name == "loops")
     assert sum(isinstance(node, ast.For) for node in ast.walk(loops)) == 3
+
+
+def test_a_loop_of_many_outputs_runs_several_points_at_once():
+    """So many pairs of arrays might overlap that LLVM does not look: it must have been promised."""
+    count = 24
+    lines = [Line(f"s{k}", "add", ("x", k + 1.0)) for k in range(count)]
+    lines += [Line(f"out{k}", "sqrt", (f"s{k}",)) for k in range(count)]
+    program = Program(("x",), tuple(lines), tuple(f"out{k}" for k in range(count)), {})
+    scope = {}
+    exec(emit_numba(hoist(program, {"x": 0}, 1), "many outputs"), scope)
+    (text,) = scope["kernel"].inspect_asm().values()
+    packed = r"\bv?sqrtpd\b" if platform.machine() in ("x86_64", "AMD64") else r"\bfsqrt.*\.2d\b"
+    assert len(re.findall(packed, text)) >= count
+    x, outs = np.linspace(0, 1, 37), [np.empty(37) for _ in range(count)]
+    scope["kernel"](x, *outs)
+    for k, out in enumerate(outs):
+        assert np.array_equal(out, np.sqrt(x + (k + 1.0)))

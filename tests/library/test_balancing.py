@@ -36,14 +36,15 @@ def test_harmonics_by_sums(name):
 
 
 def test_the_series_of_textbooks():
-    """In line: a_C = -AB omega^2 (cos theta + A2 cos 2 theta - A4 cos 4 theta + ...), l = AB/BC,
-    A2 = l + l^3/4 + 15 l^5/128 + ..., A4 = l^3/4 + 3 l^5/16 + ...
-    """  # noqa: D205
-    l = 0.05  # noqa: E741
+    """In line, with k = AB/BC: a_C = -AB omega^2 (cos theta + A2 cos 2 theta - A4 cos 4 theta + ...).
+
+    A2 = k + k^3/4 + 15 k^5/128 + ..., A4 = k^3/4 + 3 k^5/16 + ...
+    """
+    k = 0.05
     found = dx.harmonics("a_C", ec=0, AB=0.1, BC=2.0, omega0=10.0)
     assert found["cos"][1] == pytest.approx(-10.0, rel=1e-14)
-    assert found["cos"][2] == pytest.approx(-10.0 * (l + l**3 / 4 + 15 * l**5 / 128), rel=1e-8)
-    assert found["cos"][4] == pytest.approx(10.0 * (l**3 / 4 + 3 * l**5 / 16), rel=1e-4)
+    assert found["cos"][2] == pytest.approx(-10.0 * (k + k**3 / 4 + 15 * k**5 / 128), rel=1e-8)
+    assert found["cos"][4] == pytest.approx(10.0 * (k**3 / 4 + 3 * k**5 / 16), rel=1e-4)
     assert np.abs(found["sin"]).max() < 10 * found["error"]
 
 

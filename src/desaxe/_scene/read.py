@@ -13,7 +13,7 @@ from .._program import Form, program_of
 from .._reduce import NO_STATUS, Reduction, reduction_of
 from ..catalogue import law_name, quantity
 from ..inputs import INPUTS
-from ..names import CENTRES, LOADS, sensitivity
+from ..names import CENTRES, LENGTHS, LOADS, sensitivity
 from . import schema
 from .printed import Printed, read_percentage, read_printed
 from .schema import SceneError, shown
@@ -26,7 +26,6 @@ SECTIONS: dict[str, type[schema.Section]] = {
     "loads": schema.Loads,
 }
 OPTIONAL = ("alpha", *LOADS)  # 0 where they are not given, or half of a length
-LENGTHS = ("ec", "AB", "BC")
 SENSITIVITIES = LENGTHS  # of a peak, those on which it depends, unless others are asked for
 
 PICTURES = (".png", ".svg", ".pdf")

@@ -174,6 +174,37 @@ HELPERS = {
     return float(floor(a)) if a - a == 0.0 and a else a
 ''',
 }
+_TURNED = '''@intrinsic
+def NAME(typingctx, sine, cosine, quarters):
+    """The WHAT of an angle and a whole number of quarter turns, from the angle's sine and cosine."""
+    kind = max((sine, cosine, quarters), key=lambda given: given.bitwidth)
+    wide = kind.bitwidth
+    whole = types.int64 if wide == 64 else types.int32
+
+    def code(context, builder, signature, args):
+        sine, cosine, quarters = args
+        integer = context.get_value_type(whole)
+        # Beyond 2^52 (2^23) the last bits of a number are those of the whole number that was added.
+        shift = context.get_constant(kind, 1.5 * 2.0 ** (52 if wide == 64 else 23))
+        bits = builder.bitcast(builder.fadd(quarters, shift), integer)
+        odd = builder.trunc(bits, context.get_value_type(types.boolean))
+        value = builder.bitcast(builder.select(odd, ODD, EVEN), integer)
+        sign = builder.shl(builder.lshr(TURNS, integer(1)), integer(wide - 1))
+        return builder.bitcast(builder.xor(value, sign), args[0].type)
+
+    return kind(kind, kind, kind), code
+'''
+
+
+def _turned(name: str, even: str, odd: str, turns: str) -> str:
+    """The text for the sine or the cosine: which side it is after an even and an odd number of quarters."""
+    words = {"NAME": name, "WHAT": even, "EVEN": even, "ODD": odd, "TURNS": turns}
+    text = _TURNED
+    for word, value in words.items():
+        text = text.replace(word, value)
+    return text
+
+
 # Helpers that numba spells in its own way: with a fused multiply-add, which keeps the whole product, where
 # there is one, and with the bits of a number, in which a sign costs no comparison.
 NUMBA_HELPERS = {
@@ -189,47 +220,8 @@ def mul_add(typingctx, a, b, c):
 
     return kind(kind, kind, kind), code
 ''',
-    "turned": '''@intrinsic
-def turned(typingctx, sine, cosine, quarters):
-    """The sine of an angle and a whole number of quarter turns, from the angle's sine and cosine."""
-    kind = max((sine, cosine, quarters), key=lambda given: given.bitwidth)
-    wide = kind.bitwidth
-    whole = types.int64 if wide == 64 else types.int32
-
-    def code(context, builder, signature, args):
-        sine, cosine, quarters = args
-        integer = context.get_value_type(whole)
-        # Beyond 2^52 (2^23) the last bits of a number are those of the whole number that was added.
-        shift = context.get_constant(kind, 1.5 * 2.0 ** (52 if wide == 64 else 23))
-        bits = builder.bitcast(builder.fadd(quarters, shift), integer)
-        odd = builder.trunc(bits, context.get_value_type(types.boolean))
-        value = builder.bitcast(builder.select(odd, cosine, sine), integer)
-        sign = builder.shl(builder.lshr(bits, integer(1)), integer(wide - 1))
-        return builder.bitcast(builder.xor(value, sign), args[0].type)
-
-    return kind(kind, kind, kind), code
-''',
-    "turned_cosine": '''@intrinsic
-def turned_cosine(typingctx, sine, cosine, quarters):
-    """The cosine of an angle and a whole number of quarter turns, from the angle's sine and cosine."""
-    kind = max((sine, cosine, quarters), key=lambda given: given.bitwidth)
-    wide = kind.bitwidth
-    whole = types.int64 if wide == 64 else types.int32
-
-    def code(context, builder, signature, args):
-        sine, cosine, quarters = args
-        integer = context.get_value_type(whole)
-        # Beyond 2^52 (2^23) the last bits of a number are those of the whole number that was added.
-        shift = context.get_constant(kind, 1.5 * 2.0 ** (52 if wide == 64 else 23))
-        bits = builder.bitcast(builder.fadd(quarters, shift), integer)
-        odd = builder.trunc(bits, context.get_value_type(types.boolean))
-        value = builder.bitcast(builder.select(odd, sine, cosine), integer)
-        after = builder.add(bits, integer(1))
-        sign = builder.shl(builder.lshr(after, integer(1)), integer(wide - 1))
-        return builder.bitcast(builder.xor(value, sign), args[0].type)
-
-    return kind(kind, kind, kind), code
-''',
+    "turned": _turned("turned", "sine", "cosine", "bits"),
+    "turned_cosine": _turned("turned_cosine", "cosine", "sine", "builder.add(bits, integer(1))"),
     "two_product_error": '''@intrinsic
 def fused(typingctx, a, b, c):
     """a * b + c, rounded once."""
