@@ -151,6 +151,17 @@ def test_every_name_can_be_asked_for(name):
 # ---- out= ----------------------------------------------------------------------------------------
 
 
+def test_outputs_that_share_memory_are_written_one_after_the_other(way):
+    """A kernel is promised that they do not: it writes into memory of its own then."""
+    theta = np.linspace(0.0, 6.0, 40)
+    design = {"ec": 0.01, "AB": 0.125, "BC": 0.35, "omega0": 157.08}
+    wanted = dx.evaluate(["V_C", "a_C"], theta=theta, **design)
+    memory = np.empty(theta.size + 1)
+    dx.evaluate(["V_C", "a_C"], theta=theta, **design, out={"V_C": memory[:-1], "a_C": memory[1:]})
+    assert memory[0] == wanted["V_C"][0]
+    assert np.array_equal(memory[1:], wanted["a_C"])
+
+
 def test_out_is_filled_and_returned(way):
     theta, ec = columns(5)
     out = np.full(5, -1.0)
