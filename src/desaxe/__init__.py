@@ -84,6 +84,11 @@ __all__ = [
     "tolerance",
 ]
 
+# In a clone derive/ and generated/ stand beside src/; a wheel has them in this folder.
+_clone = __file__.replace("\\", "/").rpartition("/src/desaxe/")[0]
+if _clone:
+    __path__.append(_clone)
+
 
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first used."""

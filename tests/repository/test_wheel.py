@@ -12,7 +12,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 ROOMS = ("src", "derive", "generated")
 FILES = ("pyproject.toml", "README.md", "LICENSE")
-BUILD = "from setuptools import build_meta; build_meta.build_wheel('wheel')"
+BUILD = "from hatchling.build import build_wheel; build_wheel('wheel')"
 
 
 def copy_of_the_tree(folder):
