@@ -117,7 +117,8 @@ def scene():
 
 def _doc(table):
     """What a table is for, without its own name in front."""
-    return inspect.getdoc(table).partition(": ")[2].capitalize()
+    text = inspect.getdoc(table).partition(": ")[2]
+    return text[:1].upper() + text[1:]
 
 
 def _keys(table, leave=()):
@@ -128,13 +129,13 @@ def _keys(table, leave=()):
 
 def _key(name, kind):
     known = INPUTS.get(name)
-    words = schema._allowed(kind).replace("|", "\\|")
+    words = schema._allowed(kind).replace("|", "\\|").replace("{", "&#123;")  # no list of attributes
     return f"{known.meaning} [{known.unit}]" if known else words
 
 
 def quantities():
     """Every quantity; its sensitivities have a name each, too."""
-    rows = [row for row in catalogue() if not parts(row.name)[1]]
+    rows = [row for name, row in catalogue().items() if not parts(name)[1]]
     return "\n".join(
         ["| name | unit | meaning | paper |", "|---|---|---|---|"]
         + [f"| `{r.name}` | {r.unit} | {r.meaning.replace('|', chr(92) + '|')} | {r.source} |" for r in rows]

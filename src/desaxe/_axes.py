@@ -65,6 +65,6 @@ def _column(array: Array, shape: Sequence[int]) -> Array:
 
 
 def spread(column: Array, axis: int, shape: Sequence[int]) -> Array:
-    """The values along one axis, repeated for each point of a shape, in its order."""
+    """The values along one axis, repeated for each point of a shape, in its order: a contiguous copy."""
     own = [-1 if k == axis else 1 for k in range(len(shape))]
-    return np.broadcast_to(column.reshape(own), shape).reshape(-1)
+    return np.broadcast_to(column.reshape(own), shape).flatten()

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
+from threading import get_ident
 from typing import NamedTuple
 
 VARIABLE = "DESAXE_CACHE_DIR"
@@ -60,17 +61,12 @@ def write(path: Path, text: str) -> None:
 
 def write_bytes(path: Path, data: bytes) -> None:
     """Write a file so that no reader ever sees a part of it."""
-    import tempfile
-
-    handle, name = tempfile.mkstemp(dir=path.parent, suffix=".new")
+    staged = path.with_name(f".{path.name}.{os.getpid()}-{get_ident()}.new")
     try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-        os.replace(name, path)
-    except BaseException:
-        with suppress(OSError):
-            os.unlink(name)
-        raise
+        staged.write_bytes(data)  # with the permissions that any new file gets here
+        os.replace(staged, path)
+    finally:
+        staged.unlink(missing_ok=True)
 
 
 @contextmanager

@@ -20,7 +20,7 @@ from ._differentiate import with_derivatives
 from ._point import cut
 from ._quantity_text import PLUS_MINUS
 from ._request import Request, as_number, check_border, check_inputs, request
-from .catalogue import quantity
+from .catalogue import has, quantity
 from .compiler.program import Program
 from .inputs import INPUTS
 from .names import sensitivity
@@ -137,7 +137,7 @@ def _function(name: str, given: dict[str, Any], branch: int) -> Function:
     slopes = tuple(sensitivity(name, p) for p in varying)
     fixed = {p: ends for p, ends in own.items() if p not in varying}
     program = _program(alone)
-    if _derived(slopes, plain):
+    if all(has(slope, "omega" in plain) for slope in slopes):
         full = _program(request((name, *slopes), plain, branch, EXACT))
     else:
         full = with_derivatives(program, varying)
@@ -157,15 +157,6 @@ def _turned(theta: Interval) -> Interval:
 
 def _program(wanted: Request) -> Program:
     return cut(wanted.names, wanted.form, wanted.fixed)
-
-
-def _derived(names: Sequence[str], given: dict[str, Any]) -> bool:
-    try:
-        for name in names:
-            quantity(name, "omega" in given)
-    except ValueError:
-        return False
-    return True
 
 
 def _interval(name: str, value: Any, wanted: str) -> Interval:

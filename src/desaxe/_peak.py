@@ -17,12 +17,12 @@ from ._kernels import STRUCTURAL_ZEROS
 from ._peaks import WITHOUT_COURSE, special
 from ._peaks.module import Groups, run
 from ._peaks.nodes import Array, classes, shared_nodes
-from ._peaks.programs import Search, is_derived, needs_own
+from ._peaks.programs import Search, needs_own
 from ._peaks.special import Designs
 from ._point import plain_form
 from ._request import Request, as_number, check_border, check_inputs, is_steady, request
 from ._roomy import are_roomy
-from .catalogue import law_name, quantity
+from .catalogue import has, quantity
 from .inputs import INPUTS
 from .names import LENGTHS, sensitivity
 
@@ -134,7 +134,7 @@ def _new_plan(name: str, given: dict[str, Any], branch: int, accuracy: Any) -> _
     state = given["omega"] is not None
     quantity(name, state)
     slope = sensitivity(name, "theta")
-    names = (name, slope) if is_derived(law_name(slope) if state else slope) else (name,)
+    names = (name, slope) if has(slope, state) else (name,)
     wanted = request(names, given, branch, accuracy)
     parameters = tuple(n for n in wanted.inputs if n != "theta")
     if "omega0" not in parameters and given["omega0"] is None and not state:
@@ -199,7 +199,7 @@ def _in_form(search: Search, columns: dict[str, Array], rows: NDArray[np.intp]) 
     A second one, for a few that are not, would take longer to compile than it saves.
     """
     names = search.name, sensitivity(search.name, "theta")
-    derived = tuple(name for name in names if is_derived(name))
+    derived = tuple(name for name in names if has(name))
     known = all(name in columns for name in LENGTHS)
     if search.extended or not known or plain_form(derived, search.form, search.fixed) is None:
         return search

@@ -1,7 +1,7 @@
 """Reductions of one axis of a grid: largest, smallest, mean, ... without storing the grid."""
 
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import prod
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -44,6 +44,11 @@ def reduction_of(asked: Any, dimensions: Sequence[str], names: Sequence[str]) ->
         there = ", ".join(dimensions) or "none"
         raise ValueError(
             f"reduce: {axis!r} is no axis of this grid; {did_you_mean(str(axis), dimensions)}axes: {there}"
+        )
+    if callable(kinds) or not isinstance(kinds, Iterable):
+        raise TypeError(
+            f"reduce: {axis} = {kinds!r}: the name of a reduction or a list of names is wanted, "
+            f"of {', '.join(KINDS)}"
         )
     kinds = (kinds,) if isinstance(kinds, str) else tuple(dict.fromkeys(kinds))
     for kind in kinds:

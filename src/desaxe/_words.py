@@ -49,7 +49,7 @@ def _refuse_parted(before: str, word: str) -> None:
     from .catalogue import quantities
 
     key, equals, value = before.partition("=")
-    if not equals or word in {row.name for row in quantities()}:
+    if not equals or word in quantities():
         return
     from .units import in_si
 

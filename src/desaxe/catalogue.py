@@ -4,9 +4,10 @@ The names are read from generated/index.py, where the derivation wrote them. Und
 (`omega` instead of `omega0`) the sensitivity `_wrt_omega` stands where `_wrt_omega0` does.
 """
 
+from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib import import_module
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from .names import PARAMETERS, joined, parts, sensitivity
 
@@ -20,16 +21,36 @@ class Quantity(NamedTuple):
     source: str = ""
 
 
-class Catalogue(tuple[Quantity, ...]):
-    """Quantities that show themselves as a table; `catalogue["T_in"]` is one of them by name."""
+class UnknownQuantityError(KeyError, ValueError):
+    """No quantity has this name; the message names the nearest ones."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+class Catalogue(Mapping[str, Quantity]):
+    """Every name that can be asked for, with its record; printed, it is a table.
+
+    `"a_C" in catalogue`, `catalogue["T_in"].unit`, `list(catalogue)` (the names, in order). A name that
+    there is not is an UnknownQuantityError, a KeyError and a ValueError.
+    """
 
     __slots__ = ()
 
-    def __getitem__(self, place: Any) -> Any:
-        return quantity(place) if isinstance(place, str) else super().__getitem__(place)
+    def __getitem__(self, name: str) -> Quantity:
+        return quantity(name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(_names())
+
+    def __len__(self) -> int:
+        return len(_names())
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and has(name)
 
     def __repr__(self) -> str:
-        rows = [("name", "unit", "meaning", "source"), *self]
+        rows = [("name", "unit", "meaning", "source"), *self.values()]
         widths = [max(len(row[i]) for row in rows) for i in range(3)]
         return "\n".join(
             "  ".join([*(cell.ljust(w) for cell, w in zip(row, widths, strict=False)), row[3]]).rstrip()
@@ -44,18 +65,22 @@ def _names() -> dict[str, tuple[str, ...]]:
 
 
 def quantities() -> Catalogue:
-    """Every quantity and sensitivity that can be asked for, in order: name, unit, meaning, source."""
-    return Catalogue(Quantity(name, *row) for name, row in _names().items())
+    """Every quantity and sensitivity that can be asked for, in order: a mapping from name to record."""
+    return Catalogue()
+
+
+def has(name: str, state: bool = False) -> bool:
+    """True if a name can be asked for, under the law or under a given state."""
+    return (law_name(name) if state else name) in _names() and not (state and "omega0" in name)
 
 
 def quantity(name: str, state: bool = False) -> Quantity:
-    """One of them by name; ValueError with the nearest names where there is none such."""
+    """The record of a name; UnknownQuantityError with the nearest names if there is none."""
     if not isinstance(name, str):
         raise TypeError(f"the name of a quantity is a str, got {name!r}")
-    row = _names().get(law_name(name) if state else name)
-    if row is None or (state and "omega0" in name):
-        raise ValueError(_unknown(name, state))
-    return Quantity(name, *row)
+    if not has(name, state):
+        raise UnknownQuantityError(_unknown(name, state))
+    return Quantity(name, *_names()[law_name(name) if state else name])
 
 
 def law_name(name: str) -> str:

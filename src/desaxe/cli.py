@@ -65,7 +65,8 @@ def _run(words: list[str]) -> int:
     if run is None:
         parser.print_help()
         return 0
-    return run(options)
+    with needed(f"desaxe {words[0]}"):
+        return run(options)
 
 
 def _one_line(error: Exception) -> str:
@@ -216,7 +217,7 @@ def _qualities(names: list[str], inputs: dict[str, Any]) -> dict[str, Any]:
 def _list() -> int:
     from .catalogue import quantities
 
-    rows = quantities()
+    rows = quantities().values()
     wide = [max(len(getattr(row, field)) for row in rows) for field in ("name", "unit")]
     for row in rows:
         source = f" ({row.source})" if row.source else ""
@@ -431,11 +432,11 @@ def _add_derive(commands: Any) -> None:
 
 
 def _derive(words: list[str]) -> int:
-    with needed("desaxe derive"):
-        run = import_module("desaxe.derive.__main__").main
+    run = import_module("desaxe.derive.__main__").main
     if not {"-h", "--help"} & set(words):
-        code: int = run(words)
-        return code
+        with needed("desaxe derive"):
+            code: int = run(words)
+            return code
     shown = io.StringIO()
     try:
         with redirect_stdout(shown):
@@ -497,10 +498,9 @@ def _add_audit(commands: Any) -> None:
 
 
 def _audit(options: argparse.Namespace) -> int:
-    with needed("desaxe audit"):
-        from .audit.command import command
+    from .audit.command import command
 
-        return command(options.quick, options.folder)
+    return command(options.quick, options.folder)
 
 
 _DOCTOR = """\

@@ -74,7 +74,7 @@ def test_the_error_of_a_product_is_whole():
 
 def test_every_name_of_the_committed_program():
     """Nothing in it is a word that JavaScript keeps for itself, and all of it has the same digits."""
-    program = committed(*(row.name for row in quantities()))
+    program = committed(*quantities())
     point = POINT | LINKS | LOADS
     (answers,) = in_javascript(program, [point])
     wanted = in_doubles(program, point)

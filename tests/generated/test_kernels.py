@@ -142,7 +142,7 @@ def feasible_points(count):
 @pytest.mark.parametrize("branch", [1, -1])
 def test_the_text_itself_runs_as_python(branch):
     names = _text("program").outputs()
-    public = [quantity.name for quantity in dx.quantities()]
+    public = list(dx.quantities())
     for point in feasible_points(25):
         found = dict(zip(names, law(**point, **LINKS, **LOADS, branch=float(branch)), strict=True))
         found["status"] = found["force_status"]

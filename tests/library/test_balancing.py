@@ -169,7 +169,17 @@ def test_a_mechanism_without_masses():
     assert loaded["inertia"] == pytest.approx(loaded["inertia_first_order"], rel=1e-3)
 
 
+def test_a_load_may_be_a_function_of_one_angle():
+    def load(theta):
+        return -50.0 * math.cos(theta) if theta < 3.0 else 0.0
+
+    of_arrays = dx.flywheel(fluctuation=0.02, F_Y=np.vectorize(load), **PRESS)
+    assert dx.flywheel(fluctuation=0.02, F_Y=load, **PRESS) == of_arrays
+
+
 def test_bad_arguments():
+    with pytest.raises(ValueError, match=r"F_Y: the function failed at theta = 0: KeyError"):
+        dx.flywheel(fluctuation=0.02, F_Y=lambda theta: {}[theta], **PRESS)
     with pytest.raises(ValueError, match=r"harmonics: the crank cannot turn fully, margin = -0\.005"):
         dx.harmonics("Y", ec=0.23, AB=0.125, BC=0.35)
     with pytest.raises(TypeError, match=r"F_Y: harmonics takes a number or a function of theta"):

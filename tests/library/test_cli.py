@@ -201,6 +201,8 @@ def test_compile(tmp_path, capsys):
     text = place.read_text(encoding="utf-8")
     assert out == f"{place}: {len(text.splitlines())} lines\n"
     compile(text, "kernels.py", "exec")
+    (tmp_path / "new").touch()
+    assert place.stat().st_mode == (tmp_path / "new").stat().st_mode
 
 
 def test_run(tmp_path, monkeypatch, capsys):
@@ -348,6 +350,26 @@ sys.exit(main(["run", {COMPACTOR!r}]))
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert done.stderr == "desaxe: error: scene needs msgspec: python -m pip install 'desaxe[scene]'\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "module", "told"),
+    [
+        (
+            ["scene", "--schema"],
+            "msgspec",
+            "desaxe scene needs msgspec: python -m pip install 'desaxe[scene]'",
+        ),
+        (["derive", "--check"], "sympy", "desaxe derive needs sympy: python -m pip install 'desaxe[derive]'"),
+    ],
+)
+def test_a_bare_install_says_what_to_install(words, module, told):
+    code = (
+        f"import sys; sys.modules[{module!r}] = None; from desaxe.cli import main; sys.exit(main({words!r}))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.splitlines()[-1] == f"desaxe: error: {told}"
 
 
 # ---- doctor --------------------------------------------------------------------------------------

@@ -12,9 +12,7 @@ from desaxe.derive.quantities import QUANTITIES
 LINKS = {"m_crank": 1.2, "m_rod": 0.7, "m_slider": 0.9, "I_crank": 0.002, "I_rod": 0.01}
 LOADS = {"r_crank": 0.05, "r_rod": 0.2, "F_X": 20.0, "F_Y": -90.0, "g_X": 3.0, "g_Y": -9.0, "mu": 0.15}
 POINT = {"theta": 0.7, "ec": -0.03, "AB": 0.125, "BC": 0.35, "omega0": 12.0, "alpha": 5.0, **LINKS, **LOADS}
-FIRST = [
-    row.name for row in dx.quantities() if row.name.count("_wrt_") and row.name.partition("_wrt_")[2] in POINT
-]
+FIRST = [name for name in dx.quantities() if name.partition("_wrt_")[2] in POINT]
 
 
 def number(expression, point=POINT):

@@ -114,6 +114,17 @@ def test_numbers_alone_and_an_empty_axis():
     assert dx.grid("a_C", theta=[], ec=0.1, **MACHINE)["a_C"].shape == (0,)
 
 
+@pytest.mark.parametrize("ec", [[0.01], [0.0, 0.1]])
+def test_an_axis_of_length_one(ec):
+    theta, crank = np.linspace(0, 6, 300), np.array([0.1, 0.11, 0.12])
+    grid = dx.grid("a_C", theta=theta, ec=ec, AB=crank, BC=[0.4], omega0=157.0)
+    assert dict(grid.sizes) == {"theta": 300, "ec": len(ec), "AB": 3, "BC": 1}
+    wanted = dx.evaluate(
+        "a_C", theta=theta[:, None, None], ec=np.array(ec)[:, None], AB=crank, BC=0.4, omega0=157.0
+    )
+    np.testing.assert_allclose(grid["a_C"].values[..., 0], wanted, rtol=1e-13)
+
+
 def test_a_position_needs_no_motion():
     grid = dx.grid("Y", theta=THETA, ec=0.1, AB=0.125, BC=0.35)
     assert "omega0" not in grid

@@ -149,6 +149,8 @@ def test_small_grids_compile_nothing(monkeypatch):
         ({"theta": []}, "nothing is taken of theta"),
         ({"theta": "max", "ec": "max"}, "one axis and what is taken of it"),
         ("theta", "one axis and what is taken of it"),
+        ({"theta": np.max}, "the name of a reduction or a list of names is wanted, of max, min,"),
+        ({"theta": 3}, "reduce: theta = 3: the name of a reduction"),
     ],
 )
 def test_complaints(reduce, message):

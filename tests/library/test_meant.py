@@ -79,7 +79,7 @@ def test_a_checked_function_looks_like_itself():
 
 
 def test_the_table_leads_to_names_that_there_are():
-    there = {*INPUTS, *inspect.signature(dx.simulate).parameters, *(row.name for row in dx.quantities())}
+    there = {*INPUTS, *inspect.signature(dx.simulate).parameters, *dx.quantities()}
     assert {name for names in WORDS.values() for name in names} <= there
     assert all(word == word.lower() for word in WORDS)
 

@@ -3,6 +3,7 @@
 import pytest
 
 import desaxe as dx
+from desaxe.catalogue import has
 from desaxe.names import LOADS, ORDER, PARAMETERS, joined, parts, sensitivity
 
 
@@ -40,6 +41,41 @@ def test_the_catalogue_shows_itself_as_a_table():
 
 def test_a_quantity_by_name():
     assert dx.quantities()["T_in"].unit == "N*m"
-    assert dx.quantities()[0].name == "phi"
-    with pytest.raises(ValueError, match="did you mean T_in"):
-        dx.quantities()["torque"]
+    for kind in (KeyError, ValueError):
+        with pytest.raises(kind, match=r"^unknown quantity 'torque'; did you mean T_in"):
+            dx.quantities()["torque"]
+
+
+def test_the_catalogue_is_a_mapping_of_names():
+    known = dx.quantities()
+    assert "a_C" in known
+    assert "a_D" not in known
+    assert 0 not in known
+    assert next(iter(known)) == "phi"
+    assert known.get("a_D") is None
+    assert dict(known)["V_C"].unit == "m/s"
+    point = {"theta": 1.0, "ec": 0.01, "AB": 0.1, "BC": 0.3, "omega0": 1.0}
+    assert dx.evaluate([*known][:3], **point)
+
+
+@pytest.mark.parametrize(
+    ("name", "state", "there"),
+    [
+        ("a_C_wrt_omega0", False, True),
+        ("a_C_wrt_omega0", True, False),
+        ("a_C_wrt_omega", True, True),
+        ("a_C_wrt_omega", False, False),
+        ("T_in_wrt_theta_m_rod", False, False),
+    ],
+)
+def test_whether_a_name_can_be_asked_for(name, state, there):
+    assert has(name, state) is there
+
+
+def test_a_peak_of_a_sensitivity_looks_for_no_similar_names(monkeypatch):
+    def refuse(*_):
+        raise AssertionError("suggestions that nobody reads")
+
+    monkeypatch.setattr("difflib.get_close_matches", refuse)
+    found = dx.peak("T_in_wrt_m_rod", ec=0.01, AB=0.1, BC=0.3, omega0=2.0, m_rod=1.0)
+    assert found["status"] == 0

@@ -1,6 +1,7 @@
 """The motion under a torque: against Taylor series of the raw loop, energy, closed forms and statics."""
 
 import math
+import pickle
 import re
 import subprocess
 import sys
@@ -484,6 +485,16 @@ def test_the_solution_ends_with_the_motion():
     found = dx.simulate(torque=0.25, t_end=1.0, until=1.0, **PRESS)
     with pytest.raises(ValueError, match="where the motion ends"):
         found["solution"](1.0)
+
+
+@pytest.mark.parametrize("mu", [0.0, 0.1])
+def test_a_simulation_can_be_pickled(mu):
+    found = dx.simulate(torque=lambda t, theta, omega: 0.4 - 0.01 * omega, t_end=1.0, mu=mu, **PRESS)
+    again = pickle.loads(pickle.dumps(found))
+    assert type(again) is type(found)
+    assert again["events"] == found["events"]
+    t = np.linspace(0.0, again["t"][-1], 11)
+    np.testing.assert_array_equal(again["solution"](t)["omega"], found["solution"](t)["omega"])
 
 
 def test_without_scipy_one_line_says_what_to_install():

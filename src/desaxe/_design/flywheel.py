@@ -25,7 +25,7 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
 
     fluctuation  (fastest - slowest)/mean speed that is allowed, such as 0.02
     inputs       of one design with masses and loads, as in `evaluate`; omega0 is the mean speed. F_X and
-                 F_Y may be functions of theta (arrays in, arrays out)
+                 F_Y may be functions of theta (of an array, or of one angle)
 
     Gives a dict:
 

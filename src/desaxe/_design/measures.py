@@ -51,7 +51,7 @@ def checked(measure: Any) -> Measure:
         hint = f"did you mean {(near[0], measure[1])!r}? " if near else ""
     elif isinstance(measure, str):
         near = meant(measure, UNITS)
-        peaks = [] if near else meant(measure, (row.name for row in quantities()))
+        peaks = [] if near else meant(measure, quantities())
         hint = (
             f"did you mean {near[0]!r}? "
             if near

@@ -75,13 +75,23 @@ class Turn:
 
 
 def _loads(name: str, function: Callable[[Array], Any], theta: Array) -> Array:
-    """A load at these angles; an error that names it where it gives something else."""
-    found = np.asarray(function(theta), float)
+    """A load at these angles, of a function of an array or of one angle; an error that names the load."""
+    try:
+        found = np.asarray(function(theta), float)
+    except Exception:  # such as math.cos(theta), or a condition on theta: it takes one angle
+        found = np.array([_load(name, function, angle) for angle in theta.tolist()])
     if found.shape not in ((), theta.shape):
         raise ValueError(f"{name}: a function of {theta.shape[0]} angles gave the shape {found.shape}")
     if not np.isfinite(found).all():
         raise ValueError(f"{name}: the function gave {found[~np.isfinite(found)].flat[0]}; it must be finite")
     return np.broadcast_to(found, theta.shape)
+
+
+def _load(name: str, function: Callable[[Any], Any], angle: float) -> float:
+    try:
+        return float(function(angle))
+    except Exception as error:
+        raise ValueError(f"{name}: the function failed at theta = {angle:.6g}: {error!r}") from error
 
 
 def extreme(values: Array, sign: float) -> tuple[float, float]:

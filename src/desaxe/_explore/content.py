@@ -109,7 +109,7 @@ def _grouped(wanted: Iterable[str], given: Mapping[str, Value]) -> dict[str, lis
 def _sensitivities(base: str, given: Mapping[str, Value]) -> list[str]:
     """Those by the motion's parameters, and by the masses and loads that are given."""
     state = "omega" in given
-    known = {row.name for row in quantities()}
+    known = quantities()
     by = [*PARAMETERS, *(load for load in LOADS if load in given)]
     names = [(p, joined(base, (p,))) for p in by]
     return [

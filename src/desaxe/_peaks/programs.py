@@ -12,7 +12,7 @@ from .._constants import constants, double_constants
 from .._differentiate import RULES, Chain, Rule, Step
 from .._point import cut
 from .._program import Form
-from ..catalogue import quantity
+from ..catalogue import has
 from ..compiler.passes.double_double import double_digits
 from ..compiler.passes.fuse import fuse_products
 from ..compiler.passes.number import number_values
@@ -43,18 +43,9 @@ class Programs(NamedTuple):
     inputs: tuple[str, ...]
 
 
-def is_derived(name: str) -> bool:
-    """Whether the derivation has this name."""
-    try:
-        quantity(name)
-    except ValueError:
-        return False
-    return True
-
-
 def needs_own(name: str, parameters: Sequence[str]) -> list[str]:
     """The parameters by which the derivative of a name is not derived."""
-    return [p for p in parameters if not is_derived(_by(name, p))]
+    return [p for p in parameters if not has(_by(name, p))]
 
 
 def _by(name: str, parameter: str) -> str:
@@ -88,9 +79,9 @@ def _whole(search: Search) -> tuple[Program, list[str]]:
     """One program of everything, and its outputs: value, slope, gradient."""
     name = search.name
     wanted = [name, sensitivity(name, "theta")]
-    derived = [n for n in wanted if is_derived(n)]
+    derived = [n for n in wanted if has(n)]
     partial = {p: _by(name, p) for p in search.parameters}
-    derived += [n for n in partial.values() if is_derived(n)]
+    derived += [n for n in partial.values() if has(n)]
     program = cut(tuple(dict.fromkeys(derived)), search.form, search.fixed)
     names = [name]
     for parameter, known in {"theta": wanted[1], **partial}.items():

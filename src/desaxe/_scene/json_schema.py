@@ -51,4 +51,4 @@ def _for_toml(rule: Any) -> Any:
 
 def _base_quantities() -> list[str]:
     """The names that are no sensitivities, of which there are hundreds."""
-    return [row.name for row in quantities() if not parts(row.name)[1]]
+    return [name for name in quantities() if not parts(name)[1]]

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from math import copysign, isfinite, nan
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from .._evaluate import evaluate
 from .law import state_of
 from .model import Model
-from .result import FAILED, LIMIT, REST, Simulation
-from .run import Run
+from .result import FAILED, LIMIT, REST, Event, Simulation
+from .run import Piece, Run
 from .watch import Q, V, W
 
 Array = NDArray[np.float64]
@@ -36,11 +36,21 @@ def told(run: Run, names: Sequence[str], times: Any, given: Mapping[str, Any]) -
     return result
 
 
+class Motion(NamedTuple):
+    """What a run leaves behind: enough to tell the state at any instant, and to be pickled."""
+
+    model: Model
+    pieces: list[Piece]
+    events: list[Event]
+    status: int
+    t: float
+
+
 class Solution:
     """The motion at any instant: callable t [s] -> dict of theta [rad] and omega [rad/s]."""
 
     def __init__(self, run: Run) -> None:
-        self.run = run
+        self.run = Motion(run.model, run.pieces, run.events, run.status, run.t)
 
     def __call__(self, t: Any) -> dict[str, Any]:
         """Angle and speed; t may be an array."""
@@ -56,7 +66,7 @@ class Solution:
         return f"solution(t) -> theta, omega; t from 0 to {self.run.t:.6g} s"
 
 
-def _histories(run: Run, t: Array, without_alpha: bool = False) -> tuple[Array, Array, Array]:
+def _histories(run: Run | Motion, t: Array, without_alpha: bool = False) -> tuple[Array, Array, Array]:
     """Angle, speed and acceleration at many instants."""
     theta, omega, alpha = (np.full(t.shape, nan) for _ in range(3))
     which = np.searchsorted([piece.stop for piece in run.pieces[:-1]], t)
@@ -73,7 +83,7 @@ def _histories(run: Run, t: Array, without_alpha: bool = False) -> tuple[Array, 
     return theta, omega, alpha
 
 
-def _set_end(run: Run, t: Array, theta: Array, omega: Array, alpha: Array) -> None:
+def _set_end(run: Run | Motion, t: Array, theta: Array, omega: Array, alpha: Array) -> None:
     """The event that ends the motion is where it says, not where the interpolant comes to.
 
     At a limit angle itself M_eff is infinite: there theta'' = -half sin(q) q'^2. What rests

@@ -30,6 +30,10 @@ class Drive(NamedTuple):
     steady: bool  # whether all three are numbers
 
 
+def _gone(t: float, theta: float, omega: float) -> float:
+    raise RuntimeError("a pickled motion knows its angles and speeds, not the torque that drove it")
+
+
 class Model:
     """One design, its functions and what drives it."""
 
@@ -48,6 +52,10 @@ class Model:
         self.moving = function(MOVING, ("theta", "branch"), *UNLOADED)
         self.contact = function(CONTACT, ("theta", "branch", "omega", "F_X", "F_Y"), "alpha", "mu")
         self.energies = function(("kinetic_energy", "potential_energy"), ("theta", "branch", "omega"))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A pickle has the design but not what drives it, which may be any function."""
+        return Model, (self.values, int(self.sign), self.chart, Drive(_gone, _gone, _gone, False))
 
     def inertia(self, theta: float) -> float:
         """The effective moment of inertia [kg m^2] on the branch of the start."""
