@@ -1,13 +1,14 @@
 """What is written to generated/, and the check that it is fresh.
 
-Everything is made in memory first. Writing stages every changed file beside the old one and then
-swaps them; a failure or an interruption puts the old files back. A file whose bytes are the same
-keeps its time stamp, so that nothing compiled from it is lost.
+Everything is made in memory first. Writing stages a whole folder beside the old one and swaps the two in
+one step: a failure, an interruption or a kill leaves the old set or the new one. A file whose bytes are
+the same keeps its time stamp, so that nothing compiled from it is lost.
 """
 
 import difflib
 import hashlib
 import os
+import shutil
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -29,6 +30,8 @@ from desaxe.compiler.program import Program, renamed
 from desaxe.compiler.text import write_function
 from desaxe.inputs import LEAST
 from desaxe.names import CENTRES, LOADS
+from desaxe.support.files import staging, swap_in
+from desaxe.support.locks import locked
 
 from .build import Derivation
 from .groups import GROUPS, Group
@@ -104,7 +107,30 @@ def _package(digest: str) -> str:
     listing = f"    {'program':15}the frozen program, as text\n    {'state':15}its lines for a given state\n"
     listing += f"    {'centres':15}its lines for centres of mass halfway along the links\n"
     listing += f"    {'index':15}names, units, meanings\n{rooms}"
-    return f'"""{_banner(what, digest)}\n{listing}\n"""\n\nDIGEST = "{digest}"\n'
+    names = ["program", "state", "centres", "index", "trigonometry", *(group.name for group in GROUPS)]
+    files = "\n".join(f'    "{name}.py",' for name in names)
+    front = f'"""{_banner(what, digest)}\n{listing}\n"""\n\nDIGEST = "{digest}"\nFILES = (\n{files}\n)\n'
+    return front + _ONE_SET.format(command=COMMAND)
+
+
+_ONE_SET = '''
+
+def _require_one_set():
+    """Refuse files of different derivations: what they say of each other would be wrong."""
+    for name in FILES:
+        try:
+            with open(f"{{__path__[0]}}/{{name}}", encoding="utf-8") as file:
+                fits = DIGEST[:16] in file.read(1000)
+        except FileNotFoundError:
+            fits = False
+        except NotADirectoryError:  # in an archive, which is whole or not there
+            return
+        if not fits:
+            raise ImportError(f"generated/{{name}} is not of the same set as generated/__init__.py: run {command}")
+
+
+_require_one_set()
+'''
 
 
 def _program(program: Program, name: str, what: str, digest: str) -> str:
@@ -189,35 +215,40 @@ def differences(files: Mapping[str, str], folder: Path) -> list[str]:
 
 
 def write(files: Mapping[str, str], folder: Path) -> list[str]:
-    """Swap the changed files in, all or none, and remove what is no longer made; their names."""
-    folder.mkdir(parents=True, exist_ok=True)
-    for left in folder.glob(".*.new"):  # of a run that was killed
-        left.unlink()
-    old = {path.name: path.read_bytes() for path in folder.glob("*.py")}
-    new = {name: text.encode() for name, text in files.items()}
-    changed = sorted(name for name in {*old, *new} if old.get(name) != new.get(name))
-    staged = {name: folder / f".{name}.new" for name in changed if name in new}
-    try:
-        for name, path in staged.items():
-            path.write_bytes(new[name])
+    """Write the set of files, all or none, and remove what is no longer made; the names that changed.
+
+    A new folder, with what else the old one holds, takes its place in one step. Writers wait for each other.
+    """
+    folder = folder.resolve()
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with locked(folder.parent), staging(folder.parent) as room:
+        old = {path.name: path.read_bytes() for path in folder.glob("*.py")}
+        new = {name: text.encode() for name, text in files.items()}
+        changed = sorted(name for name in {*old, *new} if old.get(name) != new.get(name))
+        if not changed:
+            return []
+        staged = room / folder.name
+        if folder.is_dir():
+            _link_tree(folder, staged, set(changed))
+        else:
+            staged.mkdir()
         for name in changed:
-            if name in staged:
-                os.replace(staged[name], folder / name)
-            else:
-                (folder / name).unlink()
-    except BaseException:
-        _restore(old, changed, folder)
-        raise
-    finally:
-        for path in staged.values():
-            path.unlink(missing_ok=True)
+            if name in new:
+                (staged / name).write_bytes(new[name])
+        swap_in(staged, folder)
     return changed
 
 
-def _restore(old: Mapping[str, bytes], changed: list[str], folder: Path) -> None:
-    for name in changed:
-        path = folder / name
-        if name not in old:
-            path.unlink(missing_ok=True)
-        elif not path.exists() or path.read_bytes() != old[name]:
-            path.write_bytes(old[name])
+def _link_tree(folder: Path, copy: Path, without: set[str]) -> None:
+    """A copy of a folder that shares its files, times and all, without some names at its top."""
+
+    def linked(source: str, target: str) -> None:
+        try:
+            os.link(source, target, follow_symlinks=False)
+        except OSError:  # a file system without hard links
+            shutil.copy2(source, target, follow_symlinks=False)
+
+    def left_out(place: str, names: list[str]) -> set[str]:
+        return without & set(names) if Path(place) == folder else set()
+
+    shutil.copytree(folder, copy, symlinks=True, copy_function=linked, ignore=left_out)

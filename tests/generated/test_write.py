@@ -1,10 +1,12 @@
 """Writing is all or nothing: whatever stops it, the old files are there, and nothing else."""
 
 import os
+import shutil
 from pathlib import Path
 
 import pytest
 from desaxe.derive.write import write
+from desaxe.support import files
 
 OLD = {"a.py": "a = 1\n", "b.py": "b = 1\n", "c.py": "c = 1\n", "stale.py": "stale = 1\n"}
 NEW = {"a.py": "a = 2\n", "b.py": "b = 1\n", "c.py": "c = 2\n", "new.py": "new = 2\n"}
@@ -14,10 +16,12 @@ STOPS = [OSError("the disk is full"), KeyboardInterrupt(), SystemExit(1)]
 
 @pytest.fixture
 def folder(tmp_path):
+    made = tmp_path / "generated"
+    made.mkdir()
     for name, text in OLD.items():
-        (tmp_path / name).write_bytes(text.encode())
-    (tmp_path / "notes.txt").write_text("not ours")
-    return tmp_path
+        (made / name).write_bytes(text.encode())
+    (made / "notes.txt").write_text("not ours")
+    return made
 
 
 def contents(folder):
@@ -48,6 +52,13 @@ def test_a_folder_is_made(tmp_path):
     assert contents(tmp_path / "new" / "generated") == NEW
 
 
+def test_where_two_names_cannot_be_swapped_at_once_it_takes_two_steps(folder, monkeypatch):
+    monkeypatch.setattr(files, "exchange", lambda one, other: False)
+    assert write(NEW, folder) == CHANGED
+    assert contents(folder) == NEW | {"notes.txt": "not ours"}
+    assert list(folder.parent.iterdir()) == [folder]
+
+
 def failing(function, stop, after):
     """The function, until it has been called `after` times; then it stops."""
     calls = []
@@ -61,7 +72,7 @@ def failing(function, stop, after):
     return wrapped
 
 
-STEPS = {"staging": (Path, "write_bytes", 3), "swapping": (os, "replace", 3), "removing": (Path, "unlink", 1)}
+STEPS = {"linking": (shutil, "copytree", 1), "staging": (Path, "write_bytes", 3), "swapping": (files, "exchange", 1)}
 MOMENTS = [(step, after) for step, (_, _, count) in STEPS.items() for after in range(count)]
 
 
@@ -75,11 +86,12 @@ def test_whatever_stops_it_the_old_files_are_there(folder, monkeypatch, stop, st
         write(NEW, folder)
     monkeypatch.undo()
     assert contents(folder) == before
+    assert list(folder.parent.iterdir()) == [folder]
 
 
 def test_what_was_never_swapped_keeps_its_time(folder, monkeypatch):
     os.utime(folder / "c.py", ns=(10**18, 10**18))
-    monkeypatch.setattr(os, "replace", failing(os.replace, OSError("no"), 1))
+    monkeypatch.setattr(files, "exchange", failing(files.exchange, OSError("no"), 0))
     with pytest.raises(OSError, match="no"):
         write(NEW, folder)
     assert (folder / "c.py").stat().st_mtime_ns == 10**18

@@ -1,0 +1,198 @@
+"""Files that appear whole or not at all, whatever stops the writer.
+
+Everything is written into a staging folder beside its place and then swapped in by one step of the file
+system. A process that is killed leaves its staging folder behind; the next writer beside it removes that.
+The lock of a staging folder tells one that is in use from one that is left.
+"""
+
+import os
+import shutil
+import stat
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from .locks import try_lock
+
+PREFIX = ".desaxe-"
+_REPLACED = "replaced"  # in a staging folder: what was moved out of the way, where two names cannot be swapped
+_UNLOCKED_AGE = 86_400.0  # seconds after which a staging folder is left, where there are no locks
+_KINDS = {
+    stat.S_IFIFO: "a pipe",
+    stat.S_IFSOCK: "a socket",
+    stat.S_IFCHR: "a device",
+    stat.S_IFBLK: "a device",
+    stat.S_IFDIR: "a folder",
+}
+
+
+@contextmanager
+def replacing(target: Path, mode: int | None = None) -> Iterator[Path]:
+    """Yield a path to write; it takes the place of `target` when the block ends without an error.
+
+    target  a file, or what does not exist yet; its folder is made. A link is replaced, not followed.
+    mode    permissions; by default those of the file that is replaced, else those of a new file
+
+    Raises ValueError where `target` is no ordinary file, OSError where it cannot be written.
+    """
+    check_target(target)
+    with staging(target.parent) as folder:
+        staged = folder / target.name
+        yield staged
+        swap_in(staged, target, mode)
+
+
+def write_text(target: Path, text: str) -> None:
+    """Write a text, in UTF-8, whole or not at all."""
+    write_bytes(target, text.encode())
+
+
+def write_bytes(target: Path, data: bytes, mode: int | None = None) -> None:
+    """Write a file whole or not at all."""
+    with replacing(target, mode) as staged:
+        staged.write_bytes(data)
+
+
+def check_target(target: Path) -> None:
+    """Refuse to replace what is no ordinary file, or one that may not be written."""
+    kind = kind_of(target)
+    if kind:
+        raise ValueError(f"{target}: this is {kind}; a file can only take the place of a file")
+    if target.is_file() and not os.access(target, os.W_OK):
+        raise PermissionError(13, "Permission denied", str(target))
+
+
+def kind_of(path: Path) -> str:
+    """What a path leads to, in words; empty for an ordinary file and for nothing at all."""
+    try:
+        found = stat.S_IFMT(path.stat().st_mode)
+    except (FileNotFoundError, NotADirectoryError):
+        return ""
+    return "" if found == stat.S_IFREG else _KINDS.get(found, "no ordinary file")
+
+
+@contextmanager
+def staging(parent: Path) -> Iterator[Path]:
+    """Yield an empty folder in `parent`, which is made if need be; it is removed when the block ends."""
+    parent.mkdir(parents=True, exist_ok=True)
+    remove_strays(parent)
+    folder, descriptor = _new_staging(parent)
+    try:
+        yield folder
+    finally:
+        _restore(folder)
+        shutil.rmtree(folder, ignore_errors=True)
+        if descriptor is not None:
+            os.close(descriptor)
+
+
+def _new_staging(parent: Path) -> tuple[Path, int | None]:
+    """A locked folder. One that a cleaner took between its making and its locking is made again."""
+    while True:
+        try:
+            folder = Path(tempfile.mkdtemp(dir=parent, prefix=PREFIX))
+        except OSError as error:  # named by what the user knows
+            raise type(error)(error.errno, error.strerror, str(parent)) from None
+        if sys.platform == "win32":
+            return folder, None
+        try:
+            descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+        except FileNotFoundError:
+            continue
+        if try_lock(descriptor) is not False and folder.is_dir():
+            return folder, descriptor
+        os.close(descriptor)
+
+
+def remove_strays(parent: Path) -> list[Path]:
+    """Remove staging folders that a killed process of this user left; return those that were there."""
+    with suppress(OSError):
+        found = [path for path in parent.iterdir() if path.name.startswith(PREFIX)]
+        return [path for path in found if _remove_stray(path)]
+    return []
+
+
+def _remove_stray(path: Path) -> bool:
+    with suppress(OSError):
+        about = path.lstat()
+        if not stat.S_ISDIR(about.st_mode) or (sys.platform != "win32" and about.st_uid != os.geteuid()):
+            return False
+        if sys.platform == "win32":
+            return time.time() - about.st_mtime > _UNLOCKED_AGE and _cleared(path)
+        descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+        try:
+            free = try_lock(descriptor)
+            old = free is None and time.time() - about.st_mtime > _UNLOCKED_AGE
+            return (free is True or old) and _cleared(path)
+        finally:
+            os.close(descriptor)
+    return False
+
+
+def _cleared(stray: Path) -> bool:
+    _restore(stray)
+    shutil.rmtree(stray, ignore_errors=True)
+    return True
+
+
+def _restore(stray: Path) -> None:
+    """Put back what a process moved out of the way if it stopped before the new one was in its place."""
+    with suppress(OSError):
+        for path in (stray / _REPLACED).iterdir():
+            if not os.path.lexists(stray.parent / path.name):
+                os.rename(path, stray.parent / path.name)
+
+
+def swap_in(staged: Path, target: Path, mode: int | None = None) -> None:
+    """Put a staged file or folder in the place of another; what was there is left in the staging folder."""
+    if mode is None and staged.is_file() and target.is_file() and not target.is_symlink():
+        mode = stat.S_IMODE(target.stat().st_mode)
+    if mode is not None:
+        staged.chmod(mode)
+    for path in (staged, *staged.rglob("*")) if staged.is_dir() else (staged,):
+        _flush(path)
+    if not staged.is_dir():
+        os.replace(staged, target)
+    elif not os.path.lexists(target):
+        os.rename(staged, target)
+    elif not exchange(staged, target):
+        _swap_by_renaming(staged, target)
+    _flush(target.parent)
+
+
+def _flush(path: Path) -> None:
+    """See to it that a file or the names in a folder survive a power failure, where the system can."""
+    if path.is_dir() and sys.platform == "win32":
+        return
+    with suppress(PermissionError):
+        descriptor = os.open(path, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
+
+
+def _swap_by_renaming(staged: Path, target: Path) -> None:
+    """Two steps, for systems that cannot swap two names in one; `_restore` mends a stop between them."""
+    aside = staged.parent / _REPLACED
+    aside.mkdir()
+    os.rename(target, aside / target.name)
+    os.rename(staged, target)
+
+
+def exchange(one: Path, other: Path) -> bool:
+    """Swap two names in one step (Linux: renameat2, macOS: renamex_np); False where that cannot be done."""
+    import ctypes
+
+    try:
+        library = ctypes.CDLL(None, use_errno=True)
+        first, second = os.fsencode(os.path.abspath(one)), os.fsencode(os.path.abspath(other))
+        if sys.platform == "darwin":
+            return int(library.renamex_np(first, second, 2)) == 0
+        here = -100  # AT_FDCWD: not used with absolute paths
+        return int(library.renameat2(here, first, here, second, 2)) == 0
+    except (AttributeError, OSError, TypeError):
+        return False
