@@ -126,7 +126,7 @@ def _require_one_set():
         except NotADirectoryError:  # in an archive, which is whole or not there
             return
         if not fits:
-            raise ImportError(f"generated/{{name}} is not of the same set as generated/__init__.py: run {command}")
+            raise ImportError(f"generated/{{name}} is not of the set of generated/__init__.py: run {command}")
 
 
 _require_one_set()

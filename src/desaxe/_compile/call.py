@@ -9,7 +9,6 @@ from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
-from .._cache import write
 from .._constants import constants, double_constants, single_constants
 from .._kernels import KernelKey, is_single, kernel_of
 from .._point import cut
@@ -25,6 +24,7 @@ from ..compiler.operations import HELPERS, NUMBA_HELPERS
 from ..compiler.passes.double_double import double_digits
 from ..compiler.reductions import emit_reduced
 from ..inputs import INPUTS
+from ..support.files import check_target, write_text
 from .merge import import_lines, merged, renamed
 from .parts import (
     AFFINITY,
@@ -53,7 +53,8 @@ def compile(scene: Scene | str | PathLike[str] | Mapping[str, Any], path: str | 
     """
     place = Path(path)
     _require_importable(place)
-    write(place, module_text(scene if isinstance(scene, Scene) else scene_of(scene), place.name))
+    check_target(place)
+    write_text(place, module_text(scene if isinstance(scene, Scene) else scene_of(scene), place.name))
     return place
 
 

@@ -12,6 +12,7 @@ from ..compiler.emit_javascript import HEADER
 from ..extras import needed
 from ..inputs import INPUTS
 from ..names import parts
+from ..support.files import check_target, write_text
 from .content import Content, left_out_text
 
 # In the order in which they build on each other.
@@ -21,9 +22,8 @@ _PLACE = re.compile(r"@@(\w+)@@")
 
 def write_page(content: Content, path: Path) -> Path:
     """Write the page; its path."""
-    text = page(content)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text, encoding="utf-8")
+    check_target(path)
+    write_text(path, page(content))
     return path
 
 

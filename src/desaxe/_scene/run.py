@@ -14,11 +14,12 @@ from .._evaluate import evaluate
 from .._feasibility import feasibility
 from .._grid import grid
 from ..extras import needed
+from ..support.files import check_target
 from .peaks import PeakResult, batches, columns_of, peaks_of, provenance
 from .progress import Progress, Steps
 from .read import Check, Content, Picture
 from .values import Value
-from .write import rooms_of, write
+from .write import check_place, rooms_of, write
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -67,6 +68,7 @@ class Run(NamedTuple):
 def run(content: Content, watch: Progress | None) -> Run:
     """Compute, draw and write all that a scene asks for."""
     _require_rooms(content)
+    _check_files(content)
     blocks = _blocks(content) if content.outputs else []
     parts = sum(batches(one) for one in content.peaks)
     steps = Steps(len(blocks) + parts + len(content.pictures) + (content.data is not None), watch)
@@ -97,6 +99,14 @@ def _require_rooms(content: Content) -> None:
     for what, module in rooms.items():
         with needed(what):
             import_module(module)
+
+
+def _check_files(content: Content) -> None:
+    """Fail at the start, not at the end, where a file cannot take its place."""
+    if content.data is not None:
+        check_place(Path(content.data))
+    for picture in content.pictures:
+        check_target(Path(picture.file))
 
 
 # ---- the grid ------------------------------------------------------------------------------------

@@ -1,18 +1,21 @@
 """Labelled results as files: NetCDF, Zarr, CSV for spreadsheets, npz for NumPy.
 
-A file appears whole or not at all: it is written beside its place, then moved there.
+A file, or a Zarr store, appears whole or not at all: it is written beside its place, then swapped in. The
+tables of a CSV are several files, each of them whole.
 """
 
 import csv
 import os
-import shutil
-import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from ..support.files import check_target, kind_of, require_space, staging, swap_in
+
+_NETCDF_EXTRA = 65_536  # bytes for what HDF5 writes besides the numbers of a group
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,20 +32,29 @@ def rooms_of(data: str) -> dict[str, str]:
 
 
 def write(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> list[Path]:
-    """Write the values and, as groups, the peaks; the files that were written."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix=".desaxe-") as folder:
-        _WRITERS[path.suffix](Path(folder) / path.name, values, groups)
-        staged = sorted(Path(folder).iterdir())
+    """Write the values and, as groups, the peaks; return the files that were written."""
+    check_place(path)
+    with staging(path.parent) as folder:
+        try:
+            _WRITERS[path.suffix](folder / path.name, values, groups)
+        except (OSError, RuntimeError) as error:  # HDF5 has both for a full disk
+            raise OSError(f"{path}: not written: {error}") from error
+        staged = sorted(folder.iterdir())
         for file in staged:
-            _move(file, path.parent / file.name)
+            check_place(path.parent / file.name)
+        for file in staged:
+            swap_in(file, path.parent / file.name)
     return [path.parent / file.name for file in staged]
 
 
-def _move(staged: Path, place: Path) -> None:
-    if place.is_dir():  # a Zarr store of an earlier run
-        shutil.rmtree(place)
-    os.replace(staged, place)
+def check_place(path: Path) -> None:
+    """Refuse to replace what is no earlier result: a folder that is no Zarr store, a pipe, a device."""
+    if path.suffix != ".zarr" or not os.path.lexists(path):
+        check_target(path)
+    elif kind_of(path) != "a folder" or path.is_symlink():
+        raise ValueError(f"{path}: this is no Zarr store, and would be replaced")
+    elif any(path.iterdir()) and not any((path / name).exists() for name in _STORE):
+        raise ValueError(f"{path}: this folder holds no Zarr store, and would be replaced")
 
 
 def _apart(peaks: "xr.Dataset") -> "xr.Dataset":
@@ -60,6 +72,8 @@ def _parts(
 
 
 def _netcdf(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:
+    size = sum(part.nbytes + _NETCDF_EXTRA for _, part in _parts(values, groups))
+    require_space(path.parent, size)  # HDF5 ends the process on a full disk
     for group, part in _parts(values, groups):
         part.to_netcdf(path, mode="a" if path.exists() else "w", group=group, engine="h5netcdf")
 
@@ -109,4 +123,10 @@ def _npz(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Datas
     np.savez(path, **arrays)
 
 
+_STORE = (
+    "zarr.json",
+    ".zgroup",
+    ".zattrs",
+    ".zmetadata",
+)  # at the top of a Zarr store
 _WRITERS: "dict[str, Writer]" = {".nc": _netcdf, ".zarr": _zarr, ".csv": _csv, ".npz": _npz}

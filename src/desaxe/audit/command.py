@@ -39,10 +39,10 @@ def text(found: Audit) -> str:
 def write(found: Audit, folder: Path) -> list[Path]:
     """accuracy.md and accuracy.png in a folder, which is made if need be."""
     from ..plot.files import save
+    from ..support.files import write_text
     from .picture import draw
 
-    folder.mkdir(parents=True, exist_ok=True)
     page = folder / PAGE
     picture = save(draw(found), folder / PICTURE, dpi=130)
-    page.write_text(report(found), encoding="utf-8")
+    write_text(page, report(found))
     return [page, picture]

@@ -1,9 +1,10 @@
 """Pictures as files."""
 
-import os
 from os import PathLike
 from pathlib import Path
 from typing import Any
+
+from ..support.files import replacing
 
 
 def save(figure: Any, path: str | PathLike[str], dpi: float | None = None) -> Path:
@@ -15,16 +16,11 @@ def save(figure: Any, path: str | PathLike[str], dpi: float | None = None) -> Pa
     A file appears whole or not at all. Returns its path.
     """
     target = Path(path)
-    target.parent.mkdir(parents=True, exist_ok=True)
-    staged = target.with_name(f".{target.stem}.new{target.suffix}")
-    try:
+    with replacing(target) as staged:
         if hasattr(figure, "to_jshtml"):
             _animation(figure, staged, dpi or 80.0)
         else:
             figure.savefig(staged, dpi=dpi or 150.0)
-        os.replace(staged, target)
-    finally:
-        staged.unlink(missing_ok=True)
     return target
 
 

@@ -5,6 +5,7 @@ system. A process that is killed leaves its staging folder behind; the next writ
 The lock of a staging folder tells one that is in use from one that is left.
 """
 
+import errno
 import os
 import shutil
 import stat
@@ -18,7 +19,9 @@ from pathlib import Path
 from .locks import try_lock
 
 PREFIX = ".desaxe-"
-_REPLACED = "replaced"  # in a staging folder: what was moved out of the way, where two names cannot be swapped
+_REPLACED = (
+    "replaced"  # in a staging folder: what was moved out of the way, where two names cannot be swapped
+)
 _UNLOCKED_AGE = 86_400.0  # seconds after which a staging folder is left, where there are no locks
 _KINDS = {
     stat.S_IFIFO: "a pipe",
@@ -63,6 +66,19 @@ def check_target(target: Path) -> None:
         raise ValueError(f"{target}: this is {kind}; a file can only take the place of a file")
     if target.is_file() and not os.access(target, os.W_OK):
         raise PermissionError(13, "Permission denied", str(target))
+
+
+def require_space(folder: Path, size: int) -> None:
+    """Raise OSError where a file of so many bytes finds no room: some libraries end the process then."""
+    reserve = getattr(os, "posix_fallocate", None)
+    if reserve is None:
+        return
+    with tempfile.TemporaryFile(dir=folder) as file:
+        try:
+            reserve(file.fileno(), 0, size)
+        except OSError as error:
+            if error.errno not in (errno.EINVAL, errno.EOPNOTSUPP):
+                raise OSError(error.errno, f"{error.strerror}: {size} bytes") from None
 
 
 def kind_of(path: Path) -> str:

@@ -53,7 +53,7 @@ def _acquire(descriptor: int, path: Path, wait: float, message: str) -> bool:
 
 
 def try_lock(descriptor: int) -> bool | None:
-    """Lock a descriptor without waiting: True, False where another holds it, None where there are no locks."""
+    """Lock a descriptor at once: True, False where another holds it, None where there are no locks."""
     try:
         if sys.platform == "win32":
             import msvcrt

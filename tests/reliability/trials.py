@@ -1,0 +1,5 @@
+"""All kinds of trials."""
+
+from tests.reliability import files
+
+TRIALS = [*files.TRIALS]
