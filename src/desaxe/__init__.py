@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from ._scene import scene as scene
     from ._simulate import simulate as simulate
     from .catalogue import quantities as quantities
+    from .design.drive.drive import drive as drive
 
 # Public name -> the room it lives in; `equation` is SymPy's and comes with the extra `derive`.
 _ROOMS = {
@@ -48,6 +49,7 @@ _ROOMS = {
     "harmonics": "desaxe._design.harmonics",
     "counterweight": "desaxe._design.counterweight",
     "flywheel": "desaxe._design.flywheel",
+    "drive": "desaxe.design.drive.drive",
     "explore": "desaxe._explore",
     "feasibility": "desaxe._feasibility",
     "scene": "desaxe._scene",
@@ -63,6 +65,7 @@ __all__ = [
     "compile",
     "counterweight",
     "design_map",
+    "drive",
     "enclose",
     "equation",
     "evaluate",

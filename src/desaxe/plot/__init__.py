@@ -6,6 +6,7 @@ polar       a torque or force over the crank angle
 design_map  a quantity over two inputs, what is infeasible hatched
 tornado     what a change of each input does, by exact sensitivities
 mechanism   crank, rod and slider to scale at a crank angle
+drive       drive torque over a turn, and the speed with its flywheel
 animate     the same as it turns, beside a quantity's curve
 save        a figure or animation to a file
 
@@ -13,6 +14,7 @@ Each draws on `ax=`, or on a new Figure, and returns what it drew.
 """
 
 from .bars import tornado as tornado
+from .drive import drive as drive
 from .families import curves as curves
 from .files import save as save
 from .maps import design_map as design_map
@@ -21,4 +23,4 @@ from .panels import panels as panels
 from .round import polar as polar
 from .sketch import mechanism as mechanism
 
-__all__ = ["animate", "curves", "design_map", "mechanism", "panels", "polar", "save", "tornado"]
+__all__ = ["animate", "curves", "design_map", "drive", "mechanism", "panels", "polar", "save", "tornado"]

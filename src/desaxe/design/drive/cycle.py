@@ -1,0 +1,125 @@
+"""The torque of one design over its turn, in panels between the angles at which it has kinks."""
+
+from collections.abc import Callable, Mapping, Sequence
+from math import copysign, fsum, pi
+from typing import Any
+
+import numpy as np
+
+from ..._design.closed_form import closed_form
+from ..._design.events import placed
+from ..._design.maths import PLAIN
+from ..._evaluate import evaluate
+from ..._request import as_number, check_border, check_inputs, request
+from ...inputs import INPUTS
+from .panels import Array, Panels, resolved
+
+LENGTHS = ("ec", "AB", "BC")
+JAMS = 5  # the status where friction leaves no balance of forces
+LOADS_OVER_THETA = ("F_X", "F_Y")
+Motion = Callable[[Array], dict[str, Array]]  # angles -> omega and alpha there
+
+
+class NoCycleError(Exception):
+    """There is no torque somewhere on the turn; `status` says why."""
+
+    def __init__(self, status: int) -> None:
+        self.status = status
+
+
+class Design:
+    """The inputs of one design, checked, and the parameters of its torque."""
+
+    def __init__(self, caller: str, inputs: Mapping[str, Any], branch: int) -> None:
+        check_inputs(caller, inputs, [name for name in INPUTS if name not in ("theta", "omega")])
+        check_border({}, branch)
+        self.branch = int(branch)
+        given = {name: value for name, value in inputs.items() if value is not None}
+        self.loads = {n: v for n, v in given.items() if n in LOADS_OVER_THETA and _varies(v)}
+        self.numbers = {
+            name: _number(caller, name, value) for name, value in given.items() if name not in self.loads
+        }
+        if not self.numbers.get("alpha"):
+            self.numbers.pop("alpha", None)
+        for name in (*LENGTHS, "omega0"):
+            if name not in self.numbers:
+                as_number(name, None, (*LENGTHS, "omega0"), (caller,))
+        if not self.numbers["omega0"]:
+            raise ValueError(f"{caller}: omega0 = 0 is no cycle; it must be the speed of the crank")
+        everything = {**self.numbers, **self.loads}
+        asked = request(("T_in",), everything, self.branch, "standard")
+        self.parameters = tuple(n for n in asked.inputs if n != "theta" and n not in self.loads)
+
+    @property
+    def direction(self) -> float:
+        """1 where the crank turns forwards, -1 backwards."""
+        return copysign(1.0, self.numbers["omega0"])
+
+    @property
+    def margin(self) -> float:
+        """BC - AB - |ec|, rounded once."""
+        return fsum((self.numbers["BC"], -self.numbers["AB"], -abs(self.numbers["ec"])))
+
+    @property
+    def has_friction(self) -> bool:
+        """Whether the guide has friction."""
+        return bool(self.numbers.get("mu"))
+
+    def values(
+        self, names: Sequence[str], theta: Array, motion: Motion | None = None, **other: Any
+    ) -> dict[str, Array]:
+        """Quantities at angles. A motion gives the state there; `other` inputs replace those given."""
+        loads = {name: _load_at(name, load, theta) for name, load in self.loads.items()}
+        state = {} if motion is None else {**motion(theta), "omega0": None}
+        inputs = {**self.numbers, **loads, **state, **other}
+        present = {name: value for name, value in inputs.items() if value is not None}
+        found = evaluate([*names, "status"], theta=theta, branch=self.branch, **present)
+        status = found.pop("status")
+        bad = ~np.isfinite([found[name] for name in names]).all(0)
+        if bad.any():
+            codes = status[bad]
+            raise NoCycleError(JAMS if JAMS in codes else int(codes[0]) or 4)
+        return {name: np.broadcast_to(found[name], theta.shape) for name in names}
+
+    def breaks(self, motion: Motion | None = None, edges: Sequence[float] = (), **other: Any) -> list[float]:
+        """The ends of the turn, the angles at which the torque has a kink, and `edges`, in order."""
+        low, high = sorted((0.0, self.direction * 2.0 * pi))
+        ec, AB, BC = (self.numbers[name] for name in LENGTHS)
+        known = placed(closed_form(ec, AB, BC, PLAIN), self.branch, 1)
+        own = [low + (known[name].value - low) % (2.0 * pi) for name in ("theta_outer", "theta_inner")]
+        found = sorted({low, *own, *edges, high})
+        if self.has_friction:
+
+            def normal_force(theta: Array) -> dict[str, Array]:
+                return self.values(["N_C"], theta, motion, **other, mu=None)
+
+            smooth = resolved(normal_force, found)
+            found += smooth.roots(smooth.values["N_C"])
+        return sorted(found)
+
+
+def _varies(value: Any) -> bool:
+    return callable(value)
+
+
+def _load_at(name: str, load: Callable[[Array], Any], theta: Array) -> Array:
+    """A load at these angles; an error that names it where it gives something else."""
+    found = np.asarray(load(theta), float)
+    if found.shape not in ((), theta.shape):
+        raise ValueError(f"{name}: a function of {theta.shape[0]} angles gave the shape {found.shape}")
+    if not np.isfinite(found).all():
+        raise ValueError(f"{name}: the function gave {found[~np.isfinite(found)].flat[0]}; it must be finite")
+    return np.broadcast_to(found, theta.shape)
+
+
+def _number(caller: str, name: str, value: Any) -> float:
+    number = as_number(name, value, (name,), (caller,))
+    if number is None:
+        raise TypeError(f"{caller}: {name} must be a number, this is about one design")
+    return number
+
+
+def torque_over(design: Design, names: Sequence[str], **other: Any) -> Panels:
+    """Quantities over the turn in panels, the roots of the torque among their edges."""
+    found = resolved(lambda theta: design.values(names, theta, **other), design.breaks(**other))
+    return found.split(found.roots(found.values["T_in"]))

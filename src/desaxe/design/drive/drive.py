@@ -1,0 +1,204 @@
+"""`drive`: what a drive must give over a turn: torque, power, work, flywheel, starting torque."""
+
+from functools import partial
+from math import copysign, inf, nan, pi, sqrt
+from typing import Any
+
+import numpy as np
+
+from .cycle import JAMS, Design, NoCycleError, torque_over
+from .flywheel import flywheel_for
+from .panels import Array, Panels, resolved
+from .result import Drive
+
+CREEP = 1e-100  # rad/s: friction acts, inertia does not; a torque below it is none
+STALLED = 3
+FIGURES = (
+    "torque_mean", "torque_rms", "torque_peak", "theta_peak", "work_in", "work_out", "power_mean",
+    "power_peak", "flywheel_inertia", "flywheel_torque", "starting_torque", "theta_start", "period",
+)  # fmt: skip
+DIFFERENTIATED = tuple(name for name in FIGURES if not name.startswith("theta_"))
+
+
+def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, **inputs: Any) -> Drive:
+    """What a drive must give over one turn of a design: torque, power, work, flywheel, starting torque.
+
+    fluctuation  (fastest - slowest)/mean speed that a flywheel is to keep under a constant torque
+    reverse      True: the starting torque is that for either way of turning
+    inputs       of one design with masses and loads, as in `evaluate`. omega0 is the speed of the crank; with
+                 alpha it is that at theta = 0, and the turn is the first one. F_X and F_Y may be functions of
+                 theta
+
+    Gives a dict, which prints as a report and has `plot()`. Means are over time:
+
+    torque_mean, torque_rms   of T_in [N m]; the root of the mean square heats a motor
+    torque_peak               the largest magnitude of T_in [N m], at `theta_peak` [rad]
+    work_in, work_out         what the drive puts in and what it takes back in a turn [J], both >= 0
+    power_mean, power_peak    net work over the time of a turn, and the largest magnitude of T_in omega [W]
+    flywheel_inertia          [kg m2] on the crank: the least with which the speed fluctuates as wanted about
+                              |omega0|, the mean of fastest and slowest, under a constant torque; friction
+                              included. 0 if none is needed, NaN with alpha
+    flywheel_torque           that constant torque [N m]; without friction it is torque_mean
+    starting_torque           what it takes to start from the worst standstill [N m], positive in the way of
+                              turning: the largest torque over theta that loads, gravity and friction hold
+                              against; at `theta_start` [rad]. Infinite where friction jams
+    period, fluctuation       time of a turn [s]; as given
+    gradient                  dict name -> dict input -> exact derivative, of all but the angles, by each
+                              input that is a number and matters; of the flywheel by `fluctuation` too.
+                              NaN where the extreme is at a kink
+    status                    0 ok; 1 the crank cannot turn fully; 2 at a change point (derivatives by the
+                              lengths are NaN); 3 stalls within the turn; 5 friction jams, 6 two sets of
+                              forces balance. All is NaN but for 0 and 2
+
+    Integrals are taken to rounding, by Gauss's rule between the angles at which friction or a load has kinks,
+    on panels that are halved until the torque and its derivatives are resolved. Raises ValueError for a bad
+    input and for a crank at rest, TypeError for a missing input or an array.
+
+        >>> import desaxe as dx
+        >>> found = dx.drive(ec=0.01, AB=0.05, BC=0.2, omega0=30.0, m_slider=2.0, F_Y=-500.0, mu=0.1)
+        >>> [round(found[name], 3) for name in ("torque_mean", "torque_peak", "flywheel_inertia")]
+        [0.323, 26.468, 1.845]
+    """
+    if isinstance(fluctuation, bool) or not (
+        isinstance(fluctuation, (int, float)) and 0.0 < fluctuation < 2.0
+    ):
+        raise ValueError(
+            f"fluctuation = {fluctuation!r}: a number above 0 and below 2, where the crank stops"
+        )
+    design = Design("drive", inputs, branch)
+    status = _status(design)
+    found: dict[str, Any] = dict.fromkeys(FIGURES, nan)
+    slopes = {name: dict.fromkeys(design.parameters, nan) for name in DIFFERENTIATED}
+    course: dict[str, Array] = {}
+    try:
+        if status in (0, 2):
+            _over_a_turn(design, found, slopes, course)
+            if "alpha" not in design.numbers:
+                _flywheel(design, float(fluctuation), found, slopes, course)
+            _starting(design, reverse, found, slopes)
+    except NoCycleError as error:
+        status, course = error.status, {}
+        found = dict.fromkeys(FIGURES, nan)
+    if status:
+        lost = design.parameters if status != 2 else [n for n in ("ec", "AB", "BC") if n in design.parameters]
+        for gradient in slopes.values():
+            gradient.update(dict.fromkeys(lost, nan))
+    about = {"fluctuation": float(fluctuation), "gradient": slopes, "status": status}
+    return Drive({**found, **about}, design.numbers, design.branch, course)
+
+
+def _status(design: Design) -> int:
+    """What can be said without any force."""
+    if design.margin < 0.0:
+        return 1
+    last = design.numbers["omega0"] ** 2 + 4.0 * pi * design.direction * design.numbers.get("alpha", 0.0)
+    if last <= 0.0:
+        return STALLED
+    return 2 if design.margin == 0.0 else 0
+
+
+def _over_a_turn(
+    design: Design, found: dict[str, Any], slopes: dict[str, dict[str, float]], course: dict[str, Array]
+) -> None:
+    """All but flywheel and starting torque; torque and power over the turn."""
+    names = ["T_in", *(f"T_in_wrt_{name}" for name in design.parameters)]
+    turn = torque_over(design, names)
+    torque, way = turn.values["T_in"], design.direction
+    by = {name: turn.values[f"T_in_wrt_{name}"] for name in design.parameters}
+    alpha = design.numbers.get("alpha", 0.0)
+    speed = np.sqrt(design.numbers["omega0"] ** 2 + 2.0 * alpha * turn.theta)
+    speed_by = {"omega0": design.numbers["omega0"] / speed, "alpha": turn.theta / speed}
+    period = turn.integral(1.0 / speed)
+    mean = turn.integral(torque / speed) / period
+    square = turn.integral(torque**2 / speed) / period
+    net = way * turn.integral(torque)
+    driven = way * torque > 0.0
+    rms = sqrt(square)
+    found |= {
+        "period": period,
+        "torque_mean": mean,
+        "torque_rms": rms,
+        "work_in": turn.integral(np.where(driven, way * torque, 0.0)),
+        "work_out": turn.integral(np.where(driven, 0.0, -way * torque)),
+        "power_mean": net / period,
+    }
+    for name, slope in by.items():
+        shorter = speed_by.get(name, 0.0) / speed**2 + 0.0 * speed  # what 1/speed loses
+        longer = -turn.integral(shorter) + 0.0
+        by_mean = turn.integral(slope / speed - torque * shorter)
+        by_square = turn.integral(2.0 * torque * slope / speed - torque**2 * shorter)
+        rows = {
+            "period": longer,
+            "torque_mean": (by_mean - mean * longer) / period,
+            "torque_rms": (by_square - square * longer) / (2.0 * rms * period) if rms else 0.0,
+            "work_in": turn.integral(np.where(driven, way * slope, 0.0)),
+            "work_out": turn.integral(np.where(driven, 0.0, -way * slope)),
+            "power_mean": (way * turn.integral(slope) - net / period * longer) / period,
+        }
+        for figure, value in rows.items():
+            slopes[figure][name] = value
+    power_by = {n: way * (s * speed + torque * speed_by.get(n, 0.0)) for n, s in by.items()}
+    power = way * torque * speed
+    found["torque_peak"], place = _peak(turn, torque, by, slopes["torque_peak"])
+    found["power_peak"], _ = _peak(turn, power, power_by, slopes["power_peak"])
+    found["theta_peak"] = _in_turn(place, alpha)
+    course |= {"theta": turn.theta.ravel(), "T_in": torque.ravel(), "power_in": power.ravel()}
+
+
+def _peak(
+    turn: Panels, values: Array, by: dict[str, Array], gradient: dict[str, float]
+) -> tuple[float, float]:
+    """The largest magnitude and its angle; the derivatives there."""
+    value, place, inside = max(
+        (turn.extreme(values, sign) for sign in (1.0, -1.0)), key=lambda one: abs(one[0])
+    )
+    for name, slope in by.items():
+        sign = copysign(1.0, value) if value else nan
+        gradient[name] = sign * float(turn.at(np.array([place]), slope)[0]) if inside else nan
+    return abs(value), place
+
+
+def _flywheel(
+    design: Design,
+    fluctuation: float,
+    found: dict[str, Any],
+    slopes: dict[str, dict[str, float]],
+    course: dict[str, Array],
+) -> None:
+    """The inertia and its derivatives; the speed over the turn with it."""
+    wheel = flywheel_for(design, fluctuation)
+    if wheel is None:
+        return
+    found |= {"flywheel_inertia": wheel.inertia, "flywheel_torque": wheel.torque}
+    slopes |= {"flywheel_inertia": wheel.gradient, "flywheel_torque": wheel.torque_gradient}
+    course |= {"theta_of_speed": wheel.theta, "speed": np.abs(wheel.omega)}
+
+
+def _starting(
+    design: Design, reverse: bool, found: dict[str, Any], slopes: dict[str, dict[str, float]]
+) -> None:
+    """The torque that starts the crank from any standstill, forwards or, in reverse, either way."""
+    names = [name for name in design.parameters if name not in ("omega0", "alpha")]
+    wanted = ["T_in", *(f"T_in_wrt_{name}" for name in names)]
+    best, gradient = -inf, dict.fromkeys(design.parameters, 0.0)
+    for way in (design.direction, -design.direction)[: 2 if reverse else 1]:
+        creep: dict[str, Any] = {"omega0": way * CREEP, "alpha": None}
+        values = partial(design.values, wanted, **creep)
+        try:
+            turn = resolved(values, design.breaks(**creep))
+        except NoCycleError as error:
+            found["starting_torque"] = inf if error.status == JAMS else nan
+            slopes["starting_torque"] = dict.fromkeys(design.parameters, nan)
+            return
+        value, place, inside = turn.extreme(way * turn.values["T_in"], 1.0)
+        if value > best:
+            best, found["theta_start"] = value, _in_turn(place, 0.0)
+            here = {n: float(turn.at(np.array([place]), turn.values[f"T_in_wrt_{n}"])[0]) for n in names}
+            gradient |= {n: way * slope if inside else nan for n, slope in here.items()}
+    found["starting_torque"] = best if abs(best) > CREEP else 0.0
+    slopes["starting_torque"] = gradient
+
+
+def _in_turn(theta: float, alpha: float) -> float:
+    """An angle from 0 on, within a turn; with alpha a turn is not like the next, and it stays."""
+    return theta if alpha else theta % (2.0 * pi)

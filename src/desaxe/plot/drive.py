@@ -1,0 +1,88 @@
+"""Drive diagrams: torque and power over a turn, and the speed that a flywheel leaves."""
+
+from math import degrees, isfinite
+from typing import TYPE_CHECKING, Any
+
+from ..extras import needed
+from .parts import BLUE, ORANGE
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+SIZE = (8.0, 5.6)  # inches
+MINUTE = 9.549296585513721  # rpm in a rad/s
+
+
+def drive(result: Any, *, ax: "Axes | None" = None) -> "dict[str, Line2D]":
+    """Draw the drive torque over a turn with its mean and peak, and the speed with the flywheel.
+
+    result  of `desaxe.drive`
+    ax      where to draw the torque alone: a matplotlib Axes; by default a new Figure with the torque above
+            and the speed below (`lines["T_in"].figure`)
+
+    Returns the lines by name: T_in, mean, peak, and speed where there is a flywheel. Raises ValueError for a
+    result without a cycle, whose `status` says why.
+    """
+    with needed("plot.drive"):
+        from matplotlib.figure import Figure
+    course = result.course
+    if "T_in" not in course:
+        raise ValueError(f"this drive has no torque to draw, status {result['status']}")
+    turns = "speed" in course and isfinite(result["flywheel_inertia"])
+    if ax is None:
+        figure = Figure(figsize=SIZE, layout="constrained")
+        axes = list(figure.subplots(2 if turns else 1, sharex=True, squeeze=False)[:, 0])
+    else:
+        axes = [ax]
+    lines = _torque(axes[0], result)
+    if turns and len(axes) > 1:
+        lines["speed"] = _speed(axes[1], result)
+    for one in axes:
+        _finish(one, course["theta"])
+    axes[-1].set_xlabel("crank angle, theta [deg]")
+    return lines
+
+
+def _torque(ax: "Axes", result: Any) -> "dict[str, Line2D]":
+    theta, torque = result.course["theta"] * degrees(1.0), result.course["T_in"]
+    (curve,) = ax.plot(theta, torque, color=BLUE, linewidth=1.6, label="T_in")
+    mean = ax.axhline(result["torque_mean"], color=ORANGE, linewidth=1.2, label="mean")
+    ax.fill_between(theta, torque, result["torque_mean"], color=BLUE, alpha=0.12, linewidth=0.0)
+    place = degrees(result["theta_peak"])
+    top = max((torque.max(), torque.min()), key=abs)
+    (peak,) = ax.plot([place], [top], "o", color=BLUE, markersize=5, label="peak")
+    ax.annotate(f"{result['torque_peak']:.4g} N m at {place:.1f} deg", (place, top), (8, 5),
+                textcoords="offset points", va="center", fontsize="small")  # fmt: skip
+    ax.set_ylabel("torque of the drive, T_in [N m]")
+    ax.set_title(
+        f"mean {result['torque_mean']:.4g} N m, rms {result['torque_rms']:.4g} N m, "
+        f"mean power {result['power_mean']:.4g} W",
+        loc="left", fontsize="medium",
+    )  # fmt: skip
+    return {"T_in": curve, "mean": mean, "peak": peak}
+
+
+def _speed(ax: "Axes", result: Any) -> "Line2D":
+    course = result.course
+    (curve,) = ax.plot(
+        course["theta_of_speed"] * degrees(1.0), course["speed"] * MINUTE, color=BLUE, linewidth=1.6
+    )
+    ax.set_ylabel("speed of the crank [rpm]")
+    ax.set_title(
+        f"with a flywheel of {result['flywheel_inertia']:.4g} kg m$^2$ under a constant torque",
+        loc="left", fontsize="medium",
+    )  # fmt: skip
+    return curve
+
+
+def _finish(ax: "Axes", theta: Any) -> None:
+    from matplotlib.ticker import MultipleLocator
+
+    ax.set_xlim(*(360.0 * round(degrees(end) / 360.0) for end in (theta.min(), theta.max())))
+    ax.xaxis.set_major_locator(MultipleLocator(45.0))
+    ax.margins(y=0.15)
+    ax.grid(True, color="0.9", linewidth=0.8)
+    ax.set_axisbelow(True)
+    for side in ("top", "right"):
+        ax.spines[side].set_visible(False)

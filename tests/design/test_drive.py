@@ -1,0 +1,217 @@
+"""Drives: against free bodies integrated at 30 digits, simulated motions, differences and limits."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from desaxe.audit.force_truth import truth
+
+PRESS = {
+    "ec": 0.01, "AB": 0.05, "BC": 0.2, "omega0": 40.0, "m_slider": 2.0, "m_rod": 1.0, "I_rod": 0.003,
+    "m_crank": 0.5, "r_crank": 0.01, "F_Y": -500.0, "g_Y": -9.81,
+}  # fmt: skip
+RUBBING = {**PRESS, "mu": 0.15}
+
+
+def torque_of_the_bodies(theta, **inputs):
+    return float(truth("T_in", theta=theta, **inputs))
+
+
+def test_means_of_the_free_bodies():
+    """Equal steps: without friction the torque is periodic and analytic, and 48 are enough."""
+    found = dx.drive(**PRESS)
+    torque = [torque_of_the_bodies(2 * math.pi * k / 48, **PRESS) for k in range(48)]
+    assert found["torque_mean"] == pytest.approx(math.fsum(torque) / 48, abs=1e-13)
+    assert found["torque_rms"] == pytest.approx(math.sqrt(math.fsum(t * t for t in torque) / 48), rel=1e-14)
+
+
+def test_means_with_friction_and_work_of_the_free_bodies():
+    """A side force keeps the slider on one side of its guide: kinks at the dead centres alone."""
+    design = {**RUBBING, "F_X": 4000.0}
+    e, a, b = design["ec"], design["AB"], design["BC"]
+    ends = [-math.asin(e / (a + b)), math.pi - math.asin(e / (b - a)), 2 * math.pi - math.asin(e / (a + b))]
+    node, weight = np.polynomial.legendre.leggauss(32)
+    total = square = 0.0
+    for low, high in pairwise(ends):
+        theta = 0.5 * (low + high) + 0.5 * (high - low) * node
+        torque = np.array([torque_of_the_bodies(x, **design) for x in theta.tolist()])
+        total += 0.5 * (high - low) * weight @ torque
+        square += 0.5 * (high - low) * weight @ torque**2
+    found = dx.drive(**design)
+    assert found["torque_mean"] == pytest.approx(total / (2 * math.pi), rel=1e-12)
+    assert found["torque_rms"] == pytest.approx(math.sqrt(square / (2 * math.pi)), rel=1e-12)
+    assert found["work_in"] - found["work_out"] == pytest.approx(total, rel=1e-12)
+    assert found["power_mean"] == pytest.approx(total * 40.0 / (2 * math.pi), rel=1e-12)
+
+
+@pytest.mark.parametrize(("omega0", "alpha"), [(-40.0, 0.0), (30.0, 50.0)])
+def test_sums_over_time(omega0, alpha):
+    """The midpoint rule in time, at instants of the law of motion; peaks by `peak`."""
+    law = {"omega0": omega0, "alpha": alpha}
+    design = {**RUBBING, **law}
+    found = dx.drive(**design)
+    way = math.copysign(1.0, omega0)
+    a, b, c = alpha / 2, omega0, -way * 2 * math.pi
+    period = 2 * c / (-b - way * math.sqrt(b * b - 4 * a * c))
+    assert found["period"] == pytest.approx(period, rel=1e-14)
+    steps = 100_000
+    t = (np.arange(steps) + 0.5) * period / steps
+    power, torque = (dx.evaluate(name, theta=b * t + a * t * t, **design) for name in ("power_in", "T_in"))
+    assert found["torque_mean"] == pytest.approx(torque.mean(), abs=1e-7)
+    assert found["torque_rms"] == pytest.approx(np.sqrt((torque**2).mean()), rel=1e-8)
+    assert found["power_mean"] == pytest.approx(power.mean(), abs=1e-6)
+    assert found["work_in"] == pytest.approx(np.maximum(power, 0).mean() * period, rel=1e-8)
+    assert found["work_out"] == pytest.approx(np.maximum(-power, 0).mean() * period, rel=1e-8)
+    turn = tuple(sorted((0.0, way * 2 * math.pi)))
+    for figure, name in (("torque_peak", "T_in"), ("power_peak", "power_in")):
+        top = dx.peak(name, theta=turn, **design)
+        assert found[figure] == pytest.approx(top["value"], rel=1e-13)
+        for parameter, slope in found["gradient"][figure].items():
+            assert slope == pytest.approx(top["gradient"][parameter], rel=1e-9, abs=1e-12)
+        if name == "T_in":
+            around = 0.0 if alpha else 2 * math.pi * (top["theta"] < 0.0)
+            assert found["theta_peak"] == pytest.approx(top["theta"] + around, abs=1e-10)
+
+
+@pytest.mark.parametrize("design", [PRESS, RUBBING], ids=["smooth", "friction"])
+def test_gradients_by_differences(design):
+    found = dx.drive(fluctuation=0.05, **design)
+    sizes = dict.fromkeys(("torque_mean", "flywheel_torque"), found["torque_rms"])
+    sizes["power_mean"] = found["power_peak"]
+    for name in ("ec", "BC", "omega0", "m_rod", "I_rod", "F_Y", "fluctuation", "mu")[
+        : 8 if "mu" in design else 7
+    ]:
+        base = {"fluctuation": 0.05, **design}
+        step = 2e-4 * abs(base[name])
+        near, far = (
+            [dx.drive(**{**base, name: base[name] + side * k * step}) for side in (1, -1)] for k in (1, 2)
+        )
+        for figure, gradient in found["gradient"].items():
+            if name not in gradient:
+                assert name == "fluctuation"
+                continue
+            narrow, wide = (
+                (one[figure] - two[figure]) / (2 * k * step) for k, (one, two) in ((1, near), (2, far))
+            )
+            assert gradient[name] == pytest.approx(
+                (4 * narrow - wide) / 3,
+                rel=1e-7,
+                abs=1e-8 * sizes.get(figure, found[figure]) / abs(base[name]),
+            ), (figure, name)
+
+
+@pytest.mark.parametrize("mu", [0.0, 0.15])
+@pytest.mark.parametrize("fluctuation", [0.03, 0.6])
+def test_a_simulated_turn_with_the_flywheel(mu, fluctuation):
+    """Under the constant torque the motion repeats itself, and its speed fluctuates as wanted."""
+    design = {**PRESS, "mu": mu}
+    found = dx.drive(fluctuation=fluctuation, **design)
+    start = float(found.course["speed"][0])
+    theta0 = float(found.course["theta_of_speed"][0])
+    bodies = {n: v for n, v in design.items() if n != "omega0"} | {"I_crank": found["flywheel_inertia"]}
+    motion = dx.simulate(
+        torque=found["flywheel_torque"], t_end=1.0, theta0=theta0, omega_start=start,
+        until=theta0 + 2 * math.pi, rtol=1e-12, times=np.linspace(0, 2 * found["period"], 4001), **bodies,
+    )  # fmt: skip
+    end = next(event for event in motion["events"] if event.kind == "angle")
+    assert end.omega == pytest.approx(start, rel=1e-8)
+    slow, fast = motion["omega"].min(), motion["omega"].max()
+    assert (fast - slow) / 40.0 == pytest.approx(fluctuation, rel=2e-5)
+    assert (fast + slow) / 2 == pytest.approx(40.0, rel=1e-6)
+
+
+def test_without_friction_the_flywheel_is_that_of_flywheel():
+    found = dx.drive(fluctuation=0.02, **PRESS)
+    assert found["flywheel_inertia"] == pytest.approx(
+        dx.flywheel(fluctuation=0.02, **PRESS)["inertia"], rel=1e-10
+    )
+    heavy = dx.drive(fluctuation=0.02, **PRESS, I_crank=100.0)
+    assert heavy["flywheel_inertia"] == 0.0
+    assert set(heavy["gradient"]["flywheel_inertia"].values()) == {0.0}
+
+
+def test_starting_from_the_worst_standstill():
+    """Loads, gravity and friction at a creep, in the way of turning; either way in reverse."""
+    still = {**RUBBING, "omega0": 1e-9}
+    ahead = dx.peak("T_in", kind="max", **still)
+    found = dx.drive(**RUBBING)
+    assert found["starting_torque"] == pytest.approx(ahead["value"], rel=1e-12)
+    assert found["theta_start"] == pytest.approx(ahead["theta"], abs=1e-9)
+    back = dx.peak("T_in", kind="min", **{**still, "omega0": -1e-9})
+    assert dx.drive(**{**RUBBING, "omega0": -40.0})["starting_torque"] == pytest.approx(
+        -back["value"], rel=1e-12
+    )
+    both = dx.drive(reverse=True, **RUBBING)
+    assert both["starting_torque"] == pytest.approx(max(ahead["value"], -back["value"]), rel=1e-12)
+    assert dx.drive(ec=0, AB=0.1, BC=0.3, omega0=10.0, m_slider=1.0)["starting_torque"] == 0.0
+
+
+def test_a_load_over_the_angle():
+    """A step at 60 deg on the way in and out; its work by its mean over the stroke."""
+
+    def force(theta):
+        return np.where(np.cos(theta) > 0.5, -4000.0, -10.0)
+
+    design = {"ec": 0.0, "AB": 0.1, "BC": 0.4, "omega0": 20.0}
+    found = dx.drive(F_Y=force, **design)
+    Y = dx.evaluate("Y", theta=np.array([0.0, math.pi / 3, math.pi]), ec=0.0, AB=0.1, BC=0.4)
+    stroke = 4000.0 * (Y[0] - Y[1]) + 10.0 * (Y[1] - Y[2])
+    assert found["work_in"] == pytest.approx(stroke, rel=1e-10)
+    assert found["work_out"] == pytest.approx(stroke, rel=1e-10)
+
+
+def test_status():
+    lengths = {"omega0": 3.0, "m_slider": 1.0}
+    stuck = dx.drive(ec=0.1, AB=0.2, BC=0.25, **lengths)
+    assert stuck["status"] == 1
+    assert math.isnan(stuck["torque_rms"])
+    assert "cannot turn fully" in stuck.report()
+    change = dx.drive(ec=0.125, AB=0.125, BC=0.25, **lengths)
+    assert change["status"] == 2
+    assert change["torque_rms"] > 0.0
+    assert math.isnan(change["gradient"]["torque_rms"]["BC"])
+    assert change["gradient"]["torque_rms"]["m_slider"] == pytest.approx(change["torque_rms"], rel=1e-12)
+    assert dx.drive(ec=0, AB=0.1, BC=0.3, alpha=-10, **lengths)["status"] == 3
+    jammed = dx.drive(ec=0, AB=0.1, BC=0.12, omega0=1.0, m_slider=1.0, F_Y=-300.0, F_X=100.0, mu=2.0)
+    assert jammed["status"] == 5
+    idle = dx.drive(ec=0, AB=0.1, BC=0.3, omega0=10.0)
+    assert (idle["torque_peak"], idle["flywheel_inertia"], idle["status"]) == (0.0, 0.0, 0)
+
+
+@pytest.mark.parametrize(
+    ("inputs", "error", "words"),
+    [
+        ({"fluctuation": 0}, ValueError, "fluctuation = 0"),
+        ({"fluctuation": 2.5}, ValueError, "fluctuation = 2.5"),
+        ({"omega0": 0.0}, ValueError, "omega0 = 0"),
+        ({"omega0": None}, TypeError, "omega0 is missing"),
+        ({"AB": [0.1, 0.2]}, TypeError, "AB must be a number"),
+        ({"omega": 3.0}, TypeError, "no input 'omega'"),
+        ({"m_slidr": 3.0}, TypeError, "m_slider"),
+        ({"m_slider": -1.0}, ValueError, "m_slider = -1.0"),
+        ({"F_Y": lambda theta: np.zeros(3)}, ValueError, "F_Y"),
+    ],
+)
+def test_bad_input(inputs, error, words):
+    with pytest.raises(error, match=words):
+        dx.drive(**{**PRESS, **inputs})
+
+
+def test_report_and_plot():
+    found = dx.drive(**RUBBING)
+    report = found.report()
+    for words in ("381.972 rpm", f"{found['torque_rms']:.6g} N m", "starting torque", "3 %"):
+        assert words in report
+    assert str(found) == report
+    lines = found.plot()
+    assert set(lines) == {"T_in", "mean", "peak", "speed"}
+    assert lines["T_in"].get_ydata().max() <= found["torque_peak"]
+    figure = lines["T_in"].figure
+    assert figure.axes[-1].get_xlim() == (0.0, 360.0)
+    alone = dx.plot.drive(found, ax=figure.axes[0])
+    assert "speed" not in alone
+    with pytest.raises(ValueError, match="status 1"):
+        dx.drive(ec=0.1, AB=0.2, BC=0.25, omega0=3.0).plot()
