@@ -5,16 +5,13 @@ the ones that desaxe writes into its loops.
 """
 
 import math
-import tempfile
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numba
 import numpy as np
 
 from desaxe._constants import constants
-from desaxe._kernels import module_at
 from desaxe.compiler.emit_numba import emit_numba
 from desaxe.compiler.kernel import tabulate
 from desaxe.compiler.passes.number import number_values
@@ -75,7 +72,6 @@ def _quotients(x: Array, y: Array, _: Array) -> None:
 def _sines() -> Any:
     """The loop that desaxe would compile for a sine and a cosine."""
     program = number_values(expand_trigonometry(read_function(BOTH), constants()))
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder, "sines.py")
-        path.write_text(emit_numba(tabulate(program, {"theta": 0}, 1), "Both."), encoding="utf-8")
-        return module_at(path).kernel
+    scope: dict[str, Any] = {}
+    exec(emit_numba(tabulate(program, {"theta": 0}, 1), "Both."), scope)
+    return scope["kernel"]

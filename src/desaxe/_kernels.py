@@ -1,27 +1,19 @@
 """Kernels by what they compute: compiled once, kept on disk, loaded by the next process.
 
-A kernel is a module of its own in the cache folder, named by a hash of its text; numba keeps its
-machine code beside it. The first compilation happens under a lock, so that processes started
-together do not compile the same kernel into each other's way.
+`runtime.modules` compiles the text of a kernel and keeps its machine code.
 """
 
-import hashlib
-import sys
-from collections.abc import Callable, Mapping, Sequence
-from importlib.util import module_from_spec, spec_from_file_location
+from collections.abc import Mapping, Sequence
 from math import prod
-from pathlib import Path
 from threading import Lock
-from types import ModuleType
 from typing import Any, NamedTuple
 
-from . import _cache, _machine_code
 from ._accuracy import check_angle
 from ._constants import constants, double_constants, single_constants
 from ._point import cut, plain_form
 from ._program import Form
 from ._request import Request
-from .compiler.emit_numba import emit_numba
+from .compiler.emit_numba import TO_COMPILE, emit_numba
 from .compiler.forms import in_two_forms, parted
 from .compiler.kernel import Kernel, tabulate
 from .compiler.passes.double_double import double_digits
@@ -33,6 +25,7 @@ from .compiler.program import Program
 from .compiler.reductions import emit_reduced
 from .inputs import LEAST
 from .names import LENGTHS, LOADS
+from .runtime.modules import Native, is_kept, native
 
 # A scalar of 0 for one of these makes whole terms vanish, so it is folded into the kernel.
 STRUCTURAL_ZEROS = ("ec", "alpha", *LOADS)
@@ -55,12 +48,12 @@ class KernelKey(NamedTuple):
 class CompiledKernel(NamedTuple):
     """A kernel and the order of its inputs; an input that is a scalar has no axis."""
 
-    function: Callable[..., int | None]
+    function: Native
     axis_of: tuple[tuple[str, int | None], ...]
 
     def run(self, values: Mapping[str, Any], outs: Sequence[Any]) -> int:
         """Fill the outputs; the answer is how many points hang on rounding."""
-        return self.function(*(values[name] for name, _ in self.axis_of), *outs) or 0
+        return self.function(*(values[name] for name, _ in self.axis_of), *outs)
 
 
 def key_of(
@@ -183,44 +176,22 @@ def _for_loops(program: Program, key: KernelKey, plain: bool = False) -> Program
 
 
 def source_of(key: KernelKey) -> str:
-    """The text of the kernel's module."""
+    """The text that is compiled."""
     kernel = kernel_of(key)
     fixed = ", ".join(f"{name} = {value:g}" for name, value in key.fixed)
     motion = "a given state" if key.form.state else "paper A's law"
     docstring = f"desaxe kernel: {', '.join(key.names)}; {motion}; {fixed}."
     if key.reduce:
-        return emit_reduced(kernel, key.reduce, docstring, is_single(key))
-    return emit_numba(kernel, docstring, is_single(key))
+        return emit_reduced(kernel, key.reduce, docstring, is_single(key), to_compile=True)
+    return emit_numba(kernel, docstring, is_single(key), TO_COMPILE)
 
 
-def path_of(source: str) -> Path:
-    """Where the module of a kernel is kept."""
-    return _cache.folder().path / f"kernel_{hashlib.sha256(source.encode()).hexdigest()[:20]}.py"
+def is_on_disk(key: KernelKey) -> bool:
+    """Whether an earlier process has left the kernel's machine code."""
+    return is_kept("kernel", source_of(key))
 
 
 def _load(key: KernelKey) -> CompiledKernel:
     axes = dict(key.axis_of)
     order = tuple((name, axes.get(name)) for name in cut(key.names, key.form, key.fixed).inputs)
-    source = source_of(key)
-    path = path_of(source)
-    with _cache.locked(path):
-        kept = _machine_code.load(path)
-        if kept is not None:
-            return CompiledKernel(kept, order)
-        if not path.exists():
-            _cache.write(path, source)
-        module = module_at(path)
-        function = module.reduced if key.reduce else module.kernel
-        _machine_code.save(function, path)
-        return CompiledKernel(function, order)
-
-
-def module_at(path: Path) -> ModuleType:
-    """The module of a file in the cache folder, under a name that numba can find it by."""
-    spec = spec_from_file_location(f"desaxe_{path.stem}", path)
-    if spec is None or spec.loader is None:
-        raise ImportError(f"cannot load {path}")
-    module = module_from_spec(spec)
-    sys.modules[spec.name] = module  # numba finds the module by its name when it loads machine code
-    spec.loader.exec_module(module)
-    return module
+    return CompiledKernel(native("kernel", source_of(key)), order)

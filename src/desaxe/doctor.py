@@ -3,12 +3,11 @@
 import platform
 import re
 import sys
-import tempfile
 import time
 from collections.abc import Iterator
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
-from importlib.util import find_spec, module_from_spec, spec_from_file_location
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -116,12 +115,12 @@ def _cache() -> list[str]:
     from ._cache import VARIABLE, folder
 
     found = folder()
-    kernels = list(found.path.glob("kernel_*.py"))
+    kept = list(found.path.glob("*.code"))
     size = sum(path.stat().st_size for path in found.path.rglob("*") if path.is_file())
     state = "can be written" if found.lasting else f"temporary: no other can be written (set {VARIABLE})"
     return [
         _row("folder", f"{found.path} ({state})"),
-        _row("holds", f"{len(kernels)} kernels, {size / 1e6:.1f} MB"),
+        _row("holds", f"{len(kept)} kernels, {size / 1e6:.1f} MB"),
     ]
 
 
@@ -192,25 +191,18 @@ def examine_assembly(assembly: str) -> Loop:
 
 
 def _assembly() -> Iterator[str]:
-    """The machine code of a fresh kernel with every input an array; numba keeps none of a cached one."""
+    """The machine code of a fresh kernel with every input an array; numba tells none of a cached one."""
     import numpy as np
 
-    from ._kernels import key_of, source_of
+    from ._kernels import kernel_of, key_of
     from ._request import request
+    from .compiler.emit_numba import TO_COMPILE, emit_numba
 
     columns = dict.fromkeys(INPUTS, np.ones(8))
     wanted = request(NAMES, {"omega0": 1.0}, 1, "standard")
     key = key_of(wanted, {}, columns, dict.fromkeys(INPUTS, 0), axes=1)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "desaxe_doctor_kernel.py"
-        path.write_text(source_of(key), encoding="utf-8")
-        yield from _compiled(path).inspect_asm().values()
-
-
-def _compiled(path: Path) -> Any:
-    spec = spec_from_file_location(path.stem, path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module.kernel
+    njit: Any = import_module("numba").njit
+    scope: dict[str, Any] = {}
+    exec(emit_numba(kernel_of(key), "A kernel.", False, TO_COMPILE), scope)
+    compiled = njit(scope["signature"], error_model="numpy", nogil=True)(scope["function"])
+    yield from compiled.inspect_asm().values()

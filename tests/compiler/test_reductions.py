@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from desaxe._kernels import module_at
 from desaxe.compiler.kernel import tabulate
 from desaxe.compiler.program import Line, Note, Program
 from desaxe.compiler.reductions import KINDS, LONGEST, SCRATCH, emit_reduced, outputs_of
+from desaxe.runtime.modules import native_here
 
 # f = a x + b: over a, b (designs) and x (reduced).
 PROGRAM = Program(
@@ -18,16 +18,14 @@ PROGRAM = Program(
 
 
 @pytest.fixture(scope="module")
-def reduced(tmp_path_factory):
+def reduced():
     """The kernel of all kinds, as a function of x, a and b that gives the outputs by name."""
     kernel = tabulate(PROGRAM, {"x": 2, "a": 0, "b": 1}, 3)
-    path = tmp_path_factory.mktemp("reduced") / "kernel_reduced.py"
-    path.write_text(emit_reduced(kernel, tuple(KINDS), "a x + b"), encoding="utf-8")
-    module = module_at(path)
+    function = native_here(emit_reduced(kernel, tuple(KINDS), "a x + b", to_compile=True), {})
 
     def run(x, a, b):
         outs = {name: np.empty((a.size, b.size), kind) for name, kind in outputs_of(("f",), tuple(KINDS))}
-        module.reduced(x, a, b, x.size, *outs.values())
+        function(x, a, b, x.size, *outs.values())
         return outs
 
     return run

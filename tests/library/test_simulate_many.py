@@ -11,7 +11,6 @@ import pytest
 from scipy.integrate import DOP853
 
 import desaxe as dx
-from desaxe import _cache
 from desaxe._program import Form
 from desaxe._simulate import compiled
 from desaxe._simulate.chart import EDGE
@@ -203,12 +202,6 @@ def test_what_a_family_lacks_costs_nothing():
     full, light = (source_of(Family(Form(True), fixed), False) for fixed in ((), zeros))
     assert "g_Y" in full
     assert "g_Y" not in light
-
-
-def test_machine_code_is_kept_on_disk():
-    dx.simulate(torque=[0.25], t_end=0.1, **LOADED)
-    kept = _cache.folder().path / "__pycache__"
-    assert list(kept.glob("designs_*.nbi"))
 
 
 def test_the_text_runs_uncompiled():

@@ -5,13 +5,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import prod
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 from .. import _few_points
 from .._constants import double_constants
-from .._kernels import KernelKey, is_ready, is_single, kernel_of, path_of, source_of
-from .._machine_code import SUFFIX
+from .._kernels import KernelKey, is_ready, is_single, kernel_of, source_of
 from .._point import cut
 from .._program import digest
 from .._scene import Scene
@@ -23,6 +21,7 @@ from ..catalogue import quantity
 from ..compiler.kernel import Kernel
 from ..compiler.passes.double_double import double_digits
 from ..inputs import INPUTS
+from ..runtime.modules import path_of
 from . import estimate
 from .loops import Loop, loops_of
 from .steps import skipped_of, steps_of
@@ -157,8 +156,7 @@ def _run(content: Content, found: GridKernel, loops: list[Loop], compiled: bool)
     one = estimate.loops_time(loops, 0 if content.reduction else points * outs)
     length = found.sizes[0]
     threads = max(1, min(content.threads or available(), points // LEAST_BLOCK, length))
-    load = estimate.LOAD + (0.0 if _stands_alone(Path(path)) else estimate.IMPORT)
-    first = {"memory": 0.0, "disk": load}.get(cached, estimate.IMPORT + estimate.compile_time(loops))
+    first = {"memory": 0.0, "disk": estimate.LOAD}.get(cached, estimate.IMPORT + estimate.compile_time(loops))
     return {
         "way": "compiled" if compiled else "plain Python",
         "break_even": _few_points.BREAK_EVEN,
@@ -179,17 +177,11 @@ def _run(content: Content, found: GridKernel, loops: list[Loop], compiled: bool)
 
 
 def _cached(key: KernelKey) -> tuple[str, str]:
-    """Where the kernel is: in memory, on disk, or not compiled; and the file of its module."""
-    path = path_of(source_of(key))
+    """Where the kernel is: in memory, on disk, or not compiled; and the file of its machine code."""
+    path = path_of("kernel", source_of(key))
     if is_ready(key):
         return "memory", str(path)
-    kept = _stands_alone(path) or any(path.parent.glob(f"__pycache__/{path.stem}*.nbi"))
-    return ("disk" if kept else "no"), str(path)
-
-
-def _stands_alone(path: Path) -> bool:
-    """Whether machine code is kept that numba is not needed for."""
-    return path.with_suffix(SUFFIX).exists()
+    return ("disk" if path.exists() else "no"), str(path)
 
 
 def _memory(content: Content, found: GridKernel) -> dict[str, int]:

@@ -1,10 +1,9 @@
 """The module of a search: its loops from the Programs, and the text of `search` behind them.
 
-Compiled by numba it is kept on disk, like every kernel. The same text runs in plain Python for the
+Its machine code is kept on disk, like that of every kernel. The same text runs in plain Python for the
 first few designs, for which nobody waits for a compiler.
 """
 
-import hashlib
 from collections import Counter
 from collections.abc import Callable, Mapping
 from functools import cache
@@ -16,22 +15,21 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import _cache
-from .._kernels import module_at
 from .._threads import run_parts
 from ..compiler import emit_peak
 from ..compiler.emit_numba import helper_sources
 from ..compiler.operations import HELPERS
+from ..runtime.modules import is_kept, native
 from . import search as text
 from .nodes import Array
 from .programs import Programs, Search, programs_of
 
-Kernel = Callable[..., None]
+Kernel = Callable[..., object]
 
 LINE = "# ---- compiled"
 LEAST_PART = 1_024  # designs of a thread
 BREAK_EVEN = 600  # designs in plain Python that take as long as the compiler
-_NJIT = '@njit(error_model="numpy")\n'
+_NJIT = '@njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)\n'
 _HEADER = '''"""desaxe search: extreme values of {name} over theta."""
 
 from math import atan2, copysign, cos, fabs, inf, nan, sin, sqrt
@@ -44,11 +42,7 @@ WORK = {work}
 '''
 _SIGNATURE = """ints, row, rows = types.int64[::1], types.float64[::1], types.float64[:, ::1]
 signature = types.void(rows, ints, ints, row, ints, types.int64, row, rows)
-"""
-_COMPILE = """try:
-    kernel = njit(signature, cache=True, error_model="numpy", nogil=True)(search)
-except RuntimeError:  # numba found no folder that it can write to
-    kernel = njit(signature, error_model="numpy", nogil=True)(search)
+function = search
 """
 
 
@@ -65,7 +59,7 @@ def source_of(search: Search) -> str:
         *(_NJIT + loop for loop in loops),
         *(helper if helper.startswith("BLOCK") else _NJIT + helper for helper in helpers),
         last,
-        _SIGNATURE + _COMPILE,
+        _SIGNATURE,
     ]
     return "\n\n".join(parts)
 
@@ -134,29 +128,14 @@ def kernel_for(search: Search, designs: int) -> Kernel:
     if _ASKED[search] < BREAK_EVEN and not _on_disk(search):
         return _plain(search)
     with _LOCK:
-        found = _LOADED[search] = _LOADED.get(search) or _load(search)
+        found = _LOADED[search] = _LOADED.get(search) or native("search", source_of(search))
     return found
-
-
-def _path(search: Search) -> Path:
-    digest = hashlib.sha256(source_of(search).encode()).hexdigest()[:20]
-    return _cache.folder().path / f"search_{digest}.py"
 
 
 @cache
 def _on_disk(search: Search) -> bool:
     """Whether an earlier process has left its machine code."""
-    path = _path(search)
-    return any((path.parent / "__pycache__").glob(f"{path.stem}.*.nbi"))
-
-
-def _load(search: Search) -> Kernel:
-    path = _path(search)
-    with _cache.locked(path):
-        if not path.exists():
-            _cache.write(path, source_of(search))
-        kernel: Kernel = module_at(path).kernel
-        return kernel
+    return is_kept("search", source_of(search))
 
 
 @cache

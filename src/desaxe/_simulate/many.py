@@ -162,7 +162,7 @@ def _arc(values: Mapping[str, float]) -> tuple[float, float, float] | None:
 
 
 def _run(
-    kernel: Callable[..., None],
+    kernel: Callable[..., object],
     rows: Array,
     setup: Array,
     shared: Sequence[Array],

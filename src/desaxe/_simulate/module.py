@@ -1,20 +1,16 @@
 """The compiled module of a family of designs: its functions from the Program, and DOP853 behind them."""
 
-import hashlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache, lru_cache
 from pathlib import Path
-from threading import Lock
-from types import ModuleType
 from typing import Any, NamedTuple
 
-from .. import _cache
-from .._kernels import module_at
 from .._point import cut
 from .._program import Form
 from ..compiler.emit_numba import helper_sources
 from ..compiler.program import Program
 from ..compiler.text import INDENT, with_short_temporaries, write_lines
+from ..runtime.modules import Native, native, native_here
 from . import compiled
 from .model import MOVING, STILL, UNLOADED
 
@@ -29,17 +25,13 @@ from numpy import empty, floor, nextafter
 '''
 _NUMBER = "def torque(t, theta, omega, number):\n    return number\n"
 _FUNCTION = "def torque(t, theta, omega, number):\n    return given_torque(t, theta, omega)\n"
-_NJIT = '@njit(error_model="numpy")\n'
+_NJIT = '@njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)\n'
 _SIGNATURE = """rows, row = types.float64[:, ::1], types.float64[::1]
 signature = types.void(
     rows, rows, row, row, rows, row, row, row, row, rows, rows, row, rows, rows, rows, types.int8[::1], rows
 )
+function = designs
 """
-_COMPILE = 'kernel = njit(signature, {}error_model="numpy", nogil=True)(designs)\n'
-_ONCE = _COMPILE.format("")
-_KEPT = f"""try:
-    {_COMPILE.format("cache=True, ")}except RuntimeError:  # no folder that numba can write to
-    {_ONCE}"""
 
 
 class Family(NamedTuple):
@@ -79,7 +71,6 @@ def source_of(family: Family, given_torque: bool) -> str:
         _NJIT + (_FUNCTION if given_torque else _NUMBER),
         _integrator(),
         _SIGNATURE,
-        _ONCE if given_torque else _KEPT,
     ]
     return "\n\n".join(parts)
 
@@ -101,26 +92,10 @@ def _integrator() -> str:
     return "\n\n".join([*bare, f"def {last.strip()}\n"]).replace(": Any", "").replace(") -> Any:", "):")
 
 
-_LOCK = Lock()
-
-
 @lru_cache(maxsize=32)
-def kernel_of(family: Family, given_torque: Any) -> Callable[..., None]:
+def kernel_of(family: Family, given_torque: Any) -> Native:
     """The compiled loop over designs, from memory, from disk, or compiled now."""
     source = source_of(family, given_torque is not None)
-    with _LOCK:
-        if given_torque is not None:
-            module = ModuleType("desaxe_designs")
-            module.__dict__["given_torque"] = given_torque
-            exec(compile(source, "<desaxe designs>", "exec"), module.__dict__)
-            return _kernel(module)
-        path = _cache.folder().path / f"designs_{hashlib.sha256(source.encode()).hexdigest()[:20]}.py"
-        with _cache.locked(path):
-            if not path.exists():
-                _cache.write(path, source)
-            return _kernel(module_at(path))
-
-
-def _kernel(module: ModuleType) -> Callable[..., None]:
-    kernel: Callable[..., None] = module.kernel
-    return kernel
+    if given_torque is not None:
+        return native_here(source, {"given_torque": given_torque})
+    return native("designs", source)

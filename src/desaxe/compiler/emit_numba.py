@@ -26,6 +26,7 @@ _COMPILE = """try:
 except RuntimeError:  # numba found no folder that it can write to
     kernel = njit(signature, error_model="numpy", nogil=True)(loops)
 """
+TO_COMPILE = "function = loops\n"  # the tail of a text that the runtime compiles
 # Without it, LLVM tests before a loop whether any two arrays overlap, and lets the loop run one by one where
 # that takes too many tests: from some twelve outputs on.
 _APART = """@intrinsic
@@ -44,15 +45,22 @@ def apart(typingctx):
 _INPUT = 'axis = types.Array(types.float64, 1, "C", readonly=True)\n'
 
 
-def emit_numba(kernel: Kernel, docstring: str, single: bool = False) -> str:
-    """The source of the module; `single` computes in float32, from doubles to doubles."""
+def emit_numba(kernel: Kernel, docstring: str, single: bool = False, tail: str = _COMPILE) -> str:
+    """The source of the module; `single` computes in float32, from doubles to doubles.
+
+    `tail` says what becomes of `loops` and its `signature`: a module of its own compiles them.
+    """
     if not single:
-        return "\n\n".join([_header(kernel, docstring, []), *_helpers(kernel), _function(kernel)])
+        return "\n\n".join([_header(kernel, docstring, []), *_helpers(kernel), _function(kernel, tail)])
     kernel, constants = _named_constants(kernel)
     rows = "\n".join(f"{name} = float32({value!r})" for value, name in constants.items())
     names = ["float32", *(word for word in ("inf", "nan") if word in map(repr, constants))]
     return "\n\n".join(
-        [_header(kernel, docstring, names) + rows + "\n", *_helpers(kernel), _function(kernel, "float32")]
+        [
+            _header(kernel, docstring, names) + rows + "\n",
+            *_helpers(kernel),
+            _function(kernel, tail, "float32"),
+        ]
     )
 
 
@@ -90,7 +98,7 @@ def emit_numba_with_front(kernel: Kernel, docstring: str, front: str, optional: 
     parts = [
         _header(kernel, docstring, used),
         *_helpers(kernel),
-        _function(kernel),
+        _function(kernel, _COMPILE),
         _front(kernel, front, optional),
     ]
     return "\n\n".join(parts)
@@ -143,8 +151,8 @@ def _called(op: str) -> str:
     return name if bracket and name not in HELPERS else ""
 
 
-def _function(kernel: Kernel, cast: str = "") -> str:
-    """The loops as a plain function, and `kernel`, that function compiled."""
+def _function(kernel: Kernel, tail: str, cast: str = "") -> str:
+    """The loops as a plain function, and what the tail makes of it."""
     types = ["types.float64" if axis is None else "axis" for axis in kernel.inputs.values()]
     shape = ", ".join([":"] * (kernel.axes - 1) + ["::1"])
     types += [f"types.{_TYPES[kernel.types.get(name, 'f64')]}[{shape}]" for name in kernel.outputs]
@@ -159,7 +167,7 @@ def _function(kernel: Kernel, cast: str = "") -> str:
             f"\n\nsignature = types.{'int64' if counts(kernel) else 'void'}(",
             *(INDENT + row for row in rows),
             ")",
-            _COMPILE,
+            tail,
         ]
     )
 

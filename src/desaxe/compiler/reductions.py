@@ -127,21 +127,36 @@ _HELPERS = {
 }
 
 
-def emit_reduced(kernel: Kernel, kinds: Sequence[str], docstring: str, single: bool = False) -> str:
+_COMPILE = """try:
+    reduced = njit(reduced_signature, cache=True, error_model="numpy", nogil=True)(reduced_loops)
+except RuntimeError:  # numba found no folder that it can write to
+    reduced = njit(reduced_signature, error_model="numpy", nogil=True)(reduced_loops)
+"""
+_INNER = (
+    'kernel = njit(signature, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)(loops)\n'
+)
+_TO_COMPILE = "function, signature = reduced_loops, reduced_signature\n"
+
+
+def emit_reduced(
+    kernel: Kernel, kinds: Sequence[str], docstring: str, single: bool = False, to_compile: bool = False
+) -> str:
     """The source of a module whose `reduced(*inputs, length, *outputs)` reduces the innermost axis.
 
     Precondition: two axes or more; every output is f64. `length` is that of the reduced axis. The
     outputs, over the other axes: for each output of the kernel and each kind the reduced value and,
-    of an extreme, its place (int64, -1 where there is none); then how many values counted.
+    of an extreme, its place (int64, -1 where there is none); then how many values counted. `to_compile`
+    leaves the compilation of `function` to the runtime.
     """
+    inner = (_INNER,) if to_compile else ()
     helpers = dict.fromkeys([_COUNT, *(text for kind in kinds for text in _HELPERS[kind])])
     imports = "from math import frexp, inf, nan, sqrt\n\nfrom numpy import empty, full, int64, zeros"
     return "\n\n".join(
         [
-            emit_numba(kernel, docstring, single).rstrip() + "\n",
+            emit_numba(kernel, docstring, single, *inner).rstrip() + "\n",
             f"# Reductions of the innermost axis.\n{imports}\n",
             *helpers,
-            _driver(kernel, kinds),
+            _driver(kernel, kinds, _TO_COMPILE if to_compile else _COMPILE),
         ]
     )
 
@@ -157,13 +172,12 @@ def outputs_of(names: Sequence[str], kinds: Sequence[str]) -> list[tuple[str, st
     return found
 
 
-def _driver(kernel: Kernel, kinds: Sequence[str]) -> str:
+def _driver(kernel: Kernel, kinds: Sequence[str], tail: str) -> str:
     parameters = [name if axis is None else f"{name}_axis" for name, axis in kernel.inputs.items()]
     types = ["types.float64" if axis is None else "axis" for axis in kernel.inputs.values()] + ["types.int64"]
     outs = outputs_of(kernel.outputs, kinds)
     shape = ", ".join([":"] * (kernel.axes - 2) + ["::1"])
     types += [f"types.{kind}[{shape}]" for _, kind in outs]
-    options = 'error_model="numpy", nogil=True'
     return "\n".join(
         [
             "def reduced_loops(",
@@ -173,11 +187,7 @@ def _driver(kernel: Kernel, kinds: Sequence[str]) -> str:
             "\n\nreduced_signature = types.void(",
             *(INDENT + row for row in wrap(", ".join(types), WIDTH)),
             ")",
-            "try:",
-            f"    reduced = njit(reduced_signature, cache=True, {options})(reduced_loops)",
-            "except RuntimeError:  # numba found no folder that it can write to",
-            f"    reduced = njit(reduced_signature, {options})(reduced_loops)",
-            "",
+            tail,
         ]
     )
 

@@ -1,0 +1,1 @@
+"""From a request to something callable: texts, machine code, the native calling convention."""

@@ -1,0 +1,118 @@
+"""The one loader: text -> digest -> lock -> file -> machine code, for kernels, peaks and simulation.
+
+A text is Python that numba compiles: it defines `function` and its `signature`. Its machine code is kept in
+the cache folder, in a file named by the digest of the text and of the machine that it was made for. Here is
+the only place where such a file is read, and the only place where one is written. The text itself is not
+kept, and nothing from the folder is ever run as Python.
+"""
+
+import hashlib
+import json
+import struct
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from ctypes import CFUNCTYPE, c_char_p, c_int64
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+from .. import _cache
+from .machine_code import DOUBLE, NO_MEMORY, Code, Loaded, compile_text, load, machine
+
+SUFFIX = ".code"
+_HEAD = "desaxe machine code 1"
+_prototype = CFUNCTYPE(c_int64, c_char_p)  # lets go of the GIL while it runs
+_LOCK = Lock()
+
+
+class Native:
+    """Machine code as a function of arrays and numbers (see `machine_code` for what it takes natively)."""
+
+    def __init__(self, loaded: Loaded) -> None:
+        self.address, self.ranks, self._keeper = loaded
+        self.entry: Callable[[bytes], int] = _prototype(self.address)
+        words = ("d" if rank == DOUBLE else "q" * (1 + 2 * max(rank, 0)) for rank in self.ranks)
+        self.pack = struct.Struct("".join(words)).pack
+
+    def __call__(self, *arguments: Any) -> int:
+        """Run it; MemoryError where it finds no memory for its tables."""
+        return self.run(self.table(arguments))
+
+    def table(self, arguments: Sequence[Any]) -> bytes:
+        """The packed table of arguments."""
+        words: list[Any] = []
+        for given, rank in zip(arguments, self.ranks, strict=True):
+            if rank < 0:
+                words.append(given)
+            else:
+                # `ctypes.data` takes three times as long
+                words.append(given.__array_interface__["data"][0])
+                words += given.shape
+                words += given.strides
+        return self.pack(*words)
+
+    def run(self, table: bytes) -> int:
+        """Run it on a packed table, whose arrays somebody keeps alive."""
+        answer = self.entry(table)
+        if answer == NO_MEMORY:
+            raise MemoryError("no memory for the tables of a kernel")
+        return answer
+
+
+def native(kind: str, text: str) -> Native:
+    """The function of a text: from disk, or compiled now and kept for the next process."""
+    path = path_of(kind, text)
+    with _LOCK, _cache.locked(path):
+        loaded = _from_disk(path)
+        if loaded is None:
+            made = compile_text(text, kind, {})
+            if isinstance(made, Code):
+                _to_disk(path, made)
+            loaded = _ready(made)
+        return Native(loaded)
+
+
+def native_here(text: str, scope: Mapping[str, Any]) -> Native:
+    """The function of a text that calls a function of the user's: for this process alone."""
+    with _LOCK:
+        return Native(_ready(compile_text(text, "with a function of the user's", scope)))
+
+
+def _ready(made: Code | Loaded) -> Loaded:
+    loaded = load(made) if isinstance(made, Code) else made
+    if loaded is None:
+        raise ImportError("machine code that was just compiled cannot be loaded")
+    return loaded
+
+
+def path_of(kind: str, text: str) -> Path:
+    """Where the machine code of a text is kept."""
+    digest = hashlib.sha256(f"{_HEAD}\n{machine()}\n{text}".encode()).hexdigest()
+    return _cache.folder().path / f"{kind}_{digest[:40]}{SUFFIX}"
+
+
+def is_kept(kind: str, text: str) -> bool:
+    """Whether an earlier process has left the machine code of a text."""
+    return path_of(kind, text).exists()
+
+
+def _from_disk(path: Path) -> Loaded | None:
+    """What is kept, if it is whole and for this machine."""
+    with suppress(OSError, ValueError, KeyError, TypeError):
+        head, _, code = path.read_bytes().partition(b"\n")
+        told = json.loads(head)
+        ranks = tuple(int(rank) for rank in told["ranks"])
+        if told["machine"] == machine() and told["sha256"] == _digest(ranks, code):
+            return load(Code(ranks, code))
+    return None
+
+
+def _to_disk(path: Path, made: Code) -> None:
+    """Keep machine code; without a place to keep it, it is made anew in the next process."""
+    head = {"machine": machine(), "ranks": made.ranks, "sha256": _digest(made.ranks, made.machine)}
+    with suppress(OSError):
+        _cache.write_bytes(path, json.dumps(head).encode() + b"\n" + made.machine)
+
+
+def _digest(ranks: Sequence[int], code: bytes) -> str:
+    return hashlib.sha256(f"{list(ranks)}\n".encode() + code).hexdigest()
