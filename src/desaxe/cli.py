@@ -339,28 +339,38 @@ def _explain(options: argparse.Namespace) -> int:
 
 
 _COMPILE = """\
-Writes a module of its own, which imports NumPy and numba and nothing of desaxe, with `point(...)`,
-`evaluate(...)` and `run()`. What the scene gives as a number is folded in; its lists and ranges are
-the arguments.
+Writes source code of its own, which needs nothing of desaxe. What the scene gives as a number
+is folded in; its lists and ranges are the arguments.
 
-example:
-  desaxe compile my_press.toml -o my_kernels.py"""
+  numba       FILE.py: `point(...)`, `evaluate(...)`, `run()`; it needs NumPy and numba
+  c           FOLDER/name.h and name.c, C99, named as the folder
+  octave      name.m, for GNU Octave and MATLAB
+  jax         a Python module over jax.numpy, with exact derivatives
+  javascript  an ES module and its types
+
+examples:
+  desaxe compile my_press.toml -o my_kernels.py
+  desaxe compile my_press.toml --to c -o press
+  desaxe compile my_press.toml --to c -o press --check"""
 
 
 def _add_compile(commands: Any) -> None:
-    parser = _add(
-        commands, "compile", "write the kernels of a scene as a module of its own", _COMPILE, _compile
-    )
+    parser = _add(commands, "compile", "write a scene as source code of its own", _COMPILE, _compile)
     parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
-    parser.add_argument("-o", metavar="FILE", dest="file", required=True, help="the module, FILE.py")
+    parser.add_argument("-o", metavar="PLACE", dest="place", required=True, help="the file, or its folder")
+    parser.add_argument("--to", metavar="LANGUAGE", default="numba", help="by default numba")
+    parser.add_argument(
+        "--no-libm", action="store_true", help="c: with elementary functions of its own, for bare metal"
+    )
+    parser.add_argument(
+        "--check", action="store_true", help="write nothing; exit 1 and show a diff if files are not fresh"
+    )
 
 
 def _compile(options: argparse.Namespace) -> int:
-    from . import compile as compile_scene
+    from ._compile import run_compile
 
-    place = compile_scene(options.scene, options.file)
-    print(f"{place}: {len(place.read_text(encoding='utf-8').splitlines())} lines")
-    return 0
+    return run_compile(options.scene, options.place, options.to, not options.no_libm, options.check)
 
 
 def _add_run(commands: Any) -> None:

@@ -13,13 +13,14 @@ from .._constants import constants, double_constants, single_constants
 from .._kernels import KernelKey, is_single, kernel_of
 from .._point import cut
 from .._program import digest
-from .._scene import Scene, SceneError
+from .._scene import Scene
 from .._scene import scene as scene_of
 from .._scene.kernels import GridKernel, grid_kernel
 from ..catalogue import quantity
 from ..compiler.cost import cost_of
 from ..compiler.emit_numba import emit_numba
 from ..compiler.kernel import Kernel
+from ..compiler.languages import language_of
 from ..compiler.operations import HELPERS, NUMBA_HELPERS
 from ..compiler.passes.double_double import double_digits
 from ..compiler.reductions import emit_reduced
@@ -36,26 +37,89 @@ from .parts import (
     run_function,
     run_reduced_function,
 )
+from .portable import Order, module_of, require_outputs
 
 WIDTH = 96
 
 
-def compile(scene: Scene | str | PathLike[str] | Mapping[str, Any], path: str | PathLike[str]) -> Path:
-    """Write the kernels of a scene as a Python module that needs only NumPy and numba.
+def compile(
+    scene: Scene | str | PathLike[str] | Mapping[str, Any],
+    path: str | PathLike[str],
+    to: str = "numba",
+    *,
+    libm: bool = True,
+    check: bool = False,
+) -> Path:
+    """Write the outputs of a scene as source code of its own, which needs nothing of desaxe.
 
-    What the scene fixes is folded in; what it gives as a list or range stays an argument of
-    `point(...)`, for one point in plain Python, and `evaluate(...)`, for arrays; `run()` computes the
-    scene's own grid, or its reductions. The module has no import of desaxe: it can live in your own
-    repository. The same scene gives the same bytes. Raises as `scene` does, SceneError where the
-    scene asks for no outputs, and ValueError for a path that Python cannot import: it is FILE.py.
+    What the scene fixes is folded in; what it gives as a list or range is an argument, in the order theta,
+    ec, AB, BC, omega0 (or omega), alpha, then masses and loads. `to` is the language:
+
+    numba       FILE.py, which needs NumPy and numba: `point(...)`, `evaluate(...)` and `run()`, and for each
+                output a function to call from an @njit of your own
+    c           C99: FOLDER/name.h and name.c, where `name` is the folder's: `int name_point(in, out)`,
+                `void name_array(n, in, out)`, `name_inverse`, `name_limits`
+    octave      name.m for GNU Octave and MATLAB: `[a_C, V_C] = name(theta, ec)`
+    jax         a module with a function for each output and `evaluate(**inputs)`; its derivatives are the
+                derived ones
+    javascript  an ES module and its types
+
+    A path that ends as the language's files do is the file; any other is a folder, whose last part is the
+    name. `libm=False` (c) writes elementary functions of its own. The same scene gives the same bytes;
+    `check=True` writes nothing and raises ValueError where the files are not what would be written.
+
+    Returns the path. Raises as `scene` does, SceneError where the scene asks for no outputs, and ValueError
+    for an unknown language, or a name that it cannot have.
 
         dx.compile("examples/compactor.toml", "my_kernels.py")
+        dx.compile("examples/compactor.toml", "press", to="c")
     """
     place = Path(path)
-    _require_importable(place)
-    check_target(place)
-    write_text(place, module_text(scene if isinstance(scene, Scene) else scene_of(scene), place.name))
+    texts = texts_of(scene if isinstance(scene, Scene) else scene_of(scene), place, to, libm)
+    if check:
+        stale = differing(texts)
+        if stale:
+            names = ", ".join(file.name for file in stale)
+            raise ValueError(f"{place}: not what the scene gives ({names}); write it again")
+        return place
+    for file in texts:
+        check_target(file)
+    for file, text in texts.items():
+        write_text(file, text)
     return place
+
+
+def texts_of(scene: Scene, place: Path, to: str = "numba", libm: bool = True) -> dict[Path, str]:
+    """The files that a scene gives in a language, and their texts; nothing is written."""
+    if to == "numba":
+        _require_importable(place)
+        return {place: module_text(scene, place.name)}
+    language = language_of(to)
+    if not libm and not language.own_functions:
+        raise ValueError(f"libm=False is for c: {to} has its elementary functions at hand")
+    is_file = place.suffix == language.suffix
+    name = place.stem if is_file else place.name
+    require_name(name, place)
+    folder = place.parent if is_file else place
+    source = Path(scene.name).name
+    said = f"desaxe compile {source} --to {to} -o {place.name}" + " --no-libm" * (not libm)
+    if not source:
+        said = f'desaxe.compile(scene, "{place.name}", to="{to}"' + ", libm=False" * (not libm) + ")"
+    module = module_of(scene, Order(to, name, said, language.second_order, not libm))
+    return {folder / file: text for file, text in language.files(module, not libm).items()}
+
+
+def differing(texts: Mapping[Path, str]) -> list[Path]:
+    """The files that are not there or hold another text."""
+    return [f for f, text in texts.items() if not f.is_file() or f.read_bytes() != text.encode()]
+
+
+def require_name(name: str, place: Path) -> None:
+    """The name of a module is a name in every language: letters, digits and underscores."""
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or keyword.iskeyword(name):
+        word = re.sub(r"\W", "_", name, flags=re.ASCII)
+        good = word if re.match(r"[A-Za-z]", word) and not keyword.iskeyword(word) else f"press_{word}"
+        raise ValueError(f"{place}: {name!r} cannot be the name of a module, but {good!r}, for example")
 
 
 def _require_importable(place: Path) -> None:
@@ -70,8 +134,7 @@ def _require_importable(place: Path) -> None:
 def module_text(scene: Scene, name: str = "my_kernels.py") -> str:
     """The text of the module."""
     content = scene.content
-    if not content.outputs:
-        raise SceneError(f"{scene.name or 'scene'}: nothing to compile, give outputs = [...]")
+    require_outputs(scene)
     found = grid_kernel(content)
     anywhere = found.key.form._replace(roomy=False)  # the module takes other designs, too
     key = _all_fixed(found.key._replace(form=anywhere), found, content.inputs)

@@ -7,9 +7,10 @@ costs and where it is undefined. A new operation, or a new language, is a change
 (``mpmath.mp`` in the tests); the error terms of two-sum and two-product are exactly 0 there,
 and so is `rounding`, a bound of such terms. `finer` guards a form of the same value that is of use to
 `double_digits` alone, which makes it its argument; everywhere else it is false.
-`python`, `numba` and `javascript` are templates over the argument texts. Plain Python raises where IEEE 754
-arithmetic answers inf or NaN, so its division and square root are guarded in the template.
-`precedence` is that of the spelling in the readable text form; calls bind tightest.
+`python`, `numba`, `javascript`, `c`, `jax` and `octave` are templates over the argument texts. Plain Python
+raises where IEEE 754 arithmetic answers inf or NaN: its division and square root are guarded in the template.
+`precedence` is that of the spelling in the readable text form; calls, and what stands in parentheses, bind
+tightest.
 """
 
 from collections.abc import Callable
@@ -28,6 +29,9 @@ class Operation(NamedTuple):
     python: str  # plain Python with IEEE 754 answers
     numba: str
     javascript: str  # what it spells in its own way stands in parentheses: its precedences are its own
+    c: str
+    jax: str
+    octave: str
     cost: float  # relative to one addition, throughput in a vectorised loop
     exact: Callable[..., Any]  # exact(mp, *args)
     undefined: str = ""  # where the real function has no value
@@ -44,8 +48,10 @@ def _row(
 ) -> tuple[str, Operation]:
     python = more.pop("python", text)
     numba = more.pop("numba", text)
-    javascript = more.pop("javascript", text)
-    return name, Operation(name, signature, text, precedence, python, numba, javascript, cost, exact, **more)
+    javascript, c, jax, octave = (more.pop(column, text) for column in ("javascript", "c", "jax", "octave"))
+    return name, Operation(
+        name, signature, text, precedence, python, numba, javascript, c, jax, octave, cost, exact, **more
+    )
 
 
 OPERATIONS: dict[str, Operation] = dict(
@@ -53,16 +59,16 @@ OPERATIONS: dict[str, Operation] = dict(
         _row("copy", "TT", "{0}", CALL, 0, lambda mp, a: a),
         _row("add", "fff", "{0} + {1}", 12, 1, lambda mp, a, b: a + b, commutes=True),
         _row("sub", "fff", "{0} - {1}", 12, 1, lambda mp, a, b: a - b),
-        _row("mul", "fff", "{0} * {1}", 13, 1, lambda mp, a, b: a * b, commutes=True),
+        _row("mul", "fff", "{0} * {1}", 13, 1, lambda mp, a, b: a * b, octave="{0} .* {1}", commutes=True),
         _row(
             "div", "fff", "{0} / {1}", 13, 8, lambda mp, a, b: a / b,
-            python="divide({0}, {1})", undefined="{1} == 0",
+            python="divide({0}, {1})", octave="{0} ./ {1}", undefined="{1} == 0",
         ),
         _row("neg", "ff", "-{0}", 14, 0.5, lambda mp, a: -a),
-        _row("abs", "ff", "fabs({0})", CALL, 0.5, lambda mp, a: abs(a)),
+        _row("abs", "ff", "fabs({0})", CALL, 0.5, lambda mp, a: abs(a), octave="abs({0})"),
         _row(
             "sqrt", "ff", "sqrt({0})", CALL, 9, lambda mp, a: mp.sqrt(a),
-            python="root({0})", undefined="{0} < 0",
+            python="root({0})", octave="root({0})", undefined="{0} < 0",
         ),
         _row("sin", "ff", "sin({0})", CALL, 20, lambda mp, a: mp.sin(a), python="sine({0})"),
         _row("cos", "ff", "cos({0})", CALL, 20, lambda mp, a: mp.cos(a), python="cosine({0})"),
@@ -94,17 +100,23 @@ OPERATIONS: dict[str, Operation] = dict(
         _row("eq", "ffb", "{0} == {1}", 6, 1, lambda mp, a, b: a == b, commutes=True),
         _row(
             "and", "bbb", "{0} and {1}", 4, 0.5, lambda mp, a, b: a and b,
-            numba="{0} & {1}", javascript="({0} && {1})",
+            numba="{0} & {1}", javascript="({0} && {1})", c="({0} && {1})", jax="logical_and({0}, {1})",
+            octave="({0} & {1})",
         ),
         _row(
             "or", "bbb", "{0} or {1}", 3, 0.5, lambda mp, a, b: a or b,
-            numba="{0} | {1}", javascript="({0} || {1})",
+            numba="{0} | {1}", javascript="({0} || {1})", c="({0} || {1})", jax="logical_or({0}, {1})",
+            octave="({0} | {1})",
         ),
-        _row("not", "bb", "not {0}", 5, 0.5, lambda mp, a: not a, javascript="!({0})"),
+        _row(
+            "not", "bb", "not {0}", 5, 0.5, lambda mp, a: not a,
+            javascript="!({0})", c="!({0})", jax="logical_not({0})", octave="~({0})",
+        ),
         _row("finer", "bb", "finer({0})", CALL, 0, lambda mp, a: False),
         _row(
             "select", "bTTT", "{1} if {0} else {2}", 1, 1, lambda mp, c, a, b: a if c else b,
-            javascript="({0} ? {1} : {2})",
+            javascript="({0} ? {1} : {2})", c="({0} ? {1} : {2})", jax="where({0}, {1}, {2})",
+            octave="select({0}, {1}, {2})",
         ),
     ]
 )  # fmt: skip

@@ -60,7 +60,8 @@ def spell(line: Line, text: dict[str, tuple[str, int]], column: str) -> tuple[st
     """The right-hand side and its precedence; `text` has what stands inside it."""
     operation = OPERATIONS[line.op]
     template = getattr(operation, column)
-    precedence = operation.precedence if template == operation.text else CALL
+    infix = template == operation.text or "(" not in template
+    precedence = operation.precedence if infix else CALL
     if column == "numba" and line.op in ("and", "or"):
         precedence = 8  # & and | bind tighter than comparisons
     if line.op == "copy":

@@ -1,0 +1,25 @@
+"""Languages: each writes the same Module in its own way, behind one Protocol.
+
+protocol    what is written (`Module`), and what a language must have (`Language`)
+shared      assignments as statements, names that a language keeps for itself, comments
+c/          C99: a header and a source, no allocation, no global state
+jax/        Python over jax.numpy, with derivatives by name
+octave/     one vectorised function for GNU Octave and MATLAB
+javascript/ an ES module and its types
+
+A new language is a file or folder here and its column of the operation table; `LANGUAGES` lists it.
+"""
+
+from .c import C
+from .protocol import Language
+
+LANGUAGES: tuple[Language, ...] = (C(),)
+
+
+def language_of(name: str) -> Language:
+    """The language of this name; ValueError with those that there are."""
+    found = next((language for language in LANGUAGES if language.name == name), None)
+    if found is None:
+        known = ", ".join(["numba", *(language.name for language in LANGUAGES)])
+        raise ValueError(f"to = {name!r}: it is one of {known}")
+    return found

@@ -1,0 +1,10 @@
+"""C99: `name.h` and `name.c`, for a controller, a simulation, or any language that calls C.
+
+language   the two files
+functions  a Program as a static function, and the calls between them
+helpers    what the spellings call, and elementary functions for where there is no libm
+"""
+
+from .language import C
+
+__all__ = ["C"]

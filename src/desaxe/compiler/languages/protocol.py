@@ -1,0 +1,82 @@
+"""What every language is given, and what it must have.
+
+A `Module` says all that the emitters may know: names and units of arguments and results, Programs, and
+constants. It knows no mechanism. A language turns it into the texts of one or more files.
+"""
+
+from collections.abc import Mapping
+from typing import NamedTuple, Protocol
+
+from ..passes.trigonometry import Trigonometry
+from ..program import Program
+
+
+class Symbol(NamedTuple):
+    """An argument or a result: what comments and tables of a written module say about it."""
+
+    name: str
+    unit: str
+    meaning: str
+    source: str = ""
+
+
+class Forms(NamedTuple):
+    """The same outputs in up to two forms, and the test that picks one.
+
+    `stable` holds everywhere. `plain` needs fewer operations and holds where `test`, a Program with one
+    output, a condition, says so. All inputs are arguments of the module; its outputs come first, and the
+    status, if it is none of them, last. `status` is the status's index.
+    """
+
+    status: int
+    stable: Program
+    plain: Program | None = None
+    test: Program | None = None
+
+
+class Solver(NamedTuple):
+    """A further function: `solve` computes what is looked for, `slopes` derivatives there.
+
+    `arguments` come ahead of the module's own arguments; `solve` and `slopes` take arguments of both.
+    """
+
+    arguments: tuple[Symbol, ...]
+    solve: Program
+    slopes: Program | None = None
+
+
+class Module(NamedTuple):
+    """All that is written, in any language.
+
+    head         lines of the opening comment: what it is, how it was made, from which digest
+    inputs       arguments, in order
+    outputs      results, in order
+    forms        the Programs of the results, and of the status
+    derivatives  name of a result or derivative -> argument -> the name of its derivative
+    values       Programs of all names that stand in `derivatives`, under their names
+    solvers      further functions by name, for languages that take them
+    constants    of the written-out sine and cosine; beyond their limit they are wrong
+    """
+
+    name: str
+    head: tuple[str, ...]
+    inputs: tuple[Symbol, ...]
+    outputs: tuple[Symbol, ...]
+    forms: Forms
+    constants: Trigonometry
+    derivatives: Mapping[str, Mapping[str, str]] = {}
+    values: Mapping[str, Program] = {}
+    solvers: Mapping[str, Solver] = {}
+
+
+class Language(Protocol):
+    """How one language is written."""
+
+    name: str
+    suffix: str  # of the file that is called
+    second_order: bool  # whether `derivatives` and `values` are wanted
+    own_functions: bool  # whether the language can do without a library of elementary functions
+
+    def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
+        """File name -> text. `freestanding`: without a library of elementary functions."""
+        ...

@@ -1,0 +1,62 @@
+"""What the emitters share: statements in a column's spelling, safe names, words of a comment."""
+
+import re
+from collections.abc import Collection, Iterable, Mapping
+
+from ..program import Program, renamed
+from ..text import with_short_temporaries, write_lines
+
+_WORD = re.compile(r"\b(nan|inf|True|False)\b")
+
+
+def statements(program: Program, column: str, words: Mapping[str, str]) -> list[tuple[str, str, str]]:
+    """(name, right-hand side, note) of each assignment; `words` spells nan, inf, True and False."""
+    found = []
+    for line in write_lines(with_short_temporaries(program), column):
+        assignment, _, note = line.partition("  # ")
+        name, _, right = assignment.partition(" = ")
+        found.append((name, _WORD.sub(lambda match: words[match[1]], right), note))
+    return found
+
+
+def with_safe_names(program: Program, reserved: Collection[str]) -> Program:
+    """The program with an underscore after each name that the language keeps for itself."""
+    names = [*program.inputs, *(line.name for line in program.lines)]
+    safe = {name: f"{name}_" for name in names if name in reserved}
+    if not safe:
+        return program
+    program = renamed(program, safe)
+    notes = {safe.get(name, name): note for name, note in program.notes.items()}
+    inputs = tuple(safe.get(name, name) for name in program.inputs)
+    return program._replace(
+        inputs=inputs, outputs=tuple(safe.get(name, name) for name in program.outputs), notes=notes
+    )
+
+
+def types_of(program: Program) -> dict[str, str]:
+    """The type of every name."""
+    return dict.fromkeys(program.inputs, "f64") | {line.name: line.type for line in program.lines}
+
+
+def called(text: str, names: Iterable[str]) -> list[str]:
+    """Those of some functions that a text calls outside of comments, in their order."""
+    code = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
+    return [name for name in names if re.search(rf"\b{name}\(", code)]
+
+
+def with_helpers(text: str, helpers: Mapping[str, str]) -> list[str]:
+    """The sources of the helpers that a text calls, and of those that they call, in their order."""
+    wanted: set[str] = set()
+    stack = [text]
+    while stack:
+        for name in called(stack.pop(), helpers):
+            if name not in wanted:
+                wanted.add(name)
+                stack.append(helpers[name].partition("{")[2] or helpers[name].partition("\n")[2])
+    return [source for name, source in helpers.items() if name in wanted]
+
+
+def one_line(text: str) -> str:
+    """A text that can stand in a comment of any language."""
+    plain = " ".join(text.split()).replace("\\", "/").replace("*/", "* /").replace("??", "? ?")
+    return plain.replace('"""', "'''")

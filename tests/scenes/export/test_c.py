@@ -1,0 +1,236 @@
+"""C at points where formulas lose their digits, its solvers, and what it says about itself."""
+
+import ctypes
+import math
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from tests.compiler.languages.tools import (
+    STRICT,
+    array_values,
+    library,
+    point_values,
+    pointer,
+    run,
+    tool,
+)
+from tests.scenes.export.stress import INPUTS, NAMES, broken, columns, rows, scene
+
+REACH = 1.6e6  # rad: of the sine and cosine without libm
+BUILDS = (
+    ("gcc", ("-O0",), True),
+    ("gcc", ("-O3", "-march=native"), True),
+    ("clang", ("-O3", "-march=native"), True),
+    ("gcc", ("-O2",), False),
+    ("clang", ("-O0",), False),
+)
+SLIDING = {"ec": 0.02, "AB": 0.04, "BC": 0.064}
+
+
+@pytest.fixture(scope="module", params=[1, -1])
+def sources(request, tmp_path_factory):
+    """Branch, and the sources with libm and without."""
+    folder = tmp_path_factory.mktemp("c")
+    for libm in (True, False):
+        dx.compile(scene(request.param), folder / str(libm) / "press", to="c", libm=libm)
+    return request.param, {libm: folder / str(libm) / "press" / "press.c" for libm in (True, False)}
+
+
+@pytest.mark.parametrize("build", BUILDS, ids=lambda build: f"{build[0]}{''.join(build[1])}{build[2]}")
+def test_the_promise_is_kept(build, sources):
+    """By arrays; one point has the same bits."""
+    compiler, options, libm = build
+    branch, files = sources
+    loaded = library(files[libm], compiler, options, libm)
+    reach = math.inf if libm else REACH
+    given = columns(branch, reach)
+    found = array_values(loaded, "press", given, len(NAMES))
+    assert not broken(dict(zip(NAMES, found, strict=True)), branch, reach)
+    ones = [point_values(loaded, "press", row, len(NAMES))[1] for row in zip(*given, strict=True)]
+    np.testing.assert_array_equal(np.array(ones).T, found)
+
+
+def test_status(sources):
+    _, files = sources
+    loaded, bare = library(files[True]), library(files[False], libm=False)
+    good = {"theta": 1.0, "ec": 0.02, "AB": 0.04, "BC": 0.064, "omega0": 10.0, "alpha": 1.0}
+    trials = [
+        ({}, 0), ({"BC": 0.01}, 1), ({"theta": -100.0}, 3), ({"theta": math.nan}, 4), ({"BC": -0.064}, 4),
+        ({"BC": math.inf}, 4), ({"AB": -0.04}, 4), ({"omega0": math.inf}, 4),
+    ]  # fmt: skip
+    for change, status in trials:
+        row = [(good | change)[name] for name in INPUTS]
+        for each in (loaded, bare):
+            got, values = point_values(each, "press", row, len(NAMES))
+            assert got == status
+            assert status == 0 or math.isnan(values[NAMES.index("V_C")])
+    far = [(good | {"theta": 1e9})[name] for name in INPUTS]
+    assert point_values(loaded, "press", far, len(NAMES))[0] == 0
+    assert point_values(bare, "press", far, len(NAMES))[0] == 4
+
+
+def test_names_and_units(sources):
+    loaded = library(sources[1][True])
+
+    def texts(table):
+        found, items = [], (ctypes.c_char_p * 20).in_dll(loaded, f"press_{table}")
+        for item in items:
+            if item is None:
+                return found
+            found.append(item.decode())
+        return None
+
+    assert texts("inputs") == list(INPUTS)
+    assert texts("outputs") == list(NAMES)
+    assert texts("input_units") == ["rad", "m", "m", "m", "rad/s", "rad/s^2"]
+    assert texts("output_units") == [dx.quantities()[name].unit for name in NAMES]
+
+
+def is_well_conditioned(there):
+    """Not next to a dead centre or a change point, where a last bit of the angle changes the rates."""
+    found = dx.evaluate(["Y_wrt_theta", "Y_wrt_theta_theta"], **there)
+    return abs(found["Y_wrt_theta"]) > 0.05 * there["AB"] > 0.001 * abs(found["Y_wrt_theta_theta"])
+
+
+def test_inverse(sources):
+    """The angles of `dx.inverse`, which the loop closure checks, and rates that give the slider's back."""
+    branch, files = sources
+    for loaded in (library(files[True]), library(files[False], libm=False)):
+        for row in rows(branch, REACH)[::3]:
+            lengths = {name: row[name] for name in ("ec", "AB", "BC")}
+            Y = dx.evaluate("Y", theta=row["theta"], branch=branch, **lengths)
+            if not math.isfinite(Y) or max(map(abs, lengths.values())) > 1e100:
+                continue
+            wanted = dx.inverse(Y=Y, V_C=0.3, a_C=-2.0, branch=branch, **lengths)
+            given = np.array([row[name] for name in INPUTS])
+            theta, omega, alpha = (np.empty(2) for _ in range(3))
+            status = loaded.press_inverse(
+                *map(ctypes.c_double, (Y, 0.3, -2.0)), *map(pointer, (given, theta, omega, alpha))
+            )
+            if status == wanted["status"]:  # at a dead centre, a last bit decides
+                np.testing.assert_allclose(theta, wanted["theta"], rtol=1e-6, atol=1e-7)
+            else:
+                assert {status, wanted["status"]} <= {0, 1, 2}
+                continue
+            for angle, rate, other in zip(theta, omega, alpha, strict=True):
+                there = {**lengths, "theta": angle, "branch": branch}
+                if math.isfinite(rate) and is_well_conditioned(there):
+                    back = dx.evaluate(["V_C", "a_C"], **there, omega=rate, alpha=other)
+                    assert back["V_C"] == pytest.approx(0.3, rel=1e-6)
+                    assert back["a_C"] == pytest.approx(-2.0, rel=1e-6, abs=1e-6 * rate**2 * row["AB"])
+
+
+def test_limits(sources):
+    """Those of `feasibility`, in each of its cases."""
+    loaded = library(sources[1][True])
+    designs = [
+        (0.02, 0.04, 0.064), (0.125, 0.125, 0.375), (-0.1, 0.3, 0.35), (0.1, 0.3, 0.35), (0.0, 0.4, 0.3),
+        (0.1, 0.5, 0.3), (-0.1, 0.5, 0.3), (0.6, 0.3, 0.5), (-0.6, 0.3, 0.5), (5.0, 0.3, 0.5),
+        (0.7, 0.0, 0.5), (0.3, 0.0, 0.5), (0.125, 0.125, 0.25),
+    ]  # fmt: skip
+    for ec, AB, BC in designs:
+        given = np.array([0.0, ec, AB, BC, 0.0, 0.0])
+        angles = np.empty(4)
+        status = loaded.press_limits(pointer(given), pointer(angles))
+        wanted = dx.feasibility(ec=ec, AB=AB, BC=BC)
+        flat = [angle for interval in wanted["theta_intervals"] for angle in interval]
+        assert angles.tolist()[: len(flat)] == pytest.approx(flat, rel=4e-15)
+        assert np.isnan(angles[len(flat) :]).all()
+        assert status == wanted["status"]
+    bad = np.array([0.0, 0.0, -1.0, 1.0, 0.0, 0.0])
+    assert loaded.press_limits(pointer(bad), pointer(angles)) == 4
+
+
+MAIN = """#include <stdio.h>
+#include "press.h"
+int main(void) {
+  double in[6], strip[6][300], out[6][300], values[6], theta[2], omega[2], alpha[2], angles[4];
+  const double *ins[6];
+  double *outs[6];
+  for (int k = 0; k < 6; k++) {
+    ins[k] = strip[k];
+    outs[k] = out[k];
+    for (int j = 0; j < 300; j++) strip[k][j] = k == 3 ? 0.01 * j - 1.0 : 0.1 * (j % 7) - 0.2 * k;
+  }
+  press_array(300, ins, outs);
+  press_array(0, ins, outs);
+  for (int j = 0; j < 300; j++) {
+    for (int k = 0; k < 6; k++) in[k] = strip[k][j];
+    press_point(in, values);
+    press_inverse(0.1 * j - 10.0, 1.0, 1.0, in, theta, omega, alpha);
+    press_limits(in, angles);
+  }
+  puts(press_outputs[0]);
+  return 0;
+}
+"""
+
+
+SANITIZERS = {
+    "gcc": ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g"),
+    "clang": ("-fsanitize=undefined,float-cast-overflow", "-fsanitize-trap=all"),  # wants no library
+}
+
+
+@pytest.mark.parametrize("compiler", SANITIZERS)
+def test_sanitizers_find_nothing(compiler, sources):
+    for libm, source in sources[1].items():
+        (source.parent / "main.c").write_text(MAIN, encoding="utf-8")
+        program = source.parent / f"main_{compiler}{libm}"
+        checks = SANITIZERS[compiler]
+        run(tool(compiler), *STRICT, *checks, source, source.parent / "main.c", "-o", program, "-lm")
+        assert run(program) == "Y\n"
+
+
+SCENES = {
+    "steady": {
+        "outputs": ["status", "V_C", "a_C"], "mechanism": SLIDING, "motion": {"theta": [0, 1], "omega0": 3},
+    },
+    "wide": {
+        "outputs": ["V_C"], "mechanism": SLIDING | {"ec": 0.001},
+        "motion": {"theta": [0, 1], "omega0": [1, 2]},
+    },
+    "state": {
+        "outputs": ["a_C_wrt_omega", "phi", "omega"], "mechanism": SLIDING,
+        "motion": {"theta": [0, 1], "omega": [1, 2], "alpha": 2},
+    },
+    "forces": {
+        "outputs": ["T_in", "N_C", "status"], "mechanism": SLIDING,
+        "motion": {"theta": [0, 1], "omega0": 250},
+        "masses": {"m_slider": [0.4, 0.8]}, "loads": {"F_Y": -50, "mu": [0.1, 0.2]},
+    },
+    "extended": {
+        "outputs": ["V_C", "a_C", "phi"], "mechanism": SLIDING | {"ec": [0.02, 0.024]},
+        "motion": {"theta": [0, 1], "omega0": 3}, "accuracy": "extended",
+    },
+    "no_axis": {"outputs": ["V_C", "Y"], "mechanism": SLIDING, "motion": {"theta": 1, "omega0": 3}},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("libm", [True, False])
+def test_values_of_other_scenes(name, libm, tmp_path):
+    """Folded numbers, states, forces, twice the digits: what `evaluate` gives, which truth checks."""
+    content = dx.scene(SCENES[name]).content
+    dx.compile(SCENES[name], tmp_path / "made", to="c", libm=libm)
+    loaded = library(tmp_path / "made" / "made.c", "gcc", ("-O2",), libm)
+    order = ("theta", "ec", "omega0", "omega", "m_slider", "mu")
+    axes = [n for n in order if isinstance(content.inputs.get(n), tuple)]
+    rng = np.random.default_rng(3)
+    given = {
+        n: rng.uniform(*content.inputs[n], 300) if n != "theta" else rng.uniform(-9, 9, 300) for n in axes
+    }
+    fixed = {n: x for n, x in content.inputs.items() if n not in axes}
+    outputs = list(content.outputs)
+    status, one = point_values(loaded, "made", [given[n][0] for n in axes], len(outputs))
+    wanted = dx.evaluate([*outputs, "status"], **given, **fixed, accuracy=content.accuracy)
+    assert status == np.ravel(wanted["status"])[0]
+    limit = 0 if name == "extended" else 1e-12
+    for place, output in enumerate(outputs):
+        np.testing.assert_allclose(one[place], np.ravel(wanted[output])[0], rtol=limit)
+    if axes:
+        found = array_values(loaded, "made", [given[n] for n in axes], len(outputs))
+        for values, output in zip(found, outputs, strict=True):
+            np.testing.assert_allclose(values, wanted[output], rtol=limit, err_msg=output)
