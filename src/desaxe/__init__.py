@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from ._simulate import simulate as simulate
     from .catalogue import quantities as quantities
     from .design.drive.drive import drive as drive
+    from .sweeps.sweep import sweep as sweep
 
 # Public name -> the room it lives in; `equation` is SymPy's and comes with the extra `derive`.
 _ROOMS = {
@@ -56,6 +57,7 @@ _ROOMS = {
     "explain": "desaxe._explain",
     "compile": "desaxe._compile",
     "simulate": "desaxe._simulate",
+    "sweep": "desaxe.sweeps.sweep",
     "quantities": "desaxe.catalogue",
     "equation": "desaxe.derive.equation",
 }
@@ -83,6 +85,7 @@ __all__ = [
     "quantities",
     "scene",
     "simulate",
+    "sweep",
     "synthesize",
     "tolerance",
 ]

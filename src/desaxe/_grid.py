@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from functools import partial
 from math import prod
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,7 @@ def grid(
     threads: int | None = None,
     out: None = None,
     reduce: Mapping[str, str | Sequence[str]] | None = None,
+    chunks: Any = None,
     **inputs: Any,
 ) -> "xr.Dataset": ...
 
@@ -55,6 +56,7 @@ def grid(
     threads: int | None = None,
     out: Any = None,
     reduce: Mapping[str, str | Sequence[str]] | None = None,
+    chunks: Any = None,
     **inputs: Any,
 ) -> "xr.Dataset | dict[str, Array]":
     """Quantities over the outer product of the inputs, as an xarray.Dataset with units.
@@ -72,21 +74,27 @@ def grid(
     where the largest or smallest sample is, and `a_C_skipped`, how many points along the axis have no
     value. The extremes are those of the samples; `peak` refines them.
 
+    `chunks={"theta": 1000}` (as in xarray: a dict, a number or "auto"; dimensions not named are whole)
+    gives lazy Dask arrays, each chunk computed by compiled kernels when it is needed, with the same
+    digits whatever the chunks. Needs the extra `scale`.
+
         dx.grid(["a_C"], theta=th, ec=ecs, AB=.125, BC=bcs, omega0=157.08).a_C.max("theta")
     """
-    wanted = (names,) if isinstance(names, str) else several(names)
-    given = _given(wanted, inputs)
-    check_border(given, branch, threads)
-    shown = wanted if out is not None else tuple(dict.fromkeys((*wanted, *ALWAYS)))
-    axes = {name: _axis(name, value, shown) for name, value in given.items() if value is not None}
-    dimensions = [name for name in inputs if name in axes and axes[name].ndim]
+    outer = outer_of(names, inputs, branch, threads, always=out is None)
+    if chunks is not None:
+        if out is not None:
+            raise TypeError("chunks= and out=: give one of them")
+        from .evaluation.lazy import lazy_grid
+
+        return lazy_grid(outer, chunks, branch, accuracy, threads, reduce)
+    wanted, given, axes, dimensions = outer.names, outer.given, outer.axes, outer.dimensions
     if reduce is not None:
         if out is not None:
             raise TypeError("reduce= and out=: give one of them")
         from ._reduce import reduced_grid
 
         asked = request(wanted, given, branch, accuracy)
-        _require(asked, axes)
+        require_inputs(asked, axes)
         whole = partial(_filled, asked, axes, dimensions, threads, None)
         return reduced_grid(asked, axes, dimensions, reduce, branch, threads, whole)
     if out is not None:
@@ -94,18 +102,57 @@ def grid(
     from ._labels import labelled
 
     arrays: dict[str, tuple[Sequence[str], Array]] = {}
-    own = [name for name in dimensions if name in LENGTHS]
-    for some, along in (([n for n in shown if n != "margin"], dimensions), (["margin"], own)):
+    for some, along in outer.groups():
         found = _filled(request(some, given, branch, accuracy), axes, along, threads, None)
         arrays.update({name: (along, array) for name, array in found.items()})
-    coordinates = {name: axes[name] for name in inputs if name in axes}
     state = given.get("omega") is not None
-    return labelled({n: arrays[n] for n in shown}, coordinates, branch, state, accuracy)
+    return labelled({n: arrays[n] for n in outer.shown}, outer.coordinates, branch, state, accuracy)
+
+
+class Outer(NamedTuple):
+    """The arguments of a grid, checked.
+
+    `given` are the inputs as they came, with defaults; `axes` their arrays; `coordinates` those of them
+    that were not a default.
+    """
+
+    names: tuple[str, ...]
+    given: dict[str, Any]
+    axes: dict[str, Array]
+    coordinates: dict[str, Array]
+
+    @property
+    def dimensions(self) -> list[str]:
+        """The inputs with one axis, in their order."""
+        return [name for name, array in self.coordinates.items() if array.ndim]
+
+    @property
+    def shown(self) -> tuple[str, ...]:
+        """The names of the variables of a labelled grid."""
+        return tuple(dict.fromkeys((*self.names, *ALWAYS)))
+
+    def groups(self) -> list[tuple[list[str], list[str]]]:
+        """The names that have all dimensions, and those that have the lengths' alone, with them."""
+        lengths = [name for name in self.dimensions if name in LENGTHS]
+        return [([n for n in self.shown if n != "margin"], self.dimensions), (["margin"], lengths)]
+
+
+def outer_of(
+    names: str | Sequence[str], inputs: Mapping[str, Any], branch: int, threads: int | None, always: bool
+) -> Outer:
+    """Check the arguments of a grid; `always`: it has `status` and `margin` too."""
+    wanted = (names,) if isinstance(names, str) else several(names)
+    given = _given(wanted, inputs)
+    check_border(given, branch, threads)
+    shown = tuple(dict.fromkeys((*wanted, *ALWAYS))) if always else wanted
+    axes = {name: _axis(name, value, shown) for name, value in given.items() if value is not None}
+    coordinates = {name: axes[name] for name in inputs if name in axes}
+    return Outer(wanted, given, axes, coordinates)
 
 
 def _given(names: Sequence[str], inputs: Mapping[str, Any]) -> dict[str, Any]:
     """The inputs with their defaults; a TypeError for one that there is not."""
-    check_inputs("grid", inputs, (*INPUTS, "branch", "accuracy", "threads", "out", "reduce"))
+    check_inputs("grid", inputs, (*INPUTS, "branch", "accuracy", "threads", "out", "reduce", "chunks"))
     given = dict(inputs)
     if given.get("omega0") is None and given.get("omega") is None:
         given["omega0"] = standstill(names, given)
@@ -123,7 +170,7 @@ def _filled(
     wanted: Request, axes: Mapping[str, Array], dimensions: Sequence[str], threads: int | None, out: Any
 ) -> dict[str, Array]:
     """The answers over these dimensions, from one loop nest in their order."""
-    _require(wanted, axes)
+    require_inputs(wanted, axes)
     inputs = wanted.inputs
     shape = tuple(axes[name].size for name in dimensions)
     places = places_for(wanted.shown, shape, out)
@@ -144,23 +191,36 @@ def join_axes(
 ) -> tuple[int, ...]:
     """Join the last axes to one that is long enough to vectorise; the lengths of the axes then.
 
-    Effect: `columns` along the joined axes have a value for each point of them, and `axis_of` follows. The
-    crank angle is never joined: its sine and cosine must not be computed again for every design.
+    Effect: `columns` along the joined axes have a value for each point of them, and `axis_of` follows.
+    """
+    return join_from(first_joined(order, shape), columns, axis_of, shape)
+
+
+def first_joined(order: Sequence[str], shape: Sequence[int]) -> int:
+    """The first of the last axes that are joined to one, long enough to vectorise.
+
+    The crank angle is never joined: its sine and cosine must not be computed again for every design.
     """
     first = len(order) - 1
-    if order[first] == "theta":
-        return shape
-    while first > 0 and prod(shape[first:]) < LONG_ENOUGH and order[first - 1] != "theta":
-        first -= 1
+    if order[first] != "theta":
+        while first > 0 and prod(shape[first:]) < LONG_ENOUGH and order[first - 1] != "theta":
+            first -= 1
+    return first
+
+
+def join_from(
+    first: int, columns: dict[str, Array], axis_of: dict[str, int], shape: tuple[int, ...]
+) -> tuple[int, ...]:
+    """Join the axes from `first` on, as `join_axes` does."""
     rest = shape[first:]
-    for name, axis in axis_of.items():
+    for name, axis in axis_of.items() if len(rest) > 1 else ():
         if axis >= first:
-            columns[name] = spread(columns[name], axis - first, rest)
+            columns[name] = np.ascontiguousarray(spread(columns[name], axis - first, rest))
             axis_of[name] = first
     return (*shape[:first], prod(rest))
 
 
-def _require(wanted: Request, axes: Mapping[str, Array]) -> None:
+def require_inputs(wanted: Request, axes: Mapping[str, Array]) -> None:
     missing = [name for name in wanted.inputs if name not in axes]
     if missing:
         needed = ", ".join(wanted.inputs)

@@ -21,7 +21,7 @@ from .compiler.passes.fuse import fuse_products
 from .compiler.passes.guard import guard_inputs
 from .compiler.passes.number import number_values
 from .compiler.passes.trigonometry import expand_trigonometry
-from .compiler.program import Program
+from .compiler.program import Line, Program
 from .compiler.reductions import emit_reduced
 from .inputs import LEAST
 from .names import LENGTHS, LOADS
@@ -29,6 +29,8 @@ from .runtime.modules import Native, is_kept, native
 
 # A scalar of 0 for one of these makes whole terms vanish, so it is folded into the kernel.
 STRUCTURAL_ZEROS = ("ec", "alpha", *LOADS)
+REACH = ("less_rounded", "less_unsure")  # BC - |u|, and what rounding may take from it
+NEAR_LIMIT = 4.0  # times that: points of which some may hang on rounding
 ASKED_AHEAD = 16  # points for each length: then designs are looked at ahead of the kernel
 
 
@@ -148,7 +150,7 @@ def kernel_of(key: KernelKey) -> Kernel:
         guarded = double_digits(guarded, double_constants())
     else:
         if has_undecided(key):
-            program = cut((*key.names, "undecided"), key.form, key.fixed)
+            program = _counting(key)
         if key.form.roomy:
             guarded = _plain_for_loops(program, varying, key)
         else:
@@ -159,6 +161,22 @@ def kernel_of(key: KernelKey) -> Kernel:
         guarded = in_two_forms(_plain_for_loops(plain, varying, key), guarded, test)
     kernel = tabulate(guarded, {name: axes.get(name) for name in guarded.inputs}, key.axes)
     return kernel if plain is None else parted(kernel, len(key.names))
+
+
+def _counting(key: KernelKey) -> Program:
+    """The program of a key with one more output: whether a point may be one that is answered again.
+
+    It holds for more points than `near_limit` selects, by whatever the two round differently: then the
+    points that are answered again do not depend on which others are in the same call.
+    """
+    program = cut((*key.names, *REACH), key.form, key.fixed)
+    reach, unsure = REACH
+    lines = (
+        Line("reach_size", "abs", (reach,)),
+        Line("reach_band", "mul", (NEAR_LIMIT, unsure)),
+        Line("near_limit", "lt", ("reach_size", "reach_band"), "bool"),
+    )
+    return program._replace(lines=(*program.lines, *lines), outputs=(*key.names, "near_limit"))
 
 
 def _plain_for_loops(program: Program, varying: Sequence[str], key: KernelKey) -> Program:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._few_points import is_early
-from ._kernels import kernel_for, key_of
+from ._kernels import KernelKey, kernel_for, key_of
 from ._labels import attributes, input_attributes, labelled, provenance
 from ._meant import did_you_mean
 from ._request import Request
@@ -106,18 +106,24 @@ def reduced(
     if length == 0 or not all(shape) or is_early(key, prod(shape) * length):
         _of_whole(whole(), reduction, dimensions, outs)
     else:
-        kernel = kernel_for(key)
-        outer = {name for name, axis in kernel.axis_of if axis == 0}
-        given: dict[str, Any] = {**scalars, **columns}
-        names = [name for name, _ in kernel.axis_of]
-
-        def block(start: int, stop: int) -> None:
-            part = [given[n][start:stop] if n in outer else given[n] for n in names]
-            kernel.function(*part, length, *(out[start:stop] for out in outs.values()))
-
-        in_blocks(block, next(iter(outs.values())).shape[0], prod(shape) * length, threads)
+        fill_reduced(key, {**scalars, **columns}, length, list(outs.values()), threads)
     arrays = {name: out if shape else out.reshape(()) for name, out in outs.items()}
-    return _named(arrays, wanted.shown, reduction, axes[reduction.axis], rest)
+    return named_by_reduction(arrays, wanted.shown, reduction, axes[reduction.axis], rest)
+
+
+def fill_reduced(
+    key: KernelKey, values: Mapping[str, Any], length: int, outs: Sequence[Array], threads: int | None
+) -> None:
+    """Fill the outputs of `outputs_of` by the kernel of a key, whose innermost axis has this length."""
+    kernel = kernel_for(key)
+    outer = {name for name, axis in kernel.axis_of if axis == 0}
+    names = [name for name, _ in kernel.axis_of]
+
+    def block(start: int, stop: int) -> None:
+        part = [values[n][start:stop] if n in outer else values[n] for n in names]
+        kernel.function(*part, length, *(out[start:stop] for out in outs))
+
+    in_blocks(block, outs[0].shape[0], outs[0].size * length, threads)
 
 
 def _of_whole(
@@ -168,7 +174,7 @@ _NUMPY: dict[str, Callable[[Array], Array]] = {
 }
 
 
-def _named(
+def named_by_reduction(
     arrays: Mapping[str, Array],
     names: Sequence[str],
     reduction: Reduction,

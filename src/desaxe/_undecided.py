@@ -12,10 +12,9 @@ import numpy as np
 
 from ._constants import double_constants
 from ._few_points import fill_by_points, is_early
-from ._kernels import KernelKey, kernel_for
+from ._kernels import REACH, KernelKey, kernel_for
 
-FINDING = ("less_rounded", "less_unsure")  # BC - |u|, and what rounding may take from it
-SPARE = 2.0  # times that, because a kernel may round in another way than the one that counted
+SPARE = 2.0  # times what rounding may take; a kernel counts a wider band, which it may round in another way
 AT_A_TIME = 2**20  # points
 
 
@@ -33,8 +32,8 @@ def decide(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any]) -> No
 def _decide(
     key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any], axis_of: Mapping[str, int]
 ) -> None:
-    reach, unsure = (np.empty(outs[0].shape) for _ in FINDING)
-    kernel_for(key._replace(names=FINDING)).run(values, [reach, unsure])
+    reach, unsure = (np.empty(outs[0].shape) for _ in REACH)
+    kernel_for(key._replace(names=REACH)).run(values, [reach, unsure])
     undecided = (np.abs(reach) <= SPARE * unsure) & (unsure > 0.0)  # where that is 0, the reach is exact
     places = np.nonzero(undecided)
     chosen = {n: value[places[axis_of[n]]] if n in axis_of else value for n, value in values.items()}

@@ -9,6 +9,8 @@ EXTRAS = {
     "h5netcdf": "labelled",
     "h5py": "labelled",
     "zarr": "zarr",
+    "dask": "scale",
+    "distributed": "scale",
     "matplotlib": "plot",
     "pint": "units",
     "msgspec": "scene",

@@ -1,0 +1,154 @@
+"""The blocks of a grid: each runs the kernel of the whole, so that cutting a grid changes no digit.
+
+Which kernel answers a request depends on its inputs (all designs have wide margins, some angle is huge, an
+input is 0), and points in plain Python may differ from a kernel in the last bit. So the kernel is chosen
+once, from all of the inputs, and every block takes it, even a block of one point.
+"""
+
+from collections.abc import Mapping, Sequence
+from math import prod
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._arrays import dtype_of
+from .._grid import Outer, first_joined, join_from, require_inputs
+from .._kernels import KernelKey, key_of
+from .._point import point_of
+from .._reduce import Reduction, fill_reduced, named_by_reduction
+from .._request import Request, request
+from .._threads import run_in_blocks
+from ..compiler.reductions import EXTREMES, outputs_of
+from ..names import LENGTHS
+
+Array = NDArray[Any]
+
+
+class Part(NamedTuple):
+    """The names of a grid that one kernel computes. It has no arrays, so that it travels light.
+
+    names      as the user says them, in the order of the kernel's outputs
+    dims       the dimensions of the outputs, in their order
+    key        the kernel of the whole grid
+    scalars    the inputs that are numbers
+    joined     the first of the last dimensions that the kernel runs over as one
+    reduction  what is taken of which axis, if the grid is reduced
+    """
+
+    names: tuple[str, ...]
+    dims: tuple[str, ...]
+    key: KernelKey
+    scalars: tuple[tuple[str, float], ...]
+    joined: int
+    reduction: Reduction | None = None
+
+    @property
+    def outputs(self) -> dict[str, np.dtype[Any]]:
+        """What it computes, and of which type."""
+        if self.reduction is None:
+            return {name: dtype_of(name) for name in self.names}
+        found: dict[str, np.dtype[Any]] = {}
+        for name in self.names:
+            for kind in self.reduction.kinds:
+                found[f"{name}_{kind}"] = np.dtype(np.float64)
+                if kind in EXTREMES:
+                    found[f"{name}_{kind}_{self.reduction.axis}"] = np.dtype(np.float64)
+            found[f"{name}_skipped"] = np.dtype(np.int64)
+        return found
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """The dimensions whose values it needs."""
+        return self.dims if self.reduction is None else (*self.dims, self.reduction.axis)
+
+
+def grid_parts(outer: Outer, branch: int, accuracy: Any, block: Mapping[str, int]) -> tuple[Part, ...]:
+    """The parts of a grid that is cut into blocks of these lengths."""
+    return tuple(
+        _part(request(names, outer.given, branch, accuracy), outer.axes, along, block)
+        for names, along in outer.groups()
+    )
+
+
+def reduced_parts(
+    outer: Outer, branch: int, accuracy: Any, reduction: Reduction, block: Mapping[str, int]
+) -> tuple[Part, ...]:
+    """The part of a reduced grid, and that of its margin where all lengths are given."""
+    wanted = request(outer.names, outer.given, branch, accuracy)
+    require_inputs(wanted, outer.axes)
+    rest = tuple(name for name in outer.dimensions if name != reduction.axis)
+    order = [*(rest or ("",)), reduction.axis]
+    scalars, columns = _inputs(wanted, outer.axes, order)
+    places = {name: order.index(name) for name in columns}
+    key = key_of(wanted, scalars, columns, places, len(order))._replace(reduce=reduction.kinds)
+    part = Part(wanted.shown, rest, key, tuple(scalars.items()), len(order) - 1, reduction)
+    if not all(name in outer.axes for name in LENGTHS):
+        return (part,)
+    names, along = outer.groups()[1]
+    return part, _part(request(names, outer.given, branch, accuracy), outer.axes, along, block)
+
+
+def _part(wanted: Request, axes: Mapping[str, Array], along: Sequence[str], block: Mapping[str, int]) -> Part:
+    require_inputs(wanted, axes)
+    order = list(along) or [""]
+    scalars, columns = _inputs(wanted, axes, order)
+    places = {name: order.index(name) for name in columns}
+    first = first_joined(order, tuple(block[name] for name in along) or (1,))
+    key = key_of(wanted, scalars, columns, places, len(order))
+    joined = tuple((name, min(axis, first)) for name, axis in key.axis_of)
+    key = key._replace(axis_of=joined, axes=first + 1)
+    return Part(wanted.shown, tuple(along), key, tuple(scalars.items()), first)
+
+
+def _inputs(
+    wanted: Request, axes: Mapping[str, Array], order: Sequence[str]
+) -> tuple[dict[str, float], dict[str, Array]]:
+    """The numbers and the columns of a request."""
+    scalars = {name: float(axes[name].reshape(-1)[0]) for name in wanted.inputs if name not in order}
+    return scalars, {name: np.ascontiguousarray(axes[name]) for name in wanted.inputs if name in order}
+
+
+def compute(part: Part, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
+    """A block of a part: its outputs by name, from the values along each dimension that it needs."""
+    if part.reduction is not None:
+        return _compute_reduced(part, part.reduction, values, threads)
+    shape = tuple(values[name].size for name in part.dims)
+    outs = {name: np.empty(shape, dtype) for name, dtype in part.outputs.items()}
+    order = list(part.dims) or [""]
+    columns = {name: np.ascontiguousarray(values[name]) for name, _ in part.key.axis_of}
+    places = {name: order.index(name) for name in columns}
+    scalars = dict(part.scalars)
+    if not columns:
+        point = point_of(part.key.names, part.key.form, part.key.fixed, part.key.accuracy)
+        for out, value in zip(outs.values(), point.run(scalars), strict=True):
+            out[...] = value
+    elif all(shape):
+        sizes = join_from(part.joined, columns, places, shape)
+        run_in_blocks(
+            part.key, {**scalars, **columns}, [out.reshape(sizes) for out in outs.values()], threads
+        )
+    return outs
+
+
+def _compute_reduced(
+    part: Part, reduction: Reduction, values: Mapping[str, Array], threads: int | None
+) -> dict[str, Array]:
+    shape = tuple(values[name].size for name in part.dims)
+    axis = values[reduction.axis]
+    outs = {name: np.empty(shape or (1,), kind) for name, kind in outputs_of(part.names, reduction.kinds)}
+    if all(shape):
+        columns = {name: np.ascontiguousarray(values[name]) for name, _ in part.key.axis_of}
+        fill_reduced(part.key, {**dict(part.scalars), **columns}, axis.size, list(outs.values()), threads)
+    arrays = {name: out if shape else out.reshape(()) for name, out in outs.items()}
+    return {
+        name: array
+        for name, (_, array) in named_by_reduction(arrays, part.names, reduction, axis, part.dims).items()
+    }
+
+
+def working_bytes(part: Part, block: Mapping[str, int]) -> int:
+    """Bytes of a block's outputs and of the inputs that are repeated along joined dimensions."""
+    points = prod(block[name] for name in part.dims)
+    joined = sum(1 for _, axis in part.key.axis_of if axis == part.joined) if part.reduction is None else 0
+    return points * (sum(dtype.itemsize for dtype in part.outputs.values()) + 8 * joined)

@@ -1,0 +1,97 @@
+"""How a grid is cut into chunks: from the request alone, so that every machine cuts it in the same way."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
+from math import prod
+from typing import Any
+
+from .._meant import did_you_mean
+
+Slices = dict[str, slice]
+
+
+def chunk_lengths(chunks: Any, sizes: Mapping[str, int], points: int) -> dict[str, tuple[int, ...]]:
+    """The lengths of the chunks along each dimension.
+
+    chunks  "auto": about `points` points each, the last dimensions whole; a number: that length along
+            every dimension, -1 for the whole; or a dict dimension -> a number, "auto" or the lengths.
+            Dimensions that it does not name are whole
+    sizes   the length of each dimension, in their order
+
+    Raises ValueError or TypeError that names the dimension.
+    """
+    if isinstance(chunks, Mapping):
+        for name in chunks:
+            if name not in sizes:
+                known = ", ".join(sizes) or "none"
+                raise ValueError(
+                    f"chunks: {name!r} is no dimension of this grid; "
+                    f"{did_you_mean(str(name), list(sizes))}dimensions: {known}"
+                )
+        wanted = {name: chunks.get(name, -1) for name in sizes}
+    else:
+        wanted = dict.fromkeys(sizes, chunks)
+    known_lengths = {n: _lengths(n, w, sizes[n]) for n, w in wanted.items() if not _is_auto(w)}
+    room = max(1, points // prod(max(own, default=1) for own in known_lengths.values()))
+    for name in reversed([name for name in sizes if name not in known_lengths]):
+        length = min(max(sizes[name], 1), room)
+        known_lengths[name] = _cut(sizes[name], length)
+        room = max(1, room // length)
+    return {name: known_lengths[name] for name in sizes}
+
+
+def uniform(lengths: Mapping[str, Sequence[int]]) -> dict[str, int]:
+    """The one length of the chunks along each dimension; ValueError where they differ.
+
+    The last chunk of a dimension may be shorter: a store has chunks of one length.
+    """
+    for name, own in lengths.items():
+        if any(length != own[0] for length in own[:-1]) or (own and own[-1] > own[0]):
+            raise ValueError(f"chunks of {name}: {_shown(own)}: a store has chunks of one length")
+    return {name: max(own[0], 1) if own else 1 for name, own in lengths.items()}
+
+
+def blocks_of(sizes: Mapping[str, int], chunk: Mapping[str, int]) -> Iterator[tuple[int, ...]]:
+    """The places of all chunks, in order."""
+    return product(*(range(-(-size // chunk[name])) for name, size in sizes.items()))
+
+
+def slices_of(place: Sequence[int], sizes: Mapping[str, int], chunk: Mapping[str, int]) -> Slices:
+    """The points of a chunk along each dimension."""
+    return {
+        name: slice(k * chunk[name], min((k + 1) * chunk[name], sizes[name]))
+        for name, k in zip(sizes, place, strict=True)
+    }
+
+
+def _is_auto(wanted: Any) -> bool:
+    return isinstance(wanted, str) and wanted == "auto"
+
+
+def _lengths(name: str, wanted: Any, size: int) -> tuple[int, ...]:
+    if isinstance(wanted, (tuple, list)):
+        own = tuple(_length(name, part, size) for part in wanted)
+        if sum(own) != size:
+            raise ValueError(f"chunks of {name}: {_shown(own)} is {sum(own)} points, it has {size}")
+        return own
+    return _cut(size, _length(name, wanted, size))
+
+
+def _length(name: str, wanted: Any, size: int) -> int:
+    if wanted is None or wanted == -1:
+        return max(size, 1)
+    if isinstance(wanted, bool) or not hasattr(wanted, "__index__"):
+        raise TypeError(f'chunks of {name} = {wanted!r}: a whole number, "auto" or -1 for the whole')
+    if int(wanted) < 1:
+        raise ValueError(f'chunks of {name} = {wanted}: at least 1, "auto" or -1 for the whole')
+    return min(int(wanted), max(size, 1))
+
+
+def _cut(size: int, length: int) -> tuple[int, ...]:
+    rest = size % length
+    return (length,) * (size // length) + ((rest,) if rest or not size else ())
+
+
+def _shown(own: Sequence[int]) -> str:
+    text = ", ".join(map(str, own[:8]))
+    return f"({text}{', ...' if len(own) > 8 else ''})"

@@ -1,0 +1,103 @@
+"""`grid(..., chunks=)`: a grid of lazy Dask arrays, one task a chunk and kernel."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._grid import Outer
+from .._labels import input_attributes, labelled, provenance
+from .._reduce import reduced_attributes, reduction_of
+from ..extras import needed
+from .blocks import Part, compute, grid_parts, reduced_parts
+from .chunks import chunk_lengths
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Array = NDArray[Any]
+AUTO = 2**21  # points of a chunk: 16 MiB of doubles
+
+
+def lazy_grid(
+    outer: Outer, chunks: Any, branch: int, accuracy: Any, threads: int | None, reduce: Any = None
+) -> "xr.Dataset":
+    """The grid of checked arguments, computed chunk by chunk when somebody asks for its values."""
+    sizes = {name: outer.axes[name].size for name in outer.dimensions}
+    state = outer.given.get("omega") is not None
+    if reduce is None:
+        lengths = chunk_lengths(chunks, sizes, AUTO)
+        parts = grid_parts(outer, branch, accuracy, _longest(lengths))
+        arrays = lazy_arrays(parts, outer.axes, lengths, threads or 1)
+        return labelled({n: arrays[n] for n in outer.shown}, outer.coordinates, branch, state, accuracy)
+    reduction = reduction_of(reduce, outer.dimensions, outer.names)
+    length = sizes.pop(reduction.axis)
+    lengths = chunk_lengths(chunks, sizes, max(1, AUTO // max(length, 1)))
+    part = reduced_parts(outer, branch, accuracy, reduction, _longest(lengths))[0]
+    arrays = lazy_arrays([part], outer.axes, lengths, threads or 1)
+    kept = {name: array for name, array in outer.coordinates.items() if name != reduction.axis}
+    told = reduced_attributes(outer.names, reduction, input_attributes(reduction.axis), state)
+    dataset = labelled({}, kept, branch, state)
+    dataset.attrs |= provenance(arrays, kept, branch, part.key.accuracy)
+    return dataset.assign({name: (*found, told[name]) for name, found in arrays.items()})
+
+
+def _longest(lengths: Mapping[str, Sequence[int]]) -> dict[str, int]:
+    return {name: max(own, default=1) for name, own in lengths.items()}
+
+
+def lazy_arrays(
+    parts: Sequence[Part],
+    axes: Mapping[str, Array],
+    lengths: Mapping[str, tuple[int, ...]],
+    threads: int,
+) -> dict[str, tuple[tuple[str, ...], Any]]:
+    """The outputs of parts by name, each with its dimensions and as a Dask array.
+
+    A chunk of a part is one task, whose outputs further tasks take apart. Names follow from the kernels
+    and the values of the axes, so the same request has the same names in every process.
+    """
+    with needed("chunks="):
+        import dask.array as da
+        from dask.base import tokenize
+
+    found: dict[str, tuple[tuple[str, ...], Any]] = {}
+    for part in parts:
+        token = tokenize(repr(part), *(axes[name] for name in part.axes), dict(lengths))
+        along = tuple(range(len(part.dims)))
+        arguments: list[Any] = []
+        for number, name in enumerate(part.axes):
+            own = lengths.get(name, (axes[name].size,))  # a reduced axis is whole
+            column = da.from_array(axes[name], chunks=(own,), name=f"{name}-{token}", inline_array=True)
+            arguments += [column, (number,)]
+        blocks = da.blockwise(
+            _Block(part, threads), along, *arguments, dtype=object, concatenate=True, align_arrays=False,
+            name=f"desaxe-{token}", meta=np.empty((0,) * len(along), object),
+        )  # fmt: skip
+        for name, dtype in part.outputs.items():
+            array = da.blockwise(
+                _output, along, blocks, along, name, None, dtype=dtype,
+                name=f"{name}-{token}", meta=np.empty((0,) * len(along), dtype),
+            )  # fmt: skip
+            found[name] = part.dims, array
+    return found
+
+
+class _Block:
+    """A chunk of a part from the values of its axes: a function that pickles small."""
+
+    def __init__(self, part: Part, threads: int) -> None:
+        self.part, self.threads = part, threads
+
+    def __call__(self, *values: Array) -> dict[str, Array]:
+        return compute(self.part, dict(zip(self.part.axes, values, strict=True)), self.threads)
+
+    def __dask_tokenize__(self) -> Any:
+        return "desaxe.block", repr(self.part)
+
+
+def _output(block: Any, name: str) -> Array:
+    """One output of a block."""
+    array: Array = block[name]
+    return array

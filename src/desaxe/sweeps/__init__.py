@@ -1,0 +1,11 @@
+"""Sweeps larger than memory: written chunk by chunk to a Zarr store, on one machine or a Dask cluster.
+
+sweep     what `desaxe.sweep` does with names and inputs
+request   what identifies a sweep, and how two differ
+layout    chunks and the memory that they take
+store     the store: its skeleton, chunks that are whole or absent, what is left to do
+tasks     a chunk as a task that travels to a worker
+cluster   tasks in threads or on a Dask cluster, a bounded number at a time
+best      the best designs of a sweep, without a store
+meter     points, rate and time left on a terminal
+"""

@@ -1,0 +1,102 @@
+"""How a sweep is cut into chunks, and the memory that a chunk takes while it is computed and written."""
+
+import re
+from collections.abc import Mapping
+from math import prod
+from typing import Any, NamedTuple
+
+from ..evaluation.chunks import chunk_lengths, uniform
+
+DEFAULT_MEMORY = 256_000_000  # bytes of the chunks in flight
+IN_FLIGHT = 2  # chunks at once that an automatic layout leaves memory for
+STORED = 2**21  # points of a stored chunk: 16 MiB of doubles
+REDUCED = (2**22, 2**26)  # points of the grid behind a chunk of a reduced one
+SHARES = 64  # chunks into which a reduced grid is cut if that keeps it between these
+WRITING = 3 * 8  # bytes a point while an array is written: copied, compressed, and masked
+UNITS = {"": 1, "B": 1, "kB": 10**3, "MB": 10**6, "GB": 10**9, "TB": 10**12,
+         "KiB": 2**10, "MiB": 2**20, "GiB": 2**30, "TiB": 2**40}  # fmt: skip
+
+
+class Layout(NamedTuple):
+    """The dimensions of a store, the length of the chunks along each, and bytes a point in flight."""
+
+    sizes: dict[str, int]
+    chunk: dict[str, int]
+    per_point: int
+
+    @property
+    def chunks(self) -> int:
+        """How many chunks a variable of all dimensions has."""
+        return prod(-(-size // self.chunk[name]) for name, size in self.sizes.items())
+
+    @property
+    def in_flight(self) -> int:
+        """Bytes of one chunk while it is computed and written."""
+        return self.per_point * prod(self.chunk.values())
+
+    def at_once(self, memory: int | None) -> int:
+        """How many chunks are in flight in this memory, at least one."""
+        return max(1, (memory or DEFAULT_MEMORY) // self.in_flight)
+
+    def require_memory(self, memory: int | None) -> None:
+        """MemoryError where a chunk takes more memory than is allowed."""
+        if memory is not None and self.in_flight > memory:
+            raise MemoryError(
+                f"memory: a chunk of {shape_text(self.chunk)} takes {size_text(self.in_flight)} while it is "
+                f"computed and written, {size_text(memory)} are allowed; give smaller chunks or more memory"
+            )
+
+
+def layout_of(
+    chunks: Any, sizes: Mapping[str, int], stored: int, length: int | None, memory: int | None
+) -> Layout:
+    """The layout of a sweep, from the request alone.
+
+    sizes   the dimensions of the store
+    stored  bytes that are stored for each of its points
+    length  points of the reduced axis behind each of them, None where nothing is reduced
+    """
+    per_point = stored + WRITING + 8 * len(sizes)
+    points = (memory or DEFAULT_MEMORY) // (IN_FLIGHT * per_point)
+    if length is None:
+        points = min(STORED, points)
+    else:
+        least, most = REDUCED
+        behind = min(max(prod(sizes.values()) * length // SHARES, least), most)
+        points = min(max(1, behind // max(length, 1)), points)
+    if points < 1:
+        raise MemoryError(f"memory = {memory} bytes: a single point takes {IN_FLIGHT * per_point}")
+    return Layout(dict(sizes), uniform(chunk_lengths(chunks, sizes, points)), per_point)
+
+
+def bytes_of(memory: Any) -> int | None:
+    """A number of bytes, or text such as "200 MB"; None stays None."""
+    if memory is None:
+        return None
+    if isinstance(memory, str):
+        found = re.fullmatch(r"\s*([0-9.]+(?:[eE][0-9]+)?)\s*([A-Za-z]*)\s*", memory)
+        unit = found and next((u for u in UNITS if u.lower() == found[2].lower()), None)
+        if found is None or unit is None or found[1].count(".") > 1:
+            raise ValueError(f'memory = {memory!r}: a number of bytes, or text such as "200 MB"')
+        number = float(found[1]) * UNITS[unit]
+    elif isinstance(memory, bool) or not isinstance(memory, (int, float)):
+        raise TypeError(f'memory = {memory!r}: a number of bytes, or text such as "200 MB"')
+    else:
+        number = float(memory)
+    if not 1.0 <= number < 2.0**63:
+        raise ValueError(f"memory = {memory!r}: at least one byte")
+    return int(number)
+
+
+def size_text(count: float) -> str:
+    """Bytes as a person says them."""
+    for unit in ("bytes", "kB", "MB", "GB"):
+        if count < 1000.0:
+            return f"{count:.0f} bytes" if unit == "bytes" else f"{count:.3g} {unit}"
+        count /= 1000.0
+    return f"{count:.3g} TB"
+
+
+def shape_text(chunk: Mapping[str, int]) -> str:
+    """A chunk as a person says it."""
+    return " x ".join(f"{length} {name}" for name, length in chunk.items()) or "one point"

@@ -1,0 +1,67 @@
+"""What identifies a sweep: its request, the version and the Program, as attributes of its store."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from numpy.typing import NDArray
+
+from .. import __version__
+from .._grid import Outer
+from .._program import digest
+from .._reduce import Reduction
+
+IDENTITY = ("request", "version", "digest")
+
+
+def identity(outer: Outer, branch: int, accuracy: str, reduction: Reduction | None) -> dict[str, str]:
+    """The attributes that a store of this sweep has: no time, path or host is among them."""
+    request = {
+        "names": list(outer.names),
+        "reduce": {} if reduction is None else {reduction.axis: list(reduction.kinds)},
+        "branch": int(branch),
+        "accuracy": accuracy,
+        "inputs": {name: _input(array) for name, array in outer.axes.items()},
+    }
+    return {"request": json.dumps(request), "version": __version__, "digest": digest()}
+
+
+def _input(array: NDArray[Any]) -> Any:
+    """A number, or what tells one axis from another."""
+    if not array.ndim:
+        return array.item()
+    ends = {"from": float(array[0]), "to": float(array[-1])} if array.size else {}
+    values = hashlib.sha256(array.astype("<f8").tobytes()).hexdigest()
+    return {"values": array.size, **ends, "sha256": values}
+
+
+def differences(there: Mapping[str, Any], here: Mapping[str, str]) -> list[str]:
+    """What a store was made for, where that is not what is asked for now; a line for each."""
+    lines = [
+        f"{name} is {there.get(name)!r} there and {here[name]!r} here"
+        for name in ("version", "digest")
+        if there.get(name) != here[name]
+    ]
+    try:
+        old = json.loads(there.get("request", ""))
+    except (TypeError, ValueError):
+        old = {}
+    new = json.loads(here["request"])
+    old_inputs, new_inputs = old.pop("inputs", {}), new.pop("inputs")
+    for part, other in ((old, new), (old_inputs, new_inputs)):
+        lines += [
+            f"{name} is {_shown(part.get(name))} there and {_shown(other.get(name))} here"
+            for name in dict.fromkeys((*part, *other))
+            if part.get(name) != other.get(name)
+        ]
+    return lines
+
+
+def _shown(value: Any) -> str:
+    if value is None:
+        return "not given"
+    if isinstance(value, Mapping) and "sha256" in value:
+        ends = f" from {value['from']!r} to {value['to']!r}" if "from" in value else ""
+        return f"{value['values']} values{ends} (sha256 {value['sha256'][:8]})"
+    return json.dumps(value)

@@ -1,0 +1,198 @@
+"""The Zarr store of a sweep: a chunk is whole or absent, whatever stops the writer.
+
+The skeleton (metadata, coordinates, attributes) is written beside the store's place and put there in one
+step. A chunk is written to a `.partial` file, flushed to the disk and renamed; its checksum tells whether
+it is whole. Nothing in a finished store depends on when, where, how often or by how many it was written.
+"""
+
+import asyncio
+import json
+import os
+import shutil
+import sys
+import uuid
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..extras import needed
+from ..support.files import exchange, staging
+from ..support.locks import locked
+
+with needed("a sweep"):
+    import zarr
+    from zarr.codecs import Crc32cCodec, ZstdCodec
+    from zarr.core.buffer import Buffer
+    from zarr.storage import LocalStore
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Array = NDArray[Any]
+PARTIAL = ".partial"
+LEVEL = 1  # of zstd: doubles hardly shrink, and this is the fastest
+METADATA = "zarr.json"
+STATE = "state"  # an attribute: whether the store is complete
+INCOMPLETE, COMPLETE = "incomplete", "complete"
+CONSOLIDATED = "Consolidated metadata is currently not part"  # of the format, a warning says
+
+
+class DurableStore(LocalStore):
+    """A folder whose files appear whole, and stay after a power failure."""
+
+    async def set(self, key: str, value: Buffer) -> None:
+        """Write a file."""
+        await asyncio.to_thread(self.set_sync, key, value)
+
+    def set_sync(self, key: str, value: Buffer) -> None:
+        """Write a file, in the calling thread."""
+        _write_durably(Path(self.root) / key, value.to_bytes())
+
+
+def _write_durably(path: Path, data: bytes) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_name(f"{path.name}.{uuid.uuid4().hex}{PARTIAL}")
+    try:
+        with open(partial, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(partial, path)
+    except BaseException:
+        with suppress(OSError):
+            partial.unlink()
+        raise
+
+
+def sync(folder: Path) -> None:
+    """See to it that the names in a folder survive a power failure, where the system can."""
+    if sys.platform != "win32":
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
+
+
+# ---- the skeleton --------------------------------------------------------------------------------
+
+
+def create(root: Path, template: "xr.Dataset", chunk: Mapping[str, int], replace: bool) -> None:
+    """Put a store without chunks of its lazy variables in a place; `replace` one that is there.
+
+    FileExistsError where there is one and it may not be replaced.
+    """
+    compressors = [ZstdCodec(level=LEVEL), Crc32cCodec()]
+    encoding = {
+        str(name): {
+            "chunks": tuple(
+                chunk[str(dim)] if name not in template.coords else max(1, template.sizes[dim])
+                for dim in variable.dims
+            ),
+            "compressors": compressors,
+        }
+        for name, variable in template.variables.items()
+    }
+    with staging(root.parent) as folder:
+        staged = folder / root.name
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message=CONSOLIDATED)
+            template.to_zarr(
+                DurableStore(staged), mode="w-", compute=False, encoding=encoding, zarr_format=3,
+                consolidated=True, safe_chunks=False,
+            )  # fmt: skip
+        sync_folders(staged)
+        if not replace:
+            if root.exists():
+                raise FileExistsError(f"{root}: it is there already")
+            os.rename(staged, root)
+        elif not exchange(staged, root):
+            shutil.rmtree(root)
+            os.rename(staged, root)
+        sync(root.parent)
+
+
+def attributes(root: Path) -> dict[str, Any] | None:
+    """The attributes of the store in a folder; None where there is no Zarr store."""
+    try:
+        found = json.loads((root / METADATA).read_text(encoding="utf-8"))
+        return dict(found["attributes"]) if found["node_type"] == "group" else None
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def set_state(root: Path, state: str) -> None:
+    """Write whether the store is complete into its attributes, unless it says so already."""
+    path = root / METADATA
+    metadata = json.loads(path.read_text(encoding="utf-8"))
+    if metadata["attributes"].get(STATE) != state:
+        metadata["attributes"][STATE] = state
+        _write_durably(path, json.dumps(metadata, indent=2).encode())
+        sync(root)
+
+
+@contextmanager
+def held(root: Path) -> Iterator[None]:
+    """Hold the store for the length of a block; BlockingIOError where another sweep does."""
+    try:
+        with locked(root, wait=0.0):
+            yield
+    except TimeoutError:
+        raise BlockingIOError(f"{root}: another sweep is writing this store") from None
+
+
+# ---- chunks --------------------------------------------------------------------------------------
+
+
+def _array(root: Path, name: str, mode: str) -> Any:
+    return zarr.open_array(DurableStore(root, read_only=mode == "r"), path=name, mode=mode, zarr_format=3)
+
+
+def write_chunk(root: Path, name: str, region: Sequence[slice], values: Array) -> None:
+    """Write a chunk of a variable, also where all of it is NaN."""
+    if values.dtype.kind == "f":
+        np.copyto(values, np.nan, where=np.isnan(values))  # one NaN: others have bits that machines choose
+    array = _array(root, name, "r+").with_config({"write_empty_chunks": True})
+    array[tuple(region) if region else ...] = values
+
+
+def chunk_path(root: Path, name: str, place: Sequence[int]) -> Path:
+    """The file of a chunk."""
+    return root.joinpath(name, "c", *map(str, place))
+
+
+def is_whole(root: Path, name: str, place: Sequence[int], region: Sequence[slice]) -> bool:
+    """Whether a chunk is there and has its checksum."""
+    if not chunk_path(root, name, place).is_file():
+        return False
+    try:
+        _array(root, name, "r")[tuple(region) if region else ...]
+    except (ValueError, RuntimeError, OSError):
+        return False
+    return True
+
+
+def remove_strays(root: Path) -> None:
+    """Remove what a writer that was killed left behind."""
+    for path in root.rglob(f"*{PARTIAL}"):
+        with suppress(FileNotFoundError):
+            path.unlink()
+
+
+def sync_folders(root: Path) -> None:
+    """See to it that the names of all files survive a power failure."""
+    for path in (root, *(path for path in root.rglob("*") if path.is_dir())):
+        sync(path)
+
+
+def open_store(root: Path) -> "xr.Dataset":
+    """The Dataset of a store, its variables as lazy Dask arrays."""
+    import xarray
+
+    found: xr.Dataset = xarray.open_zarr(root)
+    return found

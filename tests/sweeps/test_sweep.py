@@ -1,0 +1,195 @@
+"""`sweep`: a grid in a Zarr store, gone on with after a stop, with the same bytes."""
+
+import hashlib
+import os
+import signal
+import subprocess
+import sys
+import time
+import warnings
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import desaxe as dx
+from desaxe.support.locks import locked
+from tests.library.ways import take_way
+
+THETA = np.linspace(0.0, 2.0 * np.pi, 40)
+INPUTS = {"theta": THETA, "ec": [-0.05, 0.0, 0.9], "AB": 0.2, "BC": [0.1, 0.5], "omega0": 3.0}
+NAMES = ["V_C", "a_C"]
+CHUNKS = {"theta": 16}
+
+
+@pytest.fixture(autouse=True)
+def _compiled(monkeypatch):
+    take_way(monkeypatch, "compiled")
+
+
+def files(root):
+    """Every file of a store with the digest of its bytes."""
+    return {
+        str(path.relative_to(root)): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(root.rglob("*"))
+        if path.is_file()
+    }
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """An undisturbed run."""
+    root = tmp_path_factory.mktemp("sweep") / "whole.zarr"
+    dx.sweep(NAMES, store=root, chunks=CHUNKS, **INPUTS).close()
+    return root
+
+
+def test_the_store_is_the_grid(whole):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        stored = xr.open_zarr(whole)
+    grid = dx.grid(NAMES, **INPUTS)
+    for name in grid.variables:
+        assert stored[name].dims == grid[name].dims
+        assert stored[name].dtype == grid[name].dtype
+        np.testing.assert_array_equal(stored[name], grid[name])
+        assert stored[name].attrs.get("units") == grid[name].attrs.get("units")
+    assert stored["a_C"].chunks == ((16, 16, 8), (3,), (2,))
+    assert set(grid.attrs.items()) <= set(stored.attrs.items())
+    assert stored.attrs["state"] == "complete"
+    assert {"request", "version", "digest"} <= set(stored.attrs)
+    assert "ancillary_variables" in stored["a_C"].attrs
+
+
+def test_a_finished_store_is_left_as_it_is(whole):
+    before = {path: path.stat().st_mtime_ns for path in whole.rglob("*")}
+    dx.sweep(NAMES, store=whole, **INPUTS)  # takes the chunks of the store
+    assert {path: path.stat().st_mtime_ns for path in whole.rglob("*")} == before
+    assert os.listdir(whole.parent) == [whole.name]
+
+
+def test_what_is_absent_or_damaged_is_made_again(whole, tmp_path):
+    root = tmp_path / "again.zarr"
+    dx.sweep(NAMES, store=root, chunks=CHUNKS, **INPUTS)
+    (root / "a_C" / "c" / "1" / "0" / "0").unlink()
+    damaged = root / "V_C" / "c" / "0" / "0" / "0"
+    damaged.write_bytes(damaged.read_bytes()[:-9] + b"123456789")
+    (root / "status" / "c" / "2" / "0" / "0").write_bytes(b"")
+    (root / "margin" / "c" / "0" / "0").unlink()
+    (root / "a_C" / "c" / "0" / "0" / "0.77.partial").write_bytes(b"left behind")
+    dx.sweep(NAMES, store=root, **INPUTS)
+    assert files(root) == files(whole)
+
+
+def test_chunks_without_a_value_are_written(tmp_path):
+    stored = dx.sweep("a_C", store=tmp_path / "empty.zarr", chunks={"ec": 1}, **INPUTS)
+    assert np.isnan(stored["a_C"].sel(ec=0.9)).all()
+    assert (tmp_path / "empty.zarr" / "a_C" / "c" / "0" / "2" / "0").is_file()
+
+
+KILLED = """
+import sys, numpy as np
+import desaxe as dx
+theta = np.linspace(0.0, 2.0 * np.pi, 40)
+dx.sweep(["V_C", "a_C"], store=sys.argv[1], chunks={"theta": 16}, theta=theta, ec=[-0.05, 0.0, 0.9],
+         AB=0.2, BC=[0.1, 0.5], omega0=3.0)
+"""
+
+
+def test_killed_at_any_chunk_it_goes_on(whole, tmp_path):
+    root = tmp_path / "killed.zarr"
+    for chunks in (0, 3):
+        process = subprocess.Popen([sys.executable, "-c", KILLED, str(root)], stderr=subprocess.DEVNULL)
+        while process.poll() is None and len(list(root.glob("*/c/*/*"))) <= chunks:
+            time.sleep(0.001)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    dx.sweep(NAMES, store=root, **INPUTS)
+    assert files(root) == files(whole)
+    assert os.listdir(tmp_path) == [root.name]
+
+
+def test_a_store_of_another_sweep_is_refused_with_what_differs(whole):
+    before = files(whole)
+    with pytest.raises(FileExistsError, match=r"AB is 0\.2 there and 0\.3 here"):
+        dx.sweep(NAMES, store=whole, **{**INPUTS, "AB": 0.3})
+    with pytest.raises(FileExistsError, match=r"theta is 40 values from 0\.0 .* there and 39 values"):
+        dx.sweep(NAMES, store=whole, **{**INPUTS, "theta": THETA[:39]})
+    with pytest.raises(FileExistsError, match=r'names is \["V_C", "a_C"\] there'):
+        dx.sweep("V_C", store=whole, **INPUTS)
+    assert files(whole) == before
+
+
+def test_of_another_version_too(whole, monkeypatch):
+    monkeypatch.setattr("desaxe.sweeps.request.__version__", "0.0.9")
+    with pytest.raises(FileExistsError, match=r"version is '.*' there and '0.0.9' here"):
+        dx.sweep(NAMES, store=whole, **INPUTS)
+
+
+def test_overwrite_replaces_a_store_and_nothing_else(whole, tmp_path):
+    root = tmp_path / "other.zarr"
+    dx.sweep("Y", store=root, **INPUTS)
+    dx.sweep(NAMES, store=root, chunks=CHUNKS, overwrite=True, **INPUTS)
+    assert files(root) == files(whole)
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "thesis.txt").write_text("years of work")
+    with pytest.raises(FileExistsError, match="this is no Zarr store"):
+        dx.sweep(NAMES, store=tmp_path / "mine", overwrite=True, **INPUTS)
+    assert (tmp_path / "mine" / "thesis.txt").read_text() == "years of work"
+
+
+def test_a_second_sweep_refuses(whole):
+    with locked(whole), pytest.raises(BlockingIOError, match="another sweep is writing this store"):
+        dx.sweep(NAMES, store=whole, **INPUTS)
+
+
+def test_reductions_are_those_of_the_grid(tmp_path):
+    reduce = {"theta": ["absmax", "mean"]}
+    stored = dx.sweep(NAMES, store=tmp_path / "r.zarr", reduce=reduce, chunks={"ec": 2}, **INPUTS)
+    reduced = dx.grid(NAMES, reduce=reduce, **INPUTS)
+    for name in reduced.variables:
+        np.testing.assert_array_equal(stored[name], reduced[name])
+    np.testing.assert_array_equal(stored["margin"], dx.grid(NAMES, **INPUTS)["margin"])
+
+
+def test_a_sweep_of_numbers_alone_is_one_point(tmp_path):
+    one = dx.sweep("a_C", store=tmp_path / "one.zarr", **{**INPUTS, "theta": 1.0, "ec": 0.0, "BC": 0.5})
+    assert float(one["a_C"]) == dx.evaluate("a_C", theta=1.0, ec=0.0, AB=0.2, BC=0.5, omega0=3.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "words"),
+    [
+        ({"memory": "10 parsec"}, ValueError, "memory = '10 parsec'"),
+        (
+            {"memory": "100 kB", "chunks": {"theta": 400}},
+            MemoryError,
+            r"takes 1\d\d kB .* 100 kB are allowed",
+        ),
+        ({"theta": []}, ValueError, "theta: a sweep needs at least one value"),
+        ({"chunks": {"omega0": 2}}, ValueError, "'omega0' is no dimension"),
+        ({"client": "tcp://nowhere"}, TypeError, "a distributed.Client is wanted"),
+    ],
+)
+def test_what_cannot_be_is_refused_and_nothing_is_written(tmp_path, options, error, words):
+    inputs = {**INPUTS, "theta": np.linspace(0.0, 6.0, 400), "store": tmp_path / "no.zarr", **options}
+    with pytest.raises(error, match=words):
+        dx.sweep(NAMES, **inputs)
+    assert "client" in options or not list(tmp_path.iterdir())
+
+
+def test_what_the_disk_has_no_room_for_is_refused_with_figures(tmp_path, monkeypatch):
+    monkeypatch.setattr("shutil.disk_usage", lambda path: SimpleNamespace(free=1000))
+    with pytest.raises(OSError, match=r"up to 4\.\d* kB \(240 points, 4 variables\), 1 kB are free"):
+        dx.sweep(NAMES, store=tmp_path / "full.zarr", **INPUTS)
+    assert not list(tmp_path.iterdir())
+
+
+def test_progress_counts_points(tmp_path):
+    seen = []
+    dx.sweep(
+        "Y", store=tmp_path / "p.zarr", chunks=CHUNKS, progress=lambda *step: seen.append(step), **INPUTS
+    )
+    assert seen[-1] == (240, 240, "writing")
+    assert len(seen) == 3
