@@ -16,7 +16,7 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from .. import _cache
+from . import cache as _cache
 from .machine_code import DOUBLE, NO_MEMORY, Code, Loaded, compile_text, load, machine
 
 SUFFIX = ".code"
