@@ -1,7 +1,8 @@
-"""`python -m desaxe`: the command `desaxe`."""
+"""`python -m desaxe`: the same as the command `desaxe`."""
 
 import sys
 
-from .cli.command import main
+from .cli import main
 
-sys.exit(main())
+if __name__ == "__main__":
+    sys.exit(main())

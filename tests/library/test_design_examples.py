@@ -5,20 +5,11 @@ from importlib import import_module
 
 import pytest
 
-MODULES = [
-    "feasibility.feasibility",
-    "events.events",
-    "optimisation.optimize",
-    "synthesis.synthesize",
-    "tolerance.tolerance",
-    "turn.harmonics",
-    "turn.counterweight",
-    "turn.flywheel",
-]
+NAMES = ["events", "optimize", "synthesize", "tolerance", "harmonics", "counterweight", "flywheel"]
 
 
-@pytest.mark.parametrize("module", MODULES)
+@pytest.mark.parametrize("module", [*(f"_design.{name}" for name in NAMES), "_feasibility"])
 def test_examples(module):
-    found = doctest.testmod(import_module(f"desaxe.design.{module}"))
+    found = doctest.testmod(import_module(f"desaxe.{module}"))
     assert found.attempted >= 2
     assert not found.failed

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.compiler.languages.numba.reductions import LONGEST
-from desaxe.runtime import interpreted as _few_points
-from desaxe.runtime import kernels as _kernels
+from desaxe import _few_points, _kernels
+from desaxe.compiler.reductions import LONGEST
 
 MACHINE = {"AB": 0.125, "omega0": 157.08}
 TURN = np.linspace(0.0, 2.0 * np.pi, 721)
@@ -115,7 +114,7 @@ def test_threads_change_nothing():
 
 
 def test_the_grid_is_never_stored(monkeypatch):
-    from desaxe.evaluation import grid as _grid
+    from desaxe import _grid
 
     monkeypatch.setattr(_few_points, "BREAK_EVEN", 0)
     monkeypatch.setattr(_grid, "_filled", lambda *_: pytest.fail("the whole grid was computed"))

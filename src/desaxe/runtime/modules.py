@@ -13,16 +13,17 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from ctypes import CFUNCTYPE, c_char_p, c_int64
 from pathlib import Path
-from threading import Lock
 from typing import Any
 
-from . import cache as _cache
+from .. import _cache
+from ..support.forks import fork_safe_lock
+from ..support.interrupts import finished
 from .machine_code import DOUBLE, NO_MEMORY, Code, Loaded, compile_text, load, machine
 
 SUFFIX = ".code"
 _HEAD = "desaxe machine code 1"
 _prototype = CFUNCTYPE(c_int64, c_char_p)  # lets go of the GIL while it runs
-_LOCK = Lock()
+_LOCK = fork_safe_lock()
 
 
 class Native:
@@ -61,6 +62,10 @@ class Native:
 
 def native(kind: str, text: str) -> Native:
     """The function of a text: from disk, or compiled now and kept for the next process."""
+    return finished(lambda: _native(kind, text))
+
+
+def _native(kind: str, text: str) -> Native:
     path = path_of(kind, text)
     with _LOCK, _cache.locked(path):
         loaded = _from_disk(path)
@@ -74,8 +79,12 @@ def native(kind: str, text: str) -> Native:
 
 def native_here(text: str, scope: Mapping[str, Any]) -> Native:
     """The function of a text that calls a function of the user's: for this process alone."""
-    with _LOCK:
-        return Native(_ready(compile_text(text, "with a function of the user's", scope)))
+
+    def made() -> Native:
+        with _LOCK:
+            return Native(_ready(compile_text(text, "with a function of the user's", scope)))
+
+    return finished(made)
 
 
 def _ready(made: Code | Loaded) -> Loaded:
@@ -97,22 +106,31 @@ def is_kept(kind: str, text: str) -> bool:
 
 
 def _from_disk(path: Path) -> Loaded | None:
-    """What is kept, if it is whole and for this machine."""
-    with suppress(OSError, ValueError, KeyError, TypeError):
-        head, _, code = path.read_bytes().partition(b"\n")
+    """What is kept, if nobody else can have written it, and it is whole and for this machine."""
+    with suppress(OSError):
+        code = read_code(path.name, _cache.read_bytes(path))
+        return load(code) if code is not None else None
+    return None
+
+
+def read_code(name: str, data: bytes) -> Code | None:
+    """The machine code in a file of this name; None where it is damaged or for another machine."""
+    with suppress(ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        head, _, code = data.partition(b"\n")
         told = json.loads(head)
         ranks = tuple(int(rank) for rank in told["ranks"])
-        if told["machine"] == machine() and told["sha256"] == _digest(ranks, code):
-            return load(Code(ranks, code))
+        if told["machine"] == machine() and told["sha256"] == _digest(name, ranks, code):
+            return Code(ranks, code)
     return None
 
 
 def _to_disk(path: Path, made: Code) -> None:
     """Keep machine code; without a place to keep it, it is made anew in the next process."""
-    head = {"machine": machine(), "ranks": made.ranks, "sha256": _digest(made.ranks, made.machine)}
+    digest = _digest(path.name, made.ranks, made.machine)
+    head = {"machine": machine(), "ranks": made.ranks, "sha256": digest}
     with suppress(OSError):
         _cache.write_bytes(path, json.dumps(head).encode() + b"\n" + made.machine)
 
 
-def _digest(ranks: Sequence[int], code: bytes) -> str:
-    return hashlib.sha256(f"{list(ranks)}\n".encode() + code).hexdigest()
+def _digest(name: str, ranks: Sequence[int], code: bytes) -> str:
+    return hashlib.sha256(f"{name} {machine()} {list(ranks)}\n".encode() + code).hexdigest()

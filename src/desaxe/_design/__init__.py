@@ -1,0 +1,1 @@
+"""Design questions: what a designer asks of a whole design, not of one crank angle."""

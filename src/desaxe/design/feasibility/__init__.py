@@ -1,5 +1,0 @@
-"""Which designs can be assembled and turn.
-
-feasibility  one design, in plain Python
-arrays       many designs, in NumPy
-"""

@@ -1,0 +1,44 @@
+"""Checks of options, with errors that name the option, the value and the limit."""
+
+from math import isfinite
+from typing import Any
+
+from .shown import shown
+
+
+def whole_number(name: str, value: Any, least: int, most: int) -> int:
+    """A whole number within limits; a NumPy integer is one, a boolean is none."""
+    whole = hasattr(value, "__index__") and getattr(value, "shape", ()) == () and not isinstance(value, bool)
+    if not whole or not least <= int(value) <= most:
+        raise ValueError(f"{name} = {shown(value)}: a whole number, at least {least} and at most {most}")
+    return int(value)
+
+
+def finite_number(name: str, value: Any, unit: str = "") -> float:
+    """A finite real number as a float."""
+    number = real_number(name, value)
+    if not isfinite(number):
+        raise ValueError(f"{name} = {shown(value)}{unit}: it must be a finite number")
+    return number
+
+
+def real_number(name: str, value: Any) -> float:
+    """A real number as a float, which may be inf or NaN; no text, no boolean, no array."""
+    kind = getattr(getattr(value, "dtype", None), "kind", "f")
+    plain = isinstance(value, (int, float)) or hasattr(value, "dtype")
+    if isinstance(value, bool) or not plain or kind not in "fiu" or getattr(value, "shape", ()) != ():
+        raise TypeError(f"{name} = {shown(value)}: a number is wanted")
+    try:
+        return float(value)
+    except OverflowError:
+        raise ValueError(f"{name} = {shown(value)}: it is beyond the largest double, 1.8e308") from None
+
+
+def time_limit(value: Any) -> float | None:
+    """A number of seconds above 0, or None for no limit."""
+    if value is None:
+        return None
+    seconds = real_number("timeout", value)
+    if not seconds > 0.0:
+        raise ValueError(f"timeout = {shown(value)}: a number of seconds above 0, or None for no limit")
+    return seconds

@@ -1,0 +1,67 @@
+"""Work that an interrupt must not cut in half: imports and compilations.
+
+A package that was imported halfway cannot be imported again, and a compiler that was stopped halfway leaves
+its tables inconsistent: the next call in the same process would fail. Imports are short: they put an
+interrupt off until they are done. Compilations are long: they run in a thread of their own, which interrupts
+do not reach, so that the caller stops at once and the work is finished behind it.
+"""
+
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from importlib import import_module
+from typing import Any, TypeVar
+
+T = TypeVar("T")
+
+
+def _is_main() -> bool:
+    return threading.current_thread() is threading.main_thread()
+
+
+@contextmanager
+def put_off() -> Iterator[None]:
+    """Put an interrupt (SIGINT) off until the block is done. Only the main thread is ever interrupted."""
+    if not _is_main() or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+        yield
+        return
+    came: list[int] = []
+    signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    if came:
+        raise KeyboardInterrupt
+
+
+def import_whole(name: str) -> None:
+    """Import a module, if it is not there yet, before an interrupt is heard."""
+    if name not in sys.modules:
+        with put_off():
+            import_module(name)
+
+
+def finished(work: Callable[[], T]) -> T:
+    """The answer of some work that is finished even if its caller is interrupted meanwhile."""
+    if not _is_main():
+        return work()
+    answer: list[Any] = []
+    error: list[BaseException] = []
+
+    def run() -> None:
+        try:
+            answer.append(work())
+        except BaseException as raised:
+            error.append(raised)
+
+    thread = threading.Thread(target=run, name="desaxe-work")
+    with put_off():
+        thread.start()
+    thread.join()
+    if error:
+        raise error[0]
+    found: T = answer[0]
+    return found

@@ -1,0 +1,22 @@
+"""A value in a message: short, whatever somebody gave."""
+
+from typing import Any
+
+LONGEST = 80
+
+
+def shown(value: Any) -> str:
+    """The value as Python writes it, cut in the middle where it is long."""
+    if isinstance(value, int) and abs(value) >= 10**LONGEST:  # Python refuses to write the longest ones
+        return f"a whole number of {value.bit_length()} bits"
+    try:
+        text = repr(value[: 2 * LONGEST] + value[-LONGEST:]) if _is_long(value) else repr(value)
+    except Exception:  # of a class that is not ours
+        text = f"a value of type {type(value).__name__}"
+    text = " ".join(text.split())
+    half = LONGEST // 2
+    return text if len(text) <= LONGEST else f"{text[:half]} ... {text[-half:]}"
+
+
+def _is_long(value: Any) -> bool:
+    return isinstance(value, (str, bytes, list, tuple)) and len(value) > 3 * LONGEST
