@@ -89,7 +89,7 @@ def _measure(options: argparse.Namespace) -> None:
         from .measure import FULL, QUICK, measure
     except ModuleNotFoundError as missing:
         raise SystemExit(f"the benchmarks need {missing.name}: python -m pip install -e '.[dev]'") from None
-    from desaxe._scene.progress import progress_bar
+    from desaxe.support.progress import progress_bar
 
     from .report import terminal
 
@@ -109,7 +109,7 @@ def _measure(options: argparse.Namespace) -> None:
 
 def _write(data: "Data") -> None:
     """The page, its pictures, README's table."""
-    from desaxe.plot.files import save
+    from desaxe.plot.save import save
 
     from .picture import errors_over_time, time_over_points
     from .report import GROWTH_PICTURE, PICTURE, page, with_table

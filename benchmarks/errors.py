@@ -8,8 +8,8 @@ from collections.abc import Iterable
 from desaxe.audit.contenders import INPUTS, NAMES, Run
 from desaxe.audit.contenders import Contender as Judged
 from desaxe.audit.errors import ULPS, Case, Judge, Statistics
-from desaxe.audit.families import points
-from desaxe.audit.truth import conditions, truth_all
+from desaxe.oracle.families import points
+from desaxe.oracle.truth import conditions, truth_all
 
 from .contenders import Contender
 from .race import Racer

@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 
 import llvmlite.binding
 
-from desaxe._point import cut
-from desaxe._program import Form
-from desaxe._scene.progress import Progress, Steps
 from desaxe.compiler.cost import cost_of
+from desaxe.mechanism.program import Form
+from desaxe.runtime.specialise import cut
+from desaxe.support.progress import Progress, Steps
 
 from . import growth
 from .contenders import CONTENDERS, LIMITS, MACHINE

@@ -37,11 +37,11 @@ ROWS = {
     "of this, scipy.linalg": ("import numba, numpy", "import scipy.linalg"),
     "desaxe's modules for arrays": (
         "import numba, numpy",
-        "import desaxe as dx; dx.evaluate; import desaxe._arrays",
+        "import desaxe as dx; dx.evaluate; import desaxe.evaluation.arrays",
     ),
     "program, cut and passes": (
-        WORK + "import desaxe._arrays, numba",
-        "from desaxe import _kernels\n"
+        WORK + "import desaxe.evaluation.arrays, numba",
+        "from desaxe.runtime import kernels as _kernels\n"
         "kept = _kernels._load\n"
         "def load(key):\n"
         "    _kernels.source_of(key)\n"

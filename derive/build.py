@@ -5,11 +5,11 @@ from typing import NamedTuple
 import sympy as sp
 
 from desaxe.compiler.passes.double_angles import DoubleTrigonometry
-from desaxe.compiler.passes.number import number_values
 from desaxe.compiler.passes.slicing import drop_unused
 from desaxe.compiler.passes.trigonometry import Trigonometry
+from desaxe.compiler.passes.value_numbering import number_values
 from desaxe.compiler.program import Program, validate
-from desaxe.names import CENTRES, LOADS, PARAMETERS, parts, sensitivity
+from desaxe.mechanism.names import CENTRES, LOADS, PARAMETERS, parts, sensitivity
 
 from .dynamics import FORCES, LUMPS, centres_sheet
 from .freeze import freeze

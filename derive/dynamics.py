@@ -13,7 +13,7 @@ which has N0's sign; none above (the friction jams) and two below.
 
 import sympy as sp
 
-from desaxe.names import CENTRES, PARAMETERS, parts, sensitivity
+from desaxe.mechanism.names import CENTRES, PARAMETERS, parts, sensitivity
 
 from . import bodies
 from .loop import AB, BC, branch, ec

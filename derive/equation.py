@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from desaxe.names import LOADS, PARAMETERS, parts
+from desaxe.mechanism.names import LOADS, PARAMETERS, parts
 
 from . import bodies
 from .dynamics import FORCES, LUMPS, mu
@@ -52,7 +52,7 @@ def equation(name: str) -> EquationText:
     omega^2 = omega0^2 + 2 alpha theta; the LaTeX writes omega for it. `steps` are the lines that are
     computed. Raises ValueError for an unknown name.
     """
-    from desaxe.catalogue import quantity
+    from desaxe.mechanism.catalogue import quantity
 
     known = quantity(name)
     if name in ("status", "margin"):
@@ -174,8 +174,8 @@ def _status() -> sp.Expr:
 
 def _steps(name: str) -> tuple[str, ...]:
     """The lines of the frozen program that compute it."""
-    from desaxe._program import program_of
     from desaxe.compiler.text import with_short_temporaries, write_lines
+    from desaxe.mechanism.program import program_of
 
     return tuple(write_lines(with_short_temporaries(program_of((name,)))))
 

@@ -6,7 +6,7 @@ Y = AB cos(theta) + branch S is the solved loop. Lengths are differentiated firs
 
 import sympy as sp
 
-from desaxe.names import parts
+from desaxe.mechanism.names import parts
 
 from .folded import slider_rate
 from .loop import AB, BC, ec, slider, solved

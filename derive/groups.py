@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from desaxe.names import PARAMETERS, sensitivity
+from desaxe.mechanism.names import PARAMETERS, sensitivity
 
 from .quantities import SECOND_ORDER
 

@@ -14,7 +14,7 @@ from itertools import combinations_with_replacement
 
 import sympy as sp
 
-from desaxe.names import sensitivity
+from desaxe.mechanism.names import sensitivity
 
 from .loop import theta
 from .sheet import Sheet, symbol

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import sympy as sp
 
 from desaxe.compiler.program import Note
-from desaxe.names import sensitivity
+from desaxe.mechanism.names import sensitivity
 
 from .units import Unit, unit_text
 

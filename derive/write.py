@@ -16,20 +16,20 @@ import sympy
 
 from desaxe import compiler
 from desaxe.compiler.cost import cost_of
-from desaxe.compiler.emit_numba import emit_numba_with_front
 from desaxe.compiler.kernel import hoist
+from desaxe.compiler.languages.numba.module import emit_numba_with_front
 from desaxe.compiler.operations import HELPERS, MATH_NAMES
 from desaxe.compiler.passes.double_angles import DoubleTrigonometry
 from desaxe.compiler.passes.fuse import fuse_products
 from desaxe.compiler.passes.guard import guard_inputs
-from desaxe.compiler.passes.number import number_values
 from desaxe.compiler.passes.pipeline import optimise
 from desaxe.compiler.passes.slicing import keep_outputs
 from desaxe.compiler.passes.trigonometry import Trigonometry, expand_trigonometry
+from desaxe.compiler.passes.value_numbering import number_values
 from desaxe.compiler.program import Program, renamed
 from desaxe.compiler.text import write_function
-from desaxe.inputs import LEAST
-from desaxe.names import CENTRES, LOADS
+from desaxe.mechanism.inputs import LEAST
+from desaxe.mechanism.names import CENTRES, LOADS
 from desaxe.support.files import staging, swap_in
 from desaxe.support.locks import locked
 
@@ -38,7 +38,7 @@ from .groups import GROUPS, Group
 
 COMMAND = "python -m derive"
 HERE = Path(__file__).resolve().parent
-LIBRARY = ("inputs.py", "names.py")  # what the derivation uses of the library besides its compiler
+LIBRARY = ("mechanism/inputs.py", "mechanism/names.py")  # what the derivation uses besides the compiler
 
 
 def inputs_digest() -> str:

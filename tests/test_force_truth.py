@@ -10,7 +10,7 @@ import math
 import mpmath
 import pytest
 
-from desaxe.audit.force_truth import (
+from desaxe.oracle.force_truth import (
     FORCES,
     MASSES,
     OTHERS,
@@ -24,8 +24,8 @@ from desaxe.audit.force_truth import (
     truth,
     truth_all,
 )
-from desaxe.audit.truth import LAW, QUANTITIES
-from desaxe.audit.truth import truth as kinematic_truth
+from desaxe.oracle.truth import LAW, QUANTITIES
+from desaxe.oracle.truth import truth as kinematic_truth
 
 BODIES = {"m_crank": 1.5, "m_rod": 0.75, "m_slider": 2.25, "I_crank": 0.03125, "I_rod": 0.0625}
 LOADS = {"F_X": 30.0, "F_Y": -45.0, "g_X": 1.25, "g_Y": -9.75}

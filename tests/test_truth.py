@@ -6,7 +6,7 @@ import math
 import mpmath
 import pytest
 
-from desaxe.audit.truth import (
+from desaxe.oracle.truth import (
     LAW,
     QUANTITIES,
     SECOND_ORDER,

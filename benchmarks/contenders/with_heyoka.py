@@ -10,7 +10,7 @@ from typing import Any
 import heyoka
 import numpy as np
 
-from desaxe.names import parts
+from desaxe.mechanism.names import parts
 
 from ..blocks import filled, peaks
 from ..formulas import forms

@@ -11,12 +11,12 @@ from typing import Any
 import numba
 import numpy as np
 
-from desaxe._constants import constants
-from desaxe.compiler.emit_numba import emit_numba
 from desaxe.compiler.kernel import tabulate
-from desaxe.compiler.passes.number import number_values
+from desaxe.compiler.languages.numba.module import emit_numba
 from desaxe.compiler.passes.trigonometry import expand_trigonometry
+from desaxe.compiler.passes.value_numbering import number_values
 from desaxe.compiler.text import read_function
+from desaxe.mechanism.constants import constants
 
 from ..work import TURNS, Array, Inputs, Work
 from . import Run

@@ -10,12 +10,12 @@ from matplotlib.mathtext import math_to_image
 from sympy import cos, latex, sin
 
 import desaxe as dx
-from desaxe._program import Form, program_of
 from desaxe.compiler.text import with_short_temporaries, write_lines
 from desaxe.derive import loop, stable
 from desaxe.derive.dynamics import define_dynamics
 from desaxe.derive.equation import LATEX_NAMES, latex_name
 from desaxe.derive.sheet import Sheet
+from desaxe.mechanism.program import Form, program_of
 
 # What symbols that are no quantities are called.
 NAMES = {

@@ -5,17 +5,17 @@ import re
 from html import escape
 
 import desaxe as dx
-from desaxe._explain.plan import Plan
-from desaxe._quality import Quality
-from desaxe._scene import schema
-from desaxe._scene.model import Scene, SceneResult
-from desaxe._scene.read import SECTIONS
-from desaxe._simulate.result import Event, Simulation
-from desaxe.catalogue import Quantity
-from desaxe.catalogue import quantities as catalogue
 from desaxe.derive.equation import EquationText
-from desaxe.inputs import INPUTS
-from desaxe.names import parts
+from desaxe.evaluation.quality import Quality
+from desaxe.mechanism.catalogue import Quantity
+from desaxe.mechanism.catalogue import quantities as catalogue
+from desaxe.mechanism.inputs import INPUTS
+from desaxe.mechanism.names import parts
+from desaxe.scenes import schema
+from desaxe.scenes.explain.explain import Plan
+from desaxe.scenes.read import SECTIONS
+from desaxe.scenes.scene import Scene, SceneResult
+from desaxe.simulation.result import Event, Simulation
 
 # What the functions give, where it is not a float, an array, a plain dict or a Dataset.
 RETURNED = (Quality, Quantity, EquationText, Simulation, Event, Scene, SceneResult, Plan)

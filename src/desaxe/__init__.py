@@ -12,56 +12,56 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from . import plot as plot
-    from ._compile import compile as compile
-    from ._design.counterweight import counterweight as counterweight
-    from ._design.design_map import design_map as design_map
-    from ._design.events import events as events
-    from ._design.flywheel import flywheel as flywheel
-    from ._design.harmonics import harmonics as harmonics
-    from ._design.optimize import optimize as optimize
-    from ._design.synthesize import synthesize as synthesize
-    from ._design.tolerance import tolerance as tolerance
-    from ._enclose import enclose as enclose
-    from ._evaluate import evaluate as evaluate
-    from ._explain import explain as explain
-    from ._explore import explore as explore
-    from ._feasibility import feasibility as feasibility
-    from ._grid import grid as grid
-    from ._inverse import inverse as inverse
-    from ._peak import peak as peak
-    from ._scene import scene as scene
-    from ._simulate import simulate as simulate
-    from .catalogue import quantities as quantities
+    from .design.design_map import design_map as design_map
     from .design.drive.drive import drive as drive
+    from .design.events.events import events as events
+    from .design.feasibility.feasibility import feasibility as feasibility
+    from .design.inverse import inverse as inverse
+    from .design.optimisation.optimize import optimize as optimize
+    from .design.synthesis.synthesize import synthesize as synthesize
+    from .design.tolerance.tolerance import tolerance as tolerance
+    from .design.turn.counterweight import counterweight as counterweight
+    from .design.turn.flywheel import flywheel as flywheel
+    from .design.turn.harmonics import harmonics as harmonics
+    from .enclosure.enclose import enclose as enclose
+    from .evaluation.evaluate import evaluate as evaluate
+    from .evaluation.grid import grid as grid
+    from .mechanism.catalogue import quantities as quantities
+    from .peaks.peak import peak as peak
+    from .scenes.explain.explain import explain as explain
+    from .scenes.explorer.explore import explore as explore
+    from .scenes.export.compile import compile as compile
+    from .scenes.scene import scene as scene
+    from .simulation.simulate import simulate as simulate
     from .sweeps.sweep import sweep as sweep
 
-# Public name -> the room it lives in; `equation` is SymPy's and comes with the extra `derive`.
-_ROOMS = {
-    "evaluate": "desaxe._evaluate",
-    "grid": "desaxe._grid",
-    "peak": "desaxe._peak",
-    "inverse": "desaxe._inverse",
-    "enclose": "desaxe._enclose",
-    "design_map": "desaxe._design.design_map",
-    "events": "desaxe._design.events",
-    "optimize": "desaxe._design.optimize",
-    "synthesize": "desaxe._design.synthesize",
-    "tolerance": "desaxe._design.tolerance",
-    "harmonics": "desaxe._design.harmonics",
-    "counterweight": "desaxe._design.counterweight",
-    "flywheel": "desaxe._design.flywheel",
+# Public name -> its module; `equation` is SymPy's and comes with the extra `derive`.
+PUBLIC = {
+    "evaluate": "desaxe.evaluation.evaluate",
+    "grid": "desaxe.evaluation.grid",
+    "peak": "desaxe.peaks.peak",
+    "inverse": "desaxe.design.inverse",
+    "enclose": "desaxe.enclosure.enclose",
+    "design_map": "desaxe.design.design_map",
+    "events": "desaxe.design.events.events",
+    "optimize": "desaxe.design.optimisation.optimize",
+    "synthesize": "desaxe.design.synthesis.synthesize",
+    "tolerance": "desaxe.design.tolerance.tolerance",
+    "harmonics": "desaxe.design.turn.harmonics",
+    "counterweight": "desaxe.design.turn.counterweight",
+    "flywheel": "desaxe.design.turn.flywheel",
     "drive": "desaxe.design.drive.drive",
-    "explore": "desaxe._explore",
-    "feasibility": "desaxe._feasibility",
-    "scene": "desaxe._scene",
-    "explain": "desaxe._explain",
-    "compile": "desaxe._compile",
-    "simulate": "desaxe._simulate",
+    "explore": "desaxe.scenes.explorer.explore",
+    "feasibility": "desaxe.design.feasibility.feasibility",
+    "scene": "desaxe.scenes.scene",
+    "explain": "desaxe.scenes.explain.explain",
+    "compile": "desaxe.scenes.export.compile",
+    "simulate": "desaxe.simulation.simulate",
     "sweep": "desaxe.sweeps.sweep",
-    "quantities": "desaxe.catalogue",
+    "quantities": "desaxe.mechanism.catalogue",
     "equation": "desaxe.derive.equation",
 }
-_MODULES = ("plot",)
+MODULES = {"plot": "desaxe.plot", "units": "desaxe.mechanism.units"}
 
 __all__ = [
     "compile",
@@ -102,14 +102,14 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version
 
         return version("desaxe")
-    if name in _MODULES:
-        return import_module(f"{__name__}.{name}")
-    if name not in _ROOMS:
+    if name in MODULES:
+        return import_module(MODULES[name])
+    if name not in PUBLIC:
         raise AttributeError(f"module 'desaxe' has no attribute {name!r}")
-    from .extras import needed
+    from .support.extras import needed
 
     with needed(name):
-        value = getattr(import_module(_ROOMS[name]), name)
+        value = getattr(import_module(PUBLIC[name]), name)
     globals()[name] = value
     return value
 

@@ -1,8 +1,7 @@
-"""`python -m desaxe`: the same as the command `desaxe`."""
+"""`python -m desaxe`: the command `desaxe`."""
 
 import sys
 
-from .cli import main
+from .cli.command import main
 
-if __name__ == "__main__":
-    sys.exit(main())
+sys.exit(main())

@@ -9,7 +9,7 @@ import pytest
 
 from benchmarks.contenders import CONTENDERS, MACHINE
 from benchmarks.work import BY_KEY, LIMITS, OMEGA0, PARAMETERS, WORKS
-from desaxe.audit.truth import truth
+from desaxe.oracle.truth import truth
 
 HERE = [one for one in CONTENDERS if one.is_here]
 COUNTS = {"sweep": 9, "sweeps": 4 * 720, "grid": 40_000, "grid_out": 40_000, "peak": 3}

@@ -6,7 +6,7 @@ import subprocess
 
 from playwright._impl._driver import compute_driver_executable
 
-from desaxe.compiler.emit_javascript import HEADER, emit_javascript
+from desaxe.compiler.languages.javascript import HEADER, emit_javascript
 
 # NaN, infinities and the sign of a zero have no place in JSON: they travel as text.
 RUN = """

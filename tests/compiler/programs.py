@@ -12,11 +12,11 @@ from typing import Any
 import mpmath
 from hypothesis import strategies as st
 
-from desaxe._program import program_of
 from desaxe.compiler.interpret import run_exactly, run_in_doubles
 from desaxe.compiler.operations import OPERATIONS, result_type
 from desaxe.compiler.passes.slicing import drop_unused
 from desaxe.compiler.program import Argument, Line, Note, Program, names_in, type_of, validate
+from desaxe.mechanism.program import program_of
 
 INPUTS = ("x", "y", "z")
 SIMPLE = (0.0, 1.0, -1.0, 2.0, -2.5, 0.5)

@@ -4,10 +4,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from desaxe._program import Form, program_of
 from desaxe.compiler.passes.bind import assume, bind_constants, overlay
 from desaxe.compiler.passes.slicing import keep_outputs
 from desaxe.compiler.program import Line, Note, Program, validate
+from desaxe.mechanism.program import Form, program_of
 from tests.compiler.programs import POINT, committed, exactly, points, programs, same
 
 PROGRAM = Program(("x", "y"), (Line("u", "add", ("x", "y")), Line("v", "mul", ("u", "x"))), ("v",), {})

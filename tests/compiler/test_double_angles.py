@@ -7,10 +7,10 @@ from functools import cache
 import mpmath
 import pytest
 
-from desaxe._constants import double_constants
 from desaxe.compiler.passes.double_angles import turned
 from desaxe.compiler.passes.expansions import Expansions, Pair
 from desaxe.compiler.program import Program
+from desaxe.mechanism.constants import double_constants
 from tests.compiler.programs import in_doubles
 
 QUARTER = math.pi / 2

@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from desaxe._constants import double_constants
-from desaxe.audit.truth import ulp_error
 from desaxe.compiler.passes import double_double
 from desaxe.compiler.passes.double_double import double_digits
 from desaxe.compiler.passes.fold import fold_constants
 from desaxe.compiler.program import Line, Program, validate
+from desaxe.mechanism.constants import double_constants
+from desaxe.oracle.truth import ulp_error
 from tests.compiler.coverage_set import POINTS, coverage
 from tests.compiler.programs import in_doubles
 

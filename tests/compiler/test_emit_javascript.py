@@ -7,10 +7,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from desaxe.catalogue import quantities
-from desaxe.compiler.emit_javascript import emit_javascript
+from desaxe.compiler.languages.javascript import emit_javascript
 from desaxe.compiler.operations import HELPERS, JAVASCRIPT_HELPERS
 from desaxe.compiler.program import Line, Note, Program
+from desaxe.mechanism.catalogue import quantities
 from tests.compiler.coverage_set import NAMES, POINTS, coverage
 from tests.compiler.javascript import in_javascript
 from tests.compiler.programs import (

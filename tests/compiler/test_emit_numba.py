@@ -10,13 +10,13 @@ import mpmath
 import numpy as np
 import pytest
 
-from desaxe._constants import constants
-from desaxe.compiler.emit_numba import emit_numba
 from desaxe.compiler.kernel import hoist
+from desaxe.compiler.languages.numba.module import emit_numba
 from desaxe.compiler.passes.guard import guard_inputs
 from desaxe.compiler.passes.trigonometry import expand_trigonometry
 from desaxe.compiler.program import Line, Program
-from desaxe.inputs import INPUTS, LEAST
+from desaxe.mechanism.constants import constants
+from desaxe.mechanism.inputs import INPUTS, LEAST
 from tests.compiler.coverage_set import NAMES, POINTS, coverage
 from tests.compiler.programs import committed, exactly, in_doubles, program_of_nested
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from desaxe.compiler.emit_python import compile_python, emit_python
+from desaxe.compiler.languages.python import compile_python, emit_python
 from desaxe.compiler.operations import HELPERS
 from desaxe.compiler.program import Line, Program
 from tests.compiler.coverage_set import NAMES, POINTS, coverage

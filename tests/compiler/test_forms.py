@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from desaxe.compiler.emit_close import BIGGEST, block_of, is_mixed
-from desaxe.compiler.emit_numba import emit_numba
 from desaxe.compiler.forms import in_two_forms, parted
 from desaxe.compiler.kernel import hoist, tabulate
+from desaxe.compiler.languages.numba.module import emit_numba
+from desaxe.compiler.languages.numba.two_forms import BIGGEST, block_of, is_mixed
 from desaxe.compiler.program import Line, Program, validate
 
 # The forms differ on purpose, so that a result tells which one it is from.

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from desaxe.compiler.passes.guard import BAD_INPUT, guard_inputs
 from desaxe.compiler.passes.slicing import keep_outputs
 from desaxe.compiler.program import Line, Program, validate
-from desaxe.inputs import INPUTS, LEAST
+from desaxe.mechanism.inputs import INPUTS, LEAST
 from tests.compiler.programs import (
     POINT,
     committed,

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from desaxe.audit.truth import relative_error, truth
 from desaxe.compiler.interpret import run_exactly, run_in_doubles
 from desaxe.compiler.program import Line, Program
+from desaxe.oracle.truth import relative_error, truth
 from tests.compiler.programs import INPUTS, POINT, committed, exactly, in_doubles, program_of_nested, programs
 
 ANY = st.floats(allow_nan=True, allow_infinity=True)

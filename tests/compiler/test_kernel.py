@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from desaxe.compiler.emit_numba import emit_numba
 from desaxe.compiler.kernel import hoist, level_program, tabulate
+from desaxe.compiler.languages.numba.module import emit_numba
 from desaxe.compiler.passes.pipeline import optimise
 from desaxe.compiler.program import Line, Note, Program, names_in
 from tests.compiler.programs import INPUTS, committed, depends_on, programs

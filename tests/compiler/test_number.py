@@ -2,7 +2,7 @@
 
 from hypothesis import given, settings
 
-from desaxe.compiler.passes.number import number_values
+from desaxe.compiler.passes.value_numbering import number_values
 from desaxe.compiler.program import Line, Note, Program, validate
 from tests.compiler.programs import (
     POINT,

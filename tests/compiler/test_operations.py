@@ -11,12 +11,12 @@ import mpmath
 import numpy as np
 import pytest
 
-from desaxe.audit.truth import ulp_error
-from desaxe.compiler.emit_numba import emit_numba
 from desaxe.compiler.interpret import ieee
 from desaxe.compiler.kernel import hoist
+from desaxe.compiler.languages.numba.module import emit_numba
 from desaxe.compiler.operations import HELPERS, MATH_NAMES, OPERATIONS, result_type
 from desaxe.compiler.program import Line, Program
+from desaxe.oracle.truth import ulp_error
 from tests.compiler.programs import same_bits
 
 TINY, LEAST, MOST = 5e-324, 2.2250738585072014e-308, 1.7976931348623157e308

@@ -3,10 +3,10 @@
 import pytest
 from hypothesis import assume, given, settings
 
-from desaxe._program import Form, program_of
 from desaxe.compiler.cost import cost_of
 from desaxe.compiler.passes.pipeline import PASSES, optimise
 from desaxe.compiler.program import validate
+from desaxe.mechanism.program import Form, program_of
 from tests.compiler.programs import (
     NO_JUMPS,
     POINT,

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from desaxe.compiler.kernel import tabulate
+from desaxe.compiler.languages.numba.reductions import KINDS, LONGEST, SCRATCH, emit_reduced, outputs_of
 from desaxe.compiler.program import Line, Note, Program
-from desaxe.compiler.reductions import KINDS, LONGEST, SCRATCH, emit_reduced, outputs_of
 from desaxe.runtime.modules import native_here
 
 # f = a x + b: over a, b (designs) and x (reduced).

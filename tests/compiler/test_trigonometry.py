@@ -6,12 +6,12 @@ import random
 import mpmath
 import pytest
 
-from desaxe._constants import constants
-from desaxe.audit.truth import ulp_error
-from desaxe.compiler.emit_python import compile_python
-from desaxe.compiler.passes.number import number_values
+from desaxe.compiler.languages.python import compile_python
 from desaxe.compiler.passes.trigonometry import expand_trigonometry
+from desaxe.compiler.passes.value_numbering import number_values
 from desaxe.compiler.program import Line, Program, validate
+from desaxe.mechanism.constants import constants
+from desaxe.oracle.truth import ulp_error
 from tests.compiler.coverage_set import POINTS, coverage
 from tests.compiler.programs import POINT, committed, in_doubles
 

@@ -4,8 +4,6 @@ import math
 
 import pytest
 
-from desaxe.audit.force_truth import force_names
-from desaxe.audit.truth import all_names
 from desaxe.compiler.interpret import run_in_doubles
 from desaxe.compiler.program import validate
 from desaxe.derive import bodies
@@ -13,7 +11,9 @@ from desaxe.derive.build import INPUTS, public_names
 from desaxe.derive.dynamics import FORCES
 from desaxe.derive.quantities import FACTS, KINEMATICS, SECOND_ORDER
 from desaxe.generated.index import NAMES
-from desaxe.names import LOADS, PARAMETERS
+from desaxe.mechanism.names import LOADS, PARAMETERS
+from desaxe.oracle.force_truth import force_names
+from desaxe.oracle.truth import all_names
 from tests.compiler.programs import LINKS, POINT
 from tests.compiler.programs import LOADS as LOADED
 from tests.derive.derived import derivation

@@ -5,8 +5,8 @@ import math
 import mpmath
 import pytest
 
-from desaxe._constants import constants, double_constants, single_constants
 from desaxe.derive.polynomials import double_trigonometry, single_trigonometry, trigonometry
+from desaxe.mechanism.constants import constants, double_constants, single_constants
 
 HALF_BIT = 2.0**-53
 ANGLES = [math.pi / 4 * k / 200 for k in range(1, 201)]

@@ -5,7 +5,7 @@ import sympy as sp
 
 from desaxe.derive.sheet import Equation, Sheet, symbol
 from desaxe.derive.units import LENGTH, Unit
-from desaxe.names import PARAMETERS, sensitivity
+from desaxe.mechanism.names import PARAMETERS, sensitivity
 
 theta, ec, AB = map(symbol, ("theta", "ec", "AB"))
 a, b, c = map(symbol, "abc")

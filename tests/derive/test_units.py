@@ -6,7 +6,6 @@ from functools import cache
 
 import pytest
 
-from desaxe._program import _text
 from desaxe.compiler.interpret import run_in_doubles
 from desaxe.derive.units import (
     ANGLE,
@@ -20,6 +19,7 @@ from desaxe.derive.units import (
     Unit,
     unit_text,
 )
+from desaxe.mechanism.program import _text
 
 POINT = {"theta": 1.1, "ec": 0.02, "AB": 0.125, "BC": 0.35, "omega0": 157.0, "alpha": -3.0, "branch": 1.0}
 POINT |= {"m_crank": 1.5, "m_rod": 0.7, "m_slider": 0.9, "I_crank": 0.02, "I_rod": 0.01, "mu": 0.2}

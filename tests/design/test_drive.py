@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.audit.force_truth import truth
+from desaxe.oracle.force_truth import truth
 
 PRESS = {
     "ec": 0.01, "AB": 0.05, "BC": 0.2, "omega0": 40.0, "m_slider": 2.0, "m_rod": 1.0, "I_rod": 0.003,

@@ -7,7 +7,7 @@ import random
 import pytest
 
 import desaxe as dx
-from desaxe.audit.force_truth import OTHERS, conditions
+from desaxe.oracle.force_truth import OTHERS, conditions
 from tests.library.points import draw
 
 BOUND = 1e-13

@@ -11,8 +11,8 @@ from desaxe.derive.groups import GROUPS
 from desaxe.generated.program import law
 
 import desaxe as dx
-from desaxe._constants import constants
-from desaxe._program import _text
+from desaxe.mechanism.constants import constants
+from desaxe.mechanism.program import _text
 from tests.compiler.programs import LINKS, LOADS
 
 NAMES = [group.name for group in GROUPS]

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe._accuracy import ACCURACIES, BOUNDS, accuracy_of
-from desaxe.audit import force_truth
-from desaxe.audit.families import FAMILIES, Rng, points
-from desaxe.audit.truth import LAW, all_names, conditions, relative_error, truth_all, ulp_error
+from desaxe.oracle import force_truth
+from desaxe.oracle.families import FAMILIES, Rng, points
+from desaxe.oracle.truth import LAW, all_names, conditions, relative_error, truth_all, ulp_error
+from desaxe.runtime.accuracy import ACCURACIES, BOUNDS, accuracy_of
 from tests.library.points import draw
 from tests.library.test_stress import bodies
 

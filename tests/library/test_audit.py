@@ -12,11 +12,11 @@ from desaxe.audit import contenders as contenders_module
 from desaxe.audit.command import text, write
 from desaxe.audit.contenders import INPUTS, NAMES, contenders
 from desaxe.audit.errors import TOP, ULPS, Judge, Statistics, cases
-from desaxe.audit.families import FAMILIES, points
 from desaxe.audit.report import beaten_by, measures, number, report, table
 from desaxe.audit.run import GENERIC, QUICK, Audit, audit
 from desaxe.audit.times import times
 from desaxe.cli import main
+from desaxe.oracle.families import FAMILIES, points
 
 ALWAYS = ("desaxe fast", "desaxe standard", "desaxe extended", "NumPy lambdify", "numba", "mpmath 50 digits")
 
@@ -91,7 +91,7 @@ def test_the_command(monkeypatch, capsys, tmp_path, found):
     ("module", "extra"), [("flint", "rigorous"), ("mpmath", "rigorous"), ("matplotlib.figure", "plot")]
 )
 def test_a_missing_extra_is_told(monkeypatch, capsys, module, extra):
-    for name in [name for name in sys.modules if name.startswith("desaxe.audit")]:
+    for name in [name for name in sys.modules if name.startswith(("desaxe.audit", "desaxe.oracle"))]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, module, None)
     assert main(["audit", "--quick", "-o", "nowhere"]) == 2

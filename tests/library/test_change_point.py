@@ -12,7 +12,7 @@ import mpmath
 import pytest
 
 import desaxe as dx
-from desaxe.audit.truth import LAW, all_names, conditions, truth, truth_all, ulp_error
+from desaxe.oracle.truth import LAW, all_names, conditions, truth, truth_all, ulp_error
 
 QUARTER = math.pi / 2
 NAMES = [

@@ -10,10 +10,9 @@ from pathlib import Path
 import pytest
 
 import desaxe as dx
-from desaxe import cli, doctor
-from desaxe._errata import markdown
-from desaxe.cli import main
-from desaxe.inputs import INPUTS
+from desaxe.cli import command, doctor, main
+from desaxe.errata.ledger import markdown
+from desaxe.mechanism.inputs import INPUTS
 
 COMPACTOR = str(Path(__file__).parents[2] / "examples" / "compactor.toml")
 POINT = ["theta=60deg", "ec=10mm", "AB=125mm", "BC=300mm", "omega0=1500rpm"]
@@ -295,7 +294,7 @@ def test_interruption_is_no_traceback(monkeypatch, capsys):
     def interrupted(words):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(cli, "_run", interrupted)
+    monkeypatch.setattr(command, "_run", interrupted)
     assert main(["doctor"]) == 130
     assert capsys.readouterr().err == "desaxe: interrupted\n"
 

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe import _few_points
-from desaxe._cache import locked
-from desaxe._compile import module_text
-from desaxe._scene import SceneError
+from desaxe.runtime import interpreted as _few_points
+from desaxe.runtime.cache import locked
+from desaxe.scenes.export.compile import module_text
+from desaxe.scenes.schema import SceneError
 from tests.library.scenes import COMPACTOR, SMALL
 
 TURN = {"start": 0, "stop": "360 deg", "num": 121}

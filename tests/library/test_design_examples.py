@@ -5,11 +5,20 @@ from importlib import import_module
 
 import pytest
 
-NAMES = ["events", "optimize", "synthesize", "tolerance", "harmonics", "counterweight", "flywheel"]
+MODULES = [
+    "feasibility.feasibility",
+    "events.events",
+    "optimisation.optimize",
+    "synthesis.synthesize",
+    "tolerance.tolerance",
+    "turn.harmonics",
+    "turn.counterweight",
+    "turn.flywheel",
+]
 
 
-@pytest.mark.parametrize("module", [*(f"_design.{name}" for name in NAMES), "_feasibility"])
+@pytest.mark.parametrize("module", MODULES)
 def test_examples(module):
-    found = doctest.testmod(import_module(f"desaxe.{module}"))
+    found = doctest.testmod(import_module(f"desaxe.design.{module}"))
     assert found.attempted >= 2
     assert not found.failed

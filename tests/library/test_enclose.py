@@ -16,14 +16,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import desaxe as dx
-from desaxe import _balls
-from desaxe._differentiate import RULES, with_derivatives
-from desaxe._point import cut
-from desaxe._program import LAW as LAW_FORM
-from desaxe.audit.force_truth import force_names, truth
-from desaxe.audit.truth import LAW, STATE, all_names
 from desaxe.compiler.operations import OPERATIONS
-from desaxe.extras import MissingExtraError
+from desaxe.compiler.passes.differentiate import RULES, with_derivatives
+from desaxe.enclosure import balls as _balls
+from desaxe.mechanism.program import LAW as LAW_FORM
+from desaxe.oracle.force_truth import force_names, truth
+from desaxe.oracle.truth import LAW, STATE, all_names
+from desaxe.runtime.specialise import cut
+from desaxe.support.extras import MissingExtraError
 from tests.library.points import draw
 from tests.library.test_force_values import bodies, points
 
@@ -448,7 +448,7 @@ def test_names_that_have_no_range():
 
 def test_without_the_extra(monkeypatch):
     monkeypatch.delitem(dx.__dict__, "enclose", raising=False)
-    for module in ("desaxe._enclose", "desaxe._balls"):
+    for module in ("desaxe.enclosure.enclose", "desaxe.enclosure.balls"):
         monkeypatch.delitem(sys.modules, module)
     monkeypatch.setitem(sys.modules, "flint", None)
     with pytest.raises(MissingExtraError, match=r"desaxe\[rigorous\]"):

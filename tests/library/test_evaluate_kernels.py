@@ -12,8 +12,11 @@ import pytest
 import xarray
 
 import desaxe as dx
-from desaxe import _arrays, _cache, _few_points, _kernels
-from desaxe._program import Form
+from desaxe.evaluation import arrays as _arrays
+from desaxe.mechanism.program import Form
+from desaxe.runtime import cache as _cache
+from desaxe.runtime import interpreted as _few_points
+from desaxe.runtime import kernels as _kernels
 from tests.library.ways import POINT, SIZES, close, columns, take_way
 
 # ---- both ways, threads, far angles, a state -----------------------------------------------------

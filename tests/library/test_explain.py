@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe import _few_points, _kernels
-from desaxe._kernels import kernel_of
-from desaxe._scene.kernels import grid_kernel
+from desaxe.runtime import interpreted as _few_points
+from desaxe.runtime import kernels as _kernels
+from desaxe.runtime.kernels import kernel_of
+from desaxe.scenes.kernel import grid_kernel
 from tests.library.scenes import COMPACTOR, SMALL
 
 TURN = {"start": 0, "stop": "360 deg", "num": 721}

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.audit.force_truth import (
+from desaxe.oracle.force_truth import (
     OTHERS,
     PARAMETERS,
     STATE_PARAMETERS,
@@ -20,7 +20,7 @@ from desaxe.audit.force_truth import (
     force_names,
     truth_all,
 )
-from desaxe.audit.truth import relative_error
+from desaxe.oracle.truth import relative_error
 from tests.library.points import draw
 
 PROMISE = 8 * 2.0**-52

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe import _few_points, _kernels
-from desaxe.compiler.reductions import LONGEST
+from desaxe.compiler.languages.numba.reductions import LONGEST
+from desaxe.runtime import interpreted as _few_points
+from desaxe.runtime import kernels as _kernels
 
 MACHINE = {"AB": 0.125, "omega0": 157.08}
 TURN = np.linspace(0.0, 2.0 * np.pi, 721)
@@ -114,7 +115,7 @@ def test_threads_change_nothing():
 
 
 def test_the_grid_is_never_stored(monkeypatch):
-    from desaxe import _grid
+    from desaxe.evaluation import grid as _grid
 
     monkeypatch.setattr(_few_points, "BREAK_EVEN", 0)
     monkeypatch.setattr(_grid, "_filled", lambda *_: pytest.fail("the whole grid was computed"))

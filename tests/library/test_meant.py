@@ -5,8 +5,8 @@ import inspect
 import pytest
 
 import desaxe as dx
-from desaxe._meant import WORDS, meant
-from desaxe.inputs import INPUTS
+from desaxe.mechanism.inputs import INPUTS
+from desaxe.mechanism.spelling import WORDS, meant
 
 SIZES = {"AB": 0.125, "BC": 0.35}
 RUN = {"torque": 1.0, "t_end": 1.0, "ec": 0.0, **SIZES}

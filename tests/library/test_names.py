@@ -3,8 +3,8 @@
 import pytest
 
 import desaxe as dx
-from desaxe.catalogue import has
-from desaxe.names import LOADS, ORDER, PARAMETERS, joined, parts, sensitivity
+from desaxe.mechanism.catalogue import has
+from desaxe.mechanism.names import LOADS, ORDER, PARAMETERS, joined, parts, sensitivity
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe._peaks import module
-from desaxe.audit.truth import truth
+from desaxe.oracle.truth import truth
+from desaxe.peaks import compiled as module
 
 OMEGA = 157.08
 MACHINE = {"AB": 0.125, "BC": 0.35, "omega0": OMEGA}

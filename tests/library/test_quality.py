@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe import cli
-from desaxe.audit.force_truth import FORCES, OTHERS
-from desaxe.audit.force_truth import conditions as force_conditions
-from desaxe.audit.force_truth import truth as force_truth
-from desaxe.audit.truth import LAW, QUANTITIES, SECOND_ORDER, STATE, conditions, truth
+from desaxe.cli import main as cli
+from desaxe.oracle.force_truth import FORCES, OTHERS
+from desaxe.oracle.force_truth import conditions as force_conditions
+from desaxe.oracle.force_truth import truth as force_truth
+from desaxe.oracle.truth import LAW, QUANTITIES, SECOND_ORDER, STATE, conditions, truth
 from tests.library.points import draw
 from tests.library.test_force_values import points
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe import _few_points
-from desaxe._point import cut, plain_form
-from desaxe._request import request
+from desaxe.runtime import interpreted as _few_points
+from desaxe.runtime.request import request
+from desaxe.runtime.specialise import cut, plain_form
 from tests.library.test_stress import NAMES, compiled, is_kept
 from tests.library.ways import take_way
 

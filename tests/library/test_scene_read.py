@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe._quantity_text import quantity_text
-from desaxe._scene.printed import read_percentage, read_printed
-from desaxe._scene.schema import SceneError
+from desaxe.scenes.printed import read_percentage, read_printed
+from desaxe.scenes.schema import SceneError
+from desaxe.support.quantity_text import quantity_text
 from tests.library.scenes import COMPACTOR, SMALL, changed
 
 # ---- mistakes ------------------------------------------------------------------------------------

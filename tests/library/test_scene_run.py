@@ -12,8 +12,8 @@ import pytest
 import xarray
 
 import desaxe as dx
-from desaxe._scene import run as scene_run
-from desaxe._scene.progress import progress_bar
+from desaxe.scenes import run as scene_run
+from desaxe.support.progress import progress_bar
 from tests.library.scenes import COMPACTOR, SMALL, changed
 
 

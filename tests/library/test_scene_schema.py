@@ -7,10 +7,11 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from desaxe._scene import SceneError, scene
-from desaxe._scene.json_schema import json_schema, json_schema_text
 from desaxe.cli import main
-from desaxe.inputs import INPUTS
+from desaxe.mechanism.inputs import INPUTS
+from desaxe.scenes.json_schema import json_schema, json_schema_text
+from desaxe.scenes.scene import scene
+from desaxe.scenes.schema import SceneError
 from tests.library.scenes import SMALL, changed
 
 ROOT = Path(__file__).parents[2]

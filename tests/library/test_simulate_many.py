@@ -11,10 +11,10 @@ import pytest
 from scipy.integrate import DOP853
 
 import desaxe as dx
-from desaxe._program import Form
-from desaxe._simulate import compiled
-from desaxe._simulate.chart import EDGE
-from desaxe._simulate.module import Family, source_of
+from desaxe.mechanism.program import Form
+from desaxe.simulation import dop853 as compiled
+from desaxe.simulation.compiled import Family, source_of
+from desaxe.simulation.coordinate import EDGE
 from tests.library.motions import true_end
 from tests.library.test_simulate import CRANK, LOADED, PRESS, ROCKER
 

@@ -16,9 +16,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import desaxe as dx
-from desaxe.audit import force_truth
-from desaxe.audit.families import FAMILIES, Rng, points, rescaled
-from desaxe.audit.truth import LAW, conditions, truth, ulp_error
+from desaxe.oracle import force_truth
+from desaxe.oracle.families import FAMILIES, Rng, points, rescaled
+from desaxe.oracle.truth import LAW, conditions, truth, ulp_error
 from tests.library.ways import take_way
 
 NAMES = [

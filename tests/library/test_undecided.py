@@ -5,7 +5,7 @@ import pytest
 from flint import arb, ctx
 
 import desaxe as dx
-from desaxe import _few_points
+from desaxe.runtime import interpreted as _few_points
 
 STEPS = range(-3, 4)  # doubles from the one that is nearest to the limit
 SPEED = {"omega0": 1.0}
@@ -103,7 +103,7 @@ def test_forces_and_a_given_state(monkeypatch):
 
 def test_what_is_decided_in_the_kernel_is_left_alone(monkeypatch):
     """Next to a change point BC - |u| is tiny, but known: nothing is answered twice."""
-    from desaxe import _undecided
+    from desaxe.runtime import near_limit as _undecided
 
     monkeypatch.setattr(_few_points, "BREAK_EVEN", 0)
     monkeypatch.setattr(_undecided, "decide", None)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.audit.truth import LAW, STATE, all_names, conditions, relative_error, truth_all
+from desaxe.oracle.truth import LAW, STATE, all_names, conditions, relative_error, truth_all
 from tests.library.points import draw
 
 PROMISE = 8 * 2.0**-52

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 import desaxe as dx
-from desaxe import _few_points
+from desaxe.runtime import interpreted as _few_points
 
 SIZES = {"AB": 0.125, "BC": 0.35, "omega0": 157.0}
 POINT = {"theta": 1.1, "ec": 0.01, **SIZES}

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from desaxe import _errata
-from desaxe._errata import VERDICTS, entries, markdown
+from desaxe.errata import ledger as _errata
+from desaxe.errata.ledger import VERDICTS, entries, markdown
 
 PAGE = Path(__file__).resolve().parents[2] / "docs/ERRATA.md"
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from desaxe import _errata
-from desaxe._errata import VERDICTS, Entry, entries, table
+from desaxe.errata import ledger as _errata
+from desaxe.errata.ledger import VERDICTS, Entry, entries, table
 
 ROOT = Path(__file__).resolve().parents[2]
 LISTING = [entry for entry in entries("A") if entry.where == "Listing, Sec. II.D"]

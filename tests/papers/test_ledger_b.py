@@ -5,7 +5,7 @@ from collections import Counter
 
 import pytest
 
-from desaxe._errata import entries
+from desaxe.errata.ledger import entries
 
 ENTRIES = entries("B")
 TWICE = {2: "ab", 5: "ab", 37: "ab", 42: "ab", 46: "ab"}  # equations with two labels

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from desaxe._errata import entries
+from desaxe.errata.ledger import entries
 from tests.papers import paper_c as C
 
 LEDGER = {entry.id.removeprefix("C-"): entry for entry in entries("C")}

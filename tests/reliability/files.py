@@ -8,8 +8,8 @@ from random import Random
 import numpy as np
 import xarray as xr
 
-from desaxe._scene import write as results
 from desaxe.derive.write import write
+from desaxe.scenes import files as results
 from desaxe.support import files
 from tests.reliability.rig import (
     CRASHED,

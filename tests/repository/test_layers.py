@@ -1,4 +1,4 @@
-"""Imports point one way: derive -> compiler, library -> compiler, generated -> math, numpy, numba.
+"""Imports point one way: down the floors of the library; derive and generated have rules of their own.
 
 Read from the source text, so that an import inside a function counts too.
 """
@@ -65,34 +65,135 @@ def test_generated_imports_only_math_numpy_and_numba():
     ]
 
 
-def test_the_compiler_imports_nothing_above_it_and_nothing_that_must_be_installed():
+# A room imports rooms of lower floors only; `support` is open to all.
+FLOORS = {
+    "support": 0,
+    "compiler": 1,
+    "oracle": 1,
+    "errata": 1,
+    "mechanism": 2,
+    "runtime": 4,
+    "evaluation": 5,
+    "enclosure": 6,
+    "peaks": 6,
+    "simulation": 6,
+    "plot": 6,
+    "sweeps": 7,
+    "design": 8,
+    "audit": 8,
+    "scenes": 9,
+    "machine": 10,
+    "cli": 11,
+}
+CLOSED = {
+    "compiler": {"support"},
+    "mechanism": {"compiler", "support"},
+    "oracle": set(),
+    "errata": {"support"},
+}
+BELOW_DERIVE = {"compiler", "mechanism", "support"}
+
+
+def room_of(name):
+    """The room of a module of the library, "" for the package itself."""
+    return name.split(".")[1] if name.count(".") else ""
+
+
+def arrows():
+    """Each import of one module of the library by another: (importing module, imported name)."""
+    for module, name in imports_of("desaxe"):
+        if is_in(name, "desaxe") and module not in ("desaxe", "desaxe.__main__"):
+            yield module, name
+
+
+def test_every_room_has_its_floor():
+    rooms = {path.parent.name for path in ROOMS["desaxe"].glob("*/__init__.py")}
+    assert rooms <= set(FLOORS)
+
+
+def test_a_room_imports_lower_floors_only():
+    wrong = []
+    for module, name in arrows():
+        room, other = room_of(module), room_of(name)
+        if room == other or other in ("generated", "derive"):
+            continue
+        if other not in FLOORS or FLOORS[other] >= FLOORS[room] or other not in CLOSED.get(room, FLOORS):
+            wrong.append((module, name))
+    assert not wrong
+
+
+def test_there_is_no_circle_of_modules():
+    """Imports inside functions count too."""
+    known = {module for module, _ in modules("desaxe")}
+    graph = {module: set() for module in known}
+    for module, name in arrows():
+        other = name if name in known else name.rpartition(".")[0]
+        graph[module] |= {other} & known - {module}
+    while graph:
+        leaves = {module for module, others in graph.items() if not others}
+        assert leaves, f"a circle among {sorted(graph)}"
+        graph = {module: others - leaves for module, others in graph.items() if module not in leaves}
+
+
+def test_the_compiler_imports_nothing_that_must_be_installed():
     pairs = imports_of("desaxe", inside="desaxe.compiler")
-    assert not [pair for pair in pairs if not (is_standard(pair[1]) or is_in(pair[1], "desaxe.compiler"))]
+    assert not [pair for pair in pairs if not (is_standard(pair[1]) or is_in(pair[1], "desaxe"))]
+
+
+def test_derive_imports_compiler_mechanism_and_support_only():
+    own = {path.stem for path in ROOMS["desaxe.derive"].glob("*.py")}
+    pairs = [pair for pair in imports_of("desaxe.derive") if is_in(pair[1], "desaxe")]
+    assert pairs
+    assert {room_of(name) for _, name in pairs} <= {*BELOW_DERIVE, "derive", "generated"}, own
+
+
+def test_the_compiler_and_the_ground_do_not_know_the_mechanism():
+    """No symbol of the slider-crank in their code; comments and docstrings may give examples."""
+    words = {"ec", "AB", "BC", "omega0", "theta", "a_C", "V_C", "T_in", "N_C", "m_rod", "m_slider"}
+    found = set()
+    for room in ("compiler", "support"):
+        for _, path in modules("desaxe"):
+            if path.is_relative_to(ROOMS["desaxe"] / room):
+                for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                    said = (
+                        getattr(node, "id", None) or getattr(node, "arg", None) or getattr(node, "attr", None)
+                    )
+                    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                        said = node.value
+                    if said in words:
+                        found.add((path.name, said))
+    assert not found
 
 
 def test_the_oracle_shares_nothing_with_what_it_judges():
-    """Only with the other two files of it."""
-    rooms = [f"desaxe.audit.{name}" for name in ("jet", "truth", "force_truth")]
-    pairs = [pair for pair in imports_of("desaxe", inside="desaxe.audit") if pair[0] in rooms]
-    assert {pair[0] for pair in pairs} == set(rooms)
-    assert not [
-        pair for pair in pairs if not (is_standard(pair[1]) or is_in(pair[1], "mpmath", "flint", *rooms))
-    ]
+    pairs = list(imports_of("desaxe", inside="desaxe.oracle"))
+    assert {room_of(name) for _, name in pairs if is_in(name, "desaxe")} == {"oracle"}
+    others = [name for _, name in pairs if not is_in(name, "desaxe.oracle")]
+    assert not [name for name in others if not (is_standard(name) or is_in(name, "mpmath", "flint"))]
 
 
-def test_families_are_drawn_without_a_look_at_the_package():
-    pairs = [pair for pair in imports_of("desaxe") if pair[0] == "desaxe.audit.families"]
-    assert pairs
-    assert not [pair for pair in pairs if not (is_standard(pair[1]) or is_in(pair[1], "mpmath"))]
-
-
-@pytest.mark.parametrize("name", ["_evaluate", "_program", "catalogue", "inputs", "extras"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "evaluation.evaluate",
+        "evaluation.values",
+        "mechanism.program",
+        "mechanism.catalogue",
+        "mechanism.inputs",
+        "support.extras",
+    ],
+)
 def test_what_one_point_loads_imports_the_standard_library_and_its_own_kind(name):
-    tree = ast.parse((ROOMS["desaxe"] / f"{name}.py").read_text(encoding="utf-8"))
+    path = ROOMS["desaxe"].joinpath(*name.split(".")).with_suffix(".py")
+    tree = ast.parse(path.read_text(encoding="utf-8"))
     at_top = [node for node in tree.body if isinstance(node, (ast.Import, ast.ImportFrom))]
     found = imported("\n".join(map(ast.unparse, at_top)), f"desaxe.{name}", is_package=False)
     assert not [other for other in found if not (is_standard(other) or is_in(other, "desaxe"))]
-    assert not [other for other in found if is_in(other, "desaxe._arrays", "desaxe._kernels", "desaxe.units")]
+    assert not [
+        other
+        for other in found
+        if is_in(other, "desaxe.evaluation.arrays", "desaxe.runtime.kernels", "desaxe.mechanism.units")
+    ]
 
 
 @pytest.mark.parametrize(
@@ -102,7 +203,7 @@ def test_what_one_point_loads_imports_the_standard_library_and_its_own_kind(name
         ("def f():\n    from sympy import sin, cos", {"sympy.sin", "sympy.cos"}),
         ("from . import loop", {"desaxe.compiler.loop"}),
         ("from .text import INDENT", {"desaxe.compiler.text.INDENT"}),
-        ("from ..inputs import LEAST", {"desaxe.inputs.LEAST"}),
+        ("from ..mechanism.inputs import LEAST", {"desaxe.mechanism.inputs.LEAST"}),
         ("if x:\n    import numpy.linalg", {"numpy.linalg"}),
     ],
 )

@@ -78,8 +78,8 @@ def test_the_data_is_in_it(unzipped):
         == {path.name for path in (unzipped / "desaxe/errata").glob("*.toml")}
         != set()
     )
-    page = {path.name for path in (ROOT / "src/desaxe/_explore/page").iterdir()}
-    assert page == {path.name for path in (unzipped / "desaxe/_explore/page").iterdir()}
+    page = {path.name for path in (ROOT / "src/desaxe/scenes/explorer/page").iterdir()}
+    assert page == {path.name for path in (unzipped / "desaxe/scenes/explorer/page").iterdir()}
 
 
 def test_nothing_else_is_in_it(unzipped):

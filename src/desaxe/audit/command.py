@@ -3,7 +3,7 @@
 from importlib import import_module
 from pathlib import Path
 
-from .._scene.progress import progress_bar
+from ..support.progress import progress_bar
 from .report import PICTURE, by_family, overview, report, share_of, ulp_of
 from .run import FULL, QUICK, Audit, audit
 
@@ -38,7 +38,7 @@ def text(found: Audit) -> str:
 
 def write(found: Audit, folder: Path) -> list[Path]:
     """accuracy.md and accuracy.png in a folder, which is made if need be."""
-    from ..plot.files import save
+    from ..plot.save import save
     from ..support.files import write_text
     from .picture import draw
 

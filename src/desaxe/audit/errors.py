@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 import mpmath
 import numpy as np
 
+from ..oracle.families import points
+from ..oracle.truth import conditions, truth_all, ulp_error
 from .contenders import INPUTS, NAMES, Array, Contender, Run
-from .families import points
-from .truth import conditions, truth_all, ulp_error
 
 ULPS = 8  # of the promise of standard
 TOP = 2.0**53  # ulp: no digit is right, or there is no number

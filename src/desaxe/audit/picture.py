@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..extras import needed
+from ..support.extras import needed
 from .contenders import NAMES
 from .errors import TOP, ULPS
 from .report import beaten_by, measures

@@ -2,9 +2,9 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
+from ..oracle.families import FAMILIES
 from .contenders import NAMES
 from .errors import TOP, ULPS, Statistics
-from .families import FAMILIES
 from .run import GENERIC, SEED, Audit
 
 PICTURE = "accuracy.png"

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import llvmlite.binding
 
+from ..oracle.families import FAMILIES
 from .contenders import Contender, contenders
 from .errors import Judge, Statistics, cases
-from .families import FAMILIES
 from .times import times
 
 GENERIC = "generic"

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..oracle.families import points
 from .contenders import INPUTS, NAMES, Array, Contender
-from .families import points
 
 DRAWN = 2000  # different points; they are repeated
 FEW = 20  # for those who are slow

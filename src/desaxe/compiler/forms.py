@@ -8,7 +8,7 @@ takes the innermost loop of its kernel apart again. The value at a point depends
 from collections.abc import Iterable
 
 from .kernel import Close, Kernel
-from .passes.number import number_values
+from .passes.value_numbering import number_values
 from .program import Line, Program, names_in, renamed
 
 _SUFFIX = "_close"

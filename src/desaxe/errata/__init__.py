@@ -1,1 +1,1 @@
-"""The ledgers of the papers' errata, one TOML file a paper; `desaxe._errata` reads them."""
+"""The ledgers of the papers' errata, one TOML file a paper; `desaxe.errata.ledger` reads them."""

@@ -12,15 +12,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._arrays import dtype_of
-from .._grid import Outer, first_joined, join_from, require_inputs
-from .._kernels import KernelKey, key_of
-from .._point import point_of
-from .._reduce import Reduction, fill_reduced, named_by_reduction
-from .._request import Request, request
-from .._threads import run_in_blocks
-from ..compiler.reductions import EXTREMES, outputs_of
-from ..names import LENGTHS
+from ..compiler.languages.numba.reductions import EXTREMES, outputs_of
+from ..mechanism.names import LENGTHS
+from ..runtime.kernels import KernelKey, key_of
+from ..runtime.point import point_of
+from ..runtime.request import Request, request
+from ..runtime.threads import run_in_blocks
+from .arrays import dtype_of
+from .outer import Outer, first_joined, join_from, require_inputs
+from .reduce import Reduction, fill_reduced, named_by_reduction
 
 Array = NDArray[Any]
 

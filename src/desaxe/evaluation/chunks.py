@@ -5,7 +5,7 @@ from itertools import product
 from math import prod
 from typing import Any
 
-from .._meant import did_you_mean
+from ..mechanism.spelling import did_you_mean
 
 Slices = dict[str, slice]
 

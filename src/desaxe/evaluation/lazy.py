@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._grid import Outer
-from .._labels import input_attributes, labelled, provenance
-from .._reduce import reduced_attributes, reduction_of
-from ..extras import needed
+from ..support.extras import needed
 from .blocks import Part, compute, grid_parts, reduced_parts
 from .chunks import chunk_lengths
+from .labels import input_attributes, labelled, provenance
+from .outer import Outer
+from .reduce import reduced_attributes, reduction_of
 
 if TYPE_CHECKING:
     import xarray as xr

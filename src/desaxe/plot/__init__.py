@@ -13,14 +13,14 @@ save        a figure or animation to a file
 Each draws on `ax=`, or on a new Figure, and returns what it drew.
 """
 
-from .bars import tornado as tornado
+from .animate import animate as animate
+from .curves import curves as curves
+from .design_map import design_map as design_map
 from .drive import drive as drive
-from .families import curves as curves
-from .files import save as save
-from .maps import design_map as design_map
-from .moving import animate as animate
+from .mechanism import mechanism as mechanism
 from .panels import panels as panels
-from .round import polar as polar
-from .sketch import mechanism as mechanism
+from .polar import polar as polar
+from .save import save as save
+from .tornado import tornado as tornado
 
 __all__ = ["animate", "curves", "design_map", "drive", "mechanism", "panels", "polar", "save", "tornado"]

@@ -3,8 +3,8 @@
 from math import degrees, isfinite
 from typing import TYPE_CHECKING, Any
 
-from ..extras import needed
-from .parts import BLUE, ORANGE
+from ..support.extras import needed
+from .shared import BLUE, ORANGE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

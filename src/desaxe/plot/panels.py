@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..extras import needed
-from .families import draw
-from .parts import chosen, fixed_inputs, meaning_of, unit_of
+from ..support.extras import needed
+from .curves import draw
+from .shared import chosen, fixed_inputs, meaning_of, unit_of
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -1,1 +1,15 @@
-"""From a request to something callable: texts, machine code, the native calling convention."""
+"""From a request to something that can be called.
+
+request       names and inputs, checked
+accuracy      the accuracies that can be asked for
+specialise    the Program of a request, after all passes
+point         a function of floats for single points
+interpreted   few points in plain Python
+kernels       compiled loops for arrays
+modules       text -> digest -> lock -> file -> machine code, for kernels, peaks and simulation
+machine_code  machine code kept on disk, loaded without numba
+cache         the folder of compiled kernels
+wide_margins  which designs may take the plain forms
+near_limit    points at which rounding decides whether the rod reaches
+threads       blocks of an array shared by threads
+"""

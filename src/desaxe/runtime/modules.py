@@ -15,9 +15,9 @@ from ctypes import CFUNCTYPE, c_char_p, c_int64
 from pathlib import Path
 from typing import Any
 
-from .. import _cache
 from ..support.forks import fork_safe_lock
 from ..support.interrupts import finished
+from . import cache as _cache
 from .machine_code import DOUBLE, NO_MEMORY, Code, Loaded, compile_text, load, machine
 
 SUFFIX = ".code"

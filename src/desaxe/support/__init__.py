@@ -1,1 +1,9 @@
-"""The ground: what every room may use, and what knows nothing of the mechanism."""
+"""The ground: what every room may use and what knows nothing of a mechanism.
+
+extras         a missing optional dependency as one line that says what to install
+files          files written beside their place and swapped in
+locks          a lock across processes
+progress       how far long work is, and a bar on the terminal
+quantity_text  a number with its unit as text
+version        the version of this installation
+"""

@@ -7,10 +7,10 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from .. import __version__
-from .._grid import Outer
-from .._program import digest
-from .._reduce import Reduction
+from ..evaluation.outer import Outer
+from ..evaluation.reduce import Reduction
+from ..mechanism.program import digest
+from ..support.version import version
 
 IDENTITY = ("request", "version", "digest")
 
@@ -24,7 +24,7 @@ def identity(outer: Outer, branch: int, accuracy: str, reduction: Reduction | No
         "accuracy": accuracy,
         "inputs": {name: _input(array) for name, array in outer.axes.items()},
     }
-    return {"request": json.dumps(request), "version": __version__, "digest": digest()}
+    return {"request": json.dumps(request), "version": version(), "digest": digest()}
 
 
 def _input(array: NDArray[Any]) -> Any:

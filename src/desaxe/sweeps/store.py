@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..extras import needed
+from ..support.extras import needed
 from ..support.files import exchange, staging
 from ..support.locks import locked
 

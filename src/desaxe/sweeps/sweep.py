@@ -14,15 +14,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._accuracy import accuracy_of
-from .._grid import Outer, outer_of
-from .._labels import attributes as attributes_of
-from .._reduce import Reduction, reduction_of
-from .._threads import available
 from ..evaluation.blocks import Part, grid_parts, reduced_parts
 from ..evaluation.chunks import blocks_of, slices_of
+from ..evaluation.labels import attributes as attributes_of
 from ..evaluation.lazy import lazy_grid
-from ..extras import needed
+from ..evaluation.outer import Outer, outer_of
+from ..evaluation.reduce import Reduction, reduction_of
+from ..runtime.accuracy import accuracy_of
+from ..runtime.threads import available
+from ..support.extras import needed
 from .cluster import Crew, cluster, run_all
 from .cluster import threads as thread_crew
 from .layout import Layout, bytes_of, layout_of, size_text

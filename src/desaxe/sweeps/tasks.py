@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 
 from numpy.typing import NDArray
 
-from .. import __version__
-from .._program import digest
 from ..evaluation.blocks import Part, compute
+from ..mechanism.program import digest
+from ..support.version import version as installed
 from .store import chunk_path, is_whole, write_chunk
 
 Array = NDArray[Any]
@@ -41,9 +41,9 @@ class VersionError(RuntimeError):
 
 def check_version(version: str, program: str) -> None:
     """Refuse to compute with another version or derivation than the sender's."""
-    if (__version__, digest()) != (version, program):
+    if (installed(), digest()) != (version, program):
         raise VersionError(
-            f"this worker has desaxe {__version__}, derivation {digest()[:16]}; "
+            f"this worker has desaxe {installed()}, derivation {digest()[:16]}; "
             f"the sweep is of desaxe {version}, derivation {program[:16]}"
         )
 

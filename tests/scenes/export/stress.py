@@ -10,8 +10,8 @@ from functools import cache
 import mpmath
 import numpy as np
 
-from desaxe.audit.families import FAMILIES, points
-from desaxe.audit.truth import conditions, truth, ulp_error
+from desaxe.oracle.families import FAMILIES, points
+from desaxe.oracle.truth import conditions, truth, ulp_error
 
 NAMES = ("Y", "V_C", "a_C", "omega_BC", "a_C_wrt_ec", "V_C_wrt_BC")
 INPUTS = ("theta", "ec", "AB", "BC", "omega0", "alpha")

@@ -6,6 +6,8 @@ c/          C99: a header and a source, no allocation, no global state
 jax/        Python over jax.numpy, with derivatives by name
 octave/     one vectorised function for GNU Octave and MATLAB
 javascript/ an ES module and its types
+python      plain Python over `math`, for single points
+numba/      self-contained modules of compiled loops
 
 A new language is a file or folder here and its column of the operation table; `LANGUAGES` lists it.
 """

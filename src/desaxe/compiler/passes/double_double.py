@@ -14,9 +14,9 @@ from ..program import Argument, Line, Program, names_in
 from .double_angles import DoubleTrigonometry
 from .expansions import Pair, Words
 from .fold import fold_constants
-from .number import number_values
 from .pairs import RULES, Pairs
 from .slicing import drop_unused
+from .value_numbering import number_values
 
 WIDE = ("copy", "add", "sub", "neg", "mul", "select")  # what three words are kept through
 

@@ -7,8 +7,8 @@ from ..cost import Cost, cost_of
 from ..program import Program
 from .bind import bind_constants
 from .fold import fold_constants
-from .number import number_values
 from .slicing import drop_unused
+from .value_numbering import number_values
 
 
 class Pass(NamedTuple):

@@ -6,12 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from ..._design.closed_form import closed_form
-from ..._design.events import placed
-from ..._design.maths import PLAIN
-from ..._evaluate import evaluate
-from ..._request import as_number, check_border, check_inputs, request
-from ...inputs import INPUTS
+from ...evaluation.evaluate import evaluate
+from ...mechanism.inputs import INPUTS
+from ...runtime.request import as_number, check_border, check_inputs, request
+from ..events.closed_form import closed_form, placed
+from ..number_or_array import PLAIN
 from .panels import Array, Panels, resolved
 
 LENGTHS = ("ec", "AB", "BC")

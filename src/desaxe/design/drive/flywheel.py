@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..._design.roots import root
+from ..roots import root
 from .cycle import Design
 from .panels import Array, Panels, resolved
 

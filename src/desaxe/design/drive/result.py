@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from math import degrees, isnan
 from typing import TYPE_CHECKING, Any
 
-from ...inputs import INPUTS
+from ...mechanism.inputs import INPUTS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable
 
-from ...passes.number import number_values
 from ...passes.trigonometry import Trigonometry, expand_trigonometry
+from ...passes.value_numbering import number_values
 from ...program import Line, Program
 from ..protocol import Module, Solver, Symbol
 from ..shared import called, one_line, with_helpers
@@ -306,7 +306,7 @@ class _Source:
         words = {angle: "theta[k]", pair[0]: "turn[0]", pair[1]: "turn[1]"}
         arguments = [words.get(n) or f"in[{self.names.index(n)}]" for n in slopes.program.inputs]
         return [
-            f"const int status = {solve}({', '.join([*given, 'theta'])});",
+            f"const int status = {solve}({', '.join([*given, angle])});",
             "for (int k = 0; k < 2; k++) {",
             "  double turn[2], slope[2];",
             "  sin_cos(theta[k], turn);",

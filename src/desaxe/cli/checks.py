@@ -1,0 +1,92 @@
+"""`desaxe derive`, `audit`, `doctor`: the derivation, its accuracy, this installation."""
+
+import argparse
+import io
+from contextlib import redirect_stdout
+from importlib import import_module
+from typing import Any
+
+from ..support.extras import needed
+from .parser import add_command
+
+_DERIVE = """\
+The same command as `python -m derive` from the repository root.
+
+examples:
+  desaxe derive --check      is generated/ fresh?
+  desaxe derive --report     operations before and after each pass, per quantity"""
+
+
+def add_derive(commands: Any) -> None:
+    """Add `desaxe derive`."""
+    add_command(
+        commands, "derive", "derive the formulas again with SymPy and write generated/", _DERIVE, lambda _: 0
+    )
+
+
+def derive(words: list[str]) -> int:
+    """Run the derivation's own command line, under the name `desaxe derive`."""
+    run = import_module("desaxe.derive.__main__").main
+    if not {"-h", "--help"} & set(words):
+        with needed("desaxe derive"):
+            code: int = run(words)
+            return code
+    shown = io.StringIO()
+    try:
+        with redirect_stdout(shown):
+            run(words)
+    finally:  # it calls itself as one calls it there
+        print(shown.getvalue().replace("python -m derive", "desaxe derive"), end="")
+    return 0
+
+
+_AUDIT = """\
+Every accuracy of desaxe beside NumPy, numba, mpmath and (if installed) heyoka on the textbook's
+formula, at generic points and in families of points where formulas lose their digits. The truth is
+the loop closure in ball arithmetic. It takes a minute or two; the points are the same every time.
+Needs the extras `rigorous`, `derive` and, for the picture, `plot`.
+
+examples:
+  desaxe audit --quick        fewer points, half a minute at most
+  desaxe audit -o report      writes report/accuracy.md and report/accuracy.png too"""
+
+
+def add_audit(commands: Any) -> None:
+    """Add `desaxe audit`."""
+    parser = add_command(commands, "audit", "time and error of every accuracy, measured here", _AUDIT, _audit)
+    parser.add_argument("--quick", action="store_true", help="fewer points")
+    parser.add_argument(
+        "-o", metavar="FOLDER", dest="folder", help="write accuracy.md and accuracy.png there"
+    )
+
+
+def _audit(options: argparse.Namespace) -> int:
+    from ..audit.command import command
+
+    return command(options.quick, options.folder)
+
+
+_DOCTOR = """\
+Exit code 0 where desaxe can be used, 1 where not. Compiles one small kernel, which takes a second.
+
+example:
+  desaxe doctor"""
+
+
+def add_doctor(commands: Any) -> None:
+    """Add `desaxe doctor`."""
+    add_command(
+        commands,
+        "doctor",
+        "versions, cache, threads, and whether loops vectorise on this CPU",
+        _DOCTOR,
+        _doctor,
+    )
+
+
+def _doctor(_: argparse.Namespace) -> int:
+    from .doctor import examine
+
+    found = examine()
+    print(found.text)
+    return 0 if found.usable else 1

@@ -1,0 +1,87 @@
+"""The command `desaxe`: its sub-commands, and how errors reach the terminal.
+
+Start-up is light: what a command needs is imported when it runs. A complaint is one line on stderr
+with exit code 2.
+"""
+
+import argparse
+import os
+import sys
+from collections.abc import Callable, Sequence
+
+from ..support.extras import MissingExtraError, needed
+from .checks import add_audit, add_derive, add_doctor, derive
+from .errata import add_errata
+from .parser import SIGNS, Parser, Version
+from .point import add_point
+from .scene import add_compile, add_explain, add_explore, add_run, add_scene
+from .words import UsageError
+
+INTERRUPTED = 130  # as a shell reports it
+COMMANDS = (
+    add_point,
+    add_scene,
+    add_run,
+    add_explain,
+    add_compile,
+    add_explore,
+    add_derive,
+    add_errata,
+    add_audit,
+    add_doctor,
+)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; the exit code: 0 done, 1 a check failed, 2 a complaint."""
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        code = _run(words)
+        sys.stdout.flush()
+        return code
+    except SystemExit as done:  # --help and --version
+        return int(done.code or 0)
+    except BrokenPipeError:  # whoever read our output has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except KeyboardInterrupt:
+        print("desaxe: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except (UsageError, MissingExtraError, ValueError, TypeError, OSError, MemoryError) as error:
+        print(f"desaxe: error: {_one_line(error)}", file=sys.stderr)
+        return 2
+
+
+def _run(words: list[str]) -> int:
+    if words[:1] == ["derive"]:  # its options are its own
+        return derive(words[1:])
+    if words[:1] == ["point"]:  # options may stand anywhere among its words
+        words = ["point", *sorted(words[1:], key=lambda word: not word.startswith("--"))]
+    parser = _parser()
+    options = parser.parse_args(words)
+    run: Callable[[argparse.Namespace], int] | None = getattr(options, "run", None)
+    if run is None:
+        parser.print_help()
+        return 0
+    with needed(f"desaxe {words[0]}"):
+        return run(options)
+
+
+def _one_line(error: Exception) -> str:
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
+    return " ".join(str(error).split())
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = Parser(
+        prog="desaxe",
+        description="Offset slider-crank: kinematics with exact sensitivities.",
+        epilog=f"{SIGNS}\n\n`desaxe COMMAND --help` explains a command and gives examples.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action=Version, help="print the version and leave")
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=Parser)
+    for add in COMMANDS:
+        add(commands)
+    return parser

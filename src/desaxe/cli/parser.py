@@ -1,0 +1,49 @@
+"""What the commands share: a parser with one-line complaints, sub-commands, the sign convention."""
+
+import argparse
+from collections.abc import Callable, Sequence
+from typing import Any, NoReturn
+
+from .words import UsageError
+
+SIGNS = """\
+signs: Y points along the slider axis towards the slider, theta turns from +Y towards +X;
+       V_C and a_C are positive along +Y (away from the crank), the slider axis is at X = -ec;
+       forces are positive along +X and +Y, torques like theta."""
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose complaints are one line, like all others."""
+
+    def error(self, message: str) -> NoReturn:
+        """Raise UsageError with the message."""
+        raise UsageError(f"{message} (see {self.prog} --help)")
+
+
+class Version(argparse.Action):
+    """Looks the version up only when it is asked for."""
+
+    def __init__(self, option_strings: Sequence[str], dest: str, **options: Any) -> None:
+        super().__init__(option_strings, argparse.SUPPRESS, nargs=0, **options)
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        """Print the version and leave."""
+        from ..support.version import version
+
+        print(f"desaxe {version()}")
+        parser.exit()
+
+
+def add_command(
+    commands: Any, name: str, what: str, more: str, run: Callable[[argparse.Namespace], int]
+) -> Any:
+    """A sub-command: one line about it, and a longer text with examples."""
+    parser = commands.add_parser(
+        name,
+        help=what,
+        description=f"{what[0].upper()}{what[1:]}.",
+        epilog=more,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=run)
+    return parser

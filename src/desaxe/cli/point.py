@@ -1,0 +1,137 @@
+"""`desaxe point`: values at one crank angle of one design."""
+
+import argparse
+import json
+from math import isfinite
+from typing import Any
+
+from .parser import SIGNS, add_command
+from .words import names_and_inputs
+
+_POINT = f"""\
+inputs (SI units and radians, or any unit written behind the number):
+  theta    crank angle            theta=60deg  theta=1.047
+  ec       eccentricity           ec=10mm      either sign
+  AB, BC   crank, connecting rod  AB=125mm     BC=0.35
+  omega0   crank speed at theta=0 omega0=1500rpm; omega^2 = omega0^2 + 2 alpha theta
+  alpha    crank acceleration     alpha=10     0 by default
+  omega    speed at this instant, instead of omega0
+  branch   1 (default) or -1: on which side of the crank pin the slider is
+
+masses and loads, for forces, torques and energies (0 by default):
+  m_crank, m_rod, m_slider  masses                      m_rod=0.5kg
+  I_crank, I_rod            about the centre of mass    I_rod="80.6 kg mm2"
+  r_crank, r_rod            centre of mass, from A towards B and from B towards C;
+                            half of AB and of BC by default
+  F_X, F_Y                  force on the slider         F_Y=-50N
+  g_X, g_Y                  gravity                     g_X=-9.81m/s2
+  mu                        friction of the guide       mu=0.1
+
+Where a value is NaN the status says why: 1 cannot be assembled here, 2 change point, 3 stalled,
+5 friction jams (no balance of forces), 6 friction has two balances of forces.
+
+{SIGNS}
+
+examples:
+  desaxe point a_C theta=60deg ec=10mm AB=125mm BC=300mm omega0=1500rpm
+  desaxe point V_C,a_C,a_C_wrt_ec theta=60deg ec=0 AB=.125 BC=.35 omega0=157.08
+  desaxe point T_in,N_C theta=60deg ec=10mm AB=125mm BC=0.3 omega0=0 F_Y=-50N
+  desaxe point margin ec=220mm AB=125mm BC=350mm --json
+  desaxe point V_C theta=1 ec=0 AB=.125 BC=.35 omega0=157 --quality     with conditions and digits
+  desaxe point --list                        all names, with units and meanings"""
+
+
+def add_point(commands: Any) -> None:
+    """Add `desaxe point`."""
+    parser = add_command(commands, "point", "values at one crank angle of one design", _POINT, _point)
+    parser.add_argument(
+        "words", nargs="*", metavar="NAME | INPUT=VALUE", help="quantities (V_C a_C, or V_C,a_C) and inputs"
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.add_argument("--list", action="store_true", help="print the quantities that can be asked for")
+    parser.add_argument("--quality", action="store_true", help="print conditions and digits as well")
+
+
+def _point(options: argparse.Namespace) -> int:
+    if options.list:
+        return _list()
+    from ..evaluation.evaluate import evaluate
+    from ..mechanism.catalogue import quantity
+
+    names, inputs = names_and_inputs(options.words)
+    values: dict[str, Any] = evaluate(names, **inputs)
+    rows = {name: quantity(name, "omega" in inputs) for name in names}
+    status = _status(values, inputs)
+    worth = _qualities(names, inputs) if options.quality else {}
+    if options.json:
+        found: dict[str, Any] = {
+            name: {"value": _json_number(values[name]), "unit": row.unit, "meaning": row.meaning}
+            | (_json_quality(worth[name]) if name in worth else {})
+            for name, row in rows.items()
+        }
+        print(json.dumps({**found, **({"status": _status_words()[status]} if status else {})}, indent=2))
+        return 0
+    texts = [
+        f"{name} = {values[name]!r} {'' if row.unit == '1' else row.unit}".rstrip()
+        for name, row in rows.items()
+    ]
+    width = max(map(len, texts))
+    for text, row in zip(texts, rows.values(), strict=True):
+        print(f"{text:{width}}   {row.meaning}")
+    if status:
+        print(f"status {status}: {_status_words()[status]}")
+    for name, its in worth.items():
+        print(f"\n{name}: {its.digits:.1f} digits, rounding error at most {its.error_bound:.1e}")
+        for parameter, condition in its.conditions.items():
+            print(f"  1 % of {parameter:8} changes it by {condition:.3g} %")
+    return 0
+
+
+def _qualities(names: list[str], inputs: dict[str, Any]) -> dict[str, Any]:
+    """What each number is worth."""
+    from ..evaluation.evaluate import evaluate
+
+    found: dict[str, Any] = evaluate([n for n in names if n != "status"], **inputs, quality=True)
+    return found
+
+
+def _list() -> int:
+    from ..mechanism.catalogue import quantities
+
+    rows = quantities().values()
+    wide = [max(len(getattr(row, field)) for row in rows) for field in ("name", "unit")]
+    for row in rows:
+        source = f" ({row.source})" if row.source else ""
+        print(f"{row.name:{wide[0]}}  {row.unit:{wide[1]}}  {row.meaning}{source}")
+    return 0
+
+
+def _status(values: dict[str, Any], inputs: dict[str, Any]) -> int:
+    """The status at the point; 0 also where too few inputs are given to know."""
+    from ..evaluation.evaluate import evaluate
+
+    if "status" in values:
+        return int(values["status"])
+    try:
+        return int(evaluate("status", **inputs))
+    except TypeError:
+        return 0
+
+
+def _status_words() -> dict[int, str]:
+    """Code -> words, from the meaning of `status` in the catalogue."""
+    from ..mechanism.catalogue import quantity
+
+    parts = (part.split(" ", 1) for part in quantity("status").meaning.split(", "))
+    return {int(code): words for code, words in parts}
+
+
+def _json_quality(its: Any) -> dict[str, Any]:
+    conditions = {parameter: _json_number(condition) for parameter, condition in its.conditions.items()}
+    numbers = {"error_bound": _json_number(its.error_bound), "digits": _json_number(its.digits)}
+    return {"conditions": conditions, **numbers}
+
+
+def _json_number(value: float) -> float | None:
+    """JSON has no NaN."""
+    return value if isfinite(value) else None

@@ -1,0 +1,7 @@
+"""Kernels as self-contained numba modules.
+
+module      a loop nest that fills its outputs
+two_forms   the inner loops of a kernel that has a plain and a stable form
+reductions  kernels that keep the largest, the mean, ... of the innermost axis
+peaks       the functions of a quantity that a search over theta calls
+"""

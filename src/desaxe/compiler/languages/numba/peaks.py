@@ -1,0 +1,134 @@
+"""The loops of a search over one input, from Programs: what depends on a design alone is computed once."""
+
+from collections.abc import Sequence
+
+from ...cost import cost_of
+from ...passes.slicing import drop_unused, keep_outputs
+from ...program import Program, names_in
+from ...text import INDENT, with_short_temporaries, write_lines
+
+READ = 2.0  # what reading a value costs, in additions
+
+
+class Rows:
+    """How a function reads designs and spells lines, in one language; `searched` is the searched input."""
+
+    def __init__(self, inputs: Sequence[str], column: str, searched: str) -> None:
+        self.inputs, self.column, self.searched = tuple(inputs), column, searched
+        self.compiled = column == "numba"
+        self.range = "range(uint64({}))" if self.compiled else "range({})"
+        self.read = "{}" if self.compiled else "float({})"
+
+    def views(self, program: Program, source: str = "block") -> list[str]:
+        """A name for the row of each input."""
+        return [f"{n}_row = {source}[{self.inputs.index(n)}]" for n in self._own(program)]
+
+    def reads(self, program: Program) -> list[str]:
+        """The inputs of design i."""
+        return [f"{n} = {self.read.format(f'{n}_row[i]')}" for n in self._own(program)]
+
+    def lines(self, program: Program) -> list[str]:
+        """The assignments."""
+        return write_lines(program, self.column)
+
+    def _own(self, program: Program) -> list[str]:
+        return [n for n in program.inputs if n in self.inputs]
+
+
+def sweep_function(program: Program, rows: Rows) -> tuple[str, int]:
+    """`sweep(count, nodes, block, work, value, slope)`, and how many rows of `work` it needs.
+
+    Precondition: two outputs. Lines that depend on no design run once a node, lines that do not depend
+    on the searched input once a design where keeping them pays.
+    """
+    program = with_short_temporaries(program)
+    kept, rest = _split(program, rows.searched)
+    shared = _without(rest, set(rows.inputs) | set(kept.outputs))
+    inner = drop_unused(
+        rest._replace(
+            inputs=(*rest.inputs, *shared.outputs),
+            lines=tuple(line for line in rest.lines if line.name not in shared.outputs),
+        )
+    )
+    numbered = list(enumerate(kept.outputs))
+    body = [*rows.views(program), *(f"{n}_kept = work[{k}]" for k, n in numbered)]
+    if numbered:
+        body += [f"for i in {rows.range.format('count')}:"]
+        body += _in([*rows.reads(kept), *rows.lines(kept), *(f"{n}_kept[i] = {n}" for _, n in numbered)])
+    node = [f"{rows.searched} = " + rows.read.format("nodes[j]"), *rows.lines(shared)]
+    node += ["value_row = value[j]", "slope_row = slope[j]", f"for i in {rows.range.format('count')}:"]
+    every = [*rows.reads(inner), *(f"{n} = {rows.read.format(f'{n}_kept[i]')}" for _, n in numbered)]
+    every += rows.lines(inner)
+    every += [f"value_row[i] = {program.outputs[0]}", f"slope_row[i] = {program.outputs[1]}"]
+    body += ["for j in range(nodes.size):", *_in([*node, *_in(every)])]
+    return _function("sweep(count, nodes, block, work, value, slope)", body), len(numbered)
+
+
+def points_function(program: Program, rows: Rows) -> str:
+    """`points(rows, count, theta, block, value, slope)`."""
+    program = with_short_temporaries(program)
+    names = ("value", "slope")
+    loop = [
+        f"{rows.searched} = {rows.read.format('theta_row[i]')}",
+        *rows.reads(program),
+        *rows.lines(program),
+    ]
+    loop += [f"{n}_row[i] = {o}" for n, o in zip(names, program.outputs, strict=True)]
+    body = [*rows.views(program), "for j in range(rows):"]
+    body += _in(["theta_row = thetas[j]", *(f"{n}_row = {n}[j]" for n in names)])
+    body += _in([f"for i in {rows.range.format('count')}:", *_in(loop)])
+    return _function("points(rows, count, thetas, block, value, slope)", body)
+
+
+def finish_function(program: Program, rows: Rows) -> str:
+    """`finish(count, theta, block, out)`."""
+    program = with_short_temporaries(program)
+    places = list(enumerate(program.outputs))
+    loop = [f"{rows.searched} = {rows.read.format('thetas[i]')}", *rows.reads(program), *rows.lines(program)]
+    loop += [f"out_{k}[i] = {name}" for k, name in places]
+    body = [*rows.views(program), *(f"out_{k} = out[{k}]" for k, _ in places)]
+    body += [f"for i in {rows.range.format('count')}:", *_in(loop)]
+    return _function("finish(count, thetas, block, out)", body)
+
+
+def _split(program: Program, fast: str) -> tuple[Program, Program]:
+    """What does not depend on an input and is worth keeping, as a program; and the rest."""
+    dependent = {fast}
+    for line in program.lines:
+        if dependent & set(names_in(line.args)):
+            dependent.add(line.name)
+    still = [line for line in program.lines if line.name not in dependent]
+    used = {n for line in program.lines if line.name in dependent for n in names_in(line.args)}
+    used |= set(program.outputs)
+    types = {line.name: line.type for line in still}
+    worth = [
+        line.name
+        for line in still
+        if line.name in used
+        and types[line.name] == "f64"
+        and cost_of(keep_outputs(program, (line.name,))).throughput > READ
+    ]
+    kept = keep_outputs(program, worth)
+    lines = tuple(line for line in program.lines if line.name not in worth)
+    return kept, drop_unused(program._replace(inputs=(*program.inputs, *worth), lines=lines))
+
+
+def _without(program: Program, inputs: set[str]) -> Program:
+    """The lines that depend on none of these inputs, as a program of what the others use of them."""
+    dependent = set(inputs)
+    for line in program.lines:
+        if dependent & set(names_in(line.args)):
+            dependent.add(line.name)
+    own = [line for line in program.lines if line.name not in dependent]
+    used = {n for line in program.lines if line.name in dependent for n in names_in(line.args)}
+    used |= set(program.outputs)
+    outputs = tuple(line.name for line in own if line.name in used)
+    return keep_outputs(program, outputs)
+
+
+def _in(lines: Sequence[str]) -> list[str]:
+    return [INDENT + line for line in lines]
+
+
+def _function(head: str, body: Sequence[str]) -> str:
+    return "\n".join([f"def {head}:", *_in(body)]) + "\n"

@@ -1,0 +1,306 @@
+"""Reductions of one axis, fused with the loops that compute the values: the grid is never stored.
+
+`emit_reduced` writes a kernel whose innermost axis is reduced. It computes a few rows at a time into
+a scratch that stays in the cache, and takes of each row what is wanted: the largest or smallest
+number and its place, or a sum. A NaN is skipped, and what is not skipped is counted. Every row is
+reduced by one thread in one order, so that the answer does not depend on how many threads there are.
+"""
+
+from collections.abc import Mapping, Sequence
+from textwrap import wrap
+
+from ...kernel import Kernel
+from ...text import INDENT, WIDTH
+from .module import emit_numba
+
+# Kind -> what it is called in CF's `cell_methods`.
+KINDS = {
+    "max": "maximum",
+    "min": "minimum",
+    "absmax": "maximum_absolute_value",
+    "mean": "mean",
+    "rms": "root_mean_square",
+}
+EXTREMES = ("max", "min", "absmax")  # these have a place
+_TURNED = {"max": "x", "min": "-x", "absmax": "abs(x)"}  # the largest of these is wanted
+
+SCRATCH = 32_768  # doubles: a quarter of a megabyte, for the second-level cache
+LONGEST = 2_048  # doubles of a row that are computed at a time
+
+
+def _largest(kind: str) -> str:
+    # Sixteen lanes, each with a largest number of its own, are vectors; one largest number is a chain.
+    return f'''@njit(error_model="numpy")
+def take_{kind}(row, start, value, place):
+    """Go on with a row: the largest {_TURNED[kind]} so far and its place, the first of equals; no NaN."""
+    values = full(16, -inf)
+    places = full(16, -1)
+    whole = row.size - row.size % 16
+    for first in range(0, whole, 16):
+        for lane in range(16):
+            x = row[first + lane]
+            x = {_TURNED[kind]}
+            better = (x > values[lane]) | ((places[lane] < 0) & (x == x))
+            values[lane] = x if better else values[lane]
+            places[lane] = first if better else places[lane]
+    best, at = -inf, -1
+    for lane in range(16):
+        x, here = values[lane], places[lane] + lane
+        if places[lane] >= 0 and (at < 0 or x > best or (x == best and here < at)):
+            best, at = x, here
+    for here in range(whole, row.size):
+        x = row[here]
+        x = {_TURNED[kind]}
+        if x > best or (at < 0 and x == x):
+            best, at = x, here
+    if at >= 0 and (place < 0 or best > value):
+        return best, start + at
+    return value, place
+'''
+
+
+_COUNT = '''@njit(error_model="numpy")
+def count(row):
+    """How many are not NaN."""
+    found = 0
+    for here in range(row.size):
+        found += row[here] == row[here]
+    return found
+'''
+
+_SUM = '''@njit(error_model="numpy")
+def take_sum(row, factor, power, total, rest):
+    """Go on with the sum of (factor x)^power in sixteen lanes, with what rounding takes kept; no NaN."""
+    sums, rests = zeros(16), zeros(16)
+    whole = row.size - row.size % 16
+    for first in range(0, whole, 16):
+        for lane in range(16):
+            x = factor * row[first + lane]
+            x = x * x if power == 2 else x
+            x = x if x == x else 0.0
+            longer = sums[lane] + x
+            of_x = longer - sums[lane]
+            rests[lane] += (sums[lane] - (longer - of_x)) + (x - of_x)
+            sums[lane] = longer
+    for place in range(16 + row.size - whole):
+        x = factor * row[whole + place - 16] if place >= 16 else sums[place]
+        x = x * x if power == 2 and place >= 16 else x
+        x = x if x == x else 0.0
+        longer = total + x
+        of_x = longer - total
+        rest += (total - (longer - of_x)) + (x - of_x)
+        rest += rests[place] if place < 16 else 0.0
+        total = longer
+    return total, rest
+
+
+@njit(error_model="numpy")
+def whole_sum(total, rest):
+    """A sum and what rounding took from it; an infinity has no rest."""
+    return total + rest if rest == rest else total
+'''
+
+_MEAN = '''@njit(error_model="numpy")
+def take_mean(row, start, total, rest):
+    """Go on with the sum for a mean."""
+    return take_sum(row, 1.0, 1, total, rest)
+'''
+
+_SQUARES = '''@njit(error_model="numpy")
+def factor_for(row, factor):
+    """A power of two that brings the squares of a row into range; the one so far, if it does."""
+    largest = 0.0
+    for here in range(row.size):
+        x = abs(row[here])
+        largest = x if largest < x < inf else largest
+    if largest == 0.0 or (factor > 0.0 and largest * factor < 2.0**300):
+        return factor
+    return 2.0 ** max(min(-frexp(largest)[1], 1000), -1000)
+'''
+
+_HELPERS = {
+    "max": (_largest("max"),),
+    "min": (_largest("min"),),
+    "absmax": (_largest("absmax"),),
+    "mean": (_SUM, _MEAN),
+    "rms": (_SUM, _SQUARES),
+}
+
+
+_COMPILE = """try:
+    reduced = njit(reduced_signature, cache=True, error_model="numpy", nogil=True)(reduced_loops)
+except RuntimeError:  # numba found no folder that it can write to
+    reduced = njit(reduced_signature, error_model="numpy", nogil=True)(reduced_loops)
+"""
+_INNER = (
+    'kernel = njit(signature, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)(loops)\n'
+)
+_TO_COMPILE = "function, signature = reduced_loops, reduced_signature\n"
+
+
+def emit_reduced(
+    kernel: Kernel, kinds: Sequence[str], docstring: str, single: bool = False, to_compile: bool = False
+) -> str:
+    """The source of a module whose `reduced(*inputs, length, *outputs)` reduces the innermost axis.
+
+    Precondition: two axes or more; every output is f64. `length` is that of the reduced axis. The
+    outputs, over the other axes: for each output of the kernel and each kind the reduced value and,
+    of an extreme, its place (int64, -1 where there is none); then how many values counted. `to_compile`
+    leaves the compilation of `function` to the runtime.
+    """
+    inner = (_INNER,) if to_compile else ()
+    helpers = dict.fromkeys([_COUNT, *(text for kind in kinds for text in _HELPERS[kind])])
+    imports = "from math import frexp, inf, nan, sqrt\n\nfrom numpy import empty, full, int64, zeros"
+    return "\n\n".join(
+        [
+            emit_numba(kernel, docstring, single, *inner).rstrip() + "\n",
+            f"# Reductions of the innermost axis.\n{imports}\n",
+            *helpers,
+            _driver(kernel, kinds, _TO_COMPILE if to_compile else _COMPILE),
+        ]
+    )
+
+
+def outputs_of(names: Sequence[str], kinds: Sequence[str]) -> list[tuple[str, str]]:
+    """The outputs of a reduced kernel in their order: the name and the type of each."""
+    found = []
+    for name in names:
+        for kind in kinds:
+            found.append((f"{name}_{kind}", "float64"))
+            found += [(f"{name}_{kind}_place", "int64")] if kind in EXTREMES else []
+        found.append((f"{name}_count", "int64"))
+    return found
+
+
+def _driver(kernel: Kernel, kinds: Sequence[str], tail: str) -> str:
+    parameters = [name if axis is None else f"{name}_axis" for name, axis in kernel.inputs.items()]
+    types = ["types.float64" if axis is None else "axis" for axis in kernel.inputs.values()] + ["types.int64"]
+    outs = outputs_of(kernel.outputs, kinds)
+    shape = ", ".join([":"] * (kernel.axes - 2) + ["::1"])
+    types += [f"types.{kind}[{shape}]" for _, kind in outs]
+    return "\n".join(
+        [
+            "def reduced_loops(",
+            *(f"{INDENT}{name}," for name in [*parameters, "length", *(f"out_{name}" for name, _ in outs)]),
+            "):",
+            *(f"{INDENT}{line}" for line in _blocks(kernel, kinds, f"out_{outs[0][0]}")),
+            "\n\nreduced_signature = types.void(",
+            *(INDENT + row for row in wrap(", ".join(types), WIDTH)),
+            ")",
+            tail,
+        ]
+    )
+
+
+def _blocks(kernel: Kernel, kinds: Sequence[str], measure: str) -> list[str]:
+    """Loops over blocks of designs; in each, loops over blocks of the reduced axis, then rows."""
+    outer = range(kernel.axes - 1)
+    lines = [
+        f"step = max(1, min(length, {LONGEST}))",
+        f"room = {SCRATCH // len(kernel.outputs)} // step",
+    ]
+    for axis in reversed(outer):
+        lines.append(f"step_{axis} = max(1, min({measure}.shape[{axis}], room))")
+        lines.append(f"room //= step_{axis}")
+    size = " * ".join(f"step_{axis}" for axis in outer)
+    lines += [f"scratch_{name} = empty({size} * step)" for name in kernel.outputs]
+    lines += [f"{each} = empty({size})" for each in _state(kernel.outputs, kinds, "float64")]
+    lines += [f"{each} = empty({size}, int64)" for each in _state(kernel.outputs, kinds, "int64")]
+    for axis in outer:
+        pad = INDENT * axis
+        lines.append(f"{pad}for b{axis} in range(0, {measure}.shape[{axis}], step_{axis}):")
+        lines.append(f"{pad}{INDENT}n{axis} = min(step_{axis}, {measure}.shape[{axis}] - b{axis})")
+    return lines + [INDENT * len(outer) + line for line in _block(kernel, kinds)]
+
+
+def _state(names: Sequence[str], kinds: Sequence[str], kind_of: str) -> list[str]:
+    """What is carried from one part of a row to the next, for each row of a block."""
+    found = []
+    for name in names:
+        found += [f"count_{name}"] if kind_of == "int64" else []
+        for kind in kinds:
+            if kind in EXTREMES:
+                found.append(f"{kind}_{name}" if kind_of == "float64" else f"place_{kind}_{name}")
+            elif kind_of == "float64":
+                found += [f"{kind}_{name}", f"rest_{kind}_{name}"]
+                found += [f"factor_{name}"] if kind == "rms" else []
+    return found
+
+
+def _block(kernel: Kernel, kinds: Sequence[str]) -> list[str]:
+    """One block of designs."""
+    outer = range(kernel.axes - 1)
+    names = kernel.outputs
+    rows = " * ".join(f"n{axis}" for axis in outer)
+    lines = [f"rows = {rows}"]
+    lines += [f"{each}[:] = 0.0" for each in _state(names, kinds, "float64")]
+    lines += [f"{each}[:] = {-1 if each[0] == 'p' else 0}" for each in _state(names, kinds, "int64")]
+    lines += ["for start in range(0, length, step):", f"{INDENT}n = min(step, length - start)"]
+    sizes = ", ".join([*(f"n{axis}" for axis in outer), "n"])
+    for name in names:
+        lines.append(f"{INDENT}block_{name} = scratch_{name}[: rows * n].reshape(({sizes}))")
+    cut = [_cut(name, axis, kernel.axes - 1) for name, axis in kernel.inputs.items()]
+    lines += [f"{INDENT}kernel(", *(f"{INDENT * 2}{a}," for a in [*cut, *(f"block_{n}" for n in names)])]
+    lines += [f"{INDENT})", f"{INDENT}for r in range(rows):"]
+    for name in names:
+        lines += [INDENT * 2 + line for line in _row(name, kinds)]
+    lines.append("for r in range(rows):")
+    place = []
+    for axis in outer:
+        inner = " * ".join(f"n{k}" for k in outer if k > axis)
+        part = f"r // ({inner})" if inner else "r"
+        place.append(f"b{axis} + {part} % n{axis}")
+    lines.append(f"{INDENT}at = ({', '.join(place)},)")
+    for name in names:
+        lines += [f"{INDENT}{line}" for line in _kept(name, kinds)]
+    return lines
+
+
+def _cut(name: str, axis: int | None, last: int) -> str:
+    if axis is None:
+        return name
+    return f"{name}_axis[start : start + n]" if axis == last else f"{name}_axis[b{axis} : b{axis} + n{axis}]"
+
+
+def _row(name: str, kinds: Sequence[str]) -> list[str]:
+    """Take one more part of one row."""
+    lines = [f"row = scratch_{name}[r * n : r * n + n]", f"count_{name}[r] += count(row)"]
+    for kind in kinds:
+        if kind == "rms":
+            lines += [
+                f"factor = factor_for(row, factor_{name}[r])",
+                f"if factor_{name}[r] > 0.0 and factor != factor_{name}[r]:",
+                f"{INDENT}change = factor / factor_{name}[r]",
+                f"{INDENT}rms_{name}[r] *= change * change",
+                f"{INDENT}rest_rms_{name}[r] *= change * change",
+                f"factor_{name}[r] = factor",
+                f"rms_{name}[r], rest_rms_{name}[r] = take_sum(",
+                f"{INDENT}row, factor, 2, rms_{name}[r], rest_rms_{name}[r]",
+                ")",
+            ]
+        else:
+            second = f"{'place' if kind in EXTREMES else 'rest'}_{kind}_{name}[r]"
+            lines.append(f"{kind}_{name}[r], {second} = take_{kind}(row, start, {kind}_{name}[r], {second})")
+    return lines
+
+
+def _kept(name: str, kinds: Sequence[str]) -> list[str]:
+    """Write what has come out of one row; NaN where nothing counted."""
+    lines = [f"counted = count_{name}[r]"]
+    value: Mapping[str, str] = {
+        "max": f"max_{name}[r]",
+        "min": f"-min_{name}[r]",
+        "absmax": f"absmax_{name}[r]",
+        "mean": f"whole_sum(mean_{name}[r], rest_mean_{name}[r]) / counted",
+        "rms": f"sqrt(whole_sum(rms_{name}[r], rest_rms_{name}[r]) / counted) / factor_{name}[r]",
+    }
+    for kind in kinds:
+        wanted = value[kind]
+        if kind == "rms":
+            lines.append("none = 0.0 if counted > 0 else nan")
+            lines.append(f"out_{name}_rms[at] = {wanted} if factor_{name}[r] > 0.0 else none")
+            continue
+        lines.append(f"out_{name}_{kind}[at] = {wanted} if counted > 0 else nan")
+        if kind in EXTREMES:
+            lines.append(f"out_{name}_{kind}_place[at] = place_{kind}_{name}[r]")
+    return [*lines, f"out_{name}_count[at] = counted"]

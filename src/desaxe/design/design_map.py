@@ -1,0 +1,125 @@
+"""`design_map`: quantities of designs over a plane or space of them, labelled, with what is feasible."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..evaluation.arrays import as_array
+from ..evaluation.labels import STATUS_FLAGS, input_attributes, provenance
+from ..mechanism.catalogue import quantity
+from ..mechanism.inputs import INPUTS
+from ..mechanism.names import LENGTHS, sensitivity
+from ..runtime.request import check_border, check_inputs
+from ..support.extras import needed
+from .feasibility.arrays import KINDS, of_arrays
+from .measures import Measure, checked, measured, unit_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, **inputs: Any) -> "xr.Dataset":
+    """Quantities of designs over the outer product of the inputs, as an xarray.Dataset with units.
+
+    names        of quantities of a design: "margin", those of `events`, and peaks such as ("absmax", "a_C"),
+                 which are called absmax_a_C in the Dataset; one, a list, or none
+    inputs       as in `evaluate`, without theta; each 1-d array is a dimension, in the order given
+    derivatives  whether each quantity's exact derivatives come along, as stroke_wrt_ec
+
+    `margin`, `status` (0 the crank turns fully, 1 it does not, 2 change point, 4 bad input), `can_turn` and
+    `kind` (int8 with CF flags, see `feasibility`) always come along. Needs the extra `labelled`. Raises as
+    `evaluate` does, and for an input of more than one dimension.
+
+        dx.design_map(["stroke", ("absmax", "a_C")], ec=ecs, BC=rods, AB=.125, omega0=157.08).stroke.plot()
+    """
+    check_border({}, branch)
+    known = tuple(name for name in INPUTS if name != "theta")
+    check_inputs("design_map", inputs, known)
+    one = isinstance(names, (str, tuple)) and bool(names)
+    wanted: Sequence[Measure] = [checked(name) for name in ([names] if one else names)]
+    axes = {
+        n: as_array(n, value, LENGTHS, ("design_map",)) for n, value in inputs.items() if value is not None
+    }
+    for name in LENGTHS:
+        if name not in axes:
+            as_array(name, None, LENGTHS, ("design_map",))
+    for name, axis in axes.items():
+        if axis.ndim > 1:
+            raise ValueError(f"{name}: a map takes numbers and 1-d arrays, got the shape {axis.shape}")
+    dimensions = [name for name, axis in axes.items() if axis.ndim]
+    shape = tuple(axes[name].size for name in dimensions)
+    open_axes = {
+        n: _along(axis, dimensions.index(n) if axis.ndim else None, len(shape)) for n, axis in axes.items()
+    }
+    designs = {n: np.broadcast_to(a, shape).reshape(-1) for n, a in open_axes.items()}
+    variables = _feasible(designs, shape, dimensions)
+    for measure, found in measured(wanted, designs, branch).items():
+        name = measure if isinstance(measure, str) else "_".join(measure)
+        attributes = {"units": unit_of(measure), "long_name": _meaning(measure)}
+        variables[name] = (dimensions, np.reshape(found.value, shape), attributes)
+        for p, slope in found.gradient.items() if derivatives else ():
+            told = {
+                "units": _slope_unit(measure, p),
+                "long_name": f"{_meaning(measure)}, by {p}",
+            }
+            variables[f"{name}_wrt_{p}"] = (
+                dimensions,
+                np.broadcast_to(slope, designs["ec"].shape).reshape(shape),
+                told,
+            )
+    with needed("design_map"):
+        import xarray
+    coordinates = {n: ((n,) if axis.ndim else (), axis, input_attributes(n)) for n, axis in axes.items()}
+    names = ["_".join(measure) if not isinstance(measure, str) else measure for measure in wanted]
+    about = provenance(names, axes, branch, title="offset slider-crank designs")
+    return xarray.Dataset(variables, coordinates, about)
+
+
+def _along(axis: Any, place: int | None, count: int) -> Any:
+    return axis if place is None else axis.reshape([-1 if k == place else 1 for k in range(count)])
+
+
+def _feasible(designs: dict[str, Any], shape: tuple[int, ...], dimensions: list[str]) -> dict[str, Any]:
+    found = of_arrays(*(designs[name] for name in LENGTHS))
+    kinds = np.array([KINDS.index(kind) for kind in found["kind"]], np.int8)
+    flags = {
+        "status": (found["status"], STATUS_FLAGS[:5], "status"),
+        "kind": (kinds, tuple(kind.replace(" ", "_") for kind in KINDS), "how the crank can move"),
+    }
+    variables: dict[str, Any] = {
+        "margin": (
+            dimensions,
+            found["margin"].reshape(shape),
+            {"units": "m", "long_name": "margin BC - AB - |ec|"},
+        ),
+        "can_turn": (dimensions, found["can_turn"].reshape(shape), {"long_name": "the crank turns fully"}),
+    }
+    for name, (codes, meanings, told) in flags.items():
+        attributes = {
+            "long_name": told,
+            "flag_values": np.arange(len(meanings), dtype=np.int8),
+            "flag_meanings": " ".join(meanings),
+        }
+        variables[name] = (dimensions, np.asarray(codes, np.int8).reshape(shape), attributes)
+    return variables
+
+
+def _slope_unit(measure: Measure, parameter: str) -> str:
+    """The unit of a derivative, in its simplest form where it has a catalogued one or is a plain number."""
+    if not isinstance(measure, str):
+        try:
+            return quantity(sensitivity(measure[1], parameter)).unit
+        except ValueError:
+            pass
+    unit, by = unit_of(measure), INPUTS[parameter].unit
+    if unit == by:
+        return "1"
+    return f"{unit}/({by})" if "/" in by or "*" in by else f"{unit}/{by}"
+
+
+def _meaning(measure: Measure) -> str:
+    if isinstance(measure, str):
+        return measure.replace("_", " ")
+    kinds = {"absmax": "largest magnitude", "max": "largest value", "min": "smallest value"}
+    return f"{kinds[measure[0]]} over a turn: {quantity(measure[1]).meaning}"

@@ -1,0 +1,113 @@
+"""`events`: the dead centres of a design, its strokes, and the extremes of its rod and slider."""
+
+from math import copysign, nan, pi
+from typing import Any
+
+from ...evaluation.evaluate import evaluate
+from ...mechanism.names import LENGTHS
+from ...runtime.request import as_number, check_border, with_known_inputs
+from ..number_or_array import PLAIN, sum_of_three
+from ..roots import root
+from .closed_form import VELOCITIES, closed_form, placed, stroke_ends
+
+
+@with_known_inputs
+def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) -> dict[str, Any]:
+    """Dead centres, stroke, advance and return, and the extremes in between, of designs.
+
+    ec, AB, BC  lengths [m], numbers or texts with a unit or arrays, which broadcast like NumPy
+    branch      +1 or -1
+    omega0      constant speed of the crank [rad/s]; negative turns backwards. Without it the crank turns
+                forwards, and velocities are per rad/s of it [m/s per rad/s]
+
+    Gives a dict, floats for one design and arrays for many. Angles are told in the turn from -pi/2 to
+    3 pi/2, in which dead centres move without a jump when `ec` changes its sign:
+
+    theta_outer, theta_inner    crank angles [rad] at which the slider is farthest from the crank and nearest
+                                to it: near 0 and near pi (the other way round on branch -1)
+    Y_outer, Y_inner            where the slider is then [m]
+    stroke                      the distance between them [m]
+    advance_angle               the angle [rad] that the crank turns while the slider moves outward
+    return_angle                and while it moves inward; both together are 2 pi
+    time_ratio                  the longer of both over the shorter, at constant speed; at least 1
+    slow_stroke                 which is the longer: +1 outward, -1 inward, 0 both the same
+    max_pressure_angle, min_transmission_angle   of the rod [rad], both at `theta_max_pressure_angle`
+    min_pressure_angle, max_transmission_angle   both at `theta_min_pressure_angle` (one of two angles
+                                                 where |ec| < AB)
+    V_outward, V_inward         the largest speed of the slider in each stroke, at `theta_V_outward`
+                                and `theta_V_inward`
+    gradient                    dict name -> dict ec, AB, BC (omega0) -> exact derivative. Where |ec| has a
+                                kink, at ec = 0, the mean of both sides; at a change point what is
+                                infinite is infinite
+    status                      0 the crank turns fully; 1 it does not: dead centres are told if there are
+                                such, all else is NaN; 2 at a change point, margin = 0; 4 bad input
+
+    Closed forms in which nothing cancels (see `closed_form`), but for the velocities: those are refined
+    between the dead centres by the exact acceleration. Source: paper B, Secs. 2 and 4.2.1, Eq. 51, where
+    advance is the stroke outward. Raises as `evaluate` does.
+
+        >>> import desaxe as dx
+        >>> found = dx.events(ec=0.020, AB=0.040, BC=0.064)
+        >>> round(found["stroke"], 5), round(found["time_ratio"], 4), found["slow_stroke"]
+        (0.08879, 1.6737, 1)
+    """
+    check_border({}, branch)
+    given = {"ec": ec, "AB": AB, "BC": BC, "omega0": 1.0 if omega0 is None else omega0}
+    numbers = {name: as_number(name, value, tuple(given), ("events",)) for name, value in given.items()}
+    if None in numbers.values():
+        from .arrays import events_of_arrays
+
+        return events_of_arrays(given, int(branch), omega0 is not None)
+    e, crank, rod, omega = (float(value or 0.0) for value in numbers.values())
+    turn = int(branch) * (-1 if omega < 0.0 else 1)
+    known = placed(closed_form(e, crank, rod, PLAIN), int(branch), turn)
+    margin = sum_of_three(rod, -crank, -abs(e))
+    status = 1 if margin < 0.0 else 2 if margin == 0.0 else 0
+    result: dict[str, Any] = {name: value for name, (value, _, _) in known.items()}
+    result["slow_stroke"] = turn * ((e > 0.0) - (e < 0.0))
+    result |= rod_places(e, crank, status == 1)
+    gradient = {n: dict(zip(LENGTHS, slopes, strict=True)) for n, (_, slopes, _) in known.items()}
+    lengths, forward = {"ec": e, "AB": crank, "BC": rod}, -1 if omega < 0.0 else 1
+    parameters = (*LENGTHS, "omega0") if omega0 is not None else LENGTHS
+    for name, direction in VELOCITIES.items():
+        value, theta, slopes = nan, nan, dict.fromkeys(parameters, nan)
+        if status != 1:
+            side = direction * int(branch)  # of Y
+            ends = stroke_ends(known, side * forward, int(branch))
+            value, theta, slopes = _velocity(ends, side, int(branch), omega, lengths)
+        result |= {name: value, f"theta_{name}": theta}
+        gradient[name] = {p: slopes[p] for p in parameters}
+    return {**result, "gradient": gradient, "status": status}
+
+
+def rod_places(ec: float, AB: float, stuck: bool) -> dict[str, float]:
+    """Where the rod leans most, and least."""
+    steep = copysign(pi / 2, ec) if ec else pi / 2
+    flat = -PLAIN.atan2(ec, PLAIN.sqrt(AB - ec) * PLAIN.sqrt(AB + ec)) if abs(ec) <= AB else -steep
+    return {
+        "theta_max_pressure_angle": nan if stuck else steep,
+        "theta_min_pressure_angle": nan if stuck else flat,
+    }
+
+
+def _velocity(
+    ends: tuple[float, float], side: int, branch: int, omega: float, lengths: dict[str, Any]
+) -> tuple[float, float, dict[str, float]]:
+    """The largest |V_C| between two dead centres: value, crank angle, derivatives."""
+
+    def at(theta: float, name: str, omega0: float = 1.0) -> float:
+        return float(evaluate(name, theta=theta, omega0=omega0, branch=branch, **lengths))
+
+    first, last = ends
+    rising, falling = at(first, "a_C"), at(last, "a_C")
+    if rising * falling < 0.0:
+        theta = root(lambda angle: at(angle, "a_C"), first, last)
+    else:  # no crank, or it is fastest at the change point itself
+        theta = max(ends, key=lambda angle: abs(at(angle, "V_C")))
+    slopes = {p: side * at(theta, f"V_C_wrt_{p}", omega) for p in (*LENGTHS, "omega0")}
+    return side * at(theta, "V_C", omega), in_turn(theta), slopes
+
+
+def in_turn(theta: float) -> float:
+    """The same angle from -pi/2 on, within a turn."""
+    return theta + 2.0 * pi if theta < -pi / 2 else theta

@@ -1,0 +1,63 @@
+"""`feasibility`: can the mechanism be assembled, can it turn, at which crank angles."""
+
+from math import fsum, ulp
+from typing import Any
+
+from ...mechanism.limit_angles import CHANGE_POINT_ULPS, theta_intervals
+from ...runtime.request import as_number, with_known_inputs
+
+
+@with_known_inputs
+def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
+    """Where a design can be assembled.
+
+    ec, AB, BC: numbers (or text with a unit) in metres, or arrays, which broadcast like NumPy. Gives a dict:
+
+    margin           BC - AB - |ec| [m], of the doubles given, rounded once
+    gradient         its derivatives by ec, AB, BC (at ec = 0 that by ec is taken as 0)
+    can_turn         whether the crank can turn fully (margin >= 0)
+    theta_intervals  list of (first, last) crank angles [rad] in which it can be assembled; an
+                     interval that crosses 2 pi goes on beyond it. [(0, 2 pi)] where it can turn
+    kind             "crank" (turns fully), "change point" (|margin| within 4 last bits of BC), "rocker"
+                     (turns partly), "none"
+    grashof          whether the shorter of crank and rod can turn fully: |ec| <= |BC - AB|
+    status           0 the crank turns fully, 1 it does not, 2 at a change point (margin = 0), 4 bad input
+
+    For arrays each is an array: `theta_intervals` has two intervals in its last two axes, NaN where there
+    are fewer, and `kind` is "bad input" where a length is none. `design_map` labels outer products.
+
+    Raises ValueError for a bad value. Source: paper A (6), where |u| <= BC.
+
+        >>> import desaxe as dx
+        >>> found = dx.feasibility(ec=0.125, AB=0.125, BC=0.375)
+        >>> found["kind"], found["can_turn"], found["margin"]
+        ('crank', True, 0.125)
+    """
+    given = {"ec": ec, "AB": AB, "BC": BC}
+    lengths = {name: as_number(name, value, tuple(given), ("feasibility",)) for name, value in given.items()}
+    if None in lengths.values():
+        return _of_arrays(given)
+    ec, AB, BC = lengths.values()
+    margin = fsum((BC, -AB, -abs(ec)))
+    intervals = theta_intervals(ec, AB, BC)
+    near = abs(margin) <= CHANGE_POINT_ULPS * ulp(BC)
+    kind = "change point" if near else "crank" if margin > 0.0 else "rocker" if intervals else "none"
+    slope = 0.0 if ec == 0.0 else (-1.0 if ec > 0.0 else 1.0)
+    return {
+        "margin": margin,
+        "gradient": {"ec": slope, "AB": -1.0, "BC": 1.0},
+        "can_turn": margin >= 0.0,
+        "theta_intervals": intervals,
+        "kind": kind,
+        "grashof": fsum((max(AB, BC), -min(AB, BC), -abs(ec))) >= 0.0,
+        "status": 2 if margin == 0.0 else 0 if margin > 0.0 else 1,
+    }
+
+
+def _of_arrays(given: dict[str, Any]) -> dict[str, Any]:
+    from ...evaluation.arrays import as_array, broadcast_shape
+    from .arrays import of_arrays
+
+    arrays = {name: as_array(name, value, tuple(given), ("feasibility",)) for name, value in given.items()}
+    broadcast_shape(arrays)
+    return of_arrays(*arrays.values())

@@ -1,0 +1,147 @@
+"""`inverse`: the crank angles that put the slider at a position (the slider-driven problem)."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..evaluation.arrays import as_array, broadcast_shape
+from ..evaluation.evaluate import evaluate
+from ..mechanism.inputs import INPUTS, Input
+from ..runtime.request import check_border, with_known_inputs
+from ..support.shown import shown
+
+Array = NDArray[np.float64]
+
+# What only this question takes; the lengths are those of every other.
+SLIDER_INPUTS = {
+    row.name: row
+    for row in (
+        Input("Y", "m", "slider position along the slider axis"),
+        Input("V_C", "m/s", "velocity of the slider"),
+        Input("a_C", "m/s^2", "acceleration of the slider"),
+    )
+}
+
+
+@with_known_inputs
+def inverse(
+    *, Y: Any, ec: Any, AB: Any, BC: Any, branch: int = 1, V_C: Any = None, a_C: Any = None
+) -> dict[str, Any]:
+    """The crank angles that put the slider at Y, and the crank's motion given the slider's.
+
+    Y            slider position [m]; arrays of everything broadcast like NumPy
+    ec, AB, BC   lengths [m], as in `evaluate`
+    branch       +1 or -1: only angles at which the mechanism is on this branch
+    V_C, a_C     the slider's velocity [m/s] and acceleration [m/s^2], if known
+
+    Gives a dict; the last axis of each array has the two solutions, NaN where there is none:
+
+    theta    crank angles [rad] in (-pi, pi], ascending
+    omega    crank speed [rad/s], given V_C
+    alpha    crank acceleration [rad/s^2], given V_C and a_C
+    status   0 two solutions or one, 1 the slider cannot be there on this branch, 2 dead centre: the
+             crank's rates are not determined by the slider's, 4 bad input
+
+    The triangle A B C has the sides AB, BC and L = |AC|; its angle at A comes from the half-angle
+    form, which keeps its digits where the triangle is flat. Raises as `evaluate` does.
+    """
+    check_border({}, branch)
+    if a_C is not None and V_C is None:
+        raise TypeError("inverse: V_C is missing (alpha needs V_C and a_C)")
+    given = {"Y": Y, "ec": ec, "AB": AB, "BC": BC, "V_C": V_C, "a_C": a_C}
+    arrays = {
+        name: _input(name, value)
+        for name, value in given.items()
+        if value is not None or name in (*INPUTS, "Y")
+    }
+    shape = broadcast_shape(arrays)
+    position, *lengths = (np.broadcast_to(arrays[n], shape)[..., None] for n in ("Y", "ec", "AB", "BC"))
+    theta, flat = _angles(position, lengths, branch)
+    result: dict[str, Any] = {"theta": theta}
+    with np.errstate(all="ignore"):
+        if V_C is not None:
+            _add_rates(result, arrays, lengths, branch, shape, flat)
+    result["status"] = _status(result["theta"], flat, arrays, shape)
+    return result
+
+
+def _input(name: str, value: Any) -> Array:
+    if value is None:
+        raise TypeError("inverse: Y is missing (needed: Y, ec, AB, BC)")
+    if name in INPUTS:
+        return as_array(name, value, ("Y", "ec", "AB", "BC"), ("inverse",))
+    if isinstance(value, str) or hasattr(value, "magnitude"):
+        from ..mechanism.units import in_unit
+
+        value = in_unit(name, value, SLIDER_INPUTS[name].unit)
+    try:
+        array = np.asarray(value)
+    except (ValueError, TypeError, OverflowError):  # rows of different lengths
+        raise TypeError(f"{name} = {shown(value)}: a number or an array of numbers is wanted") from None
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name} = {shown(value)}: real numbers are wanted, got {array.dtype}")
+    if not array.ndim and not np.isfinite(array):
+        raise ValueError(f"{name} = {shown(value)}: it must be a finite number")
+    return array.astype(np.float64, copy=False)
+
+
+def _angles(Y: Array, lengths: list[Array], branch: int) -> tuple[Array, NDArray[np.bool_]]:
+    """Both crank angles, ascending, NaN where there is none; and where the triangle is flat."""
+    ec, AB, BC = lengths
+    with np.errstate(all="ignore"):  # status tells
+        L = np.hypot(ec, Y)
+        # tan^2(beta/2) of the angle between AB and AC, as products of exact-ish differences.
+        above = (BC - (L - AB)) * (BC + (L - AB))
+        below = ((L + AB) - BC) * ((L + AB) + BC)
+        beta = 2.0 * np.arctan2(np.sqrt(above), np.sqrt(below))
+        theta = np.arctan2(-ec, Y) + beta * np.array([-1.0, 1.0])
+        theta = np.where(
+            theta > np.pi, theta - 2.0 * np.pi, np.where(theta <= -np.pi, theta + 2.0 * np.pi, theta)
+        )
+        rod_up = (Y - AB * np.cos(theta)) * branch
+        good = (rod_up >= 0.0) & (BC > 0.0) & (AB >= 0.0)
+    theta = np.sort(np.where(good, theta, np.nan), axis=-1)
+    flat = ((above == 0.0) | (below == 0.0))[..., 0]
+    twice = flat & (theta[..., 0] == theta[..., 1])
+    theta[..., 1] = np.where(twice, np.nan, theta[..., 1])
+    return theta, flat
+
+
+def _add_rates(
+    result: dict[str, Any],
+    arrays: dict[str, Array],
+    lengths: list[Array],
+    branch: int,
+    shape: tuple[int, ...],
+    flat: NDArray[np.bool_],
+) -> None:
+    """omega = V_C / Y', alpha = (a_C - omega^2 Y'') / Y', with Y' and Y'' by theta."""
+    theta = result["theta"]
+    sides = {
+        name: np.broadcast_to(v, theta.shape) for name, v in zip(("ec", "AB", "BC"), lengths, strict=True)
+    }
+    known = np.isfinite(theta)
+    slope, bend = np.full(theta.shape, np.nan), np.full(theta.shape, np.nan)
+    if known.any():
+        here = {name: side[known] for name, side in sides.items()}
+        names = ["Y_wrt_theta", "Y_wrt_theta_theta"]
+        found = evaluate(names, theta=theta[known], branch=branch, **here)
+        slope[known], bend[known] = (found[name] for name in names)
+    slope[flat] = np.nan  # at a dead centre the crank's rates are not determined
+    speed = np.broadcast_to(arrays["V_C"], shape)[..., None]
+    result["omega"] = speed / slope
+    if "a_C" in arrays:
+        acceleration = np.broadcast_to(arrays["a_C"], shape)[..., None]
+        result["alpha"] = (acceleration - result["omega"] ** 2 * bend) / slope
+
+
+def _status(theta: Array, flat: NDArray[np.bool_], arrays: dict[str, Array], shape: tuple[int, ...]) -> Any:
+    bad = np.zeros(shape, bool)
+    for name, array in arrays.items():
+        least = INPUTS[name].least if name in INPUTS else None
+        good = np.isfinite(array) if least is None else np.isfinite(array) & (array >= least)
+        bad |= ~np.broadcast_to(good, shape)
+    none = np.isnan(theta).all(axis=-1)
+    status = np.select([bad, none, flat], [np.int8(4), np.int8(1), np.int8(2)], np.int8(0)).astype(np.int8)
+    return status if shape else int(status)

@@ -1,0 +1,111 @@
+"""Quantities of a whole design by name, for many designs at once: value and exact derivatives.
+
+A measure is the margin, a name of `events`, or a peak over the crank angle as (kind, quantity):
+"margin", "stroke", ("absmax", "a_C").
+"""
+
+from collections.abc import Iterable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..mechanism.catalogue import quantities, quantity
+from ..mechanism.names import LENGTHS
+from ..mechanism.spelling import meant
+from ..peaks.peak import KINDS, peak
+from .events.arrays import events_of_arrays
+from .number_or_array import sum_of_three
+
+Array = NDArray[np.float64]
+Measure = str | tuple[str, str]
+
+UNITS = {
+    "margin": "m",
+    **dict.fromkeys(("Y_outer", "Y_inner", "stroke"), "m"),
+    **dict.fromkeys(("theta_outer", "theta_inner", "advance_angle", "return_angle"), "rad"),
+    "time_ratio": "1",
+    **dict.fromkeys(("max_pressure_angle", "min_transmission_angle"), "rad"),
+    **dict.fromkeys(("min_pressure_angle", "max_transmission_angle"), "rad"),
+    **dict.fromkeys(("V_outward", "V_inward"), "m/s"),
+}
+
+
+class Measured(NamedTuple):
+    """Values of one measure over designs, and their derivatives by the parameters that it depends on."""
+
+    value: Array
+    gradient: Mapping[str, Array]
+
+
+def checked(measure: Any) -> Measure:
+    """A measure as it is meant; an error that says what there is."""
+    if isinstance(measure, (tuple, list)) and len(measure) == 2 and measure[0] in KINDS:
+        quantity(measure[1])
+        return str(measure[0]), str(measure[1])
+    if isinstance(measure, str) and measure in UNITS:
+        return measure
+    hint = ""
+    if isinstance(measure, (tuple, list)) and len(measure) == 2 and isinstance(measure[0], str):
+        near = meant(measure[0], KINDS)
+        hint = f"did you mean {(near[0], measure[1])!r}? " if near else ""
+    elif isinstance(measure, str):
+        near = meant(measure, UNITS)
+        peaks = [] if near else meant(measure, quantities())
+        hint = (
+            f"did you mean {near[0]!r}? "
+            if near
+            else f"did you mean ('absmax', {peaks[0]!r})? "
+            if peaks
+            else ""
+        )
+    there = f"{'There' if hint else 'there'} are {', '.join(UNITS)}"
+    raise ValueError(
+        f"{measure!r} is no quantity of a design; {hint}{there} and the peaks, "
+        f'such as ("absmax", "a_C"), of the kinds {", ".join(KINDS)}'
+    )
+
+
+def unit_of(measure: Measure) -> str:
+    """The unit of a measure."""
+    return UNITS[measure] if isinstance(measure, str) else quantity(measure[1]).unit
+
+
+def text_of(measure: Measure) -> str:
+    """How a measure is called in a message."""
+    return measure if isinstance(measure, str) else " ".join(measure)
+
+
+def measured(
+    measures: Iterable[Measure], designs: Mapping[str, Any], branch: int = 1
+) -> dict[Measure, Measured]:
+    """Every measure over designs: parameters by name, numbers and arrays of one shape."""
+    found: dict[Measure, Measured] = {}
+    wanted = list(dict.fromkeys(measures))
+    told = _events(wanted, designs, branch)
+    for measure in wanted:
+        if measure == "margin":
+            found[measure] = _margin(*(np.asarray(designs[n], float) for n in LENGTHS))
+        elif isinstance(measure, str):
+            found[measure] = Measured(told[measure], told["gradient"][measure])
+        else:
+            kind, name = measure
+            top = peak(name, kind=kind, branch=branch, **designs)
+            slopes = {p: np.asarray(slope) for p, slope in top["gradient"].items()}
+            found[measure] = Measured(np.asarray(top["value"]), slopes)
+    return found
+
+
+def _margin(ec: Array, AB: Array, BC: Array) -> Measured:
+    value = sum_of_three(BC, -AB, -np.abs(ec))
+    one = np.ones_like(value)
+    return Measured(value, {"ec": -np.sign(ec) * one, "AB": -one, "BC": one})
+
+
+def _events(wanted: list[Measure], designs: Mapping[str, Any], branch: int) -> dict[str, Any]:
+    names = [name for name in wanted if isinstance(name, str) and name != "margin"]
+    if not names:
+        return {}
+    speed = designs.get("omega0")
+    given = {**{n: designs[n] for n in LENGTHS}, "omega0": 1.0 if speed is None else speed}
+    return events_of_arrays(given, branch, speed is not None, any(n.startswith("V_") for n in names))

@@ -1,0 +1,145 @@
+"""What `optimize` is asked for: objectives, the space of designs and limits, read and checked."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...mechanism.inputs import INPUTS
+from ...mechanism.names import LENGTHS
+from ...runtime.request import as_number, check_inputs
+from ...support.checks import real_number
+from ...support.deadline import Deadline
+from ..measures import UNITS, Measure, checked, text_of, unit_of
+from .kinks import sides_of
+from .problem import EQUAL, LOWER, UPPER, Limit, Piece, Space
+
+
+class Goal(NamedTuple):
+    """A measure and whether it is to be large (1) or small (-1)."""
+
+    measure: Measure
+    sense: int
+
+
+def goals_of(maximize: Any, minimize: Any) -> list[Goal]:
+    """The objectives, each with its sense: 1 to maximise, -1 to minimise."""
+    goals = []
+    for wanted, sense in ((maximize, 1), (minimize, -1)):
+        goals += [Goal(checked(measure), sense) for measure in _several(wanted)]
+    if not goals:
+        raise TypeError('optimize: say what to maximize= or to minimize=, such as ("absmax", "a_C")')
+    return goals
+
+
+def _several(wanted: Any) -> list[Any]:
+    """The objectives, of one or of a list of them; a pair (kind, quantity) is one."""
+    if wanted is None:
+        return []
+    many = isinstance(wanted, tuple) and (
+        len(wanted) != 2 or wanted[0] in UNITS or not isinstance(wanted[0], str)
+    )
+    return list(wanted) if many or isinstance(wanted, list) else [wanted]
+
+
+def space_of(over: Mapping[str, Any], fixed: Mapping[str, Any], branch: int, deadline: Deadline) -> Space:
+    """The box of free parameters and the fixed inputs."""
+    known = tuple(name for name in INPUTS if name != "theta")
+    _check_mapping("over", over, "{'ec': (0, 0.1)}")
+    check_inputs("optimize", over, known)
+    check_inputs("optimize", fixed, known)
+    if not over:
+        raise ValueError("over= is empty: name at least one parameter and its bounds, such as ec=(0, 0.1)")
+    both = [name for name in over if name in fixed]
+    if both:
+        raise ValueError(f"{both[0]} is in over= and fixed at the same time")
+    ends = {name: _pair(name, bounds) for name, bounds in over.items()}
+    numbers = {name: _number(name, value) for name, value in fixed.items() if value is not None}
+    missing = [name for name in LENGTHS if name not in over and name not in numbers]
+    if missing:
+        raise TypeError(f"optimize: {missing[0]} is missing (in over= or as a number)")
+    low, high = (np.array([pair[i] for pair in ends.values()]) for i in (0, 1))
+    return Space(tuple(over), low, high, numbers, branch, deadline)
+
+
+def _check_mapping(name: str, given: Any, example: str) -> None:
+    if not isinstance(given, Mapping):
+        raise TypeError(f"{name} = {given!r}: a dict is wanted, such as {example}")
+
+
+def _pair(name: str, bounds: Any) -> tuple[float, float]:
+    try:
+        low, high = (_number(name, end) for end in bounds)
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"over: {name} = {bounds!r}: two finite bounds are wanted ({error})") from None
+    if not low < high:
+        raise ValueError(f"over: {name} = ({low:g}, {high:g}): the lower bound first, and smaller")
+    return low, high
+
+
+def _number(name: str, value: Any) -> float:
+    number = as_number(name, value, (name,), ("optimize",))
+    if number is None:
+        raise TypeError(f"{name}: optimize takes numbers, got {type(value).__name__}")
+    return number
+
+
+def limits_of(keep: Mapping[Any, Any]) -> list[Limit]:
+    """The limits as functions that stay positive."""
+    _check_mapping("keep", keep, "{'margin': (0.005, None)}")
+    limits: list[Limit] = []
+    for key, bounds in keep.items():
+        if key in INPUTS:
+            raise ValueError(f"keep: {key} is a parameter; its bounds go into over=")
+        measure = checked(key)
+        pair = bounds if isinstance(bounds, (tuple, list)) else (bounds, bounds)
+        if len(pair) != 2:
+            raise ValueError(
+                f"keep: {text_of(measure)} = {bounds!r}: a pair (low, high) or a number is wanted"
+            )
+        low, high = (None if end is None else _in_si(measure, end) for end in pair)
+        if low is not None and high is not None and low >= high:
+            if low > high:
+                raise ValueError(f"keep: {text_of(measure)} = ({low:g}, {high:g}): the lower bound first")
+            limits.append(Limit(key, measure, 1.0, low, EQUAL))
+            continue
+        if low is not None:
+            limits += lower_limits(key, measure, low)
+        if high is not None:
+            limits += upper_limits(key, measure, high)
+    return limits
+
+
+def _in_si(measure: Measure, value: Any) -> float:
+    if isinstance(value, str) or hasattr(value, "magnitude"):
+        from ...mechanism.units import in_unit
+
+        value = in_unit(text_of(measure), value, unit_of(measure))
+    number = real_number(f"keep: {text_of(measure)}", value)
+    if not np.isfinite(number):
+        raise ValueError(f"keep: {text_of(measure)} = {number}: it must be finite, or None for no limit")
+    return number
+
+
+def lower_limits(key: Any, measure: Measure, bound: float) -> list[Limit]:
+    """measure >= bound; if it is the smallest of several, each of them is."""
+    sides = sides_of(measure)
+    if sides.largest:
+        return [Limit(key, measure, 1.0, bound, LOWER)]
+    return [Limit(key, part, sign, sign * bound, LOWER) for part, sign in sides.parts]
+
+
+def upper_limits(key: Any, measure: Measure, bound: float) -> list[Limit]:
+    """measure <= bound; if it is the largest of several, each of them is."""
+    sides = sides_of(measure)
+    if not sides.largest:
+        return [Limit(key, measure, -1.0, bound, UPPER)]
+    return [Limit(key, part, -sign, sign * bound, UPPER) for part, sign in sides.parts]
+
+
+def problems(goal: Goal) -> list[list[Piece]]:
+    """Problems of which the best is taken, each with the pieces whose largest is made small."""
+    sides = sides_of(goal.measure)
+    pieces = [Piece(part, -goal.sense * sign) for part, sign in sides.parts]
+    together = sides.largest == (goal.sense < 0)
+    return [pieces] if together else [[piece] for piece in pieces]

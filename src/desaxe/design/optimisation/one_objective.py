@@ -1,0 +1,64 @@
+"""The optimum of one objective: searches ever nearer to the limit of turning."""
+
+from typing import Any
+
+import numpy as np
+
+from .objectives import Goal, lower_limits, problems
+from .problem import UPPER, Array, Limit, Space
+from .result import SATISFIED, SETTLED, told
+from .search import Found, Search
+
+EDGES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # of the rod: how near to the limit of turning the search goes
+GROWS = 0.2  # the power of the margin from which growth towards the limit is no rounding
+
+
+def solved(goal: Goal, space: Space, limits: list[Limit], starts: int, seed: int) -> dict[str, Any]:
+    """The optimum of one objective; see `optimize`."""
+    rod = space.fixed.get("BC") or float(space.high[space.names.index("BC")])
+    own = any(c.key == "margin" and c.side != UPPER and c.bound > EDGES[-1] * rod for c in limits)
+    history: list[tuple[float, float]] = []
+    places: list[Array] = []
+    for edge in EDGES:
+        implied = [] if own else lower_limits(None, "margin", edge * rod)
+        # After the first time the best is followed towards the edge.
+        best = _best(goal, space, [*limits, *implied], 0 if places else starts, seed, places)
+        found, search = best
+        at_edge = any(c.key is None and m for c, m in zip(search.limits, found.multipliers, strict=False))
+        history.append((edge, abs(found.value)))
+        if found.violation > SATISFIED or not at_edge or _power(history) > GROWS:
+            break
+        places = [found.z]
+    return told(goal, space, *best, _power(history) > GROWS)
+
+
+def _best(
+    goal: Goal, space: Space, limits: list[Limit], starts: int, seed: int, places: list[Array]
+) -> tuple[Found, Search]:
+    """The best of all local searches, to its last digits."""
+    candidates = []
+    for pieces in problems(goal):
+        search = Search(space, pieces, limits, seed)
+        begin = [*places, *search.starts(starts)]
+        candidates += [(search.run(start), search) for start in begin]
+        # Towards the limit of turning a search may stall, so steep does it get: look along that limit too.
+        near, _ = min(candidates, key=_rank)
+        stalled = near.residual > SETTLED or search.is_near_margin(near.z)
+        for number in search.margins() if stalled else ():
+            candidates.append((search.run(search.at_limit(near.z, number), number), search))
+    found, search = min(candidates, key=_rank)
+    found = search.polished(found)
+    return (search.probed(found) if found.residual > SETTLED else found), search
+
+
+def _rank(candidate: tuple[Found, Search]) -> tuple[float, float]:
+    found = candidate[0]
+    return max(found.violation, SATISFIED), found.value
+
+
+def _power(history: list[tuple[float, float]]) -> float:
+    """The power of 1/margin with which the optimum has grown over the last two steps; 0 before."""
+    if len(history) < 3:
+        return 0.0
+    edges, values = np.log(np.array(history[-3:])).T
+    return float(np.min(np.diff(values) / -np.diff(edges)))

@@ -1,0 +1,82 @@
+"""`optimize`: the best design within limits, what the limits cost, or why there is none."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from ...runtime.request import check_border
+from ...support.checks import whole_number
+from ...support.deadline import Deadline
+from ...support.extras import needed
+from .objectives import goals_of, limits_of, space_of
+
+with needed("optimize", "design"):
+    from .one_objective import solved
+    from .pareto import front
+
+
+def optimize(
+    *,
+    over: Mapping[str, tuple[Any, Any]],
+    maximize: Any = None,
+    minimize: Any = None,
+    keep: Mapping[Any, Any] | None = None,
+    branch: int = 1,
+    starts: int = 3,
+    points: int = 11,
+    seed: int = 0,
+    timeout: float | None = 120.0,
+    **fixed: Any,
+) -> dict[str, Any]:
+    """The design that makes a quantity as large or as small as possible, within limits.
+
+    maximize, minimize  "margin", a name of `events` such as "stroke" or "time_ratio", or a peak over the
+                        crank angle as (kind, quantity): ("absmax", "a_C"). Several of them, or both, ask
+                        for the Pareto front: designs of which none is better than another in everything
+    over                dict parameter -> (low, high): what may vary, lengths, speed or masses
+    keep                dict of the same names -> (low, high), None where there is no limit; a number is to be
+                        met exactly. The crank always turns fully: margin >= 0
+    fixed               all other parameters, as in `evaluate`
+    starts, seed        how many local searches, from the best of a scan of the space
+    timeout             seconds after which it ends with a TimeoutError; None for no limit
+    points              designs along a Pareto front (to the power of the objectives less one)
+
+    Numbers are in SI units; texts with units are understood. Gives a dict:
+
+    <parameter>  the design, each p of `over`
+    value        of the objective there; infinite where there is no optimum
+    active       dict of the limits that hold it back: name or parameter -> "lower", "upper" or "equal"
+    multipliers  dict name or parameter -> what the objective would gain, per unit, from relaxing its limit:
+                 positive, and 0 where the limit does not hold it back. With "equal", what raising the
+                 wanted value would gain, of either sign. NaN at a kink, where two peaks of one sign share
+                 the extreme value
+    status       0 an optimum; 1 no design keeps the limits; 2 no optimum: the objective grows without
+                 bound towards the limit of turning; 3 the best is at that limit itself, and nearly
+                 reached at the design told; 4 the search did not settle
+    message      the same in words
+    residual     of the optimality conditions, relative
+
+    For several objectives parameters, `status` and `residual` are arrays along the front, and `value` is a
+    dict of arrays by objective.
+
+    A scan of the space, SLSQP (SciPy) with exact gradients from its best places, and the last digits from the
+    optimality conditions. Largest magnitudes are split into both signs, so that a kink between them does no
+    harm. Needs the extra `design`. Raises ValueError for an unknown name or limits that cross.
+
+        >>> import desaxe as dx
+        >>> machine = dict(AB=0.125, BC=0.350, omega0=157.08)
+        >>> keep = {"margin": (0.005, None)}
+        >>> best = dx.optimize(maximize=("absmax", "a_C"), over={"ec": (0, 0.25)}, keep=keep, **machine)
+        >>> round(best["ec"], 9), best["active"]
+        (0.22, {'margin': 'lower'})
+    """
+    check_border({}, branch)
+    for name, number, least in (("starts", starts, 1), ("points", points, 2)):
+        whole_number(name, number, least, 10_000)
+    whole_number("seed", seed, 0, 2**32 - 1)
+    deadline = Deadline("optimize", timeout)
+    goals = goals_of(maximize, minimize)
+    space = space_of(over, fixed, branch, deadline)
+    limits = limits_of(keep or {})
+    if len(goals) > 1:
+        return front(goals, space, limits, starts, seed, points)
+    return solved(goals[0], space, limits, starts, seed)

@@ -1,0 +1,113 @@
+"""What the search of `optimize` found, told: the design, what holds it back, what that costs, in words."""
+
+from typing import Any
+
+import numpy as np
+
+from ..measures import checked, text_of
+from .objectives import Goal
+from .problem import EQUAL, LOWER, UPPER, Space
+from .search import Found, Search
+
+FOUND, NONE, UNBOUNDED, EDGE, UNSURE = range(5)
+SATISFIED = 1e-7  # of its scale: a limit that is broken by less is kept
+SETTLED = 1e-4  # residual of the optimality conditions
+
+
+def told(goal: Goal, space: Space, found: Found, search: Search, grows: bool) -> dict[str, Any]:
+    """The result of `optimize` for one objective; `grows` where it does without bound towards the edge."""
+    design = {name: float(x[0]) for name, x in space.designs(found.z).items() if name in space.names}
+    active, multipliers = _named(space, found, search)
+    edge = None in active  # the implied limit, of turning
+    active.pop(None, None)
+    gain = multipliers.pop(None, 0.0)
+    status = FOUND
+    if found.violation > SATISFIED:
+        status = NONE
+    elif edge:
+        status = UNBOUNDED if grows else EDGE
+    elif found.residual > SETTLED and not found.kink:
+        status = UNSURE
+    size = isinstance(goal.measure, tuple) and goal.measure[0] == "absmax"
+    value = abs(found.value) if size else -goal.sense * found.value
+    if edge:
+        active["margin"], multipliers["margin"] = LOWER, gain
+    if status == UNBOUNDED:
+        value = goal.sense * np.inf
+        multipliers = dict.fromkeys(multipliers, np.nan)
+    if status == NONE:
+        value = np.nan
+    if status == NONE or found.kink:
+        multipliers = dict.fromkeys(multipliers, np.nan)
+    return {
+        **design,
+        "value": float(value),
+        "active": active,
+        "multipliers": multipliers,
+        "status": status,
+        "message": _message(status, goal, design, found, search, active),
+        "residual": found.residual,
+    }
+
+
+def _named(space: Space, found: Found, search: Search) -> tuple[dict[Any, str], dict[Any, float]]:
+    """Which limits hold the optimum back, and their multipliers, by name."""
+    n, count = len(space.names), len(search.limits)
+    active: dict[Any, str] = {}
+    multipliers: dict[Any, float] = {limit.key: 0.0 for limit in search.limits} | dict.fromkeys(
+        space.names, 0.0
+    )
+    for limit, multiplier in zip(search.limits, found.multipliers[:count], strict=True):
+        if multiplier or limit.side == EQUAL:
+            active[limit.key] = limit.side
+            multipliers[limit.key] += float(-multiplier if limit.side == EQUAL else multiplier)
+    width = space.high - space.low
+    for side, part in (
+        (LOWER, found.multipliers[count : count + n]),
+        (UPPER, found.multipliers[count + n :]),
+    ):
+        for name, multiplier, wide in zip(space.names, part, width, strict=True):
+            if multiplier:
+                active[name] = side
+                multipliers[name] = float(multiplier / wide)
+    return active, multipliers
+
+
+def _message(
+    status: int, goal: Goal, design: dict[str, float], found: Found, search: Search, active: dict[Any, str]
+) -> str:
+    what = text_of(goal.measure)
+    where = ", ".join(f"{name} = {value:.9g}" for name, value in design.items())
+    limit = "margin = BC - AB - |ec| = 0"
+    if status == NONE:
+        return f"no design in over= keeps all limits: {_missed(found, search)} at the nearest, {where}"
+    if status == UNBOUNDED:
+        return (
+            f"no optimum: {what} grows without bound towards the limit of turning, {limit}, as near {where}; "
+            "keep a margin, such as keep={'margin': (0.005, None)}"
+        )
+    if status == EDGE:
+        return f"the best is at the limit of turning itself, {limit}: {what} is bounded there, near {where}"
+    if status == UNSURE:
+        return (
+            f"the search ended at {where}, where the optimality conditions hold to {found.residual:.1g} "
+            "only: more starts= may help"
+        )
+    names = {key: key if isinstance(key, str) else text_of(key) for key in active}
+    held = ", ".join(f"{names[key]} ({side})" for key, side in active.items())
+    kink = ", at a kink, where two peaks share the extreme value" if found.kink else ""
+    return f"optimum at {where}{kink}" + (f", held back by {held}" if held else ", inside of all limits")
+
+
+def _missed(found: Found, search: Search) -> str:
+    """The limit that is broken most, and by how much."""
+    value = search.scaled(found.z)[0][search.count :]
+    worst = int(np.argmax(np.where(search.equal, np.abs(value), -value)))
+    limit = search.limits[worst]
+    short = abs(float(value[worst] * search.scale[search.count + worst]))
+    if limit.key is None:  # the implied one, which is kept with a little to spare
+        return (
+            f"margin = BC - AB - |ec| misses 0, from which on the crank turns, by {short - limit.bound:.3g}"
+        )
+    key = text_of(checked(limit.key))
+    return f"{key} misses its {limit.side} limit by {short:.3g}"

@@ -1,0 +1,204 @@
+"""`synthesize`: the designs that have a wanted stroke and time ratio.
+
+With beta = pi (ratio - 1)/(ratio + 1), the angle that the stroke H is seen under from the crank's centre, the
+triangle of both dead centres gives
+
+    (H/2)^2 = AB^2 cos^2(beta/2) + BC^2 sin^2(beta/2),    ec = (BC^2 - AB^2) sin(beta)/H
+
+one design for each x = AB/BC, tan^2(beta/2) <= x < 1: at the lower end a change point, at the upper one crank
+and rod of one length. There is none for beta >= pi/2, a ratio of 3. The steepest rod has
+
+    sin(max pressure angle) = (AB + ec)/BC = x + sin(beta/2) (1 - x^2)/sqrt(tan^2(beta/2) + x^2)
+
+which is 1 at both ends and least at x^2 = 2 t (1 + t^2)/(t + sqrt(4 + 5 t^2)), t = tan(beta/2): two designs
+for each angle above the least.
+"""
+
+from collections.abc import Callable
+from itertools import pairwise
+from math import asin, cos, inf, isclose, pi, sin, sqrt
+from typing import Any
+
+from ...mechanism.inputs import INPUTS, Input
+from ...runtime.request import as_number, with_known_inputs
+from ...support.checks import real_number
+from ...support.shown import shown
+from ..roots import root
+from .family import Answer, Family
+
+WANTED = {
+    row.name: row
+    for row in (
+        Input("stroke", "m", "distance between the dead centres"),
+        Input("time_ratio", "1", "longer over shorter stroke"),
+        Input("max_pressure_angle", "rad", "largest angle between rod and slider's axis"),
+        Input("peak_a_C", "m/s^2", "largest magnitude of the slider's acceleration"),
+    )
+}
+THIRDS = ("BC", "AB", "max_pressure_angle", "peak_a_C")
+
+
+@with_known_inputs
+def synthesize(
+    *,
+    stroke: Any,
+    time_ratio: Any,
+    BC: Any = None,
+    AB: Any = None,
+    max_pressure_angle: Any = None,
+    peak_a_C: Any = None,
+    omega0: Any = None,
+    slow_stroke: int = 1,
+) -> dict[str, Any]:
+    """Every design with this stroke and time ratio, and one more wish; or why there is none.
+
+    stroke       distance between the dead centres [m]
+    time_ratio   the longer over the shorter stroke, from 1 to below 3
+    one of       BC, AB: lengths [m]; max_pressure_angle [rad], of the rod; peak_a_C: the largest magnitude of
+                 the slider's acceleration [m/s^2] at the constant speed omega0 [rad/s] (of designs whose
+                 margin is more than 1e-9 of the rod)
+    slow_stroke  +1: the slider is slow on its way outward (branch 1, crank turning forwards), ec > 0;
+                 -1: inward, ec < 0: the mirror image
+
+    Numbers are in SI units; texts with units are understood. Gives a dict:
+
+    solutions  list of designs, each a dict ec, AB, BC, by the length of the rod
+    limits     dict of the one more wish -> (low, high): for what there is a design with this stroke and
+               time ratio, the ends told to double precision; NaN where there is none
+    status     0 one or more; 1 none; 2 the one more wish leaves the design open
+    message    how many, or why none
+
+    Closed forms in plain Python (see this module's docstring); the peak acceleration is refined. Raises
+    ValueError for an impossible requirement, TypeError unless exactly one third requirement is given.
+
+        >>> import desaxe as dx
+        >>> found = dx.synthesize(stroke=0.0888, time_ratio=1.67, BC=0.064)
+        >>> [round(1e3 * found["solutions"][0][name], 2) for name in ("ec", "AB", "BC")]
+        [19.9, 40.05, 64.0]
+    """
+    thirds = {"BC": BC, "AB": AB, "max_pressure_angle": max_pressure_angle, "peak_a_C": peak_a_C}
+    given = [name for name, value in thirds.items() if value is not None]
+    if len(given) != 1:
+        got = " and ".join(given) or "none"
+        raise TypeError(f"synthesize: just one of {', '.join(THIRDS)} is wanted, got {got}")
+    if slow_stroke not in (1, -1):
+        raise ValueError(f"slow_stroke = {slow_stroke!r}: it is +1 (outward) or -1 (inward)")
+    (third,) = given
+    H, ratio, value = (
+        _wish(n, v) for n, v in (("stroke", stroke), ("time_ratio", time_ratio), (third, thirds[third]))
+    )
+    if ratio < 1.0:
+        raise ValueError(f"time_ratio = {ratio}: the longer over the shorter stroke is at least 1")
+    if ratio >= 3.0:
+        why = f"time_ratio = {ratio:g}: below 3 wherever the crank turns fully"
+        return _told(third, value, slow_stroke, Answer([], *2 * (float("nan"),), why))
+    family = Family(H, pi * (ratio - 1.0) / (ratio + 1.0))
+    if third == "peak_a_C":
+        from .peak import of_peak
+
+        speed = as_number("omega0", omega0, ("stroke", "time_ratio", third, "omega0"), ("synthesize",))
+        answer = of_peak(family, value, float(speed or 0.0))
+    else:
+        answer = _FORMS[third](family, value)
+    return _told(third, value, slow_stroke, answer)
+
+
+def _wish(name: str, value: Any) -> float:
+    row = WANTED.get(name) or INPUTS[name]
+    if isinstance(value, str) or hasattr(value, "magnitude"):
+        from ...mechanism.units import in_unit
+
+        value = in_unit(name, value, row.unit)
+    number = real_number(name, value)
+    if not 0.0 < number < inf:
+        raise ValueError(f"{name} = {shown(value)}: it must be finite and more than 0")
+    if name == "max_pressure_angle" and number > pi / 2:
+        raise ValueError(f"max_pressure_angle = {number:g} rad: it is at most pi/2")
+    return number
+
+
+def _told(third: str, value: float, slow_stroke: int, answer: Answer) -> dict[str, Any]:
+    count = len(answer.designs)
+    unit = (WANTED.get(third) or INPUTS[third]).unit
+    message = f"{count} design{'s' if count != 1 else ''}"
+    if not count:
+        message = (
+            answer.why
+            or f"none: {third} = {value:g} {unit}, designs of this stroke and time ratio have it "
+            + _range(answer, unit)
+        )
+    elif answer.why:
+        message = answer.why
+    solutions = sorted(answer.designs, key=lambda design: design["BC"])
+    return {
+        "solutions": [{**design, "ec": slow_stroke * design["ec"]} for design in solutions],
+        "limits": {third: (answer.low, answer.high)},
+        "status": 1 if not count else 2 if answer.why else 0,
+        "message": message,
+    }
+
+
+def _range(answer: Answer, unit: str) -> str:
+    if answer.high == inf:
+        return f"from {answer.low:.6g} {unit} on"
+    return f"from {answer.low:.6g} to {answer.high:.6g} {unit}"
+
+
+# ---- one more wish ------------------------------------------------------------------------------
+
+
+def _of_rod(family: Family, BC: float) -> Answer:
+    half = family.stroke / 2.0
+    low, high = half, half / family.t if family.t else inf
+    if not low <= BC <= high or (low == BC and family.beta):
+        return Answer([], low, high)
+    share = BC * sin(family.beta / 2.0)
+    AB = sqrt((half - share) * (half + share)) / cos(family.beta / 2.0)
+    return Answer([family.lengths(AB, BC)], low, high)
+
+
+def _of_crank(family: Family, AB: float) -> Answer:
+    half = family.stroke / 2.0
+    low, high = half * family.t, half
+    if not family.beta:
+        if not isclose(AB, half, rel_tol=4e-16):
+            return Answer([], half, half)
+        design = {"ec": 0.0, "AB": AB, "BC": inf}
+        return Answer(
+            [design],
+            half,
+            half,
+            "time_ratio = 1: ec = 0 and AB = stroke/2, with a rod of any length BC >= AB",
+        )
+    if not low <= AB < high:
+        return Answer([], low, high)
+    share = AB * cos(family.beta / 2.0)
+    BC = sqrt((half - share) * (half + share)) / sin(family.beta / 2.0)
+    return Answer([family.lengths(AB, BC)], low, high)
+
+
+def _of_lean(family: Family, angle: float) -> Answer:
+    lean, least = sin(angle), family.upright
+    if not family.beta:
+        return Answer([family.design(lean)], 0.0, pi / 2)
+    low = asin(min(family.lean(least), 1.0))
+    if angle < low or lean >= 1.0:
+        if lean >= 1.0:
+            return Answer([family.design(family.t**2)], low, pi / 2)
+        return Answer([], low, pi / 2)
+
+    def excess(x: float) -> float:
+        return family.lean(x) - lean
+
+    ends = [family.t**2, least, 1.0]
+    if excess(least) >= 0.0:
+        return Answer([family.design(least)], low, pi / 2)
+    found = [root(excess, a, b) for a, b in pairwise(ends)]
+    return Answer([family.design(x) for x in found], low, pi / 2)
+
+
+_FORMS: dict[str, Callable[[Family, float], Answer]] = {
+    "BC": _of_rod,
+    "AB": _of_crank,
+    "max_pressure_angle": _of_lean,
+}

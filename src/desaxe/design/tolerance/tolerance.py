@@ -1,0 +1,323 @@
+"""`tolerance`: how far a quantity scatters when its inputs do, told in four ways that check each other."""
+
+from collections.abc import Mapping, Sequence
+from itertools import product
+from math import inf, sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...evaluation.evaluate import evaluate
+from ...mechanism.catalogue import quantity
+from ...mechanism.inputs import INPUTS
+from ...mechanism.names import sensitivity
+from ...runtime.request import check_border, check_inputs
+from ...support.checks import whole_number
+from ...support.extras import needed
+from ...support.shown import shown
+from ..measures import UNITS, Measure, checked, measured
+from .uncertain import DISTRIBUTIONS, Array, Inexact, read
+
+BLOCK = 65536  # samples at a time
+STEP = (
+    1e-3  # of a standard deviation or so: differences of exact gradients, where these are not derived again
+)
+KINK = 0.1  # of the first-order change: slopes that jump by more have no derivative
+PERCENTS = (0.135, 2.5, 50.0, 97.5, 99.865)
+BOXES = 2000  # of an enclosure
+MOST_CORNERED = 10  # inputs
+MOST_SAMPLES, MOST_BASE = 10**8, 2**20
+MANY, SOME = 100_000, 10_000  # samples of a quantity at a point, and of a peak
+
+
+class Function(NamedTuple):
+    """A quantity at a crank angle, or of a whole design, as a function of what varies."""
+
+    measure: Measure
+    at_point: bool
+    fixed: Mapping[str, Any]
+    varying: tuple[str, ...]
+    branch: int
+
+    def values(self, columns: Mapping[str, Any]) -> Array:
+        """Over samples; NaN where there is none."""
+        if self.at_point:
+            found = evaluate(str(self.measure), branch=self.branch, **self.fixed, **columns)
+        else:
+            found = measured([self.measure], {**self.fixed, **columns}, self.branch)[self.measure].value
+        return np.asarray(found, float)
+
+    def slopes(self, columns: Mapping[str, Any]) -> Array:
+        """The exact first derivatives over samples, one column for each input that varies."""
+        if self.at_point:
+            names = [sensitivity(str(self.measure), p) for p in self.varying]
+            found = evaluate(names, branch=self.branch, **self.fixed, **columns)
+            return np.stack([np.asarray(found[name]) for name in names], -1)
+        gradient = measured([self.measure], {**self.fixed, **columns}, self.branch)[self.measure].gradient
+        size = len(next(iter(columns.values())))
+        return np.stack([np.broadcast_to(gradient.get(p, 0.0), (size,)) for p in self.varying], -1)
+
+    def bends(self, centre: Mapping[str, Any], steps: Array) -> tuple[Array, bool]:
+        """The second derivatives at a place, NaN where there are none, and whether all are exact."""
+        n = len(self.varying)
+        pairs = [(i, j) for i in range(n) for j in range(i, n)]
+        bends = np.empty((n, n))
+        names = [sensitivity(str(self.measure), self.varying[i], self.varying[j]) for i, j in pairs]
+        if self.at_point and _derived(names, self.state):
+            found = evaluate(names, branch=self.branch, **self.fixed, **centre)
+            for (i, j), name in zip(pairs, names, strict=True):
+                bends[i, j] = bends[j, i] = found[name]
+            return bends, True
+        near, change = self._differences(centre, steps)
+        far, _ = self._differences(centre, 2.0 * steps)
+        # Across a kink a difference over twice the steps is half as large.
+        if (np.abs(near - far) * np.outer(steps, steps) > KINK * change).any():
+            near[:] = np.nan
+        return near, False
+
+    def _differences(self, centre: Mapping[str, Any], steps: Array) -> tuple[Array, float]:
+        """Of the exact first derivatives, over the steps; and what these change the quantity by."""
+        n = len(self.varying)
+        moves = np.vstack([np.diag(steps), -np.diag(steps)])
+        middle = np.array([centre[p] for p in self.varying])
+        slopes = self.slopes({p: middle[i] + moves[:, i] for i, p in enumerate(self.varying)})
+        bends = (slopes[:n] - slopes[n:]) / (2.0 * steps)[:, None]
+        return 0.5 * (bends + bends.T), float(np.abs(slopes * steps).max())
+
+    @property
+    def state(self) -> bool:
+        """Whether a state omega is given."""
+        return "omega" in self.fixed or "omega" in self.varying
+
+
+def tolerance(
+    name: Any,
+    *,
+    branch: int = 1,
+    distribution: str = "normal",
+    sigmas: float = 3.0,
+    samples: int | None = None,
+    sobol: int = 1024,
+    seed: int = 0,
+    **inputs: Any,
+) -> dict[str, Any]:
+    """How far a quantity scatters when its inputs do.
+
+    name          a quantity at a crank angle, as for `evaluate` ("a_C", with theta=), or one of a whole
+                  design: "stroke", "time_ratio", ..., or a peak such as ("absmax", "a_C")
+    inputs        each a number (exact), a pair (value, tolerance), meaning value +- tolerance, the same as a
+                  text "10 mm +- 0.1 mm" or "10 mm +- 1 %", or a distribution of scipy.stats, frozen.
+                  (`enclose`, other than here, takes pairs (low, high).)
+    distribution  within a tolerance: "normal", the tolerance being so many `sigmas`, or "uniform"
+    samples       of the Monte Carlo, by default 100000, or 10000 of a peak
+    sobol         base samples of the Sobol indices, a power of two; 0 leaves them out
+
+    Gives a dict:
+
+    value          with every input at its mean
+    gradient       dict of the exact derivatives by what varies
+    first_order    dict mean, std: of the linear function with these derivatives
+    second_order   dict mean, std: with second derivatives, skewness and kurtosis of the inputs; `exact` where
+                   these derivatives are derived, else they are differences of the exact first ones
+    monte_carlo    dict mean, std, mean_error, std_error (one standard error each), least, largest,
+                   percentiles (dict percent -> value), samples, infeasible (share of samples without value)
+    contributions  dict input -> share of the first-order variance, the largest first
+    sobol          dict input -> dict first, total, first_error, total_error (95 %): shares of the variance
+                   due to an input alone, and with its interactions (SALib)
+    worst_case     dict lower, upper, guaranteed: with every input anywhere within its tolerance, by
+                   `enclose` where that can be asked (extra `rigorous`), else from the middle and all
+                   corners, NaN where one has no value; None for distributions
+    agreement      dict of what should agree: mean and std, second order against Monte Carlo, in standard
+                   errors; linearity, first against second order std, relative; contributions against Sobol's
+                   first indices, the largest difference
+    status         0 ok; 1 no value at the means; 2 some samples have none, and then no Sobol indices; 3 a
+                   kink at the means, such as that of |ec| at ec = 0: derivatives tell little, and of
+                   second order nothing
+
+    Inputs vary independently. Sobol indices need the extra `design`. Raises as `evaluate` does.
+
+        >>> import desaxe as dx
+        >>> found = dx.tolerance("stroke", ec=(0.02, 1e-4), AB=(0.04, 5e-5), BC=0.064, sobol=0)
+        >>> list(found["contributions"]), round(1e6 * found["first_order"]["std"], 1)
+        (['AB', 'ec'], 64.3)
+    """
+    _check(distribution, sigmas, samples, sobol, seed)
+    check_border(inputs, branch)
+    check_inputs("tolerance", inputs, tuple(INPUTS))
+    given = {n: read(n, v, distribution, sigmas) for n, v in inputs.items() if v is not None}
+    rough = [value for value in given.values() if isinstance(value, Inexact)]
+    if not rough:
+        raise ValueError("tolerance: every input is exact; give one as (value, tolerance)")
+    function = _function(name, given, branch)
+    centre = {row.name: row.mean for row in rough}
+    value = float(np.reshape(function.values({n: np.array([x]) for n, x in centre.items()}), -1)[0])
+    slopes = function.slopes({n: np.array([x]) for n, x in centre.items()})[0]
+    bends, exact = function.bends(centre, STEP * np.array([row.std for row in rough]))
+    kink = bool(np.isnan(bends).any()) and not np.isnan(value)
+    first, second, shares = _propagated(value, slopes, bends, rough)
+    drawn = _monte_carlo(function, rough, samples or (MANY if function.at_point else SOME), seed)
+    indices = _sobol(function, rough, sobol, seed) if sobol else None
+    return {
+        "value": value,
+        "gradient": {row.name: float(s) for row, s in zip(rough, slopes, strict=True)},
+        "first_order": first,
+        "second_order": {**second, "exact": exact},
+        "monte_carlo": drawn,
+        "contributions": dict(sorted(shares.items(), key=lambda item: -item[1])),
+        "sobol": indices,
+        "worst_case": _worst_case(function, value, slopes, rough),
+        "agreement": _agreement(first, second, drawn, shares, indices),
+        "status": 1 if np.isnan(value) else 2 if drawn["infeasible"] else 3 if kink else 0,
+    }
+
+
+def _check(distribution: str, sigmas: Any, samples: Any, sobol: Any, seed: Any) -> None:
+    if distribution not in DISTRIBUTIONS:
+        raise ValueError(f"distribution = {distribution!r}: it is one of {', '.join(DISTRIBUTIONS)}")
+    if not (isinstance(sigmas, (int, float)) and 0.0 < sigmas < inf):
+        raise ValueError(f"sigmas = {sigmas!r}: a finite number above 0 is wanted")
+    if samples is not None:
+        whole_number("samples", samples, 2, MOST_SAMPLES)
+    if not isinstance(sobol, int) or not 0 <= sobol <= MOST_BASE or sobol & (sobol - 1):
+        raise ValueError(f"sobol = {shown(sobol)}: a power of two is wanted, at most {MOST_BASE}, or 0")
+    whole_number("seed", seed, 0, 2**32 - 1)
+
+
+def _function(name: Any, given: Mapping[str, Any], branch: int) -> Function:
+    design = isinstance(name, (tuple, list)) or (name in UNITS and name != "margin")
+    fixed = {n: v for n, v in given.items() if not isinstance(v, Inexact)}
+    varying = tuple(n for n in given if n not in fixed)
+    if design and "theta" in given:
+        raise ValueError(f"theta: {name} is of a whole turn")
+    if design:
+        return Function(checked(name), False, fixed, varying, branch)
+    quantity(name, "omega" in given)
+    if name == "status":
+        raise ValueError("status is no real number")
+    if name == "margin":
+        return Function("margin", False, fixed, varying, branch)
+    names = [sensitivity(name, p) for p in varying]
+    if not _derived(names, "omega" in given):
+        raise ValueError(f"tolerance of {name}: its derivatives are not derived")
+    return Function(name, True, fixed, varying, branch)
+
+
+def _derived(names: Sequence[str], state: bool) -> bool:
+    try:
+        for name in names:
+            quantity(name, state)
+    except ValueError:
+        return False
+    return True
+
+
+def _propagated(value: float, slopes: Array, bends: Array, rough: Sequence[Inexact]) -> tuple[Any, Any, Any]:
+    """Mean and standard deviation to first and second order, and each input's share of the former."""
+    std = np.array([row.std for row in rough])
+    parts = (slopes * std) ** 2
+    skewness, kurtosis = (np.array([getattr(row, n) for row in rough]) for n in ("skewness", "kurtosis"))
+    own = np.diag(bends) * std**2
+    mixed = np.triu(bends * np.outer(std, std), 1)
+    variance = parts.sum() + (slopes * std * own * skewness).sum() + (own**2 * (kurtosis - 1.0)).sum() / 4.0
+    variance += (mixed**2).sum()
+    total = parts.sum()
+    shares = {row.name: float(p / total) if total else 0.0 for row, p in zip(rough, parts, strict=True)}
+    first = {"mean": value, "std": float(np.sqrt(total))}
+    return first, {"mean": value + float(own.sum()) / 2.0, "std": float(np.sqrt(max(variance, 0.0)))}, shares
+
+
+def _monte_carlo(function: Function, rough: Sequence[Inexact], count: int, seed: int) -> dict[str, Any]:
+    """Random samples, drawn and evaluated in blocks; only the values are kept."""
+    random = np.random.default_rng(seed)
+    blocks = []
+    for start in range(0, count, BLOCK):
+        size = min(BLOCK, count - start)
+        blocks.append(function.values({row.name: row.drawn(random, size) for row in rough}))
+    every = np.concatenate(blocks)
+    known = every[np.isfinite(every)]
+    lost = 1.0 - known.size / count
+    if known.size < 2:
+        nothing = dict.fromkeys(("mean", "std", "mean_error", "std_error", "least", "largest"), np.nan)
+        return {**nothing, "percentiles": {}, "samples": count, "infeasible": lost}
+    std = float(known.std(ddof=1))
+    fourth = float(np.mean((known - known.mean()) ** 4))
+    return {
+        "mean": float(known.mean()),
+        "std": std,
+        "mean_error": std / sqrt(known.size),
+        "std_error": sqrt(max(fourth - std**4, 0.0) / known.size) / (2.0 * std) if std else 0.0,
+        "least": float(known.min()),
+        "largest": float(known.max()),
+        "percentiles": dict(zip(PERCENTS, np.percentile(known, PERCENTS).tolist(), strict=True)),
+        "samples": count,
+        "infeasible": lost,
+    }
+
+
+def _sobol(function: Function, rough: Sequence[Inexact], count: int, seed: int) -> dict[str, Any]:
+    """First and total indices, from SALib's sequence and estimates."""
+    with needed("tolerance: Sobol indices (sobol=0 leaves them out)", "design"):
+        from SALib.analyze import sobol as analyse
+        from SALib.sample import sobol as sample
+    names = [row.name for row in rough]
+    problem = {"num_vars": len(names), "names": names, "bounds": [[0.0, 1.0]] * len(names)}
+    shares = sample.sample(problem, count, calc_second_order=False, seed=seed)
+    shares = np.clip(shares, 1e-12, 1.0 - 1e-12)
+    values = function.values({row.name: row.at(shares[:, i]) for i, row in enumerate(rough)})
+    if not np.isfinite(values).all():
+        return {n: dict.fromkeys(("first", "total", "first_error", "total_error"), np.nan) for n in names}
+    if len(names) == 1:
+        return {names[0]: {"first": 1.0, "total": 1.0, "first_error": 0.0, "total_error": 0.0}}
+    centred = (values - values.mean()) / (values.std() or 1.0)
+    found = analyse.analyze(problem, centred, calc_second_order=False, seed=seed)
+    keys = {"first": "S1", "total": "ST", "first_error": "S1_conf", "total_error": "ST_conf"}
+    return {n: {k: float(found[own][i]) for k, own in keys.items()} for i, n in enumerate(names)}
+
+
+def _worst_case(function: Function, value: float, slopes: Array, rough: Sequence[Inexact]) -> Any:
+    """How far it goes within all tolerances; see `tolerance`."""
+    if any(row.tolerance is None for row in rough):
+        return None
+    if function.at_point:
+        ranges = {
+            row.name: (row.mean - float(row.tolerance or 0), row.mean + float(row.tolerance or 0))
+            for row in rough
+        }
+        found = _enclosed(str(function.measure), {**function.fixed, **ranges}, function.branch)
+        if found is not None:
+            return {"lower": found["lower"], "upper": found["upper"], "guaranteed": True}
+    every = np.append(function.values(_corners(rough, slopes)), value)
+    return {"lower": float(every.min()), "upper": float(every.max()), "guaranteed": False}
+
+
+def _corners(rough: Sequence[Inexact], slopes: Array) -> dict[str, Array]:
+    """Every input at either end of its tolerance; of very many inputs only where the derivatives point."""
+    sides = np.array(list(product((-1.0, 1.0), repeat=len(rough)))) if len(rough) <= MOST_CORNERED else None
+    if sides is None:
+        sides = np.sign(slopes) * np.array([[-1.0], [1.0]])
+    return {row.name: row.mean + sides[:, i] * float(row.tolerance or 0) for i, row in enumerate(rough)}
+
+
+def _enclosed(name: str, ranges: Mapping[str, Any], branch: int) -> dict[str, Any] | None:
+    """The guaranteed range; None where nothing guarantees it."""
+    try:
+        from ...enclosure.enclose import enclose
+    except ModuleNotFoundError:  # the extra `rigorous`
+        return None
+    found = enclose(name, branch=branch, boxes=BOXES, **ranges)
+    return found if np.isfinite([found["lower"], found["upper"]]).all() else None
+
+
+def _agreement(first: Any, second: Any, drawn: Any, shares: Any, indices: Any) -> dict[str, float]:
+    def apart(key: str) -> float:
+        error = drawn[f"{key}_error"]
+        return float((drawn[key] - second[key]) / error) if error else 0.0
+
+    found = {
+        "mean": apart("mean"),
+        "std": apart("std"),
+        "linearity": first["std"] / second["std"] - 1.0 if second["std"] else 0.0,
+    }
+    if indices:
+        found["contributions"] = max(abs(indices[n]["first"] - share) for n, share in shares.items())
+    return found

@@ -1,0 +1,101 @@
+"""Inputs that are not known exactly: a value and its tolerance, or a distribution."""
+
+from math import inf, sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.request import as_number
+from ...support.quantity_text import PLUS_MINUS
+
+Array = NDArray[np.float64]
+DISTRIBUTIONS = ("normal", "uniform")
+
+
+class Inexact(NamedTuple):
+    """One input: its mean, standard deviation, skewness and kurtosis (3 for a normal one), and its limits."""
+
+    name: str
+    mean: float
+    std: float
+    skewness: float
+    kurtosis: float
+    tolerance: float | None
+    kind: Any  # "normal", "uniform" or a distribution with .ppf
+
+    def at(self, share: Array) -> Array:
+        """The values that so many shares of all are below."""
+        if self.kind == "uniform":
+            return self.mean + (2.0 * share - 1.0) * float(self.tolerance or 0.0)
+        if self.kind == "normal":
+            from ...support.extras import needed
+
+            with needed("tolerance", "design"):
+                from scipy.special import ndtri
+            return np.asarray(self.mean + self.std * ndtri(share))
+        return np.asarray(self.kind.ppf(share))
+
+    def drawn(self, random: np.random.Generator, count: int) -> Array:
+        """Random values."""
+        if self.kind == "normal":
+            return random.normal(self.mean, self.std, count)
+        return self.at(random.random(count))
+
+
+def read(name: str, value: Any, distribution: str, sigmas: float) -> float | Inexact:
+    """A number, or an input that is not known exactly; errors name it."""
+    if hasattr(value, "ppf"):
+        mean, variance, skewness, excess = (float(x) for x in value.stats(moments="mvsk"))
+        return Inexact(name, mean, sqrt(variance), skewness, excess + 3.0, None, value)
+    pair = _pair(name, value)
+    if pair is None:
+        return _number(name, value)
+    nominal, tolerance = pair
+    if not 0.0 <= tolerance < inf:
+        raise ValueError(f"{name}: a tolerance of {tolerance:g}; it must be finite and at least 0")
+    if tolerance == 0.0:
+        return nominal
+    if distribution == "uniform":
+        return Inexact(name, nominal, tolerance / sqrt(3.0), 0.0, 1.8, tolerance, "uniform")
+    return Inexact(name, nominal, tolerance / sigmas, 0.0, 3.0, tolerance, "normal")
+
+
+def _pair(name: str, value: Any) -> tuple[float, float] | None:
+    """Value and tolerance from a pair or a text such as "10 mm +- 0.1 mm"; None where there is none."""
+    if isinstance(value, str):
+        parts = PLUS_MINUS.split(value)
+        if len(parts) == 1:
+            return None
+        value = tuple(part.strip() for part in parts)
+    if not isinstance(value, (tuple, list)):
+        return None
+    if len(value) != 2:
+        raise ValueError(f"{name} = {value!r}: a pair (value, tolerance) is wanted")
+    nominal = _number(name, value[0])
+    if isinstance(value[1], str) and value[1].strip().endswith("%"):
+        return nominal, _percent(name, value[1]) * abs(nominal)
+    if isinstance(value[1], str) or hasattr(value[1], "magnitude"):
+        from ...mechanism.units import in_si
+
+        return nominal, float(in_si(name, value[1]))
+    try:
+        return nominal, float(value[1])
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} = {value!r}: a pair (value, tolerance) of numbers is wanted") from None
+
+
+def _percent(name: str, text: str) -> float:
+    try:
+        return float(text.strip().removesuffix("%")) / 100.0
+    except ValueError:
+        raise ValueError(f"{name}: a tolerance of {text!r}; percents are written as '0.5 %'") from None
+
+
+def _number(name: str, value: Any) -> float:
+    number = as_number(name, value, (name,), ("tolerance",))
+    if number is None:
+        raise TypeError(
+            f"{name} = {value!r}: a number, a pair (value, tolerance) or a distribution is wanted"
+        )
+    return number

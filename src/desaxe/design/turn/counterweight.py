@@ -1,0 +1,105 @@
+"""`counterweight`: what balances how much of the first harmonic of the shaking force.
+
+With z = F_Y + i F_X (theta turns from Y towards X, so that exp(i theta) points along the crank) the first
+harmonic is z = f exp(i theta) + b exp(-i theta): a force that turns with the crank and one that turns
+against it. A mass m at the radius r, turning with the crank and ahead of it by psi, adds
+m r omega^2 exp(i psi) to f, and nothing to b.
+"""
+
+from cmath import phase
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from .turn import Turn, extreme
+
+ALONG = {"both": 0.0, "Y": 1.0, "X": -1.0}
+POINTS = 8192  # among which the largest force is looked for
+FORCES = ("F_shaking_X", "F_shaking_Y")
+
+
+def counterweight(
+    *, along: str = "both", radius: Any = None, branch: int = 1, **inputs: Any
+) -> dict[str, Any]:
+    """The counterweight on the crank that balances the first harmonic of the shaking force best.
+
+    along   "both": the largest first-harmonic force in any direction is made as small as possible, which
+            leaves one of constant size that turns against the crank; "Y" or "X": none is left along that axis
+    radius  of the counterweight's centre of mass [m], if its mass is wanted
+    inputs  of one design at constant speed, with masses, as in `evaluate`
+
+    Gives a dict:
+
+    product           mass times radius [kg m]
+    angle             from the crank to the counterweight [rad], positive like theta; pi is opposite the crank
+    mass              [kg], given the radius
+    counter_rotating  dict product, angle: of a second weight that turns against the crank, from the Y axis at
+                      theta = 0 [rad, positive like theta], and balances the part of the first harmonic
+                      that turns so; with along="both" nothing of that harmonic is left then
+    before, after     dicts X, Y (amplitudes of the first harmonic [N]), largest (in any direction), second
+                      (the same of the second harmonic, which no such weight changes), peak (the largest
+                      shaking force over the turn)
+    balanced          share of `largest` that the counterweight takes away
+    error             bound of the error of the harmonics [N]
+
+    Raises as `harmonics` does, and ValueError for a crank at rest.
+
+        >>> import desaxe as dx
+        >>> found = dx.counterweight(ec=0, AB=0.05, BC=0.2, omega0=100.0, m_slider=0.4)
+        >>> round(found["product"], 6), round(found["balanced"], 6)      # half of m_slider AB
+        (0.01, 0.5)
+    """
+    if along not in ALONG:
+        raise ValueError(f"along = {along!r}: it is one of {', '.join(ALONG)}")
+    turn = Turn("counterweight", inputs, branch)
+    speed = turn.numbers.get("omega0")
+    if not speed:
+        raise ValueError("counterweight: omega0 is missing or 0, and a crank at rest shakes nothing")
+    found, error = turn.spectrum(FORCES)
+    X, Y = (found[name] for name in FORCES)
+    forward, backward = Y + 1j * X, np.conj(Y) + 1j * np.conj(X)  # of exp(i n theta), of exp(-i n theta)
+    weight = -(forward[1] + ALONG[along] * np.conj(backward[1]))
+    left = forward[1] + weight
+    forces = turn.values(FORCES, max(POINTS, 2 * (len(X) - 1)))
+    z = forces["F_shaking_Y"] + 1j * forces["F_shaking_X"]
+    turned = z + weight * np.exp(2j * pi * np.arange(z.size) / z.size)
+    before = _told(forward[1], backward[1], forward[2], backward[2], z)
+    after = _told(left, backward[1], forward[2], backward[2], turned)
+    product = abs(weight) / speed**2
+    result = {
+        "product": float(product),
+        "angle": _ahead(weight),
+        "counter_rotating": {"product": float(abs(backward[1]) / speed**2), "angle": _ahead(-backward[1])},
+        "before": before,
+        "after": after,
+        "balanced": 1.0 - after["largest"] / before["largest"] if before["largest"] else 0.0,
+        "error": 2.0 * error,
+    }
+    if radius is not None:
+        result["mass"] = float(product / _radius(radius))
+    return result
+
+
+def _told(f: Any, b: Any, f2: Any, b2: Any, z: Any) -> dict[str, float]:
+    return {
+        "X": float(abs(f - np.conj(b))),
+        "Y": float(abs(f + np.conj(b))),
+        "largest": float(abs(f) + abs(b)),
+        "second": float(abs(f2) + abs(b2)),
+        "peak": extreme(np.abs(z), 1.0)[0],
+    }
+
+
+def _ahead(weight: Any) -> float:
+    """An angle from 0 on."""
+    return float(phase(weight) % (2.0 * pi)) if weight else 0.0
+
+
+def _radius(value: Any) -> float:
+    from ...runtime.request import as_number
+
+    number = as_number("r_crank", value, ("radius",), ("counterweight",))
+    if number is None or number <= 0.0:
+        raise ValueError(f"radius = {value!r}: it must be a length > 0")
+    return number

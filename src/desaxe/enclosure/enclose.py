@@ -1,0 +1,357 @@
+"""`enclose`: a guaranteed range of a quantity over a box of tolerances.
+
+Branch and bound in ball arithmetic (`balls`), once for the largest value and once for the smallest.
+What a box can hold is bounded by the program over it, and by the mean-value form: the value at its
+centre and the exact sensitivities over it. Where a sensitivity keeps its sign, the extreme value is
+at one end of that input, and the box loses a dimension. The box with the largest bound is cut next,
+until that bound is as good as a value that is attained.
+"""
+
+from collections.abc import Sequence
+from heapq import heappop, heappush
+from itertools import islice, product
+from math import inf, isfinite, nan, nextafter, pi
+from typing import Any, NamedTuple
+
+from flint import arb, ctx
+
+from ..compiler.passes.differentiate import with_derivatives
+from ..compiler.program import Program
+from ..mechanism.catalogue import has, quantity
+from ..mechanism.inputs import INPUTS
+from ..mechanism.names import sensitivity
+from ..runtime.request import Request, as_number, check_border, check_inputs, request
+from ..runtime.specialise import cut
+from ..support.quantity_text import PLUS_MINUS
+from .balls import BITS, PARTLY, Enclosure, Interval, ball, enclosures
+
+Box = tuple[Interval, ...]  # of the inputs that vary
+
+FINEST = 2.0**-40  # a box without a finite bound is not cut below this, relative to its place
+EXACT = "standard"  # a request has an accuracy; over balls it says nothing
+CORNERS = 64  # of the box, looked at first
+MORE_BITS = (BITS, 512, 2048)  # for the value at a point
+ENOUGH = 64  # bits of it
+TURN = (0.0, nextafter(2 * pi, inf))  # not less than one
+LAST_BIT = 2.0**-52
+SMALLEST = 2.0**-1073
+TOLERANCE = "a value and its tolerance are what `tolerance` takes"
+ENDS = f'a number or a pair (low, high) is wanted, such as ("9.9 mm", "10.1 mm"); {TOLERANCE}'
+
+
+def enclose(
+    name: str,
+    *,
+    theta: Any = None,
+    ec: Any = None,
+    AB: Any = None,
+    BC: Any = None,
+    omega0: Any = None,
+    alpha: Any = 0.0,
+    omega: Any = None,
+    branch: int = 1,
+    rtol: float = 1e-6,
+    boxes: int = 10_000,
+    **loads: Any,
+) -> dict[str, Any]:
+    """The range of a quantity or sensitivity over a box of inputs, guaranteed.
+
+    Each input is a number (exact) or a pair (low, high), in SI units or texts with units, as in
+    `evaluate`, masses and loads among them: `enclose("a_C", theta=1.0, ec=("-0.1 mm", "0.1 mm"), ...)`.
+    Every combination of values within the pairs counts.
+
+    rtol     how much wider than the true range the answer may be at each end, relative to the range
+    boxes    give up after so many boxes at each end; the answer is a guarantee even so, only wider
+
+    Gives a dict:
+
+    lower, upper   no value in the box is below or above these; rounded outwards. -inf and inf where no
+                   bound can be proved, as next to a limit angle
+    inner          (low, high): values this small and this large are attained in the box, so that the
+                   true extremes are within lower .. inner[0] and inner[1] .. upper. NaN if none is known
+    status         0 the quantity is defined in all of the box; 1 nowhere in it; 2 some of the box is
+                   infeasible or stalled or has no balance of forces, or touches a change point or limit
+                   angle, or it could not be decided: lower and upper then hold for the feasible part
+    tight          whether both ends are as near to the truth as `rtol` asks
+    boxes          how many boxes were looked at
+
+    Needs the extra `rigorous`. Raises ValueError for an unknown name, or `status`, or a bad value.
+    """
+    check_inputs("enclose", loads, (*INPUTS, "branch", "rtol", "boxes"))
+    quantity(name, omega is not None)
+    if name == "status":
+        raise ValueError("status is no real number: the status of enclose tells it")
+    if not rtol > 0.0 or boxes < 1:
+        raise ValueError(f"rtol = {rtol}, boxes = {boxes}: more than nothing is wanted")
+    given = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
+    check_border(given, branch)
+    given.update(loads)
+    function = _function(name, given, branch)
+    with ctx.workprec(BITS):
+        return _range(function, rtol, boxes)
+
+
+# ---- the quantity over boxes ----------------------------------------------------------------------
+
+
+class Function(NamedTuple):
+    """A quantity over boxes of what varies; with derivatives by it."""
+
+    value: Program
+    full: Program  # the value and its derivatives
+    varying: tuple[str, ...]
+    fixed: dict[str, Interval]
+    whole: Box
+
+    def over(self, box: Box) -> Enclosure:
+        """The value and its derivatives over a box."""
+        return enclosures(self.full, self._inputs(box))
+
+    def defined(self, box: Box) -> Enclosure:
+        """The value alone."""
+        return enclosures(self.value, self._inputs(box))
+
+    def at(self, point: Sequence[float]) -> Any:
+        """The value at a point, to enough bits; None where it is not surely defined."""
+        inputs = self._inputs(tuple((x, x) for x in point))
+        for bits in MORE_BITS:
+            found = enclosures(self.value, inputs, bits)
+            (value,) = found.values
+            if value is not None and value.rel_accuracy_bits() >= ENOUGH:
+                break
+        return None if value is None or found.flags & PARTLY or not value.is_finite() else value
+
+    def _inputs(self, box: Box) -> dict[str, Interval]:
+        return {**self.fixed, **dict(zip(self.varying, box, strict=True))}
+
+
+def _function(name: str, given: dict[str, Any], branch: int) -> Function:
+    intervals = {p: _interval(p, value, name) for p, value in given.items() if value is not None}
+    plain: dict[str, Any] = {p: low if low == high else (low, high) for p, (low, high) in intervals.items()}
+    alone = request((name,), plain, branch, EXACT)
+    for p in alone.inputs:
+        if p not in intervals:
+            as_number(p, None, alone.inputs, (name,))  # tells that it is missing
+    own = {p: intervals[p] for p in alone.inputs}
+    varying = tuple(p for p, (low, high) in own.items() if low < high)
+    slopes = tuple(sensitivity(name, p) for p in varying)
+    fixed = {p: ends for p, ends in own.items() if p not in varying}
+    program = _program(alone)
+    if all(has(slope, "omega" in plain) for slope in slopes):
+        full = _program(request((name, *slopes), plain, branch, EXACT))
+    else:
+        full = with_derivatives(program, varying)
+    whole = tuple(_turned(own[p]) if p == "theta" and _turns(program) else own[p] for p in varying)
+    return Function(program, full, varying, fixed, whole)
+
+
+def _turns(program: Program) -> bool:
+    """Whether only sine and cosine see theta."""
+    return all(line.op in ("sin", "cos") for line in program.lines if "theta" in line.args)
+
+
+def _turned(theta: Interval) -> Interval:
+    """Of many turns one is enough."""
+    return TURN if theta[1] - theta[0] > TURN[1] else theta
+
+
+def _program(wanted: Request) -> Program:
+    return cut(wanted.names, wanted.form, wanted.fixed)
+
+
+def _interval(name: str, value: Any, wanted: str) -> Interval:
+    """A number or a pair, as a pair of doubles."""
+    if isinstance(value, str) and PLUS_MINUS.search(value):
+        raise ValueError(f"{name} = {value!r}: {ENDS}")
+    number = None if isinstance(value, (tuple, list)) else as_number(name, value, (name,), (wanted,))
+    if number is not None:
+        return number, number
+    try:
+        first, last = value
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} = {value!r}: {ENDS}") from None
+    low, high = (as_number(name, end, (name,), (wanted,)) for end in (first, last))
+    if low is None or high is None or low > high:
+        raise ValueError(
+            f"{name} = ({first}, {last}): two numbers are wanted, the lower one first; {TOLERANCE}"
+        )
+    return low, high
+
+
+# ---- the search -----------------------------------------------------------------------------------
+
+
+def _range(function: Function, rtol: float, limit: int) -> dict[str, Any]:
+    status, count = _status(function, limit)
+    if status == 1:
+        return {"lower": nan, "upper": nan, "inner": (nan, nan), "status": 1, "tight": True, "boxes": count}
+    search = Search(function, rtol, limit)
+    upper, lower = search.largest(1), -search.largest(-1)
+    low, high = search.inner
+    return {
+        "lower": lower,
+        "upper": upper,
+        "inner": (min(low, high), max(low, high)) if isfinite(low) else (nan, nan),  # both round inwards
+        "status": status,
+        "tight": search.tight,
+        "boxes": count + search.count,
+    }
+
+
+def _status(function: Function, limit: int) -> tuple[int, int]:
+    """0 defined in all of the box, 1 nowhere, 2 neither or not decided; and how many boxes it took."""
+    corners = [tuple((x, x) for x in corner) for corner in islice(product(*function.whole), CORNERS)]
+    boxes, count, known = [function.whole], 0, {_defined(function, corner) for corner in corners}
+    while boxes and not {True, False} <= known:
+        box, count = boxes.pop(), count + 1
+        here = _defined(function, box)
+        known.add(here)
+        if here is None:
+            pieces = _halves(function, box, _sizes(function, box), FINEST) if count < limit else ()
+            if not pieces:
+                return 2, count
+            boxes += pieces
+    return 2 if {True, False} <= known else 1 if False in known else 0, count
+
+
+def _defined(function: Function, box: Box) -> bool | None:
+    """Whether the quantity is defined in all of a box or nowhere; None if neither or not decided."""
+    found = function.defined(box)
+    return False if found.values == (None,) else None if found.flags & PARTLY else True
+
+
+class Node(NamedTuple):
+    """A box, how large the quantity can be in it, and how much each input matters."""
+
+    upper: float
+    box: Box
+    weights: tuple[float, ...]
+
+
+class Search:
+    """Branch and bound for the largest value of a quantity (sign 1) or of its negative (sign -1)."""
+
+    def __init__(self, function: Function, rtol: float, limit: int) -> None:
+        self.function, self.rtol, self.limit = function, rtol, limit
+        self.inner = (inf, -inf)  # attained
+        self.count = 0
+        self.tight = True
+
+    def largest(self, sign: int) -> float:
+        """A bound from above, as good as was asked for or as the limit of boxes allows."""
+        heap: list[tuple[float, int, int, Node]] = []
+        pieces: tuple[Box, ...] = (self.function.whole,)
+        depth, end, bound = 0, self.count + self.limit, -inf
+        while pieces:
+            for box in pieces:
+                node = self._look(sign, box)
+                if node is not None:  # of nearly equal bounds the deepest first: it soon shows a good value
+                    heappush(heap, (-self._coarse(node.upper), -depth, self.count, node))
+            pieces = ()
+            while heap and not pieces:
+                _, depth, _, node = heappop(heap)
+                depth = 1 - depth
+                if node.upper > self._goal(sign):
+                    pieces = self._pieces(node) if self.count < end else ()
+                    if not pieces:
+                        self.tight = False
+                        return max(bound, node.upper, *(entry[-1].upper for entry in heap))
+                else:
+                    bound = max(bound, node.upper)
+        return bound
+
+    def _coarse(self, bound: float) -> float:
+        """A bound in steps of the tolerance."""
+        low, high = self.inner
+        step = self.rtol * (high - low)
+        return round(bound / step) * step if low < high and isfinite(bound / step) else bound
+
+    def _pieces(self, node: Node) -> tuple[Box, ...]:
+        finest = 0.0 if isfinite(node.upper) else FINEST
+        return _halves(self.function, node.box, node.weights, finest)
+
+    def _goal(self, sign: int) -> float:
+        """A bound that is good enough: little more than what is attained."""
+        low, high = self.inner
+        best = high if sign > 0 else -low
+        margin = max(self.rtol * (high - low), 2 * LAST_BIT * abs(best), SMALLEST)
+        return best + margin if isfinite(best) else -inf
+
+    def _look(self, sign: int, box: Box) -> Node | None:
+        """What a box can hold; None if the quantity is defined nowhere in it."""
+        while True:
+            self.count += 1
+            found = self.function.over(box)
+            value, *slopes = found.values
+            if value is None:
+                return None
+            smooth = not found.flags and all(slope is not None and slope.is_finite() for slope in slopes)
+            if not smooth or all(low == high for low, high in box):
+                upper = min(_up(sign * value), self._at_centre(sign, box)[1])
+                return Node(upper, box, _sizes(self.function, box))
+            smaller = tuple(_end(ends, sign * slope) for ends, slope in zip(box, slopes, strict=True))
+            if smaller == box:
+                return self._centred(sign, box, value, slopes)
+            box = smaller
+
+    def _at_centre(self, sign: int, box: Box) -> tuple[Any, float]:
+        """The value at the centre, noted as attained; and a bound for the box, if that is all of it."""
+        value = self.function.at([_middle(ends) for ends in box])
+        if value is None:
+            return None, inf
+        low, high = self.inner
+        self.inner = min(low, _up(value)), max(high, _down(value))
+        return value, _up(sign * value) if all(low == high for low, high in box) else inf
+
+    def _centred(self, sign: int, box: Box, value: Any, slopes: list[Any]) -> Node:
+        """The better one of the program's own bound and the mean-value form."""
+        centre, upper = self._at_centre(sign, box)
+        swings = [slope * (ball(ends) - _middle(ends)) for ends, slope in zip(box, slopes, strict=True)]
+        if centre is not None:
+            upper = min(upper, _up(sign * sum(swings, centre)))
+        return Node(min(upper, _up(sign * value)), box, tuple(float(abs(x).upper()) for x in swings))
+
+
+def _end(ends: Interval, slope: Any) -> Interval:
+    """The end of an input at which a quantity with this slope is largest; both where that is open."""
+    low, high = ends
+    return (high, high) if slope >= 0 else (low, low) if slope <= 0 else ends
+
+
+def _middle(ends: Interval) -> float:
+    """Where to cut: 0, where kinks are, if it is inside; else the middle. One of the ends if nothing is."""
+    low, high = ends
+    return 0.0 if low < 0.0 < high else min(max(low + 0.5 * (high - low), low), high)
+
+
+def _sizes(function: Function, box: Box) -> tuple[float, ...]:
+    """The sides of a box relative to their inputs: angles to one radian, lengths to the longest."""
+    ends = {**function.fixed, **dict(zip(function.varying, function.whole, strict=True))}
+    largest = {name: max(abs(low), abs(high)) for name, (low, high) in ends.items()}
+    length = max((largest[name] for name in ("ec", "AB", "BC") if name in largest), default=1.0)
+    scales = {**largest, "theta": 1.0, "ec": length, "AB": length, "BC": length}
+    return tuple((high - low) / scales[name] for name, (low, high) in zip(function.varying, box, strict=True))
+
+
+def _halves(function: Function, box: Box, weights: tuple[float, ...], finest: float) -> tuple[Box, ...]:
+    """The box cut across the input that matters most; nothing if no number lies between its ends."""
+    sizes = _sizes(function, box)
+    can = [k for k, (low, high) in enumerate(box) if low < _middle((low, high)) < high and sizes[k] > finest]
+    if not can:
+        return ()
+    k = max(can, key=lambda k: weights[k])
+    (low, high), middle = box[k], _middle(box[k])
+    return tuple((*box[:k], ends, *box[k + 1 :]) for ends in ((low, middle), (middle, high)))
+
+
+def _up(x: Any) -> float:
+    """The upper end of a ball as a double, rounded up."""
+    end = x.upper()
+    near = float(end)
+    if near != near:
+        return inf
+    return near if arb(near) >= end else nextafter(near, inf)
+
+
+def _down(x: Any) -> float:
+    return -_up(-x)

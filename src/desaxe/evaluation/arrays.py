@@ -1,0 +1,164 @@
+"""`evaluate` over arrays: broadcast, run in blocks, put the answers where they are wanted."""
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from math import prod
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..mechanism.inputs import INPUTS, is_good
+from ..runtime.interpreted import are_good, fill_by_points, is_early
+from ..runtime.kernels import key_of
+from ..runtime.point import point_of
+from ..runtime.request import Request, as_number
+from ..runtime.threads import run_in_blocks
+from ..support.memory import require
+from ..support.shown import shown
+from .loops import Loops, loops_over, spread
+
+Array = NDArray[Any]
+
+FLOAT, STATUS = np.dtype(np.float64), np.dtype(np.int8)
+
+
+def evaluate_arrays(
+    wanted: Request, given: Mapping[str, Any], threads: int | None, out: Any
+) -> dict[str, Array]:
+    """The answers by the names asked for, in the broadcast shape."""
+    inputs = wanted.inputs
+    _refuse_other_dimensions({name: given.get(name) for name in inputs})
+    arrays = {name: as_array(name, given.get(name), inputs, wanted.shown) for name in inputs}
+    shape = broadcast_shape(arrays)
+    places = places_for(wanted.shown, shape, out)
+    buffers = places if out is None else buffers_for(places, arrays.values())
+    if all(buffer.size for buffer in buffers.values()):
+        scalars = {name: a.item() for name, a in arrays.items() if a.size == 1}
+        loops = loops_over({name: a for name, a in arrays.items() if a.size != 1}, shape)
+        fill(wanted, scalars, loops, list(buffers.values()), threads)
+    return delivered(places, buffers, out is None)
+
+
+def _refuse_other_dimensions(given: Mapping[str, Any]) -> None:
+    """Labelled arrays pair by the names of their dimensions, which arrays here do not have."""
+    labels = {name: value.dims for name, value in given.items() if hasattr(value, "dims") and value.dims}
+    if len(set(labels.values())) > 1:
+        told = ", ".join(f"{name} {dims}" for name, dims in labels.items())
+        raise ValueError(f"labelled arrays of different dimensions: {told}; use grid, or pass their .values")
+
+
+def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]) -> Array:
+    """An input as a float64 array; an error that names it if it is missing, no number or wholly bad."""
+    if type(value) is np.ndarray and value.dtype == FLOAT:
+        return _not_wholly_bad(name, value)
+    number = None if type(value) is np.ndarray else as_number(name, value, inputs, names)
+    if number is not None:
+        return np.array(number)
+    if hasattr(value, "dims"):
+        from ..mechanism.units import unlabelled
+
+        value = unlabelled(name, value)
+    if hasattr(value, "magnitude"):
+        from ..mechanism.units import in_si
+
+        value = in_si(name, value)
+    if np.ma.is_masked(value):
+        raise TypeError(f"{name}: a masked array; fill it first, for example with .filled(np.nan)")
+    try:
+        array = np.asarray(value)
+    except (ValueError, TypeError, OverflowError):  # rows of different lengths
+        raise TypeError(f"{name} = {shown(value)}: a number or an array of numbers is wanted") from None
+    if array.dtype.kind == "U":
+        from ..mechanism.units import in_si
+
+        array = np.array([in_si(name, text) for text in array.reshape(-1).tolist()]).reshape(array.shape)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name}: real numbers are wanted, got an array of {array.dtype}: {shown(value)}")
+    return _not_wholly_bad(name, array.astype(FLOAT, copy=False))
+
+
+def _not_wholly_bad(name: str, array: Array) -> Array:
+    if array.size and not is_good(name, array.item(0)) and not are_good(name, array).any():
+        raise ValueError(
+            f"{name}: every value is bad, the first is {array.item(0)}; it must be {INPUTS[name].limit}"
+        )
+    return array
+
+
+def broadcast_shape(arrays: Mapping[str, Array]) -> tuple[int, ...]:
+    """The common shape; an error that names every shape where there is none."""
+    try:
+        return np.broadcast_shapes(*(array.shape for array in arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items() if array.ndim)
+        raise ValueError(f"the shapes do not broadcast together: {shapes}") from None
+
+
+def places_for(names: Sequence[str], shape: tuple[int, ...], out: Any) -> dict[str, Array]:
+    """Where the answers go: new arrays, or those of `out`, checked."""
+    if out is None:
+        size = sum(dtype_of(name).itemsize for name in names) * prod(shape)
+        require(size, f"a result of the shape {tuple(shape)} and {len(names)} names")
+        return {name: np.empty(shape, dtype_of(name)) for name in names}
+    places = dict(out) if isinstance(out, Mapping) else {names[0]: out}
+    if set(places) != set(names):
+        wanted = "a dict with the keys " + ", ".join(names) if len(names) > 1 else f"an array for {names[0]}"
+        raise ValueError(f"out= is {wanted}, got {', '.join(places)}")
+    for name, place in places.items():
+        if not isinstance(place, np.ndarray) or place.shape != shape:
+            got = getattr(place, "shape", type(place).__name__)
+            raise ValueError(f"out= for {name}: an array of shape {shape} is wanted, got {got}")
+        if not np.can_cast(dtype_of(name), place.dtype, "same_kind"):
+            raise TypeError(f"out= for {name}: {place.dtype} cannot hold {dtype_of(name)}")
+        if not place.flags.writeable:
+            raise ValueError(f"out= for {name}: the array is read-only")
+    return {name: places[name] for name in names}
+
+
+def dtype_of(name: str) -> np.dtype[Any]:
+    """int8 for a status, float64 for all else."""
+    return STATUS if name == "status" else FLOAT
+
+
+def buffers_for(places: Mapping[str, Array], inputs: Collection[Array]) -> dict[str, Array]:
+    """The places themselves where a kernel can write into them, else arrays to be copied from."""
+    return {
+        name: _buffer_for(name, place, [*inputs, *(p for n, p in places.items() if n != name)])
+        for name, place in places.items()
+    }
+
+
+def _buffer_for(name: str, place: Array, others: Iterable[Array]) -> Array:
+    direct = place.flags.c_contiguous and place.flags.aligned and place.dtype == dtype_of(name)
+    overlaps = any(np.may_share_memory(place, array) for array in others)
+    return place if direct and not overlaps else np.empty(place.shape, dtype_of(name))
+
+
+def delivered(places: Mapping[str, Array], buffers: Mapping[str, Array], fresh: bool) -> dict[str, Array]:
+    """The filled places; a fresh answer without axes is a NumPy scalar, as from a ufunc."""
+    for name, place in places.items():
+        if buffers[name] is not place:
+            np.copyto(place, buffers[name], casting="same_kind")
+    return {name: place[()] if fresh and not place.ndim else place for name, place in places.items()}
+
+
+def fill(
+    wanted: Request,
+    scalars: dict[str, float],
+    loops: Loops,
+    outs: Sequence[Array],
+    threads: int | None,
+) -> None:
+    """Fill outputs, which are contiguous, from scalars and what varies along loops."""
+    sizes, columns, axis_of = loops
+    key = key_of(wanted, scalars, columns, axis_of, len(sizes))
+    outs = [out.reshape(sizes) for out in outs]
+    if not columns:
+        point = point_of(key.names, key.form, key.fixed, key.accuracy)
+        for out, value in zip(outs, point.run(scalars), strict=True):
+            out[...] = value
+    elif is_early(key, outs[0].size):
+        wide = {name: spread(column, axis_of[name], sizes) for name, column in columns.items()}
+        fill_by_points(key, scalars, wide, [out.reshape(-1) for out in outs])
+    else:
+        run_in_blocks(key, {**scalars, **columns}, outs, threads)

@@ -1,0 +1,100 @@
+"""`evaluate`: numbers in, a float out; arrays in, arrays out."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from ..mechanism.inputs import INPUTS
+from ..mechanism.names import LOADS
+from ..runtime.request import check_inputs
+from .values import values
+
+
+def evaluate(
+    names: str | Sequence[str],
+    *,
+    theta: Any = None,
+    ec: Any = None,
+    AB: Any = None,
+    BC: Any = None,
+    omega0: Any = None,
+    alpha: Any = 0.0,
+    omega: Any = None,
+    m_crank: Any = None,
+    m_rod: Any = None,
+    m_slider: Any = None,
+    I_crank: Any = None,
+    I_rod: Any = None,
+    r_crank: Any = None,
+    r_rod: Any = None,
+    F_X: Any = None,
+    F_Y: Any = None,
+    g_X: Any = None,
+    g_Y: Any = None,
+    mu: Any = None,
+    branch: int = 1,
+    accuracy: str | float = "standard",
+    threads: int | None = None,
+    out: Any = None,
+    quality: bool = False,
+    **unknown: Any,
+) -> Any:
+    """Values of quantities and sensitivities, at one point or over arrays that broadcast like NumPy.
+
+    `names` is one name (the answer is a float or an array) or a list of names (a dict name -> the
+    same). `desaxe.quantities()` lists them: `Y`, `V_C`, `a_C`, `omega_BC`, `a_C_wrt_ec`, ...,
+    `status` (int8) and `margin` among them.
+
+    theta    crank angle [rad], from the slider axis
+    ec       eccentricity [m], either sign
+    AB, BC   lengths of crank (>= 0) and rod (> 0) [m]
+    omega0   crank speed at theta = 0 [rad/s]; omega^2 = omega0^2 + 2 alpha theta (paper A)
+    alpha    crank acceleration [rad/s^2], constant
+    omega    crank speed at this instant, instead of omega0: a given state, whose sensitivities with
+             respect to theta hold omega fixed, and which has `_wrt_omega`
+    branch   +1 (the papers) or -1: on which side of the crank pin the slider is
+    m_crank, m_rod, m_slider   masses [kg]
+    I_crank, I_rod     moments of inertia about the centre of mass [kg m^2]
+    r_crank, r_rod     centres of mass: from A towards B, from B towards C [m]; half of AB and BC where
+                       they are not given, and then a derivative by AB or BC moves them too
+    F_X, F_Y, g_X, g_Y external force on the slider [N], gravity [m/s^2]
+    mu       Coulomb friction of the slider's guide, against its motion or the one that alpha starts; where
+             nothing moves or starts there is none: give a tiny omega0 for the torque that sets it going
+    accuracy "standard": within 8 ulp x (1 + the sum of condition numbers), next to singular points too;
+             "extended": within 2 ulp, in pairs of doubles, 3 to 16 times the time; "fast": for arrays, in
+             float32, for points that are far from singular ones; or the error that you can bear, such as
+             1e-14, for the cheaper of the first two that keeps it
+    threads  for arrays: how many threads share the work, all that pay without
+    out      for arrays: where to put the answer, an array or a dict name -> array
+    quality  True: for each name, in place of the value, an object with `value`, `conditions` (input ->
+             |input/value d value/d input|), `error_bound` (of the rounding) and `digits`
+
+    What the wanted names do not need may be left out; masses and loads are 0 without. A number may
+    carry its unit: "10 mm", or a pint quantity. An infeasible point gives NaN; ask for `status` to learn
+    why: 0 ok, 1 cannot be assembled here, 2 at a change point, 3 stalled, 4 bad input (an array's element
+    only), and where a force or mu is asked about 5 friction jams (no forces balance) or 6 two sets of
+    forces balance. Raises ValueError for an unknown name or a bad value, TypeError for a missing input.
+    """
+    if unknown:
+        check_inputs("evaluate", unknown, (*INPUTS, "branch", "accuracy", "threads", "out", "quality"))
+    given = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
+    if not (
+        m_crank is None
+        and m_rod is None
+        and m_slider is None
+        and I_crank is None
+        and I_rod is None
+        and r_crank is None
+        and r_rod is None
+        and F_X is None
+        and F_Y is None
+        and g_X is None
+        and g_Y is None
+        and mu is None
+    ):
+        loads = (m_crank, m_rod, m_slider, I_crank, I_rod, r_crank, r_rod, F_X, F_Y, g_X, g_Y, mu)
+        given.update((name, load) for name, load in zip(LOADS, loads, strict=True) if load is not None)
+    if quality:
+        from .quality import evaluate_quality
+
+        return evaluate_quality(names, given, branch, accuracy, threads, out)
+    return values(names, given, branch, accuracy, threads, out)

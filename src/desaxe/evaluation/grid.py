@@ -1,0 +1,125 @@
+"""`grid`: the outer product of its arguments, as a labelled xarray.Dataset."""
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..runtime.request import Request, request
+from .arrays import buffers_for, delivered, fill, places_for
+from .loops import Loops
+from .outer import join_axes, outer_of, require_inputs
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Array = NDArray[Any]
+
+
+@overload
+def grid(
+    names: str | Sequence[str],
+    *,
+    branch: int = 1,
+    accuracy: str | float = "standard",
+    threads: int | None = None,
+    out: None = None,
+    reduce: Mapping[str, str | Sequence[str]] | None = None,
+    chunks: Any = None,
+    **inputs: Any,
+) -> "xr.Dataset": ...
+
+
+@overload
+def grid(
+    names: str | Sequence[str],
+    *,
+    branch: int = 1,
+    accuracy: str | float = "standard",
+    threads: int | None = None,
+    out: Array | Mapping[str, Array],
+    **inputs: Any,
+) -> dict[str, Array]: ...
+
+
+def grid(
+    names: str | Sequence[str],
+    *,
+    branch: int = 1,
+    accuracy: str | float = "standard",
+    threads: int | None = None,
+    out: Any = None,
+    reduce: Mapping[str, str | Sequence[str]] | None = None,
+    chunks: Any = None,
+    **inputs: Any,
+) -> "xr.Dataset | dict[str, Array]":
+    """Quantities over the outer product of the inputs, as an xarray.Dataset with units.
+
+    The inputs are those of `evaluate`. Each 1-d input is a dimension, in the order given; a number
+    becomes a coordinate without one. The Dataset has the names asked for over all dimensions,
+    `status` (int8, with CF flags) and `margin` (over the dimensions that it depends on).
+
+    With `out` (an array, or a dict name -> array, of the grid's shape) the arrays are filled and
+    returned as a dict, and xarray is not needed. Otherwise needs the extra `labelled`. Raises as
+    `evaluate` does, and for an input of more than one dimension.
+
+    `reduce={"theta": "absmax"}` (max, min, absmax, mean, rms, or a list of these) reduces an axis
+    without storing the grid: the Dataset has `a_C_absmax` over the other axes, `a_C_absmax_theta`,
+    where the largest or smallest sample is, and `a_C_skipped`, how many points along the axis have no
+    value. The extremes are those of the samples; `peak` refines them.
+
+    `chunks={"theta": 1000}` (as in xarray: a dict, a number or "auto"; dimensions not named are whole)
+    gives lazy Dask arrays, each chunk computed by compiled kernels when it is needed, with the same
+    digits whatever the chunks. Needs the extra `scale`.
+
+        dx.grid(["a_C"], theta=th, ec=ecs, AB=.125, BC=bcs, omega0=157.08).a_C.max("theta")
+    """
+    outer = outer_of(names, inputs, branch, threads, always=out is None)
+    if chunks is not None:
+        if out is not None:
+            raise TypeError("chunks= and out=: give one of them")
+        from .lazy import lazy_grid
+
+        return lazy_grid(outer, chunks, branch, accuracy, threads, reduce)
+    wanted, given, axes, dimensions = outer.names, outer.given, outer.axes, outer.dimensions
+    if reduce is not None:
+        if out is not None:
+            raise TypeError("reduce= and out=: give one of them")
+        from .reduce import reduced_grid
+
+        asked = request(wanted, given, branch, accuracy)
+        require_inputs(asked, axes)
+        whole = partial(_filled, asked, axes, dimensions, threads, None)
+        return reduced_grid(asked, axes, dimensions, reduce, branch, threads, whole)
+    if out is not None:
+        return _filled(request(wanted, given, branch, accuracy), axes, dimensions, threads, out)
+    from .labels import labelled
+
+    arrays: dict[str, tuple[Sequence[str], Array]] = {}
+    for some, along in outer.groups():
+        found = _filled(request(some, given, branch, accuracy), axes, along, threads, None)
+        arrays.update({name: (along, array) for name, array in found.items()})
+    state = given.get("omega") is not None
+    return labelled({n: arrays[n] for n in outer.shown}, outer.coordinates, branch, state, accuracy)
+
+
+def _filled(
+    wanted: Request, axes: Mapping[str, Array], dimensions: Sequence[str], threads: int | None, out: Any
+) -> dict[str, Array]:
+    """The answers over these dimensions, from one loop nest in their order."""
+    require_inputs(wanted, axes)
+    inputs = wanted.inputs
+    shape = tuple(axes[name].size for name in dimensions)
+    places = places_for(wanted.shown, shape, out)
+    buffers = places if out is None else buffers_for(places, axes.values())
+    if all(shape):
+        # At least one axis, so that a grid of numbers alone goes the same way.
+        order = list(dimensions) or [""]
+        scalars = {name: float(axes[name].reshape(-1)[0]) for name in inputs if name not in order}
+        columns = {name: np.ascontiguousarray(axes[name]) for name in inputs if name in order}
+        places_of = {name: order.index(name) for name in columns}
+        sizes = join_axes(order, columns, places_of, shape or (1,))
+        fill(wanted, scalars, Loops(sizes, columns, places_of), list(buffers.values()), threads)
+    return delivered(places, buffers, False)

@@ -1,0 +1,96 @@
+"""Names, units and CF attributes for labelled results."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..mechanism.catalogue import quantity
+from ..mechanism.inputs import INPUTS
+from ..support.extras import needed
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+STATUS_FLAGS = (
+    "ok", "cannot_be_assembled", "change_point", "stalled", "bad_input",
+    "no_force_balance", "two_force_balances",
+)  # fmt: skip
+
+
+CONVENTIONS = "CF-1.11"
+
+
+def attributes(name: str, state: bool = False) -> dict[str, Any]:
+    """CF attributes of a quantity."""
+    if name == "status":
+        flags = np.arange(len(STATUS_FLAGS), dtype=np.int8)
+        return {"long_name": "status", "flag_values": flags, "flag_meanings": " ".join(STATUS_FLAGS)}
+    known = quantity(name, state)
+    found = {"units": known.unit, "long_name": known.meaning}
+    if known.source:
+        found["references"] = known.source
+    return found
+
+
+def input_attributes(name: str) -> dict[str, str]:
+    """CF attributes of an input."""
+    return {"units": INPUTS[name].unit, "long_name": INPUTS[name].meaning}
+
+
+@cache
+def source() -> str:
+    """What made a dataset: this version, and the formulas it was made with."""
+    from ..mechanism.program import digest
+    from ..support.version import version
+
+    return f"desaxe {version()}, derivation {digest()[:16]}"
+
+
+def provenance(
+    names: Iterable[str],
+    inputs: Mapping[str, NDArray[Any]],
+    branch: int,
+    accuracy: str | float = "standard",
+    title: str = "offset slider-crank",
+) -> dict[str, Any]:
+    """Attributes of a dataset: what was asked for, and what answered."""
+    axes = [name for name, array in inputs.items() if array.ndim]
+    fixed = [
+        f"{name} = {array.item()!r} {INPUTS[name].unit}".removesuffix(" 1")
+        for name, array in inputs.items()
+        if not array.ndim
+    ]
+    scene = ", ".join(names) + (f" over {', '.join(axes)}" if axes else "")
+    return {
+        "title": title,
+        "scene": "; ".join(part for part in (scene, ", ".join(fixed)) if part),
+        "source": source(),
+        "Conventions": CONVENTIONS,
+        "branch": branch,
+        "accuracy": accuracy,
+    }
+
+
+def labelled(
+    values: Mapping[str, tuple[Sequence[str], NDArray[Any]]],
+    inputs: Mapping[str, NDArray[Any]],
+    branch: int,
+    state: bool,
+    accuracy: str | float = "standard",
+) -> "xr.Dataset":
+    """A Dataset of values by name (dimensions, array); a 1-d input is a dimension, a number is not."""
+    with needed("a labelled result"):
+        import xarray
+    variables = {name: (dims, array, attributes(name, state)) for name, (dims, array) in values.items()}
+    for name, (_, _, told) in variables.items():
+        if "status" in variables and name not in ("status", "margin"):
+            told["ancillary_variables"] = "status"
+    coordinates = {
+        name: ((name,) if array.ndim else (), array, input_attributes(name)) for name, array in inputs.items()
+    }
+    names = [name for name in values if name not in ("status", "margin")]
+    about = provenance(names, inputs, branch, accuracy)
+    return xarray.Dataset(variables, coordinates, about)

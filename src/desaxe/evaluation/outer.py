@@ -1,0 +1,117 @@
+"""The arguments of a grid, checked, and its axes joined to loops that are long enough to vectorise."""
+
+from collections.abc import Mapping, Sequence
+from math import prod
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..mechanism.inputs import INPUTS
+from ..mechanism.names import LENGTHS
+from ..runtime.request import Request, check_border, check_inputs, several, standstill
+from .arrays import as_array
+from .loops import spread
+
+Array = NDArray[Any]
+ALWAYS = ("status", "margin")
+LONG_ENOUGH = 1_000  # points of the innermost loop: a shorter one costs as much to start as to run
+
+
+class Outer(NamedTuple):
+    """The arguments of a grid, checked.
+
+    `given` are the inputs as they came, with defaults; `axes` their arrays; `coordinates` those of them
+    that were not a default.
+    """
+
+    names: tuple[str, ...]
+    given: dict[str, Any]
+    axes: dict[str, Array]
+    coordinates: dict[str, Array]
+
+    @property
+    def dimensions(self) -> list[str]:
+        """The inputs with one axis, in their order."""
+        return [name for name, array in self.coordinates.items() if array.ndim]
+
+    @property
+    def shown(self) -> tuple[str, ...]:
+        """The names of the variables of a labelled grid."""
+        return tuple(dict.fromkeys((*self.names, *ALWAYS)))
+
+    def groups(self) -> list[tuple[list[str], list[str]]]:
+        """The names that have all dimensions, and those that have the lengths' alone, with them."""
+        lengths = [name for name in self.dimensions if name in LENGTHS]
+        return [([n for n in self.shown if n != "margin"], self.dimensions), (["margin"], lengths)]
+
+
+def outer_of(
+    names: str | Sequence[str], inputs: Mapping[str, Any], branch: int, threads: int | None, always: bool
+) -> Outer:
+    """Check the arguments of a grid; `always`: it has `status` and `margin` too."""
+    wanted = (names,) if isinstance(names, str) else several(names)
+    given = _given(wanted, inputs)
+    check_border(given, branch, threads)
+    shown = tuple(dict.fromkeys((*wanted, *ALWAYS))) if always else wanted
+    axes = {name: _axis(name, value, shown) for name, value in given.items() if value is not None}
+    coordinates = {name: axes[name] for name in inputs if name in axes}
+    return Outer(wanted, given, axes, coordinates)
+
+
+def _given(names: Sequence[str], inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """The inputs with their defaults; a TypeError for one that there is not."""
+    check_inputs("grid", inputs, (*INPUTS, "branch", "accuracy", "threads", "out", "reduce", "chunks"))
+    given = dict(inputs)
+    if given.get("omega0") is None and given.get("omega") is None:
+        given["omega0"] = standstill(names, given)
+    return given
+
+
+def _axis(name: str, value: Any, names: Sequence[str]) -> Array:
+    array = as_array(name, value, (), names)
+    if array.ndim > 1:
+        raise ValueError(f"{name}: a grid takes numbers and 1-d arrays, got the shape {array.shape}")
+    return array
+
+
+def join_axes(
+    order: Sequence[str], columns: dict[str, Array], axis_of: dict[str, int], shape: tuple[int, ...]
+) -> tuple[int, ...]:
+    """Join the last axes to one that is long enough to vectorise; the lengths of the axes then.
+
+    Effect: `columns` along the joined axes have a value for each point of them, and `axis_of` follows.
+    """
+    return join_from(first_joined(order, shape), columns, axis_of, shape)
+
+
+def first_joined(order: Sequence[str], shape: Sequence[int]) -> int:
+    """The first of the last axes that are joined to one, long enough to vectorise.
+
+    The crank angle is never joined: its sine and cosine must not be computed again for every design.
+    """
+    first = len(order) - 1
+    if order[first] != "theta":
+        while first > 0 and prod(shape[first:]) < LONG_ENOUGH and order[first - 1] != "theta":
+            first -= 1
+    return first
+
+
+def join_from(
+    first: int, columns: dict[str, Array], axis_of: dict[str, int], shape: tuple[int, ...]
+) -> tuple[int, ...]:
+    """Join the axes from `first` on, as `join_axes` does."""
+    rest = shape[first:]
+    for name, axis in axis_of.items() if len(rest) > 1 else ():
+        if axis >= first:
+            columns[name] = np.ascontiguousarray(spread(columns[name], axis - first, rest))
+            axis_of[name] = first
+    return (*shape[:first], prod(rest))
+
+
+def require_inputs(wanted: Request, axes: Mapping[str, Array]) -> None:
+    """Raise TypeError for an input that is needed and not given."""
+    missing = [name for name in wanted.inputs if name not in axes]
+    if missing:
+        needed = ", ".join(wanted.inputs)
+        raise TypeError(f"{', '.join(wanted.shown)}: {missing[0]} is missing (needed: {needed})")

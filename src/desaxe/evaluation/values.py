@@ -1,0 +1,60 @@
+"""Values of names from a dict of inputs: what `evaluate` does once its arguments are gathered.
+
+A single point stays in this file and needs only `math`; as soon as an input is an array, `arrays` takes over.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+from ..mechanism.inputs import is_good
+from ..runtime.accuracy import accuracy_of
+from ..runtime.point import Point, point_of
+from ..runtime.request import Request, as_number, check_border, is_steady, request, several, standstill
+from ..support.interrupts import import_whole
+
+
+def values(
+    names: str | Sequence[str],
+    given: dict[str, Any],
+    branch: int = 1,
+    accuracy: Any = "standard",
+    threads: int | None = None,
+    out: Any = None,
+) -> Any:
+    """The value of one name, or a dict name -> value; see `evaluate`. Inputs that are None are not given."""
+    wanted = (names,) if isinstance(names, str) else several(names)
+    omega, speed_given = given.get("omega"), given.get("omega0") is not None
+    if threads is not None or (omega is not None and speed_given) or type(branch) is not int:
+        check_border(given, branch, threads)
+    if type(accuracy) is not str:
+        accuracy = accuracy_of(accuracy)
+    key = wanted, tuple(given), omega is not None, is_steady(given.get("alpha")), branch, accuracy
+    if not speed_given and omega is None and "status" in wanted:
+        given["omega0"] = standstill(wanted, given)
+    known = _KNOWN.get(key)
+    if known is None:
+        if len(_KNOWN) > MOST_KNOWN:
+            _KNOWN.clear()
+        asked = request(wanted, given, branch, accuracy)
+        known = _KNOWN[key] = asked, point_of(asked.names, asked.form, asked.fixed, asked.accuracy)
+    asked, point = known
+    numbers = []
+    for name in point.inputs:
+        value = given[name]
+        if type(value) is not float or not is_good(name, value):
+            value = as_number(name, value, point.inputs, wanted)
+            if value is None:  # not a number: an array
+                import_whole("numpy")
+                from .arrays import evaluate_arrays
+
+                answers = evaluate_arrays(asked, given, threads, out)
+                return answers[names] if isinstance(names, str) else answers
+        numbers.append(value)
+    if out is not None:
+        raise TypeError("out= is for arrays, but every input is a number")
+    answer = point.function(*numbers)
+    return answer[0] if isinstance(names, str) else dict(zip(wanted, answer, strict=True))
+
+
+MOST_KNOWN = 1024  # requests that are remembered
+_KNOWN: dict[tuple[Any, ...], tuple[Request, Point]] = {}

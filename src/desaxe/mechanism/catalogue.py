@@ -1,0 +1,120 @@
+"""What can be asked for: every quantity and sensitivity, its unit, meaning and paper equation.
+
+The names are read from generated/index.py, where the derivation wrote them. Under a given state
+(`omega` instead of `omega0`) the sensitivity `_wrt_omega` stands where `_wrt_omega0` does.
+"""
+
+from collections.abc import Iterator, Mapping
+from functools import cache
+from importlib import import_module
+from typing import NamedTuple
+
+from ..support.shown import shown
+from .names import PARAMETERS, joined, parts, sensitivity
+
+
+class Quantity(NamedTuple):
+    """One name that can be asked for."""
+
+    name: str
+    unit: str
+    meaning: str
+    source: str = ""
+
+
+class UnknownQuantityError(KeyError, ValueError):
+    """No quantity has this name; the message names the nearest ones."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+class Catalogue(Mapping[str, Quantity]):
+    """Every name that can be asked for, with its record; printed, it is a table.
+
+    `"a_C" in catalogue`, `catalogue["T_in"].unit`, `list(catalogue)` (the names, in order). A name that
+    there is not is an UnknownQuantityError, a KeyError and a ValueError.
+    """
+
+    __slots__ = ()
+
+    def __getitem__(self, name: str) -> Quantity:
+        return quantity(name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(_names())
+
+    def __len__(self) -> int:
+        return len(_names())
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and has(name)
+
+    def __repr__(self) -> str:
+        rows = [("name", "unit", "meaning", "source"), *self.values()]
+        widths = [max(len(row[i]) for row in rows) for i in range(3)]
+        return "\n".join(
+            "  ".join([*(cell.ljust(w) for cell, w in zip(row, widths, strict=False)), row[3]]).rstrip()
+            for row in rows
+        )
+
+
+@cache
+def _names() -> dict[str, tuple[str, ...]]:
+    names: dict[str, tuple[str, ...]] = import_module("desaxe.generated.index").NAMES
+    return names
+
+
+def quantities() -> Catalogue:
+    """Every quantity and sensitivity that can be asked for, in order: a mapping from name to record."""
+    return Catalogue()
+
+
+def has(name: str, state: bool = False) -> bool:
+    """True if a name can be asked for, under the law or under a given state."""
+    return (law_name(name) if state else name) in _names() and not (state and "omega0" in name)
+
+
+def quantity(name: str, state: bool = False) -> Quantity:
+    """The record of a name; UnknownQuantityError with the nearest names if there is none."""
+    if not isinstance(name, str):
+        raise TypeError(f"the name of a quantity is a str, got {shown(name)}")
+    if not has(name, state):
+        raise UnknownQuantityError(_unknown(name, state))
+    return Quantity(name, *_names()[law_name(name) if state else name])
+
+
+def law_name(name: str) -> str:
+    """The name under the law of a name under a state: omega stands in the place of omega0."""
+    base, parameters = parts(name)
+    return joined(base, ("omega0" if p == "omega" else p for p in parameters))
+
+
+def _unknown(name: str, state: bool) -> str:
+    from .spelling import meant
+
+    if len(name) > 100:
+        return f"unknown quantity {shown(name)} (desaxe.quantities() lists them all)"
+    if not state and law_name(name) in _names():
+        return f"{name!r} needs a state: give omega= instead of omega0="
+    if state and name in _names():
+        return (
+            f"{name!r} has no meaning for a given state omega=: ask for {name.replace('omega0', 'omega')!r}"
+        )
+    base, parameters = parts(law_name(name))
+    if set(parameters) <= set(PARAMETERS) and base in _names():
+        ordered = sensitivity(base, *parameters)
+        if ordered in _names():
+            return f"{name!r}: the parameters of a sensitivity stand in one order, {ordered!r}"
+        if len(parameters) > 1:
+            return f"{name!r}: this derivative is not derived (second order: Y, V_C, a_C, omega_BC, alpha_BC)"
+    near = (
+        meant(name, _names(), 3)
+        or [
+            known
+            for known, (_, meaning, _) in _names().items()
+            if f" {name.lower()}" in f" {meaning.lower()}"
+        ][:3]
+    )
+    hint = f"; did you mean {', '.join(near)}?" if near else ""
+    return f"unknown quantity {name!r}{hint} (desaxe.quantities() lists them all)"

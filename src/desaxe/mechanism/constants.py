@@ -1,0 +1,30 @@
+"""The constants of the written-out sine and cosine, from generated/."""
+
+from functools import cache
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from ..compiler.passes.trigonometry import Trigonometry
+
+if TYPE_CHECKING:
+    from ..compiler.passes.double_angles import DoubleTrigonometry
+
+
+@cache
+def constants() -> Trigonometry:
+    """Those of doubles."""
+    return Trigonometry(**import_module("desaxe.generated.trigonometry").CONSTANTS)
+
+
+@cache
+def single_constants() -> Trigonometry:
+    """Those of float32."""
+    return Trigonometry(**import_module("desaxe.generated.trigonometry").SINGLE)
+
+
+@cache
+def double_constants() -> "DoubleTrigonometry":
+    """Those of twice the digits."""
+    from ..compiler.passes.double_angles import DoubleTrigonometry
+
+    return DoubleTrigonometry(**import_module("desaxe.generated.trigonometry").DOUBLE)

@@ -1,0 +1,62 @@
+"""The committed program, cut to what is asked for.
+
+Reads the text of generated/program.py: only the lines that the wanted names reach are parsed, so
+the first answer of a process comes quickly.
+"""
+
+from functools import cache, lru_cache
+from importlib.util import find_spec
+from pathlib import Path
+from typing import NamedTuple
+
+from ..compiler.passes.bind import assume, overlay
+from ..compiler.passes.slicing import keep_outputs
+from ..compiler.program import Program
+from ..compiler.text import ProgramText
+
+
+class Form(NamedTuple):
+    """Which form of the program: for which way of giving the motion and the loads, and for which designs."""
+
+    state: bool = False  # a given state instead of paper A's law
+    halves: tuple[str, ...] = ()  # centres of mass halfway along their links
+    roomy: bool = False  # plain forms, for designs with AB + |ec| < 7/8 BC, where nothing cancels
+
+
+@cache
+def _text(name: str) -> ProgramText:
+    spec = find_spec("desaxe.generated")
+    if spec is None or spec.origin is None:
+        raise ImportError("desaxe.generated is missing: the installation is incomplete")
+    return ProgramText((Path(spec.origin).parent / f"{name}.py").read_text(encoding="utf-8"))
+
+
+LAW = Form()  # paper A's law, every centre of mass given
+
+
+@lru_cache(maxsize=1024)
+def program_of(names: tuple[str, ...], form: Form = LAW) -> Program:
+    """The program of these names (those of the law), in one form."""
+    program = assume(_text("program").read(names), {"roomy": form.roomy})
+    if form.state:
+        program = keep_outputs(overlay(program, _text("state").read()), names)
+    for centre in form.halves:
+        halfway = _text("centres").read()
+        own = [name for name in halfway.outputs if name.startswith(centre)]
+        program = keep_outputs(overlay(program, keep_outputs(halfway, own)), names)
+    return program
+
+
+@cache
+def whole_program() -> Program:
+    """Every line of the derivation, under the law."""
+    return _text("program").read()
+
+
+@cache
+def digest() -> str:
+    """What identifies the derivation and the compiler that wrote generated/."""
+    from importlib import import_module
+
+    value: str = import_module("desaxe.generated").DIGEST
+    return value

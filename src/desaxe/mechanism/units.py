@@ -1,0 +1,132 @@
+"""Units at the border: text such as "10 mm" and pint quantities become SI numbers (extra `units`).
+
+Text is read as an exact fraction, converted exactly and rounded once, so that "350 mm" is the same
+double as 0.350. The unit must say the same as the input's own, angle included: "25 Hz" is no angular
+speed, although to a unit library a radian is nothing.
+"""
+
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+from ..support.extras import MissingExtraError, needed
+from ..support.quantity_text import quantity_text, split_quantity
+from ..support.shown import shown
+from .inputs import INPUTS
+
+_LONGEST = 1000  # characters of a number: all digits of any double
+_BEYOND = "it must be a number that a double holds, from 4.9e-324 to 1.8e308"
+EXAMPLES = {
+    "m": '"125 mm"',
+    "rad": '"60 deg"',
+    "rad/s": '"1500 rpm", "25 turn/s" or "157 rad/s"',
+    "rad/s^2": '"10 rad/s^2"',
+    "kg": '"0.5 kg"',
+    "kg*m^2": '"80.6 kg mm2"',
+    "N": '"50 N"',
+    "m/s^2": '"9.81 m/s^2"',
+}
+
+
+@cache
+def registry() -> Any:
+    """The registry of units that floats are converted with."""
+    return _registry(float)
+
+
+@cache
+def _exact_registry() -> Any:
+    return _registry(Fraction)
+
+
+def _registry(number: type) -> Any:
+    with needed("a value with a unit"):
+        import pint
+    units: Any = pint.UnitRegistry(non_int_type=number)
+    units.define("@alias revolution = rev")
+    units.define("@alias revolutions_per_minute = RPM")
+    return units
+
+
+def in_si(name: str, value: Any) -> Any:
+    """The magnitude of a text or pint quantity in the SI unit of an input; errors name both."""
+    return in_unit(name, value, INPUTS[name].unit)
+
+
+def in_unit(name: str, value: Any, unit: str) -> Any:
+    """The magnitude of a text or pint quantity in a unit."""
+    if isinstance(value, str):
+        plain = _plain_number(value)
+        return _rounded(name, value, exact(name, value, unit)) if plain is None else plain
+    if not _says_the_same(value, unit):
+        raise ValueError(f"{name} = {shown(value)}: {_wanted(unit)}")
+    return value.to(unit).magnitude
+
+
+def unlabelled(name: str, array: Any) -> Any:
+    """What a labelled array holds; a pint quantity where its attribute `units` is not the input's unit."""
+    unit = array.attrs.get("units", INPUTS[name].unit)
+    if unit == INPUTS[name].unit or hasattr(array.data, "magnitude"):
+        return array.data
+    try:
+        return registry().Quantity(array.values, unit)
+    except MissingExtraError:
+        raise
+    except Exception:
+        raise ValueError(f"{name} in {unit!r}: unknown unit; {_wanted(INPUTS[name].unit)}") from None
+
+
+def _rounded(name: str, text: str, value: Fraction) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        raise ValueError(f"{name} = {shown(text)}: {_BEYOND}") from None
+
+
+def exact(name: str, text: str, unit: str) -> Fraction:
+    """The number that a text with a unit is in another unit, exactly (pi to 50 digits)."""
+    try:
+        number, own = split_quantity(text)
+        _check_size(number)
+        if not own:
+            return Fraction(number)
+        quantity = _exact_registry().Quantity(Fraction(number), quantity_text(f"1 {own}")[2:])
+    except MissingExtraError:
+        raise
+    except ValueError as error:
+        raise ValueError(f"{name} = {shown(text)}: {error}") from None
+    except Exception:
+        raise ValueError(f"{name} = {shown(text)}: unknown unit; {_wanted(unit)}") from None
+    if not _says_the_same(quantity, unit):
+        raise ValueError(f"{name} = {shown(text)}: {_wanted(unit)}")
+    return Fraction(quantity.to(unit).magnitude)
+
+
+def _check_size(number: str) -> None:
+    """Refuse a number whose exact value would be far longer than its text, or beyond every double."""
+    exponent = number.lower().partition("e")[2]
+    if len(number) > _LONGEST or len(exponent.lstrip("+-0")) > 3:
+        raise ValueError(f"{_BEYOND}, written with at most {_LONGEST} characters")
+
+
+def _says_the_same(quantity: Any, unit: str) -> bool:
+    """Whether both are made of the same base units, radians among them."""
+    own = quantity.to_root_units().units
+    wanted = (1 * quantity._REGISTRY.Unit(unit)).to_root_units().units
+    return dict(own._units) == dict(wanted._units)
+
+
+def _wanted(unit: str) -> str:
+    if unit == "1":
+        return "it must be a plain number, such as 0.1"
+    example = EXAMPLES.get(unit)
+    return f"it must be a quantity in {unit}" + (f", such as {example}" if example else "")
+
+
+def _plain_number(text: str) -> float | None:
+    if "_" in text or not text.isascii():  # Python reads 1_0 as 10
+        return None
+    try:
+        return float(text)
+    except ValueError:
+        return None

@@ -1,0 +1,10 @@
+"""Refined extrema over the crank angle.
+
+peak      the public call
+programs  a quantity, its slope over theta and its gradient, as Programs
+nodes     the crank angles at which a search starts
+search    the search of one design, in loops that numba compiles
+special   designs that end somewhere: limit angles, stall, friction
+compiled  the module of a search
+stubs     stand-ins for the functions of a quantity
+"""

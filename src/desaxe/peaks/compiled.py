@@ -1,0 +1,162 @@
+"""The module of a search: its loops from the Programs, and the text of `search` behind them.
+
+Its machine code is kept on disk, like that of every kernel. The same text runs in plain Python for the
+first few designs, for which nobody waits for a compiler.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Mapping
+from functools import cache, lru_cache
+from math import atan2, copysign, cos, fabs, inf, nan, sin, sqrt
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiler.languages.numba import peaks
+from ..compiler.languages.numba.module import helper_sources
+from ..compiler.operations import HELPERS
+from ..runtime.modules import is_kept, native
+from ..runtime.threads import run_parts
+from ..support.forks import fork_safe_lock
+from ..support.recent import Recent
+from . import search as text
+from .nodes import Array
+from .programs import Programs, Search, programs_of
+
+Kernel = Callable[..., object]
+
+LINE = "# ---- compiled"
+MOST_LOADED = 64  # searches in memory
+LEAST_PART = 1_024  # designs of a thread
+LONGEST_PART = 8_192  # designs: less than half a second
+BREAK_EVEN = 600  # designs in plain Python that take as long as the compiler
+_NJIT = '@njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)\n'
+_HEADER = '''"""desaxe search: extreme values of {name} over theta."""
+
+from math import atan2, copysign, cos, fabs, inf, nan, sin, sqrt
+
+from numba import njit, types
+from numba.extending import intrinsic
+from numpy import empty, floor, int64, uint64
+
+WORK = {work}
+'''
+_SIGNATURE = """ints, row, rows = types.int64[::1], types.float64[::1], types.float64[:, ::1]
+signature = types.void(rows, ints, ints, row, ints, types.int64, row, rows)
+function = search
+"""
+
+
+@lru_cache(maxsize=1024)
+def source_of(search: Search) -> str:
+    """The text of the compiled module."""
+    programs = programs_of(search, True)
+    loops, work = _loops(programs, "numba")
+    *helpers, last = _functions()
+    called = {line.op for program in (programs.curve, programs.finish) for line in program.lines}
+    parts = [
+        _HEADER.format(name=search.name, work=max(work, 1)),
+        *helper_sources(called),
+        *(_NJIT + loop for loop in loops),
+        *(helper if helper.startswith("BLOCK") else _NJIT + helper for helper in helpers),
+        last,
+        _SIGNATURE,
+    ]
+    return "\n\n".join(parts)
+
+
+def _loops(programs: Programs, column: str) -> tuple[list[str], int]:
+    rows = peaks.Rows(programs.inputs, column, "theta")
+    sweep, work = peaks.sweep_function(programs.curve, rows)
+    points = peaks.points_function(programs.curve, rows)
+    return [sweep, points, peaks.finish_function(programs.finish, rows)], work
+
+
+@cache
+def _functions() -> list[str]:
+    """The constants and functions of `search`, without types, which numba finds by itself."""
+    source = Path(str(text.__file__)).read_text(encoding="utf-8")
+    first, *others = source.partition(LINE)[2].partition("\n")[2].strip().split("\ndef ")
+    bare = [first.strip() + "\n", *(f"def {other.strip()}\n" for other in others)]
+    for kind in (" -> Any", ": Any", ": int", ": float", " -> None", " -> int", " -> float"):
+        bare = [part.replace(kind, "") for part in bare]
+    return bare
+
+
+class Groups(NamedTuple):
+    """Designs in the order of their groups; where each group starts, its nodes, and where those start."""
+
+    order: NDArray[np.intp]
+    starts: NDArray[np.intp]
+    nodes: Array
+    node_starts: NDArray[np.intp]
+
+
+def run(
+    search: Search,
+    columns: Mapping[str, Array],
+    groups: Groups,
+    kind: int,
+    theta: Array,
+    out: Array,
+    threads: int | None,
+) -> None:
+    """Search groups of designs on some threads; `theta` and the rows of `out` are filled at these designs."""
+    order, starts, nodes, node_starts = groups
+    inputs = programs_of(search, False).inputs
+    table = np.empty((len(inputs), theta.size))
+    for row, name in zip(table, inputs, strict=True):
+        row[:] = columns[name]
+    kernel = kernel_for(search, order.size)
+
+    def part(first: int, last: int) -> None:
+        kernel(table, order, np.clip(starts, first, last), nodes, node_starts, kind, theta, out)
+
+    run_parts(part, order.size, threads, LEAST_PART, LONGEST_PART)
+
+
+_LOADED: Recent[Search, Kernel] = Recent(MOST_LOADED)
+_ASKED: Counter[Search] = Counter()
+_LOCK = fork_safe_lock()
+
+
+def kernel_for(search: Search, designs: int) -> Kernel:
+    """The search, compiled if that pays for so many more designs."""
+    found = _LOADED.get(search)
+    if found is not None:
+        return found
+    _ASKED[search] += designs
+    if _ASKED[search] < BREAK_EVEN and not _on_disk(search):
+        return _plain(search)
+    with _LOCK:
+        found = _LOADED.get(search) or native("search", source_of(search))
+        _LOADED[search] = found
+    return found
+
+
+@lru_cache(maxsize=1024)
+def _on_disk(search: Search) -> bool:
+    """Whether an earlier process has left its machine code."""
+    return is_kept("search", source_of(search))
+
+
+@lru_cache(maxsize=1024)
+def _plain(search: Search) -> Kernel:
+    """The same text as plain Python."""
+    loops, work = _loops(programs_of(search, False), "python")
+    scope: dict[str, Any] = {
+        "atan2": atan2, "copysign": copysign, "cos": cos, "fabs": fabs, "inf": inf, "nan": nan,
+        "sin": sin, "sqrt": sqrt, "floor": np.floor, "empty": np.empty, "int64": np.int64,
+        "uint64": int, "WORK": max(work, 1),
+    }  # fmt: skip
+    source = "\n\n".join([*HELPERS.values(), *loops, *_functions()])
+    exec(compile(source, f"<desaxe search {search.name}>", "exec"), scope)
+    kernel: Kernel = scope["search"]
+
+    def quiet(*arguments: Any) -> None:
+        with np.errstate(all="ignore"):
+            kernel(*arguments)
+
+    return quiet

@@ -1,0 +1,131 @@
+"""What a search computes: a quantity, its slope over theta, its gradient.
+
+Derivatives that are not derived (a second one of a torque, a third one of a motion) are those of the program,
+line by line: they keep the digits that its lines keep.
+"""
+
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from typing import NamedTuple
+
+from ..compiler.passes.differentiate import RULES, Chain, Rule, Step
+from ..compiler.passes.double_double import double_digits
+from ..compiler.passes.fuse import fuse_products
+from ..compiler.passes.pipeline import optimise
+from ..compiler.passes.slicing import keep_outputs
+from ..compiler.passes.trigonometry import expand_trigonometry
+from ..compiler.passes.value_numbering import number_values
+from ..compiler.program import Line, Program
+from ..compiler.text import with_short_temporaries
+from ..mechanism.catalogue import has
+from ..mechanism.constants import constants, double_constants
+from ..mechanism.names import sensitivity
+from ..mechanism.program import Form
+from ..runtime.specialise import cut
+
+WITHOUT_COURSE = ("status", "margin")  # these have no course over theta, and no peak
+
+
+class Search(NamedTuple):
+    """What a search is compiled for."""
+
+    name: str  # the quantity, as the program calls it
+    parameters: tuple[str, ...]  # of the gradient
+    form: Form
+    fixed: tuple[tuple[str, float], ...]
+    extended: bool = False  # what is told at the peak, in pairs of doubles
+    far: bool = False  # angles beyond what the written-out sine and cosine reduce exactly
+
+
+class Programs(NamedTuple):
+    """The bodies of the loops, and the inputs that differ from design to design."""
+
+    curve: Program  # value and slope
+    finish: Program
+    inputs: tuple[str, ...]
+
+
+def needs_own(name: str, parameters: Sequence[str]) -> list[str]:
+    """The parameters by which the derivative of a name is not derived."""
+    return [p for p in parameters if not has(_by(name, p))]
+
+
+def _by(name: str, parameter: str) -> str:
+    """The derivative of a name, as the program calls it: a state's omega stands in omega0's place."""
+    return sensitivity(name, "omega0" if parameter == "omega" else parameter)
+
+
+@lru_cache(maxsize=1024)
+def programs_of(search: Search, written_out: bool) -> Programs:
+    """The programs of a search; for numba with sine and cosine written out."""
+    whole, outputs = _whole(search)
+    value, slope, *gradient = outputs
+
+    def prepared(names: Sequence[str]) -> Program:
+        program = keep_outputs(whole, tuple(names))
+        if search.far or not written_out:
+            return program
+        return fuse_products(number_values(expand_trigonometry(program, constants(), search.form.roomy)))
+
+    finish = (value, slope, *gradient)
+    if search.extended:
+        last = double_digits(keep_outputs(whole, finish), double_constants())
+    else:
+        last = prepared(finish)
+    programs = prepared((value, slope)), last
+    used = {name for program in programs for name in program.inputs}
+    return Programs(*programs, tuple(name for name in whole.inputs if name in used and name != "theta"))
+
+
+def _whole(search: Search) -> tuple[Program, list[str]]:
+    """One program of everything, and its outputs: value, slope, gradient."""
+    name = search.name
+    wanted = [name, sensitivity(name, "theta")]
+    derived = [n for n in wanted if has(n)]
+    partial = {p: _by(name, p) for p in search.parameters}
+    derived += [n for n in partial.values() if has(n)]
+    program = cut(tuple(dict.fromkeys(derived)), search.form, search.fixed)
+    names = [name]
+    for parameter, known in {"theta": wanted[1], **partial}.items():
+        program, found = _differentiated(program, name, parameter, known, derived)
+        names.append(found)
+    return program, names
+
+
+def _differentiated(
+    program: Program, name: str, parameter: str, known: str, derived: Sequence[str]
+) -> tuple[Program, str]:
+    """The program with the derivative of one of its outputs, and the name of that."""
+    if known in derived:
+        return program, known
+    chain = Chain(parameter, _RULES)
+    for line in program.lines:
+        chain.through(line)
+    own = f"{name}_by_{parameter}"
+    lines = (*program.lines, *chain.lines, Line(own, "copy", (chain.slope(name),)))
+    outputs = (*program.outputs, own)
+    longer = optimise(program._replace(lines=lines, outputs=outputs))[0]
+    return with_short_temporaries(longer), own
+
+
+def _sign(chain: Chain, *factors: str) -> str:
+    """The sign of a product, from the signs of its factors."""
+    sign = chain.new("copysign", 1.0, factors[0])
+    for factor in factors[1:]:
+        sign = chain.new("mul", sign, chain.new("copysign", 1.0, factor))
+    return sign
+
+
+def _abs(chain: Chain, line: Line) -> Step:
+    (a,) = line.args
+    return "mul", (chain.slope(a), _sign(chain, str(a)))
+
+
+def _copysign(chain: Chain, line: Line) -> Step:
+    size, sign = line.args
+    own = [str(size)] if isinstance(size, str) else []
+    return "mul", (chain.slope(size), _sign(chain, *own, str(sign)))
+
+
+# A double knows its sign; the rules of balls leave it to what is known of the whole ball.
+_RULES: Mapping[str, Rule] = {**RULES, "abs": _abs, "copysign": _copysign}

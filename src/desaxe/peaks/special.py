@@ -1,0 +1,242 @@
+"""Designs that end somewhere: limit angles, a stall, friction that turns round or jams.
+
+Their nodes are their own: graded towards the quarters, the limit angles and, with friction, the dead
+centres, down to the distance of two doubles. What their extrema mean is told here.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..evaluation.evaluate import evaluate
+from ..mechanism.limit_angles import theta_intervals
+from ..mechanism.names import LENGTHS
+from .nodes import Array
+
+UNIFORM = 240  # nodes per turn
+GRADED = 2.0 ** -np.arange(1.0, 46.0)  # distances from a quarter or a limit angle, down to 3e-14
+BLOCK = 1024  # designs at a time
+SMOOTH = 1e-6  # of the median slope: what is left of the slope at the top of a smooth peak is less
+JAMS, TWO_BALANCES = 5, 6  # the status where friction leaves no balance of forces, or two
+REACH = 1.0  # rad: a stall nearer to the range than this shapes what is in it
+
+
+class Designs(NamedTuple):
+    """Flat arrays of the inputs of some designs, what is fixed for all, and the range of theta."""
+
+    columns: dict[str, Array]
+    branch: int
+    theta: tuple[float, float]
+    rubs: bool  # whether friction has a say
+
+    @property
+    def size(self) -> int:
+        """How many there are."""
+        return next(iter(self.columns.values())).size
+
+    def part(self, rows: Any) -> "Designs":
+        """Some of them."""
+        return self._replace(columns={name: column[rows] for name, column in self.columns.items()})
+
+    def values(self, names: tuple[str, ...], rows: NDArray[np.intp], theta: Array) -> dict[str, Any]:
+        """Values of names by their name, for the designs `rows` at one angle each."""
+        inputs: dict[str, Any] = {name: column[rows] for name, column in self.columns.items()}
+        found: dict[str, Any] = evaluate(list(names), theta=theta, branch=self.branch, **inputs)
+        return found
+
+
+def are_special(designs: Designs) -> NDArray[np.bool_]:
+    """Which designs cannot turn fully, stall in the range or near it, or rub."""
+    columns = designs.columns
+    special = np.full(designs.size, designs.rubs)
+    if all(name in columns for name in LENGTHS):
+        special |= ~(columns["BC"] - columns["AB"] - np.abs(columns["ec"]) > 0.0)
+    if "alpha" in columns and "omega0" in columns:
+        low, high = designs.theta
+        stop = _stall(columns["omega0"], columns["alpha"])
+        special |= (stop > low - REACH) & (stop < high + REACH)
+    return special
+
+
+def _stall(omega0: Array, alpha: Array) -> Array:
+    """The angle at which omega0^2 + 2 alpha theta = 0."""
+    with np.errstate(all="ignore"):
+        return -(omega0 * omega0) / (2.0 * alpha)
+
+
+def own_nodes(designs: Designs) -> tuple[Array, list[tuple[int, float]]]:
+    """Crank angles for each design, ascending, and its limit angles inside the range."""
+    low, high = designs.theta
+    turns = max(1.0, (high - low) / (2.0 * np.pi))
+    first, last = int(np.floor(low / np.pi)) - 1, int(np.ceil(high / np.pi)) + 1
+    marks = [low, high, *(np.pi * (0.5 + k) for k in range(first, last))]
+    common = np.concatenate([np.linspace(low, high, int(UNIFORM * turns) + 1), *map(_around, marks)])
+    limits = _limit_angles(designs)
+    ends = [(row, angle) for row, angles in enumerate(limits) for angle in angles if low <= angle <= high]
+    if designs.rubs:
+        limits = [[*some, *more] for some, more in zip(limits, _dead_centres(designs), strict=True)]
+    width = max((len(angles) for angles in limits), default=0)
+    own = np.full((len(limits), width * (2 * GRADED.size + 1)), low)
+    for row, angles in enumerate(limits):
+        near = np.concatenate([_around(angle) for angle in angles]) if angles else np.empty(0)
+        own[row, : near.size] = near
+    both = np.concatenate([np.broadcast_to(common, (len(limits), common.size)), own], axis=1)
+    return np.sort(np.clip(both, low, high), axis=1), ends
+
+
+def _around(angle: float) -> Array:
+    return np.concatenate([angle - GRADED, [angle], angle + GRADED])
+
+
+def _limit_angles(designs: Designs) -> list[list[float]]:
+    """For each design the angles at which it stops being feasible, or stalls, in the range or near it."""
+    low, high = designs.theta
+    columns = designs.columns
+    found: list[list[float]] = [[] for _ in range(designs.size)]
+    lengths = [columns[n] for n in LENGTHS if n in columns]
+    if len(lengths) == 3:
+        ec, AB, BC = lengths
+        for row in np.flatnonzero(BC - AB - np.abs(ec) < 0.0):
+            for interval in theta_intervals(*(float(c[row]) for c in lengths)):
+                for end in interval:
+                    first = end + 2.0 * np.pi * np.ceil((low - end) / (2.0 * np.pi))
+                    found[row] += list(np.arange(first, high + 1e-12, 2.0 * np.pi))
+    if "alpha" in columns and "omega0" in columns:
+        stops = _stall(columns["omega0"], columns["alpha"])
+        for row in np.flatnonzero((stops > low - REACH) & (stops < high + REACH)):
+            found[row].append(float(stops[row]))
+    return found
+
+
+def _dead_centres(designs: Designs) -> list[list[float]]:
+    """For each design the angles in the range at which crank and rod are in line, on either branch."""
+    low, high = designs.theta
+    ec, AB, BC = (designs.columns[n] for n in LENGTHS)
+    with np.errstate(all="ignore"):
+        sines = np.stack([-ec / (AB + BC), ec / (BC - AB)])
+        angles = np.concatenate([np.arcsin(sines), np.pi - np.arcsin(sines)])
+    turns = 2.0 * np.pi * np.arange(np.floor(low / (2.0 * np.pi)) - 1, np.ceil(high / (2.0 * np.pi)) + 1)
+    every = (angles[:, None, :] + turns[None, :, None]).reshape(-1, ec.size)
+    return [[float(a) for a in column if low <= a <= high] for column in every.T]
+
+
+# ---- what the extrema mean ------------------------------------------------------------------------
+
+
+class Found(NamedTuple):
+    """What the search found for some designs, to be completed in place."""
+
+    value: Array
+    theta: Array
+    slope: Array  # at theta
+    status: NDArray[np.int8]
+
+
+def complete(
+    name: str, kind: str, designs: Designs, nodes: Array, ends: list[tuple[int, float]], found: Found
+) -> NDArray[np.bool_]:
+    """Put in limits, brinks and status; which extrema have a gradient.
+
+    value   signed, also for "absmax"
+    """
+    rows = np.arange(designs.size)
+    swept = designs.values((name, "status"), np.repeat(rows, nodes.shape[1]), nodes.reshape(-1))
+    value, status = (swept[n].reshape(nodes.shape) for n in (name, "status"))
+    jams, turns = _at_brinks(name, kind, designs, nodes, swept, found)
+    found.status[:] = _status(status)
+    _mark_limits(kind, found, value, nodes, ends)
+    turns |= _turn(designs, found, nodes, value)
+    found.value[jams] = np.copysign(np.inf, found.value[jams])
+    found.status[turns & (found.status == 0)] = 2
+    usable: NDArray[np.bool_] = (
+        np.isin(found.status, (0, JAMS, TWO_BALANCES)) & ~turns & np.isfinite(found.value)
+    )
+    return usable
+
+
+def score(kind: str, value: Array) -> Array:
+    """What is to be made as large as possible; NaN never wins."""
+    good = {"absmax": np.abs(value), "max": value, "min": -value}[kind]
+    return np.where(np.isnan(good), -np.inf, good)
+
+
+def _at_brinks(
+    name: str, kind: str, designs: Designs, nodes: Array, swept: dict[str, Any], found: Found
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Let the last angles before friction leaves no balance of forces, or two, take part.
+
+    Which designs have their extremum where it jams, and which at either.
+    """
+    value, status = (swept[n].reshape(nodes.shape) for n in (name, "status"))
+    fine, bad = status == 0, (status == JAMS) | (status == TWO_BALANCES)
+    rows, columns = np.nonzero((fine[:, :-1] & bad[:, 1:]) | (bad[:, :-1] & fine[:, 1:]))
+    jams, turns = np.zeros(designs.size, np.bool_), np.zeros(designs.size, np.bool_)
+    if not rows.size:
+        return jams, turns
+    forth = fine[rows, columns]
+    here, there = (rows, columns + np.where(forth, 0, 1)), (rows, columns + np.where(forth, 1, 0))
+    inside, beyond, values, codes = nodes[here], nodes[there], value[here], status[there]
+    for _ in range(60):
+        middle = 0.5 * (inside + beyond)
+        # Both of one call: at the brink rounding decides, and another program may round in another way.
+        at = designs.values((name, "status"), rows, middle)
+        balanced = at["status"] == 0
+        inside, beyond = np.where(balanced, middle, inside), np.where(balanced, beyond, middle)
+        values, codes = np.where(balanced, at[name], values), np.where(balanced, codes, at["status"])
+    for row, theta, value, code in zip(rows, inside, values, codes, strict=True):
+        if score(kind, value) >= score(kind, found.value[row]):
+            found.value[row], found.theta[row] = value, theta
+            jams[row], turns[row] = code == JAMS, True
+    return jams, turns
+
+
+def _status(status: NDArray[np.int8]) -> NDArray[np.int8]:
+    """What friction does at some of the angles; else 0 where any is ok, else what is wrong at the first."""
+    usable = ((status == 0) | (status == 2)).any(axis=1)
+    found = np.where(usable, np.int8(0), status[:, 0]).astype(np.int8)
+    for code in (TWO_BALANCES, JAMS):
+        found[(status == code).any(axis=1)] = code
+    return found
+
+
+def _mark_limits(kind: str, found: Found, value: Array, nodes: Array, ends: list[tuple[int, float]]) -> None:
+    """An extremum at a limit angle has status 2; what has no bound there is infinite."""
+    for row, end in ends:
+        usable = ~np.isnan(value[row])
+        if not usable.any():
+            continue
+        near = np.flatnonzero(usable)[np.argmin(np.abs(nodes[row, usable] - end))]
+        if abs(nodes[row, near] - end) > 1e-6:
+            continue
+        bounded = not _grows(nodes[row, usable], value[row, usable], end, value[row, near])
+        # The search may have stopped beyond `near`, where only more digits tell that the rod does not reach.
+        at_end = abs(found.theta[row] - end) <= max(abs(nodes[row, near] - end), 0.5 * GRADED[-1])
+        grows = not bounded and score(kind, value[row, near]) >= score(kind, found.value[row])
+        if at_end or grows:
+            found.status[row] = 2
+            found.theta[row] = end
+            if not bounded:
+                found.value[row] = np.copysign(np.inf, value[row, near])
+
+
+def _grows(nodes: Array, value: Array, end: float, last: float) -> bool:
+    """Whether a quantity grows without bound towards an end: as the distance to a negative power."""
+    away = np.abs(nodes - end)
+    farther = value[np.argmin(np.abs(np.log2(np.maximum(away, 1e-16)) + 20.0))]  # 2^-20 away
+    return bool(abs(last) > 16.0 * abs(farther))
+
+
+def _turn(designs: Designs, found: Found, nodes: Array, value: Array) -> NDArray[np.bool_]:
+    """Which extrema are at a kink or jump, whose angle moves with the design."""
+    if not designs.rubs:
+        return np.zeros(designs.size, np.bool_)
+    low, high = designs.theta
+    with np.errstate(all="ignore"):
+        steep = np.abs(np.diff(value) / np.diff(nodes))
+    steep = np.sort(np.where(np.isfinite(steep), steep, np.inf), axis=1)
+    usual = steep[np.arange(len(steep)), np.isfinite(steep).sum(axis=1) // 2]
+    turns: NDArray[np.bool_] = (
+        (np.abs(found.slope) > SMOOTH * usual) & (found.theta != low) & (found.theta != high)
+    )
+    return turns

@@ -1,0 +1,63 @@
+"""Families of curves: a quantity over one input, one curve for each value of another."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..support.extras import needed
+from .shared import chosen, drawn, finish_axis, fixed_inputs, label_of, shown, worth_showing
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+SIZE = (8.0, 4.8)  # inches
+
+
+def curves(
+    dataset: "xr.Dataset",
+    name: str,
+    *,
+    over: str = "theta",
+    family: str | None = None,
+    ax: "Axes | None" = None,
+) -> "list[Line2D]":
+    """Draw a quantity over one input, one curve for each value of another; returns the lines.
+
+    dataset  the result of `desaxe.grid` or of a scene
+    name     the quantity
+    over     the dimension along the horizontal axis; angles are shown in degrees
+    family   the dimension that tells the curves apart; by default the other one, if there is one
+    ax       where to draw: a matplotlib Axes; by default a new Figure (`lines[0].figure`), whose title tells
+             the inputs that are numbers
+
+    Labels and units come from the dataset. Points that are infeasible, or at which friction jams, are
+    gaps. A curve may grow without bound towards its gaps, so the vertical axis is that of the curves
+    without, or of most values where each has gaps. Raises ValueError for a name or dimension that the
+    dataset does not have, or that is left over.
+    """
+    with needed("plot.curves"):
+        from matplotlib.figure import Figure
+    array = chosen(dataset, name, over, family)
+    own = ax is None
+    ax = Figure(figsize=SIZE, layout="constrained").add_subplot() if ax is None else ax
+    lines = draw(ax, array, over, beside=own)
+    if own:
+        ax.set_title(fixed_inputs(array), loc="left", fontsize="medium")
+    return lines
+
+
+def draw(ax: "Axes", array: "xr.DataArray", over: str, beside: bool | None) -> "list[Line2D]":
+    """The curves of (family, over) or (over), with labels, ticks and limits."""
+    lines = drawn(ax, shown(array[over]), array, beside)
+    finish_axis(ax.xaxis, array[over])
+    ax.set_ylabel(label_of(array))
+    limits = worth_showing([np.asarray(line.get_ydata(), dtype=np.float64) for line in lines])
+    if limits is not None:
+        ax.set_ylim(*limits)
+    ax.grid(True, color="0.9", linewidth=0.8)
+    ax.set_axisbelow(True)
+    for side in ("top", "right"):
+        ax.spines[side].set_visible(False)
+    return lines

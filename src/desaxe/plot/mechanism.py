@@ -1,0 +1,160 @@
+"""The mechanism to scale: crank, rod and slider at a crank angle."""
+
+from dataclasses import dataclass
+from math import cos, degrees, isfinite, pi, sin
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..evaluation.evaluate import evaluate
+from ..mechanism.names import LENGTHS
+from ..runtime.request import as_number, check_border
+from ..support.extras import needed
+from .shared import BLUE, ORANGE
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+
+HEIGHT = 6.0  # inches
+BLOCK = (0.16, 0.22)  # half width and height of the slider, in cranks
+ANGLES = np.linspace(0.0, 2.0 * pi, 361)
+
+
+@dataclass(frozen=True)
+class Sketch:
+    """A drawn mechanism, to be turned: `links` (crank and rod), `slider`, `pins`, `arc`, `note`."""
+
+    axes: "Axes"
+    links: tuple[Any, Any]
+    slider: Any
+    pins: Any
+    arc: Any
+    names: tuple[Any, ...]
+    note: Any
+    lengths: dict[str, Any]
+    branch: int
+
+    @property
+    def artists(self) -> "list[Artist]":
+        """All that moves."""
+        return [*self.links, self.slider, self.pins, self.arc, *self.names, self.note]
+
+    def turn(self, theta: Any) -> "list[Artist]":
+        """Move to a crank angle; without rod and slider where the mechanism cannot be assembled."""
+        angle = float(_number("theta", theta))
+        ec, AB = self.lengths["ec"], self.lengths["AB"]
+        Y = float(evaluate("Y", theta=angle, branch=self.branch, **self.lengths))
+        pin, block = (AB * sin(angle), AB * cos(angle)), (-ec, Y)
+        points = np.array([(0.0, 0.0), pin, block])
+        for link, (first, last) in zip(self.links, ((0, 1), (1, 2)), strict=True):
+            link.set_data(points[[first, last], 0], points[[first, last], 1])
+        self.pins.set_data(points[:, 0], points[:, 1])
+        self.slider.set_xy((-ec - BLOCK[0] * AB, Y - BLOCK[1] * AB))
+        self.slider.set_visible(isfinite(Y))
+        left = -1.0 if sin(angle) >= 0.0 else 1.0  # where the crank does not point to
+        edge = -ec + (BLOCK[0] * AB if pin[0] < -ec else -BLOCK[0] * AB), Y  # of the guide, away from the rod
+        anchors = (points[0], pin, edge)
+        beside: Any = (
+            (12.0 * left, 3.0),
+            (-12.0 * left, 0.0),
+            (9.0 if pin[0] < -ec else -9.0, 0.0),
+        )  # points
+        for text, place, offset in zip(self.names, anchors, beside, strict=True):
+            text.xy = tuple(place)
+            text.set_position(tuple(offset))
+            text.set_visible(isfinite(place[1]))
+        part = np.linspace(0.0, angle % (2.0 * pi), 50)
+        self.arc.set_data(0.35 * AB * np.sin(part), 0.35 * AB * np.cos(part))
+        stuck = "" if isfinite(Y) else ", cannot be assembled"
+        self.note.set_text(f"theta = {degrees(angle):.4g} deg{stuck}")
+        return self.artists
+
+
+def mechanism(*, theta: Any, ec: Any, AB: Any, BC: Any, branch: int = 1, ax: "Axes | None" = None) -> Sketch:
+    """Draw the mechanism to scale at a crank angle; returns a Sketch, which `turn(theta)` moves.
+
+    theta       crank angle [rad], or a text such as "60 deg"
+    ec, AB, BC  lengths [m], or texts such as "125 mm"
+    branch      +1 or -1
+    ax          where to draw: a matplotlib Axes; by default a new Figure (`sketch.axes.figure`)
+
+    X to the right, Y up, along the slider's axis, as in the frame of README. The dotted circle is the
+    crank pin's, the guide is as long as the stroke. Where it cannot be assembled there is only the crank.
+    """
+    with needed("plot.mechanism"):
+        from matplotlib.figure import Figure
+    check_border({}, branch)
+    lengths: dict[str, Any] = {n: float(_number(n, v)) for n, v in zip(LENGTHS, (ec, AB, BC), strict=True)}
+    reach = np.array([evaluate("Y", theta=angle, branch=branch, **lengths) for angle in ANGLES[::3]])
+    box = _box(lengths, reach)
+    if ax is None:
+        wide = (box[1] - box[0]) / (box[3] - box[2])
+        size = (max(3.2, 1.2 + HEIGHT * wide), HEIGHT)
+        ax = Figure(figsize=size, layout="constrained").add_subplot()
+    _frame(ax, lengths, reach, box)
+    links, slider, pins, arc, names, note = _moving(ax, lengths["AB"])
+    sketch = Sketch(ax, links, slider, pins, arc, names, note, lengths, int(branch))
+    sketch.turn(theta)
+    return sketch
+
+
+def _number(name: str, value: Any) -> float:
+    number = as_number(name, value, ("theta", *LENGTHS), ("mechanism",))
+    if number is None:
+        raise TypeError(f"{name}: a sketch shows one design at one angle, got {type(value).__name__}")
+    return number
+
+
+def _box(lengths: dict[str, float], reach: Any) -> tuple[float, float, float, float]:
+    """What must be seen: crank circle and slider at all angles."""
+    ec, AB = lengths["ec"], lengths["AB"]
+    room = 0.45 * AB
+    ends = [-AB, AB, *(reach[np.isfinite(reach)])]
+    return min(-AB, -ec) - room, max(AB, -ec) + room, min(ends) - room, max(ends) + room
+
+
+def _frame(ax: "Axes", lengths: dict[str, float], reach: Any, box: tuple[float, ...]) -> None:
+    """What stands still: the crank's circle, its bearing, the guide, the eccentricity, the axes."""
+    from matplotlib.patches import Polygon
+
+    ec, AB = lengths["ec"], lengths["AB"]
+    ax.plot(AB * np.sin(ANGLES), AB * np.cos(ANGLES), ":", color="0.6", linewidth=1.0)
+    foot = np.array([(0.0, 0.0), (-0.14, -0.2), (0.14, -0.2)]) * AB
+    ax.add_patch(Polygon(foot, facecolor="0.8", edgecolor="0.3", hatch="///", zorder=1))
+    ax.axvline(0.0, color="0.8", linewidth=0.8, linestyle="-.", zorder=0)
+    if np.isfinite(reach).any():
+        low, high = np.nanmin(reach) - BLOCK[1] * AB, np.nanmax(reach) + BLOCK[1] * AB
+        for side in (-1.0, 1.0):
+            ax.plot([-ec + side * BLOCK[0] * AB] * 2, [low, high], color="0.3", linewidth=1.5, zorder=1)
+        ax.plot([-ec, -ec], [low, high], "-.", color="0.8", linewidth=0.8, zorder=0)
+    if ec:
+        at = box[2] + 0.12 * AB
+        ends = {"arrowstyle": "<->", "color": "0.3", "shrinkA": 0, "shrinkB": 0}
+        ax.plot([-ec, -ec], [at, 0.0], color="0.8", linewidth=0.8, linestyle="-.", zorder=0)
+        ax.annotate("", (0.0, at), (-ec, at), arrowprops=ends)
+        ax.annotate(f"ec = {ec:.4g} m", (max(0.0, -ec), at), (5, 0), textcoords="offset points", va="center")
+    ax.set(xlim=box[:2], ylim=box[2:], xlabel="X [m]", ylabel="Y, along the slider's axis [m]")
+    ax.set_aspect("equal")
+    for edge in ("top", "right"):
+        ax.spines[edge].set_visible(False)
+
+
+def _moving(ax: "Axes", AB: float) -> tuple[Any, ...]:
+    """Crank and rod, slider, pins, the angle's arc, the names of the joints, the note."""
+    from matplotlib.patches import Rectangle
+
+    thick: dict[str, Any] = {"linewidth": 5.0, "solid_capstyle": "round"}
+    links = tuple(ax.plot([], [], color=colour, zorder=3, **thick)[0] for colour in (ORANGE, BLUE))
+    slider = Rectangle(
+        (0, 0), 2 * BLOCK[0] * AB, 2 * BLOCK[1] * AB, facecolor="0.85", edgecolor="0.2", zorder=2
+    )
+    ax.add_patch(slider)
+    (pins,) = ax.plot([], [], "o", color="w", markeredgecolor="0.1", markersize=7, zorder=4)
+    (arc,) = ax.plot([], [], color="0.2", linewidth=1.0, zorder=5)
+    centred: dict[str, Any] = {"ha": "center", "va": "center", "fontweight": "bold"}
+    names = tuple(
+        ax.annotate(name, (0, 0), (0, 0), textcoords="offset points", zorder=5, **centred) for name in "ABC"
+    )
+    note = ax.set_title("", loc="left", fontsize="medium")
+    return links, slider, pins, arc, names, note

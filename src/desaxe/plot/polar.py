@@ -1,0 +1,87 @@
+"""Polar diagrams: a torque or force over the crank angle, drawn as the crank turns."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..support.extras import needed
+from .shared import chosen, drawn, fixed_inputs, label_of, worth_showing
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+SIZE = (6.4, 6.0)  # inches
+TITLE = 56  # letters in a line
+
+
+def polar(
+    dataset: "xr.Dataset",
+    name: str | tuple[str, str],
+    *,
+    family: str | None = None,
+    ax: "Axes | None" = None,
+) -> "list[Line2D]":
+    """Draw a quantity over the crank angle in polar coordinates; returns the lines.
+
+    dataset  the result of `desaxe.grid` or of a scene, with the dimension theta
+    name     the quantity, such as "T_in"; or two, such as ("F_B_X", "F_B_Y"), whose magnitude is drawn
+    family   the dimension that tells the curves apart; by default the other one, if there is one
+    ax       where to draw: polar Axes; by default those of a new Figure (`lines[0].figure`)
+
+    theta is where the crank is: 0 is up, along the slider axis, and it turns towards the right. A
+    quantity of either sign is 0 on the dark circle, positive outside of it and negative inside.
+    Labels, gaps and complaints are those of `curves`.
+    """
+    with needed("plot.polar"):
+        from matplotlib.figure import Figure
+    array = (
+        chosen(dataset, name, "theta", family)
+        if isinstance(name, str)
+        else _magnitude([chosen(dataset, part, "theta", family) for part in name])
+    )
+    beside = ax is None
+    axes: Any = Figure(figsize=SIZE, layout="constrained").add_subplot(projection="polar") if beside else ax
+    if axes.name != "polar":
+        raise ValueError("ax: polar Axes are wanted, such as figure.add_subplot(projection='polar')")
+    lines = drawn(axes, np.asarray(array["theta"].values, dtype=np.float64), array, beside)
+    _finish(axes, array, lines)
+    if beside:
+        axes.set_title(fixed_inputs(array, TITLE), loc="left", fontsize="medium", pad=12)
+    return lines
+
+
+def _magnitude(parts: "list[xr.DataArray]") -> "xr.DataArray":
+    """The length of the vector with these two components, under their common name."""
+    if len(parts) != 2:
+        raise ValueError(f"name: one quantity or the two components of a vector, got {len(parts)}")
+    first, second = parts
+    meaning = str(first.attrs.get("long_name", "")).removesuffix(" along X")
+    attributes = {"units": first.attrs.get("units", ""), "long_name": f"magnitude of the {meaning}"}
+    length: Any = np.hypot(first, second)
+    named: xr.DataArray = length.assign_attrs(attributes).rename(str(first.name).removesuffix("_X"))
+    return named
+
+
+def _finish(axes: Any, array: "xr.DataArray", lines: "list[Line2D]") -> None:
+    """Up is where the slider is; the radial axis ends where nothing is left to see."""
+    from matplotlib.ticker import MaxNLocator
+
+    axes.set_theta_zero_location("N")
+    axes.set_theta_direction(-1)
+    values = [np.asarray(line.get_ydata(), dtype=np.float64) for line in lines]
+    finite = np.concatenate([v[np.isfinite(v)] for v in values])
+    low, high = worth_showing(values) or (finite.min(initial=0.0), finite.max(initial=0.0))
+    if finite.min(initial=0.0) >= 0.0:
+        axes.set_ylim(0.0, 1.05 * high or 1.0)
+    else:
+        axes.set_ylim(low - 0.35 * (high - low), high + 0.05 * (high - low))
+        axes.plot(np.linspace(0.0, 2.0 * np.pi, 361), np.zeros(361), color="0.35", linewidth=1.0, zorder=1)
+    axes.yaxis.set_major_locator(MaxNLocator(5))
+    axes.set_xlabel(f"{label_of(array)}\nover the {label_of(array['theta'])}", labelpad=12)
+    for text in axes.yaxis.get_ticklabels():
+        text.set_bbox({"facecolor": "w", "edgecolor": "none", "alpha": 0.75, "pad": 0.8})
+    axes.grid(True, color="0.9", linewidth=0.8)
+    axes.set_axisbelow(True)
+    axes.spines["polar"].set_visible(False)

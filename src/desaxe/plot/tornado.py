@@ -1,0 +1,103 @@
+"""Tornado diagrams: what a change of each input does to a quantity, the largest on top."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from ..mechanism.catalogue import quantity
+from ..mechanism.inputs import INPUTS
+from ..mechanism.names import sensitivity
+from ..support.extras import needed
+from .shared import BLUE, ORANGE, label_of, raised
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.container import BarContainer
+
+WIDTH, HEIGHT = 7.6, 0.42  # inches: of all, of a bar
+
+
+def tornado(
+    result: Any, changes: Mapping[str, Any], *, name: str = "", ax: "Axes | None" = None
+) -> "list[BarContainer]":
+    """Draw what a change of each input does to a quantity, by its exact sensitivities; returns the bars.
+
+    result   a dict with `value` and `gradient`, as `desaxe.peak` and `desaxe.tolerance` give for one design;
+             or a Dataset of `desaxe.grid` at one point, with the quantity and its sensitivities
+    changes  dict input -> half its range: in SI units, or texts such as "0.1 mm"; signs do not matter
+    name     the quantity: of a Dataset it is needed, of a dict it makes the label
+    ax       where to draw: a matplotlib Axes; by default a new Figure (`bars[0][0].figure`)
+
+    To first order: each bar ends at value -+ slope times change, orange where the input is larger, blue where
+    it is smaller. Raises ValueError for a change of an input whose slope the result does not have.
+    """
+    with needed("plot.tornado"):
+        from matplotlib.figure import Figure
+    value, slopes, label = _told(result, changes, name)
+    steps = {p: abs(_number(p, change)) for p, change in changes.items()}
+    order = sorted(steps, key=lambda p: abs(slopes[p]) * steps[p])
+    if ax is None:
+        size = (WIDTH, 1.5 + HEIGHT * len(order))
+        ax = Figure(figsize=size, layout="constrained").add_subplot()
+    rows = range(len(order))
+    moves = [slopes[p] * steps[p] for p in order]
+    bars = [
+        ax.barh(rows, [sign * move for move in moves], left=value, color=colour, height=0.65, label=told)
+        for sign, colour, told in ((1.0, ORANGE, "input larger"), (-1.0, BLUE, "input smaller"))
+    ]
+    ax.set_yticks(rows, [f"{p} ± {_text(p, changes[p])}" for p in order])
+    ax.axvline(value, color="0.2", linewidth=1.0)
+    ax.set_xlabel(label)
+    ax.grid(True, axis="x", color="0.9", linewidth=0.8)
+    ax.set_axisbelow(True)
+    ax.legend(frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    for side in ("top", "right", "left"):
+        ax.spines[side].set_visible(False)
+    return bars
+
+
+def _told(result: Any, changes: Mapping[str, Any], name: str) -> tuple[float, dict[str, float], str]:
+    """The value, its slopes by the inputs that change, and the label."""
+    if isinstance(result, Mapping) and "gradient" in result:
+        value, gradient, label = result["value"], result["gradient"], _label(name)
+    elif name in result:
+        rows = {p: sensitivity(name, p) for p in changes}
+        gradient = {p: result[row].values for p, row in rows.items() if row in result}
+        value, label = result[name].values, label_of(result[name])
+    else:
+        raise ValueError(f"name = {name!r}: the dataset has {', '.join(map(str, result))}")
+    missing = [p for p in changes if p not in gradient]
+    if missing:
+        there = ", ".join(gradient) or "none"
+        raise ValueError(f"changes: no slope by {missing[0]} in this result, there are: {there}")
+    return _scalar(value), {p: _scalar(gradient[p]) for p in changes}, label
+
+
+def _scalar(value: Any) -> float:
+    try:
+        return float(value)
+    except TypeError:
+        raise ValueError("a tornado is of one design: choose it first, dataset.sel(...)") from None
+
+
+def _label(name: str) -> str:
+    if not name:
+        return "value"
+    known = quantity(name)
+    return f"{known.meaning}, {name} {raised(known.unit)}".rstrip()
+
+
+def _number(parameter: str, change: Any) -> float:
+    if parameter not in INPUTS:
+        raise TypeError(f"changes: no input {parameter!r}")
+    if not isinstance(change, (int, float)):
+        from ..mechanism.units import in_si
+
+        change = in_si(parameter, change)
+    return float(change)
+
+
+def _text(parameter: str, change: Any) -> str:
+    if not isinstance(change, (int, float)):
+        return str(change)
+    unit = INPUTS[parameter].unit
+    return f"{abs(change):.4g}" + (f" {unit.replace('*', ' ')}" if unit != "1" else "")

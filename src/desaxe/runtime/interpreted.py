@@ -1,0 +1,55 @@
+"""Few points: plain Python, one by one, as long as that takes less time than compiling a kernel would."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiler.passes.guard import BAD_INPUT
+from ..mechanism.constants import double_constants
+from ..mechanism.inputs import INPUTS
+from .kernels import KernelKey, is_ready
+from .point import point_of
+
+Array = NDArray[Any]
+
+# A request is answered in plain Python until so many points of it have been asked for in this process:
+# nobody pays a compilation for a hundred points, and nobody waits for ever who asks again and again.
+BREAK_EVEN = 2_000
+_ASKED: Counter[KernelKey] = Counter()
+
+
+def are_good(name: str, array: Array) -> NDArray[np.bool_]:
+    """Which elements an input can have."""
+    least = INPUTS[name].least
+    good: NDArray[np.bool_] = np.isfinite(array)
+    return good if least is None else good & (array >= least)
+
+
+def is_early(key: KernelKey, size: int) -> bool:
+    """Whether plain Python still pays."""
+    if is_ready(key):
+        return False
+    _ASKED[key] += size
+    return _ASKED[key] < BREAK_EVEN
+
+
+def fill_by_points(
+    key: KernelKey, scalars: Mapping[str, float], columns: Mapping[str, Array], outs: Sequence[Array]
+) -> None:
+    """Fill flat outputs from scalars and flat columns, point by point."""
+    point = point_of(key.names, key.form, key.fixed, key.accuracy)
+    good = {name: are_good(name, column) for name, column in columns.items()}
+    if key.accuracy == "extended" and "theta" in good:
+        good["theta"] &= np.abs(columns["theta"]) <= double_constants().limit
+    safe = {name: np.where(good[name], column, np.nan).tolist() for name, column in columns.items()}
+    for index, here in enumerate(zip(*safe.values(), strict=True)):
+        answer = point.run({**scalars, **dict(zip(safe, here, strict=True))})
+        for out, value in zip(outs, answer, strict=True):
+            out[index] = value
+    bad = ~np.logical_and.reduce(list(good.values()))
+    for out in outs:
+        if out.dtype == np.int8:  # a status
+            out[bad] = BAD_INPUT

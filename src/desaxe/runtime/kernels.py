@@ -1,0 +1,217 @@
+"""Kernels by what they compute: compiled once, kept on disk, loaded by the next process.
+
+`runtime.modules` compiles the text of a kernel and keeps its machine code.
+"""
+
+from collections.abc import Mapping, Sequence
+from math import prod
+from typing import Any, NamedTuple
+
+from ..compiler.forms import in_two_forms, parted
+from ..compiler.kernel import Kernel, tabulate
+from ..compiler.languages.numba.module import TO_COMPILE, emit_numba
+from ..compiler.languages.numba.reductions import emit_reduced
+from ..compiler.passes.double_double import double_digits
+from ..compiler.passes.fuse import fuse_products
+from ..compiler.passes.guard import guard_inputs
+from ..compiler.passes.trigonometry import expand_trigonometry
+from ..compiler.passes.value_numbering import number_values
+from ..compiler.program import Line, Program
+from ..mechanism.constants import constants, double_constants, single_constants
+from ..mechanism.inputs import LEAST
+from ..mechanism.names import LENGTHS, LOADS
+from ..mechanism.program import Form
+from ..support.forks import fork_safe_lock
+from ..support.recent import Recent
+from .accuracy import check_angle
+from .modules import Native, is_kept, native
+from .request import Request
+from .specialise import cut, plain_form
+
+# A scalar of 0 for one of these makes whole terms vanish, so it is folded into the kernel.
+STRUCTURAL_ZEROS = ("ec", "alpha", *LOADS)
+REACH = ("less_rounded", "less_unsure")  # BC - |u|, and what rounding may take from it
+NEAR_LIMIT = 4.0  # times that: points of which some may hang on rounding
+ASKED_AHEAD = 16  # points for each length: then designs are looked at ahead of the kernel
+
+
+class KernelKey(NamedTuple):
+    """What a kernel is: its outputs, form, fixed inputs and the axis of every other input."""
+
+    names: tuple[str, ...]
+    form: Form
+    fixed: tuple[tuple[str, float], ...]
+    axis_of: tuple[tuple[str, int], ...]
+    axes: int
+    accuracy: str = "standard"
+    far: bool = False  # some angle is beyond what the written-out sine and cosine reduce exactly
+    reduce: tuple[str, ...] = ()  # what is taken of the innermost axis: max, mean, ...
+
+
+class CompiledKernel(NamedTuple):
+    """A kernel and the order of its inputs; an input that is a scalar has no axis."""
+
+    function: Native
+    axis_of: tuple[tuple[str, int | None], ...]
+
+    def run(self, values: Mapping[str, Any], outs: Sequence[Any]) -> int:
+        """Fill the outputs; the answer is how many points hang on rounding."""
+        return self.function(*(values[name] for name, _ in self.axis_of), *outs)
+
+
+def key_of(
+    wanted: Request,
+    scalars: Mapping[str, float],
+    columns: Mapping[str, Any],
+    axis_of: Mapping[str, int],
+    axes: int,
+) -> KernelKey:
+    """The key of a request whose scalars and columns are known."""
+    check_angle(wanted.accuracy, scalars.get("theta", 0.0))
+    limit = single_constants().limit if wanted.accuracy == "fast" else constants().limit
+    far = _largest(columns.get("theta", scalars.get("theta", 0.0))) > limit
+    zeros = [(name, 0.0) for name in STRUCTURAL_ZEROS if scalars.get(name) == 0.0]
+    fixed = (*wanted.fixed, *zeros)
+    axis = tuple(sorted(axis_of.items()))
+    form = wanted.form
+    if wanted.accuracy != "extended" and _pays_to_ask(columns, axis_of):
+        from .wide_margins import all_roomy
+
+        lengths = (columns.get(name, scalars.get(name)) for name in LENGTHS)
+        if plain_form(wanted.names, form, fixed) is not None and all_roomy(form, *lengths):
+            form = form._replace(roomy=True)
+    return KernelKey(wanted.names, form, fixed, axis, axes, wanted.accuracy, far)
+
+
+def _pays_to_ask(columns: Mapping[str, Any], axis_of: Mapping[str, int]) -> bool:
+    """Whether there are so few lengths and so many points that designs are better looked at ahead."""
+    lengths = sum(columns[name].size for name in LENGTHS if name in columns)
+    sizes = {axis: columns[name].size for name, axis in axis_of.items()} if lengths else {}
+    return bool(lengths * ASKED_AHEAD <= prod(sizes.values()))
+
+
+def _largest(angles: Any) -> float:
+    """The largest finite magnitude."""
+    if isinstance(angles, float):
+        return abs(angles)
+    import numpy as np
+
+    largest = float(max(np.fmax.reduce(angles), -np.fmin.reduce(angles)))
+    return largest if largest < np.inf else float(np.abs(angles[np.isfinite(angles)]).max(initial=0.0))
+
+
+MOST_LOADED = 256  # kernels in memory
+_LOADED: Recent[KernelKey, CompiledKernel] = Recent(MOST_LOADED)
+_LOCK = fork_safe_lock()
+
+
+def _is_seen(program: Program, angle: str) -> bool:
+    """Whether a bad value of an input may be seen by more than sine and cosine, which make it NaN."""
+    types = {line.name: line.type for line in program.lines}
+    status = any(types.get(name) == "i64" for name in program.outputs)
+    return status or any(angle in line.args and line.op not in ("sin", "cos") for line in program.lines)
+
+
+def is_ready(key: KernelKey) -> bool:
+    """Whether the kernel is in memory already."""
+    return key in _LOADED
+
+
+def kernel_for(key: KernelKey) -> CompiledKernel:
+    """The compiled kernel of a key, from memory, from disk, or compiled now."""
+    found = _LOADED.get(key)
+    if found is None:
+        with _LOCK:
+            found = _LOADED.get(key) or _load(key)
+            _LOADED[key] = found
+    return found
+
+
+def is_single(key: KernelKey) -> bool:
+    """Whether the kernel computes in float32."""
+    return key.accuracy == "fast" and not key.far
+
+
+def has_undecided(key: KernelKey) -> bool:
+    """Whether points that hang on rounding are counted."""
+    return key.accuracy == "standard" and not key.reduce and plain_of(key) is not None
+
+
+def plain_of(key: KernelKey) -> Program | None:
+    """The plain form of a key's program, where it has two."""
+    return plain_form(key.names, key.form, key.fixed) if key.accuracy != "extended" else None
+
+
+def kernel_of(key: KernelKey) -> Kernel:
+    """The loop nest of a key."""
+    program = cut(key.names, key.form, key.fixed, key.accuracy)
+    axes = dict(key.axis_of)
+    varying = [name for name in program.inputs if name in axes]
+    if key.accuracy == "extended":
+        guarded = guard_inputs(program, varying, LEAST, {"theta": double_constants().limit})
+        guarded = double_digits(guarded, double_constants())
+    else:
+        if has_undecided(key):
+            program = _counting(key)
+        if key.form.roomy:
+            guarded = _plain_for_loops(program, varying, key)
+        else:
+            guarded = _for_loops(guard_inputs(program, varying, LEAST, {}), key)
+    plain = plain_of(key)
+    if plain is not None:
+        test = cut(("roomy",), key.form, key.fixed)
+        guarded = in_two_forms(_plain_for_loops(plain, varying, key), guarded, test)
+    kernel = tabulate(guarded, {name: axes.get(name) for name in guarded.inputs}, key.axes)
+    return kernel if plain is None else parted(kernel, len(key.names))
+
+
+def _counting(key: KernelKey) -> Program:
+    """The program of a key with one more output: whether a point may be one that is answered again.
+
+    It holds for more points than `near_limit` selects, by whatever the two round differently: then the
+    points that are answered again do not depend on which others are in the same call.
+    """
+    program = cut((*key.names, *REACH), key.form, key.fixed)
+    reach, unsure = REACH
+    lines = (
+        Line("reach_size", "abs", (reach,)),
+        Line("reach_band", "mul", (NEAR_LIMIT, unsure)),
+        Line("near_limit", "lt", ("reach_size", "reach_band"), "bool"),
+    )
+    return program._replace(lines=(*program.lines, *lines), outputs=(*key.names, "near_limit"))
+
+
+def _plain_for_loops(program: Program, varying: Sequence[str], key: KernelKey) -> Program:
+    """The same of plain forms: in a roomy design all lengths are good."""
+    own = [name for name in varying if name not in LENGTHS and _is_seen(program, name)]
+    return _for_loops(guard_inputs(program, own, LEAST, {}), key, plain=True)
+
+
+def _for_loops(program: Program, key: KernelKey, plain: bool = False) -> Program:
+    """The program as a loop wants it: no calls, and products in one instruction with their sums."""
+    if not key.far:
+        trigonometry = single_constants() if is_single(key) else constants()
+        program = number_values(expand_trigonometry(program, trigonometry, plain))
+    return fuse_products(program)
+
+
+def source_of(key: KernelKey) -> str:
+    """The text that is compiled."""
+    kernel = kernel_of(key)
+    fixed = ", ".join(f"{name} = {value:g}" for name, value in key.fixed)
+    motion = "a given state" if key.form.state else "paper A's law"
+    docstring = f"desaxe kernel: {', '.join(key.names)}; {motion}; {fixed}."
+    if key.reduce:
+        return emit_reduced(kernel, key.reduce, docstring, is_single(key), to_compile=True)
+    return emit_numba(kernel, docstring, is_single(key), TO_COMPILE)
+
+
+def is_on_disk(key: KernelKey) -> bool:
+    """Whether an earlier process has left the kernel's machine code."""
+    return is_kept("kernel", source_of(key))
+
+
+def _load(key: KernelKey) -> CompiledKernel:
+    axes = dict(key.axis_of)
+    order = tuple((name, axes.get(name)) for name in cut(key.names, key.form, key.fixed).inputs)
+    return CompiledKernel(native("kernel", source_of(key)), order)

@@ -1,0 +1,76 @@
+"""Single points in plain Python: a function of floats, cut to what is asked for, nothing compiled."""
+
+from collections.abc import Callable, Mapping
+from functools import cache, lru_cache
+from typing import Any, NamedTuple
+
+from ..compiler.forms import in_two_forms
+from ..compiler.languages.python import compile_python
+from ..mechanism.constants import double_constants
+from ..mechanism.program import Form
+from .accuracy import check_angle
+from .specialise import cut, plain_form
+
+Function = Callable[..., tuple[Any, ...]]
+
+
+class Point(NamedTuple):
+    """A request ready for single points: its function and the inputs that it takes, in order."""
+
+    function: Function
+    inputs: tuple[str, ...]
+
+    def run(self, values: Mapping[str, float]) -> tuple[Any, ...]:
+        """The outputs at one point."""
+        return self.function(*(values[name] for name in self.inputs))
+
+
+@lru_cache(maxsize=1024)
+def point_of(
+    names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...], accuracy: str = "standard"
+) -> Point:
+    """The function that computes them."""
+    program = cut(names, form, fixed, accuracy)
+    if accuracy != "extended":
+        return Point(_by_room(names, form, fixed), program.inputs)
+    from ..compiler.passes.double_double import double_digits
+
+    program = double_digits(program, double_constants())
+    function = compile_python(program)
+    if "theta" not in program.inputs:
+        return Point(function, program.inputs)
+    place = program.inputs.index("theta")
+
+    def checked(*values: float) -> tuple[Any, ...]:
+        check_angle(accuracy, values[place])
+        return function(*values)
+
+    return Point(checked, program.inputs)
+
+
+def _by_room(names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...]) -> Function:
+    """The function that goes by what a point needs.
+
+    That is the plain form in a roomy design, the stable one elsewhere, and twice the digits where
+    rounding decides whether the rod reaches. The latter two are made when the first point needs them.
+    """
+    plain, stable = plain_form(names, form, fixed), cut(names, form, fixed)
+    if plain is None:
+        return compile_python(stable)
+    inputs = stable.inputs
+    tested = in_two_forms(plain, plain._replace(lines=(), outputs=()), cut(("roomy",), form, fixed))
+    first = compile_python(tested._replace(inputs=inputs))
+    second = cache(lambda: compile_python(cut((*names, "undecided"), form, fixed)._replace(inputs=inputs)))
+    third = cache(lambda: point_of(names, form, fixed, "extended"))
+
+    def function(*values: float) -> tuple[Any, ...]:
+        answers = first(*values)
+        if not answers[-1]:
+            answers = second()(*values)
+            if answers[-1]:
+                given = dict(zip(inputs, values, strict=True))
+                if abs(given["theta"]) <= double_constants().limit:
+                    return third().run(given)
+        return answers[:-1]
+
+    return function

@@ -1,0 +1,151 @@
+"""The border: what is asked for and what is given, checked once, with errors that name the culprit."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import lru_cache, wraps
+from math import inf
+from typing import Any, NamedTuple, ParamSpec, TypeVar
+
+from ..mechanism.catalogue import law_name, quantity
+from ..mechanism.inputs import INPUTS, is_good
+from ..mechanism.names import CENTRES, LOADS, parts
+from ..mechanism.program import Form, program_of
+from ..support.shown import shown
+from .accuracy import accuracy_of
+from .specialise import cut
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+class Request(NamedTuple):
+    """What is asked for: the names as the user says them, those of the program, its form, what is fixed."""
+
+    shown: tuple[str, ...]
+    names: tuple[str, ...]
+    form: Form
+    fixed: tuple[tuple[str, float], ...]
+    accuracy: str = "standard"
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """The inputs that it needs."""
+        return cut(self.names, self.form, self.fixed).inputs
+
+
+def check_border(given: Mapping[str, Any], branch: Any, threads: int | None = None) -> None:
+    """Refuse a law and a state at once, a branch that is none, and less than one thread."""
+    if given.get("omega") is not None and given.get("omega0") is not None:
+        raise ValueError("give omega0= (the law) or omega= (a state), not both")
+    number = isinstance(branch, (int, float)) or _is_numpy_number(branch)
+    if isinstance(branch, bool) or not number or branch not in (1, -1):
+        raise ValueError(f"branch = {shown(branch)}: it is +1 or -1")
+    if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int) or threads < 1):
+        raise ValueError(f"threads = {shown(threads)}: a whole number, at least 1")
+
+
+def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accuracy: Any) -> Request:
+    """The request, checked. What is not given and has no effect by default is fixed, and costs nothing."""
+    check_border(given, branch)
+    state = given.get("omega") is not None
+    kept = accuracy_of(accuracy)
+    for name in names:
+        quantity(name, state)
+    shown = tuple(names)
+    own = tuple(law_name(name) if state else name for name in shown)
+    inputs = program_of(own).inputs
+    if "status" in own and ("mu" in inputs or given.get("mu") is not None):
+        own = tuple("force_status" if name == "status" else name for name in own)
+        inputs = program_of(own).inputs
+    absent = [name for name in inputs if name in LOADS and given.get(name) is None]
+    zeros = [(name, 0.0) for name in absent if name not in CENTRES]
+    if "alpha" in inputs and is_steady(given.get("alpha")):
+        zeros.append(("alpha", 0.0))
+    halves = tuple(name for name in CENTRES if given.get(name) is None and _moves(name, own))
+    return Request(shown, own, Form(state, halves), (("branch", float(branch)), *zeros), kept)
+
+
+@lru_cache(maxsize=1024)
+def _moves(centre: str, names: tuple[str, ...]) -> bool:
+    """Whether these names need a centre of mass, or only how it moves with its link."""
+    program = program_of(names)
+    lines = (line.name for line in program.lines)
+    return centre in program.inputs or any(parts(name)[0] == centre for name in lines)
+
+
+def is_steady(alpha: Any) -> bool:
+    """Whether no acceleration is given, or a plain 0."""
+    return alpha is None or (type(alpha) is float and alpha == 0.0)
+
+
+def check_inputs(caller: str, given: Iterable[str], allowed: Sequence[str]) -> None:
+    """Refuse an input that there is not."""
+    for name in given:
+        if name not in allowed:
+            raise _unknown_input(caller, name, allowed)
+
+
+def _unknown_input(caller: str, name: str, allowed: Sequence[str]) -> TypeError:
+    from ..mechanism.spelling import did_you_mean
+
+    asked = did_you_mean(name, allowed)
+    there = f"{'There' if asked else 'there'} are {', '.join(allowed)}"
+    return TypeError(f"{caller}() has no input {name!r}; {asked}{there}")
+
+
+def with_known_inputs(function: Callable[P, T]) -> Callable[P, T]:
+    """The function; an input that it does not have is refused as `check_inputs` does."""
+
+    @wraps(function)
+    def checked(*args: P.args, **inputs: P.kwargs) -> T:
+        try:
+            return function(*args, **inputs)
+        except TypeError:
+            from inspect import signature
+
+            known = tuple(signature(function).parameters)
+            if all(name in known for name in inputs):
+                raise
+        raise _unknown_input(function.__name__, next(n for n in inputs if n not in known), known)
+
+    return checked
+
+
+def several(names: Any) -> tuple[str, ...]:
+    """The names of a list or anything else that holds them, each once."""
+    try:
+        return tuple(dict.fromkeys(names))
+    except TypeError:
+        raise TypeError(
+            f"names = {shown(names)}: the name of a quantity or a list of names is wanted"
+        ) from None
+
+
+def standstill(names: Iterable[str], given: Mapping[str, Any]) -> float | None:
+    """The speed to take where none is given: 0 where only `status` would use it, else None."""
+    others = tuple(name for name in names if name not in ("status", "margin"))
+    return None if others and "omega0" in request(others, given, 1, "standard").inputs else 0.0
+
+
+def as_number(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]) -> float | None:
+    """The input as a float, None if it is an array; an error that names it if it is bad or missing."""
+    if value is None:
+        raise TypeError(f"{', '.join(names)}: {name} is missing (needed: {', '.join(inputs)})")
+    if isinstance(value, str) or hasattr(value, "magnitude"):
+        from ..mechanism.units import in_si
+
+        value = in_si(name, value)
+    if isinstance(value, bool) or not (isinstance(value, (int, float)) or _is_numpy_number(value)):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        number = inf
+    if not is_good(name, number):
+        raise ValueError(f"{name} = {shown(value)}: it must be {INPUTS[name].limit}")
+    return number
+
+
+def _is_numpy_number(value: Any) -> bool:
+    """A NumPy real scalar such as np.float32(1); a 0-d array is an array, and a time span no number."""
+    kind = getattr(getattr(value, "dtype", None), "kind", "")
+    return getattr(value, "shape", None) == () and hasattr(value, "is_integer") and kind in "fiu"

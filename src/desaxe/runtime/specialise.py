@@ -1,0 +1,65 @@
+"""The Program of a request: sliced to its outputs, with the fixed inputs folded in, after all passes."""
+
+from functools import lru_cache
+
+from ..compiler.passes.pipeline import optimise
+from ..compiler.passes.slicing import keep_outputs
+from ..compiler.program import Line, Program, names_in, renamed
+from ..mechanism.program import Form, program_of
+
+# What an output may lose when inputs are fixed -> the line that is 0 where there is such a thing, else NaN.
+KEPT = {"D": "no_effect_on_rod", "omega2_law": "not_stalled"}
+
+
+@lru_cache(maxsize=1024)
+def cut(
+    names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...], accuracy: str = "standard"
+) -> Program:
+    """The program of these names with some inputs fixed, after all passes.
+
+    A value that loses what it depended on (V_C by alpha for a given state, the torque of a massless
+    rod) is still NaN where the mechanism cannot be assembled, or has stalled.
+    """
+    program = _finer(program_of(names, form), accuracy)
+    result = optimise(program, dict(fixed))[0]
+    before, after = _needs(program), _needs(result)
+    kept = {"D"} if dict(fixed).get("alpha") == 0.0 else set(KEPT)  # a crank at constant speed never stalls
+    lost = {name: (before[name] & kept) - after[name] for name in names}
+    if not any(lost.values()):
+        return result
+    wide = _finer(program_of((*names, *KEPT.values()), form), accuracy)
+    wide = renamed(wide, {name: f"{name}_alone" for name in names if lost[name]})
+    lines = list(wide.lines)
+    for name in names:
+        value = f"{name}_alone"
+        for need in sorted(lost[name]):
+            lines.append(Line(f"{value}_{need}", "add", (value, KEPT[need])))
+            value = lines[-1].name
+        if lost[name]:
+            lines.append(Line(name, "copy", (value,)))
+    return optimise(keep_outputs(wide._replace(lines=tuple(lines)), names), dict(fixed))[0]
+
+
+@lru_cache(maxsize=1024)
+def plain_form(names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...]) -> Program | None:
+    """The program in plain forms, for roomy designs; None where it is no other than `cut` gives."""
+    plain = cut(names, form._replace(roomy=True), fixed)
+    same = repr(plain.lines) == repr(cut(names, form, fixed).lines)  # by their text: NaN is NaN there
+    return None if same else plain
+
+
+def _finer(program: Program, accuracy: str) -> Program:
+    if accuracy != "extended":
+        return program
+    from ..compiler.passes.double_double import with_finer_forms
+
+    return with_finer_forms(program)
+
+
+def _needs(program: Program) -> dict[str, frozenset[str]]:
+    """Which of the names in KEPT each line depends on."""
+    needs: dict[str, frozenset[str]] = dict.fromkeys(program.inputs, frozenset())
+    for line in program.lines:
+        own = frozenset({line.name} & set(KEPT))
+        needs[line.name] = own.union(*(needs[name] for name in names_in(line.args)))
+    return needs

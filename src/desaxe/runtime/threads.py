@@ -1,0 +1,117 @@
+"""Blocks of the outermost axis, shared by threads; the answer is the same for any number of them.
+
+No block runs for long: between two of them an interrupt is heard, and it stops all threads.
+"""
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
+from threading import Event
+from typing import TYPE_CHECKING, Any
+
+from ..support.forks import in_child
+from .kernels import KernelKey, kernel_for
+
+if TYPE_CHECKING:
+    from concurrent.futures import ThreadPoolExecutor
+
+MOST_THREADS = 256
+LONGEST_BLOCK = 4_000_000  # points: half a second for the costliest kernels
+# A block smaller than this costs more to hand out than to compute.
+LEAST_BLOCK = 20_000
+
+
+def available() -> int:
+    """How many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+_POOLS: "dict[int, ThreadPoolExecutor]" = {}
+_INHERITED: "list[ThreadPoolExecutor]" = []  # in a forked child: pools without threads, never touched again
+
+
+def pool(threads: int) -> "ThreadPoolExecutor":
+    """The pool of so many threads, made when it is first used in this process."""
+    found = _POOLS.get(threads)
+    if found is None:
+        from concurrent.futures import ThreadPoolExecutor  # logging comes with it
+
+        found = _POOLS.setdefault(threads, ThreadPoolExecutor(threads, thread_name_prefix="desaxe"))
+    return found
+
+
+def _forget_pools() -> None:
+    _INHERITED.extend(_POOLS.values())
+    _POOLS.clear()
+
+
+in_child(_forget_pools)
+
+
+def run_in_blocks(
+    key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any], threads: int | None
+) -> None:
+    """Run the kernel of a key over its outermost axis in as many blocks as there are threads."""
+    kernel = kernel_for(key)
+    outer = {name for name, axis in kernel.axis_of if axis == 0}
+
+    def block(start: int, stop: int) -> None:
+        part = {name: v[start:stop] if name in outer else v for name, v in values.items()}
+        places = [out[start:stop] for out in outs]
+        if kernel.run(part, places):
+            from .near_limit import decide
+
+            decide(key, part, places)
+
+    in_blocks(block, outs[0].shape[0], outs[0].size, threads)
+
+
+def in_blocks(block: Callable[[int, int], None], length: int, points: int, threads: int | None) -> None:
+    """Call `block(start, stop)` for parts of an axis with so many points, on threads that pay."""
+    each = max(points // max(length, 1), 1)  # points of one step along the axis
+    run_parts(block, length, threads, max(1, LEAST_BLOCK // each), max(1, LONGEST_BLOCK // each))
+
+
+def run_parts(
+    part: Callable[[int, int], None], length: int, threads: int | None, least: int, longest: int
+) -> None:
+    """Call `part(start, stop)` for all parts of a length, on threads that have at least `least` of it each.
+
+    No part is longer than `longest`. An exception, or an interrupt of the caller, ends the work of all
+    threads after the part that each of them is in.
+    """
+    most = length // least
+    workers = min(threads or available(), most, MOST_THREADS) if most > 1 else 1
+    count = max(workers, -(-length // longest))
+    edges = pairwise(length * k // count for k in range(count + 1))
+    if workers == 1:
+        for start, stop in edges:
+            part(start, stop)
+        return
+    ways, stopped = list(edges)[::-1], Event()
+
+    def work() -> None:
+        while ways and not stopped.is_set():
+            try:
+                start, stop = ways.pop()
+            except IndexError:  # another thread was faster
+                return
+            part(start, stop)
+
+    run_together([work] * workers, stopped)
+
+
+def run_together(works: Sequence[Callable[[], None]], stopped: Event) -> None:
+    """Run each on a thread; where one fails, or the caller is interrupted, `stopped` tells the others."""
+    from concurrent.futures import wait
+
+    begun = [pool(len(works)).submit(work) for work in works]
+    try:
+        for done in begun:
+            done.result()
+    except BaseException:
+        stopped.set()
+        wait(begun)
+        raise

@@ -1,0 +1,8 @@
+"""`explain`: what a scene will do before it does it, as a database explains a query.
+
+explain   the plan of a scene, as data
+steps     what was skipped and why, and what each pass saved
+loops     operations per loop of a kernel
+estimate  time and memory, from the operations' costs
+report    the plan as text
+"""

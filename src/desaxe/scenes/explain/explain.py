@@ -1,0 +1,219 @@
+"""The plan of a scene: what will run in which loop, what was skipped and why, what it will cost."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import prod
+from os import PathLike
+from typing import Any
+
+from ...compiler.kernel import Kernel
+from ...compiler.passes.double_double import double_digits
+from ...mechanism.catalogue import quantity
+from ...mechanism.constants import double_constants
+from ...mechanism.inputs import INPUTS
+from ...mechanism.program import digest
+from ...runtime import interpreted
+from ...runtime.kernels import KernelKey, is_ready, is_single, kernel_of, source_of
+from ...runtime.modules import path_of
+from ...runtime.specialise import cut
+from ...runtime.threads import LEAST_BLOCK, available
+from ..kernel import GridKernel, grid_kernel
+from ..read import Content
+from ..scene import Scene
+from ..scene import scene as scene_of
+from . import estimate
+from .loops import Loop, loops_of
+from .steps import skipped_of, steps_of
+
+PROMISES = {
+    "fast": "float32 throughout, for points far from singular ones: no promise next to a change point",
+    "standard": "at most 8 ulp x (1 + the sum of the condition numbers), wherever it can be assembled",
+    "extended": "2 ulp, but for the last double inside a limit angle, with a floor of 2^-96 of the scale",
+}
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A plan as data (`plan["loops"]`, `plan.as_dict()`); printed, it is text.
+
+    Keys: `title, outputs, accuracy, promise, motion, inputs, points, designs, steps` (operations at each
+    point after every pass), `skipped, loops, operations` (at each point, in all loops together), `run`
+    (how: in plain Python or compiled, and what is cached), `time, memory, also` (peaks, pictures, ...),
+    `results`. `operations` and `loops` are None where no outputs are asked for.
+    """
+
+    data: Mapping[str, Any]
+
+    def __getitem__(self, key: str) -> Any:
+        return self.data[key]
+
+    def as_dict(self) -> dict[str, Any]:
+        """All of it, ready for JSON."""
+        found: dict[str, Any] = json.loads(self.to_json())
+        return found
+
+    def to_json(self) -> str:
+        """The plan as JSON."""
+        return json.dumps(self.data, indent=2)
+
+    def __str__(self) -> str:
+        from .report import plan_text
+
+        return plan_text(self.data)
+
+
+def explain(scene: Scene | str | PathLike[str] | Mapping[str, Any]) -> Plan:
+    """The plan of a scene (or of a path or mapping that describes one), without running it.
+
+        print(dx.explain("examples/compactor.toml"))
+        dx.explain(scene)["operations"]["per_point"]
+
+    Raises as `scene` does.
+    """
+    content = (scene if isinstance(scene, Scene) else scene_of(scene)).content
+    data: dict[str, Any] = {
+        "title": content.title,
+        "outputs": [_output(name, content) for name in content.outputs],
+        "accuracy": content.accuracy,
+        "promise": PROMISES[content.accuracy],
+        "motion": _motion(content),
+        "branch": content.branch,
+        "derivation": digest()[:16],
+        "inputs": [_input(name, value) for name, value in content.inputs.items()],
+    }
+    data |= _grid(content) if content.outputs else dict.fromkeys(("points", "loops", "operations", "run"))
+    return Plan(data | {"also": _also(content), "results": content.data})
+
+
+def _output(name: str, content: Content) -> dict[str, str]:
+    row = quantity(name, "omega" in content.inputs)
+    return {"name": name, "unit": row.unit, "meaning": row.meaning}
+
+
+def _motion(content: Content) -> str:
+    if "omega" in content.inputs:
+        return "a given state: omega and alpha at this instant"
+    if "omega0" not in content.inputs:
+        return "none: no speed is given or needed"
+    steady = content.inputs.get("alpha", 0.0) == 0.0
+    return "constant speed omega0" if steady else "paper A's law: omega^2 = omega0^2 + 2 alpha theta"
+
+
+def _input(name: str, value: float | tuple[float, ...]) -> dict[str, Any]:
+    row: dict[str, Any] = {"name": name, "unit": INPUTS[name].unit}
+    if isinstance(value, tuple):
+        return {**row, "values": len(value), "from": value[0], "to": value[-1]}
+    return {**row, "value": value}
+
+
+def _grid(content: Content) -> dict[str, Any]:
+    """The grid of the outputs: its passes, its loops, how it runs."""
+    found = grid_kernel(content, joined=True)
+    compiled = is_ready(found.key) or found.points >= interpreted.BREAK_EVEN
+    loops = _compiled_loops(found) if compiled else _plain_loops(found)
+    straight = sum(loop.operations for loop in loops if not loop.close)
+    total = sum(loop.work for loop in loops)
+    steps = steps_of(found.key, found.request, straight)
+    return {
+        "points": found.points,
+        "axes": [{"name": n, "size": s} for n, s in zip(found.axes, found.sizes, strict=True) if n],
+        "steps": [step._asdict() for step in steps],
+        "skipped": [one._asdict() for one in skipped_of(found.key, found.request, content.inputs)],
+        "loops": [_loop(loop, found.points) for loop in loops],
+        "operations": {"straight": straight, "per_point": total / found.points, "total": total},
+        "reduction": None if content.reduction is None else content.reduction._asdict(),
+        "run": _run(content, found, loops, compiled),
+        "memory": _memory(content, found),
+    }
+
+
+def _compiled_loops(found: GridKernel) -> list[Loop]:
+    return loops_of(kernel_of(found.key), found.axes, found.sizes)
+
+
+def _plain_loops(found: GridKernel) -> list[Loop]:
+    """Every operation at every point, sine and cosine from `math`."""
+    program = cut(found.key.names, found.key.form, found.key.fixed)
+    if found.key.accuracy == "extended":
+        program = double_digits(program, double_constants())
+    axes = [name for name in found.axes if name]
+    kernel = Kernel(len(axes), {}, ((),) * len(axes) + (program.lines,), program.outputs, {}, program.notes)
+    return loops_of(kernel, axes, [s for n, s in zip(found.axes, found.sizes, strict=True) if n])
+
+
+def _loop(loop: Loop, points: int) -> dict[str, Any]:
+    row = loop._asdict()
+    return {**row, "along": list(loop.along), "values": list(loop.values), "per_point": loop.work / points}
+
+
+def _run(content: Content, found: GridKernel, loops: list[Loop], compiled: bool) -> dict[str, Any]:
+    """How it will run, and how long that takes."""
+    points = found.points
+    cached, path = _cached(found.key)
+    plain = estimate.plain_time(sum(loop.operations for loop in loops), points)
+    outs = len(found.key.names) - ("status" in found.key.names)
+    one = estimate.loops_time(loops, 0 if content.reduction else points * outs)
+    length = found.sizes[0]
+    threads = max(1, min(content.threads or available(), points // LEAST_BLOCK, length))
+    first = {"memory": 0.0, "disk": estimate.LOAD}.get(cached, estimate.IMPORT + estimate.compile_time(loops))
+    return {
+        "way": "compiled" if compiled else "plain Python",
+        "break_even": interpreted.BREAK_EVEN,
+        "float32": is_single(found.key),
+        "far_angles": found.key.far,
+        "roomy": found.key.form.roomy,
+        "threads": threads if compiled else 1,
+        "cached": cached,
+        "module": path,
+        "seconds": {
+            "plain": plain,
+            "one_core": one,
+            "expected": one / threads if compiled else plain,
+            "before_the_first": first if compiled else 0.0,
+            "per_point": one / points if compiled else plain / points,
+        },
+    }
+
+
+def _cached(key: KernelKey) -> tuple[str, str]:
+    """Where the kernel is: in memory, on disk, or not compiled; and the file of its machine code."""
+    path = path_of("kernel", source_of(key))
+    if is_ready(key):
+        return "memory", str(path)
+    return ("disk" if path.exists() else "no"), str(path)
+
+
+def _memory(content: Content, found: GridKernel) -> dict[str, int]:
+    """Bytes of the result, and of what the grid would have taken where it is reduced."""
+    names = [name for name in found.key.names if "status" not in name]
+    small = len(found.key.names) - len(names)
+    whole = estimate.bytes_of(len(names), small, found.sizes)
+    inputs = 8 * sum(found.sizes)
+    if content.reduction is None:
+        return {"result": whole, "grid": whole, "inputs": inputs}
+    each = sum(2 if kind in ("max", "min", "absmax") else 1 for kind in content.reduction.kinds) + 1
+    return {
+        "result": estimate.bytes_of(each * len(names), 0, found.sizes[:-1]),
+        "grid": whole,
+        "inputs": inputs,
+    }
+
+
+def _also(content: Content) -> list[dict[str, Any]]:
+    """What runs besides the grid."""
+    found: list[dict[str, Any]] = []
+    for peak in content.peaks:
+        designs = prod(len(values) for values in peak.axes.values())
+        how = "refined over theta by its derivative"
+        found.append(
+            {"what": f"{peak.kind} of {peak.quantity}", "count": designs, "of": "designs", "how": how}
+        )
+    for picture in content.pictures:
+        points = prod(len(value) for value in picture.inputs.values() if isinstance(value, tuple))
+        how = f"drawn to {picture.file}"
+        found.append({"what": f"picture of {picture.quantity}", "count": points, "of": "points", "how": how})
+    if content.checks:
+        how = "single points in plain Python"
+        found.append({"what": "printed values", "count": len(content.checks), "of": "points", "how": how})
+    return found

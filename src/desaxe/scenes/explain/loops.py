@@ -1,0 +1,61 @@
+"""Operations per loop of a kernel: how often each body runs, and what that is per point."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from math import prod
+from typing import NamedTuple
+
+from ...compiler.kernel import Kernel
+from ...compiler.operations import OPERATIONS
+from ...compiler.program import Line
+
+
+class Loop(NamedTuple):
+    """A straight line of operations and how often it runs.
+
+    `along` are the axes that it runs over, the outermost first; a `table` runs before the main loops
+    and keeps what they read. `cost` is the operations' throughput in additions. A `close` one runs in the
+    innermost loop instead of what the plain form has there, for the designs whose margins are not wide.
+    """
+
+    table: bool
+    along: tuple[str, ...]
+    runs: int
+    operations: int
+    cost: float
+    kinds: Mapping[str, int]
+    values: tuple[str, ...]
+    close: bool = False
+
+    @property
+    def work(self) -> int:
+        """Operations in all; what close designs take comes on top."""
+        return 0 if self.close else self.runs * self.operations
+
+
+def loops_of(kernel: Kernel, axes: Sequence[str], sizes: Sequence[int]) -> list[Loop]:
+    """Every loop that has operations: tables first, then the main nest from outside in."""
+    found = []
+    for table in kernel.tables:
+        own = [axes[axis] for axis in table.along]
+        found += _nest(table.kernel, own, [sizes[axis] for axis in table.along], True)
+    found += _nest(kernel, axes, sizes, False)
+    if kernel.close is not None:
+        loop = _loop(kernel.close.lines, False, tuple(axes), prod(sizes), kernel)
+        found.append(loop._replace(close=True))
+    return found
+
+
+def _nest(kernel: Kernel, axes: Sequence[str], sizes: Sequence[int], table: bool) -> list[Loop]:
+    return [
+        _loop(lines, table, tuple(axes[:level]), prod(sizes[:level]), kernel)
+        for level, lines in enumerate(kernel.levels)
+        if lines
+    ]
+
+
+def _loop(lines: Sequence[Line], table: bool, along: tuple[str, ...], runs: int, kernel: Kernel) -> Loop:
+    kinds = Counter(line.op for line in lines if line.op != "copy")
+    cost = sum(OPERATIONS[op].cost * count for op, count in kinds.items())
+    values = tuple(line.name for line in lines if line.name in kernel.notes or line.name in kernel.outputs)
+    return Loop(table, along, runs, kinds.total(), cost, dict(sorted(kinds.items())), values)

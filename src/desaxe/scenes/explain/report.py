@@ -1,0 +1,204 @@
+"""A plan as text for a terminal, at most 100 columns wide."""
+
+from collections.abc import Mapping
+from textwrap import wrap
+from typing import Any
+
+from ..report import number, table
+
+WIDTH = 96
+
+
+def plan_text(plan: Mapping[str, Any]) -> str:
+    """The whole plan."""
+    parts = [plan["title"] or "Scene", _asked(plan)]
+    if plan["loops"] is not None:
+        parts += [_skipped(plan), _passes(plan), _loops(plan), _how(plan)]
+    parts += [_also(plan)] if plan["also"] else []
+    return "\n\n".join(part for part in parts if part)
+
+
+def _asked(plan: Mapping[str, Any]) -> str:
+    """What is asked for, of what."""
+    lines = ["Asked for"]
+    if plan["outputs"]:
+        rows = [[out["name"], _unit(out["unit"]), out["meaning"]] for out in plan["outputs"]]
+        lines += [_cut(line) for line in table(rows, left=3)]
+        taken = plan["reduction"]
+        if taken:
+            lines.append(
+                f"  of each over {taken['axis']}: {', '.join(taken['kinds'])}; the grid is not stored"
+            )
+        else:
+            lines.append("  and at every point its status; the margin once per design")
+    lines += _wrapped("accuracy", [f"{plan['accuracy']}: {plan['promise']}"])
+    lines += _wrapped("motion", [plan["motion"]])
+    axes = [one for one in plan["inputs"] if "values" in one]
+    fixed = [one for one in plan["inputs"] if "value" in one]
+    if axes:
+        told = [
+            f"{a['name']} ({a['values']}: {number(a['from'])} to {number(a['to'])} {a['unit']})" for a in axes
+        ]
+        lines += _wrapped("axes", told)
+    if fixed:
+        lines += _wrapped(
+            "fixed", [f"{a['name']} = {number(a['value'])} {_unit(a['unit'])}".rstrip() for a in fixed]
+        )
+    return "\n".join(lines)
+
+
+def _unit(unit: str) -> str:
+    return "" if unit == "1" else unit
+
+
+def _cut(line: str) -> str:
+    if len(line) <= WIDTH + 2:
+        return line
+    return line[: line.rindex(" ", 0, WIDTH - 2)].rstrip(" ,;") + ", ..."
+
+
+def _wrapped(word: str, parts: list[str]) -> list[str]:
+    """Parts after a word; only a single part is broken inside."""
+    whole = [part.replace(" ", "\xa0") for part in parts] if len(parts) > 1 else parts
+    rows = wrap(", ".join(whole), WIDTH - 11, break_long_words=False)
+    return [f"  {word if not index else '':8} {row}".replace("\xa0", " ") for index, row in enumerate(rows)]
+
+
+def _skipped(plan: Mapping[str, Any]) -> str:
+    """What is not computed."""
+    lines = ["Skipped"]
+    for one in plan["skipped"]:
+        count = one["saved"]
+        saved = f" ({count} operation{'s' if count > 1 else ''} a point)" if count > 0 else ""
+        rows = wrap(f"{one['what']}: {one['why']}{saved}", WIDTH - 2, subsequent_indent="  ")
+        lines += ["  " + row for row in rows]
+    return "\n".join(lines) if len(lines) > 1 else ""
+
+
+def _passes(plan: Mapping[str, Any]) -> str:
+    """Operations at each point after each pass, then what hoisting leaves."""
+    rows = [["pass", "operations", "saved", ""]]
+    for step in plan["steps"]:
+        saved = f"{step['saved']:+d}".replace("+", "") if step["saved"] else ""
+        rows.append([step["name"], str(step["operations"]), saved, step["what"]])
+    lines = table(rows, left=1)
+    counts = plan["operations"]
+    before = plan["steps"][-1]["operations"]
+    per = counts["per_point"]
+    if _is_compiled(plan) and per < 0.995 * before:
+        what = "what does not depend on an axis leaves its loop"
+        rows.append(["hoist", _few(per), _few(before - per), what])
+    lines = table([row[:3] for row in rows], left=1)
+    wide = max(map(len, lines))
+    texts = [f"{line:{wide}}   {row[3]}".rstrip() for line, row in zip(lines, rows, strict=True)]
+    return "\n".join(["Operations at each point after each pass", *texts])
+
+
+def _is_compiled(plan: Mapping[str, Any]) -> bool:
+    """Whether a kernel runs."""
+    compiled: bool = plan["run"]["way"] == "compiled"
+    return compiled
+
+
+def _few(value: float) -> str:
+    return f"{value:.1f}" if value < 100 else f"{value:.0f}"
+
+
+def _loops(plan: Mapping[str, Any]) -> str:
+    """What runs in which loop."""
+    rows = [["", "runs", "operations", "per point"]]
+    names = [""]
+    for loop in plan["loops"]:
+        if loop["table"]:
+            place = f"table over {' x '.join(loop['along'])}" if loop["along"] else "for the tables, once"
+        else:
+            depth = len([axis for axis in loop["along"] if axis])
+            place = "  " * max(0, depth - 1) + (f"for each {loop['along'][-1]}" if depth else "once")
+        if loop["close"]:
+            rows.append(["  " * depth + "or, if close", "", str(loop["operations"]), "instead"])
+            names.append("the stable form, where margins are narrow")
+            continue
+        rows.append([place, f"{loop['runs']:,}", str(loop["operations"]), _share(loop["per_point"])])
+        names.append(_values(loop))
+    counts = plan["operations"]
+    rows.append(["in all", "", str(counts["straight"]), _share(counts["per_point"])])
+    names.append("")
+    lines = table(rows, left=1)
+    wide = max(map(len, lines))
+    texts = [_cut(f"{line:{wide}}   {text}".rstrip()) for line, text in zip(lines, names, strict=True)]
+    return "\n".join(["Loops, from outside in", *texts])
+
+
+def _share(value: float) -> str:
+    return f"{value:.3g}" if value >= 0.01 else "<0.01"
+
+
+def _values(loop: Mapping[str, Any]) -> str:
+    """The expensive operations of a loop, and its named values."""
+    dear = [
+        f"{count} {op}" for op, count in loop["kinds"].items() if op in ("sqrt", "div", "sin", "cos", "atan2")
+    ]
+    named = [name for name in loop["values"] if not name[1:].isdigit()]
+    told = [", ".join(dear)] if dear else []
+    return "; ".join(told + ([", ".join(named)] if named else []))
+
+
+def _how(plan: Mapping[str, Any]) -> str:
+    """How it runs, how long, how much memory."""
+    run, seconds = plan["run"], plan["run"]["seconds"]
+    lines = ["Execution"]
+    points = f"{plan['points']:,} point{'s' if plan['points'] != 1 else ''}"
+    if run["way"] == "compiled":
+        told = {
+            "memory": "in this process already",
+            "disk": "on disk, from an earlier process",
+            "no": "not compiled yet; kept on disk afterwards",
+        }[run["cached"]]
+        threads = f"{run['threads']} threads" if run["threads"] > 1 else "one thread"
+        width = "float32" if run["float32"] else "float64"
+        lines.append(f"  kernel   compiled with numba in {width}, {threads}: {told}")
+        lines.append(
+            f"  why      {points}; from {run['break_even']:,} on (asked for in one process) a kernel pays"
+        )
+        numbers = [one["name"] for one in plan["inputs"] if one.get("value")]
+        if numbers:
+            while_roomy = " while AB + |ec| < 7/8 BC" if run["roomy"] else ""
+            reused = f"other values of {', '.join(numbers)} (but 0) compile nothing new{while_roomy}"
+            lines += _wrapped("reuse", [reused])
+    else:
+        lines.append("  kernel   none: plain Python over math, nothing is compiled, numba is not imported")
+        lines.append(f"  why      {points}; below {run['break_even']:,} a compilation does not pay")
+    if run["far_angles"]:
+        lines.append("  angles   some are so large that sine and cosine are those of the C library (slower)")
+    per = f"{_time(seconds['per_point'])} a point" + (" and core" if run["way"] == "compiled" else "")
+    lines.append(f"  time     about {_time(seconds['expected'])} ({per})")
+    if seconds["before_the_first"]:
+        lines.append(
+            f"           and {_time(seconds['before_the_first'])} before the first result of a process"
+        )
+    memory = plan["memory"]
+    kept = f"  memory   {_bytes(memory['result'])} of results, {_bytes(memory['inputs'])} of inputs"
+    if memory["grid"] != memory["result"]:
+        kept += f"; the grid would take {_bytes(memory['grid'])}"
+    lines.append(kept)
+    lines.append(f"  results  {plan['results'] or 'returned, not written to a file'}")
+    return "\n".join(lines)
+
+
+def _time(seconds: float) -> str:
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
+        if seconds >= size:
+            return f"{seconds / size:.2g} {unit}" if seconds < 100 * size else f"{seconds / size:.0f} {unit}"
+    return f"{seconds * 1e9:.2g} ns"
+
+
+def _bytes(count: int) -> str:
+    for unit, size in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
+        if count >= size:
+            return f"{count / size:.3g} {unit}"
+    return f"{count} bytes"
+
+
+def _also(plan: Mapping[str, Any]) -> str:
+    rows = [[one["what"], f"{one['count']:,} {one['of']}", one["how"]] for one in plan["also"]]
+    return "\n".join(["Also", *(_cut(line) for line in table(rows, left=3))])

@@ -1,0 +1,147 @@
+"""What an explorer page knows: inputs, designs, quantities, and a function for each quantity.
+
+A quantity and its first sensitivities are one Program, cut to them: the page computes what it draws.
+"""
+
+from collections.abc import Iterable, Mapping
+from math import pi
+from typing import Any, NamedTuple
+
+from ...compiler.languages.javascript import emit_javascript
+from ...mechanism.catalogue import Quantity, quantities, quantity
+from ...mechanism.inputs import INPUTS
+from ...mechanism.names import LOADS, PARAMETERS, joined, parts
+from ...runtime.request import Request, request
+from ...runtime.specialise import cut
+
+Value = float | tuple[float, ...]
+
+KINEMATICS = (
+    "Y", "V_C", "a_C", "j_C", "phi", "omega_BC", "alpha_BC", "s", "delta", "transmission_angle",
+    "pressure_angle", "omega", "V_B", "V_B_X", "V_B_Y", "a_B", "a_B_X", "a_B_Y",
+)  # fmt: skip
+FORCES = ("T_in", "N_C")
+STATE = ("status", "margin")
+SHAPE = ("ec", "AB", "BC")
+MOST_DESIGNS = 5  # that a page compares when it is opened: a colour is left for one that is kept
+FROM_MANY = 4  # of more values than that, evenly chosen
+LISTED = 6  # values that are left out; of more it is told how many
+
+
+class Function(NamedTuple):
+    """One function of the page: the values that it returns, the inputs that it takes, its source."""
+
+    quantity: str
+    names: tuple[str, ...]
+    inputs: tuple[str, ...]
+    source: str
+
+
+class Content(NamedTuple):
+    """All of it, in SI units."""
+
+    title: str
+    branch: int
+    theta: tuple[float, float]
+    designs: tuple[dict[str, float], ...]
+    shown: tuple[str, ...]
+    functions: tuple[Function, ...]
+    left_out: Mapping[str, tuple[float, ...]]  # input -> its values that no design has
+
+    @property
+    def quantities(self) -> list[Quantity]:
+        """Everything that the page can show."""
+        state = "omega" in self.designs[0]
+        return [quantity(name, state) for function in self.functions for name in function.names]
+
+
+def content(
+    title: str, branch: int, inputs: Mapping[str, Value], shown: Iterable[str], names: Iterable[str] | None
+) -> Content:
+    """The content for these inputs; `names` are the quantities, those of the motion without."""
+    given = {"alpha": 0.0, **inputs}
+    shown = tuple(dict.fromkeys(shown))
+    for name in ("ec", "AB", "BC", "omega" if "omega" in given else "omega0"):
+        if name not in given:
+            raise TypeError(f"explore: {name} is missing (needed: ec, AB, BC, and omega0 or omega)")
+    wanted = [*shown, *((*KINEMATICS, *(FORCES * _loaded(given))) if names is None else names)]
+    functions = tuple(_function(base, own, given, branch) for base, own in _grouped(wanted, given).items())
+    designs = _designs(given)
+    left = {n: out for n, value in given.items() if n != "theta" and (out := _left_out(n, value, designs))}
+    return Content(title, branch, _angles(given), designs, shown, functions, left)
+
+
+def left_out_text(content: Content) -> str:
+    """Which of the values given no design of the page has; nothing where it has all."""
+    told = []
+    for name, values in content.left_out.items():
+        unit = INPUTS[name].unit
+        listed = f"{name} = {', '.join(f'{value:.6g}' for value in values)} {unit}".removesuffix(" 1")
+        told.append(listed if len(values) <= LISTED else f"{len(values)} of the values of {name}")
+    return "; ".join(told)
+
+
+def _left_out(name: str, value: Value, designs: Iterable[Mapping[str, float]]) -> tuple[float, ...]:
+    if not isinstance(value, tuple):
+        return ()
+    there = {design[name] for design in designs}
+    return tuple(dict.fromkeys(v for v in value if v not in there))
+
+
+def _loaded(given: Mapping[str, Value]) -> bool:
+    """Whether anything is said about masses and forces."""
+    return any(name in given for name in LOADS)
+
+
+def _grouped(wanted: Iterable[str], given: Mapping[str, Value]) -> dict[str, list[str]]:
+    """Quantity -> itself, its first sensitivities, and others of it that are asked for."""
+    state = "omega" in given
+    found: dict[str, list[str]] = {STATE[0]: list(STATE)}
+    for name in wanted:
+        quantity(name, state)
+        base = parts(name)[0]
+        if base not in STATE:
+            found.setdefault(base, [base, *_sensitivities(base, given)])
+            found[base] += [name] if name not in found[base] else []
+    return found
+
+
+def _sensitivities(base: str, given: Mapping[str, Value]) -> list[str]:
+    """Those by the motion's parameters, and by the masses and loads that are given."""
+    state = "omega" in given
+    known = quantities()
+    by = [*PARAMETERS, *(load for load in LOADS if load in given)]
+    names = [(p, joined(base, (p,))) for p in by]
+    return [
+        joined(base, ("omega",)) if state and p == "omega0" else name for p, name in names if name in known
+    ]
+
+
+def _function(base: str, names: Iterable[str], given: Mapping[str, Value], branch: int) -> Function:
+    asked = _request(tuple(names), given, branch)
+    program = cut(asked.names, asked.form, asked.fixed)
+    return Function(base, asked.shown, program.inputs, emit_javascript(program, f"of_{base}"))
+
+
+def _request(names: tuple[str, ...], given: Mapping[str, Value], branch: int) -> Request:
+    """The request in which every input that is given can be changed: no value of it is built in."""
+    return request(names, dict.fromkeys(given, 1.0) | {"theta": 1.0}, branch, "standard")
+
+
+def _angles(given: Mapping[str, Value]) -> tuple[float, float]:
+    """The range of the crank angle: that of the scene, else one turn."""
+    theta = given.get("theta")
+    return (min(theta), max(theta)) if isinstance(theta, tuple) and len(theta) > 1 else (0.0, 2.0 * pi)
+
+
+def _designs(given: Mapping[str, Value]) -> tuple[dict[str, float], ...]:
+    """One design, or a few over the values of the first input that has several."""
+    inputs = {name: given[name] for name in INPUTS if name in given and name != "theta"}
+    several = next((n for n, value in inputs.items() if isinstance(value, tuple) and len(value) > 1), None)
+    first: dict[str, float] = {n: v[0] if isinstance(v, tuple) else v for n, v in inputs.items()}
+    if several is None:
+        return (first,)
+    values: Any = inputs[several]
+    count = len(values) if len(values) <= MOST_DESIGNS else FROM_MANY
+    places = [round(k * (len(values) - 1) / (count - 1)) for k in range(count)]
+    return tuple({**first, several: values[place]} for place in places)

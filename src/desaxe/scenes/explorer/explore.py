@@ -1,0 +1,95 @@
+"""`explore`: a scene or inputs, as one page that is open in any browser."""
+
+from collections.abc import Iterable, Mapping
+from os import PathLike
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from ...mechanism.inputs import INPUTS
+from ...mechanism.names import LOADS
+from ...runtime.request import as_number, check_border, check_inputs
+from .content import Content, Value, content
+from .write import write_page
+
+TITLE = "Offset slider-crank"
+START = ("a_C", "a_C_wrt_ec")  # what the two charts show first where a scene names nothing
+
+
+def explore(
+    source: str | PathLike[str] | Mapping[str, Any] | None = None,
+    path: str | PathLike[str] = "explorer.html",
+    *,
+    names: Iterable[str] | None = None,
+    branch: int = 1,
+    title: str = TITLE,
+    **inputs: Any,
+) -> Path:
+    """Write an explorer page: one HTML file that needs no network, to be opened or sent to somebody.
+
+    source  a scene (`desaxe.scene`, a TOML file or a mapping); or give inputs instead, as to `evaluate`:
+            ec, AB, BC [m], omega0 (or omega) [rad/s], alpha [rad/s^2], masses and loads, each a number,
+            text with a unit, or a list, whose values are compared (all of
+            up to five, four of more; the page says which are not shown)
+    path    the file to write
+    branch  of inputs: +1 (the papers) or -1; a scene has its own, and its own title
+    title   what the page is headed with
+    names   the quantities that the page knows, each with its first sensitivities; without it those of
+            the motion, drive torque and guide force where masses or loads are given, and those that the
+            scene names
+
+    Returns the path. On the page lengths, speed and acceleration can be changed; it draws the mechanism
+    to scale and quantities over the crank angle, with the numbers of `evaluate`: from the same Program,
+    emitted as JavaScript. Raises ValueError or TypeError, which name what is wrong; needs the extra
+    `explore`, and `scene` for a scene.
+
+        dx.explore("examples/compactor.toml", "explorer.html")
+        dx.explore(ec=["0 mm", "150 mm"], AB="125 mm", BC="350 mm", omega0="1500 rpm")
+    """
+    return write_page(content_of(source, names, branch, title, inputs), Path(path))
+
+
+def content_of(
+    source: Any,
+    names: Iterable[str] | None = None,
+    branch: int = 1,
+    title: str = TITLE,
+    inputs: Mapping[str, Any] = MappingProxyType({}),
+) -> Content:
+    """The content of the page that `explore` writes for the same."""
+    if source is None:
+        check_border(inputs, branch)
+        check_inputs("explore", inputs, tuple(INPUTS))
+        return content(title, branch, {n: _value(n, v) for n, v in inputs.items()}, START, names)
+    if inputs:
+        page = isinstance(source, (str, PathLike)) and Path(source).suffix != ".toml"
+        beside = (
+            f"path={str(source)!r} is the page to write" if page else f"{', '.join(inputs)} beside a scene"
+        )
+        raise TypeError(f"explore: give a scene or inputs, not both ({beside})")
+    return _of_scene(source, names)
+
+
+def _of_scene(source: Any, names: Iterable[str] | None) -> Content:
+    """What a scene shows: its outputs, or what its peaks and pictures are about."""
+    from ..scene import Scene, scene
+
+    known = source if isinstance(source, Scene) else scene(source)
+    inside = known.content
+    asked = [*inside.outputs, *(peak.quantity for peak in inside.peaks)]
+    asked += [picture.quantity for picture in inside.pictures]
+    title = inside.title or TITLE
+    shown = [name for name in asked if name not in ("status", "margin")]
+    return content(title, inside.branch, dict(inside.inputs), shown or START, names)
+
+
+def _value(name: str, given: Any) -> Value:
+    """A number or several, in SI units."""
+    wanted = ("ec", "AB", "BC", "omega0", "alpha", *LOADS)
+    number = as_number(name, given, wanted, ("explore",))
+    if number is not None:
+        return number
+    found = [as_number(name, value, wanted, ("explore",)) for value in given]
+    if not found or None in found:
+        raise TypeError(f"{name} = {given!r}: a number or a list of numbers")
+    return tuple(value for value in found if value is not None)

@@ -1,0 +1,84 @@
+"""Content as one HTML file: markup, style, scripts, the emitted functions and the plotting library."""
+
+import json
+import re
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from ...compiler.languages.javascript import HEADER
+from ...mechanism.catalogue import quantity
+from ...mechanism.inputs import INPUTS
+from ...mechanism.names import parts
+from ...support.extras import needed
+from ...support.files import check_target, write_text
+from .content import Content, left_out_text
+
+# In the order in which they build on each other.
+SCRIPTS = ("numbers", "designs", "words", "mechanism", "charts", "controls", "files", "main")
+_PLACE = re.compile(r"@@(\w+)@@")
+
+
+def write_page(content: Content, path: Path) -> Path:
+    """Write the page; its path."""
+    check_target(path)
+    write_text(path, page(content))
+    return path
+
+
+def page(content: Content) -> str:
+    """The text of the page."""
+    with needed("desaxe explore"):
+        from plotly.offline import get_plotlyjs
+    parts_of_page = {
+        "title": escape(content.title),
+        "style": _asset("style.css"),
+        "plotly": get_plotlyjs(),
+        "content": json.dumps(_data(content), ensure_ascii=False).replace("<", "\\u003c"),
+        "program": _program(content),
+        "scripts": "\n".join(_asset(f"{name}.js") for name in SCRIPTS),
+    }
+    return _PLACE.sub(lambda found: parts_of_page[found[1]], _asset("page.html"))
+
+
+def _asset(name: str) -> str:
+    return (files(__package__) / "page" / name).read_text(encoding="utf-8")
+
+
+def _program(content: Content) -> str:
+    """The emitted functions, and a table of them."""
+    table = [f"  {f.quantity}: of_{f.quantity}," for f in content.functions]
+    sources = "\n".join(function.source for function in content.functions)
+    return "\n".join([HEADER, sources, "const FUNCTIONS = {", *table, "};"])
+
+
+def _data(content: Content) -> dict[str, Any]:
+    """What the scripts read."""
+    return {
+        "title": content.title,
+        "branch": content.branch,
+        "theta": content.theta,
+        "designs": content.designs,
+        "left_out": left_out_text(content),
+        "shown": content.shown,
+        "inputs": {
+            name: {"unit": row.unit, "meaning": row.meaning, "least": row.least, "limit": row.limit}
+            for name in content.designs[0]
+            for row in (INPUTS[name],)
+        },
+        "functions": {f.quantity: {"names": f.names, "inputs": f.inputs} for f in content.functions},
+        "quantities": {row.name: _about(row.name, row.unit, row.meaning) for row in content.quantities},
+        "status": _status_words(),
+    }
+
+
+def _about(name: str, unit: str, meaning: str) -> dict[str, Any]:
+    base, by = parts(name)
+    return {"base": base, "by": by, "unit": unit, "meaning": meaning}
+
+
+def _status_words() -> dict[str, str]:
+    """Code -> words, from the meaning of `status` in the catalogue."""
+    found = (part.partition(" ") for part in quantity("status").meaning.split(", "))
+    return {code: words for code, _, words in found}

@@ -1,0 +1,39 @@
+"""`desaxe compile`: write the files of a scene, or show how those that are there differ."""
+
+import difflib
+import sys
+from pathlib import Path
+
+from ..scene import scene as scene_of
+from .compile import compile, texts_of
+from .portable import left_out
+
+
+def run_compile(source: str, place: str, to: str, libm: bool, check: bool) -> int:
+    """Write the files, or with `check` compare them; return the exit status."""
+    scene = scene_of(source)
+    texts = texts_of(scene, Path(place), to, libm)
+    if check:
+        return _compare(texts, source, place)
+    compile(scene, place, to, libm=libm)
+    for file, text in texts.items():
+        print(f"{file}: {len(text.splitlines())} lines")
+    lost = left_out(scene.content, reduction=to != "numba")
+    if lost:
+        print(f"not compiled (`desaxe run` has it): {', '.join(lost)}", file=sys.stderr)
+    return 0
+
+
+def _compare(texts: dict[Path, str], source: str, place: str) -> int:
+    stale = 0
+    for file, text in texts.items():
+        there = file.read_bytes().decode(errors="replace") if file.is_file() else ""
+        if there != text or not file.is_file():
+            stale += 1
+            lines = there.splitlines(True), text.splitlines(True)
+            sys.stdout.writelines(difflib.unified_diff(*lines, f"{file} (there)", f"{file} (from the scene)"))
+    if stale:
+        print(f"{place} is not what {source} gives: write it again without --check", file=sys.stderr)
+        return 1
+    print(f"{place}: fresh")
+    return 0

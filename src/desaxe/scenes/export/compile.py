@@ -1,0 +1,294 @@
+"""`compile`: a scene to a module of its own, for the user's repository."""
+
+import hashlib
+import keyword
+import re
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+from textwrap import wrap
+from typing import Any
+
+from ...compiler.cost import cost_of
+from ...compiler.kernel import Kernel
+from ...compiler.languages import language_of
+from ...compiler.languages.numba.module import emit_numba
+from ...compiler.languages.numba.reductions import emit_reduced
+from ...compiler.operations import HELPERS, NUMBA_HELPERS
+from ...compiler.passes.double_double import double_digits
+from ...mechanism.catalogue import quantity
+from ...mechanism.constants import constants, double_constants, single_constants
+from ...mechanism.inputs import INPUTS
+from ...mechanism.program import digest
+from ...runtime.kernels import KernelKey, is_single, kernel_of
+from ...runtime.specialise import cut
+from ...support.files import check_target, write_text
+from ..kernel import GridKernel, grid_kernel
+from ..scene import Scene
+from ..scene import scene as scene_of
+from .entry_points import (
+    AFFINITY,
+    DOUBLES,
+    THREADS,
+    axes_text,
+    evaluate_function,
+    point_function,
+    run_function,
+    run_reduced_function,
+)
+from .merge import import_lines, merged, renamed
+from .portable import Order, module_of, require_outputs
+
+WIDTH = 96
+
+
+def compile(
+    scene: Scene | str | PathLike[str] | Mapping[str, Any],
+    path: str | PathLike[str],
+    to: str = "numba",
+    *,
+    libm: bool = True,
+    check: bool = False,
+) -> Path:
+    """Write the outputs of a scene as source code of its own, which needs nothing of desaxe.
+
+    What the scene fixes is folded in; what it gives as a list or range is an argument, in the order theta,
+    ec, AB, BC, omega0 (or omega), alpha, then masses and loads. `to` is the language:
+
+    numba       FILE.py, which needs NumPy and numba: `point(...)`, `evaluate(...)` and `run()`, and for each
+                output a function to call from an @njit of your own
+    c           C99: FOLDER/name.h and name.c, where `name` is the folder's: `int name_point(in, out)`,
+                `void name_array(n, in, out)`, `name_inverse`, `name_limits`
+    octave      name.m for GNU Octave and MATLAB: `[a_C, V_C] = name(theta, ec)`
+    jax         a module with a function for each output and `evaluate(**inputs)`; its derivatives are the
+                derived ones
+    javascript  an ES module and its types
+
+    A path that ends as the language's files do is the file; any other is a folder, whose last part is the
+    name. `libm=False` (c) writes elementary functions of its own. The same scene gives the same bytes;
+    `check=True` writes nothing and raises ValueError where the files are not what would be written.
+
+    Returns the path. Raises as `scene` does, SceneError where the scene asks for no outputs, and ValueError
+    for an unknown language, or a name that it cannot have.
+
+        dx.compile("examples/compactor.toml", "my_kernels.py")
+        dx.compile("examples/compactor.toml", "press", to="c")
+    """
+    place = Path(path)
+    texts = texts_of(scene if isinstance(scene, Scene) else scene_of(scene), place, to, libm)
+    if check:
+        stale = differing(texts)
+        if stale:
+            names = ", ".join(file.name for file in stale)
+            raise ValueError(f"{place}: not what the scene gives ({names}); write it again")
+        return place
+    for file in texts:
+        check_target(file)
+    for file, text in texts.items():
+        write_text(file, text)
+    return place
+
+
+def texts_of(scene: Scene, place: Path, to: str = "numba", libm: bool = True) -> dict[Path, str]:
+    """The files that a scene gives in a language, and their texts; nothing is written."""
+    if to == "numba":
+        _require_importable(place)
+        return {place: module_text(scene, place.name)}
+    language = language_of(to)
+    if not libm and not language.own_functions:
+        raise ValueError(f"libm=False is for c: {to} has its elementary functions at hand")
+    is_file = place.suffix == language.suffix
+    name = place.stem if is_file else place.name
+    require_name(name, place)
+    folder = place.parent if is_file else place
+    source = Path(scene.name).name
+    said = f"desaxe compile {source} --to {to} -o {place.name}" + " --no-libm" * (not libm)
+    if not source:
+        said = f'desaxe.compile(scene, "{place.name}", to="{to}"' + ", libm=False" * (not libm) + ")"
+    module = module_of(scene, Order(to, name, said, language.second_order, not libm))
+    return {folder / file: text for file, text in language.files(module, not libm).items()}
+
+
+def differing(texts: Mapping[Path, str]) -> list[Path]:
+    """The files that are not there or hold another text."""
+    return [f for f, text in texts.items() if not f.is_file() or f.read_bytes() != text.encode()]
+
+
+def require_name(name: str, place: Path) -> None:
+    """The name of a module is a name in every language: letters, digits and underscores."""
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or keyword.iskeyword(name):
+        word = re.sub(r"\W", "_", name, flags=re.ASCII)
+        good = word if re.match(r"[A-Za-z]", word) and not keyword.iskeyword(word) else f"press_{word}"
+        raise ValueError(f"{place}: {name!r} cannot be the name of a module, but {good!r}, for example")
+
+
+def _require_importable(place: Path) -> None:
+    """A module is imported by the name of its file."""
+    name = place.stem
+    if place.suffix != ".py" or not name.isidentifier() or keyword.iskeyword(name):
+        word = re.sub(r"\W", "_", name)
+        good = word if word.isidentifier() and not keyword.iskeyword(word) else f"kernels_{word}"
+        raise ValueError(f"{place}: Python cannot import a module of this name, but {good}.py, for example")
+
+
+def module_text(scene: Scene, name: str = "my_kernels.py") -> str:
+    """The text of the module."""
+    content = scene.content
+    require_outputs(scene)
+    found = grid_kernel(content)
+    anywhere = found.key.form._replace(roomy=False)  # the module takes other designs, too
+    key = _all_fixed(found.key._replace(form=anywhere), found, content.inputs)
+    axes = {n: value for n in found.axes if isinstance(value := content.inputs.get(n), tuple)}
+    state = found.request.form.state
+    shown = found.request.shown
+    program = cut(key.names, key.form, key.fixed)
+    if key.accuracy == "extended":
+        program = double_digits(program, double_constants())
+    sources = [point_function(program, shown, state)]
+    grid = None
+    if program.inputs:
+        grid = _kernels(key, program.inputs, sources)
+    imports, statements = merged(_shared(sources))
+    limit = None if key.far else _limit(key)
+    calls = [THREADS] if program.inputs else []
+    calls.append(evaluate_function(program, shown, state, limit, bool(program.inputs)))
+    calls += [axes_text(axes)] if axes else []
+    if grid is None:
+        calls.append('def run():\n    """The values; every input is fixed."""\n    return evaluate()')
+    elif content.reduction is None:
+        calls.append(run_function(shown, list(axes), grid.inputs, state))
+    else:
+        calls.append(run_reduced_function(shown, key.reduce, found.axes, grid.inputs, grid.outputs))
+    tables = [*([AFFINITY, DOUBLES] if program.inputs else []), _outputs(shown), _fixed(key)]
+    body = "\n\n\n".join(part.strip("\n") for part in [*tables, *statements, *calls]) + "\n"
+    head = _docstring(scene, name, key, shown, program.inputs, cost_of(program).operations)
+    return "\n\n\n".join([head, "\n".join(import_lines(_called(imports, body))), body])
+
+
+# What the functions that people call import; what does not stand in the text is left out.
+IMPORTS = {
+    "concurrent.futures": {"ThreadPoolExecutor"},
+    "math": {"prod"},
+    "numpy": {
+        "append", "array", "asarray", "ascontiguousarray", "broadcast_arrays", "empty", "float64", "int8",
+        "isfinite", "linspace", "nan",
+    },
+    "os": {"cpu_count"},
+}  # fmt: skip
+
+
+def _called(imports: Mapping[str, set[str]], body: str) -> dict[str, set[str]]:
+    """The imports of a text; a name of both NumPy and math is NumPy's, which serves numba too."""
+    found = {m: imports.get(m, set()) | IMPORTS.get(m, set()) for m in {**imports, **IMPORTS}}
+    found["math"] = found["math"] - imports.get("numpy", set())
+    found["numpy"] = {n for n in found["numpy"] if n in imports.get("numpy", ()) or n not in found["math"]}
+    used = set(re.findall(r"\w+", body))
+    return {module: names & used for module, names in found.items() if names & used}
+
+
+def _all_fixed(key: KernelKey, found: GridKernel, inputs: Mapping[str, Any]) -> KernelKey:
+    """The key with every number of the scene folded in."""
+    numbers = {n: inputs.get(n, 0.0) for n in found.request.inputs if n not in found.axes}
+    fixed = dict(key.fixed) | {n: float(value) for n, value in numbers.items()}
+    return key._replace(fixed=tuple(fixed.items()))
+
+
+def _kernels(key: KernelKey, inputs: tuple[str, ...], sources: list[str]) -> Kernel:
+    """Append the kernels of arrays and of the grid; the latter, which tells the order of its inputs."""
+    points = key._replace(axis_of=tuple((n, 0) for n in sorted(inputs)), axes=1, reduce=())
+    single = is_single(key)
+    own = _prefixed("point")
+    kernel = kernel_of(points)
+    sources.append(renamed(emit_numba(kernel, "Points.", single), own))
+    if key.axes == 1:
+        return kernel
+    grid = kernel_of(key)
+    own = _prefixed("grid")
+    text = emit_reduced(grid, key.reduce, "", single) if key.reduce else emit_numba(grid, "", single)
+    if single:  # constants of float32 have names of their own in each module
+        own |= {f"k{index}": f"grid_k{index}" for index in range(1000)}
+    sources.append(renamed(text, own))
+    return grid
+
+
+def _prefixed(prefix: str) -> dict[str, str]:
+    """Names of a kernel's module under which two of them can stand in one."""
+    words = {name: f"{prefix}_{name}" for name in ("loops", "kernel")}
+    signature = f"{prefix}_signature"
+    return words | {"signature = types": f"{signature} = types", "njit(signature": f"njit({signature}"}
+
+
+def _shared(sources: list[str]) -> list[str]:
+    """The plain point first; helpers of kernels under names that differ from its own."""
+    plain, *kernels = sources
+    helpers = {name: f"compiled_{name}" for name in (*HELPERS, *NUMBA_HELPERS)}
+    return [plain, *(renamed(text, helpers, called=True) for text in kernels)]
+
+
+def _limit(key: KernelKey) -> float:
+    """The largest angle that the written-out sine and cosine reduce exactly."""
+    if key.accuracy == "extended":
+        return double_constants().limit
+    return single_constants().limit if key.accuracy == "fast" else constants().limit
+
+
+def _outputs(shown: tuple[str, ...]) -> str:
+    rows = [f'    "{name}": {"int8" if name == "status" else "float64"},' for name in shown]
+    return "\n".join(["OUTPUTS = {", *rows, "}"])
+
+
+def _fixed(key: KernelKey) -> str:
+    rows = [f'    "{name}": {value!r},' for name, value in key.fixed]
+    return "\n".join(
+        ["# Folded into the code below: changing them here changes nothing.", "FIXED = {", *rows, "}"]
+    )
+
+
+def _docstring(
+    scene: Scene, name: str, key: KernelKey, shown: tuple[str, ...], inputs: tuple[str, ...], operations: int
+) -> str:
+    """Where the module comes from, what it computes, in which units."""
+    from ...support.version import version
+
+    source = Path(scene.name).name
+    command = f"desaxe compile {source} -o {name}" if source else f'desaxe.compile(scene, "{name}")'
+    said = hashlib.sha256(repr(scene.content).encode()).hexdigest()[:16]
+    state = key.form.state
+    lines = [
+        f"{scene.title or 'An offset slider-crank'}: {', '.join(shown)}.",
+        "",
+        f"Generated by `{command}`; write it again instead of editing it.",
+        f"desaxe {version()}, derivation {digest()[:16]}, scene {said}.",
+        f"A `point` takes {operations} operations, in a form that is right for any design: a sine is one,",
+        "the scene's numbers are folded in.",
+        "It needs NumPy and numba, and nothing of desaxe.",
+        "",
+        "    point(...)      one point in plain Python",
+        "    evaluate(...)   numbers or arrays that broadcast",
+        "    run()           the scene's own grid",
+        "",
+        f"Accuracy {key.accuracy}; SI units and radians. Y points along the slider axis towards the slider,",
+        "theta turns from +Y towards +X.",
+        "",
+    ]
+    rows = [("inputs", n, INPUTS[n].unit, INPUTS[n].meaning) for n in inputs]
+    rows += [("outputs", n, quantity(n, state).unit, quantity(n, state).meaning) for n in shown]
+    rows += [("fixed", n, "", _fixed_as(n, value)) for n, value in key.fixed if n in INPUTS and value != 0.0]
+    zeros = [n for n, value in key.fixed if n in INPUTS and value == 0.0]
+    rows += [("fixed", ", ".join(zeros), "", "0")] if zeros else []
+    before = ""
+    for group, word, unit, meaning in rows:
+        told = f"{word} [{unit}]" if unit and unit != "1" else word
+        text = f"{told}: {meaning}" if group != "fixed" else f"{word} = {meaning}"
+        cells = wrap(text, WIDTH - 12)
+        lines.append(f"  {group if group != before else '':8} {cells[0]}")
+        lines += [f"  {'':10}{cell}" for cell in cells[1:]]
+        before = group
+    lines += ["", "SPDX-License-Identifier: MIT"]
+    body = "\n".join(lines).replace("\\", "/").replace('"""', "'''")
+    return f'"""{body}\n"""'
+
+
+def _fixed_as(name: str, value: float) -> str:
+    unit = INPUTS[name].unit
+    return f"{value!r} {unit}" if unit != "1" else repr(value)

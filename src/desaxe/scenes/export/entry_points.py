@@ -1,0 +1,240 @@
+"""What people call in a compiled module: `point`, `evaluate`, `run`, as text."""
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from textwrap import wrap
+
+import numpy as np
+
+from ...compiler.languages.numba.reductions import KINDS, outputs_of
+from ...compiler.operations import HELPERS, MATH_NAMES
+from ...compiler.program import Program
+from ...compiler.text import with_short_temporaries, write_lines
+from ...mechanism.catalogue import quantity
+from ...mechanism.inputs import INPUTS
+
+THREADS = '''def in_blocks(block, length, points, threads):
+    """Call block(start, stop) for as many parts of an axis as there are threads that pay."""
+    cores = len(sched_getaffinity(0)) if sched_getaffinity else cpu_count() or 1
+    count = max(1, min(threads or cores, points // 20_000, length))
+    edges = [length * k // count for k in range(count + 1)]
+    if count == 1:
+        return block(0, length)
+    with ThreadPoolExecutor(count) as pool:
+        list(pool.map(block, edges[:-1], edges[1:]))
+'''
+AFFINITY = """try:
+    from os import sched_getaffinity
+except ImportError:  # not on this system
+    sched_getaffinity = None
+"""
+DOUBLES = '''def doubles(**inputs):
+    """The inputs in doubles; text, which may carry a unit, is refused."""
+    held = {name: asarray(given) for name, given in inputs.items()}
+    for name, numbers in held.items():
+        if numbers.dtype.kind in "US":
+            raise TypeError(f"{name} = {inputs[name]!r}: numbers in SI units are wanted, not text")
+    return [asarray(numbers, float64) for numbers in held.values()]
+'''
+
+
+def described(names: Iterable[str], state: bool) -> list[str]:
+    """A line for each name: its unit and what it is."""
+    lines = []
+    for name in names:
+        row = INPUTS.get(name) or quantity(name, state)
+        lines.append(f"{name:10} {f'[{row.unit}] ' if row.unit != '1' else ''}{row.meaning}")
+    return lines
+
+
+def docstring(first: str, lines: Sequence[str]) -> list[str]:
+    """A docstring, wrapped."""
+    wrapped = [
+        row
+        for line in lines
+        for row in (wrap(line, 92, subsequent_indent=" " * 11 if "[" in line[:14] else "") or [""])
+    ]
+    return [f'"""{first}', *([""] if wrapped else []), *wrapped, '"""'] if wrapped else [f'"""{first}"""']
+
+
+def point_function(program: Program, shown: Sequence[str], state: bool) -> str:
+    """`point(...)` in plain math, with the helpers that it calls."""
+    body = write_lines(with_short_temporaries(program), "python")
+    returned = ", ".join(program.outputs)
+    told = [*described(program.inputs, state), "", "Gives:", *described(shown, state)]
+    types = ", ".join(f"type({name})" for name in program.inputs)
+    check = [f"if str in ({types},):", f"    {_doubles(program.inputs)}  # says what is wrong"]
+    lines = [
+        f"def point({', '.join(program.inputs)}):",
+        *_indented(docstring("One point in plain Python, nothing compiled: numbers in, a tuple out.", told)),
+        *_indented(check if program.inputs else []),
+        *_indented(body),
+        f"    return ({returned},)",
+        "",
+    ]
+    text = "\n".join(lines)
+    used = _helpers(text)
+    words = "\n".join([*used, text])
+    names = [name for name in MATH_NAMES if _calls(words, name)]
+    imports = [f"from math import {', '.join(names)}"] if names else []
+    return "\n\n".join(['"""Points."""', *imports, *used, text])
+
+
+def _doubles(inputs: Iterable[str]) -> str:
+    return f"doubles({', '.join(f'{name}={name}' for name in inputs)})"
+
+
+def _indented(lines: Iterable[str]) -> list[str]:
+    return [f"    {line}" if line else "" for line in lines]
+
+
+def _calls(text: str, name: str) -> bool:
+    return re.search(rf"\b{name}\b", text) is not None
+
+
+def _helpers(text: str) -> list[str]:
+    return [source for name, source in HELPERS.items() if f"{name}(" in text]
+
+
+def evaluate_function(
+    program: Program, shown: Sequence[str], state: bool, limit: float | None, whole: bool
+) -> str:
+    """`evaluate(...)`: numbers by `point`, arrays by the kernel, broadcast like NumPy."""
+    inputs = program.inputs
+    told = [
+        *described(inputs, state),
+        "",
+        "Numbers or arrays that broadcast together; a dict of floats or arrays comes back. A point that "
+        "has no value is NaN" + (", and `status` tells why." if "status" in shown else "."),
+        "`threads`: how many share the work, all cores without; the answer is the same.",
+    ]
+    if not whole:
+        return "\n".join(
+            [
+                "def evaluate():",
+                *_indented(docstring("The values; every input is fixed.", [])),
+                "    return dict(zip(OUTPUTS, point(), strict=True))",
+                "",
+            ]
+        )
+    head = ", ".join(inputs)
+    check = []
+    if limit is not None and "theta" in inputs:
+        place = f"arrays[{inputs.index('theta')}]"
+        check = [
+            f"    reach = max(-{place}.min(initial=0.0), {place}.max(initial=0.0))",
+            f"    if not reach <= {limit!r} and (abs({place}[isfinite({place})]) > {limit!r}).any():",
+            f'        raise ValueError("theta: at most {limit:.0f} rad in magnitude; take whole turns off")',
+        ]
+    return "\n".join(
+        [
+            f"def evaluate({head}, threads=None):",
+            *_indented(docstring(f"{', '.join(shown)} at points of your own.", told)),
+            f"    arrays = broadcast_arrays(*{_doubles(inputs)})",
+            *check,
+            "    if not arrays[0].ndim:",
+            "        return dict(zip(OUTPUTS, point(*(float(a) for a in arrays)), strict=True))",
+            "    flat = [ascontiguousarray(a).reshape(-1) for a in arrays]",
+            "    out = {name: empty(arrays[0].shape, kind) for name, kind in OUTPUTS.items()}",
+            "    places = [place.reshape(-1) for place in out.values()]",
+            "",
+            "    def block(start, stop):",
+            "        point_kernel(*(a[start:stop] for a in flat), *(a[start:stop] for a in places))",
+            "",
+            "    in_blocks(block, flat[0].size, flat[0].size, threads)",
+            "    return out",
+            "",
+        ]
+    )
+
+
+def axes_text(axes: Mapping[str, Sequence[float]]) -> str:
+    """The scene's own axes."""
+    rows = ["# The scene's axes, the outermost first.", "AXES = {"]
+    for name, values in axes.items():
+        array = np.array(values)
+        if len(values) > 2 and np.array_equal(array, np.linspace(values[0], values[-1], len(values))):
+            rows.append(f'    "{name}": linspace({values[0]!r}, {values[-1]!r}, {len(values)}),')
+            continue
+        rows.append(f'    "{name}": array([')
+        rows += [f"        {row}" for row in wrap(", ".join(map(repr, values)) + ",", 90)]
+        rows.append("    ]),")
+    return "\n".join([*rows, "}"])
+
+
+def run_function(
+    names: Sequence[str], axes: Sequence[str], inputs: Mapping[str, int | None], state: bool
+) -> str:
+    """`run()`: the outputs over the outer product of the scene's axes."""
+    told = ["A dict of arrays, one dimension per axis: " + " x ".join(axes) + "."]
+    first = [
+        f'AXES["{name}"][start:stop]' if axis == 0 else f'AXES["{name}"]'
+        for name, axis in inputs.items()
+        if axis is not None
+    ]
+    kernel = "point_kernel" if len(axes) == 1 else "grid_kernel"
+    return "\n".join(
+        [
+            "def run(threads=None):",
+            *_indented(docstring(f"{', '.join(names)} over the scene's axes.", told)),
+            "    shape = tuple(axis.size for axis in AXES.values())",
+            "    out = {name: empty(shape, kind) for name, kind in OUTPUTS.items()}",
+            "",
+            "    def block(start, stop):",
+            f"        {kernel}({', '.join([*first, '*(a[start:stop] for a in out.values())'])})",
+            "",
+            "    in_blocks(block, shape[0], prod(shape), threads)",
+            "    return out",
+            "",
+        ]
+    )
+
+
+def run_reduced_function(
+    names: Sequence[str],
+    kinds: Sequence[str],
+    axes: Sequence[str],
+    inputs: Mapping[str, int | None],
+    own: Sequence[str],
+) -> str:
+    """`run()` of a scene with a reduction: the last axis is reduced, the grid is not stored."""
+    last = axes[-1]
+    rest = [axis for axis in axes[:-1] if axis]
+    told = [
+        f"A dict of arrays over {' x '.join(rest) or 'nothing'}: for each name "
+        + ", ".join(f"`_{kind}`, {KINDS[kind].replace('_', ' ')}" for kind in kinds)
+        + f"; `_<extreme>_{last}`, where it is; `_skipped`, how many points along {last} have no value.",
+    ]
+    outs = outputs_of(own, kinds)
+    shown = outputs_of(names, kinds)
+    given = [
+        f'AXES["{name}"][start:stop]' if axis == 0 else f'AXES["{name}"]'
+        for name, axis in inputs.items()
+        if axis is not None
+    ]
+    lines = [
+        "def run(threads=None):",
+        *_indented(docstring(f"{', '.join(names)} over the scene's axes, {last} reduced.", told)),
+        f"    shape = tuple(AXES[name].size for name in {tuple(rest)!r}) or (1,)",
+        f'    length = AXES["{last}"].size',
+        "    places = [",
+        *(f"        empty(shape, {kind})," for _, kind in outs),
+        "    ]",
+        "",
+        "    def block(start, stop):",
+        f"        reduced({', '.join([*given, 'length', '*(a[start:stop] for a in places)'])})",
+        "",
+        "    in_blocks(block, shape[0], prod(shape) * length, threads)",
+        f'    at = append(AXES["{last}"], nan)  # -1: nowhere',
+    ]
+    if not rest:
+        lines.append("    places = [place[0] for place in places]")
+    lines.append("    return {")
+    for index, (name, kind) in enumerate(shown):
+        if name.endswith("_count") and kind == "int64":
+            lines.append(f'        "{name.removesuffix("_count")}_skipped": length - places[{index}],')
+        elif kind == "int64":
+            lines.append(f'        "{name.removesuffix("_place")}_{last}": at[places[{index}]],')
+        else:
+            lines.append(f'        "{name}": places[{index}],')
+    return "\n".join([*lines, "    }", ""])

@@ -1,0 +1,54 @@
+"""The JSON schema of a scene file: what editors complete and check while it is written."""
+
+import json
+from typing import Any
+
+import msgspec
+
+from ..compiler.languages.numba.reductions import KINDS
+from ..mechanism.catalogue import quantities
+from ..mechanism.inputs import INPUTS
+from ..mechanism.names import parts
+from .schema import SceneFile
+
+
+def json_schema() -> dict[str, Any]:
+    """The schema, from the same types that check a scene when it is read."""
+    found: dict[str, Any] = _for_toml(msgspec.json.schema(SceneFile))
+    for section in ("Mechanism", "Motion", "Masses", "Loads"):
+        for name, rule in found["$defs"][section]["properties"].items():
+            if name in INPUTS:
+                row = INPUTS[name]
+                rule["description"] = f"{row.meaning} [{row.unit}]: {rule['description']}"
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "A scene of desaxe", **found}
+
+
+def json_schema_text() -> str:
+    """The same as a file."""
+    return json.dumps(json_schema(), indent=2) + "\n"
+
+
+def _for_toml(rule: Any) -> Any:
+    """Without null, which TOML does not have; with the words that stand for quantities and reductions."""
+    if isinstance(rule, list):
+        return [_for_toml(part) for part in rule]
+    if not isinstance(rule, dict):
+        return rule
+    found = {key: _for_toml(part) for key, part in rule.items() if key != "default"}
+    choices = [part for part in found.get("anyOf", []) if part != {"type": "null"}]
+    if len(choices) == 1:
+        del found["anyOf"]
+        found |= choices[0]
+    elif choices:
+        found["anyOf"] = choices
+    if found.get("description") == "the name of a quantity":
+        found["anyOf"] = [{"enum": _base_quantities()}, {"pattern": "^[A-Za-z_]+_wrt_[A-Za-z0-9_]+$"}]
+    if found.get("description", "").startswith("one of max, min"):
+        kinds = {"enum": list(KINDS)}
+        found["anyOf"] = [kinds, {"type": "array", "items": kinds, "minItems": 1}]
+    return found
+
+
+def _base_quantities() -> list[str]:
+    """The names that are no sensitivities, of which there are hundreds."""
+    return [name for name in quantities() if not parts(name)[1]]

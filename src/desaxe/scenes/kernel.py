@@ -1,0 +1,60 @@
+"""The kernel that a scene's grid runs: for `explain` and `compile`, which run nothing."""
+
+from math import prod
+from typing import NamedTuple
+
+import numpy as np
+
+from ..evaluation.outer import join_axes
+from ..runtime.kernels import KernelKey, key_of
+from ..runtime.request import Request, request
+from .read import Content
+
+
+class GridKernel(NamedTuple):
+    """What the grid of a scene asks for, its axes in the order of the kernel's loops, and the key."""
+
+    request: Request
+    axes: tuple[str, ...]
+    sizes: tuple[int, ...]
+    key: KernelKey
+
+    @property
+    def points(self) -> int:
+        """Points of the grid."""
+        return prod(self.sizes)
+
+
+def grid_kernel(content: Content, joined: bool = False) -> GridKernel:
+    """The kernel of the outputs (and, where they are stored, of the status).
+
+    `joined`: with short last axes as one, the way that a grid runs.
+    """
+    dimensions = [name for name, value in content.inputs.items() if isinstance(value, tuple)]
+    names = list(content.outputs)
+    if content.reduction is None:
+        names = list(dict.fromkeys([*(name for name in names if name != "margin"), "status"]))
+    else:
+        dimensions = [
+            *(name for name in dimensions if name != content.reduction.axis),
+            content.reduction.axis,
+        ]
+    given = dict(content.inputs)
+    if "omega0" not in given and "omega" not in given:
+        given["omega0"] = 0.0  # nothing that is asked for needs a speed
+    asked = request(names, given, content.branch, content.accuracy)
+    order = dimensions or [""]
+    if content.reduction is not None and len(order) == 1:
+        order = ["", *order]
+    needed = [name for name in asked.inputs if name not in dimensions]
+    scalars = {name: float(np.asarray(given.get(name, 0.0)).reshape(-1)[0]) for name in needed}
+    columns = {name: np.array(given[name]) for name in asked.inputs if name in dimensions}
+    places = {name: order.index(name) for name in columns}
+    sizes = tuple(np.size(given[name]) if name else 1 for name in order)
+    if joined and content.reduction is None:
+        sizes = join_axes(order, columns, places, sizes)
+        order = [*order[: len(sizes) - 1], " x ".join(order[len(sizes) - 1 :])]
+    key = key_of(asked, scalars, columns, places, len(order))
+    if content.reduction is not None:
+        key = key._replace(reduce=content.reduction.kinds)
+    return GridKernel(asked, tuple(order), sizes, key)

@@ -1,0 +1,165 @@
+"""The peaks that a scene asks for, labelled, and what was claimed about some of them."""
+
+from collections.abc import Mapping
+from math import pi, prod
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..evaluation.evaluate import evaluate
+from ..evaluation.labels import CONVENTIONS, input_attributes, source
+from ..mechanism.catalogue import quantity
+from ..mechanism.inputs import INPUTS
+from ..mechanism.names import sensitivity
+from ..peaks.peak import peak
+from ..support.progress import Steps
+from .read import Claim, Content, Peak
+from .values import Value
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+DESIGNS = 1_000  # designs of a peak between two reports of progress
+SIDEWAYS = ("ec", "F_X", "g_X")  # change sign where the mechanism is mirrored at the Y axis
+STATUS = (
+    "0 ok, 1 infeasible, 2 at a limit angle or change point or where friction turns round, 3 stalled, "
+    "4 bad input, 5 friction jams at some angles, 6 friction has two balances of forces at some angles"
+)
+WORDS = {"absmax": "largest magnitude", "max": "maximum", "min": "minimum"}
+
+
+class ClaimResult(NamedTuple):
+    """A claimed increase of a peak over its baseline and the computed one, in percent."""
+
+    claim: Claim
+    computed: float
+    agrees: bool
+
+
+class PeakResult(NamedTuple):
+    """The peaks of all designs, labelled, and what was claimed about some of them.
+
+    `dataset` has over the designs' dimensions: `value`, `theta`, `status`, `value_wrt_<parameter>`
+    and, where there is a baseline, `increase` over it in percent. `mirrored` tells the designs with
+    ec = 0 that reach the peak at -theta as well, where the derivatives by what points to the side
+    (ec, F_X, g_X) have the other sign.
+    """
+
+    peak: Peak
+    dataset: "xr.Dataset"
+    claims: tuple[ClaimResult, ...]
+    mirrored: NDArray[np.bool_]
+
+
+def batches(one: Peak) -> int:
+    """How many steps a peak takes."""
+    designs = prod(len(values) for values in one.axes.values()) + len(one.claims) + bool(one.baseline)
+    return -(-designs // DESIGNS)
+
+
+def peaks_of(one: Peak, content: Content, steps: Steps) -> PeakResult:
+    """The peaks of the designs, of the baseline and of what was claimed, in one go."""
+    others = [*([one.baseline] if one.baseline else []), *(claim.design for claim in one.claims)]
+    columns = {
+        name: np.append(column, [design[name] for design in others])
+        for name, column in columns_of({**one.axes, **one.fixed}).items()
+    }
+    found = _found(one, content, columns, steps)
+    shape = [len(values) for values in one.axes.values()]
+    count = prod(shape)
+    arrays = {name: values[:count].reshape(shape) for name, values in found.items()}
+    claims: tuple[ClaimResult, ...] = ()
+    if one.baseline:
+        base, *claimed = found["value"][count:].tolist()
+        arrays["increase"] = np.asarray(_increase(arrays["value"], base))
+        computed = [float(_increase(value, base)) for value in claimed]
+        pairs = zip(one.claims, computed, strict=True)
+        claims = tuple(ClaimResult(claim, value, claim.increase.agrees(value)) for claim, value in pairs)
+    mirrored = _mirrored(one, content, columns, found)[:count].reshape(shape)
+    return PeakResult(one, _labelled(one, content, arrays), claims, mirrored)
+
+
+def _found(
+    one: Peak, content: Content, columns: Mapping[str, NDArray[np.float64]], steps: Steps
+) -> dict[str, NDArray[Any]]:
+    """Value, angle, status and gradient of flat designs, batch by batch."""
+    size = next(iter(columns.values())).size
+    options: dict[str, Any] = {"branch": content.branch, "accuracy": content.accuracy}
+    parts = []
+    for start in range(0, size, DESIGNS):
+        steps.next(f"peaks of {one.quantity}")
+        batch: dict[str, Any] = {name: column[start : start + DESIGNS] for name, column in columns.items()}
+        found = peak(one.quantity, kind=one.kind, theta=one.theta, **batch, **options)
+        gradient = found.pop("gradient")
+        for name in one.sensitivities:  # by what has no effect, such as F_X without friction
+            gradient.setdefault(name, np.where(np.isfinite(found["value"]), 0.0, np.nan))
+        parts.append({**found, **{f"value_wrt_{name}": slope for name, slope in gradient.items()}})
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def _mirrored(
+    one: Peak, content: Content, columns: Mapping[str, NDArray[np.float64]], found: Mapping[str, NDArray[Any]]
+) -> NDArray[np.bool_]:
+    """Designs with ec = 0 whose peak is shared by theta and -theta: a kink in its course over ec."""
+    theta = found["theta"]
+    low, high = one.theta
+    if "ec" not in columns or high - low < 2.0 * pi - 1e-9:
+        return np.zeros(theta.shape, np.bool_)
+    steady = columns["alpha"] == 0.0 if "alpha" in columns else True
+    usable = (columns["ec"] == 0.0) & (found["status"] == 0) & (np.abs(np.sin(theta)) > 1e-6) & steady
+    design: dict[str, Any] = {**columns, "branch": content.branch, "accuracy": content.accuracy}
+    there: Any = evaluate(one.quantity, theta=-theta, **design)
+    there = np.abs(there) if one.kind == "absmax" else there
+    shared: NDArray[np.bool_] = usable & (np.abs(there - found["value"]) <= 1e-9 * np.abs(found["value"]))
+    return shared
+
+
+def _increase(value: Any, base: float) -> Any:
+    """In percent; relative to the magnitude of the baseline, so that more is always positive."""
+    with np.errstate(all="ignore"):
+        return 100.0 * (np.asarray(value) - base) / np.abs(np.float64(base))
+
+
+def _labelled(one: Peak, content: Content, arrays: Mapping[str, NDArray[Any]]) -> "xr.Dataset":
+    import xarray
+
+    state = "omega" in one.axes or "omega" in one.fixed
+    slopes = [name for name in arrays if name.startswith("value_wrt_")]
+    attributes = {
+        "value": _peak_attributes(one, state),
+        "theta": {"units": "rad", "long_name": "crank angle of the peak"},
+        "status": {"long_name": STATUS},
+        "increase": {"units": "percent", "long_name": "increase over the baseline"},
+        **{name: _slope_attributes(one, name.removeprefix("value_wrt_"), state) for name in slopes},
+    }
+    data = {name: (tuple(one.axes), array, attributes[name]) for name, array in arrays.items()}
+    axes = {name: (name, list(values), input_attributes(name)) for name, values in one.axes.items()}
+    scalars = {name: ((), value, input_attributes(name)) for name, value in one.fixed.items()}
+    kind = {"quantity": one.quantity, "kind": one.kind, "branch": content.branch}
+    return xarray.Dataset(data, {**axes, **scalars}, {**provenance(content), **kind})
+
+
+def _peak_attributes(one: Peak, state: bool) -> dict[str, str]:
+    known = quantity(one.quantity, state)
+    return {"units": known.unit, "long_name": f"{WORDS[one.kind]} of {one.quantity}, {known.meaning}"}
+
+
+def _slope_attributes(one: Peak, parameter: str, state: bool) -> dict[str, str]:
+    try:
+        unit = quantity(sensitivity(one.quantity, parameter), state).unit
+    except ValueError:  # a derivative that only a peak has
+        unit = f"{quantity(one.quantity, state).unit}/({INPUTS[parameter].unit})"
+    return {"units": unit, "long_name": f"derivative of the peak by {parameter}"}
+
+
+def columns_of(inputs: Mapping[str, Value]) -> dict[str, NDArray[np.float64]]:
+    """The outer product of the inputs, flat, in the order given."""
+    arrays = np.meshgrid(*(np.asarray(value) for value in inputs.values()), indexing="ij")
+    return {name: array.reshape(-1) for name, array in zip(inputs, arrays, strict=True)}
+
+
+def provenance(content: Content) -> dict[str, str]:
+    """Attributes that say where a dataset comes from."""
+    title = {"title": content.title} if content.title else {}
+    return {**title, "source": source(), "Conventions": CONVENTIONS}

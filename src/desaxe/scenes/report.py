@@ -1,0 +1,228 @@
+"""The report of a scene as text for a terminal, at most 100 columns wide."""
+
+from collections.abc import Sequence
+from math import degrees, isfinite, isnan, pi
+
+import numpy as np
+
+from ..mechanism.catalogue import quantity
+from ..mechanism.inputs import INPUTS
+from .peaks import SIDEWAYS, WORDS, ClaimResult, PeakResult
+from .read import Content, Peak
+from .run import CheckResult, FeasibilityResult, Run, group_names
+
+ROWS = 24  # of a table; a longer one is thinned out
+HUGE = 1e6  # percent: more is told as a power of ten
+GAPS = 5  # designs that cannot turn fully
+
+
+def report(content: Content, result: Run) -> str:
+    """The whole report."""
+    parts = [content.title] if content.title else []
+    parts += [_checks(result.checks)] if result.checks else []
+    parts += [_feasibility(result.feasibility)] if result.feasibility else []
+    parts += [_peak(found) for found in result.peaks]
+    parts += [_values(content, result)] if result.dataset is not None else []
+    parts += [_files(content, result)] if result.files else []
+    return "\n\n".join(parts)
+
+
+def table(rows: Sequence[Sequence[str]], left: int = 0) -> list[str]:
+    """Rows of cells as aligned lines; the first `left` columns are flush left, the others right."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = []
+    for row in rows:
+        cells = [
+            cell.ljust(width) if index < left else cell.rjust(width)
+            for index, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ]
+        lines.append(("  " + "   ".join(cells)).rstrip())
+    return lines
+
+
+def number(value: float) -> str:
+    """A number in six digits."""
+    return f"{float(value) + 0.0:.6g}"  # and no -0
+
+
+# ---- printed values ------------------------------------------------------------------------------
+
+
+def _checks(results: tuple[CheckResult, ...]) -> str:
+    """Printed values next to the computed ones, a block for each source."""
+    sources = list(dict.fromkeys(result.check.source for result in results))
+    blocks = [
+        _block(source, [result for result in results if result.check.source == source]) for source in sources
+    ]
+    return "\n".join(["Printed and computed", *blocks])
+
+
+def _block(source: str, results: list[CheckResult]) -> str:
+    rows = [("", "", source, "desaxe", "in full", "")]
+    last = None
+    for check, computed, agrees in results:
+        printed = check.printed
+        full = f"{computed * printed.factor:.8g}"
+        title = "" if check.title == last else check.title
+        last = check.title
+        cells = printed.text(printed.value), printed.text(printed.rounded(computed))
+        rows.append((title, check.quantity, *cells, full, "agrees" if agrees else "DIFFERS"))
+    return "\n".join(table(rows, left=2))
+
+
+# ---- feasibility ---------------------------------------------------------------------------------
+
+
+def _feasibility(found: FeasibilityResult) -> str:
+    """Up to where the crank turns, and which designs do not."""
+    lines = ["Feasibility"]
+    if found.limit is not None:
+        limit = f"|ec| < BC - AB = {number(found.limit)} m" if found.limit > 0.0 else "no ec, since BC <= AB"
+        lines.append(f"  the crank turns fully for {limit}")
+    lines.append(f"  {found.turning} of {found.designs} designs of this scene turn fully")
+    axes = _varying([one.design for one in found.infeasible], found.designs)
+    for one in found.infeasible[:GAPS]:
+        design = ", ".join(f"{name} = {number(one.design[name])} m" for name in axes)
+        gaps = " and ".join(f"{degrees(a):.2f} to {degrees(b):.2f}" for a, b in one.gaps)
+        if any(b - a >= 2.0 * pi for a, b in one.gaps):
+            lines.append(f"  infeasible: {design} cannot be assembled at any angle")
+        else:
+            lines.append(
+                f"  infeasible at part of the turn: {design} cannot be assembled for theta from {gaps} deg"
+            )
+    more = found.designs - found.turning - GAPS
+    return "\n".join(lines + ([f"  and {more} more"] if more > 0 else []))
+
+
+def _varying(designs: list[dict[str, float]], count: int) -> list[str]:
+    """The lengths that tell these designs apart; `ec` where there is one design only."""
+    names = list(designs[0]) if designs else []
+    varying = [name for name in names if len({design[name] for design in designs}) > 1]
+    return varying or (["ec"] if count > 0 else [])
+
+
+# ---- peaks ---------------------------------------------------------------------------------------
+
+
+def _peak(found: PeakResult) -> str:
+    """A table with a row for each design, and the claims."""
+    one = found.peak
+    known = quantity(one.quantity, "omega" in one.axes or "omega" in one.fixed)
+    low, high = (f"{degrees(angle):g}" for angle in one.theta)
+    title = one.title or f"{WORDS[one.kind].capitalize()} of {one.quantity}, {known.meaning}"
+    lines = [f"{title} (theta from {low} to {high} deg)"]
+    lines += table(_peak_rows(found))
+    lines += _remarks(found)
+    return "\n".join(lines + [_claim(one, claim) for claim in found.claims])
+
+
+def _peak_rows(found: PeakResult) -> list[list[str]]:
+    one, dataset = found.peak, found.dataset
+    symbol = {"absmax": f"|{one.quantity}|", "max": f"max {one.quantity}", "min": f"min {one.quantity}"}[
+        one.kind
+    ]
+    slopes = [name for name in one.sensitivities if f"value_wrt_{name}" in dataset]
+    base = [f"over {_design(one.at_baseline)}"] if "increase" in dataset else []
+    rows = [[*one.axes, symbol, "at theta", *base, *(f"d/d({name})" for name in slopes)]]
+    units = [*(INPUTS[name].unit for name in one.axes), dataset["value"].units, "deg", *("" for _ in base)]
+    rows.append([*units, *(dataset[f"value_wrt_{name}"].units for name in slopes)])
+    for index in _thinned(list(np.ndindex(dataset["value"].shape))):
+        row = [number(dataset[name].values[i]) for name, i in zip(one.axes, index, strict=True)]
+        row += [number(dataset["value"].values[index]), f"{degrees(dataset['theta'].values[index]):.3f}"]
+        row += [_percent(float(dataset["increase"].values[index]))] if base else []
+        row += [_slope(found, name, index) for name in slopes]
+        rows.append(row)
+    return rows
+
+
+def _percent(value: float) -> str:
+    """A change: a dash where there is none, a power of ten where it is huge, so that columns stay narrow."""
+    form = "+.1f" if abs(value) < HUGE else "+.3g"
+    return "-" if isnan(value) else f"{value:{form}} %"
+
+
+def _slope(found: PeakResult, name: str, index: tuple[int, ...]) -> str:
+    """A sensitivity; of either sign by what points to the side where two angles share the peak."""
+    value = found.dataset[f"value_wrt_{name}"].values[index]
+    both = value != 0.0 and name in SIDEWAYS and found.mirrored[index]
+    return f"+-{number(abs(value))}" if both else number(value)
+
+
+def _thinned(indices: list[tuple[int, ...]]) -> list[tuple[int, ...]]:
+    """At most so many rows, evenly chosen, the first and last among them."""
+    if len(indices) <= ROWS:
+        return indices
+    return [indices[round(k * (len(indices) - 1) / (ROWS - 1))] for k in range(ROWS)]
+
+
+STATUS_WORDS = {
+    1: "cannot be assembled at any of these angles",
+    2: "reached at a limit angle or change point, or where friction turns round: no gradient there",
+    3: "stalled at all of these angles",
+    4: "bad input",
+    5: "jammed by friction at some angles (no balance of forces); the peak is of the others",
+    6: "with two balances of forces at some angles (friction); the peak is of the others",
+}
+
+
+def _remarks(found: PeakResult) -> list[str]:
+    """What is to be said about designs that have no ordinary peak, and about rows left out."""
+    status = found.dataset["status"].values
+    lines = [
+        f"  designs: {np.sum(status == code)} {words}"
+        for code, words in STATUS_WORDS.items()
+        if code in status
+    ]
+    if found.mirrored.any() and any(name in SIDEWAYS for name in found.peak.sensitivities):
+        lines.append(
+            "  +-: at ec = 0 the peak is at theta and at -theta; such a slope is + at one and - at the other"
+        )
+    if status.size > ROWS:
+        lines.append(f"  {ROWS} of {status.size} designs are shown")
+    return lines
+
+
+def _claim(one: Peak, result: ClaimResult) -> str:
+    claim = result.claim
+    printed = claim.increase.text(claim.increase.value)
+    where = f"{_design(claim.at)} over {_design(one.at_baseline)}"
+    if not isfinite(result.computed):
+        return f"  increase of {where}: {claim.source} {printed}, but there is no finite change: DIFFERS"
+    computed = claim.increase.text(claim.increase.rounded(result.computed))
+    verdict = "agrees" if result.agrees else "DIFFERS"
+    full = f" ({result.computed:.2f} %)" if abs(result.computed) < HUGE else ""
+    return f"  increase of {where}: {claim.source} {printed}, desaxe {computed}{full}: {verdict}"
+
+
+def _design(inputs: dict[str, float]) -> str:
+    return ", ".join(
+        f"{name} = {number(value)}" + (f" {INPUTS[name].unit}" if value else "")
+        for name, value in inputs.items()
+    )
+
+
+# ---- values and files ----------------------------------------------------------------------------
+
+
+def _values(content: Content, result: Run) -> str:
+    """What the labelled result holds."""
+    assert result.dataset is not None
+    shape = " x ".join(f"{name} ({size})" for name, size in result.dataset.sizes.items())
+    kept = "" if content.data is not None else '\n  not kept in a file: give [results] data = "out/values.nc"'
+    taken = content.reduction
+    of = f" ({', '.join(taken.kinds)} over {taken.axis})" if taken else ""
+    return f"Values\n  {', '.join(content.outputs)}{of} over {shape or 'one point'}{kept}"
+
+
+def _files(content: Content, result: Run) -> str:
+    """A line for each file that was written."""
+    rows: list[tuple[str, str]] = []
+    pictures = [f"{picture.quantity} over {picture.over}" for picture in content.pictures]
+    if content.data is not None:
+        rows += [("", "the values")] if result.dataset is not None else []
+        rows += [("", f"group {name}") for name in group_names(result.peaks)]
+        data = result.files[: len(result.files) - len(pictures)]
+        rows = [(str(path), what) for path, (_, what) in zip([*data, *[""] * len(rows)], rows, strict=False)]
+    paths = result.files[len(result.files) - len(pictures) :]
+    rows += [(str(path), what) for path, what in zip(paths, pictures, strict=True)]
+    return "\n".join(["Written", *table(rows, left=2)])

@@ -1,0 +1,95 @@
+"""`scene`: a mechanism, its motion and what is wanted of it, from a TOML file or a mapping."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+from ..support.progress import Progress
+from .peaks import PeakResult
+from .read import Content, plain_data, read
+from .report import report
+from .run import CheckResult, FeasibilityResult, Run, run
+from .schema import SceneError as SceneError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import xarray as xr
+
+
+@dataclass(frozen=True)
+class SceneResult:
+    """What a scene gave; printed, it is the report.
+
+    dataset      the outputs over the grid of all inputs, labelled, with `status` and `margin`; None
+                 where the scene wants none
+    peaks        one for each [[peak]]: its `dataset` (`value`, `theta`, `status`, `value_wrt_ec`, ...)
+                 and its `claims`
+    checks       one for each printed value: `computed` [SI] and whether it `agrees`
+    feasibility  how many designs turn fully, and the gaps of those that do not
+    files        what was written
+    """
+
+    scene: "Scene"
+    dataset: "xr.Dataset | None"
+    peaks: tuple[PeakResult, ...]
+    checks: tuple[CheckResult, ...]
+    feasibility: FeasibilityResult | None
+    files: "tuple[Path, ...]"
+
+    def report(self) -> str:
+        """The text that `desaxe run` prints."""
+        run = Run(self.dataset, self.checks, self.peaks, self.feasibility, self.files)
+        return report(self.scene.content, run)
+
+    def __str__(self) -> str:
+        return self.report()
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A checked scene: all of it in SI units. Two scenes that say the same are equal."""
+
+    content: Content
+    name: str = field(default="", compare=False)
+
+    @property
+    def title(self) -> str:
+        """The title of the scene."""
+        return self.content.title
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """The names of the wanted quantities."""
+        return self.content.outputs
+
+    @property
+    def inputs(self) -> dict[str, float | tuple[float, ...]]:
+        """The inputs in SI units in the order given: a number, or the values of a list or range."""
+        return dict(self.content.inputs)
+
+    def run(self, progress: Progress | None = None) -> SceneResult:
+        """Compute everything, write the files that the scene names, and return it.
+
+        `progress(done, total, what)` is called before each step. Paths are relative to the current
+        directory. Needs the extra `labelled`, and `plot` where the scene has pictures.
+        """
+        found = run(self.content, progress)
+        return SceneResult(self, found.dataset, found.peaks, found.checks, found.feasibility, found.files)
+
+
+def scene(source: str | PathLike[str] | Mapping[str, Any]) -> Scene:
+    """A scene from the path of a TOML file, or from the same thing as a mapping.
+
+    The file is data: nothing in it is ever executed. Raises SceneError (a ValueError) that names the
+    key, its value and what is allowed; OSError where the file cannot be read. Needs the extra
+    `scene`, and `units` where a value carries a unit.
+
+        dx.scene("examples/compactor.toml").run()
+    """
+    name = "" if isinstance(source, Mapping) else str(source)
+    try:
+        return Scene(read(plain_data(source)), name)
+    except SceneError as error:
+        raise SceneError(f"{name or 'scene'}: {error}") from None

@@ -1,0 +1,288 @@
+"""What a scene file may hold: its keys, their types, and what is said where one is wrong."""
+
+from collections.abc import Iterator, Mapping
+from types import UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+
+import msgspec
+from msgspec import Meta, Struct
+
+from ..compiler.languages.numba.reductions import KINDS
+from ..mechanism.inputs import INPUTS
+from ..mechanism.spelling import did_you_mean
+
+
+class SceneError(ValueError):
+    """A scene that cannot be used; the message names the key, its value and what is allowed."""
+
+
+_NUMBER = 'a number in SI units, or text with a unit such as "125 mm" or "0.5 kg"'
+_WORDS = "a list of names of quantities"
+
+Text = Annotated[str, Meta(description="text")]
+Name = Annotated[str, Meta(description="the name of a quantity")]
+File = Annotated[str, Meta(description="the path of a file")]
+Number = Annotated[float | str, Meta(description=_NUMBER)]
+Count = Annotated[int, Meta(ge=1, description="a whole number, at least 1")]
+Points = Annotated[int, Meta(ge=2, description="a whole number, at least 2")]
+Printed = Annotated[float | str, Meta(description='text as it is printed, such as "-20.2 m/s", or a number')]
+Percent = Annotated[float | str, Meta(description='a percentage such as "33 %"')]
+Branch = Annotated[Literal[1, -1], Meta(description="1 (the papers) or -1")]
+Kind = Annotated[Literal["absmax", "max", "min"], Meta(description="one of absmax, max, min")]
+Accuracy = Annotated[
+    str | float, Meta(description='"fast", "standard", "extended", or an error such as 1e-9')
+]
+Angles = Annotated[tuple[Number, Number], Meta(description='two angles such as ["0 deg", "360 deg"]')]
+
+
+class Section(Struct, frozen=True, forbid_unknown_fields=True):
+    """A table of the scene file."""
+
+
+class Range(Section, frozen=True):
+    """Evenly spaced values, both ends included: so many (`num`) or so far apart (`step`)."""
+
+    start: Number
+    stop: Number
+    num: Points | None = None
+    step: Number | None = None
+
+
+_VALUES = (
+    'a number in SI units, text with a unit such as "125 mm" or "0.5 kg", a list of these, '
+    "or a range {start = ..., stop = ..., num = ...} (or step instead of num)"
+)
+Values = Annotated[float | str | tuple[Number, ...] | Range, Meta(description=_VALUES)]
+_INPUT_NAMES = {"propertyNames": {"enum": list(INPUTS)}}
+Design = Annotated[
+    dict[str, Number],
+    Meta(description="a table of inputs, such as { ec = 0 }", extra_json_schema=_INPUT_NAMES),
+]
+Axes = Annotated[
+    dict[str, Values],
+    Meta(description='a table of inputs, such as { ec = [0, "50 mm"] }', extra_json_schema=_INPUT_NAMES),
+]
+Reduced = Annotated[
+    dict[
+        str,
+        Annotated[str | tuple[str, ...], Meta(description=f"one of {', '.join(KINDS)}, or a list of these")],
+    ],
+    Meta(
+        description='a table axis = what is taken of it, such as { theta = "absmax" }',
+        extra_json_schema=_INPUT_NAMES,
+    ),
+]
+
+
+class Mechanism(Section, frozen=True):
+    """`[mechanism]`: crank, rod, eccentricity, and on which side of the crank pin the slider is."""
+
+    AB: Values | None = None
+    BC: Values | None = None
+    ec: Values | None = None
+    branch: Branch = 1
+
+
+class Motion(Section, frozen=True):
+    """`[motion]`: paper A's law (omega0, alpha) or a given state (omega, alpha), at crank angles theta."""
+
+    theta: Values | None = None
+    omega0: Values | None = None
+    omega: Values | None = None
+    alpha: Values | None = None
+
+
+class Masses(Section, frozen=True):
+    """`[masses]`: masses, moments of inertia and centres of mass; halfway along the links without these."""
+
+    m_crank: Values | None = None
+    m_rod: Values | None = None
+    m_slider: Values | None = None
+    I_crank: Values | None = None
+    I_rod: Values | None = None
+    r_crank: Values | None = None
+    r_rod: Values | None = None
+
+
+class Loads(Section, frozen=True):
+    """`[loads]`: the force on the slider, gravity, and the friction of the guide."""
+
+    F_X: Values | None = None
+    F_Y: Values | None = None
+    g_X: Values | None = None
+    g_Y: Values | None = None
+    mu: Values | None = None
+
+
+class CheckTable(Section, frozen=True):
+    """`[[check]]`: printed values, shown next to the computed ones."""
+
+    printed: Annotated[
+        dict[str, Printed], Meta(description='a table quantity = value, such as { V_C = "-20.2 m/s" }')
+    ]
+    at: Design = {}
+    digits: Count | None = None
+    title: Text = ""
+    source: Text = "printed"
+
+
+class ClaimTable(Section, frozen=True):
+    """`[[peak.claim]]`: what somebody says about the peak of one design."""
+
+    at: Design
+    increase: Percent
+    source: Text = "printed"
+
+
+class PeakTable(Section, frozen=True):
+    """`[[peak]]`: the refined extremum of a quantity over the crank angle, for many designs."""
+
+    quantity: Name
+    kind: Kind = "absmax"
+    over: Axes = {}
+    theta: Angles | None = None
+    baseline: Design | None = None
+    sensitivities: Annotated[tuple[str, ...] | None, Meta(description="a list of inputs")] = None
+    claim: Annotated[tuple[ClaimTable, ...], Meta(description="a list of tables, [[peak.claim]]")] = ()
+    title: Text = ""
+
+
+class PictureTable(Section, frozen=True):
+    """`[[picture]]`: a quantity over one input, one curve for each value of another."""
+
+    file: File
+    quantity: Name
+    over: Annotated[str, Meta(description="the name of an input")] = "theta"
+    family: Axes = {}
+    at: Design = {}
+    title: Text = ""
+
+
+class Results(Section, frozen=True):
+    """`[results]`: where the labelled values go: .nc (NetCDF), .zarr, .csv or .npz (NumPy)."""
+
+    data: File | None = None
+
+
+class SceneFile(Section, frozen=True):
+    """A scene as it is written."""
+
+    title: Text = ""
+    outputs: Annotated[tuple[Name, ...], Meta(description=_WORDS)] = ()
+    accuracy: Accuracy = "standard"
+    reduce: Reduced = {}
+    threads: Count | None = None
+    mechanism: Annotated[Mechanism, Meta(description="a table, [mechanism]")] = Mechanism()
+    motion: Annotated[Motion, Meta(description="a table, [motion]")] = Motion()
+    masses: Annotated[Masses, Meta(description="a table, [masses]")] = Masses()
+    loads: Annotated[Loads, Meta(description="a table, [loads]")] = Loads()
+    check: Annotated[tuple[CheckTable, ...], Meta(description="a list of tables, [[check]]")] = ()
+    peak: Annotated[tuple[PeakTable, ...], Meta(description="a list of tables, [[peak]]")] = ()
+    picture: Annotated[tuple[PictureTable, ...], Meta(description="a list of tables, [[picture]]")] = ()
+    results: Annotated[Results, Meta(description="a table, [results]")] = Results()
+
+
+def decoded(data: Mapping[str, Any]) -> SceneFile:
+    """The scene that plain data stands for; SceneError names the first key that is wrong."""
+    try:
+        return msgspec.convert(data, SceneFile)
+    except msgspec.ValidationError as error:
+        raise SceneError(_complaint(data, SceneFile, "") or str(error)) from None
+
+
+def shown(value: Any) -> str:
+    """A value as it would stand in a scene file, cut short where it is long."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return f'"{value}"' if len(value) <= 80 else f'"{value[:40]} ... {value[-20:]}"'
+    text = "a table" if isinstance(value, Mapping) else repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def hint(word: str, allowed: tuple[str, ...]) -> str:
+    """The allowed words, the nearest one first where there is one near."""
+    return f"{did_you_mean(word, allowed)}allowed: {', '.join(allowed)}"
+
+
+# ---- which key is wrong --------------------------------------------------------------------------
+
+
+def _complaint(value: Any, kind: Any, key: str) -> str | None:
+    """What is wrong with a value or, better, with the innermost part of it; None where nothing is."""
+    if _fits(value, kind):
+        return None
+    struct = _member(kind, lambda part: isinstance(part, type) and issubclass(part, Struct))
+    if struct is not None and isinstance(value, Mapping):
+        found = _wrong_keys(value, struct, key)
+        if found:
+            return found
+    for part, part_kind, part_key in _parts(value, kind, key):
+        found = _complaint(part, part_kind, part_key)
+        if found:
+            return found
+    return f"{key or 'the scene'} = {shown(value)}: it must be {_allowed(kind)}"
+
+
+def _fits(value: Any, kind: Any) -> bool:
+    try:
+        msgspec.convert(value, kind)
+    except msgspec.ValidationError:
+        return False
+    return True
+
+
+def _wrong_keys(value: Mapping[str, Any], struct: type[Struct], key: str) -> str | None:
+    fields = msgspec.structs.fields(struct)
+    names = tuple(field.name for field in fields)
+    for name in value:
+        if name not in names:
+            return f"{_dotted(key, name)} = {shown(value[name])}: unknown key; {hint(str(name), names)}"
+    for field in fields:
+        if field.required and field.name not in value:
+            return f"{_dotted(key, field.name)} is missing: it must be {_allowed(field.type)}"
+    return None
+
+
+def _parts(value: Any, kind: Any, key: str) -> Iterator[tuple[Any, Any, str]]:
+    """The parts of a table or list, each with its type and key; a list is counted from 1."""
+    if isinstance(value, Mapping):
+        struct = _member(kind, lambda part: isinstance(part, type) and issubclass(part, Struct))
+        table = _member(kind, lambda part: _origin(part) is dict)
+        hints = get_type_hints(struct, include_extras=True) if struct else {}
+        for name, part in value.items():
+            part_kind = hints[name] if struct else get_args(table)[1] if table else None
+            if part_kind is not None:
+                yield part, part_kind, _dotted(key, name)
+    elif isinstance(value, list):
+        sequence = _member(kind, lambda part: _origin(part) is tuple)
+        kinds = get_args(sequence) if sequence else ()
+        if kinds and (kinds[-1] is Ellipsis or len(kinds) == len(value)):
+            for index, part in enumerate(value):
+                part_kind = kinds[0] if kinds[-1] is Ellipsis else kinds[index]
+                yield part, part_kind, f"{key} #{index + 1}"
+
+
+def _member(kind: Any, wanted: Any) -> Any:
+    """The first of the types that make up a type, itself included, that is wanted."""
+    if get_origin(kind) is Annotated:
+        return _member(get_args(kind)[0], wanted)
+    if get_origin(kind) in (Union, UnionType):
+        return next((found for part in get_args(kind) if (found := _member(part, wanted))), None)
+    return kind if wanted(kind) else None
+
+
+def _origin(kind: Any) -> Any:
+    return get_origin(kind)
+
+
+def _allowed(kind: Any) -> str:
+    """What the description of a type says is allowed."""
+    if get_origin(kind) is Annotated:
+        return next(meta.description for meta in get_args(kind)[1:] if isinstance(meta, Meta)) or ""
+    parts = [part for part in get_args(kind) if part is not type(None)]
+    return _allowed(parts[0]) if parts else "a table"
+
+
+def _dotted(key: str, name: str) -> str:
+    return f"{key}.{name}" if key else str(name)

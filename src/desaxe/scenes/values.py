@@ -1,0 +1,94 @@
+"""The values of inputs as they are written in a scene, in SI units."""
+
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from math import isfinite
+
+from ..mechanism.inputs import INPUTS, is_good
+from ..mechanism.units import exact, in_si
+from ..support.quantity_text import quantity_text
+from . import schema
+from .schema import SceneError, shown
+
+Value = float | tuple[float, ...]
+MOST = 100_000_000  # values of one range
+
+
+def values_of(key: str, name: str, written: float | str | tuple[float | str, ...] | schema.Range) -> Value:
+    """A number, or the values of a list or range, in the SI unit of an input."""
+    if isinstance(written, tuple):
+        if not written:
+            raise SceneError(f"{key} = []: at least one value is wanted")
+        return tuple(number_of(f"{key} #{index}", name, part) for index, part in enumerate(written, 1))
+    if isinstance(written, schema.Range):
+        return _spread(key, name, written)
+    return number_of(key, name, written)
+
+
+def number_of(key: str, name: str, written: float | str) -> float:
+    """A number or text with a unit, in the SI unit of an input."""
+    value = float(written) if not isinstance(written, str) else _from_text(key, name, written)
+    if not is_good(name, value):
+        raise SceneError(f"{key} = {shown(written)}: it must be {INPUTS[name].limit}")
+    return value
+
+
+def _from_text(key: str, name: str, written: str) -> float:
+    try:
+        text = quantity_text(written)
+    except ValueError as error:
+        raise SceneError(f"{key} = {shown(written)}: {error}") from None
+    try:
+        return float(in_si(name, text))
+    except ValueError as error:
+        # What the units' complaint says after the name and the value that it repeats.
+        reason = str(error).partition(": ")[2] or str(error)
+        raise SceneError(f"{key} = {shown(written)}: {reason}") from None
+
+
+def _spread(key: str, name: str, written: schema.Range) -> tuple[float, ...]:
+    """The values of a range, both ends included."""
+    for end in ("start", "stop"):
+        number_of(f"{key}.{end}", name, getattr(written, end))
+    start, stop = _exactly(name, written.start), _exactly(name, written.stop)
+    if (written.num is None) == (written.step is None):
+        raise SceneError(f"{key}: a range has start, stop, and either num (how many) or step (how far apart)")
+    last = written.num - 1 if written.num is not None else _steps(key, name, written, stop - start)
+    if last >= MOST:
+        raise SceneError(f"{key}: {last + 1} values are too many, at most {MOST}")
+    return (*(float(start + (stop - start) * k / last) for k in range(last)), float(stop))
+
+
+def _exactly(name: str, written: float | str) -> Fraction:
+    """A number as it is written, so that the values of a range are those a person would write."""
+    return exact(name, written if isinstance(written, str) else repr(float(written)), INPUTS[name].unit)
+
+
+def _steps(key: str, name: str, written: schema.Range, length: Fraction) -> int:
+    # A step may be negative, where the input itself may not.
+    if isinstance(written.step, str):
+        _from_text(f"{key}.step", name, written.step)
+    elif not isfinite(written.step or 0.0):
+        raise SceneError(f"{key}.step = {shown(written.step)}: it must be a finite number")
+    step = _exactly(name, written.step or 0.0)
+    if step and abs(length) > MOST * abs(step):
+        raise SceneError(f"{key}.step = {shown(written.step)}: more than {MOST} values are too many")
+    count = float(length / step) if step else 0.0
+    if not (isfinite(count) and count > 0.5 and abs(count - round(count)) < 1e-6):
+        raise SceneError(
+            f"{key}.step = {shown(written.step)}: it must lead from start to stop in a whole number of steps"
+        )
+    return round(count)
+
+
+def design_of(key: str, written: Mapping[str, float | str]) -> dict[str, float]:
+    """A table of inputs in SI units."""
+    only_inputs(key, written)
+    return {name: number_of(f"{key}.{name}", name, value) for name, value in written.items()}
+
+
+def only_inputs(key: str, names: Iterable[str]) -> None:
+    """Complain about a key that is no input."""
+    for name in names:
+        if name not in INPUTS:
+            raise SceneError(f"{key}.{name}: unknown input; {schema.hint(name, tuple(INPUTS))}")

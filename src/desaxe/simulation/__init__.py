@@ -1,0 +1,17 @@
+"""The motion of the crank under a torque.
+
+simulate      the public call
+checks        arguments, read and checked
+model         a design as functions of its state
+coordinate    the coordinate in which a motion is smooth everywhere
+equations     the equations of motion
+friction      guide friction, which depends on the acceleration that it changes
+one_design    one motion, step by step, with its events
+events        what happens inside a step
+many_designs  arrays of designs in one compiled call
+dop853        the integrator that numba compiles
+compiled      the module of a family of designs
+history       histories of angle, speed, quantities and energy
+result        the result and its statuses
+stubs         stand-ins for the functions of a design
+"""

@@ -1,0 +1,210 @@
+"""What a caller gives, read and checked: every error names the argument, the value and the limit."""
+
+from collections.abc import Callable, Mapping
+from inspect import signature
+from math import inf, isfinite, isnan, nan, pi
+from typing import Any
+
+import numpy as np
+
+from ..mechanism.catalogue import quantity
+from ..mechanism.limit_angles import theta_intervals
+from ..mechanism.names import CENTRES, LENGTHS, LOADS
+from ..mechanism.units import in_unit
+from ..runtime.request import as_number, several
+from ..support.checks import real_number
+from ..support.shown import shown
+from .coordinate import FREE, TURN, Chart, arc_around, inside
+from .model import Drive, Load, Model
+
+METHODS = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
+OWN = {"t", "theta", "omega", "alpha", "status"}  # keys of the result that no name may take
+SMALL = 1e-4  # rad: so near to a dead centre without inertia no motion is followed
+
+
+def scalar(name: str, value: Any, unit: str, least: float = -inf, limit: str = "a finite number") -> float:
+    """A number, which may carry its unit."""
+    number = in_unit(name, value, unit) if isinstance(value, str) or hasattr(value, "magnitude") else value
+    if isinstance(number, np.ndarray) and number.ndim == 0:
+        number = number[()]
+    try:
+        number = real_number(name, number)
+    except TypeError:
+        raise TypeError(f"{name} = {shown(value)}: it must be {limit}") from None
+    if not (isfinite(number) and number >= least):
+        raise ValueError(f"{name} = {shown(value)}: it must be {limit}")
+    return number
+
+
+def design_values(given: Mapping[str, Any]) -> dict[str, float]:
+    """The lengths, masses and constant loads of one design; those that are not given are 0."""
+    values = {}
+    for name in (*LENGTHS, *LOADS):
+        value = given.get(name)
+        if value is None and name in CENTRES:
+            continue
+        if callable(value):
+            values[name] = nan  # it varies: nothing may be folded
+        else:
+            values[name] = 0.0 if value is None and name in LOADS else one(name, value)
+    return values
+
+
+def one(name: str, value: Any) -> float:
+    """A number for an input of the mechanism."""
+    number = as_number(name, value, LENGTHS, ("simulate",))
+    if number is None:
+        raise TypeError(f"{name} = {value!r}: a number is wanted")
+    return number
+
+
+def check_names(names: Any) -> tuple[str, ...]:
+    """The names to tell: each a quantity or sensitivity of the state form."""
+    wanted = (names,) if isinstance(names, str) else several(names)
+    for name in wanted:
+        if name in OWN - {"omega"}:
+            raise ValueError(f"names: {name!r} is told already, for the simulation itself")
+        quantity(name, state=True)
+    return wanted
+
+
+def check_signature(name: str, value: Callable[..., Any]) -> None:
+    """A load that varies is a function of (t, theta, omega)."""
+    try:
+        signature(value).bind(0.0, 0.0, 0.0)
+    except TypeError:
+        raise TypeError(
+            f"{name}: a function of (t, theta, omega) is wanted, got one of {signature(value)}"
+        ) from None
+    except ValueError:  # a built-in that does not tell its signature
+        return
+
+
+def load(name: str, value: Any, unit: str) -> Load:
+    """A torque or force as a function of (t, theta, omega), checked wherever it is called."""
+    if not callable(value):
+        number = scalar(name, value, unit)
+        return lambda t, theta, omega: number
+    check_signature(name, value)
+
+    def checked(t: float, theta: float, omega: float) -> float:
+        found = value(t, theta, omega)
+        try:
+            number = float(found)
+        except (TypeError, ValueError, OverflowError):
+            raise TypeError(
+                f"{name} gave {shown(found)} at t = {t:g}: a number in {unit} is wanted"
+            ) from None
+        if not isfinite(number) and isfinite(theta) and isfinite(omega):
+            raise ValueError(
+                f"{name} gave {number} at t = {t:g}, theta = {theta:g}, omega = {omega:g}: "
+                f"it must be a finite number in {unit}"
+            )
+        return number
+
+    return checked
+
+
+def drive_of(torque: Any, F_X: Any, F_Y: Any) -> Drive:
+    """Torque and forces; what is not given is 0."""
+    forces = (0.0 if F_X is None else F_X, 0.0 if F_Y is None else F_Y)
+    return Drive(
+        load("torque", torque, "N*m"),
+        load("F_X", forces[0], "N"),
+        load("F_Y", forces[1], "N"),
+        not any(map(callable, (torque, *forces))),
+    )
+
+
+def model_of(values: Mapping[str, float], branch: int, theta0: float, drive: Drive) -> Model:
+    """The design in the chart that its motion wants; an error where it cannot start at theta0."""
+    lengths = tuple(values[name] for name in LENGTHS)
+    arc = arc_around(theta0, *lengths)
+    if arc is None:
+        raise ValueError(f"theta0 = {theta0:g}: it cannot be assembled there; {_feasible(lengths)}")
+    if not inside(arc, theta0):
+        raise ValueError(
+            f"theta0 = {theta0!r}: that is a limit angle (S = 0), where no motion can start; "
+            f"{_feasible(lengths)}"
+        )
+    model = Model(values, branch, Chart(*arc, 0.0), drive) if isfinite(arc[0] - arc[1]) else None
+    if model is None:
+        model = Model(values, branch, FREE, drive)
+    elif grows(values) and theta_intervals(*lengths) != [(0.0, TURN)]:
+        model = Model(values, branch, Chart(*arc, 0.5 * (arc[1] - arc[0])), drive)
+    _check_inertia(model, theta0)
+    return model
+
+
+def grows(values: Mapping[str, float]) -> bool:
+    """Whether the effective inertia grows without bound at a limit angle.
+
+    There the mass that counts is m_slider BC^2 + m_rod r_rod^2 + I_rod, for the slider moves and the rod
+    turns about the crank pin while the crank stands still.
+    """
+    swings = values["m_rod"] > 0.0 and values.get("r_rod", 1.0) != 0.0
+    return values["m_slider"] > 0.0 or values["I_rod"] > 0.0 or swings
+
+
+def _feasible(lengths: tuple[float, ...]) -> str:
+    found = [f"{first:.6g} to {last:.6g}" for first, last in theta_intervals(*lengths)]
+    told = ", ".join(f"{name} = {value:g}" for name, value in zip(LENGTHS, lengths, strict=True))
+    return f"with {told} theta goes {' or '.join(found)} rad" if found else f"{told}: there is no mechanism"
+
+
+def _check_inertia(model: Model, theta0: float) -> None:
+    inertia = model.inertia(theta0)
+    if isnan(inertia):
+        raise ValueError(f"theta0 = {theta0:g}: the effective inertia is not finite there")
+    gaps = {which: _gap(theta0, angle) for which, angle in model.vanishing().items()}
+    near = [which for which, gap in gaps.items() if gap <= SMALL]
+    if near or inertia <= 0.0:
+        moves = any(model.values[name] for name in ("m_crank", "m_rod", "m_slider", "I_crank", "I_rod"))
+        where = f" (the {near[0]} dead centre)" if near and moves else ""
+        raise ValueError(
+            f"M_eff = {inertia:g} kg m^2 at theta0 = {theta0:g}{where}: nothing moves without inertia; "
+            f"give {'m_crank or I_crank' if moves else 'masses'}, M_eff must be > 0"
+        )
+
+
+def _gap(theta: float, angle: float) -> float:
+    """How far apart two crank angles are, whole turns apart."""
+    return abs((theta - angle + pi) % TURN - pi)
+
+
+def read_times(times: Any, t_end: float) -> Any:
+    """The instants to tell, as an array; None for the default."""
+    if times is None:
+        return None
+    try:
+        array = np.array(times, dtype=np.float64)
+    except (ValueError, TypeError, OverflowError):
+        raise TypeError(f"times = {shown(times)}: a row of finite instants in s is wanted") from None
+    if array.ndim != 1 or not array.size or not np.isfinite(array).all():
+        raise ValueError("times: a row of finite instants in s is wanted")
+    if array[0] < 0.0 or array[-1] > t_end or (np.diff(array) < 0.0).any():
+        raise ValueError(f"times: they must ascend from 0 to t_end = {t_end:g}")
+    return array
+
+
+def read_until(until: Any) -> tuple[float, ...]:
+    """The crank angles that end the motion."""
+    if until is None:
+        return ()
+    several = until if isinstance(until, (list, tuple, np.ndarray)) else [until]
+    return tuple(scalar("until", angle, "rad") for angle in several)
+
+
+def read_method(method: str) -> str:
+    """One of SciPy's integrators."""
+    if not isinstance(method, str) or method not in METHODS:
+        raise ValueError(f"method = {shown(method)}: it is one of {', '.join(METHODS)}")
+    return method
+
+
+def read_rtol(rtol: Any) -> float:
+    """The relative tolerance."""
+    number = scalar("rtol", rtol, "1", 0.0, "a number from 3e-14 to 0.1")
+    if not 3e-14 <= number <= 0.1:
+        raise ValueError(f"rtol = {shown(rtol)}: it must be a number from 3e-14 to 0.1")
+    return number

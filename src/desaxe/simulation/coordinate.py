@@ -1,0 +1,87 @@
+"""The coordinate in which the motion of a design is smooth everywhere.
+
+A crank that turns fully needs none but its angle. A mechanism that cannot turn fully has limit angles,
+where S = 0: with a massive rod or slider the effective inertia grows like one over the distance, the crank
+comes to rest there and would come back with the rod on its other branch. In q, with
+theta = middle + half sin(q), that is a smooth passage through q = pi/2: dtheta/dq vanishes just as
+1/sqrt(M_eff) does, and beyond it the branch is the other one.
+"""
+
+from math import asin, copysign, cos, fsum, inf, nextafter, pi, sin, sqrt
+from typing import NamedTuple
+
+from ..mechanism.limit_angles import theta_intervals
+
+TURN = 2.0 * pi
+EDGE = 1e-13  # rad: a bounded motion goes on, for the integrator, with what holds just before the limit
+
+
+class Chart(NamedTuple):
+    """theta as a function of q. `half` is 0 where q is theta itself; `first`, `last`: the limit angles."""
+
+    first: float
+    last: float
+    half: float
+
+    @property
+    def middle(self) -> float:
+        """The angle halfway between the limits."""
+        return 0.5 * (self.first + self.last)
+
+    def place(self, q: float) -> tuple[float, float, float]:
+        """theta, dtheta/dq and the sign of the branch at q."""
+        if self.half:
+            slope = self.half * cos(q)
+            return self.middle + self.half * sin(q), slope, copysign(1.0, slope)
+        return min(max(q, self.first + EDGE), self.last - EDGE), 1.0, 1.0
+
+    def q(self, theta: float) -> float:
+        """The coordinate of a crank angle; measured from the nearer limit, so that no digit is lost."""
+        if not self.half:
+            return theta
+        before = theta < self.middle
+        gap = theta - self.first if before else self.last - theta
+        quarter = pi / 2 - 2.0 * asin(sqrt(max(gap, 0.0) / (2.0 * self.half)))
+        return -quarter if before else quarter
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The coordinates of the limit angles."""
+        return (-pi / 2, pi / 2) if self.half else (self.first, self.last)
+
+
+FREE = Chart(-inf, inf, 0.0)
+
+
+def arc_around(theta: float, ec: float, AB: float, BC: float) -> tuple[float, float] | None:
+    """The limit angles on both sides of theta, infinite where the crank turns fully, None if it is outside.
+
+    A change point is a limit too: the mechanism can leave it on either branch.
+    """
+    intervals = theta_intervals(ec, AB, BC)
+    if intervals == [(0.0, TURN)]:
+        intervals = _between_change_points(ec, AB, BC)
+        if not intervals:
+            return -inf, inf
+    for first, last in intervals:
+        turns = TURN * round((theta - 0.5 * (first + last)) / TURN)
+        if first + turns <= theta <= last + turns:
+            return first + turns, last + turns
+    return None
+
+
+def _between_change_points(ec: float, AB: float, BC: float) -> list[tuple[float, float]]:
+    """The arcs between the quarters at which S vanishes; none where it turns fully."""
+    upper, lower = fsum((BC, -AB, -ec)) == 0.0, fsum((BC, -AB, ec)) == 0.0
+    if upper and lower:
+        return [(-pi / 2, pi / 2), (pi / 2, 1.5 * pi)]
+    if upper or lower:
+        start = pi / 2 if upper else -pi / 2
+        return [(start, start + TURN)]
+    return []
+
+
+def inside(arc: tuple[float, float], theta: float) -> bool:
+    """Whether theta is not one of the limit angles itself, to its last digits."""
+    least = 4.0 * (nextafter(abs(theta), inf) - abs(theta))
+    return theta - arc[0] > least and arc[1] - theta > least

@@ -1,0 +1,327 @@
+"""DOP853 for one design after the other, in plain loops: the text below the line is compiled by numba.
+
+It stands in a module behind the functions `still`, `moving`, `potential` and `torque` that are written from
+the Program for the designs at hand (`module`). The method is that of Hairer, Norsett and Wanner, "Solving
+Ordinary Differential Equations I", section II, with the step control, the error norm and the dense output
+of scipy.integrate.DOP853, whose public coefficients are passed in: one design takes the steps that
+`simulate` takes for it alone.
+
+setup   a row per design: branch, limit angles, half of the arc (see `chart`), torque, F_Y, theta0,
+        omega_start, an energy that the loads suggest
+tables  A, B, C, E3, E5, D and the rows of A and C for the dense output
+"""
+
+from math import asin, copysign, cos, inf, nan, pi, sin, sqrt
+from typing import Any
+
+from numpy import empty, nextafter
+
+from .stubs import moving, potential, still, torque
+
+# ---- compiled ------------------------------------------------------------------------------------
+
+
+def place(q: float, setup: Any) -> Any:
+    """theta, dtheta/dq and the branch at the coordinate q."""
+    if setup[3] > 0.0:
+        slope = setup[3] * cos(q)
+        return 0.5 * (setup[1] + setup[2]) + setup[3] * sin(q), slope, copysign(1.0, slope)
+    return min(max(q, setup[1] + 1e-13), setup[2] - 1e-13), 1.0, 1.0
+
+
+def rates(t: float, y: Any, p: Any, setup: Any, out: Any) -> None:
+    """The rates of q, v and W: the law without friction."""
+    theta, slope, side = place(y[0], setup)
+    inertia, weight, travel = still(theta, side * setup[0], p)
+    if not (0.0 < inertia < inf) or slope == 0.0:
+        out[:] = nan
+        return
+    root = sqrt(inertia)
+    omega = side * y[1] / root
+    push = torque(t, theta, omega, setup[4]) + setup[5] * travel
+    out[0] = y[1] / (root * abs(slope))
+    out[1] = side * (push - weight) / root
+    out[2] = push * omega
+
+
+def combined(K: Any, weights: Any, count: int, column: int) -> float:
+    """The sum of the first stages by their weights."""
+    total = 0.0
+    for j in range(count):
+        total += K[j, column] * weights[j]
+    return total
+
+
+def advance(y: Any, h: float, K: Any, weights: Any, count: int, out: Any) -> None:
+    """y + h times the sum of the first stages by their weights, half of which are 0."""
+    q, v, w = 0.0, 0.0, 0.0
+    for j in range(count):
+        weight = weights[j]
+        if weight != 0.0:
+            q += K[j, 0] * weight
+            v += K[j, 1] * weight
+            w += K[j, 2] * weight
+    out[0], out[1], out[2] = y[0] + h * q, y[1] + h * v, y[2] + h * w
+
+
+def trial(t: float, y: Any, h: float, p: Any, setup: Any, tables: Any, K: Any, new: Any) -> None:
+    """A step of order 8: its stages and where it comes to. K[0] has the rates at its start."""
+    A, B, C = tables[0], tables[1], tables[2]
+    for s in range(1, 12):
+        advance(y, h, K, A[s], s, new)
+        rates(t + C[s] * h, new, p, setup, K[s])
+    advance(y, h, K, B, 12, new)
+    rates(t + h, new, p, setup, K[12])
+
+
+def error_of(h: float, y: Any, new: Any, rtol: Any, atol: Any, tables: Any, K: Any) -> float:
+    """The error of a step: 1 is just good enough."""
+    fifth, third = 0.0, 0.0
+    for i in range(3):
+        scale = atol[i] + max(abs(y[i]), abs(new[i])) * rtol[i]
+        fifth += (combined(K, tables[4], 13, i) / scale) ** 2
+        third += (combined(K, tables[3], 13, i) / scale) ** 2
+    if fifth == 0.0 and third == 0.0:
+        return 0.0
+    error: float = abs(h) * fifth / sqrt((fifth + 0.01 * third) * 3.0)
+    return error
+
+
+def first_step(t_end: float, y: Any, p: Any, setup: Any, rtol: Any, atol: Any, K: Any, new: Any) -> float:
+    """A first step from the sizes of state, rates and their change. K[0] has the rates."""
+    d0, d1, d2 = 0.0, 0.0, 0.0
+    for i in range(3):
+        scale = atol[i] + abs(y[i]) * rtol[i]
+        d0 += (y[i] / scale) ** 2 / 3.0
+        d1 += (K[0, i] / scale) ** 2 / 3.0
+    d0, d1 = sqrt(d0), sqrt(d1)
+    h = min(1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1, t_end)
+    for i in range(3):
+        new[i] = y[i] + h * K[0, i]
+    rates(h, new, p, setup, K[1])
+    for i in range(3):
+        scale = atol[i] + abs(y[i]) * rtol[i]
+        d2 += ((K[1, i] - K[0, i]) / scale) ** 2 / 3.0
+    d2 = sqrt(d2) / h
+    then = max(1e-6, h * 1e-3) if d1 <= 1e-15 and d2 <= 1e-15 else (0.01 / max(d1, d2)) ** 0.125
+    return min(100.0 * h, then, t_end)
+
+
+def dense(t: float, y: Any, h: float, new: Any, p: Any, setup: Any, tables: Any, K: Any, F: Any) -> None:
+    """The polynomial of a step: its coefficients, from three more stages."""
+    D, A, C = tables[5], tables[6], tables[7]
+    state = empty(3)
+    for s in range(3):
+        advance(y, h, K, A[s], 13 + s, state)
+        rates(t + C[s] * h, state, p, setup, K[13 + s])
+    for i in range(3):
+        change = new[i] - y[i]
+        F[0, i] = change
+        F[1, i] = h * K[0, i] - change
+        F[2, i] = 2.0 * change - h * (K[12, i] + K[0, i])
+        for row in range(4):
+            F[3 + row, i] = h * combined(K, D[row], 16, i)
+
+
+def inside(x: float, y: Any, F: Any, i: int) -> float:
+    """A coordinate at the part x of a step."""
+    total = 0.0
+    for k in range(7):
+        total = (total + F[6 - k, i]) * (x if k % 2 == 0 else 1.0 - x)
+    return float(total + y[i])
+
+
+def crossing(y: Any, F: Any, bound: float) -> float:
+    """The part of a step at which q passes a bound, by halving."""
+    low, high = 0.0, 1.0
+    before = y[0] < bound
+    for _ in range(60):
+        x = 0.5 * (low + high)
+        if (inside(x, y, F, 0) < bound) == before:
+            low = x
+        else:
+            high = x
+    return 0.5 * (low + high)
+
+
+def over_limit(before: float, after: float, first: float, last: float) -> float:
+    """By what to change a step that ends near a limit angle, where S has lost its digits; 0 if it may stay.
+
+    The step over a limit is a short one from a little before it, for the dense output is less exact.
+    """
+    way = after - before
+    left = last - before if way > 0.0 else before - first
+    if way == 0.0 or (left > 0.5 and abs(way) < 0.5):
+        return 0.0  # it comes from the limit
+    if abs(way) >= left and abs(way) < 1.2e-2:
+        return 0.0
+    wanted = left - 5e-3 if left > 8e-3 else left + 3e-3
+    return min(wanted / abs(way), 3.0)
+
+
+def tell(
+    t: float, q: float, v: float, p: Any, setup: Any, theta: Any, omega: Any, alpha: Any, row: int
+) -> None:
+    """Angle, speed and acceleration of a state, into the histories."""
+    angle, _, side = place(q, setup)
+    inertia, slope, weight, travel = moving(angle, side * setup[0], p)
+    speed = side * v / sqrt(inertia)
+    push = torque(t, angle, speed, setup[4]) + setup[5] * travel - weight
+    theta[row], omega[row] = angle, speed
+    alpha[row] = (push - 0.5 * slope * speed * speed) / inertia
+
+
+def energy_of(y: Any, p: Any, setup: Any) -> float:
+    """Kinetic and potential energy."""
+    theta, _, side = place(y[0], setup)
+    return float(0.5 * y[1] * y[1]) + potential(theta, side * setup[0], p)
+
+
+def start(p: Any, setup: Any, rtol: float, t_end: float, y: Any, atol: Any) -> bool:
+    """The state at the start and the tolerances; whether there is an inertia to move."""
+    inertia, weight, _ = still(setup[6], setup[0], p)
+    if not (0.0 < inertia < inf):
+        return False
+    if setup[3] > 0.0:
+        lower = setup[6] < 0.5 * (setup[1] + setup[2])
+        gap = setup[6] - setup[1] if lower else setup[2] - setup[6]
+        quarter = pi / 2 - 2.0 * asin(sqrt(gap / (2.0 * setup[3])))
+        y[0] = -quarter if lower else quarter
+    else:
+        y[0] = setup[6]
+    y[1] = setup[7] * sqrt(inertia)
+    y[2] = 0.0
+    energy = max(0.5 * y[1] * y[1], abs(potential(setup[6], setup[0], p)), abs(weight), setup[8])
+    for k in range(9):
+        here = abs(torque(t_end * k / 8, setup[6], setup[7], setup[4]))
+        if here < inf:
+            energy = max(energy, here)
+    if energy == 0.0:
+        energy = inertia / t_end**2
+    atol[0] = 1e-3 * rtol
+    atol[1] = 0.01 * rtol * sqrt(energy)
+    atol[2] = 0.01 * rtol * energy
+    return True
+
+
+def follow(
+    p: Any,
+    setup: Any,
+    times: Any,
+    how: Any,
+    tables: Any,
+    theta: Any,
+    omega: Any,
+    alpha: Any,
+    K: Any,
+    F: Any,
+) -> Any:
+    """The motion of one design; its status, end, energy residual and work.
+
+    how: relative tolerance, t_end, longest step, most steps.
+    """
+    rtol, t_end, longest = how[0], how[1], how[2]
+    y, new, atol, relative = empty(3), empty(3), empty(3), empty(3)
+    relative[0], relative[1], relative[2] = 3e-14, rtol, rtol
+    theta[:], omega[:], alpha[:] = nan, nan, nan
+    if not start(p, setup, rtol, t_end, y, atol):
+        return 6, nan, nan, nan
+    first, last = (-pi / 2, pi / 2) if setup[3] > 0.0 else (setup[1], setup[2])
+    t, row, count = 0.0, 0, len(times)
+    while row < count and times[row] <= 0.0:
+        tell(0.0, y[0], y[1], p, setup, theta, omega, alpha, row)
+        row += 1
+    rates(0.0, y, p, setup, K[0])
+    h = first_step(t_end, y, p, setup, relative, atol, K, new)
+    initial, residual, turned, largest = energy_of(y, p, setup), 0.0, 0.0, 0.5 * y[1] * y[1]
+    status, rejected, steps, tries = -1, False, 0, 0
+    least, most = inf, still(setup[6], setup[0], p)[0]
+    while status < 0:
+        smallest = 10.0 * (nextafter(t, inf) - t)
+        h = min(h, longest)
+        if not rejected:
+            h = max(h, smallest)
+        if not h >= smallest or steps >= how[3]:
+            near = (
+                min(last - y[0], y[0] - first) < 1e-3
+            )  # a load on a massless slider grows without bound there
+            status = 2 if near else 5 if least < 1e-8 * most else 4
+            break
+        t_new = min(t + h, t_end)
+        h = t_new - t
+        trial(t, y, h, p, setup, tables, K, new)
+        error = error_of(h, y, new, relative, atol, tables, K)
+        beyond = new[0] >= last or new[0] <= first
+        smooth = setup[3] > 0.0
+        # At a limit angle the error is that of S, which has lost its digits: a short step over it may pass.
+        if not error < 1.0 and not (smooth and beyond and abs(new[0] - y[0]) < 1.2e-2):
+            h *= max(0.2, 0.9 * error**-0.125) if error > 0.0 else 0.2  # NaN: a trial beyond a limit
+            rejected = True
+            continue
+        if smooth and tries < 20 and min(last - new[0], new[0] - first) < 2e-3:
+            longer = over_limit(y[0], new[0], first, last)
+            if longer > 0.0:
+                h *= longer
+                rejected, tries = True, tries + 1
+                continue
+        tries = 0
+        steps += 1
+        stop, end = 1.0, t_new
+        if beyond or (row < count and times[row] <= t_new):
+            dense(t, y, h, new, p, setup, tables, K, F)
+        if beyond:
+            stop = crossing(y, F, last if new[0] >= last else first)
+            status, end = 2, t + stop * h
+            for i in range(3):
+                new[i] = inside(stop, y, F, i)
+        while row < count and times[row] <= end:
+            x = (times[row] - t) / h
+            tell(times[row], inside(x, y, F, 0), inside(x, y, F, 1), p, setup, theta, omega, alpha, row)
+            row += 1
+        turned += abs(new[2] - y[2])
+        kinetic = 0.5 * new[1] * new[1]
+        largest = max(largest, kinetic)
+        off = abs(energy_of(new, p, setup) - new[2] - initial)
+        if off == off and status != 2:  # at a limit angle Y has half its digits
+            residual = max(residual, off)
+        growth = min(10.0, 0.9 * error**-0.125) if error > 0.0 else 10.0
+        h *= min(1.0, growth) if rejected else growth
+        rejected = False
+        t = end
+        for i in range(3):
+            y[i] = new[i]
+            K[0, i] = K[12, i]
+        least = min(least, still(place(y[0], setup)[0], setup[0], p)[0])
+        if status < 0 and t >= t_end:
+            status = 0
+    scale = max(turned, largest)
+    return status, t, residual / scale if scale > 0.0 else 0.0, y[2]
+
+
+def designs(
+    p: Any,
+    setup: Any,
+    times: Any,
+    how: Any,
+    A: Any,
+    B: Any,
+    C: Any,
+    E3: Any,
+    E5: Any,
+    D: Any,
+    A_more: Any,
+    C_more: Any,
+    theta: Any,
+    omega: Any,
+    alpha: Any,
+    status: Any,
+    numbers: Any,
+) -> None:
+    """Every design: histories, status, and end, energy residual and work as numbers."""
+    K, F = empty((16, 3)), empty((7, 3))
+    tables = (A, B, C, E3, E5, D, A_more, C_more)
+    for n in range(len(setup)):
+        if status[n] < 0:
+            told = follow(p[n], setup[n], times, how, tables, theta[n], omega[n], alpha[n], K, F)
+            status[n] = told[0]
+            numbers[n, 0], numbers[n, 1], numbers[n, 2] = told[1], told[2], told[3]

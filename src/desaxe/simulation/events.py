@@ -1,0 +1,176 @@
+"""What happens inside a step of the integration: angles passed, standstills, kinks of friction."""
+
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+from math import ceil, copysign, floor, inf
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from .checks import SMALL
+from .coordinate import TURN
+from .equations import Law, state_of
+from .friction import JAMS_AT, Contact, Rubbing
+from .model import Model
+from .result import DONE, JAMS, LIMIT, NO_INERTIA
+
+Array = NDArray[np.float64]
+INSIDE = (0.25, 0.5, 0.75)  # of a step: where events are looked for besides its ends
+SHORT = 2e-3  # of q: so far from a limit angle S keeps ten digits
+NEAR = 1e-9  # rad: an angle that a stretch starts from is not reached at once
+Q, V, W = range(3)
+NEVER = -1  # of an event that does not end the motion
+
+
+class Mark(NamedTuple):
+    """A crank angle to watch for; `turns` where it counts on every turn; `status` if it ends the motion."""
+
+    kind: str
+    angle: float
+    which: str = ""
+    turns: bool = False
+    status: int = NEVER
+
+
+STANDSTILL = Mark("standstill", 0.0)
+LOST = Mark("normal force", 0.0)  # it changes its side: no event to tell, but a kink
+JAMMED = Mark("friction jams", 0.0, status=JAMS)
+
+
+class Step(NamedTuple):
+    """A step just made: its law, start, state there, interpolant and end."""
+
+    law: Law
+    t: float
+    y: Array
+    inside: Callable[[Any], Array]
+    end: float
+
+
+class Found(NamedTuple):
+    """An event inside a step: when, what, and the coordinate with the value that it has there."""
+
+    t: float
+    mark: Mark
+    place: int = -1
+    value: float = 0.0
+
+
+class Samples(NamedTuple):
+    """Instants of a step and the states there, one a row."""
+
+    t: list[float]
+    y: Array
+
+
+def marks_of(model: Model, until: tuple[float, ...]) -> list[Mark]:
+    """All angles to watch for."""
+    marks = [Mark("angle", angle, status=DONE) for angle in until]
+    vanishing = model.vanishing()
+    for which, angle in model.dead_centres().items():
+        marks.append(Mark("dead centre", angle, which, turns=True))
+        if which in vanishing:  # its two sides, so near that nothing is lost
+            marks += [Mark("no inertia", angle + s * SMALL, which, True, NO_INERTIA) for s in (-1.0, 1.0)]
+    first, last = model.chart.first, model.chart.last
+    if first > -inf:
+        marks += [Mark("limit", first, "first", status=LIMIT), Mark("limit", last, "last", status=LIMIT)]
+    return marks
+
+
+def events_in(step: Step, model: Model, marks: list[Mark], left: float) -> list[Found]:
+    """All events of a step, in order; `left` is the angle that the stretch started from."""
+    samples = _sampled(step, [step.t + part * (step.end - step.t) for part in (0.0, *INSIDE)] + [step.end])
+    stops = _changes(step, V, samples)
+    if stops:  # what lies beyond one may be reached twice
+        samples = _sampled(step, sorted([*samples.t, *stops]))
+    found = [Found(stop, STANDSTILL, V) for stop in stops]
+    thetas = [model.chart.place(q)[0] for q in samples.y[:, Q].tolist()]
+    for mark in marks:
+        found += _passages(step, model, mark, samples, thetas, left)
+        if mark.kind == "limit" and model.chart.half:
+            found += _just_ahead(step, model, mark)
+    if isinstance(step.law, Rubbing):
+        found += _kinks(step, step.law, model, samples)
+    return sorted(found, key=lambda event: event.t)
+
+
+def _sampled(step: Step, instants: list[float]) -> Samples:
+    return Samples(instants, step.inside(np.array(instants)).T)
+
+
+def _passages(
+    step: Step, model: Model, mark: Mark, samples: Samples, thetas: list[float], left: float
+) -> Iterator[Found]:
+    """Where the crank passes an angle; a limit angle is watched by its coordinate."""
+    chart = model.chart
+    limit = mark.kind == "limit"
+    rows = samples.y[:, Q].tolist() if limit else thetas
+    value = chart.ends[mark.which == "last"] if limit else mark.angle
+    for k, ((a, b), times) in enumerate(zip(pairwise(rows), pairwise(samples.t), strict=True)):
+        for angle in _between(a, b, value, mark.turns):
+            if k == 0 and abs(angle - left) <= NEAR and not limit:
+                continue
+            q = angle if limit else chart.q(angle)
+            t = root(lambda t, there: float(step.inside(t)[Q]) - there, *times, q)
+            yield Found(t, mark, Q, q)
+
+
+def _just_ahead(step: Step, model: Model, mark: Mark) -> Iterator[Found]:
+    """A limit angle so close ahead of a step that none can start there: it is read off the interpolant."""
+    end = model.chart.ends[mark.which == "last"]
+    before, now = (float(step.inside(t)[Q]) for t in (step.end - 1e-3 * (step.end - step.t), step.end))
+    gap = end - now
+    if not 0.0 < gap * copysign(1.0, end) < SHORT or gap * (now - before) <= 0.0:
+        return
+    far = step.end + 2e-3 * (step.end - step.t) * gap / (now - before)
+    if (end - float(step.inside(far)[Q])) * gap < 0.0:
+        yield Found(root(lambda t: float(step.inside(t)[Q]) - end, step.end, far), mark, Q, end)
+
+
+def _between(a: float, b: float, angle: float, turns: bool) -> list[float]:
+    """The angles that a passage from a to b reaches; the one that it starts from is not among them."""
+    if not turns:
+        return [angle] if a < angle <= b or b <= angle < a else []
+    low, high = sorted((a, b))
+    counts = range(ceil((low - angle) / TURN), floor((high - angle) / TURN) + 1)
+    return [value for value in (angle + TURN * k for k in counts) if value != a]
+
+
+def _changes(step: Step, place: int, samples: Samples) -> list[float]:
+    """When a coordinate changes its sign."""
+    pairs = zip(pairwise(samples.y[:, place].tolist()), pairwise(samples.t), strict=True)
+    return [root(lambda t: float(step.inside(t)[place]), *times) for (a, b), times in pairs if a * b < 0.0]
+
+
+def _kinks(step: Step, law: Rubbing, model: Model, samples: Samples) -> Iterator[Found]:
+    """Where the normal force changes its side, and where the friction jams: the first of these."""
+
+    def guide(t: float) -> Contact:
+        q, v, _ = step.inside(t).tolist()
+        theta, omega, branch = state_of(model, q, v)
+        return law.at(t, theta, branch, omega)
+
+    def beyond(t: float, way: float) -> float:
+        """How far K sign(N) is above 1 (no solution), for way -1 below -1 (two)."""
+        return way * law.pressed * guide(t).wedge - JAMS_AT
+
+    contacts = [guide(t) for t in samples.t]
+    for (a, b), times in zip(pairwise(contacts), pairwise(samples.t), strict=True):
+        if law.pressed * b.normal_free < -b.noise:
+            within = law.pressed * a.normal_free > 0.0
+            yield Found(root(lambda t: guide(t).normal_free, *times) if within else times[0], LOST)
+            return
+        for way in (1.0, -1.0):
+            if way * law.pressed * b.wedge > JAMS_AT >= way * law.pressed * a.wedge:
+                yield Found(root(beyond, *times, way), JAMMED)
+                return
+
+
+def root(function: Callable[..., float], a: float, b: float, *more: float) -> float:
+    """The root in a bracket, to the last digits; where there is no change of sign, the end nearer to one."""
+    at_a, at_b = function(a, *more), function(b, *more)
+    if at_a * at_b >= 0.0:
+        return a if abs(at_a) < abs(at_b) else b
+    return float(brentq(function, a, b, more, xtol=1e-15 * max(abs(b), 1e-300), rtol=1e-15))

@@ -1,0 +1,132 @@
+"""From the pieces of a motion to its histories: angle, speed, acceleration, quantities, energy."""
+
+from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
+from math import copysign, isfinite, nan
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..evaluation.evaluate import evaluate
+from .equations import state_of
+from .events import Q, V, W
+from .model import Model
+from .one_design import Piece, Run
+from .result import FAILED, LIMIT, REST, Event, Simulation
+
+Array = NDArray[np.float64]
+SAMPLES = 1001  # instants told where none are given
+
+
+def told(run: Run, names: Sequence[str], times: Any, given: Mapping[str, Any]) -> Simulation:
+    """The result of a motion."""
+    t = np.linspace(0.0, run.t, SAMPLES) if times is None else times[times <= run.t]
+    theta, omega, alpha = _histories(run, t)
+    result = Simulation(t=t, theta=theta, omega=omega, alpha=alpha)
+    if names:
+        loads = {name: _along(given[name], t, theta, omega) for name in ("F_X", "F_Y") if name in given}
+        result |= evaluate(list(names), theta=theta, omega=omega, alpha=alpha, **{**given, **loads})
+    result["events"] = run.events
+    result["status"], result["message"] = run.status, run.message
+    accepted = run.accepted[:-1] if run.status == LIMIT else run.accepted  # there Y has half its digits
+    result["energy_residual"] = energy_residual(run.model, accepted)
+    result["work"] = float(run.y[W])
+    result["solution"] = Solution(run)
+    return result
+
+
+class Motion(NamedTuple):
+    """What a run leaves behind: enough to tell the state at any instant, and to be pickled."""
+
+    model: Model
+    pieces: list[Piece]
+    events: list[Event]
+    status: int
+    t: float
+
+
+class Solution:
+    """The motion at any instant: callable t [s] -> dict of theta [rad] and omega [rad/s]."""
+
+    def __init__(self, run: Run) -> None:
+        self.run = Motion(run.model, run.pieces, run.events, run.status, run.t)
+
+    def __call__(self, t: Any) -> dict[str, Any]:
+        """Angle and speed; t may be an array."""
+        instants = np.asarray(t, dtype=np.float64)
+        if not ((instants >= 0.0) & (instants <= self.run.t)).all():
+            raise ValueError(f"solution: t must be from 0 to {self.run.t:.17g}, where the motion ends")
+        theta, omega, _ = _histories(self.run, instants.reshape(-1), without_alpha=True)
+        if not instants.ndim:
+            return {"theta": float(theta[0]), "omega": float(omega[0])}
+        return {"theta": theta.reshape(instants.shape), "omega": omega.reshape(instants.shape)}
+
+    def __repr__(self) -> str:
+        return f"solution(t) -> theta, omega; t from 0 to {self.run.t:.6g} s"
+
+
+def _histories(run: Run | Motion, t: Array, without_alpha: bool = False) -> tuple[Array, Array, Array]:
+    """Angle, speed and acceleration at many instants."""
+    theta, omega, alpha = (np.full(t.shape, nan) for _ in range(3))
+    which = np.searchsorted([piece.stop for piece in run.pieces[:-1]], t)
+    for number in np.unique(which):
+        piece = run.pieces[number]
+        rows = np.flatnonzero(which == number)
+        for row, (q, v, _) in zip(rows.tolist(), piece.state(t[rows]).T.tolist(), strict=True):
+            state = state_of(run.model, q, v)
+            theta[row], omega[row] = state.theta, state.omega
+            if not without_alpha:
+                alpha[row] = piece.law.alpha(float(t[row]), state.theta, state.omega)
+    if run.events and run.events[-1].t == run.t and run.status != FAILED:
+        _set_end(run, t, theta, omega, alpha)
+    return theta, omega, alpha
+
+
+def _set_end(run: Run | Motion, t: Array, theta: Array, omega: Array, alpha: Array) -> None:
+    """The event that ends the motion is where it says, not where the interpolant comes to.
+
+    At a limit angle itself M_eff is infinite: there theta'' = -half sin(q) q'^2. What rests
+    has no acceleration.
+    """
+    ends = np.flatnonzero(t >= run.t)
+    if run.status == REST:
+        alpha[ends] = 0.0
+    theta[ends], omega[ends] = run.events[-1].theta, run.events[-1].omega
+    if run.status == LIMIT and run.model.chart.half:
+        last = run.pieces[-1]
+        step = 1e-4 * (last.stop - last.start)
+        q, before = last.state(np.array([run.t, run.t - step]))[Q]
+        alpha[ends] = -run.model.chart.half * copysign(1.0, q) * ((q - before) / step) ** 2
+
+
+def _along(load: Any, t: Array, theta: Array, omega: Array) -> Any:
+    """A load at every instant of a history."""
+    if not callable(load):
+        return load
+    now = zip(t.tolist(), theta.tolist(), omega.tolist(), strict=True)
+    return np.array([load(*instant) for instant in now])
+
+
+def energy_residual(model: Model, accepted: Sequence[tuple[float, Array]]) -> float:
+    """How far the energies are from the work, relative to all work done or the largest kinetic energy.
+
+    max |kinetic + potential - W - initial| over the accepted steps, with the energies of the generated
+    quantities at theta and omega.
+    """
+    kinetic_of = _energies(model)
+    rows = [(*kinetic_of(float(y[Q]), float(y[V])), float(y[W])) for _, y in accepted]
+    rows = [row for row in rows if isfinite(sum(row))]
+    first = sum(rows[0][:2])
+    residual = max(abs(kinetic + potential - work - first) for kinetic, potential, work in rows)
+    turned = sum(abs(b[2] - a[2]) for a, b in pairwise(rows))
+    scale = max(turned, *(row[0] for row in rows), 0.0)
+    return residual / scale if scale else 0.0
+
+
+def _energies(model: Model) -> Callable[[float, float], tuple[float, float]]:
+    def energies(q: float, v: float) -> tuple[float, float]:
+        theta, omega, branch = state_of(model, q, v)
+        return model.kinetic_and_potential(theta, branch, omega)
+
+    return energies

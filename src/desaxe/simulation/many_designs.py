@@ -1,0 +1,225 @@
+"""Many designs at once: broadcast, one compiled call over blocks of designs, histories of all of them."""
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
+from math import isfinite
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import DOP853
+
+from ..evaluation.arrays import as_array, broadcast_shape
+from ..evaluation.evaluate import evaluate
+from ..mechanism.inputs import LEAST
+from ..mechanism.limit_angles import theta_intervals
+from ..mechanism.names import CENTRES, LENGTHS, LOADS
+from ..mechanism.units import in_unit
+from ..runtime.threads import run_parts
+from ..support.deadline import Deadline
+from ..support.interrupts import finished
+from ..support.shown import shown
+from .checks import check_signature, grows
+from .compiled import Family, kernel_of
+from .coordinate import TURN, arc_around, inside
+from .model import fixed_zeros, form_of
+from .result import DONE, NO_START, WORDS, Simulation
+
+Array = NDArray[np.float64]
+SAMPLES = 101  # instants told where none are given
+LONGEST_PART = 16  # designs in one native call, so that an interrupt is heard
+STARTS = {"theta0": "rad", "omega_start": "rad/s", "torque": "N*m"}
+
+
+def is_array(value: Any) -> bool:
+    """Whether a value is one of many."""
+    if value is None or callable(value) or isinstance(value, str):
+        return False
+    try:
+        return np.ndim(getattr(value, "magnitude", value)) > 0
+    except ValueError:  # rows of different lengths
+        return True
+
+
+def simulate_many(
+    given: Mapping[str, Any],
+    starts: Mapping[str, Any],
+    branch: int,
+    names: Sequence[str],
+    times: Any,
+    how: Sequence[float],
+    threads: int | None,
+    deadline: Deadline,
+) -> Simulation:
+    """The motions; how: relative tolerance, t_end, longest step, most steps."""
+    torque = _compiled(starts["torque"]) if callable(starts["torque"]) else None
+    arrays = _arrays(given) | {
+        name: _column(name, 0.0 if callable(value) else value, STARTS[name]) for name, value in starts.items()
+    }
+    shape = broadcast_shape(arrays)
+    scalars = {name: float(array) if array.ndim == 0 else array for name, array in arrays.items()}
+    family = Family(form_of(given_centres(given)), fixed_zeros(scalars))
+    flat = {name: np.broadcast_to(array, shape).reshape(-1) for name, array in arrays.items()}
+    t = np.linspace(0.0, how[1], SAMPLES) if times is None else times
+    setup, status = _setup(flat, branch)
+    rows = np.stack([flat[name] for name in family.inputs], axis=1)
+    histories = [np.empty((status.size, t.size)) for _ in range(3)]
+    numbers = np.full((status.size, 3), np.nan)
+    outs = (*histories, status, numbers)
+    for history in histories:
+        history[status == NO_START] = np.nan
+    _run(
+        kernel_of(family, torque), rows, setup, (t, np.array(how, dtype=np.float64)), outs, threads, deadline
+    )
+    return _told(arrays, shape, t, outs, names, branch)
+
+
+def given_centres(given: Mapping[str, Any]) -> dict[str, Any]:
+    """The centres of mass that are given."""
+    return {name: given[name] for name in CENTRES if given.get(name) is not None}
+
+
+def _arrays(given: Mapping[str, Any]) -> dict[str, Array]:
+    """The inputs of the mechanism as arrays; those that are not given are 0."""
+    arrays = {}
+    for name in (*LENGTHS, *LOADS):
+        value = given.get(name)
+        if callable(value):
+            raise TypeError(f"{name}: a function is for one design at a time; many take numbers")
+        if value is None and name in LOADS:
+            if name in CENTRES:
+                continue
+            value = 0.0
+        arrays[name] = as_array(name, value, LENGTHS, ("simulate",))
+    if np.any(arrays.pop("mu") != 0.0):
+        raise ValueError("mu: friction has kinks, followed for one design at a time; for many it must be 0")
+    return arrays
+
+
+def _column(name: str, value: Any, unit: str) -> Array:
+    """Starts and torques as an array of finite or bad numbers."""
+    number = in_unit(name, value, unit) if isinstance(value, str) or hasattr(value, "magnitude") else value
+    try:
+        array = np.asarray(number)
+    except (ValueError, TypeError, OverflowError):  # rows of different lengths
+        raise TypeError(f"{name} = {shown(value)}: a number or an array of numbers is wanted") from None
+    if array.dtype.kind == "U":
+        texts = array.reshape(-1).tolist()
+        array = np.array([in_unit(name, text, unit) for text in texts]).reshape(array.shape)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name}: real numbers are wanted, got an array of {array.dtype}: {shown(value)}")
+    array = array.astype(np.float64)
+    if not array.ndim and not np.isfinite(array):
+        raise ValueError(f"{name} = {shown(value)}: it must be a finite number")
+    return array
+
+
+@lru_cache(maxsize=32)
+def _compiled(torque: Callable[..., Any]) -> Any:
+    """The torque's function, compiled; TypeError where numba cannot."""
+    return finished(lambda: _compile(torque))
+
+
+def _compile(torque: Callable[..., Any]) -> Any:
+    from numba import float64, njit
+    from numba.core.dispatcher import Dispatcher
+    from numba.core.errors import NumbaError
+    from numba.core.types import Float, Integer
+
+    check_signature("torque", getattr(torque, "py_func", torque))
+    try:
+        fast: Any = torque if isinstance(torque, Dispatcher) else njit(error_model="numpy")(torque)
+        fast.compile((float64, float64, float64))
+    except (NumbaError, TypeError) as error:
+        told = str(error).strip().splitlines()
+        why = next((line for line in told if line.strip() and "pipeline" not in line), "")
+        raise TypeError(
+            "torque: for many designs at once numba must be able to compile the function, and it cannot: "
+            f"{why.strip()}; use numbers and math in it, or simulate one design at a time"
+        ) from None
+    result = fast.overloads[(float64, float64, float64)].signature.return_type
+    if not isinstance(result, (Float, Integer)):
+        raise TypeError(f"torque: the function gives {result}, a number in N*m is wanted")
+    return fast
+
+
+def _setup(flat: Mapping[str, Array], branch: int) -> tuple[Array, NDArray[np.int8]]:
+    """The rows that the kernel starts from (see `compiled`), and a status where nothing can start."""
+    AB, BC, ec = (flat[name] for name in ("AB", "BC", "ec"))
+    theta = flat["theta0"]
+    status = np.full(theta.size, -1, np.int8)
+    arcs = np.full((theta.size, 3), (-np.inf, np.inf, 0.0))
+    good = np.logical_and.reduce([np.isfinite(column) for column in flat.values()])
+    for name, least in LEAST.items():
+        if name in flat:
+            good &= flat[name] >= least
+    status[~good] = NO_START
+    for row in np.flatnonzero(good & (BC - AB - np.abs(ec) < 1e-12 * (AB + BC))):
+        arc = _arc({name: float(column[row]) for name, column in flat.items()})
+        if arc is None:
+            status[row] = NO_START
+        else:
+            arcs[row] = arc
+    loads = np.abs(flat["F_Y"]) * AB
+    columns = (np.full(theta.size, float(branch)), *arcs.T, flat["torque"], flat["F_Y"], theta)
+    return np.stack([*columns, flat["omega_start"], loads], axis=1), status
+
+
+def _arc(values: Mapping[str, float]) -> tuple[float, float, float] | None:
+    """The limit angles around the start and half their distance where the inertia grows there."""
+    lengths = tuple(values[name] for name in LENGTHS)
+    arc = arc_around(values["theta0"], *lengths)
+    if arc is None or not inside(arc, values["theta0"]):
+        return None
+    smooth = isfinite(arc[0]) and grows(values) and theta_intervals(*lengths) != [(0.0, TURN)]
+    return (*arc, 0.5 * (arc[1] - arc[0]) if smooth else 0.0)
+
+
+def _run(
+    kernel: Callable[..., object],
+    rows: Array,
+    setup: Array,
+    shared: Sequence[Array],
+    outs: Sequence[Any],
+    threads: int | None,
+    deadline: Deadline,
+) -> None:
+    """The kernel over blocks of designs; each design is its own, so the answer does not depend on them."""
+    parts = (DOP853.A, DOP853.B, DOP853.C, DOP853.E3, DOP853.E5, DOP853.D, DOP853.A_EXTRA, DOP853.C_EXTRA)
+    tables = [np.ascontiguousarray(part, dtype=np.float64) for part in parts]
+
+    def block(a: int, b: int) -> None:
+        deadline.check()
+        kernel(rows[a:b], setup[a:b], *shared, *tables, *(out[a:b] for out in outs))
+
+    run_parts(block, len(setup), threads, 1, LONGEST_PART)
+
+
+def _told(
+    arrays: Mapping[str, Array],
+    shape: tuple[int, ...],
+    t: Array,
+    outs: Sequence[Any],
+    names: Sequence[str],
+    branch: int,
+) -> Simulation:
+    """The result in the shape of the designs."""
+    *histories, status, numbers = outs
+    theta, omega, alpha = (history.reshape(*shape, t.size) for history in histories)
+    result = Simulation(t=t, theta=theta, omega=omega, alpha=alpha)
+    if names:
+        inputs: dict[str, Any] = {
+            name: array[..., None] for name, array in arrays.items() if name not in STARTS
+        }
+        result |= evaluate(list(names), theta=theta, omega=omega, alpha=alpha, branch=branch, **inputs)
+    result["status"] = status.reshape(shape)
+    result["message"] = _message(status)
+    end, residual, work = (numbers[:, k].reshape(shape) for k in range(3))
+    return Simulation(result, t_last=end, energy_residual=residual, work=work)
+
+
+def _message(status: NDArray[np.int8]) -> str:
+    counts = Counter(status.tolist())
+    words = {**WORDS, DONE: "reached t_end"}
+    return f"{status.size} designs: " + ", ".join(f"{counts[c]} {words[c]}" for c in sorted(counts))

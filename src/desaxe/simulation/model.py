@@ -1,0 +1,114 @@
+"""A design as plain functions of its state, cut from the generated Program."""
+
+from collections.abc import Callable, Mapping, Sequence
+from math import asin, inf, isnan, pi
+from typing import Any, NamedTuple
+
+from ..mechanism.names import CENTRES
+from ..mechanism.program import Form
+from ..runtime.kernels import STRUCTURAL_ZEROS
+from ..runtime.point import Point, point_of
+from .coordinate import TURN, Chart
+
+Values = tuple[float, ...]
+Function = Callable[..., Values]
+Load = Callable[[float, float, float], float]
+
+# Held still, T_in is the torque of gravity alone: loads on the slider are added by hand, for they may vary.
+STILL = ("M_eff", "T_in", "Y_wrt_theta")
+MOVING = ("M_eff", "M_eff_wrt_theta", "T_in", "Y_wrt_theta")
+CONTACT = ("N_C", "N_C_wrt_alpha", "lean")
+UNLOADED = ("omega", "alpha", "mu", "F_X", "F_Y")
+
+
+class Drive(NamedTuple):
+    """What acts on the mechanism at an instant: torque [N m], forces on the slider [N]."""
+
+    torque: Load
+    F_X: Load
+    F_Y: Load
+    steady: bool  # whether all three are numbers
+
+
+def _gone(t: float, theta: float, omega: float) -> float:
+    raise RuntimeError("a pickled motion knows its angles and speeds, not the torque that drove it")
+
+
+class Model:
+    """One design, its functions and what drives it."""
+
+    def __init__(self, values: Mapping[str, float], branch: int, chart: Chart, drive: Drive) -> None:
+        self.values, self.chart, self.drive = values, chart, drive
+        self.mu = values["mu"]
+        self.sign = float(branch)
+        fixed = fixed_zeros(values) if chart.half else (("branch", self.sign), *fixed_zeros(values))
+        form = form_of(values)
+
+        def function(names: Sequence[str], free: Sequence[str], *zeros: str) -> Function:
+            lines = dict(fixed) | dict.fromkeys(zeros, 0.0)
+            return bound(point_of(tuple(names), form, tuple(lines.items())), values, free)
+
+        self.still = function(STILL, ("theta", "branch"), *UNLOADED)
+        self.moving = function(MOVING, ("theta", "branch"), *UNLOADED)
+        self.contact = function(CONTACT, ("theta", "branch", "omega", "F_X", "F_Y"), "alpha", "mu")
+        self.energies = function(("kinetic_energy", "potential_energy"), ("theta", "branch", "omega"))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A pickle has the design but not what drives it, which may be any function."""
+        return Model, (self.values, int(self.sign), self.chart, Drive(_gone, _gone, _gone, False))
+
+    def inertia(self, theta: float) -> float:
+        """The effective moment of inertia [kg m^2] on the branch of the start."""
+        return self.still(theta, self.sign)[0]
+
+    def kinetic_and_potential(self, theta: float, branch: float, omega: float) -> tuple[float, float]:
+        """Both energies [J], from the generated quantities."""
+        kinetic, potential = self.energies(theta, branch, omega)
+        return kinetic, potential
+
+    def dead_centres(self) -> dict[str, float]:
+        """The crank angles at which the slider turns round, by name: rod and crank in line.
+
+        Stretched, (AB + BC) sin(theta) = -ec; folded, (BC - AB) sin(theta) = ec.
+        """
+        ec, AB, BC = (self.values[name] for name in ("ec", "AB", "BC"))
+        if AB == 0.0:
+            return {}
+        sines = {"outer": -ec / (AB + BC), "inner": ec / (BC - AB) if BC != AB else inf}
+        ahead = {"outer": self.sign > 0.0, "inner": self.sign < 0.0}
+        found = {which: sine for which, sine in sines.items() if abs(sine) <= 1.0}
+        return {which: asin(s) if ahead[which] else pi - asin(s) for which, s in found.items()}
+
+    def vanishing(self) -> dict[str, float]:
+        """The dead centres at which no inertia is left, because nothing that turns with the crank has any."""
+        angles = [TURN * k / 16 for k in range(16)]
+        inertias = [m for m in map(self.inertia, angles) if not isnan(m)]
+        least = 1e-12 * max(inertias, default=0.0)
+        return {which: angle for which, angle in self.dead_centres().items() if self.inertia(angle) <= least}
+
+
+def form_of(values: Mapping[str, Any]) -> Form:
+    """The form of the program: a given state; centres of mass that are not given are halfway."""
+    return Form(True, tuple(name for name in CENTRES if name not in values))
+
+
+def fixed_zeros(values: Mapping[str, Any]) -> tuple[tuple[str, float], ...]:
+    """What is 0 in a design and costs nothing: whole terms vanish from the program."""
+    return tuple(
+        (name, 0.0) for name in STRUCTURAL_ZEROS if isinstance(z := values.get(name), float) and z == 0.0
+    )
+
+
+def bound(point: Point, values: Mapping[str, float], free: Sequence[str]) -> Function:
+    """The point function with a design put in; what is left are the `free` inputs, in their order."""
+    row = [values.get(name, 0.0) for name in point.inputs]
+    places = [(point.inputs.index(name), at) for at, name in enumerate(free) if name in point.inputs]
+    function = point.function
+
+    def call(*now: float) -> Values:
+        arguments = row.copy()
+        for place, at in places:
+            arguments[place] = now[at]
+        return function(*arguments)
+
+    return call

@@ -1,0 +1,181 @@
+"""`simulate`: what a caller sees."""
+
+from collections.abc import Sequence
+from math import inf, sqrt
+from typing import Any
+
+import numpy as np
+
+from ..runtime.request import check_border, with_known_inputs
+from ..support.checks import whole_number
+from ..support.deadline import Deadline
+from .checks import (
+    check_names,
+    design_values,
+    drive_of,
+    model_of,
+    read_method,
+    read_rtol,
+    read_times,
+    read_until,
+    scalar,
+)
+from .history import told
+from .many_designs import is_array, simulate_many
+from .model import Load, Model
+from .one_design import Run, Tolerance
+from .result import Simulation
+
+TINY = 5e-324
+
+
+@with_known_inputs
+def simulate(
+    *,
+    torque: Any,
+    t_end: Any,
+    AB: Any,
+    BC: Any,
+    ec: Any,
+    theta0: Any = 0.0,
+    omega_start: Any = 0.0,
+    names: str | Sequence[str] = (),
+    branch: int = 1,
+    m_crank: Any = None,
+    m_rod: Any = None,
+    m_slider: Any = None,
+    I_crank: Any = None,
+    I_rod: Any = None,
+    r_crank: Any = None,
+    r_rod: Any = None,
+    F_X: Any = None,
+    F_Y: Any = None,
+    g_X: Any = None,
+    g_Y: Any = None,
+    mu: Any = None,
+    rtol: float = 1e-10,
+    atol: Any = None,
+    method: str = "DOP853",
+    times: Any = None,
+    until: Any = None,
+    max_step: Any = None,
+    max_steps: int = 1_000_000,
+    threads: int | None = None,
+    timeout: float | None = 600.0,
+) -> Simulation:
+    """The motion of the crank under a torque.
+
+    torque       on the crank [N m], positive like theta: a number or a function (t, theta, omega)
+    t_end        how long to follow the motion [s]
+    theta0, omega_start   crank angle [rad] and speed [rad/s] at t = 0
+    AB, BC, ec, branch, masses, centres of mass, gravity, mu   as in `evaluate`
+    F_X, F_Y     external force on the slider [N]: numbers or functions (t, theta, omega)
+    names        quantities and sensitivities of a given state to tell along the motion, by `evaluate`: NaN at
+                 a limit angle, and where no or two sets of forces balance the acceleration as given
+    rtol, atol   tolerances of the integration; atol for the angle [rad], sqrt(kinetic energy) and work, by
+                 default rtol times 0.001 rad and a hundredth of the energy that start and loads suggest
+    method       one of SciPy's integrators: DOP853, RK45, RK23, Radau, BDF, LSODA
+    times        instants to tell [s]; 1001 from start to end without
+    until        crank angle or angles [rad]: the first that is reached ends the motion
+    max_step     longest step [s], for loads that act briefly
+    max_steps    more steps than this are a failure
+    timeout      seconds of computing, None for no limit: then one motion ends with status 4 and what there is
+                 of it, and many designs with a TimeoutError
+    threads      for many designs: how many threads share them, all there are without
+
+    Gives a dict that shows itself on one screen:
+
+    t, theta, omega, alpha, <names>   histories, as far as the motion goes
+    events           named tuples (kind, t, theta, omega, which): "dead centre", "standstill", "angle",
+                     "limit", "friction jams", "break-away", "no inertia"
+    status, message  0 reached t_end or an angle, 1 at rest for good, 2 at a limit angle, 3 friction jams,
+                     4 integration failed, 5 the effective inertia vanishes at a dead centre
+    energy_residual  |kinetic + potential - work - initial| at most, relative to all work done or the largest
+                     kinetic energy
+    work             of torque, loads and friction, gravity not included [J]
+    solution         function t -> dict of theta and omega, anywhere up to the end
+
+    Many designs at once: lengths, masses, constant loads, theta0, omega_start and a constant torque may be
+    arrays that broadcast like NumPy. All run in compiled code (numba compiles a torque function), without
+    friction. Histories then have the shape (designs..., times), 101 instants without `times`, NaN where a
+    motion has ended. status (also 6: bad input, or no mechanism at the start), energy_residual, work and
+    t_last, where each ends, have the shape of the designs; there are no events and no solution.
+
+    Equation: M_eff alpha + M_eff' omega^2/2 = torque - static torque - friction (paper C, section 3).
+    Raises ValueError where no motion can start (no mechanism there, no inertia) and for a bad value.
+    """
+    given = {
+        "AB": AB, "BC": BC, "ec": ec, "m_crank": m_crank, "m_rod": m_rod, "m_slider": m_slider,
+        "I_crank": I_crank, "I_rod": I_rod, "r_crank": r_crank, "r_rod": r_rod, "F_X": F_X, "F_Y": F_Y,
+        "g_X": g_X, "g_Y": g_Y, "mu": mu,
+    }  # fmt: skip
+    check_border({}, branch, threads)
+    wanted = check_names(names)
+    max_steps = whole_number("max_steps", max_steps, 1, 10**9)
+    deadline = Deadline("simulate", timeout)
+    end = scalar("t_end", t_end, "s", TINY, "a finite time > 0")
+    longest = inf if max_step is None else scalar("max_step", max_step, "s", TINY, "a finite time > 0")
+    instants, angles, rtol = read_times(times, end), read_until(until), read_rtol(rtol)
+    starts = {"theta0": theta0, "omega_start": omega_start, "torque": torque}
+    if any(map(is_array, (*given.values(), *starts.values()))):
+        _check_many(method, atol, until)
+        how = (rtol, end, longest, max_steps)
+        return simulate_many(given, starts, int(branch), wanted, instants, how, threads, deadline)
+    start = scalar("theta0", theta0, "rad"), scalar("omega_start", omega_start, "rad/s")
+    drive = drive_of(torque, F_X, F_Y)
+    values = design_values(given)
+    model = model_of(values, int(branch), start[0], drive)
+    tolerance = Tolerance(
+        read_method(method),
+        rtol,
+        _atol(atol, rtol, model, *start, end),
+        longest,
+        max_steps,
+    )
+    v = start[1] * sqrt(model.inertia(start[0]))
+    run = Run(model, np.array([model.chart.q(start[0]), v, 0.0]), end, angles, tolerance, deadline)
+    with np.errstate(all="ignore"):  # values beyond every double end the motion with a status
+        run.to_the_end()
+    shown = {**values, "branch": branch, "F_X": drive.F_X, "F_Y": drive.F_Y}
+    return told(run, wanted, instants, shown)
+
+
+def _check_many(method: str, atol: Any, until: Any) -> None:
+    """What is for one design at a time."""
+    given = {"method": method != "DOP853", "atol": atol is not None, "until": until is not None}
+    for name, there in given.items():
+        if there:
+            raise ValueError(f"{name}= is for one design at a time: many run by DOP853 to t_end")
+
+
+def _atol(atol: Any, rtol: float, model: Model, theta: float, omega: float, t_end: float) -> Any:
+    """Absolute tolerances for (q, v, W)."""
+    if atol is not None:
+        number = np.array([scalar("atol", a, "1", 0.0, "a number >= 0") for a in np.atleast_1d(atol)])
+        if number.size not in (1, 3):
+            raise ValueError(f"atol: one number or three (angle, v, work), got {number.size}")
+        return np.broadcast_to(number, 3)
+    energy = energy_scale(model, theta, omega, t_end)
+    return 0.01 * rtol * np.array([0.1, sqrt(energy), energy])
+
+
+def energy_scale(model: Model, theta: float, omega: float, t_end: float) -> float:
+    """An energy [J] of the size that the motion will have.
+
+    Of the start, of gravity, of what torque and load do in a radian and a crank length; where all are
+    nothing, that of a turn in t_end.
+    """
+    inertia, weight, _ = model.still(theta, model.sign)
+    kinetic, potential = model.kinetic_and_potential(theta, model.sign, omega)
+    instants = [t_end * k / 8 for k in range(9)]
+    torque = max(_size(model.drive.torque, t, theta, omega) for t in instants)
+    force = max(_size(model.drive.F_Y, t, theta, omega) for t in instants) * model.values["AB"]
+    return max(kinetic, abs(potential), abs(weight), torque, force) or inertia / t_end**2
+
+
+def _size(load: Load, t: float, theta: float, omega: float) -> float:
+    """The magnitude of a load; 0 where it has no value, which only matters if the motion gets there."""
+    try:
+        return abs(load(t, theta, omega))
+    except ValueError:
+        return 0.0

@@ -1,0 +1,48 @@
+"""A missing extra is one clear line that says what to install."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from .interrupts import put_off
+
+EXTRAS = {
+    "sympy": "derive",
+    "xarray": "labelled",
+    "h5netcdf": "labelled",
+    "h5py": "labelled",
+    "zarr": "zarr",
+    "dask": "scale",
+    "distributed": "scale",
+    "matplotlib": "plot",
+    "pint": "units",
+    "msgspec": "scene",
+    "tqdm": "scene",
+    "plotly": "explore",
+    "scipy": "simulate",
+    "SALib": "design",
+    "flint": "rigorous",
+    "python-flint": "rigorous",
+    "mpmath": "rigorous",
+    "desaxe.derive": "derive",
+}
+
+
+class MissingExtraError(ImportError):
+    """An optional dependency is not installed."""
+
+
+@contextmanager
+def needed(what: str, extra: str | None = None) -> Iterator[None]:
+    """Turn the ImportError of an optional dependency into the line that says what to install.
+
+    The extra is the one that has the dependency, or the one named here.
+    """
+    try:
+        with put_off():  # a package that is imported halfway cannot be imported again
+            yield
+    except ModuleNotFoundError as error:
+        known = EXTRAS.get((error.name or "").partition(".")[0]) or EXTRAS.get(error.name or "")
+        if known is None:
+            raise
+        remedy = f"python -m pip install 'desaxe[{extra or known}]'"
+        raise MissingExtraError(f"{what} needs {error.name}: {remedy}") from None
