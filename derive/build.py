@@ -7,7 +7,7 @@ import sympy as sp
 from desaxe.compiler.passes.double_angles import DoubleTrigonometry
 from desaxe.compiler.passes.slicing import drop_unused
 from desaxe.compiler.passes.trigonometry import Trigonometry
-from desaxe.compiler.passes.value_numbering import number_values
+from desaxe.compiler.passes.value_numbering import value_numbering
 from desaxe.compiler.program import Program, validate
 from desaxe.mechanism.names import CENTRES, LOADS, PARAMETERS, parts, sensitivity
 
@@ -120,4 +120,4 @@ def _define_constant(sheet: Sheet, name: str, base: str, value: sp.Expr) -> None
 
 
 def _finished(program: Program) -> Program:
-    return validate(drop_unused(number_values(program)))
+    return validate(drop_unused(value_numbering(program)))

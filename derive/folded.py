@@ -9,7 +9,7 @@ which keeps every digit there; and Y itself, with the derivatives of phi, gives 
 Y' = -branch (AB/S)(ec cos + Y sin) where Y is the small one, -branch (AB/S)(u cos + branch S sin) where u may
 be, and Y'' = -branch (phi' Y + u phi''), which cancels nowhere that other forms do not.
 
-In a roomy design nothing cancels by much, and the shortest form will do. With the crank pin at
+With wide margins nothing cancels by much, and the shortest form will do. With the crank pin at
 (X, Z) = AB (cos, sin) and the area A = X u, whose derivative is A' = X^2 - Z u: m = A/S is -dS/dtheta,
 m' = (A' + m^2)/S, m'' = (3 m m' - X (3 Z + u))/S, and
 
@@ -45,7 +45,7 @@ LEVERS = (ec, slider), (u, branch / r)  # where folded, elsewhere
 pin_along, pin_across = sp.symbols("pin_along pin_across", real=True)
 pin_area, pin_area_rate = sp.symbols("pin_area pin_area_rate", real=True)
 height_drop, height_drop_rate = sp.symbols("height_drop height_drop_rate", real=True)
-ROOMY = {
+WIDE_MARGIN_FORMS = {
     pin_along: AB * cos_theta,
     pin_across: AB * sin_theta,
     pin_area: pin_along * u,
@@ -53,7 +53,7 @@ ROOMY = {
     height_drop: pin_area * r,
     height_drop_rate: (pin_area_rate + height_drop**2) * r,
 }
-ROOMY_RATES = {
+WIDE_MARGIN_RATES = {
     1: -(pin_across + branch * height_drop),
     2: -(pin_along + branch * height_drop_rate),
     3: pin_across - branch * ((3 * height_drop * height_drop_rate - pin_along * (3 * pin_across + u)) * r),
@@ -64,7 +64,7 @@ def slider_rate(order: int, straight: sp.Expr) -> sp.Expr:
     """The `order`-th derivative of Y by theta; `straight` is that of AB cos + branch S."""
     if order not in slider_rates():
         return straight
-    return where_close(slider_rates()[order], ROOMY_RATES[order])
+    return where_close(slider_rates()[order], WIDE_MARGIN_RATES[order])
 
 
 @cache
@@ -83,8 +83,8 @@ def slider_rates() -> dict[int, sp.Expr]:
         for levers in LEVERS:
             by_levers = form.subs(rate, rates[1]).subs(dict(zip((lever_X, lever_Y), levers, strict=True)))
             _prove_rate(order, by_levers - textbook)
-        shortest = ROOMY_RATES[order]
-        for name, value in reversed(ROOMY.items()):
+        shortest = WIDE_MARGIN_RATES[order]
+        for name, value in reversed(WIDE_MARGIN_FORMS.items()):
             shortest = shortest.subs(name, value)
         _prove_rate(order, shortest - textbook)
     return rates

@@ -9,7 +9,7 @@ from itertools import pairwise
 import sympy as sp
 
 from .dynamics import FORCES, define_dynamics, prove, resolve_ratio
-from .folded import FOLDED_AREA, ROOMY, folded, folded_area, prove_folded
+from .folded import FOLDED_AREA, WIDE_MARGIN_FORMS, folded, folded_area, prove_folded
 from .geometry import POSITION, resolve_geometry
 from .loop import AB, BC, branch, ec, r, theta, u
 from .motion import alpha, define_law, define_speed_by_alpha, omega, omega2, time_derivative, turn
@@ -48,7 +48,7 @@ from .stable import (
     two_sum_error,
     u_straight,
     where_close,
-    wide_margins,
+    wide_margin_test,
 )
 from .start import define_start
 from .units import (
@@ -119,7 +119,9 @@ def _define_crank(sheet: Sheet) -> None:
 
 def _define_rod(sheet: Sheet) -> None:
     """BC - |u| and the rod's height in the stable variables; the ratios that everything else is made of."""
-    sheet.define("roomy", wide_margins(), unit=NONE, meaning="margins are wide: plain forms will do")
+    sheet.define(
+        "wide_margins", wide_margin_test(), unit=NONE, meaning="margins are wide: plain forms will do"
+    )
     sheet.define("u_straight", OFFSET)
     sheet.define("pin_side", copysign(1, u_straight), unit=NONE, meaning="nu: the sign of u")
     sheet.define("AB_out", copysign(AB, sin_theta * u_straight), unit=LENGTH, meaning="sigma nu AB")
@@ -158,7 +160,7 @@ def _define_rod(sheet: Sheet) -> None:
         "u", where_close(exact, u_straight), unit=LENGTH, source="A (6)",
         meaning="BC sin(phi), crank pin from the slider axis",
     )  # fmt: skip
-    for name, form in ROOMY.items():
+    for name, form in WIDE_MARGIN_FORMS.items():
         sheet.define(name.name, form)
     sheet.define("margin_area", MARGIN_AREA, unit=Unit(m=2), meaning="m n = BC^2 - (AB + sigma ec)^2")
     sheet.define("crank_ratio", AB * r, unit=NONE, meaning="AB / S")

@@ -43,23 +43,23 @@ MARGIN_AREA = margin_out * (2 * BC - margin_out)
 select, lt, le, eq = (sp.Function(name) for name in ("select", "lt", "le", "eq"))
 atan2, absolute, copysign = sp.Function("atan2"), sp.Function("abs"), sp.Function("copysign")
 two_sum_error, two_product_error = sp.Function("two_sum_error"), sp.Function("two_product_error")
-rounding, finer = sp.Function("rounding"), sp.Function("finer")
+rounding, extended_only = sp.Function("rounding"), sp.Function("extended_only")
 
 # Where AB + |ec| is below this share of BC, no form cancels by much, and the plain ones will do: they err by
 # a few tenths of what the promise allows.
-ROOMY = sp.Float(0.875)
-roomy = sp.Symbol("roomy", real=True)
+WIDE_MARGIN_SHARE = sp.Float(0.875)
+wide_margins = sp.Symbol("wide_margins", real=True)
 
 
 def where_close(stable: sp.Expr, plain: sp.Expr) -> sp.Expr:
-    """The stable form where margins may be close, the plain one in a roomy design."""
-    return select(roomy, plain, stable)
+    """The stable form where margins may be close, the plain one with wide margins."""
+    return select(wide_margins, plain, stable)
 
 
-def wide_margins() -> sp.Expr:
-    """Whether a design is roomy; if it is, all its lengths are good."""
+def wide_margin_test() -> sp.Expr:
+    """The test for wide margins; it implies that all lengths are valid."""
     both = sp.Function("and")
-    return both(both(lt(AB + absolute(ec), ROOMY * BC), le(0, AB)), lt(BC, sp.oo))
+    return both(both(lt(AB + absolute(ec), WIDE_MARGIN_SHARE * BC), le(0, AB)), lt(BC, sp.oo))
 
 
 def assembled(ok: sp.Expr | int) -> sp.Expr:

@@ -19,7 +19,7 @@ from .stable import (
     chain_rule_form,
     cos_theta,
     crank_ratio,
-    finer,
+    extended_only,
     in_theta,
     less,
     lt,
@@ -33,7 +33,7 @@ from .units import LENGTH, NONE
 NEAR = sp.Float(2.0**-20)  # beyond, two words lose less than half of their digits
 near_start, sine_excess, rod_start = map(symbol, ("near_start", "sine_excess", "rod_start"))
 
-IS_NEAR = finer(lt(absolute(theta), NEAR))
+IS_NEAR = extended_only(lt(absolute(theta), NEAR))
 SINE_EXCESS = theta**3 * (sp.Rational(1, 3) - theta**2 / 30)
 ROD_START = crank_ratio * (
     cos_theta * (2 * BC - less) * r * (BC_less_ec * r - pin_side * crank_ratio * sine_excess)

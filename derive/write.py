@@ -25,7 +25,7 @@ from desaxe.compiler.passes.guard import guard_inputs
 from desaxe.compiler.passes.pipeline import optimise
 from desaxe.compiler.passes.slicing import keep_outputs
 from desaxe.compiler.passes.trigonometry import Trigonometry, expand_trigonometry
-from desaxe.compiler.passes.value_numbering import number_values
+from desaxe.compiler.passes.value_numbering import value_numbering
 from desaxe.compiler.program import Program, renamed
 from desaxe.compiler.text import write_function
 from desaxe.mechanism.inputs import LEAST
@@ -80,7 +80,7 @@ def render(derivation: Derivation) -> dict[str, str]:
 
 _LAW = """Every quantity and sensitivity of the offset slider-crank, under paper A's law of motion.
 
-SI units and radians. This text is the derivation, and what every kernel is cut from; it runs as it
+SI units and radians. This text is the derivation, and what every kernel is made from; it runs as it
 stands for one point that is feasible. A line says: unit | meaning | paper equation."""
 
 _STATE = """What a given state (omega, alpha) puts in place of the law's lines of the same names.
@@ -102,7 +102,7 @@ def _banner(what: str, digest: str, size: str = "") -> str:
 
 
 def _package(digest: str) -> str:
-    what = "The frozen program and the numba kernels cut from it. Importing this package imports nothing."
+    what = "The frozen program and the numba kernels made from it. Importing this package imports nothing."
     rooms = "\n".join(f"    {group.name:15}{group.what}" for group in GROUPS)
     listing = f"    {'program':15}the frozen program, as text\n    {'state':15}its lines for a given state\n"
     listing += f"    {'centres':15}its lines for centres of mass halfway along the links\n"
@@ -172,7 +172,7 @@ def _group(derivation: Derivation, group: Group, digest: str) -> str:
     inputs = [name for name in sliced.inputs if name != "branch"]
     guarded = guard_inputs(sliced, inputs, LEAST, {"theta": derivation.trigonometry.limit})
     axis_of = {name: None if name == "branch" else 0 for name in sliced.inputs}
-    guarded = fuse_products(number_values(expand_trigonometry(guarded, derivation.trigonometry)))
+    guarded = fuse_products(value_numbering(expand_trigonometry(guarded, derivation.trigonometry)))
     kernel = hoist(guarded, axis_of, 1)
     banner = _banner(f"numba kernel: {group.what}.", digest, f"{cost_of(guarded).operations} operations")
     front = (

@@ -14,7 +14,7 @@ import numpy as np
 from desaxe.compiler.kernel import tabulate
 from desaxe.compiler.languages.numba.module import emit_numba
 from desaxe.compiler.passes.trigonometry import expand_trigonometry
-from desaxe.compiler.passes.value_numbering import number_values
+from desaxe.compiler.passes.value_numbering import value_numbering
 from desaxe.compiler.text import read_function
 from desaxe.mechanism.constants import constants
 
@@ -71,7 +71,7 @@ def _quotients(x: Array, y: Array, _: Array) -> None:
 
 def _sines() -> Any:
     """The loop that desaxe would compile for a sine and a cosine."""
-    program = number_values(expand_trigonometry(read_function(BOTH), constants()))
+    program = value_numbering(expand_trigonometry(read_function(BOTH), constants()))
     scope: dict[str, Any] = {}
     exec(emit_numba(tabulate(program, {"theta": 0}, 1), "Both."), scope)
     return scope["kernel"]

@@ -15,7 +15,7 @@ from desaxe.derive import loop, stable
 from desaxe.derive.dynamics import define_dynamics
 from desaxe.derive.equation import LATEX_NAMES, latex_name
 from desaxe.derive.sheet import Sheet
-from desaxe.mechanism.program import Form, program_of
+from desaxe.mechanism.program import Variant, program_of
 
 # What symbols that are no quantities are called.
 NAMES = {
@@ -69,9 +69,9 @@ def wide_forms():
     return "\n\n".join(_math(f"{head} = {_latex(expression)}") for head, expression in rows.items())
 
 
-def roomy():
+def wide_margins():
     """The test for a design with wide margins."""
-    return _math(rf"AB + |e_c| < {stable.ROOMY:.3f}\, BC")
+    return _math(rf"AB + |e_c| < {stable.WIDE_MARGIN_SHARE:.3f}\, BC")
 
 
 def both_forms():
@@ -81,8 +81,8 @@ def both_forms():
 
 
 def steps(name, form=""):
-    """The lines that are computed for a quantity: stable, or for a `roomy` design."""
-    program = program_of((name,), Form(roomy=form == "roomy"))
+    """The lines that are computed for a quantity: stable, or for a design with wide margins (`plain`)."""
+    program = program_of((name,), Variant(wide_margins=form == "plain"))
     return "```text\n" + "\n".join(write_lines(with_short_temporaries(program))) + "\n```"
 
 
@@ -119,4 +119,4 @@ def _spaced(text):
     return re.sub(r"(?<=\S) (\\(?:sin|cos)\b)", r" \\,\1", text)
 
 
-WRITERS = (equation, closure, dynamics, wide_forms, roomy, both_forms, steps)
+WRITERS = (equation, closure, dynamics, wide_forms, wide_margins, both_forms, steps)

@@ -37,8 +37,8 @@ TEXT = '''def coverage(x, y, z):
     lost_too = x * y + two_product_error(x, y) * 0.5
     added = mul_add(x + y, -z, x - y) + mul_add(x, y, mul_add(-x, y, z))
     lost_at_most = x + y + rounding(x) * 0.5
-    quarter_turns = turned(x, y, floor(z)) + turned(x, y, -1.0)
-    their_cosine = turned_cosine(x, y, floor(z)) + turned_cosine(x, y, 1.0)
+    quarter_turns = rotated_sin(x, y, floor(z)) + rotated_sin(x, y, -1.0)
+    their_cosine = rotated_cos(x, y, floor(z)) + rotated_cos(x, y, 1.0)
     least = x if x < y else y
     chosen = x if x < y else (y if y <= z else z)
     chosen_early = (x if x < y else y) - (y if z < y else z)
@@ -49,7 +49,7 @@ TEXT = '''def coverage(x, y, z):
     neither = 1.0 if not (x < y or y < z) else 0.0
     negated = 1.0 if (not x < y) and not y <= z else 0.0
     equal = 1.0 if x == y or x + y == z else 0.0
-    plainer = x - y if finer(x < y) else y - z
+    plainer = x - y if extended_only(x < y) else y - z
     state = 3 if x < y else (1 if y < z else 0)
     missing = nan if x < -1000.0 else x
     return {outputs}

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from desaxe.compiler.passes.bind import assume, bind_constants, overlay
 from desaxe.compiler.passes.slicing import keep_outputs
 from desaxe.compiler.program import Line, Note, Program, validate
-from desaxe.mechanism.program import Form, program_of
+from desaxe.mechanism.program import Variant, program_of
 from tests.compiler.programs import POINT, committed, exactly, points, programs, same
 
 PROGRAM = Program(("x", "y"), (Line("u", "add", ("x", "y")), Line("v", "mul", ("u", "x"))), ("v",), {})
@@ -81,7 +81,7 @@ def test_a_state_that_the_law_gives_means_the_same():
     names = ("omega", "V_C", "a_C", "j_C", "alpha_BC_wrt_ec")
     law = committed(*names)
     omega = exactly(law, POINT)["omega"]
-    state = keep_outputs(validate(program_of(names, Form(state=True))), names)
+    state = keep_outputs(validate(program_of(names, Variant(state=True))), names)
     assert "omega0" not in state.inputs
     found, wanted = exactly(state, POINT | {"omega": omega}), exactly(law, POINT)
     assert all(abs(found[name] / wanted[name] - 1) < 1e-45 for name in names)

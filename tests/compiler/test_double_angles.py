@@ -7,7 +7,7 @@ from functools import cache
 import mpmath
 import pytest
 
-from desaxe.compiler.passes.double_angles import turned
+from desaxe.compiler.passes.double_angles import rotated_sin
 from desaxe.compiler.passes.expansions import Expansions, Pair
 from desaxe.compiler.program import Program
 from desaxe.mechanism.constants import double_constants
@@ -22,7 +22,7 @@ END = 2.0**-143
 def written(part):
     """The program of the words of `sin`, `cos` or `complement` of x."""
     writer = Expansions()
-    words = getattr(turned(writer, Pair("x"), double_constants()), part)
+    words = getattr(rotated_sin(writer, Pair("x"), double_constants()), part)
     return Program(("x",), tuple(writer.lines), tuple(words), {})
 
 

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from desaxe.compiler.passes import double_double
-from desaxe.compiler.passes.double_double import double_digits
+from desaxe.compiler.passes import double_double as module
+from desaxe.compiler.passes.double_double import double_double
 from desaxe.compiler.passes.fold import fold_constants
 from desaxe.compiler.program import Line, Program, validate
 from desaxe.mechanism.constants import double_constants
@@ -23,7 +23,7 @@ DIGITS = 2.0**-100
 def in_pairs(lines, point):
     """The last line in pairs, as one exact number."""
     program = Program(tuple(point), tuple(lines), (lines[-1].name,), {})
-    writer = double_double._Writer(program, double_constants())
+    writer = module._Writer(program, double_constants())
     for line in lines:
         writer.assign(line)
     pair = writer.pairs[lines[-1].name]
@@ -117,7 +117,7 @@ def test_next_to_a_multiple_of_a_quarter(op):
 
 def test_the_coverage_set_is_rounded_once():
     program = coverage()
-    wide = validate(double_digits(program, double_constants()))
+    wide = validate(double_double(program, double_constants()))
     for point in POINTS:
         found = in_doubles(wide, point)
         from desaxe.compiler.interpret import run_exactly
@@ -135,14 +135,14 @@ def test_the_coverage_set_is_rounded_once():
 @settings(max_examples=200, deadline=None)
 def test_nothing_raises_and_comparisons_are_those_of_doubles(x, y):
     lines = (Line("less", "lt", ("x", "y"), "bool"), Line("r", "select", ("less", 1.0, 2.0)))
-    wide = double_digits(Program(("x", "y"), lines, ("r",), {}), double_constants())
+    wide = double_double(Program(("x", "y"), lines, ("r",), {}), double_constants())
     assert in_doubles(wide, {"x": x, "y": y})["r"] == (1.0 if x < y else 2.0)
 
 
 def test_what_is_a_double_stays_one():
     """Scaling by a power of 2, signs and choices of doubles cost no low parts."""
     lines = (Line("twice", "mul", (2.0, "x")), Line("size", "abs", ("twice",)), Line("r", "neg", ("size",)))
-    wide = double_digits(Program(("x",), lines, ("r",), {}), double_constants())
+    wide = double_double(Program(("x",), lines, ("r",), {}), double_constants())
     assert [line.op for line in wide.lines] == ["mul", "abs", "neg"]
 
 
@@ -178,7 +178,7 @@ def test_other_differences_keep_two_words():
     plain = [*SINE, *GAP[:1], GAP[1]._replace(name="other")]
     lines = [*SINE, *GAP]
     made = [
-        double_digits(Program(("x", "a", "y", "z"), tuple(some), (some[-1].name,), {}), double_constants())
+        double_double(Program(("x", "a", "y", "z"), tuple(some), (some[-1].name,), {}), double_constants())
         for some in (plain, lines)
     ]
     assert len(made[0].lines) < len(made[1].lines)
@@ -187,11 +187,11 @@ def test_other_differences_keep_two_words():
 def test_finer_forms_are_taken_before_folding():
     lines = (
         Line("less", "lt", ("x", "y"), "bool"),
-        Line("fine", "finer", ("less",), "bool"),
+        Line("fine", "extended_only", ("less",), "bool"),
         Line("r", "select", ("fine", "x", "y")),
     )
     program = Program(("x", "y"), lines, ("r",), {})
-    fine, plain = double_double.with_finer_forms(program), fold_constants(program)
+    fine, plain = module.with_extended_only_forms(program), fold_constants(program)
     for x, y in ((1.0, 2.0), (2.0, 1.0)):
         assert in_doubles(fine, {"x": x, "y": y})["r"] == min(x, y)
         assert in_doubles(plain, {"x": x, "y": y})["r"] == y
@@ -200,15 +200,15 @@ def test_finer_forms_are_taken_before_folding():
 def test_a_sign_costs_no_rounding():
     lines = (
         Line("sign", "copysign", (1.0, "y")),
-        Line("turned", "select", (True, "sign", -1.0)),
-        Line("r", "mul", ("turned", "x")),
+        Line("rotated_sin", "select", (True, "sign", -1.0)),
+        Line("r", "mul", ("rotated_sin", "x")),
     )
-    wide = double_digits(Program(("x", "y"), lines, ("r",), {}), double_constants())
+    wide = double_double(Program(("x", "y"), lines, ("r",), {}), double_constants())
     assert [line.op for line in wide.lines] == ["copysign", "mul"]
 
 
 def test_an_infeasible_point_stays_nan():
     lines = (Line("r", "sqrt", ("x",)),)
-    wide = double_digits(Program(("x",), lines, ("r",), {}), double_constants())
+    wide = double_double(Program(("x",), lines, ("r",), {}), double_constants())
     assert math.isnan(in_doubles(wide, {"x": -1.0})["r"])
     assert in_doubles(wide, {"x": 0.0})["r"] == 0.0

@@ -36,7 +36,7 @@ FOLDED = [
     (("mul_add", "x", 0.0, "y"), ("copy", "y")),
     (("mul_add", "x", "y", 0.0), ("mul", "x", "y")),
     (("mul_add", "x", 1.0, 0.0), ("copy", "x")),
-    (("finer", LESS), ("copy", False)),
+    (("extended_only", LESS), ("copy", False)),
     (("div", "x", 1.0), ("copy", "x")),
     (("div", 0.0, "x"), ("copy", 0.0)),
     (("two_sum_error", "x", 0.0), ("copy", 0.0)),

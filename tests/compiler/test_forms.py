@@ -6,7 +6,7 @@ import pytest
 from desaxe.compiler.forms import in_two_forms, parted
 from desaxe.compiler.kernel import hoist, tabulate
 from desaxe.compiler.languages.numba.module import emit_numba
-from desaxe.compiler.languages.numba.two_forms import BIGGEST, block_of, is_mixed
+from desaxe.compiler.languages.numba.two_forms import BIGGEST, block_of, has_two_forms
 from desaxe.compiler.program import Line, Program, validate
 
 # The forms differ on purpose, so that a result tells which one it is from.
@@ -39,7 +39,7 @@ def test_equal_lines_are_computed_once():
 @pytest.mark.parametrize("share", [0.0, 0.01, 0.5, 1.0])
 def test_each_point_has_the_form_that_its_test_says(size, share):
     kernel, run = kernel_for({"x": 0, "y": 0}, 1)
-    assert is_mixed(kernel)
+    assert has_two_forms(kernel)
     rng = np.random.default_rng(size)
     x = rng.uniform(-3, 3, size)
     y = np.where(rng.random(size) < share, 2.0, 0.5)
@@ -52,7 +52,7 @@ def test_each_point_has_the_form_that_its_test_says(size, share):
 @pytest.mark.parametrize("place", [hoist, tabulate])
 def test_a_test_of_an_outer_axis_picks_the_loop(place):
     kernel, run = kernel_for({"y": 0, "x": 1}, 2, place)
-    assert not is_mixed(kernel)
+    assert not has_two_forms(kernel)
     x, y = np.linspace(-3, 3, 40), np.array([0.5, 2.0, -0.1, np.nan])
     out, echo = np.empty((4, 40)), np.empty((4, 40))
     run(x, y, out, echo)
@@ -63,13 +63,13 @@ def test_a_test_of_an_outer_axis_picks_the_loop(place):
 def test_tables_and_blocks_go_together(place):
     kernel, run = kernel_for({"x": 1, "y": 0}, 2, place)
     other, again = kernel_for({"x": 0, "y": 1}, 2, place)
-    assert is_mixed(other)
-    assert not is_mixed(kernel)
+    assert has_two_forms(other)
+    assert not has_two_forms(kernel)
     x, y = np.linspace(-3, 3, 9), np.linspace(-2, 2, 700)
-    (out, echo), (turned, echoed) = ([np.empty(s), np.empty(s)] for s in ((700, 9), (9, 700)))
+    (out, echo), (rotated_sin, echoed) = ([np.empty(s), np.empty(s)] for s in ((700, 9), (9, 700)))
     run(x, y, out, echo)
-    again(x, y, turned, echoed)
-    assert np.array_equal(out.T, turned)
+    again(x, y, rotated_sin, echoed)
+    assert np.array_equal(out.T, rotated_sin)
 
 
 def test_a_test_that_is_not_known_is_not_passed():

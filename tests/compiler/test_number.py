@@ -2,7 +2,7 @@
 
 from hypothesis import given, settings
 
-from desaxe.compiler.passes.value_numbering import number_values
+from desaxe.compiler.passes.value_numbering import value_numbering
 from desaxe.compiler.program import Line, Note, Program, validate
 from tests.compiler.programs import (
     POINT,
@@ -25,7 +25,7 @@ def numbered(*nested):
         line._replace(name=f"s{i}_{line.name}", args=own(line, i)) for i, s in enumerate(sides) for line in s
     ]
     product = Line("product", "atan2", tuple(f"s{i}_out" for i in range(2)))
-    return number_values(Program(("x", "y", "z"), (*lines, product), ("product",), {})).lines
+    return value_numbering(Program(("x", "y", "z"), (*lines, product), ("product",), {})).lines
 
 
 def own(line, side):
@@ -59,54 +59,54 @@ def test_constants_of_two_types_are_two_values():
         Line("n", "select", ("less", 1, 0), "i64"),
     )
     program = Program(("x", "y"), lines, ("u", "n"), {})
-    assert number_values(program) == program
+    assert value_numbering(program) == program
 
 
 def test_zeros_of_two_signs_are_two_values():
     lines = (Line("u", "copysign", ("x", 0.0)), Line("v", "copysign", ("x", -0.0)))
     program = Program(("x",), lines, ("u", "v"), {})
-    assert number_values(program) == program
+    assert value_numbering(program) == program
 
 
 def test_a_name_with_a_meaning_is_kept():
     lines = (Line("_1", "neg", ("x",)), Line("u", "neg", ("x",)), Line("v", "sub", ("_1", "u")))
-    program = number_values(Program(("x",), lines, ("v",), {"u": Note("m", "a length")}))
+    program = value_numbering(Program(("x",), lines, ("v",), {"u": Note("m", "a length")}))
     assert program.lines == (Line("u", "neg", ("x",)), Line("v", "sub", ("u", "u")))
 
 
 def test_two_outputs_of_one_value_stay():
     lines = (Line("u", "neg", ("x",)), Line("v", "neg", ("x",)))
-    program = number_values(Program(("x",), lines, ("u", "v"), {}))
+    program = value_numbering(Program(("x",), lines, ("u", "v"), {}))
     assert program.lines == (Line("u", "neg", ("x",)), Line("v", "copy", ("u",)))
 
 
 def test_a_copy_of_a_line_is_that_line():
     lines = (Line("u", "neg", ("x",)), Line("_1", "copy", ("u",)), Line("v", "sin", ("_1",)))
-    program = number_values(Program(("x",), lines, ("v",), {}))
+    program = value_numbering(Program(("x",), lines, ("v",), {}))
     assert program.lines == (Line("u", "neg", ("x",)), Line("v", "sin", ("u",)))
 
 
 @given(programs(WITH_NAN))
 @settings(max_examples=100, deadline=None)
 def test_the_result_is_valid_and_final(program):
-    once = validate(number_values(program))
-    assert number_values(once) == once
+    once = validate(value_numbering(program))
+    assert value_numbering(once) == once
 
 
 @given(programs(), points())
 @settings(max_examples=75, deadline=None)
 def test_the_meaning_is_unchanged(program, point):
-    assert same(exactly(number_values(program), point), exactly(program, point))
+    assert same(exactly(value_numbering(program), point), exactly(program, point))
 
 
 @given(programs(WITH_NAN), points())
 @settings(max_examples=75, deadline=None)
 def test_no_bit_changes(program, point):
-    before, after = in_doubles(program, point), in_doubles(number_values(program), point)
+    before, after = in_doubles(program, point), in_doubles(value_numbering(program), point)
     assert all(same_bits(before[name], after[name]) for name in before)
 
 
 def test_the_committed_program_has_nothing_left_to_merge():
     program = committed("a_C_wrt_theta", "alpha_BC_wrt_ec")
-    assert number_values(program) == program
-    assert same(exactly(number_values(program), POINT), exactly(program, POINT))
+    assert value_numbering(program) == program
+    assert same(exactly(value_numbering(program), POINT), exactly(program, POINT))

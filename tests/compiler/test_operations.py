@@ -31,10 +31,10 @@ REFERENCE = {
     "and": np.logical_and, "or": np.logical_or, "not": np.logical_not, "select": np.where,
 }  # fmt: skip
 REFERENCE["mul_add"] = lambda a, b, c: np.add(np.multiply(a, b), c)
-REFERENCE["finer"] = lambda a: False
+REFERENCE["extended_only"] = lambda a: False
 ERRORS = ("two_sum_error", "two_product_error", "rounding")  # exactly 0 over the reals
 CALLED = ("sin", "cos", "atan2")  # each library rounds these in its own way
-WHOLE = ("turned", "turned_cosine")  # their last argument is a whole number
+WHOLE = ("rotated_sin", "rotated_cos")  # their last argument is a whole number
 
 
 def arguments(op):
@@ -134,9 +134,9 @@ def test_the_numba_spelling_is_ieee(op):
 
 def test_quarter_turns_go_round():
     sine, cosine = 0.25, 0.75
-    found = [ieee("turned", sine, cosine, float(quarters)) for quarters in range(-4, 8)]
+    found = [ieee("rotated_sin", sine, cosine, float(quarters)) for quarters in range(-4, 8)]
     assert found == [sine, cosine, -sine, -cosine] * 3
-    found = [ieee("turned_cosine", sine, cosine, float(quarters)) for quarters in range(-4, 8)]
+    found = [ieee("rotated_cos", sine, cosine, float(quarters)) for quarters in range(-4, 8)]
     assert found == [cosine, -sine, -cosine, sine] * 3
 
 

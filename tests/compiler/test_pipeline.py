@@ -6,7 +6,7 @@ from hypothesis import assume, given, settings
 from desaxe.compiler.cost import cost_of
 from desaxe.compiler.passes.pipeline import PASSES, optimise
 from desaxe.compiler.program import validate
-from desaxe.mechanism.program import Form, program_of
+from desaxe.mechanism.program import Variant, program_of
 from tests.compiler.programs import (
     NO_JUMPS,
     POINT,
@@ -70,7 +70,7 @@ def test_the_committed_program_keeps_its_meaning(fixed):
 
 def operations(*names, state=False, **fixed):
     """How many operations a request costs a point."""
-    return len(optimise(program_of(names, Form(state)), fixed)[0].lines)
+    return len(optimise(program_of(names, Variant(state)), fixed)[0].lines)
 
 
 def test_operations_of_a_sine():

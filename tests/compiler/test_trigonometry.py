@@ -8,7 +8,7 @@ import pytest
 
 from desaxe.compiler.languages.python import compile_python
 from desaxe.compiler.passes.trigonometry import expand_trigonometry
-from desaxe.compiler.passes.value_numbering import number_values
+from desaxe.compiler.passes.value_numbering import value_numbering
 from desaxe.compiler.program import Line, Program, validate
 from desaxe.mechanism.constants import constants
 from desaxe.oracle.truth import ulp_error
@@ -105,6 +105,6 @@ def test_the_coverage_set(point):
 
 def test_the_committed_program_keeps_its_values():
     program = committed("Y", "V_C", "a_C", "phi", "alpha_BC")
-    expanded = number_values(expand_trigonometry(program, constants()))
+    expanded = value_numbering(expand_trigonometry(program, constants()))
     found, wanted = in_doubles(validate(expanded), POINT), in_doubles(program, POINT)
     assert all(math.isclose(found[name], wanted[name], rel_tol=4e-15) for name in found)

@@ -91,7 +91,7 @@ def test_eccentricity_near_the_rod(side, crank):
 def test_eccentricity_near_the_crank(side, rod):
     """The eccentricity within a last bit of +-AB, at the opposite quarter: the pin meets the slider axis.
 
-    In a roomy design nothing else happens there, and only the margin counts as an input of its own.
+    With wide margins nothing else happens there, and only the margin counts as an input of its own.
     """
     crank, gaps = 0.7, ("margin", "crank") if rod < 1.4 else ("margin",)
     for ec, distance in itertools.product(

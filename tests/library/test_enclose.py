@@ -22,7 +22,7 @@ from desaxe.enclosure import balls as _balls
 from desaxe.mechanism.program import LAW as LAW_FORM
 from desaxe.oracle.force_truth import force_names, truth
 from desaxe.oracle.truth import LAW, STATE, all_names
-from desaxe.runtime.specialise import cut
+from desaxe.runtime.specialise import specialise
 from desaxe.support.extras import MissingExtraError
 from tests.library.points import draw
 from tests.library.test_force_values import bodies, points
@@ -88,7 +88,7 @@ def test_a_point_is_enclosed_to_a_last_bit(kind):
             assert found["tight"]
 
 
-@pytest.mark.parametrize("kind", ["friction", "halves"])
+@pytest.mark.parametrize("kind", ["friction", "default_centres"])
 def test_forces_at_a_point(kind):
     names = force_names()
     for number, point in enumerate(points("slowing down", kind, 6)):
@@ -128,7 +128,7 @@ def test_every_point_of_a_box_is_inside(kind, seed, exponent, forces):
     rng = random.Random(seed)
     point = rng.choice(list(draw(kind, 30)))
     if forces:
-        point |= bodies(rng, rng.choice(["smooth", "friction", "halves"]), point["AB"], point["BC"])
+        point |= bodies(rng, rng.choice(["smooth", "friction", "default_centres"]), point["AB"], point["BC"])
     state = "omega" in point
     choices = force_names() if forces and not state else all_names(STATE if state else LAW)
     name = rng.choice(choices)
@@ -361,7 +361,7 @@ def test_a_finer_tolerance_is_kept():
 
 def test_undecided_sides_that_count_as_the_same_are_the_same():
     """Each of these selects has the same value on both sides, to 100 digits, wherever it is."""
-    program = cut(("s", "j_C_wrt_theta"), LAW_FORM, (("branch", 1.0), ("alpha", 0.0)))
+    program = specialise(("s", "j_C_wrt_theta"), LAW_FORM, (("branch", 1.0), ("alpha", 0.0)))
     sides = {line.name: line.args[1:] for line in program.lines if line.op == "select"}
     assert set(_balls.SAME) <= set(sides)
     for point in draw("generic", 30):
@@ -380,7 +380,7 @@ def test_the_signs_may_be_chosen_either_way(sign, side, monkeypatch):
     """All equations are identities in sigma and nu: with the wrong one the values are the same."""
     for point in draw("generic", 12):
         names = tuple(n for n in all_names() if n != "margin")
-        program = cut(names, LAW_FORM, (("branch", 1.0),))
+        program = specialise(names, LAW_FORM, (("branch", 1.0),))
         box = {p: (point[p], point[p]) for p in program.inputs}
         right = _balls.enclosures(program, box, 400).values
         monkeypatch.setattr(_balls._Run, sign, lambda run, *_: side)
@@ -396,9 +396,9 @@ def test_the_signs_may_be_chosen_either_way(sign, side, monkeypatch):
 def test_derivatives_line_by_line_are_the_derived_ones(name):
     """What serves where nothing is derived, against the sensitivities that are."""
     for point in points("slowing down", "friction", 3):
-        own = cut((name,), LAW_FORM, (("branch", 1.0),))
+        own = specialise((name,), LAW_FORM, (("branch", 1.0),))
         parameters = tuple(p for p in own.inputs)
-        derived = cut((name, *(f"{name}_wrt_{p}" for p in parameters)), LAW_FORM, (("branch", 1.0),))
+        derived = specialise((name, *(f"{name}_wrt_{p}" for p in parameters)), LAW_FORM, (("branch", 1.0),))
         box = {p: (point[p], point[p]) for p in parameters}
         found = _balls.enclosures(with_derivatives(own, parameters), box, 300).values
         for p, a, b in zip(

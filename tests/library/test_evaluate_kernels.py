@@ -13,7 +13,7 @@ import xarray
 
 import desaxe as dx
 from desaxe.evaluation import arrays as _arrays
-from desaxe.mechanism.program import Form
+from desaxe.mechanism.program import Variant
 from desaxe.runtime import cache as _cache
 from desaxe.runtime import interpreted as _few_points
 from desaxe.runtime import kernels as _kernels
@@ -195,7 +195,7 @@ def test_a_folder_without_permission_is_a_warning(tmp_path, monkeypatch):
 def test_a_kernel_of_another_version_is_not_taken_for_this_one(tmp_path, monkeypatch):
     """A version with other limits: the same request, another kernel."""
     monkeypatch.setattr(_cache, "folder", lambda: _cache.Folder(tmp_path, True))
-    key = _kernels.KernelKey(("V_B_X",), Form(state=True), (("branch", 1.0),), (("AB", 0),), 1)
+    key = _kernels.KernelKey(("V_B_X",), Variant(state=True), (("branch", 1.0),), (("AB", 0),), 1)
     values, out = {"theta": 0.0, "omega": 2.0, "AB": np.array([-0.5])}, np.empty(1)
     _kernels._load(key).run(values, [out])
     assert math.isnan(out[0])

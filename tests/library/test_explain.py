@@ -82,8 +82,8 @@ def test_masses_of_nothing():
     assert next(one for name, one in what.items() if "F_Y" in name)["why"].startswith("not given")
     heavy = dx.explain(free(PRESS, "masses", "m_rod", 0.5))
     assert heavy["operations"]["straight"] > plan["operations"]["straight"]
-    halves = [one["what"] for one in heavy["skipped"] if "half of" in one["why"]]
-    assert "r_rod" in halves
+    default_centres = [one["what"] for one in heavy["skipped"] if "half of" in one["why"]]
+    assert "r_rod" in default_centres
 
 
 def test_an_input_that_nothing_needs():
@@ -94,7 +94,7 @@ def test_an_input_that_nothing_needs():
 
 @pytest.mark.parametrize("rods", [[0.34, 0.35], [0.19, 0.35]])
 def test_counts_are_those_of_the_kernel(rods):
-    """Where all designs are roomy there is one form; else a loop says what it does instead."""
+    """Where all designs have wide margins there is one form; else a loop says what it does instead."""
     scene = free(DESIGNS, "mechanism", "BC", rods)
     plan = dx.explain(scene)
     found = grid_kernel(dx.scene(scene).content)
@@ -220,7 +220,7 @@ Operations at each point after each pass
   derivation         2226           every line of the derivation
   slice                89    2137   only the lines that the wanted names reach
   fold                 62      27   fixed inputs folded in; terms with a factor 0 vanish
-  plain                23      39   every design is roomy: shorter forms will do
+  plain                23      39   every design has wide margins: shorter forms
 
 Loops, from outside in
            runs   operations   per point

@@ -36,7 +36,7 @@ def bodies(rng, kind, AB, BC):
     found |= {name: rng.uniform(-200.0, 200.0) for name in ("F_X", "F_Y")}
     found |= {name: rng.uniform(-10.0, 10.0) for name in ("g_X", "g_Y")}
     found["mu"] = rng.uniform(0.02, 0.3) if kind == "friction" else 0.0
-    if kind == "halves":
+    if kind == "default_centres":
         for name in CENTRES:
             del found[name]
     if kind == "loads alone":
@@ -69,7 +69,7 @@ def misses(values, point):
     return {name: (values[name], float(exact[name])) for name in wrong}
 
 
-KINDS = ("smooth", "friction", "halves", "loads alone")
+KINDS = ("smooth", "friction", "default_centres", "loads alone")
 GEOMETRIES = ("generic", "branch -1", "long crank", "concentric", "backwards", "slowing down")
 STATES = ("state", "state at rest", "state that starts", "at rest", "from rest")
 
@@ -84,12 +84,12 @@ def test_values_and_all_first_sensitivities(geometry, kind):
 @pytest.mark.parametrize("parameter", ["AB", "BC"])
 def test_a_derivative_that_moves_a_centre_alone(parameter):
     """Asked for by itself, it may need how the centre of mass moves, though not where that is."""
-    for point in points("slowing down", "halves", 2):
+    for point in points("slowing down", "default_centres", 2):
         for name in (name for name in force_names() if name.endswith(f"_wrt_{parameter}")):
             assert not misses({name: dx.evaluate(name, **point)}, point), (name, point)
 
 
-@pytest.mark.parametrize("kind", ["smooth", "friction", "halves"])
+@pytest.mark.parametrize("kind", ["smooth", "friction", "default_centres"])
 def test_a_kernel_is_as_right_as_a_point(kind):
     """The same through the compiled loop; the sensitivities of the torque stand for all."""
     rows = list(points("generic", kind, 12))

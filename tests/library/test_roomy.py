@@ -1,4 +1,4 @@
-"""Plain forms for roomy designs: as exact as promised up to the edge of what is called roomy, and beyond."""
+"""Plain forms for designs with wide margins: as exact as promised up to the edge of that test, and beyond."""
 
 import math
 import random
@@ -9,11 +9,11 @@ import pytest
 import desaxe as dx
 from desaxe.runtime import interpreted as _few_points
 from desaxe.runtime.request import request
-from desaxe.runtime.specialise import cut, plain_form
+from desaxe.runtime.specialise import plain_form, specialise
 from tests.library.test_stress import NAMES, compiled, is_kept
 from tests.library.ways import take_way
 
-ROOMY = 0.875
+SHARE = 0.875
 SIDES = [f"transmission_angle_wrt_{p}" for p in ("theta", "ec", "AB", "BC")]
 
 
@@ -22,7 +22,7 @@ def edges(count=60):
     rng = random.Random(7)
     for _ in range(count):
         BC, share = 10 ** rng.uniform(-3, 3), rng.uniform(0.05, 0.95)
-        reach = ROOMY * BC * (1 + rng.choice((-1, 1)) * 2.0 ** -rng.randrange(3, 53))
+        reach = SHARE * BC * (1 + rng.choice((-1, 1)) * 2.0 ** -rng.randrange(3, 53))
         if rng.random() < 0.3:  # |ec| so near AB that u may cancel
             share = 0.5 + rng.choice((-1, 0, 1)) * 10 ** rng.uniform(-17, -2)
         AB = reach * share
@@ -77,9 +77,9 @@ def test_an_element_has_the_same_value_among_any_others(where, monkeypatch):
     machine = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
     names = ["a_C", "a_C_wrt_ec", "status"]
     whole = dx.evaluate(names, **columns, **machine)
-    roomy = 0.125 + np.abs(columns["ec"]) < ROOMY * 0.35
-    assert 0.3 < roomy.mean() < 0.9
-    for chosen in (roomy, ~roomy, slice(0, 1), slice(700, 1_100), slice(None, None, -1)):
+    wide_margins = 0.125 + np.abs(columns["ec"]) < SHARE * 0.35
+    assert 0.3 < wide_margins.mean() < 0.9
+    for chosen in (wide_margins, ~wide_margins, slice(0, 1), slice(700, 1_100), slice(None, None, -1)):
         part = dx.evaluate(names, **{n: column[chosen] for n, column in columns.items()}, **machine)
         for name in names:
             assert np.array_equal(part[name], whole[name][chosen], equal_nan=True)
@@ -121,6 +121,6 @@ def test_the_plain_form_is_shorter():
     given = dict.fromkeys(("theta", "ec", "AB", "BC", "omega0"), 1.0)
     asked = request(["V_C", "a_C"], given, 1, "standard")
     plain = plain_form(asked.names, asked.form, asked.fixed)
-    stable = cut(asked.names, asked.form, asked.fixed)
+    stable = specialise(asked.names, asked.form, asked.fixed)
     assert plain is not None
     assert len(plain.lines) < 40 < len(stable.lines)

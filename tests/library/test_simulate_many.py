@@ -11,7 +11,7 @@ import pytest
 from scipy.integrate import DOP853
 
 import desaxe as dx
-from desaxe.mechanism.program import Form
+from desaxe.mechanism.program import Variant
 from desaxe.simulation import dop853 as compiled
 from desaxe.simulation.compiled import Family, source_of
 from desaxe.simulation.coordinate import EDGE
@@ -190,7 +190,7 @@ def test_what_is_refused(change, error, message):
 
 
 def test_the_text_stands_alone():
-    tree = ast.parse(source_of(Family(Form(True, ("r_crank", "r_rod")), ()), False))
+    tree = ast.parse(source_of(Family(Variant(True, ("r_crank", "r_rod")), ()), False))
     modules = {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
     assert modules == {"math", "numba", "numba.extending", "numpy"}
     assert not [node for node in ast.walk(tree) if isinstance(node, ast.Import)]
@@ -199,7 +199,7 @@ def test_the_text_stands_alone():
 def test_what_a_family_lacks_costs_nothing():
     """Without gravity nothing computes a weight."""
     zeros = tuple((name, 0.0) for name in ("g_X", "g_Y"))
-    full, light = (source_of(Family(Form(True), fixed), False) for fixed in ((), zeros))
+    full, light = (source_of(Family(Variant(True), fixed), False) for fixed in ((), zeros))
     assert "g_Y" in full
     assert "g_Y" not in light
 

@@ -7,8 +7,8 @@ takes the innermost loop of its kernel apart again. The value at a point depends
 
 from collections.abc import Iterable
 
-from .kernel import Close, Kernel
-from .passes.value_numbering import number_values
+from .kernel import Kernel, StableBranch
+from .passes.value_numbering import value_numbering
 from .program import Line, Program, names_in, renamed
 
 _SUFFIX = "_close"
@@ -29,7 +29,7 @@ def in_two_forms(plain: Program, stable: Program, test: Program) -> Program:
     inputs = dict.fromkeys(name for part in (stable, plain, test) for name in part.inputs)
     notes = {**plain.notes, **test.notes}
     notes |= {f"{name}{_SUFFIX}": note for name, note in stable.notes.items() if name not in notes}
-    return number_values(Program(tuple(inputs), (*lines, *aliases), outputs, notes))
+    return value_numbering(Program(tuple(inputs), (*lines, *aliases), outputs, notes))
 
 
 def _names(program: Program) -> Iterable[str]:
@@ -46,7 +46,7 @@ def parted(kernel: Kernel, count: int) -> Kernel:
     stable, undecided = tuple(results[:count]), (*results[count:], None)[0]
     *outer, inner = kernel.levels
     plain_lines = _reaching(inner, (*outputs, test))
-    close = Close(test, _reaching(inner, results), stable, _reaching(inner, (test,)), undecided)
+    close = StableBranch(test, _reaching(inner, results), stable, _reaching(inner, (test,)), undecided)
     return kernel._replace(levels=(*outer, plain_lines), outputs=outputs, close=close)
 
 

@@ -70,7 +70,7 @@ def _two_product_error(a: float, b: float) -> float:
     return float(Fraction(a) * Fraction(b) - Fraction(product))
 
 
-def _turned(sine: float, cosine: float, quarters: float) -> float:
+def _rotated(sine: float, cosine: float, quarters: float) -> float:
     value = cosine if quarters % 2.0 == 1.0 else sine
     return -value if quarters % 4.0 >= 2.0 else value
 
@@ -98,14 +98,14 @@ _IEEE: dict[str, Any] = {
     "two_product_error": _two_product_error,
     "mul_add": lambda a, b, c: a * b + c,
     "rounding": lambda a: 2.0**-51 * math.fabs(a),
-    "turned": _turned,
-    "turned_cosine": _turned_cosine,
+    "rotated_sin": _rotated,
+    "rotated_cos": _turned_cosine,
     "lt": lambda a, b: a < b,
     "le": lambda a, b: a <= b,
     "eq": lambda a, b: a == b,
     "and": lambda a, b: a and b,
     "or": lambda a, b: a or b,
     "not": lambda a: not a,
-    "finer": lambda a: False,
+    "extended_only": lambda a: False,
     "select": lambda c, a, b: a if c else b,
 }

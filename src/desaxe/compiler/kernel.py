@@ -29,10 +29,10 @@ class Kernel(NamedTuple):
     types: Mapping[str, str]
     notes: Mapping[str, Note]
     tables: tuple["Table", ...] = ()
-    close: "Close | None" = None
+    close: "StableBranch | None" = None
 
 
-class Close(NamedTuple):
+class StableBranch(NamedTuple):
     """What the innermost loop does instead of its own lines at points where a test fails.
 
     `outputs` are the names that hold the kernel's outputs there. The test is a line of the innermost
@@ -88,7 +88,7 @@ def level_program(kernel: Kernel, level: int) -> Program:
     return Program((), kernel.levels[level], outputs, kernel.notes)
 
 
-def close_programs(kernel: Kernel) -> tuple[Program, Program]:
+def stable_branch_programs(kernel: Kernel) -> tuple[Program, Program]:
     """The test and the lines of `close` as programs of their own."""
     close = kernel.close
     if close is None:
@@ -99,7 +99,7 @@ def close_programs(kernel: Kernel) -> tuple[Program, Program]:
     return test, Program((), close.lines, outputs, kernel.notes)
 
 
-def _results(close: Close) -> tuple[str, ...]:
+def _results(close: StableBranch) -> tuple[str, ...]:
     return close.outputs if close.undecided is None else (*close.outputs, close.undecided)
 
 

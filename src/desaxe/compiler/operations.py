@@ -5,7 +5,7 @@ costs and where it is undefined. A new operation, or a new language, is a change
 
 `exact` is the meaning over the real numbers, computed by a namespace of high-precision functions
 (``mpmath.mp`` in the tests); the error terms of two-sum and two-product are exactly 0 there,
-and so is `rounding`, a bound of such terms. `finer` guards a form of the same value that is of use to
+and so is `rounding`, a bound of such terms. `extended_only` guards a form of the same value that is of use to
 `double_digits` alone, which makes it its argument; everywhere else it is false.
 `python`, `numba`, `javascript`, `c`, `jax` and `octave` are templates over the argument texts. Plain Python
 raises where IEEE 754 arithmetic answers inf or NaN: its division and square root are guarded in the template.
@@ -88,11 +88,11 @@ OPERATIONS: dict[str, Operation] = dict(
         _row("mul_add", "ffff", "mul_add({0}, {1}, {2})", CALL, 1, lambda mp, a, b, c: a * b + c),
         _row("rounding", "ff", "rounding({0})", CALL, 1.5, lambda mp, a: a * 0),
         _row(
-            "turned", "ffff", "turned({0}, {1}, {2})", CALL, 4,
+            "rotated_sin", "ffff", "rotated_sin({0}, {1}, {2})", CALL, 4,
             lambda mp, sine, cosine, quarters: (sine, cosine, -sine, -cosine)[int(quarters) % 4],
         ),
         _row(
-            "turned_cosine", "ffff", "turned_cosine({0}, {1}, {2})", CALL, 2,
+            "rotated_cos", "ffff", "rotated_cos({0}, {1}, {2})", CALL, 2,
             lambda mp, sine, cosine, quarters: (cosine, -sine, -cosine, sine)[int(quarters) % 4],
         ),
         _row("lt", "ffb", "{0} < {1}", 6, 1, lambda mp, a, b: a < b),
@@ -112,7 +112,7 @@ OPERATIONS: dict[str, Operation] = dict(
             "not", "bb", "not {0}", 5, 0.5, lambda mp, a: not a,
             javascript="!({0})", c="!({0})", jax="logical_not({0})", octave="~({0})",
         ),
-        _row("finer", "bb", "finer({0})", CALL, 0, lambda mp, a: False),
+        _row("extended_only", "bb", "extended_only({0})", CALL, 0, lambda mp, a: False),
         _row(
             "select", "bTTT", "{1} if {0} else {2}", 1, 1, lambda mp, c, a, b: a if c else b,
             javascript="({0} ? {1} : {2})", c="({0} ? {1} : {2})", jax="where({0}, {1}, {2})",
@@ -145,7 +145,7 @@ HELPERS = {
     """a * b + c, rounded as often as the machine likes."""
     return a * b + c
 ''',
-    "finer": '''def finer(a):
+    "extended_only": '''def extended_only(a):
     """Whether to take a form that twice the digits are needed to tell from the plain one: not here."""
     return False
 ''',
@@ -153,12 +153,12 @@ HELPERS = {
     """What rounding may take from a number of this size in four operations."""
     return 4.440892098500626e-16 * fabs(a)
 ''',
-    "turned": '''def turned(sine, cosine, quarters):
+    "rotated_sin": '''def rotated_sin(sine, cosine, quarters):
     """The sine of an angle and a whole number of quarter turns, from the angle's sine and cosine."""
     value = cosine if quarters % 2.0 == 1.0 else sine
     return -value if quarters % 4.0 >= 2.0 else value
 ''',
-    "turned_cosine": '''def turned_cosine(sine, cosine, quarters):
+    "rotated_cos": '''def rotated_cos(sine, cosine, quarters):
     """The cosine of an angle and a whole number of quarter turns, from the angle's sine and cosine."""
     value = sine if quarters % 2.0 == 1.0 else cosine
     return -value if (quarters + 1.0) % 4.0 >= 2.0 else value
@@ -186,7 +186,7 @@ HELPERS = {
     return float(floor(a)) if a - a == 0.0 and a else a
 ''',
 }
-_TURNED = '''@intrinsic
+_ROTATED = '''@intrinsic
 def NAME(typingctx, sine, cosine, quarters):
     """The WHAT of an angle and a whole number of quarter turns, from the angle's sine and cosine."""
     kind = max((sine, cosine, quarters), key=lambda given: given.bitwidth)
@@ -208,10 +208,10 @@ def NAME(typingctx, sine, cosine, quarters):
 '''
 
 
-def _turned(name: str, even: str, odd: str, turns: str) -> str:
+def _rotated(name: str, even: str, odd: str, turns: str) -> str:
     """The text for the sine or the cosine: which side it is after an even and an odd number of quarters."""
     words = {"NAME": name, "WHAT": even, "EVEN": even, "ODD": odd, "TURNS": turns}
-    text = _TURNED
+    text = _ROTATED
     for word, value in words.items():
         text = text.replace(word, value)
     return text
@@ -232,8 +232,8 @@ def mul_add(typingctx, a, b, c):
 
     return kind(kind, kind, kind), code
 ''',
-    "turned": _turned("turned", "sine", "cosine", "bits"),
-    "turned_cosine": _turned("turned_cosine", "cosine", "sine", "builder.add(bits, integer(1))"),
+    "rotated_sin": _rotated("rotated_sin", "sine", "cosine", "bits"),
+    "rotated_cos": _rotated("rotated_cos", "cosine", "sine", "builder.add(bits, integer(1))"),
     "two_product_error": '''@intrinsic
 def fused(typingctx, a, b, c):
     """a * b + c, rounded once."""
@@ -279,17 +279,17 @@ JAVASCRIPT_HELPERS = {
   return a * b + c;
 }
 """,
-    "finer": """function finer(a) {
+    "extended_only": """function extended_only(a) {
   return false;
 }
 """,
-    "turned": """function turned(sine, cosine, quarters) {
+    "rotated_sin": """function rotated_sin(sine, cosine, quarters) {
   const turn = quarters - 4 * floor(quarters / 4);
   const value = turn % 2 === 1 ? cosine : sine;
   return turn >= 2 ? -value : value;
 }
 """,
-    "turned_cosine": """function turned_cosine(sine, cosine, quarters) {
+    "rotated_cos": """function rotated_cos(sine, cosine, quarters) {
   const turn = quarters - 4 * floor(quarters / 4);
   const value = turn % 2 === 1 ? sine : cosine;
   return turn === 1 || turn === 2 ? -value : value;

@@ -10,7 +10,7 @@ from ..evaluation.labels import STATUS_FLAGS, input_attributes, provenance
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS, sensitivity
-from ..runtime.request import check_border, check_inputs
+from ..runtime.request import check_common, check_inputs
 from ..support.extras import needed
 from .feasibility.arrays import KINDS, of_arrays
 from .measures import Measure, checked, measured, unit_of
@@ -33,7 +33,7 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
 
         dx.design_map(["stroke", ("absmax", "a_C")], ec=ecs, BC=rods, AB=.125, omega0=157.08).stroke.plot()
     """
-    check_border({}, branch)
+    check_common({}, branch)
     known = tuple(name for name in INPUTS if name != "theta")
     check_inputs("design_map", inputs, known)
     one = isinstance(names, (str, tuple)) and bool(names)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ..evaluation.arrays import as_array, broadcast_shape
 from ..evaluation.evaluate import evaluate
 from ..mechanism.inputs import INPUTS, Input
-from ..runtime.request import check_border, with_known_inputs
+from ..runtime.request import check_common, with_known_inputs
 from ..support.shown import shown
 
 Array = NDArray[np.float64]
@@ -46,7 +46,7 @@ def inverse(
     The triangle A B C has the sides AB, BC and L = |AC|; its angle at A comes from the half-angle
     form, which keeps its digits where the triangle is flat. Raises as `evaluate` does.
     """
-    check_border({}, branch)
+    check_common({}, branch)
     if a_C is not None and V_C is None:
         raise TypeError("inverse: V_C is missing (alpha needs V_C and a_C)")
     given = {"Y": Y, "ec": ec, "AB": AB, "BC": BC, "V_C": V_C, "a_C": a_C}

@@ -199,7 +199,7 @@ _LOGIC: dict[str, Callable[..., bool | None]] = {
     "and": _and,
     "or": lambda a, b: _not(_and(_not(a), _not(b))),
     "not": _not,
-    "finer": lambda a: False,
+    "extended_only": lambda a: False,
 }
 
 
@@ -229,5 +229,5 @@ _NUMBERS: dict[str, Callable[..., Any]] = {
     "mul_add": lambda a, b, c: _product(a, b) + c,
     "rounding": lambda a: arb(0),
     "turned": _turned,
-    "turned_cosine": lambda sine, cosine, quarters: _turned(cosine, -sine, quarters),
+    "rotated_cos": lambda sine, cosine, quarters: _turned(cosine, -sine, quarters),
 }

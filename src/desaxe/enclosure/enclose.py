@@ -20,8 +20,8 @@ from ..compiler.program import Program
 from ..mechanism.catalogue import has, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
-from ..runtime.request import Request, as_number, check_border, check_inputs, request
-from ..runtime.specialise import cut
+from ..runtime.request import Request, as_number, check_common, check_inputs, request
+from ..runtime.specialise import specialise
 from ..support.quantity_text import PLUS_MINUS
 from .balls import BITS, PARTLY, Enclosure, Interval, ball, enclosures
 
@@ -84,7 +84,7 @@ def enclose(
     if not rtol > 0.0 or boxes < 1:
         raise ValueError(f"rtol = {rtol}, boxes = {boxes}: more than nothing is wanted")
     given = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
-    check_border(given, branch)
+    check_common(given, branch)
     given.update(loads)
     function = _function(name, given, branch)
     with ctx.workprec(BITS):
@@ -156,7 +156,7 @@ def _turned(theta: Interval) -> Interval:
 
 
 def _program(wanted: Request) -> Program:
-    return cut(wanted.names, wanted.form, wanted.fixed)
+    return specialise(wanted.names, wanted.form, wanted.fixed)
 
 
 def _interval(name: str, value: Any, wanted: str) -> Interval:

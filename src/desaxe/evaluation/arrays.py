@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanism.inputs import INPUTS, is_good
-from ..runtime.interpreted import are_good, fill_by_points, is_early
+from ..runtime.interpreted import are_good, fill_by_points, interpret_first
 from ..runtime.kernels import key_of
 from ..runtime.point import point_of
 from ..runtime.request import Request, as_number
@@ -30,13 +30,13 @@ def evaluate_arrays(
     _refuse_other_dimensions({name: given.get(name) for name in inputs})
     arrays = {name: as_array(name, given.get(name), inputs, wanted.shown) for name in inputs}
     shape = broadcast_shape(arrays)
-    places = places_for(wanted.shown, shape, out)
-    buffers = places if out is None else buffers_for(places, arrays.values())
+    places = outputs_for(wanted.shown, shape, out)
+    buffers = places if out is None else scratch_for(places, arrays.values())
     if all(buffer.size for buffer in buffers.values()):
         scalars = {name: a.item() for name, a in arrays.items() if a.size == 1}
         loops = loops_over({name: a for name, a in arrays.items() if a.size != 1}, shape)
         fill(wanted, scalars, loops, list(buffers.values()), threads)
-    return delivered(places, buffers, out is None)
+    return copied_back(places, buffers, out is None)
 
 
 def _refuse_other_dimensions(given: Mapping[str, Any]) -> None:
@@ -94,7 +94,7 @@ def broadcast_shape(arrays: Mapping[str, Array]) -> tuple[int, ...]:
         raise ValueError(f"the shapes do not broadcast together: {shapes}") from None
 
 
-def places_for(names: Sequence[str], shape: tuple[int, ...], out: Any) -> dict[str, Array]:
+def outputs_for(names: Sequence[str], shape: tuple[int, ...], out: Any) -> dict[str, Array]:
     """Where the answers go: new arrays, or those of `out`, checked."""
     if out is None:
         size = sum(dtype_of(name).itemsize for name in names) * prod(shape)
@@ -120,7 +120,7 @@ def dtype_of(name: str) -> np.dtype[Any]:
     return STATUS if name == "status" else FLOAT
 
 
-def buffers_for(places: Mapping[str, Array], inputs: Collection[Array]) -> dict[str, Array]:
+def scratch_for(places: Mapping[str, Array], inputs: Collection[Array]) -> dict[str, Array]:
     """The places themselves where a kernel can write into them, else arrays to be copied from."""
     return {
         name: _buffer_for(name, place, [*inputs, *(p for n, p in places.items() if n != name)])
@@ -134,7 +134,7 @@ def _buffer_for(name: str, place: Array, others: Iterable[Array]) -> Array:
     return place if direct and not overlaps else np.empty(place.shape, dtype_of(name))
 
 
-def delivered(places: Mapping[str, Array], buffers: Mapping[str, Array], fresh: bool) -> dict[str, Array]:
+def copied_back(places: Mapping[str, Array], buffers: Mapping[str, Array], fresh: bool) -> dict[str, Array]:
     """The filled places; a fresh answer without axes is a NumPy scalar, as from a ufunc."""
     for name, place in places.items():
         if buffers[name] is not place:
@@ -157,7 +157,7 @@ def fill(
         point = point_of(key.names, key.form, key.fixed, key.accuracy)
         for out, value in zip(outs, point.run(scalars), strict=True):
             out[...] = value
-    elif is_early(key, outs[0].size):
+    elif interpret_first(key, outs[0].size):
         wide = {name: spread(column, axis_of[name], sizes) for name, column in columns.items()}
         fill_by_points(key, scalars, wide, [out.reshape(-1) for out in outs])
     else:

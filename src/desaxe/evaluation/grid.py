@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..runtime.request import Request, request
-from .arrays import buffers_for, delivered, fill, places_for
+from .arrays import copied_back, fill, outputs_for, scratch_for
 from .loops import Loops
 from .outer import join_axes, outer_of, require_inputs
 
@@ -112,8 +112,8 @@ def _filled(
     require_inputs(wanted, axes)
     inputs = wanted.inputs
     shape = tuple(axes[name].size for name in dimensions)
-    places = places_for(wanted.shown, shape, out)
-    buffers = places if out is None else buffers_for(places, axes.values())
+    places = outputs_for(wanted.shown, shape, out)
+    buffers = places if out is None else scratch_for(places, axes.values())
     if all(shape):
         # At least one axis, so that a grid of numbers alone goes the same way.
         order = list(dimensions) or [""]
@@ -122,4 +122,4 @@ def _filled(
         places_of = {name: order.index(name) for name in columns}
         sizes = join_axes(order, columns, places_of, shape or (1,))
         fill(wanted, scalars, Loops(sizes, columns, places_of), list(buffers.values()), threads)
-    return delivered(places, buffers, False)
+    return copied_back(places, buffers, False)

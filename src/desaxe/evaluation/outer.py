@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS
-from ..runtime.request import Request, check_border, check_inputs, several, standstill
+from ..runtime.request import Request, check_common, check_inputs, several, standstill
 from .arrays import as_array
 from .loops import spread
 
@@ -52,7 +52,7 @@ def outer_of(
     """Check the arguments of a grid; `always`: it has `status` and `margin` too."""
     wanted = (names,) if isinstance(names, str) else several(names)
     given = _given(wanted, inputs)
-    check_border(given, branch, threads)
+    check_common(given, branch, threads)
     shown = tuple(dict.fromkeys((*wanted, *ALWAYS))) if always else wanted
     axes = {name: _axis(name, value, shown) for name, value in given.items() if value is not None}
     coordinates = {name: axes[name] for name in inputs if name in axes}

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..mechanism.catalogue import quantity
 from ..mechanism.names import LENGTHS, parts, sensitivity
 from ..runtime.accuracy import BOUNDS, accuracy_of
-from ..runtime.request import check_border, request, several
+from ..runtime.request import check_common, request, several
 from .arrays import as_array, broadcast_shape
 from .values import values
 
@@ -54,7 +54,7 @@ def evaluate_quality(
     out: Any,
 ) -> Any:
     """The qualities of one name, or a dict of them."""
-    check_border(given, branch, threads)
+    check_common(given, branch, threads)
     if out is not None:
         raise TypeError("out= is for plain values, not with quality=True")
     if accuracy_of(accuracy) != "standard":

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..compiler.languages.numba.reductions import EXTREMES, KINDS, outputs_of
 from ..mechanism.spelling import did_you_mean
-from ..runtime.interpreted import is_early
+from ..runtime.interpreted import interpret_first
 from ..runtime.kernels import KernelKey, kernel_for, key_of
 from ..runtime.request import Request
 from ..runtime.threads import in_blocks
@@ -103,7 +103,7 @@ def reduced(
     columns = {name: np.ascontiguousarray(axes[name]) for name in wanted.inputs if name in order}
     places = {name: order.index(name) for name in columns}
     key = key_of(wanted, scalars, columns, places, len(order))._replace(reduce=reduction.kinds)
-    if length == 0 or not all(shape) or is_early(key, prod(shape) * length):
+    if length == 0 or not all(shape) or interpret_first(key, prod(shape) * length):
         _of_whole(whole(), reduction, dimensions, outs)
     else:
         fill_reduced(key, {**scalars, **columns}, length, list(outs.values()), threads)

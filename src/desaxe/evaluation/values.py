@@ -9,7 +9,7 @@ from typing import Any
 from ..mechanism.inputs import is_good
 from ..runtime.accuracy import accuracy_of
 from ..runtime.point import Point, point_of
-from ..runtime.request import Request, as_number, check_border, is_steady, request, several, standstill
+from ..runtime.request import Request, as_number, check_common, is_steady, request, several, standstill
 from ..support.interrupts import import_whole
 
 
@@ -25,7 +25,7 @@ def values(
     wanted = (names,) if isinstance(names, str) else several(names)
     omega, speed_given = given.get("omega"), given.get("omega0") is not None
     if threads is not None or (omega is not None and speed_given) or type(branch) is not int:
-        check_border(given, branch, threads)
+        check_common(given, branch, threads)
     if type(accuracy) is not str:
         accuracy = accuracy_of(accuracy)
     key = wanted, tuple(given), omega is not None, is_steady(given.get("alpha")), branch, accuracy

@@ -1,4 +1,4 @@
-"""The committed program, cut to what is asked for.
+"""The committed program, sliced to the requested names.
 
 Reads the text of generated/program.py: only the lines that the wanted names reach are parsed, so
 the first answer of a process comes quickly.
@@ -15,12 +15,12 @@ from ..compiler.program import Program
 from ..compiler.text import ProgramText
 
 
-class Form(NamedTuple):
+class Variant(NamedTuple):
     """Which form of the program: for which way of giving the motion and the loads, and for which designs."""
 
     state: bool = False  # a given state instead of paper A's law
-    halves: tuple[str, ...] = ()  # centres of mass halfway along their links
-    roomy: bool = False  # plain forms, for designs with AB + |ec| < 7/8 BC, where nothing cancels
+    default_centres: tuple[str, ...] = ()  # centres of mass halfway along their links
+    wide_margins: bool = False  # plain forms, for designs with AB + |ec| < 7/8 BC, where nothing cancels
 
 
 @cache
@@ -31,16 +31,16 @@ def _text(name: str) -> ProgramText:
     return ProgramText((Path(spec.origin).parent / f"{name}.py").read_text(encoding="utf-8"))
 
 
-LAW = Form()  # paper A's law, every centre of mass given
+LAW = Variant()  # paper A's law, every centre of mass given
 
 
 @lru_cache(maxsize=1024)
-def program_of(names: tuple[str, ...], form: Form = LAW) -> Program:
+def program_of(names: tuple[str, ...], form: Variant = LAW) -> Program:
     """The program of these names (those of the law), in one form."""
-    program = assume(_text("program").read(names), {"roomy": form.roomy})
+    program = assume(_text("program").read(names), {"wide_margins": form.wide_margins})
     if form.state:
         program = keep_outputs(overlay(program, _text("state").read()), names)
-    for centre in form.halves:
+    for centre in form.default_centres:
         halfway = _text("centres").read()
         own = [name for name in halfway.outputs if name.startswith(centre)]
         program = keep_outputs(overlay(program, keep_outputs(halfway, own)), names)

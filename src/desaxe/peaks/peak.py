@@ -18,9 +18,9 @@ from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS, sensitivity
 from ..runtime.accuracy import accuracy_of
 from ..runtime.kernels import STRUCTURAL_ZEROS
-from ..runtime.request import Request, as_number, check_border, check_inputs, is_steady, request
+from ..runtime.request import Request, as_number, check_common, check_inputs, is_steady, request
 from ..runtime.specialise import plain_form
-from ..runtime.wide_margins import are_roomy
+from ..runtime.wide_margins import have_wide_margins
 from ..support.shown import shown as shown_value
 from . import special
 from .compiled import Groups, run
@@ -82,7 +82,7 @@ def peak(
     ends = _range(theta, name)
     given = {"ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega, **loads}
     check_inputs("peak", loads, INPUTS_OF_PEAK)
-    check_border(given, branch, threads)
+    check_common(given, branch, threads)
     plan = _plan(name, given, branch, accuracy)
     if "omega0" in plan.needs and omega0 is None:
         given["omega0"] = 0.0 if "omega0" not in plan.parameters else None  # which only the status uses
@@ -207,7 +207,7 @@ def _peaks(name: str, kind: str, search: Search, designs: Designs, threads: int 
 
 
 def _in_form(search: Search, columns: dict[str, Array], rows: NDArray[np.intp]) -> Search:
-    """The search in plain forms, if those are shorter and all these designs are roomy.
+    """The search in plain forms, if those are shorter and all these designs have wide margins.
 
     A second one, for a few that are not, would take longer to compile than it saves.
     """
@@ -216,8 +216,8 @@ def _in_form(search: Search, columns: dict[str, Array], rows: NDArray[np.intp]) 
     known = all(name in columns for name in LENGTHS)
     if search.extended or not known or plain_form(derived, search.form, search.fixed) is None:
         return search
-    roomy = are_roomy({name: columns[name][rows] for name in LENGTHS}, search.form).all()
-    return search._replace(form=search.form._replace(roomy=True)) if roomy else search
+    wide_margins = have_wide_margins({name: columns[name][rows] for name in LENGTHS}, search.form).all()
+    return search._replace(form=search.form._replace(wide_margins=True)) if wide_margins else search
 
 
 def _good(designs: Designs) -> dict[str, Array]:

@@ -9,19 +9,19 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from ..compiler.passes.differentiate import RULES, Chain, Rule, Step
-from ..compiler.passes.double_double import double_digits
+from ..compiler.passes.double_double import double_double
 from ..compiler.passes.fuse import fuse_products
 from ..compiler.passes.pipeline import optimise
 from ..compiler.passes.slicing import keep_outputs
 from ..compiler.passes.trigonometry import expand_trigonometry
-from ..compiler.passes.value_numbering import number_values
+from ..compiler.passes.value_numbering import value_numbering
 from ..compiler.program import Line, Program
 from ..compiler.text import with_short_temporaries
 from ..mechanism.catalogue import has
 from ..mechanism.constants import constants, double_constants
 from ..mechanism.names import sensitivity
-from ..mechanism.program import Form
-from ..runtime.specialise import cut
+from ..mechanism.program import Variant
+from ..runtime.specialise import specialise
 
 WITHOUT_COURSE = ("status", "margin")  # these have no course over theta, and no peak
 
@@ -31,7 +31,7 @@ class Search(NamedTuple):
 
     name: str  # the quantity, as the program calls it
     parameters: tuple[str, ...]  # of the gradient
-    form: Form
+    form: Variant
     fixed: tuple[tuple[str, float], ...]
     extended: bool = False  # what is told at the peak, in pairs of doubles
     far: bool = False  # angles beyond what the written-out sine and cosine reduce exactly
@@ -65,11 +65,13 @@ def programs_of(search: Search, written_out: bool) -> Programs:
         program = keep_outputs(whole, tuple(names))
         if search.far or not written_out:
             return program
-        return fuse_products(number_values(expand_trigonometry(program, constants(), search.form.roomy)))
+        return fuse_products(
+            value_numbering(expand_trigonometry(program, constants(), search.form.wide_margins))
+        )
 
     finish = (value, slope, *gradient)
     if search.extended:
-        last = double_digits(keep_outputs(whole, finish), double_constants())
+        last = double_double(keep_outputs(whole, finish), double_constants())
     else:
         last = prepared(finish)
     programs = prepared((value, slope)), last
@@ -84,7 +86,7 @@ def _whole(search: Search) -> tuple[Program, list[str]]:
     derived = [n for n in wanted if has(n)]
     partial = {p: _by(name, p) for p in search.parameters}
     derived += [n for n in partial.values() if has(n)]
-    program = cut(tuple(dict.fromkeys(derived)), search.form, search.fixed)
+    program = specialise(tuple(dict.fromkeys(derived)), search.form, search.fixed)
     names = [name]
     for parameter, known in {"theta": wanted[1], **partial}.items():
         program, found = _differentiated(program, name, parameter, known, derived)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..evaluation.evaluate import evaluate
 from ..mechanism.names import LENGTHS
-from ..runtime.request import as_number, check_border
+from ..runtime.request import as_number, check_common
 from ..support.extras import needed
 from .shared import BLUE, ORANGE
 
@@ -84,7 +84,7 @@ def mechanism(*, theta: Any, ec: Any, AB: Any, BC: Any, branch: int = 1, ax: "Ax
     """
     with needed("plot.mechanism"):
         from matplotlib.figure import Figure
-    check_border({}, branch)
+    check_common({}, branch)
     lengths: dict[str, Any] = {n: float(_number(n, v)) for n, v in zip(LENGTHS, (ec, AB, BC), strict=True)}
     reach = np.array([evaluate("Y", theta=angle, branch=branch, **lengths) for angle in ANGLES[::3]])
     box = _box(lengths, reach)

@@ -28,7 +28,7 @@ def are_good(name: str, array: Array) -> NDArray[np.bool_]:
     return good if least is None else good & (array >= least)
 
 
-def is_early(key: KernelKey, size: int) -> bool:
+def interpret_first(key: KernelKey, size: int) -> bool:
     """Whether plain Python still pays."""
     if is_ready(key):
         return False

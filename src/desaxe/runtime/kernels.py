@@ -11,22 +11,22 @@ from ..compiler.forms import in_two_forms, parted
 from ..compiler.kernel import Kernel, tabulate
 from ..compiler.languages.numba.module import TO_COMPILE, emit_numba
 from ..compiler.languages.numba.reductions import emit_reduced
-from ..compiler.passes.double_double import double_digits
+from ..compiler.passes.double_double import double_double
 from ..compiler.passes.fuse import fuse_products
 from ..compiler.passes.guard import guard_inputs
 from ..compiler.passes.trigonometry import expand_trigonometry
-from ..compiler.passes.value_numbering import number_values
+from ..compiler.passes.value_numbering import value_numbering
 from ..compiler.program import Line, Program
 from ..mechanism.constants import constants, double_constants, single_constants
 from ..mechanism.inputs import LEAST
 from ..mechanism.names import LENGTHS, LOADS
-from ..mechanism.program import Form
+from ..mechanism.program import Variant
 from ..support.forks import fork_safe_lock
 from ..support.recent import Recent
 from .accuracy import check_angle
 from .modules import Native, is_kept, native
 from .request import Request
-from .specialise import cut, plain_form
+from .specialise import plain_form, specialise
 
 # A scalar of 0 for one of these makes whole terms vanish, so it is folded into the kernel.
 STRUCTURAL_ZEROS = ("ec", "alpha", *LOADS)
@@ -39,7 +39,7 @@ class KernelKey(NamedTuple):
     """What a kernel is: its outputs, form, fixed inputs and the axis of every other input."""
 
     names: tuple[str, ...]
-    form: Form
+    form: Variant
     fixed: tuple[tuple[str, float], ...]
     axis_of: tuple[tuple[str, int], ...]
     axes: int
@@ -75,11 +75,11 @@ def key_of(
     axis = tuple(sorted(axis_of.items()))
     form = wanted.form
     if wanted.accuracy != "extended" and _pays_to_ask(columns, axis_of):
-        from .wide_margins import all_roomy
+        from .wide_margins import all_have_wide_margins
 
         lengths = (columns.get(name, scalars.get(name)) for name in LENGTHS)
-        if plain_form(wanted.names, form, fixed) is not None and all_roomy(form, *lengths):
-            form = form._replace(roomy=True)
+        if plain_form(wanted.names, form, fixed) is not None and all_have_wide_margins(form, *lengths):
+            form = form._replace(wide_margins=True)
     return KernelKey(wanted.names, form, fixed, axis, axes, wanted.accuracy, far)
 
 
@@ -132,7 +132,7 @@ def is_single(key: KernelKey) -> bool:
     return key.accuracy == "fast" and not key.far
 
 
-def has_undecided(key: KernelKey) -> bool:
+def has_near_limit(key: KernelKey) -> bool:
     """Whether points that hang on rounding are counted."""
     return key.accuracy == "standard" and not key.reduce and plain_of(key) is not None
 
@@ -144,22 +144,22 @@ def plain_of(key: KernelKey) -> Program | None:
 
 def kernel_of(key: KernelKey) -> Kernel:
     """The loop nest of a key."""
-    program = cut(key.names, key.form, key.fixed, key.accuracy)
+    program = specialise(key.names, key.form, key.fixed, key.accuracy)
     axes = dict(key.axis_of)
     varying = [name for name in program.inputs if name in axes]
     if key.accuracy == "extended":
         guarded = guard_inputs(program, varying, LEAST, {"theta": double_constants().limit})
-        guarded = double_digits(guarded, double_constants())
+        guarded = double_double(guarded, double_constants())
     else:
-        if has_undecided(key):
+        if has_near_limit(key):
             program = _counting(key)
-        if key.form.roomy:
+        if key.form.wide_margins:
             guarded = _plain_for_loops(program, varying, key)
         else:
             guarded = _for_loops(guard_inputs(program, varying, LEAST, {}), key)
     plain = plain_of(key)
     if plain is not None:
-        test = cut(("roomy",), key.form, key.fixed)
+        test = specialise(("wide_margins",), key.form, key.fixed)
         guarded = in_two_forms(_plain_for_loops(plain, varying, key), guarded, test)
     kernel = tabulate(guarded, {name: axes.get(name) for name in guarded.inputs}, key.axes)
     return kernel if plain is None else parted(kernel, len(key.names))
@@ -171,7 +171,7 @@ def _counting(key: KernelKey) -> Program:
     It holds for more points than `near_limit` selects, by whatever the two round differently: then the
     points that are answered again do not depend on which others are in the same call.
     """
-    program = cut((*key.names, *REACH), key.form, key.fixed)
+    program = specialise((*key.names, *REACH), key.form, key.fixed)
     reach, unsure = REACH
     lines = (
         Line("reach_size", "abs", (reach,)),
@@ -182,7 +182,7 @@ def _counting(key: KernelKey) -> Program:
 
 
 def _plain_for_loops(program: Program, varying: Sequence[str], key: KernelKey) -> Program:
-    """The same of plain forms: in a roomy design all lengths are good."""
+    """Lower the plain form. The wide-margin test implies valid lengths: only other inputs are guarded."""
     own = [name for name in varying if name not in LENGTHS and _is_seen(program, name)]
     return _for_loops(guard_inputs(program, own, LEAST, {}), key, plain=True)
 
@@ -191,7 +191,7 @@ def _for_loops(program: Program, key: KernelKey, plain: bool = False) -> Program
     """The program as a loop wants it: no calls, and products in one instruction with their sums."""
     if not key.far:
         trigonometry = single_constants() if is_single(key) else constants()
-        program = number_values(expand_trigonometry(program, trigonometry, plain))
+        program = value_numbering(expand_trigonometry(program, trigonometry, plain))
     return fuse_products(program)
 
 
@@ -213,5 +213,5 @@ def is_on_disk(key: KernelKey) -> bool:
 
 def _load(key: KernelKey) -> CompiledKernel:
     axes = dict(key.axis_of)
-    order = tuple((name, axes.get(name)) for name in cut(key.names, key.form, key.fixed).inputs)
+    order = tuple((name, axes.get(name)) for name in specialise(key.names, key.form, key.fixed).inputs)
     return CompiledKernel(native("kernel", source_of(key)), order)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..mechanism.constants import double_constants
-from .interpreted import fill_by_points, is_early
+from .interpreted import fill_by_points, interpret_first
 from .kernels import REACH, KernelKey, kernel_for
 
 SPARE = 2.0  # times what rounding may take; a kernel counts a wider band, which it may round in another way
@@ -48,7 +48,7 @@ def _decide(
 def _answer(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any], flat: Sequence[str]) -> None:
     """Fill flat outputs from values, of which some are flat columns, with twice the digits."""
     exact = key._replace(accuracy="extended", axis_of=tuple((name, 0) for name in sorted(flat)), axes=1)
-    if is_early(exact, outs[0].size):
+    if interpret_first(exact, outs[0].size):
         scalars = {name: value for name, value in values.items() if name not in flat}
         fill_by_points(exact, scalars, {name: values[name] for name in flat}, outs)
     else:

@@ -1,4 +1,4 @@
-"""Single points in plain Python: a function of floats, cut to what is asked for, nothing compiled."""
+"""Single points in plain Python: a function of floats for the requested names, nothing compiled."""
 
 from collections.abc import Callable, Mapping
 from functools import cache, lru_cache
@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 from ..compiler.forms import in_two_forms
 from ..compiler.languages.python import compile_python
 from ..mechanism.constants import double_constants
-from ..mechanism.program import Form
+from ..mechanism.program import Variant
 from .accuracy import check_angle
-from .specialise import cut, plain_form
+from .specialise import plain_form, specialise
 
 Function = Callable[..., tuple[Any, ...]]
 
@@ -27,15 +27,15 @@ class Point(NamedTuple):
 
 @lru_cache(maxsize=1024)
 def point_of(
-    names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...], accuracy: str = "standard"
+    names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...], accuracy: str = "standard"
 ) -> Point:
     """The function that computes them."""
-    program = cut(names, form, fixed, accuracy)
+    program = specialise(names, form, fixed, accuracy)
     if accuracy != "extended":
         return Point(_by_room(names, form, fixed), program.inputs)
-    from ..compiler.passes.double_double import double_digits
+    from ..compiler.passes.double_double import double_double
 
-    program = double_digits(program, double_constants())
+    program = double_double(program, double_constants())
     function = compile_python(program)
     if "theta" not in program.inputs:
         return Point(function, program.inputs)
@@ -48,19 +48,23 @@ def point_of(
     return Point(checked, program.inputs)
 
 
-def _by_room(names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...]) -> Function:
+def _by_room(names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...]) -> Function:
     """The function that goes by what a point needs.
 
-    That is the plain form in a roomy design, the stable one elsewhere, and twice the digits where
+    That is the plain form in a design with wide margins, the stable one elsewhere, and twice the digits where
     rounding decides whether the rod reaches. The latter two are made when the first point needs them.
     """
-    plain, stable = plain_form(names, form, fixed), cut(names, form, fixed)
+    plain, stable = plain_form(names, form, fixed), specialise(names, form, fixed)
     if plain is None:
         return compile_python(stable)
     inputs = stable.inputs
-    tested = in_two_forms(plain, plain._replace(lines=(), outputs=()), cut(("roomy",), form, fixed))
+    tested = in_two_forms(
+        plain, plain._replace(lines=(), outputs=()), specialise(("wide_margins",), form, fixed)
+    )
     first = compile_python(tested._replace(inputs=inputs))
-    second = cache(lambda: compile_python(cut((*names, "undecided"), form, fixed)._replace(inputs=inputs)))
+    second = cache(
+        lambda: compile_python(specialise((*names, "undecided"), form, fixed)._replace(inputs=inputs))
+    )
     third = cache(lambda: point_of(names, form, fixed, "extended"))
 
     def function(*values: float) -> tuple[Any, ...]:

@@ -8,10 +8,10 @@ from typing import Any, NamedTuple, ParamSpec, TypeVar
 from ..mechanism.catalogue import law_name, quantity
 from ..mechanism.inputs import INPUTS, is_good
 from ..mechanism.names import CENTRES, LOADS, parts
-from ..mechanism.program import Form, program_of
+from ..mechanism.program import Variant, program_of
 from ..support.shown import shown
 from .accuracy import accuracy_of
-from .specialise import cut
+from .specialise import specialise
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -22,17 +22,17 @@ class Request(NamedTuple):
 
     shown: tuple[str, ...]
     names: tuple[str, ...]
-    form: Form
+    form: Variant
     fixed: tuple[tuple[str, float], ...]
     accuracy: str = "standard"
 
     @property
     def inputs(self) -> tuple[str, ...]:
         """The inputs that it needs."""
-        return cut(self.names, self.form, self.fixed).inputs
+        return specialise(self.names, self.form, self.fixed).inputs
 
 
-def check_border(given: Mapping[str, Any], branch: Any, threads: int | None = None) -> None:
+def check_common(given: Mapping[str, Any], branch: Any, threads: int | None = None) -> None:
     """Refuse a law and a state at once, a branch that is none, and less than one thread."""
     if given.get("omega") is not None and given.get("omega0") is not None:
         raise ValueError("give omega0= (the law) or omega= (a state), not both")
@@ -45,7 +45,7 @@ def check_border(given: Mapping[str, Any], branch: Any, threads: int | None = No
 
 def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accuracy: Any) -> Request:
     """The request, checked. What is not given and has no effect by default is fixed, and costs nothing."""
-    check_border(given, branch)
+    check_common(given, branch)
     state = given.get("omega") is not None
     kept = accuracy_of(accuracy)
     for name in names:
@@ -60,8 +60,8 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
     zeros = [(name, 0.0) for name in absent if name not in CENTRES]
     if "alpha" in inputs and is_steady(given.get("alpha")):
         zeros.append(("alpha", 0.0))
-    halves = tuple(name for name in CENTRES if given.get(name) is None and _moves(name, own))
-    return Request(shown, own, Form(state, halves), (("branch", float(branch)), *zeros), kept)
+    default_centres = tuple(name for name in CENTRES if given.get(name) is None and _moves(name, own))
+    return Request(shown, own, Variant(state, default_centres), (("branch", float(branch)), *zeros), kept)
 
 
 @lru_cache(maxsize=1024)

@@ -5,15 +5,15 @@ from functools import lru_cache
 from ..compiler.passes.pipeline import optimise
 from ..compiler.passes.slicing import keep_outputs
 from ..compiler.program import Line, Program, names_in, renamed
-from ..mechanism.program import Form, program_of
+from ..mechanism.program import Variant, program_of
 
 # What an output may lose when inputs are fixed -> the line that is 0 where there is such a thing, else NaN.
 KEPT = {"D": "no_effect_on_rod", "omega2_law": "not_stalled"}
 
 
 @lru_cache(maxsize=1024)
-def cut(
-    names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...], accuracy: str = "standard"
+def specialise(
+    names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...], accuracy: str = "standard"
 ) -> Program:
     """The program of these names with some inputs fixed, after all passes.
 
@@ -41,19 +41,19 @@ def cut(
 
 
 @lru_cache(maxsize=1024)
-def plain_form(names: tuple[str, ...], form: Form, fixed: tuple[tuple[str, float], ...]) -> Program | None:
-    """The program in plain forms, for roomy designs; None where it is no other than `cut` gives."""
-    plain = cut(names, form._replace(roomy=True), fixed)
-    same = repr(plain.lines) == repr(cut(names, form, fixed).lines)  # by their text: NaN is NaN there
+def plain_form(names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...]) -> Program | None:
+    """The program in plain forms, for designs with wide margins; None where it equals the stable program."""
+    plain = specialise(names, form._replace(wide_margins=True), fixed)
+    same = repr(plain.lines) == repr(specialise(names, form, fixed).lines)  # by their text: NaN is NaN there
     return None if same else plain
 
 
 def _finer(program: Program, accuracy: str) -> Program:
     if accuracy != "extended":
         return program
-    from ..compiler.passes.double_double import with_finer_forms
+    from ..compiler.passes.double_double import with_extended_only_forms
 
-    return with_finer_forms(program)
+    return with_extended_only_forms(program)
 
 
 def _needs(program: Program) -> dict[str, frozenset[str]]:

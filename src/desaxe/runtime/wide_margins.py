@@ -1,4 +1,4 @@
-"""Which designs are roomy: so far from every change point that plain forms of the equations will do.
+"""Which designs have wide margins: so far from every change point that the plain forms do not cancel.
 
 The test is the derivation's own; here it is answered ahead of a kernel that then need not ask.
 """
@@ -15,18 +15,18 @@ from ..compiler.languages.python import compile_python
 from ..compiler.program import Program
 from ..compiler.text import INDENT, write_lines
 from ..mechanism.names import LENGTHS
-from ..mechanism.program import Form
-from .specialise import cut
+from ..mechanism.program import Variant
+from .specialise import specialise
 
 
-def are_roomy(lengths: Mapping[str, Any], form: Form) -> NDArray[np.bool_]:
-    """Whether designs are roomy, from their `ec`, `AB` and `BC`, arrays that broadcast."""
+def have_wide_margins(lengths: Mapping[str, Any], form: Variant) -> NDArray[np.bool_]:
+    """Whether designs have wide margins, from their `ec`, `AB` and `BC`, arrays that broadcast."""
     with np.errstate(all="ignore"):
         return np.asarray(_of_arrays(form)(*(lengths[name] for name in LENGTHS)))
 
 
-def all_roomy(form: Form, ec: Any, AB: Any, BC: Any) -> bool:
-    """Whether every combination of these lengths is roomy, of numbers or arrays of any shape.
+def all_have_wide_margins(form: Variant, ec: Any, AB: Any, BC: Any) -> bool:
+    """Whether every combination of these lengths has wide margins, of numbers or arrays of any shape.
 
     The test says no more of all of them than of their extremes.
     """
@@ -39,21 +39,21 @@ def _extremes(values: Any) -> tuple[float, ...]:
     return (values,) if isinstance(values, float) else (float(values.min()), float(values.max()))
 
 
-def _test(form: Form) -> Program:
-    return cut(("roomy",), form._replace(roomy=False), ())._replace(inputs=LENGTHS)
+def _test(form: Variant) -> Program:
+    return specialise(("wide_margins",), form._replace(wide_margins=False), ())._replace(inputs=LENGTHS)
 
 
 @lru_cache(maxsize=1024)
-def _of_numbers(form: Form) -> Callable[..., Any]:
+def _of_numbers(form: Variant) -> Callable[..., Any]:
     return compile_python(_test(form))
 
 
 @lru_cache(maxsize=1024)
-def _of_arrays(form: Form) -> Callable[..., Any]:
+def _of_arrays(form: Variant) -> Callable[..., Any]:
     """The test as a function of arrays: numba's spelling is NumPy's, too."""
     lines = [INDENT + line for line in write_lines(_test(form), "numba")]
-    source = "\n".join([f"def test({', '.join(LENGTHS)}):", *lines, f"{INDENT}return roomy"])
+    source = "\n".join([f"def test({', '.join(LENGTHS)}):", *lines, f"{INDENT}return wide_margins"])
     scope: dict[str, Any] = {"fabs": np.fabs, "inf": np.inf}
-    exec(compile(source, "<desaxe roomy>", "exec"), scope)
+    exec(compile(source, "<desaxe wide margins>", "exec"), scope)
     test: Callable[..., Any] = scope["test"]
     return test

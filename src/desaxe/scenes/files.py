@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     Writer = Callable[[Path, xr.Dataset | None, Mapping[str, xr.Dataset]], None]
 
 
-def rooms_of(data: str) -> dict[str, str]:
+def requirements_of(data: str) -> dict[str, str]:
     """What is needed to write a file of this name: a word for it, and the module."""
     return {
         ".nc": {"results.data": "h5netcdf", "the file of results.data": "h5py"},

@@ -11,7 +11,7 @@ from ..evaluation.reduce import NO_STATUS, Reduction, reduction_of
 from ..mechanism.catalogue import law_name, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import CENTRES, LENGTHS, LOADS, sensitivity
-from ..mechanism.program import Form, program_of
+from ..mechanism.program import Variant, program_of
 from ..peaks.programs import WITHOUT_COURSE
 from ..runtime.accuracy import accuracy_of
 from . import schema
@@ -211,7 +211,7 @@ def _needs(names: Iterable[str], inputs: Mapping[str, Any]) -> tuple[str, ...]:
     law = tuple(law_name(name) if state else name for name in names)
     if "mu" in inputs:  # then the status tells what the friction does, too
         law = tuple("force_status" if name == "status" else name for name in law)
-    return tuple(name for name in program_of(law, Form(state)).inputs if name != "branch")
+    return tuple(name for name in program_of(law, Variant(state)).inputs if name != "branch")
 
 
 def _require(key: str, needs: Iterable[str], what: str, inputs: Mapping[str, Any]) -> list[str]:

@@ -16,7 +16,7 @@ from ..evaluation.grid import grid
 from ..support.extras import needed
 from ..support.files import check_target
 from ..support.progress import Progress, Steps
-from .files import check_place, rooms_of, write
+from .files import check_place, requirements_of, write
 from .peaks import PeakResult, batches, columns_of, peaks_of, provenance
 from .read import Check, Content, Picture
 from .values import Value
@@ -92,7 +92,7 @@ def _require_rooms(content: Content) -> None:
     """Fail at the start, not at the end, where an optional dependency is missing."""
     rooms = {"outputs": "xarray"} if content.outputs else {}
     rooms |= {"[[peak]]": "xarray"} if content.peaks else {}
-    rooms |= rooms_of(content.data) if content.data is not None else {}
+    rooms |= requirements_of(content.data) if content.data is not None else {}
     rooms |= (
         {"[[picture]]": "matplotlib", "the values of a [[picture]]": "xarray"} if content.pictures else {}
     )

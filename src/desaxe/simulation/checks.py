@@ -14,7 +14,7 @@ from ..mechanism.units import in_unit
 from ..runtime.request import as_number, several
 from ..support.checks import real_number
 from ..support.shown import shown
-from .coordinate import FREE, TURN, Chart, arc_around, inside
+from .coordinate import FREE, TURN, Coordinate, arc_around, inside
 from .model import Drive, Load, Model
 
 METHODS = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
@@ -127,11 +127,11 @@ def model_of(values: Mapping[str, float], branch: int, theta0: float, drive: Dri
             f"theta0 = {theta0!r}: that is a limit angle (S = 0), where no motion can start; "
             f"{_feasible(lengths)}"
         )
-    model = Model(values, branch, Chart(*arc, 0.0), drive) if isfinite(arc[0] - arc[1]) else None
+    model = Model(values, branch, Coordinate(*arc, 0.0), drive) if isfinite(arc[0] - arc[1]) else None
     if model is None:
         model = Model(values, branch, FREE, drive)
     elif grows(values) and theta_intervals(*lengths) != [(0.0, TURN)]:
-        model = Model(values, branch, Chart(*arc, 0.5 * (arc[1] - arc[0])), drive)
+        model = Model(values, branch, Coordinate(*arc, 0.5 * (arc[1] - arc[0])), drive)
     _check_inertia(model, theta0)
     return model
 

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 from ..compiler.languages.numba.module import helper_sources
 from ..compiler.program import Program
 from ..compiler.text import INDENT, with_short_temporaries, write_lines
-from ..mechanism.program import Form
+from ..mechanism.program import Variant
 from ..runtime.modules import Native, native, native_here
-from ..runtime.specialise import cut
+from ..runtime.specialise import specialise
 from . import dop853
 from .model import MOVING, STILL, UNLOADED
 
@@ -37,12 +37,14 @@ function = designs
 class Family(NamedTuple):
     """What designs have in common: the form of the program, and what is 0 in all of them."""
 
-    form: Form
+    form: Variant
     fixed: tuple[tuple[str, float], ...]
 
     def program(self, names: Sequence[str], *zeros: str) -> Program:
         """The program of some names."""
-        return cut(tuple(names), self.form, tuple((dict(self.fixed) | dict.fromkeys(zeros, 0.0)).items()))
+        return specialise(
+            tuple(names), self.form, tuple((dict(self.fixed) | dict.fromkeys(zeros, 0.0)).items())
+        )
 
     @property
     def programs(self) -> Mapping[str, Program]:

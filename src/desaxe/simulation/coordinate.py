@@ -16,7 +16,7 @@ TURN = 2.0 * pi
 EDGE = 1e-13  # rad: a bounded motion goes on, for the integrator, with what holds just before the limit
 
 
-class Chart(NamedTuple):
+class Coordinate(NamedTuple):
     """theta as a function of q. `half` is 0 where q is theta itself; `first`, `last`: the limit angles."""
 
     first: float
@@ -50,7 +50,7 @@ class Chart(NamedTuple):
         return (-pi / 2, pi / 2) if self.half else (self.first, self.last)
 
 
-FREE = Chart(-inf, inf, 0.0)
+FREE = Coordinate(-inf, inf, 0.0)
 
 
 def arc_around(theta: float, ec: float, AB: float, BC: float) -> tuple[float, float] | None:

@@ -37,7 +37,7 @@ class State(NamedTuple):
 
 def state_of(model: Model, q: float, v: float) -> State:
     """The crank's angle and speed."""
-    theta, slope, side = model.chart.place(q)
+    theta, slope, side = model.coordinate.place(q)
     branch = side * model.sign
     inertia = model.still(theta, branch)[0]
     omega = copysign(1.0, slope) * v / sqrt(inertia) if inertia > 0.0 else 0.0
@@ -54,7 +54,7 @@ class Smooth:
         """The rates of q, v and W."""
         q, v, _ = y.tolist()
         model = self.model
-        theta, slope, side = model.chart.place(q)
+        theta, slope, side = model.coordinate.place(q)
         inertia, weight, travel = model.still(theta, side * model.sign)
         if not 0.0 < inertia < inf or not slope:
             return nan, nan, nan  # no step ends here: the integrator tries a smaller one

@@ -73,7 +73,7 @@ def marks_of(model: Model, until: tuple[float, ...]) -> list[Mark]:
         marks.append(Mark("dead centre", angle, which, turns=True))
         if which in vanishing:  # its two sides, so near that nothing is lost
             marks += [Mark("no inertia", angle + s * SMALL, which, True, NO_INERTIA) for s in (-1.0, 1.0)]
-    first, last = model.chart.first, model.chart.last
+    first, last = model.coordinate.first, model.coordinate.last
     if first > -inf:
         marks += [Mark("limit", first, "first", status=LIMIT), Mark("limit", last, "last", status=LIMIT)]
     return marks
@@ -86,10 +86,10 @@ def events_in(step: Step, model: Model, marks: list[Mark], left: float) -> list[
     if stops:  # what lies beyond one may be reached twice
         samples = _sampled(step, sorted([*samples.t, *stops]))
     found = [Found(stop, STANDSTILL, V) for stop in stops]
-    thetas = [model.chart.place(q)[0] for q in samples.y[:, Q].tolist()]
+    thetas = [model.coordinate.place(q)[0] for q in samples.y[:, Q].tolist()]
     for mark in marks:
         found += _passages(step, model, mark, samples, thetas, left)
-        if mark.kind == "limit" and model.chart.half:
+        if mark.kind == "limit" and model.coordinate.half:
             found += _just_ahead(step, model, mark)
     if isinstance(step.law, Rubbing):
         found += _kinks(step, step.law, model, samples)
@@ -104,22 +104,22 @@ def _passages(
     step: Step, model: Model, mark: Mark, samples: Samples, thetas: list[float], left: float
 ) -> Iterator[Found]:
     """Where the crank passes an angle; a limit angle is watched by its coordinate."""
-    chart = model.chart
+    coordinate = model.coordinate
     limit = mark.kind == "limit"
     rows = samples.y[:, Q].tolist() if limit else thetas
-    value = chart.ends[mark.which == "last"] if limit else mark.angle
+    value = coordinate.ends[mark.which == "last"] if limit else mark.angle
     for k, ((a, b), times) in enumerate(zip(pairwise(rows), pairwise(samples.t), strict=True)):
         for angle in _between(a, b, value, mark.turns):
             if k == 0 and abs(angle - left) <= NEAR and not limit:
                 continue
-            q = angle if limit else chart.q(angle)
+            q = angle if limit else coordinate.q(angle)
             t = root(lambda t, there: float(step.inside(t)[Q]) - there, *times, q)
             yield Found(t, mark, Q, q)
 
 
 def _just_ahead(step: Step, model: Model, mark: Mark) -> Iterator[Found]:
     """A limit angle so close ahead of a step that none can start there: it is read off the interpolant."""
-    end = model.chart.ends[mark.which == "last"]
+    end = model.coordinate.ends[mark.which == "last"]
     before, now = (float(step.inside(t)[Q]) for t in (step.end - 1e-3 * (step.end - step.t), step.end))
     gap = end - now
     if not 0.0 < gap * copysign(1.0, end) < SHORT or gap * (now - before) <= 0.0:

@@ -93,11 +93,11 @@ def _set_end(run: Run | Motion, t: Array, theta: Array, omega: Array, alpha: Arr
     if run.status == REST:
         alpha[ends] = 0.0
     theta[ends], omega[ends] = run.events[-1].theta, run.events[-1].omega
-    if run.status == LIMIT and run.model.chart.half:
+    if run.status == LIMIT and run.model.coordinate.half:
         last = run.pieces[-1]
         step = 1e-4 * (last.stop - last.start)
         q, before = last.state(np.array([run.t, run.t - step]))[Q]
-        alpha[ends] = -run.model.chart.half * copysign(1.0, q) * ((q - before) / step) ** 2
+        alpha[ends] = -run.model.coordinate.half * copysign(1.0, q) * ((q - before) / step) ** 2
 
 
 def _along(load: Any, t: Array, theta: Array, omega: Array) -> Any:

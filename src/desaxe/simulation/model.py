@@ -5,10 +5,10 @@ from math import asin, inf, isnan, pi
 from typing import Any, NamedTuple
 
 from ..mechanism.names import CENTRES
-from ..mechanism.program import Form
+from ..mechanism.program import Variant
 from ..runtime.kernels import STRUCTURAL_ZEROS
 from ..runtime.point import Point, point_of
-from .coordinate import TURN, Chart
+from .coordinate import TURN, Coordinate
 
 Values = tuple[float, ...]
 Function = Callable[..., Values]
@@ -37,11 +37,13 @@ def _gone(t: float, theta: float, omega: float) -> float:
 class Model:
     """One design, its functions and what drives it."""
 
-    def __init__(self, values: Mapping[str, float], branch: int, chart: Chart, drive: Drive) -> None:
-        self.values, self.chart, self.drive = values, chart, drive
+    def __init__(
+        self, values: Mapping[str, float], branch: int, coordinate: Coordinate, drive: Drive
+    ) -> None:
+        self.values, self.coordinate, self.drive = values, coordinate, drive
         self.mu = values["mu"]
         self.sign = float(branch)
-        fixed = fixed_zeros(values) if chart.half else (("branch", self.sign), *fixed_zeros(values))
+        fixed = fixed_zeros(values) if coordinate.half else (("branch", self.sign), *fixed_zeros(values))
         form = form_of(values)
 
         def function(names: Sequence[str], free: Sequence[str], *zeros: str) -> Function:
@@ -55,7 +57,7 @@ class Model:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A pickle has the design but not what drives it, which may be any function."""
-        return Model, (self.values, int(self.sign), self.chart, Drive(_gone, _gone, _gone, False))
+        return Model, (self.values, int(self.sign), self.coordinate, Drive(_gone, _gone, _gone, False))
 
     def inertia(self, theta: float) -> float:
         """The effective moment of inertia [kg m^2] on the branch of the start."""
@@ -87,9 +89,9 @@ class Model:
         return {which: angle for which, angle in self.dead_centres().items() if self.inertia(angle) <= least}
 
 
-def form_of(values: Mapping[str, Any]) -> Form:
+def form_of(values: Mapping[str, Any]) -> Variant:
     """The form of the program: a given state; centres of mass that are not given are halfway."""
-    return Form(True, tuple(name for name in CENTRES if name not in values))
+    return Variant(True, tuple(name for name in CENTRES if name not in values))
 
 
 def fixed_zeros(values: Mapping[str, Any]) -> tuple[tuple[str, float], ...]:

@@ -71,7 +71,9 @@ class Run:
         self.pieces: list[Piece] = []
         self.accepted: list[tuple[float, Array]] = [(0.0, y)]
         self.events: list[Event] = []
-        self.left = model.chart.place(y[Q])[0]  # an angle that the motion starts from is not reached again
+        self.left = model.coordinate.place(y[Q])[
+            0
+        ]  # an angle that the motion starts from is not reached again
         self.next_step: float | None = None
         self.steps = 0
         self.pressed: float | None = None  # the side of the guide after a change of side
@@ -249,7 +251,7 @@ class Run:
     def _tell_of(self, found: Found, state: State) -> None:
         """Tell an event; it has its angle or its standstill exactly."""
         mark = found.mark
-        theta = self.model.chart.place(found.value)[0] if found.place == Q else state.theta
+        theta = self.model.coordinate.place(found.value)[0] if found.place == Q else state.theta
         theta = mark.angle if mark.kind in ("limit", "angle") else theta
         omega = 0.0 if mark is STANDSTILL else state.omega
         which = "" if mark.kind == "limit" else mark.which
@@ -263,7 +265,7 @@ class Run:
             if other is not leader and other.mark is not LOST:
                 self._note(other, step)
         self._accept(Piece(step.t, t, step.inside, step.law), y)
-        self.left = self.model.chart.place(leader.value)[0] if leader.place == Q else inf
+        self.left = self.model.coordinate.place(leader.value)[0] if leader.place == Q else inf
         if isinstance(step.law, Rubbing) and any(event.mark is LOST for event in now):
             self.pressed = -step.law.pressed
         if leader.mark is JAMMED and isinstance(step.law, Rubbing):
@@ -296,7 +298,7 @@ class Run:
 
     def _speed_at_limit(self) -> float:
         """0 with a massive rod or slider; else the crank runs into the limit."""
-        return 0.0 if self.model.chart.half else self.state.omega
+        return 0.0 if self.model.coordinate.half else self.state.omega
 
     def _cut(self, found: Found, step: Step) -> tuple[float, Array]:
         """The instant of an event and the state there, integrated to, not interpolated."""

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..runtime.request import check_border, with_known_inputs
+from ..runtime.request import check_common, with_known_inputs
 from ..support.checks import whole_number
 from ..support.deadline import Deadline
 from .checks import (
@@ -109,7 +109,7 @@ def simulate(
         "I_crank": I_crank, "I_rod": I_rod, "r_crank": r_crank, "r_rod": r_rod, "F_X": F_X, "F_Y": F_Y,
         "g_X": g_X, "g_Y": g_Y, "mu": mu,
     }  # fmt: skip
-    check_border({}, branch, threads)
+    check_common({}, branch, threads)
     wanted = check_names(names)
     max_steps = whole_number("max_steps", max_steps, 1, 10**9)
     deadline = Deadline("simulate", timeout)
@@ -133,7 +133,7 @@ def simulate(
         max_steps,
     )
     v = start[1] * sqrt(model.inertia(start[0]))
-    run = Run(model, np.array([model.chart.q(start[0]), v, 0.0]), end, angles, tolerance, deadline)
+    run = Run(model, np.array([model.coordinate.q(start[0]), v, 0.0]), end, angles, tolerance, deadline)
     with np.errstate(all="ignore"):  # values beyond every double end the motion with a status
         run.to_the_end()
     shown = {**values, "branch": branch, "F_X": drive.F_X, "F_Y": drive.F_Y}

@@ -108,15 +108,15 @@ def _cos(chain: Chain, line: Line) -> Step:
 
 def _atan2(chain: Chain, line: Line) -> Step:
     y, x = line.args
-    turned = chain.new("sub", chain.new("mul", x, chain.slope(y)), chain.new("mul", y, chain.slope(x)))
-    return "div", (turned, chain.new("add", chain.new("mul", x, x), chain.new("mul", y, y)))
+    rotated_sin = chain.new("sub", chain.new("mul", x, chain.slope(y)), chain.new("mul", y, chain.slope(x)))
+    return "div", (rotated_sin, chain.new("add", chain.new("mul", x, x), chain.new("mul", y, y)))
 
 
 def _same(chain: Chain, line: Line) -> Step:
     return line.op, tuple(map(chain.slope, line.args))
 
 
-def _turned(chain: Chain, line: Line) -> Step:
+def _rotated(chain: Chain, line: Line) -> Step:
     return line.op, (*map(chain.slope, line.args[:2]), line.args[2])
 
 
@@ -134,8 +134,8 @@ RULES: Mapping[str, Rule] = {
     "two_sum_error": lambda chain, line: ("copy", (0.0,)),
     "two_product_error": lambda chain, line: ("copy", (0.0,)),
     "rounding": lambda chain, line: ("copy", (0.0,)),
-    "turned": _turned,
-    "turned_cosine": _turned,
+    "rotated_sin": _rotated,
+    "rotated_cos": _rotated,
     # The sign of the second is constant but for jumps; the balls know which it is.
     "copysign": lambda chain, line: ("copysign", (chain.slope(line.args[0]), line.args[1])),
 }

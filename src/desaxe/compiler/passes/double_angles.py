@@ -38,7 +38,7 @@ class Turned(NamedTuple):
     complement: Words
 
 
-def turned(writer: Expansions, angle: Pair, constants: DoubleTrigonometry) -> Turned:
+def rotated_sin(writer: Expansions, angle: Pair, constants: DoubleTrigonometry) -> Turned:
     """Sine, cosine and 1 - |sine| of an angle."""
     scaled = writer.line("mul", angle.high, constants.two_over_pi)
     quarters = writer.line("floor", writer.line("add", scaled, 0.5))

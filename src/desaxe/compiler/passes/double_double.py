@@ -16,12 +16,12 @@ from .expansions import Pair, Words
 from .fold import fold_constants
 from .pairs import RULES, Pairs
 from .slicing import drop_unused
-from .value_numbering import number_values
+from .value_numbering import value_numbering
 
 WIDE = ("copy", "add", "sub", "neg", "mul", "select")  # what three words are kept through
 
 
-def double_digits(program: Program, constants: DoubleTrigonometry) -> Program:
+def double_double(program: Program, constants: DoubleTrigonometry) -> Program:
     """The program in pairs; its outputs are the high parts, rounded once.
 
     Precondition: |angle| <= constants.limit wherever the result matters. Effect: values that are
@@ -33,15 +33,15 @@ def double_digits(program: Program, constants: DoubleTrigonometry) -> Program:
     for line in program.lines:
         writer.assign(line)
     wide = program._replace(lines=tuple(writer.lines))
-    return drop_unused(number_values(fold_constants(wide)))
+    return drop_unused(value_numbering(fold_constants(wide)))
 
 
-def with_finer_forms(program: Program) -> Program:
-    """The program with `finer(x)` as x: it takes the forms that only twice the digits need.
+def with_extended_only_forms(program: Program) -> Program:
+    """The program with `extended_only(x)` as x: it takes the forms that only twice the digits need.
 
     Precondition: not folded yet, which makes them false.
     """
-    lines = (line._replace(op="copy") if line.op == "finer" else line for line in program.lines)
+    lines = (line._replace(op="copy") if line.op == "extended_only" else line for line in program.lines)
     return program._replace(lines=tuple(lines))
 
 
@@ -88,7 +88,7 @@ class _Writer(Pairs):
         if words and (line.name == self.constants.complement or line.op == "sin"):
             return Pair(*words[:2])
         if line.op == "cos":
-            return self.turned(self.of(line.args[0])).cos
+            return self.rotated_sin(self.of(line.args[0])).cos
         if line.op in ("two_sum_error", "two_product_error", "rounding"):
             return Pair(0.0)
         return RULES[line.op](self, *map(self.of, line.args))
@@ -107,7 +107,7 @@ class _Writer(Pairs):
     def in_three_words(self, line: Line) -> Words:
         """The words of the sine, of 1 - |sine| and of what the gap is made of; none of other lines."""
         if line.op == "sin":
-            return self.turned(self.of(line.args[0])).sin
+            return self.rotated_sin(self.of(line.args[0])).sin
         if line.name == self.constants.complement and self.angles:
             return next(reversed(self.angles.values())).complement
         if line.name not in self.wide:

@@ -100,6 +100,7 @@ def _mul_add(line: Line) -> Line | Argument:
 
 
 _RULES = {
-    "add": _add, "sub": _sub, "mul": _mul, "div": _div, "mul_add": _mul_add, "finer": lambda line: False,
+    "add": _add, "sub": _sub, "mul": _mul, "div": _div, "mul_add": _mul_add,
+    "extended_only": lambda line: False,
     "two_sum_error": _two_sum_error, "two_product_error": _two_product_error,
 }  # fmt: skip

@@ -7,7 +7,7 @@ Source of the algorithms: Dekker 1971; Knuth; Joldes, Muller, Popescu 2017.
 from collections.abc import Callable, Mapping
 
 from ..program import Argument
-from .double_angles import DoubleTrigonometry, Turned, turned
+from .double_angles import DoubleTrigonometry, Turned, rotated_sin
 from .expansions import Expansions, Pair
 
 
@@ -101,8 +101,8 @@ class Pairs(Expansions):
         high = self.line("copysign", a.high, b.high)
         if a.single:
             return Pair(high)
-        turned = self.line("eq", high, a.high, kind="bool")
-        return Pair(high, self.line("select", turned, a.low, self.line("neg", a.low)))
+        rotated_sin = self.line("eq", high, a.high, kind="bool")
+        return Pair(high, self.line("select", rotated_sin, a.low, self.line("neg", a.low)))
 
     def select(self, condition: Pair, a: Pair, b: Pair) -> Pair:
         """a where the condition holds, else b."""
@@ -120,23 +120,23 @@ class Pairs(Expansions):
     def atan2(self, y: Pair, x: Pair) -> Pair:
         """The angle of doubles, and what is left of it, small enough to be its own tangent."""
         angle = self.line("atan2", y.high, x.high)
-        (sine, low, _), cosine, _ = self.turned(Pair(angle))
+        (sine, low, _), cosine, _ = self.rotated_sin(Pair(angle))
         across = self.sub(self.mul(y, cosine), self.mul(x, Pair(sine, low)))
         along = self.line("mul_add", x.high, cosine.high, self.line("mul", y.high, sine))
         step = self.line("div", across.high, along)
         none = self.line("eq", along, 0.0, kind="bool")
         return self.quick(angle, self.line("select", none, 0.0, step))
 
-    def turned(self, angle: Pair) -> Turned:
+    def rotated_sin(self, angle: Pair) -> Turned:
         """Sine and cosine of an angle, once."""
         if angle not in self.angles:
-            self.angles[angle] = turned(self, angle, self.constants)
+            self.angles[angle] = rotated_sin(self, angle, self.constants)
         return self.angles[angle]
 
     def quarter_turned(self, sine: Pair, cosine: Pair, quarters: Pair) -> Pair:
         """Both words turn alike; the number of quarters is whole."""
         words = ((sine.high, cosine.high), (sine.low, cosine.low))
-        return Pair(*(self.line("turned", a, b, quarters.high) for a, b in words))
+        return Pair(*(self.line("rotated_sin", a, b, quarters.high) for a, b in words))
 
 
 def _is_power_of_two(a: Pair) -> bool:
@@ -160,8 +160,8 @@ RULES: Mapping[str, Callable[..., Pair]] = {
     "atan2": Pairs.atan2,
     "floor": Pairs.floor,
     "copysign": Pairs.copysign,
-    "turned": Pairs.quarter_turned,
-    "turned_cosine": lambda pairs, sine, cosine, quarters: pairs.quarter_turned(
+    "rotated_sin": Pairs.quarter_turned,
+    "rotated_cos": lambda pairs, sine, cosine, quarters: pairs.quarter_turned(
         cosine, pairs.neg(sine), quarters
     ),
     "select": Pairs.select,

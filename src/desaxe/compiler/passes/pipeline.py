@@ -8,7 +8,7 @@ from ..program import Program
 from .bind import bind_constants
 from .fold import fold_constants
 from .slicing import drop_unused
-from .value_numbering import number_values
+from .value_numbering import value_numbering
 
 
 class Pass(NamedTuple):
@@ -27,7 +27,7 @@ class Step(NamedTuple):
 
 PASSES = (
     Pass("fold", fold_constants),
-    Pass("number", number_values),
+    Pass("number", value_numbering),
     Pass("slice", drop_unused),
 )
 

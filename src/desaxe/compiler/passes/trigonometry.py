@@ -62,8 +62,8 @@ class _Writer:
             rest = self._reduced(angle, quarters)
             sides = self._sine(rest), self._cosine(rest)
             self.known[angle] = {
-                "sin": self.line("turned", *sides, quarters),
-                "cos": self.line("turned_cosine", *sides, quarters),
+                "sin": self.line("rotated_sin", *sides, quarters),
+                "cos": self.line("rotated_cos", *sides, quarters),
             }
         return self.known[angle][op]
 

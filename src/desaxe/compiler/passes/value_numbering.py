@@ -5,7 +5,7 @@ from ..program import Argument, Line, Program
 from .slicing import drop_unused
 
 
-def number_values(program: Program) -> Program:
+def value_numbering(program: Program) -> Program:
     """Merge lines that compute the same operation on the same values.
 
     Precondition: canonical form. Effect: equal values are computed once, where the first of them

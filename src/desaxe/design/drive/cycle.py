@@ -8,7 +8,7 @@ import numpy as np
 
 from ...evaluation.evaluate import evaluate
 from ...mechanism.inputs import INPUTS
-from ...runtime.request import as_number, check_border, check_inputs, request
+from ...runtime.request import as_number, check_common, check_inputs, request
 from ..events.closed_form import closed_form, placed
 from ..number_or_array import PLAIN
 from .panels import Array, Panels, resolved
@@ -31,7 +31,7 @@ class Design:
 
     def __init__(self, caller: str, inputs: Mapping[str, Any], branch: int) -> None:
         check_inputs(caller, inputs, [name for name in INPUTS if name not in ("theta", "omega")])
-        check_border({}, branch)
+        check_common({}, branch)
         self.branch = int(branch)
         given = {name: value for name, value in inputs.items() if value is not None}
         self.loads = {n: v for n, v in given.items() if n in LOADS_OVER_THETA and _varies(v)}

@@ -5,7 +5,7 @@ from typing import Any
 
 from ...evaluation.evaluate import evaluate
 from ...mechanism.names import LENGTHS
-from ...runtime.request import as_number, check_border, with_known_inputs
+from ...runtime.request import as_number, check_common, with_known_inputs
 from ..number_or_array import PLAIN, sum_of_three
 from ..roots import root
 from .closed_form import VELOCITIES, closed_form, placed, stroke_ends
@@ -51,7 +51,7 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
         >>> round(found["stroke"], 5), round(found["time_ratio"], 4), found["slow_stroke"]
         (0.08879, 1.6737, 1)
     """
-    check_border({}, branch)
+    check_common({}, branch)
     given = {"ec": ec, "AB": AB, "BC": BC, "omega0": 1.0 if omega0 is None else omega0}
     numbers = {name: as_number(name, value, tuple(given), ("events",)) for name, value in given.items()}
     if None in numbers.values():

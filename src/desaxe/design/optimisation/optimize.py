@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from ...runtime.request import check_border
+from ...runtime.request import check_common
 from ...support.checks import whole_number
 from ...support.deadline import Deadline
 from ...support.extras import needed
@@ -69,7 +69,7 @@ def optimize(
         >>> round(best["ec"], 9), best["active"]
         (0.22, {'margin': 'lower'})
     """
-    check_border({}, branch)
+    check_common({}, branch)
     for name, number, least in (("starts", starts, 1), ("points", points, 2)):
         whole_number(name, number, least, 10_000)
     whole_number("seed", seed, 0, 2**32 - 1)

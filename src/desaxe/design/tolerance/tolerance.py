@@ -11,7 +11,7 @@ from ...evaluation.evaluate import evaluate
 from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import sensitivity
-from ...runtime.request import check_border, check_inputs
+from ...runtime.request import check_common, check_inputs
 from ...support.checks import whole_number
 from ...support.extras import needed
 from ...support.shown import shown
@@ -142,7 +142,7 @@ def tolerance(
         (['AB', 'ec'], 64.3)
     """
     _check(distribution, sigmas, samples, sobol, seed)
-    check_border(inputs, branch)
+    check_common(inputs, branch)
     check_inputs("tolerance", inputs, tuple(INPUTS))
     given = {n: read(n, v, distribution, sigmas) for n, v in inputs.items() if v is not None}
     rough = [value for value in given.values() if isinstance(value, Inexact)]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...evaluation.evaluate import evaluate
 from ...mechanism.inputs import INPUTS
-from ...runtime.request import as_number, check_border, check_inputs
+from ...runtime.request import as_number, check_common, check_inputs
 
 Array = NDArray[np.float64]
 LEAST, MOST = 128, 131072  # steps of a turn
@@ -23,7 +23,7 @@ class Turn:
     def __init__(self, caller: str, inputs: Mapping[str, Any], branch: int) -> None:
         known = tuple(name for name in INPUTS if name not in ("theta", "alpha", "omega"))
         check_inputs(caller, inputs, known)
-        check_border({}, branch)
+        check_common({}, branch)
         self.branch = branch
         self.functions: dict[str, Callable[[Array], Any]] = {
             name: value for name, value in inputs.items() if callable(value) and name in FUNCTIONS

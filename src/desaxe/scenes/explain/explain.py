@@ -8,7 +8,7 @@ from os import PathLike
 from typing import Any
 
 from ...compiler.kernel import Kernel
-from ...compiler.passes.double_double import double_digits
+from ...compiler.passes.double_double import double_double
 from ...mechanism.catalogue import quantity
 from ...mechanism.constants import double_constants
 from ...mechanism.inputs import INPUTS
@@ -16,7 +16,7 @@ from ...mechanism.program import digest
 from ...runtime import interpreted
 from ...runtime.kernels import KernelKey, is_ready, is_single, kernel_of, source_of
 from ...runtime.modules import path_of
-from ...runtime.specialise import cut
+from ...runtime.specialise import specialise
 from ...runtime.threads import LEAST_BLOCK, available
 from ..kernel import GridKernel, grid_kernel
 from ..read import Content
@@ -134,9 +134,9 @@ def _compiled_loops(found: GridKernel) -> list[Loop]:
 
 def _plain_loops(found: GridKernel) -> list[Loop]:
     """Every operation at every point, sine and cosine from `math`."""
-    program = cut(found.key.names, found.key.form, found.key.fixed)
+    program = specialise(found.key.names, found.key.form, found.key.fixed)
     if found.key.accuracy == "extended":
-        program = double_digits(program, double_constants())
+        program = double_double(program, double_constants())
     axes = [name for name in found.axes if name]
     kernel = Kernel(len(axes), {}, ((),) * len(axes) + (program.lines,), program.outputs, {}, program.notes)
     return loops_of(kernel, axes, [s for n, s in zip(found.axes, found.sizes, strict=True) if n])
@@ -162,7 +162,7 @@ def _run(content: Content, found: GridKernel, loops: list[Loop], compiled: bool)
         "break_even": interpreted.BREAK_EVEN,
         "float32": is_single(found.key),
         "far_angles": found.key.far,
-        "roomy": found.key.form.roomy,
+        "wide_margins": found.key.form.wide_margins,
         "threads": threads if compiled else 1,
         "cached": cached,
         "module": path,

@@ -162,7 +162,7 @@ def _how(plan: Mapping[str, Any]) -> str:
         )
         numbers = [one["name"] for one in plan["inputs"] if one.get("value")]
         if numbers:
-            while_roomy = " while AB + |ec| < 7/8 BC" if run["roomy"] else ""
+            while_roomy = " while AB + |ec| < 7/8 BC" if run["wide_margins"] else ""
             reused = f"other values of {', '.join(numbers)} (but 0) compile nothing new{while_roomy}"
             lines += _wrapped("reuse", [reused])
     else:

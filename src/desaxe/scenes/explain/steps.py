@@ -10,7 +10,7 @@ from ...mechanism.inputs import INPUTS
 from ...mechanism.program import program_of, whole_program
 from ...runtime.kernels import KernelKey
 from ...runtime.request import Request
-from ...runtime.specialise import cut
+from ...runtime.specialise import specialise
 
 
 class Step(NamedTuple):
@@ -36,7 +36,7 @@ WHAT = {
     "number": "what is computed twice is computed once",
     "unused": "lines that nothing needs any more",
     "keep": "NaN is kept where the mechanism cannot be assembled",
-    "plain": "every design is roomy: shorter forms will do",
+    "plain": "every design has wide margins: shorter forms",
     "write out": "sine, cosine and checks as arithmetic: loops vectorise",
 }
 
@@ -50,9 +50,9 @@ def steps_of(key: KernelKey, request: Request, inside: int) -> list[Step]:
     counts = [("derivation", whole), ("slice", costs[0].cost.operations)]
     names = {"fold": "fold", "number": "number", "slice": "unused"}
     counts += [(names[step.name], step.cost.operations) for step in costs[1:]]
-    counts.append(("keep", cost_of(cut(request.names, request.form, fixed)).operations))
-    if key.form.roomy:
-        counts.append(("plain", cost_of(cut(key.names, key.form, fixed)).operations))
+    counts.append(("keep", cost_of(specialise(request.names, request.form, fixed)).operations))
+    if key.form.wide_margins:
+        counts.append(("plain", cost_of(specialise(key.names, key.form, fixed)).operations))
     if inside != counts[-1][1]:
         counts.append(("write out", inside))
     steps = [Step("derivation", "every line of the derivation", whole, 0)]
@@ -86,7 +86,7 @@ def skipped_of(key: KernelKey, request: Request, given: Mapping[str, Any]) -> li
         free = tuple(pair for pair in fixed if pair[0] not in absent)
         what = ", ".join(absent) + " = 0"
         found.append(Skipped(what, "not given: their terms vanish", _operations(key, free) - least))
-    for name in request.form.halves:
+    for name in request.form.default_centres:
         length = "AB" if name == "r_crank" else "BC"
         found.append(Skipped(name, f"not given: half of {length}, moving with it", 0))
     useless = [n for n in given if n in INPUTS and n not in request.inputs and n not in dict(fixed)]
@@ -99,4 +99,4 @@ def _without(name: str) -> str:
 
 
 def _operations(key: KernelKey, fixed: tuple[tuple[str, float], ...]) -> int:
-    return cost_of(cut(key.names, key.form, fixed)).operations
+    return cost_of(specialise(key.names, key.form, fixed)).operations

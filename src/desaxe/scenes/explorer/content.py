@@ -12,7 +12,7 @@ from ...mechanism.catalogue import Quantity, quantities, quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LOADS, PARAMETERS, joined, parts
 from ...runtime.request import Request, request
-from ...runtime.specialise import cut
+from ...runtime.specialise import specialise
 
 Value = float | tuple[float, ...]
 
@@ -119,7 +119,7 @@ def _sensitivities(base: str, given: Mapping[str, Value]) -> list[str]:
 
 def _function(base: str, names: Iterable[str], given: Mapping[str, Value], branch: int) -> Function:
     asked = _request(tuple(names), given, branch)
-    program = cut(asked.names, asked.form, asked.fixed)
+    program = specialise(asked.names, asked.form, asked.fixed)
     return Function(base, asked.shown, program.inputs, emit_javascript(program, f"of_{base}"))
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LOADS
-from ...runtime.request import as_number, check_border, check_inputs
+from ...runtime.request import as_number, check_common, check_inputs
 from .content import Content, Value, content
 from .write import write_page
 
@@ -58,7 +58,7 @@ def content_of(
 ) -> Content:
     """The content of the page that `explore` writes for the same."""
     if source is None:
-        check_border(inputs, branch)
+        check_common(inputs, branch)
         check_inputs("explore", inputs, tuple(INPUTS))
         return content(title, branch, {n: _value(n, v) for n, v in inputs.items()}, START, names)
     if inputs:

@@ -15,13 +15,13 @@ from ...compiler.languages import language_of
 from ...compiler.languages.numba.module import emit_numba
 from ...compiler.languages.numba.reductions import emit_reduced
 from ...compiler.operations import HELPERS, NUMBA_HELPERS
-from ...compiler.passes.double_double import double_digits
+from ...compiler.passes.double_double import double_double
 from ...mechanism.catalogue import quantity
 from ...mechanism.constants import constants, double_constants, single_constants
 from ...mechanism.inputs import INPUTS
 from ...mechanism.program import digest
 from ...runtime.kernels import KernelKey, is_single, kernel_of
-from ...runtime.specialise import cut
+from ...runtime.specialise import specialise
 from ...support.files import check_target, write_text
 from ..kernel import GridKernel, grid_kernel
 from ..scene import Scene
@@ -136,14 +136,14 @@ def module_text(scene: Scene, name: str = "my_kernels.py") -> str:
     content = scene.content
     require_outputs(scene)
     found = grid_kernel(content)
-    anywhere = found.key.form._replace(roomy=False)  # the module takes other designs, too
+    anywhere = found.key.form._replace(wide_margins=False)  # the module takes other designs, too
     key = _all_fixed(found.key._replace(form=anywhere), found, content.inputs)
     axes = {n: value for n in found.axes if isinstance(value := content.inputs.get(n), tuple)}
     state = found.request.form.state
     shown = found.request.shown
-    program = cut(key.names, key.form, key.fixed)
+    program = specialise(key.names, key.form, key.fixed)
     if key.accuracy == "extended":
-        program = double_digits(program, double_constants())
+        program = double_double(program, double_constants())
     sources = [point_function(program, shown, state)]
     grid = None
     if program.inputs:

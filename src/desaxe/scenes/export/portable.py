@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 from ...compiler.languages.protocol import Forms, Module, Symbol
-from ...compiler.passes.double_double import double_digits
+from ...compiler.passes.double_double import double_double
 from ...compiler.passes.guard import guard_inputs
 from ...compiler.program import Program
 from ...mechanism.catalogue import law_name, quantities, quantity
@@ -14,7 +14,7 @@ from ...mechanism.inputs import INPUTS, LEAST
 from ...mechanism.names import LENGTHS, ORDER, sensitivity
 from ...mechanism.program import digest
 from ...runtime.request import Request, request
-from ...runtime.specialise import cut, plain_form
+from ...runtime.specialise import plain_form, specialise
 from ..read import Content
 from ..scene import Scene
 from ..schema import SceneError
@@ -122,14 +122,14 @@ def _forms(asked: Request, names: tuple[str, ...], fixed: Fixed, freestanding: b
     status = names.index(_status_of(asked))
     largest = {"theta": _reach(asked)} if freestanding or asked.accuracy == "extended" else {}
     if asked.accuracy == "extended":
-        program = cut(names, asked.form, fixed, "extended")
+        program = specialise(names, asked.form, fixed, "extended")
         guarded = guard_inputs(program, program.inputs, LEAST, largest)
-        return Forms(status, double_digits(guarded, double_constants()))
-    stable, plain = cut(names, asked.form, fixed), plain_form(names, asked.form, fixed)
+        return Forms(status, double_double(guarded, double_constants()))
+    stable, plain = specialise(names, asked.form, fixed), plain_form(names, asked.form, fixed)
     forms = Forms(status, guard_inputs(stable, stable.inputs, LEAST, largest))
     if plain is None:
         return forms
-    test = cut(("roomy",), asked.form, fixed)
+    test = specialise(("wide_margins",), asked.form, fixed)
     # The test implies that lengths are good.
     own = [name for name in plain.inputs if name not in LENGTHS]
     guarded = guard_inputs(plain, own, LEAST, largest)
@@ -163,6 +163,6 @@ def _derivatives(
     values = {}
     for name in found:
         asked, fixed = _asked(content, (name,))
-        program = cut(asked.names, asked.form, fixed)
+        program = specialise(asked.names, asked.form, fixed)
         values[name] = guard_inputs(program, program.inputs, LEAST, {})
     return found, values

@@ -13,8 +13,8 @@ from ...compiler.program import Program
 from ...compiler.text import read_function
 from ...design.inverse import SLIDER_INPUTS
 from ...mechanism.inputs import LEAST
-from ...mechanism.program import Form
-from ...runtime.specialise import cut
+from ...mechanism.program import Variant
+from ...runtime.specialise import specialise
 
 # The triangle A B C has the sides AB, BC and L = |AC|; its angle at A comes from the half-angle form, which
 # keeps its digits where the triangle is flat. See `desaxe.inverse`.
@@ -78,7 +78,7 @@ def solvers(fixed: Mapping[str, float]) -> dict[str, Solver]:
     """The solvers of a mechanism of which some inputs are fixed."""
     kinematic = tuple((name, value) for name, value in fixed.items() if name in ("branch", "ec", "AB", "BC"))
     slider = tuple(Symbol(row.name, row.unit, row.meaning) for row in SLIDER_INPUTS.values())
-    slopes = cut(SLOPES, Form(), kinematic)
+    slopes = specialise(SLOPES, Variant(), kinematic)
     return {
         "inverse": Solver(slider, _cut(INVERSE, fixed), slopes),
         "limits": Solver((), _cut(LIMITS, fixed)),

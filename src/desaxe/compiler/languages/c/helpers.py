@@ -40,8 +40,8 @@ static inline double two_product_error(double a, double b) {
   return a * b + c;
 }
 """,
-    "finer": """/* Whether to take a form that only twice the digits tell from the other: not here. */
-static inline int finer(int a) {
+    "extended_only": """/* Whether to take a form that only twice the digits tell from the other: not here. */
+static inline int extended_only(int a) {
   (void)a;
   return 0;
 }
@@ -51,15 +51,15 @@ static inline double rounding(double a) {
   return 4.440892098500626e-16 * fabs(a);
 }
 """,
-    "turned": """/* The sine of an angle and whole quarter turns, from the angle's own. */
-static inline double turned(double sine, double cosine, double quarters) {
+    "rotated_sin": """/* The sine of an angle and whole quarter turns, from the angle's own. */
+static inline double rotated_sin(double sine, double cosine, double quarters) {
   const double turn = quarters - 4.0 * floor(0.25 * quarters);
   const double value = ((turn == 1.0) | (turn == 3.0)) ? cosine : sine;
   return turn >= 2.0 ? -value : value;
 }
 """,
-    "turned_cosine": """/* The cosine of an angle and whole quarter turns, from the angle's own. */
-static inline double turned_cosine(double sine, double cosine, double quarters) {
+    "rotated_cos": """/* The cosine of an angle and whole quarter turns, from the angle's own. */
+static inline double rotated_cos(double sine, double cosine, double quarters) {
   const double turn = quarters - 4.0 * floor(0.25 * quarters);
   const double value = ((turn == 1.0) | (turn == 3.0)) ? sine : cosine;
   return ((turn == 1.0) | (turn == 2.0)) ? -value : value;

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from ...passes.trigonometry import Trigonometry, expand_trigonometry
-from ...passes.value_numbering import number_values
+from ...passes.value_numbering import value_numbering
 from ...program import Line, Program
 from ..protocol import Module, Solver, Symbol
 from ..shared import called, one_line, with_helpers
@@ -360,7 +360,7 @@ def _near_sin_cos(constants: Trigonometry) -> str:
     lines = (Line("sine", "sin", ("x",)), Line("cosine", "cos", ("x",)))
     program = expand_trigonometry(Program(("x",), lines, ("sine", "cosine"), {}), constants)
     comment = f"sine and cosine by polynomials, for |x| <= {constants.limit!r}"
-    return static_function("near_sin_cos", number_values(program), ["x"], 2, None, comment)
+    return static_function("near_sin_cos", value_numbering(program), ["x"], 2, None, comment)
 
 
 def _sin_cos(limit: str, freestanding: bool) -> str:

@@ -13,11 +13,11 @@ kept on disk, it compiles in every process.
 from collections.abc import Container, Mapping
 from textwrap import wrap
 
-from ...kernel import Kernel, close_programs, level_program
+from ...kernel import Kernel, level_program, stable_branch_programs
 from ...operations import HELPERS, NUMBA_HELPERS, OPERATIONS
 from ...program import Argument, Line, Program
 from ...text import INDENT, WIDTH, write_lines
-from .two_forms import inner_loops, is_mixed, rooms, scratch
+from .two_forms import has_two_forms, inner_loops, rooms, scratch
 
 _TYPES = {"f64": "float64", "i64": "int8"}  # a status is stored as int8
 _NUMPY_CALLS = {"floor"}  # numba's math.floor gives an integer, which does not vectorise
@@ -126,7 +126,7 @@ def _all_lines(kernel: Kernel) -> list[Line]:
     """The lines of all loops, tables included."""
     kernels = [*(table.kernel for table in kernel.tables), kernel]
     bodies = [level_program(each, level) for each in kernels for level in range(each.axes + 1)]
-    bodies += close_programs(kernel) if kernel.close else ()
+    bodies += stable_branch_programs(kernel) if kernel.close else ()
     return [line for body in bodies for line in body.lines]
 
 
@@ -142,7 +142,7 @@ def helper_sources(operations: Container[str]) -> list[str]:
 def _helpers(kernel: Kernel) -> list[str]:
     sources = helper_sources({line.op for line in _all_lines(kernel)})
     sources += [_APART] if kernel.axes else []
-    return [*sources, rooms(kernel)] if is_mixed(kernel) else sources
+    return [*sources, rooms(kernel)] if has_two_forms(kernel) else sources
 
 
 def _called(op: str) -> str:

@@ -22,7 +22,7 @@ KINDS = {
     "rms": "root_mean_square",
 }
 EXTREMES = ("max", "min", "absmax")  # these have a place
-_TURNED = {"max": "x", "min": "-x", "absmax": "abs(x)"}  # the largest of these is wanted
+_ROTATED = {"max": "x", "min": "-x", "absmax": "abs(x)"}  # the largest of these is wanted
 
 SCRATCH = 32_768  # doubles: a quarter of a megabyte, for the second-level cache
 LONGEST = 2_048  # doubles of a row that are computed at a time
@@ -32,14 +32,14 @@ def _largest(kind: str) -> str:
     # Sixteen lanes, each with a largest number of its own, are vectors; one largest number is a chain.
     return f'''@njit(error_model="numpy")
 def take_{kind}(row, start, value, place):
-    """Go on with a row: the largest {_TURNED[kind]} so far and its place, the first of equals; no NaN."""
+    """Go on with a row: the largest {_ROTATED[kind]} so far and its place, the first of equals; no NaN."""
     values = full(16, -inf)
     places = full(16, -1)
     whole = row.size - row.size % 16
     for first in range(0, whole, 16):
         for lane in range(16):
             x = row[first + lane]
-            x = {_TURNED[kind]}
+            x = {_ROTATED[kind]}
             better = (x > values[lane]) | ((places[lane] < 0) & (x == x))
             values[lane] = x if better else values[lane]
             places[lane] = first if better else places[lane]
@@ -50,7 +50,7 @@ def take_{kind}(row, start, value, place):
             best, at = x, here
     for here in range(whole, row.size):
         x = row[here]
-        x = {_TURNED[kind]}
+        x = {_ROTATED[kind]}
         if x > best or (at < 0 and x == x):
             best, at = x, here
     if at >= 0 and (place < 0 or best > value):

@@ -8,7 +8,7 @@ next to singular ones cost little: flags are looked at eight at a time.
 
 from collections.abc import Mapping
 
-from ...kernel import Close, Kernel, close_programs, level_program
+from ...kernel import Kernel, StableBranch, level_program, stable_branch_programs
 from ...text import INDENT, write_lines
 
 # Rooms on the stack: the compiler knows that nothing else points there, and nothing has to be allocated.
@@ -122,14 +122,14 @@ def rooms(kernel: Kernel) -> str:
     return ROOMS.replace("SIZE", str(block + APART)).replace("BLOCK", str(block))
 
 
-def is_mixed(kernel: Kernel) -> bool:
+def has_two_forms(kernel: Kernel) -> bool:
     """Whether the test changes along the innermost axis."""
     return kernel.close is not None and bool(kernel.close.test_lines)
 
 
 def scratch(kernel: Kernel) -> list[str]:
     """Where the points of a block that fail the test are kept: places, inputs, outputs."""
-    if not is_mixed(kernel):
+    if not has_two_forms(kernel):
         return []
     names = [*_kept(kernel), *(f"out_{name}" for name in kernel.outputs)]
     return ["close = flags()", "place = room()", *(f"{name}_kept = room()" for name in names)]
@@ -156,9 +156,9 @@ def inner_loops(kernel: Kernel, length: str, loads: Mapping[str, str], cast: str
         *write_lines(level_program(kernel, kernel.axes), "numba"),
         *_stores(kernel, kernel.outputs),
     ]
-    if is_mixed(kernel):
+    if has_two_forms(kernel):
         return _mixed(kernel, kernel.close, length, loads, plain, cast)
-    lines = write_lines(close_programs(kernel)[1], "numba")
+    lines = write_lines(stable_branch_programs(kernel)[1], "numba")
     tally = [f"tally += 1 if {undecided} else 0"] if undecided else []
     stable = [*read, *lines, *tally, *_stores(kernel, kernel.close.outputs)]
     loop = f"for i{kernel.axes - 1} in range({length}):"
@@ -185,7 +185,7 @@ def _stores(kernel: Kernel, values: tuple[str, ...]) -> list[str]:
 
 def _mixed(
     kernel: Kernel,
-    close: Close,
+    close: StableBranch,
     length: str,
     loads: Mapping[str, str],
     plain: list[str],
@@ -193,7 +193,7 @@ def _mixed(
 ) -> list[str]:
     """Blocks: all points in the plain form, then those that fail the test in the stable one."""
     last, names = kernel.axes - 1, _kept(kernel)
-    stable = write_lines(close_programs(kernel)[1], "numba")
+    stable = write_lines(stable_branch_programs(kernel)[1], "numba")
     # The stable loop takes eight points at a time; what the last eight lack is filled with the last point.
     gathered = [f"i{last} = uint64(get(place, min(k, count - uint64(1))))"]
     gathered += [f"{name} = {text}" for name, text in loads.items()]
