@@ -47,7 +47,9 @@ def _first(value):
 
 
 def _entry(name, value):
-    called = "" if inspect.ismodule(value) else _verbatim(_call(name, value)) + "\n\n"
+    called = (
+        "" if inspect.ismodule(value) or inspect.isclass(value) else _verbatim(_call(name, value)) + "\n\n"
+    )
     return called + _verbatim(inspect.getdoc(value))
 
 

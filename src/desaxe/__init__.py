@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     from .enclosure.enclose import enclose as enclose
     from .evaluation.evaluate import evaluate as evaluate
     from .evaluation.grid import grid as grid
+    from .loads import LoadWarning as LoadWarning
+    from .loads import over_theta as over_theta
+    from .loads import over_Y as over_Y
     from .mechanism.catalogue import quantities as quantities
     from .peaks.peak import peak as peak
     from .scenes.explain.explain import explain as explain
@@ -59,11 +62,15 @@ PUBLIC = {
     "simulate": "desaxe.simulation.simulate",
     "sweep": "desaxe.sweeps.sweep",
     "quantities": "desaxe.mechanism.catalogue",
+    "over_theta": "desaxe.loads",
+    "over_Y": "desaxe.loads",
+    "LoadWarning": "desaxe.loads",
     "equation": "desaxe.derive.equation",
 }
 MODULES = {"plot": "desaxe.plot", "units": "desaxe.mechanism.units"}
 
 __all__ = [
+    "LoadWarning",
     "compile",
     "counterweight",
     "design_map",
@@ -80,6 +87,8 @@ __all__ = [
     "harmonics",
     "inverse",
     "optimize",
+    "over_Y",
+    "over_theta",
     "peak",
     "plot",
     "quantities",

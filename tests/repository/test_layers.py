@@ -72,6 +72,7 @@ FLOORS = {
     "oracle": 1,
     "errata": 1,
     "mechanism": 2,
+    "loads": 3,
     "runtime": 4,
     "evaluation": 5,
     "enclosure": 6,

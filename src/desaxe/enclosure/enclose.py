@@ -17,6 +17,7 @@ from flint import arb, ctx
 
 from ..compiler.passes.differentiate import with_derivatives
 from ..compiler.program import Program
+from ..loads.resolve import without_loads
 from ..mechanism.catalogue import has, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
@@ -85,6 +86,7 @@ def enclose(
         raise ValueError(f"rtol = {rtol}, boxes = {boxes}: more than nothing is wanted")
     given = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
     check_common(given, branch)
+    without_loads("enclose", loads)
     given.update(loads)
     function = _function(name, given, branch)
     with ctx.workprec(BITS):

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from ..loads.resolve import without_loads
 from ..runtime.request import Request, request
 from .arrays import copied_back, fill, outputs_for, scratch_for
+from .loaded import filled_under_loads
 from .loops import Loops
 from .outer import join_axes, outer_of, require_inputs
 
@@ -58,8 +60,9 @@ def grid(
     """Quantities over the outer product of the inputs, as an xarray.Dataset with units.
 
     The inputs are those of `evaluate`. Each 1-d input is a dimension, in the order given; a number
-    becomes a coordinate without one. The Dataset has the names asked for over all dimensions,
-    `status` (int8, with CF flags) and `margin` (over the dimensions that it depends on).
+    becomes a coordinate without one, and a load that varies with the motion follows theta: `over_theta`,
+    `over_Y`, a function of theta, or a labelled array over the dimension theta. The Dataset has the names
+    asked for over all dimensions, `status` (int8, with CF flags) and `margin`, over those that it depends on.
 
     With `out` (an array, or a dict name -> array, of the grid's shape) the arrays are filled and
     returned as a dict, and xarray is not needed. Otherwise needs the extra `labelled`. Raises as
@@ -78,31 +81,43 @@ def grid(
     """
     outer = outer_of(names, inputs, branch, threads, always=out is None)
     if chunks is not None:
+        without_loads("grid with chunks=", outer.loads)
         if out is not None:
             raise TypeError("chunks= and out=: give one of them")
         from .lazy import lazy_grid
 
         return lazy_grid(outer, chunks, branch, accuracy, threads, reduce)
-    wanted, given, axes, dimensions = outer.names, outer.given, outer.axes, outer.dimensions
+    wanted, axes, dimensions = outer.names, outer.axes, outer.dimensions
+    given = {
+        **outer.given,
+        **dict.fromkeys(outer.loads, 0.0),
+    }  # what a request asks of a load is not its value
+    everything: dict[str, Any] = {**axes, **outer.loads}
+
+    def filled(some: Sequence[str], along: Sequence[str], out: Any = None) -> dict[str, Array]:
+        if outer.loads:
+            return filled_under_loads(some, everything, along, (branch, accuracy, threads), out)
+        return _filled(request(some, given, branch, accuracy), axes, along, threads, out)
+
     if reduce is not None:
         if out is not None:
             raise TypeError("reduce= and out=: give one of them")
         from .reduce import reduced_grid
 
         asked = request(wanted, given, branch, accuracy)
-        require_inputs(asked, axes)
-        whole = partial(_filled, asked, axes, dimensions, threads, None)
-        return reduced_grid(asked, axes, dimensions, reduce, branch, threads, whole)
+        require_inputs(asked, everything)
+        whole = partial(filled, wanted, dimensions)
+        return reduced_grid(asked, axes, dimensions, reduce, branch, threads, whole, bool(outer.loads))
     if out is not None:
-        return _filled(request(wanted, given, branch, accuracy), axes, dimensions, threads, out)
-    from .labels import labelled
+        return filled(wanted, dimensions, out)
+    from .labels import labelled, with_loads
 
     arrays: dict[str, tuple[Sequence[str], Array]] = {}
     for some, along in outer.groups():
-        found = _filled(request(some, given, branch, accuracy), axes, along, threads, None)
-        arrays.update({name: (along, array) for name, array in found.items()})
+        arrays.update({name: (along, array) for name, array in filled(some, along).items()})
     state = given.get("omega") is not None
-    return labelled({n: arrays[n] for n in outer.shown}, outer.coordinates, branch, state, accuracy)
+    dataset = labelled({n: arrays[n] for n in outer.shown}, outer.coordinates, branch, state, accuracy)
+    return with_loads(dataset, outer.loads)
 
 
 def _filled(

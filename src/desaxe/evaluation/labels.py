@@ -94,3 +94,18 @@ def labelled(
     names = [name for name in values if name not in ("status", "margin")]
     about = provenance(names, inputs, branch, accuracy)
     return xarray.Dataset(variables, coordinates, about)
+
+
+def with_loads(dataset: "xr.Dataset", loads: Mapping[str, Any]) -> "xr.Dataset":
+    """The Dataset with loads that vary with the motion: one over theta as a coordinate, and what each is."""
+    if not loads:
+        return dataset
+    over_theta = {name: load for name, load in loads.items() if load.over == "theta"}
+    theta = dataset["theta"]
+    columns = {n: (theta.dims, load(theta.values), input_attributes(n)) for n, load in over_theta.items()}
+    return dataset.assign_coords(columns).assign_attrs(loads=loads_text(loads))
+
+
+def loads_text(loads: Mapping[str, Any]) -> str:
+    """What loads that vary with the motion are."""
+    return "; ".join(f"{name}: {load!r}" for name, load in loads.items())

@@ -1,16 +1,19 @@
 """The arguments of a grid, checked, and its axes joined to loops that are long enough to vectorise."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import prod
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..loads.load import Load
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS
 from ..runtime.request import Request, check_common, check_inputs, several, standstill
 from .arrays import as_array
+from .loaded import split_axes
 from .loops import spread
 
 Array = NDArray[Any]
@@ -22,13 +25,14 @@ class Outer(NamedTuple):
     """The arguments of a grid, checked.
 
     `given` are the inputs as they came, with defaults; `axes` their arrays; `coordinates` those of them
-    that were not a default.
+    that were not a default; `loads` those that vary with the motion, which are no axes.
     """
 
     names: tuple[str, ...]
     given: dict[str, Any]
     axes: dict[str, Array]
     coordinates: dict[str, Array]
+    loads: Mapping[str, Load] = MappingProxyType({})
 
     @property
     def dimensions(self) -> list[str]:
@@ -51,20 +55,21 @@ def outer_of(
 ) -> Outer:
     """Check the arguments of a grid; `always`: it has `status` and `margin` too."""
     wanted = (names,) if isinstance(names, str) else several(names)
-    given = _given(wanted, inputs)
+    check_inputs("grid", inputs, (*INPUTS, "branch", "accuracy", "threads", "out", "reduce", "chunks"))
+    inputs, loads = split_axes(inputs)
+    given = _given(wanted, inputs, loads)
     check_common(given, branch, threads)
     shown = tuple(dict.fromkeys((*wanted, *ALWAYS))) if always else wanted
     axes = {name: _axis(name, value, shown) for name, value in given.items() if value is not None}
     coordinates = {name: axes[name] for name in inputs if name in axes}
-    return Outer(wanted, given, axes, coordinates)
+    return Outer(wanted, given, axes, coordinates, loads)
 
 
-def _given(names: Sequence[str], inputs: Mapping[str, Any]) -> dict[str, Any]:
-    """The inputs with their defaults; a TypeError for one that there is not."""
-    check_inputs("grid", inputs, (*INPUTS, "branch", "accuracy", "threads", "out", "reduce", "chunks"))
+def _given(names: Sequence[str], inputs: Mapping[str, Any], loads: Iterable[str]) -> dict[str, Any]:
+    """The inputs with their defaults."""
     given = dict(inputs)
     if given.get("omega0") is None and given.get("omega") is None:
-        given["omega0"] = standstill(names, given)
+        given["omega0"] = standstill(names, {**given, **dict.fromkeys(loads, 0.0)})
     return given
 
 

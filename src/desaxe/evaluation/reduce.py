@@ -69,10 +69,11 @@ def reduced_grid(
     branch: int,
     threads: int | None,
     whole: Fill,
+    stored: bool = False,
 ) -> "xr.Dataset":
-    """The grid with one axis reduced, labelled."""
+    """The grid with one axis reduced, labelled; `stored`: by way of the whole grid."""
     reduction = reduction_of(reduce, dimensions, wanted.shown)
-    arrays = reduced(wanted, axes, dimensions, reduction, threads, whole)
+    arrays = reduced(wanted, axes, dimensions, reduction, threads, whole, stored)
     state = wanted.form.state
     kept = {name: axis for name, axis in axes.items() if name != reduction.axis}
     told = reduced_attributes(wanted.shown, reduction, input_attributes(reduction.axis), state)
@@ -88,6 +89,7 @@ def reduced(
     reduction: Reduction,
     threads: int | None,
     whole: Fill,
+    stored: bool = False,
 ) -> dict[str, tuple[tuple[str, ...], Array]]:
     """The reduced arrays by name with their dimensions; `whole` computes the grid where it is small.
 
@@ -99,11 +101,12 @@ def reduced(
     length = axes[reduction.axis].size
     outs = {name: np.empty(shape or (1,), kind) for name, kind in outputs_of(wanted.shown, reduction.kinds)}
     order = [*(rest or ("",)), reduction.axis]
-    scalars = {name: float(axes[name].reshape(-1)[0]) for name in wanted.inputs if name not in order}
-    columns = {name: np.ascontiguousarray(axes[name]) for name in wanted.inputs if name in order}
+    given = {name: axes[name] for name in wanted.inputs if name in axes}
+    scalars = {name: float(axis.reshape(-1)[0]) for name, axis in given.items() if name not in order}
+    columns = {name: np.ascontiguousarray(axis) for name, axis in given.items() if name in order}
     places = {name: order.index(name) for name in columns}
     key = key_of(wanted, scalars, columns, places, len(order))._replace(reduce=reduction.kinds)
-    if length == 0 or not all(shape) or interpret_first(key, prod(shape) * length):
+    if stored or length == 0 or not all(shape) or interpret_first(key, prod(shape) * length):
         _of_whole(whole(), reduction, dimensions, outs)
     else:
         fill_reduced(key, {**scalars, **columns}, length, list(outs.values()), threads)

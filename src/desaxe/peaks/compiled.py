@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from functools import cache, lru_cache
 from math import atan2, copysign, cos, fabs, inf, nan, sin, sqrt
 from pathlib import Path
+from types import CodeType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -146,15 +147,44 @@ def _on_disk(search: Search) -> bool:
 def _plain(search: Search) -> Kernel:
     """The same text as plain Python."""
     loops, work = _loops(programs_of(search, False), "python")
-    scope: dict[str, Any] = {
-        "atan2": atan2, "copysign": copysign, "cos": cos, "fabs": fabs, "inf": inf, "nan": nan,
-        "sin": sin, "sqrt": sqrt, "floor": np.floor, "empty": np.empty, "int64": np.int64,
-        "uint64": int, "WORK": max(work, 1),
-    }  # fmt: skip
+    scope = _scope(max(work, 1))
     source = "\n\n".join([*HELPERS.values(), *loops, *_functions()])
     exec(compile(source, f"<desaxe search {search.name}>", "exec"), scope)
-    kernel: Kernel = scope["search"]
+    return _quiet(scope["search"])
 
+
+@cache
+def plain_finish(search: Search) -> Kernel:
+    """`finish(count, theta, block, out)` in plain Python: value, slope and gradient at a fixed load."""
+    programs = programs_of(search, False)
+    function = peaks.finish_function(programs.finish, peaks.Rows(programs.inputs, "python", "theta"))
+    scope = _scope(1)
+    exec(compile("\n\n".join([*HELPERS.values(), function]), "<desaxe finish>", "exec"), scope)
+    return _quiet(scope["finish"])
+
+
+def search_with(sweep: Kernel, points: Kernel, finish: Kernel) -> Kernel:
+    """The search in plain Python with functions of one's own."""
+    scope = _scope(1) | {"sweep": sweep, "points": points, "finish": finish}
+    exec(_code(), scope)
+    return _quiet(scope["search"])
+
+
+@cache
+def _code() -> CodeType:
+    return compile("\n\n".join(_functions()), "<desaxe search>", "exec")
+
+
+def _scope(work: int) -> dict[str, Any]:
+    """What the text of the search imports, for plain Python."""
+    return {
+        "atan2": atan2, "copysign": copysign, "cos": cos, "fabs": fabs, "inf": inf, "nan": nan,
+        "sin": sin, "sqrt": sqrt, "floor": np.floor, "empty": np.empty, "int64": np.int64,
+        "uint64": int, "WORK": work,
+    }  # fmt: skip
+
+
+def _quiet(kernel: Kernel) -> Kernel:
     def quiet(*arguments: Any) -> None:
         with np.errstate(all="ignore"):
             kernel(*arguments)

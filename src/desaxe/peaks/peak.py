@@ -6,12 +6,17 @@ derivative at the extreme angle. Friction makes kinks and jumps, where it has no
 no forces balance, towards which they grow without bound (`special`).
 """
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
+from warnings import warn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.arrays import as_array, broadcast_shape
+from ..evaluation.loaded import loads_of
+from ..loads.load import Load, LoadWarning, OverTheta
+from ..loads.resolve import VARIABLE
 from ..mechanism.catalogue import has, quantity
 from ..mechanism.constants import constants
 from ..mechanism.inputs import INPUTS
@@ -24,12 +29,15 @@ from ..runtime.wide_margins import have_wide_margins
 from ..support.shown import shown as shown_value
 from . import special
 from .compiled import Groups, run
+from .loaded import kinks_of, moved_with_kinks, run_under_loads, with_nodes, with_slopes
 from .nodes import Array, classes, shared_nodes
 from .programs import WITHOUT_COURSE, Search, needs_own
 from .special import Designs
 
 KINDS = ("absmax", "max", "min")
 MOST_TURNS = 1000  # of a range of crank angles
+TURN = (0.0, 2.0 * np.pi)
+MANY = 60  # values of a load: more are no designs that anybody compares
 INPUTS_OF_PEAK = (*INPUTS, "branch", "kind", "accuracy", "threads")
 
 
@@ -44,7 +52,7 @@ def peak(
     omega: Any = None,
     branch: int = 1,
     kind: str = "absmax",
-    theta: tuple[float, float] = (0.0, 2.0 * np.pi),
+    theta: tuple[float, float] = TURN,
     accuracy: str | float = "standard",
     threads: int | None = None,
     **loads: Any,
@@ -52,9 +60,10 @@ def peak(
     """The extreme value of a quantity over the crank angle; designs broadcast like NumPy.
 
     kind    "absmax" (the largest magnitude), "max" or "min"
-    theta   range of crank angles [rad]; its ends count
+    theta   range of crank angles [rad]; its ends count. By default a turn, or the period of a longer load
     threads how many share the work, all that pay without; the answer is the same
-    others  as in `evaluate`, masses and loads among them
+    others  as in `evaluate`, masses and loads among them. F_X and F_Y may vary with the motion; at a jump
+            both one-sided limits count, and `gradient` by such a force is that by a constant added to it
 
     Gives a dict, floats for one design and arrays for many:
 
@@ -73,23 +82,27 @@ def peak(
     Where two angles share the extreme value, as by symmetry at ec = 0, one of them is told, and the
     gradient is the one-sided derivative there.
 
+    Warns (LoadWarning) of a long array for F_X or F_Y and no other array: those are designs, not angles.
     Raises ValueError for an unknown quantity or kind.
     """
     if not isinstance(name, str):
         raise TypeError(f"peak: one name is wanted, such as 'a_C', got {shown_value(name)}")
     if not isinstance(kind, str) or kind not in KINDS:
         raise ValueError(f"kind = {shown_value(kind)}: it is one of {', '.join(KINDS)}")
-    ends = _range(theta, name)
     given = {"ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega, **loads}
     check_inputs("peak", loads, INPUTS_OF_PEAK)
     check_common(given, branch, threads)
+    _, varying = loads_of(given)
     plan = _plan(name, given, branch, accuracy)
+    varying = {n: load for n, load in varying.items() if n in plan.parameters}
+    ends = _range(_whole_period(varying) if theta is TURN else theta, name)
+    _warn_of_columns(given, plan)
     if "omega0" in plan.needs and omega0 is None:
         given["omega0"] = 0.0 if "omega0" not in plan.parameters else None  # which only the status uses
-    arrays = {n: as_array(n, given.get(n), plan.needs, (name,)) for n in plan.needs}
+    arrays = {n: as_array(n, given.get(n), plan.needs, (name,)) for n in plan.needs if n not in varying}
     shape = broadcast_shape(arrays)
     columns = {n: _flat(a, shape) for n, a in arrays.items()}
-    designs = Designs(columns, branch, ends, "mu" in plan.parameters)
+    designs = Designs(columns, branch, ends, "mu" in plan.parameters, varying, plan.wanted.accuracy)
     found = _peaks(name, kind, _search(plan, arrays, ends), designs, threads)
     return _shaped(found, shape)
 
@@ -109,6 +122,26 @@ def _range(theta: Any, name: str) -> tuple[float, float]:
         turns = (high - low) / (2.0 * np.pi)
         raise ValueError(f"theta = ({low:g}, {high:g}): {turns:.3g} turns are too many, at most {MOST_TURNS}")
     return low, high
+
+
+def _whole_period(loads: Mapping[str, Load]) -> tuple[float, float]:
+    """One turn, or as many as the longest period of a load has."""
+    periods = [load.period for load in loads.values() if isinstance(load, OverTheta)]
+    return 0.0, max([TURN[1], *periods])
+
+
+def _warn_of_columns(given: Mapping[str, Any], plan: "_Plan") -> None:
+    """A long array of loads and no other array are hardly designs: more likely a load over theta."""
+    shapes = {n: np.shape(getattr(given.get(n), "magnitude", given.get(n, 0.0))) for n in plan.needs}
+    arrays = {n: shape for n, shape in shapes.items() if shape}
+    for name, shape in arrays.items():
+        if name in VARIABLE and len(arrays) == 1 and len(shape) == 1 and shape[0] > MANY:
+            warn(
+                f"{name}: peak takes an array for so many designs, here {shape[0]} that differ in {name} "
+                f"alone; for a load over the crank angle give {name}=desaxe.over_theta(angles, values)",
+                LoadWarning,
+                stacklevel=3,
+            )
 
 
 def _flat(array: Array, shape: tuple[int, ...]) -> Array:
@@ -167,7 +200,11 @@ def _search(plan: _Plan, arrays: dict[str, Array], ends: tuple[float, float]) ->
     zeros = [
         (n, 0.0)
         for n in STRUCTURAL_ZEROS
-        if n in plan.parameters and n not in kept and arrays[n].size == 1 and arrays[n].item() == 0.0
+        if n in plan.parameters
+        and n not in kept
+        and n in arrays
+        and arrays[n].size == 1
+        and arrays[n].item() == 0.0
     ]
     extended = wanted.accuracy == "extended"
     far = max(abs(ends[0]), abs(ends[1])) > constants().limit
@@ -186,21 +223,34 @@ def _peaks(name: str, kind: str, search: Search, designs: Designs, threads: int 
     number = KINDS.index(kind)
     ends = special.are_special(designs)
     rows = np.flatnonzero(~ends)
-    if rows.size:
+    if designs.loads:
+        designs = designs._replace(columns=columns, loads=with_slopes(designs.loads))
+    kinks, own = kinks_of(designs) if designs.loads else (None, np.empty((designs.size, 0)))
+    if rows.size and designs.loads:
+        groups = with_nodes(_classed(designs, rows), own)
+        run_under_loads(name, search, designs, groups, number, theta, out)
+    elif rows.size:
         run(_in_form(search, columns, rows), columns, _classed(designs, rows), number, theta, out, threads)
     rows = np.flatnonzero(ends | np.isnan(out[0]) if rows.size else ends)
     for start in range(0, rows.size, special.BLOCK):
         part = rows[start : start + special.BLOCK]
         some = designs.part(part)
         nodes, limits = special.own_nodes(some)
+        nodes = np.sort(np.concatenate([nodes, own[part]], axis=1), axis=1)
         edges = np.arange(part.size + 1)
         groups = Groups(part, edges, nodes.reshape(-1), edges * nodes.shape[1])
-        run(search, columns, groups, number, theta, out, threads)
+        if designs.loads:
+            run_under_loads(name, search, designs, groups, number, theta, out)
+        else:
+            run(search, columns, groups, number, theta, out, threads)
         found = special.Found(out[0, part], theta[part], out[1, part], status[part])
-        usable = special.complete(name, kind, some, nodes, limits, found)
+        at = kinks.angles[part] if kinks is not None else None
+        usable = special.complete(name, kind, some, nodes, limits, found, at)
         out[0, part], theta[part], status[part] = found.value, found.theta, found.status
         out[2:, part] = np.where(usable, out[2:, part], np.nan)
     theta[np.isnan(out[0])] = np.nan
+    if kinks is not None:
+        moved_with_kinks(number, designs, kinks, theta, out, search.parameters)
     value = np.abs(out[0]) if kind == "absmax" else out[0]
     gradient = dict(zip(search.parameters, out[2:], strict=True))
     return {"value": value, "theta": theta, "gradient": gradient, "status": status}

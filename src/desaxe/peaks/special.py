@@ -4,12 +4,15 @@ Their nodes are their own: graded towards the quarters, the limit angles and, wi
 centres, down to the distance of two doubles. What their extrema mean is told here.
 """
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
+from ..loads.load import Load
 from ..mechanism.limit_angles import theta_intervals
 from ..mechanism.names import LENGTHS
 from .nodes import Array
@@ -17,6 +20,7 @@ from .nodes import Array
 UNIFORM = 240  # nodes per turn
 GRADED = 2.0 ** -np.arange(1.0, 46.0)  # distances from a quarter or a limit angle, down to 3e-14
 BLOCK = 1024  # designs at a time
+AT_KINK = 2.0**-40  # rad: an extremum so near to a kink is at the kink
 SMOOTH = 1e-6  # of the median slope: what is left of the slope at the top of a smooth peak is less
 JAMS, TWO_BALANCES = 5, 6  # the status where friction leaves no balance of forces, or two
 REACH = 1.0  # rad: a stall nearer to the range than this shapes what is in it
@@ -29,6 +33,8 @@ class Designs(NamedTuple):
     branch: int
     theta: tuple[float, float]
     rubs: bool  # whether friction has a say
+    loads: Mapping[str, Load] = MappingProxyType({})  # those that vary with the motion
+    accuracy: str = "standard"
 
     @property
     def size(self) -> int:
@@ -42,6 +48,7 @@ class Designs(NamedTuple):
     def values(self, names: tuple[str, ...], rows: NDArray[np.intp], theta: Array) -> dict[str, Any]:
         """Values of names by their name, for the designs `rows` at one angle each."""
         inputs: dict[str, Any] = {name: column[rows] for name, column in self.columns.items()}
+        inputs |= self.loads
         found: dict[str, Any] = evaluate(list(names), theta=theta, branch=self.branch, **inputs)
         return found
 
@@ -134,11 +141,18 @@ class Found(NamedTuple):
 
 
 def complete(
-    name: str, kind: str, designs: Designs, nodes: Array, ends: list[tuple[int, float]], found: Found
+    name: str,
+    kind: str,
+    designs: Designs,
+    nodes: Array,
+    ends: list[tuple[int, float]],
+    found: Found,
+    kinks: Array | None = None,
 ) -> NDArray[np.bool_]:
     """Put in limits, brinks and status; which extrema have a gradient.
 
     value   signed, also for "absmax"
+    kinks   for each design angles at which a load has a kink: there the slope does not vanish
     """
     rows = np.arange(designs.size)
     swept = designs.values((name, "status"), np.repeat(rows, nodes.shape[1]), nodes.reshape(-1))
@@ -146,7 +160,8 @@ def complete(
     jams, turns = _at_brinks(name, kind, designs, nodes, swept, found)
     found.status[:] = _status(status)
     _mark_limits(kind, found, value, nodes, ends)
-    turns |= _turn(designs, found, nodes, value)
+    at_kink = kinks is not None and (np.abs(kinks - found.theta[:, None]) <= AT_KINK).any(axis=1)
+    turns |= _turn(designs, found, nodes, value) & np.logical_not(at_kink)
     found.value[jams] = np.copysign(np.inf, found.value[jams])
     found.status[turns & (found.status == 0)] = 2
     usable: NDArray[np.bool_] = (

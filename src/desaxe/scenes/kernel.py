@@ -1,11 +1,14 @@
 """The kernel that a scene's grid runs: for `explain` and `compile`, which run nothing."""
 
+from collections.abc import Mapping, Sequence
 from math import prod
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..evaluation.outer import join_axes
+from ..loads.load import Load, OverY
+from ..loads.resolve import plan_of, split
 from ..runtime.kernels import KernelKey, key_of
 from ..runtime.request import Request, request
 from .read import Content
@@ -39,9 +42,11 @@ def grid_kernel(content: Content, joined: bool = False) -> GridKernel:
             *(name for name in dimensions if name != content.reduction.axis),
             content.reduction.axis,
         ]
-    given = dict(content.inputs)
+    given, loads = split(content.inputs)
     if "omega0" not in given and "omega" not in given:
         given["omega0"] = 0.0  # nothing that is asked for needs a speed
+    if loads:
+        return _under_loads(content, given, loads, names, dimensions)
     asked = request(names, given, content.branch, content.accuracy)
     order = dimensions or [""]
     if content.reduction is not None and len(order) == 1:
@@ -58,3 +63,29 @@ def grid_kernel(content: Content, joined: bool = False) -> GridKernel:
     if content.reduction is not None:
         key = key._replace(reduce=content.reduction.kinds)
     return GridKernel(asked, tuple(order), sizes, key)
+
+
+def _under_loads(
+    content: Content,
+    given: Mapping[str, Any],
+    loads: Mapping[str, Load],
+    names: Sequence[str],
+    dimensions: Sequence[str],
+) -> GridKernel:
+    """The same under loads that vary with the motion: inputs along theta, or, over Y, along all axes.
+
+    The kernel computes the slopes by the loads too, which total derivatives need.
+    """
+    plan = plan_of(names, loads, "omega" in given, "mu" in given)
+    asked = request(plan.names, {**given, **dict.fromkeys(loads, 1.0)}, content.branch, content.accuracy)
+    flat = any(isinstance(load, OverY) for load in plan.loads.values())
+    order = [" x ".join(dimensions)] if flat else list(dimensions) or [""]
+    lengths = [np.size(given[name]) for name in dimensions] or [1]
+    varying = {n: np.array(given[n]) for n in asked.inputs if n in dimensions}
+    along = {n: 0 if flat else order.index(n) for n in varying}
+    if flat or "theta" in along:  # the values of a load are not needed here, but where it varies
+        varying |= {name: np.atleast_1d(given.get("theta", 0.0)) for name in plan.loads}
+        along |= dict.fromkeys(plan.loads, 0 if flat else along["theta"])
+    scalars = {n: float(np.asarray(given.get(n, 1.0))) for n in asked.inputs if n not in varying}
+    key = key_of(asked, scalars, varying, along, len(order))
+    return GridKernel(asked, tuple(order), (prod(lengths),) if flat else tuple(lengths), key)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
-from ..evaluation.labels import CONVENTIONS, input_attributes, source
+from ..evaluation.labels import CONVENTIONS, input_attributes, loads_text, source
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
@@ -90,6 +90,7 @@ def _found(
     for start in range(0, size, DESIGNS):
         steps.next(f"peaks of {one.quantity}")
         batch: dict[str, Any] = {name: column[start : start + DESIGNS] for name, column in columns.items()}
+        batch |= one.loads
         found = peak(one.quantity, kind=one.kind, theta=one.theta, **batch, **options)
         gradient = found.pop("gradient")
         for name in one.sensitivities:  # by what has no effect, such as F_X without friction
@@ -108,7 +109,7 @@ def _mirrored(
         return np.zeros(theta.shape, np.bool_)
     steady = columns["alpha"] == 0.0 if "alpha" in columns else True
     usable = (columns["ec"] == 0.0) & (found["status"] == 0) & (np.abs(np.sin(theta)) > 1e-6) & steady
-    design: dict[str, Any] = {**columns, "branch": content.branch, "accuracy": content.accuracy}
+    design: dict[str, Any] = {**columns, **one.loads, "branch": content.branch, "accuracy": content.accuracy}
     there: Any = evaluate(one.quantity, theta=-theta, **design)
     there = np.abs(there) if one.kind == "absmax" else there
     shared: NDArray[np.bool_] = usable & (np.abs(there - found["value"]) <= 1e-9 * np.abs(found["value"]))
@@ -137,7 +138,8 @@ def _labelled(one: Peak, content: Content, arrays: Mapping[str, NDArray[Any]]) -
     axes = {name: (name, list(values), input_attributes(name)) for name, values in one.axes.items()}
     scalars = {name: ((), value, input_attributes(name)) for name, value in one.fixed.items()}
     kind = {"quantity": one.quantity, "kind": one.kind, "branch": content.branch}
-    return xarray.Dataset(data, {**axes, **scalars}, {**provenance(content), **kind})
+    told = {"loads": loads_text(one.loads)} if one.loads else {}
+    return xarray.Dataset(data, {**axes, **scalars}, {**provenance(content), **kind, **told})
 
 
 def _peak_attributes(one: Peak, state: bool) -> dict[str, str]:

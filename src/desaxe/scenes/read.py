@@ -5,9 +5,11 @@ from collections.abc import Iterable, Mapping
 from math import pi
 from os import PathLike
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ..evaluation.reduce import NO_STATUS, Reduction, reduction_of
+from ..loads.load import Load, OverTheta
 from ..mechanism.catalogue import law_name, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import CENTRES, LENGTHS, LOADS, sensitivity
@@ -15,6 +17,7 @@ from ..mechanism.program import Variant, program_of
 from ..peaks.programs import WITHOUT_COURSE
 from ..runtime.accuracy import accuracy_of
 from . import schema
+from .loads import varying, without_objects
 from .printed import Printed, read_percentage, read_printed
 from .schema import SceneError, shown
 from .values import Value, design_of, number_of, only_inputs, values_of
@@ -39,7 +42,7 @@ class Check(NamedTuple):
     source: str
     quantity: str
     printed: Printed
-    inputs: dict[str, float]
+    inputs: dict[str, Any]
 
 
 class Claim(NamedTuple):
@@ -64,6 +67,7 @@ class Peak(NamedTuple):
     baseline: dict[str, float]
     claims: tuple[Claim, ...]
     sensitivities: tuple[str, ...]
+    loads: Mapping[str, Load] = MappingProxyType({})  # that vary with the motion
 
 
 class Picture(NamedTuple):
@@ -117,10 +121,13 @@ def _plain(value: Any) -> Any:
     return str(value) if isinstance(value, PathLike) else value
 
 
-def read(data: Mapping[str, Any]) -> Content:
-    """The content of a scene; SceneError names the first key that is wrong."""
-    file = schema.decoded(data)
-    inputs = _inputs(data, file)
+def read(data: Mapping[str, Any], folder: Path | None = None) -> Content:
+    """The content of a scene; SceneError names the first key that is wrong.
+
+    folder   where the scene file is, and perhaps the files of its loads
+    """
+    file = schema.decoded(without_objects(data))
+    inputs = _inputs(data, file, folder)
     branch = file.mechanism.branch
     if "omega" in inputs and "omega0" in inputs:
         raise SceneError(
@@ -188,11 +195,21 @@ def _require_names(file: schema.SceneFile) -> None:
 # ---- values of inputs ----------------------------------------------------------------------------
 
 
-def _inputs(data: Mapping[str, Any], file: schema.SceneFile) -> dict[str, Value]:
+def _inputs(data: Mapping[str, Any], file: schema.SceneFile, folder: Path | None) -> dict[str, Value]:
     """The inputs of the sections in the order in which they stand in the file."""
     order = [(section, name) for section in data if section in SECTIONS for name in data[section]]
-    tables = [(f"{section}.{name}", name, getattr(getattr(file, section), name)) for section, name in order]
-    return {name: values_of(key, name, written) for key, name, written in tables if name in INPUTS}
+    found: dict[str, Value] = {}
+    for section, name in order:
+        key, written = f"{section}.{name}", getattr(getattr(file, section), name)
+        if name not in INPUTS:
+            continue
+        if isinstance(data[section][name], Load):
+            found[name] = data[section][name]
+        elif isinstance(written, schema.Varying):
+            found[name] = varying(key, name, written, folder)
+        else:
+            found[name] = values_of(key, name, written)
+    return found
 
 
 # ---- what is asked for ---------------------------------------------------------------------------
@@ -237,9 +254,9 @@ def _with(inputs: Mapping[str, Value], other: Mapping[str, Value]) -> dict[str, 
     return {**{name: value for name, value in inputs.items() if name not in replaced}, **other}
 
 
-def _numbers(key: str, names: Iterable[str], inputs: Mapping[str, Value]) -> dict[str, float]:
-    """Those inputs, each a number; SceneError for one that is a list or range."""
-    found = {}
+def _numbers(key: str, names: Iterable[str], inputs: Mapping[str, Value]) -> dict[str, Any]:
+    """Those inputs, each a number or a load that varies; SceneError for one that is a list or range."""
+    found: dict[str, Any] = {}
     for name in names:
         value = inputs[name]
         if isinstance(value, tuple):
@@ -282,6 +299,7 @@ def _peak(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> Pea
     ordered = dict.fromkeys((*over, *needed, *lengths))
     axes = {n: value for n in ordered if isinstance(value := there[n], tuple)}
     fixed = {n: value for n in ordered if isinstance(value := there[n], float)}
+    loads = {n: value for n in ordered if isinstance(value := there[n], Load)}
     base = (
         _other_design(f"{key}.baseline", table.baseline or {}, axes, fixed)
         if table.baseline is not None
@@ -294,7 +312,7 @@ def _peak(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> Pea
     wanted = _sensitivities(f"{key}.sensitivities", table, needed)
     angles = _angles(key, table, inputs)
     at_base = design_of(f"{key}.baseline", table.baseline or {})
-    return Peak(table.title, name, table.kind, axes, fixed, angles, at_base, base, claims, wanted)
+    return Peak(table.title, name, table.kind, axes, fixed, angles, at_base, base, claims, wanted, loads)
 
 
 def _completed(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> dict[str, Value]:
@@ -344,7 +362,9 @@ def _angles(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> t
             raise SceneError(f"{key}.theta = {shown(list(table.theta))}: its lower end comes first")
         return low, high
     theta = inputs.get("theta")
-    return (min(theta), max(theta)) if isinstance(theta, tuple) and len(theta) > 1 else (0.0, 2.0 * pi)
+    if isinstance(theta, tuple) and len(theta) > 1:
+        return min(theta), max(theta)
+    return 0.0, max([2.0 * pi, *(load.period for load in inputs.values() if isinstance(load, OverTheta))])
 
 
 def _other_design(

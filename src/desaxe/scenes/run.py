@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from ..design.feasibility.feasibility import feasibility
 from ..evaluation.evaluate import evaluate
 from ..evaluation.grid import grid
+from ..evaluation.labels import with_loads
+from ..loads.load import Load
 from ..support.extras import needed
 from ..support.files import check_target
 from ..support.progress import Progress, Steps
@@ -140,6 +142,9 @@ def _values(content: Content, blocks: list[tuple[int, int]], steps: Steps) -> "x
         whole = _longer(part, first, arrays[first]) if whole is None else whole
         for name, values in part.data_vars.items():
             whole[name].values[slice(start, stop) if first in values.dims else ...] = values.values
+    if len(blocks) > 1:
+        loads = {name: value for name, value in content.inputs.items() if isinstance(value, Load)}
+        whole = with_loads(whole, loads)
     labelled: xr.Dataset = whole.assign_attrs(provenance(content))
     return labelled
 
@@ -153,7 +158,8 @@ def _longer(part: "xr.Dataset", first: str, values: NDArray[np.float64]) -> "xr.
         name: (array.dims, np.empty([sizes[d] for d in array.dims], array.dtype), array.attrs)
         for name, array in part.data_vars.items()
     }
-    coordinates = {**part.coords, first: (first, values, part[first].attrs)}
+    others = {name: array for name, array in part.coords.items() if first not in array.dims}
+    coordinates = {**others, first: (first, values, part[first].attrs)}
     return xarray.Dataset(empty, coordinates, part.attrs)
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..support.progress import Progress
@@ -11,10 +12,9 @@ from .read import Content, plain_data, read
 from .report import report
 from .run import CheckResult, FeasibilityResult, Run, run
 from .schema import SceneError as SceneError
+from .values import Value
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     import xarray as xr
 
 
@@ -65,8 +65,8 @@ class Scene:
         return self.content.outputs
 
     @property
-    def inputs(self) -> dict[str, float | tuple[float, ...]]:
-        """The inputs in SI units in the order given: a number, or the values of a list or range."""
+    def inputs(self) -> dict[str, Value]:
+        """The inputs in SI units in the order given: a number, the values of a list or range, or a load."""
         return dict(self.content.inputs)
 
     def run(self, progress: Progress | None = None) -> SceneResult:
@@ -90,6 +90,6 @@ def scene(source: str | PathLike[str] | Mapping[str, Any]) -> Scene:
     """
     name = "" if isinstance(source, Mapping) else str(source)
     try:
-        return Scene(read(plain_data(source)), name)
+        return Scene(read(plain_data(source), Path(name).parent if name else None), name)
     except SceneError as error:
         raise SceneError(f"{name or 'scene'}: {error}") from None

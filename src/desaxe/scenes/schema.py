@@ -53,6 +53,39 @@ _VALUES = (
     "or a range {start = ..., stop = ..., num = ...} (or step instead of num)"
 )
 Values = Annotated[float | str | tuple[Number, ...] | Range, Meta(description=_VALUES)]
+_POINTS = 'the path of a file such as "press.csv", or points such as [["0 deg", "0 N"], ["90 deg", "-400 N"]]'
+Table = Annotated[str | tuple[Number | tuple[Number, ...], ...], Meta(description=_POINTS)]
+Unit = Annotated[str, Meta(description='a unit of a column of a file, such as "deg"')]
+Column = Annotated[tuple[Number, ...], Meta(description="a list of numbers in SI units, or texts with units")]
+TableKind = Annotated[
+    Literal["cubic", "linear", "step"], Meta(description='one of "cubic", "linear", "step"')
+]
+
+
+class Varying(Section, frozen=True):
+    """A range of values, or a load that varies with the motion: over the crank angle, or over Y."""
+
+    start: Number | None = None
+    stop: Number | None = None
+    num: Points | None = None
+    step: Number | None = None
+    over_theta: Table | None = None
+    over_Y: Table | None = None
+    values: Column | None = None
+    outward: Column | None = None
+    inward: Column | None = None
+    kind: TableKind | None = None
+    period: Number | None = None
+    theta: Unit | None = None
+    Y: Unit | None = None
+    value: Unit | None = None
+
+
+_FORCE = (
+    f'{_VALUES}, or a load that varies with the motion, such as {{over_theta = "press.csv"}} or '
+    "{over_Y = [[0.05, -100], [0.1, -10]]}"
+)
+Force = Annotated[float | str | tuple[Number, ...] | Varying, Meta(description=_FORCE)]
 _INPUT_NAMES = {"propertyNames": {"enum": list(INPUTS)}}
 Design = Annotated[
     dict[str, Number],
@@ -107,8 +140,8 @@ class Masses(Section, frozen=True):
 class Loads(Section, frozen=True):
     """`[loads]`: the force on the slider, gravity, and the friction of the guide."""
 
-    F_X: Values | None = None
-    F_Y: Values | None = None
+    F_X: Force | None = None
+    F_Y: Force | None = None
     g_X: Values | None = None
     g_Y: Values | None = None
     mu: Values | None = None

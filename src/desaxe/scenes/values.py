@@ -4,13 +4,14 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from math import isfinite
 
+from ..loads.load import Load
 from ..mechanism.inputs import INPUTS, is_good
 from ..mechanism.units import exact, in_si
 from ..support.quantity_text import quantity_text
 from . import schema
 from .schema import SceneError, shown
 
-Value = float | tuple[float, ...]
+Value = float | tuple[float, ...] | Load
 MOST = 100_000_000  # values of one range
 
 

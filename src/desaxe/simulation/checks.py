@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from ..loads.load import Load as LoadOverMotion
+from ..loads.resolve import as_load, takes
 from ..mechanism.catalogue import quantity
 from ..mechanism.limit_angles import theta_intervals
 from ..mechanism.names import CENTRES, LENGTHS, LOADS
@@ -15,6 +17,7 @@ from ..runtime.request import as_number, several
 from ..support.checks import real_number
 from ..support.shown import shown
 from .coordinate import FREE, TURN, Coordinate, arc_around, inside
+from .held import Held
 from .model import Drive, Load, Model
 
 METHODS = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
@@ -69,15 +72,12 @@ def check_names(names: Any) -> tuple[str, ...]:
 
 
 def check_signature(name: str, value: Callable[..., Any]) -> None:
-    """A load that varies is a function of (t, theta, omega)."""
-    try:
-        signature(value).bind(0.0, 0.0, 0.0)
-    except TypeError:
+    """A load that varies is a function of (t, theta, omega), or of theta alone."""
+    if not (takes(value, 3) or takes(value, 1)):
         raise TypeError(
-            f"{name}: a function of (t, theta, omega) is wanted, got one of {signature(value)}"
-        ) from None
-    except ValueError:  # a built-in that does not tell its signature
-        return
+            f"{name}: a function of (t, theta, omega) is wanted, or of theta alone, "
+            f"got one of {signature(value)}"
+        )
 
 
 def load(name: str, value: Any, unit: str) -> Load:
@@ -86,6 +86,8 @@ def load(name: str, value: Any, unit: str) -> Load:
         number = scalar(name, value, unit)
         return lambda t, theta, omega: number
     check_signature(name, value)
+    if isinstance(value, LoadOverMotion) or not takes(value, 3):
+        return Held(as_load(name, value))
 
     def checked(t: float, theta: float, omega: float) -> float:
         found = value(t, theta, omega)
@@ -108,12 +110,9 @@ def load(name: str, value: Any, unit: str) -> Load:
 def drive_of(torque: Any, F_X: Any, F_Y: Any) -> Drive:
     """Torque and forces; what is not given is 0."""
     forces = (0.0 if F_X is None else F_X, 0.0 if F_Y is None else F_Y)
-    return Drive(
-        load("torque", torque, "N*m"),
-        load("F_X", forces[0], "N"),
-        load("F_Y", forces[1], "N"),
-        not any(map(callable, (torque, *forces))),
-    )
+    three = load("torque", torque, "N*m"), load("F_X", forces[0], "N"), load("F_Y", forces[1], "N")
+    steady = not any(map(callable, (torque, *forces)))
+    return Drive(*three, steady, tuple(one for one in three if isinstance(one, Held)))
 
 
 def model_of(values: Mapping[str, float], branch: int, theta0: float, drive: Drive) -> Model:

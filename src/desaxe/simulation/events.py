@@ -25,15 +25,16 @@ NEVER = -1  # of an event that does not end the motion
 
 
 class Mark(NamedTuple):
-    """A crank angle to watch for; `turns` where it counts on every turn; `status` if it ends the motion."""
+    """A crank angle to watch for; `every` so far apart if it counts again; `status` if it ends the motion."""
 
     kind: str
     angle: float
     which: str = ""
-    turns: bool = False
+    every: float = 0.0
     status: int = NEVER
 
 
+KINK = "kink of a load"  # where the integration starts again: nothing to tell
 STANDSTILL = Mark("standstill", 0.0)
 LOST = Mark("normal force", 0.0)  # it changes its side: no event to tell, but a kink
 JAMMED = Mark("friction jams", 0.0, status=JAMS)
@@ -70,12 +71,15 @@ def marks_of(model: Model, until: tuple[float, ...]) -> list[Mark]:
     marks = [Mark("angle", angle, status=DONE) for angle in until]
     vanishing = model.vanishing()
     for which, angle in model.dead_centres().items():
-        marks.append(Mark("dead centre", angle, which, turns=True))
+        marks.append(Mark("dead centre", angle, which, TURN))
         if which in vanishing:  # its two sides, so near that nothing is lost
-            marks += [Mark("no inertia", angle + s * SMALL, which, True, NO_INERTIA) for s in (-1.0, 1.0)]
+            marks += [Mark("no inertia", angle + s * SMALL, which, TURN, NO_INERTIA) for s in (-1.0, 1.0)]
     first, last = model.coordinate.first, model.coordinate.last
     if first > -inf:
         marks += [Mark("limit", first, "first", status=LIMIT), Mark("limit", last, "last", status=LIMIT)]
+    for held in model.drive.held:
+        kinks = held.kinks(model.lengths, int(model.sign))
+        marks += [Mark(KINK, angle, every=period) for angle, period in kinks]
     return marks
 
 
@@ -109,7 +113,7 @@ def _passages(
     rows = samples.y[:, Q].tolist() if limit else thetas
     value = coordinate.ends[mark.which == "last"] if limit else mark.angle
     for k, ((a, b), times) in enumerate(zip(pairwise(rows), pairwise(samples.t), strict=True)):
-        for angle in _between(a, b, value, mark.turns):
+        for angle in _between(a, b, value, mark.every):
             if k == 0 and abs(angle - left) <= NEAR and not limit:
                 continue
             q = angle if limit else coordinate.q(angle)
@@ -129,13 +133,13 @@ def _just_ahead(step: Step, model: Model, mark: Mark) -> Iterator[Found]:
         yield Found(root(lambda t: float(step.inside(t)[Q]) - end, step.end, far), mark, Q, end)
 
 
-def _between(a: float, b: float, angle: float, turns: bool) -> list[float]:
+def _between(a: float, b: float, angle: float, every: float) -> list[float]:
     """The angles that a passage from a to b reaches; the one that it starts from is not among them."""
-    if not turns:
+    if not every:
         return [angle] if a < angle <= b or b <= angle < a else []
     low, high = sorted((a, b))
-    counts = range(ceil((low - angle) / TURN), floor((high - angle) / TURN) + 1)
-    return [value for value in (angle + TURN * k for k in counts) if value != a]
+    counts = range(ceil((low - angle) / every), floor((high - angle) / every) + 1)
+    return [value for value in (angle + every * k for k in counts) if value != a]
 
 
 def _changes(step: Step, place: int, samples: Samples) -> list[float]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..evaluation.evaluate import evaluate
 from .equations import state_of
 from .events import Q, V, W
+from .held import Held
 from .model import Model
 from .one_design import Piece, Run
 from .result import FAILED, LIMIT, REST, Event, Simulation
@@ -102,6 +103,8 @@ def _set_end(run: Run | Motion, t: Array, theta: Array, omega: Array, alpha: Arr
 
 def _along(load: Any, t: Array, theta: Array, omega: Array) -> Any:
     """A load at every instant of a history."""
+    if isinstance(load, Held):
+        return load.load  # `evaluate` knows its slope
     if not callable(load):
         return load
     now = zip(t.tolist(), theta.tolist(), omega.tolist(), strict=True)

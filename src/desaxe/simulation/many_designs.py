@@ -12,6 +12,8 @@ from scipy.integrate import DOP853
 
 from ..evaluation.arrays import as_array, broadcast_shape
 from ..evaluation.evaluate import evaluate
+from ..loads.load import Load
+from ..loads.resolve import takes
 from ..mechanism.inputs import LEAST
 from ..mechanism.limit_angles import theta_intervals
 from ..mechanism.names import CENTRES, LENGTHS, LOADS
@@ -86,7 +88,7 @@ def _arrays(given: Mapping[str, Any]) -> dict[str, Array]:
     for name in (*LENGTHS, *LOADS):
         value = given.get(name)
         if callable(value):
-            raise TypeError(f"{name}: a function is for one design at a time; many take numbers")
+            raise TypeError(f"{name}: a function or table is for one design at a time; many take numbers")
         if value is None and name in LOADS:
             if name in CENTRES:
                 continue
@@ -127,9 +129,15 @@ def _compile(torque: Callable[..., Any]) -> Any:
     from numba.core.errors import NumbaError
     from numba.core.types import Float, Integer
 
-    check_signature("torque", getattr(torque, "py_func", torque))
+    plain = getattr(torque, "py_func", torque)
+    if isinstance(plain, Load):
+        raise TypeError("torque: a table over theta is for one design at a time")
+    check_signature("torque", plain)
     try:
         fast: Any = torque if isinstance(torque, Dispatcher) else njit(error_model="numpy")(torque)
+        if not takes(plain, 3):
+            over_theta = fast
+            fast = njit(error_model="numpy")(lambda t, theta, omega: over_theta(theta))
         fast.compile((float64, float64, float64))
     except (NumbaError, TypeError) as error:
         told = str(error).strip().splitlines()

@@ -4,11 +4,12 @@ from collections.abc import Callable, Mapping, Sequence
 from math import asin, inf, isnan, pi
 from typing import Any, NamedTuple
 
-from ..mechanism.names import CENTRES
+from ..mechanism.names import CENTRES, LENGTHS
 from ..mechanism.program import Variant
 from ..runtime.kernels import STRUCTURAL_ZEROS
 from ..runtime.point import Point, point_of
 from .coordinate import TURN, Coordinate
+from .held import Held
 
 Values = tuple[float, ...]
 Function = Callable[..., Values]
@@ -28,6 +29,7 @@ class Drive(NamedTuple):
     F_X: Load
     F_Y: Load
     steady: bool  # whether all three are numbers
+    held: tuple[Held, ...] = ()  # those of them that vary with the motion
 
 
 def _gone(t: float, theta: float, omega: float) -> float:
@@ -54,10 +56,18 @@ class Model:
         self.moving = function(MOVING, ("theta", "branch"), *UNLOADED)
         self.contact = function(CONTACT, ("theta", "branch", "omega", "F_X", "F_Y"), "alpha", "mu")
         self.energies = function(("kinetic_energy", "potential_energy"), ("theta", "branch", "omega"))
+        position = function(("Y", "Y_wrt_theta"), ("theta", "branch"))
+        for held in drive.held:
+            held.place = lambda theta: position(theta, self.sign)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A pickle has the design but not what drives it, which may be any function."""
         return Model, (self.values, int(self.sign), self.coordinate, Drive(_gone, _gone, _gone, False))
+
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """Eccentricity, crank and rod [m]."""
+        return tuple(self.values[name] for name in LENGTHS)
 
     def inertia(self, theta: float) -> float:
         """The effective moment of inertia [kg m^2] on the branch of the start."""

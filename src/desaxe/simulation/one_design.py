@@ -11,7 +11,22 @@ from scipy import integrate
 from ..support.deadline import Deadline
 from .checks import SMALL
 from .equations import Law, Resting, Smooth, State, state_of
-from .events import JAMMED, LOST, NEVER, SHORT, STANDSTILL, Found, Mark, Q, Step, V, events_in, marks_of, root
+from .events import (
+    JAMMED,
+    KINK,
+    LOST,
+    NEVER,
+    SHORT,
+    STANDSTILL,
+    Found,
+    Mark,
+    Q,
+    Step,
+    V,
+    events_in,
+    marks_of,
+    root,
+)
 from .friction import Contact, Rubbing, breaks_away, contact, side_ahead, ways_to_start
 from .model import Model
 from .result import DONE, FAILED, JAMS, LIMIT, REST, Event
@@ -82,9 +97,12 @@ class Run:
     def to_the_end(self) -> "Run":
         """Run until the end time, or what comes before it."""
         while self.status == NEVER:
+            self._hold()
             law = self._law()
             if law is not None:
                 self._follow(law)
+        for held in self.model.drive.held:
+            held.release()
         if not self.pieces:  # stopped where it started
             self._keep_still(0.0)
         return self
@@ -101,6 +119,18 @@ class Run:
     def state(self) -> State:
         """The crank, now."""
         return state_of(self.model, float(self.y[Q]), float(self.y[V]))
+
+    def _hold(self) -> None:
+        """Hold each load to its piece ahead; of two ways to start, the one that the acceleration takes."""
+        theta, omega, _ = self.state
+        if not self.model.drive.held:
+            return
+        ways = (copysign(1.0, omega),) if omega else (1.0, -1.0)
+        for way in ways:
+            for held in self.model.drive.held:
+                held.hold(theta, way)
+            if way * Smooth(self.model).alpha(self.t, theta, 0.0) >= 0.0:
+                return
 
     # ---- which law holds ----------------------------------------------------------------------
 
@@ -234,7 +264,7 @@ class Run:
         while events:
             now = [event for event in events if event.t - events[0].t <= SAME * (step.end - step.t)]
             events = events[len(now) :]
-            if isinstance(step.law, Rubbing) or any(event.mark.status != NEVER for event in now):
+            if isinstance(step.law, Rubbing) or any(self._ends_stretch(event.mark) for event in now):
                 self._cut_at(now, step)
                 return True
             for event in now:
@@ -242,6 +272,11 @@ class Run:
             if self._chatters():
                 return True
         return False
+
+    def _ends_stretch(self, mark: Mark) -> bool:
+        """True where the motion ends, a load has a kink, or turns round with the slider."""
+        turned = mark is STANDSTILL and any(held.turns_with_the_slider for held in self.model.drive.held)
+        return mark.status != NEVER or mark.kind == KINK or turned
 
     def _note(self, found: Found, step: Step) -> None:
         """Tell an event that the motion goes on through."""
@@ -251,6 +286,8 @@ class Run:
     def _tell_of(self, found: Found, state: State) -> None:
         """Tell an event; it has its angle or its standstill exactly."""
         mark = found.mark
+        if mark.kind == KINK:
+            return
         theta = self.model.coordinate.place(found.value)[0] if found.place == Q else state.theta
         theta = mark.angle if mark.kind in ("limit", "angle") else theta
         omega = 0.0 if mark is STANDSTILL else state.omega

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ..evaluation.loaded import with_labelled
 from ..runtime.request import check_common, with_known_inputs
 from ..support.checks import whole_number
 from ..support.deadline import Deadline
@@ -65,11 +66,13 @@ def simulate(
 ) -> Simulation:
     """The motion of the crank under a torque.
 
-    torque       on the crank [N m], positive like theta: a number or a function (t, theta, omega)
+    torque       on the crank [N m], positive like theta: a number, a function (t, theta, omega) or of theta
+                 alone, or `over_theta`
     t_end        how long to follow the motion [s]
     theta0, omega_start   crank angle [rad] and speed [rad/s] at t = 0
     AB, BC, ec, branch, masses, centres of mass, gravity, mu   as in `evaluate`
-    F_X, F_Y     external force on the slider [N]: numbers or functions (t, theta, omega)
+    F_X, F_Y     external force on the slider [N]: the same, or `over_Y`; the integration starts again at
+                 the kinks and jumps of tables, and at the nodes of a function
     names        quantities and sensitivities of a given state to tell along the motion, by `evaluate`: NaN at
                  a limit angle, and where no or two sets of forces balance the acceleration as given
     rtol, atol   tolerances of the integration; atol for the angle [rad], sqrt(kinetic energy) and work, by
@@ -109,6 +112,7 @@ def simulate(
         "I_crank": I_crank, "I_rod": I_rod, "r_crank": r_crank, "r_rod": r_rod, "F_X": F_X, "F_Y": F_Y,
         "g_X": g_X, "g_Y": g_Y, "mu": mu,
     }  # fmt: skip
+    given = with_labelled(given)
     check_common({}, branch, threads)
     wanted = check_names(names)
     max_steps = whole_number("max_steps", max_steps, 1, 10**9)
@@ -122,7 +126,7 @@ def simulate(
         how = (rtol, end, longest, max_steps)
         return simulate_many(given, starts, int(branch), wanted, instants, how, threads, deadline)
     start = scalar("theta0", theta0, "rad"), scalar("omega_start", omega_start, "rad/s")
-    drive = drive_of(torque, F_X, F_Y)
+    drive = drive_of(torque, given["F_X"], given["F_Y"])
     values = design_values(given)
     model = model_of(values, int(branch), start[0], drive)
     tolerance = Tolerance(

@@ -20,6 +20,7 @@ from ..evaluation.labels import attributes as attributes_of
 from ..evaluation.lazy import lazy_grid
 from ..evaluation.outer import Outer, outer_of
 from ..evaluation.reduce import Reduction, reduction_of
+from ..loads.resolve import without_loads
 from ..runtime.accuracy import accuracy_of
 from ..runtime.threads import available
 from ..support.extras import needed
@@ -75,6 +76,7 @@ def prepared(
 ) -> Sweep:
     """The sweep of these arguments, checked; nothing is computed or written."""
     outer = outer_of(names, inputs, branch, threads, always=reduce is None)
+    without_loads("sweep", outer.loads)
     _require_values(outer)
     kept = accuracy_of(accuracy)
     reduction = None if reduce is None else reduction_of(reduce, outer.dimensions, outer.names)

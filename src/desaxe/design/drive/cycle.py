@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 
 from ...evaluation.evaluate import evaluate
+from ...evaluation.loaded import loads_of
+from ...loads.angles import kinks_between
 from ...mechanism.inputs import INPUTS
 from ...runtime.request import as_number, check_common, check_inputs, request
 from ..events.closed_form import closed_form, placed
@@ -15,7 +17,6 @@ from .panels import Array, Panels, resolved
 
 LENGTHS = ("ec", "AB", "BC")
 JAMS = 5  # the status where friction leaves no balance of forces
-LOADS_OVER_THETA = ("F_X", "F_Y")
 Motion = Callable[[Array], dict[str, Array]]  # angles -> omega and alpha there
 
 
@@ -33,11 +34,8 @@ class Design:
         check_inputs(caller, inputs, [name for name in INPUTS if name not in ("theta", "omega")])
         check_common({}, branch)
         self.branch = int(branch)
-        given = {name: value for name, value in inputs.items() if value is not None}
-        self.loads = {n: v for n, v in given.items() if n in LOADS_OVER_THETA and _varies(v)}
-        self.numbers = {
-            name: _number(caller, name, value) for name, value in given.items() if name not in self.loads
-        }
+        given, self.loads = loads_of({name: value for name, value in inputs.items() if value is not None})
+        self.numbers = {name: _number(caller, name, value) for name, value in given.items()}
         if not self.numbers.get("alpha"):
             self.numbers.pop("alpha", None)
         for name in (*LENGTHS, "omega0"):
@@ -68,9 +66,8 @@ class Design:
         self, names: Sequence[str], theta: Array, motion: Motion | None = None, **other: Any
     ) -> dict[str, Array]:
         """Quantities at angles. A motion gives the state there; `other` inputs replace those given."""
-        loads = {name: _load_at(name, load, theta) for name, load in self.loads.items()}
         state = {} if motion is None else {**motion(theta), "omega0": None}
-        inputs = {**self.numbers, **loads, **state, **other}
+        inputs = {**self.numbers, **self.loads, **state, **other}
         present = {name: value for name, value in inputs.items() if value is not None}
         found = evaluate([*names, "status"], theta=theta, branch=self.branch, **present)
         status = found.pop("status")
@@ -86,7 +83,8 @@ class Design:
         ec, AB, BC = (self.numbers[name] for name in LENGTHS)
         known = placed(closed_form(ec, AB, BC, PLAIN), self.branch, 1)
         own = [low + (known[name].value - low) % (2.0 * pi) for name in ("theta_outer", "theta_inner")]
-        found = sorted({low, *own, *edges, high})
+        kinks = kinks_between(self.loads.values(), low, high, (ec, AB, BC), self.branch, smooth=True)
+        found = sorted({low, *own, *edges, *kinks, high})
         if self.has_friction:
 
             def normal_force(theta: Array) -> dict[str, Array]:
@@ -95,20 +93,6 @@ class Design:
             smooth = resolved(normal_force, found)
             found += smooth.roots(smooth.values["N_C"])
         return sorted(found)
-
-
-def _varies(value: Any) -> bool:
-    return callable(value)
-
-
-def _load_at(name: str, load: Callable[[Array], Any], theta: Array) -> Array:
-    """A load at these angles; an error that names it where it gives something else."""
-    found = np.asarray(load(theta), float)
-    if found.shape not in ((), theta.shape):
-        raise ValueError(f"{name}: a function of {theta.shape[0]} angles gave the shape {found.shape}")
-    if not np.isfinite(found).all():
-        raise ValueError(f"{name}: the function gave {found[~np.isfinite(found)].flat[0]}; it must be finite")
-    return np.broadcast_to(found, theta.shape)
 
 
 def _number(caller: str, name: str, value: Any) -> float:

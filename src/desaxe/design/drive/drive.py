@@ -26,8 +26,8 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
     fluctuation  (fastest - slowest)/mean speed that a flywheel is to keep under a constant torque
     reverse      True: the starting torque is that for either way of turning
     inputs       of one design with masses and loads, as in `evaluate`. omega0 is the speed of the crank; with
-                 alpha it is that at theta = 0, and the turn is the first one. F_X and F_Y may be functions of
-                 theta
+                 alpha it is that at theta = 0, and the turn is the first one. F_X and F_Y may vary
+                 with the motion
 
     Gives a dict, which prints as a report and has `plot()`. Means are over time:
 

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...evaluation.loaded import loads_of
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LENGTHS
 from ...runtime.request import as_number, check_inputs
@@ -54,12 +55,13 @@ def space_of(over: Mapping[str, Any], fixed: Mapping[str, Any], branch: int, dea
     if both:
         raise ValueError(f"{both[0]} is in over= and fixed at the same time")
     ends = {name: _pair(name, bounds) for name, bounds in over.items()}
-    numbers = {name: _number(name, value) for name, value in fixed.items() if value is not None}
+    given, loads = loads_of({name: value for name, value in fixed.items() if value is not None})
+    numbers = {name: _number(name, value) for name, value in given.items()}
     missing = [name for name in LENGTHS if name not in over and name not in numbers]
     if missing:
         raise TypeError(f"optimize: {missing[0]} is missing (in over= or as a number)")
     low, high = (np.array([pair[i] for pair in ends.values()]) for i in (0, 1))
-    return Space(tuple(over), low, high, numbers, branch, deadline)
+    return Space(tuple(over), low, high, {**numbers, **loads}, branch, deadline)
 
 
 def _check_mapping(name: str, given: Any, example: str) -> None:

@@ -36,7 +36,7 @@ class Space(NamedTuple):
     names: tuple[str, ...]
     low: Array
     high: Array
-    fixed: Mapping[str, float]
+    fixed: Mapping[str, Any]  # numbers, and loads that vary with the motion
     branch: int
     deadline: Deadline
 

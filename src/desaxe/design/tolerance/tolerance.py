@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...evaluation.evaluate import evaluate
+from ...evaluation.loaded import loads_of
 from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import sensitivity
@@ -107,7 +108,7 @@ def tolerance(
                   design: "stroke", "time_ratio", ..., or a peak such as ("absmax", "a_C")
     inputs        each a number (exact), a pair (value, tolerance), meaning value +- tolerance, the same as a
                   text "10 mm +- 0.1 mm" or "10 mm +- 1 %", or a distribution of scipy.stats, frozen.
-                  (`enclose`, other than here, takes pairs (low, high).)
+                  (`enclose`, other than here, takes pairs (low, high).) F_X and F_Y may vary with the motion
     distribution  within a tolerance: "normal", the tolerance being so many `sigmas`, or "uniform"
     samples       of the Monte Carlo, by default 100000, or 10000 of a peak
     sobol         base samples of the Sobol indices, a power of two; 0 leaves them out
@@ -144,7 +145,8 @@ def tolerance(
     _check(distribution, sigmas, samples, sobol, seed)
     check_common(inputs, branch)
     check_inputs("tolerance", inputs, tuple(INPUTS))
-    given = {n: read(n, v, distribution, sigmas) for n, v in inputs.items() if v is not None}
+    numbers, loads = loads_of({n: v for n, v in inputs.items() if v is not None})
+    given = {**{n: read(n, v, distribution, sigmas) for n, v in numbers.items()}, **loads}
     rough = [value for value in given.values() if isinstance(value, Inexact)]
     if not rough:
         raise ValueError("tolerance: every input is exact; give one as (value, tolerance)")
@@ -300,6 +302,8 @@ def _corners(rough: Sequence[Inexact], slopes: Array) -> dict[str, Array]:
 
 def _enclosed(name: str, ranges: Mapping[str, Any], branch: int) -> dict[str, Any] | None:
     """The guaranteed range; None where nothing guarantees it."""
+    if any(map(callable, ranges.values())):  # a load that varies with the motion
+        return None
     try:
         from ...enclosure.enclose import enclose
     except ModuleNotFoundError:  # the extra `rigorous`

@@ -18,6 +18,7 @@ from ..roots import root
 from .turn import Array, Turn, extreme
 
 POINTS = 16384
+MOST_TURNS = 4  # after which the loads must repeat; two in a four-stroke engine
 
 
 def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str, Any]:
@@ -25,7 +26,7 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
 
     fluctuation  (fastest - slowest)/mean speed that is allowed, such as 0.02
     inputs       of one design with masses and loads, as in `evaluate`; omega0 is the mean speed. F_X and
-                 F_Y may be functions of theta (of an array, or of one angle)
+                 F_Y may vary with the motion, over one turn or up to four: what is told is then of all
 
     Gives a dict:
 
@@ -53,13 +54,13 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
         raise ValueError(
             f"fluctuation = {fluctuation!r}: a number above 0 and below 2, where the crank stops"
         )
-    turn = Turn("flywheel", inputs, branch)
+    turn = Turn("flywheel", inputs, branch, MOST_TURNS)
     speed = turn.numbers.get("omega0")
     if not speed:
         raise ValueError("flywheel: omega0, the mean speed, is missing or 0")
     told = turn.values(["T_in", "M_eff"], POINTS)
     torque = told["T_in"]
-    stored = _integral(torque)
+    stored = turn.turns * _integral(torque)
     energy = extreme(stored, 1.0)[0] - extreme(stored, -1.0)[0]
     (highest, theta_highest), (lowest, theta_lowest) = (extreme(torque, sign) for sign in (1.0, -1.0))
     estimate = energy / (fluctuation * speed**2)
@@ -67,8 +68,8 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
         "mean_torque": float(torque.mean()),
         "max_torque": highest,
         "min_torque": lowest,
-        "theta_max_torque": theta_highest,
-        "theta_min_torque": theta_lowest,
+        "theta_max_torque": turn.turns * theta_highest,
+        "theta_min_torque": turn.turns * theta_lowest,
         "ripple": highest - lowest,
         "energy_fluctuation": energy,
     }
@@ -76,9 +77,8 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
         inertia, without, speeds = estimate, float("nan"), -stored * np.sign(speed)
     else:
         # At rest the drive carries the loads alone.
-        machine = Machine(
-            told["M_eff"], -_integral(turn.values(["T_in"], POINTS, omega0=0.0)["T_in"]), abs(speed)
-        )
+        loads = turn.values(["T_in"], POINTS, omega0=0.0)["T_in"]
+        machine = Machine(told["M_eff"], -turn.turns * _integral(loads), abs(speed))
         without = machine.fluctuation(0.0)
         inertia = machine.inertia(fluctuation, estimate)
         speeds = machine.speeds(inertia)
@@ -87,8 +87,8 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
         "inertia": inertia,
         "inertia_first_order": estimate,
         "fluctuation_without": without,
-        "theta_fastest": extreme(speeds, 1.0)[1],
-        "theta_slowest": extreme(speeds, -1.0)[1],
+        "theta_fastest": turn.turns * extreme(speeds, 1.0)[1],
+        "theta_slowest": turn.turns * extreme(speeds, -1.0)[1],
     }
 
 

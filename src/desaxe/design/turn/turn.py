@@ -1,35 +1,35 @@
 """Quantities over one whole turn at constant speed, at equal steps of the crank angle."""
 
-from collections.abc import Callable, Mapping, Sequence
-from math import fsum, pi
+from collections.abc import Mapping, Sequence
+from math import fsum, gcd, pi
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...evaluation.evaluate import evaluate
+from ...evaluation.loaded import loads_of
+from ...loads.load import Load, OverTheta, TableOverTheta
+from ...loads.resolve import VARIABLE
 from ...mechanism.inputs import INPUTS
 from ...runtime.request import as_number, check_common, check_inputs
 
 Array = NDArray[np.float64]
 LEAST, MOST = 128, 131072  # steps of a turn
 CONVERGED = 1e-14  # of the largest coefficient: what halving the steps may change
-FUNCTIONS = ("F_X", "F_Y")  # loads that may change over the turn
 
 
 class Turn:
     """One design over a turn: its inputs, checked."""
 
-    def __init__(self, caller: str, inputs: Mapping[str, Any], branch: int) -> None:
+    def __init__(self, caller: str, inputs: Mapping[str, Any], branch: int, turns: int = 1) -> None:
         known = tuple(name for name in INPUTS if name not in ("theta", "alpha", "omega"))
         check_inputs(caller, inputs, known)
         check_common({}, branch)
         self.branch = branch
-        self.functions: dict[str, Callable[[Array], Any]] = {
-            name: value for name, value in inputs.items() if callable(value) and name in FUNCTIONS
-        }
-        given = {n: v for n, v in inputs.items() if v is not None and n not in self.functions}
+        given, self.loads = loads_of({n: v for n, v in inputs.items() if v is not None})
         self.numbers = {name: _number(caller, name, value) for name, value in given.items()}
+        self.turns = _turns(caller, self.loads, turns)
         for name in ("ec", "AB", "BC"):
             if name not in self.numbers:
                 as_number(name, None, ("ec", "AB", "BC"), (caller,))
@@ -41,9 +41,8 @@ class Turn:
 
     def values(self, names: Sequence[str], points: int, **other: float) -> dict[str, Array]:
         """The quantities at `points` equal steps from theta = 0; `other` inputs replace those given."""
-        theta = 2.0 * pi * np.arange(points) / points
-        loads = {name: _loads(name, function, theta) for name, function in self.functions.items()}
-        inputs: dict[str, Any] = {**self.numbers, **loads, **other}
+        theta = 2.0 * pi * self.turns * np.arange(points) / points
+        inputs: dict[str, Any] = {**self.numbers, **self.loads, **other}
         found = evaluate([*names, "status"], theta=theta, branch=self.branch, **inputs)
         bad = ~np.isfinite([found[name] for name in names]).all(axis=0)
         if bad.any():
@@ -74,24 +73,26 @@ class Turn:
             before, points = now, 2 * points
 
 
-def _loads(name: str, function: Callable[[Array], Any], theta: Array) -> Array:
-    """A load at these angles, of a function of an array or of one angle; an error that names the load."""
-    try:
-        found = np.asarray(function(theta), float)
-    except Exception:  # such as math.cos(theta), or a condition on theta: it takes one angle
-        found = np.array([_load(name, function, angle) for angle in theta.tolist()])
-    if found.shape not in ((), theta.shape):
-        raise ValueError(f"{name}: a function of {theta.shape[0]} angles gave the shape {found.shape}")
-    if not np.isfinite(found).all():
-        raise ValueError(f"{name}: the function gave {found[~np.isfinite(found)].flat[0]}; it must be finite")
-    return np.broadcast_to(found, theta.shape)
+def _turns(caller: str, loads: Mapping[str, Load], most: int) -> int:
+    """After how many turns the loads repeat; ValueError for more than `most`."""
+    turns = 1
+    for name, load in loads.items():
+        if not isinstance(load, OverTheta):
+            continue
+        own = next((n for n in range(1, most + 1) if _repeats(load, n * 2.0 * pi)), None)
+        if own is None:
+            raise ValueError(
+                f"{name}: {caller} is over {'a turn' if most == 1 else f'at most {most} turns'}, after which "
+                f"the load must repeat; its period is {load.period:.6g} rad"
+            )
+        turns = turns * own // gcd(turns, own)
+    return turns
 
 
-def _load(name: str, function: Callable[[Any], Any], angle: float) -> float:
-    try:
-        return float(function(angle))
-    except Exception as error:
-        raise ValueError(f"{name}: the function failed at theta = {angle:.6g}: {error!r}") from error
+def _repeats(load: OverTheta, angle: float) -> bool:
+    """True where a table repeats after an angle; a function is taken to."""
+    periods = angle / load.period
+    return not isinstance(load, TableOverTheta) or abs(periods - round(periods)) < 1e-9
 
 
 def extreme(values: Array, sign: float) -> tuple[float, float]:
@@ -107,6 +108,6 @@ def extreme(values: Array, sign: float) -> tuple[float, float]:
 def _number(caller: str, name: str, value: Any) -> float:
     number = as_number(name, value, (name,), (caller,))
     if number is None:
-        more = " or a function of theta" if name in FUNCTIONS else ""
+        more = " or a function of theta, over_theta or over_Y" if name in VARIABLE else ""
         raise TypeError(f"{name}: {caller} takes a number{more}, got {type(value).__name__}")
     return number

@@ -9,6 +9,7 @@ from typing import Any
 
 from ...compiler.kernel import Kernel
 from ...compiler.passes.double_double import double_double
+from ...loads.load import Load
 from ...mechanism.catalogue import quantity
 from ...mechanism.constants import double_constants
 from ...mechanism.inputs import INPUTS
@@ -22,6 +23,7 @@ from ..kernel import GridKernel, grid_kernel
 from ..read import Content
 from ..scene import Scene
 from ..scene import scene as scene_of
+from ..values import Value
 from . import estimate
 from .loops import Loop, loops_of
 from .steps import skipped_of, steps_of
@@ -100,10 +102,12 @@ def _motion(content: Content) -> str:
     return "constant speed omega0" if steady else "paper A's law: omega^2 = omega0^2 + 2 alpha theta"
 
 
-def _input(name: str, value: float | tuple[float, ...]) -> dict[str, Any]:
+def _input(name: str, value: Value) -> dict[str, Any]:
     row: dict[str, Any] = {"name": name, "unit": INPUTS[name].unit}
     if isinstance(value, tuple):
         return {**row, "values": len(value), "from": value[0], "to": value[-1]}
+    if isinstance(value, Load):
+        return {**row, "load": repr(value)}
     return {**row, "value": value}
 
 

@@ -40,6 +40,8 @@ def _asked(plan: Mapping[str, Any]) -> str:
             f"{a['name']} ({a['values']}: {number(a['from'])} to {number(a['to'])} {a['unit']})" for a in axes
         ]
         lines += _wrapped("axes", told)
+    if any("load" in one for one in plan["inputs"]):
+        lines += _wrapped("loads", [f"{a['name']}: {a['load']}" for a in plan["inputs"] if "load" in a])
     if fixed:
         lines += _wrapped(
             "fixed", [f"{a['name']} = {number(a['value'])} {_unit(a['unit'])}".rstrip() for a in fixed]

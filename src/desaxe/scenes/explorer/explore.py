@@ -6,6 +6,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from ...loads.resolve import without_loads
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LOADS
 from ...runtime.request import as_number, check_common, check_inputs
@@ -60,6 +61,7 @@ def content_of(
     if source is None:
         check_common(inputs, branch)
         check_inputs("explore", inputs, tuple(INPUTS))
+        without_loads("explore", inputs)
         return content(title, branch, {n: _value(n, v) for n, v in inputs.items()}, START, names)
     if inputs:
         page = isinstance(source, (str, PathLike)) and Path(source).suffix != ".toml"
@@ -80,7 +82,9 @@ def _of_scene(source: Any, names: Iterable[str] | None) -> Content:
     asked += [picture.quantity for picture in inside.pictures]
     title = inside.title or TITLE
     shown = [name for name in asked if name not in ("status", "margin")]
-    return content(title, inside.branch, dict(inside.inputs), shown or START, names)
+    inputs: dict[str, Any] = dict(inside.inputs)
+    without_loads("explore", inputs)
+    return content(title, inside.branch, inputs, shown or START, names)
 
 
 def _value(name: str, given: Any) -> Value:

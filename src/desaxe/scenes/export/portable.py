@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ...compiler.languages.protocol import Forms, Module, Symbol
 from ...compiler.passes.double_double import double_double
@@ -52,7 +52,13 @@ def module_of(scene: Scene, order: Order) -> Module:
 
 
 def require_outputs(scene: Scene) -> None:
-    """SceneError where nothing is asked for over the scene's axes."""
+    """SceneError where nothing is asked for over the scene's axes, or a load varies with the motion."""
+    varying = [name for name, value in scene.content.inputs.items() if callable(value)]
+    if varying:
+        raise SceneError(
+            f"{scene.name or 'scene'}: loads.{varying[0]} varies with the motion, and a compiled module "
+            "takes numbers: leave it open as a list of values, and give it at each angle"
+        )
     if scene.content.outputs:
         return
     peaks = ", ".join(peak.quantity for peak in scene.content.peaks)
@@ -107,7 +113,7 @@ def _reach(asked: Request) -> float:
 
 def _asked(content: Content, names: Iterable[str]) -> tuple[Request, Fixed]:
     """The request, and all that the scene fixes: what it does not say and nothing depends on is 0."""
-    given = dict(content.inputs)
+    given: dict[str, Any] = dict(content.inputs)
     if "omega0" not in given and "omega" not in given:
         given["omega0"] = 0.0  # nothing that is asked for needs a speed
     asked = request(list(dict.fromkeys(names)), given, content.branch, content.accuracy)

@@ -1,0 +1,179 @@
+"""Values under loads that vary with the motion: the loads at each point first, then the Program as ever."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..loads.load import TURN, FunctionOverTheta, Load
+from ..loads.resolve import VARIABLE, Forces, Plan, plan_of, split, way_of
+from ..loads.tabulated import over_theta
+from ..mechanism.names import LENGTHS
+from ..runtime.request import as_number, check_common, several
+from .arrays import as_array, outputs_for
+from .values import values
+
+Array = NDArray[Any]
+MOTION = ("theta", *LENGTHS, "omega0", "alpha", "omega")  # inputs that every request has, if only as None
+GAP = 1.5  # steps: a table that lacks no more of a turn is a whole one
+
+
+def evaluate_loaded(
+    names: str | Sequence[str],
+    given: Mapping[str, Any],
+    branch: int,
+    accuracy: str | float,
+    threads: int | None,
+    out: Any,
+) -> Any:
+    """`evaluate` where F_X or F_Y varies with the motion; derivatives are total ones."""
+    wanted = (names,) if isinstance(names, str) else several(names)
+    check_common(given, branch, threads)
+    numbers, plan = plan_for(wanted, given)
+    given = {**dict.fromkeys(MOTION), **numbers}
+    if not plan.loads:
+        return values(names, given, branch, accuracy, threads, out)
+    forces = forces_at(plan, numbers, branch, accuracy)
+    alone = values(list(plan.names), {**given, **forces.values}, branch, accuracy, threads)
+    found = plan.totals(alone, forces)
+    if out is not None:
+        found = _put(found, out)
+    return found[names] if isinstance(names, str) else found
+
+
+def plan_for(names: Sequence[str], given: Mapping[str, Any]) -> tuple[dict[str, Any], Plan]:
+    """The inputs that are numbers, and the plan for names under the loads that are not."""
+    numbers, loads = split({name: value for name, value in given.items() if value is not None})
+    return numbers, plan_of(names, loads, "omega" in numbers, "mu" in numbers)
+
+
+def forces_at(plan: Plan, numbers: Mapping[str, Any], branch: int, accuracy: str | float) -> Forces:
+    """The loads of a plan at the crank angles, lengths and speed among `numbers`."""
+    what = f"theta, over which {' and '.join(plan.loads)} varies" if "theta" not in numbers else ""
+    if what:
+        raise TypeError(f"{', '.join(plan.shown)}: {what}, is missing")
+    theta = numeric("theta", numbers["theta"], plan.shown)
+    motion: Mapping[str, Any] = {}
+    if plan.motion:
+        place = {**dict.fromkeys(MOTION), **{n: numbers.get(n) for n in LENGTHS}, "theta": theta}
+        motion = values(list(plan.motion), place, branch, accuracy if accuracy == "extended" else "standard")
+    speeds = {n: numeric(n, numbers[n], plan.shown) for n in ("omega0", "omega", "alpha") if n in numbers}
+    return plan.forces(theta, motion, way_of(speeds))
+
+
+def refuse_quality(quality: bool) -> None:
+    """The error bound of a table or function is not known."""
+    if quality:
+        raise ValueError("quality=True takes numbers: F_X and F_Y at each angle, not a load that varies")
+
+
+def numeric(name: str, value: Any, names: Sequence[str]) -> Any:
+    """An input as a float, or as an array of floats."""
+    number = as_number(name, value, (name,), names)
+    return as_array(name, value, (name,), names) if number is None else number
+
+
+def loads_of(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Load]]:
+    """The inputs without loads that vary with the motion, and these; an array labelled over theta is one."""
+    return split(with_labelled(inputs))
+
+
+def with_labelled(inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """The inputs, with the loads that labelled arrays over theta hold in their place."""
+    labelled = [n for n in VARIABLE if getattr(inputs.get(n), "dims", ()) == ("theta",)]
+    return {**inputs, **{n: labelled_load(n, inputs[n]) for n in labelled}}
+
+
+# ---- grids ----------------------------------------------------------------------------------------
+
+
+def split_axes(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Load]]:
+    """The inputs of a grid without its loads, and these; a labelled array over theta is one of them."""
+    theta = inputs.get("theta")
+    made = {
+        name: labelled_load(name, value, theta) if name in VARIABLE else value
+        for name, value in inputs.items()
+        if _is_along(name, value, inputs)
+    }
+    return split({**inputs, **made})
+
+
+def labelled_load(name: str, array: Any, theta: Any = None) -> Load:
+    """The load over theta that a labelled array holds, at its own angles, else at those of `theta`.
+
+    Where its angles are those of `theta`, and no period of a table, it is known at these alone.
+    """
+    angles = array.coords.get("theta", theta)
+    if angles is None:
+        raise ValueError(f"{name}: a labelled array over theta has the coordinate theta")
+    x, y = as_array("theta", angles, ("theta",), (name,)), as_array(name, array, (name,), (name,))
+    if x.shape != y.shape:
+        raise ValueError(f"{name}: {y.size} values over theta, which has {x.size}")
+    try:
+        if x.size and x[-1] - x[0] < TURN - GAP * np.diff(x).max(initial=0.0):
+            raise ValueError(f"its angles go from {x[0]:g} to {x[-1]:g} rad, which is no whole turn")
+        return over_theta(x, y)
+    except ValueError as error:
+        if theta is None or not np.array_equal(x, as_array("theta", theta, ("theta",), (name,))):
+            raise ValueError(f"{name}: {error}") from None
+        return FunctionOverTheta(Samples(x, y).at)
+
+
+class Samples(NamedTuple):
+    """A load that is known at some angles alone."""
+
+    angles: Array
+    values: Array
+
+    def at(self, theta: Any) -> Any:
+        """The values at angles that are among them."""
+        order = np.argsort(self.angles)
+        place = order[np.searchsorted(self.angles[order], theta).clip(0, order.size - 1)]
+        if (self.angles[place] != theta).any():
+            raise LookupError("a labelled load over part of a turn is known at its own angles alone")
+        return self.values[place]
+
+
+def _is_along(name: str, value: Any, inputs: Mapping[str, Any]) -> bool:
+    """True for a labelled array over theta; ValueError for another one over a different input."""
+    dimensions = getattr(value, "dims", ())
+    if dimensions == ("theta",) and name in VARIABLE:
+        return True
+    other = [str(d) for d in dimensions if d != name and d in inputs]
+    if other:
+        raise ValueError(
+            f"{name} has the dimensions {', '.join(map(str, dimensions))}: a grid is the outer product of "
+            "its inputs, each with one dimension of its own; F_X and F_Y may be over theta alone"
+        )
+    return False
+
+
+def filled_under_loads(
+    names: Sequence[str],
+    inputs: Mapping[str, Any],
+    dimensions: Sequence[str],
+    options: tuple[int, str | float, int | None],
+    out: Any,
+) -> dict[str, Array]:
+    """The values over the outer product of the dimensions; `options`: branch, accuracy, threads."""
+    shape = tuple(np.size(inputs[name]) for name in dimensions)
+    given = dict(inputs)
+    for place, name in enumerate(dimensions):
+        given[name] = inputs[name].reshape([-1 if k == place else 1 for k in range(len(shape))])
+    found = evaluate_loaded(list(names), given, *options, None)
+    places = outputs_for(tuple(names), shape, out)
+    for name, array in places.items():
+        np.copyto(array, found[name], casting="same_kind")
+    return places
+
+
+def _put(found: Mapping[str, Any], out: Any) -> dict[str, Any]:
+    """The values in the arrays of `out`."""
+    if all(isinstance(value, (float, int)) for value in found.values()):
+        raise TypeError("out= is for arrays, but every input is a number")
+    shape = np.broadcast_shapes(*(np.shape(value) for value in found.values()))
+    places = outputs_for(tuple(found), shape, out)
+    for name, place in places.items():
+        np.copyto(place, found[name], casting="same_kind")
+    return places

@@ -1,0 +1,72 @@
+"""Where the slider passes a position, and its dead centres, as crank angles: nodes of a load over Y."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .load import Load, OverTheta, OverY
+
+Array = NDArray[np.float64]
+
+
+def passages(Y: Sequence[float], lengths: Sequence[Array], branch: int) -> Array:
+    """For each design both angles [rad] at each position, NaN where there are none: (designs, 2 positions).
+
+    lengths  ec, AB, BC, a value for each design
+
+    The triangle A B C has the sides AB, BC and L = |AC|; tan(beta/2) of its angle at A keeps its digits where
+    the triangle is flat.
+    """
+    ec, AB, BC = (np.asarray(side, float)[:, None] for side in lengths)
+    position = np.asarray(Y, float)[None, :]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        L = np.hypot(ec, position)
+        above = (BC - (L - AB)) * (BC + (L - AB))
+        below = ((L + AB) - BC) * ((L + AB) + BC)
+        beta = 2.0 * np.arctan2(np.sqrt(above), np.sqrt(below))
+        found = [np.arctan2(-ec, position) + side * beta for side in (-1.0, 1.0)]
+        return np.concatenate(
+            [np.where((position - AB * np.cos(t)) * branch >= 0.0, t, np.nan) for t in found], axis=1
+        )
+
+
+def dead_centres(lengths: Sequence[Array]) -> Array:
+    """For each design the angles [rad] at which crank and rod are in line, on either branch; NaN without."""
+    ec, AB, BC = lengths
+    with np.errstate(invalid="ignore", divide="ignore"):
+        sines = np.stack([-ec / (AB + BC), ec / (BC - AB)], axis=-1)
+        first = np.arcsin(sines)
+    return np.concatenate([first, np.pi - first], axis=-1)
+
+
+def repeated(angles: Array, low: float, high: float) -> Array:
+    """Angles in all turns that a range touches, NaN outside of it."""
+    turns: Any = 2.0 * np.pi * np.arange(np.floor(low / (2.0 * np.pi)) - 1, np.ceil(high / (2.0 * np.pi)) + 2)
+    every: Array = (angles[..., None] + turns).reshape(*angles.shape[:-1], -1)
+    return np.where((every >= low) & (every <= high), every, np.nan)
+
+
+def kinks_between(
+    loads: Iterable[Load],
+    low: float,
+    high: float,
+    lengths: Sequence[float],
+    branch: int,
+    smooth: bool = False,
+) -> list[float]:
+    """The angles in a range at which loads of one design have a kink, or with `smooth` where pieces meet too.
+
+    lengths  ec, AB, BC
+    """
+    found: list[float] = []
+    sides = [np.array([length]) for length in lengths]
+    for load in loads:
+        if isinstance(load, OverTheta):
+            found += load.nodes(low, high, smooth)
+        elif isinstance(load, OverY):
+            angles = np.append(passages(load.positions(smooth), sides, branch), dead_centres(sides))
+            every = repeated(angles[None, :], low, high)
+            found += every[np.isfinite(every)].tolist()
+    return sorted(set(found))

@@ -1,0 +1,225 @@
+"""From loads that vary with the motion to numbers, and from partial derivatives to total ones.
+
+The forces of the mechanism are what the Program says at the load of that instant. A derivative of a quantity
+q by a parameter p that the load F depends on is the Program's own, at a fixed load, and the load's part:
+
+    dq/dp = q_wrt_p + q_wrt_F dF/dp,    dF/dtheta = F'(theta), or dF/dp = F'(Y) Y_wrt_p
+
+    numbers, loads = split(inputs)             # what varies with the motion, apart
+    plan = plan_of(names, loads, state, mu)    # what to evaluate for these names, and over which motion
+    forces = plan.forces(theta, motion, way)   # F_X and F_Y at these angles, and their derivatives
+    plan.totals(values, forces)                # names -> values, with total derivatives
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from inspect import signature
+from typing import Any, NamedTuple
+
+from ..mechanism.catalogue import law_name, quantity
+from ..mechanism.inputs import INPUTS
+from ..mechanism.names import parts, sensitivity
+from ..mechanism.program import program_of
+from .load import FunctionOverTheta, Load, OverTheta, OverY
+
+VARIABLE = ("F_X", "F_Y")  # inputs that may vary with the motion
+POSITION = ("Y", "Y_wrt_theta", "Y_wrt_theta_theta")  # which load over Y holds: the position, and the way
+
+
+def is_load(value: Any) -> bool:
+    """True for a load that varies with the motion; a number, array or text is not callable."""
+    return callable(value)
+
+
+def as_load(name: str, value: Any) -> Load:
+    """The load that a callable stands for: a plain function of one parameter is one over theta."""
+    if isinstance(value, Load):
+        wanted = "N*m" if name == "torque" else INPUTS[name].unit
+        if value.unit not in (None, wanted):
+            raise ValueError(f"{name}: the load is in {value.unit}, {wanted} is wanted")
+        return value
+    if not takes(value, 1):
+        raise TypeError(
+            f"{name}: a load is a number, desaxe.over_theta(...), desaxe.over_Y(...) or a function of theta "
+            f"alone; this function takes {signature(value)}"
+        )
+    return FunctionOverTheta(value)
+
+
+def takes(function: Callable[..., Any], count: int) -> bool:
+    """True where a function can be called with so many numbers; with one where a built-in does not tell."""
+    try:
+        signature(function).bind(*[0.0] * count)
+    except TypeError:
+        return False
+    except ValueError:
+        return count == getattr(function, "nin", 1)
+    return True
+
+
+def split(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Load]]:
+    """The inputs without those that vary with the motion, and these; TypeError for one that cannot."""
+    numbers = {name: value for name, value in inputs.items() if not callable(value)}
+    varying = [name for name in inputs if name not in numbers]
+    for name in varying:
+        if name not in VARIABLE:
+            raise TypeError(f"{name}: a number is wanted; {' and '.join(VARIABLE)} may vary with the motion")
+    return numbers, {name: as_load(name, inputs[name]) for name in varying}
+
+
+def without_loads(caller: str, inputs: Mapping[str, Any]) -> None:
+    """Refuse loads where only numbers make sense."""
+    for name, value in inputs.items():
+        if callable(value):
+            raise TypeError(f"{name}: {caller} takes numbers, not a load that varies with the motion")
+
+
+class Term(NamedTuple):
+    """The part of a derivative that comes through a load: slope (a name) times dF/dp."""
+
+    slope: str
+    force: str
+    parameter: str
+
+
+class Forces(NamedTuple):
+    """Loads at some crank angles, and their derivatives by (force, parameter)."""
+
+    values: dict[str, Any]
+    slopes: dict[tuple[str, str], Any]
+
+
+class Plan(NamedTuple):
+    """What to evaluate for names under loads that vary with the motion."""
+
+    shown: tuple[str, ...]
+    names: tuple[str, ...]  # to evaluate: those asked for, and the slopes by the loads
+    terms: Mapping[str, tuple[Term, ...]]
+    loads: Mapping[str, Load]  # those that matter
+    motion: tuple[str, ...]  # names of the motion, at a fixed load, which the loads and derivatives need
+
+    def forces(self, theta: Any, motion: Mapping[str, Any], way: Any) -> Forces:
+        """The loads at crank angles with this motion.
+
+        way   negative where the crank turns backwards
+        """
+        values: dict[str, Any] = {}
+        slopes: dict[tuple[str, str], Any] = {}
+        wanted = {(t.force, t.parameter) for terms in self.terms.values() for t in terms}
+        for name, load in self.loads.items():
+            if isinstance(load, OverTheta):
+                value, slope = _named(name, load, theta)
+                known = {"theta": slope}
+            else:
+                value, by_position = _over_position(load, motion, way)
+                known = {p: by_position * motion[f"Y_wrt_{p}"] for n, p in wanted if n == name}
+            values[name] = _finite_or_zero(value)
+            slopes.update({(n, p): known[p] for n, p in wanted if n == name})
+        return Forces(values, slopes)
+
+    def totals(self, found: Mapping[str, Any], forces: Forces) -> dict[str, Any]:
+        """What was asked for, from the values of `names`."""
+        result = {}
+        for name in self.shown:
+            total = found[name]
+            for slope, force, parameter in self.terms.get(name, ()):
+                total = total + found[slope] * forces.slopes[force, parameter]
+            result[name] = total
+        return result
+
+
+def plan_of(names: Sequence[str], loads: Mapping[str, Load], state: bool, mu: bool) -> Plan:
+    """The plan for names; ValueError for one that needs what is not known of a load.
+
+    state   whether omega is given instead of omega0
+    mu      whether friction is: then the status depends on the loads
+    """
+    terms: dict[str, tuple[Term, ...]] = {}
+    used: dict[str, Load] = {}
+    for name in names:
+        quantity(name, state)
+        for force, load in loads.items():
+            if _depends(law_name(name) if state else name, force, mu):
+                used[force] = load
+                terms[name] = (*terms.get(name, ()), *_terms(name, force, load, state))
+    more = [term.slope for group in terms.values() for term in group]
+    over_Y = {t.parameter for group in terms.values() for t in group if isinstance(used[t.force], OverY)}
+    motion = POSITION if any(isinstance(load, OverY) for load in used.values()) else ()
+    motion = tuple(dict.fromkeys((*motion, *(f"Y_wrt_{p}" for p in sorted(over_Y)))))
+    return Plan(tuple(names), tuple(dict.fromkeys((*names, *more))), terms, used, motion)
+
+
+@cache
+def _depends(name: str, force: str, mu: bool) -> bool:
+    if name == "status":
+        return mu
+    return force in program_of((name,)).inputs
+
+
+def _terms(name: str, force: str, load: Load, state: bool) -> tuple[Term, ...]:
+    """How a derivative depends on a load through its parameters."""
+    base, parameters = parts(name)
+    through = [p for p in parameters if p in load.parameters]
+    if not through:
+        return ()
+    if not load.has_slope:
+        raise ValueError(
+            f"{name}: it needs the slope of {force}, a function without derivative; give "
+            f"{force} = desaxe.over_theta(f, derivative=...), or a table"
+        )
+    others = list(parameters)
+    others.remove(through[0])
+    slope = sensitivity(base, *others, force)
+    try:
+        quantity(slope, state)
+    except ValueError:
+        slope = ""
+    if len(through) > 1 or not slope:
+        raise ValueError(f"{name}: this derivative is not derived for a load {force} over {load.over}")
+    return (Term(slope, force, through[0]),)
+
+
+def way_of(given: Mapping[str, Any]) -> Any:
+    """The sign of the crank's speed, as a number or array: that of alpha where a given state rests."""
+    speed, alpha = given.get("omega"), given.get("alpha")
+    if speed is None:
+        speed, alpha = given.get("omega0"), None
+    if speed is None or (isinstance(speed, float) and (speed or not isinstance(alpha, float))):
+        return 1.0 if speed is None else speed
+    if isinstance(speed, float) and isinstance(alpha, float):
+        return alpha
+    import numpy as np
+
+    return speed if alpha is None else np.where(np.equal(speed, 0.0), alpha, speed)
+
+
+def _named(name: str, load: OverTheta, theta: Any) -> tuple[Any, Any]:
+    """A load over theta and its derivative; errors of a user's function name the input."""
+    try:
+        return load.both(theta)
+    except (TypeError, ValueError) as error:
+        if isinstance(load, FunctionOverTheta) and str(error).startswith("the "):
+            raise type(error)(f"{name}: {str(error).removeprefix('the load: ')}") from error.__cause__
+        raise
+
+
+def _over_position(load: Load, motion: Mapping[str, Any], way: Any) -> tuple[Any, Any]:
+    """A load over Y and its derivative by Y; at a dead centre the way that follows as theta grows."""
+    assert isinstance(load, OverY)
+    Y, slope, bend = (motion[name] for name in POSITION)
+    if isinstance(Y, float) and isinstance(way, float):
+        ahead = slope or bend
+        return load.both(float(Y), float(ahead if way >= 0.0 else -ahead))
+    import numpy as np
+
+    ahead = np.where(np.equal(slope, 0.0), bend, slope)
+    return load.both(Y, np.where(np.less(way, 0.0), -ahead, ahead))
+
+
+def _finite_or_zero(value: Any) -> Any:
+    """No load where there is no motion: such a point is NaN by itself, with the status that it has."""
+    if isinstance(value, float):
+        return value if value - value == 0.0 else 0.0
+    import numpy as np
+
+    return np.nan_to_num(value, nan=0.0, posinf=0.0, neginf=0.0)

@@ -1,0 +1,199 @@
+"""Tables as piecewise polynomials: periodic over the crank angle, held beyond their ends over a position.
+
+A number is looked up in plain Python, which needs only `math`; arrays go through NumPy. At a break the piece
+to the right holds, value and derivative alike.
+"""
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import floor, nan
+from typing import Any
+
+Row = tuple[float, float, float, float]
+
+KINDS = ("cubic", "linear", "step")
+SAME = 1e-9  # of the largest value or slope: what differs by less is no jump and no kink
+
+
+@dataclass(frozen=True)
+class Table:
+    """Cubics in the distance from the left end of each piece.
+
+    knots   ascending; the period ends where the first one begins again
+    rows    coefficients c0 to c3: rows[i] holds from knots[i - 1] to knots[i]. Without a period rows[0] and
+            the last row hold beyond the ends, and are constant
+    period  None where values are held beyond the ends
+    """
+
+    knots: tuple[float, ...]
+    rows: tuple[Row, ...]
+    period: float | None = None
+
+    def reduced(self, x: float) -> float:
+        """The same place within the first period."""
+        if self.period is None or x - x != 0.0:
+            return x
+        first = self.knots[0]
+        x -= self.period * floor((x - first) / self.period)
+        return x + self.period if x < first else x - self.period if x >= first + self.period else x
+
+    def piece(self, x: float) -> int:
+        """The row that holds at a place, which has been reduced."""
+        return bisect_right(self.knots, x)
+
+    def origin(self, piece: int) -> float:
+        """Where the distance of a row is counted from."""
+        return self.knots[max(piece - 1, 0)]
+
+    def both(self, x: Any) -> tuple[Any, Any]:
+        """Value and derivative at a number or an array; NaN at what is no finite number."""
+        if not isinstance(x, float):
+            return self._arrays(x)
+        if x - x != 0.0:
+            return nan, nan
+        x = self.reduced(x)
+        piece = self.piece(x)
+        return polynomial(self.rows[piece], x - self.origin(piece))
+
+    def _arrays(self, x: Any) -> tuple[Any, Any]:
+        import numpy as np
+
+        knots, rows = self._numpy
+        x = np.asarray(x, float)
+        with np.errstate(invalid="ignore"):
+            if self.period is not None:
+                first, period = knots[0], self.period
+                x = x - period * np.floor((x - first) / period)
+                x = np.where(x < first, x + period, np.where(x >= first + period, x - period, x))
+            piece = np.searchsorted(knots, x, side="right")
+            distance = np.where(np.isfinite(x), x - knots[np.maximum(piece - 1, 0)], np.nan)
+            value, slope = polynomial(rows[:, piece], distance)
+        return value, slope
+
+    @cached_property
+    def _numpy(self) -> tuple[Any, Any]:
+        import numpy as np
+
+        return np.array(self.knots), np.array(self.rows).T
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without the arrays, which are made again when they are needed."""
+        return {"knots": self.knots, "rows": self.rows, "period": self.period}
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """The value at each knot, that to the right at a jump."""
+        return tuple(row[0] for row in self.rows[1:])
+
+    @cached_property
+    def kinks(self) -> tuple[float, ...]:
+        """The knots at which the value jumps or the derivative does."""
+        return tuple(x for x, jump, kink in self._changes() if jump or kink)
+
+    @cached_property
+    def jumps(self) -> tuple[float, ...]:
+        """The knots at which the value jumps."""
+        return tuple(x for x, jump, _ in self._changes() if jump)
+
+    def _changes(self) -> list[tuple[float, bool, bool]]:
+        """Each knot, whether the value jumps there, and whether the derivative does."""
+        slopes = [abs(d) for row in self.rows for d in row[1:]]
+        high, steep = max(abs(row[0]) for row in self.rows), max(slopes, default=0.0)
+        found = []
+        for i, x in enumerate(self.knots):
+            before = len(self.knots) if i == 0 and self.period is not None else i
+            end = x + self.period if i == 0 and self.period is not None else x
+            left = polynomial(self.rows[before], end - self.origin(before))
+            right = self.rows[i + 1]
+            jump, kink = abs(left[0] - right[0]) > SAME * high, abs(left[1] - right[1]) > SAME * steep
+            found.append((x, jump, kink))
+        return found
+
+
+def polynomial(row: Any, s: Any) -> tuple[Any, Any]:
+    """A cubic and its derivative."""
+    c0, c1, c2, c3 = row
+    return c0 + s * (c1 + s * (c2 + s * c3)), c1 + s * (2.0 * c2 + s * (3.0 * c3))
+
+
+def periodic(x: Sequence[float], y: Sequence[float], kind: str, period: float) -> Table:
+    """The table through (x, y), which do not repeat the first point at the end of the period."""
+    ends, values = [*x[1:], x[0] + period], [*y[1:], y[0]]
+    slopes = periodic_slopes(x, y, period) if kind == "cubic" else []
+    rows = _rows(list(zip(x, y, ends, values, strict=True)), kind, slopes, True)
+    return Table(tuple(x), (rows[-1], *rows), period)
+
+
+def held(x: Sequence[float], y: Sequence[float], kind: str) -> Table:
+    """The table through (x, y), constant beyond its ends."""
+    slopes = _slopes(x, y) if kind == "cubic" else [0.0] * len(x)
+    rows = _rows(list(zip(x[:-1], y[:-1], x[1:], y[1:], strict=True)), kind, slopes, False)
+    return Table(tuple(x), ((y[0], 0.0, 0.0, 0.0), *rows, (y[-1], 0.0, 0.0, 0.0)))
+
+
+def _rows(
+    spans: Sequence[tuple[float, float, float, float]], kind: str, slopes: Sequence[float], closed: bool
+) -> list[Row]:
+    """The coefficients between neighbours (x, y) and (x, y); for cubics with these slopes at the knots."""
+    rows: list[Row] = []
+    for i, (a, left, b, right) in enumerate(spans):
+        width, chord = b - a, (right - left) / (b - a)
+        if kind == "step":
+            rows.append((left, 0.0, 0.0, 0.0))
+        elif kind == "linear":
+            rows.append((left, chord, 0.0, 0.0))
+        else:
+            m, n = slopes[i], slopes[(i + 1) % len(slopes) if closed else i + 1]
+            rows.append((left, m, (3.0 * chord - 2.0 * m - n) / width, (m + n - 2.0 * chord) / width**2))
+    return rows
+
+
+def periodic_slopes(x: Sequence[float], y: Sequence[float], period: float) -> list[float]:
+    """The slopes at the knots of the periodic cubic spline: those with which its second derivative is smooth.
+
+    With the widths h and the slopes d of the chords,
+    h_i m_(i-1) + 2 (h_(i-1) + h_i) m_i + h_(i-1) m_(i+1) = 3 (h_i d_(i-1) + h_(i-1) d_i), round and round.
+    """
+    n = len(x)
+    h = [b - a for a, b in zip(x, [*x[1:], x[0] + period], strict=True)]
+    d = [(b - a) / width for a, b, width in zip(y, [*y[1:], y[0]], h, strict=True)]
+    below = h
+    middle = [2.0 * (h[i - 1] + h[i]) for i in range(n)]
+    above = [h[i - 1] for i in range(n)]
+    right = [3.0 * (h[i] * d[i - 1] + h[i - 1] * d[i]) for i in range(n)]
+    # All but the last slope as p + q (last slope); then the last equation.
+    edge = [0.0] * (n - 1)
+    edge[0] -= below[0]
+    edge[-1] -= above[n - 2]
+    p = _tridiagonal(below, middle, above, right[:-1])
+    q = _tridiagonal(below, middle, above, edge)
+    total = middle[-1] + below[-1] * q[-1] + above[-1] * q[0]
+    last = (right[-1] - below[-1] * p[-1] - above[-1] * p[0]) / total
+    return [*(a + b * last for a, b in zip(p, q, strict=True)), last]
+
+
+def _tridiagonal(
+    below: Sequence[float], middle: Sequence[float], above: Sequence[float], right: Sequence[float]
+) -> list[float]:
+    """The solution of a diagonally dominant system."""
+    pivots, found = [middle[0]], [right[0]]
+    for i in range(1, len(right)):
+        factor = below[i] / pivots[-1]
+        pivots.append(middle[i] - factor * above[i - 1])
+        found.append(right[i] - factor * found[-1])
+    found[-1] /= pivots[-1]
+    for i in range(len(right) - 2, -1, -1):
+        found[i] = (found[i] - above[i] * found[i + 1]) / pivots[i]
+    return found
+
+
+def _slopes(x: Sequence[float], y: Sequence[float]) -> list[float]:
+    """The slopes at the knots of the cubic spline without a period ("not-a-knot")."""
+    from ..support.extras import needed
+
+    with needed('a load of kind="cubic" over Y', "simulate"):
+        from scipy.interpolate import CubicSpline
+    found: list[float] = CubicSpline(x, y)(x, 1).tolist()
+    return found

@@ -1,0 +1,95 @@
+"""Loads that vary with the motion, as an integrator needs them: smooth between the kinks at which it stops.
+
+Between two kinks a table is one polynomial, which a step may follow a little beyond the kink that ends it; a
+user's function stays at the node. Nothing is held before the motion starts and after it has ended: then the
+load is that of the angle and the way of turning.
+"""
+
+from collections.abc import Callable
+from math import copysign, inf, nextafter, pi
+
+import numpy as np
+
+from ..loads.angles import dead_centres, passages
+from ..loads.load import FunctionOverTheta, Load, OverTheta, OverY, TableOverTheta
+from ..loads.table import polynomial
+
+TURN = 2.0 * pi
+AHEAD = 1e-9  # rad: which piece of a table follows an angle
+AHEAD_OF_Y = 1e-6  # rad: so far from a dead centre the slider has left its position
+
+Place = Callable[[float], tuple[float, ...]]  # crank angle -> Y and Y_wrt_theta
+
+
+class Held:
+    """A load as a function of (t, theta, omega)."""
+
+    def __init__(self, load: Load) -> None:
+        self.load = load
+        self.place: Place = lambda theta: (0.0, 0.0)
+        self._piece: Callable[[float], float] | None = None
+
+    def __call__(self, t: float, theta: float, omega: float) -> float:
+        """The load now."""
+        if self._piece is not None:
+            return self._piece(theta)
+        if isinstance(self.load, OverY):
+            Y, slope = self.place(theta)
+            return float(self.load(Y, slope if omega >= 0.0 else -slope))
+        assert isinstance(self.load, OverTheta)
+        return float(self.load(theta))
+
+    @property
+    def turns_with_the_slider(self) -> bool:
+        """True where the load jumps when the slider turns round."""
+        return isinstance(self.load, OverY) and self.load.inward is not None
+
+    def hold(self, theta: float, way: float) -> None:
+        """Hold the piece that lies ahead of an angle for a crank that turns one way."""
+        load = self.load
+        if isinstance(load, TableOverTheta) and load.table.kinks:
+            self._piece = _piece_of_table(load, theta + copysign(AHEAD, way))
+        elif isinstance(load, FunctionOverTheta) and load.angles:
+            self._piece = _piece_of_function(load, theta + copysign(AHEAD, way))
+        elif isinstance(load, OverY):
+            self._piece = self._piece_over_Y(load, theta + copysign(AHEAD_OF_Y, way), way)
+
+    def release(self) -> None:
+        """Hold nothing."""
+        self._piece = None
+
+    def _piece_over_Y(self, load: OverY, ahead: float, way: float) -> Callable[[float], float]:
+        Y, slope = self.place(ahead)
+        table = load.inward if load.inward is not None and slope * way < 0.0 else load.outward
+        piece = table.piece(Y)
+        row, origin = table.rows[piece], table.origin(piece)
+        return lambda theta: float(polynomial(row, self.place(theta)[0] - origin)[0])
+
+    def kinks(self, lengths: tuple[float, ...], branch: int) -> list[tuple[float, float]]:
+        """Angles of one period at which the load has a kink, and that period [rad]."""
+        load = self.load
+        if isinstance(load, TableOverTheta):
+            return [(angle, load.period) for angle in load.table.kinks]
+        if isinstance(load, FunctionOverTheta):
+            return [(angle, load.period) for angle in load.angles]
+        assert isinstance(load, OverY)
+        sides = [np.array([length]) for length in lengths]
+        angles = passages(load.positions(smooth=False), sides, branch)[0]
+        if self.turns_with_the_slider:
+            angles = np.append(angles, dead_centres(sides))
+        return [(angle, TURN) for angle in angles[np.isfinite(angles)].tolist()]
+
+
+def _piece_of_table(load: TableOverTheta, ahead: float) -> Callable[[float], float]:
+    table = load.table
+    reduced = table.reduced(ahead)
+    piece = table.piece(reduced)
+    row, origin = table.rows[piece], ahead - (reduced - table.origin(piece))
+    return lambda theta: float(polynomial(row, theta - origin)[0])
+
+
+def _piece_of_function(load: FunctionOverTheta, ahead: float) -> Callable[[float], float]:
+    nodes = load.nodes(ahead - 2.0 * load.period, ahead + 2.0 * load.period, smooth=False)
+    low = max(node for node in nodes if node <= ahead)
+    high = nextafter(min(node for node in nodes if node > ahead), -inf)
+    return lambda theta: float(load(min(max(theta, low), high)))

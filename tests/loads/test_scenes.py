@@ -1,0 +1,120 @@
+"""Loads that vary with the motion in scenes: files and points, grids, peaks, checks, plans."""
+
+import re
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from desaxe.scenes.json_schema import json_schema
+from desaxe.scenes.schema import SceneError
+
+SCENE = """
+outputs = ["T_in", "T_in_wrt_theta"]
+[mechanism]
+ec = [0.0, 0.01]
+AB = 0.04
+BC = 0.064
+[motion]
+theta = {{ start = 0, stop = "360 deg", num = 25 }}
+omega0 = 200.0
+[masses]
+m_slider = 0.8
+[loads]
+F_Y = {load}
+[[peak]]
+quantity = "T_in"
+[[check]]
+at = {{ ec = 0.01, theta = 1.0 }}
+printed = {{ T_in = "{printed}" }}
+"""
+ANGLES, FORCES = [0.0, 90.0, 180.0, 270.0], [0.0, -400.0, -50.0, 20.0]
+DESIGN = {"AB": 0.04, "BC": 0.064, "omega0": 200.0, "m_slider": 0.8}
+
+
+def write(folder, load):
+    path = folder / "press.toml"
+    right = dx.evaluate("T_in", theta=1.0, ec=0.01, F_Y=expected(), **DESIGN)
+    path.write_text(SCENE.format(load=load, printed=f"{right:.6g} N m"), "utf-8")
+    return path
+
+
+def expected():
+    return dx.over_theta([f"{angle} deg" for angle in ANGLES], FORCES, kind="linear")
+
+
+LOADS = {
+    "file": '{ over_theta = "press.csv", theta = "deg", value = "N", kind = "linear" }',
+    "points": '{ over_theta = [["0 deg", "0 N"], ["90 deg", -400], ["180 deg", -50], ["270 deg", "0.02 kN"]]'
+    ', kind = "linear" }',
+    "two lists": '{ over_theta = [0, 90, 180, 270], values = [0, -400, -50, 20], theta = "deg"'
+    ', kind = "linear" }',
+}
+
+
+@pytest.mark.parametrize("kind", LOADS)
+def test_a_scene_gives_what_the_calls_give(kind, tmp_path):
+    (tmp_path / "press.csv").write_text("\n".join(f"{a}, {f}" for a, f in zip(ANGLES, FORCES, strict=True)))
+    scene = dx.scene(write(tmp_path, LOADS[kind]))
+    assert scene.inputs["F_Y"](1.0) == pytest.approx(expected()(1.0))
+    found = scene.run()
+    theta = found.dataset.theta.values
+    grid = dx.grid(["T_in", "T_in_wrt_theta"], ec=[0.0, 0.01], theta=theta, F_Y=scene.inputs["F_Y"], **DESIGN)
+    for name in ("T_in", "T_in_wrt_theta"):
+        np.testing.assert_array_equal(found.dataset[name], grid[name])
+    peak = dx.peak("T_in", ec=np.array([0.0, 0.01]), F_Y=scene.inputs["F_Y"], **DESIGN)
+    np.testing.assert_allclose(found.peaks[0].dataset.value, peak["value"], rtol=1e-14)
+    assert found.checks[0].agrees
+    assert "load over theta" in str(dx.explain(scene))
+
+
+def test_over_Y_and_objects_in_a_mapping():
+    load = dx.over_Y([0.03, 0.06, 0.1], [-900, -200, -30], [-90, -20, -3])
+    base = {
+        "outputs": ["T_in"],
+        "mechanism": {"ec": 0.01, "AB": 0.04, "BC": 0.064},
+        "motion": {"theta": [0.5, 1.0, 4.0], "omega0": 200.0},
+    }
+    rows = [[0.03, -900, -90], [0.06, -200, -20], [0.1, -30, -3]]
+    written = dx.scene({**base, "loads": {"F_Y": {"over_Y": rows}}})
+    given = dx.scene({**base, "loads": {"F_Y": load}})
+    assert written == given
+    right = dx.evaluate(
+        "T_in", theta=np.array([0.5, 1.0, 4.0]), ec=0.01, AB=0.04, BC=0.064, omega0=200.0, F_Y=load
+    )
+    np.testing.assert_allclose(written.run().dataset.T_in, right, rtol=1e-14)
+
+
+REFUSED = {
+    '{ over_theta = "nowhere.csv" }': 'loads.F_Y.over_theta = "nowhere.csv": No such file',
+    "{ over_theta = [[0, 1], [1, 2, 3]] }": "points such as",
+    "{ over_theta = [0, 1] }": "points such as",
+    "{ over_theta = [[0, 1], [9, 2]] }": "the angles go over 9 rad",
+    "{ over_theta = [[0, 1], [1, 2]], step = 3 }": "loads.F_Y.step = 3.0: it has no place beside over_theta",
+    '{ start = 0, stop = 1, num = 3, kind = "linear" }': 'loads.F_Y.kind = "linear": it belongs to',
+    "{ start = 0, num = 3 }": "loads.F_Y.stop is missing",
+    "{ over = 3 }": "loads.F_Y.over = 3: unknown key",
+}
+
+
+@pytest.mark.parametrize("load", REFUSED)
+def test_what_is_no_load_is_refused(load, tmp_path):
+    path = write(tmp_path, load)
+    with pytest.raises(SceneError, match=re.escape(REFUSED[load])):
+        dx.scene(path)
+
+
+@pytest.mark.parametrize("call", [lambda scene: dx.compile(scene, "unwritten.py"), dx.explore])
+def test_a_page_and_a_module_refuse_what_they_cannot_hold(call, tmp_path):
+    scene = dx.scene(write(tmp_path, LOADS["points"]))
+    with pytest.raises((SceneError, TypeError), match=r"F_Y.*var"):
+        call(scene)
+
+
+def test_the_schema_knows_loads():
+    jsonschema = pytest.importorskip("jsonschema")
+    rules = json_schema()
+    scene = {"outputs": ["T_in"], "loads": {"F_Y": {"over_theta": "press.csv", "theta": "deg"}}}
+    jsonschema.validate(scene, rules)
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate({"loads": {"F_Y": {"over_phi": "press.csv"}}}, rules)

@@ -1,0 +1,91 @@
+"""Tables of loads: what they are between their points, and what is refused."""
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+import desaxe as dx
+
+TURN = 2 * np.pi
+
+
+@pytest.mark.parametrize("count", [2, 3, 4, 40])
+def test_the_periodic_spline_is_scipys(count):
+    random = np.random.default_rng(count)
+    x, y = np.sort(random.random(count)) * 6.0, random.normal(size=count)
+    right = CubicSpline(np.append(x, x[0] + TURN), np.append(y, y[0]), bc_type="periodic")
+    load = dx.over_theta(x, y) if count > 3 else dx.over_theta(x * 1.0, y)
+    at = random.uniform(-20.0, 20.0, 200)
+    scale = np.abs(right(at)).max()
+    np.testing.assert_allclose(load(at), right(at), atol=1e-12 * scale)
+    np.testing.assert_array_equal(load(at), [load(float(theta)) for theta in at])
+
+
+def test_a_table_repeats_after_its_period_whether_its_end_point_is_given_or_not():
+    x = np.linspace(0.0, 4 * np.pi, 9)
+    y = np.cos(x / 2)
+    whole, open_end = dx.over_theta(x, y, period=4 * np.pi), dx.over_theta(x[:-1], y[:-1], period=4 * np.pi)
+    assert whole == open_end
+    assert whole(1.0 + 4 * np.pi) == pytest.approx(whole(1.0))
+    assert whole(1.0 + TURN) != pytest.approx(whole(1.0))
+
+
+def test_over_Y_holds_its_ends_and_may_be_given_downwards():
+    up, down = dx.over_Y([0.1, 0.2, 0.4], [1.0, 3.0, 2.0]), dx.over_Y([0.4, 0.2, 0.1], [2.0, 3.0, 1.0])
+    assert up == down
+    np.testing.assert_allclose(up(np.array([0.0, 0.15, 0.3, 9.0])), [1.0, 2.0, 2.5, 2.0])
+
+
+def test_units():
+    load = dx.over_theta(["0 deg", "90 deg", "180 deg"], ["0 kN", "-2 kN", "0.1 kN"], kind="linear")
+    assert load(np.pi / 2) == -2000.0
+    torque = dx.over_theta([0.0, 1.0], ["1 N*m", "2 N*m"], kind="step")
+    with pytest.raises(ValueError, match=r"F_Y: the load is in N\*m, N is wanted"):
+        dx.evaluate("T_in", theta=0.0, F_Y=torque, ec=0.0, AB=0.1, BC=0.3)
+
+
+@pytest.mark.parametrize(
+    ("angles", "values", "more", "message"),
+    [
+        ([0, 1, 1], [1, 2, 3], {}, "the angles must ascend, but 1 follows 1"),
+        ([0, 1], [1, 2, 3], {}, "2 angles and 3 values"),
+        ([0], [1], {}, "at least two points"),
+        ([0, 7], [1, 2], {}, "the angles go over 7 rad"),
+        ([0, 3, TURN], [1, 2, 3], {}, "at the end of the period the value is 3.0, but 1.0"),
+        ([0, np.nan], [1, 2], {}, "angles: nan"),
+        ([0, 1], [1, np.inf], {}, "values: inf"),
+        ([0, 1], [1, 2], {"kind": "quadratic"}, "kind = 'quadratic': it is one of cubic, linear, step"),
+        ([0, 1], [1, 2], {"period": -1.0}, "period = -1.0"),
+        ([0, 1], [1, 2], {"derivative": np.cos}, "belong to a function"),
+        ([0, 1], ["a", "b"], {}, "values"),
+        ([0, 1], None, {}, "values is missing"),
+        (np.sin, [1, 2], {}, "beside a function"),
+        ("0 deg", [1], {}, "a list or array"),
+    ],
+)
+def test_tables_that_are_no_periodic_function_are_refused(angles, values, more, message):
+    with pytest.raises((ValueError, TypeError), match=message):
+        dx.over_theta(angles, values, **more)
+
+
+def test_a_wide_gap_under_a_spline_is_warned_of():
+    with pytest.warns(dx.LoadWarning, match="a gap of"):
+        dx.over_theta(np.linspace(0.0, 1.0, 11), np.ones(11))
+    dx.over_theta(np.linspace(0.0, 1.0, 11), np.ones(11), kind="linear")
+
+
+def test_files(tmp_path):
+    path = tmp_path / "press.csv"
+    path.write_text("angle; force; note\n# a remark\n0;0;x\n90;-400;y\n\n180;-50;z\n360;0;w\n", "utf-8")
+    load = dx.over_theta.read(path, theta="deg", value="N", kind="linear")
+    assert load == dx.over_theta(["0 deg", "90 deg", "180 deg"], ["0 N", "-400 N", "-50 N"], kind="linear")
+    path.write_text("Y out in\n10 1 2\n20 3 4\n", "utf-8")
+    assert dx.over_Y.read(path, Y="mm", value="N") == dx.over_Y(["10 mm", "20 mm"], ["1 N", "3 N"], [2, 4])
+    path.write_text("0, 1\n1, one\n", "utf-8")
+    with pytest.raises(ValueError, match=r"press.csv, line 2: 2 or more numbers"):
+        dx.over_theta.read(path)
+    path.write_text("0, 1\n9, 2\n", "utf-8")
+    with pytest.raises(ValueError, match=r"press.csv: over_theta: the angles go over 9 rad"):
+        dx.over_theta.read(path)
+    with pytest.raises(OSError, match="nowhere"):
+        dx.over_theta.read(tmp_path / "nowhere.csv")

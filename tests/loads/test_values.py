@@ -1,0 +1,152 @@
+"""Values and total derivatives under loads that vary with the motion, against the free bodies."""
+
+import pickle
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+from scipy.interpolate import CubicSpline
+
+import desaxe as dx
+from tests.papers import free_bodies, loop
+
+DESIGN = {"ec": 0.01, "AB": 0.04, "BC": 0.064, "omega0": 200.0, "alpha": 30.0}
+BODIES = {"m_crank": 0.3, "m_rod": 0.5, "m_slider": 0.8, "I_rod": 2e-4, "g_Y": -9.81}
+TURN = 2 * np.pi
+ANGLES = np.array([0.0, 0.7, 1.9, 2.4, 3.9, 5.1])
+FORCES = np.array([0.0, -900.0, -350.0, 120.0, 60.0, -40.0])
+POSITIONS, OUTWARD, INWARD = [0.02, 0.05, 0.08, 0.1], [-900, -200, -50, -30], [-900, -400, -150, -30]
+
+
+def spline():
+    return CubicSpline(np.append(ANGLES, TURN), np.append(FORCES, 0.0), bc_type="periodic")
+
+
+def polynomial(table, x):
+    """A SciPy table at a high-precision number."""
+    i = int(np.searchsorted(table.x, float(x), side="right")) - 1
+    return sum(mpf(c) * (x - mpf(table.x[i])) ** (3 - k) for k, c in enumerate(table.c[:, i]))
+
+
+def over_theta(motion):
+    return polynomial(spline(), mpf(motion.theta))
+
+
+def over_Y(motion):
+    with mp.workdps(2 * loop.DIGITS):
+        Y, V = loop.slider(motion)[1], loop.rate(lambda t: loop.slider(motion, t)[1], 1)
+        i = int(np.searchsorted(POSITIONS, float(Y), side="right")) - 1
+        values = OUTWARD if V > 0 else INWARD
+        share = (Y - mpf(POSITIONS[i])) / (mpf(POSITIONS[i + 1]) - mpf(POSITIONS[i]))
+        return values[i] + share * (values[i + 1] - values[i])
+
+
+LOADS = {
+    "table": (lambda: dx.over_theta(ANGLES, FORCES), over_theta),
+    "function": (lambda: dx.over_theta(spline(), lambda theta: spline()(theta, 1)), over_theta),
+    "over Y": (lambda: dx.over_Y(POSITIONS, OUTWARD, INWARD), over_Y),
+}
+
+
+def solved(load, theta, **changed):
+    """T_in and N_C of the free bodies under a load of that instant."""
+    motion = loop.Motion(theta=theta, **DESIGN)._replace(**changed)
+    return free_bodies.solve(motion, free_bodies.Bodies(F_Y=load(motion), **BODIES))
+
+
+@pytest.mark.parametrize("kind", LOADS)
+@pytest.mark.parametrize("theta", [0.9, 4.4])
+def test_forces_and_total_derivatives_are_those_of_the_free_bodies(kind, theta):
+    load, at = LOADS[kind][0](), LOADS[kind][1]
+    names = [f"{name}{by}" for name in ("T_in", "N_C") for by in ("", "_wrt_theta", "_wrt_AB")]
+    found = dx.evaluate(names, theta=theta, F_Y=load, **DESIGN, **BODIES)
+    right = solved(at, theta)
+    with mp.workdps(2 * loop.DIGITS):
+        h = mpf(10) ** -12
+        for name in ("T_in", "N_C"):
+            assert abs(found[name] - right[name]) <= 1e-12 * abs(right[name])
+            for p, value in (("theta", theta), ("AB", DESIGN["AB"])):
+                ahead, behind = (solved(at, **{"theta": theta, p: mpf(value) + s * h})[name] for s in (1, -1))
+                slope = (ahead - behind) / (2 * h)
+                assert abs(found[f"{name}_wrt_{p}"] - slope) <= 1e-11 * abs(slope)
+
+
+def test_arrays_grids_and_numbers_agree():
+    load, theta = dx.over_Y(POSITIONS, OUTWARD, INWARD), np.linspace(0.1, 12.0, 7)
+    ec = np.array([0.0, 0.01])
+    fixed = {name: value for name, value in {**DESIGN, **BODIES}.items() if name != "ec"}
+    grid = dx.grid(["T_in_wrt_theta", "T_in"], theta=theta, ec=ec, F_Y=load, **fixed)
+    for i, j in np.ndindex(grid.T_in.shape):
+        point = dx.evaluate(["T_in_wrt_theta", "T_in"], theta=theta[i], ec=ec[j], F_Y=load, **fixed)
+        assert point["T_in"] == pytest.approx(grid.T_in.values[i, j], rel=1e-12)
+        assert point["T_in_wrt_theta"] == pytest.approx(grid.T_in_wrt_theta.values[i, j], rel=1e-12)
+
+
+def test_a_labelled_array_is_a_load_over_theta():
+    xarray = pytest.importorskip("xarray")
+    theta, ec = np.linspace(0, TURN, 73), [0.0, 0.01]
+    fixed = {name: value for name, value in {**DESIGN, **BODIES}.items() if name != "ec"}
+    values = spline()(theta)
+    labelled = xarray.DataArray(values, dims="theta", coords={"theta": theta})
+    grid = dx.grid(["T_in"], theta=theta, ec=ec, F_Y=labelled, **fixed)
+    alone = dx.evaluate("T_in", theta=theta, ec=0.01, F_Y=values, **fixed)
+    assert grid.T_in.dims == ("theta", "ec")
+    np.testing.assert_allclose(grid.T_in.sel(ec=0.01), alone, rtol=1e-12)
+    part = dx.grid("T_in", theta=theta[:20], ec=ec, F_Y=labelled[:20], **fixed)  # no whole turn
+    np.testing.assert_allclose(part.T_in.sel(ec=0.01), alone[:20], rtol=1e-12)
+    with pytest.raises(ValueError, match="no whole turn"):
+        dx.grid("T_in", theta=theta, ec=ec, F_Y=labelled[:20], **fixed)
+    with pytest.raises(ValueError, match="F_Y has the dimensions theta, ec"):
+        dx.grid("T_in", theta=theta, ec=ec, F_Y=labelled.expand_dims(ec=2, axis=1), **fixed)
+
+
+def test_at_a_kink_the_branch_to_the_right_holds():
+    held = dx.over_theta([1.0, 2.0], [5.0, 7.0], kind="step")
+    bent = dx.over_theta([1.0, 2.0], [5.0, 7.0], kind="linear")
+    rest = {"ec": 0.0, "AB": 0.1, "BC": 0.3}
+    assert [dx.evaluate("F_C_Y", theta=2.0, F_Y=load, **rest) for load in (held, bent)] == [-7.0, -7.0]
+    assert held(np.nextafter(2.0, 0.0)) == 5.0
+    assert held(1.0 + TURN) == held(1.0 - TURN) == 5.0
+    slope = dx.evaluate("F_C_Y_wrt_theta", theta=2.0, F_Y=bent, **rest)
+    assert slope == pytest.approx(2.0 / (TURN - 1.0))  # falls back to 5 at 1 + 2 pi
+
+
+def test_the_way_of_the_slider_decides_and_a_crank_that_turns_back_goes_the_other_way():
+    load = dx.over_Y([0.0, 1.0], [1.0, 1.0], [2.0, 2.0])
+    rest = {"ec": 0.0, "AB": 0.1, "BC": 0.3, "F_Y": load}
+    at = {s: [-dx.evaluate("F_C_Y", theta=t, omega0=s, **rest) for t in (1.0, 4.0)] for s in (1.0, -1.0)}
+    assert at == {1.0: [2.0, 1.0], -1.0: [1.0, 2.0]}
+    dead = [-dx.evaluate("F_C_Y", theta=0.0, omega0=s, **rest) for s in (1.0, -1.0)]
+    assert dead == [2.0, 1.0]  # what follows as theta grows
+
+
+def test_functions_of_numbers_and_without_derivative():
+    import math
+
+    fixed = {**DESIGN, **BODIES}
+    angles = np.array([1.0, 2.0])
+    found = dx.evaluate("T_in", theta=angles, F_Y=lambda theta: 50.0 * math.sin(theta), **fixed)
+    np.testing.assert_allclose(found, dx.evaluate("T_in", theta=angles, F_Y=50 * np.sin(angles), **fixed))
+    assert dx.evaluate("V_C_wrt_theta", theta=1.0, F_Y=np.sin, **fixed)
+    with pytest.raises(ValueError, match="T_in_wrt_theta: it needs the slope of F_Y"):
+        dx.evaluate("T_in_wrt_theta", theta=1.0, F_Y=np.sin, **fixed)
+    with pytest.raises(TypeError, match=r"F_Y: a load is a number, .* takes \(t, theta, omega\)"):
+        dx.evaluate("T_in", theta=1.0, F_Y=lambda t, theta, omega: 0.0, **fixed)
+    with pytest.raises(ValueError, match="F_Y: the function gave nan at theta = 1"):
+        dx.evaluate("T_in", theta=1.0, F_Y=lambda theta: math.nan, **fixed)
+    with pytest.raises(TypeError, match="m_slider: a number is wanted"):
+        dx.evaluate("T_in", theta=1.0, **(fixed | {"m_slider": np.sin}))
+
+
+def test_an_infeasible_angle_keeps_its_status():
+    load = dx.over_Y([0.0, 1.0], [1.0, 2.0])
+    short = {"ec": 0.0, "AB": 0.3, "BC": 0.1, "omega0": 1.0, "F_Y": load}
+    found = dx.evaluate(["T_in", "status"], theta=np.array([0.1, 1.5]), **short)
+    assert found["status"].tolist() == [0, 1]
+    assert np.isnan(found["T_in"]).tolist() == [False, True]
+
+
+def test_loads_compare_by_content_and_travel_by_pickle():
+    for load in (dx.over_theta(ANGLES, FORCES), dx.over_Y(POSITIONS, OUTWARD, INWARD), dx.over_theta(np.sin)):
+        assert pickle.loads(pickle.dumps(load)) == load
+    assert dx.over_theta(ANGLES, FORCES) != dx.over_theta(ANGLES, FORCES, kind="linear")
