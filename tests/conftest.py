@@ -1,13 +1,30 @@
-"""Compiled kernels of a test run live in a folder of their own, shared by its workers, gone at its end."""
+"""Options and fixtures of all tests.
+
+Compiled kernels of a test run live in a folder of their own, shared by its workers, gone at its end.
+
+By default random tests draw few cases and tests marked `thorough` are left out; `--thorough` runs just
+those two kinds, with many cases: `.ci/run` does both.
+"""
 
 import os
 import shutil
 import tempfile
 
+import pytest
+
+from tests.effort import VARIABLE as THOROUGH
+from tests.ways import take_way
+
 VARIABLE = "DESAXE_CACHE_DIR"
 
 
+def pytest_addoption(parser):
+    parser.addoption("--thorough", action="store_true", help="run tests marked thorough or sampled, in full")
+
+
 def pytest_configure(config):
+    if config.getoption("--thorough"):
+        os.environ[THOROUGH] = "1"
     if not hasattr(config, "workerinput"):
         config.kernel_folder = os.environ[VARIABLE] = tempfile.mkdtemp(prefix="desaxe-tests-")
 
@@ -15,3 +32,25 @@ def pytest_configure(config):
 def pytest_unconfigure(config):
     if hasattr(config, "kernel_folder"):
         shutil.rmtree(config.kernel_folder, ignore_errors=True)
+
+
+def pytest_collection_modifyitems(config, items):
+    """Keep what belongs to this kind of run."""
+
+    def belongs(item):
+        thorough = item.get_closest_marker("thorough") is not None
+        if config.getoption("--thorough"):
+            return thorough or item.get_closest_marker("sampled") is not None
+        return not thorough
+
+    left_out = [item for item in items if not belongs(item)]
+    if left_out:
+        items[:] = [item for item in items if belongs(item)]
+        config.hook.pytest_deselected(items=left_out)
+
+
+@pytest.fixture(params=["plain", "compiled"])
+def way(request, monkeypatch):
+    """Both ways that arrays can take, whatever their size."""
+    take_way(monkeypatch, request.param)
+    return request.param

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from tests.library.ways import take_way
+from tests.ways import take_way
 
 TURN = np.linspace(0.0, 2.0 * np.pi, 65)
 LAST = np.arcsin(0.75)  # of AB = 0.2, BC = 0.1, ec = -0.05: the rod just reaches

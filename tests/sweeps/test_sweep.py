@@ -15,7 +15,7 @@ import xarray as xr
 
 import desaxe as dx
 from desaxe.support.locks import locked
-from tests.library.ways import take_way
+from tests.ways import take_way
 
 THETA = np.linspace(0.0, 2.0 * np.pi, 40)
 INPUTS = {"theta": THETA, "ec": [-0.05, 0.0, 0.9], "AB": 0.2, "BC": [0.1, 0.5], "omega0": 3.0}

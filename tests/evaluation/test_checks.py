@@ -1,0 +1,277 @@
+"""What `desaxe.evaluate` refuses, what a bad element does, and units."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from tests.ways import POINT, SIZES, close, columns, take_way
+
+# ---- status and bad elements ---------------------------------------------------------------------
+
+CASES = [  # theta, ec, AB, BC, alpha, status
+    (1.0, 0.01, 0.125, 0.35, 0.0, 0),
+    (1.5, 0.0, 0.5, 0.35, 0.0, 1),
+    (0.0, 0.35, 0.125, 0.35, 0.0, 2),
+    (math.pi / 2, 0.225, 0.125, 0.35, 0.0, 1),  # 0.35 - 0.125 - 0.225 is -2.8e-17 in doubles
+    (2.0, 0.01, 0.125, 0.35, -1e5, 3),
+    (math.nan, 0.01, 0.125, 0.35, 0.0, 4),
+    (1.0, math.inf, 0.125, 0.35, 0.0, 4),
+    (1.0, 0.01, -0.125, 0.35, 0.0, 4),
+    (1.0, 0.01, 0.125, 0.0, 0.0, 4),
+    (1.0, 0.01, 0.125, 0.35, -math.inf, 4),
+]
+CASE_INPUTS = ("theta", "ec", "AB", "BC", "alpha")
+CODES = [case[-1] for case in CASES]
+
+
+def cases():
+    """The cases as columns."""
+    table = np.array(CASES)
+    return {name: table[:, i].copy() for i, name in enumerate(CASE_INPUTS)} | {"omega0": 157.0}
+
+
+def test_every_status(way):
+    assert dx.evaluate("status", **cases()).tolist() == CODES
+
+
+def test_a_status_is_a_small_integer(way):
+    assert dx.evaluate("status", **cases()).dtype == np.int8
+
+
+@pytest.mark.parametrize("case", [case for case in CASES if case[-1] < 4], ids=str)
+def test_the_status_of_one_point(case):
+    *values, code = case
+    point = dict(zip(CASE_INPUTS, values, strict=True))
+    found = dx.evaluate("status", **point, omega0=157.0)
+    assert (type(found), found) == (int, code)
+
+
+def test_a_status_without_a_motion():
+    assert dx.evaluate("status", theta=1.0, ec=0.0, AB=0.125, BC=0.35) == 0
+
+
+def test_a_point_that_is_not_ok_has_no_finite_speed(way):
+    found = dx.evaluate(["V_C", "status"], **cases())
+    assert np.isfinite(found["V_C"]).tolist() == [code == 0 for code in CODES]
+
+
+def test_a_rate_that_cannot_be_computed_is_nan(way):
+    """But at a change point, where it has no bound."""
+    found = dx.evaluate("V_C", **cases())
+    assert np.isnan(found).tolist() == [code not in (0, 2) for code in CODES]
+
+
+def test_a_position_that_cannot_be_computed_is_nan(way):
+    """The last case is a bad acceleration, which no position needs."""
+    found = dx.evaluate(["Y", "status"], **cases())
+    assert np.isnan(found["Y"][:-1]).tolist() == [code in (1, 4) for code in CODES[:-1]]
+
+
+def test_where_it_has_stalled_the_position_stays_finite(way):
+    found = dx.evaluate(["Y", "phi", "status"], **cases())
+    assert np.isfinite(found["Y"][4])
+    assert np.isfinite(found["phi"][4])
+
+
+INPUTS = ("theta", "ec", "AB", "BC", "omega0", "alpha")
+BAD = {"theta": math.inf, "ec": math.nan, "AB": -1e-9, "BC": 0.0, "omega0": math.nan, "alpha": math.inf}
+ASKED = ["Y", "V_C", "a_C", "omega", "margin", "status"]
+
+
+def all_columns(**changed):
+    theta, ec = columns(4)
+    given = {"theta": theta, "ec": ec, "alpha": 0.0, **SIZES} | changed
+    return {name: np.broadcast_to(value, 4).astype(float) for name, value in given.items()}
+
+
+@pytest.mark.parametrize("name", INPUTS)
+def test_a_bad_element_disturbs_no_other(way, name):
+    good = all_columns()
+    bad = good[name].copy()
+    bad[2] = BAD[name]
+    before, after = dx.evaluate(ASKED, **good), dx.evaluate(ASKED, **good | {name: bad})
+    assert all(np.array_equal(np.delete(before[q], 2), np.delete(after[q], 2)) for q in ASKED)
+    assert np.isnan(after["V_C"][2])
+    assert after["status"][2] == 4
+
+
+@pytest.mark.parametrize("name", INPUTS)
+def test_both_ways_agree_on_a_bad_element(monkeypatch, name):
+    inputs = all_columns()
+    inputs[name][2] = BAD[name]
+    found = []
+    for way in ("plain", "compiled"):
+        take_way(monkeypatch, way)
+        found.append(dx.evaluate(ASKED, **inputs))
+    assert all(close(found[0][q], found[1][q]) for q in ASKED)
+
+
+def test_a_bad_speed_is_nan_itself(way):
+    found = dx.evaluate("omega", omega=np.array([2.0, math.inf, math.nan]))
+    assert np.isnan(found).tolist() == [False, True, True]
+
+
+# ---- what is refused -----------------------------------------------------------------------------
+
+REFUSED = [
+    ("V_c", {}, ValueError, "unknown quantity 'V_c'; did you mean V_C, "),
+    ("velocity", {}, ValueError, r"unknown quantity 'velocity'.*desaxe\.quantities\(\)"),
+    ("V_C_wrt_omega", {}, ValueError, "'V_C_wrt_omega' needs a state: give omega= instead of omega0="),
+    (
+        "V_C",
+        {"theta": None},
+        TypeError,
+        r"V_C: theta is missing \(needed: theta, ec, AB, BC, omega0(, alpha)?\)",
+    ),
+    ("V_C", {"omega0": None}, TypeError, "omega0 is missing"),
+    ("V_C", {"AB": -0.1}, ValueError, re.escape("AB = -0.1: it must be a finite length >= 0")),
+    ("V_C", {"BC": 0}, ValueError, "BC = 0: it must be a finite length > 0"),
+    ("V_C", {"BC": -0.35}, ValueError, "BC = -0.35: it must be a finite length > 0"),
+    ("V_C", {"theta": math.nan}, ValueError, "theta = nan: it must be a finite number"),
+    ("V_C", {"omega0": -math.inf}, ValueError, "omega0 = -inf: it must be a finite number"),
+    ("V_C", {"ec": np.float32(np.inf)}, ValueError, "ec = .*inf.*: it must be a finite number"),
+    ("V_C", {"theta": 10**400}, ValueError, "theta = .*: it must be a finite number"),
+    ("V_C", {"theta": 1j}, TypeError, "theta: real numbers are wanted"),
+    ("V_C", {"theta": True}, TypeError, "theta: real numbers are wanted, got an array of bool"),
+    ("V_C", {"theta": np.array([True])}, TypeError, "theta: .*, got an array of bool"),
+    ("V_C", {"theta": np.array([1j])}, TypeError, "theta: .*, got an array of complex128"),
+    ("V_C", {"theta": [None]}, TypeError, "theta: real numbers are wanted"),
+    ("V_C", {"AB": np.array([-1.0, -2.0])}, ValueError, "AB: every value is bad, the first is -1.0; "),
+    ("V_C", {"ec": np.full(3, np.nan)}, ValueError, "ec: every value is bad, the first is nan"),
+    ("V_C", {"BC": np.array(0.0)}, ValueError, "BC: every value is bad, .* it must be a finite length > 0"),
+    ("V_C", {"branch": 0}, ValueError, r"branch = 0: it is \+1 or -1"),
+    ("V_C", {"branch": 2}, ValueError, r"branch = 2: it is \+1 or -1"),
+    ("V_C", {"branch": "1"}, ValueError, r"branch = '1': it is \+1 or -1"),
+    ("V_C", {"branch": [1, -1]}, (TypeError, ValueError), r"branch = \[1, -1\]: it is \+1 or -1"),
+    ("V_C", {"branch": np.array([1, -1])}, (TypeError, ValueError), "branch = .*: it is"),
+    (
+        "V_C",
+        {"accuracy": "perfect"},
+        ValueError,
+        "accuracy = 'perfect': it is one of fast, standard, extended",
+    ),
+    ("V_C", {"omega": 3.0}, ValueError, r"give omega0= \(the law\) or omega= \(a state\), not both"),
+    ("V_C", {"threads": 0}, ValueError, "threads = 0: a whole number, at least 1"),
+    (["V_C", 7], {}, TypeError, "the name of a quantity is a str, got 7"),
+    ("V_C", {"length": 3.0}, TypeError, "length"),
+]
+
+
+@pytest.mark.parametrize(("names", "change", "error", "complaint"), REFUSED)
+def test_a_number_that_is_wrong_is_refused(names, change, error, complaint):
+    with pytest.raises(error, match=complaint):
+        dx.evaluate(names, **POINT | change)
+
+
+@pytest.mark.parametrize(("names", "change", "error", "complaint"), REFUSED)
+def test_a_wrong_number_beside_arrays_is_refused(names, change, error, complaint):
+    arrays = POINT | {"alpha": np.array([0.0, 1.0])}
+    with pytest.raises(error, match=complaint):
+        dx.evaluate(names, **arrays | change)
+
+
+def test_shapes_that_do_not_broadcast_are_all_named():
+    with pytest.raises(ValueError, match=r"do not broadcast together: theta \(3,\), ec \(4,\)"):
+        dx.evaluate("V_C", theta=np.zeros(3), ec=np.zeros(4), **SIZES)
+
+
+def test_a_law_and_a_state_at_once_are_refused_after_a_good_state_too():
+    state = POINT | {"omega0": None, "omega": 3.0}
+    dx.evaluate("V_C", **state)
+    with pytest.raises(ValueError, match="not both"):
+        dx.evaluate("V_C", **state | {"omega0": 157.0})
+
+
+def test_positions_are_named():
+    with pytest.raises(TypeError):
+        dx.evaluate("V_C", 1.1, 0.01, 0.125, 0.35, 157.0)
+
+
+# ---- units ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "number"),
+    [
+        ("ec", "10 mm", 0.01),
+        ("ec", "10mm", 0.01),
+        ("ec", "-0.5 inch", -0.0127),
+        ("AB", "1.25e-1 m", 0.125),
+        ("theta", "60deg", math.pi / 3),
+        ("theta", "-90 degree", -math.pi / 2),
+        ("theta", "1.5", 1.5),
+        ("omega0", "1500rpm", 50 * math.pi),
+        ("omega0", "3 rad/s", 3.0),
+        ("alpha", "2 rad/s^2", 2.0),
+    ],
+)
+def test_a_text_may_carry_its_unit(name, text, number):
+    found = dx.evaluate("a_C", **POINT | {name: text})
+    assert math.isclose(found, dx.evaluate("a_C", **POINT | {name: number}), rel_tol=1e-12)
+
+
+def test_a_quantity_of_pint():
+    length = dx.units.registry().Quantity(10, "mm")
+    assert math.isclose(dx.evaluate("Y", **POINT | {"ec": length}), dx.evaluate("Y", **POINT), rel_tol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "number"),
+    [("350 mm", 0.35), ("35 cm", 0.35), ("0.03 m", 0.03), ("220 mm", 0.22), ("3e2 mm", 0.3)],
+)
+def test_text_is_the_double_of_the_si_number(text, number):
+    assert dx.evaluate("margin", ec=0.0, AB=0.0, BC=text) == number
+
+
+def test_a_list_of_text():
+    found = dx.evaluate("Y", **POINT | {"theta": ["0 deg", "90 deg"]})
+    assert np.allclose(found, dx.evaluate("Y", **POINT | {"theta": np.radians([0, 90])}), rtol=1e-14)
+
+
+def test_an_array_of_pint():
+    angles = dx.units.registry().Quantity([0, 90, 180], "deg")
+    found = dx.evaluate("Y", **POINT | {"theta": angles})
+    assert np.allclose(found, dx.evaluate("Y", **POINT | {"theta": np.radians([0, 90, 180])}), rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "complaint"),
+    [
+        ("ec", "3 kg", "ec = '3 kg': it must be a quantity in m"),
+        ("theta", "3 mm", "theta = '3 mm': it must be a quantity in rad"),
+        ("AB", "-10 mm", r"AB = -0\.01: it must be a finite length >= 0"),
+        ("ec", "ten", "ec = 'ten': it must be a number, or a number with a unit"),
+        ("ec", "", "ec = ''"),
+        ("omega0", "25 Hz", "omega0 = '25 Hz': it must be a quantity in rad/s, such as \"1500 rpm\""),
+        ("omega0", "1500 min^-1", "it must be a quantity in rad/s"),
+        ("theta", "60 %", "it must be a quantity in rad"),
+        ("theta", "1,5 rad", "it must be a number, or a number with a unit"),
+        ("theta", "nan", "theta = nan: it must be a finite number"),
+    ],
+)
+def test_a_unit_that_does_not_fit_is_refused(name, text, complaint):
+    with pytest.raises(ValueError, match=complaint):
+        dx.evaluate("V_C", **POINT | {name: text})
+
+
+@pytest.mark.parametrize(
+    "name", ["V_C_wrt_alpha", "omega_BC_wrt_alpha", "V_C_wrt_theta_alpha", "a_C_wrt_alpha_alpha"]
+)
+def test_a_derivative_that_a_state_makes_zero_is_nan_without_a_mechanism(name):
+    """Zero would pretend to be a derivative."""
+    state = {"theta": 1.57, "AB": 0.125, "BC": 0.35, "omega": 10.0}
+    assert dx.evaluate(name, ec=0.0, **state) == 0.0
+    assert math.isnan(dx.evaluate(name, ec=0.3, **state))
+    assert np.isnan(dx.evaluate(name, ec=[0.0, 0.3], **state)).tolist() == [False, True]
+
+
+def test_a_derivative_that_constant_speed_makes_zero_is_nan_without_a_mechanism(way):
+    design = {"theta": [1.57, 1.57], "AB": 0.125, "BC": 0.35, "omega0": 10.0, "ec": [0.0, 0.3]}
+    assert np.isnan(dx.evaluate("V_C_wrt_omega0_omega0", **design)).tolist() == [False, True]
+
+
+def test_a_derivative_of_the_crank_alone_needs_no_mechanism():
+    assert dx.evaluate("V_B_X_wrt_alpha", theta=1.57, AB=0.125, omega=10.0) == 0.0

@@ -1,0 +1,83 @@
+"""Every quantity and sensitivity at generic points, against the truth.
+
+Errors are at most 1e-13 of the value; where the value is so sensitive to its inputs that 8 ulp x (1 + sum of
+condition numbers), the promise, is more than that, it is the bound.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from desaxe.oracle.truth import LAW, STATE, all_names, conditions, relative_error, truth_all
+from tests.points import draw
+
+PROMISE = 8 * 2.0**-52
+
+
+def names_for(point):
+    """Every name that exists for this point."""
+    return all_names(STATE if "omega" in point else LAW)
+
+
+def is_right(name, value, exact, point):
+    """Whether a value is as near to the truth as it must be; an infinite limit at rest may be NaN."""
+    if math.isinf(exact):
+        return math.isnan(value) or value == exact
+    error = relative_error(value, exact)
+    return error <= 1e-13 or error <= PROMISE * (1 + conditions(name, **point))
+
+
+def misses(values, point):
+    """The names whose values are not right, with values and truth."""
+    exact = truth_all(values, **point)
+    wrong = (name for name, value in values.items() if not is_right(name, value, exact[name], point))
+    return {name: (values[name], float(exact[name])) for name in wrong}
+
+
+GEOMETRIES = ("generic", "branch -1", "long crank", "very long crank", "concentric")
+MOTIONS = ("backwards", "steady", "speeding up", "slowing down", "from rest", "at rest")
+STATES = ("state", "state at rest", "state that starts")
+
+
+@pytest.mark.parametrize("kind", GEOMETRIES)
+def test_a_hundred_points(kind):
+    for point in draw(kind, 100):
+        assert not misses(dx.evaluate(names_for(point), **point), point), point
+
+
+@pytest.mark.parametrize("kind", [*MOTIONS, *STATES])
+def test_motions(kind):
+    for point in draw(kind, 30):
+        assert not misses(dx.evaluate(names_for(point), **point), point), point
+
+
+def test_generic_points_are_generic():
+    """The promise does not excuse much: nearly all of these values are held to 1e-13."""
+    point = next(draw("generic", 1))
+    loose = [name for name in names_for(point) if conditions(name, **point) > 50]
+    assert len(loose) < 12
+
+
+@pytest.mark.parametrize("kind", ["generic", "concentric", "state"])
+def test_a_kernel_is_as_right_as_a_point(kind):
+    """The same through the compiled loop, which has a sine and cosine of its own."""
+    points = list(draw(kind, 50))
+    columns = {name: np.tile([point[name] for point in points], 50) for name in points[0] if name != "branch"}
+    answers = dx.evaluate(names_for(points[0]), **columns, branch=points[0]["branch"])
+    for index, point in enumerate(points):
+        values = {name: float(column[index]) for name, column in answers.items()}
+        assert not misses(values, point), point
+
+
+def test_an_array_agrees_with_its_elements():
+    points = list(draw("generic", 20))
+    columns = {name: np.array([point[name] for point in points]).reshape(4, 5) for name in LAW}
+    names = names_for(points[0])
+    answers = dx.evaluate(names, **columns)
+    singles = [dx.evaluate(names, **point) for point in points]
+    for name in names:
+        expected = np.reshape([single[name] for single in singles], (4, 5))
+        np.testing.assert_allclose(answers[name], expected, rtol=1e-11, err_msg=name)
+        assert dx.evaluate(name, **points[0]) == pytest.approx(singles[0][name], rel=1e-11)

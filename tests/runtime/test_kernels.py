@@ -1,0 +1,212 @@
+"""The two ways of arrays agree; threads, far angles, states; kernels on disk."""
+
+import math
+import os
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+
+import numpy as np
+import pytest
+import xarray
+
+import desaxe as dx
+from desaxe.evaluation import arrays as _arrays
+from desaxe.mechanism.program import Variant
+from desaxe.runtime import cache as _cache
+from desaxe.runtime import interpreted as _few_points
+from desaxe.runtime import kernels as _kernels
+from tests.ways import POINT, SIZES, close, columns, take_way
+
+# ---- both ways, threads, far angles, a state -----------------------------------------------------
+
+
+@pytest.mark.parametrize("size", [_few_points.BREAK_EVEN - 1, _few_points.BREAK_EVEN])
+def test_both_ways_give_the_same(monkeypatch, size):
+    theta, ec = columns(size)
+    found = []
+    for way in ("plain", "compiled"):
+        take_way(monkeypatch, way)
+        found.append(dx.evaluate(["Y", "V_C", "status"], theta=theta, ec=ec, **SIZES))
+    assert all(close(found[0][name], found[1][name]) for name in found[0])
+
+
+def test_points_asked_for_again_and_again_are_compiled(monkeypatch):
+    asked = []
+    monkeypatch.setattr(_few_points, "_ASKED", Counter())
+    monkeypatch.setattr(_few_points, "is_ready", lambda key: False)
+    monkeypatch.setattr(_arrays, "run_in_blocks", lambda *arguments: asked.append(arguments))
+    theta, ec = columns(_few_points.BREAK_EVEN // 3)
+    for calls in (0, 0, 0, 1):
+        dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)
+        assert len(asked) == calls
+
+
+def test_labelled_arrays_of_other_dimensions_are_refused():
+    theta, ec = xarray.DataArray([0.1, 0.2], dims="t"), xarray.DataArray([0.0, 0.01], dims="e")
+    with pytest.raises(ValueError, match=r"theta \('t',\), ec \('e',\); use grid"):
+        dx.evaluate("V_C", **POINT | {"theta": theta, "ec": ec})
+    assert dx.evaluate("V_C", **POINT | {"theta": theta}).shape == (2,)
+
+
+def test_a_masked_array_is_refused():
+    with pytest.raises(TypeError, match="theta: a masked array; fill it first"):
+        dx.evaluate("V_C", **POINT | {"theta": np.ma.masked_invalid([0.1, math.nan])})
+
+
+def test_a_few_points_are_not_compiled(monkeypatch):
+    monkeypatch.setattr(_few_points, "is_ready", lambda key: False)
+    monkeypatch.setattr(_arrays, "run_in_blocks", None)
+    monkeypatch.setattr(_few_points, "_ASKED", Counter())
+    theta, ec = columns(_few_points.BREAK_EVEN - 1)
+    assert np.isfinite(dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)).all()
+
+
+@pytest.mark.parametrize("size", [39_999, 40_001, 100_003])
+def test_threads_change_no_bit(size):
+    theta, ec = columns(size)
+    one, two, free = (dx.evaluate("V_C", theta=theta, ec=ec, **SIZES, threads=n) for n in (1, 2, None))
+    assert np.array_equal(one, two)
+    assert np.array_equal(one, free)
+
+
+@pytest.mark.parametrize("largest", [1.6e6, 1e7, 1e15])
+def test_an_angle_may_be_far(monkeypatch, largest):
+    theta = np.array([largest, -largest / 3, 1.0])
+    found = []
+    for way in ("plain", "compiled"):
+        take_way(monkeypatch, way)
+        found.append(dx.evaluate("V_C", theta=theta, ec=np.zeros(3), **SIZES))
+    assert close(found[0], found[1])
+
+
+def test_one_element_is_as_good_as_a_number(way):
+    theta, ec = columns(3)
+    wanted = dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)
+    one = SIZES | {"AB": np.array([0.125]), "BC": [[0.35]]}
+    found = dx.evaluate("V_C", theta=theta, ec=ec, **one)
+    assert found.shape == (1, 3)
+    assert np.array_equal(found[0], wanted)
+
+
+STATE = {"theta": 1.1, "ec": 0.01, "AB": 0.125, "BC": 0.35, "omega": -20.0, "alpha": 7.0}
+STATED = ["V_C", "a_C_wrt_omega", "V_C_wrt_theta_omega", "omega_wrt_omega", "status"]
+
+
+def test_a_state_has_derivatives_by_omega():
+    found = dx.evaluate(STATED, **STATE)
+    step = 2.0**-20
+    up, down = (dx.evaluate("a_C", **STATE | {"omega": -20.0 + s}) for s in (step, -step))
+    assert list(found) == STATED
+    assert math.isclose(found["a_C_wrt_omega"], (up - down) / (2 * step), rel_tol=1e-8)
+    assert found["omega_wrt_omega"] == 1.0
+
+
+def test_a_state_of_arrays(way):
+    omega = np.array([-20.0, 0.0, 3.0])
+    found = dx.evaluate(STATED, **STATE | {"omega": omega})
+    for index, speed in enumerate(omega.tolist()):
+        one = dx.evaluate(STATED, **STATE | {"omega": speed})
+        assert all(math.isclose(found[q][index], one[q], rel_tol=1e-14, abs_tol=1e-15) for q in STATED)
+
+
+def test_a_state_fills_out_by_its_own_names(way):
+    out = {"a_C_wrt_omega": np.empty(2)}
+    dx.evaluate("a_C_wrt_omega", **STATE | {"omega": np.array([1.0, 2.0])}, out=out)
+    assert np.isfinite(out["a_C_wrt_omega"]).all()
+
+
+def test_a_state_has_none_by_omega0():
+    with pytest.raises(ValueError, match="'V_C_wrt_omega0' has no meaning for a given state omega="):
+        dx.evaluate("V_C_wrt_omega0", **STATE)
+
+
+def test_a_state_never_stalls():
+    assert dx.evaluate("status", **STATE | {"theta": 100.0, "alpha": -1e9}) == 0
+
+
+# ---- kernels on disk -----------------------------------------------------------------------------
+
+CODE = """
+import sys
+import numpy as np, desaxe as dx
+theta = np.linspace(-4.0, 7.0, 3000)
+value = dx.evaluate("V_B_X", theta=theta, AB=0.125, omega0=157.0)
+compiled = "numba" in sys.modules  # machine code from disk is loaded without it
+print(value.sum().hex(), int(not compiled), int(compiled))
+"""
+
+
+def start(folder, *options, **environment):
+    """A new process that runs one kernel from a cache folder."""
+    return subprocess.Popen(
+        [sys.executable, *options, "-c", CODE],
+        env=os.environ | {"DESAXE_CACHE_DIR": str(folder)} | environment,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+
+
+def answer(process):
+    """Its sum, how many kernels it found on disk and how many it compiled; and its complaints."""
+    out, complaints = process.communicate()
+    assert process.returncode == 0, complaints
+    total, hits, misses = out.split()
+    return total, int(hits), int(misses), complaints
+
+
+def test_a_new_process_does_not_compile(tmp_path):
+    first = answer(start(tmp_path, "-W", "error"))
+    second = answer(start(tmp_path, "-W", "error"))
+    assert first[1:] == (0, 1, "")
+    assert second[1:] == (1, 0, "")
+    assert first[0] == second[0]
+
+
+def test_processes_started_together_all_succeed(tmp_path):
+    running = [start(tmp_path / "new" / "folder", "-W", "error") for _ in range(2)]
+    answers = [answer(process) for process in running]
+    assert answers[0][0] == answers[1][0]
+    assert sum(misses for _, _, misses, _ in answers) == 1
+
+
+def test_a_folder_that_cannot_be_written_is_a_warning(tmp_path):
+    blocked, scratch = tmp_path / "a file", tmp_path / "scratch"
+    blocked.write_text("in the way")
+    scratch.mkdir()
+    complaints = answer(start(blocked / "cache", TMPDIR=str(scratch)))[-1]
+    assert "RuntimeWarning: no cache folder can be written" in complaints
+    assert "DESAXE_CACHE_DIR" in complaints
+
+
+def test_a_folder_without_permission_is_a_warning(tmp_path, monkeypatch):
+    def refused(**_):
+        raise PermissionError("read-only")
+
+    monkeypatch.setenv("DESAXE_CACHE_DIR", str(tmp_path / "cache"))
+    monkeypatch.setattr(tempfile, "TemporaryFile", refused)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    with pytest.warns(RuntimeWarning, match="no cache folder can be written"):
+        found = _cache.folder.__wrapped__()
+    assert found.path.parent == tmp_path
+    assert not found.lasting
+
+
+def test_a_kernel_of_another_version_is_not_taken_for_this_one(tmp_path, monkeypatch):
+    """A version with other limits: the same request, another kernel."""
+    monkeypatch.setattr(_cache, "folder", lambda: _cache.Folder(tmp_path, True))
+    key = _kernels.KernelKey(("V_B_X",), Variant(state=True), (("branch", 1.0),), (("AB", 0),), 1)
+    values, out = {"theta": 0.0, "omega": 2.0, "AB": np.array([-0.5])}, np.empty(1)
+    _kernels._load(key).run(values, [out])
+    assert math.isnan(out[0])
+    monkeypatch.setattr(_kernels, "LEAST", {})
+    _kernels._load(key).run(values, [out])
+    assert out[0] == -1.0
+
+
+def test_a_makeshift_folder_is_not_left_behind(tmp_path):
+    blocked, scratch = tmp_path / "a file", tmp_path / "scratch"
+    blocked.write_text("in the way")
+    scratch.mkdir()
+    answer(start(blocked / "cache", TMPDIR=str(scratch)))
+    assert list(scratch.iterdir()) == []

@@ -1,0 +1,126 @@
+"""Plain forms for designs with wide margins: as exact as promised up to the edge of that test, and beyond."""
+
+import math
+import random
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from desaxe.runtime import interpreted as _few_points
+from desaxe.runtime.request import request
+from desaxe.runtime.specialise import plain_form, specialise
+from tests.evaluation.test_stress import NAMES, compiled, is_kept
+from tests.ways import take_way
+
+SHARE = 0.875
+SIDES = [f"transmission_angle_wrt_{p}" for p in ("theta", "ec", "AB", "BC")]
+
+
+def edges(count=60):
+    """Designs on both sides of the edges, where |ec| is near AB too, at angles of all kinds."""
+    rng = random.Random(7)
+    for _ in range(count):
+        BC, share = 10 ** rng.uniform(-3, 3), rng.uniform(0.05, 0.95)
+        reach = SHARE * BC * (1 + rng.choice((-1, 1)) * 2.0 ** -rng.randrange(3, 53))
+        if rng.random() < 0.3:  # |ec| so near AB that u may cancel
+            share = 0.5 + rng.choice((-1, 0, 1)) * 10 ** rng.uniform(-17, -2)
+        AB = reach * share
+        quarter = math.pi / 2 * rng.randrange(-4, 5)
+        theta = rng.choice((rng.uniform(-7, 7), quarter + rng.choice((-1, 1)) * 10 ** rng.uniform(-9, -1)))
+        yield {
+            "theta": theta, "ec": rng.choice((-1, 1)) * (reach - AB), "AB": AB, "BC": BC,
+            "omega0": rng.choice((-1, 1)) * rng.uniform(1, 100), "alpha": 0.0, "branch": rng.choice((1, -1)),
+        }  # fmt: skip
+
+
+def test_the_promise_holds_across_the_edge(monkeypatch):
+    take_way(monkeypatch, "compiled")
+    rows, names = list(edges()), [*NAMES, *SIDES]
+    for row, by_kernel in zip(rows, compiled(names, rows), strict=True):
+        plain = dx.evaluate(names, **row)
+        for values in (plain, by_kernel):
+            assert not {name: values[name] for name in names if not is_kept(name, values[name], row)}, row
+
+
+def eccentric_as_crank(count=60):
+    """Roomy designs with |ec| = AB or nearly, about the quarter at which the crank pin meets the axis."""
+    rng = random.Random(11)
+    for _ in range(count):
+        BC, side = 10 ** rng.uniform(-3, 3), rng.choice((-1, 1))
+        AB = BC * rng.choice((0.437, 0.2, 0.01))
+        ec = rng.choice(
+            (AB, math.nextafter(AB, 0), math.nextafter(AB, BC), AB * (1 - 10 ** rng.uniform(-15, -2)))
+        )
+        away = rng.choice((0.0, rng.choice((-1, 1)) * 10 ** rng.uniform(-12, -1)))
+        yield {
+            "theta": -side * math.pi / 2 + away, "ec": side * ec, "AB": AB, "BC": BC,
+            "omega0": rng.uniform(1, 100), "alpha": 0.0, "branch": rng.choice((1, -1)),
+        }  # fmt: skip
+
+
+def test_the_side_of_the_axis_is_known_where_the_pin_meets_it(monkeypatch):
+    take_way(monkeypatch, "compiled")
+    rows, names = list(eccentric_as_crank()), ["a_C", "alpha_BC", *SIDES]
+    for row, by_kernel in zip(rows, compiled(names, rows), strict=True):
+        plain = dx.evaluate(names, **row)
+        for values in (plain, by_kernel):
+            assert not {name: values[name] for name in names if not is_kept(name, values[name], row)}, row
+
+
+@pytest.mark.parametrize("where", ["kernel", "numbers"])
+def test_an_element_has_the_same_value_among_any_others(where, monkeypatch):
+    monkeypatch.setattr(_few_points, "BREAK_EVEN", 0 if where == "kernel" else 10**9)
+    rng = np.random.default_rng(3)
+    count = 1_500
+    columns = {"theta": rng.uniform(-7, 7, count), "ec": rng.uniform(-0.2, 0.2, count)}
+    machine = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
+    names = ["a_C", "a_C_wrt_ec", "status"]
+    whole = dx.evaluate(names, **columns, **machine)
+    wide_margins = 0.125 + np.abs(columns["ec"]) < SHARE * 0.35
+    assert 0.3 < wide_margins.mean() < 0.9
+    for chosen in (wide_margins, ~wide_margins, slice(0, 1), slice(700, 1_100), slice(None, None, -1)):
+        part = dx.evaluate(names, **{n: column[chosen] for n, column in columns.items()}, **machine)
+        for name in names:
+            assert np.array_equal(part[name], whole[name][chosen], equal_nan=True)
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        {"AB": -0.1},
+        {"AB": math.nan},
+        {"BC": math.inf},
+        {"BC": -1.0},
+        {"BC": 0.0},
+        {"ec": math.inf},
+        {"ec": math.nan},
+        {"theta": math.inf},
+        {"theta": math.nan},
+    ],
+)
+def test_a_bad_element_is_nan_and_told(bad, monkeypatch):
+    monkeypatch.setattr(_few_points, "BREAK_EVEN", 0)
+    good = {"theta": 1.0, "ec": 0.01, "AB": 0.1, "BC": 0.35}
+    columns = {name: np.array([value, bad.get(name, value), value]) for name, value in good.items()}
+    found = dx.evaluate(["V_C", "a_C", "status"], **columns, omega0=3.0)
+    assert found["status"].tolist() == [0, 4, 0]
+    for name in ("V_C", "a_C"):
+        assert np.isnan(found[name]).tolist() == [False, True, False]
+        assert dx.evaluate(name, **columns, omega0=3.0)[0] == found[name][0]
+        assert np.isnan(dx.evaluate(name, **columns, omega0=3.0)[1])
+
+
+def test_what_has_one_form_is_not_asked_twice():
+    law = {"theta": 1.0, "omega0": 1.0, "alpha": 1.0}
+    asked = request(["omega"], law, 1, "standard")
+    assert plain_form(asked.names, asked.form, asked.fixed) is None
+
+
+def test_the_plain_form_is_shorter():
+    given = dict.fromkeys(("theta", "ec", "AB", "BC", "omega0"), 1.0)
+    asked = request(["V_C", "a_C"], given, 1, "standard")
+    plain = plain_form(asked.names, asked.form, asked.fixed)
+    stable = specialise(asked.names, asked.form, asked.fixed)
+    assert plain is not None
+    assert len(plain.lines) < 40 < len(stable.lines)

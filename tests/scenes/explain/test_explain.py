@@ -1,0 +1,236 @@
+"""Plans: operations after each pass, loops, what is skipped, and whether what is told comes true."""
+
+import json
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from desaxe.runtime import interpreted as _few_points
+from desaxe.runtime import kernels as _kernels
+from desaxe.runtime.kernels import kernel_of
+from desaxe.scenes.kernel import grid_kernel
+from tests.example_scenes import COMPACTOR, SMALL
+
+TURN = {"start": 0, "stop": "360 deg", "num": 721}
+CONCENTRIC = {
+    "outputs": ["V_C"],
+    "mechanism": {"ec": 0, "AB": 0.125, "BC": 0.35},
+    "motion": {"theta": TURN, "omega0": 157.08},
+}
+DESIGNS = {
+    "outputs": ["a_C"],
+    "mechanism": {
+        "ec": {"start": 0, "stop": 0.1, "num": 32},
+        "AB": {"start": 0.1, "stop": 0.125, "num": 16},
+        "BC": [0.34, 0.35],
+    },
+    "motion": {"theta": TURN, "omega0": 157.08},
+}
+PRESS = {
+    "outputs": ["T_in"],
+    "mechanism": {"ec": 0.02, "AB": 0.04, "BC": 0.064},
+    "motion": {"theta": TURN, "omega0": 250},
+    "masses": {"m_slider": 0.8, "m_rod": 0},
+}
+
+
+def steps(plan):
+    return {step["name"]: step["operations"] for step in plan["steps"]}
+
+
+def free(scene, section, name, value):
+    """The scene with another value of one input."""
+    return {**scene, section: {**scene[section], name: value}}
+
+
+# ---- operations ----------------------------------------------------------------------------------
+
+
+def test_concentric_at_constant_speed():
+    plan = dx.explain(CONCENTRIC)
+    assert plan["run"]["way"] == "plain Python"
+    assert steps(plan) == {"derivation": 2226, "slice": 89, "fold": 62, "plain": 23}
+    assert plan["operations"] == {"straight": 23, "per_point": 23.0, "total": 23 * 721}
+    saved = {one["what"]: one["saved"] for one in plan["skipped"]}
+    assert saved == {"branch = +1": 1, "alpha = 0": 14, "ec = 0": 1}
+
+
+def test_concentric_with_a_rod_hardly_longer_than_the_crank():
+    """Then nothing may cancel: the stable form."""
+    plan = dx.explain(free(CONCENTRIC, "mechanism", "BC", 0.1251))
+    assert steps(plan) == {"derivation": 2226, "slice": 89, "fold": 62}
+    saved = {one["what"]: one["saved"] for one in plan["skipped"]}
+    assert saved == {"branch = +1": 2, "alpha = 0": 14, "ec = 0": 11}
+
+
+def test_what_a_fixed_input_saves_is_what_it_costs_when_free():
+    base = dx.explain(CONCENTRIC)
+    for what, other in (
+        ("ec = 0", free(CONCENTRIC, "mechanism", "ec", 0.01)),
+        ("alpha = 0", free(CONCENTRIC, "motion", "alpha", 1.0)),
+    ):
+        saved = next(one["saved"] for one in base["skipped"] if one["what"] == what)
+        assert dx.explain(other)["operations"]["straight"] - base["operations"]["straight"] == saved
+
+
+def test_masses_of_nothing():
+    plan = dx.explain(PRESS)
+    what = {one["what"]: one for one in plan["skipped"]}
+    assert "a massless rod" in what["m_rod = 0"]["why"]
+    assert what["m_rod = 0"]["saved"] > 0
+    assert next(one for name, one in what.items() if "F_Y" in name)["why"].startswith("not given")
+    heavy = dx.explain(free(PRESS, "masses", "m_rod", 0.5))
+    assert heavy["operations"]["straight"] > plan["operations"]["straight"]
+    default_centres = [one["what"] for one in heavy["skipped"] if "half of" in one["why"]]
+    assert "r_rod" in default_centres
+
+
+def test_an_input_that_nothing_needs():
+    plan = dx.explain({**CONCENTRIC, "outputs": ["phi"], "reduce": {"theta": "max"}})
+    (told,) = [one for one in plan["skipped"] if one["what"] == "omega0"]
+    assert told["why"] == "given, but nothing that is asked for depends on it"
+
+
+@pytest.mark.parametrize("rods", [[0.34, 0.35], [0.19, 0.35]])
+def test_counts_are_those_of_the_kernel(rods):
+    """Where all designs have wide margins there is one form; else a loop says what it does instead."""
+    scene = free(DESIGNS, "mechanism", "BC", rods)
+    plan = dx.explain(scene)
+    found = grid_kernel(dx.scene(scene).content)
+    kernel = kernel_of(found.key)
+    nests = [*(table.kernel for table in kernel.tables), kernel]
+    lines = [line for nest in nests for level in nest.levels for line in level if line.op != "copy"]
+    loops = [loop for loop in plan["loops"] if not loop["close"]]
+    close = [loop["operations"] for loop in plan["loops"] if loop["close"]]
+    assert close == ([] if rods[0] > 0.3 else [len(kernel.close.lines)])
+    assert plan["operations"]["straight"] == len(lines)
+    assert sum(loop["operations"] for loop in loops) == len(lines)
+    total = sum(loop["operations"] * loop["runs"] for loop in loops)
+    assert plan["operations"]["total"] == total
+    assert plan["operations"]["per_point"] == total / (721 * 32 * 16 * 2)
+    # Sine and cosine are not in the innermost loop.
+    assert plan["operations"]["per_point"] < 0.5 * len(lines)
+    assert all(
+        loop["runs"] == int(np.prod([_size(axis) for axis in loop["along"]])) for loop in plan["loops"]
+    )
+
+
+def _size(axis):
+    return {"ec": 32, "AB": 16, "BC": 2, "theta": 721}[axis]
+
+
+# ---- how it runs ---------------------------------------------------------------------------------
+
+
+def test_the_break_even_is_the_one_that_holds(monkeypatch):
+    monkeypatch.setattr(_kernels, "_load", None)  # whoever compiles fails
+    points = {"start": 0, "stop": 1, "num": _few_points.BREAK_EVEN - 1}
+    few = free(CONCENTRIC, "motion", "theta", points)
+    assert dx.explain(few)["run"]["way"] == "plain Python"
+    dx.scene(few).run()
+    many = free(CONCENTRIC, "motion", "theta", {**points, "num": _few_points.BREAK_EVEN})
+    assert dx.explain(many)["run"]["way"] == "compiled"
+    with pytest.raises(TypeError):
+        dx.scene(many).run()
+
+
+@pytest.mark.parametrize("reduce", [{}, {"theta": "absmax"}])
+def test_what_is_cached(reduce):
+    scene = {**DESIGNS, "outputs": ["Y_wrt_BC"], "reduce": reduce}
+    plan = dx.explain(scene)
+    assert plan["run"]["cached"] == "no"
+    assert plan["run"]["seconds"]["before_the_first"] > 0.0
+    dx.scene(scene).run()
+    after = dx.explain(scene)
+    assert after["run"]["cached"] == "memory"
+    assert after["run"]["seconds"]["before_the_first"] == 0.0
+    memory = dict(_kernels._LOADED)
+    _kernels._LOADED.clear()
+    try:
+        assert dx.explain(scene)["run"]["cached"] == "disk"
+    finally:
+        _kernels._LOADED.update(memory)
+
+
+def test_memory_is_that_of_the_result():
+    for scene in (CONCENTRIC, {**CONCENTRIC, "reduce": {"theta": ["absmax", "mean"]}}):
+        dataset = dx.scene(scene).run().dataset
+        result = sum(a.nbytes for n, a in dataset.data_vars.items() if n != "margin")
+        assert dx.explain(scene)["memory"]["result"] == result
+    assert dx.explain({**CONCENTRIC, "reduce": {"theta": "max"}})["memory"]["grid"] == 721 * 8
+
+
+# ---- the text ------------------------------------------------------------------------------------
+
+ALL = [COMPACTOR, CONCENTRIC, {**DESIGNS, "reduce": {"theta": ["absmax", "rms"]}}, PRESS, SMALL]
+
+
+@pytest.mark.parametrize("scene", ALL)
+def test_text_fits_a_terminal(scene):
+    text = str(dx.explain(scene))
+    assert max(map(len, text.splitlines())) <= 100
+    for title in ("Asked for", "Skipped", "Operations at each point", "Loops, from", "Execution"):
+        assert f"\n{title}" in text
+
+
+@pytest.mark.parametrize("scene", ALL)
+def test_json(scene):
+    plan = dx.explain(scene)
+    assert json.loads(plan.to_json()) == plan.as_dict()
+    assert plan.as_dict()["points"] == plan["points"]
+
+
+def test_text_of_a_reduction():
+    text = str(dx.explain({**DESIGNS, "reduce": {"theta": ["absmax", "rms"]}}))
+    assert "of each over theta: absmax, rms; the grid is not stored" in text
+    assert "the grid would take" in text
+    assert "other values of omega0 (but 0) compile nothing new" in text
+
+
+def test_a_scene_of_peaks_alone():
+    plan = dx.explain({**SMALL, "outputs": [], "peak": [{"quantity": "a_C"}]})
+    assert plan["loops"] is None
+    assert "absmax of a_C   2 designs   refined over theta by its derivative" in str(plan)
+
+
+def test_the_text_of_a_small_scene_as_a_whole():
+    text = str(dx.explain({**CONCENTRIC, "title": "Concentric", "motion": {"theta": 1, "omega0": 157.08}}))
+    assert (
+        text
+        == """\
+Concentric
+
+Asked for
+  V_C   m/s   velocity of the slider
+  and at every point its status; the margin once per design
+  accuracy standard: at most 8 ulp x (1 + the sum of the condition numbers), wherever it can be
+           assembled
+  motion   constant speed omega0
+  fixed    ec = 0 m, AB = 0.125 m, BC = 0.35 m, theta = 1 rad, omega0 = 157.08 rad/s
+
+Skipped
+  branch = +1: one way to assemble it: no sign at run time (1 operation a point)
+  alpha = 0: constant speed: the law of the crank and the test whether it stalls vanish (14
+    operations a point)
+  ec = 0: concentric: the slider's axis meets the crank's centre (1 operation a point)
+
+Operations at each point after each pass
+  pass         operations   saved
+  derivation         2226           every line of the derivation
+  slice                89    2137   only the lines that the wanted names reach
+  fold                 62      27   fixed inputs folded in; terms with a factor 0 vanish
+  plain                23      39   every design has wide margins: shorter forms
+
+Loops, from outside in
+           runs   operations   per point
+  once        1           23          23   1 cos, 1 div, 1 sin, 1 sqrt; sin_theta, cos_theta, ...
+  in all                  23          23
+
+Execution
+  kernel   none: plain Python over math, nothing is compiled, numba is not imported
+  why      1 point; below 2,000 a compilation does not pay
+  time     about 2.9 us (2.9 us a point)
+  memory   9 bytes of results, 8 bytes of inputs
+  results  returned, not written to a file"""
+    )

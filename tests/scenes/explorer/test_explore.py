@@ -1,0 +1,125 @@
+"""What goes into a page and what does not; no browser is needed."""
+
+import json
+import re
+
+import pytest
+
+import desaxe as dx
+from desaxe.cli.command.command import main
+from tests.scenes.explorer.browser import browser_path
+
+SIZES = {"ec": 0.0, "AB": 0.125, "BC": 0.35, "omega0": 157.0}
+
+
+def content_of(path):
+    """The data that is embedded in a page."""
+    text = path.read_text(encoding="utf-8")
+    return json.loads(re.search(r'id="content">(.*?)</script>', text, re.S)[1])
+
+
+def test_only_what_a_page_needs_is_emitted(tmp_path):
+    motion = content_of(dx.explore(path=tmp_path / "a.html", **SIZES))
+    assert {"Y", "V_C", "a_C", "phi", "omega_BC"} <= set(motion["functions"])
+    assert not {"T_in", "N_C"} & set(motion["functions"])
+    assert motion["functions"]["Y"]["inputs"] == ["theta", "ec", "AB", "BC"]
+    loaded = content_of(dx.explore(path=tmp_path / "b.html", m_slider=1.0, **SIZES))
+    assert {"T_in", "N_C"} <= set(loaded["functions"])
+    assert "T_in_wrt_m_slider" in loaded["quantities"]
+    few = content_of(dx.explore(path=tmp_path / "c.html", names=["s"], **SIZES))
+    assert list(few["functions"]) == ["status", "a_C", "s"]
+
+
+def test_a_page_stays_small(tmp_path):
+    """Beside the plotting library."""
+    from plotly.offline import get_plotlyjs
+
+    path = dx.explore("examples/feeder.toml", tmp_path / "page.html")
+    assert path.stat().st_size - len(get_plotlyjs().encode()) < 250_000
+
+
+def test_a_scene_brings_its_designs_and_its_names(tmp_path):
+    page = content_of(dx.explore("examples/compactor.toml", tmp_path / "a.html"))
+    assert [design["ec"] for design in page["designs"]] == [0.0, 0.08, 0.15, 0.23]
+    assert page["shown"][:2] == ["V_C", "a_C"]
+    assert page["title"].startswith("Paper A")
+
+
+def test_up_to_five_values_are_all_compared(tmp_path):
+    five = [0.0, 0.05, 0.1, 0.15, 0.2]
+    page = content_of(dx.explore(path=tmp_path / "a.html", **{**SIZES, "ec": five}))
+    assert [design["ec"] for design in page["designs"]] == five
+    assert page["left_out"] == ""
+
+
+@pytest.mark.parametrize(
+    ("ec", "rods", "told"),
+    [
+        ([0.0, 0.01, 0.02, 0.03, 0.04, 0.05], 0.35, "ec = 0.01, 0.04 m"),
+        ([0.0, 0.1], [0.35, 0.4, 0.45], "BC = 0.4, 0.45 m"),
+        ([0.01 * k for k in range(20)], [0.35, 0.4], "16 of the values of ec; BC = 0.4 m"),
+    ],
+)
+def test_values_that_are_left_out_are_told(ec, rods, told, tmp_path, capsys):
+    path = dx.explore(path=tmp_path / "a.html", **{**SIZES, "ec": ec, "BC": rods})
+    assert content_of(path)["left_out"] == told
+    scene = tmp_path / "a.toml"
+    lengths = f"ec = {ec}\nAB = 0.125\nBC = {rods}"
+    motion = "omega0 = 1\ntheta = [0, 1]"
+    scene.write_text(f'outputs = ["V_C"]\n[mechanism]\n{lengths}\n[motion]\n{motion}\n', encoding="utf-8")
+    assert main(["explore", str(scene), "-o", str(path)]) == 0
+    out, err = capsys.readouterr()
+    assert out == f"{path}\n"
+    assert err == f"desaxe: not shown on the page: {told}\n"
+
+
+def test_a_path_in_the_place_of_a_scene():
+    with pytest.raises(TypeError, match=r"not both \(path='x.html' is the page to write\)"):
+        dx.explore("x.html", **SIZES)
+    with pytest.raises(TypeError, match=r"not both \(ec, AB, BC, omega0 beside a scene\)"):
+        dx.explore("x.toml", **SIZES)
+
+
+def test_a_title_is_text(tmp_path):
+    nasty = "</script><script>alert(1)</script> & co"
+    text = dx.explore(path=tmp_path / "a.html", title=nasty, **SIZES).read_text(encoding="utf-8")
+    assert "<script>alert(1)" not in text
+    assert content_of(tmp_path / "a.html")["title"] == nasty
+
+
+def test_the_same_page_every_time(tmp_path):
+    first, second = (dx.explore(path=tmp_path / name, **SIZES).read_bytes() for name in ("a.html", "b.html"))
+    assert first == second
+
+
+@pytest.mark.parametrize(
+    ("inputs", "kind", "message"),
+    [
+        ({"AB": 1.0, "BC": 3.0, "omega0": 1.0}, TypeError, "ec is missing"),
+        ({**SIZES, "BC": -1.0}, ValueError, "BC = -1.0: it must be a finite length > 0"),
+        ({**SIZES, "mass": 1.0}, TypeError, "no input 'mass'"),
+        ({**SIZES, "names": ["a_D"]}, ValueError, "unknown quantity 'a_D'"),
+        ({**SIZES, "ec": []}, TypeError, "a list of numbers"),
+        ({**SIZES, "source": {"outputs": ["V_C"]}}, TypeError, "a scene or inputs"),
+        ({**SIZES, "omega": 1.0}, ValueError, "not both"),
+    ],
+)
+def test_errors_name_the_culprit(inputs, kind, message, tmp_path):
+    with pytest.raises(kind, match=re.escape(message)):
+        dx.explore(path=tmp_path / "a.html", **inputs)
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_command(tmp_path, capsys):
+    target = tmp_path / "deep" / "page.html"
+    assert main(["explore", "examples/compactor.toml", "-o", str(target), "--names", "s,phi"]) == 0
+    assert capsys.readouterr().out == f"{target}\n"
+    assert {"s", "phi", "a_C"} <= set(content_of(target)["functions"])
+
+
+@pytest.mark.parametrize(("ci", "outcome"), [("true", pytest.fail), ("", pytest.skip)])
+def test_without_a_browser_the_tests_say_what_to_install(ci, outcome, monkeypatch):
+    monkeypatch.setenv("DESAXE_BROWSER", "/nowhere/chromium")
+    monkeypatch.setenv("CI", ci)
+    with pytest.raises(outcome.Exception, match="playwright install chromium"):
+        browser_path("/nowhere/else")

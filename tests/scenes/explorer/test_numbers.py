@@ -1,0 +1,138 @@
+"""The numbers of the page are those of `dx.evaluate`, to 1e-13 x (1 + condition number)."""
+
+import itertools
+import math
+import random
+
+import pytest
+
+import desaxe as dx
+from desaxe.oracle.force_truth import OTHERS, conditions
+from tests.points import draw
+
+BOUND = 1e-13
+QUARTER = math.pi / 2
+MOTION = {"omega0": 157.0, "alpha": -3.0}
+BACKWARDS, STEADY = {"omega0": -60.0, "alpha": 40.0}, {"omega0": -157.0, "alpha": 0.0}
+BODIES = {
+    "m_crank": 0.2, "m_rod": 0.5, "m_slider": 0.8, "I_crank": 3e-5, "I_rod": 2e-4, "r_rod": 0.1,
+    "F_X": 20.0, "F_Y": -50.0, "g_Y": -9.81,
+}  # fmt: skip
+
+# All values of a page at some points, as text: JSON knows no NaN.
+VALUES = """(points) => {
+  const { content, valueAt } = window.desaxe, names = Object.keys(content.quantities);
+  return points.map((at) => names.map((name) => String(valueAt(name, at, at.theta))));
+}"""
+
+
+def generic(kind, count):
+    for point in draw(kind, count):
+        yield {"alpha": 0.0, **point}
+
+
+def change_points(branch, motions):
+    """At the change point, next to it, and where the rod is a little longer or too short."""
+    turning = itertools.cycle(motions)
+    for side, k, power in itertools.product((1, -1), range(1, 10, 2), (None, 20, 35, 50)):
+        for away in (10.0**-k, -(10.0**-k)):
+            AB, ec = 0.125, side * 0.2249999940395355
+            BC = AB + abs(ec) if power is None else (AB + abs(ec)) * (1 + away * 2.0**-power / abs(away))
+            yield {
+                "theta": side * QUARTER + away,
+                "ec": ec,
+                "AB": AB,
+                "BC": BC,
+                **next(turning),
+                "branch": branch,
+            }
+
+
+def with_bodies(count):
+    rng = random.Random("explorer: bodies")
+    for point in draw("speeding up", count):
+        weights = {name: value * rng.uniform(0.5, 2.0) for name, value in BODIES.items()}
+        yield {**point, **weights, "branch": 1}
+
+
+CASES = {
+    "generic": lambda: [p for p in generic("generic", 150) if p["branch"] == 1],
+    "a crank that cannot turn": lambda: [p for p in generic("long crank", 120) if p["branch"] == 1],
+    "the other branch": lambda: list(generic("branch -1", 60)),
+    "a state": lambda: list(generic("state", 60)),
+    "from rest": lambda: list(generic("from rest", 40)),
+    "at a steady speed": lambda: list(generic("steady", 40)),
+    "backwards": lambda: list(generic("backwards", 40)),
+    "slowing down": lambda: list(generic("slowing down", 40)),
+    "next to a change point": lambda: list(change_points(1, [MOTION, BACKWARDS, STEADY])),
+    "next to it on the other branch": lambda: list(change_points(-1, [BACKWARDS, MOTION])),
+    "forces": lambda: list(with_bodies(30)),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_values_and_sensitivities(case, visit, tmp_path):
+    points = CASES[case]()
+    inputs = {name: value for name, value in points[0].items() if name not in ("theta", "branch")}
+    page = visit(dx.explore(path=tmp_path / "page.html", branch=points[0]["branch"], **inputs))
+    names = page.evaluate("Object.keys(desaxe.content.quantities)")
+    found = page.evaluate(VALUES, points)
+    wrong = []
+    for point, row in zip(points, found, strict=True):
+        wanted = dx.evaluate(names, **point)
+        for name, text in zip(names, row, strict=True):
+            if not agrees(name, float(text.replace("Infinity", "inf")), wanted[name], point):
+                wrong.append((name, text, wanted[name], point))
+    assert not wrong
+    assert len(points) > 25
+    assert len(names) > 100
+
+
+def agrees(name, found, wanted, point):
+    """Near enough; the condition number is looked up only where it is needed."""
+    if not math.isfinite(wanted):
+        return str(found) == str(float(wanted))
+    error = abs(found - wanted)
+    if error <= BOUND * abs(wanted):
+        return True
+    return error <= BOUND * abs(wanted) * (1 + conditions(name, "margin", OTHERS, **point))
+
+
+def test_the_check_sees_an_error():
+    point = {"theta": 1.0, "ec": 0.01, "AB": 0.125, "BC": 0.35, **MOTION, "branch": 1}
+    value = dx.evaluate("a_C", **point)
+    assert agrees("a_C", value, value, point)
+    assert not agrees("a_C", value * (1 + 1e-9), value, point)
+    assert not agrees("a_C", math.nan, value, point)
+    assert not agrees("a_C", 1.0, math.nan, point)
+
+
+@pytest.mark.parametrize(
+    "lengths",
+    [
+        {"ec": 0.0, "AB": 0.125, "BC": 0.35},
+        {"ec": 0.23, "AB": 0.125, "BC": 0.35},
+        {"ec": -0.23, "AB": 0.125, "BC": 0.35},
+        {"ec": 0.0, "AB": 0.5, "BC": 0.35},
+        {"ec": 0.1, "AB": 0.5, "BC": 0.35},
+        {"ec": 0.34999, "AB": 50.0, "BC": 0.35},
+        {"ec": 0.4749999, "AB": 0.125, "BC": 0.35},
+        {"ec": 0.5, "AB": 0.125, "BC": 0.35},
+        {"ec": 0.25, "AB": 0.125, "BC": 0.375},
+        {"ec": -0.2250000001, "AB": 0.125, "BC": 0.35},
+    ],
+)
+def test_gaps_and_kind_are_those_of_feasibility(lengths, standing):
+    """A gap between two samples is found, too."""
+    design = {**lengths, "omega0": 1.0, "alpha": 0.0}
+    gaps, kind = standing.evaluate("(d) => [desaxe.gaps(d), desaxe.kindOf(d)]", design)
+    wanted = dx.feasibility(**lengths)
+    assert kind == wanted["kind"]
+    turn, arcs = 2 * math.pi, wanted["theta_intervals"]
+    if wanted["can_turn"]:
+        assert gaps == []
+    elif not arcs:
+        assert gaps == [[0.0, turn]]
+    else:
+        ends = sorted((a % turn, b % turn) for (_, a), (b, _) in zip(arcs, [*arcs[1:], arcs[0]], strict=True))
+        assert sorted((a % turn, b % turn) for a, b in gaps) == [pytest.approx(end, abs=1e-7) for end in ends]

@@ -1,0 +1,283 @@
+"""Compiled modules: they run without desaxe, give what desaxe gives, and are the same every time."""
+
+import ast
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from desaxe.runtime import interpreted as _few_points
+from desaxe.runtime.cache import locked
+from desaxe.scenes.export.compile import module_text
+from desaxe.scenes.schema import SceneError
+from tests.example_scenes import COMPACTOR, SMALL
+
+TURN = {"start": 0, "stop": "360 deg", "num": 121}
+GRID = {
+    "title": 'A press \\ with """ in its title',
+    "outputs": ["V_C", "a_C_wrt_ec"],
+    "mechanism": {"ec": [0, 0.1, 0.24], "AB": 0.125, "BC": {"start": 0.35, "stop": 0.4, "num": 7}},
+    "motion": {"theta": TURN, "omega0": 157.08, "alpha": 3},
+}
+REDUCED = {**GRID, "outputs": ["a_C"], "reduce": {"theta": ["absmax", "min", "mean", "rms"]}}
+STATE = {
+    "outputs": ["a_C_wrt_omega", "phi"],
+    "mechanism": {"ec": 0.01, "AB": 0.125, "BC": 0.35},
+    "motion": {"theta": TURN, "omega": [10, 20], "alpha": 2},
+}
+FORCES = {
+    "outputs": ["T_in", "N_C"],
+    "mechanism": {"ec": 0.02, "AB": 0.04, "BC": 0.064, "branch": -1},
+    "motion": {"theta": TURN, "omega0": 250},
+    "masses": {"m_slider": [0.4, 0.8]},
+    "loads": {"F_Y": -50, "mu": 0.1},
+}
+SCENES = {
+    "grid": GRID,
+    "reduced": REDUCED,
+    "state": STATE,
+    "forces": FORCES,
+    "extended": {**STATE, "accuracy": "extended"},
+    "fast": {**GRID, "accuracy": "fast"},
+    "one_axis": {**SMALL, "mechanism": {"ec": 0, "AB": 0.125, "BC": 0.35}},
+    "one_row_reduced": {
+        **SMALL, "mechanism": {"ec": 0, "AB": 0.125, "BC": 0.35}, "reduce": {"theta": "absmax"}
+    },
+    "no_axis": {
+        **SMALL, "mechanism": {"ec": 0, "AB": 0.125, "BC": 0.35}, "motion": {"theta": 1, "omega0": 2}
+    },
+    "far": {**STATE, "motion": {"theta": [1e9, 2e9], "omega": 3}},
+}  # fmt: skip
+
+# Runs in a process of its own, where importing desaxe fails; prints every value as hex.
+ALONE = """
+import importlib, json, sys
+sys.modules["desaxe"] = None
+sys.path.insert(0, sys.argv[1])
+import numpy as np
+found = {}
+def text(values):
+    flat = np.asarray(values, dtype=float).reshape(-1)
+    return [float(v).hex() for v in flat]
+for name, points in json.loads(sys.stdin.read()).items():
+    module = importlib.import_module("kernels_" + name)
+    arrays = {n: np.array(v) for n, v in points.items()}
+    number = {n: v[0] for n, v in points.items()}
+    found[name] = {
+        "run": {n: text(v) for n, v in module.run(threads=1).items()} if points else
+               {n: text(v) for n, v in module.run().items()},
+        "shapes": {n: np.shape(v) for n, v in module.run().items()},
+        "arrays": {n: text(v) for n, v in module.evaluate(**arrays).items()},
+        "point": text(module.point(**number)),
+        "number": {n: text(v) for n, v in module.evaluate(**number).items()},
+        "doc": module.__doc__,
+    }
+print(json.dumps(found))
+"""
+
+
+def points_of(scene):
+    """Sixty random points for every input that the scene leaves open."""
+    rng = np.random.default_rng(5)
+    axes = {n: v for n, v in dx.scene(scene).inputs.items() if isinstance(v, tuple)}
+    return {name: rng.uniform(min(v), max(v), 60).tolist() for name, v in axes.items()}
+
+
+@pytest.fixture(scope="module")
+def alone():
+    """What every module gives in a process without desaxe; the workers of a test run share it."""
+    folder = Path(os.environ["DESAXE_CACHE_DIR"]) / "modules"
+    folder.mkdir(exist_ok=True)
+    kept = folder / "found.json"
+    with locked(kept):
+        if not kept.exists():
+            for name, scene in SCENES.items():
+                dx.compile(scene, folder / f"kernels_{name}.py")
+            words = json.dumps({name: points_of(scene) for name, scene in SCENES.items()})
+            command = [sys.executable, "-W", "error", "-c", ALONE, str(folder)]
+            done = subprocess.run(command, input=words, capture_output=True, text=True, check=False)
+            assert done.returncode == 0, done.stderr
+            kept.write_text(done.stdout, encoding="utf-8")
+    return json.loads(kept.read_text(encoding="utf-8"))
+
+
+def same(name, found, wanted):
+    """Bit for bit; in float32, where constants are folded in doubles, to its digits.
+
+    One point alone is computed in the stable form, whatever the design.
+    """
+    if name == "fast" and found.dtype.kind == "f":
+        scale = np.nanmax(np.abs(wanted), initial=0.0)
+        np.testing.assert_allclose(found, wanted, rtol=1e-3, atol=1e-5 * scale)
+    elif name == "no_axis":
+        np.testing.assert_allclose(found, wanted, rtol=1e-14)
+    else:
+        np.testing.assert_array_equal(found, wanted)
+
+
+def numbers(texts):
+    return np.array([float.fromhex(text) for text in texts])
+
+
+def inputs_of(scene):
+    content = dx.scene(scene).content
+    fixed = {n: v for n, v in content.inputs.items() if isinstance(v, float)}
+    return {**fixed, "branch": content.branch, "accuracy": content.accuracy}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_run_is_the_scene(name, alone, monkeypatch):
+    monkeypatch.setattr(_few_points, "BREAK_EVEN", 0 if points_of(SCENES[name]) else 10**9)
+    dataset = dx.scene(SCENES[name]).run().dataset
+    found = alone[name]["run"]
+    assert set(found) == set(dataset.data_vars) - {"margin"}
+    for output, texts in found.items():
+        assert tuple(alone[name]["shapes"][output]) == dataset[output].shape
+        same(name, numbers(texts), dataset[output].values.reshape(-1))
+
+
+@pytest.mark.parametrize("name", [name for name in SCENES if name != "no_axis"])
+def test_arrays_are_those_of_evaluate(name, alone, monkeypatch):
+    monkeypatch.setattr(_few_points, "BREAK_EVEN", 0)
+    points = points_of(SCENES[name])
+    names = list(alone[name]["arrays"])
+    arrays = {n: np.array(v) for n, v in points.items()}
+    wanted = dx.evaluate(names, **{**inputs_of(SCENES[name]), **arrays})
+    for output in names:
+        same(name, numbers(alone[name]["arrays"][output]), wanted[output])
+
+
+@pytest.mark.parametrize("name", [name for name in SCENES if name != "fast"])
+def test_one_point_is_that_of_evaluate(name, alone):
+    names = list(alone[name]["number"])
+    one = {n: v[0] for n, v in points_of(SCENES[name]).items()}
+    wanted = dx.evaluate(names, **{**inputs_of(SCENES[name]), **one})
+    # A module has the stable form alone for its points.
+    found = [float.fromhex(text) for text in alone[name]["point"]]
+    np.testing.assert_allclose(found, [float(wanted[n]) for n in names], rtol=1e-14)
+    assert [alone[name]["number"][n] for n in names] == [[text] for text in alone[name]["point"]]
+
+
+# ---- the text ------------------------------------------------------------------------------------
+
+
+def test_provenance(tmp_path):
+    text = dx.compile(COMPACTOR, tmp_path / "compactor_kernels.py").read_text(encoding="utf-8")
+    for line in (
+        "Paper A: the compactor of Siswanto and Ibrahim: V_C, a_C, omega_BC, alpha_BC, status.",
+        "Generated by `desaxe compile compactor.toml -o compactor_kernels.py`",
+        f"desaxe {dx.__version__}, derivation ",
+        "inputs   theta [rad]: crank angle",
+        "outputs  V_C [m/s]: velocity of the slider",
+        "AB = 0.125 m",
+        "SPDX-License-Identifier: MIT",
+    ):
+        assert line in text
+    assert "import desaxe" not in text
+    assert str(tmp_path) not in text
+
+
+def test_only_numpy_and_numba_are_imported(tmp_path):
+    for name, scene in SCENES.items():
+        text = dx.compile(scene, tmp_path / "module.py").read_text(encoding="utf-8")
+        lines = [
+            line.split()[1] for line in text.splitlines() if line.strip().startswith(("from ", "import "))
+        ]
+        assert set(lines) <= {"concurrent.futures", "math", "os", "numba", "numba.extending", "numpy"}, name
+
+
+def test_ruff_finds_nothing_undefined_or_unused(tmp_path):
+    for name, scene in SCENES.items():
+        dx.compile(scene, tmp_path / f"{name}.py")
+    command = [sys.executable, "-m", "ruff", "check", "--isolated", "--select", "F", str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+
+
+def test_bytes_depend_on_the_scene_alone(tmp_path):
+    code = "import sys, desaxe as dx; dx.compile(sys.argv[1], sys.argv[2])"
+    texts = set()
+    for seed in ("0", "1", "2"):
+        place = tmp_path / seed / "kernels.py"
+        place.parent.mkdir()
+        environment = {**os.environ, "PYTHONHASHSEED": seed}
+        subprocess.run([sys.executable, "-c", code, str(COMPACTOR), str(place)], env=environment, check=True)
+        texts.add(place.read_bytes())
+    assert len(texts) == 1
+
+
+def test_fixed_values_are_folded_in(tmp_path):
+    text = dx.compile(SCENES["one_axis"], tmp_path / "m.py").read_text(encoding="utf-8")
+    assert "def point(theta):" in text
+    assert "def evaluate(theta, threads=None):" in text
+    loops = text[text.index("def point_loops") : text.index("point_signature")]
+    assert "ec" not in loops.replace("slider-crank", "").split()
+    assert "AB *" not in loops
+
+
+def test_an_angle_beyond_reach_is_refused(tmp_path):
+    sys.path.insert(0, str(tmp_path))
+    try:
+        dx.compile(SCENES["one_axis"], tmp_path / "kernels_reach.py")
+        import importlib
+
+        module = importlib.import_module("kernels_reach")
+    finally:
+        sys.path.remove(str(tmp_path))
+    with pytest.raises(ValueError, match="take whole turns off"):
+        module.evaluate(np.array([1.0, 1e12]))
+    found = module.evaluate(np.array([1.0, np.nan, np.inf]))
+    assert found["status"].tolist() == [0, 4, 4]
+    assert Path(module.__file__).parent == tmp_path
+    for call in (module.point, module.evaluate):
+        with pytest.raises(TypeError, match="theta = '60 deg': numbers in SI units are wanted, not text"):
+            call("60 deg")
+    with pytest.raises(TypeError, match="numbers in SI units are wanted"):
+        module.evaluate(["60 deg", "61 deg"])
+
+
+@pytest.mark.parametrize(
+    ("name", "better"),
+    [
+        ("kern", "kern.py"),
+        ("my-k.py", "my_k.py"),
+        ("2d.py", "kernels_2d.py"),
+        ("class.py", "kernels_class.py"),
+    ],
+)
+def test_a_name_that_python_cannot_import(name, better, tmp_path):
+    with pytest.raises(ValueError, match=rf"{name}: Python cannot import .*, but {better}, for example"):
+        dx.compile(SMALL, tmp_path / name)
+    assert not list(tmp_path.iterdir())
+
+
+def operations_in(point):
+    """How many there are in the assignments of a function, counted in its text."""
+    nodes = [n for line in point.body if isinstance(line, ast.Assign) for n in ast.walk(line.value)]
+    single = (ast.BinOp, ast.Call, ast.IfExp)
+    count = sum(isinstance(node, single) for node in nodes)
+    count += sum(len(node.ops) for node in nodes if isinstance(node, ast.Compare))
+    count += sum(len(node.values) - 1 for node in nodes if isinstance(node, ast.BoolOp))
+    signs = [node for node in nodes if isinstance(node, ast.UnaryOp)]  # of a number, a sign is no operation
+    return count + sum(not isinstance(node.operand, ast.Constant) for node in signs)
+
+
+@pytest.mark.parametrize("name", ["grid", "state", "forces", "extended", "one_axis", "far"])
+def test_the_count_of_operations_is_that_of_the_text(name):
+    text = module_text(dx.scene(SCENES[name]))
+    told = re.search(r"A `point` takes (\d+) operations, in a form that is right for any design", text)
+    functions = [node for node in ast.parse(text).body if isinstance(node, ast.FunctionDef)]
+    (point,) = (node for node in functions if node.name == "point")
+    assert int(told[1]) == operations_in(point)
+
+
+def test_a_scene_without_outputs(tmp_path):
+    with pytest.raises(SceneError, match="nothing to compile"):
+        dx.compile({**SMALL, "outputs": [], "peak": [{"quantity": "a_C"}]}, tmp_path / "m.py")
+    assert not list(tmp_path.iterdir())

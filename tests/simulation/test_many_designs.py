@@ -1,0 +1,228 @@
+"""Many designs in one compiled call: the same motions as one at a time, whatever the threads."""
+
+import ast
+import math
+import re
+from pathlib import Path
+
+import numba
+import numpy as np
+import pytest
+from scipy.integrate import DOP853
+
+import desaxe as dx
+from desaxe.mechanism.program import Variant
+from desaxe.simulation import dop853 as compiled
+from desaxe.simulation.compiled import Family, source_of
+from desaxe.simulation.coordinate import EDGE
+from tests.motions import true_end
+from tests.simulation.test_simulate import CRANK, LOADED, PRESS, ROCKER
+
+ECS = np.array([-0.1, 0.0, 0.06, 0.12])
+
+
+def one(result, row):
+    """The histories of one design."""
+    return [result[name][row] for name in ("theta", "omega", "alpha")]
+
+
+def alone(design, t, **more):
+    """The histories of a design on its own."""
+    found = dx.simulate(t_end=t[-1], times=t, **{**design, **more})
+    return found, [found[name] for name in ("theta", "omega", "alpha")]
+
+
+@pytest.mark.parametrize("branch", [1, -1])
+def test_each_design_moves_as_it_does_alone(branch):
+    start = {"torque": 0.25, "omega_start": 3.0, "theta0": 0.4, "branch": branch}
+    many = dx.simulate(t_end=1.0, **start, **{**LOADED, "ec": ECS})
+    assert many["theta"].shape == (4, 101)
+    for row, ec in enumerate(ECS.tolist()):
+        single, histories = alone({**LOADED, "ec": ec}, many["t"], **start)
+        for ours, theirs in zip(one(many, row), histories, strict=True):
+            np.testing.assert_allclose(ours, theirs, rtol=1e-9, atol=1e-9 * np.abs(theirs).max())
+        assert many["work"][row] == pytest.approx(single["work"], rel=1e-9)
+        assert many["t_last"][row] == 1.0
+    assert (many["status"] == 0).all()
+    assert (many["energy_residual"] < 1e-9).all()
+
+
+def test_the_end_of_a_motion():
+    torques = np.array([0.25, -0.5])
+    many = dx.simulate(torque=torques, t_end=0.3, rtol=1e-11, omega_start=8.0, **LOADED)
+    for row, torque in enumerate(torques.tolist()):
+        theta, omega = true_end(LOADED, torque, 0.0, 8.0, 0.3, 80)
+        assert abs(many["theta"][row, -1] - theta) < 1e-9
+        assert abs(many["omega"][row, -1] - omega) < 1e-8
+
+
+def test_the_threads_do_not_matter():
+    design = {**LOADED, "ec": np.linspace(-0.1, 0.1, 23)}
+    answers = [dx.simulate(torque=0.25, t_end=0.5, threads=threads, **design) for threads in (1, 2, 5, None)]
+    for other in answers[1:]:
+        for name, value in answers[0].items():
+            if name != "message":
+                np.testing.assert_array_equal(other[name], value)
+
+
+def test_designs_broadcast():
+    torque = np.array([0.1, 0.2, 0.3])
+    many = dx.simulate(torque=torque, t_end=0.5, times=[0.0, 0.1, 0.5], **{**LOADED, "ec": ECS[:, None]})
+    assert many["theta"].shape == (4, 3, 3)
+    assert many["status"].shape == many["energy_residual"].shape == (4, 3)
+    flat = dx.simulate(torque=0.3, t_end=0.5, times=[0.0, 0.1, 0.5], **{**LOADED, "ec": ECS})
+    np.testing.assert_array_equal(many["theta"][:, 2], flat["theta"])
+
+
+def test_names_are_those_of_evaluate():
+    many = dx.simulate(torque=0.25, t_end=0.5, names=["V_C", "T_in"], **{**LOADED, "ec": ECS})
+    state = {name: many[name] for name in ("theta", "omega", "alpha")}
+    again = dx.evaluate("V_C", **state, **{**LOADED, "ec": ECS[:, None]})
+    np.testing.assert_array_equal(many["V_C"], again)
+    np.testing.assert_allclose(many["T_in"], 0.25, rtol=0, atol=1e-10)
+
+
+def test_units():
+    text = dx.simulate(torque=["250 N*mm", "0.5 N*m"], t_end="0.5 s", omega_start="60 rpm", **LOADED)
+    plain = dx.simulate(torque=[0.25, 0.5], t_end=0.5, omega_start=2.0 * math.pi, **LOADED)
+    np.testing.assert_array_equal(text["theta"], plain["theta"])
+
+
+# ---- limits and bad designs ----------------------------------------------------------------------
+
+MIXED = {
+    **ROCKER,
+    "BC": np.array([0.16, 0.31, 0.16, 0.1, 0.31, -1.0]),
+    "m_rod": np.array([1.5, 1.5, 0.0, 1.5, 0.0, 1.5]),
+    "m_slider": np.array([2.0, 2.0, 0.0, 2.0, 1.0, 2.0]),
+    "I_rod": np.array([1e-4, 1e-4, 0.0, 1e-4, 0.0, 1e-4]),
+    "m_crank": np.array([0.7, 0.7, 0.7, 0.7, 0.0, 0.7]),
+    "I_crank": np.array([1e-4, 1e-4, 1e-4, 1e-4, 0.0, 1e-4]),
+}
+
+
+def test_every_status():
+    many = dx.simulate(torque=0.25, t_end=2.0, theta0=0.1, **{**MIXED, "ec": 0.06})
+    assert many["status"].tolist() == [2, 0, 2, 2, 5, 6]
+    assert many["message"].startswith("6 designs: 1 reached t_end, 3 reached a limit angle, 1 the effective")
+    for row in (0, 2, 3):
+        design = {n: float(v[row]) if np.ndim(v) else v for n, v in MIXED.items()}
+        single = dx.simulate(torque=0.25, t_end=2.0, theta0=0.1, **design)
+        assert single["status"] == 2
+        assert many["t_last"][row] == pytest.approx(single["t"][-1], abs=1e-9)
+        told = many["t"] <= many["t_last"][row]
+        assert np.isfinite(many["theta"][row, told]).all()
+        assert np.isnan(many["theta"][row, ~told]).all()
+        at = single["solution"](many["t"][told])
+        np.testing.assert_allclose(many["theta"][row, told], at["theta"], rtol=0, atol=1e-9)
+    assert np.isfinite(many["theta"][1]).all()
+    assert np.isnan(many["theta"][5]).all()
+    assert np.isnan(many["t_last"][5])
+
+
+def test_a_start_outside_is_told_and_disturbs_nothing():
+    theta0 = np.array([0.1, 1.5, math.nan, 0.2])
+    many = dx.simulate(torque=0.25, t_end=0.1, theta0=theta0, **ROCKER)
+    assert many["status"].tolist() == [0, 6, 6, 0]
+    assert np.isfinite(many["theta"]).all(axis=1).tolist() == [True, False, False, True]
+
+
+def test_too_many_steps_are_a_failure():
+    many = dx.simulate(torque=[0.25, 0.5], t_end=5.0, max_steps=10, **LOADED)
+    assert many["status"].tolist() == [4, 4]
+    assert (many["t_last"] < 5.0).all()
+
+
+# ---- torque as a function ------------------------------------------------------------------------
+
+
+def drag(t, theta, omega):
+    return 0.3 * math.cos(4.0 * t) - 0.01 * omega
+
+
+@pytest.mark.parametrize("torque", [drag, numba.njit(drag)], ids=["plain", "compiled"])
+def test_a_torque_function(torque):
+    many = dx.simulate(torque=torque, t_end=0.5, **{**LOADED, "ec": ECS})
+    for row, ec in enumerate(ECS.tolist()):
+        _, (theta, *_) = alone({**LOADED, "ec": ec}, many["t"], torque=drag)
+        np.testing.assert_allclose(many["theta"][row], theta, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("torque", "message"),
+    [
+        (lambda t, theta, omega: dx.evaluate("Y", theta=theta, ec=0.0, AB=1.0, BC=2.0), "cannot"),
+        (lambda t, theta, omega: (t, theta), "torque: the function gives"),
+        (lambda t, theta: 0.0, "torque: a function of (t, theta, omega) is wanted"),
+    ],
+)
+def test_a_torque_that_numba_cannot_compile(torque, message):
+    with pytest.raises(TypeError, match=re.escape(message)):
+        dx.simulate(torque=torque, t_end=0.5, **{**LOADED, "ec": ECS})
+
+
+# ---- refusals ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("change", "error", "message"),
+    [
+        ({"mu": 0.1}, ValueError, "mu: friction has kinks"),
+        ({"until": 3.0}, ValueError, "until= is for one design at a time"),
+        ({"atol": 1e-9}, ValueError, "atol= is for one design at a time"),
+        ({"method": "Radau"}, ValueError, "method= is for one design at a time"),
+        ({"F_Y": lambda t, theta, omega: 1.0}, TypeError, "F_Y: a function is for one design at a time"),
+        ({"torque": [1.0, 2.0]}, ValueError, "the shapes do not broadcast together"),
+        ({"torque": ["3 N"] * 4}, ValueError, "torque = '3 N': it must be a quantity in N*m"),
+        ({"torque": [None] * 4}, TypeError, "torque: real numbers are wanted"),
+        ({"omega_start": math.inf}, ValueError, "omega_start = inf: it must be a finite number"),
+        ({"m_slider": [-1.0] * 4}, ValueError, "m_slider: every value is bad"),
+        ({"threads": 0}, ValueError, "threads = 0: a whole number, at least 1"),
+        ({"BC": None}, TypeError, "BC is missing"),
+    ],
+)
+def test_what_is_refused(change, error, message):
+    with pytest.raises(error, match=re.escape(message)):
+        dx.simulate(**{"torque": 0.25, "t_end": 1.0, **PRESS, "ec": ECS, **change})
+
+
+# ---- the compiled module -------------------------------------------------------------------------
+
+
+def test_the_text_stands_alone():
+    tree = ast.parse(source_of(Family(Variant(True, ("r_crank", "r_rod")), ()), False))
+    modules = {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+    assert modules == {"math", "numba", "numba.extending", "numpy"}
+    assert not [node for node in ast.walk(tree) if isinstance(node, ast.Import)]
+
+
+def test_what_a_family_lacks_costs_nothing():
+    """Without gravity nothing computes a weight."""
+    zeros = tuple((name, 0.0) for name in ("g_X", "g_Y"))
+    full, light = (source_of(Family(Variant(True), fixed), False) for fixed in ((), zeros))
+    assert "g_Y" in full
+    assert "g_Y" not in light
+
+
+def test_the_text_runs_uncompiled():
+    """With the stand-ins, a crank of 1 kg m^2 alone: theta = torque t^2/2."""
+    setup = np.array([[1.0, -math.inf, math.inf, 0.0, 3.0, 0.0, 0.5, 1.0, 0.0]])
+    times, how = np.array([0.0, 0.3, 2.0]), np.array([1e-10, 2.0, math.inf, 1000.0])
+    tables = [getattr(DOP853, name) for name in ("A", "B", "C", "E3", "E5", "D", "A_EXTRA", "C_EXTRA")]
+    theta, omega, alpha = (np.empty((1, 3)) for _ in range(3))
+    status, numbers = np.full(1, -1, np.int8), np.empty((1, 3))
+    compiled.designs(np.empty((1, 0)), setup, times, how, *tables, theta, omega, alpha, status, numbers)
+    np.testing.assert_allclose(theta[0], 0.5 + times + 1.5 * times**2, rtol=1e-13)
+    np.testing.assert_allclose(omega[0], 1.0 + 3.0 * times, rtol=1e-13)
+    assert (status[0], numbers[0, 0], alpha[0, 1]) == (0, 2.0, 3.0)
+    assert numbers[0, 2] == pytest.approx(3.0 * (theta[0, -1] - 0.5))
+
+
+def test_the_edge_is_the_same_in_both():
+    assert f"{EDGE:g}" in Path(compiled.__file__).read_text(encoding="utf-8")
+
+
+def test_only_a_crank():
+    many = dx.simulate(torque=[0.0, 0.1], t_end=1.0, theta0=1.0, g_Y=-9.81, **CRANK)
+    _, (theta, *_) = alone(CRANK, many["t"], torque=0.1, theta0=1.0, g_Y=-9.81)
+    np.testing.assert_allclose(many["theta"][1], theta, rtol=0, atol=1e-9)
