@@ -13,13 +13,7 @@ which has N0's sign; none above (the friction jams) and two below.
 
 import sympy as sp
 
-from desaxe.mechanism.names import CENTRES, PARAMETERS, parts, sensitivity
-
-from . import bodies
-from .loop import AB, BC, branch, ec
-from .sheet import Equation, Sheet, symbol
-from .stable import assembled, cos_theta, eq, le, lt, sec_phi, select, sin_theta, tan_phi
-from .units import (
+from desaxe.mechanism.dimensions import (
     ENERGY,
     FORCE,
     INERTIA,
@@ -32,17 +26,23 @@ from .units import (
     TORQUE,
     Unit,
 )
+from desaxe.mechanism.names import CENTRES, PARAMETERS, parts, sensitivity
+
+from . import bodies
+from .loop import AB, BC, branch, ec
+from .sheet import Equation, Sheet, symbol
+from .stable import assembled, cos_theta, eq, le, lt, sec_phi, select, sin_theta, tan_phi
 
 FORCES = (
     "T_in", "F_A_X", "F_A_Y", "F_B_X", "F_B_Y", "F_C_X", "F_C_Y", "N_C", "F_friction", "F_shaking_X",
-    "F_shaking_Y", "M_shaking", "power_in", "kinetic_energy", "potential_energy", "M_eff", "m_rotating",
-    "m_reciprocating", "I_lumping",
+    "F_shaking_Y", "M_shaking", "power_in", "F_A", "F_B", "F_C", "P_friction", "kinetic_energy",
+    "potential_energy", "M_eff", "m_rotating", "m_reciprocating", "I_lumping",
 )  # fmt: skip
 
 LUMPS = FORCES[-3:]  # of the links alone, without a mechanism
 
-alpha, omega, omega2, nan, Y, a_C, alpha_BC = map(
-    symbol, ("alpha", "omega", "omega2", "nan", "Y", "a_C", "alpha_BC")
+alpha, omega, omega2, nan, Y, V_C, a_C, alpha_BC = map(
+    symbol, ("alpha", "omega", "omega2", "nan", "Y", "V_C", "a_C", "alpha_BC")
 )
 m_crank, m_rod, m_slider, I_crank, I_rod = (
     bodies.m_crank, bodies.m_rod, bodies.m_slider, bodies.I_crank, bodies.I_rod,
@@ -86,6 +86,7 @@ def define_dynamics(sheet: Sheet) -> None:
     _define_loads(sheet)
     _define_friction(sheet)
     _define_joints(sheet)
+    _define_magnitudes(sheet)
     _define_frame(sheet)
     _define_energies(sheet)
 
@@ -142,6 +143,7 @@ def _define_loads(sheet: Sheet) -> None:
                  meaning="normal force at the guide, without friction")  # fmt: skip
 
 
+hypot = sp.Function("hypot")
 lean, thrust_smooth, rod_twist, N_smooth, crank_X, crank_Y = map(
     symbol, ("lean", "thrust_smooth", "rod_twist", "N_smooth", "crank_X", "crank_Y")
 )
@@ -198,6 +200,22 @@ def _define_joints(sheet: Sheet) -> None:
     sheet.define("T_in", torque, unit=TORQUE, source="C (link 2)",
                  meaning="torque that the drive applies to the crank")  # fmt: skip
     sheet.define("power_in", T_in * omega, unit=POWER, meaning="power that the drive puts in, T_in omega")
+
+
+def _define_magnitudes(sheet: Sheet) -> None:
+    """What bearings feel, and what the guide's friction loses; at 0 a magnitude has no derivative."""
+    joints = (("A", "frame on the crank"), ("B", "crank on the rod"), ("C", "rod on the slider"))
+    for joint, bodies_of_joint in joints:
+        X, Y = symbol(f"F_{joint}_X"), symbol(f"F_{joint}_Y")
+        sheet.define(f"F_{joint}", hypot(X, Y), unit=FORCE, differentiate=sp.sqrt(X**2 + Y**2),
+                     meaning=f"magnitude of the force of the {bodies_of_joint}")  # fmt: skip
+    sheet.define("P_friction", -F_friction * V_C, unit=POWER, meaning="power lost in the guide by friction")
+    # At rest the speed's derivative is infinite, but nothing rubs.
+    by_alpha = (sheet.derivative(name, "alpha") for name in ("F_friction", "V_C"))
+    forces, speeds = by_alpha
+    rubbed = select(eq(F_friction, 0), 0, F_friction * speeds)
+    sheet.define(sensitivity("P_friction", "alpha"), -(forces * V_C + rubbed), unit=POWER.over("alpha"),
+                 meaning="derivative of P_friction by alpha")  # fmt: skip
 
 
 def _define_frame(sheet: Sheet) -> None:

@@ -120,6 +120,10 @@ def _force(base: str) -> sp.Expr:
         return _lump(base)
     if base == "power_in":
         return closed_form("T_in") * omega
+    if base == "P_friction":
+        return -closed_form("F_friction") * closed_form("V_C")
+    if base in ("F_A", "F_B", "F_C"):
+        return sp.sqrt(closed_form(f"{base}_X") ** 2 + closed_form(f"{base}_Y") ** 2)
     if base == "kinetic_energy":
         return closed_form("M_eff") * omega**2 / 2
     pushed = bodies.solution()["N_C"]

@@ -6,6 +6,7 @@ Y = AB cos(theta) + branch S is the solved loop. Lengths are differentiated firs
 
 import sympy as sp
 
+from desaxe.mechanism.dimensions import LENGTH
 from desaxe.mechanism.names import parts
 
 from .folded import slider_rate
@@ -13,7 +14,6 @@ from .loop import AB, BC, ec, slider, solved
 from .rod import UNITS, RodFunction, read_rod_function
 from .sheet import Equation, Sheet
 from .stable import OFFSET, TRIGONOMETRY, in_theta, phi_rate
-from .units import LENGTH
 
 POSITION = solved()[slider].subs(TRIGONOMETRY)
 LENGTHS = {"ec": ec, "AB": AB, "BC": BC}

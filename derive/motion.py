@@ -14,12 +14,12 @@ from itertools import combinations_with_replacement
 
 import sympy as sp
 
+from desaxe.mechanism.dimensions import ANGULAR_SPEED, NONE, Unit
 from desaxe.mechanism.names import sensitivity
 
 from .loop import theta
 from .sheet import Sheet, symbol
 from .stable import eq, le, lt, select, two_product_error
-from .units import ANGULAR_SPEED, NONE, Unit
 
 omega, omega2, omega0, alpha, turn, nan = map(symbol, ("omega", "omega2", "omega0", "alpha", "turn", "nan"))
 MOVING = ("theta", "omega0", "alpha")

@@ -8,6 +8,18 @@ from itertools import pairwise
 
 import sympy as sp
 
+from desaxe.mechanism.dimensions import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    JERK,
+    LENGTH,
+    NONE,
+    SPEED,
+    Unit,
+)
+
 from .dynamics import FORCES, define_dynamics, prove, resolve_ratio
 from .folded import FOLDED_AREA, WIDE_MARGIN_FORMS, folded, folded_area, prove_folded
 from .geometry import POSITION, resolve_geometry
@@ -51,17 +63,6 @@ from .stable import (
     wide_margin_test,
 )
 from .start import define_start
-from .units import (
-    ACCELERATION,
-    ANGLE,
-    ANGULAR_ACCELERATION,
-    ANGULAR_SPEED,
-    JERK,
-    LENGTH,
-    NONE,
-    SPEED,
-    Unit,
-)
 
 KINEMATICS = (
     "phi", "delta", "Y", "s", "V_B_X", "V_B_Y", "V_B", "a_B_X", "a_B_Y", "a_B", "omega", "omega_BC",

@@ -11,10 +11,11 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from desaxe.mechanism.dimensions import ANGLE, LENGTH, Unit
+
 from .loop import BC, r, rod_partials, u
 from .sheet import Equation, Sheet, symbol
 from .stable import in_theta, inverse_rate, phi_by_theta, sec_phi, tan_phi
-from .units import ANGLE, LENGTH, Unit
 
 UNITS = {"phi": ANGLE, "S": LENGTH}
 BY = {"u": u, "BC": BC}

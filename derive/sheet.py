@@ -12,9 +12,8 @@ from typing import NamedTuple
 import sympy as sp
 
 from desaxe.compiler.program import Note
+from desaxe.mechanism.dimensions import Unit, unit_text
 from desaxe.mechanism.names import sensitivity
-
-from .units import Unit, unit_text
 
 
 class Equation(NamedTuple):

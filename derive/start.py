@@ -11,6 +11,8 @@ d(a_C)/d(alpha), because Y'' = -AB c - branch (u phi'' + AB c phi').
 
 import sympy as sp
 
+from desaxe.mechanism.dimensions import LENGTH, NONE
+
 from .loop import AB, BC, branch, ec, r, theta, u
 from .sheet import Sheet, symbol
 from .stable import (
@@ -28,7 +30,6 @@ from .stable import (
     select,
     sin_theta,
 )
-from .units import LENGTH, NONE
 
 NEAR = sp.Float(2.0**-20)  # beyond, two words lose less than half of their digits
 near_start, sine_excess, rod_start = map(symbol, ("near_start", "sine_excess", "rod_start"))

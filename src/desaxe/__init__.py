@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from . import plot as plot
+    from .definitions.define import define as define
+    from .definitions.define import undefine as undefine
     from .design.design_map import design_map as design_map
     from .design.drive.drive import drive as drive
     from .design.events.events import events as events
@@ -65,6 +67,8 @@ PUBLIC = {
     "over_theta": "desaxe.loads",
     "over_Y": "desaxe.loads",
     "LoadWarning": "desaxe.loads",
+    "define": "desaxe.definitions.define",
+    "undefine": "desaxe.definitions.define",
     "equation": "desaxe.derive.equation",
 }
 MODULES = {"plot": "desaxe.plot", "units": "desaxe.mechanism.units"}
@@ -73,6 +77,7 @@ __all__ = [
     "LoadWarning",
     "compile",
     "counterweight",
+    "define",
     "design_map",
     "drive",
     "enclose",
@@ -97,6 +102,7 @@ __all__ = [
     "sweep",
     "synthesize",
     "tolerance",
+    "undefine",
 ]
 
 # In a clone derive/ and generated/ stand beside src/; a wheel has them in this folder.

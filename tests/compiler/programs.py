@@ -23,7 +23,8 @@ SIMPLE = (0.0, 1.0, -1.0, 2.0, -2.5, 0.5)
 WITH_NAN = (*SIMPLE, math.nan, -0.0)
 TYPES = {"f": "f64", "b": "bool"}
 # Where a zero has a sign, or what is near has an answer that is not: no test of exactness draws these.
-ANY_OPS = tuple(op for op in OPERATIONS if op != "two_product_error")  # which wants no over- or underflow
+# Nor is drawn what wants no over- or underflow, or grows beyond any number when it is nested.
+ANY_OPS = tuple(op for op in OPERATIONS if op not in ("two_product_error", "exp", "log", "pow"))
 NO_JUMPS = tuple(op for op in ANY_OPS if op not in ("copysign", "atan2", "floor"))
 
 POINT = {"theta": 1.1, "ec": 0.02, "AB": 0.125, "BC": 0.35, "omega0": 157.0, "alpha": -3.0, "branch": 1.0}

@@ -28,12 +28,14 @@ REFERENCE = {
     "copy": lambda a: a, "add": np.add, "sub": np.subtract, "mul": np.multiply, "div": np.divide,
     "neg": np.negative, "abs": np.abs, "sqrt": np.sqrt, "sin": np.sin, "cos": np.cos, "atan2": np.arctan2,
     "floor": np.floor, "copysign": np.copysign, "lt": np.less, "le": np.less_equal, "eq": np.equal,
+    "exp": np.exp, "log": np.log, "pow": lambda a, b: np.power(np.array([a, a]), np.array([b, 1.0]))[0],
     "and": np.logical_and, "or": np.logical_or, "not": np.logical_not, "select": np.where,
 }  # fmt: skip
 REFERENCE["mul_add"] = lambda a, b, c: np.add(np.multiply(a, b), c)
+REFERENCE["hypot"] = lambda a, b: np.nan if a != a or b != b else np.hypot(a, b)
 REFERENCE["extended_only"] = lambda a: False
 ERRORS = ("two_sum_error", "two_product_error", "rounding")  # exactly 0 over the reals
-CALLED = ("sin", "cos", "atan2")  # each library rounds these in its own way
+CALLED = ("sin", "cos", "atan2", "hypot", "exp", "log", "pow")  # each library rounds these in its own way
 WHOLE = ("rotated_sin", "rotated_cos")  # their last argument is a whole number
 
 
@@ -54,10 +56,11 @@ def arguments(op):
 def ordinary(op, count=50):
     """Seeded ordinary arguments, where the operation has a value."""
     rng = random.Random(op)
-    signs = [1] if op == "sqrt" else [-1, 1]
+    signs = [1] if op in ("sqrt", "log", "pow") else [-1, 1]
+    largest = 1.5 if op in ("exp", "pow") else 3  # or they overflow
     for _ in range(count):
         yield tuple(
-            rng.random() < 0.5 if letter == "b" else rng.choice(signs) * 10 ** rng.uniform(-3, 3)
+            rng.random() < 0.5 if letter == "b" else rng.choice(signs) * 10 ** rng.uniform(-3, largest)
             for letter in OPERATIONS[op].signature[:-1]
         )
 
@@ -146,7 +149,9 @@ def test_ieee_rounds_the_exact_meaning(op):
         for point in ordinary(op):
             exact = OPERATIONS[op].exact(mpmath.mp, *(a if a in BOOLS else mpmath.mpf(a) for a in point))
             got = float(ieee(op, *point))
-            if op == "mul_add":
+            if op == "hypot":
+                assert ulp_error(got, mpmath.mpf(exact)) < 2, point
+            elif op == "mul_add":
                 assert abs(got - exact) <= math.ulp(point[0] * point[1]) / 2 + math.ulp(got) / 2, point
             else:
                 assert ulp_error(got, mpmath.mpf(exact)) < 1, point

@@ -4,7 +4,7 @@ import pytest
 import sympy as sp
 
 from desaxe.derive.sheet import Equation, Sheet, symbol
-from desaxe.derive.units import LENGTH, Unit
+from desaxe.mechanism.dimensions import LENGTH, Unit
 from desaxe.mechanism.names import PARAMETERS, sensitivity
 
 theta, ec, AB = map(symbol, ("theta", "ec", "AB"))

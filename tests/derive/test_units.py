@@ -7,7 +7,7 @@ from functools import cache
 import pytest
 
 from desaxe.compiler.interpret import run_in_doubles
-from desaxe.derive.units import (
+from desaxe.mechanism.dimensions import (
     ANGLE,
     ENERGY,
     FORCE,

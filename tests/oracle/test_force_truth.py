@@ -12,6 +12,7 @@ import pytest
 
 from desaxe.oracle.force_truth import (
     FORCES,
+    MAGNITUDES,
     MASSES,
     OTHERS,
     PARAMETERS,
@@ -48,7 +49,7 @@ DEGREES = {
     **dict.fromkeys(FORCES, FORCE),
     **dict.fromkeys(("T_in", "M_shaking", "kinetic_energy", "potential_energy"), TORQUE),
     **dict.fromkeys(("m_rotating", "m_reciprocating"), (1, 0, 0)),
-    **{"power_in": (1, 2, 3), "M_eff": (1, 2, 0), "I_lumping": (1, 2, 0)},
+    **{"power_in": (1, 2, 3), "P_friction": (1, 2, 3), "M_eff": (1, 2, 0), "I_lumping": (1, 2, 0)},
 }
 OF_INPUTS = {
     **{"theta": (0, 0, 0), "mu": (0, 0, 0), "omega0": (0, 0, 1), "alpha": (0, 0, 2)},
@@ -278,7 +279,10 @@ def test_power_balance(point):
     outside = (point["F_Y"] + q["F_friction"]) * q["V_C"] - potential
     assert agree(q["power_in"], q["T_in"] * q["omega"])
     assert agree(q["power_in"] + outside, kinetic)
-    assert q["F_friction"] * q["V_C"] <= 0
+    assert agree(q["P_friction"], -q["F_friction"] * q["V_C"])
+    assert q["P_friction"] >= 0
+    for joint in "ABC":
+        assert agree(q[f"F_{joint}"], mpmath.hypot(q[f"F_{joint}_X"], q[f"F_{joint}_Y"]))
 
 
 @pytest.mark.parametrize("point", POINTS)
@@ -446,7 +450,7 @@ def test_every_kind_of_friction_is_among_these():
 def test_what_friction_does_not_touch(mu, omega, F_X):
     """The frame feels no friction as a whole, whether there is a balance or not; energies know no forces."""
     point = STEEP | {"omega": omega, "F_X": F_X}
-    for name in {*FORCES} - {*TOUCHED}:
+    for name in {*FORCES} - {*TOUCHED, *MAGNITUDES}:
         assert truth(name, mu=mu, **point) == truth(name, mu=0.0, **point)
         assert truth(f"{name}_wrt_mu", mu=mu, **point) == 0
         assert mpmath.isfinite(truth(f"{name}_wrt_BC", mu=mu, **point))

@@ -73,6 +73,7 @@ FLOORS = {
     "errata": 1,
     "mechanism": 2,
     "loads": 3,
+    "definitions": 3,
     "runtime": 4,
     "evaluation": 5,
     "enclosure": 6,

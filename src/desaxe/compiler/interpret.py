@@ -55,6 +55,32 @@ def _finite_only(function: Any) -> Any:
     return guarded
 
 
+def _hypot(a: float, b: float) -> float:
+    least, most = sorted((math.fabs(a), math.fabs(b)))
+    if not (least > 0.0 and most < math.inf):
+        return most + least
+    return most * math.sqrt(1.0 + (least / most) * (least / most))
+
+
+def _exponential(a: float) -> float:
+    return math.exp(a) if not a > 709.782712893384 else a * math.inf
+
+
+def _logarithm(a: float) -> float:
+    return math.log(a) if a > 0.0 else (-math.inf if a == 0.0 else math.nan)
+
+
+def _power(a: float, b: float) -> float:
+    """a to the power b; Python raises where the C library answers inf or NaN."""
+    odd = b % 2.0 == 1.0 if b - b == 0.0 else False
+    try:
+        return math.pow(a, b)
+    except OverflowError:
+        return -math.inf if a < 0.0 and odd else math.inf
+    except ValueError:
+        return math.nan if a else math.copysign(math.inf, a) if odd else math.inf
+
+
 def _two_sum_error(a: float, b: float) -> float:
     total = a + b
     of_b = total - a
@@ -92,6 +118,10 @@ _IEEE: dict[str, Any] = {
     "sin": _finite_only(math.sin),
     "cos": _finite_only(math.cos),
     "atan2": math.atan2,
+    "hypot": _hypot,
+    "exp": _exponential,
+    "log": _logarithm,
+    "pow": _power,
     "floor": lambda a: float(math.floor(a)) if a - a == 0.0 and a else a,
     "copysign": math.copysign,
     "two_sum_error": _two_sum_error,

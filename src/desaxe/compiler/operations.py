@@ -73,6 +73,19 @@ OPERATIONS: dict[str, Operation] = dict(
         _row("sin", "ff", "sin({0})", CALL, 20, lambda mp, a: mp.sin(a), python="sine({0})"),
         _row("cos", "ff", "cos({0})", CALL, 20, lambda mp, a: mp.cos(a), python="cosine({0})"),
         _row("atan2", "fff", "atan2({0}, {1})", CALL, 40, lambda mp, a, b: mp.atan2(a, b)),
+        _row(
+            "hypot", "fff", "hypot({0}, {1})", CALL, 20, lambda mp, a, b: mp.sqrt(a * a + b * b),
+            commutes=True,
+        ),
+        _row("exp", "ff", "exp({0})", CALL, 20, lambda mp, a: mp.exp(a), python="exponential({0})"),
+        _row(
+            "log", "ff", "log({0})", CALL, 20, lambda mp, a: mp.log(a),
+            python="logarithm({0})", undefined="{0} < 0",
+        ),
+        _row(
+            "pow", "fff", "pow({0}, {1})", CALL, 60, lambda mp, a, b: mp.power(a, b),
+            python="power({0}, {1})",
+        ),
         _row("floor", "ff", "floor({0})", CALL, 1, lambda mp, a: mp.floor(a), python="whole({0})"),
         _row(
             "copysign", "fff", "copysign({0}, {1})", CALL, 1,
@@ -181,6 +194,32 @@ HELPERS = {
     """The cosine, NaN of an infinity."""
     return cos(a) if a - a == 0.0 else nan
 ''',
+    "hypot": '''def hypot(a, b):
+    """The root of a^2 + b^2; the squares neither overflow nor vanish."""
+    a, b = fabs(a), fabs(b)
+    most, least = b if a < b else a, a if a < b else b
+    size = most * sqrt(1.0 + (least / most) * (least / most)) if 0.0 < least else most + least
+    return most + least if most - most != 0.0 else size
+''',
+    "exponential": '''def exponential(a):
+    """The exponential; infinite where it is too large."""
+    return exp(a) if not 709.782712893384 < a else a * inf
+''',
+    "logarithm": '''def logarithm(a):
+    """The natural logarithm, NaN below zero."""
+    return log(a) if a > 0.0 else (-inf if a == 0.0 else nan)
+''',
+    "power": '''def power(a, b):
+    """a to the power b with the IEEE 754 answers that Python refuses to give."""
+    if a == 0.0 and b < 0.0:
+        return copysign(inf, a) if b % 2.0 == 1.0 else inf
+    if a < 0.0 and b != floor(b) if a - a == 0.0 and b - b == 0.0 else False:
+        return nan
+    try:
+        return pow(a, b)
+    except OverflowError:
+        return -inf if a < 0.0 and b % 2.0 == 1.0 else inf
+''',
     "whole": '''def whole(a):
     """The floor as a float; infinities, NaN and the sign of a zero stay."""
     return float(floor(a)) if a - a == 0.0 and a else a
@@ -271,6 +310,11 @@ JAVASCRIPT_HELPERS = {
   return a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low) + 0;
 }
 """,
+    "hypot": """function hypot(a, b) {
+  const p = fabs(a), q = fabs(b), most = p < q ? q : p, least = p < q ? p : q;
+  return least > 0 && most < Infinity ? most * sqrt(1 + (least / most) * (least / most)) : most + least;
+}
+""",
     "rounding": """function rounding(a) {
   return 4.440892098500626e-16 * fabs(a);
 }
@@ -296,7 +340,9 @@ JAVASCRIPT_HELPERS = {
 }
 """,
 }
-MATH_NAMES = ("atan2", "copysign", "cos", "fabs", "floor", "inf", "nan", "sin", "sqrt")
+MATH_NAMES = (
+    "atan2", "copysign", "cos", "exp", "fabs", "floor", "inf", "log", "nan", "pow", "sin", "sqrt",
+)  # fmt: skip
 
 TYPES = {"f": "f64", "b": "bool", "i": "i64"}
 

@@ -22,6 +22,7 @@ from flint import arb, ctx
 
 from ..compiler.passes.differentiate import original
 from ..compiler.program import Argument, Line, Program
+from ..mechanism.own_lines import PREFIX
 
 Interval = tuple[float, float]
 Value = Any  # an arb, None where it is undefined in all of the box; a bool, None where it is undecided
@@ -79,7 +80,8 @@ class _Run:
             here = [self.value(a) for a in args]
             flag = self._flag(args)
             value = None if None in here else self._number(line, here)
-            if op == "sqrt" and args == ("D",) and value is not None and not here[0] > 0:
+            own = name.startswith(PREFIX) and op in ("sqrt", "log", "pow")
+            if (own or (op == "sqrt" and args == ("D",))) and value is not None and not here[0] > 0:
                 flag |= PARTLY
         self.scope[name] = value
         if flag:
@@ -187,6 +189,13 @@ def _product(a: Any, b: Any) -> Any:
     return ends[0].union(ends[1]).union(ends[2]).union(ends[3])
 
 
+def _power(a: Any, b: Any) -> Any:
+    """a to a power that is no whole number; of what is not negative."""
+    if a > 0:
+        return a**b
+    return None if a < 0 or not b > 0 else arb(0).union(a.upper() ** b)
+
+
 def _and(a: bool | None, b: bool | None) -> bool | None:
     return False if a is False or b is False else True if a and b else None
 
@@ -223,6 +232,10 @@ _NUMBERS: dict[str, Callable[..., Any]] = {
     "sin": lambda a: a.sin(),
     "cos": lambda a: a.cos(),
     "atan2": arb.atan2,
+    "hypot": lambda a, b: _root((a * a).nonnegative_part() + (b * b).nonnegative_part()),
+    "exp": lambda a: a.exp(),
+    "log": lambda a: a.log() if a > 0 else None if a <= 0 else arb.neg_inf().union(a.upper().log()),
+    "pow": _power,
     "copysign": lambda a, b: a if b > 0 else -a if b < 0 else a.union(-a),  # of a positive a
     "two_sum_error": lambda a, b: arb(0),  # nothing is rounded
     "two_product_error": lambda a, b: arb(0),

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..mechanism.inputs import is_good
+from ..mechanism.own import changes, forget_on_change
 from ..runtime.accuracy import accuracy_of
 from ..runtime.point import Point, point_of
 from ..runtime.request import Request, as_number, check_common, is_steady, request, several, standstill
@@ -35,8 +36,11 @@ def values(
     if known is None:
         if len(_KNOWN) > MOST_KNOWN:
             _KNOWN.clear()
+        before = changes()
         asked = request(wanted, given, branch, accuracy)
-        known = _KNOWN[key] = asked, point_of(asked.names, asked.form, asked.fixed, asked.accuracy)
+        known = asked, point_of(asked.names, asked.form, asked.fixed, asked.accuracy)
+        if changes() == before:  # no name has got another meaning meanwhile
+            _KNOWN[key] = known
     asked, point = known
     numbers = []
     for name in point.inputs:
@@ -58,3 +62,4 @@ def values(
 
 MOST_KNOWN = 1024  # requests that are remembered
 _KNOWN: dict[tuple[Any, ...], tuple[Request, Point]] = {}
+forget_on_change(_KNOWN)

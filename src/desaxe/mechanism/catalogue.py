@@ -4,13 +4,13 @@ The names are read from generated/index.py, where the derivation wrote them. Und
 (`omega` instead of `omega0`) the sensitivity `_wrt_omega` stands where `_wrt_omega0` does.
 """
 
+from collections import ChainMap
 from collections.abc import Iterator, Mapping
-from functools import cache
-from importlib import import_module
 from typing import NamedTuple
 
 from ..support.shown import shown
 from .names import PARAMETERS, joined, parts, sensitivity
+from .own import Row, definitions, derived_names, leaves, rows
 
 
 class Quantity(NamedTuple):
@@ -59,10 +59,10 @@ class Catalogue(Mapping[str, Quantity]):
         )
 
 
-@cache
-def _names() -> dict[str, tuple[str, ...]]:
-    names: dict[str, tuple[str, ...]] = import_module("desaxe.generated.index").NAMES
-    return names
+def _names() -> Mapping[str, Row]:
+    """The rows of all names; those of a user's own quantities follow."""
+    own = rows()
+    return ChainMap(own, derived_names()) if own else derived_names()
 
 
 def quantities() -> Catalogue:
@@ -81,7 +81,16 @@ def quantity(name: str, state: bool = False) -> Quantity:
         raise TypeError(f"the name of a quantity is a str, got {shown(name)}")
     if not has(name, state):
         raise UnknownQuantityError(_unknown(name, state))
+    if state:
+        _refuse_law(parts(name)[0])
     return Quantity(name, *_names()[law_name(name) if state else name])
+
+
+def _refuse_law(name: str) -> None:
+    """An own quantity that is made of omega0 has no meaning for a given state."""
+    of_law = [leaf for leaf in leaves((name,), definitions()) if "omega0" in leaf]
+    if of_law:
+        raise ValueError(f"{name!r} is made of {of_law[0]}, which has no meaning for a given state omega=")
 
 
 def law_name(name: str) -> str:

@@ -13,6 +13,9 @@ from ..compiler.passes.bind import assume, overlay
 from ..compiler.passes.slicing import keep_outputs
 from ..compiler.program import Program
 from ..compiler.text import ProgramText
+from .names import parts
+from .own import Definition, used_by
+from .own_lines import lines_needed, with_own_lines
 
 
 class Variant(NamedTuple):
@@ -21,6 +24,7 @@ class Variant(NamedTuple):
     state: bool = False  # a given state instead of paper A's law
     default_centres: tuple[str, ...] = ()  # centres of mass halfway along their links
     wide_margins: bool = False  # plain forms, for designs with AB + |ec| < 7/8 BC, where nothing cancels
+    own: tuple[Definition, ...] = ()  # quantities of a user's own that are among the names, or behind them
 
 
 @cache
@@ -34,16 +38,29 @@ def _text(name: str) -> ProgramText:
 LAW = Variant()  # paper A's law, every centre of mass given
 
 
-@lru_cache(maxsize=1024)
 def program_of(names: tuple[str, ...], form: Variant = LAW) -> Program:
-    """The program of these names (those of the law), in one form."""
+    """The program of these names (those of the law), in one form; own quantities as they are now.
+
+    Its outputs stand in the order of the names; `line_name` says what those of own quantities are called.
+    """
+    return _program_of(names, form if form.own else form._replace(own=used_by(names)))
+
+
+@lru_cache(maxsize=1024)
+def _program_of(names: tuple[str, ...], form: Variant) -> Program:
+    bases = {definition.name for definition in form.own}
+    own = tuple(name for name in names if parts(name)[0] in bases)
+    if own:
+        others = (*(name for name in names if name not in own), *lines_needed(own, form.own).names)
+        base = _program_of(tuple(dict.fromkeys(others)), form._replace(own=()))
+        return with_own_lines(base, names, form.own)
     program = assume(_text("program").read(names), {"wide_margins": form.wide_margins})
     if form.state:
         program = keep_outputs(overlay(program, _text("state").read()), names)
     for centre in form.default_centres:
         halfway = _text("centres").read()
-        own = [name for name in halfway.outputs if name.startswith(centre)]
-        program = keep_outputs(overlay(program, keep_outputs(halfway, own)), names)
+        moved = [name for name in halfway.outputs if name.startswith(centre)]
+        program = keep_outputs(overlay(program, keep_outputs(halfway, moved)), names)
     return program
 
 

@@ -39,10 +39,11 @@ PARAMETERS = (*LAW, *OTHERS)
 STATE_PARAMETERS = (*STATE, *OTHERS)
 
 TOUCHED = ("T_in", "F_A_X", "F_A_Y", "F_B_X", "F_B_Y", "F_C_X", "F_C_Y", "N_C", "F_friction", "power_in")
+MAGNITUDES = ("F_A", "F_B", "F_C", "P_friction")  # of what friction touches
 SHAKING = ("F_shaking_X", "F_shaking_Y", "M_shaking")
 ENERGIES = ("kinetic_energy", "potential_energy", "M_eff")
 MASSES = ("m_rotating", "m_reciprocating", "I_lumping")
-FORCES = (*TOUCHED[:-1], *SHAKING, "power_in", *ENERGIES, *MASSES)
+FORCES = (*TOUCHED[:-1], *SHAKING, "power_in", *MAGNITUDES, *ENERGIES, *MASSES)
 
 Vector = tuple[Jet, Jet]
 Equation = tuple[dict[str, Jet], Jet]  # unknown -> coefficient, and the right-hand side
@@ -220,6 +221,14 @@ def _balances(at: Point, bits: int) -> list[dict[str, Jet]] | None:
         return found
 
 
+def _magnitude(x: Jet, y: Jet) -> Jet:
+    """The root of x^2 + y^2; where there is no force at all it is 0, and has no derivative."""
+    if () in x.terms or () in y.terms:
+        return (x * x + y * y).sqrt()
+    none = dict.fromkeys((*x.terms, *y.terms), arb_series([arb.nan()]))
+    return Jet({**none, (): arb_series([0])}, x.order)
+
+
 def _touched(at: Point, bits: int) -> dict[str, Jet] | None:
     """What friction touches, in the only balance there is; nothing if there is not one."""
     mechanism, balances = _mechanism(at, bits), _balances(at, bits)
@@ -228,7 +237,10 @@ def _touched(at: Point, bits: int) -> dict[str, Jet] | None:
     if len(balances) != 1:
         return {}
     with precision(bits):
-        return balances[0] | {"power_in": balances[0]["T_in"] * mechanism.theta.rate(1)}
+        found = balances[0] | {"power_in": balances[0]["T_in"] * mechanism.theta.rate(1)}
+        for joint in "ABC":
+            found[f"F_{joint}"] = _magnitude(found[f"F_{joint}_X"], found[f"F_{joint}_Y"])
+        return found | {"P_friction": (found["F_friction"] * mechanism.C[1].rate(1)).times(-1)}
 
 
 @lru_cache(maxsize=256)
@@ -287,7 +299,7 @@ def _masses(at: Point, bits: int) -> dict[str, Jet]:
 
 
 _GROUPS: dict[str, Callable[[Point, int], dict[str, Jet] | None]] = {
-    **dict.fromkeys(TOUCHED, _touched),
+    **dict.fromkeys((*TOUCHED, *MAGNITUDES), _touched),
     **dict.fromkeys(SHAKING, _shaking),
     **dict.fromkeys(ENERGIES, _energies),
     **dict.fromkeys(MASSES, _masses),

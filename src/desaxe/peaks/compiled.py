@@ -4,10 +4,10 @@ Its machine code is kept on disk, like that of every kernel. The same text runs 
 first few designs, for which nobody waits for a compiler.
 """
 
+import math
 from collections import Counter
 from collections.abc import Callable, Mapping
 from functools import cache, lru_cache
-from math import atan2, copysign, cos, fabs, inf, nan, sin, sqrt
 from pathlib import Path
 from types import CodeType
 from typing import Any, NamedTuple
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..compiler.languages.numba import peaks
 from ..compiler.languages.numba.module import helper_sources
-from ..compiler.operations import HELPERS
+from ..compiler.operations import HELPERS, MATH_NAMES
 from ..runtime.modules import is_kept, native
 from ..runtime.threads import run_parts
 from ..support.forks import fork_safe_lock
@@ -36,7 +36,7 @@ BREAK_EVEN = 600  # designs in plain Python that take as long as the compiler
 _NJIT = '@njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)\n'
 _HEADER = '''"""desaxe search: extreme values of {name} over theta."""
 
-from math import atan2, copysign, cos, fabs, inf, nan, sin, sqrt
+from math import atan2, copysign, cos, exp, fabs, inf, log, nan, pow, sin, sqrt
 
 from numba import njit, types
 from numba.extending import intrinsic
@@ -177,11 +177,8 @@ def _code() -> CodeType:
 
 def _scope(work: int) -> dict[str, Any]:
     """What the text of the search imports, for plain Python."""
-    return {
-        "atan2": atan2, "copysign": copysign, "cos": cos, "fabs": fabs, "inf": inf, "nan": nan,
-        "sin": sin, "sqrt": sqrt, "floor": np.floor, "empty": np.empty, "int64": np.int64,
-        "uint64": int, "WORK": work,
-    }  # fmt: skip
+    numpy = {"floor": np.floor, "empty": np.empty, "int64": np.int64}
+    return {name: getattr(math, name) for name in MATH_NAMES} | numpy | {"uint64": int, "WORK": work}
 
 
 def _quiet(kernel: Kernel) -> Kernel:

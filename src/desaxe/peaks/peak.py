@@ -21,6 +21,8 @@ from ..mechanism.catalogue import has, quantity
 from ..mechanism.constants import constants
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS, sensitivity
+from ..mechanism.own import changes, forget_on_change
+from ..mechanism.own_lines import has_kinks
 from ..runtime.accuracy import accuracy_of
 from ..runtime.kernels import STRUCTURAL_ZEROS
 from ..runtime.request import Request, as_number, check_common, check_inputs, is_steady, request
@@ -102,7 +104,8 @@ def peak(
     arrays = {n: as_array(n, given.get(n), plan.needs, (name,)) for n in plan.needs if n not in varying}
     shape = broadcast_shape(arrays)
     columns = {n: _flat(a, shape) for n, a in arrays.items()}
-    designs = Designs(columns, branch, ends, "mu" in plan.parameters, varying, plan.wanted.accuracy)
+    kinks = "mu" in plan.parameters or has_kinks(plan.wanted.form.own)
+    designs = Designs(columns, branch, ends, kinks, varying, plan.wanted.accuracy)
     found = _peaks(name, kind, _search(plan, arrays, ends), designs, threads)
     return _shaped(found, shape)
 
@@ -159,6 +162,7 @@ class _Plan(NamedTuple):
 
 MOST_PLANS = 1024
 _PLANS: dict[Any, _Plan] = {}
+forget_on_change(_PLANS)
 
 
 def _plan(name: str, given: dict[str, Any], branch: int, accuracy: Any) -> _Plan:
@@ -167,11 +171,15 @@ def _plan(name: str, given: dict[str, Any], branch: int, accuracy: Any) -> _Plan
     if type(accuracy) is not str:
         accuracy = accuracy_of(accuracy)
     key = name, shown, is_steady(given["alpha"]), branch, accuracy
-    if key not in _PLANS:
+    plan = _PLANS.get(key)
+    if plan is None:
         if len(_PLANS) > MOST_PLANS:
             _PLANS.clear()
-        _PLANS[key] = _new_plan(name, dict(given), branch, accuracy)
-    return _PLANS[key]
+        before = changes()
+        plan = _new_plan(name, dict(given), branch, accuracy)
+        if changes() == before:  # no name has got another meaning meanwhile
+            _PLANS[key] = plan
+    return plan
 
 
 def _new_plan(name: str, given: dict[str, Any], branch: int, accuracy: Any) -> _Plan:

@@ -86,20 +86,21 @@ def _whole(search: Search) -> tuple[Program, list[str]]:
     derived = [n for n in wanted if has(n)]
     partial = {p: _by(name, p) for p in search.parameters}
     derived += [n for n in partial.values() if has(n)]
-    program = specialise(tuple(dict.fromkeys(derived)), search.form, search.fixed)
-    names = [name]
+    derived = list(dict.fromkeys(derived))
+    program = specialise(tuple(derived), search.form, search.fixed)
+    called = dict(zip(derived, program.outputs, strict=True))
+    names = [called[name]]
     for parameter, known in {"theta": wanted[1], **partial}.items():
-        program, found = _differentiated(program, name, parameter, known, derived)
-        names.append(found)
+        if known in called:
+            names.append(called[known])
+        else:
+            program, found = _differentiated(program, called[name], parameter)
+            names.append(found)
     return program, names
 
 
-def _differentiated(
-    program: Program, name: str, parameter: str, known: str, derived: Sequence[str]
-) -> tuple[Program, str]:
+def _differentiated(program: Program, name: str, parameter: str) -> tuple[Program, str]:
     """The program with the derivative of one of its outputs, and the name of that."""
-    if known in derived:
-        return program, known
     chain = Chain(parameter, _RULES)
     for line in program.lines:
         chain.through(line)

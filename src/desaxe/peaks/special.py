@@ -32,7 +32,7 @@ class Designs(NamedTuple):
     columns: dict[str, Array]
     branch: int
     theta: tuple[float, float]
-    rubs: bool  # whether friction has a say
+    rubs: bool  # whether friction has a say, or another source of kinks and jumps
     loads: Mapping[str, Load] = MappingProxyType({})  # those that vary with the motion
     accuracy: str = "standard"
 
@@ -119,6 +119,8 @@ def _limit_angles(designs: Designs) -> list[list[float]]:
 def _dead_centres(designs: Designs) -> list[list[float]]:
     """For each design the angles in the range at which crank and rod are in line, on either branch."""
     low, high = designs.theta
+    if not all(name in designs.columns for name in LENGTHS):
+        return [[] for _ in range(designs.size)]
     ec, AB, BC = (designs.columns[n] for n in LENGTHS)
     with np.errstate(all="ignore"):
         sines = np.stack([-ec / (AB + BC), ec / (BC - AB)])

@@ -178,7 +178,9 @@ def _counting(key: KernelKey) -> Program:
         Line("reach_band", "mul", (NEAR_LIMIT, unsure)),
         Line("near_limit", "lt", ("reach_size", "reach_band"), "bool"),
     )
-    return program._replace(lines=(*program.lines, *lines), outputs=(*key.names, "near_limit"))
+    return program._replace(
+        lines=(*program.lines, *lines), outputs=(*program.outputs[: len(key.names)], "near_limit")
+    )
 
 
 def _plain_for_loops(program: Program, varying: Sequence[str], key: KernelKey) -> Program:

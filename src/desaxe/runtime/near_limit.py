@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..mechanism.constants import double_constants
+from ..mechanism.own_lines import not_extended
 from .interpreted import fill_by_points, interpret_first
 from .kernels import REACH, KernelKey, kernel_for
 
@@ -20,6 +21,8 @@ AT_A_TIME = 2**20  # points
 
 def decide(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any]) -> None:
     """Answer the undecided points of a kernel's call again."""
+    if not_extended(key.form.own):
+        return
     axis_of = dict(key.axis_of)
     length, row = outs[0].shape[0], max(1, outs[0].size // outs[0].shape[0])
     step = max(1, AT_A_TIME // row)

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 from ..compiler.forms import in_two_forms
 from ..compiler.languages.python import compile_python
 from ..mechanism.constants import double_constants
+from ..mechanism.own_lines import not_extended
 from ..mechanism.program import Variant
 from .accuracy import check_angle
 from .specialise import plain_form, specialise
@@ -73,7 +74,7 @@ def _by_room(names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, floa
             answers = second()(*values)
             if answers[-1]:
                 given = dict(zip(inputs, values, strict=True))
-                if abs(given["theta"]) <= double_constants().limit:
+                if abs(given["theta"]) <= double_constants().limit and not not_extended(form.own):
                     return third().run(given)
         return answers[:-1]
 

@@ -8,6 +8,8 @@ from typing import Any, NamedTuple, ParamSpec, TypeVar
 from ..mechanism.catalogue import law_name, quantity
 from ..mechanism.inputs import INPUTS, is_good
 from ..mechanism.names import CENTRES, LOADS, parts
+from ..mechanism.own import Definition, used_by
+from ..mechanism.own_lines import not_extended
 from ..mechanism.program import Variant, program_of
 from ..support.shown import shown
 from .accuracy import accuracy_of
@@ -60,14 +62,27 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
     zeros = [(name, 0.0) for name in absent if name not in CENTRES]
     if "alpha" in inputs and is_steady(given.get("alpha")):
         zeros.append(("alpha", 0.0))
-    default_centres = tuple(name for name in CENTRES if given.get(name) is None and _moves(name, own))
-    return Request(shown, own, Variant(state, default_centres), (("branch", float(branch)), *zeros), kept)
+    defined = used_by(own)
+    default_centres = tuple(
+        name for name in CENTRES if given.get(name) is None and _moves(name, own, defined)
+    )
+    if kept == "extended":
+        check_extended(defined)
+    variant = Variant(state, default_centres, own=defined)
+    return Request(shown, own, variant, (("branch", float(branch)), *zeros), kept)
+
+
+def check_extended(own: tuple[Definition, ...]) -> None:
+    """Reject twice the digits for operations that have none."""
+    problem = not_extended(own)
+    if problem is not None:
+        raise ValueError(f"accuracy='extended' is not available for {problem[0]}: it uses {problem[1]}")
 
 
 @lru_cache(maxsize=1024)
-def _moves(centre: str, names: tuple[str, ...]) -> bool:
+def _moves(centre: str, names: tuple[str, ...], own: tuple[Definition, ...]) -> bool:
     """Whether these names need a centre of mass, or only how it moves with its link."""
-    program = program_of(names)
+    program = program_of(names, Variant(own=own))
     lines = (line.name for line in program.lines)
     return centre in program.inputs or any(parts(name)[0] == centre for name in lines)
 

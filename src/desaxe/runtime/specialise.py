@@ -5,39 +5,48 @@ from functools import lru_cache
 from ..compiler.passes.pipeline import optimise
 from ..compiler.passes.slicing import keep_outputs
 from ..compiler.program import Line, Program, names_in, renamed
+from ..mechanism.own import used_by
 from ..mechanism.program import Variant, program_of
 
 # What an output may lose when inputs are fixed -> the line that is 0 where there is such a thing, else NaN.
 KEPT = {"D": "no_effect_on_rod", "omega2_law": "not_stalled"}
 
 
-@lru_cache(maxsize=1024)
 def specialise(
     names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...], accuracy: str = "standard"
 ) -> Program:
-    """The program of these names with some inputs fixed, after all passes.
+    """The program of these names with some inputs fixed, after all passes; its outputs stand in their order.
 
     A value that loses what it depended on (V_C by alpha for a given state, the torque of a massless
-    rod) is still NaN where the mechanism cannot be assembled, or has stalled.
+    rod) is still NaN where the mechanism cannot be assembled, or has stalled. A name of a user's own
+    is the one that the form has, or as it is defined now.
     """
+    return _specialise(names, form if form.own else form._replace(own=used_by(names)), fixed, accuracy)
+
+
+@lru_cache(maxsize=1024)
+def _specialise(
+    names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...], accuracy: str
+) -> Program:
     program = _finer(program_of(names, form), accuracy)
     result = optimise(program, dict(fixed))[0]
     before, after = _needs(program), _needs(result)
     kept = {"D"} if dict(fixed).get("alpha") == 0.0 else set(KEPT)  # a crank at constant speed never stalls
-    lost = {name: (before[name] & kept) - after[name] for name in names}
+    outputs = program.outputs
+    lost = {name: (before[name] & kept) - after[name] for name in outputs}
     if not any(lost.values()):
         return result
     wide = _finer(program_of((*names, *KEPT.values()), form), accuracy)
-    wide = renamed(wide, {name: f"{name}_alone" for name in names if lost[name]})
+    wide = renamed(wide, {name: f"{name}_alone" for name in outputs if lost[name]})
     lines = list(wide.lines)
-    for name in names:
+    for name in outputs:
         value = f"{name}_alone"
         for need in sorted(lost[name]):
             lines.append(Line(f"{value}_{need}", "add", (value, KEPT[need])))
             value = lines[-1].name
         if lost[name]:
             lines.append(Line(name, "copy", (value,)))
-    return optimise(keep_outputs(wide._replace(lines=tuple(lines)), names), dict(fixed))[0]
+    return optimise(keep_outputs(wide._replace(lines=tuple(lines)), outputs), dict(fixed))[0]
 
 
 @lru_cache(maxsize=1024)

@@ -11,7 +11,7 @@ from ..text import with_short_temporaries, write_lines
 INDENT = "  "
 # Names that the readable text has and JavaScript has not, and the helpers. Once on a page is enough.
 HEADER = (
-    "const { atan2, cos, floor, sin, sqrt, abs: fabs } = Math;\n"
+    "const { atan2, cos, exp, floor, log, pow, sin, sqrt, abs: fabs } = Math;\n"
     "const nan = NaN, inf = Infinity, True = true, False = false;\n\n"
 ) + "\n".join(JAVASCRIPT_HELPERS.values())
 

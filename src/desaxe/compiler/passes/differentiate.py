@@ -35,8 +35,11 @@ def with_derivatives(program: Program, parameters: tuple[str, ...]) -> Program:
 class Chain:
     """The lines of the derivative by one parameter; the rules are those for balls, or others."""
 
-    def __init__(self, parameter: str, rules: "Mapping[str, Rule] | None" = None) -> None:
+    def __init__(
+        self, parameter: str, rules: "Mapping[str, Rule] | None" = None, prefix: str = _PREFIX
+    ) -> None:
         self.parameter = parameter
+        self.prefix = prefix  # begins the names of its lines
         self.rules = RULES if rules is None else rules
         self.lines: list[Line] = []
         self.slopes: dict[str, str] = {}
@@ -51,14 +54,14 @@ class Chain:
         """The derivative of a line; nothing where it does not depend on the parameter."""
         if line.type != "f64" or not any(self.slope(a) for a in line.args):
             return
-        name = f"{_PREFIX}{line.name}{_JOINT}{self.parameter}"
+        name = f"{self.prefix}{line.name}{_JOINT}{self.parameter}"
         op, args = self.rules[line.op](self, line)
         self.lines.append(Line(name, op, args))
         self.slopes[line.name] = name
 
     def new(self, op: str, *args: Argument, type: str = "f64") -> str:
         """A temporary."""
-        name = f"{_PREFIX}{len(self.lines)}_{self.parameter}"
+        name = f"{self.prefix}{len(self.lines)}_{self.parameter}"
         self.lines.append(Line(name, op, args, type))
         return name
 
@@ -112,6 +115,27 @@ def _atan2(chain: Chain, line: Line) -> Step:
     return "div", (rotated_sin, chain.new("add", chain.new("mul", x, x), chain.new("mul", y, y)))
 
 
+def _hypot(chain: Chain, line: Line) -> Step:
+    a, b = line.args
+    first = chain.new("mul", chain.new("div", a, line.name), chain.slope(a))
+    return "mul_add", (chain.new("div", b, line.name), chain.slope(b), first)
+
+
+def _log(chain: Chain, line: Line) -> Step:
+    (a,) = line.args
+    return "div", (chain.slope(a), a)
+
+
+def _pow(chain: Chain, line: Line) -> Step:
+    a, b = line.args
+    less = chain.new("pow", a, chain.new("sub", b, 1.0))
+    of_base = chain.new("mul", chain.new("mul", b, less), chain.slope(a))
+    if chain.slope(b) == 0.0:
+        return "copy", (of_base,)
+    of_power = chain.new("mul", chain.new("mul", line.name, chain.new("log", a)), chain.slope(b))
+    return ("copy", (of_power,)) if chain.slope(a) == 0.0 else ("add", (of_base, of_power))
+
+
 def _same(chain: Chain, line: Line) -> Step:
     return line.op, tuple(map(chain.slope, line.args))
 
@@ -130,6 +154,10 @@ RULES: Mapping[str, Rule] = {
     "sin": _sin,
     "cos": _cos,
     "atan2": _atan2,
+    "hypot": _hypot,
+    "exp": lambda chain, line: ("mul", (line.name, chain.slope(line.args[0]))),
+    "log": _log,
+    "pow": _pow,
     "select": lambda chain, line: ("select", (line.args[0], *map(chain.slope, line.args[1:]))),
     "two_sum_error": lambda chain, line: ("copy", (0.0,)),
     "two_product_error": lambda chain, line: ("copy", (0.0,)),

@@ -12,6 +12,7 @@ from ..program import Line, Note, Program
 from .slicing import drop_unused
 
 BAD_INPUT = 4
+GUARDED = "_good"  # ends the name of an input's value, NaN where it is bad
 
 
 def guard_inputs(

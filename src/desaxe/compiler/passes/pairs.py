@@ -87,6 +87,10 @@ class Pairs(Expansions):
         none = self.line("eq", root, 0.0, kind="bool")
         return self.quick(root, self.line("select", none, 0.0, step))
 
+    def hypot(self, a: Pair, b: Pair) -> Pair:
+        """The root of a^2 + b^2; the squares must neither overflow nor vanish."""
+        return self.sqrt(self.add(self.mul(a, a), self.mul(b, b)))
+
     # ---- signs and choices -----------------------------------------------------------------------
 
     def size(self, a: Pair) -> Pair:
@@ -157,6 +161,7 @@ RULES: Mapping[str, Callable[..., Pair]] = {
     "neg": Pairs.neg,
     "abs": Pairs.size,
     "sqrt": Pairs.sqrt,
+    "hypot": Pairs.hypot,
     "atan2": Pairs.atan2,
     "floor": Pairs.floor,
     "copysign": Pairs.copysign,

@@ -10,6 +10,7 @@ angle's own last digit is worth.
 from typing import NamedTuple
 
 from ..program import Argument, Line, Program
+from .guard import GUARDED
 from .slicing import drop_unused
 
 
@@ -28,16 +29,21 @@ def expand_trigonometry(program: Program, constants: Trigonometry, plain: bool =
     """The program without sin and cos.
 
     Precondition: |angle| <= constants.limit wherever the result matters; in a `plain` program the angle may
-    be wrong by half its last digit. Effect: each `sin` and `cos` becomes arithmetic; both of the same angle
-    share all of it. Error at most 2 ulp.
+    be wrong by half its last digit. Effect: each `sin` and `cos` of an input becomes arithmetic; both of the
+    same angle share all of it. Error at most 2 ulp. Those of an expression, of any size, stay calls.
     """
     writer = _Writer(constants, constants.pi_half_words if plain else constants.pi_half)
     for line in program.lines:
-        if line.op in ("sin", "cos"):
+        if line.op in ("sin", "cos") and _is_input(line.args[0], program):
             writer.lines.append(line._replace(op="copy", args=(writer.of_angle(line.args[0], line.op),)))
         else:
             writer.lines.append(line)
     return drop_unused(program._replace(lines=tuple(writer.lines)))
+
+
+def _is_input(angle: Argument, program: Program) -> bool:
+    """True for an input, checked or not."""
+    return isinstance(angle, str) and angle.removesuffix(GUARDED) in program.inputs
 
 
 class _Writer:

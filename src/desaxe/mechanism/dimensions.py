@@ -1,5 +1,7 @@
 """Units of quantities and of their derivatives, as exponents of m, s, rad and kg."""
 
+import re
+from functools import cache
 from typing import NamedTuple
 
 
@@ -71,3 +73,32 @@ def unit_text(unit: Unit) -> str:
 
 def _power(name: str, power: int) -> str:
     return name if power == 1 else f"{name}^{power}"
+
+
+_COHERENT = {
+    "1": NONE, "m": LENGTH, "s": Unit(s=1), "rad": ANGLE, "kg": MASS, "N": FORCE, "J": ENERGY, "W": POWER,
+    "Pa": Unit(-1, -2, kg=1, name="Pa"), "Hz": Unit(s=-1, name="Hz"),
+}  # fmt: skip
+_TERM = re.compile(r"([A-Za-z]+|1)(?:\^?(-?[0-9]))?")
+
+
+@cache
+def unit_of(text: str) -> Unit:
+    """The unit of a text such as `m/s^2`, `N m` or `W`: SI without prefixes; ValueError for any other."""
+    m, s, rad, kg = 0, 0, 0, 0
+    for place, part in enumerate(re.sub(r"\*\*", "^", text.strip()).split("/")):
+        for term in re.split(r"[*\s]+", part.strip()):
+            match = _TERM.fullmatch(term)
+            if match is None or match[1] not in _COHERENT:
+                raise ValueError(
+                    f"unit {text!r}: a product of {', '.join(_COHERENT)} is wanted, such as 'N*m'"
+                )
+            power = int(match[2] or 1) * (-1 if place else 1)
+            unit = _COHERENT[match[1]]
+            m, s, rad, kg = (
+                m + power * unit.m,
+                s + power * unit.s,
+                rad + power * unit.rad,
+                kg + power * unit.kg,
+            )
+    return Unit(m, s, rad, kg, _COHERENT[text.strip()].name if text.strip() in _COHERENT else "")

@@ -1,0 +1,238 @@
+"""The lines of a user's own quantities in the Program, with their derivatives.
+
+The chain rule on the lines of the expression, with the derivation's own sensitivities for the names that it
+uses. Only where a name has none (a sensitivity, the margin) its lines are differentiated as well. A magnitude
+has no derivative at 0 (NaN); at a kink the derivative is that of the side that is taken.
+"""
+
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from math import nan
+from typing import NamedTuple
+
+from ..compiler.passes.differentiate import RULES as EVERYWHERE
+from ..compiler.passes.differentiate import Chain, Rule, Step
+from ..compiler.passes.slicing import keep_outputs
+from ..compiler.program import Argument, Line, Note, Program, names_in, renamed
+from ..compiler.text import ProgramText
+from .names import joined, parts, sensitivity
+from .own import LENGTH_OF, Definition, depends, derivative_row, derived_names, leaves
+
+# Begins the name of every line of a definition, and ends that of its value and derivatives: no line of the
+# derivation, none that a pass adds and no word of an emitter is called so, whatever a user calls a quantity.
+PREFIX, SUFFIX = "own_", "_own"
+
+
+def line_name(name: str, own: Iterable[Definition]) -> str:
+    """The line that holds a name: its own name, unless it is a user's quantity."""
+    base, parameters = parts(name)
+    is_own = any(definition.name == base for definition in own)
+    return joined(f"{PREFIX}{base}{SUFFIX}", parameters) if is_own else name
+
+
+def _abs(chain: Chain, line: Line) -> Step:
+    (a,) = line.args
+    slope = chain.slope(a)
+    above = chain.new("lt", 0.0, a, type="bool")
+    rising = chain.new("select", above, slope, nan)
+    below = chain.new("lt", a, 0.0, type="bool")
+    return "select", (below, chain.new("neg", slope), rising)
+
+
+def _copysign(chain: Chain, line: Line) -> Step:
+    size, sign = line.args
+    return "mul", (chain.slope(size), chain.new("mul", _sign(chain, size), _sign(chain, sign)))
+
+
+def _sign(chain: Chain, argument: Argument) -> str:
+    return chain.new("copysign", 1.0, argument)
+
+
+# As for balls, but for the sign, which a double knows.
+RULES: Mapping[str, Rule] = {**EVERYWHERE, "abs": _abs, "copysign": _copysign}
+
+
+class _Chain(Chain):
+    """A chain for doubles: where there is no value there is no derivative."""
+
+    def __init__(self, parameter: str, prefix: str) -> None:
+        super().__init__(parameter, RULES, prefix)
+
+    def slope(self, argument: Argument) -> Argument:
+        """The derivative of an argument; NaN of NaN."""
+        return nan if argument != argument else super().slope(argument)
+
+
+class Needed(NamedTuple):
+    """The lines of own names, and what the derivation has to give them."""
+
+    names: tuple[str, ...]
+    slow: tuple[tuple[str, str], ...]  # (name, parameter) of derivatives that the derivation has not
+
+
+@lru_cache(maxsize=256)
+def lines_needed(names: tuple[str, ...], own: tuple[Definition, ...]) -> Needed:
+    """The names of the derivation that own names are made of, their sensitivities included."""
+    derived = derived_names()
+    wanted: dict[str, None] = {}
+    slow: dict[tuple[str, str], None] = {}
+    known = {definition.name: definition for definition in own}
+    for name in names:
+        base, parameters = parts(name)
+        for leaf in leaves((base,), known):
+            wanted[leaf] = None
+            for parameter in parameters:
+                slope = _slope_name(leaf, parameter)
+                if slope in derived or slope in _CENTRE_SLOPES:
+                    wanted[slope] = None
+                elif leaf in derived and depends(leaf, parameter):
+                    slow[leaf, parameter] = None
+            if len(parameters) == 2 and leaf in derived:
+                both = sensitivity(leaf, *parameters)
+                if both in derived:
+                    wanted[both] = None
+    return Needed(tuple(wanted), tuple(slow))
+
+
+_CENTRE_SLOPES = {joined(centre, (length,)) for centre, length in LENGTH_OF.items()}
+
+
+def _slope_name(leaf: str, parameter: str) -> str:
+    return sensitivity(leaf, parameter)
+
+
+def with_own_lines(base: Program, names: tuple[str, ...], own: tuple[Definition, ...]) -> Program:
+    """The program of own names; `base` has the lines of `lines_needed`, in one variant."""
+    needed = lines_needed(names, own)
+    writer = _Writer(base, own, needed)
+    for name in names:
+        writer.add(name)
+    return keep_outputs(writer.program(), [line_name(name, own) for name in names])
+
+
+class _Writer:
+    """Appends the values of own quantities and their derivatives, each once."""
+
+    def __init__(self, base: Program, own: tuple[Definition, ...], needed: Needed) -> None:
+        self.base = base
+        self.own = own
+        self.needed = needed
+        self.lines = list(base.lines)
+        self.notes = dict(base.notes)
+        self.known = {*base.inputs, *(line.name for line in base.lines)}
+        self.values = [
+            line._replace(args=tuple(line_name(a, own) if isinstance(a, str) else a for a in line.args))
+            for definition in own
+            for line in _value_lines(definition)
+        ]
+        self.chains: dict[str, Chain] = {}
+        self.started = False
+
+    def program(self) -> Program:
+        inputs = dict.fromkeys((*self.base.inputs, *_inputs_used(self.lines, self.known)))
+        return self.base._replace(inputs=tuple(inputs), lines=tuple(self.lines), notes=self.notes)
+
+    def add(self, name: str) -> None:
+        """The lines of one name, value or derivative."""
+        base, parameters = parts(name)
+        definition = next((d for d in self.own if d.name == base), None)
+        if definition is None:
+            return
+        if not self.started:
+            self._append(self.values)
+            notes = {line_name(d.name, self.own): Note(d.unit, d.meaning, d.expression) for d in self.own}
+            self.notes |= notes
+            self.started = True
+        if not parameters:
+            return
+        value, line_of_name = line_name(base, self.own), line_name(name, self.own)
+        first = self._first(parameters[0])
+        slope = first.slope(value)
+        if len(parameters) == 2:
+            slope = self._second(first, *parameters).slope(slope) if isinstance(slope, str) else 0.0
+        if line_of_name not in self.known:
+            # A derivative that is 0 is so only where there is a value: that is told by a factor, which
+            # `specialise` sees to.
+            op, args = ("mul", (value, 0.0)) if slope == 0.0 else ("copy", (slope,))
+            self._append([Line(line_of_name, op, args)])
+            self.notes[line_of_name] = Note(*derivative_row(definition.name, definition.unit, parameters))
+
+    def _first(self, parameter: str) -> Chain:
+        """All first derivatives by a parameter."""
+        if parameter not in self.chains:
+            chain = _Chain(parameter, f"{PREFIX}{parameter}_")
+            slow = [leaf for leaf, by in self.needed.slow if by == parameter]
+            if slow:
+                for line in keep_outputs(self.base, slow).lines:
+                    chain.through(line)
+            for leaf in self.needed.names:
+                slope = _slope_name(leaf, parameter)
+                if leaf != parameter and slope in self.known and leaf not in slow:
+                    chain.slopes[leaf] = slope
+            for line in self.values:
+                chain.through(line)
+            self._append(chain.lines)
+            self.chains[parameter] = chain
+        return self.chains[parameter]
+
+    def _second(self, first: Chain, one: str, other: str) -> Chain:
+        """The derivatives by `other` of the first derivatives by `one`."""
+        key = f"{one} {other}"
+        if key not in self.chains:
+            chain = _Chain(other, f"{PREFIX}{one}_{other}_")
+            chain.slopes |= self._first(other).slopes
+            for leaf in self.needed.names:
+                slope, both = _slope_name(leaf, one), sensitivity(leaf, one, other)
+                if both in self.known:
+                    chain.slopes[slope] = both
+                else:
+                    chain.slopes.pop(slope, None)
+            for line in first.lines:
+                chain.through(line)
+            self._append(chain.lines)
+            self.chains[key] = chain
+        return self.chains[key]
+
+    def _append(self, lines: Iterable[Line]) -> None:
+        self.lines += lines
+        self.known |= {line.name for line in lines}
+
+
+BOUNDED = (
+    "theta",
+    "phi",
+    "delta",
+    "pressure_angle",
+    "transmission_angle",
+)  # angles that double_digits reduces
+
+
+@lru_cache(maxsize=256)
+def not_extended(own: tuple[Definition, ...]) -> tuple[str, str] | None:
+    """The first quantity that twice the digits are not available for, and its operation; None without one."""
+    for definition in own:
+        for line in _value_lines(definition):
+            angle = line.op in ("sin", "cos") and line.args[0] not in BOUNDED
+            if angle or line.op in ("exp", "log", "pow"):
+                return definition.name, f"{line.op} of an expression" if angle else line.op
+    return None
+
+
+@lru_cache(maxsize=256)
+def has_kinks(own: tuple[Definition, ...]) -> bool:
+    """True where a quantity may have kinks or jumps, or waves of its own, over the crank angle."""
+    ops = {line.op for definition in own for line in _value_lines(definition)}
+    return bool(ops & {"abs", "select", "sin", "cos"})
+
+
+@lru_cache(maxsize=256)
+def _value_lines(definition: Definition) -> tuple[Line, ...]:
+    """The lines of a value, under names that no other line has."""
+    program = ProgramText(definition.text).read()
+    own = {line.name: f"{PREFIX}{definition.name}_{n}" for n, line in enumerate(program.lines)}
+    own[program.outputs[0]] = line_name(definition.name, (definition,))
+    return renamed(program, own).lines
+
+
+def _inputs_used(lines: Iterable[Line], known: set[str]) -> list[str]:
+    return [name for line in lines for name in names_in(line.args) if name not in known]

@@ -1,0 +1,134 @@
+"""What is no expression is refused at once, with a mark below the place."""
+
+import time
+
+import pytest
+
+import desaxe as dx
+from desaxe.definitions.grammar import Source, parse
+from desaxe.mechanism.own import definitions
+
+REFUSED = {
+    "": "empty", "V_C +": "too early", "(V_C": "too early", "V_C)": "unexpected", "a.b": "attributes",
+    "V_C.__class__": "attributes", "__import__('os')": "text", "V_C; V_C": "';'",
+    "x" * 1_000_000: "at most", "(" * 1_000_000: "at most", "-" * 3_000 + "V_C": "more than 400",
+    "(" * 60 + "V_C" + ")" * 60: "more than 40", "V_C**1000000000": "at most 64",
+    "9**9**9**9*V_C": "at most 64", "1e999*V_C": "too large", "2**V_C": "a power is a plain number",
+    "V_C**phi": "is a constant", "\u03a9*2": "no meaning", "V_C\u200b": "no meaning", "V_C\x00": "no meaning",
+    "vc": "did you mean V_C", "nobody": "unknown name 'nobody'", "lambda: 1": "':'",
+    "V_C if V_C else 1": "unexpected 'if'", "[V_C]": "lists", "V_C = 2": "==", "0 < V_C < 1": "two sides",
+    "where(V_C, 1, 2)": "comparison", "(V_C > 0) * 2": "where", "sin(V_C)": "'V_C' is m/s",
+    "V_C + a_C": r"'V_C' is m/s, 'a_C' is m/s\^2", "V_C + 1": "'1' is a plain number",
+    "hypot(V_C, Y)": "'V_C' is m/s, 'Y' is m", "sqrt()": "unexpected",
+    "atan2(V_C)": "takes 2 arguments, got 1", "eval(V_C)": "unknown function 'eval'",
+    "status + 1": "no real number", "2 * pi": "constant", "own * 2": "defined by itself",
+    "own_wrt_ec": "defined by itself", "V_C^2": r"a power is \*\*", "V_C // 2": "unexpected",
+    "1_0 * V_C": "unexpected", "sqrt(V_C)": "no whole number",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", REFUSED, ids=lambda text: text[:20])
+def test_refused(text):
+    start = time.perf_counter()
+    with pytest.raises(ValueError, match=REFUSED[text]) as caught:
+        dx.define("own", text)
+    assert time.perf_counter() - start < 1.0
+    first, shown, mark = str(caught.value).split("\n")
+    assert first.startswith("own: ")
+    assert set(mark) == {" ", "^"}
+    assert max(map(len, (first, shown, mark))) < 200
+    assert "own" not in definitions()
+
+
+@pytest.mark.parametrize(
+    ("text", "marked"),
+    [
+        ("0.08 * abs(N_D * V_C)", "N_D"),
+        ("V_C + (a_C + V_C) * AB", "(a_C + V_C)"),
+        ("AB\n + BC.x", "."),
+        ("2 * 3 $ 4", "$"),
+    ],
+)
+def test_the_mark_is_below_the_place(text, marked):
+    with pytest.raises(ValueError, match=r"^own: ") as caught:
+        dx.define("own", text)
+    _, shown, mark = str(caught.value).split("\n")
+    at = mark.index("^")
+    assert shown[at : mark.rindex("^") + 1] == marked
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "V_C",
+        "theta",
+        "mu",
+        "sqrt",
+        "pi",
+        "for",
+        "x_wrt_ec",
+        "1a",
+        "",
+        "a b",
+        "é",
+        "x" * 100,
+        "stroke",
+        "_x",
+        "branch",
+    ],
+)
+def test_a_name_that_is_taken_or_none(name):
+    with pytest.raises(ValueError, match=r"is a |: a name|are parts"):
+        dx.define(name, "2 * V_C")
+
+
+@pytest.mark.parametrize(
+    ("wrong", "problem"),
+    [
+        ({"k": "1 K"}, "m, s, kg and rad"), ({"k": "abc"}, "a number"), ({"k": float("inf")}, "finite"),
+        ({"k": "1e99999 m/s"}, "finite"), ({"V_C": 1.0}, "name of a quantity"),
+        ({"k": "1 m/s", "j": 1}, "j is not used"),
+        ({"k": "1 m/s", "unit": "km/h"}, "product of"), ({"k": "1 m/s", "unit": "W"}, "'W' is W, but"),
+        ({"k": "1 m/s", "meaning": "a\nb"}, "one line"), ({"k": 2.0}, "plain number"),
+    ],
+)  # fmt: skip
+def test_wrong_constants_and_units(wrong, problem):
+    with pytest.raises(ValueError, match=problem):
+        dx.define("own", "V_C + k" if "k" in wrong else "V_C", **wrong)
+
+
+@pytest.mark.parametrize("wrong", [None, 3, b"V_C", ["V_C"]])
+def test_wrong_types(wrong):
+    with pytest.raises(TypeError):
+        dx.define("own", wrong)
+    with pytest.raises(TypeError):
+        dx.define("own", "V_C", unit=[wrong])
+    with pytest.raises(TypeError):
+        dx.define("own", "V_C + k", k=[wrong])
+
+
+def test_constants_have_units_without_a_unit_library():
+    for text, wanted in (("1 mm", 1e-3), ("0.5 cm", 0.005), ("2 km", 2000.0)):
+        dx.define("own", "k + 0 * Y", k=text)
+        try:
+            assert dx.evaluate("own", theta=1.0, ec=0.0, AB=0.1, BC=0.3) == wanted
+        finally:
+            dx.undefine("own")
+
+
+@pytest.mark.parametrize(
+    ("text", "tree"),
+    [
+        ("-a**2", "neg(**(a,2))"), ("a**-b", "**(a,neg(b))"), ("a**b**c", "**(a,**(b,c))"),
+        ("a-b-c", "-(-(a,b),c)"),
+        ("a/b*c", "*(/(a,b),c)"), ("--a", "a"), ("a*-b", "*(a,neg(b))"), ("a+b*c", "+(a,*(b,c))"),
+    ],
+)  # fmt: skip
+def test_precedence(text, tree):
+    assert shape(parse(Source("own", text))) == tree
+
+
+def shape(node):
+    if not node.parts:
+        return node.name or f"{node.number:g}"
+    return f"{node.op}({','.join(map(shape, node.parts))})"
