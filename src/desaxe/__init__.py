@@ -31,16 +31,14 @@ if TYPE_CHECKING:
     from .loads import LoadWarning as LoadWarning
     from .loads import over_theta as over_theta
     from .loads import over_Y as over_Y
-    from .machine import Machine as Machine
     from .mechanism.catalogue import quantities as quantities
-    from .mechanism.slips import UnitWarning as UnitWarning
     from .peaks.peak import peak as peak
     from .scenes.explain.explain import explain as explain
     from .scenes.explorer.explore import explore as explore
     from .scenes.export.compile import compile as compile
     from .scenes.scene import scene as scene
+    from .scenes.sweep import sweep as sweep
     from .simulation.simulate import simulate as simulate
-    from .sweeps.sweep import sweep as sweep
 
 # Public name -> its module; `equation` is SymPy's and comes with the extra `derive`.
 PUBLIC = {
@@ -59,14 +57,12 @@ PUBLIC = {
     "flywheel": "desaxe.design.turn.flywheel",
     "drive": "desaxe.design.drive.drive",
     "explore": "desaxe.scenes.explorer.explore",
-    "Machine": "desaxe.machine.machine",
-    "UnitWarning": "desaxe.mechanism.slips",
     "feasibility": "desaxe.design.feasibility.feasibility",
     "scene": "desaxe.scenes.scene",
     "explain": "desaxe.scenes.explain.explain",
     "compile": "desaxe.scenes.export.compile",
     "simulate": "desaxe.simulation.simulate",
-    "sweep": "desaxe.sweeps.sweep",
+    "sweep": "desaxe.scenes.sweep",
     "quantities": "desaxe.mechanism.catalogue",
     "over_theta": "desaxe.loads",
     "over_Y": "desaxe.loads",
@@ -79,8 +75,6 @@ MODULES = {"plot": "desaxe.plot", "units": "desaxe.mechanism.units"}
 
 __all__ = [
     "LoadWarning",
-    "Machine",
-    "UnitWarning",
     "compile",
     "counterweight",
     "define",

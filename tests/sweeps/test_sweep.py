@@ -122,7 +122,7 @@ def test_a_store_of_another_sweep_is_refused_with_what_differs(whole):
 
 
 def test_of_another_version_too(whole, monkeypatch):
-    monkeypatch.setattr("desaxe.sweeps.request.__version__", "0.0.9")
+    monkeypatch.setattr("desaxe.sweeps.request.desaxe_version", lambda: "0.0.9")
     with pytest.raises(FileExistsError, match=r"version is '.*' there and '0.0.9' here"):
         dx.sweep(NAMES, store=whole, **INPUTS)
 

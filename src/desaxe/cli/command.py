@@ -15,6 +15,7 @@ from .errata import add_errata
 from .parser import SIGNS, Parser, Version
 from .point import add_point
 from .scene import add_compile, add_explain, add_explore, add_run, add_scene
+from .sweep import add_sweep
 from .words import UsageError
 
 INTERRUPTED = 130  # as a shell reports it
@@ -22,6 +23,7 @@ COMMANDS = (
     add_point,
     add_scene,
     add_run,
+    add_sweep,
     add_explain,
     add_compile,
     add_explore,

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from ..mechanism.catalogue import quantities, quantity
 from ..mechanism.names import LENGTHS
 from ..mechanism.spelling import meant
-from ..peaks.peak import KINDS, peak
+from ..peaks.designs import KINDS
+from ..peaks.peak import peak
 from .events.arrays import events_of_arrays
 from .number_or_array import sum_of_three
 

@@ -6,7 +6,6 @@ once, from all of the inputs, and every block takes it, even a block of one poin
 """
 
 from collections.abc import Mapping, Sequence
-from math import prod
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..compiler.languages.numba.reductions import EXTREMES, outputs_of
 from ..mechanism.names import LENGTHS
+from ..runtime.compiled_only import compiled_only
 from ..runtime.kernels import KernelKey, key_of
 from ..runtime.point import point_of
 from ..runtime.request import Request, request
@@ -62,6 +62,13 @@ class Part(NamedTuple):
         """The dimensions whose values it needs."""
         return self.dims if self.reduction is None else (*self.dims, self.reduction.axis)
 
+    def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
+        """The outputs of a block by name, from the values along each of its `axes`."""
+        with compiled_only():
+            if self.reduction is None:
+                return _compute(self, values, threads)
+            return _compute_reduced(self, self.reduction, values, threads)
+
 
 def grid_parts(outer: Outer, branch: int, accuracy: Any, block: Mapping[str, int]) -> tuple[Part, ...]:
     """The parts of a grid that is cut into blocks of these lengths."""
@@ -83,10 +90,15 @@ def reduced_parts(
     places = {name: order.index(name) for name in columns}
     key = key_of(wanted, scalars, columns, places, len(order))._replace(reduce=reduction.kinds)
     part = Part(wanted.shown, rest, key, tuple(scalars.items()), len(order) - 1, reduction)
+    return part, *margin_parts(outer, branch, accuracy, block)
+
+
+def margin_parts(outer: Outer, branch: int, accuracy: Any, block: Mapping[str, int]) -> tuple[Part, ...]:
+    """The part of the margin, if all lengths are given."""
     if not all(name in outer.axes for name in LENGTHS):
-        return (part,)
+        return ()
     names, along = outer.groups()[1]
-    return part, _part(request(names, outer.given, branch, accuracy), outer.axes, along, block)
+    return (_part(request(names, outer.given, branch, accuracy), outer.axes, along, block),)
 
 
 def _part(wanted: Request, axes: Mapping[str, Array], along: Sequence[str], block: Mapping[str, int]) -> Part:
@@ -109,10 +121,7 @@ def _inputs(
     return scalars, {name: np.ascontiguousarray(axes[name]) for name in wanted.inputs if name in order}
 
 
-def compute(part: Part, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
-    """A block of a part: its outputs by name, from the values along each dimension that it needs."""
-    if part.reduction is not None:
-        return _compute_reduced(part, part.reduction, values, threads)
+def _compute(part: Part, values: Mapping[str, Array], threads: int | None) -> dict[str, Array]:
     shape = tuple(values[name].size for name in part.dims)
     outs = {name: np.empty(shape, dtype) for name, dtype in part.outputs.items()}
     order = list(part.dims) or [""]
@@ -145,10 +154,3 @@ def _compute_reduced(
         name: array
         for name, (_, array) in named_by_reduction(arrays, part.names, reduction, axis, part.dims).items()
     }
-
-
-def working_bytes(part: Part, block: Mapping[str, int]) -> int:
-    """Bytes of a block's outputs and of the inputs that are repeated along joined dimensions."""
-    points = prod(block[name] for name in part.dims)
-    joined = sum(1 for _, axis in part.key.axis_of if axis == part.joined) if part.reduction is None else 0
-    return points * (sum(dtype.itemsize for dtype in part.outputs.values()) + 8 * joined)

@@ -3,12 +3,12 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from ..support.extras import needed
-from .blocks import Part, compute, grid_parts, reduced_parts
+from .blocks import Part, grid_parts, reduced_parts
 from .chunks import chunk_lengths
+from .dask_blocks import outputs_of_blocks
 from .labels import input_attributes, labelled, provenance
 from .outer import Outer
 from .reduce import reduced_attributes, reduction_of
@@ -65,22 +65,14 @@ def lazy_arrays(
     found: dict[str, tuple[tuple[str, ...], Any]] = {}
     for part in parts:
         token = tokenize(repr(part), *(axes[name] for name in part.axes), dict(lengths))
-        along = tuple(range(len(part.dims)))
-        arguments: list[Any] = []
+        columns = []
         for number, name in enumerate(part.axes):
             own = lengths.get(name, (axes[name].size,))  # a reduced axis is whole
             column = da.from_array(axes[name], chunks=(own,), name=f"{name}-{token}", inline_array=True)
-            arguments += [column, (number,)]
-        blocks = da.blockwise(
-            _Block(part, threads), along, *arguments, dtype=object, concatenate=True, align_arrays=False,
-            name=f"desaxe-{token}", meta=np.empty((0,) * len(along), object),
-        )  # fmt: skip
-        for name, dtype in part.outputs.items():
-            array = da.blockwise(
-                _output, along, blocks, along, name, None, dtype=dtype,
-                name=f"{name}-{token}", meta=np.empty((0,) * len(along), dtype),
-            )  # fmt: skip
-            found[name] = part.dims, array
+            columns.append((column, (number,)))
+        along = tuple(range(len(part.dims)))
+        arrays = outputs_of_blocks(_Block(part, threads), columns, along, part.outputs, token)
+        found |= {name: (part.dims, array) for name, array in arrays.items()}
     return found
 
 
@@ -91,13 +83,7 @@ class _Block:
         self.part, self.threads = part, threads
 
     def __call__(self, *values: Array) -> dict[str, Array]:
-        return compute(self.part, dict(zip(self.part.axes, values, strict=True)), self.threads)
+        return self.part.compute(dict(zip(self.part.axes, values, strict=True)), self.threads)
 
     def __dask_tokenize__(self) -> Any:
         return "desaxe.block", repr(self.part)
-
-
-def _output(block: Any, name: str) -> Array:
-    """One output of a block."""
-    array: Array = block[name]
-    return array

@@ -3,7 +3,7 @@
 A single point stays in this file and needs only `math`; as soon as an input is an array, `arrays` takes over.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..mechanism.inputs import is_good
@@ -49,9 +49,7 @@ def values(
             value = as_number(name, value, point.inputs, wanted)
             if value is None:  # not a number: an array
                 import_whole("numpy")
-                from .arrays import evaluate_arrays
-
-                answers = evaluate_arrays(asked, given, threads, out)
+                answers = _of_arrays(asked, given, threads, out)
                 return answers[names] if isinstance(names, str) else answers
         numbers.append(value)
     if out is not None:
@@ -63,3 +61,17 @@ def values(
 MOST_KNOWN = 1024  # requests that are remembered
 _KNOWN: dict[tuple[Any, ...], tuple[Request, Point]] = {}
 forget_on_change(_KNOWN)
+
+
+def _of_arrays(asked: Request, given: Mapping[str, Any], threads: int | None, out: Any) -> dict[str, Any]:
+    """The answers for arrays, lazy ones where one of them is a Dask array."""
+    if any(hasattr(given.get(name), "__dask_graph__") for name in asked.inputs):
+        from .dask_blocks import is_lazy
+
+        if any(is_lazy(given.get(name)) for name in asked.inputs):
+            from .lazy_evaluate import evaluate_lazily
+
+            return evaluate_lazily(asked, given, threads, out)
+    from .arrays import evaluate_arrays
+
+    return evaluate_arrays(asked, given, threads, out)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from ..compiler.languages.numba import peaks
 from ..compiler.languages.numba.module import helper_sources
 from ..compiler.operations import HELPERS, MATH_NAMES
+from ..runtime.compiled_only import is_required
 from ..runtime.modules import is_kept, native
 from ..runtime.threads import run_parts
 from ..support.forks import fork_safe_lock
@@ -129,7 +130,7 @@ def kernel_for(search: Search, designs: int) -> Kernel:
     if found is not None:
         return found
     _ASKED[search] += designs
-    if _ASKED[search] < BREAK_EVEN and not _on_disk(search):
+    if _ASKED[search] < BREAK_EVEN and not is_required() and not _on_disk(search):
         return _plain(search)
     with _LOCK:
         found = _LOADED.get(search) or native("search", source_of(search))

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..compiler.passes.guard import BAD_INPUT
 from ..mechanism.constants import double_constants
 from ..mechanism.inputs import INPUTS
+from .compiled_only import is_required
 from .kernels import KernelKey, is_ready
 from .point import point_of
 
@@ -30,7 +31,7 @@ def are_good(name: str, array: Array) -> NDArray[np.bool_]:
 
 def interpret_first(key: KernelKey, size: int) -> bool:
     """Whether plain Python still pays."""
-    if is_ready(key):
+    if is_ready(key) or is_required():
         return False
     _ASKED[key] += size
     return _ASKED[key] < BREAK_EVEN

@@ -5,6 +5,7 @@ No block runs for long: between two of them an interrupt is heard, and it stops 
 
 import os
 from collections.abc import Callable, Mapping, Sequence
+from contextvars import copy_context
 from itertools import pairwise
 from threading import Event
 from typing import TYPE_CHECKING, Any
@@ -107,7 +108,7 @@ def run_together(works: Sequence[Callable[[], None]], stopped: Event) -> None:
     """Run each on a thread; where one fails, or the caller is interrupted, `stopped` tells the others."""
     from concurrent.futures import wait
 
-    begun = [pool(len(works)).submit(work) for work in works]
+    begun = [pool(len(works)).submit(copy_context().run, work) for work in works]
     try:
         for done in begun:
             done.result()

@@ -1,7 +1,6 @@
 """From what is written in a scene file to inputs in SI units and names that exist."""
 
 import tomllib
-import warnings
 from collections.abc import Iterable, Mapping
 from math import pi
 from os import PathLike
@@ -9,21 +8,20 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from ..evaluation.chunks import chunk_lengths
 from ..evaluation.reduce import NO_STATUS, Reduction, reduction_of
 from ..loads.load import Load, OverTheta
 from ..mechanism.catalogue import law_name, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import CENTRES, LENGTHS, LOADS, sensitivity
 from ..mechanism.program import Variant, program_of
-from ..mechanism.slips import UnitWarning
-from ..mechanism.unit_system import SI, UnitSystem
 from ..peaks.programs import WITHOUT_COURSE
 from ..runtime.accuracy import accuracy_of
+from ..sweeps.layout import bytes_of
 from . import schema
 from .loads import varying, without_objects
 from .printed import Printed, read_percentage, read_printed
 from .schema import SceneError, shown
-from .units import slips_of, units_of, with_units
 from .values import Value, design_of, number_of, only_inputs, values_of
 
 SECTIONS: dict[str, type[schema.Section]] = {
@@ -99,7 +97,9 @@ class Content(NamedTuple):
     data: str | None
     reduction: Reduction | None = None
     threads: int | None = None
-    units: UnitSystem = SI
+    store: str | None = None
+    chunks: Any = None
+    memory: int | None = None
 
 
 def plain_data(source: str | PathLike[str] | Mapping[str, Any]) -> dict[str, Any]:
@@ -131,8 +131,6 @@ def read(data: Mapping[str, Any], folder: Path | None = None) -> Content:
 
     folder   where the scene file is, and perhaps the files of its loads
     """
-    units = _units(data)
-    data = with_units(data, units)
     file = schema.decoded(without_objects(data))
     inputs = _inputs(data, file, folder)
     branch = file.mechanism.branch
@@ -156,20 +154,33 @@ def read(data: Mapping[str, Any], folder: Path | None = None) -> Content:
     return Content(
         file.title, outputs, _accuracy(file.accuracy), branch, inputs,
         tuple(checks), tuple(peaks), tuple(pictures), file.results.data,
-        _reduction(file, outputs, inputs), file.threads, units,
+        _reduction(file, outputs, inputs), file.threads, *_storage(file, outputs, inputs),
     )  # fmt: skip
 
 
-def _units(data: Mapping[str, Any]) -> UnitSystem:
-    """The units of the scene; a warning where a plain number is almost surely meant in another one."""
+def _storage(
+    file: schema.SceneFile, outputs: tuple[str, ...], inputs: Mapping[str, Value]
+) -> tuple[str | None, Any, int | None]:
+    """The store of a sweep, its chunks, and the memory that they may take."""
+    results = file.results
+    if results.store is not None and results.data is not None:
+        raise SceneError(
+            f"results.store = {shown(results.store)}: give a store or a file (results.data), not both"
+        )
+    if results.store is not None and not (outputs or file.peak):
+        raise SceneError(f"results.store = {shown(results.store)}: there is nothing to store")
     try:
-        units = units_of(data)
-    except (ValueError, TypeError) as error:
-        raise SceneError(str(error)) from None
-    slips = slips_of(data, units)
-    if slips:
-        warnings.warn(f"almost surely a slip: {'; '.join(slips)}", UnitWarning, stacklevel=4)
-    return units
+        memory = bytes_of(results.memory)
+    except ValueError as error:
+        raise SceneError(f"results.{error}") from None
+    if results.chunks is not None and outputs:
+        axes = {name: len(value) for name, value in inputs.items() if isinstance(value, tuple)}
+        reduced = dict.fromkeys(file.reduce, 1)
+        try:
+            chunk_lengths(results.chunks, {n: s for n, s in axes.items() if n not in reduced}, 1)
+        except (ValueError, TypeError) as error:
+            raise SceneError(f"results.{error}") from None
+    return results.store, results.chunks, memory
 
 
 def _accuracy(written: str | float) -> str:

@@ -13,22 +13,23 @@ from numpy.typing import NDArray
 from ..design.feasibility.feasibility import feasibility
 from ..evaluation.evaluate import evaluate
 from ..evaluation.grid import grid
-from ..evaluation.in_units import in_units
 from ..evaluation.labels import with_loads
 from ..loads.load import Load
-from ..mechanism.names import sensitivity
 from ..support.extras import needed
 from ..support.files import check_target
 from ..support.progress import Progress, Steps
 from .files import check_place, requirements_of, write
 from .peaks import PeakResult, batches, columns_of, peaks_of, provenance
-from .read import Check, Content, Peak, Picture
+from .read import Check, Content, Picture
+from .stored import sweep_content
 from .values import Value
 
 if TYPE_CHECKING:
     import xarray as xr
 
 BLOCK = 5_000_000  # points of the grid between two reports of progress
+MOST_BATCHES = 1_000  # of peaks that a run shows beside a store
+MOST_DESIGNS = 10_000_000  # that are looked at for feasibility; a sweep has the margin of all
 MOST_SHOWN = 100  # designs that cannot turn fully, looked at one by one
 
 
@@ -73,12 +74,20 @@ def run(content: Content, watch: Progress | None) -> Run:
     """Compute, draw and write all that a scene asks for."""
     _require_rooms(content)
     _check_files(content)
-    blocks = _blocks(content) if content.outputs else []
+    stored = content.store is not None
+    blocks = _blocks(content) if content.outputs and not stored else []
     parts = sum(batches(one) for one in content.peaks)
+    shown = content.peaks if not stored or parts <= MOST_BATCHES else ()  # all of them are in the store
+    parts = (parts if shown else 0) + stored
     steps = Steps(len(blocks) + parts + len(content.pictures) + (content.data is not None), watch)
     checks = tuple(_check(check, content) for check in content.checks)
-    dataset = in_units(_values(content, blocks, steps), content.units) if content.outputs else None
-    peaks = tuple(_peaks(one, content, steps) for one in content.peaks)
+    dataset = None
+    if stored:
+        steps.next(f"sweeping into {content.store}")
+        dataset = sweep_content(content, watch=_no_watch)
+    elif content.outputs:
+        dataset = _values(content, blocks, steps)
+    peaks = tuple(peaks_of(one, content, steps) for one in shown)
     files = []
     if content.data is not None:
         steps.next(f"writing {content.data}")
@@ -92,18 +101,14 @@ def run(content: Content, watch: Progress | None) -> Run:
     return Run(dataset, checks, peaks, _feasibility(content.inputs), tuple(files))
 
 
-def _peaks(one: Peak, content: Content, steps: Steps) -> PeakResult:
-    """Peaks in the units of the scene."""
-    found = peaks_of(one, content, steps)
-    slopes = [str(name) for name in found.dataset.data_vars if str(name).startswith("value_wrt_")]
-    names = {name: sensitivity(one.quantity, name.removeprefix("value_wrt_")) for name in slopes}
-    names["value"] = one.quantity
-    return found._replace(dataset=in_units(found.dataset, content.units, names=names))
+def _no_watch(done: int, total: int, what: str) -> None:
+    """The steps of the run are shown, not the points of the sweep."""
 
 
 def _require_rooms(content: Content) -> None:
     """Fail at the start, not at the end, where an optional dependency is missing."""
     rooms = {"outputs": "xarray"} if content.outputs else {}
+    rooms |= {"results.store": "zarr", "a results.store": "dask"} if content.store is not None else {}
     rooms |= {"[[peak]]": "xarray"} if content.peaks else {}
     rooms |= requirements_of(content.data) if content.data is not None else {}
     rooms |= (
@@ -195,7 +200,8 @@ def _check(check: Check, content: Content) -> CheckResult:
 def _feasibility(inputs: Mapping[str, Value]) -> FeasibilityResult | None:
     """Which designs turn fully; None where a length is not given."""
     lengths = {name: value for name, value in inputs.items() if name in ("ec", "AB", "BC")}
-    if len(lengths) < 3:
+    count = prod(len(value) for value in lengths.values() if isinstance(value, tuple))
+    if len(lengths) < 3 or count > MOST_DESIGNS:
         return None
     columns: dict[str, Any] = columns_of(lengths)
     margins: Any = evaluate("margin", **columns)
@@ -240,8 +246,7 @@ def _picture(picture: Picture, content: Content, steps: Steps) -> Path:
     # With the names of the outputs the kernel of the grid serves here too, where all inputs are the same.
     shared = picture.quantity in content.outputs and set(picture.inputs) == set(content.inputs)
     names = content.outputs if shared else (picture.quantity,)
-    values: Any = grid(names, **grid_options(content), **_arrays(picture.inputs))
-    dataset = in_units(values, content.units)
+    dataset: Any = grid(names, **grid_options(content), **_arrays(picture.inputs))
     axes: Any = curves(dataset, picture.quantity, over=picture.over, family=picture.family)[0].axes
     title = picture.title or content.title
     if title:

@@ -22,6 +22,12 @@ _WORDS = "a list of names of quantities"
 Text = Annotated[str, Meta(description="text")]
 Name = Annotated[str, Meta(description="the name of a quantity")]
 File = Annotated[str, Meta(description="the path of a file")]
+Store = Annotated[str, Meta(description='the folder of a Zarr store, such as "press.zarr"')]
+Chunks = Annotated[
+    int | str | dict[str, int | str],
+    Meta(description='"auto", a number of points, or a table such as { theta = 1000 }'),
+]
+Memory = Annotated[int | str, Meta(description='text such as "200 MB", or a number of bytes')]
 Number = Annotated[float | str, Meta(description=_NUMBER)]
 Count = Annotated[int, Meta(ge=1, description="a whole number, at least 1")]
 Points = Annotated[int, Meta(ge=2, description="a whole number, at least 2")]
@@ -29,10 +35,6 @@ Printed = Annotated[float | str, Meta(description='text as it is printed, such a
 Percent = Annotated[float | str, Meta(description='a percentage such as "33 %"')]
 Branch = Annotated[Literal[1, -1], Meta(description="1 (the papers) or -1")]
 Kind = Annotated[Literal["absmax", "max", "min"], Meta(description="one of absmax, max, min")]
-Units = Annotated[
-    str | dict[str, str],
-    Meta(description='units such as "mm, deg, rpm", or a table such as { length = "mm", angle = "deg" }'),
-]
 Accuracy = Annotated[
     str | float, Meta(description='"fast", "standard", "extended", or an error such as 1e-9')
 ]
@@ -196,9 +198,16 @@ class PictureTable(Section, frozen=True):
 
 
 class Results(Section, frozen=True):
-    """`[results]`: where the labelled values go: .nc (NetCDF), .zarr, .csv or .npz (NumPy)."""
+    """`[results]`: where the labelled values go: .nc (NetCDF), .zarr, .csv or .npz (NumPy).
+
+    With `store`, a folder such as "press.zarr", they are swept into it chunk by chunk and need not fit
+    into memory.
+    """
 
     data: File | None = None
+    store: Store | None = None
+    chunks: Chunks | None = None
+    memory: Memory | None = None
 
 
 class SceneFile(Section, frozen=True):
@@ -217,7 +226,6 @@ class SceneFile(Section, frozen=True):
     peak: Annotated[tuple[PeakTable, ...], Meta(description="a list of tables, [[peak]]")] = ()
     picture: Annotated[tuple[PictureTable, ...], Meta(description="a list of tables, [[picture]]")] = ()
     results: Annotated[Results, Meta(description="a table, [results]")] = Results()
-    units: Units = {}
 
 
 def decoded(data: Mapping[str, Any]) -> SceneFile:

@@ -1,6 +1,9 @@
 """Sweeps larger than memory: written chunk by chunk to a Zarr store, on one machine or a Dask cluster.
 
 sweep     what `desaxe.sweep` does with names and inputs
+peaks     refined peaks of the designs of a sweep
+estimate  size, time and free disk before it starts
+memory    how much memory is free
 request   what identifies a sweep, and how two differ
 layout    chunks and the memory that they take
 store     the store: its skeleton, chunks that are whole or absent, what is left to do

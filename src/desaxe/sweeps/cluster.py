@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from ..mechanism.program import digest
 from ..support.extras import needed
-from ..support.version import version
+from ..support.version import version as desaxe_version
 from .tasks import VersionError, check_version
 
 T = TypeVar("T")
@@ -46,12 +46,12 @@ def _check_workers(client: Any) -> None:
     """Refuse a cluster without workers, and name the workers that have another desaxe."""
     if not client.nthreads():
         client.wait_for_workers(1, timeout=30)
-    answers = client.run(check_version, version(), digest(), on_error="return")
+    answers = client.run(check_version, desaxe_version(), digest(), on_error="return")
     refused = {address: error for address, error in answers.items() if isinstance(error, BaseException)}
     if refused:
         lines = [
             f"{address}: " + (str(error) if isinstance(error, VersionError) else
-            f"desaxe is older than {version()} there, or missing ({type(error).__name__}: {error})")
+            f"desaxe is older than {desaxe_version()} there, or missing ({type(error).__name__}: {error})")
             for address, error in refused.items()
         ]  # fmt: skip
         raise VersionError("; ".join(lines))

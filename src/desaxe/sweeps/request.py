@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from numpy.typing import NDArray
@@ -10,21 +10,40 @@ from numpy.typing import NDArray
 from ..evaluation.outer import Outer
 from ..evaluation.reduce import Reduction
 from ..mechanism.program import digest
-from ..support.version import version
+from ..support.version import version as desaxe_version
+from .peaks import PeakRequest
 
 IDENTITY = ("request", "version", "digest")
 
 
-def identity(outer: Outer, branch: int, accuracy: str, reduction: Reduction | None) -> dict[str, str]:
-    """The attributes that a store of this sweep has: no time, path or host is among them."""
+def identity(
+    outer: Outer,
+    branch: int,
+    accuracy: str,
+    reduction: Reduction | None,
+    peaks: Sequence[PeakRequest],
+    own: Sequence[str],
+) -> dict[str, str]:
+    """The attributes that a store of this sweep has: no time, path or host is among them.
+
+    `own` tells the definitions of quantities that are not the library's.
+    """
     request = {
         "names": list(outer.names),
         "reduce": {} if reduction is None else {reduction.axis: list(reduction.kinds)},
+        "peaks": [list(one) for one in peaks],
+        "definitions": [hashlib.sha256(text.encode()).hexdigest() for text in own],
         "branch": int(branch),
         "accuracy": accuracy,
         "inputs": {name: _input(array) for name, array in outer.axes.items()},
     }
-    return {"request": json.dumps(request), "version": version(), "digest": digest()}
+    version, program = versions()
+    return {"request": json.dumps(request), "version": version, "digest": program}
+
+
+def versions() -> tuple[str, str]:
+    """The version of desaxe and the digest of its derivation."""
+    return desaxe_version(), digest()
 
 
 def _input(array: NDArray[Any]) -> Any:

@@ -117,6 +117,15 @@ def create(root: Path, template: "xr.Dataset", chunk: Mapping[str, int], replace
         sync(root.parent)
 
 
+def write_whole(root: Path, dataset: "xr.Dataset", replace: bool) -> None:
+    """Write a Dataset in memory as a store that is complete from the start."""
+    there = root.exists()
+    if there and attributes(root) is None:
+        raise FileExistsError(f"{root}: this is no Zarr store; it is left as it is")
+    sizes = {str(name): max(1, size) for name, size in dataset.sizes.items()}
+    create(root, dataset.assign_attrs({STATE: COMPLETE}), sizes, replace and there)
+
+
 def attributes(root: Path) -> dict[str, Any] | None:
     """The attributes of the store in a folder; None where there is no Zarr store."""
     try:

@@ -3,8 +3,8 @@
 import json
 import os
 import shutil
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import closing
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, closing
 from importlib import import_module
 from math import prod
 from os import PathLike
@@ -14,27 +14,33 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.blocks import Part, grid_parts, reduced_parts
+from ..evaluation.blocks import Part, grid_parts, margin_parts, reduced_parts
 from ..evaluation.chunks import blocks_of, slices_of
 from ..evaluation.labels import attributes as attributes_of
+from ..evaluation.labels import labelled
 from ..evaluation.lazy import lazy_grid
 from ..evaluation.outer import Outer, outer_of
 from ..evaluation.reduce import Reduction, reduction_of
 from ..loads.resolve import without_loads
+from ..mechanism.names import LENGTHS
 from ..runtime.accuracy import accuracy_of
 from ..runtime.threads import available
 from ..support.extras import needed
+from .best import Search, best_designs, search_for
 from .cluster import Crew, cluster, run_all
 from .cluster import threads as thread_crew
+from .estimate import seconds_of, told
 from .layout import Layout, bytes_of, layout_of, size_text
 from .meter import Meter, Watch
+from .peaks import PeakPart, peak_parts, peak_requests
 from .request import IDENTITY, differences, identity
-from .tasks import Output, Task, is_absent, run, values_for
+from .tasks import Output, Task, compute, is_absent, run, values_for
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Array = NDArray[Any]
+Tell = Callable[[str], None]
 
 
 class Sweep(NamedTuple):
@@ -49,7 +55,7 @@ class Sweep(NamedTuple):
 
     outer: Outer
     layout: Layout
-    parts: tuple[Part, ...]
+    parts: tuple[Part | PeakPart, ...]
     template: "xr.Dataset"
     identity: dict[str, str]
 
@@ -73,92 +79,114 @@ def prepared(
     accuracy: Any,
     threads: int | None,
     reduce: Any,
+    peaks: Any,
 ) -> Sweep:
     """The sweep of these arguments, checked; nothing is computed or written."""
     outer = outer_of(names, inputs, branch, threads, always=reduce is None)
     without_loads("sweep", outer.loads)
-    _require_values(outer)
-    kept = accuracy_of(accuracy)
-    reduction = None if reduce is None else reduction_of(reduce, outer.dimensions, outer.names)
-    template = lazy_grid(outer, -1, branch, accuracy, 1, reduce)
-    if reduction is not None:
-        template = _with_margin(template, outer, branch)
-    sizes = {str(name): size for name, size in template.sizes.items()}
-    whole = [v for v in template.data_vars.values() if len(v.dims) == len(sizes)]
-    stored = sum(variable.dtype.itemsize for variable in whole)
-    length = None if reduction is None else outer.axes[reduction.axis].size
-    sizes = {name: sizes[name] for name in outer.dimensions if name in sizes}
-    layout = layout_of(chunks, sizes, stored, length, memory)
-    parts = _parts(outer, branch, accuracy, reduction, layout)
-    return Sweep(outer, layout, parts, template, identity(outer, branch, kept, reduction))
-
-
-def _require_values(outer: Outer) -> None:
     for name in outer.dimensions:
         if not outer.axes[name].size:
             raise ValueError(f"{name}: a sweep needs at least one value of it")
+    kept = accuracy_of(accuracy)
+    reduction = None if reduce is None else reduction_of(reduce, outer.dimensions, outer.names)
+    requests = peak_requests(peaks, outer)
+    refined = peak_parts(requests, outer, branch, accuracy)
+    if not (outer.names or refined):
+        raise ValueError("sweep: nothing is asked for, give names or peaks=")
+    template = _template(outer, branch, accuracy, reduction, refined)
+    sizes = {name: template.sizes[name] for name in outer.dimensions if name in template.dims}
+    whole = [v for v in template.data_vars.values() if len(v.dims) == len(sizes)]
+    stored = sum(variable.dtype.itemsize for variable in whole)
+    length = None if reduction is None else outer.axes[reduction.axis].size
+    layout = layout_of(chunks, sizes, stored, length, memory)
+    if reduction is not None:
+        parts = reduced_parts(outer, branch, accuracy, reduction, layout.chunk)
+    elif outer.names:
+        parts = grid_parts(outer, branch, accuracy, layout.chunk)
+    else:
+        parts = margin_parts(outer, branch, accuracy, layout.chunk)
+    own = [part.key.form.own for part in parts] + [part.block.search.form.own for part in refined]
+    told = identity(outer, branch, kept, reduction, requests, [repr(one) for one in own if one])
+    return Sweep(outer, layout, (*parts, *refined), template, told)
 
 
-def _parts(
-    outer: Outer, branch: int, accuracy: Any, reduction: Reduction | None, layout: Layout
-) -> tuple[Part, ...]:
-    if reduction is None:
-        return grid_parts(outer, branch, accuracy, layout.chunk)
-    return reduced_parts(outer, branch, accuracy, reduction, layout.chunk)
+def _template(
+    outer: Outer, branch: int, accuracy: Any, reduction: Reduction | None, peaks: Sequence[PeakPart]
+) -> "xr.Dataset":
+    """The Dataset of a sweep with lazy variables: its names, dimensions and attributes."""
+    state = outer.given.get("omega") is not None
+    if reduction is not None:
+        template = lazy_grid(outer, -1, branch, accuracy, 1, {reduction.axis: reduction.kinds})
+    elif outer.names:
+        template = lazy_grid(outer, -1, branch, accuracy, 1)
+    else:
+        kept = {name: array for name, array in outer.coordinates.items() if name != "theta"}
+        template = labelled({}, kept, branch, state, accuracy)
+    if "margin" not in template and all(name in outer.axes for name in LENGTHS):
+        dims = [name for name in outer.dimensions if name in LENGTHS]
+        template = template.assign(margin=_lazy(template, dims, np.float64, attributes_of("margin", state)))
+    for part in peaks:
+        told = part.attributes(state)
+        lazy = {n: _lazy(template, part.dims, dtype, told[n]) for n, dtype in part.outputs.items()}
+        template = template.assign(lazy)
+    return template
 
 
-def _with_margin(template: "xr.Dataset", outer: Outer, branch: int) -> "xr.Dataset":
-    """A reduced grid with the margin of its designs, where all lengths are given."""
-    names, along = outer.groups()[1]
-    if not all(name in outer.axes for name in ("ec", "AB", "BC")):
-        return template
+def _lazy(template: "xr.Dataset", dims: Sequence[str], dtype: Any, told: Mapping[str, Any]) -> Any:
     import dask.array as da
 
-    lengths = [name for name in along if name in template.dims]
-    shape = [template.sizes[name] for name in lengths]
-    margin = da.empty(shape, dtype=np.float64, chunks=-1, name="margin")
-    return template.assign({names[0]: (lengths, margin, attributes_of(names[0]))})
+    return dims, da.empty([template.sizes[name] for name in dims], dtype=dtype, chunks=-1), dict(told)
 
 
-def stored_sweep(
-    sweep: Sweep,
-    store: str | PathLike[str],
-    *,
-    memory: int | None,
-    overwrite: bool,
-    client: Any,
-    threads: int | None,
-    watch: Watch | None,
-) -> "xr.Dataset":
+class Way(NamedTuple):
+    """How a sweep is run: memory for chunks in flight, a Dask client or threads, and who is told about it."""
+
+    memory: int | None
+    client: Any
+    threads: int | None
+    watch: Watch | None
+    tell: Tell | None
+
+
+def stored_sweep(sweep: Sweep, store: str | PathLike[str], overwrite: bool, way: Way) -> "xr.Dataset":
     """Run a sweep into a store, or go on with one that was stopped; the opened Dataset."""
     from .store import COMPLETE, held, open_store, remove_strays, set_state, sync_folders
 
     root = Path(os.path.abspath(store))
-    sweep = _placed(sweep, root, overwrite, memory)
+    sweep = _placed(sweep, root, overwrite, way.memory)
     with held(root):
         remove_strays(root)
         absent = _absent_bytes(sweep, root)
         if absent:
-            sweep.layout.require_memory(memory)
+            sweep.layout.require_memory(way.memory)
             _require_room(sweep, root, absent)
-        meter = Meter(sweep.points, watch)
-        with closing(meter), _crew(sweep.layout, memory, client, threads) as crew:
-            _write(sweep, root, crew, meter, 1 if client is not None else _inner(crew, threads))
+        meter = Meter(sweep.points, way.watch)
+        with closing(meter), _crew(sweep.layout, way) as crew:
+            if absent and way.tell is not None:
+                way.tell(_told(sweep, root, crew.size))
+            _write(sweep, root, crew, meter, _inner(crew, way))
         remove_strays(root)  # of workers that were killed
         sync_folders(root)
         set_state(root, COMPLETE)
     return open_store(root)
 
 
-def _crew(layout: Layout, memory: int | None, client: Any, threads: int | None) -> Any:
-    if client is not None:
-        return cluster(client)
-    return thread_crew(min(threads or available(), layout.at_once(memory), max(1, layout.chunks)))
+def _told(sweep: Sweep, root: Path, cores: int) -> str:
+    seconds = seconds_of(sweep.parts, sweep.outer.axes, sweep.bytes) / cores
+    variables = len(sweep.template.data_vars)
+    return told(sweep.points, variables, sweep.bytes, sweep.layout, seconds, _free(root))
 
 
-def _inner(crew: Crew, threads: int | None) -> int:
+def _crew(layout: Layout, way: Way) -> AbstractContextManager[Crew]:
+    if way.client is not None:
+        return cluster(way.client)
+    at_once = layout.at_once(way.memory)
+    return thread_crew(min(way.threads or available(), at_once, max(1, layout.chunks)))
+
+
+def _inner(crew: Crew, way: Way) -> int:
     """Threads of each kernel, so that all cores work where few chunks fit into memory."""
-    return max(1, (threads or available()) // crew.size)
+    return 1 if way.client is not None else max(1, (way.threads or available()) // crew.size)
 
 
 def _placed(sweep: Sweep, root: Path, overwrite: bool, memory: int | None) -> Sweep:
@@ -195,8 +223,7 @@ def _placed(sweep: Sweep, root: Path, overwrite: bool, memory: int | None) -> Sw
 
 def _require_room(sweep: Sweep, root: Path, needed_bytes: int) -> None:
     """Refuse what the disk has no room for."""
-    parent = next(path for path in root.parents if path.exists())
-    free = shutil.disk_usage(parent).free
+    free = _free(root)
     if needed_bytes > free:
         raise OSError(
             28,
@@ -204,6 +231,11 @@ def _require_room(sweep: Sweep, root: Path, needed_bytes: int) -> None:
             f"{len(sweep.template.data_vars)} variables), {size_text(free)} are free",
             str(root),
         )
+
+
+def _free(root: Path) -> int:
+    """Bytes that are free where a store is, or will be."""
+    return shutil.disk_usage(next(path for path in root.parents if path.exists())).free
 
 
 def _outputs(sweep: Sweep, place: tuple[int, ...]) -> tuple[tuple[Output, ...], dict[str, slice]]:
@@ -219,25 +251,63 @@ def _outputs(sweep: Sweep, place: tuple[int, ...]) -> tuple[tuple[Output, ...], 
             tuple(regions[name] for name in part.dims),
         )
         for part in sweep.parts
-        if all(places[name] == 0 for name in places if name not in part.dims)
+        if all(number == 0 for name, number in places.items() if name not in part.dims)
     )
     return outputs, regions
 
 
 def _write(sweep: Sweep, root: Path, crew: Crew, meter: Meter, inner: int) -> None:
     """Write every chunk that is not in the store, whole."""
+    for done in run_all(crew, run, _tasks(sweep, root, inner), ahead=_ahead(crew)):
+        meter.add(done.points, done.computed)
+
+
+def _ahead(crew: Crew) -> int:
+    """Tasks that wait beside those that run, so that no worker idles; none where memory takes one alone."""
+    return crew.size if crew.size > 1 else 0
+
+
+def _tasks(sweep: Sweep, root: Path | None, inner: int) -> Iterator[Task]:
     layout, told = sweep.layout, (sweep.identity["version"], sweep.identity["digest"])
     scale = sweep.points // max(1, prod(layout.sizes.values()))
+    for place in blocks_of(layout.sizes, layout.chunk):
+        outputs, regions = _outputs(sweep, place)
+        points = scale * prod(part.stop - part.start for part in regions.values())
+        values = values_for(outputs, sweep.outer.axes, regions)
+        yield Task(str(root), outputs, values, points, inner, *told)
 
-    def tasks() -> Iterator[Task]:
-        for place in blocks_of(layout.sizes, layout.chunk):
-            outputs, regions = _outputs(sweep, place)
-            points = scale * prod(part.stop - part.start for part in regions.values())
-            values = values_for(outputs, sweep.outer.axes, regions)
-            yield Task(str(root), outputs, values, points, inner, *told)
 
-    for done in run_all(crew, run, tasks(), ahead=crew.size if crew.size > 1 else 0):
-        meter.add(done.points, done.computed)
+def unstored_sweep(sweep: Sweep, way: Way) -> "xr.Dataset":
+    """Run a sweep whose result fits into memory, a reduced one; its Dataset."""
+    arrays = {str(n): np.empty(v.shape, v.dtype) for n, v in sweep.template.data_vars.items()}
+    sweep.layout.require_memory(way.memory)
+    with closing(Meter(sweep.points, way.watch)) as meter, _crew(sweep.layout, way) as crew:
+        tasks = _tasks(sweep, None, _inner(crew, way))
+        for done in run_all(crew, compute, tasks, ahead=_ahead(crew)):
+            for name, (region, values) in done.variables.items():
+                arrays[name][region] = values
+            meter.add(done.points, True)
+    return sweep.template.assign({n: sweep.template[n].copy(data=a) for n, a in arrays.items()})
+
+
+def best_sweep(
+    search: Search,
+    count: int,
+    store: str | PathLike[str] | None,
+    overwrite: bool,
+    way: Way,
+) -> "xr.Dataset":
+    """Run a search for the best designs; they are written to a store where there is one to write to."""
+    from .store import write_whole
+
+    root = None if store is None else Path(os.path.abspath(store))
+    if root is not None and root.exists() and not overwrite:
+        raise FileExistsError(f"{root}: it is there already; overwrite=True replaces it")
+    with closing(Meter(search.points, way.watch)) as meter, _crew(search.layout, way) as crew:
+        found = best_designs(search, count, crew, meter, _inner(crew, way))
+    if root is not None:
+        write_whole(root, found, overwrite)
+    return found
 
 
 def _absent_bytes(sweep: Sweep, root: Path) -> int:
@@ -248,52 +318,49 @@ def _absent_bytes(sweep: Sweep, root: Path) -> int:
     return -(-sweep.bytes * absent // len(places))
 
 
-def sweep(
+def run_sweep(
     names: str | Sequence[str],
+    inputs: Mapping[str, Any],
     *,
-    store: str | PathLike[str],
-    chunks: Any = "auto",
-    memory: int | str | None = None,
-    overwrite: bool = False,
-    client: Any = None,
-    branch: int = 1,
-    accuracy: str | float = "standard",
-    threads: int | None = None,
-    reduce: Mapping[str, str | Sequence[str]] | None = None,
-    progress: Watch | None = None,
-    **inputs: Any,
+    store: str | PathLike[str] | None,
+    chunks: Any,
+    memory: int | str | None,
+    overwrite: bool,
+    client: Any,
+    branch: int,
+    accuracy: Any,
+    threads: int | None,
+    reduce: Any,
+    peaks: Any,
+    best: int | None,
+    by: Any,
+    watch: Watch | None,
+    tell: Tell | None,
 ) -> "xr.Dataset":
-    """A grid of any size, written chunk by chunk to a Zarr store; the opened Dataset, which is lazy.
-
-    names, inputs, reduce  as in `grid`; `status` and `margin` come always (`margin` alone with `reduce`)
-    store      the folder of the store, such as "press.zarr"; `xarray.open_zarr` reads it
-    chunks     as in xarray: a dict, a number or "auto" (16 MiB a variable at most, the last dimensions
-               whole); dimensions not named are whole
-    memory     bytes, or text such as "200 MB", that the chunks in flight may take (256 MB without);
-               the process itself takes some 200 MB more
-    overwrite  replace a store of another sweep
-    client     a `distributed.Client`: the chunks are computed and written by its workers, which must
-               see the same folder
-    threads    chunks at once, as many as there are cores without; fewer where memory ends
-    progress   called with points done, points in all and what is being done; without it a terminal
-               shows points, rate and time left
-
-    A sweep that was stopped goes on where it stopped when it is called again: chunks that are whole
-    are kept, and the finished store has the same bytes as that of an undisturbed run. A finished store
-    is read, checked and left as it is.
-
-    Raises FileExistsError for a store of another request, version or derivation, with what differs;
-    BlockingIOError while another sweep writes it; OSError where the disk has too little room;
-    MemoryError where a chunk needs more than `memory`; else as `grid` does. Needs the extra `scale`.
-
-        dx.sweep(["V_C", "a_C"], store="press.zarr", theta=th, ec=ecs, BC=bcs, AB=.125, omega0=157.08)
-    """
+    """What `desaxe.sweep` does with names and inputs."""
     _require_scale()
     room = bytes_of(memory)
-    made = prepared(names, inputs, chunks, room, branch, accuracy, threads, reduce)
-    return stored_sweep(
-        made, store, memory=room, overwrite=overwrite, client=client, threads=threads, watch=progress
-    )
+    way = Way(room, client, threads, watch, tell)
+    if best is not None or by is not None:
+        count = _count(best, by)
+        if peaks:
+            raise TypeError("best= and peaks=: give one of them")
+        search = search_for(names, inputs, by, reduce, branch, accuracy, threads, room)
+        return best_sweep(search, count, store, overwrite, way)
+    if store is None and reduce is None and (names or not peaks):
+        raise TypeError('sweep: store= is missing: where the grid goes, such as "press.zarr"')
+    made = prepared(names, inputs, chunks, room, branch, accuracy, threads, reduce, peaks)
+    if store is None:
+        return unstored_sweep(made, way)
+    return stored_sweep(made, store, overwrite, way)
+
+
+def _count(best: Any, by: Any) -> int:
+    if best is None or by is None:
+        raise TypeError('best= and by= belong together: how many designs, by what, such as best=10, by="a_C"')
+    if isinstance(best, bool) or not hasattr(best, "__index__") or int(best) < 1:
+        raise ValueError(f"best = {best!r}: a whole number, at least 1")
+    return int(best)
 
 
 def _require_scale() -> None:

@@ -6,9 +6,10 @@ from typing import Any, NamedTuple
 
 from numpy.typing import NDArray
 
-from ..evaluation.blocks import Part, compute
+from ..evaluation.blocks import Part
 from ..mechanism.program import digest
-from ..support.version import version as installed
+from ..support.version import version as desaxe_version
+from .peaks import PeakPart
 from .store import chunk_path, is_whole, write_chunk
 
 Array = NDArray[Any]
@@ -17,7 +18,7 @@ Array = NDArray[Any]
 class Output(NamedTuple):
     """A part of a grid, which of its variables are to be written, and where."""
 
-    part: Part
+    part: Part | PeakPart
     variables: tuple[str, ...]
     place: tuple[int, ...]
     region: tuple[slice, ...]
@@ -41,9 +42,9 @@ class VersionError(RuntimeError):
 
 def check_version(version: str, program: str) -> None:
     """Refuse to compute with another version or derivation than the sender's."""
-    if (installed(), digest()) != (version, program):
+    if (desaxe_version(), digest()) != (version, program):
         raise VersionError(
-            f"this worker has desaxe {installed()}, derivation {digest()[:16]}; "
+            f"this worker has desaxe {desaxe_version()}, derivation {digest()[:16]}; "
             f"the sweep is of desaxe {version}, derivation {program[:16]}"
         )
 
@@ -62,11 +63,28 @@ def run(task: Task) -> Done:
     for part, variables, place, region in task.outputs:
         left = [name for name in variables if not is_whole(root, name, place, region)]
         if left:
-            arrays = compute(part, task.values, task.threads)
+            arrays = part.compute(task.values, task.threads)
             for name in left:
                 write_chunk(root, name, region, arrays.pop(name))
             computed = True
     return Done(task.points, computed)
+
+
+class Computed(NamedTuple):
+    """A chunk that is not stored: its points, and its variables with their regions."""
+
+    points: int
+    variables: dict[str, tuple[tuple[slice, ...], Array]]
+
+
+def compute(task: Task) -> Computed:
+    """Compute a chunk and hand it back."""
+    check_version(task.version, task.digest)
+    found: dict[str, tuple[tuple[slice, ...], Array]] = {}
+    for part, variables, _, region in task.outputs:
+        arrays = part.compute(task.values, task.threads)
+        found |= {name: (region, arrays[name]) for name in variables}
+    return Computed(task.points, found)
 
 
 def is_absent(root: Path, outputs: Sequence[Output]) -> bool:

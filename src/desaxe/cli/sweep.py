@@ -1,0 +1,132 @@
+"""`desaxe sweep`: a scene of any size into a Zarr store, on this machine or a Dask cluster."""
+
+import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from ..support.extras import needed
+from .parser import add_command
+from .words import UsageError
+
+_SWEEP = """\
+Writes the grid of a scene chunk by chunk, so that it need not fit into memory. Stopped at any
+moment, the same command goes on where it stopped. `xarray.open_zarr` reads the store.
+
+With --workers N the chunks are computed by N processes here; with --scheduler by those of a Dask
+cluster, which see the same folder:
+
+  dask scheduler                              on one machine
+  dask worker tcp://HOST:8786 --nthreads 1    on each, as often as it has cores
+  desaxe sweep my_press.toml -o press.zarr --scheduler tcp://HOST:8786
+
+examples:
+  desaxe sweep my_press.toml -o press.zarr --memory "500 MB"
+  desaxe sweep my_press.toml -o press.zarr --chunks theta=1000 --workers 2
+  desaxe sweep my_press.toml --best 10 --by a_C"""
+
+
+def add_sweep(commands: Any) -> None:
+    """Add `desaxe sweep`."""
+    parser = add_command(commands, "sweep", "a grid of any size into a Zarr store, resumable", _SWEEP, _sweep)
+    parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
+    parser.add_argument("-o", metavar="STORE", dest="store", help="the store; [results] store without")
+    parser.add_argument("--chunks", metavar="CHUNKS", help="auto, a number, or theta=1000,ec=10")
+    parser.add_argument("--memory", metavar="SIZE", help='of the chunks in flight, such as "200 MB"')
+    parser.add_argument("--overwrite", action="store_true", help="replace a store of another sweep")
+    parser.add_argument("--netcdf", metavar="FILE", help="write it as NetCDF too, if it fits into memory")
+    parser.add_argument("--best", metavar="K", type=int, help="the best K designs instead of the grid")
+    parser.add_argument("--by", metavar="NAME", help="what they are ranked by: a_C, or absmax:a_C")
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument("--workers", metavar="N", type=int, help="processes on this machine")
+    where.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster")
+
+
+def _sweep(options: argparse.Namespace) -> int:
+    from ..scenes.scene import scene
+    from ..scenes.stored import sweep_content
+
+    wanted = scene(options.scene)
+    if options.store is None and wanted.content.store is None and options.best is None:
+        raise UsageError("where to? give -o STORE.zarr, or [results] store in the scene")
+    with _client(options) as client:
+        found = sweep_content(
+            wanted.content,
+            tell=print,
+            store=options.store,
+            chunks=_chunks(options.chunks),
+            memory=options.memory,
+            overwrite=options.overwrite,
+            client=client,
+            best=options.best,
+            by=_by(options.by),
+        )
+    if options.best is not None:
+        print(found.to_dataframe().to_string())
+    place = options.store or (wanted.content.store if options.best is None else None)
+    if place is not None:
+        shape = " x ".join(f"{name} ({size})" for name, size in found.sizes.items())
+        print(f"{place}: {', '.join(map(str, found.data_vars))} over {shape or 'one point'}")
+    if options.netcdf is not None:
+        _write_netcdf(found, options.netcdf)
+    return 0
+
+
+def _chunks(text: str | None) -> Any:
+    """`auto`, a number, or `theta=1000,ec=10`."""
+    if text is None or text == "auto":
+        return "auto"
+    try:
+        if "=" not in text:
+            return int(text)
+        pairs = (part.split("=", 1) for part in text.split(","))
+        return {name.strip(): "auto" if value == "auto" else int(value) for name, value in pairs}
+    except ValueError:
+        raise UsageError(f"--chunks {text}: auto, a number, or pairs such as theta=1000,ec=10") from None
+
+
+def _by(text: str | None) -> Any:
+    """`a_C`, or `absmax:a_C`."""
+    kind, colon, name = (text or "").partition(":")
+    return (kind, name) if colon else text
+
+
+@contextmanager
+def _client(options: argparse.Namespace) -> Iterator[Any]:
+    """A client of the cluster that is named, or of processes here; None for threads."""
+    if options.workers is None and options.scheduler is None:
+        yield None
+        return
+    with needed("a Dask cluster"):
+        from distributed import Client, LocalCluster
+    if options.scheduler is not None:
+        with Client(options.scheduler, timeout="30s") as client:
+            yield client
+        return
+    if options.workers < 1:
+        raise UsageError(f"--workers {options.workers}: at least 1")
+    with (
+        LocalCluster(n_workers=options.workers, threads_per_worker=1, dashboard_address=None) as cluster,
+        Client(cluster) as client,
+    ):
+        yield client
+
+
+def _write_netcdf(found: Any, place: str) -> None:
+    """Write the store's Dataset as one file, if there is memory for it."""
+    from pathlib import Path
+
+    from ..scenes.files import write
+    from ..sweeps.layout import size_text
+    from ..sweeps.memory import free_memory
+
+    if not place.endswith(".nc"):
+        raise UsageError(f"--netcdf {place}: its name must end in .nc")
+    free = free_memory()
+    if free is not None and found.nbytes > free // 2:
+        raise MemoryError(
+            f"--netcdf {place}: {size_text(found.nbytes)} do not fit into the free memory "
+            f"({size_text(free)}); the Zarr store is complete"
+        )
+    write(Path(place), found.load(), {})
+    print(f"{place}: the same as NetCDF")

@@ -1,0 +1,115 @@
+"""`peak` of chunked designs: lazy Dask arrays, by the compiled search; and the block that a sweep runs."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiler.passes.guard import BAD_INPUT
+from ..evaluation.arrays import as_array, broadcast_shape
+from ..evaluation.dask_blocks import as_dask, is_lazy, numbered, outputs_of_blocks
+from ..runtime.compiled_only import compiled_only
+from ..runtime.interpreted import are_good
+from ..runtime.request import as_number
+from ..support.extras import needed
+from .designs import Plan, peaks_of_designs, search_of
+from .programs import Search
+
+Array = NDArray[Any]
+GRADIENT = "gradient_"
+
+
+class PeakBlock(NamedTuple):
+    """The peaks of a block of designs, from arrays of some inputs that broadcast; the others are numbers."""
+
+    plan: Plan
+    kind: str
+    search: Search
+    branch: int
+    ends: tuple[float, float]
+    scalars: tuple[tuple[str, float], ...]
+    names: tuple[str, ...]
+    threads: int = 1
+
+    @property
+    def name(self) -> str:
+        """The quantity."""
+        return self.plan.wanted.shown[0]
+
+    @property
+    def outputs(self) -> dict[str, np.dtype[Any]]:
+        """What it computes, and of which type: `gradient_<parameter>` among them."""
+        names = ("value", "theta", *(f"{GRADIENT}{name}" for name in self.search.parameters))
+        return {**dict.fromkeys(names, np.dtype(np.float64)), "status": np.dtype(np.int8)}
+
+    def compute(self, *blocks: Array) -> dict[str, Array]:
+        """The outputs in the shape to which the blocks broadcast."""
+        arrays = {n: np.asarray(block, np.float64) for n, block in zip(self.names, blocks, strict=True)}
+        shape = broadcast_shape(arrays)
+        flat = {name: np.broadcast_to(array, shape).reshape(-1) for name, array in arrays.items()}
+        fine = np.logical_and.reduce([are_good(name, column) for name, column in flat.items()])
+        outs = {n: np.full(fine.size, np.nan, dtype) for n, dtype in self.outputs.items() if n != "status"}
+        outs["status"] = np.full(fine.size, BAD_INPUT, np.int8)
+        rows = np.flatnonzero(fine)
+        if rows.size:
+            found = self._found({name: column[rows] for name, column in flat.items()}, rows.size)
+            for name, out in outs.items():
+                out[rows] = found[name][: rows.size]
+        return {name: out.reshape(shape) for name, out in outs.items()}
+
+    def _found(self, flat: Mapping[str, Array], size: int) -> dict[str, Array]:
+        """The outputs of designs without bad inputs, at least two: one alone takes another way."""
+        columns = {name: np.resize(column, max(size, 2)) for name, column in flat.items()}
+        columns |= {name: np.full(max(size, 2), value) for name, value in self.scalars}
+        with compiled_only():
+            found = peaks_of_designs(
+                self.plan, self.kind, self.search, columns, self.branch, self.ends, self.threads
+            )
+        return {**found, **{f"{GRADIENT}{n}": slope for n, slope in found["gradient"].items()}}
+
+
+def peak_block(
+    kind: str,
+    plan: Plan,
+    scalars: Mapping[str, float],
+    varying: tuple[str, ...],
+    branch: int,
+    ends: tuple[float, float],
+    threads: int | None,
+) -> PeakBlock:
+    """The block of a request; an input of 0 is folded where it is a number."""
+    shapes = {n: np.array(scalars[n]) if n in scalars else np.zeros(2) for n in plan.needs}
+    search = search_of(plan, shapes, ends)
+    return PeakBlock(plan, kind, search, branch, ends, tuple(scalars.items()), varying, threads or 1)
+
+
+def lazy_peak(
+    name: str,
+    kind: str,
+    plan: Plan,
+    given: Mapping[str, Any],
+    branch: int,
+    ends: tuple[float, float],
+    threads: int | None,
+) -> dict[str, Any]:
+    """What `peak` gives, as Dask arrays."""
+    with needed("Dask arrays"):
+        from dask.base import tokenize
+
+    scalars: dict[str, float] = {}
+    arrays: dict[str, Any] = {}
+    for n in plan.needs:
+        value = given.get(n)
+        number = None if is_lazy(value) else as_number(n, value, plan.needs, (name,))
+        if number is not None:
+            scalars[n] = number
+        else:
+            arrays[n] = as_dask(n, value if is_lazy(value) else as_array(n, value, plan.needs, (name,)))
+    broadcast_shape(arrays)
+    arguments, along = numbered(arrays)
+    block = peak_block(kind, plan, scalars, tuple(arrays), branch, ends, threads)
+    token = tokenize(repr(block), *(array.name for array in arrays.values()))
+    found = outputs_of_blocks(block.compute, arguments, along, block.outputs, token)
+    gradient = {n: found.pop(f"{GRADIENT}{n}") for n in block.search.parameters}
+    return {"value": found["value"], "theta": found["theta"], "gradient": gradient, "status": found["status"]}

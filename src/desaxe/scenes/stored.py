@@ -1,0 +1,80 @@
+"""A scene as a sweep: its grid and peaks in a Zarr store."""
+
+from os import PathLike
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..sweeps.meter import Watch
+from ..sweeps.peaks import PeakRequest
+from ..sweeps.sweep import Tell, run_sweep
+from .read import Content
+from .schema import SceneError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+class Arguments(NamedTuple):
+    """What a scene sweeps."""
+
+    names: list[str]
+    inputs: dict[str, Any]
+    reduce: dict[str, tuple[str, ...]] | None
+    peaks: tuple[PeakRequest, ...]
+
+
+def arguments_of(content: Content) -> Arguments:
+    """The names, inputs, reduction and peaks of a scene; SceneError where its peaks are of other designs."""
+    if not (content.outputs or content.peaks):
+        raise SceneError("there is nothing to sweep: give outputs = [...] or [[peak]]")
+    inputs = dict(content.inputs)
+    if not content.outputs:
+        inputs = {**content.peaks[0].fixed, **content.peaks[0].axes}
+    for number, peak in enumerate(content.peaks, 1):
+        for name, value in {**peak.axes, **peak.fixed}.items():
+            if inputs.get(name, 0.0) != value:
+                raise SceneError(
+                    f"peak #{number}.over.{name}: a sweep takes peaks of the designs of its grid; "
+                    "sweep these in a scene of their own"
+                )
+    arrays = {name: np.array(value) if isinstance(value, tuple) else value for name, value in inputs.items()}
+    reduce = None if content.reduction is None else {content.reduction.axis: content.reduction.kinds}
+    peaks = tuple(PeakRequest(peak.quantity, peak.kind, peak.theta) for peak in content.peaks)
+    return Arguments(list(content.outputs), arrays, reduce, peaks)
+
+
+def sweep_content(
+    content: Content,
+    *,
+    store: str | PathLike[str] | None = None,
+    chunks: Any = "auto",
+    memory: int | str | None = None,
+    best: int | None = None,
+    threads: int | None = None,
+    watch: Watch | None = None,
+    tell: Tell | None = None,
+    overwrite: bool = False,
+    client: Any = None,
+    by: Any = None,
+) -> "xr.Dataset":
+    """The sweep of a scene; what is not given is what the scene says."""
+    wanted = arguments_of(content)
+    return run_sweep(
+        wanted.names,
+        wanted.inputs,
+        store=content.store if store is None and best is None else store,
+        chunks=content.chunks if chunks == "auto" and content.chunks is not None else chunks,
+        memory=content.memory if memory is None else memory,
+        branch=content.branch,
+        accuracy=content.accuracy,
+        threads=threads or content.threads,
+        reduce=wanted.reduce,
+        peaks=() if best is not None else wanted.peaks,
+        best=best,
+        watch=watch,
+        tell=tell,
+        overwrite=overwrite,
+        client=client,
+        by=by,
+    )

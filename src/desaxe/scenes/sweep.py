@@ -1,0 +1,89 @@
+"""`sweep`: a grid of any size in a Zarr store, of names and inputs or of a scene."""
+
+import sys
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+from ..sweeps.meter import Watch
+from ..sweeps.sweep import run_sweep
+from .scene import Scene
+from .scene import scene as scene_of
+from .stored import sweep_content
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def sweep(
+    names: str | Sequence[str] | Scene | PathLike[str] | Mapping[str, Any],
+    *,
+    store: str | PathLike[str] | None = None,
+    chunks: Any = "auto",
+    memory: int | str | None = None,
+    overwrite: bool = False,
+    client: Any = None,
+    branch: int = 1,
+    accuracy: str | float = "standard",
+    threads: int | None = None,
+    reduce: Mapping[str, str | Sequence[str]] | None = None,
+    peaks: Any = (),
+    best: int | None = None,
+    by: Any = None,
+    progress: Watch | None = None,
+    **inputs: Any,
+) -> "xr.Dataset":
+    """A grid of any size, written chunk by chunk to a Zarr store; the opened Dataset, which is lazy.
+
+    names      one or more, or a scene, or the path of one ("press.toml"): its outputs, inputs, [reduce],
+               [[peak]] and [results] store, chunks and memory
+    inputs, reduce  as in `grid`; `status` and `margin` come always (`margin` alone with `reduce`)
+    peaks      refined peaks of each design beside the grid: a name, several, or a dict name -> "absmax",
+               "max", "min" or several of these; `peak_absmax_a_C`, with its angle, status and gradient
+               (`peak_absmax_a_C_theta`, `..._status`, `..._wrt_ec`); `names` may be empty then
+    best, by   instead of a grid the `best` designs by a quantity: `by="a_C"` is its largest value,
+               ("min", "a_C") its smallest, ("absmax", "a_C") its largest magnitude, of each design over
+               theta where that is an axis. The Dataset has for each `rank` the value, the design, the
+               angle at which it is attained, every name there, and `feasible_fraction`, the share of
+               the angles that have a value; `feasible` is that share of the whole grid
+    store      the folder of the store, such as "press.zarr"; `xarray.open_zarr` reads it. What is
+               reduced, and peaks and best designs alone, may do without: the Dataset is in memory then
+    chunks     as in xarray: a dict, a number or "auto" (16 MiB a variable at most, the last dimensions
+               whole); dimensions not named are whole
+    memory     bytes, or text such as "200 MB", that the chunks in flight may take (256 MB without);
+               the process itself takes some 200 MB more
+    overwrite  replace a store of another sweep
+    client     a `distributed.Client`: the chunks are computed and written by its workers, which must
+               see the same folder
+    threads    chunks at once, as many as there are cores without; fewer where memory ends
+    progress   called with points done, points in all and what is being done; without it a terminal
+               shows points, rate and time left
+
+    A sweep that was stopped goes on where it stopped when it is called again: chunks that are whole
+    are kept, and the finished store has the same bytes as that of an undisturbed run. A finished store
+    is read, checked and left as it is.
+
+    Raises FileExistsError for a store of another request, version or derivation, with what differs;
+    BlockingIOError while another sweep writes it; OSError where the disk has too little room;
+    MemoryError where a chunk needs more than `memory`; else as `grid` does. Needs the extra `scale`.
+
+        dx.sweep("press.toml", store="press.zarr", memory="500 MB")
+        dx.sweep(["V_C", "a_C"], store="press.zarr", theta=th, ec=ecs, BC=bcs, AB=.125, omega0=157.08)
+    """
+    options: dict[str, Any] = {
+        "store": store, "memory": memory, "overwrite": overwrite, "client": client, "best": best, "by": by,
+        "watch": progress, "tell": _tell if progress is None and sys.stderr.isatty() else None,
+    }  # fmt: skip
+    if isinstance(names, (Scene, Mapping, PathLike)) or (isinstance(names, str) and names.endswith(".toml")):
+        if inputs or reduce is not None or peaks:
+            raise TypeError("sweep: a scene has its own inputs, [reduce] and [[peak]]; give none beside it")
+        there = names if isinstance(names, Scene) else scene_of(names)
+        return sweep_content(there.content, chunks=chunks, threads=threads, **options)
+    return run_sweep(
+        names, inputs, chunks=chunks, branch=branch, accuracy=accuracy, threads=threads, reduce=reduce,
+        peaks=peaks, **options,
+    )  # fmt: skip
+
+
+def _tell(line: str) -> None:
+    print(line, file=sys.stderr)

@@ -1,0 +1,47 @@
+"""`peak` of chunked designs, and peaks beside the grid of a sweep."""
+
+import dask
+import dask.array as da
+import numpy as np
+import pytest
+
+import desaxe as dx
+
+EC = np.array([0.0, 0.05, 0.2, 0.3, np.nan, 0.1, np.nan])
+MACHINE = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
+
+
+@pytest.fixture(autouse=True)
+def _synchronous():
+    with dask.config.set(scheduler="synchronous"):
+        yield
+
+
+def test_chunked_designs_stay_lazy():
+    lazy = dx.peak("a_C", ec=da.from_array(EC, chunks=2), **MACHINE)
+    eager = dx.peak("a_C", ec=EC, **MACHINE)
+    assert lazy["value"].chunks == ((2, 2, 2, 1),)
+    assert lazy["status"].compute().tolist() == eager["status"].tolist()
+    for name in ("value", "theta"):
+        np.testing.assert_allclose(lazy[name].compute(), eager[name], rtol=1e-9, atol=1e-9)
+    assert lazy["gradient"].keys() == eager["gradient"].keys()
+    for name, slope in eager["gradient"].items():
+        np.testing.assert_allclose(lazy["gradient"][name].compute(), slope, rtol=1e-6)
+
+
+def test_peaks_in_a_store(tmp_path):
+    ec, BC = EC[:4], np.array([0.3, 0.35])
+    inputs = {"ec": ec, "AB": 0.125, "BC": BC, "omega0": 157.08}
+    peaks = {"a_C": ["absmax", "min"]}
+    stored = dx.sweep([], store=tmp_path / "peaks.zarr", peaks=peaks, chunks={"ec": 3}, **inputs)
+    for kind in peaks["a_C"]:
+        own = dx.peak("a_C", kind=kind, ec=ec[:, None], AB=0.125, BC=BC, omega0=157.08)
+        stem = f"peak_{kind}_a_C"
+        assert stored[stem].dims == ("ec", "BC")
+        np.testing.assert_allclose(stored[stem], own["value"], rtol=1e-9)
+        np.testing.assert_array_equal(stored[f"{stem}_status"], own["status"])
+        np.testing.assert_allclose(stored[f"{stem}_wrt_ec"], own["gradient"]["ec"], rtol=1e-6)
+    assert stored["peak_min_a_C"].attrs["units"] == "m/s^2"
+    assert "margin" in stored
+    with pytest.raises(ValueError, match="kind = 'mean' of a_C"):
+        dx.sweep([], store=tmp_path / "no.zarr", peaks={"a_C": "mean"}, **inputs)
