@@ -8,7 +8,7 @@ from ..compiler.program import RESERVED, Note
 from ..mechanism.dimensions import unit_of
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import parts
-from ..mechanism.own import Definition, definitions, derived_names, replace_all, rows
+from ..mechanism.own import Definition, definitions, derived_names, replace_all, rows, rows_of
 from ..mechanism.spelling import did_you_mean
 from .dimensions import NONE, Checker, Dimension, dimension_of, unit_from
 from .grammar import ARITY, Node, Source, parse
@@ -23,6 +23,8 @@ TAKEN = frozenset((
     "slow_stroke", "advance_angle", "return_angle", "theta_outer", "theta_inner", "Y_outer", "Y_inner",
     "point",
 ))  # fmt: skip
+# What ends a comment or a text in one of the languages that a meaning is written into.
+MARKS = ('"""', "\\", " | ", "*/", "</", "<!--", "-->")
 DEEPEST = 50  # definitions behind one another
 
 
@@ -177,10 +179,9 @@ def _check_name(name: Any) -> None:
 def _checked_text(name: str, what: str, text: Any, longest: int) -> str:
     if not isinstance(text, str):
         raise TypeError(f"{name}: the {what} is a text, got {text!r}")
-    if len(text) > longest or not text.isprintable() or '"""' in text or "\\" in text or " | " in text:
+    if len(text) > longest or not text.isprintable() or any(mark in text for mark in MARKS):
         raise ValueError(
-            f"{name}: the {what} is one line of at most {longest} characters, without backslashes, "
-            "bars and triple quotes"
+            f"{name}: the {what} is one line of at most {longest} characters, without {' '.join(MARKS)}"
         )
     return text
 
@@ -218,11 +219,7 @@ def _names_used(
             source.refuse(node.at, node.end, f"{own} would be defined by itself")
         if base == "status":
             source.refuse(node.at, node.end, "status is no real number")
-        if (
-            node.name not in derived_names()
-            and node.name not in INPUTS
-            and not (base in known and node.name in rows())
-        ):
+        if node.name not in derived_names() and node.name not in INPUTS and not _is_own(node.name, known):
             everything = (*derived_names(), *INPUTS, *known, *numbers)
             hint = did_you_mean(node.name, everything) if len(node.name) <= LONGEST_NAME else ""
             shown = node.name if len(node.name) <= LONGEST_NAME else f"{node.name[:LONGEST_NAME]}..."
@@ -232,6 +229,12 @@ def _names_used(
     if not found:
         source.refuse(0, len(source.text), "a constant: it uses no quantity and no input")
     return tuple(found)
+
+
+def _is_own(name: str, known: Mapping[str, Definition]) -> bool:
+    """True for another own quantity or one of its sensitivities."""
+    base = parts(name)[0]
+    return base in known and name in rows_of(known[base], known)
 
 
 def _mentions(tree: Node, name: str) -> bool:
@@ -245,9 +248,9 @@ def _mentions(tree: Node, name: str) -> bool:
 
 
 def _dimension(name: str, known: Mapping[str, Definition]) -> Dimension:
-    if name in known:
-        return dimension_of(unit_of(known[name].unit))
-    row = derived_names().get(name) or rows().get(name)
+    base = parts(name)[0]
+    own = rows_of(known[base], known) if base in known else {}
+    row = derived_names().get(name) or own.get(name)
     return dimension_of(unit_of(row[0] if row else INPUTS[name].unit))
 
 

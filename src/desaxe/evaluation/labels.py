@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..definitions.tables import text_of
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..support.extras import needed
@@ -63,8 +64,11 @@ def provenance(
         for name, array in inputs.items()
         if not array.ndim
     ]
+    names = tuple(names)
+    own = text_of(names)
     scene = ", ".join(names) + (f" over {', '.join(axes)}" if axes else "")
     return {
+        **({"quantities": own} if own else {}),
         "title": title,
         "scene": "; ".join(part for part in (scene, ", ".join(fixed)) if part),
         "source": source(),

@@ -67,7 +67,7 @@ def replace_all(new: Mapping[str, Definition]) -> None:
     with _LOCK:
         found: dict[str, Row] = {}
         for definition in new.values():
-            found |= _rows_of(definition, new)
+            found |= rows_of(definition, new)
         _DEFINITIONS.clear()
         _DEFINITIONS.update(new)
         _ROWS.clear()
@@ -115,7 +115,8 @@ def derived_names() -> dict[str, Row]:
 # ---- the catalogue --------------------------------------------------------------------------------
 
 
-def _rows_of(definition: Definition, known: Mapping[str, Definition]) -> dict[str, Row]:
+def rows_of(definition: Definition, known: Mapping[str, Definition]) -> dict[str, Row]:
+    """Unit, meaning and expression of a quantity and its sensitivities; `known` has those that it uses."""
     name = definition.name
     made_of = leaves((name,), known)
     parameters = [p for p in (*PARAMETERS, *LOADS) if p in PARAMETERS or any(depends(n, p) for n in made_of)]

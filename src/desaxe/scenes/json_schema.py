@@ -6,9 +6,9 @@ from typing import Any
 import msgspec
 
 from ..compiler.languages.numba.reductions import KINDS
-from ..mechanism.catalogue import quantities
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import parts
+from ..mechanism.own import derived_names
 from .schema import SceneFile
 
 
@@ -42,7 +42,7 @@ def _for_toml(rule: Any) -> Any:
     elif choices:
         found["anyOf"] = choices
     if found.get("description") == "the name of a quantity":
-        found["anyOf"] = [{"enum": _base_quantities()}, {"pattern": "^[A-Za-z_]+_wrt_[A-Za-z0-9_]+$"}]
+        found["anyOf"] = [{"enum": _base_quantities()}, {"pattern": "^[A-Za-z][A-Za-z0-9_]*$"}]
     if found.get("description", "").startswith("one of max, min"):
         kinds = {"enum": list(KINDS)}
         found["anyOf"] = [kinds, {"type": "array", "items": kinds, "minItems": 1}]
@@ -50,5 +50,5 @@ def _for_toml(rule: Any) -> Any:
 
 
 def _base_quantities() -> list[str]:
-    """The names that are no sensitivities, of which there are hundreds."""
-    return [name for name in quantities() if not parts(name)[1]]
+    """The names that are no sensitivities, of which there are hundreds, nor a user's own."""
+    return [name for name in derived_names() if not parts(name)[1]]

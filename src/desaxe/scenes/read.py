@@ -8,12 +8,14 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from ..definitions.tables import read_definitions, redefine
 from ..evaluation.chunks import chunk_lengths
 from ..evaluation.reduce import NO_STATUS, Reduction, reduction_of
 from ..loads.load import Load, OverTheta
 from ..mechanism.catalogue import law_name, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import CENTRES, LENGTHS, LOADS, sensitivity
+from ..mechanism.own import Definition
 from ..mechanism.program import Variant, program_of
 from ..peaks.programs import WITHOUT_COURSE
 from ..runtime.accuracy import accuracy_of
@@ -100,6 +102,7 @@ class Content(NamedTuple):
     store: str | None = None
     chunks: Any = None
     memory: int | None = None
+    definitions: tuple[Definition, ...] = ()
 
 
 def plain_data(source: str | PathLike[str] | Mapping[str, Any]) -> dict[str, Any]:
@@ -132,6 +135,7 @@ def read(data: Mapping[str, Any], folder: Path | None = None) -> Content:
     folder   where the scene file is, and perhaps the files of its loads
     """
     file = schema.decoded(without_objects(data))
+    own = _defined(data.get("quantities", {}))
     inputs = _inputs(data, file, folder)
     branch = file.mechanism.branch
     if "omega" in inputs and "omega0" in inputs:
@@ -154,7 +158,7 @@ def read(data: Mapping[str, Any], folder: Path | None = None) -> Content:
     return Content(
         file.title, outputs, _accuracy(file.accuracy), branch, inputs,
         tuple(checks), tuple(peaks), tuple(pictures), file.results.data,
-        _reduction(file, outputs, inputs), file.threads, *_storage(file, outputs, inputs),
+        _reduction(file, outputs, inputs), file.threads, *_storage(file, outputs, inputs), own,
     )  # fmt: skip
 
 
@@ -181,6 +185,16 @@ def _storage(
         except (ValueError, TypeError) as error:
             raise SceneError(f"results.{error}") from None
     return results.store, results.chunks, memory
+
+
+def _defined(tables: Mapping[str, Any]) -> tuple[Definition, ...]:
+    """The quantities of the scene's own, known from now on."""
+    try:
+        own = read_definitions(tables)
+        redefine(own)
+    except (ValueError, TypeError) as error:
+        raise SceneError(f"quantities: {error}") from None
+    return own
 
 
 def _accuracy(written: str | float) -> str:

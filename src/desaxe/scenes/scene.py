@@ -6,6 +6,8 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..definitions.tables import in_force, redefine
+from ..mechanism.own import definitions
 from ..support.progress import Progress
 from .peaks import PeakResult
 from .read import Content, plain_data, read
@@ -69,21 +71,33 @@ class Scene:
         """The inputs in SI units in the order given: a number, the values of a list or range, or a load."""
         return dict(self.content.inputs)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Its quantities travel with it: they are known where it arrives, unless others have their names."""
+        return _arrived, (self.content, self.name)
+
     def run(self, progress: Progress | None = None) -> SceneResult:
         """Compute everything, write the files that the scene names, and return it.
 
         `progress(done, total, what)` is called before each step. Paths are relative to the current
         directory. Needs the extra `labelled`, and `plot` where the scene has pictures.
         """
-        found = run(self.content, progress)
+        with in_force(self.content.definitions):
+            found = run(self.content, progress)
         return SceneResult(self, found.dataset, found.peaks, found.checks, found.feasibility, found.files)
+
+
+def _arrived(content: Content, name: str) -> Scene:
+    known = definitions()
+    redefine(own for own in content.definitions if own.name not in known)
+    return Scene(content, name)
 
 
 def scene(source: str | PathLike[str] | Mapping[str, Any]) -> Scene:
     """A scene from the path of a TOML file, or from the same thing as a mapping.
 
-    The file is data: nothing in it is ever executed. Raises SceneError (a ValueError) that names the
-    key, its value and what is allowed; OSError where the file cannot be read. Needs the extra
+    The file is data: nothing in it is ever executed. Quantities that it defines (`[quantities.NAME]`) are
+    known to every call from then on, as those of `define` are. Raises SceneError (a ValueError) that
+    names the key, its value and what is allowed; OSError where the file cannot be read. Needs the extra
     `scene`, and `units` where a value carries a unit.
 
         dx.scene("examples/compactor.toml").run()

@@ -210,6 +210,17 @@ class Results(Section, frozen=True):
     memory: Memory | None = None
 
 
+class QuantityTable(Section, frozen=True):
+    """`[quantities.NAME]`: a quantity of your own; see `desaxe.define`."""
+
+    expression: Text
+    unit: Text | None = None
+    meaning: Text = ""
+    constants: Annotated[
+        dict[str, Number], Meta(description="a table of constants, such as { f = 0.08 }")
+    ] = {}
+
+
 class SceneFile(Section, frozen=True):
     """A scene as it is written."""
 
@@ -222,6 +233,9 @@ class SceneFile(Section, frozen=True):
     motion: Annotated[Motion, Meta(description="a table, [motion]")] = Motion()
     masses: Annotated[Masses, Meta(description="a table, [masses]")] = Masses()
     loads: Annotated[Loads, Meta(description="a table, [loads]")] = Loads()
+    quantities: Annotated[
+        dict[str, QuantityTable], Meta(description="tables of quantities of your own, [quantities.NAME]")
+    ] = {}
     check: Annotated[tuple[CheckTable, ...], Meta(description="a list of tables, [[check]]")] = ()
     peak: Annotated[tuple[PeakTable, ...], Meta(description="a list of tables, [[peak]]")] = ()
     picture: Annotated[tuple[PictureTable, ...], Meta(description="a list of tables, [[picture]]")] = ()

@@ -7,6 +7,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from ..definitions.tables import text_of
 from ..evaluation.outer import Outer
 from ..evaluation.reduce import Reduction
 from ..mechanism.program import digest
@@ -37,6 +38,9 @@ def identity(
         "accuracy": accuracy,
         "inputs": {name: _input(array) for name, array in outer.axes.items()},
     }
+    own = text_of(outer.names)
+    if own:
+        request["quantities"] = json.loads(own)
     version, program = versions()
     return {"request": json.dumps(request), "version": version, "digest": program}
 

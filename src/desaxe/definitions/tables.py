@@ -1,0 +1,90 @@
+"""Definitions as tables: `[quantities.NAME]` of a scene or of a file of its own, and in stored results.
+
+[quantities.shoe_power]
+expression = "f * abs(N_C * V_C)"
+unit = "W"
+meaning = "power lost in the shoe"
+constants = { f = 0.08 }
+"""
+
+import json
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
+
+from ..mechanism.own import Definition, definitions, replace_all, used_by
+from .define import Entry, made_definition, with_definitions
+
+KEYS = ("expression", "unit", "meaning", "constants")
+
+
+def read_definitions(tables: Mapping[str, Any]) -> tuple[Definition, ...]:
+    """The definitions of `[quantities]`, whatever their order; ValueError that names what is wrong."""
+    waiting = {name: _entry(name, table) for name, table in tables.items()}
+    known = {name: old for name, old in definitions().items() if name not in waiting}
+    made: dict[str, Definition] = {}
+    while waiting:
+        # What no other one that waits stands in; in a circle none is left, and the first tells of it.
+        ready = [n for n, entry in waiting.items() if not _mentions(entry.expression, waiting, n)]
+        for name in ready or [next(iter(waiting))]:
+            made[name] = made_definition(waiting.pop(name), {**known, **made})
+    return tuple(made.values())
+
+
+def _mentions(expression: str, names: Mapping[str, Any], own: str) -> bool:
+    """Whether a name other than its own, or a sensitivity of it, stands in an expression."""
+    words = {word.partition("_wrt_")[0] for word in re.findall(r"[A-Za-z_]\w*", expression[:10_000])}
+    return any(name in words for name in names if name != own)
+
+
+def _entry(name: str, table: Any) -> Entry:
+    if not isinstance(table, Mapping):
+        raise ValueError(f"quantities.{name} = {table!r}: a table with an expression is wanted")
+    wrong = [key for key in table if key not in KEYS]
+    if wrong:
+        raise ValueError(f"quantities.{name}.{wrong[0]}: unknown key; there are {', '.join(KEYS)}")
+    expression, constants = table.get("expression"), table.get("constants", {})
+    if not isinstance(expression, str):
+        raise ValueError(f"quantities.{name}.expression = {expression!r}: a text is wanted")
+    if not isinstance(constants, Mapping):
+        raise ValueError(
+            f"quantities.{name}.constants = {constants!r}: a table such as {{f = 0.08}} is wanted"
+        )
+    return Entry(name, expression, table.get("unit"), table.get("meaning", ""), dict(constants))
+
+
+def tables_of(made: Iterable[Definition]) -> dict[str, dict[str, Any]]:
+    """The same tables of definitions."""
+    found: dict[str, dict[str, Any]] = {}
+    for own in made:
+        found[own.name] = {"expression": own.expression, "unit": own.unit, "meaning": own.meaning}
+        if own.constants:
+            found[own.name]["constants"] = dict(own.constants)
+    return found
+
+
+def text_of(names: Iterable[str]) -> str:
+    """The definitions that names need, as JSON: what a stored result says of them; empty without any."""
+    own = used_by(names)
+    return json.dumps(tables_of(own)) if own else ""
+
+
+def redefine(made: Iterable[Definition]) -> None:
+    """Make definitions known, in place of others of the same names."""
+    known = definitions()
+    new = [own for own in made if known.get(own.name) != own]
+    if new:
+        replace_all(with_definitions(known, new))
+
+
+@contextmanager
+def in_force(made: Iterable[Definition]) -> Iterator[None]:
+    """Have definitions known for a while, whatever else has these names."""
+    before = definitions()
+    redefine(made)
+    try:
+        yield
+    finally:
+        if definitions() != before:
+            replace_all(before)
