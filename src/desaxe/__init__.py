@@ -31,7 +31,9 @@ if TYPE_CHECKING:
     from .loads import LoadWarning as LoadWarning
     from .loads import over_theta as over_theta
     from .loads import over_Y as over_Y
+    from .machine import Machine as Machine
     from .mechanism.catalogue import quantities as quantities
+    from .mechanism.slips import UnitWarning as UnitWarning
     from .peaks.peak import peak as peak
     from .scenes.explain.explain import explain as explain
     from .scenes.explorer.explore import explore as explore
@@ -57,6 +59,8 @@ PUBLIC = {
     "flywheel": "desaxe.design.turn.flywheel",
     "drive": "desaxe.design.drive.drive",
     "explore": "desaxe.scenes.explorer.explore",
+    "Machine": "desaxe.machine.machine",
+    "UnitWarning": "desaxe.mechanism.slips",
     "feasibility": "desaxe.design.feasibility.feasibility",
     "scene": "desaxe.scenes.scene",
     "explain": "desaxe.scenes.explain.explain",
@@ -75,6 +79,8 @@ MODULES = {"plot": "desaxe.plot", "units": "desaxe.mechanism.units"}
 
 __all__ = [
     "LoadWarning",
+    "Machine",
+    "UnitWarning",
     "compile",
     "counterweight",
     "define",

@@ -65,6 +65,7 @@ def test_the_pictures_show_every_contender(stored):
         }
 
 
+@pytest.mark.thorough
 def test_a_small_run_measures_and_tells():
     data = measure([BY_KEY["point"]], Effort(quick=True, rounds=1, points=3000, judged=2))
     text = terminal(data)

@@ -11,6 +11,7 @@ from desaxe.compiler.interpret import run_exactly, run_in_doubles
 from desaxe.compiler.program import Line, Program
 from desaxe.oracle.truth import relative_error, truth
 from tests.compiler.programs import INPUTS, POINT, committed, exactly, in_doubles, program_of_nested, programs
+from tests.effort import cases
 
 ANY = st.floats(allow_nan=True, allow_infinity=True)
 
@@ -47,8 +48,9 @@ def test_whole_numbers_and_truth_values_stay():
     assert exactly(program, {"x": 1, "y": 2}) == {"out": 3, "less": True}
 
 
+@pytest.mark.sampled
 @given(programs(), st.fixed_dictionaries(dict.fromkeys(INPUTS, ANY)))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=cases(20, 100), deadline=None)
 def test_nothing_raises_in_doubles(program, point):
     assert in_doubles(program, point).keys() == set(program.outputs)
 

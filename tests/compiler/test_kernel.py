@@ -10,6 +10,7 @@ from desaxe.compiler.languages.numba.module import emit_numba
 from desaxe.compiler.passes.pipeline import optimise
 from desaxe.compiler.program import Line, Note, Program, names_in
 from tests.compiler.programs import INPUTS, committed, depends_on, programs
+from tests.effort import cases
 
 AXES = 3
 GRID = {"BC": 0, "ec": 1, "theta": 2, "AB": None, "omega0": None, "alpha": None, "branch": None}
@@ -24,8 +25,9 @@ def placements():
     return st.fixed_dictionaries({name: st.sampled_from([None, 0, 1, 2]) for name in INPUTS})
 
 
+@pytest.mark.sampled
 @given(programs(), placements())
-@settings(max_examples=75, deadline=None)
+@settings(max_examples=cases(15, 75), deadline=None)
 def test_every_line_is_in_the_outermost_loop_possible(program, axis_of):
     kernel = hoist(program, axis_of, AXES)
     program = Program(program.inputs, sum(kernel.levels, ()), program.outputs, {})
@@ -35,8 +37,9 @@ def test_every_line_is_in_the_outermost_loop_possible(program, axis_of):
             assert level_of(kernel)[name] == max(axes, default=-1) + 1
 
 
+@pytest.mark.sampled
 @given(programs(), placements())
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=cases(15, 50), deadline=None)
 def test_no_line_is_lost_or_doubled(program, axis_of):
     kernel = hoist(program, axis_of, AXES)
     assert sorted(line.op for lines in kernel.levels for line in lines) == sorted(
@@ -45,8 +48,9 @@ def test_no_line_is_lost_or_doubled(program, axis_of):
     assert len(level_of(kernel)) == len(program.lines)
 
 
+@pytest.mark.sampled
 @given(programs(), placements())
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=cases(15, 50), deadline=None)
 def test_a_line_comes_after_what_it_uses(program, axis_of):
     kernel = hoist(program, axis_of, AXES)
     known = set(program.inputs)

@@ -15,6 +15,7 @@ from desaxe.compiler.text import (
     write_lines,
 )
 from tests.compiler.programs import WITH_NAN, program_of_nested, programs, tree
+from tests.effort import cases
 
 LESS, MORE = ("lt", "x", "y"), ("le", "y", "z")
 GOLDEN = [
@@ -82,16 +83,18 @@ def test_golden_reads_back(nested, text):
     assert tree(program) == tree(program_of_nested(nested))
 
 
+@pytest.mark.sampled
 @given(programs(WITH_NAN))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=cases(30, 150), deadline=None)
 def test_what_is_written_reads_back(program):
     again = read_function(write_function(program, "f", "It."))
     assert tree(again) == tree(program)
     assert again.notes == program.notes
 
 
+@pytest.mark.sampled
 @given(programs(WITH_NAN))
-@settings(max_examples=75, deadline=None)
+@settings(max_examples=cases(15, 75), deadline=None)
 def test_what_is_read_is_written_alike(program):
     text = write_function(program, "f", "It.")
     assert write_function(read_function(text), "f", "It.") == text

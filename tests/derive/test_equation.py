@@ -27,6 +27,7 @@ def test_closed_forms(name):
     assert float(number(dx.equation(name).expression)) == pytest.approx(dx.evaluate(name, **POINT), rel=1e-13)
 
 
+@pytest.mark.thorough
 def test_derivatives_of_closed_forms():
     for name in random.Random(5).sample(FIRST, 12):
         assert float(number(dx.equation(name).expression)) == pytest.approx(

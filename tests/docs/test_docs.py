@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.cli.command.command import main
+from desaxe.cli.command import main
 
 ROOT = Path(__file__).resolve().parents[2]
 BLOCK = re.compile(r'^```(python|console|toml title="(?P<file>[\w.]+)")\n(?P<text>.*?)^```', re.S | re.M)

@@ -24,6 +24,7 @@ from desaxe.oracle.force_truth import force_names, truth
 from desaxe.oracle.truth import LAW, STATE, all_names
 from desaxe.runtime.specialise import specialise
 from desaxe.support.extras import MissingExtraError
+from tests.effort import cases
 from tests.evaluation.test_force_values import bodies, points
 from tests.points import draw
 
@@ -122,7 +123,8 @@ KINDS = (
 )
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@pytest.mark.sampled
+@settings(max_examples=cases(15, 60), deadline=None, derandomize=True)
 @given(st.sampled_from(KINDS), st.integers(0, 10**9), st.floats(-15.0, -0.3), st.booleans())
 def test_every_point_of_a_box_is_inside(kind, seed, exponent, forces):
     rng = random.Random(seed)

@@ -19,6 +19,7 @@ import desaxe as dx
 from desaxe.oracle import force_truth
 from desaxe.oracle.families import FAMILIES, Rng, points, rescaled
 from desaxe.oracle.truth import LAW, conditions, truth, ulp_error
+from tests.effort import cases
 from tests.ways import take_way
 
 NAMES = [
@@ -63,9 +64,10 @@ def compiled(names, rows):
     return answers
 
 
+@pytest.mark.sampled
 @pytest.mark.parametrize("family", FAMILIES)
 def test_the_promise_is_kept(family, monkeypatch):
-    rows = list(points(family, 200))
+    rows = list(points(family, cases(40, 200)))
     take_way(monkeypatch, "compiled")
     for row, by_kernel in zip(rows, compiled(NAMES, rows), strict=True):
         plain = dx.evaluate(NAMES, **row)
@@ -92,10 +94,11 @@ def bodies(rng, at):
     }
 
 
+@pytest.mark.sampled
 @pytest.mark.parametrize("family", [family for family in FAMILIES if family != "units"])
 def test_the_torque_keeps_the_promise(family):
     rng = Rng(f"torque: {family}")
-    for at in points(family, 40, seed=1):
+    for at in points(family, cases(10, 40), seed=1):
         loaded = at | bodies(rng, at)
         assert is_kept(
             "T_in", dx.evaluate("T_in", **loaded), loaded, force_truth.truth, force_truth.conditions
@@ -192,8 +195,9 @@ def test_odd_numbers_in_a_column(name, way, monkeypatch):
     assert all(math.isfinite(found[n][-1]) for n in NAMES)
 
 
+@pytest.mark.sampled
 @given(st.fixed_dictionaries({name: st.sampled_from(REAL) for name in LAW}))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=cases(60, 300), deadline=None)
 def test_odd_numbers_do_not_crash(at):
     at = at | {"AB": abs(at["AB"]), "BC": abs(at["BC"]) or 5e-324}
     found = dx.evaluate([*NAMES, "status", "margin"], **at)
@@ -201,6 +205,7 @@ def test_odd_numbers_do_not_crash(at):
     assert found["status"] != 1 or math.isnan(found["V_C"])
 
 
+@pytest.mark.sampled
 @given(
     st.floats(-10, 10),
     st.floats(0.01, 1).filter(bool),
@@ -209,7 +214,7 @@ def test_odd_numbers_do_not_crash(at):
     st.sampled_from((1, -1)),
 )
 @example(-0.0, 1.0, 0.5, 0, 1)  # the sign of a zero says on which side the crank is, everywhere the same
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=cases(30, 150), deadline=None)
 def test_any_margin(theta, crank, share, power, branch):
     """Any angle, any mechanism that turns fully, with a margin down to a last bit."""
     ec = crank * share

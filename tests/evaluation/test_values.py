@@ -11,6 +11,7 @@ import pytest
 
 import desaxe as dx
 from desaxe.oracle.truth import LAW, STATE, all_names, conditions, relative_error, truth_all
+from tests.effort import cases
 from tests.points import draw
 
 PROMISE = 8 * 2.0**-52
@@ -41,15 +42,17 @@ MOTIONS = ("backwards", "steady", "speeding up", "slowing down", "from rest", "a
 STATES = ("state", "state at rest", "state that starts")
 
 
+@pytest.mark.sampled
 @pytest.mark.parametrize("kind", GEOMETRIES)
 def test_a_hundred_points(kind):
-    for point in draw(kind, 100):
+    for point in draw(kind, cases(20, 100)):
         assert not misses(dx.evaluate(names_for(point), **point), point), point
 
 
+@pytest.mark.sampled
 @pytest.mark.parametrize("kind", [*MOTIONS, *STATES])
 def test_motions(kind):
-    for point in draw(kind, 30):
+    for point in draw(kind, cases(10, 30)):
         assert not misses(dx.evaluate(names_for(point), **point), point), point
 
 
@@ -60,6 +63,7 @@ def test_generic_points_are_generic():
     assert len(loose) < 12
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", ["generic", "concentric", "state"])
 def test_a_kernel_is_as_right_as_a_point(kind):
     """The same through the compiled loop, which has a sine and cosine of its own."""

@@ -1,5 +1,6 @@
 """The same bytes whatever the hash seed: nothing is ever taken in the order of a set."""
 
+import pytest
 import os
 import subprocess
 import sys
@@ -16,6 +17,7 @@ def start(seed, folder):
     return subprocess.Popen(command, env=os.environ | {"PYTHONHASHSEED": seed}, stderr=subprocess.DEVNULL)
 
 
+@pytest.mark.thorough
 def test_every_hash_seed_writes_the_same_bytes(tmp_path):
     running = [start(seed, tmp_path / seed) for seed in SEEDS]
     assert [process.wait() for process in running] == [0, 0, 0]

@@ -99,5 +99,6 @@ def test_it_evaluates_a_point(run, unzipped):
     assert float(answer) == 2.0
 
 
+@pytest.mark.thorough
 def test_its_generated_files_are_fresh(run):
     assert run("-m", "desaxe.derive", "--check") == "generated/ is fresh\n"

@@ -6,6 +6,7 @@ from flint import arb, ctx
 
 import desaxe as dx
 from desaxe.runtime import interpreted as _few_points
+from tests.effort import cases
 
 STEPS = range(-3, 4)  # doubles from the one that is nearest to the limit
 SPEED = {"omega0": 1.0}
@@ -53,19 +54,21 @@ def reaches(theta, ec, AB, BC):
     return bool(inside)
 
 
+@pytest.mark.sampled
 def test_single_points():
-    for theta, ec, AB, BC in limits(400, 1):
+    for theta, ec, AB, BC in limits(cases(100, 400), 1):
         at = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, **SPEED}
         inside = reaches(theta, ec, AB, BC)
         assert dx.evaluate("status", **at) == (0 if inside else 1)
         assert np.isfinite(dx.evaluate("a_C", **at)) == inside
 
 
+@pytest.mark.sampled
 @pytest.mark.parametrize("names", [["status", "a_C"], ["a_C", "status", "V_C_wrt_ec"]])
 @pytest.mark.parametrize("threads", [1, 2])
 def test_arrays(monkeypatch, names, threads):
     monkeypatch.setattr(_few_points, "BREAK_EVEN", 0)
-    points = limits(2_000, 2)
+    points = limits(cases(400, 2_000), 2)
     theta, ec, AB, BC = np.array(points).T
     many = 20_000 * threads // len(points) + 1  # enough for every thread
     theta, ec, AB, BC = (np.tile(column, many) for column in (theta, ec, AB, BC))
@@ -77,10 +80,11 @@ def test_arrays(monkeypatch, names, threads):
         np.testing.assert_array_equal(np.isfinite(answer[name]), inside)
 
 
+@pytest.mark.sampled
 @pytest.mark.parametrize("order", [("theta", "ec"), ("ec", "theta")])
 def test_grids(monkeypatch, order):
     monkeypatch.setattr(_few_points, "BREAK_EVEN", 0)
-    for point in limits(70, 3)[:: len(STEPS)]:
+    for point in limits(cases(35, 70), 3)[:: len(STEPS)]:
         _, ec, AB, BC = point
         theta = [*neighbours(point[0]), 0.5]
         axes = {"theta": theta, "ec": [ec, 0.25 * ec]}

@@ -1,6 +1,6 @@
 """Drive diagrams: torque and power over a turn, and the speed that a flywheel leaves."""
 
-from math import degrees, isfinite
+from math import degrees, isfinite, pi
 from typing import TYPE_CHECKING, Any
 
 from ..support.extras import needed
@@ -39,47 +39,63 @@ def drive(result: Any, *, ax: "Axes | None" = None) -> "dict[str, Line2D]":
     if turns and len(axes) > 1:
         lines["speed"] = _speed(axes[1], result)
     for one in axes:
-        _finish(one, course["theta"])
+        _finish(one, _degrees(result, "theta"))
     axes[-1].set_xlabel("crank angle, theta [deg]")
     return lines
 
 
 def _torque(ax: "Axes", result: Any) -> "dict[str, Line2D]":
-    theta, torque = result.course["theta"] * degrees(1.0), result.course["T_in"]
+    theta, torque = _degrees(result, "theta"), result.course["T_in"]
     (curve,) = ax.plot(theta, torque, color=BLUE, linewidth=1.6, label="T_in")
     mean = ax.axhline(result["torque_mean"], color=ORANGE, linewidth=1.2, label="mean")
     ax.fill_between(theta, torque, result["torque_mean"], color=BLUE, alpha=0.12, linewidth=0.0)
-    place = degrees(result["theta_peak"])
+    place = result["theta_peak"] * _scale(result)
     top = max((torque.max(), torque.min()), key=abs)
     (peak,) = ax.plot([place], [top], "o", color=BLUE, markersize=5, label="peak")
-    ax.annotate(f"{result['torque_peak']:.4g} N m at {place:.1f} deg", (place, top), (8, 5),
+    told = f"{result['torque_peak']:.4g} {result.unit('torque_peak')} at {place:.1f} deg"
+    ax.annotate(told, (place, top), (8, 5),
                 textcoords="offset points", va="center", fontsize="small")  # fmt: skip
-    ax.set_ylabel("torque of the drive, T_in [N m]")
+    ax.set_ylabel(f"torque of the drive, T_in [{result.unit('T_in')}]")
     ax.set_title(
-        f"mean {result['torque_mean']:.4g} N m, rms {result['torque_rms']:.4g} N m, "
-        f"mean power {result['power_mean']:.4g} W",
+        f"mean {result['torque_mean']:.4g} {result.unit('torque_mean')}, rms {result['torque_rms']:.4g} "
+        f"{result.unit('torque_rms')}, mean power {result['power_mean']:.4g} {result.unit('power_mean')}",
         loc="left", fontsize="medium",
     )  # fmt: skip
     return {"T_in": curve, "mean": mean, "peak": peak}
 
 
 def _speed(ax: "Axes", result: Any) -> "Line2D":
-    course = result.course
-    (curve,) = ax.plot(
-        course["theta_of_speed"] * degrees(1.0), course["speed"] * MINUTE, color=BLUE, linewidth=1.6
-    )
-    ax.set_ylabel("speed of the crank [rpm]")
+    unit, values = result.unit("speed"), result.course["speed"]
+    if unit == "rad/s":
+        unit, values = "rpm", values * MINUTE
+    (curve,) = ax.plot(_degrees(result, "theta_of_speed"), values, color=BLUE, linewidth=1.6)
+    ax.set_ylabel(f"speed of the crank [{unit}]")
     ax.set_title(
-        f"with a flywheel of {result['flywheel_inertia']:.4g} kg m$^2$ under a constant torque",
+        f"with a flywheel of {result['flywheel_inertia']:.4g} {result.unit('flywheel_inertia')} "
+        "under a constant torque",
         loc="left", fontsize="medium",
     )  # fmt: skip
     return curve
 
 
+def _scale(result: Any) -> float:
+    """What an angle of the result is multiplied with to be in degrees."""
+    return {"rad": degrees(1.0), "deg": 1.0}.get(result.unit("theta")) or 360.0 / _turn(result)
+
+
+def _turn(result: Any) -> float:
+    """A whole turn in the unit of the result."""
+    return float(result.units.of_unit("rad").shown(2.0 * pi))
+
+
+def _degrees(result: Any, name: str) -> Any:
+    return result.course[name] * _scale(result)
+
+
 def _finish(ax: "Axes", theta: Any) -> None:
     from matplotlib.ticker import MultipleLocator
 
-    ax.set_xlim(*(360.0 * round(degrees(end) / 360.0) for end in (theta.min(), theta.max())))
+    ax.set_xlim(*(360.0 * round(end / 360.0) for end in (theta.min(), theta.max())))
     ax.xaxis.set_major_locator(MultipleLocator(45.0))
     ax.margins(y=0.15)
     ax.grid(True, color="0.9", linewidth=0.8)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..evaluation.evaluate import evaluate
 from ..mechanism.names import LENGTHS
-from ..runtime.request import as_number, check_common
+from ..runtime.request import as_number, check_common, with_known_inputs
 from ..support.extras import needed
 from .shared import BLUE, ORANGE
 
@@ -71,6 +71,7 @@ class Sketch:
         return self.artists
 
 
+@with_known_inputs
 def mechanism(*, theta: Any, ec: Any, AB: Any, BC: Any, branch: int = 1, ax: "Axes | None" = None) -> Sketch:
     """Draw the mechanism to scale at a crank angle; returns a Sketch, which `turn(theta)` moves.
 

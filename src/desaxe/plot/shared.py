@@ -135,7 +135,7 @@ def finish_axis(axis: Any, input_: "xr.DataArray") -> None:
     if values.size > 1:
         limits = float(values.min()), float(values.max())
         (axis.axes.set_ylim if vertical else axis.axes.set_xlim)(*limits)
-    if input_.attrs.get("units") == "rad" and np.ptp(values) >= 180.0:
+    if unit_of(input_) == "[deg]" and np.ptp(values) >= 180.0:
         from matplotlib.ticker import MaxNLocator
 
         axis.set_major_locator(MaxNLocator(9, steps=[1, 3, 4.5, 6, 9, 10]))

@@ -204,7 +204,7 @@ def source_of(key: KernelKey) -> str:
     motion = "a given state" if key.form.state else "paper A's law"
     docstring = f"desaxe kernel: {', '.join(key.names)}; {motion}; {fixed}."
     if key.reduce:
-        return emit_reduced(kernel, key.reduce, docstring, is_single(key), to_compile=True)
+        return emit_reduced(kernel, key.reduce, docstring, is_single(key))
     return emit_numba(kernel, docstring, is_single(key), TO_COMPILE)
 
 

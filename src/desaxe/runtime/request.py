@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from ..mechanism.catalogue import law_name, quantity
 from ..mechanism.inputs import INPUTS, is_good
-from ..mechanism.names import CENTRES, LOADS, parts
+from ..mechanism.names import CENTRES, LENGTHS, LOADS, parts
 from ..mechanism.own import Definition, used_by
 from ..mechanism.own_lines import not_extended
 from ..mechanism.program import Variant, program_of
@@ -17,6 +17,15 @@ from .specialise import specialise
 
 P = ParamSpec("P")
 T = TypeVar("T")
+
+
+OF_NO_EFFECT = (*LOADS, *LENGTHS, "branch")
+
+
+class MachineSpeed(float):
+    """A speed or an acceleration that a machine has: functions that do not take one need not refuse it."""
+
+    __slots__ = ()
 
 
 class Request(NamedTuple):
@@ -108,7 +117,11 @@ def _unknown_input(caller: str, name: str, allowed: Sequence[str]) -> TypeError:
 
 
 def with_known_inputs(function: Callable[P, T]) -> Callable[P, T]:
-    """The function; an input that it does not have is refused as `check_inputs` does."""
+    """The function; an input that it does not have is refused as `check_inputs` does.
+
+    Masses and loads that have no effect on it are let through, and so are the speeds of a machine:
+    `**machine` works everywhere.
+    """
 
     @wraps(function)
     def checked(*args: P.args, **inputs: P.kwargs) -> T:
@@ -118,9 +131,16 @@ def with_known_inputs(function: Callable[P, T]) -> Callable[P, T]:
             from inspect import signature
 
             known = tuple(signature(function).parameters)
-            if all(name in known for name in inputs):
+            others = [name for name in inputs if name not in known]
+            if not others:
                 raise
-        raise _unknown_input(function.__name__, next(n for n in inputs if n not in known), known)
+        strange = [
+            name for name in others if not (name in OF_NO_EFFECT or isinstance(inputs[name], MachineSpeed))
+        ]
+        if strange:
+            raise _unknown_input(function.__name__, strange[0], known)
+        own: Any = {name: value for name, value in inputs.items() if name in known}
+        return function(*args, **own)
 
     return checked
 

@@ -1,6 +1,7 @@
 """From what is written in a scene file to inputs in SI units and names that exist."""
 
 import tomllib
+import warnings
 from collections.abc import Iterable, Mapping
 from math import pi
 from os import PathLike
@@ -17,6 +18,8 @@ from ..mechanism.inputs import INPUTS
 from ..mechanism.names import CENTRES, LENGTHS, LOADS, sensitivity
 from ..mechanism.own import Definition
 from ..mechanism.program import Variant, program_of
+from ..mechanism.slips import UnitWarning
+from ..mechanism.unit_system import SI, UnitSystem
 from ..peaks.programs import WITHOUT_COURSE
 from ..runtime.accuracy import accuracy_of
 from ..sweeps.layout import bytes_of
@@ -24,6 +27,7 @@ from . import schema
 from .loads import varying, without_objects
 from .printed import Printed, read_percentage, read_printed
 from .schema import SceneError, shown
+from .units import slips_of, units_of, with_units
 from .values import Value, design_of, number_of, only_inputs, values_of
 
 SECTIONS: dict[str, type[schema.Section]] = {
@@ -99,6 +103,7 @@ class Content(NamedTuple):
     data: str | None
     reduction: Reduction | None = None
     threads: int | None = None
+    units: UnitSystem = SI
     store: str | None = None
     chunks: Any = None
     memory: int | None = None
@@ -134,6 +139,8 @@ def read(data: Mapping[str, Any], folder: Path | None = None) -> Content:
 
     folder   where the scene file is, and perhaps the files of its loads
     """
+    units = _units(data)
+    data = with_units(data, units)
     file = schema.decoded(without_objects(data))
     own = _defined(data.get("quantities", {}))
     inputs = _inputs(data, file, folder)
@@ -158,7 +165,7 @@ def read(data: Mapping[str, Any], folder: Path | None = None) -> Content:
     return Content(
         file.title, outputs, _accuracy(file.accuracy), branch, inputs,
         tuple(checks), tuple(peaks), tuple(pictures), file.results.data,
-        _reduction(file, outputs, inputs), file.threads, *_storage(file, outputs, inputs), own,
+        _reduction(file, outputs, inputs), file.threads, units, *_storage(file, outputs, inputs), own,
     )  # fmt: skip
 
 
@@ -185,6 +192,18 @@ def _storage(
         except (ValueError, TypeError) as error:
             raise SceneError(f"results.{error}") from None
     return results.store, results.chunks, memory
+
+
+def _units(data: Mapping[str, Any]) -> UnitSystem:
+    """The units of the scene; a warning where a plain number is almost surely meant in another one."""
+    try:
+        units = units_of(data)
+    except (ValueError, TypeError) as error:
+        raise SceneError(str(error)) from None
+    slips = slips_of(data, units)
+    if slips:
+        warnings.warn(f"almost surely a slip: {'; '.join(slips)}", UnitWarning, stacklevel=4)
+    return units
 
 
 def _defined(tables: Mapping[str, Any]) -> tuple[Definition, ...]:

@@ -6,7 +6,7 @@ from math import degrees, isfinite, isnan, pi
 import numpy as np
 
 from ..mechanism.catalogue import quantity
-from ..mechanism.inputs import INPUTS
+from ..mechanism.unit_system import UnitSystem
 from .peaks import SIDEWAYS, WORDS, ClaimResult, PeakResult
 from .read import Content, Peak
 from .run import CheckResult, FeasibilityResult, Run, group_names
@@ -20,8 +20,8 @@ def report(content: Content, result: Run) -> str:
     """The whole report."""
     parts = [content.title] if content.title else []
     parts += [_checks(result.checks)] if result.checks else []
-    parts += [_feasibility(result.feasibility)] if result.feasibility else []
-    parts += [_peak(found) for found in result.peaks]
+    parts += [_feasibility(result.feasibility, content.units)] if result.feasibility else []
+    parts += [_peak(found, content.units) for found in result.peaks]
     parts += [_values(content, result)] if result.dataset is not None else []
     parts += [_files(content, result)] if result.files else []
     return "\n\n".join(parts)
@@ -73,16 +73,20 @@ def _block(source: str, results: list[CheckResult]) -> str:
 # ---- feasibility ---------------------------------------------------------------------------------
 
 
-def _feasibility(found: FeasibilityResult) -> str:
+def _feasibility(found: FeasibilityResult, units: UnitSystem) -> str:
     """Up to where the crank turns, and which designs do not."""
     lines = ["Feasibility"]
     if found.limit is not None:
-        limit = f"|ec| < BC - AB = {number(found.limit)} m" if found.limit > 0.0 else "no ec, since BC <= AB"
+        limit = (
+            f"|ec| < BC - AB = {_told('ec', found.limit, units)}"
+            if found.limit > 0.0
+            else "no ec, since BC <= AB"
+        )
         lines.append(f"  the crank turns fully for {limit}")
     lines.append(f"  {found.turning} of {found.designs} designs of this scene turn fully")
     axes = _varying([one.design for one in found.infeasible], found.designs)
     for one in found.infeasible[:GAPS]:
-        design = ", ".join(f"{name} = {number(one.design[name])} m" for name in axes)
+        design = ", ".join(f"{name} = {_told(name, one.design[name], units)}" for name in axes)
         gaps = " and ".join(f"{degrees(a):.2f} to {degrees(b):.2f}" for a, b in one.gaps)
         if any(b - a >= 2.0 * pi for a, b in one.gaps):
             lines.append(f"  infeasible: {design} cannot be assembled at any angle")
@@ -104,31 +108,34 @@ def _varying(designs: list[dict[str, float]], count: int) -> list[str]:
 # ---- peaks ---------------------------------------------------------------------------------------
 
 
-def _peak(found: PeakResult) -> str:
+def _peak(found: PeakResult, units: UnitSystem) -> str:
     """A table with a row for each design, and the claims."""
     one = found.peak
     known = quantity(one.quantity, "omega" in one.axes or "omega" in one.fixed)
     low, high = (f"{degrees(angle):g}" for angle in one.theta)
     title = one.title or f"{WORDS[one.kind].capitalize()} of {one.quantity}, {known.meaning}"
     lines = [f"{title} (theta from {low} to {high} deg)"]
-    lines += table(_peak_rows(found))
+    lines += table(_peak_rows(found, units))
     lines += _remarks(found)
-    return "\n".join(lines + [_claim(one, claim) for claim in found.claims])
+    return "\n".join(lines + [_claim(one, claim, units) for claim in found.claims])
 
 
-def _peak_rows(found: PeakResult) -> list[list[str]]:
+def _peak_rows(found: PeakResult, units: UnitSystem) -> list[list[str]]:
     one, dataset = found.peak, found.dataset
     symbol = {"absmax": f"|{one.quantity}|", "max": f"max {one.quantity}", "min": f"min {one.quantity}"}[
         one.kind
     ]
     slopes = [name for name in one.sensitivities if f"value_wrt_{name}" in dataset]
-    base = [f"over {_design(one.at_baseline)}"] if "increase" in dataset else []
+    base = [f"over {_design(one.at_baseline, units)}"] if "increase" in dataset else []
     rows = [[*one.axes, symbol, "at theta", *base, *(f"d/d({name})" for name in slopes)]]
-    units = [*(INPUTS[name].unit for name in one.axes), dataset["value"].units, "deg", *("" for _ in base)]
-    rows.append([*units, *(dataset[f"value_wrt_{name}"].units for name in slopes)])
+    angle = units.of("theta").unit
+    heads = [*(dataset[name].units for name in one.axes), dataset["value"].units]
+    heads += ["deg" if angle == "rad" else angle, *("" for _ in base)]
+    rows.append([*heads, *(dataset[f"value_wrt_{name}"].units for name in slopes)])
+    scale = degrees(1.0) if angle == "rad" else 1.0
     for index in _thinned(list(np.ndindex(dataset["value"].shape))):
         row = [number(dataset[name].values[i]) for name, i in zip(one.axes, index, strict=True)]
-        row += [number(dataset["value"].values[index]), f"{degrees(dataset['theta'].values[index]):.3f}"]
+        row += [number(dataset["value"].values[index]), f"{scale * dataset['theta'].values[index]:.3f}"]
         row += [_percent(float(dataset["increase"].values[index]))] if base else []
         row += [_slope(found, name, index) for name in slopes]
         rows.append(row)
@@ -182,10 +189,10 @@ def _remarks(found: PeakResult) -> list[str]:
     return lines
 
 
-def _claim(one: Peak, result: ClaimResult) -> str:
+def _claim(one: Peak, result: ClaimResult, units: UnitSystem) -> str:
     claim = result.claim
     printed = claim.increase.text(claim.increase.value)
-    where = f"{_design(claim.at)} over {_design(one.at_baseline)}"
+    where = f"{_design(claim.at, units)} over {_design(one.at_baseline, units)}"
     if not isfinite(result.computed):
         return f"  increase of {where}: {claim.source} {printed}, but there is no finite change: DIFFERS"
     computed = claim.increase.text(claim.increase.rounded(result.computed))
@@ -194,11 +201,16 @@ def _claim(one: Peak, result: ClaimResult) -> str:
     return f"  increase of {where}: {claim.source} {printed}, desaxe {computed}{full}: {verdict}"
 
 
-def _design(inputs: dict[str, float]) -> str:
+def _design(inputs: dict[str, float], units: UnitSystem) -> str:
     return ", ".join(
-        f"{name} = {number(value)}" + (f" {INPUTS[name].unit}" if value else "")
-        for name, value in inputs.items()
+        f"{name} = {_told(name, value, units) if value else 0}" for name, value in inputs.items()
     )
+
+
+def _told(name: str, value: float, units: UnitSystem) -> str:
+    """An input in SI units with the unit that the scene is told in."""
+    conversion = units.of(name)
+    return f"{number(conversion.shown(value))} {conversion.unit}".removesuffix(" 1")
 
 
 # ---- values and files ----------------------------------------------------------------------------

@@ -13,14 +13,16 @@ from numpy.typing import NDArray
 from ..design.feasibility.feasibility import feasibility
 from ..evaluation.evaluate import evaluate
 from ..evaluation.grid import grid
+from ..evaluation.in_units import in_units
 from ..evaluation.labels import with_loads
 from ..loads.load import Load
+from ..mechanism.names import sensitivity
 from ..support.extras import needed
 from ..support.files import check_target
 from ..support.progress import Progress, Steps
 from .files import check_place, requirements_of, write
 from .peaks import PeakResult, batches, columns_of, peaks_of, provenance
-from .read import Check, Content, Picture
+from .read import Check, Content, Peak, Picture
 from .stored import sweep_content
 from .values import Value
 
@@ -86,8 +88,8 @@ def run(content: Content, watch: Progress | None) -> Run:
         steps.next(f"sweeping into {content.store}")
         dataset = sweep_content(content, watch=_no_watch)
     elif content.outputs:
-        dataset = _values(content, blocks, steps)
-    peaks = tuple(peaks_of(one, content, steps) for one in shown)
+        dataset = in_units(_values(content, blocks, steps), content.units)
+    peaks = tuple(_peaks(one, content, steps) for one in shown)
     files = []
     if content.data is not None:
         steps.next(f"writing {content.data}")
@@ -99,6 +101,15 @@ def run(content: Content, watch: Progress | None) -> Run:
     files += [_picture(picture, content, steps) for picture in content.pictures]
     steps.next("")
     return Run(dataset, checks, peaks, _feasibility(content.inputs), tuple(files))
+
+
+def _peaks(one: Peak, content: Content, steps: Steps) -> PeakResult:
+    """Peaks in the units of the scene."""
+    found = peaks_of(one, content, steps)
+    slopes = [str(name) for name in found.dataset.data_vars if str(name).startswith("value_wrt_")]
+    names = {name: sensitivity(one.quantity, name.removeprefix("value_wrt_")) for name in slopes}
+    names["value"] = one.quantity
+    return found._replace(dataset=in_units(found.dataset, content.units, names=names))
 
 
 def _no_watch(done: int, total: int, what: str) -> None:
@@ -246,7 +257,8 @@ def _picture(picture: Picture, content: Content, steps: Steps) -> Path:
     # With the names of the outputs the kernel of the grid serves here too, where all inputs are the same.
     shared = picture.quantity in content.outputs and set(picture.inputs) == set(content.inputs)
     names = content.outputs if shared else (picture.quantity,)
-    dataset: Any = grid(names, **grid_options(content), **_arrays(picture.inputs))
+    values: Any = grid(names, **grid_options(content), **_arrays(picture.inputs))
+    dataset = in_units(values, content.units)
     axes: Any = curves(dataset, picture.quantity, over=picture.over, family=picture.family)[0].axes
     title = picture.title or content.title
     if title:

@@ -35,6 +35,10 @@ Printed = Annotated[float | str, Meta(description='text as it is printed, such a
 Percent = Annotated[float | str, Meta(description='a percentage such as "33 %"')]
 Branch = Annotated[Literal[1, -1], Meta(description="1 (the papers) or -1")]
 Kind = Annotated[Literal["absmax", "max", "min"], Meta(description="one of absmax, max, min")]
+Units = Annotated[
+    str | dict[str, str],
+    Meta(description='units such as "mm, deg, rpm", or a table such as { length = "mm", angle = "deg" }'),
+]
 Accuracy = Annotated[
     str | float, Meta(description='"fast", "standard", "extended", or an error such as 1e-9')
 ]
@@ -240,6 +244,7 @@ class SceneFile(Section, frozen=True):
     peak: Annotated[tuple[PeakTable, ...], Meta(description="a list of tables, [[peak]]")] = ()
     picture: Annotated[tuple[PictureTable, ...], Meta(description="a list of tables, [[picture]]")] = ()
     results: Annotated[Results, Meta(description="a table, [results]")] = Results()
+    units: Units = {}
 
 
 def decoded(data: Mapping[str, Any]) -> SceneFile:

@@ -15,6 +15,13 @@ Value = float | tuple[float, ...] | Load
 MOST = 100_000_000  # values of one range
 
 
+class Spread(tuple[float, ...]):
+    """The values of a range, and its ends as they are written."""
+
+    start: Fraction
+    stop: Fraction
+
+
 def values_of(key: str, name: str, written: float | str | tuple[float | str, ...] | schema.Range) -> Value:
     """A number, or the values of a list or range, in the SI unit of an input."""
     if isinstance(written, tuple):
@@ -57,7 +64,9 @@ def _spread(key: str, name: str, written: schema.Range) -> tuple[float, ...]:
     last = written.num - 1 if written.num is not None else _steps(key, name, written, stop - start)
     if last >= MOST:
         raise SceneError(f"{key}: {last + 1} values are too many, at most {MOST}")
-    return (*(float(start + (stop - start) * k / last) for k in range(last)), float(stop))
+    values = Spread((*(float(start + (stop - start) * k / last) for k in range(last)), float(stop)))
+    values.start, values.stop = start, stop
+    return values
 
 
 def _exactly(name: str, written: float | str) -> Fraction:

@@ -27,6 +27,7 @@ from tests.compiler.programs import (
     programs,
     same_bits,
 )
+from tests.effort import cases
 
 # What IEEE 754 fixes to the last bit: a sine is as good as the library that computes it.
 FIXED = tuple(op for op in ANY_OPS if op not in ("sin", "cos", "atan2"))
@@ -51,11 +52,12 @@ def test_the_coverage_set_against_the_interpretation():
         assert {n for n in NAMES if not same_bits(answers[n], wanted[n])} <= {"waves", "angle"}
 
 
+@pytest.mark.sampled
 @given(
     programs(WITH_NAN, FIXED),
     st.lists(st.fixed_dictionaries(dict.fromkeys(INPUTS, ANY)), min_size=8, max_size=8),
 )
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=cases(15, 25), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_no_bit_differs_from_the_interpretation(program, points):
     for point, answers in zip(points, in_javascript(program, points), strict=True):
         wanted = in_doubles(program, point)

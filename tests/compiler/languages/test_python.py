@@ -23,6 +23,7 @@ from tests.compiler.programs import (
     programs,
     same_bits,
 )
+from tests.effort import cases
 
 ANY = st.floats(allow_nan=True, allow_infinity=True)
 
@@ -46,8 +47,9 @@ def exact_error(point):
     return mpmath.mpf(point["x"]) + mpmath.mpf(point["y"]) - mpmath.mpf(point["x"] + point["y"])
 
 
+@pytest.mark.sampled
 @given(programs(WITH_NAN), st.fixed_dictionaries(dict.fromkeys(INPUTS, ANY)))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=cases(20, 100), deadline=None)
 def test_no_bit_differs_from_the_interpretation(program, point):
     wanted = in_doubles(program, point)
     answers = compile_python(program)(*(point[name] for name in program.inputs))

@@ -1,12 +1,16 @@
 """Compilers and interpreters of other languages: found, or the test is skipped; where CI is set, it fails."""
 
 import ctypes
+import importlib.util
+import json
 import os
 import shutil
 import subprocess
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
+from playwright._impl._driver import compute_driver_executable
 
 STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror")
 POINTER = ctypes.POINTER(ctypes.c_double)
@@ -56,3 +60,72 @@ def point_values(loaded, name, row, count):
     given, out = np.array(row, float), np.full(max(count, 1), 7.0)
     status = getattr(loaded, f"{name}_point")(pointer(given), pointer(out))
     return status, out[:count].tolist()
+
+
+def imported(place):
+    """A Python file as a module."""
+    spec = importlib.util.spec_from_file_location(place.stem, place)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@contextmanager
+def jax_in_doubles():
+    """Doubles in jax, for a while; skipped without jax, a failure where CI is set."""
+    if not os.environ.get("CI"):
+        pytest.importorskip("jax")
+    import jax
+
+    before = jax.config.jax_enable_x64
+    jax.config.update("jax_enable_x64", True)
+    try:
+        yield
+    finally:
+        jax.config.update("jax_enable_x64", before)
+
+
+OCTAVE = """
+f = fopen("in.bin"); in = cell(1, {given});
+for k = 1:{given} n = fread(f, 1, "double"); in{{k}} = fread(f, [1, n], "double"); end
+fclose(f); out = cell(1, {count}); [out{{:}}] = {name}(in{{:}});
+f = fopen("out.bin", "w"); for k = 1:{count} fwrite(f, real(out{{k}}), "double"); end
+fclose(f); if (! all(cellfun(@isreal, out))) error("complex"); end
+printf("done");
+"""
+
+
+def octave(file, columns, count):
+    """The outputs of a function file, run by GNU Octave; its arguments are rows."""
+    folder = file.parent
+    given = [part for column in columns for part in (np.array([float(column.size)]), column)]
+    np.concatenate(given).tofile(folder / "in.bin")
+    code = OCTAVE.format(given=len(columns), count=count, name=file.stem)
+    assert run(tool("octave-cli"), "--norc", "--quiet", "--eval", code, cwd=folder) == "done"
+    return np.fromfile(folder / "out.bin").reshape(count, -1)
+
+
+NODE = """
+import * as module from "./{name}.mjs";
+import {{ readFileSync }} from "fs";
+const plain = (x) => typeof x === "number" ? String(x) : ArrayBuffer.isView(x) ? Array.from(x, plain)
+  : Object.fromEntries(Object.entries(x).map(([key, value]) => [key, plain(value)]));
+const calls = JSON.parse(readFileSync("calls.json", "utf8"));
+console.log(JSON.stringify(calls.map(([name, ...given]) => plain(module[name](...given)))));
+"""
+
+
+def es_module(file, calls):
+    """The answers of a module's functions, each called as (name, *arguments), by node."""
+    folder = file.parent
+    (folder / f"{file.stem}.mjs").write_text(file.read_text(encoding="utf-8"), encoding="utf-8")
+    (folder / "calls.json").write_text(json.dumps(calls), encoding="utf-8")
+    (folder / "main.mjs").write_text(NODE.format(name=file.stem), encoding="utf-8")
+    found = json.loads(run(compute_driver_executable()[0], "main.mjs", cwd=folder))
+    return [_numbers(each) for each in found]
+
+
+def _numbers(value):
+    if isinstance(value, dict):
+        return {name: _numbers(each) for name, each in value.items()}
+    return [*map(_numbers, value)] if isinstance(value, list) else float(value.replace("Infinity", "inf"))

@@ -16,6 +16,7 @@ from desaxe.mechanism.constants import double_constants
 from desaxe.oracle.truth import ulp_error
 from tests.compiler.coverage_set import POINTS, coverage
 from tests.compiler.programs import in_doubles
+from tests.effort import cases
 
 DIGITS = 2.0**-100
 
@@ -131,8 +132,9 @@ def test_the_coverage_set_is_rounded_once():
                     assert found[name] == exact[name]
 
 
+@pytest.mark.sampled
 @given(st.floats(), st.floats())
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=cases(40, 200), deadline=None)
 def test_nothing_raises_and_comparisons_are_those_of_doubles(x, y):
     lines = (Line("less", "lt", ("x", "y"), "bool"), Line("r", "select", ("less", 1.0, 2.0)))
     wide = double_double(Program(("x", "y"), lines, ("r",), {}), double_constants())

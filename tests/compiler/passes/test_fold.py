@@ -22,6 +22,7 @@ from tests.compiler.programs import (
     programs,
     same,
 )
+from tests.effort import cases
 
 LESS = ("lt", "x", "y")
 FOLDED = [
@@ -94,15 +95,17 @@ def test_inputs_of_a_vanished_term_are_gone():
     assert fold_constants(program_of_nested(("add", "x", ("mul", 0.0, "y")))).inputs == ("x",)
 
 
+@pytest.mark.sampled
 @given(programs())
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=cases(20, 100), deadline=None)
 def test_the_result_is_valid_and_final(program):
     once = validate(fold_constants(program))
     assert fold_constants(once) == once
 
 
+@pytest.mark.sampled
 @given(programs(ops=NO_JUMPS), points())
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=cases(30, 150), deadline=None)
 def test_the_exact_meaning_is_unchanged(program, point):
     """Where no line rounds, so that computing a constant in doubles is exact."""
     with mpmath.workdps(50):
@@ -111,8 +114,9 @@ def test_the_exact_meaning_is_unchanged(program, point):
     assert same(exactly(fold_constants(program), point), exactly(program, point))
 
 
+@pytest.mark.sampled
 @given(programs(ops=NO_JUMPS), points())
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=cases(30, 150), deadline=None)
 def test_no_bit_changes_where_all_is_finite(program, point):
     """The sign of a zero may."""
     scope = run_in_doubles(program, point)

@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from desaxe.compiler.passes.fuse import fuse_products
 from desaxe.compiler.program import Line, Note, Program, validate
 from tests.compiler.programs import committed, exactly, points, programs, same
+from tests.effort import cases
 
 PRODUCT = Line("p", "mul", ("x", "y"))
 
@@ -75,8 +76,9 @@ def test_an_output_stays():
     assert fused(line, outputs=("p", "out")).lines == (PRODUCT, line)
 
 
+@pytest.mark.sampled
 @given(programs(), points())
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=cases(20, 100), deadline=None)
 def test_the_exact_meaning_is_unchanged(program, point):
     with mpmath.workdps(40):
         assert same(exactly(validate(fuse_products(program)), point), exactly(program, point))

@@ -19,6 +19,7 @@ from tests.compiler.programs import (
     programs,
     same,
 )
+from tests.effort import cases
 
 LINES = (Line("less", "lt", ("x", 0.0), "bool"), Line("u", "mul", ("x", "y")))
 STATUS = Line("status", "select", ("less", 1, 0), "i64")
@@ -72,8 +73,9 @@ def test_an_input_that_is_an_output_is_nan_where_bad():
     assert all(map(math.isnan, found.values()))
 
 
+@pytest.mark.sampled
 @given(programs(), points())
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=cases(15, 50), deadline=None)
 def test_the_meaning_of_good_values_is_unchanged(program, point):
     guarded = validate(guard_inputs(program, program.inputs, {}, {}))
     assert same(exactly(guarded, point), exactly(program, point))

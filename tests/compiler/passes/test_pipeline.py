@@ -17,6 +17,7 @@ from tests.compiler.programs import (
     programs,
     same,
 )
+from tests.effort import cases
 
 CONCENTRIC = {"ec": 0.0, "alpha": 0.0, "branch": 1.0}
 
@@ -44,16 +45,18 @@ def test_without_passes_the_program_is_only_bound():
     assert "branch" not in program.inputs
 
 
+@pytest.mark.sampled
 @given(programs())
-@settings(max_examples=75, deadline=None)
+@settings(max_examples=cases(15, 75), deadline=None)
 def test_what_is_optimised_is_valid_and_final(program):
     once, _ = optimise(program, {"x": 0.0})
     again, _ = optimise(validate(once))
     assert again == once
 
 
+@pytest.mark.sampled
 @given(programs(ops=NO_JUMPS), points())
-@settings(max_examples=75, deadline=None)
+@settings(max_examples=cases(15, 75), deadline=None)
 def test_no_bit_changes(program, point):
     """The sign of a zero may, and 0 times an infinity."""
     before = in_doubles(program._replace(outputs=tuple(line.name for line in program.lines)), point)

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from desaxe.compiler.passes.slicing import drop_unused, keep_outputs
 from desaxe.compiler.program import Line, Note, Program, ProgramError, validate
 from tests.compiler.programs import POINT, committed, exactly, points, programs, same
+from tests.effort import cases
 
 U, V, W = Line("u", "add", ("x", "y")), Line("v", "neg", ("u",)), Line("w", "neg", ("z",))
 NOTES = {"u": Note("m", "a length"), "w": Note("m", "another")}
@@ -30,23 +31,26 @@ def test_an_unknown_output_is_refused():
         keep_outputs(PROGRAM, ["nowhere"])
 
 
+@pytest.mark.sampled
 @given(programs(), st.data())
-@settings(max_examples=75, deadline=None)
+@settings(max_examples=cases(15, 75), deadline=None)
 def test_a_slice_is_valid(program, data):
     wanted = data.draw(st.sampled_from(program.lines)).name
     assert validate(keep_outputs(program, [wanted])).outputs == (wanted,)
 
 
+@pytest.mark.sampled
 @given(programs(), points())
-@settings(max_examples=75, deadline=None)
+@settings(max_examples=cases(15, 75), deadline=None)
 def test_a_slice_keeps_the_meaning(program, point):
     whole = exactly(program, point)
     for name in program.outputs:
         assert same(exactly(keep_outputs(program, [name]), point), {name: whole[name]})
 
 
+@pytest.mark.sampled
 @given(programs())
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=cases(15, 50), deadline=None)
 def test_nothing_is_unused_after_dropping(program):
     assert drop_unused(program) == program
 

@@ -6,7 +6,7 @@ import re
 import pytest
 
 import desaxe as dx
-from desaxe.cli.command.command import main
+from desaxe.cli.command import main
 from tests.scenes.explorer.browser import browser_path
 
 SIZES = {"ec": 0.0, "AB": 0.125, "BC": 0.35, "omega0": 157.0}

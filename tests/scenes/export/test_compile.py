@@ -55,6 +55,7 @@ SCENES = {
     "far": {**STATE, "motion": {"theta": [1e9, 2e9], "omega": 3}},
 }  # fmt: skip
 
+ALLOWED = {"concurrent.futures", "math", "os", "threading", "numba", "numba.extending", "numpy"}
 # Runs in a process of its own, where importing desaxe fails; prints every value as hex.
 ALONE = """
 import importlib, json, sys
@@ -67,6 +68,7 @@ def text(values):
     return [float(v).hex() for v in flat]
 for name, points in json.loads(sys.stdin.read()).items():
     module = importlib.import_module("kernels_" + name)
+    assert not getattr(module, "COMPILED", None)  # before the first call
     arrays = {n: np.array(v) for n, v in points.items()}
     number = {n: v[0] for n, v in points.items()}
     found[name] = {
@@ -77,6 +79,7 @@ for name, points in json.loads(sys.stdin.read()).items():
         "point": text(module.point(**number)),
         "number": {n: text(v) for n, v in module.evaluate(**number).items()},
         "doc": module.__doc__,
+        "scalars": text([getattr(module, n)(*(number[i] for i in module.INPUTS)) for n in module.OUTPUTS]),
     }
 print(json.dumps(found))
 """
@@ -164,6 +167,80 @@ def test_one_point_is_that_of_evaluate(name, alone):
     assert [alone[name]["number"][n] for n in names] == [[text] for text in alone[name]["point"]]
 
 
+@pytest.mark.parametrize("name", SCENES)
+def test_scalars_are_those_of_evaluate(name, alone):
+    """One function for each output, in the order of INPUTS, compiled for the @njit functions of others."""
+    names = list(alone[name]["number"])
+    one = {n: v[0] for n, v in points_of(SCENES[name]).items()}
+    inputs = {**inputs_of(SCENES[name]), **one}
+    wanted = dx.evaluate(names, **{**inputs, "accuracy": inputs["accuracy"].replace("fast", "standard")})
+    found = [float.fromhex(text) for text in alone[name]["scalars"]]
+    np.testing.assert_allclose(found, [float(wanted[n]) for n in names], rtol=1e-14)
+
+
+def test_a_function_of_ones_own_calls_them(tmp_path):
+    import numba
+
+    module = imported(dx.compile(SCENES["forces"], tmp_path / "kernels_own.py"))
+    a, b = module.T_in, module.N_C
+
+    @numba.njit
+    def work(mass, angle):
+        return a(angle, mass) + b(1, mass)  # a whole number is a number, too
+
+    names, fixed = ["T_in", "N_C"], inputs_of(SCENES["forces"])
+    wanted = [dx.evaluate(n, theta=t, m_slider=0.5, **fixed) for n, t in zip(names, (0.3, 1.0), strict=True)]
+    assert module.INPUTS == ("theta", "m_slider")
+    assert work(0.5, 0.3) == pytest.approx(sum(wanted), rel=1e-13)
+    assert np.isnan(a(np.inf, 0.5))
+
+
+def imported(place):
+    """A written module."""
+    import importlib.util
+
+    spec = importlib.util.spec_from_file_location(place.stem, place)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[place.stem] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize(
+    ("written", "rule"),
+    [
+        ({"start": 0, "stop": "360 deg", "num": 100_001}, "spaced(0.0, 0.0, "),
+        ({"start": "-17 deg", "stop": "1 turn", "num": 3601}, "spaced(-0.29"),
+        ({"start": 0, "stop": 1, "num": 1025}, "linspace(0.0, 1.0, 1025)"),
+        ({"start": 7, "stop": 0.1, "num": 70}, "(7.0, "),
+        ([0.1, 0.2, 0.7], "array(["),
+        ([0.25, 0.5], "array(["),
+    ],
+)
+def test_ranges_are_written_as_ranges(written, rule, tmp_path):
+    """And give the scene's own values, to the last bit."""
+    scene = {**SMALL, "mechanism": {"ec": 0, "AB": 0.125, "BC": 0.35}}
+    scene = {**scene, "motion": {**scene["motion"], "theta": written}}
+    place = dx.compile(scene, tmp_path / "kernels_axes.py")
+    assert rule in place.read_text(encoding="utf-8")
+    assert place.stat().st_size < 60_000
+    np.testing.assert_array_equal(imported(place).AXES["theta"], dx.scene(scene).inputs["theta"])
+
+
+def test_what_is_left_out_is_told(tmp_path, capsys):
+    from desaxe.cli import main
+
+    place = tmp_path / "compactor_kernels.py"
+    assert main(["compile", str(COMPACTOR), "-o", str(place)]) == 0
+    assert "not compiled (`desaxe run` has it): [[peak]] a_C, [[peak]] V_C" in capsys.readouterr().err
+    assert "Not in here (`desaxe run` has it): [[peak]] a_C" in place.read_text(encoding="utf-8")
+    assert main(["compile", str(COMPACTOR), "-o", str(place), "--check"]) == 0
+    place.write_text(place.read_text(encoding="utf-8") + "\n", encoding="utf-8")
+    assert main(["compile", str(COMPACTOR), "-o", str(place), "--check"]) == 1
+    with pytest.raises(ValueError, match="not what the scene gives"):
+        dx.compile(COMPACTOR, place, check=True)
+
+
 # ---- the text ------------------------------------------------------------------------------------
 
 
@@ -189,7 +266,7 @@ def test_only_numpy_and_numba_are_imported(tmp_path):
         lines = [
             line.split()[1] for line in text.splitlines() if line.strip().startswith(("from ", "import "))
         ]
-        assert set(lines) <= {"concurrent.futures", "math", "os", "numba", "numba.extending", "numpy"}, name
+        assert set(lines) <= ALLOWED, name
 
 
 def test_ruff_finds_nothing_undefined_or_unused(tmp_path):
@@ -278,6 +355,6 @@ def test_the_count_of_operations_is_that_of_the_text(name):
 
 
 def test_a_scene_without_outputs(tmp_path):
-    with pytest.raises(SceneError, match="nothing to compile"):
+    with pytest.raises(SceneError, match=r"nothing to compile.* \[\[peak\]\] a_C is searched for by"):
         dx.compile({**SMALL, "outputs": [], "peak": [{"quantity": "a_C"}]}, tmp_path / "m.py")
     assert not list(tmp_path.iterdir())

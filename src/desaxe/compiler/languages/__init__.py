@@ -3,9 +3,10 @@
 protocol    what is written (`Module`), and what a language must have (`Language`)
 shared      assignments as statements, names that a language keeps for itself, comments
 c/          C99: a header and a source, no allocation, no global state
-jax/        Python over jax.numpy, with derivatives by name
-octave/     one vectorised function for GNU Octave and MATLAB
-javascript/ an ES module and its types
+jax         Python over jax.numpy, with derivatives by name
+octave      one vectorised function for GNU Octave and MATLAB
+es_module   a JavaScript module and its types
+javascript  one JavaScript function, for the explorer and for the module
 python      plain Python over `math`, for single points
 numba/      self-contained modules of compiled loops
 
@@ -13,9 +14,12 @@ A new language is a file or folder here and its column of the operation table; `
 """
 
 from .c import C
+from .es_module import JavaScript
+from .jax import Jax
+from .octave import Octave
 from .protocol import Language
 
-LANGUAGES: tuple[Language, ...] = (C(),)
+LANGUAGES: tuple[Language, ...] = (C(), Jax(), Octave(), JavaScript())
 
 
 def language_of(name: str) -> Language:

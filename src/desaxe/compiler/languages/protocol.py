@@ -76,6 +76,7 @@ class Language(Protocol):
     suffix: str  # of the file that is called
     second_order: bool  # whether `derivatives` and `values` are wanted
     own_functions: bool  # whether the language can do without a library of elementary functions
+    extended: bool  # whether sums and products are rounded as they stand, which twice the digits want
 
     def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
         """File name -> text. `freestanding`: without a library of elementary functions."""

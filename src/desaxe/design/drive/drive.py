@@ -9,14 +9,10 @@ import numpy as np
 from .cycle import JAMS, Design, NoCycleError, torque_over
 from .flywheel import flywheel_for
 from .panels import Array, Panels, resolved
-from .result import Drive
+from .result import FIGURES, Drive
 
 CREEP = 1e-100  # rad/s: friction acts, inertia does not; a torque below it is none
 STALLED = 3
-FIGURES = (
-    "torque_mean", "torque_rms", "torque_peak", "theta_peak", "work_in", "work_out", "power_mean",
-    "power_peak", "flywheel_inertia", "flywheel_torque", "starting_torque", "theta_start", "period",
-)  # fmt: skip
 DIFFERENTIATED = tuple(name for name in FIGURES if not name.startswith("theta_"))
 
 

@@ -4,22 +4,12 @@ from collections.abc import Mapping
 from math import degrees, isnan
 from typing import TYPE_CHECKING, Any
 
-from ...mechanism.inputs import INPUTS
+from ...mechanism.unit_system import SI, Conversion, UnitSystem
+from ...mechanism.units import registry
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-UNITS = {
-    **dict.fromkeys(
-        ("torque_mean", "torque_rms", "torque_peak", "starting_torque", "flywheel_torque"), "N*m"
-    ),
-    **dict.fromkeys(("work_in", "work_out"), "J"),
-    **dict.fromkeys(("power_mean", "power_peak"), "W"),
-    **dict.fromkeys(("theta_peak", "theta_start"), "rad"),
-    "flywheel_inertia": "kg*m^2",
-    "period": "s",
-    "fluctuation": "1",
-}
 STATUS = {
     1: "the crank cannot turn fully",
     2: "at a change point",
@@ -33,8 +23,9 @@ STATUS = {
 class Drive(dict[str, Any]):
     """The figures by name, `gradient` and `status`; `report()`, `plot()`.
 
-    `inputs` are those of the design, `branch` its branch; `course` has arrays over the turn: `theta`, `T_in`,
-    `power_in`, and, with the flywheel, `theta_of_speed` and `speed`. All in SI units and radians.
+    `inputs` are those of the design in SI units, `branch` is its branch. `course` has arrays over the turn:
+    `theta`, `T_in`, `power_in` and, with the flywheel, `theta_of_speed` and `speed`. `units` are the units of
+    all but `inputs`.
     """
 
     def __init__(
@@ -43,32 +34,62 @@ class Drive(dict[str, Any]):
         inputs: Mapping[str, float],
         branch: int,
         course: "Mapping[str, NDArray[Any]]",
+        units: UnitSystem = SI,
     ) -> None:
         super().__init__(figures)
-        self.inputs, self.branch, self.course = dict(inputs), branch, dict(course)
+        self.inputs, self.branch, self.course, self.units = dict(inputs), branch, dict(course), units
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (dict(self), self.inputs, self.branch, self.course, self.units)
+
+    def in_units(self, units: UnitSystem) -> "Drive":
+        """The same in other units; for one that is in SI units."""
+        figures = {name: _shown(units, name, value) for name, value in self.items()}
+        course = {name: _conversion(units, name).shown(values) for name, values in self.course.items()}
+        return Drive(figures, self.inputs, self.branch, course, units)
+
+    def as_quantities(self, units: UnitSystem) -> dict[str, Any]:
+        """The figures in these units as pint quantities (extra `units`)."""
+        Quantity = registry().Quantity
+
+        def labelled(value: Any, conversion: Conversion) -> Any:
+            return value if conversion.unit == "1" else Quantity(conversion.shown(value), conversion.unit)
+
+        found = {n: labelled(v, _conversion(units, n)) for n, v in self.items() if n in FIGURES}
+        gradient = {
+            name: {by: labelled(slope, _slope(units, name, by)) for by, slope in slopes.items()}
+            for name, slopes in self["gradient"].items()
+        }
+        return {**self, **found, "gradient": gradient}
 
     def report(self) -> str:
-        """The figures as a text for a data sheet, in SI units and degrees."""
-        design = ", ".join(
-            f"{name} = {value:.6g} {INPUTS[name].unit}".removesuffix(" 1")
-            for name, value in self.inputs.items()
-        )
-        lines = ["Drive over one turn", f"  {design}"]
+        """The figures as a text for a data sheet; angles that are in radians are told in degrees."""
+        lines = ["Drive over one turn", f"  {self._design()}"]
         if self["status"]:
             lines.append(f"  status {self['status']}: {STATUS[self['status']]}")
         if not isnan(self["torque_mean"]):
             lines += [f"  {label:17} {value}" for label, value in self._rows()]
         return "\n".join(lines)
 
+    def _design(self) -> str:
+        told = []
+        for name, value in self.inputs.items():
+            conversion = self.units.of(name)
+            told.append(f"{name} = {conversion.shown(value):.6g} {conversion.unit}".removesuffix(" 1"))
+        return ", ".join(told)
+
+    def unit(self, name: str) -> str:
+        """The unit of a figure or of an array of `course`, as a label has it."""
+        return _conversion(self.units, name).unit.replace("*", " ")
+
     def _rows(self) -> list[tuple[str, str]]:
         def told(name: str, angle: str | None = None) -> str:
-            unit = UNITS[name].replace("*", " ")
-            where = "" if angle is None or isnan(self[angle]) else f" at {degrees(self[angle]):.1f} deg"
-            return "-" if isnan(self[name]) else f"{self[name]:.6g} {unit}{where}"
+            where = "" if angle is None or isnan(self[angle]) else f" at {self._angle(angle)}"
+            return "-" if isnan(self[name]) else f"{self[name]:.6g} {self.unit(name)}{where}"
 
-        turns = 60.0 / self["period"]
+        turns = 60.0 / _conversion(self.units, "period").to_si(self["period"])
         return [
-            ("speed", f"{turns:.6g} rpm, {self['period']:.6g} s a turn"),
+            ("speed", f"{turns:.6g} rpm, {told('period')} a turn"),
             ("torque, mean", told("torque_mean")),
             ("torque, rms", told("torque_rms")),
             ("torque, peak", told("torque_peak", "theta_peak")),
@@ -82,6 +103,11 @@ class Drive(dict[str, Any]):
             ),
         ]
 
+    def _angle(self, name: str) -> str:
+        if self.unit(name) == "rad":
+            return f"{degrees(self[name]):.1f} deg"
+        return f"{self[name]:.6g} {self.unit(name)}"
+
     def __str__(self) -> str:
         return self.report()
 
@@ -90,3 +116,28 @@ class Drive(dict[str, Any]):
         from ...plot import drive
 
         return drive(self, ax=ax)
+
+
+FIGURES = (
+    "torque_mean", "torque_rms", "torque_peak", "theta_peak", "work_in", "work_out", "power_mean",
+    "power_peak", "flywheel_inertia", "flywheel_torque", "starting_torque", "theta_start", "period",
+)  # fmt: skip
+COURSE = {"theta_of_speed": "rad", "speed": "rad/s"}
+
+
+def _conversion(units: UnitSystem, name: str) -> Conversion:
+    return units.of_unit(COURSE[name]) if name in COURSE else units.of(name)
+
+
+def _slope(units: UnitSystem, name: str, by: str) -> Conversion:
+    return _conversion(units, name) if by == "fluctuation" else units.slope(name, by)
+
+
+def _shown(units: UnitSystem, name: str, value: Any) -> Any:
+    """A figure, or the derivatives of all, in these units."""
+    if name == "gradient":
+        return {
+            figure: {by: _slope(units, figure, by).shown(slope) for by, slope in slopes.items()}
+            for figure, slopes in value.items()
+        }
+    return _conversion(units, name).shown(value) if name in FIGURES else value

@@ -12,7 +12,7 @@ from ...evaluation.loaded import loads_of
 from ...loads.load import Load, OverTheta, TableOverTheta
 from ...loads.resolve import VARIABLE
 from ...mechanism.inputs import INPUTS
-from ...runtime.request import as_number, check_common, check_inputs
+from ...runtime.request import as_number, check_common, check_inputs, is_steady
 
 Array = NDArray[np.float64]
 LEAST, MOST = 128, 131072  # steps of a turn
@@ -23,6 +23,7 @@ class Turn:
     """One design over a turn: its inputs, checked."""
 
     def __init__(self, caller: str, inputs: Mapping[str, Any], branch: int, turns: int = 1) -> None:
+        inputs = {name: value for name, value in inputs.items() if name != "alpha" or not is_steady(value)}
         known = tuple(name for name in INPUTS if name not in ("theta", "alpha", "omega"))
         check_inputs(caller, inputs, known)
         check_common({}, branch)

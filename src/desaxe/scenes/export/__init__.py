@@ -1,6 +1,12 @@
-"""`compile`: a scene as a Python module that needs NumPy and numba, and nothing of desaxe.
+"""`compile`: a scene as source code of its own, in one of several languages.
 
-compile       `desaxe.compile`: a scene to the text of its module, and to a file
-entry_points  the functions that people call in it
-merge         several generated modules as one
+compile       `desaxe.compile`: a scene to files; the text of the Python module
+command       `desaxe compile`
+portable      a scene as the `Module` that every language writes
+solvers       crank angles for a slider position, limit angles
+entry_points  the functions that people call in the Python module
+scalars       a function for each output, for @njit functions
+axes          the scene's lists and ranges
+first_call    how its loops are compiled
+merge         several generated Python modules as one
 """

@@ -16,9 +16,12 @@ from ...compiler.languages.numba.module import emit_numba
 from ...compiler.languages.numba.reductions import emit_reduced
 from ...compiler.operations import HELPERS, NUMBA_HELPERS
 from ...compiler.passes.double_double import double_double
+from ...compiler.passes.guard import guard_inputs
+from ...compiler.program import Program
 from ...mechanism.catalogue import quantity
 from ...mechanism.constants import constants, double_constants, single_constants
-from ...mechanism.inputs import INPUTS
+from ...mechanism.inputs import INPUTS, LEAST
+from ...mechanism.names import ORDER
 from ...mechanism.program import digest
 from ...runtime.kernels import KernelKey, is_single, kernel_of
 from ...runtime.specialise import specialise
@@ -26,20 +29,24 @@ from ...support.files import check_target, write_text
 from ..kernel import GridKernel, grid_kernel
 from ..scene import Scene
 from ..scene import scene as scene_of
+from ..schema import SceneError
+from .axes import axes_text
 from .entry_points import (
     AFFINITY,
     DOUBLES,
     THREADS,
-    axes_text,
     evaluate_function,
     point_function,
     run_function,
     run_reduced_function,
 )
+from .first_call import COMPILED, LAZY, LAZY_REDUCED
 from .merge import import_lines, merged, renamed
-from .portable import Order, module_of, require_outputs
+from .portable import Order, left_out, module_of, require_outputs
+from .scalars import scalars_source
 
 WIDTH = 96
+TAKEN = ("compiled", "doubles", "evaluate", "in_blocks", "point", "reduced", "run", "scalar", "spaced")
 
 
 def compile(
@@ -97,6 +104,10 @@ def texts_of(scene: Scene, place: Path, to: str = "numba", libm: bool = True) ->
     language = language_of(to)
     if not libm and not language.own_functions:
         raise ValueError(f"libm=False is for c: {to} has its elementary functions at hand")
+    if scene.content.accuracy == "extended" and not language.extended:
+        raise SceneError(
+            f'accuracy = "extended": {to} has standard, numba, c, octave and javascript have both'
+        )
     is_file = place.suffix == language.suffix
     name = place.stem if is_file else place.name
     require_name(name, place)
@@ -141,13 +152,14 @@ def module_text(scene: Scene, name: str = "my_kernels.py") -> str:
     axes = {n: value for n in found.axes if isinstance(value := content.inputs.get(n), tuple)}
     state = found.request.form.state
     shown = found.request.shown
-    program = specialise(key.names, key.form, key.fixed)
+    program = _in_order(specialise(key.names, key.form, key.fixed, key.accuracy))
     if key.accuracy == "extended":
         program = double_double(program, double_constants())
     sources = [point_function(program, shown, state)]
     grid = None
     if program.inputs:
         grid = _kernels(key, program.inputs, sources)
+    sources.append(_scalars(key, shown, program.inputs))
     imports, statements = merged(_shared(sources))
     limit = None if key.far else _limit(key)
     calls = [THREADS] if program.inputs else []
@@ -159,7 +171,8 @@ def module_text(scene: Scene, name: str = "my_kernels.py") -> str:
         calls.append(run_function(shown, list(axes), grid.inputs, state))
     else:
         calls.append(run_reduced_function(shown, key.reduce, found.axes, grid.inputs, grid.outputs))
-    tables = [*([AFFINITY, DOUBLES] if program.inputs else []), _outputs(shown), _fixed(key)]
+    tables = [*([AFFINITY, DOUBLES, COMPILED] if program.inputs else [])]
+    tables += [f"INPUTS = {program.inputs!r}", _outputs(shown), _fixed(key)]
     body = "\n\n\n".join(part.strip("\n") for part in [*tables, *statements, *calls]) + "\n"
     head = _docstring(scene, name, key, shown, program.inputs, cost_of(program).operations)
     return "\n\n\n".join([head, "\n".join(import_lines(_called(imports, body))), body])
@@ -170,10 +183,11 @@ IMPORTS = {
     "concurrent.futures": {"ThreadPoolExecutor"},
     "math": {"prod"},
     "numpy": {
-        "append", "array", "asarray", "ascontiguousarray", "broadcast_arrays", "empty", "float64", "int8",
-        "isfinite", "linspace", "nan",
+        "append", "arange", "array", "asarray", "ascontiguousarray", "broadcast_arrays", "empty", "float64",
+        "int8", "isfinite", "linspace", "nan",
     },
     "os": {"cpu_count"},
+    "threading": {"Lock"},
 }  # fmt: skip
 
 
@@ -193,18 +207,40 @@ def _all_fixed(key: KernelKey, found: GridKernel, inputs: Mapping[str, Any]) -> 
     return key._replace(fixed=tuple(fixed.items()))
 
 
+def _in_order(program: Program) -> Program:
+    """The program with its inputs in the order in which they stand in names."""
+    return program._replace(inputs=tuple(sorted(program.inputs, key=ORDER.index)))
+
+
+def _scalars(key: KernelKey, shown: tuple[str, ...], inputs: tuple[str, ...]) -> str:
+    """The functions of one output each."""
+    programs = []
+    for name, own in zip(shown, key.names, strict=True):
+        if name in TAKEN:
+            raise SceneError(f"outputs: {name!r} is a function of the module; give the quantity another name")
+        program = specialise((own,), key.form, key.fixed, key.accuracy)
+        program = guard_inputs(program, program.inputs, LEAST, {})
+        if key.accuracy == "extended":
+            program = double_double(program, double_constants())
+        programs.append((name, program))
+    return scalars_source(programs, inputs, key.form.state)
+
+
 def _kernels(key: KernelKey, inputs: tuple[str, ...], sources: list[str]) -> Kernel:
     """Append the kernels of arrays and of the grid; the latter, which tells the order of its inputs."""
     points = key._replace(axis_of=tuple((n, 0) for n in sorted(inputs)), axes=1, reduce=())
     single = is_single(key)
     own = _prefixed("point")
     kernel = kernel_of(points)
-    sources.append(renamed(emit_numba(kernel, "Points.", single), own))
+    sources.append(renamed(emit_numba(kernel, "Points.", single, LAZY), own))
     if key.axes == 1:
         return kernel
     grid = kernel_of(key)
     own = _prefixed("grid")
-    text = emit_reduced(grid, key.reduce, "", single) if key.reduce else emit_numba(grid, "", single)
+    if key.reduce:
+        text = emit_reduced(grid, key.reduce, "", single, LAZY_REDUCED)
+    else:
+        text = emit_numba(grid, "", single, LAZY)
     if single:  # constants of float32 have names of their own in each module
         own |= {f"k{index}": f"grid_k{index}" for index in range(1000)}
     sources.append(renamed(text, own))
@@ -215,7 +251,8 @@ def _prefixed(prefix: str) -> dict[str, str]:
     """Names of a kernel's module under which two of them can stand in one."""
     words = {name: f"{prefix}_{name}" for name in ("loops", "kernel")}
     signature = f"{prefix}_signature"
-    return words | {"signature = types": f"{signature} = types", "njit(signature": f"njit({signature}"}
+    words["compiled(loops, signature"] = f"compiled({prefix}_loops, {signature}"
+    return words | {"signature = types": f"{signature} = types"}
 
 
 def _shared(sources: list[str]) -> list[str]:
@@ -266,11 +303,14 @@ def _docstring(
         "    point(...)      one point in plain Python",
         "    evaluate(...)   numbers or arrays that broadcast",
         "    run()           the scene's own grid",
+        f"    {shown[0]}(*INPUTS)   one output as a number, from @njit functions, too",
         "",
         f"Accuracy {key.accuracy}; SI units and radians. Y points along the slider axis towards the slider,",
         "theta turns from +Y towards +X.",
         "",
     ]
+    lost = left_out(scene.content, reduction=False)
+    lines += [f"Not in here (`desaxe run` has it): {', '.join(lost)}.", ""] if lost else []
     rows = [("inputs", n, INPUTS[n].unit, INPUTS[n].meaning) for n in inputs]
     rows += [("outputs", n, quantity(n, state).unit, quantity(n, state).meaning) for n in shown]
     rows += [("fixed", n, "", _fixed_as(n, value)) for n, value in key.fixed if n in INPUTS and value != 0.0]

@@ -4,8 +4,6 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from textwrap import wrap
 
-import numpy as np
-
 from ...compiler.languages.numba.reductions import KINDS, outputs_of
 from ...compiler.operations import HELPERS, MATH_NAMES
 from ...compiler.program import Program
@@ -66,16 +64,16 @@ def point_function(program: Program, shown: Sequence[str], state: bool) -> str:
     check = [f"if str in ({types},):", f"    {_doubles(program.inputs)}  # says what is wrong"]
     lines = [
         f"def point({', '.join(program.inputs)}):",
-        *_indented(docstring("One point in plain Python, nothing compiled: numbers in, a tuple out.", told)),
-        *_indented(check if program.inputs else []),
-        *_indented(body),
+        *indented(docstring("One point in plain Python, nothing compiled: numbers in, a tuple out.", told)),
+        *indented(check if program.inputs else []),
+        *indented(body),
         f"    return ({returned},)",
         "",
     ]
     text = "\n".join(lines)
     used = _helpers(text)
     words = "\n".join([*used, text])
-    names = [name for name in MATH_NAMES if _calls(words, name)]
+    names = [name for name in MATH_NAMES if calls_of(words, name)]
     imports = [f"from math import {', '.join(names)}"] if names else []
     return "\n\n".join(['"""Points."""', *imports, *used, text])
 
@@ -84,11 +82,13 @@ def _doubles(inputs: Iterable[str]) -> str:
     return f"doubles({', '.join(f'{name}={name}' for name in inputs)})"
 
 
-def _indented(lines: Iterable[str]) -> list[str]:
+def indented(lines: Iterable[str]) -> list[str]:
+    """The lines one level in."""
     return [f"    {line}" if line else "" for line in lines]
 
 
-def _calls(text: str, name: str) -> bool:
+def calls_of(text: str, name: str) -> bool:
+    """True where a text has the name."""
     return re.search(rf"\b{name}\b", text) is not None
 
 
@@ -112,7 +112,7 @@ def evaluate_function(
         return "\n".join(
             [
                 "def evaluate():",
-                *_indented(docstring("The values; every input is fixed.", [])),
+                *indented(docstring("The values; every input is fixed.", [])),
                 "    return dict(zip(OUTPUTS, point(), strict=True))",
                 "",
             ]
@@ -129,7 +129,7 @@ def evaluate_function(
     return "\n".join(
         [
             f"def evaluate({head}, threads=None):",
-            *_indented(docstring(f"{', '.join(shown)} at points of your own.", told)),
+            *indented(docstring(f"{', '.join(shown)} at points of your own.", told)),
             f"    arrays = broadcast_arrays(*{_doubles(inputs)})",
             *check,
             "    if not arrays[0].ndim:",
@@ -148,20 +148,6 @@ def evaluate_function(
     )
 
 
-def axes_text(axes: Mapping[str, Sequence[float]]) -> str:
-    """The scene's own axes."""
-    rows = ["# The scene's axes, the outermost first.", "AXES = {"]
-    for name, values in axes.items():
-        array = np.array(values)
-        if len(values) > 2 and np.array_equal(array, np.linspace(values[0], values[-1], len(values))):
-            rows.append(f'    "{name}": linspace({values[0]!r}, {values[-1]!r}, {len(values)}),')
-            continue
-        rows.append(f'    "{name}": array([')
-        rows += [f"        {row}" for row in wrap(", ".join(map(repr, values)) + ",", 90)]
-        rows.append("    ]),")
-    return "\n".join([*rows, "}"])
-
-
 def run_function(
     names: Sequence[str], axes: Sequence[str], inputs: Mapping[str, int | None], state: bool
 ) -> str:
@@ -176,7 +162,7 @@ def run_function(
     return "\n".join(
         [
             "def run(threads=None):",
-            *_indented(docstring(f"{', '.join(names)} over the scene's axes.", told)),
+            *indented(docstring(f"{', '.join(names)} over the scene's axes.", told)),
             "    shape = tuple(axis.size for axis in AXES.values())",
             "    out = {name: empty(shape, kind) for name, kind in OUTPUTS.items()}",
             "",
@@ -214,7 +200,7 @@ def run_reduced_function(
     ]
     lines = [
         "def run(threads=None):",
-        *_indented(docstring(f"{', '.join(names)} over the scene's axes, {last} reduced.", told)),
+        *indented(docstring(f"{', '.join(names)} over the scene's axes, {last} reduced.", told)),
         f"    shape = tuple(AXES[name].size for name in {tuple(rest)!r}) or (1,)",
         f'    length = AXES["{last}"].size',
         "    places = [",

@@ -45,7 +45,7 @@ def merged(sources: Iterable[str]) -> tuple[dict[str, set[str]], list[str]]:
 
 def import_lines(imports: Mapping[str, set[str]]) -> list[str]:
     """`from module import names`, the standard library first."""
-    standard = [module for module in imports if module in ("concurrent.futures", "math", "os")]
+    standard = [module for module in imports if module in ("concurrent.futures", "math", "os", "threading")]
     others = [module for module in imports if module not in standard]
     blocks = [
         [_import(module, sorted(imports[module])) for module in sorted(part)] for part in (standard, others)

@@ -21,7 +21,7 @@ PROGRAM = Program(
 def reduced():
     """The kernel of all kinds, as a function of x, a and b that gives the outputs by name."""
     kernel = tabulate(PROGRAM, {"x": 2, "a": 0, "b": 1}, 3)
-    function = native_here(emit_reduced(kernel, tuple(KINDS), "a x + b", to_compile=True), {})
+    function = native_here(emit_reduced(kernel, tuple(KINDS), "a x + b"), {})
 
     def run(x, a, b):
         outs = {name: np.empty((a.size, b.size), kind) for name, kind in outputs_of(("f",), tuple(KINDS))}

@@ -20,6 +20,7 @@ class C:
     suffix = ".c"
     second_order = False
     own_functions = True
+    extended = True
 
     def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
         """`name.h` and `name.c`."""

@@ -127,36 +127,35 @@ _HELPERS = {
 }
 
 
-_COMPILE = """try:
-    reduced = njit(reduced_signature, cache=True, error_model="numpy", nogil=True)(reduced_loops)
-except RuntimeError:  # numba found no folder that it can write to
-    reduced = njit(reduced_signature, error_model="numpy", nogil=True)(reduced_loops)
-"""
 _INNER = (
     'kernel = njit(signature, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)(loops)\n'
 )
-_TO_COMPILE = "function, signature = reduced_loops, reduced_signature\n"
+# The tails of the inner loops and of the whole, for a text that the runtime compiles.
+TO_COMPILE = (_INNER, "function, signature = reduced_loops, reduced_signature\n")
 
 
 def emit_reduced(
-    kernel: Kernel, kinds: Sequence[str], docstring: str, single: bool = False, to_compile: bool = False
+    kernel: Kernel,
+    kinds: Sequence[str],
+    docstring: str,
+    single: bool = False,
+    tails: tuple[str, str] = TO_COMPILE,
 ) -> str:
     """The source of a module whose `reduced(*inputs, length, *outputs)` reduces the innermost axis.
 
     Precondition: two axes or more; every output is f64. `length` is that of the reduced axis. The
     outputs, over the other axes: for each output of the kernel and each kind the reduced value and,
-    of an extreme, its place (int64, -1 where there is none); then how many values counted. `to_compile`
-    leaves the compilation of `function` to the runtime.
+    of an extreme, its place (int64, -1 where there is none); then how many values counted. `tails`
+    say what becomes of the inner `loops` and of `reduced_loops`: by default the runtime compiles them.
     """
-    inner = (_INNER,) if to_compile else ()
     helpers = dict.fromkeys([_COUNT, *(text for kind in kinds for text in _HELPERS[kind])])
     imports = "from math import frexp, inf, nan, sqrt\n\nfrom numpy import empty, full, int64, zeros"
     return "\n\n".join(
         [
-            emit_numba(kernel, docstring, single, *inner).rstrip() + "\n",
+            emit_numba(kernel, docstring, single, tails[0]).rstrip() + "\n",
             f"# Reductions of the innermost axis.\n{imports}\n",
             *helpers,
-            _driver(kernel, kinds, _TO_COMPILE if to_compile else _COMPILE),
+            _driver(kernel, kinds, tails[1]),
         ]
     )
 

@@ -1,0 +1,159 @@
+"""One vectorised function for GNU Octave and MATLAB: `[a_C, V_C] = name(theta, ec)`.
+
+Arrays broadcast as they do there. What a select does not take must be computed too, so that nothing here may
+become complex: the root of a negative number is NaN.
+"""
+
+from ..program import Program
+from ..text import with_short_temporaries
+from .protocol import Module
+from .shared import one_line, statements, with_helpers, with_safe_names
+
+WORDS = {"nan": "NaN", "inf": "Inf", "True": "true", "False": "false"}
+KEYWORDS = frozenset(
+    (
+        "break", "case", "catch", "classdef", "continue", "do", "else", "elseif", "end", "for", "function",
+        "global", "if", "otherwise", "parfor", "persistent", "return", "spmd", "switch", "try", "until",
+        "unwind_protect", "while", "select", "root", "shape", "true", "false", "abs", "ones", "size",
+        "double",
+    )
+)  # fmt: skip
+HELPERS = {
+    "select": """function x = select(c, a, b)
+  % a where c holds, else b.
+  whole = ones(size(c)) .* ones(size(a)) .* ones(size(b));
+  x = b .* whole;
+  a = a .* whole;
+  c = c & (whole == 1);
+  x(c) = a(c);
+end
+""",
+    "root": """function x = root(a)
+  % The square root, NaN below zero.
+  a(a < 0) = NaN;
+  x = sqrt(a);
+end
+""",
+    "copysign": """function x = copysign(a, b)
+  % The size of a with the sign of b, be it that of a zero.
+  minus = b < 0 | (b == 0 & 1 ./ b < 0);
+  x = abs(a) .* (1 - 2 * minus);
+end
+""",
+    "two_sum_error": """function x = two_sum_error(a, b)
+  % What rounding took from a + b, exactly (Knuth).
+  total = a + b;
+  of_b = total - a;
+  x = (a - (total - of_b)) + (b - of_b);
+end
+""",
+    "two_product_error": """function x = two_product_error(a, b)
+  % What rounding took from a .* b, exactly (Dekker).
+  product = a .* b;
+  wide = 134217729 * a;
+  a_high = wide - (wide - a);
+  a_low = a - a_high;
+  wide = 134217729 * b;
+  b_high = wide - (wide - b);
+  b_low = b - b_high;
+  x = a_low .* b_low - (((product - a_high .* b_high) - a_low .* b_high) - a_high .* b_low) + 0;
+end
+""",
+    "mul_add": """function x = mul_add(a, b, c)
+  x = a .* b + c;
+end
+""",
+    "extended_only": """function x = extended_only(a)
+  % Whether to take a form that only twice the digits tell from the other: not here.
+  x = a & false;
+end
+""",
+    "rounding": """function x = rounding(a)
+  % What rounding may take from a number of this size in four operations.
+  x = 4.440892098500626e-16 * abs(a);
+end
+""",
+    "rotated_sin": """function x = rotated_sin(sine, cosine, quarters)
+  % The sine of an angle and whole quarter turns, from the angle's own.
+  x = select(mod(quarters, 2) == 1, cosine, sine);
+  x = select(mod(quarters, 4) >= 2, -x, x);
+end
+""",
+    "rotated_cos": """function x = rotated_cos(sine, cosine, quarters)
+  % The cosine of an angle and whole quarter turns, from the angle's own.
+  x = select(mod(quarters, 2) == 1, sine, cosine);
+  x = select(mod(quarters + 1, 4) >= 2, -x, x);
+end
+""",
+}
+
+
+class Octave:
+    """GNU Octave and MATLAB; see this file's docstring."""
+
+    name = "octave"
+    suffix = ".m"
+    second_order = False
+    own_functions = False
+    extended = True
+
+    def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
+        """`name.m`."""
+        return {f"{module.name}.m": _text(module)}
+
+
+def _text(module: Module) -> str:
+    inputs = [_safe(symbol.name) for symbol in module.inputs]
+    program = with_short_temporaries(module.forms.stable)
+    program = program._replace(outputs=program.outputs[: len(module.outputs)])
+    outputs = [symbol.name for symbol in module.outputs]
+    head = f"function [{', '.join(f'out_{name}' for name in outputs)}] = {module.name}({', '.join(inputs)})"
+    body = [
+        f"  {row}"
+        for row in [*_help(module), *_same_shape(inputs), *_body(program), *_results(program, outputs)]
+    ]
+    main = "\n".join([head, *body, "end", ""])
+    return "\n".join([main, *with_helpers(main, HELPERS)])
+
+
+def _safe(name: str) -> str:
+    return f"{name}_" if name in KEYWORDS else name
+
+
+def _help(module: Module) -> list[str]:
+    """The text that `help name` prints."""
+    names = ", ".join(symbol.name for symbol in module.outputs)
+    given = ", ".join(symbol.name for symbol in module.inputs)
+    rows = [f"{module.name.upper()}  [{names}] = {module.name}({given})", "", *map(one_line, module.head), ""]
+    for symbol in (*module.inputs, *module.outputs):
+        source = f" ({symbol.source})" if symbol.source else ""
+        rows.append(f"  {symbol.name} [{symbol.unit}]: {one_line(symbol.meaning)}{source}")
+    rows += [
+        "",
+        "Numbers or arrays, which broadcast; what has no value is NaN.",
+        "SPDX-License-Identifier: MIT",
+    ]
+    return [f"% {row}".rstrip() for row in rows]
+
+
+def _same_shape(inputs: list[str]) -> list[str]:
+    """All inputs in doubles and in the shape that they have together."""
+    if not inputs:
+        return ["shape = 1;"]
+    shape = " .* ".join(f"ones(size({name}))" for name in inputs)
+    return [f"shape = {shape};", *(f"{name} = double({name}) .* shape;" for name in inputs)]
+
+
+def _body(program: Program) -> list[str]:
+    program = with_safe_names(program, KEYWORDS)
+    return [
+        f"{name} = {right};" + (f"  % {note}" if note else "")
+        for name, right, note in statements(program, "octave", WORDS)
+    ]
+
+
+def _results(program: Program, outputs: list[str]) -> list[str]:
+    return [
+        f"out_{name} = double({_safe(own)}) .* shape;"
+        for name, own in zip(outputs, program.outputs, strict=True)
+    ]

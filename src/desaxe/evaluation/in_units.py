@@ -1,0 +1,60 @@
+"""Labelled results in the units that somebody works in."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from ..compiler.languages.numba.reductions import KINDS
+from ..mechanism.unit_system import SI, Conversion, UnitSystem
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FLAGS = ("status", "can_turn", "kind")
+
+
+def in_units(
+    dataset: "xr.Dataset",
+    units: UnitSystem,
+    given: Mapping[str, Any] | None = None,
+    names: Mapping[str, str] | None = None,
+    as_quantity: bool = False,
+) -> "xr.Dataset":
+    """A Dataset in other units, its attributes too.
+
+    given        coordinates that were given as plain numbers in these units, and are kept as they are
+    names        variable -> the quantity that it is about, where its name does not say so
+    as_quantity  data as pint quantities instead (extra `units`)
+    """
+    result = dataset.copy()
+    for key in map(str, dataset.variables):
+        array = dataset[key]
+        if key in FLAGS or array.dtype.kind not in "fc" or "units" not in array.attrs:
+            continue
+        conversion = conversion_of_variable(units, (names or {}).get(key, key), array.attrs["units"])
+        values = conversion.shown(array.values)
+        if given is not None and key in given:
+            import numpy as np
+
+            values = np.asarray(given[key], dtype=np.float64)
+        attributes = {**array.attrs, "units": conversion.unit}
+        if as_quantity and key in dataset.data_vars and conversion.unit != "1":
+            from ..mechanism.units import registry
+
+            values = registry().Quantity(values, conversion.unit)
+            del attributes["units"]
+        changed = {key: (array.dims, values, attributes)}
+        result = result.assign_coords(changed) if key in dataset.coords else result.assign(changed)
+    return result
+
+
+def conversion_of_variable(units: UnitSystem, name: str, unit: str) -> Conversion:
+    """The conversion of a variable with this SI unit: that of the quantity that its name is about."""
+    stripped = [name.removeprefix(f"{kind}_") for kind in KINDS]
+    stripped += [name.removesuffix(f"_{kind}") for kind in KINDS]
+    for known in dict.fromkeys([name, *stripped]):
+        try:
+            if "_wrt_" in known or SI.of(known).unit == unit:
+                return units.of(known)
+        except ValueError:
+            continue
+    return units.of_unit(unit)

@@ -1,0 +1,12 @@
+"""A machine: the inputs of a design, frozen, with every public call as a method.
+
+machine    `desaxe.Machine`: a mapping of inputs in SI units, and the units that its owner works in
+methods    the table of public functions that are methods, and how a function becomes one
+arguments  what a call is given, in SI units
+results    what a call gives, in the units of the machine, or as pint quantities
+plots      `machine.plot("a_C")` and the pictures of `desaxe.plot`
+scenes     a machine from a scene, and a scene from a machine
+summary    how a machine shows itself: drawing, lengths, speed, masses, loads, stroke
+"""
+
+from .machine import Machine as Machine

@@ -1,0 +1,45 @@
+"""What a method is given: plain numbers mean the machine's units; SI units go on to the function."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from ..mechanism.inputs import INPUTS
+from ..mechanism.unit_system import OTHERS, UnitSystem
+from .results import conversion_of
+
+# Arguments that carry no unit of their own name: what they are about is said by their keys.
+BY_KEY = ("over", "keep", "changes", "sigma")
+POSITIONS = {"Y", "V_C", "a_C"}
+
+
+def has_unit(name: str) -> bool:
+    """True where an argument of this name is a quantity with a unit."""
+    return name in INPUTS or name in OTHERS or name in POSITIONS
+
+
+def in_si(system: UnitSystem, name: str, value: Any) -> Any:
+    """An argument in SI units; texts and pint quantities say their units themselves, functions are in SI."""
+    if not system or value is None:
+        return value
+    if name in BY_KEY and isinstance(value, Mapping):
+        return {key: converted(system, _measure(key), part) for key, part in value.items()}
+    return converted(system, name, value) if has_unit(name) else value
+
+
+def _measure(key: Any) -> str:
+    """The name whose unit the limits of a measure are in: of a peak, the quantity."""
+    return str(key[-1]) if isinstance(key, (tuple, list)) else str(key)
+
+
+def converted(system: UnitSystem, name: str, value: Any) -> Any:
+    """A number, array or pair of a named quantity in SI units."""
+    if value is None or isinstance(value, (str, bool)) or hasattr(value, "magnitude"):
+        return value
+    if isinstance(value, (tuple, list)):
+        parts = [converted(system, name, part) for part in value]
+        return type(value)(*parts) if hasattr(value, "_fields") else type(value)(parts)
+    if callable(value) or "units" in getattr(value, "attrs", {}):
+        return value
+    plain = isinstance(value, (int, float)) or hasattr(value, "dtype")
+    conversion = conversion_of(system, name) if plain else None
+    return value if conversion is None else conversion.to_si(value)

@@ -1,0 +1,227 @@
+"""`Machine`: the inputs of a design as a frozen mapping, with every public call as a method."""
+
+from collections.abc import Iterator, Mapping
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+from ..mechanism.inputs import INPUTS, is_good
+from ..mechanism.slips import warn_of_slips
+from ..mechanism.unit_system import UnitSystem
+from ..runtime.request import MachineSpeed, as_number, check_common, check_inputs
+from .arguments import in_si
+from .methods import METHODS, Method
+from .plots import Plots
+from .scenes import inputs_of_scene, is_scene, scene_of, write_scene
+from .summary import html_of, text_of
+
+LOADS = ("F_X", "F_Y")
+SPEEDS = ("omega0", "omega", "alpha")
+
+
+class Machine(Mapping[str, Any]):
+    """A machine: its lengths, speed, masses and loads, frozen, with every public call as a method.
+
+        press = dx.Machine(ec="10 mm", AB="50 mm", BC="200 mm", omega0="300 rpm", m_slider=4, F_Y=-600)
+        press.peak("T_in")                       # dx.peak("T_in", **press)
+        press.drive(fluctuation=0.03)
+        press.replace(ec="12 mm").events()["stroke"]
+
+    inputs  as in `evaluate`, all but theta: numbers, texts with units, pint quantities, loads, and arrays of
+            one dimension for families of designs. Or a mapping of these, or a scene as a mapping
+            (`Machine.read` takes the path of one). What is not given has no effect
+    branch  +1 or -1
+    units   what plain numbers mean, here and in the methods, and what answers, pictures, reports and exports
+            are in: "mm, deg, rpm", or a mapping of dimensions and quantities to units, {"length": "mm"}. Only
+            what is named changes; velocity and acceleration follow the length, per second, so that g_Y is in
+            mm/s^2 then, and sensitivities are quotients. SI units and radians without
+
+    As a mapping a machine holds its inputs in SI units, so that `**press` is right in every call; `branch`
+    among them where it is -1. Methods are the public functions with these inputs filled in, and take the same
+    arguments; `as_quantity=True` gives pint quantities. `plot`, `replace`, `scene`, `to_scene` and `in_units`
+    are its own. Two machines are equal if their inputs and units are.
+
+    Raises ValueError or TypeError that name the input, as `evaluate` does; a `UnitWarning` for a number that
+    is almost surely meant in another unit, such as a crank of 125 m.
+    """
+
+    if TYPE_CHECKING:  # the methods are made from the functions
+
+        def __getattr__(self, name: str) -> Any: ...
+
+    __slots__ = ("_given", "_inputs", "units")
+    _given: dict[str, Any]
+    _inputs: dict[str, Any]
+    units: UnitSystem
+
+    def __init__(
+        self,
+        source: Mapping[str, Any] | None = None,
+        /,
+        *,
+        units: str | Mapping[str, str] | UnitSystem | None = None,
+        **inputs: Any,
+    ) -> None:
+        if source is not None and not isinstance(source, Mapping):
+            raise TypeError(f"Machine: a mapping is wanted, got {source!r}; Machine.read takes a path")
+        given = dict(source or {})
+        if is_scene(given):
+            given, own = inputs_of_scene(given)
+            units = own if units is None else units
+        elif isinstance(source, Machine):
+            units = source.units if units is None else units
+        system = UnitSystem.read(units)
+        plain = {} if isinstance(source, Machine) or (source and is_scene(source)) else given
+        named = {**plain, **inputs}
+        si = {**given, **{key: in_si(system, key, value) for key, value in named.items()}}
+        warn_of_slips(named, system)
+        self._set(_checked_inputs(si), system, named)
+
+    def _set(self, inputs: dict[str, Any], units: UnitSystem, given: Mapping[str, Any]) -> None:
+        """Fill a new machine: checked inputs in SI units, units, numbers as they were given."""
+        object.__setattr__(self, "_inputs", inputs)
+        object.__setattr__(self, "units", units)
+        object.__setattr__(self, "_given", {key: v for key, v in given.items() if key in inputs})
+
+    @classmethod
+    def read(cls, path: str | PathLike[str], *, units: str | Mapping[str, str] | None = None) -> "Machine":
+        """The machine of a scene file, with its units (extra `scene`); its crank angles are left out."""
+        inputs, own = inputs_of_scene(path)
+        return _restored(_checked_inputs(inputs), own if units is None else UnitSystem.read(units), {})
+
+    def replace(self, **inputs: Any) -> "Machine":
+        """The machine with other inputs; None takes one away. `units=` changes the units alone."""
+        units = inputs.pop("units", self.units)
+        other = {"omega": "omega0", "omega0": "omega"}
+        gone = {key for key, value in inputs.items() if value is None}
+        gone |= {other[key] for key in inputs if key in other and inputs[key] is not None}
+        kept = {key: value for key, value in self.items() if key not in gone}
+        system = UnitSystem.read(units)
+        warn_of_slips(inputs, system)
+        new = {key: in_si(system, key, value) for key, value in inputs.items() if value is not None}
+        given = {**self.in_units(), **inputs} if system == self.units else inputs
+        return _restored(_checked_inputs({**kept, **new}), system, given)
+
+    def in_units(self) -> dict[str, Any]:
+        """The inputs in the units of the machine: numbers as they were given."""
+        found = {}
+        for name, value in self._inputs.items():
+            own = self._given.get(name)
+            if isinstance(own, (int, float)) and not isinstance(own, bool):
+                found[name] = own
+            elif name == "branch" or callable(value):
+                found[name] = value
+            else:
+                found[name] = self.units.of(name).shown(value)
+        return found
+
+    @property
+    def plot(self) -> Plots:
+        """Pictures: `plot("a_C")` over the crank angle, `plot.mechanism()` and others of `desaxe.plot`."""
+        return Plots(self)
+
+    def scene(self, outputs: Any = ("Y", "V_C", "a_C"), **more: Any) -> Any:
+        """A scene of this machine: its inputs, the outputs, and what else the keys of a scene file say.
+
+        outputs  names of quantities over the crank angle
+        theta    the crank angles: a number, a list, or a range, by default that of a turn,
+                 {"start": 0, "stop": "360 deg", "num": 721}
+        more     further keys of a scene, such as title="...", peak=[...], results={"data": "values.nc"}
+
+        Needs the extra `scene`. `press.scene("T_in").run()` computes it.
+        """
+        return scene_of(self, outputs, more)
+
+    def to_scene(self, path: str | PathLike[str], outputs: Any = ("Y", "V_C", "a_C"), **more: Any) -> Any:
+        """Write the scene of this machine as a TOML file for `Machine.read` and `desaxe run`; its path.
+
+        Other arguments are those of `scene`. The file stands for the same doubles. Raises TypeError for a
+        load that is a function, which is no data.
+        """
+        return write_scene(self, path, outputs, more)
+
+    def __getitem__(self, name: str) -> Any:
+        return self._inputs[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._inputs)
+
+    def __len__(self) -> int:
+        return len(self._inputs)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"a machine is frozen; machine.replace({name}=...) gives another one")
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"a machine is frozen; machine.replace({name}=None) gives another one")
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Machine):
+            return NotImplemented
+        return self._key() == other._key() and self.units == other.units
+
+    def __hash__(self) -> int:
+        return hash((self._key(), self.units))
+
+    def _key(self) -> frozenset[Any]:
+        return frozenset(
+            (name, tuple(value.tolist()) if hasattr(value, "tolist") else value)
+            for name, value in self._inputs.items()
+        )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (self._inputs, self.units, self._given)
+
+    def __repr__(self) -> str:
+        return text_of(self)
+
+    def _repr_html_(self) -> str:
+        return html_of(self)
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *METHODS})
+
+
+for _name in METHODS:
+    setattr(Machine, _name, Method(_name))
+
+
+def _restored(inputs: dict[str, Any], units: UnitSystem, given: Mapping[str, Any]) -> Machine:
+    """A machine of checked inputs, such as one out of a pickle."""
+    machine = Machine.__new__(Machine)
+    machine._set(inputs, units, given)
+    return machine
+
+
+def _checked_inputs(si: Mapping[str, Any]) -> dict[str, Any]:
+    """Inputs in the order of the catalogue, branch last where it is -1; errors name what is wrong."""
+    if "theta" in si:
+        raise TypeError(
+            "Machine: theta is where the crank is: give it to a call, machine.evaluate(..., theta=)"
+        )
+    check_inputs("Machine", si, [name for name in (*INPUTS, "branch") if name != "theta"])
+    branch = si.get("branch", 1)
+    check_common(si, branch)
+    found = {name: _checked(name, si[name]) for name in INPUTS if si.get(name) is not None}
+    return {**found, "branch": -1} if branch == -1 else found
+
+
+def _checked(name: str, value: Any) -> Any:
+    """An input in SI units: a float, a frozen array, or a load as it is."""
+    if name in LOADS and callable(value):
+        return value
+    number = as_number(name, value, (name,), ("Machine",))
+    if number is not None:
+        return MachineSpeed(number) if name in SPEEDS else number
+    from ..evaluation.arrays import as_array
+
+    array = as_array(name, value, (name,), ("Machine",))
+    if array.ndim != 1:
+        raise ValueError(
+            f"Machine: {name} is a number or an array of one dimension, got the shape {array.shape}"
+        )
+    bad = next((v for v in array.tolist() if not is_good(name, v)), None)
+    if bad is not None or not array.size:
+        raise ValueError(f"{name} = {bad!r}: it must be {INPUTS[name].limit}")
+    array = array.copy()
+    array.flags.writeable = False
+    return array

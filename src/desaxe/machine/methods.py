@@ -1,0 +1,147 @@
+"""How a public function becomes a method of a machine: its signature and documentation, the inputs filled in.
+
+A function of this table is a method of the same name. To add one, add its name.
+"""
+
+from collections.abc import Callable, Mapping
+from functools import wraps
+from importlib import import_module
+from inspect import Parameter, Signature, signature
+from typing import Any
+
+from ..mechanism.slips import warn_of_slips
+from .arguments import in_si
+from .results import Shown, shown
+
+# Public function -> its module; what it takes that no machine gives, because it is what is looked for.
+METHODS = {
+    "evaluate": "desaxe.evaluation.evaluate",
+    "grid": "desaxe.evaluation.grid",
+    "peak": "desaxe.peaks.peak",
+    "events": "desaxe.design.events.events",
+    "feasibility": "desaxe.design.feasibility.feasibility",
+    "inverse": "desaxe.design.inverse",
+    "simulate": "desaxe.simulation.simulate",
+    "optimize": "desaxe.design.optimisation.optimize",
+    "synthesize": "desaxe.design.synthesis.synthesize",
+    "design_map": "desaxe.design.design_map",
+    "tolerance": "desaxe.design.tolerance.tolerance",
+    "enclose": "desaxe.enclosure.enclose",
+    "harmonics": "desaxe.design.turn.harmonics",
+    "counterweight": "desaxe.design.turn.counterweight",
+    "flywheel": "desaxe.design.turn.flywheel",
+    "drive": "desaxe.design.drive.drive",
+    "explore": "desaxe.scenes.explorer.explore",
+}
+NOT_FILLED = {"synthesize": ("AB", "BC", "omega0"), "explore": ("source",)}
+EITHER = {"omega": "omega0", "omega0": "omega"}  # a given state takes the place of the law, and back
+INTRODUCTION = "`desaxe.{name}` with the inputs of this machine; those given here replace them."
+UNITS = """
+    Plain numbers and answers are in the units of the machine.
+
+    as_quantity  True: numbers with units come as pint quantities (extra `units`)
+"""
+
+
+class Method:
+    """A public function as a method, made when it is first looked up."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+    def __get__(self, instance: Any, owner: type) -> Any:
+        method = method_of(import_function(self.name), self.name)
+        setattr(owner, self.name, method)
+        return method.__get__(instance, owner) if instance is not None else method
+
+
+def import_function(name: str) -> Callable[..., Any]:
+    """The public function of this name."""
+    function: Callable[..., Any] = getattr(import_module(METHODS[name]), name)
+    return function
+
+
+def method_of(function: Callable[..., Any], name: str) -> Callable[..., Any]:
+    """A function as a method of a machine."""
+    own = signature(function)
+
+    @wraps(function)
+    def method(self: Any, *args: Any, as_quantity: bool = False, **inputs: Any) -> Any:
+        return call(self, name, function, own, args, inputs, as_quantity)
+
+    method.__qualname__ = f"Machine.{name}"
+    method.__doc__ = f"{INTRODUCTION.format(name=name)}\n{UNITS}\n    {function.__doc__}"
+    method.__dict__["__signature__"] = _signature(own, name)
+    return method
+
+
+def _signature(own: Signature, name: str) -> Signature:
+    """The signature of the method: nothing that a machine gives is required."""
+    parameters = [Parameter("self", Parameter.POSITIONAL_OR_KEYWORD)]
+    for parameter in own.parameters.values():
+        if parameter.name in NOT_FILLED.get(name, ()) and parameter.kind is not Parameter.KEYWORD_ONLY:
+            continue
+        given = parameter.kind is Parameter.KEYWORD_ONLY and parameter.name in FILLED
+        parameters.append(parameter.replace(default=None) if given else parameter)
+    extra = Parameter("as_quantity", Parameter.KEYWORD_ONLY, default=False, annotation=bool)
+    last = next((i for i, p in enumerate(parameters) if p.kind is Parameter.VAR_KEYWORD), len(parameters))
+    parameters.insert(last, extra)
+    return own.replace(parameters=parameters)
+
+
+FILLED = ("ec", "AB", "BC")
+
+
+def call(
+    machine: Any,
+    name: str,
+    function: Callable[..., Any],
+    own: Signature,
+    args: tuple[Any, ...],
+    inputs: Mapping[str, Any],
+    as_quantity: bool,
+) -> Any:
+    """Call a public function with a machine's inputs and those given, which replace them."""
+    kinds = Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD
+    dropped = NOT_FILLED.get(name, ())
+    positional = [p.name for p in own.parameters.values() if p.kind in kinds and p.name not in dropped]
+    if len(args) > len(positional):
+        raise TypeError(f"{name}() takes {len(positional)} arguments without a name, got {len(args)}")
+    twice = [key for key in positional[: len(args)] if key in inputs]
+    if twice:
+        raise TypeError(f"{name}() got two values of {twice[0]}")
+    system = machine.units
+    named = {**dict(zip(positional, args, strict=False)), **inputs}
+    warn_of_slips(named, system, stacklevel=4)
+    given = {key: in_si(system, key, value) for key, value in named.items()}
+    found = function(**given, **filled(machine, name, own, given))
+    if not system and not as_quantity:
+        return found
+    result = shown(name, found, {**machine.in_units(), **named}, Shown(system, as_quantity))
+    return _delivered(result, given.get("out"))
+
+
+def filled(machine: Mapping[str, Any], name: str, own: Signature, given: Mapping[str, Any]) -> dict[str, Any]:
+    """The inputs of a machine that a function takes and that are not given in this call."""
+    anything = any(p.kind is Parameter.VAR_KEYWORD for p in own.parameters.values())
+    free = given.get("over") or ()
+    left = {*given, *(EITHER[key] for key in (*given, *free) if key in EITHER), *free}
+    left.update(NOT_FILLED.get(name, ()))
+    return {
+        key: value
+        for key, value in machine.items()
+        if key not in left and (anything or key in own.parameters)
+    }
+
+
+def _delivered(result: Any, out: Any) -> Any:
+    """The answer where the caller wants it: arrays that were filled in SI units hold those of the machine."""
+    if out is None:
+        return result
+    if not isinstance(result, dict):
+        out[...] = result
+        return out
+    arrays = out if isinstance(out, Mapping) else {next(iter(result)): out}
+    for key, array in arrays.items():
+        array[...] = result[key]
+    return dict(arrays)

@@ -1,0 +1,107 @@
+"""Pictures of a machine: `machine.plot("a_C")`, and those of `desaxe.plot` with its inputs filled in."""
+
+from collections.abc import Mapping, Sequence
+from math import pi
+from typing import Any
+
+from .. import plot
+from .arguments import in_si
+
+ANGLES = 721  # of a turn
+
+
+class Plots:
+    """Pictures of one machine, in its units; each returns what it drew (extra `plot`).
+
+    Called with the name of a quantity it draws its curve over the crank angle, several one above the other.
+    """
+
+    __slots__ = ("_machine",)
+
+    def __init__(self, machine: Any) -> None:
+        self._machine = machine
+
+    def __call__(
+        self, names: str | Sequence[str], *, family: str | None = None, ax: Any = None, **inputs: Any
+    ) -> Any:
+        """Draw quantities over the crank angle: see `desaxe.plot.curves`, for several `desaxe.plot.panels`.
+
+        names   a quantity, or several that are drawn one above the other
+        inputs  theta= for other angles than a turn; of a list of another input each value has its curve
+        """
+        dataset = self._over_theta(names, inputs)
+        if isinstance(names, str):
+            return plot.curves(dataset, names, family=family, ax=ax)
+        return plot.panels(dataset, list(names), family=family, ax=ax)
+
+    def polar(
+        self, name: str | tuple[str, str], *, family: str | None = None, ax: Any = None, **inputs: Any
+    ) -> Any:
+        """Draw a quantity, or the magnitude of a vector, in polar coordinates: see `desaxe.plot.polar`."""
+        names = [name] if isinstance(name, str) else list(name)
+        dataset = self._over_theta(names, inputs)
+        turning = self._machine.replace(units=None).grid(names, **self._in_si(inputs)).theta
+        return plot.polar(dataset.assign_coords(theta=turning), name, family=family, ax=ax)
+
+    def mechanism(self, theta: Any = "60 deg", *, ax: Any = None) -> Any:
+        """Draw the machine to scale at a crank angle: see `desaxe.plot.mechanism`."""
+        lengths = {key: self._machine[key] for key in ("ec", "AB", "BC", "branch") if key in self._machine}
+        return plot.mechanism(theta=in_si(self._machine.units, "theta", theta), ax=ax, **lengths)
+
+    def animate(
+        self, name: str | None = None, *, frames: int = 60, seconds: float = 3.0, ax: Any = None
+    ) -> Any:
+        """The machine as it turns, beside a quantity's curve: see `desaxe.plot.animate`."""
+        names = ["Y"] if name is None else [name]
+        dataset = self._machine.replace(units=None).grid(names, **self._in_si({}))
+        return plot.animate(dataset, name, frames=frames, seconds=seconds, ax=ax)
+
+    def tornado(
+        self, name: str, changes: Mapping[str, Any], *, kind: str = "absmax", ax: Any = None, **inputs: Any
+    ) -> Any:
+        """Draw what changes of the inputs do to a peak over the crank angle: see `desaxe.plot.tornado`.
+
+        changes  dict input -> half its range, in the units of the machine
+        """
+        machine = self._machine
+        steps = {
+            key: value
+            if isinstance(value, str)
+            else f"{value!r} {machine.units.of(key).unit}".removesuffix(" 1")
+            for key, value in changes.items()
+        }
+        peak = machine.replace(units=None).peak(name, kind=kind, **self._in_si(inputs, angles=False))
+        return plot.tornado(peak, steps, name=name, ax=ax)
+
+    def design_map(
+        self, name: Any, *, x: str | None = None, y: str | None = None, ax: Any = None, **inputs: Any
+    ) -> Any:
+        """Draw a quantity of designs over two inputs: see `desaxe.plot.design_map`.
+
+        name    such as "stroke" or ("absmax", "a_C")
+        inputs  two of them, each a list of values
+        """
+        dataset = self._machine.design_map([name], **inputs)
+        label = name if isinstance(name, str) else "_".join(name)
+        return plot.design_map(dataset, label, x=x, y=y, ax=ax)
+
+    def drive(self, *, ax: Any = None, **inputs: Any) -> Any:
+        """Draw the drive torque over a turn, and the speed with the flywheel: see `desaxe.plot.drive`."""
+        return plot.drive(self._machine.drive(**inputs), ax=ax)
+
+    def _over_theta(self, names: str | Sequence[str], inputs: Mapping[str, Any]) -> Any:
+        """The quantities over the crank angle, labelled, in the units of the machine."""
+        if "theta" in inputs:
+            return self._machine.grid(names, **inputs)
+        return self._machine.grid(names, **inputs, theta=self._machine.units.of("theta").shown(_turn()))
+
+    def _in_si(self, inputs: Mapping[str, Any], angles: bool = True) -> dict[str, Any]:
+        """The inputs of a call in SI units, and the angles of a turn."""
+        found = {key: in_si(self._machine.units, key, value) for key, value in inputs.items()}
+        return {**found, "theta": found.get("theta", _turn())} if angles else found
+
+
+def _turn() -> Any:
+    import numpy as np
+
+    return np.linspace(0.0, 2.0 * pi, ANGLES)

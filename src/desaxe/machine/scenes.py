@@ -1,0 +1,135 @@
+"""A machine from a scene, and a scene from a machine."""
+
+import json
+from collections.abc import Iterable, Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from ..mechanism.inputs import INPUTS
+from ..mechanism.unit_system import SI, UnitSystem
+from ..mechanism.units import exact
+from ..scenes.scene import scene
+from ..scenes.schema import SceneError
+
+SECTIONS = {
+    "mechanism": ("AB", "BC", "ec", "branch"),
+    "motion": ("theta", "omega0", "omega", "alpha"),
+    "masses": ("m_crank", "m_rod", "m_slider", "I_crank", "I_rod", "r_crank", "r_rod"),
+    "loads": ("F_X", "F_Y", "g_X", "g_Y", "mu"),
+}
+TURN = {"start": 0, "stop": "360 deg", "num": 721}
+
+
+def is_scene(source: Mapping[str, Any]) -> bool:
+    """True for a scene as a mapping: it has sections."""
+    return any(isinstance(source.get(section), Mapping) for section in SECTIONS)
+
+
+def inputs_of_scene(source: str | PathLike[str] | Mapping[str, Any]) -> tuple[dict[str, Any], UnitSystem]:
+    """The inputs of a scene in SI units, without crank angles, and its units."""
+    found = scene(source)
+    inputs: dict[str, Any] = {
+        name: list(value) if isinstance(value, tuple) else value
+        for name, value in found.inputs.items()
+        if name != "theta"
+    }
+    if found.content.branch == -1:
+        inputs["branch"] = -1
+    return inputs, getattr(found.content, "units", SI)
+
+
+def scene_of(machine: Mapping[str, Any], outputs: Any, more: Mapping[str, Any]) -> Any:
+    """The scene of a machine."""
+    return scene(_data(machine, outputs, more))
+
+
+def write_scene(
+    machine: Mapping[str, Any], path: str | PathLike[str], outputs: Any, more: Mapping[str, Any]
+) -> Path:
+    """Write the scene of a machine as TOML, once it is known to be right."""
+    data = _data(machine, outputs, more)
+    scene(data)
+    place = Path(path)
+    place.write_text(_toml(data), encoding="utf-8")
+    return place
+
+
+def _data(machine: Any, outputs: Any, more: Mapping[str, Any]) -> dict[str, Any]:
+    """The scene as plain data; inputs are texts with units that stand for the same doubles."""
+    other = dict(more)
+    theta = other.pop("theta", TURN)
+    data: dict[str, Any] = {"title": other.pop("title", "")} if "title" in other else {}
+    data["outputs"] = [outputs] if isinstance(outputs, str) else list(outputs)
+    if machine.units:
+        data["units"] = dict(machine.units.units)
+    for section, names in SECTIONS.items():
+        values = {name: _written(machine, name) for name in names if name in machine}
+        if section == "motion":
+            values = {"theta": theta, **values}
+        if values:
+            data[section] = values
+    return {**data, **other}
+
+
+def _written(machine: Any, name: str) -> Any:
+    value = machine[name]
+    if name == "branch":
+        return value
+    if callable(value):
+        raise TypeError(f"{name}: a function is no data, and cannot stand in a scene")
+    if hasattr(value, "tolist"):
+        return [_number(machine.units, name, part) for part in value.tolist()]
+    return _number(machine.units, name, value)
+
+
+def _number(units: UnitSystem, name: str, value: float) -> float | str:
+    """A number in SI units as it stands in a file: in the machine's units where that is the same double."""
+    conversion = units.of(name)
+    value = float(value)
+    if conversion.si == 1:
+        return value
+    text = f"{conversion.shown(value):.15g} {conversion.unit}"
+    return text if float(exact(name, text, INPUTS[name].unit)) == value else f"{value!r} {INPUTS[name].unit}"
+
+
+def _toml(data: Mapping[str, Any]) -> str:
+    """Plain data as TOML: values first, then tables, then lists of tables."""
+    lines = [f"{key} = {_value(value)}" for key, value in data.items() if not _is_table(value)]
+    for key, value in data.items():
+        if isinstance(value, Mapping):
+            lines += ["", f"[{key}]", *(f"{_key(name)} = {_value(part)}" for name, part in value.items())]
+        elif _is_table(value):
+            for table in value:
+                lines += [
+                    "",
+                    f"[[{key}]]",
+                    *(f"{_key(name)} = {_value(part)}" for name, part in table.items()),
+                ]
+    return "\n".join(lines).lstrip("\n") + "\n"
+
+
+def _is_table(value: Any) -> bool:
+    return isinstance(value, Mapping) or (
+        isinstance(value, (list, tuple))
+        and len(value) > 0
+        and all(isinstance(part, Mapping) for part in value)
+    )
+
+
+def _key(name: str) -> str:
+    return name if name.replace("_", "").isalnum() else json.dumps(name)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{_key(name)} = {_value(part)}" for name, part in value.items()) + " }"
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, (bool, str)):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, Iterable):
+        return "[" + ", ".join(_value(part) for part in value) + "]"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    raise SceneError(f"{value!r} cannot stand in a scene file")

@@ -1,0 +1,69 @@
+"""Plain numbers that are almost surely in another unit than they are taken for, such as a crank of 125 m.
+
+A warning, never an error, for single numbers that a person has typed: never in calls with arrays.
+"""
+
+import warnings
+from collections.abc import Mapping
+from math import isclose, isfinite, pi
+from typing import Any
+
+from .unit_system import SI, UnitSystem
+
+LENGTHS = ("ec", "AB", "BC", "r_crank", "r_rod")
+LARGEST = {
+    **dict.fromkeys(LENGTHS, 20.0),
+    "omega0": 1000.0,
+    "omega": 1000.0,
+    **dict.fromkeys(("m_crank", "m_rod", "m_slider"), 1e5),
+    **dict.fromkeys(("g_X", "g_Y"), 100.0),
+    "mu": 5.0,
+}
+SMALLEST = dict.fromkeys(("g_X", "g_Y"), 0.1)
+MOST_TURNS = 2.0
+# What to write instead, of the number that was written.
+REMEDIES = {
+    "theta": '"{number:.6g} deg"',
+    **dict.fromkeys(LENGTHS, '"{number:.6g} mm"'),
+    **dict.fromkeys(("omega0", "omega"), '"{number:.6g} rpm"'),
+    **dict.fromkeys(("m_crank", "m_rod", "m_slider"), '"{number:.6g} g"'),
+    **dict.fromkeys(("g_X", "g_Y"), '"{earth:.2f} m/s^2"'),
+    "mu": "{hundredth:.6g}",
+}
+
+
+class UnitWarning(UserWarning):
+    """A number that is almost surely meant in another unit than it is taken for."""
+
+
+def warn_of_slips(written: Mapping[str, Any], units: UnitSystem = SI, stacklevel: int = 3) -> None:
+    """Warn once of all plain numbers, by input, that are almost surely slips; `units` are what they mean."""
+    found = [told for name, value in written.items() if (told := slip(name, value, units))]
+    if found:
+        message = f"almost surely a slip: {'; '.join(found)}"
+        warnings.warn(message, UnitWarning, stacklevel=stacklevel)
+
+
+def slip(name: str, value: Any, units: UnitSystem = SI) -> str:
+    """What is to be said of a number; nothing of one that can be meant, nor of texts and arrays."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not value or not isfinite(value):
+        return ""
+    conversion = units.of(name) if name in REMEDIES else None
+    if conversion is None:
+        return ""
+    si = abs(conversion.to_si(float(value)))
+    if name == "theta":
+        wrong = si > 2.0 * pi * MOST_TURNS and conversion.unit == "rad" and not _is_share_of_turn(si)
+    else:
+        wrong = si > LARGEST[name] or si < SMALLEST.get(name, 0.0)
+    if not wrong:
+        return ""
+    earth = 9.81 if value > 0 else -9.81
+    remedy = REMEDIES[name].format(number=value, earth=earth, hundredth=value / 100)
+    return f"{name} = {value:.6g} {conversion.unit}".removesuffix(" 1") + f", write {name} = {remedy}"
+
+
+def _is_share_of_turn(angle: float) -> bool:
+    """True for angles that somebody has computed with pi: multiples of 15 degrees."""
+    share = angle / (pi / 12.0)
+    return isclose(share, round(share), rel_tol=1e-12)

@@ -1,0 +1,256 @@
+"""Units that somebody works in: what plain numbers mean at the border, and what answers are in.
+
+    UnitSystem.read("mm, deg, rpm")
+    UnitSystem.read({"length": "mm", "torque": "kN m", "a_C": "standard_gravity"})
+
+A dimension that is not named stays in SI units and radians. Velocities, accelerations and jerks follow the
+length that is named, per second; a quantity may have a unit of its own. A sensitivity is a quotient of units.
+"""
+
+import re
+from collections.abc import Mapping
+from decimal import Decimal, localcontext
+from fractions import Fraction
+from functools import cached_property
+from math import isfinite
+from typing import Any, NamedTuple
+
+from ..support.quantity_text import spelled
+from .catalogue import quantity
+from .inputs import INPUTS
+from .names import parts
+from .units import exact
+
+DIMENSIONS = {
+    "length": "m",
+    "angle": "rad",
+    "time": "s",
+    "mass": "kg",
+    "velocity": "m/s",
+    "acceleration": "m/s^2",
+    "jerk": "m/s^3",
+    "angular speed": "rad/s",
+    "angular acceleration": "rad/s^2",
+    "force": "N",
+    "torque": "N*m",
+    "energy": "J",
+    "power": "W",
+    "inertia": "kg*m^2",
+}
+PER_SECOND = {"m/s": "/s", "m/s^2": "/s^2", "m/s^3": "/s^3"}
+# Units of inputs and results that are no quantities of the catalogue.
+OTHERS = {
+    **dict.fromkeys(("Y_outer", "Y_inner", "stroke", "margin"), "m"),
+    **dict.fromkeys(("V_outward", "V_inward"), "m/s"),
+    **dict.fromkeys(
+        (
+            "theta0", "theta_outer", "theta_inner", "advance_angle", "return_angle", "max_pressure_angle",
+            "min_pressure_angle", "max_transmission_angle", "min_transmission_angle", "until", "phase",
+            "angle", "theta_intervals",
+        ),
+        "rad",
+    ),
+    "omega_start": "rad/s",
+    **dict.fromkeys(("t", "t_end", "t_last", "times", "max_step", "period"), "s"),
+    **dict.fromkeys(
+        (
+            "torque", "torque_mean", "torque_rms", "torque_peak", "starting_torque", "flywheel_torque",
+            "mean_torque", "max_torque", "min_torque", "ripple",
+        ),
+        "N*m",
+    ),
+    **dict.fromkeys(("work", "work_in", "work_out", "energy_fluctuation"), "J"),
+    **dict.fromkeys(("power_mean", "power_peak"), "W"),
+    **dict.fromkeys(("inertia", "inertia_first_order", "flywheel_inertia"), "kg*m^2"),
+    "radius": "m",
+    "mass": "kg",
+    "product": "kg*m",
+    "peak_a_C": "m/s^2",
+}  # fmt: skip
+
+
+class Conversion(NamedTuple):
+    """The unit in which something is shown, and what one of it is in the SI unit, exactly."""
+
+    unit: str
+    si: Fraction = Fraction(1)
+
+    def shown(self, value: Any) -> Any:
+        """A number or array in SI units, in the unit shown."""
+        return value if self.si == 1 else _scaled(value, 1 / self.si)
+
+    def to_si(self, value: Any) -> Any:
+        """A number or array in the unit shown, in SI units: the double nearest to it."""
+        return value if self.si == 1 else _scaled(value, self.si)
+
+    def per(self, others: "list[Conversion]") -> "Conversion":
+        """The conversion of a derivative."""
+        si = self.si
+        for other in others:
+            si /= other.si
+        below = [
+            f"({other.unit})" if "/" in other.unit or "*" in other.unit else other.unit for other in others
+        ]
+        return Conversion("/".join([self.unit, *(unit for unit in below if unit != "1")]), si)
+
+
+class UnitSystem:
+    """The units of the dimensions and quantities that are named; everything else is in SI units."""
+
+    def __init__(self, units: Mapping[str, str]) -> None:
+        self.units = dict(units)
+
+    @classmethod
+    def read(cls, units: "str | Mapping[str, str] | UnitSystem | None") -> "UnitSystem":
+        """The units that a text such as "mm, deg, rpm" or a mapping says; ValueError for any other."""
+        if isinstance(units, UnitSystem):
+            return units
+        if units is None or isinstance(units, str):
+            named = [unit.strip() for unit in (units or "").split(",") if unit.strip()]
+            rows = [(_dimension_of(unit), unit) for unit in named]
+        elif isinstance(units, Mapping):
+            rows = [(_key(name), unit) for name, unit in units.items()]
+        else:
+            raise TypeError(f'units = {units!r}: a text such as "mm, deg, rpm" or a mapping is wanted')
+        found: dict[str, str] = {}
+        for name, unit in rows:
+            if name in found:
+                raise ValueError(f"units: two units of {name}, {found[name]!r} and {unit!r}")
+            if not isinstance(unit, str):
+                raise TypeError(f"units: {name} = {unit!r}, a text such as 'mm' is wanted")
+            found[name] = spelled(unit.strip())
+            _si_of(name, found[name], DIMENSIONS.get(name) or _si_unit(name))
+        return cls(found)
+
+    def __bool__(self) -> bool:
+        return bool(self.units)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, UnitSystem) and self.units == other.units
+
+    def __hash__(self) -> int:
+        return hash(frozenset(self.units.items()))
+
+    def __repr__(self) -> str:
+        if all(name in DIMENSIONS for name in self.units):
+            return repr(", ".join(self.units.values()))
+        return repr(self.units)
+
+    def of_unit(self, si: str) -> Conversion:
+        """What something with this SI unit is shown in."""
+        return self._known.get(si) or Conversion(si)
+
+    def of(self, name: str) -> Conversion:
+        """What a quantity, sensitivity, input or measure of a design is shown in."""
+        if name in self._own:
+            return self._own[name]
+        base, by = parts(name)
+        if by:
+            found = self.of(base).per([self.of(parameter) for parameter in by])
+            return Conversion(_simplified(name, found.unit)) if found.si == 1 else found
+        return self.of_unit(_si_unit(name))
+
+    def slope(self, name: str | Conversion, by: str) -> Conversion:
+        """What a derivative of something by an input is shown in."""
+        return (self.of(name) if isinstance(name, str) else name).per([self.of(by)])
+
+    @cached_property
+    def _own(self) -> dict[str, Conversion]:
+        """The conversions of quantities with units of their own."""
+        return {
+            name: Conversion(unit, _si_of(name, unit, _si_unit(name)))
+            for name, unit in self.units.items()
+            if name not in DIMENSIONS
+        }
+
+    @cached_property
+    def _known(self) -> dict[str, Conversion]:
+        """The conversions by SI unit."""
+        found = {}
+        length = self.units.get("length")
+        if length is not None:
+            si = _si_of("length", length, "m")
+            found = {unit: Conversion(f"{length}{tail}", si) for unit, tail in PER_SECOND.items()}
+        for name, unit in self.units.items():
+            if name in DIMENSIONS:
+                found[DIMENSIONS[name]] = Conversion(unit, _si_of(name, unit, DIMENSIONS[name]))
+        return found
+
+
+SI = UnitSystem({})
+
+
+def _key(name: Any) -> str:
+    """A dimension or quantity by its name; ValueError with those there are."""
+    if not isinstance(name, str):
+        raise TypeError(f"units: the name of a dimension is a text, got {name!r}")
+    words = name.replace("_", " ")
+    if words in DIMENSIONS:
+        return words
+    _si_unit(name)
+    return name
+
+
+def _si_unit(name: str) -> str:
+    """The SI unit of a quantity, input or measure."""
+    if name in INPUTS:
+        return INPUTS[name].unit
+    if name in OTHERS:
+        return OTHERS[name]
+    if name.startswith("theta_"):
+        return "rad"
+    try:
+        return quantity(name, "omega" in parts(name)[1]).unit
+    except ValueError as error:
+        there = ", ".join(DIMENSIONS)
+        raise ValueError(
+            f"units: {name!r} is neither a dimension ({there}) nor a quantity: {error}"
+        ) from None
+
+
+def _simplified(name: str, quotient: str) -> str:
+    """The SI unit of a sensitivity that no choice of units changes, as the catalogue writes it."""
+    try:
+        return _si_unit(name)
+    except ValueError:
+        return quotient
+
+
+def _dimension_of(unit: str) -> str:
+    """The dimension that a unit is of; a product such as N m is a torque, J an energy."""
+    fitting = []
+    for name, si in DIMENSIONS.items():
+        try:
+            _si_of(name, unit, si)
+        except ValueError as error:
+            if "unknown unit" in str(error) or "it must be a number" in str(error):
+                raise
+        else:
+            fitting.append(name)
+    if not fitting:
+        raise ValueError(f"units: {unit!r} is none of {', '.join(DIMENSIONS)}")
+    product = re.search(r"[^\W\d_][ *.·][^\W\d_]", unit) is not None
+    return fitting[-1] if len(fitting) > 1 and not product else fitting[0]
+
+
+def _si_of(name: str, unit: str, si: str) -> Fraction:
+    """What one of a unit is in the SI unit, exactly; ValueError where it is of another dimension."""
+    if unit == si:
+        return Fraction(1)
+    return exact(f"units: {name}", f"1 {unit}", si)
+
+
+def _scaled(value: Any, factor: Fraction) -> Any:
+    """A number times an exact factor, rounded once; of arrays in extended precision where there is such."""
+    if isinstance(value, (int, float)):
+        return float(Fraction(value) * factor) if isfinite(value) else float(value)
+    import numpy as np
+
+    wide = np.asarray(value, dtype=np.longdouble)
+    if factor.numerator == 1:
+        scaled = wide / np.longdouble(str(factor.denominator))
+    else:
+        with localcontext(prec=30):
+            scaled = wide * np.longdouble(str(Decimal(factor.numerator) / Decimal(factor.denominator)))
+    result = np.asarray(scaled, dtype=np.float64)
+    return result if result.ndim else float(result)

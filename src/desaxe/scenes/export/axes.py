@@ -1,0 +1,81 @@
+"""The axes of a scene in a written module: a range by its ends and step, a list by its values."""
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from textwrap import wrap
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+SPACED = '''def spaced(first, rest, step, num):
+    """num values from first + rest on, correctly rounded; step is in parts, whose products are exact."""
+    k = arange(num, dtype=float64)
+    wide, narrow = k * step[0], k * step[1]
+    total = wide + narrow
+    lost = narrow - (total - wide)
+    value = first + total
+    of_total = value - first
+    more = (first - (value - of_total)) + (total - of_total)
+    return value + (more + (lost + (k * step[2] + rest)))
+'''
+_DIGITS = 26  # of each of the first two parts: times a whole number below 2^27 they are exact
+
+
+def axes_text(axes: Mapping[str, Sequence[float]]) -> str:
+    """`AXES`, and the function that spreads their values."""
+    rows = ["# The scene's axes, the outermost first.", "AXES = {"]
+    for name, values in axes.items():
+        rule = _rule(values)
+        if rule:
+            rows.append(f'    "{name}": {rule},')
+            continue
+        rows.append(f'    "{name}": array([')
+        rows += [f"        {row}" for row in wrap(", ".join(map(repr, values)) + ",", 90)]
+        rows.append("    ]),")
+    text = "\n".join([*rows, "}"])
+    return f"{SPACED}\n\n{text}" if "spaced(" in text else text
+
+
+def _rule(values: Sequence[float]) -> str:
+    """An expression that gives just these values, if there is one."""
+    array = np.array(values)
+    if len(values) < 3:
+        return ""
+    if np.array_equal(array, np.linspace(values[0], values[-1], len(values))):
+        return f"linspace({values[0]!r}, {values[-1]!r}, {len(values)})"
+    start, stop = getattr(values, "start", None), getattr(values, "stop", None)
+    if start is None or stop is None:
+        start, stop = Fraction(values[0]), Fraction(values[-1])
+    first, rest, step = _in_parts(start, (stop - start) / (len(values) - 1))
+    if not np.array_equal(array, _spaced(first, rest, step, len(values))):
+        return ""
+    return f"spaced({first!r}, {rest!r}, {step!r}, {len(values)})"
+
+
+def _in_parts(start: Fraction, step: Fraction) -> tuple[float, float, tuple[float, float, float]]:
+    """The first value and what rounding takes from it; the step as three doubles."""
+    first = float(start)
+    wide = _short(step)
+    narrow = _short(step - Fraction(wide))
+    return (
+        first,
+        float(start - Fraction(first)),
+        (wide, narrow, float(step - Fraction(wide) - Fraction(narrow))),
+    )
+
+
+def _short(value: Fraction) -> float:
+    """The value with few digits."""
+    if not value:
+        return 0.0
+    exponent = np.frexp(float(value))[1]
+    scale = Fraction(2) ** int(_DIGITS - exponent)
+    return float(Fraction(int(value * scale)) / scale)
+
+
+def _spaced(first: float, rest: float, step: tuple[float, float, float], num: int) -> NDArray[np.float64]:
+    scope: dict[str, Any] = {"arange": np.arange, "float64": np.float64}
+    exec(SPACED, scope)
+    found: NDArray[np.float64] = scope["spaced"](first, rest, step, num)
+    return found

@@ -1,0 +1,331 @@
+"""Units of a machine and of a scene: round trips, quotients, labels, pint quantities, slips."""
+
+import csv
+import math
+import warnings
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from desaxe.cli import main
+from desaxe.mechanism.units import registry
+from desaxe.scenes.schema import SceneError
+
+SI = {
+    "ec": 0.01, "AB": 0.05, "BC": 0.2, "omega0": "300 rpm", "m_slider": 4.0, "m_crank": 0.5, "F_Y": -600.0,
+    "mu": 0.12,
+}  # fmt: skip
+PLAIN = {**SI, "ec": 10, "AB": 50, "BC": 200, "omega0": 300}
+PRESS = dx.Machine(**PLAIN, units="mm, deg, rpm")
+RPM = 2 * math.pi / 60
+
+
+def si(name, value):
+    """A value with the unit that the machine shows, by pint alone."""
+    unit = PRESS.units.of(name).unit
+    base = dx.quantities()[name].unit
+    return registry().Quantity(value, unit).to(base).magnitude
+
+
+def test_plain_numbers_are_the_doubles_of_texts():
+    assert dict(PRESS) == dict(dx.Machine(**SI))
+    assert PRESS.in_units() == PLAIN
+    assert dx.Machine(AB=350, units="mm")["AB"] == 0.35
+    lengths = dx.Machine(AB=np.arange(1.0, 501.0), units="mm")["AB"]
+    assert lengths.tolist() == [float(f"{k}e-3") for k in range(1, 501)]
+    assert PRESS.replace(ec="12 mm")["ec"] == PRESS.replace(ec=12)["ec"] == 0.012
+    assert PRESS.replace(units="cm").in_units()["AB"] == 5.0
+
+
+@pytest.mark.parametrize(
+    "name", ["Y", "V_C", "a_C", "j_C", "phi", "omega_BC", "alpha_BC", "T_in", "N_C", "a_C_wrt_ec",
+             "T_in_wrt_AB", "a_C_wrt_theta", "V_C_wrt_omega0", "phi_wrt_ec", "kinetic_energy"],
+)  # fmt: skip
+def test_answers_are_those_in_si_units(name):
+    theta = np.array([20.0, 60.0, 200.0])
+    shown = PRESS.evaluate(name, theta=theta)
+    wanted = dx.evaluate(name, theta=np.radians(theta), **SI)
+    np.testing.assert_allclose(si(name, shown), wanted, rtol=1e-13, atol=1e-13 * np.abs(wanted).max())
+    point = PRESS.evaluate(name, theta=60)
+    assert point == pytest.approx(shown[1], rel=1e-12)
+
+
+def test_only_what_is_named_changes():
+    units = PRESS.units
+    assert [units.of(n).unit for n in ("Y", "V_C", "a_C", "phi", "omega_BC")] == [
+        "mm",
+        "mm/s",
+        "mm/s^2",
+        "deg",
+        "rpm",
+    ]
+    assert [units.of(n).unit for n in ("T_in", "F_Y", "alpha", "m_rod", "I_rod")] == [
+        "N*m", "N", "rad/s^2", "kg", "kg*m^2",
+    ]  # fmt: skip
+    assert units.of("a_C_wrt_ec").unit == "1/s^2"
+    assert units.of("T_in_wrt_ec").unit == "N*m/mm"
+    assert units.of("a_C_wrt_theta").unit == "mm/s^2/deg"
+    own = dx.Machine(SI, units={"a_C": "standard_gravity", "torque": "kN m", "energy": "kJ"})
+    assert own.evaluate("a_C", theta=1.0) == pytest.approx(
+        dx.evaluate("a_C", theta=1.0, **SI) / 9.80665, rel=1e-14
+    )
+    assert own.evaluate("T_in", theta=1.0) == pytest.approx(
+        dx.evaluate("T_in", theta=1.0, **SI) / 1e3, rel=1e-14
+    )
+    assert own.drive()["work_in"] == pytest.approx(dx.drive(**SI)["work_in"] / 1e3, rel=1e-14)
+    assert own["AB"] == 0.05
+
+
+def test_designs():
+    shown, plain = PRESS.events(), dx.events(**SI)
+    assert shown["stroke"] == pytest.approx(1e3 * plain["stroke"], rel=1e-14)
+    assert shown["theta_outer"] == pytest.approx(math.degrees(plain["theta_outer"]), rel=1e-14)
+    assert shown["time_ratio"] == plain["time_ratio"]
+    assert shown["gradient"]["stroke"]["ec"] == pytest.approx(plain["gradient"]["stroke"]["ec"], rel=1e-14)
+    assert shown["gradient"]["time_ratio"]["ec"] == pytest.approx(plain["gradient"]["time_ratio"]["ec"] / 1e3)
+    assert PRESS.feasibility()["theta_intervals"] == [(0.0, 360.0)]
+    assert PRESS.feasibility()["margin"] == pytest.approx(140.0)
+    top, wanted = PRESS.peak("T_in", theta=(0, 90)), dx.peak("T_in", theta=(0.0, math.pi / 2), **SI)
+    assert top["value"] == pytest.approx(wanted["value"], rel=1e-14)
+    assert top["theta"] == pytest.approx(math.degrees(wanted["theta"]), rel=1e-13)
+    assert top["gradient"]["omega0"] == pytest.approx(wanted["gradient"]["omega0"] * RPM, rel=1e-13)
+    assert top["gradient"]["AB"] == pytest.approx(wanted["gradient"]["AB"] / 1e3, rel=1e-13)
+    there = PRESS.inverse(Y=200, V_C=1000.0)
+    wanted = dx.inverse(Y=0.2, V_C=1.0, ec=0.01, AB=0.05, BC=0.2)
+    np.testing.assert_allclose(there["theta"], np.degrees(wanted["theta"]), rtol=1e-13)
+    np.testing.assert_allclose(there["omega"], wanted["omega"] / RPM, rtol=1e-13)
+
+
+def test_limits_tolerances_and_ranges():
+    best = PRESS.optimize(maximize="stroke", over={"ec": (0, 60)}, keep={"margin": (100, None)})
+    assert best["ec"] == pytest.approx(50.0)
+    plain = dx.optimize(
+        maximize="stroke",
+        over={"ec": (0, 0.06)},
+        keep={"margin": (0.1, None)},
+        AB=0.05,
+        BC=0.2,
+        omega0="300 rpm",
+    )
+    assert best["value"] == pytest.approx(1e3 * plain["value"], rel=1e-12)
+    assert best["multipliers"]["margin"] == pytest.approx(plain["multipliers"]["margin"], rel=1e-6)
+    box, wanted = (
+        PRESS.enclose("Y", theta=60, ec=(9.9, 10.1)),
+        dx.enclose("Y", **{**SI, "theta": "60 deg", "ec": ("9.9 mm", "10.1 mm")}),
+    )
+    assert box["lower"] == pytest.approx(1e3 * wanted["lower"], rel=1e-14)
+    assert box["inner"][1] == pytest.approx(1e3 * wanted["inner"][1], rel=1e-14)
+    spread = PRESS.tolerance("stroke", ec=(10, 0.1), samples=100, sobol=0)
+    plain = dx.tolerance("stroke", **{**SI, "ec": (0.01, 0.0001)}, samples=100, sobol=0)
+    for part in ("first_order", "monte_carlo"):
+        assert spread[part]["std"] == pytest.approx(1e3 * plain[part]["std"], rel=1e-12)
+    assert spread["monte_carlo"]["percentiles"][50.0] == pytest.approx(
+        1e3 * plain["monte_carlo"]["percentiles"][50.0]
+    )
+    assert spread["contributions"] == pytest.approx(plain["contributions"])
+
+
+def test_motions():
+    shown = PRESS.simulate(
+        torque=50.0, t_end=0.2, theta0=10, omega_start=60, I_crank=0.5, names=["Y"], times=[0.0, 0.1]
+    )
+    bodies = {k: v for k, v in SI.items() if k != "omega0"}
+    plain = dx.simulate(
+        torque=50.0,
+        t_end=0.2,
+        theta0="10 deg",
+        omega_start=60 * RPM,
+        I_crank=0.5,
+        names=["Y"],
+        times=[0.0, 0.1],
+        **bodies,
+    )
+    np.testing.assert_allclose(shown["theta"], np.degrees(plain["theta"]), rtol=1e-10)
+    np.testing.assert_allclose(shown["omega"], plain["omega"] / RPM, rtol=1e-10)
+    np.testing.assert_allclose(shown["Y"], 1e3 * plain["Y"], rtol=1e-10)
+    assert shown["solution"](0.05)["theta"] == pytest.approx(
+        math.degrees(plain["solution"](0.05)["theta"]), rel=1e-9
+    )
+    for one, other in zip(shown["events"], plain["events"], strict=True):
+        assert one.theta == pytest.approx(math.degrees(other.theta), rel=1e-9)
+
+
+def test_labelled_results_carry_their_units():
+    found = PRESS.grid(["a_C", "a_C_wrt_ec"], theta=[0, 60, 90], ec=[0, 10])
+    assert found.theta.values.tolist() == [0.0, 60.0, 90.0]
+    assert found.ec.values.tolist() == [0.0, 10.0]
+    assert found.theta.units == "deg"
+    assert float(found.AB) == 50.0
+    assert found.AB.units == "mm"
+    assert found.a_C.units == "mm/s^2"
+    assert found.margin.units == "mm"
+    assert found.status.dtype == np.int8
+    assert float(found.a_C[1, 1]) == pytest.approx(PRESS.evaluate("a_C", theta=60), rel=1e-12)
+    reduced = PRESS.grid("a_C", theta=np.arange(360.0), ec=[0, 10], reduce={"theta": "absmax"})
+    assert reduced.a_C_absmax.units == "mm/s^2"
+    assert reduced.a_C_absmax_theta.units == "deg"
+    designs = PRESS.design_map(["stroke", ("absmax", "a_C")], ec=[0, 10], derivatives=True)
+    assert designs.stroke.units == "mm"
+    assert designs.absmax_a_C.units == "mm/s^2"
+    assert float(designs.stroke_wrt_ec[1]) == pytest.approx(PRESS.events()["gradient"]["stroke"]["ec"])
+    out = np.empty(2)
+    assert PRESS.evaluate("Y", theta=[0, 90], out=out) is out
+    np.testing.assert_allclose(out, PRESS.evaluate("Y", theta=[0, 90]))
+
+
+def test_pint_quantities():
+    length = PRESS.evaluate("Y", theta=60, as_quantity=True)
+    assert length.to("m").magnitude == pytest.approx(dx.evaluate("Y", theta="60 deg", **SI), rel=1e-14)
+    assert str(length.units) == "millimeter"
+    press = dx.Machine(SI)
+    torque = press.peak("T_in", as_quantity=True)
+    assert torque["value"].check("[mass] * [length]**2 / [time]**2")
+    assert torque["gradient"]["ec"].to("N").magnitude == pytest.approx(
+        dx.peak("T_in", **SI)["gradient"]["ec"]
+    )
+    assert press.drive(as_quantity=True)["power_mean"].to("kW").magnitude == pytest.approx(
+        dx.drive(**SI)["power_mean"] / 1e3
+    )
+    assert press.events(as_quantity=True)["status"] == 0
+    values = press.grid("a_C", theta=[0.0, 1.0], as_quantity=True)
+    assert str(values.a_C.data.units) == "meter / second ** 2"
+
+
+def test_drive_in_units():
+    needs, plain = PRESS.drive(), dx.drive(**SI)
+    assert needs["theta_peak"] == pytest.approx(math.degrees(plain["theta_peak"]), rel=1e-13)
+    assert needs["gradient"]["torque_rms"]["ec"] == pytest.approx(plain["gradient"]["torque_rms"]["ec"] / 1e3)
+    assert "ec = 10 mm" in needs.report()
+    assert "ec = 0.01 m" in plain.report()
+    assert needs.plot()["T_in"].get_xdata().max() == pytest.approx(plain.plot()["T_in"].get_xdata().max())
+
+
+SCENE = """
+title = "press"
+outputs = ["a_C"]
+units = "mm, deg, rpm"
+[mechanism]
+AB = 125
+BC = 350
+ec = [0, "50 mm", 240]
+[motion]
+theta = { start = 0, stop = 360, step = 90 }
+omega0 = 1500
+[[check]]
+printed = { a_C = -994000 }
+at = { theta = 60, ec = 0 }
+[[peak]]
+quantity = "a_C"
+over = { ec = [0, 50] }
+baseline = { ec = 0 }
+sensitivities = ["omega0"]
+[[picture]]
+file = "a_C.svg"
+quantity = "a_C"
+at = { ec = 50 }
+[results]
+data = "values.csv"
+"""
+LONG_HAND = """
+outputs = ["a_C"]
+[mechanism]
+AB = "125 mm"
+BC = "350 mm"
+ec = [0, "50 mm", "240 mm"]
+[motion]
+theta = { start = 0, stop = "360 deg", step = "90 deg" }
+omega0 = "1500 rpm"
+"""
+
+
+def test_a_scene_in_units(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "press.toml").write_text(SCENE, encoding="utf-8")
+    (tmp_path / "long.toml").write_text(LONG_HAND, encoding="utf-8")
+    scene = dx.scene("press.toml")
+    assert scene.inputs == dx.scene("long.toml").inputs
+    assert dx.Machine.read("press.toml").units == dx.Machine(units="mm, deg, rpm", AB=125).units
+    result = scene.run()
+    assert result.dataset.a_C.units == "mm/s^2"
+    assert result.dataset.theta.values.tolist() == [0.0, 90.0, 180.0, 270.0, 360.0]
+    report = result.report()
+    for words in (
+        "< BC - AB = 225 mm",
+        "ec = 240 mm",
+        "from 61.64 to 118.36 deg",
+        "mm/s^2",
+        "agrees",
+        "mm/s^2/rpm",
+    ):
+        assert words in report, words
+    assert " m " not in report
+    top = dx.peak("a_C", ec="50 mm", AB="125 mm", BC="350 mm", omega0="1500 rpm")
+    peaks = result.peaks[0].dataset
+    assert float(peaks.value[1]) == pytest.approx(1e3 * top["value"], rel=1e-12)
+    assert float(peaks.value_wrt_omega0[1]) == pytest.approx(1e3 * RPM * top["gradient"]["omega0"], rel=1e-12)
+    with open("values.csv", encoding="utf-8") as file:
+        heads, *rows = csv.reader(file)
+    assert heads == ["ec [mm]", "theta [deg]", "a_C [mm/s^2]", "status", "margin [mm]"]
+    assert [row[1] for row in rows[:2]] == ["0.0", "90.0"]
+
+
+def test_units_of_a_scene_that_are_none():
+    data = {"outputs": ["a_C"], "mechanism": {"ec": 0, "AB": 1, "BC": 3}, "motion": {"theta": 1, "omega0": 1}}
+    with pytest.raises(SceneError, match="units"):
+        dx.scene({**data, "units": "mmm"})
+    with pytest.raises(SceneError, match="lenght"):
+        dx.scene({**data, "units": {"lenght": "mm"}})
+
+
+@pytest.mark.parametrize(
+    ("inputs", "words"),
+    [
+        ({"AB": 125}, 'AB = 125 m, write AB = "125 mm"'),
+        ({"AB": 125, "BC": 350}, 'BC = "350 mm"'),
+        ({"omega0": 1500}, 'omega0 = 1500 rad/s, write omega0 = "1500 rpm"'),
+        ({"g_Y": -9810}, '"-9.81 m/s^2"'),
+        ({"g_Y": -9.81, "units": "mm"}, '"-9.81 m/s^2"'),
+        ({"mu": 12}, "write mu = 0.12"),
+    ],
+)
+def test_slips_of_a_machine(inputs, words):
+    with pytest.warns(dx.UnitWarning) as caught:
+        dx.Machine(**inputs)
+    assert len(caught) == 1
+    assert words in str(caught[0].message)
+    assert caught[0].filename == __file__
+
+
+def test_slips_of_calls_scenes_and_commands(capsys):
+    machine = dx.Machine(ec=0, AB=0.125, BC=0.35, omega0="1500 rpm")
+    with pytest.warns(dx.UnitWarning, match='theta = 60 rad, write theta = "60 deg"'):
+        machine.evaluate("a_C", theta=60)
+    data = {"outputs": ["Y"], "mechanism": {"ec": 0, "AB": 0.125, "BC": 0.35}}
+    with pytest.warns(dx.UnitWarning, match='"60 deg"'):
+        dx.scene({**data, "motion": {"theta": 60}})
+    with pytest.warns(dx.UnitWarning, match='"360 deg"'):
+        dx.scene({**data, "motion": {"theta": {"start": 0, "stop": 360, "num": 3}}})
+    with pytest.warns(dx.UnitWarning, match='"125 mm"'):
+        main(["point", "Y", "theta=1", "ec=0", "AB=125", "BC=0.35"])
+    capsys.readouterr()
+
+
+def test_what_is_no_slip():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        machine = dx.Machine(ec=0, AB=0.125, BC=0.35, omega0=314.0, F_Y=-60000.0, g_Y=-9.81)
+        machine.evaluate("a_C", theta=np.array([60.0, 90.0]))
+        machine.evaluate("a_C", theta="60 rad")
+        machine.evaluate("a_C", theta=20 * math.pi)
+        machine.evaluate("a_C", theta=7.0)
+        dx.Machine(machine, units="mm, deg").evaluate("a_C", theta=60)
+        dx.evaluate("a_C", theta=60, ec=0, AB=125, BC=350, omega0=1500)
+        dx.scene(
+            {
+                "outputs": ["Y"],
+                "units": "deg",
+                "mechanism": {"ec": 0, "AB": 1, "BC": 3},
+                "motion": {"theta": 60},
+            }
+        )

@@ -1,0 +1,177 @@
+"""Languages other than C at points where formulas lose their digits, and what each has of its own."""
+
+import math
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from desaxe.oracle.truth import truth
+from tests.compiler.languages.tools import es_module, imported, jax_in_doubles, octave
+from tests.scenes.export.stress import INPUTS, NAMES, broken, columns, rows, scene
+
+REACH = {"standard": math.inf, "extended": 1e3}
+FOLDED = {"ec": 0.125, "AB": 0.125, "BC": 0.25}  # exactly a change-point design
+
+
+@pytest.fixture(scope="module")
+def module(tmp_path_factory):
+    """The jax module of branch 1."""
+    with jax_in_doubles():
+        place = tmp_path_factory.mktemp("jax") / "press_jax.py"
+        yield imported(dx.compile(scene(1), place, to="jax"))
+
+
+def test_the_promise_is_kept_by_jax(module):
+    """As it stands, and compiled whole."""
+    import jax
+
+    given = dict(zip(INPUTS, columns(1), strict=True))
+    for evaluate in (module.evaluate, jax.jit(module.evaluate)):
+        assert not broken(evaluate(**given), 1)
+
+
+@pytest.mark.parametrize("accuracy", REACH)
+@pytest.mark.parametrize("branch", [1, -1])
+def test_the_promise_is_kept_by_octave(accuracy, branch, tmp_path):
+    reach = REACH[accuracy]
+    dx.compile(scene(branch, accuracy=accuracy), tmp_path / "press.m", to="octave")
+    found = octave(tmp_path / "press.m", columns(branch, reach), len(NAMES))
+    assert not broken(dict(zip(NAMES, found, strict=True)), branch, reach)
+
+
+@pytest.mark.parametrize("accuracy", REACH)
+@pytest.mark.parametrize("branch", [1, -1])
+def test_the_promise_is_kept_by_javascript(accuracy, branch, tmp_path):
+    """Arrays by `evaluate`; the function of one name gives the same."""
+    reach = REACH[accuracy]
+    dx.compile(scene(branch, accuracy=accuracy), tmp_path / "press.js", to="javascript")
+    given = {name: column.tolist() for name, column in zip(INPUTS, columns(branch, reach), strict=True)}
+    first = [given[name][0] for name in INPUTS]
+    found, a_C = es_module(tmp_path / "press.js", [["evaluate", given], ["a_C", *first]])
+    assert a_C == found["a_C"][0]
+    assert not broken(found, branch, reach)
+
+
+def test_the_promise_is_kept_by_scalars_of_numba(tmp_path):
+    place = dx.compile(scene(1, outputs=["Y", "a_C"]), tmp_path / "press_scalars.py")
+    press = imported(place)
+    points = [[row[name] for name in press.INPUTS] for row in rows(1)]
+    assert not broken({n: [getattr(press, n)(*point) for point in points] for n in ("Y", "a_C")}, 1)
+
+
+# ---- derivatives of jax ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("distance", [1e-9, -1e-6, 1e-3])
+def test_gradients_at_the_change_point(module, distance):
+    """Where differentiating a formula by machine loses all digits."""
+    import jax
+
+    at = {"theta": math.pi / 2 + distance, **FOLDED, "omega0": 10.0, "alpha": 0.5}
+    gradient = jax.jit(jax.grad(lambda point: module.a_C(**point)))(at)
+    for name, value in gradient.items():
+        assert float(value) == pytest.approx(float(truth(f"a_C_wrt_{name}", **at)), rel=1e-12, abs=1e-300)
+
+
+def test_second_derivatives(module):
+    import jax
+
+    at = {"theta": math.pi / 2 + 1e-4, **FOLDED, "omega0": 10.0, "alpha": 0.5}
+    found = jax.hessian(lambda point: module.V_C(**point))(at)
+    for first, second, name in (("theta", "ec", "theta_ec"), ("BC", "AB", "AB_BC"), ("ec", "ec", "ec_ec")):
+        exact = float(truth(f"V_C_wrt_{name}", **at))
+        assert float(found[first][second]) == pytest.approx(exact, rel=1e-12)
+    with pytest.raises(NotImplementedError, match="a_C_wrt_ec_ec has no derived derivative by ec"):
+        jax.hessian(lambda ec: module.a_C_wrt_ec(1.0, ec, 0.125, 0.25, 10.0, 0.5))(0.1)
+
+
+def test_transformations(module):
+    import jax
+    import jax.numpy as jnp
+
+    angles = jnp.linspace(-3.0, 3.0, 50)
+    rest = (0.01, 0.125, 0.35, 10.0, 0.5)
+    slope = jax.jit(jax.vmap(jax.jacfwd(module.a_C), (0, *(None,) * 5)))(angles, *rest)
+    fixed = dict(zip(INPUTS[1:], rest, strict=True))
+    wanted = dx.evaluate("a_C_wrt_theta", theta=np.array(angles), **fixed)
+    np.testing.assert_allclose(slope, wanted, rtol=1e-12, atol=1e-9)
+    np.testing.assert_allclose(
+        jax.grad(lambda t: module.Y(t, *rest).sum())(angles),
+        dx.evaluate("Y_wrt_theta", theta=np.array(angles), **fixed),
+        rtol=1e-12,
+    )
+
+
+def test_float32_stays_float32(module):
+    rng = np.random.default_rng(2)
+    at = {"theta": rng.uniform(0, 6, 500), "ec": 0.01, "AB": 0.125, "BC": 0.35, "omega0": 10.0, "alpha": 0.5}
+    single = {name: np.asarray(value, np.float32) for name, value in at.items()}
+    found = module.evaluate(**single)
+    wanted = dx.evaluate(list(NAMES), **{name: np.asarray(value, float) for name, value in single.items()})
+    for name in NAMES:
+        assert found[name].dtype == np.float32
+        scale = np.abs(wanted[name]).max()
+        np.testing.assert_allclose(found[name], wanted[name], rtol=2e-5, atol=4e-6 * scale)
+
+
+def test_whole_numbers_and_bad_values(module):
+    good = {"ec": 0.02, "AB": 0.04, "BC": 0.064, "omega0": 10, "alpha": 0}
+    assert float(module.Y(theta=0, **good)) == pytest.approx(dx.evaluate("Y", theta=0.0, **good))
+    for change in ({"theta": math.inf}, {"BC": -1.0}, {"AB": math.nan}):
+        assert math.isnan(float(module.Y(**{"theta": 1.0, **good, **change})))
+
+
+# ---- files ----------------------------------------------------------------------------------------
+
+FILES = {"c": ["press.c", "press.h"], "octave": ["press.m"], "jax": ["press.py"],
+         "javascript": ["press.d.ts", "press.js"]}  # fmt: skip
+
+
+@pytest.mark.parametrize("to", FILES)
+def test_files_are_named_made_and_checked(to, tmp_path):
+    """A folder, or the file itself; the same bytes each time; told how they were made; nothing half done."""
+    content = scene(1, outputs=["a_C"], title='A "press" */ with \\ and """ in its title')
+    place = dx.compile(content, tmp_path / "press", to=to)
+    assert sorted(file.name for file in place.iterdir()) == FILES[to]
+    texts = {file.name: file.read_text(encoding="utf-8") for file in place.iterdir()}
+    for text in texts.values():
+        assert f'Generated by `desaxe.compile(scene, "press", to="{to}")`; write it again' in text
+        assert f"desaxe {dx.__version__}, derivation " in text
+        assert str(tmp_path) not in text
+    dx.compile(content, place, to=to, check=True)
+    called = next(name for name in FILES[to] if not name.endswith((".h", ".d.ts")))
+    single = dx.compile(content, tmp_path / "direct" / called, to=to)
+    assert sorted(file.name for file in single.parent.iterdir()) == FILES[to]
+    (place / called).write_text("", encoding="utf-8")
+    with pytest.raises(ValueError, match=rf"not what the scene gives \({called}\)"):
+        dx.compile(content, place, to=to, check=True)
+    for name in ("2d", "my press", "class"):
+        with pytest.raises(ValueError, match=f"'{name}' cannot be the name of a module"):
+            dx.compile(content, tmp_path / name, to=to)
+        assert not (tmp_path / name).exists()
+
+
+def test_what_a_language_lacks_is_refused_by_name(tmp_path):
+    with pytest.raises(ValueError, match="to = 'fortran': it is one of numba, c, jax, octave, javascript"):
+        dx.compile(scene(), tmp_path / "press", to="fortran")
+    with pytest.raises(ValueError, match='accuracy = "extended": jax has standard'):
+        dx.compile(scene(accuracy="extended"), tmp_path / "press", to="jax")
+    with pytest.raises(ValueError, match="libm=False is for c"):
+        dx.compile(scene(), tmp_path / "press", to="octave", libm=False)
+    assert not list(tmp_path.iterdir())
+
+
+def test_ruff_finds_nothing_undefined_or_unused_in_jax(tmp_path):
+    import subprocess
+    import sys
+
+    dx.compile(scene(1, outputs=["V_C", "status", "margin"]), tmp_path / "press.py", to="jax")
+    command = [sys.executable, "-m", "ruff", "check", "--isolated", "--select", "F", str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+    with jax_in_doubles():
+        press = imported(tmp_path / "press.py")
+        found = press.evaluate(**dict(zip(INPUTS, (1.0, 0.02, 0.04, 0.01, 10.0, 0.0), strict=True)))
+    assert int(found["status"]) == 1
+    assert float(found["margin"]) == pytest.approx(-0.05)
