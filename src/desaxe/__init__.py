@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from .loads import over_Y as over_Y
     from .machine import Machine as Machine
     from .mechanism.catalogue import quantities as quantities
+    from .mechanism.ranges import between as between
+    from .mechanism.ranges import plus_minus as plus_minus
     from .mechanism.slips import UnitWarning as UnitWarning
     from .peaks.peak import peak as peak
     from .scenes.explain.explain import explain as explain
@@ -73,6 +75,8 @@ PUBLIC = {
     "LoadWarning": "desaxe.loads",
     "define": "desaxe.definitions.define",
     "undefine": "desaxe.definitions.define",
+    "between": "desaxe.mechanism.ranges",
+    "plus_minus": "desaxe.mechanism.ranges",
     "equation": "desaxe.derive.equation",
 }
 MODULES = {"plot": "desaxe.plot", "units": "desaxe.mechanism.units"}
@@ -81,6 +85,7 @@ __all__ = [
     "LoadWarning",
     "Machine",
     "UnitWarning",
+    "between",
     "compile",
     "counterweight",
     "define",
@@ -102,6 +107,7 @@ __all__ = [
     "over_theta",
     "peak",
     "plot",
+    "plus_minus",
     "quantities",
     "scene",
     "simulate",

@@ -430,7 +430,7 @@ def test_inputs_with_units_and_of_other_kinds():
         (TypeError, "no input 'mass'", {"mass": 1.0}),
         (ValueError, "not both", {"omega": 1.0}),
         (ValueError, r'such as \("9.9 mm", "10.1 mm"\); a value and its tol', {"ec": "10 mm +- 0.1 mm"}),
-        (ValueError, "the lower one first; a value and its tolerance are what", {"ec": ("10 mm", "0.1 mm")}),
+        (ValueError, "the lower one first; a value and its tolerance are dx", {"ec": ("10 mm", "0.1 mm")}),
         (TypeError, r"enclose\(\) has no input 'rod'; did you mean BC\?", {"rod": 1.0}),
         (ValueError, "rtol", {"rtol": 0.0}),
         (ValueError, "boxes", {"boxes": 0}),

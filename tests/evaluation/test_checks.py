@@ -2,11 +2,14 @@
 
 import math
 import re
+from decimal import Decimal
 
 import numpy as np
+import pint
 import pytest
 
 import desaxe as dx
+from desaxe.mechanism.units import in_si
 from tests.ways import POINT, SIZES, close, columns, take_way
 
 # ---- status and bad elements ---------------------------------------------------------------------
@@ -224,6 +227,27 @@ def test_a_quantity_of_pint():
 )
 def test_text_is_the_double_of_the_si_number(text, number):
     assert dx.evaluate("margin", ec=0.0, AB=0.0, BC=text) == number
+
+
+@pytest.mark.parametrize(
+    ("number", "unit"),
+    [(350, "mm"), (12.7, "mm"), (0.1, "inch"), (60, "deg"), (1500, "rpm"), (80.6, "kg mm2")],
+)
+def test_a_quantity_of_pint_is_the_double_of_its_text(number, unit):
+    name = {"deg": "theta", "rpm": "omega0", "kg mm2": "I_rod"}.get(unit, "BC")
+    text = in_si(name, f"{number} {unit}")
+    for kind in (float, Decimal):
+        registry = pint.UnitRegistry(non_int_type=kind)
+        own = registry.Quantity(kind(str(number)), unit.replace("mm2", "mm**2"))
+        assert in_si(name, own) == text
+    several = pint.UnitRegistry().Quantity(np.array([350.0, 12.7, 1.0]), "mm")
+    assert in_si("BC", several).tolist() == [0.35, 0.0127, 0.001]
+
+
+def test_a_unit_of_somebody_elses_registry():
+    registry = pint.UnitRegistry()
+    registry.define("ell = 1.143 m")
+    assert in_si("BC", 2 * registry.ell) == pytest.approx(2.286)
 
 
 def test_a_list_of_text():

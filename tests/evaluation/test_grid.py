@@ -1,11 +1,14 @@
 """The labelled grid: the outer product of its arguments, with units, status and margin."""
 
+import inspect
+
 import numpy as np
 import pint_xarray
 import pytest
 import xarray as xr
 
 import desaxe as dx
+from desaxe.mechanism.inputs import INPUTS, Inputs
 
 THETA = np.linspace(0.0, 6.0, 7)
 MACHINE = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
@@ -123,6 +126,16 @@ def test_an_axis_of_length_one(ec):
         "a_C", theta=theta[:, None, None], ec=np.array(ec)[:, None], AB=crank, BC=0.4, omega0=157.0
     )
     np.testing.assert_allclose(grid["a_C"].values[..., 0], wanted, rtol=1e-13)
+
+
+def test_the_signature_names_every_input():
+    parameters = inspect.signature(dx.grid).parameters
+    named = [name for name in parameters if name in INPUTS]
+    assert named == list(INPUTS) == list(Inputs.__annotations__)
+    assert not any(p.kind is inspect.Parameter.VAR_KEYWORD for p in parameters.values())
+    assert {"names", "branch", "accuracy", "threads", "out", "reduce", "chunks"} == set(parameters) - set(
+        named
+    )
 
 
 def test_a_position_needs_no_motion():

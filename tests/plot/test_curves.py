@@ -236,3 +236,50 @@ def test_missing_extra(monkeypatch):
         curves(family([0, 0.1]), "a_C")
     with pytest.raises(ImportError, match=r"plot\.polar needs matplotlib"):
         polar(family([0, 0.1]), "a_C")
+
+
+# ---- dicts, gaps, titles -------------------------------------------------------------------------
+
+
+def test_curves_of_what_evaluate_gives():
+    theta = np.linspace(0, 2 * np.pi, 91)
+    found = dx.evaluate(["V_C", "a_C", "status"], theta=theta, ec=0.15, AB=0.125, BC=0.35, omega0=157.08)
+    (line,) = dx.plot.curves(found, "a_C")
+    np.testing.assert_array_equal(line.get_ydata(), found["a_C"])
+    np.testing.assert_allclose(line.get_xdata(), np.degrees(theta))
+    assert "ec = 0.15" in line.axes.get_title(loc="left").replace("\u00a0", " ")
+    (again,) = dx.plot.curves(dict(found), "a_C", theta=theta)
+    np.testing.assert_array_equal(again.get_ydata(), found["a_C"])
+    with pytest.raises(TypeError, match="a dict does not say theta: give it"):
+        dx.plot.curves(dict(found), "a_C")
+    with pytest.raises(ValueError, match="theta: it varies along one axis of arrays"):
+        dx.plot.curves(dict(found), "a_C", theta=theta[1:])
+
+
+def test_a_broadcast_is_a_family():
+    theta, ec = np.linspace(0, 2 * np.pi, 31), np.array([0.0, 0.1, 0.2])
+    found = dx.evaluate(["V_C"], theta=theta[:, None], ec=ec, AB=0.125, BC=0.35, omega0=157.08)
+    lines = dx.plot.curves(found, "V_C")
+    assert len(lines) == 3
+    np.testing.assert_array_equal(lines[2].get_ydata(), found["V_C"][:, 2])
+
+
+def test_gaps_are_marked():
+    theta = np.linspace(0, 2 * np.pi, 721)
+    machine = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
+    (alone,) = dx.plot.curves(dx.grid("a_C", theta=theta, ec=0.24, **machine), "a_C")
+    (gap,) = alone.axes.patches
+    low, high = gap.get_x(), gap.get_x() + gap.get_width()
+    ((last, first),) = [np.degrees((1.0758, 2.0658))]
+    assert (low, high) == (pytest.approx(last, abs=0.6), pytest.approx(first, abs=0.6))
+    lines = dx.plot.curves(dx.grid("a_C", theta=theta, ec=[0.0, 0.24], **machine), "a_C")
+    assert not lines[0].axes.patches
+    (mark,) = (line for line in lines[0].axes.lines if line not in lines)
+    assert mark.get_color() == lines[1].get_color()
+    assert tuple(mark.get_xdata()) == (low, high)
+
+
+def test_panels_of_derivatives_say_which():
+    grid = dx.grid(["Y_wrt_theta", "Y_wrt_theta_theta"], theta=[0.0, 1.0, 2.0], ec=0.1, AB=0.125, BC=0.35)
+    titles = [lines[0].axes.get_title(loc="left") for lines in dx.plot.panels(grid).values()]
+    assert titles == ["derivative of Y by theta", "derivative of Y by theta, theta"]

@@ -9,6 +9,7 @@ from ..evaluation.arrays import as_array, broadcast_shape
 from ..evaluation.evaluate import evaluate
 from ..mechanism.inputs import INPUTS, Input
 from ..runtime.request import check_common, with_known_inputs
+from ..support.answer import answering
 from ..support.shown import shown
 
 Array = NDArray[np.float64]
@@ -24,6 +25,7 @@ SLIDER_INPUTS = {
 }
 
 
+@answering
 @with_known_inputs
 def inverse(
     *, Y: Any, ec: Any, AB: Any, BC: Any, branch: int = 1, V_C: Any = None, a_C: Any = None

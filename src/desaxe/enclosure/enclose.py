@@ -12,6 +12,7 @@ from heapq import heappop, heappush
 from itertools import islice, product
 from math import inf, isfinite, nan, nextafter, pi
 from typing import Any, NamedTuple
+from warnings import warn
 
 from flint import arb, ctx
 
@@ -21,8 +22,10 @@ from ..loads.resolve import without_loads
 from ..mechanism.catalogue import has, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
+from ..mechanism.ranges import Between, PlusMinus, RangeWarning, ends_of
 from ..runtime.request import Request, as_number, check_common, check_inputs, request
 from ..runtime.specialise import specialise
+from ..support.answer import answering
 from ..support.quantity_text import PLUS_MINUS
 from .balls import BITS, PARTLY, Enclosure, Interval, ball, enclosures
 
@@ -36,10 +39,12 @@ ENOUGH = 64  # bits of it
 TURN = (0.0, nextafter(2 * pi, inf))  # not less than one
 LAST_BIT = 2.0**-52
 SMALLEST = 2.0**-1073
-TOLERANCE = "a value and its tolerance are what `tolerance` takes"
+LITTLE = 0.1  # of a negative end: an upper end so small is probably a tolerance
+TOLERANCE = "a value and its tolerance are dx.plus_minus(value, tolerance)"
 ENDS = f'a number or a pair (low, high) is wanted, such as ("9.9 mm", "10.1 mm"); {TOLERANCE}'
 
 
+@answering
 def enclose(
     name: str,
     *,
@@ -57,9 +62,10 @@ def enclose(
 ) -> dict[str, Any]:
     """The range of a quantity or sensitivity over a box of inputs, guaranteed.
 
-    Each input is a number (exact) or a pair (low, high), in SI units or texts with units, as in
-    `evaluate`, masses and loads among them: `enclose("a_C", theta=1.0, ec=("-0.1 mm", "0.1 mm"), ...)`.
-    Every combination of values within the pairs counts.
+    Each input is a number (exact), `dx.between(low, high)`, the same as a bare pair, or
+    `dx.plus_minus(value, tolerance)`, in SI units or texts with units, as in `evaluate`, masses and loads
+    among them: `enclose("a_C", theta=1.0, ec=dx.plus_minus("10 mm", "0.1 mm"), ...)`. Every combination of
+    values within the ranges counts.
 
     rtol     how much wider than the true range the answer may be at each end, relative to the range
     boxes    give up after so many boxes at each end; the answer is a guarantee even so, only wider
@@ -163,6 +169,8 @@ def _program(wanted: Request) -> Program:
 
 def _interval(name: str, value: Any, wanted: str) -> Interval:
     """A number or a pair, as a pair of doubles."""
+    if isinstance(value, PlusMinus):
+        value = Between(*ends_of(name, value))
     if isinstance(value, str) and PLUS_MINUS.search(value):
         raise ValueError(f"{name} = {value!r}: {ENDS}")
     number = None if isinstance(value, (tuple, list)) else as_number(name, value, (name,), (wanted,))
@@ -176,6 +184,13 @@ def _interval(name: str, value: Any, wanted: str) -> Interval:
     if low is None or high is None or low > high:
         raise ValueError(
             f"{name} = ({first}, {last}): two numbers are wanted, the lower one first; {TOLERANCE}"
+        )
+    if not isinstance(value, Between) and name != "theta" and 0.0 < high <= LITTLE * -low:
+        warn(
+            f"enclose: {name} = {value!r} means all values from {first} to {last}: say so by "
+            f"dx.between({first!r}, {last!r}); {TOLERANCE}",
+            RangeWarning,
+            stacklevel=4,
         )
     return low, high
 

@@ -6,6 +6,7 @@ from typing import Any
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LOADS
 from ..runtime.request import check_inputs
+from ..support.answer import Answer
 from .values import values
 
 
@@ -103,4 +104,8 @@ def evaluate(
         from .quality import evaluate_quality
 
         return evaluate_quality(names, given, branch, accuracy, threads, out)
-    return values(names, given, branch, accuracy, threads, out)
+    found = values(names, given, branch, accuracy, threads, out)
+    if type(found) is dict:
+        found = Answer(found)
+        found.inputs = {name: value for name, value in given.items() if value is not None}
+    return found

@@ -2,13 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, Unpack, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..loads.resolve import without_loads
-from ..runtime.request import Request, request
+from ..mechanism.inputs import Inputs
+from ..runtime.request import Request, request, with_named_inputs
 from .arrays import copied_back, fill, outputs_for, scratch_for
 from .loaded import filled_under_loads
 from .loops import Loops
@@ -30,7 +31,7 @@ def grid(
     out: None = None,
     reduce: Mapping[str, str | Sequence[str]] | None = None,
     chunks: Any = None,
-    **inputs: Any,
+    **inputs: Unpack[Inputs],
 ) -> "xr.Dataset": ...
 
 
@@ -42,10 +43,11 @@ def grid(
     accuracy: str | float = "standard",
     threads: int | None = None,
     out: Array | Mapping[str, Array],
-    **inputs: Any,
+    **inputs: Unpack[Inputs],
 ) -> dict[str, Array]: ...
 
 
+@with_named_inputs
 def grid(
     names: str | Sequence[str],
     *,

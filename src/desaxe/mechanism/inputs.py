@@ -1,7 +1,7 @@
 """The inputs of the mechanism: what each is, its unit, its limits."""
 
 from math import inf
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypedDict
 
 
 class Input(NamedTuple):
@@ -12,6 +12,30 @@ class Input(NamedTuple):
     meaning: str
     least: float | None = None
     limit: str = "a finite number"
+
+
+class Inputs(TypedDict, total=False):
+    """The inputs as keyword arguments, for what completes and checks them; a test holds it to INPUTS."""
+
+    theta: Any
+    ec: Any
+    AB: Any
+    BC: Any
+    omega0: Any
+    alpha: Any
+    omega: Any
+    m_crank: Any
+    m_rod: Any
+    m_slider: Any
+    I_crank: Any
+    I_rod: Any
+    r_crank: Any
+    r_rod: Any
+    F_X: Any
+    F_Y: Any
+    g_X: Any
+    g_Y: Any
+    mu: Any
 
 
 # The smallest length that is more than nothing: a rod of 0 is no rod.

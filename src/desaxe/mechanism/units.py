@@ -5,8 +5,10 @@ double as 0.350. The unit must say the same as the input's own, angle included: 
 speed, although to a unit library a radian is nothing.
 """
 
+from decimal import Decimal
 from fractions import Fraction
 from functools import cache
+from math import isfinite
 from typing import Any
 
 from ..support.extras import MissingExtraError, needed
@@ -60,7 +62,24 @@ def in_unit(name: str, value: Any, unit: str) -> Any:
         return _rounded(name, value, exact(name, value, unit)) if plain is None else plain
     if not _says_the_same(value, unit):
         raise ValueError(f"{name} = {shown(value)}: {_wanted(unit)}")
-    return value.to(unit).magnitude
+    factor = _factor(str(value.units), unit)
+    known = float((1 * value.units).to(unit).magnitude)
+    if factor is None or abs(float(factor) - known) > 1e-12 * abs(known):  # a unit of another registry
+        return value.to(unit).magnitude
+    magnitude = value.magnitude
+    if isinstance(magnitude, (int, float, Decimal, Fraction)) and isfinite(magnitude):
+        written = repr(float(magnitude)) if isinstance(magnitude, float) else magnitude
+        return _rounded(name, str(value), Fraction(written) * factor)  # as the same text
+    return magnitude / float(1 / factor) if factor.numerator == 1 else magnitude * float(factor)
+
+
+@cache
+def _factor(own: str, unit: str) -> Fraction | None:
+    """What a magnitude is multiplied by, exactly; None for a unit that only another registry knows."""
+    try:
+        return Fraction(_exact_registry().Quantity(Fraction(1), own).to(unit).magnitude)
+    except Exception:
+        return None
 
 
 def unlabelled(name: str, array: Any) -> Any:

@@ -19,6 +19,7 @@ from ..loads.load import Load, LoadWarning, OverTheta
 from ..loads.resolve import VARIABLE, without_loads
 from ..mechanism.inputs import INPUTS
 from ..runtime.request import as_number, check_common, check_inputs
+from ..support.answer import answering
 from ..support.shown import shown as shown_value
 from .designs import KINDS, Plan, peaks_of_designs, plan_of, search_of
 from .nodes import Array
@@ -29,6 +30,7 @@ MANY = 60  # values of a load: more are no designs that anybody compares
 INPUTS_OF_PEAK = (*INPUTS, "branch", "kind", "accuracy", "threads")
 
 
+@answering
 def peak(
     name: str,
     *,

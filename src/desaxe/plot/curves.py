@@ -1,11 +1,13 @@
 """Families of curves: a quantity over one input, one curve for each value of another."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..support.extras import needed
-from .shared import chosen, drawn, finish_axis, fixed_inputs, label_of, shown, worth_showing
+from .from_dict import as_dataset
+from .shared import chosen, drawn, finish_axis, fixed_inputs, label_of, mark_gaps, shown, worth_showing
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -16,29 +18,33 @@ SIZE = (8.0, 4.8)  # inches
 
 
 def curves(
-    dataset: "xr.Dataset",
+    dataset: "xr.Dataset | Mapping[str, Any]",
     name: str,
     *,
     over: str = "theta",
     family: str | None = None,
     ax: "Axes | None" = None,
+    **inputs: Any,
 ) -> "list[Line2D]":
     """Draw a quantity over one input, one curve for each value of another; returns the lines.
 
-    dataset  the result of `desaxe.grid` or of a scene
+    dataset  the result of `desaxe.grid` or of a scene; or the dict that `desaxe.evaluate` gives
     name     the quantity
     over     the dimension along the horizontal axis; angles are shown in degrees
     family   the dimension that tells the curves apart; by default the other one, if there is one
     ax       where to draw: a matplotlib Axes; by default a new Figure (`lines[0].figure`), whose title tells
              the inputs that are numbers
+    inputs   of a dict of arrays that does not know its own: theta=angles, ...
 
     Labels and units come from the dataset. Points that are infeasible, or at which friction jams, are
-    gaps. A curve may grow without bound towards its gaps, so the vertical axis is that of the curves
-    without, or of most values where each has gaps. Raises ValueError for a name or dimension that the
-    dataset does not have, or that is left over.
+    gaps: hatched where no curve has a value, else marked at the foot in the colour of theirs. A
+    curve may grow without bound towards its gaps, so the vertical axis is that of the curves without, or of
+    most values where each has gaps. Raises ValueError for a name or dimension that the dataset does not
+    have, or that is left over.
     """
     with needed("plot.curves"):
         from matplotlib.figure import Figure
+    dataset = as_dataset(dataset, over, inputs)
     array = chosen(dataset, name, over, family)
     own = ax is None
     ax = Figure(figsize=SIZE, layout="constrained").add_subplot() if ax is None else ax
@@ -53,6 +59,7 @@ def draw(ax: "Axes", array: "xr.DataArray", over: str, beside: bool | None) -> "
     lines = drawn(ax, shown(array[over]), array, beside)
     finish_axis(ax.xaxis, array[over])
     ax.set_ylabel(label_of(array))
+    mark_gaps(ax, lines)
     limits = worth_showing([np.asarray(line.get_ydata(), dtype=np.float64) for line in lines])
     if limits is not None:
         ax.set_ylim(*limits)

@@ -1,10 +1,11 @@
 """Several quantities over one input, one above the other."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..support.extras import needed
 from .curves import draw
+from .from_dict import as_dataset
 from .shared import chosen, fixed_inputs, meaning_of, unit_of
 
 if TYPE_CHECKING:
@@ -16,25 +17,28 @@ ALWAYS = ("status", "margin")
 
 
 def panels(
-    dataset: "xr.Dataset",
+    dataset: "xr.Dataset | Mapping[str, Any]",
     names: Sequence[str] | None = None,
     *,
     over: str = "theta",
     family: str | None = None,
     ax: Any = None,
+    **inputs: Any,
 ) -> "dict[str, list[Line2D]]":
     """Draw several quantities over one input, one above the other; returns the lines by name.
 
-    dataset  the result of `desaxe.grid` or of a scene
+    dataset  the result of `desaxe.grid` or of a scene; or the dict that `desaxe.evaluate` gives
     names    the quantities, from top to bottom; by default all that vary with `over`
     over     the dimension along the horizontal axis; angles are shown in degrees
     family   the dimension that tells the curves apart; by default the other one, if there is one
     ax       where to draw: a matplotlib Axes for each name; by default those of a new Figure
+    inputs   of a dict of arrays that does not know its own: theta=angles, ...
 
     Labels, gaps and complaints are those of `curves`.
     """
     with needed("plot.panels"):
         from matplotlib.figure import Figure
+    dataset = as_dataset(dataset, over, inputs)
     if names is None:
         names = [str(n) for n, a in dataset.data_vars.items() if over in a.dims and n not in ALWAYS]
     arrays = [chosen(dataset, name, over, family) for name in names]

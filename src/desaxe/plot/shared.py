@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..mechanism.names import parts
+
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
@@ -69,6 +71,37 @@ def drawn(
     return lines
 
 
+def mark_gaps(ax: "Axes", lines: "Sequence[Line2D]") -> None:
+    """Hatch where no curve has a value; mark the gaps of one of several at the foot, in its colour."""
+    across = ax.get_xaxis_transform()
+    values = [np.asarray(line.get_ydata(), dtype=np.float64) for line in lines]
+    if not values or values[0].size < 2:
+        return
+    angles = np.asarray(lines[0].get_xdata(), dtype=np.float64)
+    everywhere = np.all([np.isnan(v) for v in values], axis=0)
+    note = "no value"
+    for low, high in _spans(angles, everywhere):
+        ax.axvspan(low, high, facecolor="0.95", edgecolor="0.75", hatch="////", linewidth=0.0, zorder=0)
+        ax.text((low + high) / 2, 0.5, note, transform=across, rotation=90, color="0.35",
+                ha="center", va="center", fontsize="small", zorder=1)  # fmt: skip
+        note = ""
+    for k, (line, own) in enumerate(zip(lines, values, strict=True)):
+        foot = 0.008 + 0.016 * k
+        for low, high in _spans(angles, np.isnan(own) & ~everywhere):
+            ax.plot([low, high], [foot, foot], color=line.get_color(), linewidth=3.0, alpha=0.55,
+                    transform=across, solid_capstyle="butt", zorder=3)  # fmt: skip
+
+
+def _spans(places: NDArray[np.float64], missing: NDArray[np.bool_]) -> list[tuple[float, float]]:
+    """The stretches in which values are missing, from the last place with one to the next."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], missing, [False]]).astype(np.int8)))
+    last = places.size - 1
+    return [
+        (float(places[max(start - 1, 0)]), float(places[min(stop, last)]))
+        for start, stop in zip(edges[::2], edges[1::2], strict=True)
+    ]
+
+
 def shown(array: "xr.DataArray") -> NDArray[np.float64]:
     """The values as they are shown: angles in degrees."""
     values: NDArray[np.float64] = np.asarray(array.values, dtype=np.float64)
@@ -112,6 +145,8 @@ def raised(unit: str) -> str:
 def meaning_of(array: "xr.DataArray") -> str:
     """What a quantity is, in a few words."""
     told = str(array.attrs.get("long_name", ""))
+    if parts(str(array.name))[1]:
+        return told  # "derivative of Y by theta, theta" says two things
     peak, colon, rest = told.partition(" over a turn: ")
     return f"{peak} of the {rest}" if colon else told.partition(",")[0].partition(":")[0]
 

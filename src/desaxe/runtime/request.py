@@ -145,6 +145,19 @@ def with_known_inputs(function: Callable[P, T]) -> Callable[P, T]:
     return checked
 
 
+def with_named_inputs(function: Callable[P, T]) -> Callable[P, T]:
+    """The function with every input in its signature; its `**inputs` keep the order given."""
+    from inspect import Parameter, signature
+
+    given = signature(function)
+    own = [p for p in given.parameters.values() if p.kind is not Parameter.VAR_KEYWORD]
+    first = [p for p in own if p.kind is not Parameter.KEYWORD_ONLY]
+    named = [Parameter(name, Parameter.KEYWORD_ONLY, default=None, annotation=Any) for name in INPUTS]
+    rest = [p for p in own if p.kind is Parameter.KEYWORD_ONLY]
+    function.__dict__["__signature__"] = given.replace(parameters=[*first, *named, *rest])
+    return function
+
+
 def several(names: Any) -> tuple[str, ...]:
     """The names of a list or anything else that holds them, each once."""
     try:

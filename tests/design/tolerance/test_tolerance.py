@@ -1,6 +1,7 @@
 """Scatter by derivatives, Monte Carlo, Sobol's indices and enclosures, against each other and known cases."""
 
 import math
+import re
 import subprocess
 import sys
 
@@ -28,6 +29,54 @@ def test_the_ways_agree(point):
     assert worst["guaranteed"]
     assert worst["lower"] < drawn["percentiles"][0.135] < drawn["percentiles"][99.865] < worst["upper"]
     assert (point["status"], drawn["infeasible"]) == (0, 0.0)
+
+
+def test_what_is_guaranteed_and_what_is_not(point):
+    """At three sigmas a few in a thousand inputs are beyond their tolerance, at one a third of them."""
+    worst = point["worst_case"]
+    assert (worst["guaranteed"], worst["sigmas"]) == (True, 3.0)
+    assert worst["outside"] < 1e-3
+    wide = dx.tolerance("a_C", sigmas=1.0, sobol=0, samples=2000, **{**POINT, "AB": 0.125, "BC": 0.35})
+    assert wide["worst_case"]["sigmas"] == 1.0
+    assert wide["worst_case"]["outside"] == pytest.approx(2 * stats.norm.sf(1.0), abs=0.04)
+    assert wide["monte_carlo"]["largest"] > wide["worst_case"]["upper"]
+    even = dx.tolerance("a_C", distribution="uniform", sobol=0, samples=2000, **POINT)
+    assert (even["worst_case"]["sigmas"], even["worst_case"]["outside"]) == (None, 0.0)
+
+
+def test_a_range_and_a_tolerance_are_the_same_in_both_calls():
+    rest = {"theta": 1.0, "AB": 0.125, "BC": 0.35, "omega0": 157.08}
+    given = [dx.plus_minus("10 mm", "0.1 mm"), dx.between("9.9 mm", "10.1 mm"), dx.plus_minus(0.01, "1 %")]
+    boxes = [dx.enclose("a_C", ec=ec, **rest) for ec in (*given, (0.0099, 0.0101))]
+    assert all(box == boxes[0] for box in boxes)
+    scatter = [dx.tolerance("a_C", ec=ec, samples=10, sobol=0, **rest) for ec in (*given, (0.01, 1e-4))]
+    assert all(found == scatter[0] for found in scatter)
+    worst = scatter[0]["worst_case"]
+    assert (worst["lower"], worst["upper"]) == (boxes[0]["lower"], boxes[0]["upper"])
+
+
+@pytest.mark.parametrize(
+    ("ec", "told"),
+    [
+        (("9.9 mm", "10.1 mm"), "a range from 9.9 mm to 10.1 mm is dx.between('9.9 mm', '10.1 mm')"),
+        ((-0.001, 0.001), "means -0.001 +- 0.001: say so by dx.plus_minus(-0.001, 0.001)"),
+    ],
+)
+def test_ends_in_the_place_of_a_tolerance_are_warned_of(ec, told):
+    with pytest.warns(UserWarning, match=re.escape(told)):
+        dx.tolerance("margin", ec=ec, AB=0.125, BC=0.35, samples=2, sobol=0)
+
+
+def test_a_tolerance_in_the_place_of_ends_is_warned_of():
+    with pytest.warns(UserWarning, match=re.escape("from -10 mm to 0.1 mm: say so by dx.between(")):
+        dx.enclose("margin", ec=("-10 mm", "0.1 mm"), AB=0.125, BC=0.35)
+
+
+@pytest.mark.parametrize("ec", [dx.between(0.2, 0.1), dx.plus_minus(0.1, -0.1), dx.plus_minus(0.1, None)])
+@pytest.mark.parametrize("call", [dx.enclose, dx.tolerance])
+def test_a_bad_range_names_its_input(call, ec):
+    with pytest.raises((ValueError, TypeError), match=r"^ec"):
+        call("margin", ec=ec, AB=0.125, BC=0.35)
 
 
 def test_values_by_hand(point):

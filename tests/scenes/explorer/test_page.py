@@ -8,8 +8,10 @@ import re
 import pytest
 
 import desaxe as dx
+from desaxe.mechanism.units import in_si
 
 MINUS, NONE = "\u2212", "\u2013"
+RAISED = str.maketrans("\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079", "-0123456789")
 FINITE = "(k) => desaxe.curve(desaxe.state.shown[0], desaxe.state.designs[k]).value.map((v) => v !== null)"
 
 
@@ -37,7 +39,13 @@ def settle(page):
 def reading(page, name):
     """The values of a row under the cursor, as numbers."""
     cells = page.locator(f"#readings tr[data-name='{name}'] td:not(.unit)").all_inner_texts()
-    return [float(text.replace(MINUS, "-")) if text != NONE else None for text in cells]
+    return [number(text) if text != NONE else None for text in cells]
+
+
+def number(text):
+    """A number as the page prints it, such as -7.7 times a power of ten."""
+    mantissa, _, power = text.replace(MINUS, "-").partition(" \u00d7 10")
+    return float(mantissa) * 10.0 ** int(power.translate(RAISED) or 0)
 
 
 def test_it_says_what_it_shows(visit, one_design):
@@ -232,6 +240,133 @@ def test_a_few_huge_values_do_not_hide_the_others(visit, one_design):
         assert note in page.inner_text("#note-1")
         drawn = page.evaluate("document.querySelector('#plot-1 .js-line').getAttribute('d')")
         assert max(abs(float(v)) for v in re.findall(r"-?[\d.]+(?:e[-+]?\d+)?", drawn)) < 1e7
+
+
+def figure(page, name):
+    """A row of the figures of each design."""
+    return page.locator(f"#figures tr[data-figure='{name}'] td").all_inner_texts()
+
+
+def test_typing_what_is_there_changes_nothing(visit, several_designs, folder):
+    page = visit(several_designs)
+    page.fill("#number-omega0", "1500")
+    settle(page)
+    assert design(page)["omega0"] == design(page, 1)["omega0"] == 1500 * math.pi / 30
+    assert page.inner_text("#export-note") == ""
+    odd = visit(dx.explore(path=folder / "odd.html", ec=[0.0, 0.1], AB=0.1 + 0.2, BC=1.0, omega0=157.08))
+    for name in ("AB", "omega0"):
+        odd.fill(f"#number-{name}", odd.input_value(f"#number-{name}"))
+    settle(odd)
+    assert (design(odd)["AB"], design(odd)["omega0"]) == (0.1 + 0.2, 157.08)
+
+
+@pytest.mark.parametrize(
+    ("unit", "text", "si"),
+    [
+        ("m", "62.3", "62.3 mm"), ("m", "-1e2", "-100 mm"), ("rad/s", "1450.5", "1450.5 rpm"),
+        ("kg*m^2", "80.6", "80.6 kg mm2"),
+    ],
+)  # fmt: skip
+def test_a_field_means_what_python_means(unit, text, si, standing):
+    name = {"m": "ec", "rad/s": "omega0", "kg*m^2": "I_rod"}[unit]
+    wanted = 80.6e-6 if name == "I_rod" else in_si(name, si)
+    assert standing.evaluate("([u, t]) => desaxe.toSI(u, t)", [unit, text]) == wanted
+
+
+def test_a_slider_comes_back_from_a_large_entry(visit, one_design):
+    page = visit(one_design)
+    before = page.get_attribute("#slide-ec", "max")
+    page.fill("#number-ec", "5000")
+    settle(page)
+    assert float(page.get_attribute("#slide-ec", "max")) >= 5000
+    page.fill("#number-ec", "10")
+    settle(page)
+    assert page.get_attribute("#slide-ec", "max") == before
+
+
+def test_turning_is_that_of_feasibility(visit, one_design):
+    """0.35 - 0.125 - 0.225 is -2.8e-17 in doubles: so near its change point, yet it cannot turn fully."""
+    page = visit(one_design)
+    page.fill("#number-ec", "225")
+    settle(page)
+    assert not dx.feasibility(ec=0.225, AB=0.125, BC=0.35)["can_turn"]
+    assert figure(page, "turns") == ["no"]
+    assert "it cannot turn fully" in verdict(page)[1]
+
+
+@pytest.mark.parametrize("branch", [1, -1])
+def test_the_figures_of_a_design(branch, visit, folder):
+    inputs = {"AB": 0.125, "BC": 0.35, "omega0": 157.0, "branch": branch}
+    page = visit(dx.explore(path=folder / "figures.html", ec=[0.0, 0.1, -0.2], **inputs))
+    for k, ec in enumerate((0.0, 0.1, -0.2)):
+        found = page.evaluate(f"desaxe.turnOf(desaxe.state.designs[{k}])")
+        wanted = dx.events(ec=ec, AB=0.125, BC=0.35, branch=branch)
+        assert found["stroke"] == pytest.approx(wanted["stroke"], rel=1e-14)
+        assert found["ratio"] == pytest.approx(wanted["time_ratio"], rel=1e-13)
+        assert found["pressure"] == pytest.approx(wanted["max_pressure_angle"], rel=1e-13)
+        for which in ("outer", "inner"):
+            apart = (found[which] - wanted[f"theta_{which}"] + math.pi) % (2 * math.pi) - math.pi
+            assert abs(apart) < 1e-12
+        top = "((d) => desaxe.peakOf('a_C', d, desaxe.curve('a_C', d)))"
+        peak = page.evaluate(f"{top}(desaxe.state.designs[{k}])")
+        exact = dx.peak("a_C", ec=ec, **inputs)
+        assert abs(peak["value"]) == pytest.approx(exact["value"], rel=1e-12)
+    assert figure(page, "stroke")[1] == f"{1e3 * dx.events(ec=0.1, AB=0.125, BC=0.35)['stroke']:.3f} mm"
+
+
+def test_a_peak_without_bound_is_told(visit, several_designs):
+    page = visit(several_designs)
+    page.click("[data-take='2']")
+    assert figure(page, "stroke")[0] == NONE
+    assert figure(page, "peak-a_C")[0].split("\n") == ["no bound", "next to a limit angle"]
+
+
+def test_the_slider_axis_is_upright(visit, one_design):
+    """As in the sketch of README: Y up, X to the right, the slider axis at X = -ec."""
+    page = visit(one_design)
+    page.fill("#number-ec", "100")
+    settle(page)
+    place = """(name) => { const e = [...document.querySelectorAll('#mechanism text')]
+        .find((t) => t.textContent === name); return [+e.getAttribute('x'), +e.getAttribute('y')]; }"""
+    a, b, c, x, y = (page.evaluate(place, name) for name in "ABCXY")
+    assert c[1] < b[1] < a[1]  # upwards
+    assert c[0] < a[0] < b[0] < x[0]
+    assert y[1] < c[1]
+
+
+def test_tables_and_files_in_other_units(visit, several_designs):
+    page = visit(several_designs)
+    page.select_option("#units", "mm")
+    theta, inputs = page.evaluate("desaxe.state.theta"), design(page)
+    scale = {"Y": 1e3, "a_C": 1e3, "phi": 180 / math.pi, "omega_BC": 30 / math.pi, "a_C_wrt_ec": 1.0}
+    for name, times in scale.items():
+        wanted = times * dx.evaluate(name, theta=theta, **inputs)
+        assert reading(page, name)[0] == pytest.approx(wanted, rel=1e-7)
+    units = page.locator("#readings td.unit").all_inner_texts()
+    assert units == ["mm/s²", "1/s²", "mm", "mm/s", "°", "rpm", "rad/s²"]
+    rows = list(csv.reader(io.StringIO(page.evaluate("desaxe.valuesText()"))))
+    assert rows[0][:3] == ["theta [deg]", "a_C [mm/s^2] (ec = 0 mm)", "a_C_wrt_ec [1/s^2] (ec = 0 mm)"]
+    assert float(rows[-1][0]) == pytest.approx(360.0)
+    assert float(rows[1][1]) == pytest.approx(1e3 * dx.evaluate("a_C", theta=0.0, **inputs), rel=1e-12)
+    page.select_option("#units", "all")
+    assert float(page.input_value("#number-AB")) == 0.125
+    assert "m" in page.inner_text("#field-AB .unit")
+
+
+def test_loads_can_be_set(visit, folder):
+    page = visit(
+        dx.explore(path=folder / "loaded.html", ec=0.01, AB=0.04, BC=0.064, omega0=100.0, m_slider=1.0)
+    )
+    page.click("#more summary")
+    page.fill("#number-F_Y", "-50")
+    page.fill("#number-mu", "0.1")
+    settle(page)
+    given = design(page)
+    assert (given["F_Y"], given["mu"], given["m_rod"]) == (-50.0, 0.1, 0.0)
+    theta = page.evaluate("desaxe.state.theta")
+    for name in ("T_in", "F_A_X", "M_shaking"):
+        found = page.evaluate("([n, d, t]) => desaxe.valueAt(n, d, t)", [name, given, theta])
+        assert found == pytest.approx(dx.evaluate(name, theta=theta, **given), rel=1e-12)
 
 
 def test_what_changes_is_said(visit, one_design):

@@ -6,11 +6,13 @@ from typing import Any
 from ...evaluation.evaluate import evaluate
 from ...mechanism.names import LENGTHS
 from ...runtime.request import as_number, check_common, with_known_inputs
+from ...support.answer import answering
 from ..number_or_array import PLAIN, sum_of_three
 from ..roots import root
 from .closed_form import VELOCITIES, closed_form, placed, stroke_ends
 
 
+@answering
 @with_known_inputs
 def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) -> dict[str, Any]:
     """Dead centres, stroke, advance and return, and the extremes in between, of designs.

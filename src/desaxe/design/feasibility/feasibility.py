@@ -5,8 +5,10 @@ from typing import Any
 
 from ...mechanism.limit_angles import CHANGE_POINT_ULPS, theta_intervals
 from ...runtime.request import as_number, with_known_inputs
+from ...support.answer import answering
 
 
+@answering
 @with_known_inputs
 def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
     """Where a design can be assembled.

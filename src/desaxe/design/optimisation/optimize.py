@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ...runtime.request import check_common
+from ...support.answer import answering
 from ...support.checks import whole_number
 from ...support.deadline import Deadline
 from ...support.extras import needed
@@ -14,6 +15,7 @@ with needed("optimize", "design"):
     from .pareto import front
 
 
+@answering
 def optimize(
     *,
     over: Mapping[str, tuple[Any, Any]],

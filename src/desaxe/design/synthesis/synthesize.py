@@ -21,6 +21,7 @@ from typing import Any
 
 from ...mechanism.inputs import INPUTS, Input
 from ...runtime.request import as_number, with_known_inputs
+from ...support.answer import answering
 from ...support.checks import real_number
 from ...support.shown import shown
 from ..roots import root
@@ -38,6 +39,7 @@ WANTED = {
 THIRDS = ("BC", "AB", "max_pressure_angle", "peak_a_C")
 
 
+@answering
 @with_known_inputs
 def synthesize(
     *,

@@ -12,7 +12,9 @@ from ...evaluation.loaded import loads_of
 from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import sensitivity
+from ...mechanism.ranges import Between
 from ...runtime.request import check_common, check_inputs
+from ...support.answer import answering
 from ...support.checks import whole_number
 from ...support.extras import needed
 from ...support.shown import shown
@@ -91,6 +93,7 @@ class Function(NamedTuple):
         return "omega" in self.fixed or "omega" in self.varying
 
 
+@answering
 def tolerance(
     name: Any,
     *,
@@ -106,9 +109,10 @@ def tolerance(
 
     name          a quantity at a crank angle, as for `evaluate` ("a_C", with theta=), or one of a whole
                   design: "stroke", "time_ratio", ..., or a peak such as ("absmax", "a_C")
-    inputs        each a number (exact), a pair (value, tolerance), meaning value +- tolerance, the same as a
-                  text "10 mm +- 0.1 mm" or "10 mm +- 1 %", or a distribution of scipy.stats, frozen.
-                  (`enclose`, other than here, takes pairs (low, high).) F_X and F_Y may vary with the motion
+    inputs        each a number (exact); `dx.plus_minus(value, tolerance)`, the same as a bare pair (value,
+                  tolerance) and a text "10 mm +- 0.1 mm" or "10 mm +- 1 %"; `dx.between(low, high)`; or a
+                  distribution of scipy.stats, frozen. (A bare pair in `enclose` is (low, high).)
+                  F_X and F_Y may vary with the motion
     distribution  within a tolerance: "normal", the tolerance being so many `sigmas`, or "uniform"
     samples       of the Monte Carlo, by default 100000, or 10000 of a peak
     sobol         base samples of the Sobol indices, a power of two; 0 leaves them out
@@ -125,9 +129,12 @@ def tolerance(
     contributions  dict input -> share of the first-order variance, the largest first
     sobol          dict input -> dict first, total, first_error, total_error (95 %): shares of the variance
                    due to an input alone, and with its interactions (SALib)
-    worst_case     dict lower, upper, guaranteed: with every input anywhere within its tolerance, by
-                   `enclose` where that can be asked (extra `rigorous`), else from the middle and all
-                   corners, NaN where one has no value; None for distributions
+    worst_case     dict lower, upper: with every input anywhere within its tolerance; None for distributions.
+                   `guaranteed` says whether no such inputs give a value outside: True by `enclose` (extra
+                   `rigorous`), False from the middle and all corners alone, NaN where one has no value.
+                   Inputs beyond their tolerances are not covered: `sigmas` says how many standard deviations
+                   a tolerance is (None: uniform, no input is beyond), `outside` which share of the Monte
+                   Carlo samples lies outside
     agreement      dict of what should agree: mean and std, second order against Monte Carlo, in standard
                    errors; linearity, first against second order std, relative; contributions against Sobol's
                    first indices, the largest difference
@@ -157,7 +164,9 @@ def tolerance(
     bends, exact = function.bends(centre, STEP * np.array([row.std for row in rough]))
     kink = bool(np.isnan(bends).any()) and not np.isnan(value)
     first, second, shares = _propagated(value, slopes, bends, rough)
-    drawn = _monte_carlo(function, rough, samples or (MANY if function.at_point else SOME), seed)
+    found = _sampled(function, rough, samples or (MANY if function.at_point else SOME), seed)
+    drawn = _monte_carlo(found)
+    covered = float(sigmas) if distribution == "normal" else None
     indices = _sobol(function, rough, sobol, seed) if sobol else None
     return {
         "value": value,
@@ -167,7 +176,7 @@ def tolerance(
         "monte_carlo": drawn,
         "contributions": dict(sorted(shares.items(), key=lambda item: -item[1])),
         "sobol": indices,
-        "worst_case": _worst_case(function, value, slopes, rough),
+        "worst_case": _covered(_worst_case(function, value, slopes, rough), found, covered),
         "agreement": _agreement(first, second, drawn, shares, indices),
         "status": 1 if np.isnan(value) else 2 if drawn["infeasible"] else 3 if kink else 0,
     }
@@ -228,14 +237,19 @@ def _propagated(value: float, slopes: Array, bends: Array, rough: Sequence[Inexa
     return first, {"mean": value + float(own.sum()) / 2.0, "std": float(np.sqrt(max(variance, 0.0)))}, shares
 
 
-def _monte_carlo(function: Function, rough: Sequence[Inexact], count: int, seed: int) -> dict[str, Any]:
-    """Random samples, drawn and evaluated in blocks; only the values are kept."""
+def _sampled(function: Function, rough: Sequence[Inexact], count: int, seed: int) -> Array:
+    """The values of random samples, drawn and evaluated in blocks."""
     random = np.random.default_rng(seed)
     blocks = []
     for start in range(0, count, BLOCK):
         size = min(BLOCK, count - start)
         blocks.append(function.values({row.name: row.drawn(random, size) for row in rough}))
-    every = np.concatenate(blocks)
+    return np.concatenate(blocks)
+
+
+def _monte_carlo(every: Array) -> dict[str, Any]:
+    """Mean, scatter and percentiles of samples; those without a value are counted."""
+    count = every.size
     known = every[np.isfinite(every)]
     lost = 1.0 - known.size / count
     if known.size < 2:
@@ -282,7 +296,7 @@ def _worst_case(function: Function, value: float, slopes: Array, rough: Sequence
         return None
     if function.at_point:
         ranges = {
-            row.name: (row.mean - float(row.tolerance or 0), row.mean + float(row.tolerance or 0))
+            row.name: Between(row.mean - float(row.tolerance or 0), row.mean + float(row.tolerance or 0))
             for row in rough
         }
         found = _enclosed(str(function.measure), {**function.fixed, **ranges}, function.branch)
@@ -290,6 +304,15 @@ def _worst_case(function: Function, value: float, slopes: Array, rough: Sequence
             return {"lower": found["lower"], "upper": found["upper"], "guaranteed": True}
     every = np.append(function.values(_corners(rough, slopes)), value)
     return {"lower": float(every.min()), "upper": float(every.max()), "guaranteed": False}
+
+
+def _covered(worst: dict[str, Any] | None, samples: Array, sigmas: float | None) -> dict[str, Any] | None:
+    """The worst case with what it does not cover: how many sigmas it is of, which share lies outside."""
+    if worst is None:
+        return None
+    known = samples[np.isfinite(samples)]
+    outside = (known < worst["lower"]) | (known > worst["upper"])
+    return {**worst, "sigmas": sigmas, "outside": float(outside.mean()) if known.size else np.nan}
 
 
 def _corners(rough: Sequence[Inexact], slopes: Array) -> dict[str, Array]:

@@ -1,16 +1,20 @@
 """Inputs that are not known exactly: a value and its tolerance, or a distribution."""
 
+from collections.abc import Sequence
 from math import inf, sqrt
 from typing import Any, NamedTuple
+from warnings import warn
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...mechanism.ranges import Between, RangeWarning, middle_of
 from ...runtime.request import as_number
 from ...support.quantity_text import PLUS_MINUS
 
 Array = NDArray[np.float64]
 DISTRIBUTIONS = ("normal", "uniform")
+LARGE = 0.5  # of the value: a tolerance so large is probably the other end of a range
 
 
 class Inexact(NamedTuple):
@@ -62,7 +66,8 @@ def read(name: str, value: Any, distribution: str, sigmas: float) -> float | Ine
 
 
 def _pair(name: str, value: Any) -> tuple[float, float] | None:
-    """Value and tolerance from a pair or a text such as "10 mm +- 0.1 mm"; None where there is none."""
+    """Value and tolerance from a pair, range or text such as "10 mm +- 0.1 mm"; None where there is none."""
+    bare = type(value) in (tuple, list)
     if isinstance(value, str):
         parts = PLUS_MINUS.split(value)
         if len(parts) == 1:
@@ -70,8 +75,26 @@ def _pair(name: str, value: Any) -> tuple[float, float] | None:
         value = tuple(part.strip() for part in parts)
     if not isinstance(value, (tuple, list)):
         return None
+    if isinstance(value, Between):
+        middle, half = middle_of(name, value)
+        return _number(name, middle), half
     if len(value) != 2:
         raise ValueError(f"{name} = {value!r}: a pair (value, tolerance) is wanted")
+    nominal, tolerance = _with_tolerance(name, value)
+    if bare and nominal and LARGE * abs(nominal) <= tolerance < inf:
+        low, high = value
+        warn(
+            f"tolerance: {name} = {value!r} means {low} +- {high}: say so by "
+            f"dx.plus_minus({low!r}, {high!r}); a range from {low} to {high} is "
+            f"dx.between({low!r}, {high!r})",
+            RangeWarning,
+            stacklevel=5,
+        )
+    return nominal, tolerance
+
+
+def _with_tolerance(name: str, value: Sequence[Any]) -> tuple[float, float]:
+    """The two numbers of a pair (value, tolerance)."""
     nominal = _number(name, value[0])
     if isinstance(value[1], str) and value[1].strip().endswith("%"):
         return nominal, _percent(name, value[1]) * abs(nominal)

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from ...support.answer import answering
 from .turn import Turn, extreme
 
 ALONG = {"both": 0.0, "Y": 1.0, "X": -1.0}
@@ -19,6 +20,7 @@ POINTS = 8192  # among which the largest force is looked for
 FORCES = ("F_shaking_X", "F_shaking_Y")
 
 
+@answering
 def counterweight(
     *, along: str = "both", radius: Any = None, branch: int = 1, **inputs: Any
 ) -> dict[str, Any]:

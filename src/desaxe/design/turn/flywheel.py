@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...support.answer import answering
 from ..roots import root
 from .turn import Array, Turn, extreme
 
@@ -21,6 +22,7 @@ POINTS = 16384
 MOST_TURNS = 4  # after which the loads must repeat; two in a four-stroke engine
 
 
+@answering
 def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str, Any]:
     """Torque ripple over a turn, and the flywheel for a wanted fluctuation of speed.
 

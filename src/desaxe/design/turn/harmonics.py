@@ -5,9 +5,11 @@ from typing import Any
 import numpy as np
 
 from ...mechanism.catalogue import quantity
+from ...support.answer import answering
 from .turn import Turn
 
 
+@answering
 def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> dict[str, Any]:
     """The harmonics of a quantity over a turn at constant speed.
 

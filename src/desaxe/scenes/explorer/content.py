@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from ...compiler.languages.javascript import emit_javascript
 from ...mechanism.catalogue import Quantity, quantities, quantity
 from ...mechanism.inputs import INPUTS
-from ...mechanism.names import LOADS, PARAMETERS, joined, parts
+from ...mechanism.names import CENTRES, LOADS, PARAMETERS, joined, parts
 from ...runtime.request import Request, request
 from ...runtime.specialise import specialise
 
@@ -21,6 +21,11 @@ KINEMATICS = (
     "pressure_angle", "omega", "V_B", "V_B_X", "V_B_Y", "a_B", "a_B_X", "a_B_Y",
 )  # fmt: skip
 FORCES = ("T_in", "N_C")
+VALUES = (  # without their sensitivities, which would make the page twice as large
+    "power_in", "F_friction", "F_A_X", "F_A_Y", "F_B_X", "F_B_Y", "F_shaking_X", "F_shaking_Y",
+    "M_shaking",
+)  # fmt: skip
+CHANGED = tuple(name for name in LOADS if name not in CENTRES)  # on the page; 0 where not given
 STATE = ("status", "margin")
 SHAPE = ("ec", "AB", "BC")
 MOST_DESIGNS = 5  # that a page compares when it is opened: a colour is left for one that is kept
@@ -47,6 +52,7 @@ class Content(NamedTuple):
     shown: tuple[str, ...]
     functions: tuple[Function, ...]
     left_out: Mapping[str, tuple[float, ...]]  # input -> its values that no design has
+    given: tuple[str, ...]  # the inputs that were given
 
     @property
     def quantities(self) -> list[Quantity]:
@@ -60,15 +66,20 @@ def content(
 ) -> Content:
     """The content for these inputs; `names` are the quantities, those of the motion without."""
     given = {"alpha": 0.0, **inputs}
+    named = tuple(inputs)
     shown = tuple(dict.fromkeys(shown))
     for name in ("ec", "AB", "BC", "omega" if "omega" in given else "omega0"):
         if name not in given:
             raise TypeError(f"explore: {name} is missing (needed: ec, AB, BC, and omega0 or omega)")
     wanted = [*shown, *((*KINEMATICS, *(FORCES * _loaded(given))) if names is None else names)]
-    functions = tuple(_function(base, own, given, branch) for base, own in _grouped(wanted, given).items())
+    groups = _grouped(wanted, given)
+    if _loaded(given):
+        groups |= {} if names is not None else {name: [name] for name in VALUES if name not in groups}
+        given = {**given, **{name: 0.0 for name in CHANGED if name not in given}}
+    functions = tuple(_function(base, own, given, branch) for base, own in groups.items())
     designs = _designs(given)
     left = {n: out for n, value in given.items() if n != "theta" and (out := _left_out(n, value, designs))}
-    return Content(title, branch, _angles(given), designs, shown, functions, left)
+    return Content(title, branch, _angles(given), designs, shown, functions, left, named)
 
 
 def left_out_text(content: Content) -> str:

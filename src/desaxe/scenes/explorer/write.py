@@ -63,10 +63,17 @@ def _data(content: Content) -> dict[str, Any]:
         "left_out": left_out_text(content),
         "shown": content.shown,
         "inputs": {
-            name: {"unit": row.unit, "meaning": row.meaning, "least": row.least, "limit": row.limit}
+            name: {
+                "unit": row.unit,
+                "meaning": row.meaning,
+                "least": row.least,
+                "limit": row.limit,
+                "given": name in content.given,
+            }
             for name in content.designs[0]
             for row in (INPUTS[name],)
         },
+        "parameters": {name: row.unit for name, row in INPUTS.items()},
         "functions": {f.quantity: {"names": f.names, "inputs": f.inputs} for f in content.functions},
         "quantities": {row.name: _about(row.name, row.unit, row.meaning) for row in content.quantities},
         "status": _status_words(),

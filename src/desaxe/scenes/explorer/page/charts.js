@@ -43,7 +43,8 @@ function showChoice(index) {
 
 function drawChart(index) {
   const name = state.shown[index], look = palette(), labels = labelsOf(state.designs);
-  const curves = state.designs.map((design) => curve(name, design));
+  const found = state.designs.map((design) => curve(name, design)), times = shownIn(name)[1];
+  const curves = found.map(({ theta, value }) => ({ theta, value: value.map((v) => (v === null ? null : v * times)) }));
   const range = heightOf(curves.map(({ value }) => value));
   const traces = curves.map(({ theta, value }, k) => ({
     x: theta.map((angle) => (angle * 180) / Math.PI),
@@ -65,6 +66,7 @@ function drawChart(index) {
     displayModeBar: touched ? false : "hover",
   });
   setText(`note-${index}`, noteOf(name, curves.map(({ value }) => value), range));
+  return found;
 }
 
 function noteOf(name, curves, range) {
@@ -73,11 +75,11 @@ function noteOf(name, curves, range) {
   if (!range) return "";
   if (curves.some((value) => value.includes(null))) return "It grows next to a limit angle, and is cut off there.";
   const peak = known.reduce((most, v) => (Math.abs(v) > Math.abs(most) ? v : most));
-  return `A narrow peak of ${digits(peak, 3)} ${printedUnit(CONTENT.quantities[name].unit)} is cut off.`;
+  return `A narrow peak of ${digits(peak, 3)} ${valueUnit(name)} is cut off.`;
 }
 
 function layoutOf(name, range, look, designs) {
-  const unit = printedUnit(CONTENT.quantities[name].unit);
+  const unit = valueUnit(name);
   const axis = { fixedrange: touched, gridcolor: look.line, zerolinecolor: look.soft, linecolor: look.line, zerolinewidth: 1 };
   const [from, to] = CONTENT.theta.map((angle) => (angle * 180) / Math.PI);
   return {
@@ -102,7 +104,7 @@ function layoutOf(name, range, look, designs) {
       exponentformat: "power", automargin: true, ...(range ? { range, autorange: false } : { autorange: true }),
     },
     shapes: [cursor(state.theta, look)],
-    uirevision: `${name} ${Boolean(range)}`,
+    uirevision: `${name} ${Boolean(range)} ${unit}`,
   };
 }
 
@@ -159,9 +161,9 @@ function readings() {
   const head = labels.map((label, k) => `<th scope="col">${swatch(k)}${label}</th>`).join("");
   const rows = names.map((name) => {
     const about = CONTENT.quantities[name];
-    const cells = state.designs.map((design) => `<td>${digits(valueAt(name, design, state.theta), 8)}</td>`);
+    const cells = state.designs.map((design) => `<td>${digits(valueIn(name, valueAt(name, design, state.theta)), 8)}</td>`);
     const title = `<th scope="row" title="${about.meaning}">${symbol(name)}</th>`;
-    return `<tr data-name="${name}">${title}${cells.join("")}<td class="unit">${printedUnit(about.unit)}</td></tr>`;
+    return `<tr data-name="${name}">${title}${cells.join("")}<td class="unit">${valueUnit(name)}</td></tr>`;
   });
   const words = state.designs.map((design) => statusWords(design, state.theta));
   if (words.some(Boolean)) {

@@ -37,15 +37,40 @@ function field(name, slider) {
   return (
     `<div class="field" id="field-${name}"><label for="number-${name}" title="${meaning}">${label}</label>` +
     `<span class="number"><input type="number" step="any" id="number-${name}" aria-describedby="wrong-${name}">` +
-    `<span class="unit">${shownUnit(unit)}</span></span>${range}` +
+    `<span class="unit" data-unit="${unit}">${shownUnit(unit)}</span></span>${range}` +
     `<p class="wrong" id="wrong-${name}" role="alert"></p></div>`
   );
 }
 
+// What a value reads as in its field, and the value that a text in it means: one that already reads so stays
+// the same double, so that typing it again changes nothing.
+const fieldText = (name, value) => String(Number(toShown(CONTENT.inputs[name].unit, value).toPrecision(8)));
+
+function fieldValue(name, text) {
+  const known = [...state.designs, ...CONTENT.designs].map((design) => design[name]);
+  const same = known.find((value) => fieldText(name, value) === text.trim());
+  return same ?? toSI(CONTENT.inputs[name].unit, text);
+}
+
+// The span of a slider in the unit of its field; a value beyond it widens it as long as it stands.
+function spread(name) {
+  const range = document.getElementById(`slide-${name}`);
+  if (!range) return;
+  const { unit } = CONTENT.inputs[name], [low, high] = spans[name].map((v) => toShown(unit, v));
+  const step = stepOf(high - low), shown = toShown(unit, state.designs[0][name]);
+  range.step = step;
+  range.min = Math.min(Math.ceil(low / step) * step, Math.floor(shown / step) * step);
+  range.max = Math.max(Math.floor(high / step + 1e-9) * step, Math.ceil(shown / step) * step);
+  range.value = shown;
+  range.setAttribute("aria-valuetext", shownInput(name, state.designs[0][name]));
+}
+
+const spans = {}; // of sliders, in SI units, as the page began
+
 function listenTo(name, slider) {
-  const number = document.getElementById(`number-${name}`), unit = CONTENT.inputs[name].unit;
+  const number = document.getElementById(`number-${name}`);
   number.addEventListener("input", () => {
-    const value = number.value.trim() === "" ? NaN : toSI(unit, number.valueAsNumber);
+    const value = number.value.trim() === "" ? NaN : fieldValue(name, number.value);
     const good = isGood(name, value);
     setText(`wrong-${name}`, good ? "" : `It must be ${CONTENT.inputs[name].limit}.`);
     number.setAttribute("aria-invalid", String(!good));
@@ -53,11 +78,20 @@ function listenTo(name, slider) {
   });
   number.addEventListener("blur", showControls);
   if (!slider) return;
-  const range = document.getElementById(`slide-${name}`), [low, high] = spanOf(name).map((v) => toShown(unit, v));
-  Object.assign(range, { step: stepOf(high - low) });
-  range.min = Math.ceil(low / range.step) * range.step;
-  range.max = Math.floor(high / range.step + 1e-9) * range.step;
-  range.addEventListener("input", () => change(name, toSI(unit, snapped(range.valueAsNumber, +range.step)), range));
+  const range = document.getElementById(`slide-${name}`);
+  spans[name] = spanOf(name);
+  spread(name);
+  range.addEventListener("input", () => change(name, fieldValue(name, String(snapped(range.valueAsNumber, +range.step))), range));
+}
+
+function buildUnits() {
+  const choice = document.getElementById("units");
+  choice.innerHTML = Object.entries(UNITS).map(([key, { title }]) => `<option value="${key}">${title}</option>`).join("");
+  choice.addEventListener("change", () => {
+    units = UNITS[choice.value];
+    for (const element of document.querySelectorAll("[data-unit]")) element.textContent = shownUnit(element.dataset.unit);
+    showAll();
+  });
 }
 
 // A multiple of the step without the dust of binary fractions.
@@ -65,18 +99,13 @@ const snapped = (value, step) => Number((Math.round(value / step) * step).toPrec
 
 function showControls(source) {
   for (const [name, value] of Object.entries(state.designs[0])) {
-    const shown = toShown(CONTENT.inputs[name].unit, value);
     const number = document.getElementById(`number-${name}`), range = document.getElementById(`slide-${name}`);
     if (number !== source && document.activeElement !== number) {
-      number.value = Number(shown.toPrecision(8));
+      number.value = fieldText(name, value);
       number.setAttribute("aria-invalid", "false");
       setText(`wrong-${name}`, "");
     }
-    if (!range || range === source) continue;
-    if (shown > +range.max) range.max = shown; // a typed value may lie beyond the slider
-    if (shown < +range.min) range.min = shown;
-    range.value = shown;
-    range.setAttribute("aria-valuetext", shownInput(name, value));
+    if (range && range !== source) spread(name);
   }
 }
 

@@ -9,7 +9,7 @@ const SAMPLES = 721;
 const NEARER = [1, 2, 3, 4, 5, 6, 7, 8].map((k) => 4 ** -k); // of a step towards a border
 
 function answers(base, design, theta) {
-  const args = CONTENT.functions[base].inputs.map((name) => (name === "theta" ? theta : design[name]));
+  const args = CONTENT.functions[base].inputs.map((name) => (name === "theta" ? theta : design[name] ?? 0));
   return FUNCTIONS[base](...args);
 }
 
@@ -97,6 +97,49 @@ function gaps(design) {
     found.at(-1)[1] = TURN + found.shift()[1]; // a gap across theta = 0 is one gap
   }
   return found;
+}
+
+// The largest magnitude of a curve, between its samples too: { theta, value, limit }, null where there is none;
+// `limit`: it is reached next to a limit angle; `grows`: towards which it has no bound.
+function peakOf(name, design, { theta, value }) {
+  const size = (v) => (v === null || !Number.isFinite(v) ? -1 : Math.abs(v));
+  const best = value.reduce((top, v, k) => (size(v) > size(value[top]) ? k : top), 0);
+  if (size(value[best]) < 0) return null;
+  const limit = [value[best - 1], value[best + 1]].includes(null);
+  let a = theta[Math.max(0, best - 1)], b = theta[Math.min(theta.length - 1, best + 1)];
+  const at = (angle) => size(valueAt(name, design, angle)), part = (Math.sqrt(5) - 1) / 2;
+  if (!limit) {
+    let [c, d] = [b - part * (b - a), a + part * (b - a)], [f, g] = [at(c), at(d)];
+    for (let k = 0; k < 60; k++) {
+      if (f > g) [b, d, g, c] = [d, c, f, d - part * (d - a)], f = at(c);
+      else [a, c, f, d] = [c, d, g, c + part * (b - c)], g = at(d);
+    }
+  }
+  const middle = (a + b) / 2, refined = !limit && at(middle) > size(value[best]);
+  const angle = refined ? middle : theta[best];
+  const sizes = value.map(size).filter((v) => v >= 0).sort((p, q) => p - q);
+  const grows = limit && size(value[best]) > 1e3 * sizes[Math.floor(sizes.length / 2)];
+  return { theta: angle, value: refined ? valueAt(name, design, angle) : value[best], limit, grows };
+}
+
+const canTurn = (design) => marginOf(design) >= 0;
+
+// Stroke, time ratio, dead centres and the largest pressure angle of a crank that turns; null where it does not.
+function turnOf(design) {
+  if (!canTurn(design)) return null;
+  const { AB, BC, ec } = design, out = BC + AB, inn = BC - AB;
+  const height = (reach) => Math.sqrt((reach - ec) * (reach + ec));
+  const [far, near] = [Math.asin(ec / out), Math.asin(ec / inn)];
+  const turned = (angle) => ((angle % TURN) + TURN) % TURN;
+  const [outer, inner] = CONTENT.branch > 0 ? [-far, Math.PI - near] : [Math.PI + far, near];
+  const lag = Math.asin(Math.abs(ec) / inn) - Math.asin(Math.abs(ec) / out);
+  return {
+    stroke: AB ? (4 * AB * BC) / (height(out) + height(inn)) : 0,
+    ratio: (Math.PI + lag) / (Math.PI - lag),
+    outer: turned(outer),
+    inner: turned(inner),
+    pressure: Math.asin((AB + Math.abs(ec)) / BC),
+  };
 }
 
 // The inputs in which not all of the designs agree.

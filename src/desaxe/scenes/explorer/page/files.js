@@ -26,7 +26,7 @@ function sceneText() {
   const lines = ["# Written by the explorer page of desaxe, in SI units and radians: desaxe run scene.toml", ""];
   lines.push(`title = ${JSON.stringify(CONTENT.title)}`, `outputs = ${JSON.stringify([...new Set(shown)])}`);
   for (const [section, names] of SECTIONS) {
-    const given = names.filter((name) => name in CONTENT.inputs);
+    const given = names.filter((name) => name in CONTENT.inputs && (CONTENT.inputs[name].given || kept.some((d) => d[name] !== 0)));
     if (!given.length) continue;
     lines.push("", `[${section}]`, ...given.map((name) => `${name} = ${valueOf(name)} # ${CONTENT.inputs[name].unit}`));
     if (section === "mechanism") lines.push(`branch = ${CONTENT.branch}`);
@@ -38,17 +38,18 @@ function sceneText() {
   return lines.join("\n") + "\n";
 }
 
-// One row an angle; nothing where there is no value. Digits are all that a double has.
+// One row an angle, in the units that are chosen; nothing where there is no value, all digits of a double.
 function valuesText() {
   const labels = labelsOf(state.designs);
   const names = [...new Set([...state.shown, "status"])];
   const columns = state.designs.flatMap((design, k) => names.map((name) => ({ design, name, label: labels[k] })));
-  const titleOf = ({ name, label }) => `"${name} [${CONTENT.quantities[name].unit}] (${label})"`;
+  const titleOf = ({ name, label }) => `"${name} [${shownIn(name)[0]}] (${label})"`;
   const printed = (value) => (Number.isFinite(value) ? String(value) : "");
+  const [angle, times] = inUnits("rad");
   const rows = evenAngles().map((theta) =>
-    [theta, ...columns.map(({ design, name }) => printed(valueAt(name, design, theta)))].join(","),
+    [theta * times, ...columns.map(({ design, name }) => printed(valueIn(name, valueAt(name, design, theta))))].join(","),
   );
-  return [['"theta [rad]"', ...columns.map(titleOf)].join(","), ...rows].join("\n") + "\n";
+  return [[`"theta [${angle}]"`, ...columns.map(titleOf)].join(","), ...rows].join("\n") + "\n";
 }
 
 const loaded = (source) =>

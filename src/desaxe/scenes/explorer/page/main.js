@@ -7,6 +7,7 @@ const state = {
   playing: 0,
 };
 
+let drawn = []; // the curves of each chart
 let wanted = 0; // the frame in which the page is drawn again
 
 function later(draw) {
@@ -18,7 +19,8 @@ function showAll(source) {
   showControls(source);
   showDesigns();
   showVerdict(state.designs[0]);
-  charts.forEach((_, index) => drawChart(index));
+  drawn = charts.map((_, index) => drawChart(index));
+  showFigures(drawn);
   showTurn();
 }
 
@@ -47,7 +49,8 @@ function change(name, value, source) {
 function show(index, name) {
   state.shown[index] = name;
   showChoice(index);
-  drawChart(index);
+  drawn[index] = drawChart(index);
+  showFigures(drawn);
   readings();
   sayLater();
 }
@@ -99,6 +102,7 @@ function listenToTheme() {
 
 charts.forEach(buildChooser);
 charts.forEach((_, index) => showChoice(index));
+buildUnits();
 buildControls();
 if (CONTENT.left_out) setText("left-out", `Not shown: ${CONTENT.left_out}`);
 listenToDesigns();
@@ -110,4 +114,4 @@ charts.forEach((_, index) => listen(index));
 addEventListener("resize", () => later(() => drawMechanism(state.designs, state.theta)));
 
 // For scripts, and for those who would like to check a number.
-window.desaxe = { content: CONTENT, state, valueAt, curve, gaps, kindOf, sceneText, valuesText };
+window.desaxe = { content: CONTENT, state, valueAt, curve, gaps, kindOf, canTurn, turnOf, peakOf, toSI, sceneText, valuesText };

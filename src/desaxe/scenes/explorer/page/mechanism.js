@@ -1,29 +1,30 @@
-// The mechanism to scale. Y points to the right and X down, so that theta turns clockwise.
+// The mechanism to scale. X points to the right and Y up, along the slider axis: theta turns clockwise.
 
 const NAMESPACE = "http://www.w3.org/2000/svg";
 
 // Where everything is in one design at one angle [m]; C is missing where the rod does not reach.
 function jointsAt(design, theta) {
-  const B = [design.AB * Math.cos(theta), design.AB * Math.sin(theta)];
+  const B = [design.AB * Math.sin(theta), design.AB * Math.cos(theta)];
   const Y = valueAt("Y", design, theta);
-  return { A: [0, 0], B, C: Number.isFinite(Y) ? [Y, -design.ec] : null };
+  return { A: [0, 0], B, C: Number.isFinite(Y) ? [-design.ec, Y] : null };
 }
 
 // Metres to pixels, so that every position of every design fits.
 function viewOf(designs, width, height) {
   const reach = (pick) => Math.max(...designs.map(pick));
   const crank = reach((d) => d.AB), far = reach((d) => d.AB + d.BC);
-  const body = 0.1 * far;
+  const body = 0.07 * far, foot = 40;
   const [low, high] = CONTENT.branch > 0 ? [-crank, far] : [-far, crank];
-  const up = Math.max(crank, reach((d) => d.ec)) + body, down = Math.max(crank, reach((d) => -d.ec)) + body;
-  const scale = Math.min((width - 16) / (high - low + 2 * body), (height - 44) / (up + down));
-  const left = width / 2 - ((low + high) / 2) * scale, top = 8 + up * scale + (height - 44 - (up + down) * scale) / 2;
-  return { scale, width, height, place: ([Y, X]) => [left + Y * scale, top + X * scale] };
+  const left = Math.max(crank, reach((d) => d.ec)) + body, right = Math.max(crank, reach((d) => -d.ec)) + body;
+  const scale = Math.min((width - 36) / (left + right), (height - foot - 8) / (high - low + 2 * body));
+  const middle = width / 2 + ((left - right) / 2) * scale;
+  const base = 8 + (height - foot - 8 + (high + low) * scale) / 2;
+  return { scale, width, height, foot, place: ([X, Y]) => [middle + X * scale, base - Y * scale] };
 }
 
 function drawMechanism(designs, theta) {
   const box = document.getElementById("mechanism");
-  const width = box.clientWidth || 600, height = Math.max(220, Math.min(330, width * 0.62));
+  const width = box.clientWidth || 320, height = Math.max(340, Math.min(470, width * 1.3));
   const view = viewOf(designs, width, height);
   const look = palette();
   const parts = [...designs.keys()].reverse().map((k) => linkage(designs[k], theta, view, look, k));
@@ -46,25 +47,32 @@ const disc = ([x, y], r, fill, stroke) =>
 const text = ([x, y], words, colour, more = "") => `<text x="${x}" y="${y}" fill="${colour}" ${more}>${words}</text>`;
 const halo = (look) => `paint-order="stroke" stroke="${look.panel}" stroke-width="4" stroke-linejoin="round"`;
 
-// What stands still: the slider axis, the axis through A, the crank circle, the frame.
-function frame(design, theta, { place, scale, width }, look) {
-  const [ax, ay] = place([0, 0]), axis = place([0, -design.ec])[1], r = design.AB * scale;
+const arrow = ([x, y], [dx, dy], colour) => // a head at a place, in a direction of length 1
+  `<path d="M${x} ${y}l${-7 * dx - 3.5 * dy} ${-7 * dy + 3.5 * dx}l${7 * dy} ${-7 * dx}z" fill="${colour}"/>`;
+
+// What stands still: X and Y through A, the slider axis, the crank circle, the frame, the eccentricity.
+function frame(design, theta, { place, scale, height, foot }, look) {
+  const [ax, ay] = place([0, 0]), axis = place([-design.ec, 0])[0], r = design.AB * scale, floor = height - foot;
   const arc = Math.min(r * 0.45, 34), turn = theta % TURN;
-  const end = [ax + arc * Math.cos(turn), ay + arc * Math.sin(turn)];
-  const sweep = `M${ax + arc} ${ay}A${arc} ${arc} 0 ${Math.abs(turn) > Math.PI ? 1 : 0} ${turn < 0 ? 0 : 1} ${end.join(" ")}`;
-  const half = turn / 2, tag = [ax + (arc + 10) * Math.cos(half) - 4, ay + (arc + 10) * Math.sin(half) + 4];
+  const end = [ax + arc * Math.sin(turn), ay - arc * Math.cos(turn)];
+  const sweep = `M${ax} ${ay - arc}A${arc} ${arc} 0 ${Math.abs(turn) > Math.PI ? 1 : 0} ${turn < 0 ? 0 : 1} ${end.join(" ")}`;
+  const half = turn / 2, tag = [ax + (arc + 11) * Math.sin(half) - 4, ay - (arc + 11) * Math.cos(half) + 4];
+  const right = ax + Math.max(r, arc) + 22, top = 10;
   const parts = [
-    stroked(path([[8, axis], [width - 8, axis]]), look.line, 1, 'stroke-dasharray="10 3 2 3"'),
+    stroked(path([[axis, 10], [axis, floor]]), look.line, 1, 'stroke-dasharray="10 3 2 3"'),
     `<circle cx="${ax}" cy="${ay}" r="${r}" fill="none" stroke="${look.line}" stroke-dasharray="2 4"/>`,
-    stroked(path([[ax, ay], [ax + Math.max(r, arc) + 12, ay]]), look.line, 1),
+    stroked(path([[ax, floor], [ax, top]]), look.line, 1), arrow([ax, top], [0, -1], look.soft),
+    stroked(path([[ax, ay], [right, ay]]), look.line, 1), arrow([right, ay], [1, 0], look.soft),
+    text([right - 10, ay - 8], "X", look.soft), text([ax + (axis <= ax ? 7 : -15), top + 8], "Y", look.soft),
     stroked(sweep, look.soft, 1.2), text(tag, "θ", look.soft),
     `<path d="M${ax} ${ay}l-9 15h18z" fill="${look.panel}" stroke="${look.soft}" stroke-width="1.5"/>`,
     stroked(path([[ax - 14, ay + 15], [ax + 14, ay + 15]]), look.soft, 1.5),
   ];
-  if (Math.abs(ay - axis) > 14) {
-    const x = Math.max(14, ax - r - 16);
-    parts.push(stroked(path([[x, ay], [x, axis]]), look.soft, 1), stroked(path([[x - 4, ay], [ax - 18, ay]]), look.line, 1));
-    parts.push(text([x + 4, (ay + axis) / 2 + 4], "ec", look.soft));
+  if (Math.abs(ax - axis) > 14) {
+    const y = Math.min(floor - 4, ay + r + 16), way = Math.sign(ax - axis);
+    parts.push(stroked(path([[axis, y], [ax, y]]), look.soft, 1), stroked(path([[ax, y + 4], [ax, ay + 18]]), look.line, 1));
+    parts.push(arrow([axis, y], [-way, 0], look.soft), arrow([ax, y], [way, 0], look.soft));
+    parts.push(text([(ax + axis) / 2, y - 5], "ec", look.soft, 'text-anchor="middle"'));
   }
   return parts.join("");
 }
@@ -75,29 +83,29 @@ function linkage(design, theta, { place, scale }, look, index) {
   const wide = current ? 6 : 3;
   const parts = [];
   if (C) {
-    const c = place(C), w = current ? 34 : 28, h = current ? 22 : 18;
+    const c = place(C), w = current ? 22 : 18, h = current ? 34 : 28;
     parts.push(stroked(path([b, c]), colour, wide));
     parts.push(
       `<rect x="${c[0] - w / 2}" y="${c[1] - h / 2}" width="${w}" height="${h}" rx="3" fill="${look.panel}" ` +
         `stroke="${colour}" stroke-width="${current ? 2.5 : 1.5}"/>`,
     );
     parts.push(disc(c, current ? 4 : 2.5, look.panel, colour));
-    if (current) parts.push(text([c[0] - 4, c[1] - 16], "C", look.ink, halo(look)));
+    if (current) parts.push(text([c[0] + (design.ec > 0 ? -w / 2 - 13 : w / 2 + 5), c[1] + 4], "C", look.ink, halo(look)));
   } else if (current) {
     const r = design.BC * scale;
     parts.push(`<circle cx="${b[0]}" cy="${b[1]}" r="${r}" fill="none" stroke="${look.bad}" stroke-width="1.2" stroke-dasharray="6 5"/>`);
-    const on = [b[0], place([0, -design.ec])[1]], side = Math.sign(on[1] - b[1]) || 1;
-    parts.push(stroked(path([b, [b[0], b[1] + side * r]]), look.bad, 3));
-    parts.push(text([b[0] + 8, b[1] + (side * r) / 2], "the rod does not reach", look.bad, `font-weight="600" ${halo(look)}`));
+    const side = Math.sign(place([-design.ec, 0])[0] - b[0]) || 1;
+    parts.push(stroked(path([b, [b[0] + side * r, b[1]]]), look.bad, 3));
+    parts.push(text([12, 20], "the rod does not reach", look.bad, `font-weight="600" ${halo(look)}`));
   }
   parts.push(stroked(path([a, b]), colour, wide + 1));
   parts.push(disc(a, current ? 5 : 3, look.panel, colour), disc(b, current ? 5 : 3, look.panel, colour));
-  if (current) parts.push(text([a[0] - 16, a[1] - 7], "A", look.ink, halo(look)), text([b[0] + 8, b[1] - 8], "B", look.ink, halo(look)));
+  if (current) parts.push(text([a[0] - 17, a[1] + 4], "A", look.ink, halo(look)), text([b[0] + 9, b[1] + 4], "B", look.ink, halo(look)));
   return `<g opacity="${current ? 1 : 0.6}">${parts.join("")}</g>`;
 }
 
 function scaleBar({ scale, width, height }, look) {
-  const [length] = [1, 2, 5].map((m) => niceBelow((width / 4) / scale, m)).sort((p, q) => q - p);
+  const [length] = [1, 2, 5].map((m) => niceBelow((width / 3) / scale, m)).sort((p, q) => q - p);
   const end = 12 + length * scale, y = height - 12;
   const bar = `M12 ${y - 4}v8M12 ${y}H${end}M${end} ${y - 4}v8`;
   return stroked(bar, look.soft, 1.2) + text([end + 6, y + 4], shownInput("BC", length), look.soft);

@@ -2,28 +2,70 @@
 
 const CONTENT = JSON.parse(document.getElementById("content").textContent);
 
-// The shown unit, how many of it make one SI unit, and the power of ten where it is one.
-const SHOWN = {
-  m: ["mm", 1e3, "e-3"],
-  "kg*m^2": ["kg·mm²", 1e6, "e-6"],
-  "rad/s": ["rpm", 30 / Math.PI],
-  rad: ["°", 180 / Math.PI],
+// What one of a unit is in its SI unit, as an exact fraction; pi with fifty digits.
+const DIGITS = 10n ** 50n, PI = 314159265358979323846264338327950288419716939937510n;
+const ONE = [1n, 1n];
+const SIZES = {
+  mm: [1n, 1000n], cm: [1n, 100n], in: [127n, 5000n], "kg*mm^2": [1n, 1000000n],
+  deg: [PI, 180n * DIGITS], rpm: [PI, 30n * DIGITS], ...CONTENT.sizes,
 };
-const shownUnit = (unit) => (SHOWN[unit] ?? [printedUnit(unit)])[0];
-const toShown = (unit, value) => value * (SHOWN[unit]?.[1] ?? 1);
+const many = (unit) => {
+  const [p, q] = (SIZES[unit] ?? ONE).map(Number);
+  return q / p;
+};
 
-// In SI units. By its digits where that is a power of ten, so that 62.3 mm is the double nearest to 0.0623.
-function toSI(unit, value) {
-  const [, many, power] = SHOWN[unit] ?? ["", 1];
-  return power && /^-?[\d.]+$/.test(value) ? Number(`${value}${power}`) : value / many;
+// What the fields are in, and what values, tables and files are in: SI unit -> unit. What is not named is in SI.
+const FIELDS = { m: "mm", "kg*m^2": "kg*mm^2", "rad/s": "rpm", rad: "deg" };
+const UNITS = {
+  ...(CONTENT.units ? { asked: { title: "as asked for", fields: { ...FIELDS, ...CONTENT.units }, values: CONTENT.units } } : {}),
+  si: { title: "values in SI: m, rad, s", fields: FIELDS, values: {} },
+  mm: { title: "mm, °, rpm", fields: FIELDS, values: { m: "mm", rad: "deg", "rad/s": "rpm" } },
+  in: { title: "inch, °, rpm", fields: { ...FIELDS, m: "in" }, values: { m: "in", rad: "deg", "rad/s": "rpm" } },
+  all: { title: "all in SI: m, rad, rad/s", fields: {}, values: {} },
+};
+let units = Object.values(UNITS)[0];
+
+const fieldUnit = (unit) => units.fields[unit] ?? unit;
+const shownUnit = (unit) => printedUnit(fieldUnit(unit));
+const toShown = (unit, value) => value * many(fieldUnit(unit));
+
+// A text in the unit of its field, in SI units: the exact product, rounded once, as Python reads "62.3 mm".
+function toSI(unit, text) {
+  const found = /^([-+]?)(\d*)\.?(\d*)(?:[eE]([-+]?\d+))?$/.exec(text.trim());
+  if (!found || !(found[2] + found[3])) return NaN;
+  const [, sign, whole, part, power] = found, [p, q] = SIZES[fieldUnit(unit)] ?? ONE;
+  const scaled = (BigInt(whole + part) * p * 10n ** 60n) / q;
+  return Number(`${sign}${scaled}e${Number(power ?? 0) - part.length - 60}`);
 }
+
+// The unit of a value, and how many of it make one SI unit. A derivative is a quotient of units.
+function shownIn(name) {
+  const about = CONTENT.quantities[name];
+  if (!about?.by.length) return inUnits((about ?? CONTENT.inputs[name] ?? { unit: name }).unit);
+  const [top, below] = [inUnits(CONTENT.quantities[about.base].unit), about.by.map((p) => inUnits(inputUnit(p)))];
+  const times = below.reduce((product, [, each]) => product / each, top[1]);
+  return times === 1 ? [about.unit, 1] : [[top[0], ...below.map(([unit]) => unit)].join("/"), times];
+}
+
+const inputUnit = (name) => (name === "theta" ? "rad" : CONTENT.parameters[name]);
+
+function inUnits(unit) {
+  const own = units.values[unit];
+  if (own) return [own, many(own)];
+  const speed = /^m(\/s(?:\^\d)?)$/.exec(unit);
+  return speed && units.values.m ? [units.values.m + speed[1], many(units.values.m)] : [unit, 1];
+}
+
+const valueUnit = (name) => printedUnit(shownIn(name)[0]);
+const valueIn = (name, value) => value * shownIn(name)[1];
+const withUnit = (name, value, count) => `${digits(valueIn(name, value), count)} ${valueUnit(name)}`.trim();
 
 const SUPERSCRIPT = { 2: "²", 3: "³", 4: "⁴", 5: "⁵" };
 const GREEK = { theta: "θ", alpha: "α", omega: "ω", omega0: "ω₀", phi: "φ", delta: "δ", mu: "μ" };
 
 function printedUnit(unit) {
   if (unit === "1") return "";
-  return unit.replace(/\^(\d)/g, (_, digit) => SUPERSCRIPT[digit]).replace(/\*/g, "·");
+  return unit.replace(/\bdeg\b/g, "°").replace(/\^(\d)/g, (_, digit) => SUPERSCRIPT[digit]).replace(/\*/g, "·");
 }
 
 // A number with so many digits, without a tail of zeros; a minus sign is a minus sign.

@@ -22,6 +22,7 @@ const KINDS = {
 function verdictWords(design, kind) {
   if (kind === "crank") return "The linkage can be assembled at every crank angle.";
   if (kind === "change point") {
+    if (!canTurn(design)) return "Rod and crank just fail to pass across the slider axis together: it cannot turn fully.";
     return "Rod and crank come to lie across the slider axis together: it turns, but can fold over there.";
   }
   if (kind === "none") return "The rod reaches the slider axis at no crank angle: it is too short, or ec too large.";
@@ -66,10 +67,42 @@ function showVerdict(design) {
   bar.style.width = `${Math.max(Math.abs(part) * 50, 0.5)}%`;
 }
 
+// What a design is and does over a turn: a row each, a column for each design.
+function showFigures(curves) {
+  const turns = state.designs.map(turnOf), none = "–";
+  const angle = (theta) => degrees(theta);
+  const of = (pick) => turns.map((turn) => (turn ? pick(turn) : none));
+  const rows = [
+    ["turns", "turns fully", state.designs.map((design) => (canTurn(design) ? "yes" : "no"))],
+    ["stroke", "stroke", of((turn) => shownInput("BC", turn.stroke))],
+    ["time_ratio", "time ratio", of((turn) => digits(turn.ratio, 6))],
+    ["theta_outer", "outer dead centre", of((turn) => angle(turn.outer))],
+    ["theta_inner", "inner dead centre", of((turn) => angle(turn.inner))],
+    ["max_pressure_angle", "largest pressure angle", of((turn) => angle(turn.pressure))],
+  ];
+  [...new Set(state.shown)].forEach((name) => {
+    const own = curves[state.shown.indexOf(name)];
+    const cells = state.designs.map((design, k) => {
+      const peak = peakOf(name, design, own[k]);
+      if (!peak) return none;
+      const where = peak.limit ? "next to a limit angle" : `at ${angle(peak.theta)}`;
+      if (peak.grows) return `no bound<small>${where}</small>`;
+      return `${withUnit(name, peak.value, 5)}<small>${where}</small>`;
+    });
+    rows.push([`peak-${name}`, `peak of ${symbol(name)}`, cells]);
+  });
+  const look = palette(), swatch = (k) => `<span class="swatch" style="background:${look.curves[k % look.curves.length]}"></span>`;
+  const head = labelsOf(state.designs).map((label, k) => `<th scope="col">${swatch(k)}${label}</th>`).join("");
+  const line = ([key, title, cells]) =>
+    `<tr data-figure="${key}"><th scope="row">${title}</th>${cells.map((cell) => `<td>${cell}</td>`).join("")}</tr>`;
+  document.getElementById("figures").innerHTML =
+    `<thead><tr><th scope="col"></th>${head}</tr></thead><tbody>${rows.map(line).join("")}</tbody>`;
+}
+
 function spokenValues(design, theta) {
   const values = [...new Set(state.shown)].map((name) => {
-    const value = valueAt(name, design, theta), unit = printedUnit(CONTENT.quantities[name].unit);
-    return `${symbol(name, false)} = ${Number.isFinite(value) ? `${digits(value, 5)} ${unit}` : "no value"}`;
+    const value = valueAt(name, design, theta);
+    return `${symbol(name, false)} = ${Number.isFinite(value) ? withUnit(name, value, 5) : "no value"}`;
   });
   return `At ${degrees(theta, 1)}: ${values.join(", ")}`;
 }

@@ -1,0 +1,100 @@
+"""Inputs that are not one number: a value with its tolerance, or the two ends of a range.
+
+A bare pair means the ends in `enclose` and value and tolerance in `tolerance`. `plus_minus` and `between`
+mean the same everywhere. Numbers and texts are added exactly as they are written and rounded once, so that
+plus_minus("10 mm", "0.1 mm") has the ends of between("9.9 mm", "10.1 mm").
+"""
+
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from .inputs import INPUTS
+from .units import exact, in_si
+
+
+class RangeWarning(UserWarning):
+    """A bare pair is probably meant the other way."""
+
+
+class PlusMinus(NamedTuple):
+    """A value and its tolerance, as given."""
+
+    value: Any
+    tolerance: Any
+
+    def __repr__(self) -> str:
+        return f"plus_minus({self.value!r}, {self.tolerance!r})"
+
+
+class Between(NamedTuple):
+    """The two ends of a range, as given."""
+
+    low: Any
+    high: Any
+
+    def __repr__(self) -> str:
+        return f"between({self.low!r}, {self.high!r})"
+
+
+def plus_minus(value: Any, tolerance: Any) -> PlusMinus:
+    """A value and its tolerance, for `enclose` and `tolerance`: value - tolerance .. value + tolerance.
+
+    Each is a number in SI units, or text with a unit; the tolerance may be in percent of the value.
+
+        >>> import desaxe as dx
+        >>> rod = {"AB": 0.125, "BC": 0.35, "theta": 1.0}
+        >>> box = dx.enclose("Y", ec=dx.plus_minus("10 mm", "0.1 mm"), **rod)
+        >>> box["lower"] < dx.evaluate("Y", ec=0.01, **rod) < box["upper"]
+        True
+    """
+    return PlusMinus(value, tolerance)
+
+
+def between(low: Any, high: Any) -> Between:
+    """The ends of a range, for `enclose`, `tolerance` (middle and half the width) and `optimize`.
+
+    Each is a number in SI units, or text with a unit.
+
+        >>> import desaxe as dx
+        >>> dx.between("9.9 mm", "10.1 mm")
+        between('9.9 mm', '10.1 mm')
+    """
+    return Between(low, high)
+
+
+def ends_of(name: str, given: PlusMinus) -> tuple[float, float]:
+    """Both ends of a value with its tolerance; ValueError for a bad one."""
+    value, tolerance = _tolerance(name, given)
+    return float(value - tolerance), float(value + tolerance)
+
+
+def middle_of(name: str, given: Between) -> tuple[float, float]:
+    """The middle of a range and half its width; ValueError where the lower end is not first."""
+    low, high = (_number(name, end, given) for end in given)
+    if low > high:
+        raise ValueError(f"{name} = {given!r}: the lower end comes first")
+    return float((low + high) / 2), float((high - low) / 2)
+
+
+def _tolerance(name: str, given: PlusMinus) -> tuple[Fraction, Fraction]:
+    value = _number(name, given.value, given)
+    tolerance = given.tolerance
+    if isinstance(tolerance, str) and tolerance.strip().endswith("%"):
+        share = _number("mu", tolerance.strip().removesuffix("%"), given) / 100  # a plain number
+        found = share * abs(value)
+    else:
+        found = _number(name, tolerance, given)
+    if found < 0:
+        raise ValueError(f"{name} = {given!r}: a tolerance must be at least 0")
+    return value, found
+
+
+def _number(name: str, value: Any, whole: Any) -> Fraction:
+    """The number as it is written."""
+    if isinstance(value, str):
+        return exact(name, value, INPUTS[name].unit)
+    number = in_si(name, value) if hasattr(value, "magnitude") else value
+    try:
+        return Fraction(repr(float(number)))
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} = {whole!r}: two finite numbers or texts with a unit are wanted") from None

@@ -1,0 +1,58 @@
+"""A dict of arrays, as `evaluate` gives it, as the Dataset that pictures are made of."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..evaluation.labels import labelled
+from ..mechanism.inputs import INPUTS
+from ..mechanism.units import in_si
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def as_dataset(found: Any, over: str, inputs: Mapping[str, Any]) -> "xr.Dataset":
+    """The Dataset of a dict of arrays; a Dataset as it is.
+
+    `inputs` are those that the arrays were computed with, beside or instead of those that an answer of
+    `evaluate` remembers. Each varies along one axis of the arrays. Raises TypeError where the one `over`
+    which a curve is drawn is missing, ValueError where an input does not fit.
+    """
+    if hasattr(found, "data_vars"):
+        if inputs:
+            raise TypeError(f"a Dataset has its inputs: leave {', '.join(inputs)} out")
+        dataset: xr.Dataset = found
+        return dataset
+    given = {**getattr(found, "inputs", {}), **inputs}
+    shape = np.broadcast_shapes(*(np.shape(array) for array in found.values()))
+    arrays = {name: _numbers(name, value) for name, value in given.items() if value is not None}
+    if over not in arrays:
+        raise TypeError(f"a dict does not say {over}: give it, as in curves(found, name, {over}={over})")
+    dims: dict[int, str] = {}
+    coordinates: dict[str, Any] = {}
+    for name, array in sorted(arrays.items(), key=lambda item: item[0] != over):
+        axes = [len(shape) - array.ndim + k for k, size in enumerate(array.shape) if size > 1]
+        if len(axes) > 1 or (axes and array.size != shape[axes[0]]):
+            raise ValueError(
+                f"{name}: it varies along one axis of arrays of the shape {shape}, got {array.shape}"
+            )
+        if not axes:
+            coordinates[name] = array.reshape(-1)[0]
+        elif axes[0] not in dims:
+            dims[axes[0]] = name
+            coordinates[name] = array.reshape(-1)
+    named = [dims.get(axis, f"axis_{axis}") for axis in range(len(shape))]
+    values = {name: (named, np.broadcast_to(np.asarray(array), shape)) for name, array in found.items()}
+    known = {name: np.asarray(value) for name, value in coordinates.items()}
+    return labelled(values, known, int(given.get("branch", 1)), "omega" in arrays)
+
+
+def _numbers(name: str, value: Any) -> Any:
+    if name not in INPUTS:
+        raise TypeError(f"no input {name!r}; there are {', '.join(INPUTS)}")
+    array = np.asarray(in_si(name, value) if isinstance(value, str) or hasattr(value, "magnitude") else value)
+    if array.dtype.kind == "U":
+        array = np.array([in_si(name, text) for text in array.reshape(-1).tolist()]).reshape(array.shape)
+    return np.asarray(array, dtype=np.float64)

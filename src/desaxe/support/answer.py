@@ -1,0 +1,73 @@
+"""Answers: dicts that show themselves on one screen."""
+
+from collections.abc import Callable, Mapping
+from functools import wraps
+from types import MappingProxyType
+from typing import Any, ParamSpec, TypeVar, cast
+
+P = ParamSpec("P")
+T = TypeVar("T")
+DIGITS = 6  # shown of a number; the answer itself has all
+FEW = 6  # values of an array that are all shown
+WIDE = 96  # letters of a line
+
+
+class Answer(dict[str, Any]):
+    """A dict like any other, but for how it is shown: a line for each name, numbers with six digits.
+
+    `inputs`, of `evaluate`: what it was asked for with, by name.
+    """
+
+    inputs: Mapping[str, Any] = MappingProxyType({})
+
+    def __repr__(self) -> str:
+        return "\n".join(_lines(self)) or "{}"
+
+
+def answering(function: Callable[P, T]) -> Callable[P, T]:
+    """The function with its dict as an Answer."""
+
+    @wraps(function)
+    def answered(*args: P.args, **inputs: P.kwargs) -> T:
+        found = function(*args, **inputs)
+        return cast(T, Answer(cast(dict[str, Any], found))) if type(found) is dict else found
+
+    return answered
+
+
+def _lines(mapping: Mapping[Any, Any]) -> list[str]:
+    """A line for each name; below it those of a mapping that is too long for one."""
+    width = max((len(str(name)) for name in mapping), default=0)
+    lines = []
+    for name, value in mapping.items():
+        text = _text(value)
+        if isinstance(value, Mapping) and len(text) > WIDE - width:
+            lines += [str(name), *(f"    {line}" for line in _lines(value))]
+        else:
+            lines.append(f"{name!s:{width}}  {text}")
+    return lines
+
+
+def _text(value: Any) -> str:
+    """A value in one line."""
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{name}: {_text(part)}' for name, part in value.items())}}}"
+    if isinstance(value, (list, tuple)):
+        left, right = "[]" if isinstance(value, list) else "()"
+        return f"{left}{', '.join(map(_text, value))}{right}"
+    if getattr(value, "shape", ()):
+        return _array(value)
+    return f"{value:.{DIGITS}g}" if isinstance(value, float) else str(value)
+
+
+def _array(array: Any) -> str:
+    """All values of a small array, else its shape and the range of its numbers."""
+    if array.size <= FEW:
+        return _text(array.tolist())
+    shape = "x".join(map(str, array.shape))
+    if array.dtype.kind not in "fiu":
+        return f"{shape} {array.dtype}"
+    known = array[array == array]
+    gaps = f", {array.size - known.size} nan" if known.size < array.size else ""
+    ends = f" {known.min():.{DIGITS}g} .. {known.max():.{DIGITS}g}" if known.size else ""
+    return f"{shape} {array.dtype}{ends}{gaps}"
