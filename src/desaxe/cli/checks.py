@@ -2,8 +2,10 @@
 
 import argparse
 import io
+import sys
 from contextlib import redirect_stdout
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 from ..support.extras import needed
@@ -14,7 +16,9 @@ The same command as `python -m derive` from the repository root.
 
 examples:
   desaxe derive --check      is generated/ fresh?
-  desaxe derive --report     operations before and after each pass, per quantity"""
+  desaxe derive --report     operations before and after each pass, per quantity
+  desaxe derive --quantities mine.toml -o my_kernels/ [--check]
+                             a package of your own quantities; no SymPy is needed"""
 
 
 def add_derive(commands: Any) -> None:
@@ -26,6 +30,8 @@ def add_derive(commands: Any) -> None:
 
 def derive(words: list[str]) -> int:
     """Run the derivation's own command line, under the name `desaxe derive`."""
+    if any(word.partition("=")[0] == "--quantities" for word in words):
+        return _own(words)
     run = import_module("desaxe.derive.__main__").main
     if not {"-h", "--help"} & set(words):
         with needed("desaxe derive"):
@@ -37,6 +43,29 @@ def derive(words: list[str]) -> int:
             run(words)
     finally:  # it calls itself as one calls it there
         print(shown.getvalue().replace("python -m derive", "desaxe derive"), end="")
+    return 0
+
+
+def _own(words: list[str]) -> int:
+    """Write, or check, the package of a file's own quantities: no SymPy is needed."""
+    from ..scenes.export.package import write_package
+
+    parser = argparse.ArgumentParser(prog="desaxe derive", description="a package of quantities of your own")
+    parser.add_argument("--quantities", type=Path, required=True, help="a TOML file with [quantities.NAME]")
+    parser.add_argument("-o", "--output", type=Path, required=True, help="the folder of the package")
+    parser.add_argument("--check", action="store_true", help="compare, exit 1 on a difference")
+    options = parser.parse_args(words)
+    try:
+        found = write_package(options.quantities, options.output, options.check)
+    except (ValueError, TypeError, OSError) as error:
+        print(f"desaxe derive: {error}", file=sys.stderr)
+        return 2
+    remedy = f"run desaxe derive --quantities {options.quantities} -o {options.output}"
+    if options.check:
+        sys.stdout.write("".join(found))
+        print(f"{options.output.name}/ is {'stale: ' + remedy if found else 'fresh'}")
+        return 1 if found else 0
+    print(f"wrote {options.output}")
     return 0
 
 
