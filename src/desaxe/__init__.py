@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from .design.turn.harmonics import harmonics as harmonics
     from .enclosure.enclose import enclose as enclose
     from .evaluation.evaluate import evaluate as evaluate
+    from .evaluation.function import function as function
     from .evaluation.grid import grid as grid
     from .loads import LoadWarning as LoadWarning
     from .loads import over_theta as over_theta
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
 # Public name -> its module; `equation` is SymPy's and comes with the extra `derive`.
 PUBLIC = {
     "evaluate": "desaxe.evaluation.evaluate",
+    "function": "desaxe.evaluation.function",
     "grid": "desaxe.evaluation.grid",
     "peak": "desaxe.peaks.peak",
     "inverse": "desaxe.design.inverse",
@@ -99,6 +101,7 @@ __all__ = [
     "explore",
     "feasibility",
     "flywheel",
+    "function",
     "grid",
     "harmonics",
     "inverse",

@@ -162,7 +162,7 @@ if sys.argv[1] == "blocked":
     sys.modules["numba"] = None
 import numpy as np
 import desaxe as dx
-names = [row for row in dx.quantities()]
+names = list(dx.quantities())
 theta = np.linspace(0.0, 6.0, 2500)
 loads = {"m_rod": 1.0, "m_slider": 2.0, "mu": 0.1, "g_Y": -9.81}
 sums = []

@@ -8,6 +8,7 @@ calls nothing but the C library's mathematics and Python's allocator: any proces
 The entry is `int64 entry(const int64 *table)`. The table has a word for each number (a double or an int64)
 and, for each array, its address, its shape and its strides in bytes, in the order of the function's
 parameters. The answer is the function's whole number, 0 where it has none, or -1 if there was no memory.
+A function of whole numbers alone has an entry that takes them as they are, without a table.
 """
 
 import ctypes
@@ -98,9 +99,10 @@ define double @numba_nextafter(double %x, double %y) {
 
 
 class Code(NamedTuple):
-    """Machine code, and the ranks of what its entry takes (see `DOUBLE`, `WHOLE`)."""
+    """Machine code, the ranks of what its entry takes (see `DOUBLE`, `WHOLE`), and the bytes of an item."""
 
     ranks: tuple[int, ...]
+    item_sizes: tuple[int, ...]
     machine: bytes
 
 
@@ -109,6 +111,7 @@ class Loaded(NamedTuple):
 
     address: int
     ranks: tuple[int, ...]
+    item_sizes: tuple[int, ...]
     keeper: Any
 
 
@@ -154,8 +157,12 @@ def compile_text(text: str, title: str, scope: Mapping[str, Any]) -> Code | Load
             for kind in given
         )
         entry = llvm.parse_assembly(_entry(made.fndesc.mangled_name, given, ranks))
+        kinds = zip(given, ranks, strict=True)
+        sizes = tuple(kind.dtype.bitwidth // 8 if rank >= 0 else 8 for kind, rank in kinds)
         alone = _alone(library, entry)
-        return Code(ranks, alone) if alone is not None else Loaded(_within(library, entry), ranks, library)
+        if alone is not None:
+            return Code(ranks, sizes, alone)
+        return Loaded(_within(library, entry), ranks, sizes, library)
 
 
 def _entry(name: str, given: tuple[Any, ...], ranks: tuple[int, ...]) -> str:
@@ -166,6 +173,8 @@ def _entry(name: str, given: tuple[Any, ...], ranks: tuple[int, ...]) -> str:
     """
     rows, passed = [], ["ptr %answer", "ptr %error"]
     word = 0
+    bare = all(rank == WHOLE for rank in ranks)
+    taken = ", ".join(f"i64 %a{k}" for k in range(len(ranks))) if bare else "ptr %table"
 
     def read(kind: str) -> str:
         nonlocal word
@@ -175,21 +184,24 @@ def _entry(name: str, given: tuple[Any, ...], ranks: tuple[int, ...]) -> str:
         return f"{kind} %w{word - 1}"
 
     for type_, rank in zip(given, ranks, strict=True):
-        if rank < 0:
+        if bare:
+            passed.append(f"i64 %a{len(passed) - 2}")
+        elif rank < 0:
             passed.append(read("double" if rank == DOUBLE else "i64"))
-            continue
-        data, *sides = read("ptr"), *(read("i64") for _ in range(2 * rank))
-        size = "1"
-        for side in sides[:rank]:
-            length = side.removeprefix("i64 ")
-            rows.append(f"  %n{len(rows)} = mul i64 {size}, {length}")
-            size = f"%n{len(rows) - 1}"
-        passed += ["ptr null", "ptr null", f"i64 {size}", f"i64 {type_.dtype.bitwidth // 8}", data, *sides]
+        else:
+            data, *sides = read("ptr"), *(read("i64") for _ in range(2 * rank))
+            size = "1"
+            for side in sides[:rank]:
+                length = side.removeprefix("i64 ")
+                rows.append(f"  %n{len(rows)} = mul i64 {size}, {length}")
+                size = f"%n{len(rows) - 1}"
+            item = type_.dtype.bitwidth // 8
+            passed += ["ptr null", "ptr null", f"i64 {size}", f"i64 {item}", data, *sides]
     kinds = ", ".join(argument.split()[0] for argument in passed)
     return "\n".join(
         [
             f"declare i32 @{_quoted(name)}({kinds})",
-            f"define i64 @{ENTRY}(ptr %table) {{",
+            f"define i64 @{ENTRY}({taken}) {{",
             "  %answer = alloca i64",
             "  %error = alloca ptr",
             "  store i64 0, ptr %answer",
@@ -281,4 +293,4 @@ def load(code: Code) -> Loaded | None:
     engine.add_object_file(llvm.object_file.ObjectFileRef.from_data(code.machine))
     engine.finalize_object()
     address = engine.get_function_address(ENTRY)
-    return Loaded(address, code.ranks, engine) if address else None
+    return Loaded(address, code.ranks, code.item_sizes, engine) if address else None

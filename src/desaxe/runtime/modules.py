@@ -21,7 +21,7 @@ from . import cache as _cache
 from .machine_code import DOUBLE, NO_MEMORY, Code, Loaded, compile_text, load, machine
 
 SUFFIX = ".code"
-_HEAD = "desaxe machine code 1"
+_HEAD = "desaxe machine code 2"
 _prototype = CFUNCTYPE(c_int64, c_char_p)  # lets go of the GIL while it runs
 _LOCK = fork_safe_lock()
 
@@ -30,7 +30,7 @@ class Native:
     """Machine code as a function of arrays and numbers (see `machine_code` for what it takes natively)."""
 
     def __init__(self, loaded: Loaded) -> None:
-        self.address, self.ranks, self._keeper = loaded
+        self.address, self.ranks, self.item_sizes, self._keeper = loaded
         self.entry: Callable[[bytes], int] = _prototype(self.address)
         words = ("d" if rank == DOUBLE else "q" * (1 + 2 * max(rank, 0)) for rank in self.ranks)
         self.pack = struct.Struct("".join(words)).pack
@@ -118,19 +118,19 @@ def read_code(name: str, data: bytes) -> Code | None:
     with suppress(ValueError, KeyError, TypeError, AttributeError, RecursionError):
         head, _, code = data.partition(b"\n")
         told = json.loads(head)
-        ranks = tuple(int(rank) for rank in told["ranks"])
-        if told["machine"] == machine() and told["sha256"] == _digest(name, ranks, code):
-            return Code(ranks, code)
+        ranks, sizes = (tuple(map(int, told[key])) for key in ("ranks", "item_sizes"))
+        if told["machine"] == machine() and told["sha256"] == _digest(name, ranks, sizes, code):
+            return Code(ranks, sizes, code)
     return None
 
 
 def _to_disk(path: Path, made: Code) -> None:
     """Keep machine code; without a place to keep it, it is made anew in the next process."""
-    digest = _digest(path.name, made.ranks, made.machine)
-    head = {"machine": machine(), "ranks": made.ranks, "sha256": digest}
+    head: dict[str, Any] = {"machine": machine(), "sha256": _digest(path.name, *made)}
+    head |= {"ranks": made.ranks, "item_sizes": made.item_sizes}
     with suppress(OSError):
         _cache.write_bytes(path, json.dumps(head).encode() + b"\n" + made.machine)
 
 
-def _digest(name: str, ranks: Sequence[int], code: bytes) -> str:
-    return hashlib.sha256(f"{name} {machine()} {list(ranks)}\n".encode() + code).hexdigest()
+def _digest(name: str, ranks: Sequence[int], sizes: Sequence[int], code: bytes) -> str:
+    return hashlib.sha256(f"{name} {machine()} {list(ranks)} {list(sizes)}\n".encode() + code).hexdigest()

@@ -1,0 +1,268 @@
+"""`function`: a prepared callable of some inputs, for who calls again and again.
+
+It is a NumPy ufunc around one compiled kernel, so broadcasting, `out=`, `where=`, labelled and chunked arrays
+are NumPy's; whatever the shape, every point runs through the same machine code.
+"""
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..mechanism.catalogue import has, law_name, quantity
+from ..mechanism.inputs import INPUTS
+from ..mechanism.names import LENGTHS, sensitivity
+from ..mechanism.program import program_of
+from ..runtime.any_stride import Bound, bind
+from ..runtime.kernels import STRUCTURAL_ZEROS, KernelKey, kernel_for
+from ..runtime.native_calls import point_caller, scalar_of, ufunc_of
+from ..runtime.request import Request, as_number, check_border, check_inputs, request, several, standstill
+from ..runtime.specialise import plain_form
+from ..runtime.wide_margins import all_roomy
+from .repair import limit_of, repair_for
+
+Array = NDArray[Any]
+INPUTS_OF_FUNCTION = (*INPUTS, "branch", "accuracy")
+MARGIN = {"AB": -1.0, "BC": 1.0}  # derivatives of BC - AB - |ec|
+
+
+def function(
+    names: str | Sequence[str], inputs: str | Sequence[str] = ("theta",), **fixed: Any
+) -> "Function":
+    """A prepared callable: quantities as a function of some inputs, all others fixed.
+
+    names   one name (calls give an array) or a list (calls give a tuple)
+    inputs  what is given in each call, in this order or by keyword
+    fixed   the other inputs of `evaluate` as numbers, `branch` and `accuracy` among them
+
+        f = dx.function(["V_C", "a_C"], inputs=("theta", "ec"), AB=0.125, BC=0.35, omega0=157.08)
+        V_C, a_C = f(theta, ec)
+        f.jacobian(theta, ec)["a_C"]["ec"]
+
+    Compiled when it is made (or loaded, if that was done before). It always runs the same kernel: a point has
+    the same digits in an array of any shape and order, in every process of a machine. A bad or infeasible
+    point is NaN without a warning; ask for `status` to learn why. Raises as `evaluate` does when it is made.
+    """
+    check_inputs("function", fixed, INPUTS_OF_FUNCTION)
+    shown = (names,) if isinstance(names, str) else several(names)
+    free = (inputs,) if isinstance(inputs, str) else several(inputs)
+    check_inputs("function", free, tuple(INPUTS))
+    if not shown:
+        raise ValueError("names = (): the name of a quantity or a list of names is wanted")
+    twice = [name for name in free if fixed.get(name) is not None]
+    if twice:
+        raise TypeError(f"function: {twice[0]} is an input of each call, it cannot be fixed too")
+    return Function(shown, isinstance(names, str), free, fixed)
+
+
+class Function:
+    """Quantities as a function of some inputs (see `function`).
+
+    names     the quantities, a tuple
+    inputs    the inputs of a call, a tuple in the order of positional arguments
+    fixed     the others, a dict
+    units     dict name -> unit, of quantities and inputs
+    scalar    the same of numbers, to be called inside of a function compiled by numba (in this process: it
+              holds an address, so such a function cannot be kept by `cache=True`)
+    address   a C function `int64_t f(const double *inputs, double *outputs)` of one point, which answers 0;
+              inputs and outputs stand in the order of `inputs` and `names`; it lives as long as this object
+    """
+
+    def __init__(self, names: tuple[str, ...], one: bool, inputs: tuple[str, ...], fixed: Mapping[str, Any]):
+        self.names, self.inputs, self.fixed = names, inputs, dict(fixed)
+        self._one = one
+        self._bound, self._kinds = _compiled(names, inputs, self.fixed, self._failures)
+        state = "omega" in inputs or fixed.get("omega") is not None
+        self.units = {name: quantity(name, state).unit for name in names}
+        self.units |= {name: INPUTS[name].unit for name in inputs}
+        self._ufunc, self._kept = ufunc_of(self._bound, len(inputs), self._kinds, ", ".join(names))
+
+    @cached_property
+    def _failures(self) -> list[BaseException]:
+        return []
+
+    def __call__(self, *args: Any, out: Any = None, **named: Any) -> Any:
+        """The values: an array for a name, a tuple for a list of names."""
+        if named:
+            args, named = self._in_order(args, named)
+        if len(args) != len(self.inputs):
+            raise TypeError(f"function of ({', '.join(self.inputs)}): {len(args)} arguments were given")
+        if out is not None:
+            named["out"] = self._outputs(out)
+            args = tuple(_apart(argument, named["out"]) for argument in args)
+        try:
+            found = self._ufunc(*args, **named)
+        except (TypeError, ValueError):
+            args = tuple(map(_number, self.inputs, args))
+            found = self._ufunc(*args, **named)
+        if self._failures:
+            raise self._failures.pop()
+        return found if self._one or len(self.names) > 1 else (found,)
+
+    def _in_order(
+        self, args: tuple[Any, ...], named: dict[str, Any]
+    ) -> tuple[tuple[Any, ...], dict[str, Any]]:
+        """All arguments by their place, and what is meant for NumPy."""
+        rest = self.inputs[len(args) :]
+        for name in self.inputs[: len(args)]:
+            if name in named:
+                raise TypeError(f"function: {name} was given twice")
+        for name in named:
+            if name not in (*rest, "where", "casting", "order", "dtype", "subok"):
+                raise TypeError(f"function of ({', '.join(self.inputs)}): no input {name!r}")
+        for name in rest:
+            if name not in named:
+                raise TypeError(f"function of ({', '.join(self.inputs)}): {name} is missing")
+        return (*args, *(named.pop(name) for name in rest)), named
+
+    def _outputs(self, out: Any) -> tuple[Any, ...]:
+        """`out=` as NumPy wants it: an array, a sequence, or a dict name -> array."""
+        if isinstance(out, Mapping):
+            if set(out) != set(self.names):
+                raise ValueError(
+                    f"out= is a dict with the keys {', '.join(self.names)}, got {', '.join(out)}"
+                )
+            return tuple(out[name] for name in self.names)
+        found = tuple(out) if isinstance(out, (tuple, list)) else (out,)
+        if len(found) != len(self.names):
+            raise ValueError(f"out=: {len(self.names)} arrays are wanted, got {len(found)}")
+        return found
+
+    def jacobian(self, *args: Any, **named: Any) -> dict[str, dict[str, Any]]:
+        """The exact derivatives by the inputs: dict name -> dict input -> array of the broadcast shape.
+
+        Raises ValueError where the derivation has no derivative by an input.
+        """
+        args, _ = self._in_order(args, named)
+        known = dict(zip(self._slopes.names, self._slopes(*args), strict=True))
+        given = dict(zip(self.inputs, args, strict=True))
+
+        def slope(name: str, parameter: str) -> Any:
+            if name == "margin":
+                factor = -np.sign(given["ec"]) if parameter == "ec" else MARGIN.get(parameter, 0.0)
+                return _constant_like(known[name], factor)
+            found = known.get(sensitivity(name, parameter))
+            return _constant_like(known[name], 0.0) if found is None else found
+
+        return {name: {parameter: slope(name, parameter) for parameter in self.inputs} for name in self.names}
+
+    @cached_property
+    def _slopes(self) -> "Function":
+        """The function of the values and of their derivatives, those that are not 0 everywhere."""
+        state = "omega" in self.inputs or self.fixed.get("omega") is not None
+        wanted = dict.fromkeys(self.names)
+        for name in self.names:
+            needed = _needed(name, state)
+            for parameter in self.inputs:
+                slope = sensitivity(name, parameter)
+                if has(slope, state):
+                    wanted[slope] = None
+                elif parameter in needed and name != "margin":
+                    raise ValueError(f"jacobian: the derivative of {name} by {parameter} is not derived")
+        return Function(tuple(wanted), False, self.inputs, self.fixed)
+
+    @cached_property
+    def _point(self) -> Any:
+        return point_caller(self._bound, len(self.inputs), self._kinds)
+
+    @property
+    def address(self) -> int:
+        """The address of a C function of one point."""
+        address: int = self._point.address
+        return address
+
+    @cached_property
+    def scalar(self) -> Any:
+        """The same of numbers, for functions compiled by numba: a number for a name, a tuple for a list."""
+        import_module("numba")
+        return scalar_of(self.address, self.inputs, len(self.names), self._one, self)
+
+    def __reduce__(self) -> Any:
+        names = self.names[0] if self._one else list(self.names)
+        return _again, (names, self.inputs, self.fixed)
+
+    def __repr__(self) -> str:
+        fixed = "".join(f", {name}={value!r}" for name, value in self.fixed.items())
+        names = self.names[0] if self._one else list(self.names)
+        return f"desaxe.function({names!r}, inputs={self.inputs!r}{fixed})"
+
+
+def _again(names: str | list[str], inputs: tuple[str, ...], fixed: dict[str, Any]) -> Function:
+    return function(names, inputs, **fixed)
+
+
+def _needed(name: str, state: bool) -> tuple[str, ...]:
+    """The inputs that a name depends on."""
+    law = program_of((law_name(name) if state else name,)).inputs
+    return tuple("omega" if state and given == "omega0" else given for given in law)
+
+
+def _constant_like(values: Any, constant: Any) -> Any:
+    """The constant where there is a value, else NaN."""
+    return np.where(np.isnan(values), np.nan, constant)[()]
+
+
+def _apart(argument: Any, outs: Sequence[Any]) -> Any:
+    """The argument, or a copy of it where an output lies in its memory."""
+    arrays = [out for out in outs if isinstance(out, np.ndarray)]
+    if isinstance(argument, np.ndarray) and any(np.may_share_memory(argument, out) for out in arrays):
+        return argument.copy()
+    return argument
+
+
+def _number(name: str, value: Any) -> Any:
+    """An argument that NumPy's ufuncs refused, made of numbers; an error that names it if it is none."""
+    from .arrays import as_array
+
+    return value if hasattr(value, "dims") else as_array(name, value, (), (name,))
+
+
+# ---- compiling ------------------------------------------------------------------------------------
+
+
+def _compiled(
+    names: tuple[str, ...], inputs: tuple[str, ...], fixed: Mapping[str, Any], failures: list[BaseException]
+) -> tuple[Bound, tuple[bool, ...]]:
+    """The kernel behind its loop; for each output whether it is a status."""
+    branch, accuracy = fixed.get("branch", 1), fixed.get("accuracy", "standard")
+    given: dict[str, Any] = {n: v for n, v in fixed.items() if n in INPUTS and v is not None}
+    given.setdefault("alpha", None if "alpha" in inputs else 0.0)
+    given |= dict.fromkeys(inputs, np.empty(1))
+    if given.get("omega0") is None and given.get("omega") is None:
+        given["omega0"] = standstill(names, given)
+    check_border(given, branch)
+    wanted = request(names, given, branch, accuracy)
+    numbers = {n: _fixed_number(n, given, wanted) for n in wanted.inputs if n not in inputs}
+    key = _key(wanted, numbers, inputs)
+    kernel = kernel_for(key)
+    order = [name for name, _ in kernel.axis_of]
+    places = [numbers[n] if n in numbers else inputs.index(n) for n in order]
+    places += range(len(inputs), len(inputs) + len(names))
+    angle = inputs.index("theta") if "theta" in inputs and "theta" in order and not key.far else None
+    repair = repair_for(key, numbers, inputs, failures)
+    kinds = tuple(name == "status" for name in names)
+    return bind(kernel.function, places, len(inputs), angle, limit_of(key.accuracy), repair), kinds
+
+
+def _fixed_number(name: str, given: Mapping[str, Any], wanted: Request) -> float:
+    number = as_number(name, given.get(name), wanted.inputs, wanted.shown)
+    if number is None:
+        raise TypeError(f"function: {name} is fixed, so it is a number; an array belongs to inputs=")
+    return number
+
+
+def _key(wanted: Request, numbers: Mapping[str, float], inputs: Sequence[str]) -> KernelKey:
+    """The kernel for points of all inputs, each of which varies."""
+    zeros = [(name, 0.0) for name in STRUCTURAL_ZEROS if numbers.get(name) == 0.0]
+    fixed = (*wanted.fixed, *zeros)
+    form = wanted.form
+    lengths = [numbers[name] for name in LENGTHS if name in numbers]
+    if len(lengths) == len(LENGTHS) and wanted.accuracy != "extended" and all_roomy(form, *lengths):
+        two_forms = plain_form(wanted.names, form, fixed) is not None
+        form = form._replace(roomy=two_forms)
+    axis = tuple(sorted((name, 0) for name in inputs if name in wanted.inputs))
+    far = abs(numbers.get("theta", 0.0)) > limit_of(wanted.accuracy)
+    return KernelKey(wanted.names, form, fixed, axis, 1, wanted.accuracy, far)

@@ -1,0 +1,158 @@
+"""A bound kernel as others call it: a NumPy ufunc, a C function of one point, a function for numba's code."""
+
+import ctypes
+from collections.abc import Callable, Sequence
+from functools import cache
+from importlib import import_module
+from typing import Any, NamedTuple
+
+from .any_stride import Bound
+
+DOUBLE, BYTE = 12, 1  # NumPy's numbers of these types
+NO_IDENTITY = -1
+
+
+@cache
+def _new_ufunc() -> Callable[..., Any]:
+    """NumPy's `PyUFunc_FromFuncAndData`."""
+    try:
+        core = import_module("numpy._core._multiarray_umath")
+    except ModuleNotFoundError:  # NumPy 1
+        core = import_module("numpy.core._multiarray_umath")
+    take = ctypes.pythonapi.PyCapsule_GetPointer
+    take.restype, take.argtypes = ctypes.c_void_p, (ctypes.py_object, ctypes.c_char_p)
+    table = take(core._UFUNC_API, None)
+    address = ctypes.c_void_p.from_address(int(table or 0) + ctypes.sizeof(ctypes.c_void_p)).value
+    pointer, whole = ctypes.c_void_p, ctypes.c_int
+    kinds = (pointer, pointer, pointer, *[whole] * 4, pointer, pointer, whole)
+    return ctypes.PYFUNCTYPE(ctypes.py_object, *kinds)(address or 0)
+
+
+def most_arguments() -> int:
+    """Inputs and outputs that a ufunc can have."""
+    return 32 if import_module("numpy").__version__.startswith("1.") else 64
+
+
+def ufunc_of(bound: Bound, inputs: int, whole: Sequence[bool], name: str) -> tuple[Any, Any]:
+    """A ufunc that runs a bound kernel, and what must live as long; `whole` says which outputs are int8.
+
+    More arguments than a ufunc can have go to a function that does the same for plain arrays.
+    """
+    if inputs + len(whole) > most_arguments():
+        return _wide(bound, whole), bound
+    types = bytes([DOUBLE] * inputs + [BYTE if kind else DOUBLE for kind in whole])
+    loops, data = (ctypes.c_void_p * 1)(bound.loop), (ctypes.c_void_p * 1)(bound.data)
+    texts = [ctypes.create_string_buffer(text) for text in (types, name.encode(), b"")]
+    places: tuple[Any, ...] = (loops, data, *texts)
+    starts = [ctypes.addressof(place) for place in places]
+    ufunc = _new_ufunc()(*starts[:3], 1, inputs, len(whole), NO_IDENTITY, *starts[3:], 0)
+    return ufunc, (bound, loops, data, texts)
+
+
+def _wide(bound: Bound, whole: Sequence[bool]) -> Callable[..., Any]:
+    """What the ufunc would be."""
+    import numpy as np
+
+    loop = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 4)(bound.loop)
+    kinds = [np.int8 if kind else np.float64 for kind in whole]
+
+    def call(*args: Any, out: Sequence[Any] | None = None) -> tuple[Any, ...]:
+        given = np.broadcast_arrays(*(np.asarray(a, dtype=np.float64) for a in args))
+        shape = given[0].shape
+        flat = [np.ascontiguousarray(a).reshape(-1) for a in given]
+        found = [np.empty(shape, kind) for kind in kinds]
+        every = [*flat, *(place.reshape(-1) for place in found)]
+        addresses = (ctypes.c_int64 * len(every))(*(a.__array_interface__["data"][0] for a in every))
+        steps = (ctypes.c_int64 * len(every))(*(a.itemsize for a in every))
+        loop(addresses, (ctypes.c_int64 * 1)(flat[0].size), steps, bound.data)
+        if out is not None:
+            for place, values in zip(out, found, strict=True):
+                np.copyto(place, values, casting="same_kind")
+            return tuple(out)
+        return tuple(place[()] for place in found)
+
+    return call
+
+
+class PointCaller(NamedTuple):
+    """The address of a C function of one point, and what keeps it alive."""
+
+    address: int
+    kept: Any
+
+
+def point_caller(bound: Bound, inputs: int, whole: Sequence[bool]) -> PointCaller:
+    """`int64_t f(const double *inputs, double *outputs)`, one point of a bound kernel.
+
+    A status is told as a double.
+    """
+    import llvmlite.binding as llvm
+
+    count = inputs + len(whole)
+    rows = [
+        f"  %args = alloca [{count} x ptr]",
+        f"  %steps = alloca [{count} x i64]",
+        "  %size = alloca i64",
+        f"  %bytes = alloca [{len(whole)} x i8]",
+        "  store i64 1, ptr %size",
+    ]
+    after = []
+    for k in range(count):
+        own = k - inputs
+        byte = own >= 0 and whole[own]
+        source = f"i8, ptr %bytes, i64 {own}" if byte else f"double, ptr %{'in' if own < 0 else 'out'}, i64 "
+        source += "" if byte else str(k if own < 0 else own)
+        rows += [
+            f"  %p{k} = getelementptr {source}",
+            f"  %a{k} = getelementptr ptr, ptr %args, i64 {k}",
+            f"  store ptr %p{k}, ptr %a{k}",
+            f"  %s{k} = getelementptr i64, ptr %steps, i64 {k}",
+            f"  store i64 {1 if byte else 8}, ptr %s{k}",
+        ]
+        if byte:
+            after += [
+                f"  %b{k} = load i8, ptr %p{k}",
+                f"  %d{k} = sitofp i8 %b{k} to double",
+                f"  %o{k} = getelementptr double, ptr %out, i64 {own}",
+                f"  store double %d{k}, ptr %o{k}",
+            ]
+    call = [
+        f"  %loop = inttoptr i64 {bound.loop} to ptr",
+        f"  %data = inttoptr i64 {bound.data} to ptr",
+        "  call void %loop(ptr %args, ptr %size, ptr %steps, ptr %data)",
+    ]
+    body = "\n".join([*rows, *call, *after, "  ret i64 0"])
+    module = llvm.parse_assembly(f"define i64 @point(ptr %in, ptr %out) {{\n{body}\n}}")
+    target = llvm.Target.from_default_triple().create_target_machine()
+    engine = llvm.create_mcjit_compiler(module, target)
+    engine.finalize_object()
+    return PointCaller(engine.get_function_address("point"), (engine, bound))
+
+
+def scalar_of(address: int, inputs: Sequence[str], outputs: int, one: bool, owner: Any) -> Any:
+    """A function of numbers that numba can call: the C function at an address, whose `owner` is kept."""
+    numba = import_module("numba")
+    types, ir, cgutils = numba.types, import_module("llvmlite.ir"), import_module("numba.core.cgutils")
+    double, whole = ir.DoubleType(), ir.IntType(64)
+
+    def point(typingctx: Any, values: Any) -> Any:
+        def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+            places = [cgutils.alloca_once(builder, double, size=n) for n in (len(inputs), outputs)]
+            for k in range(len(inputs)):
+                index = ir.Constant(whole, k)
+                builder.store(builder.extract_value(args[0], k), builder.gep(places[0], [index]))
+            kind = ir.FunctionType(whole, [double.as_pointer()] * 2).as_pointer()
+            builder.call(builder.inttoptr(ir.Constant(whole, address), kind), places)
+            found = [builder.load(builder.gep(places[1], [ir.Constant(whole, k)])) for k in range(outputs)]
+            return context.make_tuple(builder, signature.return_type, found)
+
+        result = types.UniTuple(types.float64, outputs)
+        return result(types.UniTuple(types.float64, len(inputs))), code
+
+    doubles = "".join(f"float({name}), " for name in inputs)
+    text = f"def scalar({', '.join(inputs)}):\n    return point(({doubles})){'[0]' if one else ''}\n"
+    scope: dict[str, Any] = {"point": import_module("numba.extending").intrinsic(point)}
+    exec(compile(text, "<desaxe scalar>", "exec"), scope)
+    found = numba.njit(error_model="numpy")(scope["scalar"])
+    found.owner = owner
+    return found
