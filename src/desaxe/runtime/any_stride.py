@@ -146,7 +146,7 @@ def function(args, dimensions, steps, data):
         call(word(data, 5), args, size, steps)
     if word(data, 6) != 0:
         call(word(data, 6), 61, 0, 0)  # clears the processor's flags: NaN is an answer, not an accident
-    return int64(0)
+    return left
 
 
 signature = types.int64(types.int64, types.int64, types.int64, types.int64)
@@ -163,8 +163,29 @@ class Bound(NamedTuple):
 
 
 @cache
-def _loop() -> Native:
+def loop() -> Native:
+    """The loop; it answers how many points are left for a repair."""
     return native("any_stride", TEXT)
+
+
+def data_of(
+    kernel: Native,
+    places: Sequence[int | float],
+    inputs: int,
+    angle: int | None,
+    limit: float,
+    repair: int = 0,
+) -> tuple[bytes, str]:
+    """The data of the loop but for the words of the kernel's table, and the format of these; see `bind`."""
+    arrays: list[int] = []
+    words = ""
+    for place, rank, size in zip(places, kernel.ranks, kernel.item_sizes, strict=True):
+        if rank >= 0:
+            arrays += [int(place), len(words), size, int(place >= inputs)]
+        words += "d" if rank < 0 else "qqq"
+    head = [kernel.address, len(words), len(arrays) // EACH, -1 if angle is None else angle]
+    packed = struct.pack(f"{len(head)}q", *head) + struct.pack("d", limit)
+    return packed + struct.pack(f"{2 + len(arrays)}q", repair, _clear_flags(), *arrays), words
 
 
 def bind(
@@ -173,7 +194,7 @@ def bind(
     inputs: int,
     angle: int | None,
     limit: float,
-    repair: Repair | None,
+    repair: Repair,
 ) -> Bound:
     """A kernel behind the loop.
 
@@ -184,22 +205,16 @@ def bind(
     repair   called with the addresses that the loop has been called with, (args, size, steps), if an angle is
              beyond the limit or the kernel's answer is not 0
     """
-    words: list[bytes] = []
-    arrays: list[int] = []
-    for place, rank, size in zip(places, kernel.ranks, kernel.item_sizes, strict=True):
-        if rank < 0:
-            words.append(struct.pack("d", place))
-            continue
-        arrays += [int(place), len(words), size, int(place >= inputs)]
-        words += [struct.pack("q", word) for word in (0, 0, size)]
-    callback = _Repair(repair) if repair is not None else None
-    back = ctypes.cast(callback, ctypes.c_void_p).value if callback is not None else 0
-    head = [kernel.address, len(words), len(arrays) // EACH, -1 if angle is None else angle]
-    packed = struct.pack(f"{len(head)}q", *head) + struct.pack("d", limit)
-    packed += struct.pack(f"{2 + len(arrays)}q", back or 0, _clear_flags(), *arrays) + b"".join(words)
+    callback = _Repair(repair)
+    back = ctypes.cast(callback, ctypes.c_void_p).value or 0
+    head, format_ = data_of(kernel, places, inputs, angle, limit, back)
+    words: list[int | float] = []
+    for place, rank in zip(places, kernel.ranks, strict=True):
+        words += [place] if rank < 0 else [0, 0, 0]
+    packed = head + struct.pack(format_, *words)
     data = ctypes.create_string_buffer(packed, len(packed))
-    loop = _loop()
-    return Bound(loop.address, ctypes.addressof(data), (kernel, callback, data, loop))
+    inner = loop()
+    return Bound(inner.address, ctypes.addressof(data), (kernel, callback, data, inner))
 
 
 @cache

@@ -30,7 +30,7 @@ def all_have_wide_margins(form: Variant, ec: Any, AB: Any, BC: Any) -> bool:
 
     The test says no more of all of them than of their extremes.
     """
-    test = _of_numbers(form)
+    test = of_numbers(form)
     return all(test(*corner)[0] for corner in product(_extremes(ec), _extremes(AB), _extremes(BC)))
 
 
@@ -44,7 +44,9 @@ def _test(form: Variant) -> Program:
 
 
 @lru_cache(maxsize=1024)
-def _of_numbers(form: Variant) -> Callable[..., Any]:
+@lru_cache(maxsize=1024)
+def of_numbers(form: Variant) -> Callable[..., Any]:
+    """The test as a function of three numbers."""
     return compile_python(_test(form))
 
 

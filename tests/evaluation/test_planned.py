@@ -1,0 +1,86 @@
+"""Calls that are remembered give what the general way gives, and leave to it what is out of the ordinary."""
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from desaxe.evaluation import arrays, planned
+
+SIZES = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
+NAMES = ["V_C", "a_C", "status"]
+
+
+@pytest.fixture
+def both(monkeypatch):
+    """What a call gives by its plan and in the general way, and whether there was a plan."""
+
+    def run(names, **inputs):
+        taken = []
+
+        def watched(wanted, given):
+            found = planned.planned(wanted, given)
+            taken.append(found is not None)
+            return found
+
+        monkeypatch.setattr(arrays, "planned", lambda wanted, given: None)
+        for _ in range(4):  # until its kernel is compiled
+            general = dx.evaluate(names, **inputs)
+        monkeypatch.setattr(arrays, "planned", watched)
+        return dx.evaluate(names, **inputs), general, taken == [True]
+
+    return run
+
+
+def same(found, wanted):
+    return all(
+        found[name].tobytes() == wanted[name].tobytes() and found[name].shape == wanted[name].shape
+        for name in wanted
+    )
+
+
+THETA = np.linspace(-7.0, 7.0, 900).reshape(30, 30)
+EC = np.linspace(-0.3, 0.3, 900).reshape(30, 30)
+
+
+@pytest.mark.parametrize(
+    "inputs",
+    [
+        {"theta": THETA, "ec": 0.01},
+        {"theta": THETA, "ec": 0.0},
+        {"theta": THETA, "ec": 0.22},
+        {"theta": THETA, "ec": EC},
+    ],
+)
+def test_ordinary_calls_have_a_plan(both, inputs):
+    found, general, was_planned = both(NAMES, **inputs, **SIZES)
+    assert was_planned
+    assert same(found, general)
+
+
+@pytest.mark.parametrize(
+    "theta",
+    [THETA.T, THETA[::2], THETA + 1e9, np.where(THETA > 0.0, np.nan, THETA), THETA.astype(np.float32)],
+)
+def test_others_go_the_general_way_or_give_the_same(both, theta):
+    found, general, _ = both(NAMES, theta=theta, ec=0.01, **SIZES)
+    assert same(found, general)
+
+
+def test_what_hangs_on_rounding_is_left_to_the_general_way(both):
+    last = np.arcsin((0.35 - 0.25) / 0.125)
+    theta = last + 2.0**-52 * np.arange(-400.0, 400.0)
+    found, general, was_planned = both(NAMES, theta=theta, ec=0.25, **SIZES)
+    assert not was_planned
+    assert same(found, general)
+
+
+def test_a_read_only_column_and_bad_numbers(both):
+    theta = THETA.reshape(-1).copy()
+    theta.flags.writeable = False
+    found, general, was_planned = both(NAMES, theta=theta, ec=0.01, **SIZES)
+    assert was_planned
+    assert same(found, general)
+    with pytest.raises(ValueError, match="ec = nan"):
+        dx.evaluate(NAMES, theta=theta, ec=np.nan, **SIZES)
+    with pytest.raises(ValueError, match="theta: every value is bad"):
+        dx.evaluate(NAMES, theta=np.full(900, np.nan), ec=0.01, **SIZES)
