@@ -12,10 +12,14 @@ import tempfile
 
 import pytest
 
+from desaxe.runtime import tiers
 from tests.effort import VARIABLE as THOROUGH
 from tests.ways import take_way
 
 VARIABLE = "DESAXE_CACHE_DIR"
+
+
+tiers.NUMPY_PAYS = 0  # tests are about kernels; that NumPy comes first has tests of its own
 
 
 def pytest_addoption(parser):
@@ -49,8 +53,8 @@ def pytest_collection_modifyitems(config, items):
         config.hook.pytest_deselected(items=left_out)
 
 
-@pytest.fixture(params=["plain", "compiled"])
+@pytest.fixture(params=["plain", "numpy", "compiled"])
 def way(request, monkeypatch):
-    """Both ways that arrays can take, whatever their size."""
+    """The ways that arrays can take, whatever their size."""
     take_way(monkeypatch, request.param)
     return request.param

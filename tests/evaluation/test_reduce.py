@@ -7,7 +7,6 @@ import pytest
 
 import desaxe as dx
 from desaxe.compiler.languages.numba.reductions import LONGEST
-from desaxe.runtime import interpreted as _few_points
 from desaxe.runtime import kernels as _kernels
 
 MACHINE = {"AB": 0.125, "omega0": 157.08}
@@ -117,7 +116,7 @@ def test_threads_change_nothing():
 def test_the_grid_is_never_stored(monkeypatch):
     from desaxe.evaluation import grid as _grid
 
-    monkeypatch.setattr(_few_points, "BREAK_EVEN", 0)
+    monkeypatch.setenv("DESAXE_TIER", "compiled")
     monkeypatch.setattr(_grid, "_filled", lambda *_: pytest.fail("the whole grid was computed"))
     found = dx.grid("a_C", reduce={"theta": "absmax"}, theta=TURN, ec=[0, 0.1], BC=0.35, **MACHINE)
     assert set(found.data_vars) == {"a_C_absmax", "a_C_absmax_theta", "a_C_skipped"}

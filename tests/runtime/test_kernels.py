@@ -15,14 +15,14 @@ import desaxe as dx
 from desaxe.evaluation import arrays as _arrays
 from desaxe.mechanism.program import Variant
 from desaxe.runtime import cache as _cache
-from desaxe.runtime import interpreted as _few_points
 from desaxe.runtime import kernels as _kernels
+from desaxe.runtime import tiers
 from tests.ways import POINT, SIZES, close, columns, take_way
 
 # ---- both ways, threads, far angles, a state -----------------------------------------------------
 
 
-@pytest.mark.parametrize("size", [_few_points.BREAK_EVEN - 1, _few_points.BREAK_EVEN])
+@pytest.mark.parametrize("size", [tiers.BREAK_EVEN - 1, tiers.BREAK_EVEN])
 def test_both_ways_give_the_same(monkeypatch, size):
     theta, ec = columns(size)
     found = []
@@ -34,10 +34,11 @@ def test_both_ways_give_the_same(monkeypatch, size):
 
 def test_points_asked_for_again_and_again_are_compiled(monkeypatch):
     asked = []
-    monkeypatch.setattr(_few_points, "_ASKED", Counter())
-    monkeypatch.setattr(_few_points, "is_ready", lambda key: False)
+    monkeypatch.setattr(tiers, "_ASKED", Counter())
+    monkeypatch.setattr(tiers, "is_ready", lambda key: False)
+    monkeypatch.setattr(_arrays, "planned", lambda *arguments: None)
     monkeypatch.setattr(_arrays, "run_in_blocks", lambda *arguments: asked.append(arguments))
-    theta, ec = columns(_few_points.BREAK_EVEN // 3)
+    theta, ec = columns(tiers.BREAK_EVEN // 3)
     for calls in (0, 0, 0, 1):
         dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)
         assert len(asked) == calls
@@ -56,10 +57,10 @@ def test_a_masked_array_is_refused():
 
 
 def test_a_few_points_are_not_compiled(monkeypatch):
-    monkeypatch.setattr(_few_points, "is_ready", lambda key: False)
+    monkeypatch.setattr(tiers, "is_ready", lambda key: False)
     monkeypatch.setattr(_arrays, "run_in_blocks", None)
-    monkeypatch.setattr(_few_points, "_ASKED", Counter())
-    theta, ec = columns(_few_points.BREAK_EVEN - 1)
+    monkeypatch.setattr(tiers, "_ASKED", Counter())
+    theta, ec = columns(tiers.BREAK_EVEN - 1)
     assert np.isfinite(dx.evaluate("V_C", theta=theta, ec=ec, **SIZES)).all()
 
 
@@ -142,7 +143,7 @@ def start(folder, *options, **environment):
     """A new process that runs one kernel from a cache folder."""
     return subprocess.Popen(
         [sys.executable, *options, "-c", CODE],
-        env=os.environ | {"DESAXE_CACHE_DIR": str(folder)} | environment,
+        env=os.environ | {"DESAXE_CACHE_DIR": str(folder), "DESAXE_TIER": "compiled"} | environment,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
 

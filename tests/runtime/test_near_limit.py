@@ -5,7 +5,6 @@ import pytest
 from flint import arb, ctx
 
 import desaxe as dx
-from desaxe.runtime import interpreted as _few_points
 from tests.effort import cases
 
 STEPS = range(-3, 4)  # doubles from the one that is nearest to the limit
@@ -67,7 +66,7 @@ def test_single_points():
 @pytest.mark.parametrize("names", [["status", "a_C"], ["a_C", "status", "V_C_wrt_ec"]])
 @pytest.mark.parametrize("threads", [1, 2])
 def test_arrays(monkeypatch, names, threads):
-    monkeypatch.setattr(_few_points, "BREAK_EVEN", 0)
+    monkeypatch.setenv("DESAXE_TIER", "compiled")
     points = limits(cases(400, 2_000), 2)
     theta, ec, AB, BC = np.array(points).T
     many = 20_000 * threads // len(points) + 1  # enough for every thread
@@ -83,7 +82,7 @@ def test_arrays(monkeypatch, names, threads):
 @pytest.mark.sampled
 @pytest.mark.parametrize("order", [("theta", "ec"), ("ec", "theta")])
 def test_grids(monkeypatch, order):
-    monkeypatch.setattr(_few_points, "BREAK_EVEN", 0)
+    monkeypatch.setenv("DESAXE_TIER", "compiled")
     for point in limits(cases(35, 70), 3)[:: len(STEPS)]:
         _, ec, AB, BC = point
         theta = [*neighbours(point[0]), 0.5]
@@ -95,7 +94,7 @@ def test_grids(monkeypatch, order):
 
 
 def test_forces_and_a_given_state(monkeypatch):
-    monkeypatch.setattr(_few_points, "BREAK_EVEN", 0)
+    monkeypatch.setenv("DESAXE_TIER", "compiled")
     points = limits(300, 4)
     theta, ec, AB, BC = np.array(points).T
     inside = np.array([reaches(*point) for point in points])
@@ -109,7 +108,7 @@ def test_what_is_decided_in_the_kernel_is_left_alone(monkeypatch):
     """Next to a change point BC - |u| is tiny, but known: nothing is answered twice."""
     from desaxe.runtime import near_limit as _undecided
 
-    monkeypatch.setattr(_few_points, "BREAK_EVEN", 0)
+    monkeypatch.setenv("DESAXE_TIER", "compiled")
     monkeypatch.setattr(_undecided, "decide", None)
     theta = np.pi / 2 + np.geomspace(1e-9, 0.1, 300)
     assert np.isfinite(dx.evaluate("a_C", theta=theta, ec=0.25, AB=0.125, BC=0.375, **SPEED)).all()

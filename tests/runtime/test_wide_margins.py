@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.runtime import interpreted as _few_points
 from desaxe.runtime.request import request
 from desaxe.runtime.specialise import plain_form, specialise
 from tests.evaluation.test_stress import NAMES, compiled, is_kept
@@ -70,7 +69,7 @@ def test_the_side_of_the_axis_is_known_where_the_pin_meets_it(monkeypatch):
 
 @pytest.mark.parametrize("where", ["kernel", "numbers"])
 def test_an_element_has_the_same_value_among_any_others(where, monkeypatch):
-    monkeypatch.setattr(_few_points, "BREAK_EVEN", 0 if where == "kernel" else 10**9)
+    monkeypatch.setenv("DESAXE_TIER", "compiled" if where == "kernel" else "interpreted")
     rng = np.random.default_rng(3)
     count = 1_500
     columns = {"theta": rng.uniform(-7, 7, count), "ec": rng.uniform(-0.2, 0.2, count)}
@@ -100,7 +99,7 @@ def test_an_element_has_the_same_value_among_any_others(where, monkeypatch):
     ],
 )
 def test_a_bad_element_is_nan_and_told(bad, monkeypatch):
-    monkeypatch.setattr(_few_points, "BREAK_EVEN", 0)
+    monkeypatch.setenv("DESAXE_TIER", "compiled")
     good = {"theta": 1.0, "ec": 0.01, "AB": 0.1, "BC": 0.35}
     columns = {name: np.array([value, bad.get(name, value), value]) for name, value in good.items()}
     found = dx.evaluate(["V_C", "a_C", "status"], **columns, omega0=3.0)

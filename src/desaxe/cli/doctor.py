@@ -72,6 +72,7 @@ def examine() -> Examination:
         "optional": [_row(name, _optional(name)) for name in OPTIONAL],
         "kernels on disk": _cache(),
         "committed kernels": [_committed()],
+        "arrays": [_row("tier", _tier())],
         "processor": _processor(),
         "loops": loop_lines,
     }
@@ -125,6 +126,20 @@ def _cache() -> list[str]:
         _row("holds", f"{count} kernels, {size / 1e6:.1f} MB of at most {limit() / 1e6:.0f} MB"),
         _row("in memory", f"{len(_LOADED)} kernels of this process, at most {MOST_LOADED}"),
     ]
+
+
+def _tier() -> str:
+    """What answers a request over arrays."""
+    from ..runtime.tiers import BREAK_EVEN, NUMPY_PAYS, VARIABLE, forced_tier
+
+    try:
+        forced = forced_tier()
+    except ValueError as error:
+        return str(error)
+    if forced is not None:
+        return f"{forced}, as {VARIABLE} says"
+    few = f"plain Python below {BREAK_EVEN:,} points"
+    return f"{few}; NumPy for a new request up to {NUMPY_PAYS:,}; else compiled ({VARIABLE} forces one)"
 
 
 def _committed() -> str:

@@ -2,17 +2,19 @@
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from math import prod
+from os import environ
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanism.inputs import INPUTS, is_good
-from ..runtime.interpreted import are_good, fill_by_points, interpret_first
+from ..runtime.interpreted import are_good, fill_by_points
 from ..runtime.kernels import key_of
 from ..runtime.point import point_of
 from ..runtime.request import Request, as_number
 from ..runtime.threads import run_in_blocks
+from ..runtime.tiers import COMPILED, INTERPRETED, VARIABLE, tier_of
 from ..support.memory import require
 from ..support.shown import shown
 from .loops import Loops, loops_over, spread
@@ -27,7 +29,7 @@ def evaluate_arrays(
     wanted: Request, given: Mapping[str, Any], threads: int | None, out: Any
 ) -> dict[str, Array]:
     """The answers by the names asked for, in the broadcast shape."""
-    if out is None and threads is None:
+    if out is None and threads is None and VARIABLE not in environ:
         ready = planned(wanted, given)
         if ready is not None:
             return ready
@@ -40,7 +42,7 @@ def evaluate_arrays(
     if all(buffer.size for buffer in buffers.values()):
         scalars = {name: a.item() for name, a in arrays.items() if a.size == 1}
         loops = loops_over({name: a for name, a in arrays.items() if a.size != 1}, shape)
-        fill(wanted, scalars, loops, list(buffers.values()), threads)
+        fill(wanted, scalars, loops, list(buffers.values()), threads, numpy_pays=True)
     return copied_back(places, buffers, out is None)
 
 
@@ -153,8 +155,12 @@ def fill(
     loops: Loops,
     outs: Sequence[Array],
     threads: int | None,
+    numpy_pays: bool = False,
 ) -> None:
-    """Fill outputs, which are contiguous, from scalars and what varies along loops."""
+    """Fill outputs, which are contiguous, from scalars and what varies along loops.
+
+    `numpy_pays`: a new request need not wait for its kernel, whose digits NumPy's may differ from.
+    """
     sizes, columns, axis_of = loops
     key = key_of(wanted, scalars, columns, axis_of, len(sizes))
     outs = [out.reshape(sizes) for out in outs]
@@ -162,8 +168,16 @@ def fill(
         point = point_of(key.names, key.form, key.fixed, key.accuracy)
         for out, value in zip(outs, point.run(scalars), strict=True):
             out[...] = value
-    elif interpret_first(key, outs[0].size):
-        wide = {name: spread(column, axis_of[name], sizes) for name, column in columns.items()}
-        fill_by_points(key, scalars, wide, [out.reshape(-1) for out in outs])
-    else:
+        return
+    tier = tier_of(key, outs[0].size, numpy_pays)
+    if tier == COMPILED:
         run_in_blocks(key, {**scalars, **columns}, outs, threads)
+        return
+    flat = [out.reshape(-1) for out in outs]
+    wide = {name: spread(column, axis_of[name], sizes) for name, column in columns.items()}
+    if tier == INTERPRETED:
+        fill_by_points(key, scalars, wide, flat)
+    else:
+        from ..runtime.vectorised import fill_by_arrays
+
+        fill_by_arrays(key, scalars, wide, flat)

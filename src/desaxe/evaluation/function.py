@@ -19,9 +19,9 @@ from ..mechanism.program import program_of
 from ..runtime.any_stride import Bound, bind
 from ..runtime.kernels import STRUCTURAL_ZEROS, KernelKey, kernel_for
 from ..runtime.native_calls import point_caller, scalar_of, ufunc_of
-from ..runtime.request import Request, as_number, check_border, check_inputs, request, several, standstill
+from ..runtime.request import Request, as_number, check_common, check_inputs, request, several, standstill
 from ..runtime.specialise import plain_form
-from ..runtime.wide_margins import all_roomy
+from ..runtime.wide_margins import all_have_wide_margins
 from .repair import limit_of, repair_for
 
 Array = NDArray[Any]
@@ -233,7 +233,7 @@ def _compiled(
     given |= dict.fromkeys(inputs, np.empty(1))
     if given.get("omega0") is None and given.get("omega") is None:
         given["omega0"] = standstill(names, given)
-    check_border(given, branch)
+    check_common(given, branch)
     wanted = request(names, given, branch, accuracy)
     numbers = {n: _fixed_number(n, given, wanted) for n in wanted.inputs if n not in inputs}
     key = _key(wanted, numbers, inputs)
@@ -260,9 +260,13 @@ def _key(wanted: Request, numbers: Mapping[str, float], inputs: Sequence[str]) -
     fixed = (*wanted.fixed, *zeros)
     form = wanted.form
     lengths = [numbers[name] for name in LENGTHS if name in numbers]
-    if len(lengths) == len(LENGTHS) and wanted.accuracy != "extended" and all_roomy(form, *lengths):
+    if (
+        len(lengths) == len(LENGTHS)
+        and wanted.accuracy != "extended"
+        and all_have_wide_margins(form, *lengths)
+    ):
         two_forms = plain_form(wanted.names, form, fixed) is not None
-        form = form._replace(roomy=two_forms)
+        form = form._replace(wide_margins=two_forms)
     axis = tuple(sorted((name, 0) for name in inputs if name in wanted.inputs))
     far = abs(numbers.get("theta", 0.0)) > limit_of(wanted.accuracy)
     return KernelKey(wanted.names, form, fixed, axis, 1, wanted.accuracy, far)

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from ..compiler.languages.numba.reductions import EXTREMES, KINDS, outputs_of
 from ..mechanism.spelling import did_you_mean
-from ..runtime.interpreted import interpret_first
 from ..runtime.kernels import KernelKey, kernel_for, key_of
 from ..runtime.request import Request
 from ..runtime.threads import in_blocks
+from ..runtime.tiers import COMPILED, tier_of
 from .labels import attributes, input_attributes, labelled, provenance
 
 if TYPE_CHECKING:
@@ -106,7 +106,8 @@ def reduced(
     columns = {name: np.ascontiguousarray(axis) for name, axis in given.items() if name in order}
     places = {name: order.index(name) for name in columns}
     key = key_of(wanted, scalars, columns, places, len(order))._replace(reduce=reduction.kinds)
-    if stored or length == 0 or not all(shape) or interpret_first(key, prod(shape) * length):
+    small = tier_of(key, prod(shape) * length) != COMPILED
+    if stored or length == 0 or not all(shape) or small:
         _of_whole(whole(), reduction, dimensions, outs)
     else:
         fill_reduced(key, {**scalars, **columns}, length, list(outs.values()), threads)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..mechanism.constants import constants, double_constants, single_constants
 from ..runtime.any_stride import Repair
-from ..runtime.kernels import KernelKey, has_undecided, kernel_for
+from ..runtime.kernels import KernelKey, has_near_limit, kernel_for
 from ..runtime.near_limit import decide
 
 Array = NDArray[Any]
@@ -50,7 +50,7 @@ def _repair(
     theta = np.abs(columns["theta"]) if "theta" in columns and not key.far else np.zeros(size)
     far = (theta > limit) & (theta < np.inf)
     for rows, part in ((np.flatnonzero(far), key._replace(far=True)), (np.flatnonzero(~far), key)):
-        if not rows.size or (part is key and not has_undecided(key)):
+        if not rows.size or (part is key and not has_near_limit(key)):
             continue
         values: dict[str, Any] = {**numbers, **{name: column[rows] for name, column in columns.items()}}
         places = [out[rows] for out in outs]

@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from ..compiler.languages.numba import peaks
 from ..compiler.languages.numba.module import helper_sources
 from ..compiler.operations import HELPERS, MATH_NAMES
-from ..runtime.compiled_only import is_required
 from ..runtime.modules import is_kept, native
 from ..runtime.threads import run_parts
+from ..runtime.tiers import COMPILED, forced_tier
 from ..support.forks import fork_safe_lock
 from ..support.recent import Recent
 from . import search as text
@@ -130,7 +130,9 @@ def kernel_for(search: Search, designs: int) -> Kernel:
     if found is not None:
         return found
     _ASKED[search] += designs
-    if _ASKED[search] < BREAK_EVEN and not is_required() and not _on_disk(search):
+    forced = forced_tier()
+    early = forced is None and _ASKED[search] < BREAK_EVEN and not _on_disk(search)
+    if early or forced not in (None, COMPILED):
         return _plain(search)
     with _LOCK:
         found = _LOADED.get(search) or native("search", source_of(search))

@@ -1,6 +1,5 @@
 """Few points: plain Python, one by one, as long as that takes less time than compiling a kernel would."""
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -10,16 +9,10 @@ from numpy.typing import NDArray
 from ..compiler.passes.guard import BAD_INPUT
 from ..mechanism.constants import double_constants
 from ..mechanism.inputs import INPUTS
-from .compiled_only import is_required
-from .kernels import KernelKey, is_ready
+from .kernels import KernelKey
 from .point import point_of
 
 Array = NDArray[Any]
-
-# A request is answered in plain Python until so many points of it have been asked for in this process:
-# nobody pays a compilation for a hundred points, and nobody waits for ever who asks again and again.
-BREAK_EVEN = 2_000
-_ASKED: Counter[KernelKey] = Counter()
 
 
 def are_good(name: str, array: Array) -> NDArray[np.bool_]:
@@ -27,14 +20,6 @@ def are_good(name: str, array: Array) -> NDArray[np.bool_]:
     least = INPUTS[name].least
     good: NDArray[np.bool_] = np.isfinite(array)
     return good if least is None else good & (array >= least)
-
-
-def interpret_first(key: KernelKey, size: int) -> bool:
-    """Whether plain Python still pays."""
-    if is_ready(key) or is_required():
-        return False
-    _ASKED[key] += size
-    return _ASKED[key] < BREAK_EVEN
 
 
 def fill_by_points(

@@ -32,6 +32,7 @@ from .specialise import plain_form, specialise
 STRUCTURAL_ZEROS = ("ec", "alpha", *LOADS)
 REACH = ("less_rounded", "less_unsure")  # BC - |u|, and what rounding may take from it
 NEAR_LIMIT = 4.0  # times that: points of which some may hang on rounding
+SPARE = 2.0  # times what rounding may take: points nearer to the limit are answered again
 ASKED_AHEAD = 16  # points for each length: then designs are looked at ahead of the kernel
 
 
@@ -152,7 +153,7 @@ def kernel_of(key: KernelKey) -> Kernel:
         guarded = double_double(guarded, double_constants())
     else:
         if has_near_limit(key):
-            program = _counting(key)
+            program = counting(key)
         if key.form.wide_margins:
             guarded = _plain_for_loops(program, varying, key)
         else:
@@ -165,7 +166,7 @@ def kernel_of(key: KernelKey) -> Kernel:
     return kernel if plain is None else parted(kernel, len(key.names))
 
 
-def _counting(key: KernelKey) -> Program:
+def counting(key: KernelKey) -> Program:
     """The program of a key with one more output: whether a point may be one that is answered again.
 
     It holds for more points than `near_limit` selects, by whatever the two round differently: then the
@@ -185,8 +186,12 @@ def _counting(key: KernelKey) -> Program:
 
 def _plain_for_loops(program: Program, varying: Sequence[str], key: KernelKey) -> Program:
     """Lower the plain form. The wide-margin test implies valid lengths: only other inputs are guarded."""
-    own = [name for name in varying if name not in LENGTHS and _is_seen(program, name)]
-    return _for_loops(guard_inputs(program, own, LEAST, {}), key, plain=True)
+    return _for_loops(guard_inputs(program, seen_inputs(program, varying), LEAST, {}), key, plain=True)
+
+
+def seen_inputs(program: Program, varying: Sequence[str]) -> list[str]:
+    """The inputs whose bad values a plain form must be kept from."""
+    return [name for name in varying if name not in LENGTHS and _is_seen(program, name)]
 
 
 def _for_loops(program: Program, key: KernelKey, plain: bool = False) -> Program:

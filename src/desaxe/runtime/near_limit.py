@@ -12,10 +12,9 @@ import numpy as np
 
 from ..mechanism.constants import double_constants
 from ..mechanism.own_lines import not_extended
-from .interpreted import fill_by_points, interpret_first
-from .kernels import REACH, KernelKey, kernel_for
+from .kernels import REACH, SPARE, KernelKey, kernel_for
+from .vectorised import fill_by_arrays
 
-SPARE = 2.0  # times what rounding may take; a kernel counts a wider band, which it may round in another way
 AT_A_TIME = 2**20  # points
 
 
@@ -49,10 +48,10 @@ def _decide(
 
 
 def _answer(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any], flat: Sequence[str]) -> None:
-    """Fill flat outputs from values, of which some are flat columns, with twice the digits."""
+    """Fill flat outputs from values, of which some are flat columns, with twice the digits.
+
+    Always by NumPy, however many they are: another tier may round differently.
+    """
+    scalars = {name: value for name, value in values.items() if name not in flat}
     exact = key._replace(accuracy="extended", axis_of=tuple((name, 0) for name in sorted(flat)), axes=1)
-    if interpret_first(exact, outs[0].size):
-        scalars = {name: value for name, value in values.items() if name not in flat}
-        fill_by_points(exact, scalars, {name: values[name] for name in flat}, outs)
-    else:
-        kernel_for(exact).run(values, outs)
+    fill_by_arrays(exact, scalars, {name: values[name] for name in flat}, outs)

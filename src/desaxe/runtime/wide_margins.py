@@ -44,7 +44,6 @@ def _test(form: Variant) -> Program:
 
 
 @lru_cache(maxsize=1024)
-@lru_cache(maxsize=1024)
 def of_numbers(form: Variant) -> Callable[..., Any]:
     """The test as a function of three numbers."""
     return compile_python(_test(form))

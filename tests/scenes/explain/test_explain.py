@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.runtime import interpreted as _few_points
 from desaxe.runtime import kernels as _kernels
+from desaxe.runtime import tiers
 from desaxe.runtime.kernels import kernel_of
 from desaxe.scenes.kernel import grid_kernel
 from tests.example_scenes import COMPACTOR, SMALL
@@ -125,11 +125,11 @@ def _size(axis):
 
 def test_the_break_even_is_the_one_that_holds(monkeypatch):
     monkeypatch.setattr(_kernels, "_load", None)  # whoever compiles fails
-    points = {"start": 0, "stop": 1, "num": _few_points.BREAK_EVEN - 1}
+    points = {"start": 0, "stop": 1, "num": tiers.BREAK_EVEN - 1}
     few = free(CONCENTRIC, "motion", "theta", points)
     assert dx.explain(few)["run"]["way"] == "plain Python"
     dx.scene(few).run()
-    many = free(CONCENTRIC, "motion", "theta", {**points, "num": _few_points.BREAK_EVEN})
+    many = free(CONCENTRIC, "motion", "theta", {**points, "num": tiers.BREAK_EVEN})
     assert dx.explain(many)["run"]["way"] == "compiled"
     with pytest.raises(TypeError):
         dx.scene(many).run()

@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.runtime import interpreted as _few_points
 from desaxe.runtime.cache import locked
 from desaxe.scenes.export.compile import module_text
 from desaxe.scenes.schema import SceneError
@@ -136,7 +135,7 @@ def inputs_of(scene):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_run_is_the_scene(name, alone, monkeypatch):
-    monkeypatch.setattr(_few_points, "BREAK_EVEN", 0 if points_of(SCENES[name]) else 10**9)
+    monkeypatch.setenv("DESAXE_TIER", "compiled" if points_of(SCENES[name]) else "interpreted")
     dataset = dx.scene(SCENES[name]).run().dataset
     found = alone[name]["run"]
     assert set(found) == set(dataset.data_vars) - {"margin"}
@@ -147,7 +146,7 @@ def test_run_is_the_scene(name, alone, monkeypatch):
 
 @pytest.mark.parametrize("name", [name for name in SCENES if name != "no_axis"])
 def test_arrays_are_those_of_evaluate(name, alone, monkeypatch):
-    monkeypatch.setattr(_few_points, "BREAK_EVEN", 0)
+    monkeypatch.setenv("DESAXE_TIER", "compiled")
     points = points_of(SCENES[name])
     names = list(alone[name]["arrays"])
     arrays = {n: np.array(v) for n, v in points.items()}

@@ -14,11 +14,11 @@ from ...mechanism.catalogue import quantity
 from ...mechanism.constants import double_constants
 from ...mechanism.inputs import INPUTS
 from ...mechanism.program import digest
-from ...runtime import interpreted
 from ...runtime.kernels import KernelKey, is_ready, is_single, kernel_of, source_of
 from ...runtime.modules import path_of
 from ...runtime.specialise import specialise
 from ...runtime.threads import LEAST_BLOCK, available
+from ...runtime.tiers import BREAK_EVEN, COMPILED, tier_ahead
 from ..kernel import GridKernel, grid_kernel
 from ..read import Content
 from ..scene import Scene
@@ -114,7 +114,7 @@ def _input(name: str, value: Value) -> dict[str, Any]:
 def _grid(content: Content) -> dict[str, Any]:
     """The grid of the outputs: its passes, its loops, how it runs."""
     found = grid_kernel(content, joined=True)
-    compiled = is_ready(found.key) or found.points >= interpreted.BREAK_EVEN
+    compiled = tier_ahead(found.key, found.points) == COMPILED
     loops = _compiled_loops(found) if compiled else _plain_loops(found)
     straight = sum(loop.operations for loop in loops if not loop.close)
     total = sum(loop.work for loop in loops)
@@ -163,7 +163,8 @@ def _run(content: Content, found: GridKernel, loops: list[Loop], compiled: bool)
     first = {"memory": 0.0, "disk": estimate.LOAD}.get(cached, estimate.IMPORT + estimate.compile_time(loops))
     return {
         "way": "compiled" if compiled else "plain Python",
-        "break_even": interpreted.BREAK_EVEN,
+        "tier": tier_ahead(found.key, found.points),
+        "break_even": BREAK_EVEN,
         "float32": is_single(found.key),
         "far_angles": found.key.far,
         "wide_margins": found.key.form.wide_margins,
