@@ -41,8 +41,10 @@ def needed(what: str, extra: str | None = None) -> Iterator[None]:
         with put_off():  # a package that is imported halfway cannot be imported again
             yield
     except ModuleNotFoundError as error:
-        known = EXTRAS.get((error.name or "").partition(".")[0]) or EXTRAS.get(error.name or "")
+        missing = error.name or ""
+        package = missing if missing in EXTRAS else missing.partition(".")[0]
+        known = EXTRAS.get(package)
         if known is None:
             raise
         remedy = f"python -m pip install 'desaxe[{extra or known}]'"
-        raise MissingExtraError(f"{what} needs {error.name}: {remedy}") from None
+        raise MissingExtraError(f"{what} needs {package}: {remedy}") from None

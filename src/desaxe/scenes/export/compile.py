@@ -3,7 +3,7 @@
 import hashlib
 import keyword
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from os import PathLike
 from pathlib import Path
 from textwrap import wrap
@@ -18,6 +18,8 @@ from ...compiler.operations import HELPERS, NUMBA_HELPERS
 from ...compiler.passes.double_double import double_double
 from ...compiler.passes.guard import guard_inputs
 from ...compiler.program import Program
+from ...loads.load import TableOverTheta
+from ...loads.resolve import Plan, plan_of, split
 from ...mechanism.catalogue import quantity
 from ...mechanism.constants import constants, double_constants, single_constants
 from ...mechanism.inputs import INPUTS, LEAST
@@ -27,6 +29,7 @@ from ...runtime.kernels import KernelKey, is_single, kernel_of
 from ...runtime.specialise import specialise
 from ...support.files import check_target, write_text
 from ..kernel import GridKernel, grid_kernel
+from ..read import Content
 from ..scene import Scene
 from ..scene import scene as scene_of
 from ..schema import SceneError
@@ -41,6 +44,7 @@ from .entry_points import (
     run_reduced_function,
 )
 from .first_call import COMPILED, LAZY, LAZY_REDUCED
+from .loaded import calls_text, renames, require_tables, table_text
 from .merge import import_lines, merged, renamed
 from .portable import Order, left_out, module_of, require_outputs
 from .scalars import scalars_source
@@ -146,15 +150,24 @@ def module_text(scene: Scene, name: str = "my_kernels.py") -> str:
     """The text of the module."""
     content = scene.content
     require_outputs(scene)
+    numbers, loads = split(content.inputs)
+    require_tables(scene.name or "scene", loads)
+    if loads and content.reduction is not None:
+        raise SceneError(
+            f"{scene.name or 'scene'}: a module under a load over theta stores its grid: no [reduce]"
+        )
     found = grid_kernel(content)
     anywhere = found.key.form._replace(wide_margins=False)  # the module takes other designs, too
-    key = _all_fixed(found.key._replace(form=anywhere), found, content.inputs)
+    key = _all_fixed(found.key._replace(form=anywhere), found, numbers, loads)
     axes = {n: value for n in found.axes if isinstance(value := content.inputs.get(n), tuple)}
     state = found.request.form.state
     shown = found.request.shown
     program = _in_order(specialise(key.names, key.form, key.fixed, key.accuracy))
     if key.accuracy == "extended":
         program = double_double(program, double_constants())
+    plan = plan_of(_asked(content), loads, "omega" in numbers, "mu" in numbers) if loads else None
+    if plan is not None and plan.loads:
+        return _module_under_loads(scene, name, plan, key, program, axes)
     sources = [point_function(program, shown, state)]
     grid = None
     if program.inputs:
@@ -184,7 +197,7 @@ IMPORTS = {
     "math": {"prod"},
     "numpy": {
         "append", "arange", "array", "asarray", "ascontiguousarray", "broadcast_arrays", "empty", "float64",
-        "int8", "isfinite", "linspace", "nan",
+        "int8", "isfinite", "linspace", "nan", "broadcast_to", "floor", "searchsorted", "where",
     },
     "os": {"cpu_count"},
     "threading": {"Lock"},
@@ -200,9 +213,49 @@ def _called(imports: Mapping[str, set[str]], body: str) -> dict[str, set[str]]:
     return {module: names & used for module, names in found.items() if names & used}
 
 
-def _all_fixed(key: KernelKey, found: GridKernel, inputs: Mapping[str, Any]) -> KernelKey:
-    """The key with every number of the scene folded in."""
-    numbers = {n: inputs.get(n, 0.0) for n in found.request.inputs if n not in found.axes}
+def _asked(content: Content) -> list[str]:
+    """The outputs, as a grid has them."""
+    return list(dict.fromkeys([*(name for name in content.outputs if name != "margin"), "status"]))
+
+
+def _module_under_loads(
+    scene: Scene,
+    name: str,
+    plan: Plan,
+    key: KernelKey,
+    program: Program,
+    axes: Mapping[str, tuple[float, ...]],
+) -> str:
+    """The text of the module of a scene whose loads are tables over theta."""
+    state, inputs = key.form.state, program.inputs
+    own = renames()
+    single = key._replace(axis_of=tuple((n, 0) for n in sorted(inputs)), axes=1, reduce=())
+    sources = [point_function(program, plan.names, state)]
+    _kernels(single, inputs, sources)
+    imports, statements = merged(
+        _shared([renamed(sources[0], {"point": own["point"]}, called=True), *sources[1:]])
+    )
+    limit = None if key.far else _limit(key)
+    inner = renamed(evaluate_function(program, plan.names, state, limit, True), own)
+    fixed = scene.content.inputs.get("theta")
+    fixed_theta = float(fixed) if isinstance(fixed, float) else None
+    tables = [AFFINITY, DOUBLES, COMPILED, f"INPUTS = {tuple(n for n in inputs if n not in plan.loads)!r}"]
+    tables += [renamed(_outputs(plan.names), own), _outputs(plan.shown), _fixed(key)]
+    tables += [table_text(n, load, "N") for n, load in plan.loads.items() if isinstance(load, TableOverTheta)]
+    calls = [THREADS, inner, *([axes_text(axes)] if axes else [])]
+    calls.append(calls_text(plan, inputs, list(axes), fixed_theta))
+    body = "\n\n\n".join(part.strip("\n") for part in [*tables, *statements, *calls]) + "\n"
+    shown_inputs = tuple(n for n in inputs if n not in plan.loads)
+    head = _docstring(scene, name, key, plan.shown, shown_inputs, cost_of(program).operations)
+    return "\n\n\n".join([head, "\n".join(import_lines(_called(imports, body))), body])
+
+
+def _all_fixed(
+    key: KernelKey, found: GridKernel, inputs: Mapping[str, Any], loads: Iterable[str]
+) -> KernelKey:
+    """The key with every number of the scene folded in; loads that vary with the motion stay inputs."""
+    left = {*found.axes, *loads}
+    numbers = {n: inputs.get(n, 0.0) for n in found.request.inputs if n not in left}
     fixed = dict(key.fixed) | {n: float(value) for n, value in numbers.items()}
     return key._replace(fixed=tuple(fixed.items()))
 
@@ -289,13 +342,14 @@ def _docstring(
 
     source = Path(scene.name).name
     command = f"desaxe compile {source} -o {name}" if source else f'desaxe.compile(scene, "{name}")'
-    said = hashlib.sha256(repr(scene.content).encode()).hexdigest()[:16]
+    tables = [load.table for load in scene.content.inputs.values() if isinstance(load, TableOverTheta)]
+    said = hashlib.sha256(repr((scene.content, *tables)).encode() if tables else repr(scene.content).encode())
     state = key.form.state
     lines = [
         f"{scene.title or 'An offset slider-crank'}: {', '.join(shown)}.",
         "",
         f"Generated by `{command}`; write it again instead of editing it.",
-        f"desaxe {version()}, derivation {digest()[:16]}, scene {said}.",
+        f"desaxe {version()}, derivation {digest()[:16]}, scene {said.hexdigest()[:16]}.",
         f"A `point` takes {operations} operations, in a form that is right for any design: a sine is one,",
         "the scene's numbers are folded in.",
         "It needs NumPy and numba, and nothing of desaxe.",

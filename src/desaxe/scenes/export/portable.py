@@ -37,6 +37,12 @@ def module_of(scene: Scene, order: Order) -> Module:
     """The module of a scene's outputs; SceneError where it has none."""
     content = scene.content
     require_outputs(scene)
+    varying = [name for name, value in scene.content.inputs.items() if callable(value)]
+    if varying:
+        raise SceneError(
+            f"{scene.name or 'scene'}: loads.{varying[0]} varies with the motion, which a module in "
+            "this language cannot: leave it open as a list of values, and give it at each angle"
+        )
     asked, fixed = _asked(content, (*content.outputs, "status"))
     results = asked.names[: len(content.outputs)]
     state = asked.form.state
@@ -52,13 +58,7 @@ def module_of(scene: Scene, order: Order) -> Module:
 
 
 def require_outputs(scene: Scene) -> None:
-    """SceneError where nothing is asked for over the scene's axes, or a load varies with the motion."""
-    varying = [name for name, value in scene.content.inputs.items() if callable(value)]
-    if varying:
-        raise SceneError(
-            f"{scene.name or 'scene'}: loads.{varying[0]} varies with the motion, and a compiled module "
-            "takes numbers: leave it open as a list of values, and give it at each angle"
-        )
+    """SceneError where nothing is asked for over the scene's axes."""
     if scene.content.outputs:
         return
     peaks = ", ".join(peak.quantity for peak in scene.content.peaks)
