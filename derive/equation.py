@@ -16,6 +16,7 @@ from .dynamics import FORCES, LUMPS, mu
 from .loop import AB, BC, branch, ec, slider, solved, theta, u
 from .motion import LAW, alpha, omega, omega0
 from .stable import cos_theta, sin_theta
+from .stable_text import stable_form, stable_latex
 
 S = sp.Symbol("S", real=True)
 SPEED = sp.Piecewise((-1, omega0 < 0), (1, True)) * sp.sqrt(LAW)  # omega, turning the way omega0 points
@@ -24,6 +25,9 @@ LATEX_NAMES = {
     "alpha_BC": r"\alpha_{BC}", "theta": r"\theta", "ec": "e_c", "omega0": r"\omega_0", "alpha": r"\alpha",
     "transmission_angle": r"\gamma", "mu": r"\mu", "pressure_angle": r"|\varphi|", "branch": r"\sigma",
 }  # fmt: skip
+
+
+FORMS = ("textbook", "stable")
 
 
 class EquationText(NamedTuple):
@@ -45,8 +49,11 @@ class EquationText(NamedTuple):
         return f"$\\displaystyle {self.latex}$"
 
 
-def equation(name: str) -> EquationText:
+def equation(name: str, form: str = "textbook") -> EquationText:
     """The equation of a quantity or sensitivity: SymPy expression, LaTeX, and its stable steps.
+
+    form  "textbook": the closed form, by differentiating the solved loop
+          "stable": the form that is computed, in which nothing cancels; its LaTeX has one row for each step
 
     The expression is in `theta, ec, AB, BC, omega0, alpha, branch` (SI, radians), under paper A's law
     omega^2 = omega0^2 + 2 alpha theta; the LaTeX writes omega for it. `steps` are the lines that are
@@ -55,6 +62,17 @@ def equation(name: str) -> EquationText:
     from desaxe.mechanism.catalogue import quantity
 
     known = quantity(name)
+    if form not in FORMS:
+        raise ValueError(f"form = {form!r}: it is one of {', '.join(FORMS)}")
+    if form == "stable":
+        found = stable_form(name)
+        derivatives = {
+            each: latex_name(each) for each in found.definitions if each == name or "_wrt_" in each
+        }
+        latex = stable_latex(found, {**_names_in_latex(), **derivatives})
+        return EquationText(
+            name, found.expression, latex, known.unit, known.meaning, known.source, _steps(name)
+        )
     if name in ("status", "margin"):
         expression = BC - AB - sp.Abs(ec) if name == "margin" else _status()
     else:
@@ -202,5 +220,9 @@ def _subscripted(name: str) -> str:
 
 
 def _latex_symbols() -> dict[sp.Symbol, str]:
+    return {_parameter(name): text for name, text in _names_in_latex().items()}
+
+
+def _names_in_latex() -> dict[str, str]:
     names = (*PARAMETERS, *LOADS, "omega", "branch")
-    return {_parameter(name): LATEX_NAMES.get(name) or _subscripted(name) for name in names}
+    return {name: LATEX_NAMES.get(name) or _subscripted(name) for name in names}

@@ -36,6 +36,11 @@ def _either(condition: sp.Basic, a: sp.Expr, b: sp.Expr) -> sp.Expr:
     return sp.Basic.__new__(sp.Piecewise, *pairs)
 
 
+LATEX_NAMES = {
+    "sin_theta": r"s_{\theta}", "cos_theta": r"c_{\theta}", "abs_sin": r"|s_{\theta}|", "eps": r"\varepsilon",
+    "pin_side": r"\nu", "side": r"\varsigma", "ec_out": r"e_{\nu}", "AB_out": r"a_{\nu}",
+    "tan_phi": r"\tan\varphi", "turn": r"\tau",
+}  # fmt: skip
 _OPERATIONS: Mapping[str, Any] = {
     "copy": lambda a: a,
     "add": lambda a, b: a + b,
@@ -129,3 +134,24 @@ def _reached(definitions: dict[str, sp.Expr], name: str) -> dict[str, sp.Expr]:
         if each in wanted:
             wanted |= {str(part) for part in expression.free_symbols}
     return {each: definitions[each] for each in definitions if each in wanted}
+
+
+def stable_latex(form: StableForm, latex: Mapping[str, str]) -> str:
+    """The steps, one a row, the quantity last: `latex` has the symbols that are known, by name."""
+    named = {**LATEX_NAMES, **latex}
+    known = {symbol(each): named.get(each) or _upright(each) for each in [*named, *form.definitions]}
+    rows = [
+        f"{known[symbol(each)]} &= {sp.latex(expression, symbol_names=known)}"
+        for each, expression in form.definitions.items()
+    ]
+    return "\\begin{aligned}\n" + " \\\\\n".join(rows) + "\n\\end{aligned}"
+
+
+def _upright(name: str) -> str:
+    """A name in letters that do not read as a product."""
+    head, _, tail = name.partition("_")
+    if name[0] == "t" and name[1:].isdecimal():
+        head, tail = "t", name[1:]
+    top = head if len(head) == 1 else rf"\mathrm{{{head}}}"
+    below = tail.replace("_", ",")
+    return rf"{top}_{{\mathrm{{{below}}}}}" if tail else top

@@ -7,10 +7,9 @@
     cost         operations, depth, throughput
     passes       Program -> Program, one module each
     kernel       a loop nest whose bodies are Programs
-    emit_python  a Program as plain Python over `math`
-    emit_numba   a Kernel as a self-contained numba module
-    emit_javascript  a Program as a JavaScript function
+    languages    Python, numba, C, jax, Octave and JavaScript, one file or folder each
 
 Imports point downwards in this list and never out of the room. To add an operation, add its row; a
-language, its column and an emitter; a pass, its module and its entry in `passes.pipeline.PASSES`.
+language, its column and its file in `languages`; a pass, its module and its
+entry in `passes.pipeline.PASSES`.
 """

@@ -48,17 +48,28 @@ def _exact(branch, index, name):
     return truth(name, **row), conditions(name, **row)
 
 
-def broken(found, branch, largest=math.inf, ulps=8.0):
-    """The points and names at which values (name -> array) break the promise."""
-    all_rows, bad = rows(branch), []
-    places = [index for index, row in enumerate(all_rows) if abs(row["theta"]) <= largest]
+def _errors(found, branch, largest):
+    """(index of the point, name, value, exact, ulp, bound) of each value that is promised anything."""
+    places = [index for index, row in enumerate(rows(branch)) if abs(row["theta"]) <= largest]
     for place, index in enumerate(places):
         for name in found:
             exact, condition = _exact(branch, index, name)
-            value = float(found[name][place])
-            bound = ulps * (1 + condition)
-            if mpmath.isnan(exact) or bound >= NOTHING_LEFT or abs(exact) > LARGEST / 2:
-                continue
-            if ulp_error(value, exact) > bound:
-                bad.append((name, value, mpmath.nstr(exact, 17), all_rows[index]))
-    return bad
+            value, bound = float(found[name][place]), 8.0 * (1 + condition)
+            if not (mpmath.isnan(exact) or bound >= NOTHING_LEFT or abs(exact) > LARGEST / 2):
+                yield index, name, value, exact, ulp_error(value, exact), bound
+
+
+def broken(found, branch, largest=math.inf):
+    """The points and names at which values break the promise of `standard`."""
+    return [
+        (name, value, mpmath.nstr(exact, 17), rows(branch)[index])
+        for index, name, value, exact, error, bound in _errors(found, branch, largest)
+        if error > bound
+    ]
+
+
+def shares(found, branch, largest=math.inf):
+    """(family, error as a share of what is promised) of each value."""
+    families = [family for family in FAMILIES for row in points(family, EACH, 11) if row["branch"] == branch]
+    for index, _, _, _, error, bound in _errors(found, branch, largest):
+        yield families[index], error / bound
