@@ -244,7 +244,9 @@ def test_pictures(tmp_path):
     assert "[mm s$^{-2}$]" in line.axes.get_ylabel() or "mm/s" in line.axes.get_ylabel()
     assert line.get_xdata()[-1] == 360.0
     assert press.plot.polar("T_in")[0].get_xdata()[-1] == pytest.approx(2 * np.pi)
-    assert press.plot.mechanism(45).axes is not None
+    axes = press.plot.mechanism(45).axes
+    assert axes.get_xlabel() == "X [mm]"
+    assert "ec = 10 mm" in [text.get_text() for text in axes.texts]
     assert len(press.plot.tornado("T_in", {"ec": 0.1, "m_slider": "10 g"})[0]) == 2
     dx.plot.save(press.plot.animate("V_C", frames=2), tmp_path / "press.gif")
     assert press.plot.design_map("stroke", ec=[0, 10, 20], BC=[150, 200]) is not None

@@ -5,6 +5,7 @@ from math import pi
 from typing import Any
 
 from .. import plot
+from ..mechanism.unit_system import Conversion
 from .arguments import in_si
 
 ANGLES = 721  # of a turn
@@ -46,7 +47,9 @@ class Plots:
     def mechanism(self, theta: Any = "60 deg", *, ax: Any = None) -> Any:
         """Draw the machine to scale at a crank angle: see `desaxe.plot.mechanism`."""
         lengths = {key: self._machine[key] for key in ("ec", "AB", "BC", "branch") if key in self._machine}
-        return plot.mechanism(theta=in_si(self._machine.units, "theta", theta), ax=ax, **lengths)
+        sketch = plot.mechanism(theta=in_si(self._machine.units, "theta", theta), ax=ax, **lengths)
+        _label(sketch.axes, self._machine.units.of("ec"))
+        return sketch
 
     def animate(
         self, name: str | None = None, *, frames: int = 60, seconds: float = 3.0, ax: Any = None
@@ -99,6 +102,19 @@ class Plots:
         """The inputs of a call in SI units, and the angles of a turn."""
         found = {key: in_si(self._machine.units, key, value) for key, value in inputs.items()}
         return {**found, "theta": found.get("theta", _turn())} if angles else found
+
+
+def _label(ax: Any, length: Conversion) -> None:
+    """Show the axes of a sketch, and the lengths written in it, in another unit than metres."""
+    if length.si == 1:
+        return
+    for axis in (ax.xaxis, ax.yaxis):
+        axis.set_major_formatter(lambda value, _: f"{length.shown(value):g}")
+        axis.set_label_text(axis.get_label_text().replace("[m]", f"[{length.unit}]"))
+    for text in ax.texts:
+        written = text.get_text()
+        if written.startswith("ec = ") and written.endswith(" m"):
+            text.set_text(f"ec = {length.shown(float(written[5:-2])):.4g} {length.unit}")
 
 
 def _turn() -> Any:

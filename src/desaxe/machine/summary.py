@@ -20,6 +20,7 @@ NAMES = {
     "branch": "side of the slider",
 }  # fmt: skip
 ROWS, COLUMNS = 11, 21  # of the drawing in text
+WIDEST = 28  # letters of a value that the column is made for
 ANGLE = pi / 3  # at which it is drawn
 LENGTHS = ("ec", "AB", "BC")
 
@@ -105,7 +106,7 @@ def _first(value: Any) -> float:
 def text_of(machine: Any) -> str:
     """The machine as text: the drawing beside its table."""
     rows = rows_of(machine)
-    widths = [max((len(row[k]) for row in rows), default=0) for k in (0, 1)]
+    widths = [max((len(row[k]) for row in rows if len(row[k]) <= WIDEST), default=0) for k in (0, 1)]
     table = [f"{name:{widths[0]}}  {value:{widths[1]}}  {meaning}" for name, value, meaning in rows]
     units = f", units={machine.units!r}" if machine.units else ""
     title = f"Machine({len(machine)} inputs{units})"

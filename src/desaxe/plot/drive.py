@@ -4,7 +4,7 @@ from math import degrees, isfinite, pi
 from typing import TYPE_CHECKING, Any
 
 from ..support.extras import needed
-from .shared import BLUE, ORANGE
+from .shared import BLUE, ORANGE, raised
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -53,8 +53,9 @@ def _torque(ax: "Axes", result: Any) -> "dict[str, Line2D]":
     top = max((torque.max(), torque.min()), key=abs)
     (peak,) = ax.plot([place], [top], "o", color=BLUE, markersize=5, label="peak")
     told = f"{result['torque_peak']:.4g} {result.unit('torque_peak')} at {place:.1f} deg"
-    ax.annotate(told, (place, top), (8, 5),
-                textcoords="offset points", va="center", fontsize="small")  # fmt: skip
+    left = 2.0 * place > theta.min() + theta.max()
+    ax.annotate(told, (place, top), (-8 if left else 8, 5), textcoords="offset points", va="center",
+                ha="right" if left else "left", fontsize="small")  # fmt: skip
     ax.set_ylabel(f"torque of the drive, T_in [{result.unit('T_in')}]")
     ax.set_title(
         f"mean {result['torque_mean']:.4g} {result.unit('torque_mean')}, rms {result['torque_rms']:.4g} "
@@ -70,8 +71,9 @@ def _speed(ax: "Axes", result: Any) -> "Line2D":
         unit, values = "rpm", values * MINUTE
     (curve,) = ax.plot(_degrees(result, "theta_of_speed"), values, color=BLUE, linewidth=1.6)
     ax.set_ylabel(f"speed of the crank [{unit}]")
+    inertia = f"{result['flywheel_inertia']:.4g} {raised(result.unit('flywheel_inertia'))[1:-1]}"
     ax.set_title(
-        f"with a flywheel of {result['flywheel_inertia']:.4g} {result.unit('flywheel_inertia')} "
+        f"with a flywheel of {inertia} "
         "under a constant torque",
         loc="left", fontsize="medium",
     )  # fmt: skip

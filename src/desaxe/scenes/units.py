@@ -23,7 +23,10 @@ def with_units(data: Mapping[str, Any], units: UnitSystem) -> dict[str, Any]:
     """The scene with a unit at each plain number that has one."""
     if not units:
         return dict(data)
-    return {key: value if key == "units" else _part(value, key, units) for key, value in data.items()}
+    return {
+        key: value if key in ("units", "quantities") else _part(value, key, units)
+        for key, value in data.items()
+    }
 
 
 def _part(value: Any, key: str, units: UnitSystem) -> Any:
