@@ -13,7 +13,7 @@ from ..mechanism.names import LENGTHS, sensitivity
 from ..runtime.request import check_common, check_inputs
 from ..support.extras import needed
 from .feasibility.arrays import KINDS, of_arrays
-from .measures import Measure, checked, measured, unit_of
+from .measures import Measure, checked, measured, text_of, unit_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -55,7 +55,7 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
     designs = {n: np.broadcast_to(a, shape).reshape(-1) for n, a in open_axes.items()}
     variables = _feasible(designs, shape, dimensions)
     for measure, found in measured(wanted, designs, branch).items():
-        name = measure if isinstance(measure, str) else "_".join(measure)
+        name = text_of(measure).replace(" ", "_")
         attributes = {"units": unit_of(measure), "long_name": _meaning(measure)}
         variables[name] = (dimensions, np.reshape(found.value, shape), attributes)
         for p, slope in found.gradient.items() if derivatives else ():
@@ -71,7 +71,7 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
     with needed("design_map"):
         import xarray
     coordinates = {n: ((n,) if axis.ndim else (), axis, input_attributes(n)) for n, axis in axes.items()}
-    names = ["_".join(measure) if not isinstance(measure, str) else measure for measure in wanted]
+    names = [text_of(measure).replace(" ", "_") for measure in wanted]
     about = provenance(names, axes, branch, title="offset slider-crank designs")
     return xarray.Dataset(variables, coordinates, about)
 
@@ -107,9 +107,9 @@ def _feasible(designs: dict[str, Any], shape: tuple[int, ...], dimensions: list[
 
 def _slope_unit(measure: Measure, parameter: str) -> str:
     """The unit of a derivative, in its simplest form where it has a catalogued one or is a plain number."""
-    if not isinstance(measure, str):
+    if isinstance(measure, tuple):
         try:
-            return quantity(sensitivity(measure[1], parameter)).unit
+            return quantity(sensitivity(measure[-1], parameter)).unit
         except ValueError:
             pass
     unit, by = unit_of(measure), INPUTS[parameter].unit
@@ -119,7 +119,10 @@ def _slope_unit(measure: Measure, parameter: str) -> str:
 
 
 def _meaning(measure: Measure) -> str:
-    if isinstance(measure, str):
-        return measure.replace("_", " ")
+    if not isinstance(measure, tuple):
+        return text_of(measure).replace("_", " ")
+    if measure[0] == "at":
+        return f"at {measure[1]}: {quantity(measure[2]).meaning}"
     kinds = {"absmax": "largest magnitude", "max": "largest value", "min": "smallest value"}
+    kinds |= {"mean": "mean", "rms": "root of the mean square"}
     return f"{kinds[measure[0]]} over a turn: {quantity(measure[1]).meaning}"

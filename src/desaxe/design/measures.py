@@ -1,7 +1,8 @@
 """Quantities of a whole design by name, for many designs at once: value and exact derivatives.
 
-A measure is the margin, a name of `events`, or a peak over the crank angle as (kind, quantity):
-"margin", "stroke", ("absmax", "a_C").
+A measure is the margin, a name of `events`, a peak or an average over the crank angle as (kind, quantity), or
+a quantity at one angle: "margin", "stroke", ("absmax", "a_C"), ("rms", "T_in"), ("at", "60 deg", "Y"). It may
+also be a function of a design (a dict) that gives its value and a dict of its derivatives.
 """
 
 from collections.abc import Iterable, Mapping
@@ -15,11 +16,12 @@ from ..mechanism.names import LENGTHS
 from ..mechanism.spelling import meant
 from ..peaks.designs import KINDS
 from ..peaks.peak import peak
+from .averages import AVERAGES, OwnMeasure, angle_of, at_angle, average
 from .events.arrays import events_of_arrays
 from .number_or_array import sum_of_three
 
 Array = NDArray[np.float64]
-Measure = str | tuple[str, str]
+Measure = str | tuple[Any, ...] | OwnMeasure
 
 UNITS = {
     "margin": "m",
@@ -41,9 +43,18 @@ class Measured(NamedTuple):
 
 def checked(measure: Any) -> Measure:
     """A measure as it is meant; an error that says what there is."""
-    if isinstance(measure, (tuple, list)) and len(measure) == 2 and measure[0] in KINDS:
+    if isinstance(measure, OwnMeasure):
+        return measure
+    if callable(measure):
+        return OwnMeasure(measure)
+    pair = isinstance(measure, (tuple, list)) and len(measure) == 2 and isinstance(measure[0], str)
+    if pair and measure[0] in (*KINDS, *AVERAGES):
         quantity(measure[1])
         return str(measure[0]), str(measure[1])
+    if isinstance(measure, (tuple, list)) and len(measure) == 3 and measure[0] == "at":
+        angle_of(measure[1])
+        quantity(measure[2])
+        return "at", measure[1], str(measure[2])
     if isinstance(measure, str) and measure in UNITS:
         return measure
     hint = ""
@@ -63,18 +74,23 @@ def checked(measure: Any) -> Measure:
     there = f"{'There' if hint else 'there'} are {', '.join(UNITS)}"
     raise ValueError(
         f"{measure!r} is no quantity of a design; {hint}{there} and the peaks, "
-        f'such as ("absmax", "a_C"), of the kinds {", ".join(KINDS)}'
+        f'such as ("absmax", "a_C"), of the kinds {", ".join((*KINDS, *AVERAGES))}, '
+        'and ("at", "60 deg", "a_C")'
     )
 
 
 def unit_of(measure: Measure) -> str:
     """The unit of a measure."""
-    return UNITS[measure] if isinstance(measure, str) else quantity(measure[1]).unit
+    if isinstance(measure, OwnMeasure):
+        return "1"
+    return UNITS[measure] if isinstance(measure, str) else quantity(measure[-1]).unit
 
 
 def text_of(measure: Measure) -> str:
     """How a measure is called in a message."""
-    return measure if isinstance(measure, str) else " ".join(measure)
+    if isinstance(measure, OwnMeasure):
+        return measure.name
+    return measure if isinstance(measure, str) else " ".join(map(str, measure))
 
 
 def measured(
@@ -89,6 +105,12 @@ def measured(
             found[measure] = _margin(*(np.asarray(designs[n], float) for n in LENGTHS))
         elif isinstance(measure, str):
             found[measure] = Measured(told[measure], told["gradient"][measure])
+        elif isinstance(measure, OwnMeasure):
+            found[measure] = Measured(*measure(designs))
+        elif measure[0] == "at":
+            found[measure] = Measured(*at_angle(measure[1], measure[2], designs, branch))
+        elif measure[0] in AVERAGES:
+            found[measure] = Measured(*average(measure[0], measure[1], designs, branch))
         else:
             kind, name = measure
             top = peak(name, kind=kind, branch=branch, **designs)

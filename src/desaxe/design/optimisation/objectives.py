@@ -38,7 +38,7 @@ def _several(wanted: Any) -> list[Any]:
     if wanted is None:
         return []
     many = isinstance(wanted, tuple) and (
-        len(wanted) != 2 or wanted[0] in UNITS or not isinstance(wanted[0], str)
+        len(wanted) not in (2, 3) or not isinstance(wanted[0], str) or wanted[0] in UNITS
     )
     return list(wanted) if many or isinstance(wanted, list) else [wanted]
 

@@ -32,7 +32,9 @@ def optimize(
     """The design that makes a quantity as large or as small as possible, within limits.
 
     maximize, minimize  "margin", a name of `events` such as "stroke" or "time_ratio", or a peak over the
-                        crank angle as (kind, quantity): ("absmax", "a_C"). Several of them, or both, ask
+                        crank angle as (kind, quantity): ("absmax", "a_C"). Others are ("rms", "T_in"),
+                        ("mean", "power_in"), ("at", "60 deg", "Y"), and a function of a design, a dict,
+                        that gives its value and a dict of its derivatives. Several of them, or both, ask
                         for the Pareto front: designs of which none is better than another in everything
     over                dict parameter -> (low, high): what may vary, lengths, speed or masses
     keep                dict of the same names -> (low, high), None where there is no limit; a number is to be

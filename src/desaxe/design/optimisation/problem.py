@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...support.deadline import Deadline
+from ..averages import OwnMeasure
 from ..measures import measured
 
 Array = NDArray[np.float64]
@@ -73,12 +74,12 @@ class Functions:
         space, count = self.space, len(z)
         space.deadline.check()
         designs = space.designs(z)
-        proper = [row[0] for row in self.rows if not callable(row[0])]
+        proper = [row[0] for row in self.rows if isinstance(row[0], OwnMeasure) or not callable(row[0])]
         found = measured(proper, designs, space.branch) if proper else {}
         value = np.empty((count, len(self.rows)))
         slope = np.zeros((count, len(self.rows), len(space.names)))
         for number, (measure, sign, bound) in enumerate(self.rows):
-            own = measure(designs) if callable(measure) else found[measure]
+            own = found[measure] if measure in found else measure(designs)
             value[:, number] = sign * (own.value - bound)
             for i, name in enumerate(space.names):
                 if name in own.gradient:
