@@ -23,6 +23,7 @@ SPEED = sp.Piecewise((-1, omega0 < 0), (1, True)) * sp.sqrt(LAW)  # omega, turni
 LATEX_NAMES = {
     "phi": r"\varphi", "delta": r"\delta", "omega": r"\omega", "omega_BC": r"\omega_{BC}",
     "alpha_BC": r"\alpha_{BC}", "theta": r"\theta", "ec": "e_c", "omega0": r"\omega_0", "alpha": r"\alpha",
+    "AB": r"\overline{AB}", "BC": r"\overline{BC}",
     "transmission_angle": r"\gamma", "mu": r"\mu", "pressure_angle": r"|\varphi|", "branch": r"\sigma",
 }  # fmt: skip
 

@@ -20,9 +20,11 @@ from desaxe.mechanism.program import Variant, program_of
 # What symbols that are no quantities are called.
 NAMES = {
     "margin_out": "q", "eps": r"\varepsilon", "side": r"\varsigma", "abs_sin": r"|\sin\theta|",
-    "less": "(BC - |u|)", "crank_ratio": "k", "tan_phi": r"\tan\varphi", "phi_wrt_theta": r"\varphi'",
+    "less": r"(\overline{BC} - |u|)", "crank_ratio": "k", "tan_phi": r"\tan\varphi",
+    "phi_wrt_theta": r"\varphi'",
     "Y_wrt_theta": "Y'", "inv_S": "S^{-1}", "offset_ratio": r"\frac{e_c}{S}",
-    "margin_ratio": r"\frac{m n}{S^2}", "AB_out": r"\varsigma\nu AB", "m_at_B": "m_B", "m_at_C": "m_C",
+    "margin_ratio": r"\frac{m n}{S^2}", "AB_out": r"\varsigma\nu\overline{AB}", "m_at_B": "m_B",
+    "m_at_C": "m_C",
     "m_reciprocating": r"m_{rec}", "m_total": "m_{all}", "omega2": r"\omega^2", "crank_X": r"\ddot e_X",
     "crank_Y": r"\ddot e_Y", "side_push": r"P_X", "thrust": "P_Y", "swing": "H", "I_turning": "I_A",
     "I_lumping": r"I_{lump}", "thrust_smooth": r"P_{Y,0}", "N_smooth": r"N_{C,0}", "lean": r"\lambda",
@@ -63,15 +65,15 @@ def wide_forms():
     reach = near - by.subs(stable.crank_drop, -stable.AB_out * stable.eps)
     rows = {
         r"\varepsilon = 1 - |\sin\theta|": small,
-        "BC - |u|": reach,
-        "S^2 = BC^2 - u^2": stable.HEIGHT_AREA,
+        r"\overline{BC} - |u|": reach,
+        r"S^2 = \overline{BC}^2 - u^2": stable.HEIGHT_AREA,
     }
     return "\n\n".join(_math(f"{head} = {_latex(expression)}") for head, expression in rows.items())
 
 
 def wide_margins():
     """The test for a design with wide margins."""
-    return _math(rf"AB + |e_c| < {stable.WIDE_MARGIN_SHARE:.3f}\, BC")
+    return _math(rf"\overline{{AB}} + |e_c| < {stable.WIDE_MARGIN_SHARE:.3f}\, \overline{{BC}}")
 
 
 def both_forms():

@@ -11,6 +11,7 @@ from desaxe.mechanism.catalogue import Quantity
 from desaxe.mechanism.catalogue import quantities as catalogue
 from desaxe.mechanism.inputs import INPUTS
 from desaxe.mechanism.names import parts
+from desaxe.mechanism.status import TABLES
 from desaxe.scenes import schema
 from desaxe.scenes.explain.explain import Plan
 from desaxe.scenes.read import SECTIONS
@@ -144,10 +145,20 @@ def quantities():
     )
 
 
+def statuses():
+    """What each code of each call says."""
+    rows = []
+    for table in TABLES:
+        of, _, calls = inspect.getdoc(table).rstrip(".").partition(": ")
+        codes = "<br>".join(f"{status:d} {status.words}" for status in table)
+        rows.append(f"| {calls} | {of[3:]} | `{table.__name__}` | {codes} |")
+    return "\n".join(["| call | status of | in `desaxe.status` | codes |", "|---|---|---|---|", *rows])
+
+
 def inputs():
     """Every input."""
     rows = [f"| `{r.name}` | {r.unit} | {r.meaning} | {r.limit} |" for r in INPUTS.values()]
     return "\n".join(["| name | unit | meaning | limit |", "|---|---|---|---|", *rows])
 
 
-WRITERS = (summary, api, returned, scene, quantities, inputs)
+WRITERS = (summary, api, returned, scene, quantities, inputs, statuses)

@@ -81,7 +81,7 @@ PUBLIC = {
     "plus_minus": "desaxe.mechanism.ranges",
     "equation": "desaxe.derive.equation",
 }
-MODULES = {"plot": "desaxe.plot", "units": "desaxe.mechanism.units"}
+MODULES = {"plot": "desaxe.plot", "status": "desaxe.mechanism.status", "units": "desaxe.mechanism.units"}
 
 __all__ = [
     "LoadWarning",

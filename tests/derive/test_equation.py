@@ -1,6 +1,7 @@
 """Closed forms: the same numbers as the stable program, for every quantity and first sensitivity."""
 
 import random
+import re
 
 import mpmath
 import pytest
@@ -51,6 +52,8 @@ def test_text():
     assert found.unit == "1/s"
     assert found.steps[-1].startswith("V_C_wrt_ec = ")
     assert found._repr_latex_().startswith("$")
+    assert r"\overline{BC}^{2}" in found.latex
+    assert not re.search(r"[A-Z]{2}\^", found.latex)  # AB^2 would be the square of B alone
     assert dx.equation("a_C").source == "A (19)"
     assert repr(found).startswith("V_C_wrt_ec [1/s], derivative of V_C by ec\nV_C_wrt_ec = ")
 

@@ -58,6 +58,7 @@ def _point(options: argparse.Namespace) -> int:
     from ..evaluation.evaluate import evaluate
     from ..mechanism.catalogue import quantity
     from ..mechanism.slips import warn_of_slips
+    from ..mechanism.status import PointStatus
 
     names, inputs = names_and_inputs(options.words)
     values: dict[str, Any] = evaluate(names, **inputs)
@@ -71,7 +72,7 @@ def _point(options: argparse.Namespace) -> int:
             | (_json_quality(worth[name]) if name in worth else {})
             for name, row in rows.items()
         }
-        print(json.dumps({**found, **({"status": _status_words()[status]} if status else {})}, indent=2))
+        print(json.dumps({**found, **({"status": PointStatus(status).words} if status else {})}, indent=2))
         return 0
     texts = [
         f"{name} = {values[name]!r} {'' if row.unit == '1' else row.unit}".rstrip()
@@ -81,7 +82,7 @@ def _point(options: argparse.Namespace) -> int:
     for text, row in zip(texts, rows.values(), strict=True):
         print(f"{text:{width}}   {row.meaning}")
     if status:
-        print(f"status {status}: {_status_words()[status]}")
+        print(f"status {status}: {PointStatus(status).words}")
     for name, its in worth.items():
         print(f"\n{name}: {its.digits:.1f} digits, rounding error at most {its.error_bound:.1e}")
         for parameter, condition in its.conditions.items():
@@ -126,14 +127,6 @@ def _status(values: dict[str, Any], inputs: dict[str, Any]) -> int:
         return int(evaluate("status", **inputs))
     except TypeError:
         return 0
-
-
-def _status_words() -> dict[int, str]:
-    """Code -> words, from the meaning of `status` in the catalogue."""
-    from ..mechanism.catalogue import quantity
-
-    parts = (part.split(" ", 1) for part in quantity("status").meaning.split(", "))
-    return {int(code): words for code, words in parts}
 
 
 def _json_quality(its: Any) -> dict[str, Any]:

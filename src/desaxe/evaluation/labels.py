@@ -10,15 +10,13 @@ from numpy.typing import NDArray
 from ..definitions.tables import text_of
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
+from ..mechanism.status import PointStatus
 from ..support.extras import needed
 
 if TYPE_CHECKING:
     import xarray as xr
 
-STATUS_FLAGS = (
-    "ok", "cannot_be_assembled", "change_point", "stalled", "bad_input",
-    "no_force_balance", "two_force_balances",
-)  # fmt: skip
+STATUS_FLAGS = tuple(status.name.lower() for status in PointStatus)
 
 
 CONVENTIONS = "CF-1.11"

@@ -12,6 +12,7 @@ from ..evaluation.labels import CONVENTIONS, input_attributes, loads_text, sourc
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
+from ..mechanism.status import PeakStatus
 from ..peaks.peak import peak
 from ..support.progress import Steps
 from .read import Claim, Content, Peak
@@ -22,10 +23,7 @@ if TYPE_CHECKING:
 
 DESIGNS = 1_000  # designs of a peak between two reports of progress
 SIDEWAYS = ("ec", "F_X", "g_X")  # change sign where the mechanism is mirrored at the Y axis
-STATUS = (
-    "0 ok, 1 infeasible, 2 at a limit angle or change point or where friction turns round, 3 stalled, "
-    "4 bad input, 5 friction jams at some angles, 6 friction has two balances of forces at some angles"
-)
+STATUS = "; ".join(f"{status:d} {status.words}" for status in PeakStatus)
 WORDS = {"absmax": "largest magnitude", "max": "maximum", "min": "minimum"}
 
 

@@ -6,6 +6,7 @@ from math import degrees, isfinite, isnan, pi
 import numpy as np
 
 from ..mechanism.catalogue import quantity
+from ..mechanism.status import PeakStatus
 from ..mechanism.unit_system import UnitSystem
 from .peaks import SIDEWAYS, WORDS, ClaimResult, PeakResult
 from .read import Content, Peak
@@ -162,14 +163,7 @@ def _thinned(indices: list[tuple[int, ...]]) -> list[tuple[int, ...]]:
     return [indices[round(k * (len(indices) - 1) / (ROWS - 1))] for k in range(ROWS)]
 
 
-STATUS_WORDS = {
-    1: "cannot be assembled at any of these angles",
-    2: "reached at a limit angle or change point, or where friction turns round: no gradient there",
-    3: "stalled at all of these angles",
-    4: "bad input",
-    5: "jammed by friction at some angles (no balance of forces); the peak is of the others",
-    6: "with two balances of forces at some angles (friction); the peak is of the others",
-}
+STATUS_WORDS = {int(status): status.words for status in PeakStatus if status}
 
 
 def _remarks(found: PeakResult) -> list[str]:

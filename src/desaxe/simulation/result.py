@@ -2,16 +2,10 @@
 
 from typing import Any, NamedTuple
 
-DONE, REST, LIMIT, JAMS, FAILED, NO_INERTIA, NO_START = range(7)
-WORDS = {
-    DONE: "reached its end",
-    REST: "at rest: the torque cannot move the crank",
-    LIMIT: "reached a limit angle",
-    JAMS: "the friction jams",
-    FAILED: "the integration failed",
-    NO_INERTIA: "the effective inertia vanishes at a dead centre",
-    NO_START: "a bad input, or no mechanism at the start",
-}
+from ..mechanism.status import SimulationStatus
+
+DONE, REST, LIMIT, JAMS, FAILED, NO_INERTIA, NO_START = map(int, SimulationStatus)
+WORDS = {int(status): status.words for status in SimulationStatus}
 
 
 class Event(NamedTuple):

@@ -12,15 +12,13 @@ from ..evaluation.outer import Outer
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
+from ..mechanism.status import PeakStatus
 from ..peaks.designs import KINDS, plan_of
 from ..peaks.lazy import GRADIENT, PeakBlock, peak_block
 
 Array = NDArray[Any]
 WORDS = {"absmax": "largest magnitude", "max": "maximum", "min": "minimum"}
-STATUS = (
-    "0 ok, 1 infeasible, 2 at a limit angle or change point or where friction turns round, 3 stalled, "
-    "4 bad input, 5 friction jams at some angles, 6 friction has two balances of forces at some angles"
-)
+STATUS = "; ".join(f"{status:d} {status.words}" for status in PeakStatus)
 
 
 class PeakRequest(NamedTuple):

@@ -4,20 +4,14 @@ from collections.abc import Mapping
 from math import degrees, isnan
 from typing import TYPE_CHECKING, Any
 
+from ...mechanism.status import DriveStatus
 from ...mechanism.unit_system import SI, Conversion, UnitSystem
 from ...mechanism.units import registry
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-STATUS = {
-    1: "the crank cannot turn fully",
-    2: "at a change point",
-    3: "the crank stalls within the turn",
-    4: "no finite torque",
-    5: "friction jams: no forces balance somewhere on the turn",
-    6: "friction: two sets of forces balance somewhere on the turn",
-}
+STATUS = {int(status): status.words for status in DriveStatus if status}
 
 
 class Drive(dict[str, Any]):

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from ...compiler.languages.javascript import HEADER
-from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import parts
+from ...mechanism.status import PointStatus
 from ...support.extras import needed
 from ...support.files import check_target, write_text
 from .content import Content, left_out_text
@@ -76,16 +76,10 @@ def _data(content: Content) -> dict[str, Any]:
         "parameters": {name: row.unit for name, row in INPUTS.items()},
         "functions": {f.quantity: {"names": f.names, "inputs": f.inputs} for f in content.functions},
         "quantities": {row.name: _about(row.name, row.unit, row.meaning) for row in content.quantities},
-        "status": _status_words(),
+        "status": {str(int(status)): status.words for status in PointStatus},
     }
 
 
 def _about(name: str, unit: str, meaning: str) -> dict[str, Any]:
     base, by = parts(name)
     return {"base": base, "by": by, "unit": unit, "meaning": meaning}
-
-
-def _status_words() -> dict[str, str]:
-    """Code -> words, from the meaning of `status` in the catalogue."""
-    found = (part.partition(" ") for part in quantity("status").meaning.split(", "))
-    return {code: words for code, _, words in found}

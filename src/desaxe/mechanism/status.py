@@ -1,0 +1,130 @@
+"""What the status of each call says: one enumeration a call, and the words for each code.
+
+A code means what its own call says: 2 is a change point of an `evaluate`, a limit angle of a `simulate`.
+Codes are numbers (int8 in arrays) and compare with these members: found["status"] == PeakStatus.AT_LIMIT.
+"""
+
+from enum import IntEnum
+
+
+class Status(IntEnum):
+    """A code and what it says."""
+
+    words: str
+
+    def __new__(cls, code: int, words: str = "") -> "Status":
+        """A member that is its code and knows its words."""
+        member = int.__new__(cls, code)
+        member._value_ = code
+        member.words = words
+        return member
+
+
+class PointStatus(Status):
+    """Of a point: `evaluate`, `grid`."""
+
+    OK = 0, "ok"
+    CANNOT_BE_ASSEMBLED = 1, "cannot be assembled here"
+    CHANGE_POINT = 2, "change point"
+    STALLED = 3, "stalled"
+    BAD_INPUT = 4, "bad input"
+    NO_FORCE_BALANCE = 5, "friction jams: no balance of forces"
+    TWO_FORCE_BALANCES = 6, "friction: two balances of forces"
+
+
+class PeakStatus(Status):
+    """Of a design over a range of crank angles: `peak`, `[[peak]]` of a scene."""
+
+    OK = 0, "ok"
+    CANNOT_BE_ASSEMBLED = 1, "cannot be assembled at any of these angles"
+    AT_LIMIT = 2, "reached at a limit angle or change point, or where friction turns round: no gradient there"
+    STALLED = 3, "stalled at all of these angles"
+    BAD_INPUT = 4, "bad input"
+    NO_FORCE_BALANCE = (
+        5,
+        "jammed by friction at some angles (no balance of forces); the peak is of the others",
+    )
+    TWO_FORCE_BALANCES = 6, "with two balances of forces at some angles (friction); the peak is of the others"
+
+
+class TurnStatus(Status):
+    """Of a design: `feasibility`, `events`, `design_map`."""
+
+    TURNS = 0, "the crank turns fully"
+    CANNOT_TURN = 1, "the crank does not turn fully"
+    CHANGE_POINT = 2, "at a change point: the margin is 0"
+    BAD_INPUT = 4, "bad input"
+
+
+class InverseStatus(Status):
+    """Of a slider position: `inverse`."""
+
+    OK = 0, "two solutions or one"
+    OUT_OF_REACH = 1, "the slider cannot be there on this branch"
+    DEAD_CENTRE = 2, "dead centre: the crank's rates are not determined by the slider's"
+    BAD_INPUT = 4, "bad input"
+
+
+class EnclosureStatus(Status):
+    """Of a box of inputs: `enclose`."""
+
+    DEFINED = 0, "defined in all of the box"
+    NOWHERE = 1, "defined nowhere in the box"
+    PARTLY = 2, "not defined in some of the box, or undecided: the range is of the part where it is"
+
+
+class ToleranceStatus(Status):
+    """Of scattering inputs: `tolerance`."""
+
+    OK = 0, "ok"
+    NO_VALUE = 1, "no value at the means"
+    SOME_WITHOUT = 2, "some samples have no value"
+    KINK = 3, "a kink at the means: derivatives tell little"
+
+
+class OptimizeStatus(Status):
+    """Of a search: `optimize`."""
+
+    OPTIMUM = 0, "an optimum"
+    NO_DESIGN = 1, "no design keeps the limits"
+    UNBOUNDED = 2, "the objective grows without bound towards the limit of turning"
+    AT_LIMIT = 3, "the best is at the limit of turning, nearly reached at the design told"
+    UNSETTLED = 4, "the search did not settle"
+
+
+class SynthesisStatus(Status):
+    """Of a synthesis: `synthesize`."""
+
+    FOUND = 0, "one design or more"
+    NONE = 1, "no design"
+    OPEN = 2, "the one more wish leaves the design open"
+
+
+class DriveStatus(Status):
+    """Of a drive over a turn: `drive`."""
+
+    OK = 0, "ok"
+    CANNOT_TURN = 1, "the crank cannot turn fully"
+    CHANGE_POINT = 2, "at a change point"
+    STALLED = 3, "the crank stalls within the turn"
+    NO_TORQUE = 4, "no finite torque"
+    NO_FORCE_BALANCE = 5, "friction jams: no forces balance somewhere on the turn"
+    TWO_FORCE_BALANCES = 6, "friction: two sets of forces balance somewhere on the turn"
+
+
+class SimulationStatus(Status):
+    """Of a motion, how it ended: `simulate`."""
+
+    DONE = 0, "reached its end"
+    REST = 1, "at rest: the torque cannot move the crank"
+    LIMIT = 2, "reached a limit angle"
+    JAMS = 3, "the friction jams"
+    FAILED = 4, "the integration failed"
+    NO_INERTIA = 5, "the effective inertia vanishes at a dead centre"
+    NO_START = 6, "a bad input, or no mechanism at the start"
+
+
+TABLES = (
+    PointStatus, PeakStatus, TurnStatus, InverseStatus, EnclosureStatus, ToleranceStatus, OptimizeStatus,
+    SynthesisStatus, DriveStatus, SimulationStatus,
+)  # fmt: skip
