@@ -133,7 +133,7 @@ def test_what_no_module_can_hold_is_refused(tmp_path):
         dx.compile(scene, tmp_path / "press.py")
     with pytest.raises(SceneError, match=r"loads.F_Y varies with the motion"):
         dx.compile(scene, tmp_path / "press", to="c")
-    with pytest.raises(TypeError, match="F_Y: explore takes numbers"):
+    with pytest.raises(TypeError, match="a page holds numbers and tables over theta"):
         dx.explore(scene, tmp_path / "press.html")
 
 

@@ -9,11 +9,12 @@ the mean speed being (fastest + slowest)/2. The textbook's first order, J = (max
 - mean)/(fluctuation omega0^2) at constant speed, is told beside it.
 """
 
-from math import inf, isinf
+from math import inf, isinf, pi
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...peaks.peak import peak
 from ...support.answer import answering
 from ..roots import root
 from .turn import Array, Turn, extreme
@@ -64,14 +65,14 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
     torque = told["T_in"]
     stored = turn.turns * _integral(torque)
     energy = extreme(stored, 1.0)[0] - extreme(stored, -1.0)[0]
-    (highest, theta_highest), (lowest, theta_lowest) = (extreme(torque, sign) for sign in (1.0, -1.0))
+    (highest, theta_highest), (lowest, theta_lowest) = _extremes(turn, torque)
     estimate = energy / (fluctuation * speed**2)
     result = {
         "mean_torque": float(torque.mean()),
         "max_torque": highest,
         "min_torque": lowest,
-        "theta_max_torque": turn.turns * theta_highest,
-        "theta_min_torque": turn.turns * theta_lowest,
+        "theta_max_torque": theta_highest,
+        "theta_min_torque": theta_lowest,
         "ripple": highest - lowest,
         "energy_fluctuation": energy,
     }
@@ -92,6 +93,17 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
         "theta_fastest": turn.turns * extreme(speeds, 1.0)[1],
         "theta_slowest": turn.turns * extreme(speeds, -1.0)[1],
     }
+
+
+def _extremes(turn: Turn, torque: Array) -> list[tuple[float, float]]:
+    """The largest and smallest torque and their angles; under loads, which may jump, by `peak`."""
+    if not turn.loads or turn.numbers.get("mu"):
+        found = [extreme(torque, sign) for sign in (1.0, -1.0)]
+        return [(value, turn.turns * theta) for value, theta in found]
+    ends = (0.0, 2.0 * pi * turn.turns)
+    inputs: dict[str, Any] = {**turn.numbers, **turn.loads, "branch": turn.branch}
+    peaks = [peak("T_in", kind=kind, theta=ends, **inputs) for kind in ("max", "min")]
+    return [(found["value"], found["theta"]) for found in peaks]
 
 
 def _integral(torque: Array) -> Array:

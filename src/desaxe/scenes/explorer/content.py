@@ -5,9 +5,12 @@ A quantity and its first sensitivities are one Program, cut to them: the page co
 
 from collections.abc import Iterable, Mapping
 from math import pi
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ...compiler.languages.javascript import emit_javascript
+from ...loads.load import Load, TableOverTheta
+from ...loads.resolve import plan_of, split
 from ...mechanism.catalogue import Quantity, quantities, quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import CENTRES, LOADS, PARAMETERS, joined, parts
@@ -40,6 +43,8 @@ class Function(NamedTuple):
     names: tuple[str, ...]
     inputs: tuple[str, ...]
     source: str
+    # Of a total derivative: its place, that of the slope by a load, and the load.
+    terms: tuple[tuple[int, int, str], ...] = ()
 
 
 class Content(NamedTuple):
@@ -53,6 +58,7 @@ class Content(NamedTuple):
     functions: tuple[Function, ...]
     left_out: Mapping[str, tuple[float, ...]]  # input -> its values that no design has
     given: tuple[str, ...]  # the inputs that were given
+    loads: Mapping[str, TableOverTheta] = MappingProxyType({})
 
     @property
     def quantities(self) -> list[Quantity]:
@@ -62,10 +68,14 @@ class Content(NamedTuple):
 
 
 def content(
-    title: str, branch: int, inputs: Mapping[str, Value], shown: Iterable[str], names: Iterable[str] | None
+    title: str, branch: int, inputs: Mapping[str, Any], shown: Iterable[str], names: Iterable[str] | None
 ) -> Content:
-    """The content for these inputs; `names` are the quantities, those of the motion without."""
-    given = {"alpha": 0.0, **inputs}
+    """The content for these inputs; `names` are the quantities, those of the motion without.
+
+    A load over theta is a table; what the page changes of it is a constant added to it.
+    """
+    loads = _tables(inputs)
+    given: dict[str, Value] = {"alpha": 0.0, **inputs, **dict.fromkeys(loads, 0.0)}
     named = tuple(inputs)
     shown = tuple(dict.fromkeys(shown))
     for name in ("ec", "AB", "BC", "omega" if "omega" in given else "omega0"):
@@ -76,10 +86,20 @@ def content(
     if _loaded(given):
         groups |= {} if names is not None else {name: [name] for name in VALUES if name not in groups}
         given = {**given, **{name: 0.0 for name in CHANGED if name not in given}}
-    functions = tuple(_function(base, own, given, branch) for base, own in groups.items())
+    functions = tuple(_function(base, own, given, branch, loads) for base, own in groups.items())
     designs = _designs(given)
     left = {n: out for n, value in given.items() if n != "theta" and (out := _left_out(n, value, designs))}
-    return Content(title, branch, _angles(given), designs, shown, functions, left, named)
+    return Content(title, branch, _angles(given), designs, shown, functions, left, named, loads)
+
+
+def _tables(inputs: Mapping[str, Any]) -> dict[str, TableOverTheta]:
+    """The loads that vary with the motion; TypeError for one that is no table over theta."""
+    found = {}
+    for name, load in split(inputs)[1].items():
+        if not isinstance(load, TableOverTheta):
+            raise TypeError(f"explore: {name} = {load!r}: a page holds numbers and tables over theta")
+        found[name] = load
+    return found
 
 
 def left_out_text(content: Content) -> str:
@@ -128,10 +148,18 @@ def _sensitivities(base: str, given: Mapping[str, Value]) -> list[str]:
     ]
 
 
-def _function(base: str, names: Iterable[str], given: Mapping[str, Value], branch: int) -> Function:
-    asked = _request(tuple(names), given, branch)
+def _function(
+    base: str, names: Iterable[str], given: Mapping[str, Value], branch: int, loads: Mapping[str, Load]
+) -> Function:
+    plan = plan_of(tuple(names), loads, "omega" in given, "mu" in given)
+    asked = _request(plan.names, given, branch)
     program = specialise(asked.names, asked.form, asked.fixed)
-    return Function(base, asked.shown, program.inputs, emit_javascript(program, f"of_{base}"))
+    terms = tuple(
+        (plan.names.index(name), plan.names.index(term.slope), term.force)
+        for name, group in plan.terms.items()
+        for term in group
+    )
+    return Function(base, plan.shown, program.inputs, emit_javascript(program, f"of_{base}"), terms)
 
 
 def _request(names: tuple[str, ...], given: Mapping[str, Value], branch: int) -> Request:

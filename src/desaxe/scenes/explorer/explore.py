@@ -6,7 +6,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ...loads.resolve import without_loads
+from ...evaluation.loaded import loads_of
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LOADS
 from ...runtime.request import as_number, check_common, check_inputs
@@ -31,7 +31,8 @@ def explore(
     source  a scene (`desaxe.scene`, a TOML file or a mapping); or give inputs instead, as to `evaluate`:
             ec, AB, BC [m], omega0 (or omega) [rad/s], alpha [rad/s^2], masses and loads, each a number,
             text with a unit, or a list, whose values are compared (all of
-            up to five, four of more; the page says which are not shown)
+            up to five, four of more; the page says which are not shown). F_X and F_Y may be tables over
+            theta, which the page changes by a constant
     path    the file to write
     branch  of inputs: +1 (the papers) or -1; a scene has its own, and its own title
     title   what the page is headed with
@@ -61,8 +62,9 @@ def content_of(
     if source is None:
         check_common(inputs, branch)
         check_inputs("explore", inputs, tuple(INPUTS))
-        without_loads("explore", inputs)
-        return content(title, branch, {n: _value(n, v) for n, v in inputs.items()}, START, names)
+        numbers, loads = loads_of(inputs)
+        values = {n: _value(n, v) for n, v in numbers.items()}
+        return content(title, branch, {**values, **loads}, START, names)
     if inputs:
         page = isinstance(source, (str, PathLike)) and Path(source).suffix != ".toml"
         beside = (
@@ -83,7 +85,6 @@ def _of_scene(source: Any, names: Iterable[str] | None) -> Content:
     title = inside.title or TITLE
     shown = [name for name in asked if name not in ("status", "margin")]
     inputs: dict[str, Any] = dict(inside.inputs)
-    without_loads("explore", inputs)
     return content(title, inside.branch, inputs, shown or START, names)
 
 

@@ -74,7 +74,18 @@ def _data(content: Content) -> dict[str, Any]:
             for row in (INPUTS[name],)
         },
         "parameters": {name: row.unit for name, row in INPUTS.items()},
-        "functions": {f.quantity: {"names": f.names, "inputs": f.inputs} for f in content.functions},
+        "functions": {
+            f.quantity: {"names": f.names, "inputs": f.inputs, "terms": f.terms} for f in content.functions
+        },
+        "loads": {
+            name: {
+                "knots": load.table.knots,
+                "rows": load.table.rows,
+                "period": load.period,
+                "kind": load.kind,
+            }
+            for name, load in content.loads.items()
+        },
         "quantities": {row.name: _about(row.name, row.unit, row.meaning) for row in content.quantities},
         "status": {str(int(status)): status.words for status in PointStatus},
     }

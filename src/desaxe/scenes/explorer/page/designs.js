@@ -9,8 +9,27 @@ const SAMPLES = 721;
 const NEARER = [1, 2, 3, 4, 5, 6, 7, 8].map((k) => 4 ** -k); // of a step towards a border
 
 function answers(base, design, theta) {
-  const args = CONTENT.functions[base].inputs.map((name) => (name === "theta" ? theta : design[name] ?? 0));
-  return FUNCTIONS[base](...args);
+  const { inputs, terms } = CONTENT.functions[base];
+  const added = (name) => (name in CONTENT.loads ? loadAt(name, theta)[0] : 0);
+  const found = FUNCTIONS[base](...inputs.map((name) => (name === "theta" ? theta : (design[name] ?? 0) + added(name))));
+  for (const [place, slope, force] of terms) found[place] += found[slope] * loadAt(force, theta)[1];
+  return found;
+}
+
+// A load over theta and its derivative, from its table: cubics in the distance from a knot.
+function loadAt(name, theta) {
+  const { knots, rows, period } = CONTENT.loads[name], first = knots[0];
+  let x = theta - period * Math.floor((theta - first) / period);
+  if (x < first) x += period;
+  if (x >= first + period) x -= period;
+  let piece = 0, beyond = knots.length;
+  while (piece < beyond) {
+    const middle = (piece + beyond) >> 1;
+    if (knots[middle] <= x) piece = middle + 1;
+    else beyond = middle;
+  }
+  const [a, b, c, d] = rows[piece], s = x - knots[Math.max(piece - 1, 0)];
+  return [a + s * (b + s * (c + s * d)), b + s * (2 * c + 3 * s * d)];
 }
 
 function valueAt(name, design, theta) {

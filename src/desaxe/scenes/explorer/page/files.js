@@ -20,7 +20,12 @@ function sceneText() {
   const { designs, shown } = state;
   const differing = differingInputs(designs);
   const kept = differing.length === 1 ? designs : designs.slice(0, 1);
-  const valueOf = (name) => (differing.length === 1 && name === differing[0]
+  const tableOf = (name, added) => {
+    const { knots, rows, period, kind } = CONTENT.loads[name];
+    const points = knots.map((angle, k) => `[${angle}, ${rows[k + 1][0] + added}]`);
+    return `{ over_theta = [${points.join(", ")}], kind = "${kind}", period = ${period} }`;
+  };
+  const valueOf = (name) => name in CONTENT.loads ? tableOf(name, kept[0][name]) : (differing.length === 1 && name === differing[0]
     ? `[${[...new Set(kept.map((d) => d[name]))].join(", ")}]`
     : `${kept[0][name]}`);
   const lines = ["# Written by the explorer page of desaxe, in SI units and radians: desaxe run scene.toml", ""];

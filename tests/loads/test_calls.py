@@ -1,0 +1,106 @@
+"""One load, the same meaning in every call: motion, drive, flywheel, harmonics, tolerance, optimum."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+import desaxe as dx
+
+BODIES = {"ec": 0.01, "AB": 0.04, "BC": 0.064, "m_rod": 0.5, "m_slider": 0.8}
+TURN = 2 * np.pi
+STEP = dx.over_theta([0.0, 1.0, 2.0, 4.0], [0.0, -400.0, -50.0, 20.0], kind="step")
+STROKE = dx.over_Y([0.02, 0.05, 0.08, 0.1], [-900, -200, -50, -30], [-90, -40, -15, -3])
+LOADS = {
+    "cubic": dx.over_theta([0.0, 1.0, 2.0, 4.0], [0.0, -400.0, -50.0, 20.0]),
+    "step": STEP,
+    "stroke": STROKE,
+    "function": dx.over_theta(
+        lambda theta: np.where(np.mod(theta, TURN) < 1.0, -300.0, 0.0), nodes=[0.0, 1.0]
+    ),
+}
+
+
+def work(load, a, b):
+    """What the load does between two crank angles: the integral of F dY."""
+
+    def power(theta):
+        Y, slope = (dx.evaluate(n, theta=theta, ec=0.01, AB=0.04, BC=0.064) for n in ("Y", "Y_wrt_theta"))
+        return slope * (load(Y, np.sign(slope)) if load.over == "Y" else float(load(theta)))
+
+    inside = np.linspace(a, b, 41)
+    knots = load.nodes(a, b, smooth=False) if load.over == "theta" else []
+    parts = np.unique([a, b, *knots, *inside])
+    return sum(quad(power, *ends, epsabs=1e-13)[0] for ends in pairwise(parts))
+
+
+@pytest.mark.parametrize("kind", ["cubic", "step", "function"])
+@pytest.mark.parametrize("mu", [0.0, 0.1])
+def test_the_motion_keeps_its_energy_and_its_torque_across_jumps(kind, mu):
+    run = dx.simulate(
+        torque=8.0,
+        t_end=0.3,
+        omega_start=30.0,
+        I_crank=0.01,
+        mu=mu,
+        F_Y=LOADS[kind],
+        names=["T_in"],
+        **BODIES,
+    )
+    assert run["energy_residual"] < 1e-11
+    np.testing.assert_allclose(
+        run["T_in"], 8.0, rtol=1e-9
+    )  # the torque that this motion needs is the one given
+
+
+def test_the_work_along_a_motion_is_that_of_the_load_over_the_stroke():
+    run = dx.simulate(
+        torque=0.0, t_end=1.0, until=3.0, omega_start=60.0, theta0=0.5, I_crank=0.01, F_Y=STROKE, **BODIES
+    )
+    assert run["theta"][-1] == pytest.approx(3.0)
+    assert run["work"] == pytest.approx(work(STROKE, 0.5, 3.0), rel=1e-6)
+
+
+def test_one_parameter_is_theta_and_three_are_t_theta_omega():
+    given = {**BODIES, "t_end": 0.05, "omega_start": 30.0}
+    one = dx.simulate(torque=lambda theta: 8.0 + np.cos(theta), **given)
+    three = dx.simulate(torque=lambda t, theta, omega: 8.0 + np.cos(theta), **given)
+    np.testing.assert_array_equal(one["omega"], three["omega"])
+    with pytest.raises(TypeError, match=r"torque: a function of \(t, theta, omega\) is wanted, or of theta"):
+        dx.simulate(torque=lambda t, theta: 0.0, **given)
+
+
+def test_a_turn_costs_the_work_of_the_load_in_every_call():
+    machine = BODIES | {"omega0": 50.0}
+    mean = -work(STEP, 0.0, TURN) / TURN
+    wheel = dx.flywheel(fluctuation=0.05, F_Y=STEP, **machine)
+    assert wheel["mean_torque"] == pytest.approx(mean, rel=1e-3)  # equal steps across jumps
+    assert wheel["max_torque"] == dx.peak("T_in", kind="max", F_Y=STEP, **machine)["value"]
+    assert dx.drive(F_Y=STEP, **machine)["torque_mean"] == pytest.approx(mean, rel=1e-10)
+    smooth = dx.harmonics("T_in", F_Y=LOADS["cubic"], **machine)
+    assert smooth["mean"] == pytest.approx(-work(LOADS["cubic"], 0.0, TURN) / TURN, rel=1e-8)
+
+
+def test_a_four_stroke_load_repeats_after_two_turns():
+    load = dx.over_theta([0.0, 1.0, 7.0, 8.0], [0.0, -10.0, 0.0, -500.0], kind="linear", period=2 * TURN)
+    machine = BODIES | {"omega0": 50.0}
+    wheel = dx.flywheel(fluctuation=0.05, F_Y=load, **machine)
+    assert wheel["mean_torque"] == pytest.approx(-work(load, 0.0, 2 * TURN) / (2 * TURN), rel=1e-6)
+    with pytest.raises(ValueError, match="F_Y: harmonics is over a turn, after which the load must repeat"):
+        dx.harmonics("T_in", F_Y=load, **machine)
+
+
+def test_tolerance_and_optimum_follow_the_load():
+    pytest.importorskip("SALib")
+    machine = {"theta": 4.0, "omega0": 50.0, "m_slider": 0.8, "ec": 0.01, "F_Y": STROKE}
+    lengths = {"AB": (0.04, 1e-5), "BC": (0.064, 1e-5)}
+    found = dx.tolerance("T_in", samples=2000, sobol=0, **lengths, **machine)
+    for name in lengths:
+        right = dx.evaluate(f"T_in_wrt_{name}", AB=0.04, BC=0.064, **machine)
+        assert found["gradient"][name] == pytest.approx(right, rel=1e-12)
+    assert found["monte_carlo"]["std"] == pytest.approx(found["first_order"]["std"], rel=0.1)
+    fixed = {"AB": 0.04, "BC": 0.064, "F_Y": STROKE}
+    best = dx.optimize(minimize=("absmax", "T_in"), over={"ec": (0.0, 0.02)}, starts=1, **fixed)
+    scan = [dx.peak("T_in", ec=ec, **fixed)["value"] for ec in np.linspace(0.0, 0.02, 5)]
+    assert best["value"] <= min(scan) * (1 + 1e-9)
