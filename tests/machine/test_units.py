@@ -174,6 +174,15 @@ def test_labelled_results_carry_their_units():
     np.testing.assert_allclose(out, PRESS.evaluate("Y", theta=[0, 90]))
 
 
+def test_sweeps(tmp_path):
+    press = dx.Machine(ec=10, AB=50, BC=200, omega0=300, units="mm, deg, rpm")
+    found = press.sweep(["a_C"], store=tmp_path / "press.zarr", theta=[0, 60, 90], ec=[0, 10])
+    assert found.a_C.units == "mm/s^2"
+    wanted = press.grid(["a_C"], theta=[0, 60, 90], ec=[0, 10])
+    np.testing.assert_allclose(found.a_C, wanted.a_C, rtol=1e-12)
+    assert found.theta.values.tolist() == [0.0, 60.0, 90.0]
+
+
 def test_pint_quantities():
     length = PRESS.evaluate("Y", theta=60, as_quantity=True)
     assert length.to("m").magnitude == pytest.approx(dx.evaluate("Y", theta="60 deg", **SI), rel=1e-14)

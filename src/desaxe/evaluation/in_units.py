@@ -31,7 +31,8 @@ def in_units(
         if key in FLAGS or array.dtype.kind not in "fc" or "units" not in array.attrs:
             continue
         conversion = conversion_of_variable(units, (names or {}).get(key, key), array.attrs["units"])
-        values = conversion.shown(array.values)
+        lazy = array.chunks is not None  # a sweep's, which may be larger than memory
+        values = array.data / float(conversion.si) if lazy else conversion.shown(array.values)
         if given is not None and key in given:
             import numpy as np
 

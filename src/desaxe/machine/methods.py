@@ -22,7 +22,7 @@ METHODS = {
     "feasibility": "desaxe.design.feasibility.feasibility",
     "inverse": "desaxe.design.inverse",
     "simulate": "desaxe.simulation.simulate",
-    "sweep": "desaxe.sweeps.sweep",
+    "sweep": "desaxe.scenes.sweep",
     "optimize": "desaxe.design.optimisation.optimize",
     "synthesize": "desaxe.design.synthesis.synthesize",
     "design_map": "desaxe.design.design_map",

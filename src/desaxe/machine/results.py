@@ -102,7 +102,7 @@ def conversion_of(system: UnitSystem, name: str) -> Conversion | None:
 def shown(name: str, found: Any, call: Mapping[str, Any], show: Shown) -> Any:
     """The result of a public function, called with these arguments, as it is shown."""
     system = show.system
-    if name in ("grid", "design_map") and hasattr(found, "variables"):
+    if hasattr(found, "data_vars"):  # of grid, design_map, sweep
         plain = {key: value for key, value in call.items() if key in found.coords and _is_plain(value)}
         return in_units(found, system, plain, as_quantity=show.as_quantity)
     if name in ("evaluate", "grid"):
