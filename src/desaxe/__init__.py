@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from .design.drive.drive import drive as drive
     from .design.events.events import events as events
     from .design.feasibility.feasibility import feasibility as feasibility
+    from .design.fit.fit import fit as fit
     from .design.inverse import inverse as inverse
     from .design.optimisation.optimize import optimize as optimize
     from .design.synthesis.synthesize import synthesize as synthesize
@@ -65,6 +66,7 @@ PUBLIC = {
     "explore": "desaxe.scenes.explorer.explore",
     "Machine": "desaxe.machine.machine",
     "UnitWarning": "desaxe.mechanism.slips",
+    "fit": "desaxe.design.fit.fit",
     "feasibility": "desaxe.design.feasibility.feasibility",
     "scene": "desaxe.scenes.scene",
     "explain": "desaxe.scenes.explain.explain",
@@ -100,6 +102,7 @@ __all__ = [
     "explain",
     "explore",
     "feasibility",
+    "fit",
     "flywheel",
     "function",
     "grid",

@@ -16,7 +16,19 @@ from desaxe.mechanism.inputs import INPUTS
 
 COMPACTOR = str(Path(__file__).parents[2] / "examples" / "compactor.toml")
 POINT = ["theta=60deg", "ec=10mm", "AB=125mm", "BC=300mm", "omega0=1500rpm"]
-COMMANDS = ("point", "scene", "run", "explain", "compile", "explore", "derive", "errata", "audit", "doctor")
+COMMANDS = (
+    "point",
+    "scene",
+    "run",
+    "explain",
+    "compile",
+    "explore",
+    "fit",
+    "derive",
+    "errata",
+    "audit",
+    "doctor",
+)
 
 
 def test_point(capsys):

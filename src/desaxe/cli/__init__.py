@@ -2,7 +2,7 @@
 
 command  the sub-commands, and how errors reach the terminal
 parser   what they share: one-line complaints, help, the sign convention
-point, scene, errata, checks   the sub-commands, a file for each group
+point, scene, fit, errata, checks   the sub-commands, a file for each group
 words    names and inputs as words of a command line
 doctor   what is installed, and whether loops vectorise here
 """

@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from ..support.extras import MissingExtraError, needed
 from .checks import add_audit, add_derive, add_doctor, derive
 from .errata import add_errata
+from .fit import add_fit
 from .parser import SIGNS, Parser, Version
 from .point import add_point
 from .scene import add_compile, add_explain, add_explore, add_run, add_scene
@@ -27,6 +28,7 @@ COMMANDS = (
     add_explain,
     add_compile,
     add_explore,
+    add_fit,
     add_derive,
     add_errata,
     add_audit,

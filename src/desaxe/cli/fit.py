@@ -1,0 +1,101 @@
+"""`desaxe fit`: the parameters of a scene's machine from measurements."""
+
+import argparse
+import json
+from collections.abc import Sequence
+from typing import Any
+
+from .parser import add_command
+from .words import UsageError
+
+_FIT = """\
+DATA is a CSV file whose heading names its columns: theta [deg] or t [s], and the measured
+quantities, such as `a_C [m/s2]`. Other columns are left alone, an empty cell is a missing sample.
+
+A parameter to be found starts from the scene's number or from the one given, or lies in a range.
+All other inputs are the scene's numbers.
+
+examples:
+  desaxe fit press.toml run.csv --over AB BC ec=0mm --sigma a_C=5
+  desaxe fit press.toml run.csv --over BC=340mm:360mm --nuisance theta_offset a_C_bias --loss huber
+  desaxe fit press.toml run.csv --over AB BC --sigma a_C=5 --picture fit.png --json"""
+
+
+def add_fit(commands: Any) -> None:
+    """Add `desaxe fit`."""
+    parser = add_command(commands, "fit", "parameters of a machine from measurements", _FIT, _fit)
+    parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
+    parser.add_argument("data", metavar="DATA", help="path of a CSV file")
+    parser.add_argument(
+        "--over", metavar="NAME[=START|=LOW:HIGH]", nargs="+", required=True, help="the unknowns"
+    )
+    parser.add_argument("--sigma", metavar="NAME=VALUE", nargs="+", default=(), help="standard deviations")
+    parser.add_argument("--nuisance", metavar="NAME", nargs="+", default=(), help="offset, biases, scales")
+    parser.add_argument("--loss", default="linear", help="linear, soft_l1, huber, cauchy or arctan")
+    parser.add_argument("--picture", metavar="FILE", help="draw measurements and fit")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+
+
+def _fit(options: argparse.Namespace) -> int:
+    from ..design.fit.fit import fit
+    from ..scenes.scene import scene
+
+    known = scene(options.scene).content
+    numbers: dict[str, Any] = {
+        name: value for name, value in known.inputs.items() if isinstance(value, (int, float))
+    }
+    over = dict(_unknown(word, numbers) for word in options.over)
+    fixed: dict[str, Any] = {
+        name: value for name, value in numbers.items() if name not in over and name != "theta"
+    }
+    sigma = dict(_pair("--sigma", word) for word in options.sigma) or None
+    found = fit(options.data, over, sigma, options.nuisance, options.loss, branch=known.branch, **fixed)
+    if options.picture:
+        from ..plot.save import save
+
+        save(found.plot(), options.picture)
+    print(json.dumps(_plain(found), indent=2) if options.json else found.report())
+    return 0
+
+
+def _unknown(word: str, numbers: dict[str, Any]) -> tuple[str, Any]:
+    """NAME, NAME=START or NAME=LOW:HIGH as a name and what `fit` takes."""
+    name, equals, value = word.partition("=")
+    if not equals:
+        if name not in numbers:
+            raise UsageError(
+                f"--over {name}: the scene has no number for it; give {name}=START or {name}=LOW:HIGH"
+            )
+        return name, numbers[name]
+    low, colon, high = value.partition(":")
+    return (name, (low, high)) if colon else (name, value)
+
+
+def _pair(option: str, word: str) -> tuple[str, Any]:
+    name, equals, value = word.partition("=")
+    if not equals:
+        raise UsageError(f"{option} {word}: NAME=VALUE is wanted")
+    return name, value
+
+
+def _plain(found: Any) -> dict[str, Any]:
+    """The numbers of a fit for JSON, which has no infinity: null stands for one."""
+    kept: Sequence[str] = (
+        "value",
+        "std_error",
+        "interval",
+        "names",
+        "unidentified",
+        "at_bound",
+        "status",
+        "message",
+    )
+    return {key: _finite(found[key]) for key in kept}
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _finite(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(one) for one in value]
+    return None if isinstance(value, float) and value - value != 0.0 else value

@@ -1,0 +1,179 @@
+"""`fit`: the parameters of a machine that explain its measurements."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ...mechanism.catalogue import quantity
+from ...mechanism.inputs import INPUTS
+from ...mechanism.spelling import did_you_mean
+from ...runtime.request import check_common, check_inputs
+from ...support.shown import shown
+from .data import Data, read_data
+from .model import Model
+from .result import DONE, OPEN, STOPPED, WORDS, Fit
+from .solve import solve
+from .spread import LOSSES, inflation, spread_of
+from .unknowns import unknowns_of
+
+NORMAL = 1.959963984540054  # two-sided 95 % of the normal distribution
+MAD = 1.4826  # standard deviations in a median absolute deviation, of the normal distribution
+EDGE = 1e-9  # of an unknown's size: a bound that is met
+
+
+def fit(
+    data: Any,
+    over: Mapping[str, Any],
+    sigma: Mapping[str, Any] | None = None,
+    nuisance: Sequence[str] = (),
+    loss: str = "linear",
+    *,
+    branch: int = 1,
+    seed: int = 0,
+    **fixed: Any,
+) -> Fit:
+    """The parameters that explain measurements, with their standard errors.
+
+    data      mapping of `theta` [rad] or `t` [s] and of measured quantities (`Y`, `a_C`, `T_in`, ...) to
+              samples, NaN where one is missing; or a DataFrame, a Dataset, or the path of a CSV file whose
+              heading names them: `theta [deg], a_C [m/s2]`
+    over      dict parameter -> start, or (low, high): bounds, in which several starts are tried
+    sigma     dict quantity -> standard deviation of its samples, in the quantity's unit. Without it one
+              quantity only may be measured, and the scatter of its residuals takes sigma's place
+    nuisance  further unknowns: "theta_offset" [rad] (the crank is at theta + theta_offset), and of each
+              quantity "a_C_bias", "a_C_scale": measured = scale * a_C + bias
+    loss      "linear" (least squares), or "soft_l1", "huber", "cauchy", "arctan", which shrug off outliers
+    fixed     all other inputs, as for `evaluate`
+
+    Gives a dict (its `report()`, `plot()` and `predict(theta)` show more):
+
+    value, std_error   dict name -> value and standard error, parameters and nuisances
+    interval           dict name -> (low, high), 95 %
+    names              the unknowns, in the order of `covariance` and `correlation`
+    residuals          dict quantity -> measured - fitted at every sample, NaN where missing
+    jacobian           dict quantity -> dict unknown -> derivative of the fitted value at every sample, exact
+    unidentified       directions that the data do not fix: dicts name -> relative weight; std_error is
+                       infinite for the unknowns in them
+    at_bound           dict name -> "low" or "high" for unknowns that end at a bound
+    evaluations        of the model, all starts together
+    status, message    0 converged, 1 stopped at the limit of evaluations, 2 a combination left open
+
+    SciPy's trust region reflective least squares with the exact Jacobian; a step to a design that cannot be
+    assembled at every sample is shortened. Raises ValueError for data that are empty or fewer than the
+    unknowns, and where no start can be assembled; TypeError for a missing input. Needs the extra `design`.
+    """
+    check_inputs("fit", fixed, tuple(INPUTS))
+    if "theta" in fixed:
+        raise TypeError("fit: theta belongs into data")
+    state = dict.fromkeys((*over, *fixed), 1.0) if isinstance(over, Mapping) else fixed
+    check_common(state, branch)
+    if loss not in LOSSES:
+        raise ValueError(
+            f"loss = {shown(loss)}: {did_you_mean(str(loss), LOSSES)}there are {', '.join(LOSSES)}"
+        )
+    read = read_data(data, "omega" in state)
+    unknowns = unknowns_of(over, nuisance, read, fixed)
+    if read.size < len(unknowns):
+        raise ValueError(
+            f"fit: {read.size} samples for {len(unknowns)} unknowns: as many are wanted at least"
+        )
+    given = _sigmas(sigma, read)
+    model = Model(read, unknowns, fixed, branch, given or dict.fromkeys(read.measured, 1.0))
+    if not given:
+        _set_sigma(model, loss, seed)
+    found = solve(model, loss, seed, absolute=bool(given))
+    return _result(model, found, loss, absolute=bool(given))
+
+
+def _sigmas(sigma: Mapping[str, Any] | None, data: Data) -> dict[str, float]:
+    """The standard deviations, checked; none where none are given."""
+    if sigma is None:
+        if len(data.measured) > 1:
+            raise ValueError(
+                f"sigma: {', '.join(data.measured)} are measured: give the standard deviation of each"
+            )
+        return {}
+    if not isinstance(sigma, Mapping) or set(sigma) != set(data.measured):
+        raise ValueError(f"sigma = {shown(sigma)}: a dict with {', '.join(data.measured)} is wanted")
+    return {name: _sigma(name, value) for name, value in sigma.items()}
+
+
+def _sigma(name: str, value: Any) -> float:
+    number = value
+    if isinstance(value, str) or hasattr(value, "magnitude"):
+        from ...mechanism.units import in_unit
+
+        number = in_unit(name, value, quantity(name).unit)
+    plain = isinstance(number, (int, float, np.number)) and not isinstance(number, bool)
+    if not plain or not 0.0 < float(number) < np.inf:
+        raise ValueError(f"sigma: {name} = {shown(value)}: a finite number > 0 is wanted")
+    return float(number)
+
+
+def _set_sigma(model: Model, loss: str, seed: int) -> None:
+    """Put the scatter of the residuals in sigma's place; a robust one, since a robust loss needs a scale."""
+    (name,) = model.sigma
+    model.sigma[name] = float(np.nanstd(model.data.measured[name])) or 1.0
+    for _ in range(1 if loss == "linear" else 3):
+        rest = solve(model, "linear" if loss == "linear" else "soft_l1", seed).fun * model.sigma[name]
+        scatter = MAD * float(np.median(np.abs(rest - np.median(rest))))
+        floor = np.finfo(float).eps * float(np.nanmax(np.abs(model.data.measured[name])))
+        model.sigma[name] = max(scatter, floor, np.finfo(float).tiny)
+
+
+def _result(model: Model, found: Any, loss: str, absolute: bool) -> Fit:
+    residuals, jacobian = model.residuals(found.x), model.jacobian(found.x)
+    sizes = np.array(
+        [abs(x) if abs(x) > 1e-6 * u.scale else u.scale for x, u in zip(found.x, model.unknowns, strict=True)]
+    )
+    freedom = residuals.size - len(model.names)
+    variance = inflation(residuals, loss)
+    if not absolute and loss == "linear":
+        variance = float(residuals @ residuals) / freedom if freedom else np.inf
+    spread = spread_of(jacobian, sizes, model.names, variance)
+    error = np.sqrt(np.diag(spread.covariance))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        correlation = spread.covariance / np.outer(error, error)
+    np.fill_diagonal(correlation, 1.0)
+    quantile = NORMAL if absolute else _student(freedom)
+    values, slopes = model.quantities(found.x)
+    status = OPEN if spread.unidentified else STOPPED if found.status == 0 else DONE
+    by_name = dict(zip(model.names, found.x.tolist(), strict=True))
+    return Fit(
+        {
+            "value": by_name,
+            "std_error": dict(zip(model.names, error.tolist(), strict=True)),
+            "interval": {
+                name: (by_name[name] - quantile * e, by_name[name] + quantile * e)
+                for name, e in zip(model.names, error.tolist(), strict=True)
+            },
+            "names": list(model.names),
+            "covariance": spread.covariance,
+            "correlation": correlation,
+            "residuals": {q: column - values[q] for q, column in model.data.measured.items()},
+            "jacobian": slopes,
+            "unidentified": spread.unidentified,
+            "at_bound": _at_bound(model, found.x),
+            "evaluations": found.evaluations,
+            "status": status,
+            "message": WORDS[status],
+        },
+        model,
+    )
+
+
+def _student(freedom: int) -> float:
+    from scipy.stats import t
+
+    return float(t.ppf(0.975, freedom)) if freedom else np.inf
+
+
+def _at_bound(model: Model, x: Any) -> dict[str, str]:
+    found = {}
+    for value, u in zip(x, model.unknowns, strict=True):
+        if value - u.low <= EDGE * u.scale:
+            found[u.name] = "low"
+        elif u.high - value <= EDGE * u.scale:
+            found[u.name] = "high"
+    return found

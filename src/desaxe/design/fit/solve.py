@@ -1,0 +1,64 @@
+"""The search: SciPy's trust region from several starts, with the exact Jacobian, among feasible designs."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...support.extras import needed
+from .model import Model
+from .unknowns import starts_of
+
+Array = NDArray[np.float64]
+STARTS = 17  # points whose cost is looked at
+RUNS = 3  # of those, the best are followed
+TOLERANCE = 1e-13
+EVALUATIONS = 300
+
+
+def solve(model: Model, loss: str, seed: int, absolute: bool = False) -> Any:
+    """SciPy's result at the best optimum. ValueError where no start is feasible.
+
+    Where sigma is known and the given start leads to residuals of that size, no other start is tried.
+    """
+    with needed("fit", "design"):
+        from scipy.optimize import least_squares
+    options: dict[str, Any] = {
+        "bounds": ([u.low for u in model.unknowns], [u.high for u in model.unknowns]),
+        "x_scale": [u.scale for u in model.unknowns],
+        "jac": model.jacobian,
+        "loss": loss,
+        "max_nfev": EVALUATIONS,
+        **dict.fromkeys(("ftol", "xtol", "gtol"), TOLERANCE),
+    }
+    points = starts_of(model.unknowns, STARTS, seed)
+    runs = []
+    if np.isfinite(model.residuals(points[0])).all():
+        runs.append(least_squares(model.residuals, points[0], **options))
+        if len(points) == 1 or (absolute and _is_good(runs[0].fun)):
+            return _best(runs)
+    costs = np.array([_cost(model.residuals(point), loss) for point in points[1:]])
+    order = np.argsort(costs, kind="stable")[:RUNS]
+    runs += [least_squares(model.residuals, points[1 + k], **options) for k in order if np.isfinite(costs[k])]
+    if not runs:
+        where = ", ".join(f"{name} = {value:g}" for name, value in zip(model.names, points[0], strict=True))
+        raise ValueError(f"fit: the mechanism cannot be assembled at every sample at the start: {where}")
+    return _best(runs)
+
+
+def _best(runs: list[Any]) -> Any:
+    best = min(runs, key=lambda run: run.cost)
+    best.evaluations = sum(run.nfev for run in runs)
+    return best
+
+
+def _is_good(residuals: Array) -> bool:
+    """True where most residuals are as small as their sigma says, whatever a few outliers do."""
+    return bool(np.median(np.abs(residuals)) < 1.0)  # 0.67 is expected
+
+
+def _cost(residuals: Array, loss: str) -> float:
+    if not np.isfinite(residuals).all():
+        return float("inf")
+    squares = residuals * residuals
+    return float(np.sum(np.log1p(squares) if loss != "linear" else squares))

@@ -1,0 +1,94 @@
+"""What is to be found: parameters of the machine, and nuisances of its instruments."""
+
+from collections.abc import Mapping, Sequence
+from math import inf, pi
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...mechanism.inputs import INPUTS, LEAST
+from ...mechanism.spelling import did_you_mean
+from ...runtime.request import as_number
+from ...support.shown import shown
+from .data import Data
+
+OFFSET = "theta_offset"
+
+
+class Unknown(NamedTuple):
+    """One unknown: its start, its bounds, the size of a relevant change, and whether a range was given."""
+
+    name: str
+    start: float
+    low: float
+    high: float
+    scale: float
+    ranged: bool = False
+
+
+def unknowns_of(
+    over: Mapping[str, Any], nuisance: Sequence[str], data: Data, fixed: Mapping[str, Any]
+) -> list[Unknown]:
+    """The unknowns, checked: parameters first, then nuisances."""
+    if not isinstance(over, Mapping) or not over:
+        raise TypeError("over: a dict parameter -> start or (low, high) is wanted, such as {'AB': 0.1}")
+    nuisance = (nuisance,) if isinstance(nuisance, str) else tuple(dict.fromkeys(nuisance))
+    found = [_parameter(name, value, fixed) for name, value in over.items()]
+    longest = max((u.scale for u in found if INPUTS[u.name].unit == "m"), default=1.0)
+    found = [u._replace(scale=longest) if u.name == "ec" else u for u in found]
+    return [*found, *(_nuisance(name, data) for name in nuisance)]
+
+
+def _parameter(name: str, value: Any, fixed: Mapping[str, Any]) -> Unknown:
+    allowed = [known for known in INPUTS if known != "theta"]
+    if name not in allowed:
+        meant = did_you_mean(str(name), allowed)
+        raise ValueError(f"over: {name!r} is no parameter; {meant}there are {', '.join(allowed)}")
+    if fixed.get(name) is not None:
+        raise TypeError(f"{name} is given in over= and as a fixed input: leave one of them out")
+    least = LEAST.get(name, -inf)
+    if isinstance(value, (tuple, list)):
+        if len(value) != 2:
+            raise ValueError(f"over: {name} = {shown(value)}: a start or (low, high) is wanted")
+        low, high = (_number(name, end) for end in value)
+        if not max(low, least) < high:
+            raise ValueError(f"over: {name} = {shown(value)}: low must be below high")
+        start, low = 0.5 * (low + high), max(low, least)
+        return Unknown(name, start, low, high, max(abs(low), abs(high)), ranged=True)
+    start = _number(name, value)
+    return Unknown(name, start, least, inf, abs(start) or 1.0)
+
+
+def _number(name: str, value: Any) -> float:
+    number = as_number(name, value, (name,), ("fit",))
+    if number is None:
+        raise TypeError(f"over: {name} = {shown(value)}: a number or (low, high) is wanted")
+    return number
+
+
+def _nuisance(name: str, data: Data) -> Unknown:
+    if name == OFFSET:
+        return Unknown(name, 0.0, -inf, inf, 1.0)
+    for kind in ("bias", "scale"):
+        of = name.removesuffix(f"_{kind}")
+        if of != name and of in data.measured:
+            size = float(np.nanstd(data.measured[of])) or 1.0
+            return Unknown(name, *((0.0, -inf, inf, size) if kind == "bias" else (1.0, -inf, inf, 1.0)))
+    known = [OFFSET, *(f"{q}_{kind}" for q in data.measured for kind in ("bias", "scale"))]
+    raise ValueError(f"nuisance: {name!r}; {did_you_mean(str(name), known)}there are {', '.join(known)}")
+
+
+def starts_of(unknowns: Sequence[Unknown], count: int, seed: int) -> np.ndarray[Any, Any]:
+    """Points to start from: the given one, and others spread over the ranges and the offset's turn."""
+    first = np.array([u.start for u in unknowns])
+    free = [k for k, u in enumerate(unknowns) if u.ranged or u.name == OFFSET]
+    if not free or count == 1:
+        return first[None]
+    from scipy.stats import qmc
+
+    drawn = qmc.Sobol(len(free), seed=seed).random(1 << (count - 1).bit_length())[: count - 1]
+    points = np.tile(first, (count, 1))
+    for column, k in enumerate(free):
+        low, high = (-pi, pi) if unknowns[k].name == OFFSET else (unknowns[k].low, unknowns[k].high)
+        points[1:, k] = low + (high - low) * drawn[:, column]
+    return points

@@ -1,0 +1,176 @@
+"""Fits of synthetic measurements: what is recovered, how surely, and what the data leave open."""
+
+import pickle
+
+import mpmath
+import numpy as np
+import pytest
+
+import desaxe as dx
+from desaxe.cli import main
+from desaxe.oracle.truth import truth
+from tests.effort import cases
+
+MACHINE = {"ec": 0.012, "AB": 0.125, "BC": 0.35}
+THETA = np.linspace(0.0, 2.0 * np.pi, 90, endpoint=False)
+NOISE = 5.0
+TRUE = {**MACHINE, "theta_offset": 0.03, "a_C_bias": 4.0}
+CLEAN = dx.evaluate("a_C", theta=THETA + 0.03, omega0=150.0, **MACHINE) + 4.0
+OVER = {"ec": 0.0, "AB": (0.1, 0.15), "BC": 0.36}
+
+
+def measured(seed):
+    return {"theta": THETA, "a_C": CLEAN + np.random.default_rng(seed).normal(0.0, NOISE, THETA.size)}
+
+
+def fitted(data, **options):
+    options = {"sigma": {"a_C": NOISE}, "nuisance": ("theta_offset", "a_C_bias"), **options}
+    return dx.fit(data, over=OVER, omega0=150.0, **options)
+
+
+@pytest.mark.sampled
+def test_errors_are_as_large_as_they_are_told():
+    """Within one standard error in 63 to 73 %, within three in 99 %; the scatter is the covariance."""
+    runs = [fitted(measured(seed)) for seed in range(cases(25, 500))]
+    off = np.array([[(f["value"][n] - TRUE[n]) / f["std_error"][n] for n in f["names"]] for f in runs])
+    slack = 4.0 * np.sqrt(0.68 * 0.32 / len(runs))
+    assert np.all(np.abs((np.abs(off) < 1.0).mean(axis=0) - 0.683) < slack)
+    assert np.all((np.abs(off) < 3.0).mean(axis=0) >= 0.98)
+    assert np.all(np.abs(off.std(axis=0) - 1.0) < 4.0 / np.sqrt(2.0 * len(runs)))
+
+
+@pytest.mark.parametrize("loss", ["huber", "soft_l1", "cauchy", "arctan"])
+def test_a_robust_loss_shrugs_off_outliers(loss):
+    data = measured(5)
+    data["a_C"][::20] += 2000.0
+    for options in ({}, {"sigma": None}):
+        found = fitted(data, loss=loss, **options)
+        off = [(found["value"][n] - TRUE[n]) / found["std_error"][n] for n in found["names"]]
+        assert max(map(abs, off)) < 3.5
+    assert abs(fitted(data)["value"]["a_C_bias"] - 4.0) > 50.0
+
+
+def test_what_the_data_leave_open_is_named():
+    """Speeds of the slider know the products of length and crank speed only."""
+    speed = dx.evaluate("V_C", theta=THETA, omega0=150.0, **MACHINE)
+    found = dx.fit({"theta": THETA, "V_C": speed}, over={**OVER, "omega0": 140.0}, sigma={"V_C": 0.01})
+    (direction,) = found["unidentified"]
+    assert direction == pytest.approx({"ec": 1.0, "AB": 1.0, "BC": 1.0, "omega0": -1.0}, abs=1e-6)
+    assert found["status"] == 2
+    assert all(np.isinf(error) for error in found["std_error"].values())
+    assert found["value"]["AB"] * found["value"]["omega0"] == pytest.approx(0.125 * 150.0)
+
+
+def test_the_jacobian_against_differences_of_the_truth():
+    found = fitted(measured(1))
+    at, value = 17, found["value"]
+
+    def model(**change):
+        x = {**{k: mpmath.mpf(v) for k, v in value.items()}, **change}
+        point = {"theta": THETA[at] + x["theta_offset"], "omega0": 150.0, **{n: x[n] for n in MACHINE}}
+        return truth("a_C", **{"alpha": 0.0, "branch": 1, **point}) + x["a_C_bias"]
+
+    for name in found["names"]:
+        step = 2.0**-20 * max(abs(value[name]), 2.0**-6)
+        high, low = value[name] + step, value[name] - step
+        slope = (float(model(**{name: high})) - float(model(**{name: low}))) / (high - low)
+        assert found["jacobian"]["a_C"][name][at] == pytest.approx(slope, rel=1e-8, abs=1e-4), name
+
+
+def test_over_the_time_with_two_quantities_and_missing_samples():
+    t = np.linspace(0.0, 0.5, 200)
+    theta, rng = 20.0 * t + 15.0 * t * t, np.random.default_rng(3)
+    data = {
+        "t": t,
+        "Y": dx.evaluate("Y", theta=theta, **MACHINE) + rng.normal(0.0, 1e-4, 200),
+        "a_C": dx.evaluate("a_C", theta=theta, omega0=20.0, alpha=30.0, **MACHINE)
+        + rng.normal(0.0, 0.5, 200),
+    }
+    data["Y"][::3] = np.nan
+    over = {"ec": 0.0, "AB": (0.1, 0.2), "BC": (0.3, 0.5), "omega0": 18.0, "alpha": 25.0}
+    found = dx.fit(data, over=over, sigma={"Y": "0.1 mm", "a_C": 0.5})
+    for name, true in {**MACHINE, "omega0": 20.0, "alpha": 30.0}.items():
+        assert abs(found["value"][name] - true) < 4.0 * found["std_error"][name]
+    assert np.isnan(found["residuals"]["Y"][::3]).all()
+    model, x = found._model, np.array(list(found["value"].values()))
+    for k in range(x.size):
+        step = np.zeros(x.size)
+        step[k] = 1e-6 * abs(x[k])
+        slope = (model.residuals(x + step) - model.residuals(x - step)) / (2.0 * step[k])
+        column = model.jacobian(x)[:, k]
+        assert np.abs(slope - column).max() < 1e-6 * np.abs(column).max()
+
+
+def test_without_sigma_the_residuals_say_how_sure_it_is():
+    with_sigma, without = fitted(measured(2)), fitted(measured(2), sigma=None)
+    ratio = without["std_error"]["AB"] / with_sigma["std_error"]["AB"]
+    rest = with_sigma["residuals"]["a_C"]
+    assert ratio == pytest.approx(np.sqrt(rest @ rest / (THETA.size - 5)) / NOISE, rel=1e-3)
+
+
+def test_prediction_report_picture_and_pickle(tmp_path):
+    found = pickle.loads(pickle.dumps(fitted(measured(1))))
+    value, error = found.predict(theta=THETA)["a_C"]
+    assert np.abs((value - CLEAN) / error).max() < 5.0
+    assert "theta_offset" in found.report()
+    assert repr(found) == found.report()
+    found.plot().savefig(tmp_path / "fit.png")
+
+
+def test_tables_labels_and_files(tmp_path):
+    pandas, xarray = pytest.importorskip("pandas"), pytest.importorskip("xarray")
+    data = measured(1)
+    expected = fitted(data)["value"]
+    assert fitted(pandas.DataFrame(data))["value"] == expected
+    degrees = ("theta", np.degrees(THETA), {"units": "deg"})
+    labelled = xarray.Dataset({"a_C": ("theta", data["a_C"], {"units": "m/s^2"})}, {"theta": degrees})
+    assert fitted(labelled)["value"] == pytest.approx(expected, rel=1e-9)
+    path = tmp_path / "scope.csv"
+    rows = [f"{a!r},7,{b!r}" for a, b in zip(np.degrees(THETA).tolist(), data["a_C"].tolist(), strict=True)]
+    path.write_text("\n".join(["Model,TDS", "theta [deg],trigger,a_C (m/s2)", *rows, ",,"]), encoding="utf-8")
+    assert fitted(path)["value"] == pytest.approx(expected, rel=1e-9)
+    scene = tmp_path / "press.toml"
+    scene.write_text(
+        'outputs = ["margin"]\n[mechanism]\nec = 0\nAB = "120 mm"\nBC = 0.36\n[motion]\nomega0 = 150\n',
+        encoding="utf-8",
+    )
+    words = [
+        "--over",
+        "ec",
+        "AB=100mm:150mm",
+        "BC",
+        "--sigma",
+        "a_C=5",
+        "--nuisance",
+        "theta_offset",
+        "--json",
+    ]
+    assert main(["fit", str(scene), str(path), *words]) == 0
+
+
+@pytest.mark.parametrize(
+    ("data", "options", "error", "told"),
+    [
+        ({"theta": [1.0, 2.0], "a_C": [np.nan] * 2}, {}, ValueError, "a_C has no finite sample"),
+        ({"theta": [], "a_C": []}, {}, ValueError, "a_C has no finite sample"),
+        ({"theta": [1.0], "a_C": [1.0]}, {}, ValueError, "1 samples for 3 unknowns"),
+        ({"theta": [1.0, 2.0], "a_C": [1.0]}, {}, ValueError, "a_C has 1 samples, theta has 2"),
+        ({"a_C": [1.0]}, {}, TypeError, "one of theta and t"),
+        ({"theta": THETA}, {}, TypeError, "no measured quantity"),
+        ({"theta": THETA, "a_C": CLEAN, "Y": CLEAN}, {"sigma": None}, ValueError, "give the standard"),
+        ({"theta": THETA, "a_C": CLEAN}, {"sigma": {"a_C": 0}}, ValueError, "a_C = 0"),
+        ({"theta": THETA, "a_C": CLEAN}, {"loss": "square"}, ValueError, "loss = "),
+        ({"theta": THETA, "a_C": CLEAN}, {"nuisance": ["Y_bias"]}, ValueError, "Y_bias"),
+        ({"theta": THETA, "a_C": CLEAN}, {"over": {"AB": 0.5, "ec": 0.0}}, ValueError, "cannot be assembled"),
+        ({"theta": THETA, "a_C": CLEAN}, {"over": {"AB": (0.2, 0.1)}}, ValueError, "low must be below high"),
+        ({"theta": THETA, "b_C": CLEAN}, {}, ValueError, "b_C"),
+    ],
+)  # fmt: skip
+def test_complaints(data, options, error, told):
+    with pytest.raises(error, match=told):
+        dx.fit(
+            data,
+            **{"over": {"AB": 0.12, "ec": 0.0, "m_rod": 1.0}, "sigma": {"a_C": 5.0}, **options},
+            BC=0.35,
+            omega0=150.0,
+        )
