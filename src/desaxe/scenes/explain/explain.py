@@ -1,11 +1,13 @@
 """The plan of a scene: what will run in which loop, what was skipped and why, what it will cost."""
 
 import json
+import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import prod
 from os import PathLike
-from typing import Any
+from pathlib import Path
+from typing import Any, cast
 
 from ...compiler.kernel import Kernel
 from ...compiler.passes.double_double import double_double
@@ -19,14 +21,17 @@ from ...runtime.modules import path_of
 from ...runtime.specialise import specialise
 from ...runtime.threads import LEAST_BLOCK, available
 from ...runtime.tiers import BREAK_EVEN, COMPILED, tier_ahead
+from ...sweeps.sweep import prepared
 from ..kernel import GridKernel, grid_kernel
 from ..read import Content
 from ..scene import Scene
 from ..scene import scene as scene_of
+from ..stored import arguments_of
 from ..values import Value
 from . import estimate
 from .loops import Loop, loops_of
 from .steps import skipped_of, steps_of
+from .total import costs_of
 
 PROMISES = {
     "fast": "float32 throughout, for points far from singular ones: no promise next to a change point",
@@ -42,7 +47,8 @@ class Plan:
     Keys: `title, outputs, accuracy, promise, motion, inputs, points, designs, steps` (operations at each
     point after every pass), `skipped, loops, operations` (at each point, in all loops together), `run`
     (how: in plain Python or compiled, and what is cached), `time, memory, also` (peaks, pictures, ...),
-    `results`. `operations` and `loops` are None where no outputs are asked for.
+    `results`, `sweep` (of a store: its chunks, memory, disk), `total` (seconds of a first run and of later
+    ones, part by part). `operations` and `loops` are None where no outputs are asked for.
     """
 
     data: Mapping[str, Any]
@@ -85,7 +91,52 @@ def explain(scene: Scene | str | PathLike[str] | Mapping[str, Any]) -> Plan:
         "inputs": [_input(name, value) for name, value in content.inputs.items()],
     }
     data |= _grid(content) if content.outputs else dict.fromkeys(("points", "loops", "operations", "run"))
-    return Plan(data | {"also": _also(content), "results": content.data})
+    stored = _sweep(content)
+    costs = costs_of(content, data["run"], _cells(content), stored["disk"] if stored else 0)
+    total = {
+        "parts": [cost._asdict() for cost in costs],
+        "first": sum(cost.first for cost in costs),
+        "later": sum(cost.later for cost in costs),
+    }
+    results = content.data if content.store is None else content.store
+    return Plan(data | {"also": _also(content), "results": results, "sweep": stored, "total": total})
+
+
+def _sweep(content: Content) -> dict[str, Any] | None:
+    """The chunks of a scene that goes to a store, what they take in memory, and the disk for all of them."""
+    if content.store is None:
+        return None
+    wanted = arguments_of(content)
+    chunks = "auto" if content.chunks is None else content.chunks
+    made = prepared(
+        wanted.names, wanted.inputs, chunks, content.memory, content.branch, content.accuracy,
+        content.threads, wanted.reduce, wanted.peaks,
+    )  # fmt: skip
+    layout = made.layout
+    at_once = min(content.threads or available(), layout.at_once(content.memory), layout.chunks)
+    return {
+        "store": content.store,
+        "chunks": layout.chunks,
+        "chunk": layout.chunk,
+        "memory": at_once * layout.in_flight,
+        "disk": made.bytes,
+        "free": shutil.disk_usage(_existing(Path(content.store))).free,
+    }
+
+
+def _existing(path: Path) -> Path:
+    return next(parent for parent in path.absolute().parents if parent.exists())
+
+
+def _cells(content: Content) -> int:
+    """Numbers of a table of the results: a row for each point, a column for each axis and name."""
+    lengths = [len(v) for n, v in content.inputs.items() if isinstance(v, tuple)]
+    if not content.outputs:
+        return 0
+    if content.reduction is None:
+        return prod(lengths) * (len(lengths) + len(content.outputs) + 2)
+    rows = prod(lengths) // len(cast("tuple[float, ...]", content.inputs[content.reduction.axis]))
+    return rows * (len(lengths) - 1 + len(content.outputs) * (2 * len(content.reduction.kinds) + 1))
 
 
 def _output(name: str, content: Content) -> dict[str, str]:

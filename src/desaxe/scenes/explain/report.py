@@ -15,6 +15,8 @@ def plan_text(plan: Mapping[str, Any]) -> str:
     if plan["loops"] is not None:
         parts += [_skipped(plan), _passes(plan), _loops(plan), _how(plan)]
     parts += [_also(plan)] if plan["also"] else []
+    parts += [_sweep(plan)] if plan["sweep"] is not None else []
+    parts.append(_total(plan))
     return "\n\n".join(part for part in parts if part)
 
 
@@ -204,3 +206,24 @@ def _bytes(count: int) -> str:
 def _also(plan: Mapping[str, Any]) -> str:
     rows = [[one["what"], f"{one['count']:,} {one['of']}", one["how"]] for one in plan["also"]]
     return "\n".join(["Also", *(_cut(line) for line in table(rows, left=3))])
+
+
+def _sweep(plan: Mapping[str, Any]) -> str:
+    """The store that the results are swept into."""
+    one = plan["sweep"]
+    shape = " x ".join(f"{length} {name}" for name, length in one["chunk"].items()) or "one point"
+    rows = [
+        f"  chunks   {one['chunks']:,} of {shape}, written to {one['store']}",
+        f"  memory   {_bytes(one['memory'])} for the chunks in flight",
+        f"  disk     at most {_bytes(one['disk'])}; {_bytes(one['free'])} are free",
+    ]
+    return "\n".join(["Store", *map(_cut, rows)])
+
+
+def _total(plan: Mapping[str, Any]) -> str:
+    """Seconds of each part of a run, the first one and later ones apart."""
+    total = plan["total"]
+    rows = [["", "first run", "later runs"]]
+    rows += [[part["what"], _time(part["first"]), _time(part["later"])] for part in total["parts"]]
+    rows.append(["in all", f"about {_time(total['first'])}", f"about {_time(total['later'])}"])
+    return "\n".join(["Time of a run, in a new process", *table(rows, left=1)])

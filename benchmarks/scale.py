@@ -1,0 +1,222 @@
+"""How the cost of a sweep grows: `python -m benchmarks.scale --write` writes docs/scale.md.
+
+Every row is a process of its own, whose peak memory is the system's figure for it. Kernels are compiled
+before they are timed. `--most 1e9` goes on to larger sweeps, as far as the disk has room.
+"""
+
+import argparse
+import json
+import os
+import platform
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "scale.md"
+NAMES = ["V_C", "a_C"]
+SENSITIVE = [
+    "a_C",
+    "a_C_wrt_ec",
+    "a_C_wrt_AB",
+    "a_C_wrt_BC",
+    "a_C_wrt_ec_ec",
+    "a_C_wrt_ec_BC",
+    "a_C_wrt_BC_BC",
+]
+BEGIN, END = "<!-- written by `python -m benchmarks.scale --write`: begin -->", "<!-- end -->"
+FEW_CHUNKS, MANY_CHUNKS = 10, 400  # of the same million points
+
+
+def inputs(points: int) -> dict[str, Any]:
+    """A grid of so many points over theta, ec and BC, of which some cannot be assembled."""
+    side = max(2, round((points / 1000) ** 0.5)) if points < 10**7 else 100
+    theta = max(2, points // side**2)
+    return {
+        "theta": np.linspace(0.0, 2.0 * np.pi, theta), "ec": np.linspace(-0.15, 0.15, side), "AB": 0.125,
+        "BC": np.linspace(0.25, 0.5, side), "omega0": 157.08,
+    }  # fmt: skip
+
+
+def designs(points: int) -> dict[str, Any]:
+    """The same points with 720 angles of many designs, for reductions over theta."""
+    side = max(2, round((points / 720) ** 0.5))
+    return {
+        "theta": np.linspace(0.0, 2.0 * np.pi, 720), "ec": np.linspace(-0.15, 0.15, side), "AB": 0.125,
+        "BC": np.linspace(0.25, 0.5, side), "omega0": 157.08,
+    }  # fmt: skip
+
+
+def job(spec: dict[str, Any]) -> dict[str, float]:
+    """One measurement, in the process that it is measured in."""
+    import desaxe as dx
+
+    kind, points = spec["kind"], int(spec["points"])
+    if kind == "workers":
+        return {"seconds": _on_workers(points, spec["workers"]), "points": _size(designs(points))}
+    given = inputs(points) if kind == "stored" else designs(points)
+    options: dict[str, Any] = {"threads": spec.get("threads")}
+    if kind == "stored":
+        options["store"] = os.path.join(spec["folder"], "sweep.zarr")
+        if "chunk" in spec:
+            options["chunks"] = {"theta": spec["chunk"]}
+        warm = {**options, "store": os.path.join(spec["folder"], "warm.zarr"), "overwrite": True}
+        dx.sweep(NAMES, **warm, **inputs(10_000))
+    else:
+        options["reduce"] = {"theta": "absmax"}
+        dx.sweep(NAMES, **options, **designs(10_000))
+    start = time.perf_counter()
+    dx.sweep(NAMES, **options, **given)
+    seconds = time.perf_counter() - start
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    disk = sum(p.stat().st_size for p in Path(options["store"]).rglob("*")) if kind == "stored" else 0
+    return {"seconds": seconds, "memory": memory, "disk": disk, "points": _size(given)}
+
+
+def _size(given: dict[str, Any]) -> int:
+    return int(np.prod([np.size(value) for value in given.values()]))
+
+
+def _on_workers(points: int, workers: int) -> float:
+    from distributed import Client, LocalCluster
+
+    import desaxe as dx
+
+    with (
+        LocalCluster(
+            n_workers=workers, threads_per_worker=1, dashboard_address=None, silence_logs=50
+        ) as cluster,
+        Client(cluster) as client,
+    ):
+        way: dict[str, Any] = {"reduce": {"theta": ["absmax", "rms"]}, "client": client}
+        for _ in range(workers):  # each worker loads the kernel
+            dx.sweep(SENSITIVE, **way, **designs(points // 8))
+        found = []
+        for _ in range(3):
+            start = time.perf_counter()
+            dx.sweep(SENSITIVE, **way, **designs(points))
+            found.append(time.perf_counter() - start)
+    return min(found)
+
+
+def measured(spec: dict[str, Any]) -> dict[str, float]:
+    """The result of a measurement in a fresh process, its files in a folder that is removed."""
+    with tempfile.TemporaryDirectory(dir=spec.pop("at", None)) as folder:
+        command = [sys.executable, "-m", "benchmarks.scale", "--job", json.dumps({**spec, "folder": folder})]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise RuntimeError(done.stderr)
+    found: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
+    return found
+
+
+def all_measured(most: int, at: str) -> dict[str, Any]:
+    """Every table of the page."""
+    stored = [10**k for k in range(6, 11) if 10**k <= most]
+    reduced = [10**k for k in range(7, 12) if 10**k <= 10 * most]
+    found: dict[str, Any] = {"stored": [], "reduced": [], "workers": {}}
+    for points in stored:
+        found["stored"].append(measured({"kind": "stored", "points": points, "at": at}))
+        print("stored", found["stored"][-1], file=sys.stderr)
+    for points in reduced:
+        found["reduced"].append(measured({"kind": "reduced", "points": points}))
+        print("reduced", found["reduced"][-1], file=sys.stderr)
+    theta = inputs(10**6)["theta"].size
+    times = []
+    for count in (FEW_CHUNKS, MANY_CHUNKS):
+        spec = {"kind": "stored", "points": 10**6, "chunk": -(-theta // count), "threads": 1, "at": at}
+        times.append(min(measured(dict(spec))["seconds"] for _ in range(3)))
+    found["chunk"] = (times[1] - times[0]) / (MANY_CHUNKS - FEW_CHUNKS)
+    for workers in (1, 2):
+        found["workers"][workers] = measured({"kind": "workers", "points": 2 * 10**8, "workers": workers})
+        print("workers", found["workers"][workers], file=sys.stderr)
+    return found
+
+
+def text_of(found: dict[str, Any], at: str) -> str:
+    """The measured part of the page."""
+    one, two = (found["workers"][k]["seconds"] for k in (1, 2))
+    last, largest = found["stored"][-1], found["reduced"][-1]
+    rate, byte = last["points"] / last["seconds"], last["disk"] / last["points"]
+    fast = largest["points"] / largest["seconds"]
+    free = shutil.disk_usage(at).free
+    return "\n".join([
+        BEGIN,
+        "",
+        f"Measured on {platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}, "
+        "while the machine had other work: times vary by half between runs, memory and disk do not.",
+        "",
+        f"Stored: {', '.join(f'`{name}`' for name in NAMES)}, `status` and `margin` over theta, ec and BC.",
+        "",
+        "| points | time | points a second | peak memory of the process | disk |",
+        "|---|---|---|---|---|",
+        *(
+            f"| {row['points']:.0e} | {row['seconds']:.1f} s | {row['points'] / row['seconds']:.1e} | "
+            f"{row['memory'] / 1e6:.0f} MB | {row['disk'] / 1e6:,.0f} MB |"
+            for row in found["stored"]
+        ),
+        "",
+        "Reduced: the largest magnitude over 720 angles of each design, its angle, and what was skipped.",
+        "",
+        "| points | time | points a second | peak memory of the process |",
+        "|---|---|---|---|",
+        *(
+            f"| {row['points']:.0e} | {row['seconds']:.1f} s | {row['points'] / row['seconds']:.1e} | "
+            f"{row['memory'] / 1e6:.0f} MB |"
+            for row in found["reduced"]
+        ),
+        "",
+        f"Workers: {len(SENSITIVE)} names, first and second sensitivities among them, reduced over "
+        f"{found['workers'][1]['points']:.0e} points: {one:.1f} s on one Dask worker, {two:.1f} s on two, "
+        f"{one / two:.2f} times as fast.",
+        "",
+        f"A chunk costs {1e3 * found['chunk']:.0f} ms besides its points: to hand it out, look whether it is "
+        f"there, and write {len(NAMES) + 1} files that survive a power failure.",
+        "",
+        "What follows, at these rates:",
+        "",
+        f"* 1e9 points stored take {1e9 / rate / 60:.0f} min and {1e9 * byte / 1e9:.0f} GB, 1e10 points "
+        f"{1e10 / rate / 60:.0f} min and {1e10 * byte / 1e9:.0f} GB; {free / 1e9:.0f} GB were free here. "
+        "Memory does not grow with the points.",
+        f"* 1e10 points reduced take {1e10 / fast / 60:.0f} min, and next to no disk: reduce, or ask for the "
+        "best designs, unless every point is wanted.",
+        f"* Chunks of a million points or more keep the cost of chunks below "
+        f"{100 * found['chunk'] / (found['chunk'] + 1e6 / rate):.0f} % of a stored sweep; ten thousand "
+        f"points would be {100 * found['chunk'] / (found['chunk'] + 1e4 / rate):.0f} %.",
+        "* More workers pay while each has a core of its own and the disk keeps up: a stored sweep is bound "
+        "by compressing and writing, a reduced one by the cores.",
+        "",
+        END,
+    ])  # fmt: skip
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Measure, print the text, and write it into the page if asked to."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.scale", description=__doc__)
+    parser.add_argument("--most", type=float, default=1e8, help="points of the largest stored sweep")
+    parser.add_argument(
+        "--at", default=tempfile.gettempdir(), help="the folder for stores, removed afterwards"
+    )
+    parser.add_argument("--write", action="store_true", help="write docs/scale.md")
+    parser.add_argument("--job", help=argparse.SUPPRESS)
+    options = parser.parse_args(arguments)
+    if options.job:
+        print(json.dumps(job(json.loads(options.job))))
+        return 0
+    text = text_of(all_measured(int(options.most), options.at), options.at)
+    print(text)
+    if options.write:
+        page = PAGE.read_text(encoding="utf-8")
+        before, _, rest = page.partition(BEGIN)
+        PAGE.write_text(before + text + rest.partition(END)[2], encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
