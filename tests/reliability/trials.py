@@ -1,5 +1,5 @@
 """All kinds of trials."""
 
-from tests.reliability import files
+from tests.reliability import cache, files, hostile, processes
 
-TRIALS = [*files.TRIALS]
+TRIALS = [*files.TRIALS, *cache.TRIALS, *processes.TRIALS, *hostile.TRIALS]

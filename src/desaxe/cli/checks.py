@@ -8,7 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from ..support.extras import needed
+from ..support.extras import explained
 from .parser import add_command
 
 _DERIVE = """\
@@ -34,7 +34,7 @@ def derive(words: list[str]) -> int:
         return _own(words)
     run = import_module("desaxe.derive.__main__").main
     if not {"-h", "--help"} & set(words):
-        with needed("desaxe derive"):
+        with explained("desaxe derive"):
             code: int = run(words)
             return code
     shown = io.StringIO()

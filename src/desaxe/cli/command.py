@@ -6,10 +6,15 @@ with exit code 2.
 
 import argparse
 import os
+import signal
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import suppress
+from typing import Any
 
-from ..support.extras import MissingExtraError, needed
+from ..support.extras import MissingExtraError, explained
+from ..support.interrupts import is_at_work
+from .cache import add_cache
 from .checks import add_audit, add_derive, add_doctor, derive
 from .errata import add_errata
 from .fit import add_fit
@@ -19,7 +24,13 @@ from .scene import add_compile, add_explain, add_explore, add_run, add_scene
 from .sweep import add_sweep
 from .words import UsageError
 
-INTERRUPTED = 130  # as a shell reports it
+INTERRUPTED, TERMINATED = 130, 143  # as a shell reports them
+
+
+class Terminated(BaseException):
+    """The process was told to end (SIGTERM): it stops as by Ctrl-C, and leaves nothing half-written."""
+
+
 COMMANDS = (
     add_point,
     add_scene,
@@ -32,6 +43,7 @@ COMMANDS = (
     add_derive,
     add_errata,
     add_audit,
+    add_cache,
     add_doctor,
 )
 
@@ -39,6 +51,7 @@ COMMANDS = (
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; the exit code: 0 done, 1 a check failed, 2 a complaint."""
     words = list(sys.argv[1:] if arguments is None else arguments)
+    _heed_termination()
     try:
         code = _run(words)
         sys.stdout.flush()
@@ -50,10 +63,32 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     except KeyboardInterrupt:
         print("desaxe: interrupted", file=sys.stderr)
-        return INTERRUPTED
+        return _leave(INTERRUPTED)
+    except Terminated:
+        print("desaxe: terminated", file=sys.stderr)
+        return _leave(TERMINATED)
     except (UsageError, MissingExtraError, ValueError, TypeError, OSError, MemoryError) as error:
         print(f"desaxe: error: {_one_line(error)}", file=sys.stderr)
         return 2
+
+
+def _heed_termination() -> None:
+    """Turn SIGTERM, which would end the process at once, into an exception of the main thread."""
+
+    def stop(number: int, frame: Any) -> None:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        raise Terminated
+
+    with suppress(ValueError):  # not in the main thread
+        signal.signal(signal.SIGTERM, stop)
+
+
+def _leave(code: int) -> int:
+    """The exit code; the process ends here where a compiler is still at work, which Python would await."""
+    if is_at_work():
+        sys.stdout.flush()
+        os._exit(code)
+    return code
 
 
 def _run(words: list[str]) -> int:
@@ -67,7 +102,7 @@ def _run(words: list[str]) -> int:
     if run is None:
         parser.print_help()
         return 0
-    with needed(f"desaxe {words[0]}"):
+    with explained(f"desaxe {words[0]}"):
         return run(options)
 
 

@@ -16,6 +16,7 @@ from ..mechanism.names import LENGTHS
 from ..mechanism.spelling import meant
 from ..peaks.designs import KINDS
 from ..peaks.peak import peak
+from ..support.shown import shown
 from .averages import AVERAGES, OwnMeasure, angle_of, at_angle, average
 from .events.arrays import events_of_arrays
 from .number_or_array import sum_of_three
@@ -73,7 +74,7 @@ def checked(measure: Any) -> Measure:
         )
     there = f"{'There' if hint else 'there'} are {', '.join(UNITS)}"
     raise ValueError(
-        f"{measure!r} is no quantity of a design; {hint}{there} and the peaks, "
+        f"{shown(measure)} is no quantity of a design; {hint}{there} and the peaks, "
         f'such as ("absmax", "a_C"), of the kinds {", ".join((*KINDS, *AVERAGES))}, '
         'and ("at", "60 deg", "a_C")'
     )

@@ -26,6 +26,7 @@ from ..mechanism.ranges import Between, PlusMinus, RangeWarning, ends_of
 from ..runtime.request import Request, as_number, check_common, check_inputs, request
 from ..runtime.specialise import specialise
 from ..support.answer import answering
+from ..support.checks import real_number, whole_number
 from ..support.quantity_text import PLUS_MINUS
 from .balls import BITS, PARTLY, Enclosure, Interval, ball, enclosures
 
@@ -88,8 +89,9 @@ def enclose(
     quantity(name, omega is not None)
     if name == "status":
         raise ValueError("status is no real number: the status of enclose tells it")
-    if not rtol > 0.0 or boxes < 1:
-        raise ValueError(f"rtol = {rtol}, boxes = {boxes}: more than nothing is wanted")
+    if not real_number("rtol", rtol) > 0.0:
+        raise ValueError(f"rtol = {rtol}: more than nothing is wanted")
+    whole_number("boxes", boxes, 1, 10**7)
     given = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
     check_common(given, branch)
     without_loads("enclose", loads)

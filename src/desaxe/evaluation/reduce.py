@@ -14,6 +14,7 @@ from ..runtime.kernels import KernelKey, kernel_for, key_of
 from ..runtime.request import Request
 from ..runtime.threads import in_blocks
 from ..runtime.tiers import COMPILED, tier_of
+from ..support.shown import shown
 from .labels import attributes, input_attributes, labelled, provenance
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def reduction_of(asked: Any, dimensions: Sequence[str], names: Sequence[str]) ->
     """`{"theta": "absmax"}` or `{"theta": ["max", "mean"]}`, checked."""
     if not isinstance(asked, Mapping) or len(asked) != 1:
         raise TypeError(
-            f'reduce = {asked!r}: one axis and what is taken of it, such as {{"theta": "absmax"}}'
+            f'reduce = {shown(asked)}: one axis and what is taken of it, such as {{"theta": "absmax"}}'
         )
     axis, kinds = next(iter(asked.items()))
     if axis not in dimensions:

@@ -15,6 +15,7 @@ from ctypes import CFUNCTYPE, c_char_p, c_int64
 from pathlib import Path
 from typing import Any
 
+from ..support import private
 from ..support.forks import fork_safe_lock
 from ..support.interrupts import finished
 from . import cache as _cache
@@ -111,6 +112,21 @@ def _from_disk(path: Path) -> Loaded | None:
         code = read_code(path.name, _cache.read_bytes(path))
         return load(code) if code is not None else None
     return None
+
+
+def faults(folder: Path) -> dict[Path, str]:
+    """The files of the cache folder that would not be loaded here, and why not."""
+    found = {}
+    for entry in _cache.entries(folder):
+        if entry.path.suffix == SUFFIX:
+            try:
+                whole = read_code(entry.path.name, private.read_bytes(entry.path)) is not None
+                why = "" if whole else "damaged, or made by another version or for another machine"
+            except OSError as error:
+                why = str(error).partition(": ")[2] or str(error)
+            if why:
+                found[entry.path] = why
+    return found
 
 
 def read_code(name: str, data: bytes) -> Code | None:

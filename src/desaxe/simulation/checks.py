@@ -46,6 +46,10 @@ def design_values(given: Mapping[str, Any]) -> dict[str, float]:
         value = given.get(name)
         if value is None and name in CENTRES:
             continue
+        if callable(value) and name not in ("F_X", "F_Y"):
+            raise TypeError(
+                f"{name} = {shown(value)}: a number is wanted; torque, F_X and F_Y may be functions"
+            )
         if callable(value):
             values[name] = nan  # it varies: nothing may be folded
         else:
@@ -176,7 +180,10 @@ def read_times(times: Any, t_end: float) -> Any:
     if times is None:
         return None
     try:
-        array = np.array(times, dtype=np.float64)
+        array = np.array(times)
+        if array.dtype.kind not in "fiu":
+            raise TypeError
+        array = array.astype(np.float64)
     except (ValueError, TypeError, OverflowError):
         raise TypeError(f"times = {shown(times)}: a row of finite instants in s is wanted") from None
     if array.ndim != 1 or not array.size or not np.isfinite(array).all():

@@ -83,8 +83,13 @@ def marks_of(model: Model, until: tuple[float, ...]) -> list[Mark]:
     return marks
 
 
-def events_in(step: Step, model: Model, marks: list[Mark], left: float) -> list[Found]:
-    """All events of a step, in order; `left` is the angle that the stretch started from."""
+def events_in(
+    step: Step, model: Model, marks: list[Mark], left: float, heed: Callable[[], None]
+) -> list[Found]:
+    """All events of a step, in order; `left` is the angle that the stretch started from.
+
+    `heed` is called for each passage: it raises where the time for the simulation is over.
+    """
     samples = _sampled(step, [step.t + part * (step.end - step.t) for part in (0.0, *INSIDE)] + [step.end])
     stops = _changes(step, V, samples)
     if stops:  # what lies beyond one may be reached twice
@@ -92,7 +97,9 @@ def events_in(step: Step, model: Model, marks: list[Mark], left: float) -> list[
     found = [Found(stop, STANDSTILL, V) for stop in stops]
     thetas = [model.coordinate.place(q)[0] for q in samples.y[:, Q].tolist()]
     for mark in marks:
-        found += _passages(step, model, mark, samples, thetas, left)
+        for passage in _passages(step, model, mark, samples, thetas, left):
+            heed()
+            found.append(passage)
         if mark.kind == "limit" and model.coordinate.half:
             found += _just_ahead(step, model, mark)
     if isinstance(step.law, Rubbing):

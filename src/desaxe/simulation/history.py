@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
-from math import copysign, isfinite, nan
+from math import copysign, inf, isfinite, nan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -120,6 +120,8 @@ def energy_residual(model: Model, accepted: Sequence[tuple[float, Array]]) -> fl
     kinetic_of = _energies(model)
     rows = [(*kinetic_of(float(y[Q]), float(y[V])), float(y[W])) for _, y in accepted]
     rows = [row for row in rows if isfinite(sum(row))]
+    if not rows:  # energies beyond every double
+        return inf
     first = sum(rows[0][:2])
     residual = max(abs(kinetic + potential - work - first) for kinetic, potential, work in rows)
     turned = sum(abs(b[2] - a[2]) for a, b in pairwise(rows))

@@ -10,6 +10,7 @@ from scipy import integrate
 
 from ..support.deadline import Deadline
 from .checks import SMALL
+from .coordinate import TURN
 from .equations import Law, Resting, Smooth, State, state_of
 from .events import (
     JAMMED,
@@ -33,6 +34,7 @@ from .result import DONE, FAILED, JAMS, LIMIT, REST, Event
 
 Array = NDArray[np.float64]
 SAME = 1e-9  # of a step: events so close together are one instant
+MOST_TURNS = 100_000  # in one step
 AT_LIMIT = 1e-9  # rad: so near to a limit a load on a massless slider has grown without bound
 CHATTER = 20  # standstills in a row, all within a millionth of the time
 
@@ -233,7 +235,15 @@ class Run:
                 return
             self.next_step = solver.t - self.t
             step = Step(law, self.t, self.y, solver.dense_output(), solver.t)
-            if self._meet_all(step):
+            turns = abs(float(solver.y[Q]) - float(self.y[Q])) / TURN
+            if not turns <= MOST_TURNS:
+                self._fail(law, f"{turns:.3g} turns in one step, at most {MOST_TURNS}: give max_step=")
+                return
+            try:
+                if self._meet_all(step):
+                    return
+            except TimeoutError as late:
+                self._fail(law, str(late))
                 return
             self._accept(Piece(step.t, step.end, step.inside, law), solver.y.copy())
             self.left = inf
@@ -260,10 +270,15 @@ class Run:
 
     def _meet_all(self, step: Step) -> bool:
         """Note the events of a step; whether the motion is cut at one of them."""
-        events = [e for e in events_in(step, self.model, self.marks, self.left) if e.t <= self.t_end]
-        while events:
-            now = [event for event in events if event.t - events[0].t <= SAME * (step.end - step.t)]
-            events = events[len(now) :]
+        found = events_in(step, self.model, self.marks, self.left, self.deadline.check)
+        events = [event for event in found if event.t <= self.t_end]
+        place = 0
+        while place < len(events):
+            last = events[place].t + SAME * (step.end - step.t)
+            start = place
+            while place < len(events) and events[place].t <= last:
+                place += 1
+            now = events[start:place]
             if isinstance(step.law, Rubbing) or any(self._ends_stretch(event.mark) for event in now):
                 self._cut_at(now, step)
                 return True

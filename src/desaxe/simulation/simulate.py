@@ -28,6 +28,7 @@ from .one_design import Run, Tolerance
 from .result import Simulation
 
 TINY = 5e-324
+LEAST_ATOL = 1e-100  # with none at all a state of 0 would have no scale
 
 
 @with_known_inputs
@@ -155,7 +156,10 @@ def _check_many(method: str, atol: Any, until: Any) -> None:
 def _atol(atol: Any, rtol: float, model: Model, theta: float, omega: float, t_end: float) -> Any:
     """Absolute tolerances for (q, v, W)."""
     if atol is not None:
-        number = np.array([scalar("atol", a, "1", 0.0, "a number >= 0") for a in np.atleast_1d(atol)])
+        several = atol if isinstance(atol, (list, tuple, np.ndarray)) else [atol]
+        number = np.array(
+            [scalar("atol", a, "1", LEAST_ATOL, f"a number, at least {LEAST_ATOL}") for a in several]
+        )
         if number.size not in (1, 3):
             raise ValueError(f"atol: one number or three (angle, v, work), got {number.size}")
         return np.broadcast_to(number, 3)

@@ -35,11 +35,18 @@ class MissingExtraError(ImportError):
 def needed(what: str, extra: str | None = None) -> Iterator[None]:
     """Turn the ImportError of an optional dependency into the line that says what to install.
 
-    The extra is the one that has the dependency, or the one named here.
+    The extra is the one that has the dependency, or the one named here. The block imports, and nothing else:
+    an interrupt waits for its end, since a package that is imported halfway cannot be imported again.
     """
+    with put_off(), explained(what, extra):
+        yield
+
+
+@contextmanager
+def explained(what: str, extra: str | None = None) -> Iterator[None]:
+    """As `needed`, for a block that does more than to import."""
     try:
-        with put_off():  # a package that is imported halfway cannot be imported again
-            yield
+        yield
     except ModuleNotFoundError as error:
         missing = error.name or ""
         package = missing if missing in EXTRAS else missing.partition(".")[0]

@@ -17,6 +17,14 @@ from typing import Any, TypeVar
 T = TypeVar("T")
 
 
+_NAME = "desaxe-work"
+
+
+def is_at_work() -> bool:
+    """True while work goes on behind a caller that was interrupted."""
+    return any(thread.name == _NAME for thread in threading.enumerate())
+
+
 def _is_main() -> bool:
     return threading.current_thread() is threading.main_thread()
 
@@ -57,7 +65,7 @@ def finished(work: Callable[[], T]) -> T:
         except BaseException as raised:
             error.append(raised)
 
-    thread = threading.Thread(target=run, name="desaxe-work")
+    thread = threading.Thread(target=run, name=_NAME)
     with put_off():
         thread.start()
     thread.join()

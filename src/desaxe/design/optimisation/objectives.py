@@ -11,6 +11,7 @@ from ...mechanism.names import LENGTHS
 from ...runtime.request import as_number, check_inputs
 from ...support.checks import real_number
 from ...support.deadline import Deadline
+from ...support.shown import shown
 from ..measures import UNITS, Measure, checked, text_of, unit_of
 from .kinks import sides_of
 from .problem import EQUAL, LOWER, UPPER, Limit, Piece, Space
@@ -66,7 +67,7 @@ def space_of(over: Mapping[str, Any], fixed: Mapping[str, Any], branch: int, dea
 
 def _check_mapping(name: str, given: Any, example: str) -> None:
     if not isinstance(given, Mapping):
-        raise TypeError(f"{name} = {given!r}: a dict is wanted, such as {example}")
+        raise TypeError(f"{name} = {shown(given)}: a dict is wanted, such as {example}")
 
 
 def _pair(name: str, bounds: Any) -> tuple[float, float]:

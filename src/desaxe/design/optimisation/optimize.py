@@ -80,7 +80,7 @@ def optimize(
     deadline = Deadline("optimize", timeout)
     goals = goals_of(maximize, minimize)
     space = space_of(over, fixed, branch, deadline)
-    limits = limits_of(keep or {})
+    limits = limits_of({} if keep is None else keep)
     if len(goals) > 1:
         return front(goals, space, limits, starts, seed, points)
     return solved(goals[0], space, limits, starts, seed)

@@ -83,8 +83,8 @@ def synthesize(
     if len(given) != 1:
         got = " and ".join(given) or "none"
         raise TypeError(f"synthesize: just one of {', '.join(THIRDS)} is wanted, got {got}")
-    if slow_stroke not in (1, -1):
-        raise ValueError(f"slow_stroke = {slow_stroke!r}: it is +1 (outward) or -1 (inward)")
+    if not isinstance(slow_stroke, (int, float)) or slow_stroke not in (1, -1):
+        raise ValueError(f"slow_stroke = {shown(slow_stroke)}: it is +1 (outward) or -1 (inward)")
     (third,) = given
     H, ratio, value = (
         _wish(n, v) for n, v in (("stroke", stroke), ("time_ratio", time_ratio), (third, thirds[third]))

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from itertools import product
-from math import inf, sqrt
+from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -183,13 +183,18 @@ def tolerance(
 
 
 def _check(distribution: str, sigmas: Any, samples: Any, sobol: Any, seed: Any) -> None:
-    if distribution not in DISTRIBUTIONS:
-        raise ValueError(f"distribution = {distribution!r}: it is one of {', '.join(DISTRIBUTIONS)}")
-    if not (isinstance(sigmas, (int, float)) and 0.0 < sigmas < inf):
-        raise ValueError(f"sigmas = {sigmas!r}: a finite number above 0 is wanted")
+    if not isinstance(distribution, str) or distribution not in DISTRIBUTIONS:
+        raise ValueError(f"distribution = {shown(distribution)}: it is one of {', '.join(DISTRIBUTIONS)}")
+    if not (isinstance(sigmas, (int, float)) and 1e-6 <= sigmas <= 1e6):
+        raise ValueError(f"sigmas = {shown(sigmas)}: a finite number above 0 is wanted, from 1e-6 to 1e6")
     if samples is not None:
         whole_number("samples", samples, 2, MOST_SAMPLES)
-    if not isinstance(sobol, int) or not 0 <= sobol <= MOST_BASE or sobol & (sobol - 1):
+    if (
+        isinstance(sobol, bool)
+        or not isinstance(sobol, int)
+        or not 0 <= sobol <= MOST_BASE
+        or sobol & (sobol - 1)
+    ):
         raise ValueError(f"sobol = {shown(sobol)}: a power of two is wanted, at most {MOST_BASE}, or 0")
     whole_number("seed", seed, 0, 2**32 - 1)
 

@@ -1,0 +1,79 @@
+"""`desaxe cache`: the folder where compiled kernels are kept: list, verify, trim, clear."""
+
+import argparse
+import time
+from typing import Any
+
+from .parser import add_command
+
+_CACHE = """\
+Compiled kernels are kept in $DESAXE_CACHE_DIR, or in the user's cache folder, for the next process: machine
+code, each file with a digest, readable by its owner alone. The least recently used leave when the folder
+grows beyond its limit ($DESAXE_CACHE_MB, 256 by default). Whatever is removed is compiled anew when needed.
+
+examples:
+  desaxe cache             where it is and what is in it
+  desaxe cache verify      exit code 1 where a file is damaged, or could have been written by somebody else
+  desaxe cache trim        remove what is damaged, of another machine or version, or beyond the limit
+  desaxe cache clear       remove all of it"""
+
+
+def add_cache(commands: Any) -> None:
+    """Add `desaxe cache`."""
+    parser = add_command(commands, "cache", "the folder of compiled kernels", _CACHE, _cache)
+    parser.add_argument(
+        "action",
+        nargs="?",
+        default="list",
+        choices=("list", "verify", "trim", "clear"),
+        help="list by default",
+    )
+
+
+def _cache(options: argparse.Namespace) -> int:
+    from ..runtime import cache
+
+    folder = cache.folder().path
+    print(folder)
+    if options.action == "list":
+        return _list(folder)
+    if options.action == "clear":
+        print(f"{cache.clear(folder)} files removed")
+        return 0
+    return _verify(folder) if options.action == "verify" else _trim(folder)
+
+
+def _list(folder: Any) -> int:
+    from ..runtime import cache
+
+    found = cache.entries(folder)
+    for entry in reversed(found):
+        used = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.used))
+        print(f"{used}  {entry.size / 1e3:9.1f} kB  {entry.path.name}")
+    size = sum(entry.size for entry in found)
+    print(f"{len(found)} files, {size / 1e6:.1f} MB of at most {cache.limit() / 1e6:.0f} MB")
+    return 0
+
+
+def _verify(folder: Any) -> int:
+    from ..runtime.modules import faults
+
+    found = faults(folder)
+    for path, why in found.items():
+        print(f"{path.name}: {why}")
+    print(f"{len(found)} files will not be used" if found else "every file is whole and private")
+    return 1 if found else 0
+
+
+def _trim(folder: Any) -> int:
+    from ..runtime import cache
+    from ..runtime.modules import faults
+
+    removed = [*faults(folder)]
+    for path in removed:
+        path.unlink(missing_ok=True)
+    removed += cache.trim(folder / "none")
+    for path in removed:
+        print(path.name)
+    print(f"{len(removed)} files removed")
+    return 0

@@ -1,0 +1,190 @@
+"""Trials of input: values that nobody should give, to every public call.
+
+A call may answer, or refuse with a ValueError or TypeError that names the input; MemoryError and TimeoutError
+are refusals, too. Anything else, a warning included, is a crash, and ten seconds without an end are a hang.
+"""
+
+import datetime
+import signal
+import traceback
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+from random import Random
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import desaxe as dx
+from tests.reliability.rig import CRASHED, GOOD, HUNG, Trial, Verdict
+
+SECONDS = 20
+LENGTHS = {"ec": 0.01, "AB": 0.125, "BC": 0.35}
+MACHINE = {**LENGTHS, "omega0": 157.08}
+VALUES: list[Any] = [
+    "x",
+    "",
+    "1e400 mm",
+    "1e99999999 mm",
+    "1 mm 2",
+    "nan",
+    "9" * 5000,
+    b"1",
+    [],
+    (),
+    {},
+    set(),
+    np.array([]),
+    np.array(["a"]),
+    [1, "a"],
+    [[1.0], [1.0, 2.0]],
+    1j,
+    [1j],
+    float("nan"),
+    float("inf"),
+    -1.0,
+    0.0,
+    5e-324,
+    1e-300,
+    1e300,
+    10**400,
+    10**5000,
+    -(10**400),
+    True,
+    object(),
+    np.timedelta64(1, "s"),
+    np.datetime64("2020"),
+    datetime.datetime(2020, 1, 1),
+    datetime.timedelta(1),
+    lambda x: x,
+    np.ones((2, 2), dtype=complex),
+    range(0),
+    (0.0, 1e16),
+    (1.0, 0.0),
+    (0.0,),
+    ("a", "b"),
+    (None, 1.0),
+    (float("nan"), 1.0),
+    10**12,
+    "=1+1",
+    "../x",
+    "\x00",
+]
+
+
+class Call(NamedTuple):
+    """A public call that is right, and the inputs of it that are exchanged."""
+
+    function: Callable[..., Any]
+    arguments: tuple[Any, ...]
+    inputs: dict[str, Any]
+    also: tuple[str, ...] = ()  # inputs that are not given in the right call
+
+
+@cache
+def calls() -> dict[str, Call]:
+    return {
+        "evaluate": Call(
+            dx.evaluate, ("a_C",), {"theta": 1.0, **MACHINE}, ("branch", "accuracy", "alpha", "m_rod")
+        ),
+        "evaluate arrays": Call(
+            dx.evaluate, ("a_C",), {"theta": [0.0, 1.0], **MACHINE}, ("out", "threads", "branch")
+        ),
+        "grid": Call(
+            dx.grid, ("a_C",), {"theta": [0.0, 1.0], **MACHINE}, ("reduce", "alpha", "accuracy", "out")
+        ),
+        "peak": Call(dx.peak, ("a_C",), dict(MACHINE), ("theta", "kind", "accuracy", "threads", "branch")),
+        "inverse": Call(dx.inverse, (), {"Y": 0.3, **LENGTHS}, ("branch", "V_C", "a_C")),
+        "events": Call(dx.events, (), dict(LENGTHS)),
+        "feasibility": Call(dx.feasibility, (), dict(LENGTHS)),
+        "harmonics": Call(dx.harmonics, ("a_C",), dict(MACHINE)),
+        "enclose": Call(dx.enclose, ("Y",), {"theta": 1.0, **LENGTHS}, ("boxes", "rtol", "branch")),
+        "synthesize": Call(
+            dx.synthesize, (), {"stroke": 0.1, "time_ratio": 1.1, "BC": 0.3}, ("slow_stroke",)
+        ),
+        "tolerance": Call(
+            dx.tolerance,
+            ("stroke",),
+            {"ec": (0.02, 1e-4), "AB": 0.04, "BC": 0.064, "sobol": 0, "samples": 50},
+            ("seed", "sigmas", "distribution", "branch"),
+        ),
+        "simulate": Call(
+            dx.simulate,
+            (),
+            {"torque": 1.0, "t_end": 0.01, "I_crank": 0.1, **LENGTHS, "timeout": 5.0},
+            (
+                "theta0",
+                "omega_start",
+                "rtol",
+                "atol",
+                "method",
+                "times",
+                "until",
+                "max_step",
+                "max_steps",
+                "mu",
+            ),
+        ),
+        "optimize": Call(
+            dx.optimize,
+            (),
+            {"maximize": "stroke", "over": {"ec": (0.0, 0.1)}, "AB": 0.125, "BC": 0.35, "timeout": 5.0},
+            ("minimize", "keep", "starts", "seed", "points", "branch"),
+        ),
+    }
+
+
+class _Late(BaseException):
+    pass
+
+
+@contextmanager
+def within(seconds: int) -> Iterator[None]:
+    def late(number: int, frame: object) -> None:
+        raise _Late
+
+    before = signal.signal(signal.SIGALRM, late)
+    signal.alarm(seconds)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def judged(call: str, name: str, value: Any) -> Verdict:
+    function, arguments, inputs, _ = calls()[call]
+    try:
+        told = f"{call}: {name} = {value!r:.60}"
+    except ValueError:
+        told = f"{call}: {name} = a huge number"
+    try:
+        with within(SECONDS), warnings.catch_warnings():
+            warnings.simplefilter("error")
+            function(*arguments, **{**inputs, name: value})
+    except _Late:
+        return Verdict(HUNG, told)
+    except (ValueError, TypeError, MemoryError, TimeoutError) as error:
+        last = traceback.extract_tb(error.__traceback__)[-1]
+        ours = "/desaxe/" in last.filename
+        words = {name, call.split()[0], *inputs, "M_eff", "no quantity"}
+        named = any(word in str(error) for word in words) or isinstance(error, (MemoryError, TimeoutError))
+        return (
+            GOOD if ours and named else Verdict(CRASHED, f"{told}: {error} ({last.filename}:{last.lineno})")
+        )
+    except Exception as error:
+        last = traceback.extract_tb(error.__traceback__)[-1]
+        where = f"{last.filename}:{last.lineno}"
+        return Verdict(CRASHED, f"{told}: {type(error).__name__}: {error} ({where})")
+    return GOOD
+
+
+def a_bad_value(folder: Path, random: Random) -> Verdict:
+    call = random.choice(list(calls()))
+    name = random.choice([*calls()[call].inputs, *calls()[call].also])
+    return judged(call, name, random.choice(VALUES))
+
+
+TRIALS = [Trial("a bad value for an input of a public call", a_bad_value, 25, 2000)]

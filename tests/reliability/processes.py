@@ -1,0 +1,189 @@
+"""Trials of processes: forks after threads were used, interrupts at any moment, locks that are held."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from functools import cache
+from pathlib import Path
+from random import Random
+
+from tests.reliability.rig import CRASHED, GOOD, HUNG, WRONG, Trial, Verdict
+
+START = """
+import multiprocessing, os, signal, sys, threading, time
+import numpy as np
+import desaxe as dx
+design = dict(ec=0.01, AB=0.125, BC=0.35, omega0=157.08)
+theta = np.linspace(0.0, 6.0, 200_000)
+
+def value():
+    return float(dx.evaluate("a_C", theta=theta, threads=2, **design).sum())
+"""
+FORKS = {
+    "os.fork": """
+number = os.fork()
+if not number:
+    os._exit(0 if value() == first else 3)
+code = os.waitstatus_to_exitcode(os.waitpid(number, 0)[1])
+""",
+    "Process": """
+def work():
+    sys.exit(0 if value() == first else 3)
+child = multiprocessing.get_context("fork").Process(target=work)
+child.start(); child.join(); code = child.exitcode
+""",
+    "Pool": """
+def work(k):
+    return value()
+with multiprocessing.get_context("fork").Pool(2) as pool:
+    code = 0 if set(pool.map(work, range(4))) == {first} else 3
+""",
+    "while a thread computes": """
+other = threading.Thread(target=lambda: [value() for _ in range(20)])
+other.start()
+number = os.fork()
+if not number:
+    os._exit(0 if value() == first else 3)
+code = os.waitstatus_to_exitcode(os.waitpid(number, 0)[1])
+other.join()
+""",
+    "while a thread compiles": """
+other = threading.Thread(target=lambda: dx.evaluate("V_C_wrt_ec", theta=theta, **design))
+other.start()
+time.sleep(0.05)
+number = os.fork()
+if not number:
+    os._exit(0 if value() == first else 3)
+code = os.waitstatus_to_exitcode(os.waitpid(number, 0)[1])
+other.join()
+""",
+    "a fork in a fork": """
+number = os.fork()
+if not number:
+    again = value() == first
+    inner = os.fork()
+    if not inner:
+        os._exit(0 if value() == first else 3)
+    os._exit(os.waitstatus_to_exitcode(os.waitpid(inner, 0)[1]) if again else 3)
+code = os.waitstatus_to_exitcode(os.waitpid(number, 0)[1])
+""",
+}
+
+
+def run(program: str, cache_folder: Path, seconds: float, **environment: str) -> tuple[int | None, str, str]:
+    """A program in a process of its own: exit code, None where it had to be killed, and what it printed."""
+    own = {**os.environ, "DESAXE_TIER": "compiled", "DESAXE_CACHE_DIR": str(cache_folder), **environment}
+    process = subprocess.Popen(
+        [sys.executable, "-c", program], env=own, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    try:
+        out, error = process.communicate(timeout=seconds)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.communicate()
+        return None, "", ""
+    return process.returncode, out, error
+
+
+@cache
+def warm() -> Path:
+    """A cache folder that has the kernel of `START`."""
+    folder = Path(os.environ["DESAXE_CACHE_DIR"]) / "reliability"
+    run(START + "value()", folder, 120.0)
+    return folder
+
+
+def fork_after_threads(folder: Path, random: Random) -> Verdict:
+    way = random.choice(list(FORKS))
+    code, _, error = run(f"{START}\nfirst = value()\n{FORKS[way]}\nsys.exit(code)", warm(), 60.0)
+    if code is None:
+        return Verdict(HUNG, way)
+    return GOOD if code == 0 else Verdict(WRONG if code == 3 else CRASHED, f"{way}: {code} {error[-300:]}")
+
+
+WORKS = {
+    "compile": 'dx.evaluate(["Y_wrt_ec", "V_C_wrt_BC"], theta=theta, **design)',
+    "grid": 'dx.grid("a_C", theta=theta[::10], ec=np.linspace(0, 0.1, 2000), AB=0.125, BC=0.35, omega0=1.0, '
+    'reduce={"theta": "max"})',
+    "peaks": 'dx.peak("a_C", ec=np.linspace(0, 0.2, 200_000), AB=0.125, BC=0.35, omega0=1.0)',
+    "simulate": "dx.simulate(torque=lambda t, theta, omega: 1.0 - 0.01 * omega, t_end=500.0, I_crank=0.01, "
+    "m_slider=1.0, AB=0.125, BC=0.35, ec=0.01)",
+    "first imports": 'dx.grid("a_C", theta=[0.0, 1.0], ec="1 mm", AB=0.125, BC=0.35, omega0=1.0)',
+}
+INTERRUPTED = """
+print("ready", flush=True)
+begun = True
+try:
+    {work}
+    print("done", flush=True)
+except KeyboardInterrupt:
+    print("stopped", flush=True)
+assert abs(value() - first) == 0.0
+assert dx.grid("Y", theta=[0.0], ec="1 mm", AB=1.0, BC=2.0, omega0=1.0)["Y"].size == 1
+print("usable", flush=True)
+"""
+
+
+def interrupted(folder: Path, random: Random) -> Verdict:
+    """SIGINT at some moment: the call stops within a second, and the next one is right."""
+    name = random.choice(list(WORKS))
+    program = f"{START}\nfirst = value()\n{INTERRUPTED.format(work=WORKS[name])}"
+    place = folder if name == "compile" else warm()  # in an empty folder it compiles
+    own = {**os.environ, "DESAXE_TIER": "compiled", "DESAXE_CACHE_DIR": str(place)}
+    process = subprocess.Popen(
+        [sys.executable, "-c", program], env=own, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    assert process.stdout is not None
+    process.stdout.readline()
+    time.sleep(random.uniform(0.0, 1.5))
+    sent = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    told = process.stdout.readline()
+    waited = time.monotonic() - sent
+    try:
+        out, error = process.communicate(timeout=120.0)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.communicate()
+        return Verdict(HUNG, f"{name}: {told}")
+    if "stopped" not in told:  # it was done before, and the interrupt came afterwards
+        return GOOD if "done" in told else Verdict(CRASHED, f"{name}: {error[-300:]}")
+    if "usable" not in out:
+        return Verdict(WRONG, f"{name}: the next call: {error[-300:]}")
+    return GOOD if waited < LATE else Verdict(HUNG, f"{name}: stopped after {waited:.1f} s")
+
+
+LATE = 4.0  # seconds: one, with room for a machine that does other things as well
+
+
+def a_lock_for_ever(folder: Path, random: Random) -> Verdict:
+    """Another process holds the lock of a kernel: told after some seconds, and done without it."""
+    program = f"""{START}
+import fcntl
+from desaxe.runtime import cache, modules
+cache.WAIT = 1.0
+path_of = modules.path_of
+def held(kind, text):
+    path = path_of(kind, text)
+    global keeper
+    keeper = os.open(path.with_suffix(".lock"), os.O_RDWR | os.O_CREAT)
+    fcntl.flock(keeper, fcntl.LOCK_EX)
+    return path
+modules.path_of = held
+import warnings
+with warnings.catch_warnings(record=True) as told:
+    warnings.simplefilter("always")
+    value()
+assert any("another process has held" in str(one.message) for one in told), told
+"""
+    code, _, error = run(program, folder, 60.0)
+    return Verdict(HUNG) if code is None else GOOD if code == 0 else Verdict(WRONG, error[-300:])
+
+
+TRIALS = [
+    Trial("fork after a threaded call", fork_after_threads, 2, 30),
+    Trial("SIGINT at any moment, then the next call", interrupted, 1, 30),
+    Trial("a lock that is held for ever", a_lock_for_ever, 1, 3),
+]

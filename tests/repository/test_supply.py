@@ -1,0 +1,62 @@
+"""What is run as code, what is read, what is built: nothing from outside, and the same bytes each time."""
+
+import ast
+import hashlib
+import subprocess
+import sys
+from pathlib import Path
+
+from tests.repository.test_wheel import BUILD, copy_of_the_tree
+
+ROOT = Path(__file__).resolve().parents[2]
+# Every place that runs a text as code; what it runs was written by our compiler from its own Program.
+RUNS_TEXT = {
+    "src/desaxe/runtime/wide_margins.py",
+    "src/desaxe/runtime/machine_code.py",
+    "src/desaxe/runtime/native_calls.py",
+    "src/desaxe/runtime/vectorised.py",
+    "src/desaxe/scenes/export/axes.py",
+    "src/desaxe/peaks/compiled.py",
+    "src/desaxe/cli/doctor.py",
+    "src/desaxe/compiler/languages/python.py",
+}
+UNTRUSTED_READERS = {"pickle", "marshal", "shelve", "dill", "cloudpickle", "joblib"}
+
+
+def trees():
+    for room in ("src", "derive", "generated"):
+        for path in sorted((ROOT / room).rglob("*.py")):
+            yield path.relative_to(ROOT).as_posix(), ast.parse(path.read_text(encoding="utf-8"))
+
+
+def test_only_known_places_run_text_as_code():
+    found = {
+        name
+        for name, tree in trees()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("exec", "eval")
+    }
+    assert found == RUNS_TEXT
+
+
+def test_nothing_is_unpickled():
+    imported = {
+        (name, module)
+        for name, tree in trees()
+        for node in ast.walk(tree)
+        if isinstance(node, (ast.Import, ast.ImportFrom))
+        for module in [getattr(node, "module", None) or "", *(alias.name for alias in node.names)]
+    }
+    assert not {pair for pair in imported if pair[1].partition(".")[0] in UNTRUSTED_READERS}
+
+
+def test_two_wheels_have_the_same_bytes(tmp_path):
+    digests = set()
+    for name in ("one", "two"):
+        tree = tmp_path / name
+        tree.mkdir()
+        copy_of_the_tree(tree)
+        subprocess.run([sys.executable, "-c", BUILD], cwd=tree, check=True, capture_output=True)
+        (wheel,) = (tree / "wheel").glob("*.whl")
+        digests.add(hashlib.sha256(wheel.read_bytes()).hexdigest())
+    assert len(digests) == 1
