@@ -94,7 +94,9 @@ def measure(works: Sequence[Work], effort: Effort, watch: Progress | None = None
     if whole and not effort.quick:
         steps.next("new processes")
         data["starts"] = starts(here, cores[-1], 2)
-    data["operations"] = {work.key: _operations(work) for work in works if work.kind == "values"}
+    data["operations"] = {
+        work.key: _operations(work) for work in works if work.kind in ("values", "prepared")
+    }
     return data
 
 

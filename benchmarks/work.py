@@ -54,7 +54,7 @@ class Work(NamedTuple):
     inputs: Callable[[int], Inputs]
     points: int  # by default
     quick: int  # for a quick run
-    kind: str = "values"  # or "grid", with labels; "peak"; "limit", of the machine
+    kind: str = "values"  # or "prepared"; "grid", with labels; "peak"; "limit", of the machine
     given: bool = True  # the caller gives the memory for the answer
     every_core: bool = False  # measured on all cores too
 
@@ -84,6 +84,14 @@ def _with_close(count: int, share: float) -> Inputs:
 
 def _mixed(count: int) -> Inputs:
     return _with_close(count, 0.02)
+
+
+def _tenth(count: int) -> Inputs:
+    return _with_close(count, 0.1)
+
+
+def _two_fifths(count: int) -> Inputs:
+    return _with_close(count, 0.4)
 
 
 def _close(count: int) -> Inputs:
@@ -156,9 +164,13 @@ WORKS = (
          20_000),
     Work("mixed", "V_C, a_C at random points, of which one in 50 is of a design close to its change point",
          KINEMATICS, _mixed, MILLION, 40_000),
+    Work("tenth", "the same where one in 10 is", KINEMATICS, _tenth, MILLION, 40_000),
+    Work("fifths", "the same where two in 5 are", KINEMATICS, _two_fifths, MILLION, 40_000),
     Work("close", "the same where all are", KINEMATICS, _close, MILLION, 40_000),
     Work("concentric", "V_C alone, concentric (ec = 0)", ("V_C",), _concentric, MILLION, 40_000),
     Work("sweep", "V_C, a_C of one mechanism at 720 angles", KINEMATICS, _sweep, ANGLES, ANGLES),
+    Work("prepared", "the same by a prepared function (desaxe: `function`)", KINEMATICS, _sweep, ANGLES,
+         ANGLES, kind="prepared"),
     Work("sweeps", "V_C, a_C of 2,048 mechanisms at 720 angles", KINEMATICS, _sweeps, 2048 * ANGLES,
          32 * ANGLES),
     Work("grid", "a_C on a grid of 720 x 32 x 16 x 16, labelled and allocated", ("a_C",), _grid, GRID, 60_000,
