@@ -20,11 +20,11 @@ from tests.scenes.export.stress import INPUTS, NAMES, broken, columns, rows, sce
 
 REACH = 1.6e6  # rad: of the sine and cosine without libm
 BUILDS = (
-    ("gcc", ("-O0",), True),
     ("gcc", ("-O3", "-march=native"), True),
-    ("clang", ("-O3", "-march=native"), True),
-    ("gcc", ("-O2",), False),
     ("clang", ("-O0",), False),
+    pytest.param(("gcc", ("-O0",), True), marks=pytest.mark.thorough),
+    pytest.param(("clang", ("-O3", "-march=native"), True), marks=pytest.mark.thorough),
+    pytest.param(("gcc", ("-O2",), False), marks=pytest.mark.thorough),
 )
 SLIDING = {"ec": 0.02, "AB": 0.04, "BC": 0.064}
 

@@ -189,7 +189,9 @@ def _function(name: str, program: Program, inputs: list[str]) -> str:
 
 def _public(symbol: Symbol, inputs: list[str]) -> str:
     given = ", ".join(inputs)
-    meaning = f"{symbol.meaning} [{symbol.unit}]" + (f", {symbol.source}" if symbol.source else "")
+    meaning = f"{symbol.meaning or symbol.name} [{symbol.unit}]" + (
+        f", {symbol.source}" if symbol.source else ""
+    )
     return "\n".join(
         [
             f"def {symbol.name}({given}):",

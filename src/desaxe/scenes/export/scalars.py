@@ -36,9 +36,10 @@ def scalars_source(programs: Sequence[tuple[str, Program]], inputs: Sequence[str
 
 def _function(name: str, program: Program, inputs: Sequence[str], state: bool) -> str:
     row = quantity(name, state)
+    meaning = row.meaning or name  # a quantity of one's own may come without
     used = [given for given in inputs if given in program.inputs]
     lines = [
-        f'"""{row.meaning[0].upper()}{row.meaning[1:]} [{row.unit}]."""',
+        f'"""{meaning[0].upper()}{meaning[1:]} [{row.unit}]."""',
         *(f"{given} = float({given})" for given in used),
         *write_lines(with_short_temporaries(program), "numba"),
         f"return {program.outputs[0]}",
