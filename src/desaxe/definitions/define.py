@@ -36,7 +36,7 @@ def define(name: str, expression: str, unit: str | None = None, meaning: str = "
         'shoe_power'
         >>> machine = dict(theta=1.0, ec=0.01, AB=0.125, BC=0.35, omega0=150.0, m_slider=0.8)
         >>> round(dx.evaluate("shoe_power", **machine), 3)
-        32.669
+        449.202
         >>> dx.undefine("shoe_power")
 
     expression  of all quantities, sensitivities, inputs and `pi`, with + - * / **, sqrt abs sin cos tan atan2
