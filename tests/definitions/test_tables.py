@@ -59,6 +59,19 @@ def test_a_pickled_scene_brings_its_quantities_with_it(tmp_path):
     assert float(done.stdout) == dx.evaluate("of_both", **POINT)
 
 
+def test_a_pickled_function_brings_its_quantities_with_it(tmp_path):
+    dx.define("shoe", "0.08 * abs(N_C * V_C)")
+    fixed = {p: value for p, value in POINT.items() if p != "theta"}
+    prepared = dx.function("shoe", ("theta",), **fixed)
+    data = pickle.dumps(prepared)
+    value = prepared(1.0)
+    dx.undefine("shoe")
+    assert pickle.loads(data)(1.0) == value
+    dx.define("shoe", "abs(N_C * V_C)")
+    with pytest.raises(ValueError, match="shoe is defined already"):
+        pickle.loads(data)
+
+
 def test_a_compiled_module_has_them(tmp_path):
     dx.compile(SCENE, tmp_path / "own_kernels.py")
     code = "import own_kernels, sys; print(own_kernels.point(1.0, 0.01)[0], 'desaxe' in sys.modules)"

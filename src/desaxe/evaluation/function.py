@@ -12,9 +12,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..definitions.define import install
 from ..mechanism.catalogue import has, law_name, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS, sensitivity
+from ..mechanism.own import Definition, used_by
 from ..mechanism.program import program_of
 from ..runtime.any_stride import Bound, bind
 from ..runtime.kernels import STRUCTURAL_ZEROS, KernelKey, kernel_for
@@ -74,6 +76,7 @@ class Function:
     def __init__(self, names: tuple[str, ...], one: bool, inputs: tuple[str, ...], fixed: Mapping[str, Any]):
         self.names, self.inputs, self.fixed = names, inputs, dict(fixed)
         self._one = one
+        self._own = used_by(law_name(name) for name in names)
         self._bound, self._kinds = _compiled(names, inputs, self.fixed, self._failures)
         state = "omega" in inputs or fixed.get("omega") is not None
         self.units = {name: quantity(name, state).unit for name in names}
@@ -182,7 +185,7 @@ class Function:
 
     def __reduce__(self) -> Any:
         names = self.names[0] if self._one else list(self.names)
-        return _again, (names, self.inputs, self.fixed)
+        return _again, (names, self.inputs, self.fixed, self._own)
 
     def __repr__(self) -> str:
         fixed = "".join(f", {name}={value!r}" for name, value in self.fixed.items())
@@ -190,7 +193,10 @@ class Function:
         return f"desaxe.function({names!r}, inputs={self.inputs!r}{fixed})"
 
 
-def _again(names: str | list[str], inputs: tuple[str, ...], fixed: dict[str, Any]) -> Function:
+def _again(
+    names: str | list[str], inputs: tuple[str, ...], fixed: dict[str, Any], own: tuple[Definition, ...] = ()
+) -> Function:
+    install(own)
     return function(names, inputs, **fixed)
 
 
