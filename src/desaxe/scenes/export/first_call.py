@@ -17,7 +17,7 @@ LOCK = Lock()
 
 
 def compiled(loops, signature):
-    """The loops as machine code, made once and kept beside this file where that can be written."""
+    """The loops as machine code, made once and kept beside this file if that can be written."""
     with LOCK:
         if loops not in COMPILED:
             try:
