@@ -71,7 +71,7 @@ def test_ids_are_unique_and_carry_their_document():
 def test_entry_is_complete(entry):
     assert all(isinstance(field, str) and field.isascii() for field in entry)
     assert entry.verdict in VERDICTS
-    assert bool(entry.corrected) == (entry.verdict != "correct")
+    assert bool(entry.corrected) == (entry.verdict not in ("correct", "given"))
     assert all(getattr(entry, field) for field in ("where", "printed", "evidence"))
     assert entry.corrected != entry.printed
 
@@ -118,7 +118,7 @@ def test_table_counts_verdicts():
     rows = [
         Entry(f"A-{n}", "A", "Eq.", "x", verdict, "", "y", "z") for n, verdict in enumerate(VERDICTS[:2] * 2)
     ]
-    assert table(rows).splitlines()[-1] == "4 entries: 2 correct, 2 typo"
+    assert table(rows).splitlines()[-1] == "4 entries: 2 correct, 2 given"
     assert table(rows[:1]).splitlines()[-1] == "1 entry: 1 correct"
     assert table([]) == "0 entries"
     assert table(iter(rows)) == table(rows)

@@ -306,3 +306,11 @@ def test_curves_are_cyclic():
             assert abs(package(name, speeding._replace(theta=speeding.theta + TURN)) - first) > 1e-3 * abs(
                 first
             )
+
+
+def test_a_small_offset_is_as_smooth():
+    """A tenth of the crank as offset raises the greatest acceleration by less than a thousandth."""
+    centric = peak("a_C", 0.0)[0]
+    assert centric == pytest.approx(4185.8, abs=0.05)
+    assert [peak("a_C", ec)[0] for ec in (0.010, 0.0125)] == pytest.approx([4187.35, 4188.23], abs=0.05)
+    assert peak("a_C", 0.0125)[0] < 1.001 * centric

@@ -390,3 +390,16 @@ def test_no_mechanism_where_the_root_is_imaginary():
             assert impossible == (q.square < 0)
             seen.add(bool(impossible))
     assert seen == {True, False}
+
+
+def test_identities_serve_with_an_offset():
+    """The cosine of a sum, the square identity and that of the double angle, with an offset."""
+
+    def short(p):
+        q = case(p)
+        alpha = B.printed_eq22(q)
+        turned = q.m.cos(alpha + q.theta) + q.k / q.c * q.cos**2 / q.m.cos(alpha) ** 2
+        return q.k * q.omega**2 * turned / q.m.cos(alpha)
+
+    agrees(short, lambda q, p: -q("a_C"), "acceleration", STEADY)
+    assert all(motion.ec != 0 for motion in STEADY[:6])

@@ -12,7 +12,17 @@ from functools import cache
 from importlib.resources import files
 from typing import Any, NamedTuple
 
-VERDICTS = ("correct", "typo", "sign", "wrong claim", "not reproducible")
+VERDICTS = (
+    "correct",
+    "given",
+    "typo",
+    "sign",
+    "sign and exponent",
+    "sign and missing factor",
+    "wrong claim",
+    "not reproducible",
+)
+FINE = ("correct", "given")  # verdicts that need no correction
 
 
 class Entry(NamedTuple):
@@ -47,7 +57,7 @@ def table(entries: Iterable[Entry], width: int = 100) -> str:
     rows = tuple(entries)
     indent = max((len(row.verdict) for row in rows), default=0) + 2
     blocks = [_block(row, indent, width) for row in rows]
-    return "\n\n".join([*blocks, _summary(rows)])
+    return "\n\n".join([*blocks, textwrap.fill(_summary(rows), width=max(width, 20))])
 
 
 def markdown() -> str:
@@ -115,10 +125,12 @@ Every numbered equation, every line of code, every number of a table and every c
 the papers this package follows. Each entry names the place, what is printed there (in ASCII), what it should
 be, and why. The verdicts:
 
-- **sign**: a wrong sign (and perhaps another slip, which the entry names)
+- **sign**: a wrong sign
+- **sign and exponent**, **sign and missing factor**: wrong signs, and wrong exponents or a factor left out
 - **typo**: a misprint that the paper itself does not follow
 - **wrong claim**: a formula, number or statement that does not hold
 - **not reproducible**: a number that the printed formulas and data do not give; the nearest reading is told
+- **given**: a datum, convention or statement of the paper that nothing at hand can confirm or contradict
 - **correct**: it holds
 
 A sign is judged by the paper's own conventions, which are told first. Every verdict is proved by a test of
@@ -139,11 +151,11 @@ def _counts() -> str:
 def _paper(letter: str, sheet: dict[str, Any]) -> str:
     """One paper: its title, its conventions, what is not right entry by entry, what is right as a table."""
     ledger = _ledgers()[letter]
-    wrong = [_item(entry) for entry in ledger if entry.verdict != "correct"]
+    wrong = [_item(entry) for entry in ledger if entry.verdict not in FINE]
     right = [
         _row((entry.id, _plain(entry.where), _code(entry.printed), _plain(entry.evidence)))
         for entry in ledger
-        if entry.verdict == "correct"
+        if entry.verdict in FINE
     ]
     head = [f"## Paper {letter}", _plain(sheet["title"]), *map(_plain, sheet["notes"])]
     table = "\n".join([_row(("id", "where", "printed", "why")), _row(["---"] * 4), *right])
