@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.runtime.cache import locked
 from desaxe.scenes.export.compile import module_text
 from desaxe.scenes.schema import SceneError
+from desaxe.support.locks import locked
 from tests.example_scenes import COMPACTOR, SMALL
 
 TURN = {"start": 0, "stop": "360 deg", "num": 121}
@@ -97,7 +97,7 @@ def alone():
     folder = Path(os.environ["DESAXE_CACHE_DIR"]) / "modules"
     folder.mkdir(exist_ok=True)
     kept = folder / "found.json"
-    with locked(kept):
+    with locked(kept.with_suffix(".lock"), 600.0, "another worker makes the modules"):
         if not kept.exists():
             for name, scene in SCENES.items():
                 dx.compile(scene, folder / f"kernels_{name}.py")

@@ -1,5 +1,6 @@
 """`compile`: a scene to a module of its own, for the user's repository."""
 
+import ast
 import hashlib
 import keyword
 import re
@@ -209,7 +210,7 @@ def _called(imports: Mapping[str, set[str]], body: str) -> dict[str, set[str]]:
     found = {m: imports.get(m, set()) | IMPORTS.get(m, set()) for m in {**imports, **IMPORTS}}
     found["math"] = found["math"] - imports.get("numpy", set())
     found["numpy"] = {n for n in found["numpy"] if n in imports.get("numpy", ()) or n not in found["math"]}
-    used = set(re.findall(r"\w+", body))
+    used = {node.id for node in ast.walk(ast.parse(body)) if isinstance(node, ast.Name)}
     return {module: names & used for module, names in found.items() if names & used}
 
 
