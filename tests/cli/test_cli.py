@@ -157,7 +157,6 @@ COMPLAINTS = {
     "no such verdict": (["errata", "--verdict", "maybe"], "unknown verdict 'maybe'"),
     "no such document": (["errata", "--document", "Z"], "unknown document 'Z'"),
     "two forms": (["errata", "--json", "--markdown"], "not allowed with argument"),
-    "part of a page": (["errata", "--markdown", "--document", "A"], "leave --document and --verdict out"),
 }
 
 

@@ -62,3 +62,26 @@ def test_every_ledger_names_its_paper():
 
 def test_plain_text_is_escaped():
     assert _errata._plain("a*b_c <d> [e] _f_") == r"a\*b_c \<d\> \[e\] \_f\_"
+
+
+def test_first_page_has_every_numbered_equation_once():
+    """Each is on a line of its own with the right form in LaTeX, or is counted among the right ones."""
+    first = markdown().split("## The numbered equations that are wrong")[1].split("| paper |")[0]
+    shown = re.findall(r"^- \*\*Eq\. (\w+)\*\* \((.+?)\): \$`(.+)`\$$", first, re.MULTILINE)
+    assert [(number, verdict) for number, verdict, _ in shown] == [
+        (entry.id.partition("-eq")[2], entry.verdict)
+        for entry in entries(wrong=True)
+        if re.fullmatch(r"[AB]-eq\w+", entry.id)
+    ]
+    assert len(shown) == 19
+    right = [numbers.split(", ") for numbers in re.findall(r"^Right \(\d+\): (.+)\.$", first, re.MULTILINE)]
+    assert list(map(len, right)) == [24, 40]
+    assert [int(count) for count in re.findall(r"^Right \((\d+)\)", first, re.MULTILINE)] == [24, 40]
+
+
+def test_page_of_some_entries():
+    page = markdown(entries("B", "typo"))
+    assert "## Paper B" in page
+    assert "## Paper A" not in page
+    assert page.count("): **typo**") == len(entries("B", "typo"))
+    assert "### Right" not in page

@@ -2,17 +2,20 @@
 
 import argparse
 import json
+import shutil
 from typing import Any
 
 from .parser import add_command
-from .words import UsageError
 
 _ERRATA = """\
 examples:
-  desaxe errata                       every equation, listing line and claim that was looked at
-  desaxe errata --document A          of one paper
+  desaxe errata                       the wrong equations in a line each, then every entry
+  desaxe errata eq20                  equation 20 of every paper; B-eq20 that of paper B
+  desaxe errata stroke --document B   entries of paper B that speak of the stroke
+  desaxe errata --wrong --document A  what is wrong in one paper
   desaxe errata --verdict sign        those with a wrong sign
-  desaxe errata --markdown            everything as a page in Markdown"""
+  desaxe errata --equations           only the wrong numbered equations, a line each
+  desaxe errata --markdown            everything, or what was asked for, as a page in Markdown"""
 
 
 def add_errata(commands: Any) -> None:
@@ -20,23 +23,35 @@ def add_errata(commands: Any) -> None:
     parser = add_command(
         commands, "errata", "what the papers print, and what of it is right", _ERRATA, _errata
     )
-    parser.add_argument("--document", metavar="LETTER", type=str.upper, help="the paper: A, B or C")
     parser.add_argument(
-        "--verdict", metavar="WORD", help="correct, typo, sign, wrong claim, not reproducible"
+        "words", metavar="WORD", nargs="*", help="an id, an equation (eq20), or words to find"
     )
+    parser.add_argument("--document", metavar="LETTER", type=str.upper, help="the paper: A, B or C")
+    parser.add_argument("--verdict", metavar="WORD", help="such as correct, sign, typo, wrong claim")
+    parser.add_argument("--wrong", action="store_true", help="only what needs a correction")
+    parser.add_argument("--latex", action="store_true", help="equations in LaTeX too")
     form = parser.add_mutually_exclusive_group()
-    form.add_argument("--json", action="store_true", help="print JSON")
-    form.add_argument("--markdown", action="store_true", help="print all entries as a page in Markdown")
+    form.add_argument("--equations", action="store_true", help="only the wrong numbered equations")
+    form.add_argument("--json", action="store_true", help="print JSON, with the test of each verdict")
+    form.add_argument("--markdown", action="store_true", help="print a page in Markdown")
 
 
 def _errata(options: argparse.Namespace) -> int:
-    from ..errata.ledger import entries, markdown, table
+    from ..errata import ledger
+    from ..errata.search import matching
 
+    found = matching(ledger.entries(options.document, options.verdict, options.wrong), options.words)
+    chosen = bool(options.document or options.verdict or options.wrong or options.words)
+    width = shutil.get_terminal_size((100, 24)).columns
     if options.markdown:
-        if options.document is not None or options.verdict is not None:
-            raise UsageError("--markdown prints all entries: leave --document and --verdict out")
-        print(markdown())
-        return 0
-    found = entries(document=options.document, verdict=options.verdict)
-    print(json.dumps([entry._asdict() for entry in found], indent=2) if options.json else table(found))
+        print(ledger.markdown(found if chosen else None))
+    elif options.json:
+        print(json.dumps([ledger.record(entry) for entry in found], indent=2))
+    elif options.equations:
+        print(ledger.equations(found, width, options.latex))
+    else:
+        first = [] if chosen else [ledger.equations(found, width, options.latex)]
+        tex = options.latex or bool(options.words)
+        shown = [*first, ledger.headings(found, width), ledger.table(found, width, tex)]
+        print("\n\n".join(filter(None, shown)))
     return 0

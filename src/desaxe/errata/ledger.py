@@ -12,6 +12,8 @@ from functools import cache
 from importlib.resources import files
 from typing import Any, NamedTuple
 
+from .equations import FINE, forms, number, overview
+
 VERDICTS = (
     "correct",
     "given",
@@ -22,7 +24,6 @@ VERDICTS = (
     "wrong claim",
     "not reproducible",
 )
-FINE = ("correct", "given")  # verdicts that need no correction
 
 
 class Entry(NamedTuple):
@@ -38,8 +39,13 @@ class Entry(NamedTuple):
     test: str  # pytest node of the proof
 
 
-def entries(document: str | None = None, verdict: str | None = None) -> tuple[Entry, ...]:
-    """All entries in the order of the papers, or those of one document ("A") or one verdict ("sign")."""
+def entries(
+    document: str | None = None, verdict: str | None = None, wrong: bool = False
+) -> tuple[Entry, ...]:
+    """All entries in the order of the papers, or those of one document ("A") or one verdict ("sign").
+
+    With `wrong` only those that need a correction: neither correct nor given.
+    """
     ledgers = _ledgers()
     _require("document", document, tuple(ledgers))
     _require("verdict", verdict, VERDICTS)
@@ -48,22 +54,68 @@ def entries(document: str | None = None, verdict: str | None = None) -> tuple[En
         for letter, ledger in ledgers.items()
         if document in (None, letter)
         for entry in ledger
-        if verdict in (None, entry.verdict)
+        if verdict in (None, entry.verdict) and not (wrong and entry.verdict in FINE)
     )
 
 
-def table(entries: Iterable[Entry], width: int = 100) -> str:
-    """The entries as text for a terminal, wrapped to `width` columns; the last line counts verdicts."""
+def table(entries: Iterable[Entry], width: int = 100, tex: bool = False) -> str:
+    """The entries as text for a terminal, wrapped to `width` columns; the last line counts verdicts.
+
+    With `tex` equations are written in LaTeX too, under the printed and the corrected form.
+    """
     rows = tuple(entries)
     indent = max((len(row.verdict) for row in rows), default=0) + 2
-    blocks = [_block(row, indent, width) for row in rows]
+    blocks = [_block(row, indent, width, tex) for row in rows]
     return "\n\n".join([*blocks, textwrap.fill(_summary(rows), width=max(width, 20))])
 
 
-def markdown() -> str:
-    """All ledgers as a Markdown page: for each paper what is not right, entry by entry, and what is right."""
-    papers = [_paper(letter, sheet) for letter, sheet in _sheets().items()]
-    return "\n\n".join([_HOW_TO_READ, _counts(), *papers])
+def headings(entries: Iterable[Entry], width: int = 100) -> str:
+    """Title, axes and conventions of the papers that the entries are of, as text for a terminal."""
+    return "\n\n".join(
+        "\n".join(_hanging(text, width, 3) for text in lines)
+        for letter in dict.fromkeys(entry.document for entry in entries)
+        for lines in [[f"{letter}: {title(letter)}", *conventions(letter)]]
+    )
+
+
+def title(document: str) -> str:
+    """Authors, title and year of a paper."""
+    return str(_sheets()[document]["title"])
+
+
+def conventions(document: str) -> tuple[str, ...]:
+    """The axes, signs and units of a paper, and what its text was read from."""
+    return tuple(f"{note}" for note in _sheets()[document]["notes"])
+
+
+def equations(entries: Iterable[Entry], width: int = 100, tex: bool = False) -> str:
+    """The numbered equations that are wrong with their right forms, and the numbers of the others."""
+
+    def line(entry: Entry) -> str:
+        right = forms(entry)[1] if tex else ""
+        return f"  {f'Eq. {number(entry)}':8} {entry.verdict}: {right or entry.corrected}"
+
+    return "\n".join(_hanging(text, width, 11) for text in overview(entries, line))
+
+
+def record(entry: Entry) -> dict[str, Any]:
+    """An entry with its paper's title and conventions, its equation in LaTeX and the test of its verdict."""
+    printed, corrected = forms(entry)
+    paper = {"paper": title(entry.document), "conventions": list(conventions(entry.document))}
+    return {**entry._asdict(), "latex_printed": printed, "latex_corrected": corrected, **paper}
+
+
+def markdown(entries: Iterable[Entry] | None = None) -> str:
+    """The ledgers as a Markdown page: the wrong equations first, then each paper, entry by entry.
+
+    With `entries` only these are on it.
+    """
+    rows = (
+        tuple(row for ledger in _ledgers().values() for row in ledger) if entries is None else tuple(entries)
+    )
+    first = [_HOW_TO_READ, _first_page(rows), _counts()] if entries is None else [_SELECTION]
+    papers = [_paper(letter, [row for row in rows if row.document == letter]) for letter in _sheets()]
+    return "\n\n".join([*first, *filter(None, papers)])
 
 
 @cache
@@ -87,13 +139,26 @@ def _require(what: str, value: str | None, allowed: tuple[str, ...]) -> None:
         raise ValueError(f"unknown {what} {value!r}: allowed are {', '.join(map(repr, allowed))}")
 
 
-def _block(entry: Entry, indent: int, width: int) -> str:
+def _block(entry: Entry, indent: int, width: int, tex: bool) -> str:
     """One entry: verdict in the margin; id and place, what is printed, the correction, the evidence."""
+    printed, corrected = forms(entry) if tex else ("", "")
     lines = [(entry.verdict, f"{entry.id}  ({entry.where})"), ("", f"printed: {entry.printed}")]
-    if entry.corrected:
-        lines.append(("", f"instead: {entry.corrected}"))
+    lines += [("", f"  LaTeX: {printed}")] if printed else []
+    lines += [("", f"instead: {entry.corrected}")] if entry.corrected else []
+    lines += [("", f"  LaTeX: {corrected}")] if corrected else []
     lines.append(("", f"because: {entry.evidence}"))
     return "\n".join(_wrapped(margin, text, indent, width) for margin, text in lines)
+
+
+def _hanging(text: str, width: int, indent: int) -> str:
+    """Text wrapped to a width, all lines but the first indented."""
+    return textwrap.fill(
+        text,
+        width=max(width, 2 * indent + 20),
+        subsequent_indent=" " * indent,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
 
 
 def _wrapped(margin: str, text: str, indent: int, width: int) -> str:
@@ -122,8 +187,8 @@ _HOW_TO_READ = """\
 # What the papers print, and whether it is right
 
 Every numbered equation, every line of code, every number of a table and every claim that can be tested, of
-the papers this package follows. Each entry names the place, what is printed there (in ASCII), what it should
-be, and why. The verdicts:
+the papers this package follows. Each entry names the place, what is printed there (in ASCII, equations
+in LaTeX too), what it should be, and why. First the numbered equations that are wrong. The verdicts:
 
 - **sign**: a wrong sign
 - **sign and exponent**, **sign and missing factor**: wrong signs, and wrong exponents or a factor left out
@@ -139,6 +204,9 @@ formulas are evaluated as printed, in 40 digits, and compared with the closed lo
 differentiated in time, and forces with the equations of the free bodies."""
 
 
+_SELECTION = "# Some entries of what the papers print, and whether it is right"
+
+
 def _counts() -> str:
     """A table of how many entries of each verdict the papers have."""
     rows = [("paper", *VERDICTS, "all"), ("---", *["---:"] * (len(VERDICTS) + 1))]
@@ -148,33 +216,62 @@ def _counts() -> str:
     return "\n".join(map(_row, rows))
 
 
-def _paper(letter: str, sheet: dict[str, Any]) -> str:
+def _first_page(rows: tuple[Entry, ...]) -> str:
+    """The numbered equations that are wrong, a line each with the right form, and which are right."""
+
+    def line(entry: Entry) -> str:
+        right = forms(entry)[1]
+        shown = _math(right) if right else _code(entry.corrected)
+        return f"- **Eq. {number(entry)}** ({entry.verdict}): {shown}"
+
+    lines = list(overview(rows, line))
+    spaced = [text if text.startswith("- ") else f"\n{text}\n" for text in lines]
+    return re.sub(
+        r"\n{3,}", "\n\n", "\n".join(["## The numbered equations that are wrong", *spaced])
+    ).rstrip()
+
+
+def _paper(letter: str, ledger: list[Entry]) -> str:
     """One paper: its title, its conventions, what is not right entry by entry, what is right as a table."""
-    ledger = _ledgers()[letter]
+    if not ledger:
+        return ""
     wrong = [_item(entry) for entry in ledger if entry.verdict not in FINE]
     right = [
-        _row((entry.id, _plain(entry.where), _code(entry.printed), _plain(entry.evidence)))
+        _row((entry.id, _plain(entry.where), _both(entry), _plain(entry.evidence)))
         for entry in ledger
         if entry.verdict in FINE
     ]
-    head = [f"## Paper {letter}", _plain(sheet["title"]), *map(_plain, sheet["notes"])]
+    head = [f"## Paper {letter}", _plain(title(letter)), *map(_plain, conventions(letter))]
     table = "\n".join([_row(("id", "where", "printed", "why")), _row(["---"] * 4), *right])
-    return "\n\n".join([*head, "### Not right", *wrong, "### Right", table])
+    below = ["### Not right", *wrong] if wrong else []
+    return "\n\n".join([*head, *below, *(["### Right or given", table] if right else [])])
 
 
 def _item(entry: Entry) -> str:
     """An entry that is not right: verdict, place, what is printed, what it should be, and why."""
     is_formula = re.search(r"[*^]|:=|^\S+ = ", entry.corrected) and not entry.corrected.endswith(".")
     instead = _code(entry.corrected) if is_formula else _plain(entry.corrected)
+    corrected = forms(entry)[1]
     return "\n".join(
         [
             f"**{entry.id}** ({_plain(entry.where)}): **{entry.verdict}**",
             "",
-            f"- printed: {_code(entry.printed)}",
-            f"- instead: {instead}",
+            f"- printed: {_both(entry)}",
+            f"- instead: {instead}" + (f" {_math(corrected)}" if corrected else ""),
             f"- because: {_plain(entry.evidence)}",
         ]
     )
+
+
+def _both(entry: Entry) -> str:
+    """What is printed, in a code span, and in LaTeX where it is an equation."""
+    printed = forms(entry)[0]
+    return _code(entry.printed) + (f" {_math(printed)}" if printed else "")
+
+
+def _math(text: str) -> str:
+    """LaTeX within a line."""
+    return f"$`{text}`$"
 
 
 def _row(cells: Iterable[str]) -> str:
