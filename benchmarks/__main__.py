@@ -25,6 +25,7 @@ examples:
   python -m benchmarks --quick                 a look at everyone, in a minute
   python -m benchmarks --only point --only grid
   python -m benchmarks --write                 the committed figures afresh: results, page, pictures, README
+  python -m benchmarks --only tenth --write    this work alone, into the stored run
 """
 
 
@@ -93,9 +94,8 @@ def _measure(options: argparse.Namespace) -> None:
 
     from .report import terminal
 
-    partly = options.only or options.quick or options.points
-    if options.write and partly:
-        raise SystemExit("--write stores a whole run: without --only, --quick and --points")
+    if options.write and (options.quick or options.points):
+        raise SystemExit("--write stores works in full: without --quick and --points")
     effort = QUICK if options.quick else FULL
     effort = effort._replace(points=options.points, rounds=options.rounds or effort.rounds)
     works = [BY_KEY[key] for key in options.only or ()] or (BRIEF if options.quick else WORKS)
@@ -103,8 +103,18 @@ def _measure(options: argparse.Namespace) -> None:
         data = measure(works, effort, watch)
     print(terminal(data))
     if options.write:
+        data = _into_stored(data) if options.only else data
         RESULTS.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
         _write(data)
+
+
+def _into_stored(data: "Data") -> "Data":
+    """The stored run with these works measured anew; times are compared inside a work only."""
+    stored: Data = json.loads(RESULTS.read_text(encoding="utf-8"))
+    for part in ("points", "one core", "all cores", "operations"):
+        merged = {**stored[part], **data.get(part, {})}
+        stored[part] = {work.key: merged[work.key] for work in WORKS if work.key in merged}
+    return stored
 
 
 def _write(data: "Data") -> None:

@@ -102,7 +102,7 @@ def test_the_list_names_works_and_contenders():
     [
         (["--only", "nothing"], "invalid choice: 'nothing'"),
         (["--points", "0"], "at least 1"),
-        (["--write", "--quick"], "--write stores a whole run"),
+        (["--write", "--quick"], "--write stores works in full"),
     ],
 )
 def test_a_bad_option_is_one_clear_line(options, told):

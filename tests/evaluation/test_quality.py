@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.cli import main as cli
+from desaxe.cli import main
 from desaxe.oracle.force_truth import FORCES, OTHERS
 from desaxe.oracle.force_truth import conditions as force_conditions
 from desaxe.oracle.force_truth import truth as force_truth
@@ -188,12 +188,12 @@ WORDS = ["point", "a_C", "status", "theta=60deg", "ec=10mm", "AB=125mm", "BC=0.3
 
 
 def test_on_the_command_line(capsys):
-    assert cli.main(WORDS) == 0
+    assert main(WORDS) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[3].startswith("a_C: 13.")
     assert "digits, rounding error at most" in lines[3]
     assert lines[-1] == "  1 % of omega0   changes it by 2 %"
-    assert cli.main([*WORDS, "--json"]) == 0
+    assert main([*WORDS, "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["a_C"]["conditions"]["omega0"] == pytest.approx(2.0)
     assert 13 < found["a_C"]["digits"] < 15

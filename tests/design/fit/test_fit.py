@@ -4,7 +4,9 @@ import pickle
 
 import mpmath
 import numpy as np
+import pandas
 import pytest
+import xarray
 
 import desaxe as dx
 from desaxe.cli import main
@@ -118,7 +120,6 @@ def test_prediction_report_picture_and_pickle(tmp_path):
 
 
 def test_tables_labels_and_files(tmp_path):
-    pandas, xarray = pytest.importorskip("pandas"), pytest.importorskip("xarray")
     data = measured(1)
     expected = fitted(data)["value"]
     assert fitted(pandas.DataFrame(data))["value"] == expected
