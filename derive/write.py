@@ -16,16 +16,13 @@ import sympy
 
 from desaxe import compiler
 from desaxe.compiler.cost import cost_of
-from desaxe.compiler.kernel import hoist
 from desaxe.compiler.languages.numba.module import emit_numba_with_front
+from desaxe.compiler.lowering import Limits, guarded_for_loops, nest
 from desaxe.compiler.operations import HELPERS, MATH_NAMES
 from desaxe.compiler.passes.double_angles import DoubleTrigonometry
-from desaxe.compiler.passes.fuse import fuse_products
-from desaxe.compiler.passes.guard import guard_inputs
 from desaxe.compiler.passes.pipeline import optimise
 from desaxe.compiler.passes.slicing import keep_outputs
-from desaxe.compiler.passes.trigonometry import Trigonometry, expand_trigonometry
-from desaxe.compiler.passes.value_numbering import value_numbering
+from desaxe.compiler.passes.trigonometry import Trigonometry
 from desaxe.compiler.program import Program, renamed
 from desaxe.compiler.text import write_function
 from desaxe.mechanism.inputs import LEAST
@@ -170,10 +167,9 @@ def _group(derivation: Derivation, group: Group, digest: str) -> str:
     program = derivation.program
     sliced, _ = optimise(_cut(program, group.outputs), dict(group.fixed))
     inputs = [name for name in sliced.inputs if name != "branch"]
-    guarded = guard_inputs(sliced, inputs, LEAST, {"theta": derivation.trigonometry.limit})
-    axis_of = {name: None if name == "branch" else 0 for name in sliced.inputs}
-    guarded = fuse_products(value_numbering(expand_trigonometry(guarded, derivation.trigonometry)))
-    kernel = hoist(guarded, axis_of, 1)
+    limits = Limits(LEAST, {"theta": derivation.trigonometry.limit})
+    guarded = guarded_for_loops(sliced, inputs, limits, derivation.trigonometry)
+    kernel = nest(guarded, dict.fromkeys(inputs, 0), 1)
     banner = _banner(f"numba kernel: {group.what}.", digest, f"{cost_of(guarded).operations} operations")
     front = (
         f"{group.what[0].upper()}{group.what[1:]}; arrays broadcast like NumPy.\n\n"

@@ -6,6 +6,7 @@
     interpret    a Program run exactly (mpmath) or in IEEE doubles
     cost         operations, depth, throughput
     passes       Program -> Program, one module each
+    lowering     the stages from a Program to machine code, in their order: read this first
     kernel       a loop nest whose bodies are Programs
     languages    Python, numba, C, jax, Octave and JavaScript, one file or folder each
 

@@ -8,13 +8,11 @@ from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
+from ..compiler.lowering import for_loops
 from ..compiler.passes.differentiate import RULES, Chain, Rule, Step
 from ..compiler.passes.double_double import double_double
-from ..compiler.passes.fuse import fuse_products
 from ..compiler.passes.pipeline import optimise
 from ..compiler.passes.slicing import keep_outputs
-from ..compiler.passes.trigonometry import expand_trigonometry
-from ..compiler.passes.value_numbering import value_numbering
 from ..compiler.program import Line, Program
 from ..compiler.text import with_short_temporaries
 from ..mechanism.catalogue import has
@@ -65,9 +63,7 @@ def programs_of(search: Search, written_out: bool) -> Programs:
         program = keep_outputs(whole, tuple(names))
         if search.far or not written_out:
             return program
-        return fuse_products(
-            value_numbering(expand_trigonometry(program, constants(), search.form.wide_margins))
-        )
+        return for_loops(program, constants(), search.form.wide_margins)
 
     finish = (value, slope, *gradient)
     if search.extended:

@@ -7,15 +7,11 @@ from collections.abc import Mapping, Sequence
 from math import prod
 from typing import Any, NamedTuple
 
-from ..compiler.forms import in_two_forms, parted
-from ..compiler.kernel import Kernel, tabulate
+from ..compiler.kernel import Kernel
 from ..compiler.languages.numba.module import TO_COMPILE, emit_numba
 from ..compiler.languages.numba.reductions import emit_reduced
-from ..compiler.passes.double_double import double_double
-from ..compiler.passes.fuse import fuse_products
-from ..compiler.passes.guard import guard_inputs
-from ..compiler.passes.trigonometry import expand_trigonometry
-from ..compiler.passes.value_numbering import value_numbering
+from ..compiler.lowering import Limits, guarded_for_loops, guarded_pairs, nest, nest_of_two_forms
+from ..compiler.passes.trigonometry import Trigonometry
 from ..compiler.program import Line, Program
 from ..mechanism.constants import constants, double_constants, single_constants
 from ..mechanism.inputs import LEAST
@@ -149,21 +145,18 @@ def kernel_of(key: KernelKey) -> Kernel:
     axes = dict(key.axis_of)
     varying = [name for name in program.inputs if name in axes]
     if key.accuracy == "extended":
-        guarded = guard_inputs(program, varying, LEAST, {"theta": double_constants().limit})
-        guarded = double_double(guarded, double_constants())
-    else:
-        if has_near_limit(key):
-            program = counting(key)
-        if key.form.wide_margins:
-            guarded = _plain_for_loops(program, varying, key)
-        else:
-            guarded = _for_loops(guard_inputs(program, varying, LEAST, {}), key)
+        limits = Limits(LEAST, {"theta": double_constants().limit})
+        return nest(guarded_pairs(program, varying, limits, double_constants()), axes, key.axes)
+    if key.form.wide_margins:
+        return nest(_lowered_plain(program, varying, key), axes, key.axes)
+    stable = counting(key) if has_near_limit(key) else program
+    stable = guarded_for_loops(stable, varying, Limits(LEAST), _trigonometry(key))
     plain = plain_of(key)
-    if plain is not None:
-        test = specialise(("wide_margins",), key.form, key.fixed)
-        guarded = in_two_forms(_plain_for_loops(plain, varying, key), guarded, test)
-    kernel = tabulate(guarded, {name: axes.get(name) for name in guarded.inputs}, key.axes)
-    return kernel if plain is None else parted(kernel, len(key.names))
+    if plain is None:
+        return nest(stable, axes, key.axes)
+    test = specialise(("wide_margins",), key.form, key.fixed)
+    first = _lowered_plain(plain, varying, key)
+    return nest_of_two_forms(first, stable, test, len(key.names), axes, key.axes)
 
 
 def counting(key: KernelKey) -> Program:
@@ -184,9 +177,10 @@ def counting(key: KernelKey) -> Program:
     )
 
 
-def _plain_for_loops(program: Program, varying: Sequence[str], key: KernelKey) -> Program:
+def _lowered_plain(program: Program, varying: Sequence[str], key: KernelKey) -> Program:
     """Lower the plain form. The wide-margin test implies valid lengths: only other inputs are guarded."""
-    return _for_loops(guard_inputs(program, seen_inputs(program, varying), LEAST, {}), key, plain=True)
+    own = seen_inputs(program, varying)
+    return guarded_for_loops(program, own, Limits(LEAST), _trigonometry(key), plain=True)
 
 
 def seen_inputs(program: Program, varying: Sequence[str]) -> list[str]:
@@ -194,12 +188,9 @@ def seen_inputs(program: Program, varying: Sequence[str]) -> list[str]:
     return [name for name in varying if name not in LENGTHS and _is_seen(program, name)]
 
 
-def _for_loops(program: Program, key: KernelKey, plain: bool = False) -> Program:
-    """The program as a loop wants it: no calls, and products in one instruction with their sums."""
-    if not key.far:
-        trigonometry = single_constants() if is_single(key) else constants()
-        program = value_numbering(expand_trigonometry(program, trigonometry, plain))
-    return fuse_products(program)
+def _trigonometry(key: KernelKey) -> Trigonometry | None:
+    """The coefficients of a kernel's sine and cosine; None where angles are too far for them."""
+    return None if key.far else single_constants() if is_single(key) else constants()
 
 
 def source_of(key: KernelKey) -> str:

@@ -1,12 +1,16 @@
 """The passes: each a pure function Program -> Program in a module of its own.
 
-`bind`       fixes inputs to constants, or puts other lines in place of given ones
-`slicing`    keeps only what the wanted outputs reach
-`fold`       computes what is constant, drops terms with a factor 0 and factors 1
-`number`     gives the same value the same name
-`trigonometry`, `double_double`  write sine and cosine out; keep twice the digits
-`guard`      gives a bad element of an array NaN and its status
-`pipeline`   runs them in order, with a report
+`pipeline` lists those of every request and reports what each saved; `lowering`, beside this folder, has the
+order of all. A pass needs a valid Program (`program.validate`) and gives one. Besides:
 
-`double_double` is made of `expansions` (sums of doubles), `pairs` and `double_angles`.
+pass             needs                         guarantees
+bind             -                             fixed inputs are constants, or lines are replaced by given ones
+slicing          -                             every line is reached from an output
+fold             -                             constants are computed; factors 0 and 1 are gone
+value_numbering  -                             the same value has one name
+guard            after bind                    a bad element of an array gives NaN and its status
+trigonometry     after guard                   sine and cosine are written out, for angles up to a limit
+double_double    after guard                   lines are pairs of doubles (expansions, pairs, double_angles)
+fuse             last, before two forms        a product and its sum are one instruction
+differentiate    -                             the derivatives of the outputs by an input are outputs too
 """

@@ -14,14 +14,10 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ...compiler.kernel import tabulate
 from ...compiler.languages.numba.module import emit_numba
 from ...compiler.languages.python import emit_python
+from ...compiler.lowering import Limits, guarded_for_loops, nest
 from ...compiler.operations import HELPERS, MATH_NAMES
-from ...compiler.passes.fuse import fuse_products
-from ...compiler.passes.guard import guard_inputs
-from ...compiler.passes.trigonometry import expand_trigonometry
-from ...compiler.passes.value_numbering import value_numbering
 from ...compiler.program import Program, renamed
 from ...compiler.text import write_function
 from ...definitions.tables import read_definitions, tables_of
@@ -168,10 +164,11 @@ def _needs(part: Part, made: Sequence[Definition]) -> tuple[str, ...]:
 
 def _kernel(banner: str, part: Part, program: Program) -> str:
     varying = [name for name in program.inputs if name != "branch"]
-    guarded = guard_inputs(program, varying, LEAST, {"theta": constants().limit})
-    lines = fuse_products(value_numbering(expand_trigonometry(guarded, constants())))
-    axes = {name: None if name == "branch" else 0 for name in lines.inputs}
-    return emit_numba(tabulate(lines, axes, 1), f"{part.file}: kernel for arrays.\n\n{banner}\n")
+    limits = Limits(LEAST, {"theta": constants().limit})
+    lines = guarded_for_loops(program, varying, limits, constants())
+    return emit_numba(
+        nest(lines, dict.fromkeys(varying, 0), 1), f"{part.file}: kernel for arrays.\n\n{banner}\n"
+    )
 
 
 def _index(banner: str, table: dict[str, tuple[str, str, str]]) -> str:
