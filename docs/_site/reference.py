@@ -24,7 +24,7 @@ RETURNED = (Quality, Quantity, EquationText, Simulation, Event, Scene, SceneResu
 
 def summary():
     """Every public name and the first line of what it says about itself."""
-    rows = [f"| [`{n}`](#{n.replace('.', '')}) | {_first(v)} |" for n, v in _public().items()]
+    rows = [f"| [`{n}`](#{n.replace('.', '').lower()}) | {_first(v)} |" for n, v in _public().items()]
     return "\n".join(["| name | what it is for |", "|---|---|", *rows])
 
 

@@ -359,7 +359,7 @@ sys.exit(main(["run", {COMPACTOR!r}]))
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 2
-    assert done.stderr == "desaxe: error: scene needs msgspec: python -m pip install 'desaxe[scene]'\n"
+    assert done.stderr == "desaxe: error: desaxe run needs msgspec: python -m pip install 'desaxe[scene]'\n"
 
 
 @pytest.mark.parametrize(
