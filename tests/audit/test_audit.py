@@ -34,6 +34,7 @@ def found():
         return audit(QUICK._replace(points=6, timed=4000, rounds=1))
 
 
+@pytest.mark.thorough
 def test_everyone_is_measured_in_every_family(found):
     assert tuple(one.name for one in found.who) == tuple(found.ratios) == tuple(found.errors) == ALWAYS
     assert all(list(families) == list(FAMILIES) for families in found.errors.values())
@@ -41,21 +42,25 @@ def test_everyone_is_measured_in_every_family(found):
     assert all(0 < ratio < math.inf for ratio in found.ratios.values())
 
 
+@pytest.mark.thorough
 def test_standard_keeps_its_promise_at_generic_points(found):
     generic = found.errors["desaxe standard"][GENERIC]
     assert 0 < generic.median <= generic.worst <= 1
     assert generic.values == 6 * len(NAMES)
 
 
+@pytest.mark.thorough
 def test_extended_keeps_its_promise_at_generic_points(found):
     assert found.errors["desaxe extended"][GENERIC].worst_ulp <= 2
 
 
+@pytest.mark.thorough
 def test_the_textbook_loses_its_digits_at_the_change_point(found):
     textbook, ours = (found.errors[name]["change_point"] for name in ("NumPy lambdify", "desaxe standard"))
     assert ours.worst <= 1 < 1e6 < textbook.worst
 
 
+@pytest.mark.thorough
 def test_the_tables_have_all_rows(found):
     page, shown = report(found), text(found)
     for name in ALWAYS:
@@ -69,6 +74,7 @@ def test_the_tables_have_all_rows(found):
     assert "numba 0." in found.machine
 
 
+@pytest.mark.thorough
 def test_the_files_are_written(found, tmp_path):
     page, picture = write(found, tmp_path / "new" / "folder")
     assert (page.name, picture.name) == ("accuracy.md", "accuracy.png")
@@ -77,6 +83,7 @@ def test_the_files_are_written(found, tmp_path):
     assert sorted(path.name for path in page.parent.iterdir()) == ["accuracy.md", "accuracy.png"]
 
 
+@pytest.mark.thorough
 def test_the_command(monkeypatch, capsys, tmp_path, found):
     asked = []
     monkeypatch.setattr("desaxe.audit.command.audit", lambda effort, watch: asked.append(effort) or found)
@@ -95,6 +102,7 @@ def test_a_missing_extra_is_told(monkeypatch, capsys, module, extra):
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, module, None)
     assert main(["audit", "--quick", "-o", "nowhere"]) == 2
+    module = module.partition(".")[0]
     remedy = f"python -m pip install 'desaxe[{extra}]'"
     assert capsys.readouterr().err == f"desaxe: error: desaxe audit needs {module}: {remedy}\n"
 
@@ -104,6 +112,7 @@ def test_points_are_the_same_every_time(family):
     assert list(points(family, 3, seed=7)) == list(points(family, 3, seed=7)) != list(points(family, 3))
 
 
+@pytest.mark.thorough
 def test_all_contenders_compute_the_same():
     """At generic points of the other branch, to float32; heyoka too where it is installed."""
     at = list(islice((point for point in points(GENERIC, 400) if point["branch"] == -1), 40))

@@ -35,6 +35,7 @@ def point_of(inputs, index):
     return tuple((n, float({**inputs.scalars, **columns}[n])) for n in (*PARAMETERS, "omega0"))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("work", [work for work in WORKS if work.kind != "peak"], ids=lambda work: work.key)
 @pytest.mark.parametrize("contender", HERE, ids=lambda one: one.name)
 def test_values_are_the_truths(contender, work):

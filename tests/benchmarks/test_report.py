@@ -78,6 +78,7 @@ def test_a_small_run_measures_and_tells():
     )
 
 
+@pytest.mark.thorough
 def test_a_refusal_is_told_and_the_others_go_on():
     with racers([BY_NAME["NumPy lambdify"], BY_NAME[STANDARD]], [0]) as who:
         found = race(who, BY_KEY["point"], -1, 1)

@@ -20,6 +20,7 @@ def test_inputs_broadcast_to_the_shape(work):
     )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("key", ["point", "sweeps", "grid", "peak"])
 def test_blocks_see_every_point_once(key):
     inputs = BY_KEY[key].inputs(30_000)

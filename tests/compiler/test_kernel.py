@@ -135,6 +135,7 @@ def filled(kernel, order):
     return outs
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("order", ORDERS)
 def test_tables_change_no_bit(order):
     program, axis_of = placed(order)

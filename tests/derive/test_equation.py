@@ -8,6 +8,7 @@ import pytest
 import sympy as sp
 
 import desaxe as dx
+from desaxe.derive.dynamics import FORCES
 from desaxe.derive.quantities import QUANTITIES
 
 LINKS = {"m_crank": 1.2, "m_rod": 0.7, "m_slider": 0.9, "I_crank": 0.002, "I_rod": 0.01}
@@ -23,7 +24,13 @@ def number(expression, point=POINT):
     return mpmath.mpf(str(expression.subs(values).doit().evalf(30)))
 
 
-@pytest.mark.parametrize("name", [*QUANTITIES, "margin", "status"])
+def in_each_run(name):
+    """Closed forms of forces are long: a thorough run has them all."""
+    is_long = name in FORCES and name not in ("T_in", "N_C")
+    return pytest.param(name, marks=pytest.mark.thorough) if is_long else name
+
+
+@pytest.mark.parametrize("name", map(in_each_run, [*QUANTITIES, "margin", "status"]))
 def test_closed_forms(name):
     assert float(number(dx.equation(name).expression)) == pytest.approx(dx.evaluate(name, **POINT), rel=1e-13)
 

@@ -10,7 +10,7 @@ from tests.derive.derived import derivation
 
 def test_both_derivatives_choose():
     lines = {line.name: line for line in derivation().program.lines}
-    assert lines["near_start"].op == "finer"
+    assert lines["near_start"].op == "extended_only"
     choices = [line for line in lines.values() if line.op == "select" and line.args[0] == "near_start"]
     assert {line.args[1] for line in choices} == {"rod_start", "slider_start"}
 

@@ -76,6 +76,7 @@ def test_sums_over_time(omega0, alpha):
             assert found["theta_peak"] == pytest.approx(top["theta"] + around, abs=1e-10)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("design", [PRESS, RUBBING], ids=["smooth", "friction"])
 def test_gradients_by_differences(design):
     found = dx.drive(fluctuation=0.05, **design)

@@ -89,6 +89,7 @@ def test_a_derivative_that_moves_a_centre_alone(parameter):
             assert not misses({name: dx.evaluate(name, **point)}, point), (name, point)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", ["smooth", "friction", "default_centres"])
 def test_a_kernel_is_as_right_as_a_point(kind):
     """The same through the compiled loop; the sensitivities of the torque stand for all."""
@@ -151,6 +152,7 @@ FORCES = [name for name in names_for({}) if "_wrt_" not in name]
 OF_LINKS = ("m_rotating", "m_reciprocating", "I_lumping")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("change", "status"), [({"ec": 0.3, "theta": math.pi / 2}, 1), ({"alpha": -60.0}, 3)]
 )

@@ -175,6 +175,7 @@ def test_xarray_plots(grid):
     assert axes.get_ylabel().replace("\n", " ") == "acceleration of the slider [m/s^2]"
 
 
+@pytest.mark.thorough
 def test_hvplot():
     """In a process of its own: its imports warn of each other."""
     code = """

@@ -60,6 +60,7 @@ def test_over_theta_with_infeasible_designs():
     assert 0 < int(found.a_C_skipped.sel(ec=0.24, BC=0.35)) < 41
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("way")
 def test_over_another_axis():
     found = compare(["a_C"], "ec", ec=np.linspace(-0.2, 0.24, 23), theta=TURN[::60], BC=0.35, **MACHINE)
@@ -73,6 +74,7 @@ def test_of_one_design():
     assert found.a_C_absmax.dims == ()
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("way")
 def test_bad_elements_are_skipped():
     theta = TURN[::10].copy()
@@ -81,6 +83,7 @@ def test_bad_elements_are_skipped():
     assert found.a_C_skipped.values.tolist() == [2, 2]
 
 
+@pytest.mark.thorough
 def test_rows_longer_than_the_scratch():
     theta = np.linspace(0.0, 7.0, 3 * LONGEST + 5)
     compare(["a_C"], "theta", theta=theta, ec=[0.0, 0.2, 0.23], BC=[0.35, 0.4], **MACHINE)

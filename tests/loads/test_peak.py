@@ -68,6 +68,7 @@ def test_both_limits_at_a_jump_take_part():
     assert found["value"] <= -50.0 * arm
 
 
+@pytest.mark.thorough
 def test_many_designs_friction_and_derivatives_that_are_not_derived():
     ec, load = np.array([0.0, 0.01, 0.015]), LOADS["cubic"]
     bodies = {"AB": 0.04, "BC": 0.064, "m_rod": 0.5, "m_slider": 0.8, "omega0": 200.0, "F_Y": load}

@@ -108,6 +108,7 @@ def test_a_mechanism_that_cannot_turn():
     assert lowest["status"] == 2
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["V_C", "a_C", "j_C"])
 @pytest.mark.parametrize("digits", [2, 17])
 def test_rates_of_a_mechanism_that_cannot_turn_have_no_bound(name, digits):
@@ -229,6 +230,7 @@ def dense_angles():
     return np.sort(every[(every >= 0.0) & (every <= 2 * np.pi)])
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("near", [False, True])
 @pytest.mark.parametrize("name", ["V_C", "a_C", "j_C", "alpha_BC", "a_C_wrt_ec"])
 def test_no_extremum_is_missed(name, near):

@@ -193,6 +193,7 @@ def test_the_torque_in_extended(family):
             assert near or ulp_error(values[name], exact) <= 2, (name, loaded)
 
 
+@pytest.mark.thorough
 def test_fast_keeps_eight_ulp_of_float32_at_generic_points():
     rows = [point for point in draw("generic", 60) if abs(point["theta"]) < 100]
     columns = {name: np.tile([row[name] for row in rows], 60) for name in LAW}

@@ -53,6 +53,7 @@ def kept(tmp_path_factory):
     return folder, *answers(folder, "there")
 
 
+@pytest.mark.thorough
 def test_the_same_bits_without_numba(kept):
     folder, found, numba = kept
     assert numba == "True"
@@ -180,6 +181,7 @@ print("numba" in sys.modules and sys.modules["numba"] is not None, file=sys.stde
 """
 
 
+@pytest.mark.thorough
 def test_no_request_is_too_wide(tmp_path):
     """All names at once, twice, in two processes: the second has the machine code alone."""
     found, numba = answers(tmp_path, "there", ALL)

@@ -33,6 +33,7 @@ def edges(count=60):
         }  # fmt: skip
 
 
+@pytest.mark.thorough
 def test_the_promise_holds_across_the_edge(monkeypatch):
     take_way(monkeypatch, "compiled")
     rows, names = list(edges()), [*NAMES, *SIDES]

@@ -140,6 +140,7 @@ def drag(t, theta, omega):
     return 0.3 * math.cos(4.0 * t) - 0.01 * omega
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("torque", [drag, numba.njit(drag)], ids=["plain", "compiled"])
 def test_a_torque_function(torque):
     many = dx.simulate(torque=torque, t_end=0.5, **{**LOADED, "ec": ECS})
@@ -222,6 +223,7 @@ def test_the_edge_is_the_same_in_both():
     assert f"{EDGE:g}" in Path(compiled.__file__).read_text(encoding="utf-8")
 
 
+@pytest.mark.thorough
 def test_only_a_crank():
     many = dx.simulate(torque=[0.0, 0.1], t_end=1.0, theta0=1.0, g_Y=-9.81, **CRANK)
     _, (theta, *_) = alone(CRANK, many["t"], torque=0.1, theta0=1.0, g_Y=-9.81)

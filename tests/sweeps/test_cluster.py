@@ -26,6 +26,7 @@ def files(root):
     }
 
 
+@pytest.mark.thorough
 @pytest.mark.filterwarnings("ignore")  # of a cluster whose worker dies
 def test_a_killed_worker_costs_its_chunks_only(tmp_path):
     from distributed import Client, LocalCluster

@@ -139,7 +139,7 @@ def _tier() -> str:
     if forced is not None:
         return f"{forced}, as {VARIABLE} says"
     few = f"plain Python below {BREAK_EVEN:,} points"
-    return f"{few}; NumPy for a new request up to {NUMPY_PAYS:,}; else compiled ({VARIABLE} forces one)"
+    return f"{few}; NumPy for a new request up to {NUMPY_PAYS:,}; else compiled"
 
 
 def _committed() -> str:

@@ -12,8 +12,8 @@ _RUN = """\
 A scene is a TOML file. It is data only: nothing in it is executed. Its keys:
 
   title, accuracy, threads, outputs = ["V_C", "a_C"] (over the grid of all lists and ranges)
-  [units]         length = "mm", angle = "deg", ...: of plain numbers, the report, pictures and files; or
-                  units = "mm, deg, rpm"
+  [units]         length = "mm", angle = "deg", ...: of plain numbers, report, pictures and files;
+                  or units = "mm, deg, rpm"
   [reduce]        theta = "absmax" (max, min, absmax, mean, rms, or a list of these): of each output
                   over this axis, without storing the grid
   [mechanism]     AB, BC, ec, branch

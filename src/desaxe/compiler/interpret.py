@@ -101,7 +101,7 @@ def _rotated(sine: float, cosine: float, quarters: float) -> float:
     return -value if quarters % 4.0 >= 2.0 else value
 
 
-def _turned_cosine(sine: float, cosine: float, quarters: float) -> float:
+def _rotated_cos(sine: float, cosine: float, quarters: float) -> float:
     value = sine if quarters % 2.0 == 1.0 else cosine
     return -value if (quarters + 1.0) % 4.0 >= 2.0 else value
 
@@ -129,7 +129,7 @@ _IEEE: dict[str, Any] = {
     "mul_add": lambda a, b, c: a * b + c,
     "rounding": lambda a: 2.0**-51 * math.fabs(a),
     "rotated_sin": _rotated,
-    "rotated_cos": _turned_cosine,
+    "rotated_cos": _rotated_cos,
     "lt": lambda a, b: a < b,
     "le": lambda a, b: a <= b,
     "eq": lambda a, b: a == b,

@@ -80,11 +80,11 @@ OPERATIONS: dict[str, Operation] = dict(
         _row("exp", "ff", "exp({0})", CALL, 20, lambda mp, a: mp.exp(a), python="exponential({0})"),
         _row(
             "log", "ff", "log({0})", CALL, 20, lambda mp, a: mp.log(a),
-            python="logarithm({0})", undefined="{0} < 0",
+            python="logarithm({0})", octave="logarithm({0})", undefined="{0} < 0",
         ),
         _row(
             "pow", "fff", "pow({0}, {1})", CALL, 60, lambda mp, a, b: mp.power(a, b),
-            python="power({0}, {1})",
+            python="power({0}, {1})", octave="power_of({0}, {1})",
         ),
         _row("floor", "ff", "floor({0})", CALL, 1, lambda mp, a: mp.floor(a), python="whole({0})"),
         _row(

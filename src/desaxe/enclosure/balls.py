@@ -212,7 +212,7 @@ _LOGIC: dict[str, Callable[..., bool | None]] = {
 }
 
 
-def _turned(sine: Any, cosine: Any, quarters: Any) -> Any:
+def _rotated_sin(sine: Any, cosine: Any, quarters: Any) -> Any:
     """The sine after so many quarter turns: of all that an unsure number of them may give."""
     whole = quarters.unique_fmpz()
     if whole is None:
@@ -241,6 +241,6 @@ _NUMBERS: dict[str, Callable[..., Any]] = {
     "two_product_error": lambda a, b: arb(0),
     "mul_add": lambda a, b, c: _product(a, b) + c,
     "rounding": lambda a: arb(0),
-    "turned": _turned,
-    "rotated_cos": lambda sine, cosine, quarters: _turned(cosine, -sine, quarters),
+    "rotated_sin": _rotated_sin,
+    "rotated_cos": lambda sine, cosine, quarters: _rotated_sin(cosine, -sine, quarters),
 }

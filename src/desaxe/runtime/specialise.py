@@ -28,7 +28,7 @@ def specialise(
 def _specialise(
     names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...], accuracy: str
 ) -> Program:
-    program = _finer(program_of(names, form), accuracy)
+    program = _with_extended_forms(program_of(names, form), accuracy)
     result = optimise(program, dict(fixed))[0]
     before, after = _needs(program), _needs(result)
     kept = {"D"} if dict(fixed).get("alpha") == 0.0 else set(KEPT)  # a crank at constant speed never stalls
@@ -36,7 +36,7 @@ def _specialise(
     lost = {name: (before[name] & kept) - after[name] for name in outputs}
     if not any(lost.values()):
         return result
-    wide = _finer(program_of((*names, *KEPT.values()), form), accuracy)
+    wide = _with_extended_forms(program_of((*names, *KEPT.values()), form), accuracy)
     wide = renamed(wide, {name: f"{name}_alone" for name in outputs if lost[name]})
     lines = list(wide.lines)
     for name in outputs:
@@ -57,7 +57,7 @@ def plain_form(names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, fl
     return None if same else plain
 
 
-def _finer(program: Program, accuracy: str) -> Program:
+def _with_extended_forms(program: Program, accuracy: str) -> Program:
     if accuracy != "extended":
         return program
     from ..compiler.passes.double_double import with_extended_only_forms

@@ -33,4 +33,8 @@ def wrong_names(answers, point, ulps=2.0):
         wanted["lost"] += (x + y - mpmath.mpf(point["x"] + point["y"])) / 2
         size = max(1, *map(abs, point.values()))
         bound = ulps * 2.0**-52
-        return [n for n in NAMES if abs(answers[n] - wanted[n]) > bound * max(size, abs(wanted[n]))]
+        return [
+            n
+            for n in NAMES
+            if n in answers and abs(answers[n] - wanted[n]) > bound * max(size, abs(wanted[n]))
+        ]

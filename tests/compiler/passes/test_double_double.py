@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from desaxe.compiler.passes import double_double as module
 from desaxe.compiler.passes.double_double import double_double
 from desaxe.compiler.passes.fold import fold_constants
+from desaxe.compiler.passes.slicing import keep_outputs
 from desaxe.compiler.program import Line, Program, validate
 from desaxe.mechanism.constants import double_constants
 from desaxe.oracle.truth import ulp_error
@@ -117,7 +118,8 @@ def test_next_to_a_multiple_of_a_quarter(op):
 
 
 def test_the_coverage_set_is_rounded_once():
-    program = coverage()
+    program = coverage()  # but for exp, log and pow, which have no form in pairs
+    program = keep_outputs(program, [name for name in program.outputs if name != "grown"])
     wide = validate(double_double(program, double_constants()))
     for point in POINTS:
         found = in_doubles(wide, point)

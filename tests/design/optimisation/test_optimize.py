@@ -50,6 +50,7 @@ def test_paper_a_has_no_highest_peak():
     assert (down["status"], np.isfinite(down["value"])) == (3, True)
 
 
+@pytest.mark.thorough
 def test_what_is_bounded_at_the_limit_of_turning():
     """Paper A: max |V_C| stays below AB omega (1 + sqrt(BC/AB)) = 52.5 m/s."""
     found = dx.optimize(maximize=("absmax", "V_C"), over={"ec": (0, 0.25)}, **A)
@@ -113,6 +114,7 @@ def test_against_a_scan_and_moved_limits():
     assert best["multipliers"]["ec"] == pytest.approx((best["value"] - wider["value"]) / d, rel=5e-3)
 
 
+@pytest.mark.thorough
 def test_equal_and_upper_limits():
     problem = {
         "minimize": ("absmax", "a_C"),
@@ -192,6 +194,7 @@ def test_pareto_front():
         assert not ((every < value * (1 - 1e-6)) & (ratios > T * (1 + 1e-6))).any()
 
 
+@pytest.mark.thorough
 def test_pareto_front_of_three():
     """What the third objective can have is not what the best of the first leaves of it."""
     found = dx.optimize(

@@ -133,6 +133,7 @@ def inputs_of(scene):
     return {**fixed, "branch": content.branch, "accuracy": content.accuracy}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", SCENES)
 def test_run_is_the_scene(name, alone, monkeypatch):
     monkeypatch.setenv("DESAXE_TIER", "compiled" if points_of(SCENES[name]) else "interpreted")
@@ -144,6 +145,7 @@ def test_run_is_the_scene(name, alone, monkeypatch):
         same(name, numbers(texts), dataset[output].values.reshape(-1))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", [name for name in SCENES if name != "no_axis"])
 def test_arrays_are_those_of_evaluate(name, alone, monkeypatch):
     monkeypatch.setenv("DESAXE_TIER", "compiled")
@@ -155,6 +157,7 @@ def test_arrays_are_those_of_evaluate(name, alone, monkeypatch):
         same(name, numbers(alone[name]["arrays"][output]), wanted[output])
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", [name for name in SCENES if name != "fast"])
 def test_one_point_is_that_of_evaluate(name, alone):
     names = list(alone[name]["number"])

@@ -15,8 +15,11 @@ from .shared import called, one_line, statements, types_of, with_helpers, with_s
 NUMPY = (
     "copysign",
     "cos",
+    "exp",
     "floor",
+    "hypot",
     "inf",
+    "log",
     "logical_and",
     "logical_not",
     "logical_or",
@@ -25,7 +28,7 @@ NUMPY = (
     "sqrt",
     "where",
 )
-RENAMED = {"atan2": "arctan2", "fabs": "abs"}  # what the readable text says -> what jax.numpy says
+RENAMED = {"atan2": "arctan2", "fabs": "abs", "pow": "power"}  # readable text -> jax.numpy
 OWN = ("asarray", "custom_jvp", "finfo", "float32", "result_type", "stop_gradient", "zeros_like", "int8")
 WORDS = {"nan": "nan", "inf": "inf", "True": "True", "False": "False"}
 HELPERS = {

@@ -14,8 +14,8 @@ KEYWORDS = frozenset(
     (
         "break", "case", "catch", "classdef", "continue", "do", "else", "elseif", "end", "for", "function",
         "global", "if", "otherwise", "parfor", "persistent", "return", "spmd", "switch", "try", "until",
-        "unwind_protect", "while", "select", "root", "shape", "true", "false", "abs", "ones", "size",
-        "double",
+        "unwind_protect", "while", "select", "root", "logarithm", "power_of", "shape", "true",
+        "false", "abs", "ones", "size", "double",
     )
 )  # fmt: skip
 HELPERS = {
@@ -32,6 +32,20 @@ end
   % The square root, NaN below zero.
   a(a < 0) = NaN;
   x = sqrt(a);
+end
+""",
+    "logarithm": """function x = logarithm(a)
+  % The natural logarithm, NaN below zero.
+  a(a < 0) = NaN;
+  x = log(a);
+end
+""",
+    "power_of": """function x = power_of(a, b)
+  % a to the power b, NaN where that is no real number.
+  whole = ones(size(a)) .* ones(size(b));
+  a = a .* whole;
+  a(a < 0 & (b .* whole) ~= fix(b .* whole)) = NaN;
+  x = a .^ b;
 end
 """,
     "copysign": """function x = copysign(a, b)

@@ -8,7 +8,7 @@ from ...program import Line, Program
 from ..protocol import Module, Solver, Symbol
 from ..shared import called, one_line, with_helpers
 from .functions import Lifted, lifted, static_function
-from .helpers import FREESTANDING, FREESTANDING_ATAN2, HELPERS, PRAGMAS
+from .helpers import FREESTANDING, FREESTANDING_ATAN2, FREESTANDING_HYPOT, HELPERS, PRAGMAS
 
 STRIP = 128  # points of an array whose sines are computed ahead, on the stack
 
@@ -186,6 +186,11 @@ class _Source:
         angles = self._angles(functions)
         atan2 = self.freestanding and bool(called(functions, ["atan2"]))
         found = [FREESTANDING] if self.freestanding else []
+        if self.freestanding:
+            missing = called(functions, ["exp", "log", "pow"])
+            if missing:
+                raise ValueError(f"c without libm has no {', '.join(missing)}: compile with libm")
+            found += [FREESTANDING_HYPOT] if called(functions, ["hypot"]) else []
         found += with_helpers("\n".join([*angles, functions]), HELPERS)
         return [*found, *angles[:1], *([FREESTANDING_ATAN2] if atan2 else []), *angles[1:]]
 
