@@ -8,6 +8,8 @@ from tests.reliability.rig import RIGHT
 from tests.reliability.trials import TRIALS
 
 
+# Whoever used JAX in this process is warned at each fork; the children do not use it.
+@pytest.mark.filterwarnings("ignore:os.fork:RuntimeWarning")
 @pytest.mark.parametrize("trial", TRIALS, ids=lambda trial: trial.what)
 def test_a_few_seeds(trial, tmp_path):
     for seed in range(trial.short):

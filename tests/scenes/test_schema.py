@@ -65,7 +65,7 @@ GOOD = {
 WRONG = {
     "reduce": {"theta": "absmx"},
     "threads": 0,
-    "outputs": ["a_D"],
+    "outputs": [3],  # a name that nobody knows may be a quantity of the user's own
     "mechanism.branch": 2,
     "mechanism.CB": 1,
     "motion.theta": {"start": 0},
