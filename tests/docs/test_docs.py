@@ -123,8 +123,8 @@ def test_the_site(tmp_path):
     assert {Path(page).stem for page in PAGES if page.startswith("docs/")} - {"index"} <= set(pages)
     assert not [name for name, text in pages.items() if "<!-- desaxe:" in text]
     assert pages["derivation"].count('class="equation"') > 25
-    assert all(f'id="desaxe{name}"' in pages["api"] for name in dx.__all__)
-    assert all(f'id="desaxeplot{name}"' in pages["api"] for name in dx.plot.__all__)
+    assert all(f'id="desaxe{name.lower()}"' in pages["api"] for name in dx.__all__)
+    assert all(f'id="desaxeplot{name.lower()}"' in pages["api"] for name in dx.plot.__all__)
     assert "m_slider" in pages["scene"]
     assert broken_links(tmp_path) == []
 
