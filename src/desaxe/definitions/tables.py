@@ -55,7 +55,7 @@ def _entry(name: str, table: Any) -> Entry:
 
 
 def tables_of(made: Iterable[Definition]) -> dict[str, dict[str, Any]]:
-    """The same tables of definitions."""
+    """The tables of definitions, normalised."""
     found: dict[str, dict[str, Any]] = {}
     for own in made:
         found[own.name] = {"expression": own.expression, "unit": own.unit, "meaning": own.meaning}

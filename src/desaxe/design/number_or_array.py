@@ -1,4 +1,4 @@
-"""The same closed form for a number, in plain `math`, and for arrays, in NumPy.
+"""Functions that let one closed form serve a number, in plain `math`, and arrays, in NumPy.
 
 A root of less than nothing and nothing over nothing are NaN, as in arrays; a number over nothing is infinite.
 """

@@ -144,7 +144,7 @@ class _Run:
         return True if b <= c else False if a > d else None
 
     def _ends(self, argument: Argument, x: Any) -> tuple[Any, Any]:
-        """Those of an input are known exactly."""
+        """End points of a ball; for an input, its exact interval."""
         ends = self.box.get(argument) if isinstance(argument, str) else None
         return (x.lower(), x.upper()) if ends is None else (arb(ends[0]), arb(ends[1]))
 

@@ -264,7 +264,7 @@ def _item(entry: Entry) -> str:
 
 
 def _both(entry: Entry) -> str:
-    """What is printed, in a code span, and in LaTeX where it is an equation."""
+    """The printed text in a code span, and in LaTeX where it is an equation."""
     printed = forms(entry)[0]
     return _code(entry.printed) + (f" {_math(printed)}" if printed else "")
 

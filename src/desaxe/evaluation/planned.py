@@ -29,7 +29,7 @@ _Loop = CFUNCTYPE(c_int64, c_char_p, c_char_p, c_char_p, c_char_p)
 
 
 class _Call(NamedTuple):
-    """What is known of a request: its inputs, how wide margins are told, and the plans made so far."""
+    """A remembered request: its inputs, its wide-margin test, and the plans made so far."""
 
     request: Request
     inputs: tuple[str, ...]

@@ -112,7 +112,7 @@ def _step(x: Array, slope: Array) -> Array:
 def _steps_with_margin(
     inputs: Mapping[str, Array], by: Mapping[str, Array], margin: Array
 ) -> dict[str, Array]:
-    """Those of the lengths and the margin, which stands in the place of ec.
+    """Error steps of the lengths and of the margin, which stands in the place of ec.
 
     Next to a change point the slopes by ec and a length cancel: their own errors are counted too.
     """

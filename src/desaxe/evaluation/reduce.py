@@ -28,7 +28,7 @@ NO_STATUS = "a status has no largest or mean: leave it out, each name tells how 
 
 
 class Reduction(NamedTuple):
-    """What is taken of which axis."""
+    """The reductions and the axis that they run along."""
 
     axis: str
     kinds: tuple[str, ...]
@@ -134,7 +134,7 @@ def fill_reduced(
 def _of_whole(
     grid: Mapping[str, Array], reduction: Reduction, dimensions: Sequence[str], outs: Mapping[str, Array]
 ) -> None:
-    """The same of a small grid, by NumPy."""
+    """Reduce a small grid that is already computed, by NumPy."""
     for name, array in grid.items():
         rows = np.moveaxis(array, dimensions.index(reduction.axis), -1)
         good = rows == rows

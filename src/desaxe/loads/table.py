@@ -32,7 +32,7 @@ class Table:
     period: float | None = None
 
     def reduced(self, x: float) -> float:
-        """The same place within the first period."""
+        """The angle shifted into the first period."""
         if self.period is None or x - x != 0.0:
             return x
         first = self.knots[0]

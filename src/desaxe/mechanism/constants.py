@@ -12,19 +12,19 @@ if TYPE_CHECKING:
 
 @cache
 def constants() -> Trigonometry:
-    """Those of doubles."""
+    """Sine and cosine coefficients for float64."""
     return Trigonometry(**import_module("desaxe.generated.trigonometry").CONSTANTS)
 
 
 @cache
 def single_constants() -> Trigonometry:
-    """Those of float32."""
+    """Sine and cosine coefficients for float32."""
     return Trigonometry(**import_module("desaxe.generated.trigonometry").SINGLE)
 
 
 @cache
 def double_constants() -> "DoubleTrigonometry":
-    """Those of twice the digits."""
+    """Sine and cosine coefficients for pairs of doubles."""
     from ..compiler.passes.double_angles import DoubleTrigonometry
 
     return DoubleTrigonometry(**import_module("desaxe.generated.trigonometry").DOUBLE)

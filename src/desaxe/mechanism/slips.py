@@ -45,7 +45,7 @@ def warn_of_slips(written: Mapping[str, Any], units: UnitSystem = SI, stacklevel
 
 
 def slip(name: str, value: Any, units: UnitSystem = SI) -> str:
-    """What is to be said of a number; nothing of one that can be meant, nor of texts and arrays."""
+    """The warning about a number that is almost surely a slip; empty for texts, arrays, plausible numbers."""
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not value or not isfinite(value):
         return ""
     conversion = units.of(name) if name in REMEDIES else None

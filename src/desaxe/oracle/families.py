@@ -257,7 +257,7 @@ def units(rng: Rng) -> Point:
 
 
 def rescaled(at: Point, length: int, rate: int) -> Point:
-    """The same mechanism in units of 2^-length metres and 2^-rate radians a second."""
+    """The mechanism in units of 2^-length metres and 2^-rate radians a second."""
     powers = dict.fromkeys(("ec", "AB", "BC"), length) | {"omega0": rate, "alpha": 2 * rate}
     return {name: math.ldexp(value, powers[name]) if name in powers else value for name, value in at.items()}
 

@@ -148,7 +148,7 @@ def _on_disk(search: Search) -> bool:
 
 @lru_cache(maxsize=1024)
 def _plain(search: Search) -> Kernel:
-    """The same text as plain Python."""
+    """The search as plain Python, for the first few designs."""
     loops, work = _loops(programs_of(search, False), "python")
     scope = _scope(max(work, 1))
     source = "\n\n".join([*HELPERS.values(), *loops, *_functions()])

@@ -68,7 +68,7 @@ def _plane(dataset: "xr.Dataset", name: str, x: str | None, y: str | None) -> tu
 
 
 def _infeasible(dataset: "xr.Dataset", array: "xr.DataArray", x: str, y: str) -> NDArray[np.float64]:
-    """What is above 0 where a design is infeasible, over (y, x)."""
+    """A field over (y, x) that is above 0 where a design is infeasible."""
     margin, status = (dataset.get(n) for n in ("margin", "status"))
     geometric = status is None or bool(status.isin(GEOMETRIC).all())
     edge: Any

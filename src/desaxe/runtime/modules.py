@@ -107,7 +107,7 @@ def is_kept(kind: str, text: str) -> bool:
 
 
 def _from_disk(path: Path) -> Loaded | None:
-    """What is kept, if nobody else can have written it, and it is whole and for this machine."""
+    """The kept machine code if it is whole, for this machine, and writable by nobody else; else None."""
     with suppress(OSError):
         code = read_code(path.name, _cache.read_bytes(path))
         return load(code) if code is not None else None

@@ -29,7 +29,7 @@ class MachineSpeed(float):
 
 
 class Request(NamedTuple):
-    """What is asked for: the names as the user says them, those of the program, its form, what is fixed."""
+    """A checked request: names as the user wrote them, names of the Program, its variant, fixed inputs."""
 
     shown: tuple[str, ...]
     names: tuple[str, ...]

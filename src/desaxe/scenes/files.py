@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def requirements_of(data: str) -> dict[str, str]:
-    """What is needed to write a file of this name: a word for it, and the module."""
+    """The kind of file that a name stands for, and the module that writes it."""
     return {
         ".nc": {"results.data": "h5netcdf", "the file of results.data": "h5py"},
         ".zarr": {"results.data": "zarr"},

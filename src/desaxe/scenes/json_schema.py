@@ -24,7 +24,7 @@ def json_schema() -> dict[str, Any]:
 
 
 def json_schema_text() -> str:
-    """The same as a file."""
+    """The JSON schema as the text of a file."""
     return json.dumps(json_schema(), indent=2) + "\n"
 
 

@@ -227,7 +227,7 @@ def _accuracy(written: str | float) -> str:
 def _reduction(
     file: schema.SceneFile, outputs: tuple[str, ...], inputs: Mapping[str, Value]
 ) -> Reduction | None:
-    """What is taken of which axis instead of storing the grid."""
+    """The reduction that a scene asks for instead of the grid."""
     if not file.reduce:
         return None
     if not outputs:
@@ -295,7 +295,7 @@ def _needs(names: Iterable[str], inputs: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _require(key: str, needs: Iterable[str], what: str, inputs: Mapping[str, Any]) -> list[str]:
-    """Those of the needed inputs that are given; SceneError for one that is missing."""
+    """The needed inputs from those given; SceneError for a missing one."""
     for name in needs:
         if name not in inputs and name not in OPTIONAL:
             section = next(s for s, table in SECTIONS.items() if name in table.__struct_fields__)
@@ -304,7 +304,7 @@ def _require(key: str, needs: Iterable[str], what: str, inputs: Mapping[str, Any
 
 
 def _require_for_grid(key: str, names: tuple[str, ...], inputs: Mapping[str, Any]) -> list[str]:
-    """The same for a grid, which has `status` and `margin` too; they need no speed."""
+    """The needed inputs of a grid, which has `status` and `margin` too; they need no speed."""
     always = [name for name in _needs(("status", "margin"), inputs) if name in ("theta", *LENGTHS)]
     needs = dict.fromkeys([*_needs(names, inputs), *always])
     return _require(key, needs, ", ".join(names), inputs)
@@ -318,7 +318,7 @@ def _with(inputs: Mapping[str, Value], other: Mapping[str, Value]) -> dict[str, 
 
 
 def _numbers(key: str, names: Iterable[str], inputs: Mapping[str, Value]) -> dict[str, Any]:
-    """Those inputs, each a number or a load that varies; SceneError for one that is a list or range."""
+    """Inputs that must be single: a number or a load that varies; SceneError for a list or range."""
     found: dict[str, Any] = {}
     for name in names:
         value = inputs[name]

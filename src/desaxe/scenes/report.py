@@ -167,7 +167,7 @@ STATUS_WORDS = {int(status): status.words for status in PeakStatus if status}
 
 
 def _remarks(found: PeakResult) -> list[str]:
-    """What is to be said about designs that have no ordinary peak, and about rows left out."""
+    """Footnotes on designs without an ordinary peak and on rows left out."""
     status = found.dataset["status"].values
     lines = [
         f"  designs: {np.sum(status == code)} {words}"

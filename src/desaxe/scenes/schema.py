@@ -274,7 +274,7 @@ def hint(word: str, allowed: tuple[str, ...]) -> str:
 
 
 def _complaint(value: Any, kind: Any, key: str) -> str | None:
-    """What is wrong with a value or, better, with the innermost part of it; None where nothing is."""
+    """The error of a value, of its innermost part where possible; None where it is valid."""
     if _fits(value, kind):
         return None
     struct = _member(kind, lambda part: isinstance(part, type) and issubclass(part, Struct))

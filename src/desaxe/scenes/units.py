@@ -70,7 +70,7 @@ def _is_number(value: Any) -> bool:
 
 
 def slips_of(data: Mapping[str, Any], units: UnitSystem) -> list[str]:
-    """What is to be said of the plain numbers of the scene's sections that are almost surely slips."""
+    """Warnings about plain numbers of the scene that are almost surely slips of a unit."""
     found = []
     for section in SECTIONS:
         values = data.get(section)

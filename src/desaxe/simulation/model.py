@@ -105,7 +105,7 @@ def form_of(values: Mapping[str, Any]) -> Variant:
 
 
 def fixed_zeros(values: Mapping[str, Any]) -> tuple[tuple[str, float], ...]:
-    """What is 0 in a design and costs nothing: whole terms vanish from the program."""
+    """Inputs that are 0 in a design; their terms vanish from the program."""
     return tuple(
         (name, 0.0) for name in STRUCTURAL_ZEROS if isinstance(z := values.get(name), float) and z == 0.0
     )

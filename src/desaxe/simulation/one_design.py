@@ -65,7 +65,7 @@ class Constant:
         self.y = y
 
     def __call__(self, t: Any) -> Array:
-        """The same at every instant."""
+        """The state at each instant: it does not change."""
         return np.multiply.outer(self.y, np.ones(np.shape(t)))
 
 

@@ -146,7 +146,7 @@ def simulate(
 
 
 def _check_many(method: str, atol: Any, until: Any) -> None:
-    """What is for one design at a time."""
+    """Reject options that are for one design at a time."""
     given = {"method": method != "DOP853", "atol": atol is not None, "until": until is not None}
     for name, there in given.items():
         if there:

@@ -239,7 +239,7 @@ def _free(root: Path) -> int:
 
 
 def _outputs(sweep: Sweep, place: tuple[int, ...]) -> tuple[tuple[Output, ...], dict[str, slice]]:
-    """What is written with a chunk: a part of fewer dimensions goes with the first chunk that has it."""
+    """The parts written with a chunk; one of fewer dimensions goes with the first chunk that has it."""
     layout = sweep.layout
     regions = slices_of(place, layout.sizes, layout.chunk)
     places = dict(zip(layout.sizes, place, strict=True))

@@ -97,7 +97,7 @@ class Panels:
         return sign * best, place, inside
 
     def split(self, places: list[float]) -> "Panels":
-        """The same functions on panels that have these angles among their edges."""
+        """These functions on panels with additional edges."""
         edges = np.unique([*self.edges, *places])
         start, stop = edges[:-1], edges[1:]
         wide = stop - start > 1e-15 * np.maximum(np.abs(start), 1.0)

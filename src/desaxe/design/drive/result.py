@@ -37,7 +37,7 @@ class Drive(dict[str, Any]):
         return type(self), (dict(self), self.inputs, self.branch, self.course, self.units)
 
     def in_units(self, units: UnitSystem) -> "Drive":
-        """The same in other units; for one that is in SI units."""
+        """The result in other units; it must be in SI units now."""
         figures = {name: _shown(units, name, value) for name, value in self.items()}
         course = {name: _conversion(units, name).shown(values) for name, values in self.course.items()}
         return Drive(figures, self.inputs, self.branch, course, units)

@@ -111,5 +111,5 @@ def _velocity(
 
 
 def in_turn(theta: float) -> float:
-    """The same angle from -pi/2 on, within a turn."""
+    """The angle shifted into the turn from -pi/2 to 3 pi/2."""
     return theta + 2.0 * pi if theta < -pi / 2 else theta

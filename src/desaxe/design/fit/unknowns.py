@@ -1,4 +1,4 @@
-"""What is to be found: parameters of the machine, and nuisances of its instruments."""
+"""The unknowns of a fit: parameters of the machine, and nuisances of its instruments."""
 
 from collections.abc import Mapping, Sequence
 from math import inf, pi

@@ -21,7 +21,7 @@ def plan_text(plan: Mapping[str, Any]) -> str:
 
 
 def _asked(plan: Mapping[str, Any]) -> str:
-    """What is asked for, of what."""
+    """The requested names and the axes of the grid."""
     lines = ["Asked for"]
     if plan["outputs"]:
         rows = [[out["name"], _unit(out["unit"]), out["meaning"]] for out in plan["outputs"]]
@@ -69,7 +69,7 @@ def _wrapped(word: str, parts: list[str]) -> list[str]:
 
 
 def _skipped(plan: Mapping[str, Any]) -> str:
-    """What is not computed."""
+    """The part of the plan on what is skipped."""
     lines = ["Skipped"]
     for one in plan["skipped"]:
         count = one["saved"]

@@ -63,7 +63,7 @@ def steps_of(key: KernelKey, request: Request, inside: int) -> list[Step]:
 
 
 def skipped_of(key: KernelKey, request: Request, given: Mapping[str, Any]) -> list[Skipped]:
-    """What is skipped, and what each fixed input saves on its own: with it free, so much more is computed."""
+    """Skipped lines, and what each fixed input saves on its own."""
     fixed = key.fixed
     least = _operations(key, fixed)
     found = []

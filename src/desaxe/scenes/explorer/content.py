@@ -138,7 +138,7 @@ def _grouped(wanted: Iterable[str], given: Mapping[str, Value]) -> dict[str, lis
 
 
 def _sensitivities(base: str, given: Mapping[str, Value]) -> list[str]:
-    """Those by the motion's parameters, and by the masses and loads that are given."""
+    """Sensitivities by the motion's parameters and by the given masses and loads."""
     state = "omega" in given
     known = quantities()
     by = [*PARAMETERS, *(load for load in LOADS if load in given)]

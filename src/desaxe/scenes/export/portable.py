@@ -24,7 +24,7 @@ Fixed = tuple[tuple[str, float], ...]
 
 
 class Order(NamedTuple):
-    """What is asked for in another language than Python."""
+    """A request for another language than Python."""
 
     language: str
     name: str
