@@ -30,7 +30,7 @@ def in_each_run(name):
     return pytest.param(name, marks=pytest.mark.thorough) if is_long else name
 
 
-@pytest.mark.parametrize("name", map(in_each_run, [*QUANTITIES, "margin", "status"]))
+@pytest.mark.parametrize("name", [in_each_run(name) for name in (*QUANTITIES, "margin", "status")])
 def test_closed_forms(name):
     assert float(number(dx.equation(name).expression)) == pytest.approx(dx.evaluate(name, **POINT), rel=1e-13)
 
