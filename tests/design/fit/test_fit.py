@@ -132,7 +132,8 @@ def test_tables_labels_and_files(tmp_path):
     assert fitted(path)["value"] == pytest.approx(expected, rel=1e-9)
     scene = tmp_path / "press.toml"
     scene.write_text(
-        'outputs = ["a_C"]\n[mechanism]\nec = 0\nAB = "120 mm"\nBC = 0.36\n[motion]\ntheta = 1\nomega0 = 150\n',
+        'outputs = ["a_C"]\n[mechanism]\nec = 0\nAB = "120 mm"\nBC = 0.36\n'
+        "[motion]\ntheta = 1\nomega0 = 150\n",
         encoding="utf-8",
     )
     words = [
