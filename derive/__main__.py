@@ -10,7 +10,7 @@ REMEDY = "python -m derive"
 
 
 def target() -> Path:
-    """The folder that is written: generated/ beside this package, or where the installed one is."""
+    """The output folder: generated/ beside this package, or that of the installed package."""
     beside = Path(__file__).resolve().parent.parent / "generated"
     if beside.is_dir() and Path(__file__).resolve().parent.name == "derive":
         return beside

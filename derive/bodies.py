@@ -94,7 +94,7 @@ def solution() -> dict[str, sp.Expr]:
 
 
 def _on_the_frame(forces: dict[str, sp.Expr]) -> dict[str, sp.Expr]:
-    """What the mechanism and its motor do to the frame, about A."""
+    """Shaking force and shaking moment (about A) of the mechanism and its motor on the frame."""
     guide = sp.Matrix([forces["N_C"], F_friction])
     shaking = -sp.Matrix([forces["F_A_X"], forces["F_A_Y"]]) - guide
     about_A = -forces["T_in"] - moment(POSITIONS["C"], guide)
@@ -110,13 +110,13 @@ def _energies() -> dict[str, sp.Expr]:
 
 
 def prove(name: str, expression: sp.Expr) -> None:
-    """An equation of `dynamics`, in symbols of this file, equals the solution, or the derivation stops."""
+    """Prove an equation of `dynamics`, in symbols of this file, by the solution; ArithmeticError if wrong."""
     if not _vanishes(expression.subs(KINEMATICS) - solution()[name].subs(KINEMATICS)):
         raise ArithmeticError(f"{name} is not what the free bodies give")
 
 
 def _vanishes(difference: sp.Expr) -> bool:
-    """Whether it is 0 on sin^2 + cos^2 = 1, S^2 + u^2 = BC^2, branch^2 = 1."""
+    """True if the difference is 0 on sin^2 + cos^2 = 1, S^2 + u^2 = BC^2, branch^2 = 1."""
     numerator = sp.expand(sp.fraction(sp.together(difference))[0])
     circles = ((cos_theta, 1 - sin_theta**2), (S, BC**2 - u**2), (branch, sp.Integer(1)))
     for variable, square in circles:

@@ -27,7 +27,7 @@ INTERNAL = ("force_status", *KEEPS.values())
 
 
 class Derivation(NamedTuple):
-    """What is written: the law's program, its overlays, public names, sine and cosine."""
+    """The result of the derivation: the law's program, its overlays, public names, sine and cosine."""
 
     program: Program
     frozen: Program  # the same before equal values were merged
@@ -40,7 +40,7 @@ class Derivation(NamedTuple):
 
 
 def public_names() -> tuple[str, ...]:
-    """Every name that can be asked for: quantities, sensitivities, facts."""
+    """All public names: quantities, sensitivities, facts."""
     first = [sensitivity(q, p) for q in QUANTITIES for p in parameters_of(q)]
     second = [
         sensitivity(sensitivity(q, p), t)
@@ -52,7 +52,7 @@ def public_names() -> tuple[str, ...]:
 
 
 def parameters_of(quantity: str) -> tuple[str, ...]:
-    """What a quantity may depend on."""
+    """Parameters that a quantity may depend on."""
     return (*PARAMETERS, *LOADS) if quantity in FORCES else PARAMETERS
 
 
@@ -93,7 +93,7 @@ def _derive(sheet: Sheet, name: str) -> None:
 
 
 def _keep_needs(sheet: Sheet, name: str, base: str) -> None:
-    """Make a value NaN where what its quantity needs is not there, if it does not use it itself.
+    """Make a value NaN where its quantity does not exist, if its own lines do not already.
 
     A force is one of the whole mechanism, even where its formula has the crank alone.
     """

@@ -92,7 +92,7 @@ def define_dynamics(sheet: Sheet) -> None:
 
 
 def _define_lumps(sheet: Sheet) -> None:
-    """Where the masses are; a centre of mass that is given does not move with its link's length."""
+    """Lumped masses; a centre of mass that is an input does not move with its link's length."""
     for centre, length in zip(CENTRES, ("AB", "BC"), strict=True):
         meaning = f"derivative of {centre} by {length}"
         sheet.define(sensitivity(centre, length), 0, unit=NONE, meaning=meaning)
@@ -129,7 +129,7 @@ def _define_share(
 
 
 def _define_loads(sheet: Sheet) -> None:
-    """What the motion takes, without friction."""
+    """Inertia forces and external loads, without friction."""
     sheet.define("crank_X", alpha * cos_theta - omega2 * sin_theta, unit=PER_TIME2,
                  meaning="acceleration along X of a point of the crank, per distance from A")  # fmt: skip
     sheet.define("crank_Y", -(alpha * sin_theta + omega2 * cos_theta), unit=PER_TIME2,
@@ -151,7 +151,7 @@ N_C, F_friction, thrust, side_push, T_in = map(symbol, ("N_C", "F_friction", "th
 
 
 def _sign(x: sp.Expr) -> sp.Expr:
-    """Its sign; 0 of 0 and NaN of NaN."""
+    """The sign of x: 1, 0 or -1; NaN for NaN."""
     return select(lt(0, x), 1, select(lt(x, 0), -1, x))
 
 
@@ -203,7 +203,7 @@ def _define_joints(sheet: Sheet) -> None:
 
 
 def _define_magnitudes(sheet: Sheet) -> None:
-    """What bearings feel, and what the guide's friction loses; at 0 a magnitude has no derivative."""
+    """Magnitudes of the joint forces, and the power lost to friction; a magnitude of 0 has no derivative."""
     joints = (("A", "frame on the crank"), ("B", "crank on the rod"), ("C", "rod on the slider"))
     for joint, bodies_of_joint in joints:
         X, Y = symbol(f"F_{joint}_X"), symbol(f"F_{joint}_Y")
@@ -219,7 +219,7 @@ def _define_magnitudes(sheet: Sheet) -> None:
 
 
 def _define_frame(sheet: Sheet) -> None:
-    """What the mechanism does to the frame: the loads less what its motion takes."""
+    """Shaking force and moment on the frame: loads less inertia forces."""
     m_total = sheet.define("m_total", m_turning + m_reciprocating, unit=MASS, meaning="mass of all links")
     sheet.define("F_shaking_X", m_total * g_X + F_X - swing * crank_X, unit=FORCE,
                  meaning="force of the mechanism on the frame along X")  # fmt: skip
@@ -247,7 +247,7 @@ PROVED |= {name: symbol(name) for name in ("M_eff", "potential_energy")}
 
 
 def prove(sheet: Sheet) -> None:
-    """Every force, torque and energy against the free bodies, or the derivation stops."""
+    """Prove every force, torque and energy against the free bodies; ArithmeticError if one differs."""
     for name, expression in PROVED.items():
         bodies.prove(name, _written_out(sheet, expression))
 

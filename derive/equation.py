@@ -1,4 +1,4 @@
-"""One quantity as a SymPy expression and as LaTeX: what `desaxe.equation` answers.
+"""`desaxe.equation`: one quantity as a SymPy expression and as LaTeX.
 
 The closed form is the textbook one, in the parameters alone, by differentiating the solved loop.
 It is for reading and for symbolic work; numbers come from the stable form, whose lines `steps` has.
@@ -168,7 +168,7 @@ def _lump(base: str) -> sp.Expr:
 
 
 def _sign(x: sp.Expr) -> sp.Expr:
-    """Its sign, constant but for jumps."""
+    """The sign of x as a piecewise constant."""
     return sp.Piecewise((-1, x < 0), (0, sp.Eq(x, 0)), (1, True))
 
 

@@ -91,7 +91,7 @@ def slider_rates() -> dict[int, sp.Expr]:
 
 
 def _prove_rate(order: int, difference: sp.Expr) -> None:
-    """What should be 0 is 0, with Y, ec and the derivatives of phi written out, or the derivation stops."""
+    """Prove that a difference is 0 with Y, ec and the derivatives of phi expanded; else ArithmeticError."""
     known = {slider: AB * cos_theta + branch / r, ec: u - AB * sin_theta, crank_ratio: AB * r}
     known |= {phi_by_theta(n): chain_rule_form(n) for n in (1, 2, 3)}
     plain = sp.Poly(sp.expand(difference.subs(known)), cos_theta, branch)

@@ -119,7 +119,7 @@ class _Freezer:
 
 
 def _is_status(argument: Argument, types: dict[str, str]) -> bool:
-    """Whether it is one of the whole numbers of a status."""
+    """True for an integer status code."""
     if isinstance(argument, str):
         return types[argument] == "i64"
     return argument in STATUSES

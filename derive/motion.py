@@ -1,4 +1,4 @@
-"""How the crank moves, and time derivatives along that motion.
+"""The crank's law of motion, and time derivatives along it.
 
 Paper A's law: omega(theta)^2 = omega0^2 + 2 alpha theta, turning the way omega0 points (forwards
 where it is 0). Or a given state: omega and alpha at this instant. Either way d(theta)/dt = omega,
@@ -142,7 +142,7 @@ def _omega_second_rates() -> dict[tuple[str, ...], sp.Expr]:
 
 
 def state_sheet() -> Sheet:
-    """The equations that a given state (omega, alpha) puts in place of the law's.
+    """The equations of a given state (omega, alpha), which replace those of the law.
 
     omega stands in the place of omega0: a derivative by it carries omega0's name.
     """

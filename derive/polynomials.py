@@ -70,7 +70,7 @@ def double_trigonometry() -> DoubleTrigonometry:
 
 
 def _in_words(coefficients: list[mpf]) -> tuple[tuple[float, ...], ...]:
-    """Each coefficient in as many words as its term needs."""
+    """Split each coefficient into as many doubles as its term needs."""
     largest, found = (mp.pi / 4) ** 2, []
     for k, coefficient in enumerate(coefficients):
         size = abs(coefficient / coefficients[0]) * largest**k
@@ -82,7 +82,7 @@ def _in_words(coefficients: list[mpf]) -> tuple[tuple[float, ...], ...]:
 
 
 def _parts(value: mpf, turns: int, count: int, digits: int = 53) -> tuple[float, ...]:
-    """The value as a sum of numbers of so many digits, each with room for `turns` bits; the last has none."""
+    """Split a value into `count` doubles; all but the last leave `turns` bits free for exact products."""
     parts = []
     for _ in range(count - 1):
         scale = mpf(2) ** (digits - 1 - turns - mp.floor(mp.log(value, 2)))
@@ -128,7 +128,7 @@ def _error(
 
 
 def _extrema(error: Callable[[mpf], mpf], low: mpf, high: mpf, count: int) -> list[mpf]:
-    """Where the error is extreme, on a fine grid between its changes of sign."""
+    """The points of extreme error, on a fine grid, one between each two sign changes."""
     grid = [(low + high) / 2 - (high - low) / 2 * mp.cos(mp.pi * k / 400) for k in range(401)]
     values = [error(z) for z in grid]
     best: list[int] = []

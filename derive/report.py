@@ -15,7 +15,7 @@ CONCENTRIC = {"branch": 1.0, "ec": 0.0, "alpha": 0.0}
 
 
 def report(derivation: Derivation) -> str:
-    """What each pass leaves, per quantity, in general and for a concentric crank at constant speed."""
+    """Operations after each pass, per quantity, in general and for a concentric crank at constant speed."""
     whole, frozen = cost_of(derivation.program).operations, cost_of(derivation.frozen).operations
     parts = [f"as frozen {frozen} operations; same values merged {whole}, for {len(derivation.names)} names"]
     for title, fixed in (("branch = 1", GENERAL), ("branch = 1, ec = 0, alpha = 0", CONCENTRIC)):

@@ -30,21 +30,21 @@ class RodFunction(NamedTuple):
 
     @property
     def symbol(self) -> sp.Symbol:
-        """Its symbol, such as `S_u_BC_2`."""
+        """Symbol of the function, such as `S_u_BC_2`."""
         return symbol("_".join([self.function, *self.by, *([str(self.turns)] if self.turns else [])]))
 
     def with_respect_to(self, parameter: str) -> "RodFunction":
-        """Its derivative by u or BC."""
+        """The derivative by u or BC."""
         return self._replace(by=tuple(sorted((*self.by, parameter), reverse=True)))
 
     @property
     def unit(self) -> Unit:
-        """Its unit: u and BC are lengths."""
+        """Unit of the function; u and BC are lengths."""
         return UNITS[self.function].over(*["BC"] * len(self.by), *["theta"] * self.turns)
 
     @property
     def meaning(self) -> str:
-        """What it is, in words."""
+        """A description of the function for the comments of the program."""
         order = len(self.by)
         what = f"d{order if order > 1 else ''}{self.function}/({' '.join('d' + p for p in self.by)})"
         what = what if self.by else "rod height S"

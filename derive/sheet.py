@@ -31,7 +31,7 @@ class Equation(NamedTuple):
 
     @property
     def note(self) -> Note | None:
-        """What the frozen line says of itself."""
+        """Unit, meaning and source for the frozen line; None without a unit."""
         return Note(unit_text(self.unit), self.meaning, self.source) if self.unit is not None else None
 
 
@@ -55,7 +55,7 @@ class Sheet:
         differentiate: sp.Expr | None = None,
         rigid: bool = False,
     ) -> sp.Symbol:
-        """Add an equation (see `Equation` for what is said of it); its symbol."""
+        """Add an equation with the fields of `Equation`; return its symbol."""
         if name in self.equations:
             raise ValueError(f"{name} is defined twice")
         equation = Equation(sp.sympify(expression), unit, meaning, source, differentiate, rigid)

@@ -100,7 +100,7 @@ def chain_rule_form(order: int) -> sp.Expr:
 
 @cache
 def recollected(order: int) -> sp.Expr:
-    """The same derivative in crank_ratio, margin_ratio, ec_ratio, |sin| and eps: nothing cancels."""
+    """The `order`-th derivative of phi in variables without cancellation: crank_ratio, |sin|, eps, ..."""
     polynomial = _numerator(order)
     common = cos_theta if order % 2 else side
     inner = sp.Poly(polynomial, margin_ratio)
@@ -137,7 +137,7 @@ def _plain(order: int) -> sp.Expr:
 
 @cache
 def chained(order: int) -> sp.Expr:
-    """The same in the derivatives of lower orders, which is the shortest; proved like the others.
+    """The `order`-th derivative of phi in those of lower orders, the shortest form; proved like the others.
 
     With k = AB/S and t = tan(phi): phi'' = phi'^2 t - k sin(theta), and t' = (1 + t^2) phi', k' = k t phi'.
     """
@@ -197,7 +197,7 @@ def _factored(part: sp.Expr) -> sp.Expr:
 
 
 def _prove(order: int, result: sp.Expr) -> None:
-    """The recollected form equals the chain rule's, as polynomials, or the derivation stops."""
+    """Prove that the recollected form equals the chain rule's, as polynomials; ArithmeticError if not."""
     textbook = _numerator(order) * crank_ratio * (cos_theta if order % 2 else side)
     if sp.expand(result.subs(abs_sin, 1 - eps) - textbook) != 0:
         raise ArithmeticError(f"the recollected derivative of phi of order {order} is not the chain rule's")
@@ -225,7 +225,7 @@ def written_out(expression: sp.Expr) -> sp.Expr:
 
 
 def prove_height() -> None:
-    """The stable forms of BC - |u|, D and m n are what they are said to be, or the derivation stops."""
+    """Prove the stable forms of BC - |u|, D and m n; ArithmeticError if one is wrong."""
     zeros = {
         "BC - |u|": (LESS[0][0] - LESS[0][1]) - (LESS[1][0] - LESS[1][1]),
         "D": HEIGHT_AREA - (BC**2 - u**2),

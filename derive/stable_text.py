@@ -21,14 +21,14 @@ SHORT = 3  # operations of a temporary that is written where it is used, however
 
 
 def _tested(relation: Any, a: sp.Expr, b: sp.Expr) -> sp.Basic:
-    """A condition as it stands: SymPy would rewrite it. Nothing is smaller than 0 in magnitude."""
+    """An unevaluated condition, which SymPy would rewrite; |x| < 0 is false."""
     if relation is sp.Lt and isinstance(a, sp.Abs) and b == 0:
         return sp.false
     return relation(a, b, evaluate=False)
 
 
 def _either(condition: sp.Basic, a: sp.Expr, b: sp.Expr) -> sp.Expr:
-    """One of two values, as it stands."""
+    """A two-way Piecewise whose condition SymPy does not rewrite."""
     if condition in (sp.true, sp.false):
         return a if condition == sp.true else b
     # Past the constructors, which would take every condition apart.

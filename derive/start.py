@@ -1,4 +1,4 @@
-"""What alpha does to the accelerations next to theta = 0, where under the law it has not done much yet.
+"""Derivatives of the accelerations by alpha near theta = 0, where under the law alpha has hardly any effect.
 
 d(alpha_BC)/d(alpha) = phi' + 2 theta phi''. Where |ec| is nearly BC, both terms grow like 1/sqrt(theta) and
 cancel but for a share theta of them. From S^2 = L W with L = BC - |u|, W = BC + |u|, and d = BC - nu ec,
@@ -61,7 +61,7 @@ def prove_start() -> None:
 
 
 def _prove(difference: sp.Expr) -> None:
-    """What should be 0 is 0, with all lengths written out, or the derivation stops."""
+    """Prove that a difference is 0, with all lengths expanded; ArithmeticError if not."""
     known = {crank_ratio: AB * r, less: BC - pin_side * u, BC_less_ec: BC - pin_side * ec}
     S = symbol("S")
     written = difference.subs(known).subs(ec, u - AB * sin_theta).subs(r, 1 / S)

@@ -1,4 +1,4 @@
-"""What is written to generated/, and the check that it is fresh.
+"""The files of generated/, and the check that they are fresh.
 
 Everything is made in memory first. Writing stages a whole folder beside the old one and swaps the two in
 one step: a failure, an interruption or a kill leaves the old set or the new one. A file whose bytes are
@@ -53,7 +53,7 @@ def inputs_digest() -> str:
 
 
 def _place(path: Path) -> str:
-    """Where a file stands in its room, however the rooms are installed."""
+    """Path of a file relative to its room, independent of the installation."""
     roots = {"derive": HERE, "desaxe": Path(compiler.__file__).resolve().parents[1]}
     room, root = next((room, root) for room, root in roots.items() if path.is_relative_to(root))
     return f"{room}/{path.relative_to(root).as_posix()}"
@@ -193,7 +193,7 @@ def _cut(program: Program, outputs: tuple[str, ...]) -> Program:
 
 
 def differences(files: Mapping[str, str], folder: Path) -> list[str]:
-    """Unified diffs between what is made and what is there; empty where all is fresh."""
+    """Unified diffs between the rendered and the committed files; empty if all are fresh."""
     found = []
     there = {path.name for path in folder.glob("*.py")}
     for name in sorted({*files, *there}):
@@ -211,7 +211,7 @@ def differences(files: Mapping[str, str], folder: Path) -> list[str]:
 
 
 def write(files: Mapping[str, str], folder: Path) -> list[str]:
-    """Write the set of files, all or none, and remove what is no longer made; the names that changed.
+    """Write all files or none, and remove obsolete ones; return the names that changed.
 
     A new folder, with what else the old one holds, takes its place in one step. Writers wait for each other.
     """

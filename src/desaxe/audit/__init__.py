@@ -1,1 +1,1 @@
-"""What desaxe computes, measured against a truth that shares nothing with it."""
+"""Accuracy and time of desaxe, measured against an independent reference."""

@@ -24,7 +24,7 @@ def command(quick: bool, folder: str | None) -> int:
 
 
 def text(found: Audit) -> str:
-    """What the terminal shows."""
+    """The tables of an audit as text for the terminal."""
     tables = {
         "time as a multiple of desaxe standard, errors as shares of its promise, and in plain ulp": overview(
             found

@@ -1,4 +1,4 @@
-"""Who is measured: every accuracy of desaxe, and others on the textbook's closed form.
+"""The contenders: every accuracy of desaxe, and other tools on the textbook's closed form.
 
 All do the same work: NAMES from INPUTS, every input an array, one branch. The closed form is that of
 `desaxe.equation`, with common subexpressions shared.
@@ -34,7 +34,7 @@ class Contender(NamedTuple):
 
 
 def contenders() -> list[Contender]:
-    """All of them that can be had here; heyoka is asked only if it is installed."""
+    """The contenders available here; heyoka only if it is installed."""
     found = [Contender(f"desaxe {tier}", _desaxe(tier), "desaxe") for tier in ACCURACIES]
     found += [Contender("NumPy lambdify", _numpy), Contender("numba", _numba)]
     if find_spec("heyoka") is not None:

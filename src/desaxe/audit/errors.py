@@ -1,4 +1,4 @@
-"""How far answers are from the truth, as multiples of what is promised.
+"""Errors against the truth, as multiples of the promised bounds.
 
 A promise of `standard` is 8 ulp x (1 + the sum of condition numbers): what the last digits of the inputs
 change anyway is not counted against a value. A share of 1 is that promise kept, just. The promise of
@@ -28,7 +28,7 @@ RANGE = mpmath.mpf(2) ** -1022, mpmath.mpf(2) ** 1024
 
 
 class Case(NamedTuple):
-    """A point, and of each name what is true, what the promise allows, and the floor."""
+    """A point, and for each name the true value, the allowed error, and the floor of the error scale."""
 
     point: Mapping[str, Any]
     exact: Mapping[str, mpmath.mpf]
@@ -62,7 +62,7 @@ def cases(family: str, count: int, seed: int, branches: Sequence[int]) -> list[C
 
 
 def _is_a_double(x: mpmath.mpf) -> bool:
-    """Whether it is zero, or a number that a double holds with all its digits."""
+    """True for 0, and for a number in the range of normal doubles."""
     return bool(mpmath.isfinite(x) and (x == 0 or RANGE[0] <= abs(x) < RANGE[1]))
 
 
@@ -118,7 +118,7 @@ class Judge:
 
 
 def _plain(value: float, exact: mpmath.mpf, floor: mpmath.mpf) -> float:
-    """The error in ulp; none below the floor, all digits where there is no number."""
+    """The error in ulp: 0 below the floor, TOP if the value is no finite number."""
     if math.isfinite(value) and abs(mpmath.mpf(value) - exact) <= floor:
         return min(ulp_error(value, exact), 0.5)
     return min(ulp_error(value, exact), TOP)

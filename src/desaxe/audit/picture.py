@@ -33,7 +33,7 @@ Box = tuple[float, float, float, float]  # left, low, right, high in points (1/7
 
 
 class Panel(NamedTuple):
-    """One measure of error over time, and the promises about it."""
+    """One panel of the picture: a measure of error, its title and axis label, the promised bounds."""
 
     measure: str
     title: str
@@ -102,7 +102,7 @@ def _scales(ax: "Axes", found: Audit, panel: Panel) -> None:
 
 
 def _points(ax: "Axes", found: Audit, panel: Panel) -> None:
-    """The markers, the line of those whom nobody beats, and the names."""
+    """Draw the markers, the line through the unbeaten contenders, and the names."""
     errors = {one.name: max(measures(found, one.name)[panel.measure], LEAST * 3) for one in found.who}
     unbeaten = [name for name in errors if not beaten_by(found, name, panel.measure)]
     front = sorted((found.ratios[name], errors[name]) for name in unbeaten)
@@ -138,7 +138,7 @@ def _around(ax: "Axes", x: float, y: float) -> Box:
 
 
 def _name(ax: "Axes", at: tuple[float, float], name: str, colour: str, taken: list[Box]) -> None:
-    """The name at the nearest place that is free, with a thin line to its marker where that is far."""
+    """Label a marker at the nearest free position, with a thin line to the marker if that is far."""
     from matplotlib.patheffects import withStroke
 
     left, low, right, high = _around(ax, *at)
@@ -167,7 +167,7 @@ def _name(ax: "Axes", at: tuple[float, float], name: str, colour: str, taken: li
 
 
 def _is_free(here: Box, taken: list[Box], edges: Box) -> bool:
-    """Whether a box is inside and touches no other."""
+    """True if a box lies inside the axes and touches no other."""
     inside = here[0] > edges[0] and here[1] > edges[1] and here[2] < edges[2] and here[3] < edges[3]
     low, high = (here[0] - MARGIN, here[1] - MARGIN), (here[2] + MARGIN, here[3] + MARGIN)
     apart = (high[0] <= t[0] or low[0] >= t[2] or high[1] <= t[1] or low[1] >= t[3] for t in taken)

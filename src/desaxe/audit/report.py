@@ -1,4 +1,4 @@
-"""What an audit found, as Markdown that reads well as plain text too."""
+"""The result of an audit as Markdown, readable as plain text too."""
 
 from collections.abc import Callable, Iterator, Sequence
 
@@ -132,13 +132,13 @@ def measures(found: Audit, name: str) -> dict[str, float]:
 
 
 def beaten_by(found: Audit, name: str, measure: str) -> list[str]:
-    """Who is clearly faster and no less accurate."""
+    """Names of the contenders that are clearly faster and no less accurate."""
     mine, limit = measures(found, name)[measure], CLEARLY * found.ratios[name]
     return [n for n, time in found.ratios.items() if time <= limit and measures(found, n)[measure] <= mine]
 
 
 def _dominated(found: Audit) -> Iterator[str]:
-    """Who takes longer and errs no less than somebody else, measure by measure."""
+    """Lines that list, measure by measure, the contenders that another one dominates."""
     yield "Dominated, that is slower than another whose worst error is no larger, by the fastest; who has"
     yield "no digit right at some point is left out:\n"
     for measure in measures(found, found.who[0].name):

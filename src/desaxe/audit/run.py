@@ -1,4 +1,4 @@
-"""The audit itself: who takes how long, and how far from the truth everyone is, family by family."""
+"""The audit: time per contender, and errors per contender and family of points."""
 
 import platform
 from collections.abc import Callable
@@ -18,7 +18,7 @@ SEED = 0
 
 
 class Effort(NamedTuple):
-    """How much is measured."""
+    """The effort of an audit: points per family, branches, timed points, rounds."""
 
     points: int  # of each family
     branches: tuple[int, ...]
@@ -31,7 +31,7 @@ QUICK = Effort(points=12, branches=(1,), timed=250_000, rounds=8)
 
 
 class Audit(NamedTuple):
-    """What was found: time as a multiple of desaxe standard's, and errors by contender and family."""
+    """The result of an audit: times as multiples of desaxe standard's, and errors by contender and family."""
 
     effort: Effort
     machine: str
@@ -50,7 +50,7 @@ class Audit(NamedTuple):
 
 
 def audit(effort: Effort = FULL, watch: Callable[[int, int, str], None] | None = None) -> Audit:
-    """Measure; `watch` is told how many steps are done, of how many, and what comes next."""
+    """Run the audit; `watch(done, total, next_step)` is called before each step."""
     who = contenders()
     total, judges = len(FAMILIES) + 1, {one.name: Judge(one) for one in who}
     errors: dict[str, dict[str, Statistics]] = {one.name: {} for one in who}

@@ -1,4 +1,4 @@
-"""How long contenders take for a point, all in one process, in turns, on one core."""
+"""Time per point of each contender, measured in one process, alternating, on one core."""
 
 import random
 import time

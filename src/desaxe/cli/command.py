@@ -28,7 +28,7 @@ INTERRUPTED, TERMINATED = 130, 143  # as a shell reports them
 
 
 class Terminated(BaseException):
-    """The process was told to end (SIGTERM): it stops as by Ctrl-C, and leaves nothing half-written."""
+    """The process received SIGTERM: it stops as after Ctrl-C and leaves no half-written file."""
 
 
 COMMANDS = (
@@ -49,7 +49,7 @@ COMMANDS = (
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line; the exit code: 0 done, 1 a check failed, 2 a complaint."""
+    """Run the command line; return the exit code: 0 done, 1 a check failed, 2 an error in the input."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     _heed_termination()
     try:
@@ -84,7 +84,7 @@ def _heed_termination() -> None:
 
 
 def _leave(code: int) -> int:
-    """The exit code; the process ends here where a compiler is still at work, which Python would await."""
+    """Return the exit code, or end the process if a compiler is still running: Python would wait for it."""
     if is_at_work():
         sys.stdout.flush()
         os._exit(code)

@@ -38,14 +38,14 @@ _DOUBLES = {"xmm": 2, "ymm": 4, "zmm": 8, "": 2}
 
 
 class Examination(NamedTuple):
-    """The report, and whether desaxe can be used."""
+    """The report of `desaxe doctor`, and a flag: desaxe is usable."""
 
     text: str
     usable: bool
 
 
 class Loop(NamedTuple):
-    """What the machine code of a kernel shows."""
+    """Instruction counts of a kernel's machine code, and its calls of the C library."""
 
     packed: int
     single: int
@@ -54,7 +54,7 @@ class Loop(NamedTuple):
 
     @property
     def vectorised(self) -> bool:
-        """Whether the loop is: one copy of it is packed, another takes what is left over."""
+        """True if the loop is vectorised: one copy is packed, a second one handles the remaining points."""
         return self.packed > 0 and 2 * self.packed >= self.single
 
 
@@ -64,7 +64,7 @@ def report() -> str:
 
 
 def examine() -> Examination:
-    """Look at everything; nothing that is found raises."""
+    """Examine the installation; problems are reported, never raised."""
     loop_lines, usable = _loops()
     parts = {
         "desaxe": [_row("version", _version("desaxe")), _row("place", str(Path(__file__).parent))],
@@ -112,7 +112,7 @@ def _python() -> str:
 
 
 def _cache() -> list[str]:
-    """The cache folder, whether it lasts, and what is in it."""
+    """The cache folder: its path, its persistence, its contents."""
     from ..runtime.cache import VARIABLE, entries, folder, limit
     from ..runtime.kernels import _LOADED, MOST_LOADED
 
@@ -129,7 +129,7 @@ def _cache() -> list[str]:
 
 
 def _tier() -> str:
-    """What answers a request over arrays."""
+    """The tiers that evaluate a request over arrays, and their thresholds."""
     from ..runtime.tiers import BREAK_EVEN, NUMPY_PAYS, VARIABLE, forced_tier
 
     try:
@@ -143,7 +143,7 @@ def _tier() -> str:
 
 
 def _committed() -> str:
-    """Whether generated/ was made from the derivation and the compiler that are installed."""
+    """Report if generated/ matches the installed derivation and compiler."""
     digest: str = import_module("desaxe.generated").DIGEST
     if find_spec("sympy") is None:
         return _row("freshness", f"digest {digest[:16]}; to check it: python -m pip install 'desaxe[derive]'")
@@ -174,7 +174,7 @@ def _processor() -> list[str]:
 
 
 def _loops() -> tuple[list[str], bool]:
-    """Compile a kernel as `evaluate` does and say what its machine code shows."""
+    """Compile a kernel as `evaluate` does; return report lines about its machine code, and if it compiled."""
     started = time.perf_counter()
     try:
         assembly = "\n".join(_assembly())
@@ -209,7 +209,7 @@ def examine_assembly(assembly: str) -> Loop:
 
 
 def _assembly() -> Iterator[str]:
-    """The machine code of a fresh kernel with every input an array; numba tells none of a cached one."""
+    """The assembly of a fresh kernel with every input an array; numba has none for a cached kernel."""
     import numpy as np
 
     from ..compiler.languages.numba.module import TO_COMPILE, emit_numba

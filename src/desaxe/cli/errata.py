@@ -1,4 +1,4 @@
-"""`desaxe errata`: what the papers print, and what of it is right."""
+"""`desaxe errata`: the papers' printed equations and numbers, with verdicts."""
 
 import argparse
 import json

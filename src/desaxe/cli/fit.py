@@ -59,7 +59,7 @@ def _fit(options: argparse.Namespace) -> int:
 
 
 def _unknown(word: str, numbers: dict[str, Any]) -> tuple[str, Any]:
-    """NAME, NAME=START or NAME=LOW:HIGH as a name and what `fit` takes."""
+    """Parse NAME, NAME=START or NAME=LOW:HIGH into a name and its value for `fit`."""
     name, equals, value = word.partition("=")
     if not equals:
         if name not in numbers:
@@ -79,7 +79,7 @@ def _pair(option: str, word: str) -> tuple[str, Any]:
 
 
 def _plain(found: Any) -> dict[str, Any]:
-    """The numbers of a fit for JSON, which has no infinity: null stands for one."""
+    """The numbers of a fit for JSON, with null in place of infinity."""
     kept: Sequence[str] = (
         "value",
         "std_error",

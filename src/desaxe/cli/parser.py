@@ -1,4 +1,4 @@
-"""What the commands share: a parser with one-line complaints, sub-commands, the sign convention."""
+"""Shared by the commands: a parser with one-line errors, sub-commands, the sign convention."""
 
 import argparse
 from collections.abc import Callable, Sequence
@@ -13,7 +13,7 @@ signs: Y points along the slider axis towards the slider, theta turns from +Y to
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser whose complaints are one line, like all others."""
+    """A parser that reports an error in one line."""
 
     def error(self, message: str) -> NoReturn:
         """Raise UsageError with the message."""
@@ -21,7 +21,7 @@ class Parser(argparse.ArgumentParser):
 
 
 class Version(argparse.Action):
-    """Looks the version up only when it is asked for."""
+    """The action of `--version`: looks the version up only when it is called."""
 
     def __init__(self, option_strings: Sequence[str], dest: str, **options: Any) -> None:
         super().__init__(option_strings, argparse.SUPPRESS, nargs=0, **options)
@@ -37,7 +37,7 @@ class Version(argparse.Action):
 def add_command(
     commands: Any, name: str, what: str, more: str, run: Callable[[argparse.Namespace], int]
 ) -> Any:
-    """A sub-command: one line about it, and a longer text with examples."""
+    """Add a sub-command with its one-line help and a longer text with examples."""
     parser = commands.add_parser(
         name,
         help=what,

@@ -99,7 +99,7 @@ def _plain_number(text: Any) -> Any:
 
 
 def _qualities(names: list[str], inputs: dict[str, Any]) -> dict[str, Any]:
-    """What each number is worth."""
+    """The value of each name with its condition numbers and error bound."""
     from ..evaluation.evaluate import evaluate
 
     found: dict[str, Any] = evaluate([n for n in names if n != "status"], **inputs, quality=True)
@@ -136,5 +136,5 @@ def _json_quality(its: Any) -> dict[str, Any]:
 
 
 def _json_number(value: float) -> float | None:
-    """JSON has no NaN."""
+    """The number for JSON: null for NaN."""
     return value if isfinite(value) else None

@@ -1,4 +1,4 @@
-"""`desaxe run`, `scene`, `explain`, `compile`, `explore`: what is done with a scene file."""
+"""`desaxe run`, `scene`, `explain`, `compile`, `explore`: the commands on a scene file."""
 
 import argparse
 import sys

@@ -1,4 +1,4 @@
-"""The words of a command line as names of quantities and inputs, or what is wrong with them."""
+"""Command-line arguments as names of quantities and inputs; UsageError for any other."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -12,7 +12,7 @@ class UsageError(Exception):
 
 
 def names_and_inputs(words: Sequence[str]) -> tuple[list[str], dict[str, Any]]:
-    """Words with an = are inputs, all others names."""
+    """Split arguments into names and inputs; an argument with = is an input."""
     from ..mechanism.inputs import INPUTS
 
     names: list[str] = []
@@ -36,7 +36,7 @@ def names_and_inputs(words: Sequence[str]) -> tuple[list[str], dict[str, Any]]:
 
 
 def _inputs_near(word: str) -> str:
-    """The inputs that there are, the one that may be meant first."""
+    """All input names, the one most similar to a wrong name first."""
     from ..mechanism.inputs import INPUTS
     from ..mechanism.spelling import did_you_mean
 
@@ -45,7 +45,7 @@ def _inputs_near(word: str) -> str:
 
 
 def _refuse_parted(before: str, word: str) -> None:
-    """A shell parts ec=10 mm into two words: tell how to write that, where the second one is a unit."""
+    """UsageError if the shell split `ec=10 mm` in two: the second argument is then a unit."""
     from ..mechanism.catalogue import quantities
 
     key, equals, value = before.partition("=")

@@ -1,4 +1,4 @@
-"""What a Program costs: operations, depth, and a throughput estimate from the operation table."""
+"""Cost of a Program: operations, depth, and a throughput estimate from the operation table."""
 
 from collections import Counter
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""Two forms of one program: plain lines for most points, stable ones for those that a test keeps back.
+"""Two forms of one program: plain lines for most points, stable lines for points that fail a test.
 
 A design with wide margins needs none of the care that one next to its change point does. `in_two_forms`
 puts both forms and the test into one program, so that they share what they have in common; `parted`
@@ -15,7 +15,7 @@ _SUFFIX = "_close"
 
 
 def in_two_forms(plain: Program, stable: Program, test: Program) -> Program:
-    """One program: the outputs of `plain`, that of `test`, and those of `stable` under other names.
+    """Join the programs: outputs of `plain`, of `test`, and of `stable` under other names.
 
     Precondition: `stable` has the outputs of `plain`, which hold the same values, where the test
     holds up to rounding, and maybe one more: whether they hang on rounding; `test` has one output, a

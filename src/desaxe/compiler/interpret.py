@@ -1,4 +1,4 @@
-"""Run a Program line by line: in doubles with IEEE 754 answers, or exactly for the tests.
+"""Run a Program line by line: in doubles with IEEE 754 semantics, or exactly for the tests.
 
 The exact interpretation follows the table's `exact` column over a namespace of high-precision
 functions such as ``mpmath.mp``; it is how the tests tell what a pass did to the meaning.
@@ -36,7 +36,7 @@ def run_in_doubles(program: Program, values: Mapping[str, float]) -> dict[str, A
 
 
 def ieee(op: str, *args: Any) -> Any:
-    """One operation on Python numbers, with the answers of IEEE 754."""
+    """Apply one operation to Python numbers with IEEE 754 semantics."""
     return _IEEE[op](*args)
 
 
@@ -47,7 +47,7 @@ def _divide(a: float, b: float) -> float:
 
 
 def _finite_only(function: Any) -> Any:
-    """The function where it is defined, NaN where Python would raise."""
+    """Wrap a function to return NaN where Python would raise."""
 
     def guarded(a: float) -> float:
         return function(a) if a - a == 0.0 else math.nan
@@ -71,7 +71,7 @@ def _logarithm(a: float) -> float:
 
 
 def _power(a: float, b: float) -> float:
-    """a to the power b; Python raises where the C library answers inf or NaN."""
+    """a to the power b with IEEE 754 semantics: inf or NaN where Python raises."""
     odd = b % 2.0 == 1.0 if b - b == 0.0 else False
     try:
         return math.pow(a, b)

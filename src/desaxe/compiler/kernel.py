@@ -33,7 +33,7 @@ class Kernel(NamedTuple):
 
 
 class StableBranch(NamedTuple):
-    """What the innermost loop does instead of its own lines at points where a test fails.
+    """The stable lines, which the innermost loop runs at points that fail the test.
 
     `outputs` are the names that hold the kernel's outputs there. The test is a line of the innermost
     loop, which has `test_lines`, or of an outer one, which has none. Points at which `undecided` holds are
@@ -75,7 +75,7 @@ def _placed(program: Program, axis_of: Mapping[str, int | None], axes: int) -> K
 
 
 def level_program(kernel: Kernel, level: int) -> Program:
-    """One level as a program of its own: its outputs are what deeper levels and the result need."""
+    """One level as a Program; its outputs are the values needed by deeper levels and by the result."""
     own = {line.name for line in kernel.levels[level]}
     results: tuple[str, ...] = kernel.outputs
     lines = [line for lines in kernel.levels[level + 1 :] for line in lines]
@@ -149,7 +149,7 @@ def _lacks_an_outer_axis(need: frozenset[int]) -> bool:
 def _worth_a_table(
     program: Program, needs: Mapping[str, frozenset[int]], along: frozenset[int]
 ) -> tuple[str, ...]:
-    """What varies along just these axes and is used elsewhere, if reading it costs less than computing it."""
+    """Values along exactly these axes that are worth a table: reading costs less than recomputing."""
     if not _lacks_an_outer_axis(along):
         return ()
     ours = {line.name: line for line in program.lines if needs[line.name] == along and line.type == "f64"}

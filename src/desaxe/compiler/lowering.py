@@ -38,7 +38,7 @@ class Limits(NamedTuple):
 
 
 def for_loops(program: Program, trigonometry: Trigonometry | None, plain: bool = False) -> Program:
-    """Stages 4 and 5: as a loop wants it. Without `trigonometry` sine and cosine stay calls.
+    """Stages 4 and 5: expand sine and cosine, fuse products. Without `trigonometry` they stay calls.
 
     `plain` takes the shorter reduction of angles, which suits plain forms.
     """
@@ -61,7 +61,7 @@ def guarded_for_loops(
 def guarded_pairs(
     program: Program, varying: Iterable[str], limits: Limits, trigonometry: DoubleTrigonometry
 ) -> Program:
-    """Stages 3 and 4, in pairs of doubles."""
+    """Stages 3 and 4, in double-double arithmetic."""
     return double_double(guard_inputs(program, tuple(varying), *limits), trigonometry)
 
 

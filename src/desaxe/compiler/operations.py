@@ -1,4 +1,4 @@
-"""The operation table: everything a Program may do, one row each.
+"""The operation table: one row for each operation of a Program.
 
 A row says what an operation means (its exact reference), how each language spells it, what it
 costs and where it is undefined. A new operation, or a new language, is a change to this table.
@@ -20,7 +20,7 @@ CALL = 100
 
 
 class Operation(NamedTuple):
-    """One row of the table."""
+    """One operation: its signature, cost, and spelling in each language."""
 
     name: str
     signature: str  # argument types then result: f = f64, b = bool, i = i64, T = the same on both sides
@@ -39,7 +39,7 @@ class Operation(NamedTuple):
 
     @property
     def arity(self) -> int:
-        """How many arguments it takes."""
+        """The number of arguments."""
         return len(self.signature) - 1
 
 
@@ -248,7 +248,7 @@ def NAME(typingctx, sine, cosine, quarters):
 
 
 def _rotated(name: str, even: str, odd: str, turns: str) -> str:
-    """The text for the sine or the cosine: which side it is after an even and an odd number of quarters."""
+    """The text for a sine or cosine after an even and an odd number of quarter turns."""
     words = {"NAME": name, "WHAT": even, "EVEN": even, "ODD": odd, "TURNS": turns}
     text = _ROTATED
     for word, value in words.items():

@@ -21,7 +21,7 @@ RESERVED = frozenset((*HELPERS, *MATH_NAMES))
 
 
 class Note(NamedTuple):
-    """What a named intermediate is."""
+    """Unit, meaning and source of a named line."""
 
     unit: str
     meaning: str
@@ -38,7 +38,7 @@ class Line(NamedTuple):
 
 
 class Program(NamedTuple):
-    """Inputs, lines and outputs; see the module's docstring for what holds."""
+    """Inputs, lines and outputs; the module's docstring has the invariants."""
 
     inputs: tuple[str, ...]
     lines: tuple[Line, ...]
@@ -113,14 +113,14 @@ def reached(program: Program) -> set[str]:
 
 
 def renamed_temporaries(program: Program, order: Iterable[str]) -> Program:
-    """The same program with its temporaries named t0, t1, ... in the order given."""
+    """Rename the temporaries of a program to t0, t1, ... in this order."""
     keep = set(program.inputs) | set(program.outputs) | set(program.notes)
     temporaries = [name for name in order if name not in keep]
     return renamed(program, {name: f"t{position}" for position, name in enumerate(temporaries)})
 
 
 def renamed(program: Program, names: Mapping[str, str]) -> Program:
-    """The same program with some of its lines under other names."""
+    """Rename lines of a program."""
     lines = tuple(
         line._replace(
             name=names.get(line.name, line.name),

@@ -74,7 +74,7 @@ def spell(line: Line, text: dict[str, tuple[str, int]], column: str) -> tuple[st
 
 
 def _wants_parentheses(outer: int, inner: int, position: int, op: str) -> bool:
-    """Whether an argument of this precedence must be set apart to keep the order of operations."""
+    """True if an argument of this precedence needs parentheses."""
     if outer == CALL:
         return False
     if op in ("add", "sub", "mul", "div"):
@@ -83,7 +83,7 @@ def _wants_parentheses(outer: int, inner: int, position: int, op: str) -> bool:
 
 
 def _inside(argument: Argument, text: dict[str, tuple[str, int]]) -> tuple[str, int]:
-    """What is written where an argument stands: the expression of a temporary, else itself."""
+    """The text of an argument: the expression of a temporary, else the name or constant."""
     found = text.get(argument) if isinstance(argument, str) else None
     return found or _plain(argument)
 
@@ -126,7 +126,7 @@ def _used_once(program: Program) -> set[str]:
 
 
 class ProgramText:
-    """A text form whose lines are read only when they are wanted."""
+    """A text form whose lines are parsed only when they are needed."""
 
     def __init__(self, text: str) -> None:
         """Find the signature of the last function; its lines are found by name, later."""

@@ -17,7 +17,7 @@ HEADER = (
 
 
 def emit_javascript(program: Program, name: str = "point") -> str:
-    """The source of `name(...inputs)`, which returns an array of the outputs; it wants `HEADER`."""
+    """The source of `name(...inputs)`, which returns an array of the outputs; `HEADER` must precede it."""
     lines = map(_statement, write_lines(with_short_temporaries(program), "javascript"))
     body = [*lines, f"return [{', '.join(program.outputs)}];"]
     head = f"function {name}({', '.join(program.inputs)}) {{"

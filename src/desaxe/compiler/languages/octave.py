@@ -151,7 +151,7 @@ def _help(module: Module) -> list[str]:
 
 
 def _same_shape(inputs: list[str]) -> list[str]:
-    """All inputs in doubles and in the shape that they have together."""
+    """Convert all inputs to doubles of the common shape."""
     if not inputs:
         return ["shape = 1;"]
     shape = " .* ".join(f"ones(size({name}))" for name in inputs)

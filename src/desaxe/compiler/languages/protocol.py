@@ -1,4 +1,4 @@
-"""What every language is given, and what it must have.
+"""The interface of a language: the Module that it writes, and the Protocol that it implements.
 
 A `Module` says all that the emitters may know: names and units of arguments and results, Programs, and
 constants. It knows no mechanism. A language turns it into the texts of one or more files.
@@ -12,7 +12,7 @@ from ..program import Program
 
 
 class Symbol(NamedTuple):
-    """An argument or a result: what comments and tables of a written module say about it."""
+    """An argument or result with its unit, meaning and source, for comments and tables."""
 
     name: str
     unit: str
@@ -21,7 +21,7 @@ class Symbol(NamedTuple):
 
 
 class Forms(NamedTuple):
-    """The same outputs in up to two forms, and the test that picks one.
+    """The outputs in one or two forms, and the test that selects the form.
 
     `stable` holds everywhere. `plain` needs fewer operations and holds where `test`, a Program with one
     output, a condition, says so. All inputs are arguments of the module; its outputs come first, and the
@@ -35,7 +35,7 @@ class Forms(NamedTuple):
 
 
 class Solver(NamedTuple):
-    """A further function: `solve` computes what is looked for, `slopes` derivatives there.
+    """A solver function: `solve` computes the unknowns, `slopes` their derivatives.
 
     `arguments` come ahead of the module's own arguments; `solve` and `slopes` take arguments of both.
     """
@@ -46,7 +46,7 @@ class Solver(NamedTuple):
 
 
 class Module(NamedTuple):
-    """All that is written, in any language.
+    """The content of a module, independent of the language.
 
     head         lines of the opening comment: what it is, how it was made, from which digest
     inputs       arguments, in order
@@ -70,7 +70,7 @@ class Module(NamedTuple):
 
 
 class Language(Protocol):
-    """How one language is written."""
+    """A language: writes a Module as source files."""
 
     name: str
     suffix: str  # of the file that is called

@@ -1,4 +1,4 @@
-"""What the emitters share: statements in a column's spelling, safe names, words of a comment."""
+"""Shared by the emitters: statements in a column's spelling, safe names, comment text."""
 
 import re
 from collections.abc import Collection, Iterable, Mapping
@@ -10,7 +10,7 @@ _WORD = re.compile(r"\b(nan|inf|True|False)\b")
 
 
 def statements(program: Program, column: str, words: Mapping[str, str]) -> list[tuple[str, str, str]]:
-    """(name, right-hand side, note) of each assignment; `words` spells nan, inf, True and False."""
+    """Name, right-hand side and note of each assignment; `words` spells nan, inf, True and False."""
     found = []
     for line in write_lines(with_short_temporaries(program), column):
         assignment, _, note = line.partition("  # ")
@@ -39,7 +39,7 @@ def types_of(program: Program) -> dict[str, str]:
 
 
 def called(text: str, names: Iterable[str]) -> list[str]:
-    """Those of some functions that a text calls outside of comments, in their order."""
+    """The functions that a text calls outside of comments, in the order of `names`."""
     code = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
     return [name for name in names if re.search(rf"\b{name}\(", code)]
 

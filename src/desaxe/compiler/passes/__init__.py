@@ -1,4 +1,4 @@
-"""The passes: each a pure function Program -> Program in a module of its own.
+"""The passes: pure functions Program -> Program, one a module.
 
 `pipeline` lists those of every request and reports what each saved; `lowering`, beside this folder, has the
 order of all. A pass needs a valid Program (`program.validate`) and gives one. Besides:

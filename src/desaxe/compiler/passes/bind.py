@@ -1,4 +1,4 @@
-"""Fix inputs or conditions to constants, or put other lines in place of given ones."""
+"""Fix inputs or conditions to constants, or replace lines by others."""
 
 from collections.abc import Mapping
 
@@ -21,7 +21,7 @@ def bind_constants(program: Program, constants: Mapping[str, float]) -> Program:
 
 
 def overlay(program: Program, other: Program) -> Program:
-    """The program with the lines of `other` in place of its own lines and inputs of the same names.
+    """Replace lines and inputs of a program by the lines of `other` with the same names.
 
     Precondition: `other` needs nothing that the program computes. Effect: its lines come first;
     its inputs join the program's; an input of `other` that the program computes is no longer
@@ -39,7 +39,7 @@ def overlay(program: Program, other: Program) -> Program:
 
 
 def assume(program: Program, facts: Mapping[str, bool]) -> Program:
-    """The program where some conditions are known: of their selects the side that is taken is left.
+    """Replace conditions by known truth values; their selects reduce to the branch taken.
 
     A temporary that is the side taken of a named line gets its name. An output that is such a condition
     stays as it is.

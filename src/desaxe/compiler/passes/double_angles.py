@@ -1,4 +1,4 @@
-"""Sine and cosine to twice the digits, and 1 - |sine| with a third word.
+"""Sine and cosine in double-double, and 1 - |sine| with a third component.
 
 The angle less whole quarters, |y| <= pi/4, is split: y = y0 + t, where y0 has half a double's digits, so
 that z = y0^2 is a double. Taylor's polynomials in z give three words of sin(y0) and cos(y0) - 1; t turns
@@ -19,7 +19,7 @@ HALF_A_DOUBLE = 134217729.0  # 2^27 + 1: Dekker's constant, which splits a doubl
 
 
 class DoubleTrigonometry(NamedTuple):
-    """What the derivation tells the pass: constants of sine and cosine, and where a third word counts."""
+    """Constants of sine and cosine, and the lines whose values need three components."""
 
     limit: float  # of |angle|; beyond it the reduction is wrong
     two_over_pi: float
@@ -31,7 +31,7 @@ class DoubleTrigonometry(NamedTuple):
 
 
 class Turned(NamedTuple):
-    """An angle's sine, cosine and 1 - |sine|."""
+    """Sine, cosine and 1 - |sine| of an angle."""
 
     sin: Words
     cos: Pair
@@ -70,7 +70,7 @@ def rotated_sin(writer: Expansions, angle: Pair, constants: DoubleTrigonometry) 
 
 
 def _reduced(writer: Expansions, angle: Pair, quarters: str, pi_half: tuple[float, ...]) -> Words:
-    """Three words of angle - quarters pi/2; each product but the last is exact."""
+    """angle - quarters pi/2 in three components; each product but the last is exact."""
     first, *others = (writer.line("mul", quarters, part) for part in pi_half)
     rest = writer.line("sub", angle.high, first)  # exact
     steps = [writer.line("neg", product) for product in others]
@@ -90,7 +90,7 @@ def _split(writer: Expansions, y: Words) -> tuple[str, Pair]:
 
 
 def _series(writer: Expansions, z: str, coefficients: tuple[tuple[float, ...], ...]) -> Words:
-    """Horner, in as many words as each coefficient has; each term is larger than the sum of the next."""
+    """Horner's scheme with as many components as each coefficient; each term exceeds the sum of the next."""
     *rest, last = coefficients
     total: Words = last
     for coefficient in reversed(rest):
@@ -106,7 +106,7 @@ def _series(writer: Expansions, z: str, coefficients: tuple[tuple[float, ...], .
 
 
 def _next_pair(writer: Expansions, total: Words, z: str, coefficient: tuple[float, ...]) -> Words:
-    """coefficient + total z in two words."""
+    """coefficient + total z in two components."""
     product = writer.two_product(total[0], z)
     low: Argument = product.low
     if len(total) > 1:
@@ -116,7 +116,7 @@ def _next_pair(writer: Expansions, total: Words, z: str, coefficient: tuple[floa
 
 
 class _Step:
-    """What a small angle t adds."""
+    """sin(t) and cos(t) - 1 of a small angle t, and the angle sum formulas with them."""
 
     def __init__(self, writer: Expansions, t: Pair) -> None:
         self.writer, line = writer, writer.line
@@ -128,7 +128,7 @@ class _Step:
         self.cos = Pair(line("mul", -0.5, square.high), line("mul_add", -0.5, tail, quartic))  # less 1
 
     def sine(self, start: Words, along: Words, across: Words) -> Words:
-        """start + along (cos(t) - 1) + across sin(t), in three words."""
+        """start + along (cos(t) - 1) + across sin(t), in three components."""
         writer = self.writer
         first, second = self._product(across, self.sin), self._product(along, self.cos)
         high = writer.two_sum(first.high, second.high)

@@ -22,7 +22,7 @@ WIDE = ("copy", "add", "sub", "neg", "mul", "select")  # what three words are ke
 
 
 def double_double(program: Program, constants: DoubleTrigonometry) -> Program:
-    """The program in pairs; its outputs are the high parts, rounded once.
+    """The program in double-double; its outputs are the high parts, rounded once.
 
     Precondition: |angle| <= constants.limit wherever the result matters. Effect: values that are
     finite keep about 100 bits; comparisons look at high parts; an infinity may become NaN. Error terms
@@ -46,7 +46,7 @@ def with_extended_only_forms(program: Program) -> Program:
 
 
 class _Writer(Pairs):
-    """Appends lines; knows the pair of every name, and the three words of what the gap is made of."""
+    """Appends lines; maps every name to its double-double, and the terms of the gap to three components."""
 
     def __init__(self, program: Program, constants: DoubleTrigonometry) -> None:
         super().__init__(constants)
@@ -75,14 +75,14 @@ class _Writer(Pairs):
             self.sizes.add(line.name)
 
     def decided(self, line: Line) -> Line:
-        """A line that is no real number: it looks at high parts. No size is below 0."""
+        """A boolean or integer line: it compares high parts. No magnitude is below 0."""
         args = tuple(self.of(a).high if isinstance(a, str) else a for a in line.args)
         if line.op == "lt" and args[0] in self.sizes and args[1] == 0.0:
             return line._replace(op="copy", args=(False,))
         return line._replace(args=args)
 
     def pair_of(self, line: Line, words: Words) -> Pair:
-        """The pair of a line whose words, if it has any, are known."""
+        """The double-double of a line; `words` are its three components, if it has them."""
         if words and line.name == self.constants.gap:
             return self.after_cancelling(words)
         if words and (line.name == self.constants.complement or line.op == "sin"):
@@ -94,18 +94,18 @@ class _Writer(Pairs):
         return RULES[line.op](self, *map(self.of, line.args))
 
     def of(self, argument: Argument) -> Pair:
-        """The pair of an argument; truth values and whole numbers are their own."""
+        """The double-double of an argument; booleans and integers stand for themselves."""
         return self.pairs[argument] if isinstance(argument, str) else Pair(argument)
 
     def words_of(self, argument: Argument) -> Words:
-        """All words of an argument that there are."""
+        """All components of an argument: one to three."""
         if isinstance(argument, str) and argument in self.words:
             return self.words[argument]
         pair = self.of(argument)
         return (pair.high,) if pair.single else tuple(pair)
 
     def in_three_words(self, line: Line) -> Words:
-        """The words of the sine, of 1 - |sine| and of what the gap is made of; none of other lines."""
+        """Three components of the sine, of 1 - |sine| and of the terms of the gap; none for other lines."""
         if line.op == "sin":
             return self.rotated_sin(self.of(line.args[0])).sin
         if line.name == self.constants.complement and self.angles:
@@ -126,7 +126,7 @@ class _Writer(Pairs):
 
 
 def _made_of(program: Program, gap: str) -> set[str]:
-    """The lines that the gap is a sum, a product or a choice of, itself included."""
+    """The gap and the lines that it is a sum, product or select of."""
     wanted = {gap}
     for line in reversed(program.lines):
         if line.name in wanted and line.op in WIDE:
@@ -135,6 +135,6 @@ def _made_of(program: Program, gap: str) -> set[str]:
 
 
 def _is_sign(line: Line, signs: set[Argument]) -> bool:
-    """Whether a line is 1 or -1, whatever its inputs."""
+    """True if a line is 1 or -1 for any inputs."""
     values = {"copysign": line.args[:1], "select": line.args[1:], "neg": line.args, "copy": line.args}
     return line.op in values and all(value in signs for value in values[line.op])

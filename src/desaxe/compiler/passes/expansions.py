@@ -1,4 +1,4 @@
-"""Numbers as sums of two or three doubles: what their arithmetic is made of.
+"""Numbers as sums of two or three doubles: the building blocks of their arithmetic.
 
 What an addition or a product rounds away is itself a double (two-sum; two-product by a fused multiply-add)
 and is kept as a lower word. All of it is straight-line code without branches.
@@ -12,14 +12,14 @@ from ..program import Argument, Line
 
 
 class Pair(NamedTuple):
-    """The sum of two names or constants; a low part of 0.0 is none at all."""
+    """The sum of two names or constants; a low part of 0.0 means a plain double."""
 
     high: Argument
     low: Argument = 0.0
 
     @property
     def single(self) -> bool:
-        """Whether the high part is all there is."""
+        """True if there is no low part."""
         return _is_nothing(self.low)
 
 
@@ -31,14 +31,14 @@ def _is_nothing(argument: Argument) -> bool:
 
 
 class Expansions:
-    """Appends lines; sums and products that lose nothing, or what is below the third word."""
+    """Appends lines of sums and products that are exact, or exact to three components."""
 
     def __init__(self) -> None:
         self.lines: list[Line] = []
         self.types: dict[str, str] = {}
 
     def line(self, op: str, *args: Argument, kind: str = "f64") -> str:
-        """One more line of doubles."""
+        """Append a line; return its name."""
         name = f"_d{len(self.lines)}"
         self.lines.append(Line(name, op, args, kind))
         self.types[name] = kind
@@ -62,27 +62,27 @@ class Expansions:
     # ---- up to three words -----------------------------------------------------------------------
 
     def negative(self, words: Words) -> Words:
-        """The words of -a."""
+        """The components of -a."""
         return tuple(self.line("neg", word) for word in words)
 
     def chosen(self, condition: Argument, first: Words, second: Words) -> Words:
-        """The words of the first where the condition holds, else those of the second."""
+        """The components of `first` if the condition is true, else those of `second`."""
         count = max(len(first), len(second))
         pairs = zip(_padded(first, count), _padded(second, count), strict=True)
         return tuple(self.line("select", condition, a, b) for a, b in pairs)
 
     def sum_of(self, *numbers: Words, ordered: bool = False) -> Words:
-        """Three words of a sum; `ordered`: of two numbers, the first of which is the larger one."""
+        """A sum in three components; `ordered`: of two numbers, the larger one first."""
         levels = [[number[size] for number in numbers if len(number) > size] for size in range(3)]
         return self.by_size(levels, ordered)
 
     def product(self, a: Words, b: Words) -> Words:
-        """Three words of a product."""
+        """A product in three components."""
         levels = self.product_levels(_padded(a, 3), _padded(b, 3))
         return self.by_size(levels)
 
     def product_levels(self, a: Words, b: Words) -> list[list[Argument]]:
-        """The terms of a product of three words each, by size."""
+        """The terms of a product of two three-component numbers, by magnitude."""
         levels: list[list[Argument]] = [[], [], []]
         for i, x in enumerate(a):
             for j, y in enumerate(b):
@@ -94,7 +94,7 @@ class Expansions:
         return levels
 
     def by_size(self, levels: Sequence[Sequence[Argument]], ordered: bool = False) -> Words:
-        """The words of the sum of all terms: those of a level are some 53 bits below the level before.
+        """The components of the sum of all terms; each level is some 53 bits below the one before.
 
         What each addition rounds away goes to the level below; there is none below the last.
         """
@@ -118,13 +118,13 @@ class Expansions:
         return total
 
     def ordered(self, words: Words) -> Words:
-        """The same sum in words that do not overlap, where the first is the largest by far."""
+        """Renormalise three components, the first by far the largest, so that they do not overlap."""
         first, second, third = words
         high = self.quick(first, second)
         return (high.high, *self.quick(high.low, third))
 
     def after_cancelling(self, words: Words) -> Pair:
-        """The sum of three words whose first may be nothing, to twice the digits."""
+        """The sum of three components, of which the first may have cancelled, as a double-double."""
         first, second, third = _padded(words, 3)
         lower = self.two_sum(second, third)
         upper = self.two_sum(first, lower.high)

@@ -20,7 +20,7 @@ def fuse_products(program: Program) -> Program:
 
 
 class _Fuser:
-    """Knows which products are free to go into a sum."""
+    """Finds the products that may be fused into a sum."""
 
     def __init__(self, program: Program) -> None:
         uses = Counter(name for line in program.lines for name in names_in(line.args))
@@ -36,7 +36,7 @@ class _Fuser:
         self.minus = {name: product for name, product in minus.items() if product in self.free}
 
     def of(self, line: Line) -> list[Line]:
-        """The lines that stand in the place of one."""
+        """The lines that replace a line."""
         if line.op not in ("add", "sub"):
             return [line]
         first, second = line.args
@@ -49,7 +49,7 @@ class _Fuser:
         return [line]
 
     def _product(self, value: Argument) -> tuple[Argument, Argument, bool] | None:
-        """The factors of a product that is free to go, or of minus such a product."""
+        """The factors of a product that may be fused, and its sign; None for any other value."""
         name = str(value)
         factors = self.free.get(self.minus.get(name, name))
         return None if factors is None else (*factors, name in self.minus)
@@ -65,7 +65,7 @@ def _fused(line: Line, product: tuple[Argument, Argument, bool], rest: tuple[Arg
 
 
 def _signed(name: str, value: Argument, negative: bool) -> Argument:
-    """The value, or what has the other sign."""
+    """The value or its negative."""
     if not negative:
         return value
     return name if isinstance(value, str) else -value

@@ -1,4 +1,4 @@
-"""Give a bad element of an array NaN and its status, and nothing else.
+"""Guard inputs: an invalid element of an array gives NaN and status 4, in its own element only.
 
 A scalar is checked once, before anything runs; an array element is checked here, inside the loop.
 Most bad values turn into NaN by themselves (the sine of an infinity, the square root of a negative
@@ -18,7 +18,7 @@ GUARDED = "_good"  # ends the name of an input's value, NaN where it is bad
 def guard_inputs(
     program: Program, inputs: Iterable[str], least: Mapping[str, float], largest: Mapping[str, float]
 ) -> Program:
-    """The program in which a bad element of one of these inputs is NaN, and `status` says 4.
+    """Guard these inputs: an invalid element reads as NaN, and `status` is 4.
 
     Effect: an input that is infinite or NaN, below its `least` value or of a magnitude above its
     `largest` is replaced by NaN where it is used. An output that is a status becomes 4.
@@ -43,7 +43,7 @@ def guard_inputs(
 
 
 def _check(name: str, least: float | None, largest: float | None) -> list[Line]:
-    """`<name>_is_good` and `<name>_good`, which is NaN where it is not."""
+    """The lines `<name>_is_good` and `<name>_good`, which is NaN for an invalid value."""
     op, bound = ("lt", inf) if largest is None else ("le", largest)
     lines = [
         Line(f"{name}_size", "abs", (name,)),
@@ -58,7 +58,7 @@ def _check(name: str, least: float | None, largest: float | None) -> list[Line]:
 
 
 def _with_status(lines: list[Line], checked: list[str], status: str) -> list[Line]:
-    """The lines with the status read as 4 wherever a checked input is not good."""
+    """The lines with a status of 4 where a checked input is invalid."""
     lines = [line._replace(name=f"{status}_if_good") if line.name == status else line for line in lines]
     good = ""
     for name in checked:

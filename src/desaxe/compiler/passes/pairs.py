@@ -1,4 +1,4 @@
-"""Arithmetic of pairs: each operation to twice a double's digits, relative errors below 2^-100.
+"""Double-double arithmetic: operations with relative errors below 2^-100.
 
 Where a low part is known to be 0, as for inputs and constants, nothing is done for it.
 Source of the algorithms: Dekker 1971; Knuth; Joldes, Muller, Popescu 2017.
@@ -59,7 +59,7 @@ class Pairs(Expansions):
         return self.quick(product, low)
 
     def is_scale(self, a: Pair) -> bool:
-        """Whether a product with it is exact: a sign, or a constant power of two."""
+        """True if a product with `a` is exact: a sign, or a constant power of two."""
         return a.single and (a.high in self.signs or _is_power_of_two(a))
 
     def div(self, a: Pair, b: Pair) -> Pair:
@@ -132,19 +132,19 @@ class Pairs(Expansions):
         return self.quick(angle, self.line("select", none, 0.0, step))
 
     def rotated_sin(self, angle: Pair) -> Turned:
-        """Sine and cosine of an angle, once."""
+        """Sine and cosine of an angle, computed once per angle."""
         if angle not in self.angles:
             self.angles[angle] = rotated_sin(self, angle, self.constants)
         return self.angles[angle]
 
     def quarter_turned(self, sine: Pair, cosine: Pair, quarters: Pair) -> Pair:
-        """Both words turn alike; the number of quarters is whole."""
+        """The sine after a whole number of quarter turns, for both components."""
         words = ((sine.high, cosine.high), (sine.low, cosine.low))
         return Pair(*(self.line("rotated_sin", a, b, quarters.high) for a, b in words))
 
 
 def _is_power_of_two(a: Pair) -> bool:
-    """Whether it is a constant that scales without rounding."""
+    """True for a constant power of two, by which a product is exact."""
     if not (a.single and isinstance(a.high, float)) or a.high == 0.0:
         return False
     ratio = abs(a.high).as_integer_ratio()

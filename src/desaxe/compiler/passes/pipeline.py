@@ -19,7 +19,7 @@ class Pass(NamedTuple):
 
 
 class Step(NamedTuple):
-    """What a pass left: its name and the cost of the program after it."""
+    """The name of a pass and the cost of the program after it."""
 
     name: str
     cost: Cost

@@ -1,4 +1,4 @@
-"""Keep only what the wanted outputs reach."""
+"""Slicing: keep only the lines that the requested outputs need."""
 
 from collections.abc import Sequence
 

@@ -44,12 +44,12 @@ def _leaders(program: Program) -> dict[str, str]:
 
 
 def _key(argument: Argument, leader: dict[str, str]) -> str:
-    """A text that tells values apart, also 1.0, 1 and True."""
+    """A key that distinguishes values, also 1.0, 1 and True."""
     if isinstance(argument, str):
         return leader.get(argument, argument)
     return f"{type(argument).__name__}:{argument!r}"
 
 
 def _best_name(names: list[str], program: Program) -> str:
-    """The first that is no temporary, if one is."""
+    """The first name that is no temporary; the first name if all are."""
     return next((name for name in names if name in program.notes or name in program.outputs), names[0])

@@ -117,7 +117,7 @@ def _tables(module: Module) -> dict[str, list[str]]:
 
 
 def _table(array: str, symbols: Iterable[Symbol]) -> list[str]:
-    """What stands at each place of in[] and out[]."""
+    """Comment lines that name each index of in[] and out[]."""
     return [
         f"  {array}[{index}]  {symbol.name} [{symbol.unit}]: {symbol.meaning}"
         + (f" ({symbol.source})" if symbol.source else "")
@@ -159,7 +159,7 @@ class _Source:
         return [symbol.name for symbol in self.module.inputs]
 
     def text(self) -> str:
-        """All of it."""
+        """The text of the whole file."""
         functions = "\n".join([*self._forms(), self._point(), self._array(), *self._solvers()])
         name = self.module.name
         tables = [
@@ -348,7 +348,7 @@ def _turning(number: int, strip: str, limit: str) -> list[str]:
 
 
 def _loop(call: str, given: str, results: list[str], indent: int) -> list[str]:
-    """One loop over a strip: a call, and its results put where they belong."""
+    """One loop over a strip: call a function and store its results."""
     pad = " " * indent
     values = [f"double value[{len(results)}];"] if results else []
     whole = call.replace("{}", ", ".join([part for part in (given, "value" if results else "") if part]))

@@ -88,7 +88,7 @@ def _named_constants(kernel: Kernel) -> tuple[Kernel, dict[float, str]]:
 
 
 def emit_numba_with_front(kernel: Kernel, docstring: str, front: str, optional: Container[str] = ()) -> str:
-    """The same with a function `evaluate(...)` that broadcasts like NumPy; `front` is its docstring.
+    """A kernel's module with a function `evaluate(...)` that broadcasts like NumPy; `front` is its docstring.
 
     Precondition: one axis, along which every input but `branch` varies. Inputs that are `optional` are
     0 by default; those after them that are not are keywords.
@@ -173,7 +173,7 @@ def _function(kernel: Kernel, tail: str, cast: str = "") -> str:
 
 
 def counts(kernel: Kernel) -> bool:
-    """Whether the kernel answers how many of its points hang on rounding."""
+    """True if the kernel returns the number of undecided points."""
     return kernel.close is not None and kernel.close.undecided is not None
 
 
@@ -236,7 +236,7 @@ def _indented(program: Program, depth: int) -> list[str]:
 
 
 def _front(kernel: Kernel, docstring: str, optional: Container[str]) -> str:
-    """`evaluate(...)`: broadcast, allocate, run, give back a mapping."""
+    """The function `evaluate(...)`: broadcast, allocate, run, return a mapping."""
     axes = [name for name, axis in kernel.inputs.items() if axis is not None]
     parameters = _with_defaults(axes, optional)
     parameters += ["branch=1.0"] if "branch" in kernel.inputs else []

@@ -1,4 +1,4 @@
-"""The loops of a search over one input, from Programs: what depends on a design alone is computed once."""
+"""The loops of a search over one input, from Programs; lines that depend on the design alone run once."""
 
 from collections.abc import Sequence
 
@@ -11,7 +11,7 @@ READ = 2.0  # what reading a value costs, in additions
 
 
 class Rows:
-    """How a function reads designs and spells lines, in one language; `searched` is the searched input."""
+    """Reads designs and spells lines in one language; `searched` is the searched input."""
 
     def __init__(self, inputs: Sequence[str], column: str, searched: str) -> None:
         self.inputs, self.column, self.searched = tuple(inputs), column, searched
@@ -92,7 +92,7 @@ def finish_function(program: Program, rows: Rows) -> str:
 
 
 def _split(program: Program, fast: str) -> tuple[Program, Program]:
-    """What does not depend on an input and is worth keeping, as a program; and the rest."""
+    """Split a program: the costly part that is independent of the input `fast`, and the rest."""
     dependent = {fast}
     for line in program.lines:
         if dependent & set(names_in(line.args)):

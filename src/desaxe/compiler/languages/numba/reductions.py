@@ -213,7 +213,7 @@ def _blocks(kernel: Kernel, kinds: Sequence[str], measure: str) -> list[str]:
 
 
 def _state(names: Sequence[str], kinds: Sequence[str], kind_of: str) -> list[str]:
-    """What is carried from one part of a row to the next, for each row of a block."""
+    """Names of the arrays that carry a reduction from one part of a row to the next."""
     found = []
     for name in names:
         found += [f"count_{name}"] if kind_of == "int64" else []
@@ -227,7 +227,7 @@ def _state(names: Sequence[str], kinds: Sequence[str], kind_of: str) -> list[str
 
 
 def _block(kernel: Kernel, kinds: Sequence[str]) -> list[str]:
-    """One block of designs."""
+    """The lines that reduce one block of designs."""
     outer = range(kernel.axes - 1)
     names = kernel.outputs
     rows = " * ".join(f"n{axis}" for axis in outer)
@@ -262,7 +262,7 @@ def _cut(name: str, axis: int | None, last: int) -> str:
 
 
 def _row(name: str, kinds: Sequence[str]) -> list[str]:
-    """Take one more part of one row."""
+    """The lines that fold one part of a row into its reduction."""
     lines = [f"row = scratch_{name}[r * n : r * n + n]", f"count_{name}[r] += count(row)"]
     for kind in kinds:
         if kind == "rms":
@@ -284,7 +284,7 @@ def _row(name: str, kinds: Sequence[str]) -> list[str]:
 
 
 def _kept(name: str, kinds: Sequence[str]) -> list[str]:
-    """Write what has come out of one row; NaN where nothing counted."""
+    """The lines that store the results of one row; NaN if no point was valid."""
     lines = [f"counted = count_{name}[r]"]
     value: Mapping[str, str] = {
         "max": f"max_{name}[r]",

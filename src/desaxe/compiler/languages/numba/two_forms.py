@@ -111,24 +111,24 @@ APART = 72  # numbers between rooms: at a multiple of 4096 bytes a store holds u
 
 
 def block_of(kernel: Kernel) -> int:
-    """Points of a block, so many that the rooms fit on the stack."""
+    """The number of points of a block, such that its buffers fit on the stack."""
     rooms = 1 + len(_kept(kernel)) + len(kernel.outputs)
     return max(16, min(BIGGEST, (STACK // rooms - APART) // 16 * 16))
 
 
 def rooms(kernel: Kernel) -> str:
-    """The source of what a mixed kernel calls besides operations."""
+    """The source of the buffer functions that a kernel in two forms calls."""
     block = block_of(kernel)
     return ROOMS.replace("SIZE", str(block + APART)).replace("BLOCK", str(block))
 
 
 def has_two_forms(kernel: Kernel) -> bool:
-    """Whether the test changes along the innermost axis."""
+    """True if the test varies along the innermost axis."""
     return kernel.close is not None and bool(kernel.close.test_lines)
 
 
 def scratch(kernel: Kernel) -> list[str]:
-    """Where the points of a block that fail the test are kept: places, inputs, outputs."""
+    """Allocate the buffers of points that fail the test: indices, inputs, outputs."""
     if not has_two_forms(kernel):
         return []
     names = [*_kept(kernel), *(f"out_{name}" for name in kernel.outputs)]
@@ -171,7 +171,7 @@ def inner_loops(kernel: Kernel, length: str, loads: Mapping[str, str], cast: str
 
 
 def _tallied(loop: list[str], tally: list[str]) -> list[str]:
-    """A loop that counts undecided points, in a number of its own.
+    """A loop with a local counter of undecided points.
 
     Where it adds to one from outside, numba counts references to arrays, and calls its runtime for it.
     """
