@@ -5,7 +5,10 @@ schema       the keys of a scene file, their types and what they mean
 json_schema  the schema for editors
 values       numbers with units, lists and ranges as SI numbers
 printed      values as a paper prints them, compared digit by digit
-read         a file or mapping, checked, as Content
+content      what a scene says, checked and in SI units
+read         a file or mapping as Content
+needs        the inputs that quantities need
+requested    [[check]], [[peak]] and [[picture]] as what they ask for
 run          Content -> grid, checks, files
 peaks        peaks over designs
 kernel       the kernel of a scene's grid

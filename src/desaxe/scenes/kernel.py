@@ -11,7 +11,7 @@ from ..loads.load import Load, OverY
 from ..loads.resolve import plan_of, split
 from ..runtime.kernels import KernelKey, key_of
 from ..runtime.request import Request, request
-from .read import Content
+from .content import Content
 
 
 class GridKernel(NamedTuple):

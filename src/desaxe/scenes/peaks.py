@@ -15,7 +15,7 @@ from ..mechanism.names import sensitivity
 from ..mechanism.status import PeakStatus
 from ..peaks.peak import peak
 from ..support.progress import Steps
-from .read import Claim, Content, Peak
+from .content import Claim, Content, Peak
 from .values import Value
 
 if TYPE_CHECKING:

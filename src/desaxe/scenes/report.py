@@ -8,8 +8,8 @@ import numpy as np
 from ..mechanism.catalogue import quantity
 from ..mechanism.status import PeakStatus
 from ..mechanism.unit_system import UnitSystem
+from .content import Content, Peak
 from .peaks import SIDEWAYS, WORDS, ClaimResult, PeakResult
-from .read import Content, Peak
 from .run import CheckResult, FeasibilityResult, Run, group_names
 
 ROWS = 24  # of a table; a longer one is thinned out

@@ -20,9 +20,9 @@ from ..mechanism.names import sensitivity
 from ..support.extras import needed
 from ..support.files import check_target
 from ..support.progress import Progress, Steps
+from .content import Check, Content, Peak, Picture
 from .files import check_place, requirements_of, write
 from .peaks import PeakResult, batches, columns_of, peaks_of, provenance
-from .read import Check, Content, Peak, Picture
 from .stored import sweep_content
 from .values import Value
 

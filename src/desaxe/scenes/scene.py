@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 from ..definitions.tables import in_force, redefine
 from ..mechanism.own import definitions
 from ..support.progress import Progress
+from .content import Content
 from .peaks import PeakResult
-from .read import Content, plain_data, read
+from .read import plain_data, read
 from .report import report
 from .run import CheckResult, FeasibilityResult, Run, run
 from .schema import SceneError as SceneError

@@ -8,7 +8,7 @@ import numpy as np
 from ..sweeps.meter import Watch
 from ..sweeps.peaks import PeakRequest
 from ..sweeps.sweep import Tell, run_sweep
-from .read import Content
+from .content import Content
 from .schema import SceneError
 
 if TYPE_CHECKING:

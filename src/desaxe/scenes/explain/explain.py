@@ -22,8 +22,8 @@ from ...runtime.specialise import specialise
 from ...runtime.threads import LEAST_BLOCK, available
 from ...runtime.tiers import BREAK_EVEN, COMPILED, tier_ahead
 from ...sweeps.sweep import prepared
+from ..content import Content
 from ..kernel import GridKernel, grid_kernel
-from ..read import Content
 from ..scene import Scene
 from ..scene import scene as scene_of
 from ..stored import arguments_of

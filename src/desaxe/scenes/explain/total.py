@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from ...peaks.compiled import BREAK_EVEN
 from ...sweeps.estimate import STORING
-from ..read import Content, Peak
+from ..content import Content, Peak
 from . import estimate
 
 STARTUP = 1.2  # s for NumPy, xarray and the scene in a new process

@@ -29,8 +29,8 @@ from ...mechanism.program import digest
 from ...runtime.kernels import KernelKey, is_single, kernel_of
 from ...runtime.specialise import specialise
 from ...support.files import check_target, write_text
+from ..content import Content
 from ..kernel import GridKernel, grid_kernel
-from ..read import Content
 from ..scene import Scene
 from ..scene import scene as scene_of
 from ..schema import SceneError

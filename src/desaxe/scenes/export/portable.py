@@ -15,7 +15,7 @@ from ...mechanism.names import LENGTHS, ORDER, sensitivity
 from ...mechanism.program import digest
 from ...runtime.request import Request, request
 from ...runtime.specialise import plain_form, specialise
-from ..read import Content
+from ..content import Content
 from ..scene import Scene
 from ..schema import SceneError
 from .solvers import solvers

@@ -1,0 +1,79 @@
+"""What a scene says, checked and in SI units."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from ..evaluation.reduce import Reduction
+from ..loads.load import Load
+from ..mechanism.own import Definition
+from ..mechanism.unit_system import SI, UnitSystem
+from .printed import Printed
+from .values import Value
+
+
+class Check(NamedTuple):
+    """One printed value, and the inputs at which it is to be computed."""
+
+    title: str
+    source: str
+    quantity: str
+    printed: Printed
+    inputs: dict[str, Any]
+
+
+class Claim(NamedTuple):
+    """What somebody says about the peak of one design: its increase over the baseline."""
+
+    source: str
+    at: dict[str, float]
+    design: dict[str, float]
+    increase: Printed
+
+
+class Peak(NamedTuple):
+    """A peak over the crank angle, for the outer product of `axes` with everything else fixed."""
+
+    title: str
+    quantity: str
+    kind: str
+    axes: dict[str, tuple[float, ...]]
+    fixed: dict[str, float]
+    theta: tuple[float, float]
+    at_baseline: dict[str, float]
+    baseline: dict[str, float]
+    claims: tuple[Claim, ...]
+    sensitivities: tuple[str, ...]
+    loads: Mapping[str, Load] = MappingProxyType({})  # that vary with the motion
+
+
+class Picture(NamedTuple):
+    """A family of curves and the file it goes to."""
+
+    title: str
+    file: str
+    quantity: str
+    over: str
+    family: str | None
+    inputs: dict[str, Value]
+
+
+class Content(NamedTuple):
+    """All that a scene says, in SI units; inputs in the order in which they are written."""
+
+    title: str
+    outputs: tuple[str, ...]
+    accuracy: str
+    branch: int
+    inputs: dict[str, Value]
+    checks: tuple[Check, ...]
+    peaks: tuple[Peak, ...]
+    pictures: tuple[Picture, ...]
+    data: str | None
+    reduction: Reduction | None = None
+    threads: int | None = None
+    units: UnitSystem = SI
+    store: str | None = None
+    chunks: Any = None
+    memory: int | None = None
+    definitions: tuple[Definition, ...] = ()

@@ -1,0 +1,70 @@
+"""The inputs that quantities of a scene need: those given, or a SceneError that names the missing one."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from ..mechanism.catalogue import law_name, quantity
+from ..mechanism.names import LENGTHS, LOADS
+from ..mechanism.program import Variant, program_of
+from . import schema
+from .schema import SceneError, shown
+from .values import Value
+
+SECTIONS: dict[str, type[schema.Section]] = {
+    "mechanism": schema.Mechanism,
+    "motion": schema.Motion,
+    "masses": schema.Masses,
+    "loads": schema.Loads,
+}
+OPTIONAL = ("alpha", *LOADS)  # 0 where they are not given, or half of a length
+
+
+def require_known(key: str, name: str, state: bool) -> None:
+    """Refuse a name that is no quantity, under the law or for a given state."""
+    try:
+        quantity(name, state)
+    except ValueError as error:
+        raise SceneError(f"{key} = {shown(name)}: {error}") from None
+
+
+def needs_of(names: Iterable[str], inputs: Mapping[str, Any]) -> tuple[str, ...]:
+    """The inputs that quantities can use, under the law or for a given state."""
+    state = "omega" in inputs
+    law = tuple(law_name(name) if state else name for name in names)
+    if "mu" in inputs:  # then the status tells what the friction does, too
+        law = tuple("force_status" if name == "status" else name for name in law)
+    return tuple(name for name in program_of(law, Variant(state)).inputs if name != "branch")
+
+
+def require(key: str, needs: Iterable[str], what: str, inputs: Mapping[str, Any]) -> list[str]:
+    """The needed inputs from those given; SceneError for a missing one."""
+    for name in needs:
+        if name not in inputs and name not in OPTIONAL:
+            section = next(s for s, table in SECTIONS.items() if name in table.__struct_fields__)
+            raise SceneError(f"{key}: {what} needs {section}.{name}, which is missing")
+    return [name for name in needs if name in inputs]
+
+
+def require_for_grid(key: str, names: tuple[str, ...], inputs: Mapping[str, Any]) -> list[str]:
+    """The needed inputs of a grid, which has `status` and `margin` too; they need no speed."""
+    always = [name for name in needs_of(("status", "margin"), inputs) if name in ("theta", *LENGTHS)]
+    needs = dict.fromkeys([*needs_of(names, inputs), *always])
+    return require(key, needs, ", ".join(names), inputs)
+
+
+def with_others(inputs: Mapping[str, Value], other: Mapping[str, Value]) -> dict[str, Value]:
+    """Inputs with others in their place; a given state takes the place of the law, and back."""
+    swapped = {"omega": "omega0", "omega0": "omega"}
+    replaced = {swapped[name] for name in other if name in swapped}
+    return {**{name: value for name, value in inputs.items() if name not in replaced}, **other}
+
+
+def single(key: str, names: Iterable[str], inputs: Mapping[str, Value]) -> dict[str, Any]:
+    """Inputs that must be single: a number or a load that varies; SceneError for a list or range."""
+    found: dict[str, Any] = {}
+    for name in names:
+        value = inputs[name]
+        if isinstance(value, tuple):
+            raise SceneError(f"{key}: {name} has {len(value)} values, one is wanted: give at.{name}")
+        found[name] = value
+    return found

@@ -1,0 +1,175 @@
+"""[[check]], [[peak]] and [[picture]] of a scene as what they ask for."""
+
+from collections.abc import Iterable, Mapping
+from math import pi
+from typing import Any
+
+from ..loads.load import Load, OverTheta
+from ..mechanism.catalogue import quantity
+from ..mechanism.inputs import INPUTS
+from ..mechanism.names import CENTRES, LENGTHS, sensitivity
+from ..peaks.programs import WITHOUT_COURSE
+from . import schema
+from .content import Check, Claim, Peak, Picture
+from .needs import OPTIONAL, needs_of, require, require_for_grid, require_known, single, with_others
+from .printed import read_percentage, read_printed
+from .schema import SceneError, shown
+from .values import Value, design_of, number_of, only_inputs, values_of
+
+SENSITIVITIES = LENGTHS  # of a peak, those on which it depends, unless others are asked for
+
+
+def checks_of(key: str, table: schema.CheckTable, inputs: Mapping[str, Value]) -> list[Check]:
+    """The printed values of a [[check]], each with the inputs that it needs."""
+    there = with_others(inputs, design_of(f"{key}.at", table.at))
+    checks = []
+    for name, written in table.printed.items():
+        place = f"{key}.printed.{name}"
+        require_known(place, name, "omega" in there)
+        needed = require(place, needs_of((name,), there), name, there)
+        printed = read_printed(place, written, table.digits, quantity(name, "omega" in there).unit)
+        checks.append(Check(table.title, table.source, name, printed, single(place, needed, there)))
+    if not checks:
+        raise SceneError(f"{key}.printed = {{}}: at least one printed value is wanted")
+    return checks
+
+
+def peak_of(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> Peak:
+    """The peak of a [[peak]], with its designs, baseline and claims."""
+    name = table.quantity
+    only_inputs(f"{key}.over", table.over)
+    over = {n: values_of(f"{key}.over.{n}", n, written) for n, written in table.over.items()}
+    if "theta" in over:
+        raise SceneError(f"{key}.over.theta: a peak is taken over theta; its range is {key}.theta")
+    there = _completed(key, table, with_others(inputs, over))
+    require_known(f"{key}.quantity", name, "omega" in there)
+    slope = _slope(f"{key}.quantity", name, "omega" in there)
+    needed = require(
+        f"{key}.quantity", [n for n in needs_of((name, slope), there) if n != "theta"], name, there
+    )
+    for n in over:
+        if n not in needed:
+            raise SceneError(f"{key}.over.{n}: {name} does not depend on it")
+    # Whether the mechanism can be assembled at all depends on its lengths.
+    lengths = require(f"{key}.quantity", [n for n in LENGTHS if n not in needed], name, there)
+    ordered = dict.fromkeys((*over, *needed, *lengths))
+    axes = {n: value for n in ordered if isinstance(value := there[n], tuple)}
+    fixed = {n: value for n in ordered if isinstance(value := there[n], float)}
+    loads = {n: value for n in ordered if isinstance(value := there[n], Load)}
+    base = (
+        _other_design(f"{key}.baseline", table.baseline or {}, axes, fixed)
+        if table.baseline is not None
+        else {}
+    )
+    claims = tuple(
+        _claim(f"{key}.claim #{index}", claim, axes, fixed, bool(base))
+        for index, claim in enumerate(table.claim, 1)
+    )
+    wanted = _sensitivities(f"{key}.sensitivities", table, needed)
+    angles = _angles(key, table, inputs)
+    at_base = design_of(f"{key}.baseline", table.baseline or {})
+    return Peak(table.title, name, table.kind, axes, fixed, angles, at_base, base, claims, wanted, loads)
+
+
+def _completed(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> dict[str, Value]:
+    """The inputs, with 0 for those that only the baseline, a claim or a sensitivity names."""
+    found = dict(inputs)
+    named: dict[str, Iterable[str]]
+    named = {f"{key}.sensitivities": table.sensitivities or (), f"{key}.baseline": table.baseline or ()}
+    named |= {f"{key}.claim #{index}.at": claim.at for index, claim in enumerate(table.claim, 1)}
+    for place, names in named.items():
+        for name in names:
+            if name in CENTRES and name not in found:
+                raise SceneError(f"{place}: {name} is half a length unless it is given: give masses.{name}")
+            if name in OPTIONAL:
+                found.setdefault(name, 0.0)
+    return found
+
+
+def _sensitivities(key: str, table: schema.PeakTable, needed: Iterable[str]) -> tuple[str, ...]:
+    """The parameters of the wanted sensitivities."""
+    if table.sensitivities is None:
+        return tuple(name for name in SENSITIVITIES if name in needed)
+    only_inputs(key, table.sensitivities)
+    for name in table.sensitivities:
+        if name not in needed:
+            reason = "a peak is taken over it" if name == "theta" else "it does not depend on it"
+            raise SceneError(f"{key}: {table.quantity} has no sensitivity by {name}, {reason}")
+    return table.sensitivities
+
+
+def _slope(key: str, name: str, state: bool) -> str:
+    """The derivative of a quantity by theta, whose inputs a peak needs; itself where there is none."""
+    if name in WITHOUT_COURSE:
+        raise SceneError(f"{key} = {shown(name)}: it has no peak over theta")
+    slope = sensitivity(name, "theta")
+    try:
+        quantity(slope, state)
+    except ValueError:
+        return name
+    return slope
+
+
+def _angles(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> tuple[float, float]:
+    """The range of theta: that of the peak, else that of the motion, else one turn."""
+    if table.theta is not None:
+        low, high = (number_of(f"{key}.theta #{i}", "theta", part) for i, part in enumerate(table.theta, 1))
+        if low > high:
+            raise SceneError(f"{key}.theta = {shown(list(table.theta))}: its lower end comes first")
+        return low, high
+    theta = inputs.get("theta")
+    if isinstance(theta, tuple) and len(theta) > 1:
+        return min(theta), max(theta)
+    return 0.0, max([2.0 * pi, *(load.period for load in inputs.values() if isinstance(load, OverTheta))])
+
+
+def _other_design(
+    key: str, written: Mapping[str, float | str], axes: Mapping[str, Any], fixed: Mapping[str, float]
+) -> dict[str, float]:
+    """All inputs of a design that says only what is different."""
+    design = {**fixed, **design_of(key, written)}
+    for name in written:
+        if name not in axes and name not in fixed:
+            raise SceneError(f"{key}.{name}: the peak does not depend on it")
+    for name in axes:
+        if name not in design:
+            raise SceneError(f"{key}: {name} has {len(axes[name])} values, one is wanted: give {key}.{name}")
+    return {name: design[name] for name in (*axes, *fixed)}
+
+
+def _claim(
+    key: str, claim: schema.ClaimTable, axes: Mapping[str, Any], fixed: Mapping[str, float], based: bool
+) -> Claim:
+    if not based:
+        raise SceneError(
+            f"{key}.increase = {shown(claim.increase)}: an increase needs the peak's baseline = {{...}}"
+        )
+    design = _other_design(f"{key}.at", claim.at, axes, fixed)
+    at = design_of(f"{key}.at", claim.at)
+    return Claim(claim.source, at, design, read_percentage(f"{key}.increase", claim.increase))
+
+
+def picture_of(key: str, table: schema.PictureTable, inputs: Mapping[str, Value]) -> Picture:
+    """The curves of a [[picture]]."""
+    name = table.quantity
+    only_inputs(f"{key}.family", table.family)
+    if len(table.family) > 1:
+        raise SceneError(f"{key}.family: one input makes a family, got {', '.join(table.family)}")
+    family = {n: values_of(f"{key}.family.{n}", n, written) for n, written in table.family.items()}
+    there = with_others(with_others(inputs, design_of(f"{key}.at", table.at)), family)
+    require_known(f"{key}.quantity", name, "omega" in there)
+    needed = require_for_grid(f"{key}.quantity", (name,), there)
+    if table.over not in INPUTS:
+        raise SceneError(
+            f"{key}.over = {shown(table.over)}: unknown input; {schema.hint(table.over, tuple(INPUTS))}"
+        )
+    if not isinstance(there.get(table.over), tuple) or table.over in family:
+        raise SceneError(
+            f"{key}.over = {shown(table.over)}: it must be an input that has a list or range of values"
+        )
+    member = next(iter(family), None)
+    curves = [n for n in (member, table.over) if n is not None]
+    fixed = single(key, [n for n in needed if n not in curves], there)
+    return Picture(
+        table.title, table.file, name, table.over, member, {**{n: there[n] for n in curves}, **fixed}
+    )
