@@ -2,7 +2,10 @@
 
 import csv
 import math
+import pickle
+import tomllib
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -277,6 +280,31 @@ def test_a_scene_in_units(tmp_path, monkeypatch):
         heads, *rows = csv.reader(file)
     assert heads == ["ec [mm]", "theta [deg]", "a_C [mm/s^2]", "status", "margin [mm]"]
     assert [row[1] for row in rows[:2]] == ["0.0", "90.0"]
+
+
+def test_report_and_pictures_are_in_the_units_of_the_texts(tmp_path, monkeypatch):
+    """The values are in SI units all the same, in files too, and so are sensitivities."""
+    monkeypatch.chdir(tmp_path)
+    figures = []
+    monkeypatch.setattr("desaxe.plot.save", lambda figure, file: figures.append(figure) or Path(file))
+    peak = {"quantity": "phi", "over": {"ec": ["10 mm", "2 cm"]}, "sensitivities": ["ec"]}
+    picture = {"file": "phi.svg", "quantity": "phi", "family": {"ec": [0, "50 mm"]}}
+    asked = {"peak": [peak], "picture": [picture], "results": {"data": "values.csv"}}
+    scene = dx.scene({**tomllib.loads(LONG_HAND), **asked})
+    result = scene.run()
+    lines = [line.split() for line in result.report().splitlines()]
+    heads = lines.index(["ec", "|phi|", "at", "theta", "d/d(ec)"])
+    largest = math.degrees(math.asin((20 + 125) / 350))
+    assert lines[heads + 1] == ["mm", "deg", "deg", "rad/m"]
+    assert lines[heads + 3][:2] == ["20", f"{largest:.6g}"]
+    (axes,) = figures[0].axes
+    assert "[deg]" in axes.get_ylabel()
+    assert axes.get_legend().get_title().get_text() == "ec [mm]"
+    assert result.peaks[0].dataset.ec.units == "m"
+    with open("values.csv", encoding="utf-8") as file:
+        assert file.readline().split(",")[:2] == ["ec [m]", "theta [rad]"]
+    assert pickle.loads(pickle.dumps(scene)).shown_in == scene.shown_in
+    assert scene == dx.scene({**tomllib.loads(LONG_HAND.replace('"125 mm"', "0.125")), **asked})
 
 
 def test_units_of_a_scene_that_are_none():

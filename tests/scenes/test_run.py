@@ -288,8 +288,8 @@ def test_feasibility(compactor):
     assert math.degrees(low) == pytest.approx(73.74, abs=0.005)
     assert math.degrees(high) == pytest.approx(106.26, abs=0.005)
     text = str(compactor[1])
-    assert "|ec| < BC - AB = 0.225 m" in text
-    assert "ec = 0.23 m cannot be assembled for theta from 73.74 to 106.26 deg" in text
+    assert "|ec| < BC - AB = 225 mm" in text
+    assert "ec = 230 mm cannot be assembled for theta from 73.74 to 106.26 deg" in text
 
 
 @pytest.mark.parametrize(

@@ -95,10 +95,14 @@ class Conversion(NamedTuple):
 
 
 class UnitSystem:
-    """The units of the dimensions and quantities that are named; everything else is in SI units."""
+    """The units of the dimensions and quantities that are named; everything else is in SI units.
 
-    def __init__(self, units: Mapping[str, str]) -> None:
+    Sensitivities are quotients of them, or in SI units too where `quotients` is False.
+    """
+
+    def __init__(self, units: Mapping[str, str], quotients: bool = True) -> None:
         self.units = dict(units)
+        self.quotients = quotients
 
     @classmethod
     def read(cls, units: "str | Mapping[str, str] | UnitSystem | None") -> "UnitSystem":
@@ -145,6 +149,8 @@ class UnitSystem:
         if name in self._own:
             return self._own[name]
         base, by = parts(name)
+        if by and not self.quotients:
+            return Conversion(_si_unit(name))
         if by:
             found = self.of(base).per([self.of(parameter) for parameter in by])
             return Conversion(_simplified(name, found.unit)) if found.si == 1 else found

@@ -90,6 +90,9 @@ def mark_gaps(ax: "Axes", lines: "Sequence[Line2D]") -> None:
         for low, high in _spans(angles, np.isnan(own) & ~everywhere):
             ax.plot([low, high], [foot, foot], color=line.get_color(), linewidth=3.0, alpha=0.55,
                     transform=across, solid_capstyle="butt", zorder=3)  # fmt: skip
+            ax.text((low + high) / 2, foot + 0.015, note, transform=across, color="0.35", ha="center",
+                    fontsize="small", zorder=3)  # fmt: skip
+            note = ""
 
 
 def _spans(places: NDArray[np.float64], missing: NDArray[np.bool_]) -> list[tuple[float, float]]:

@@ -8,11 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
+from ..evaluation.in_units import in_units
 from ..evaluation.labels import CONVENTIONS, input_attributes, loads_text, source
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
 from ..mechanism.status import PeakStatus
+from ..mechanism.unit_system import UnitSystem
 from ..peaks.peak import peak
 from ..support.progress import Steps
 from .content import Claim, Content, Peak
@@ -76,6 +78,14 @@ def peaks_of(one: Peak, content: Content, steps: Steps) -> PeakResult:
         claims = tuple(ClaimResult(claim, value, claim.increase.agrees(value)) for claim, value in pairs)
     mirrored = _mirrored(one, content, columns, found)[:count].reshape(shape)
     return PeakResult(one, _labelled(one, content, arrays), claims, mirrored)
+
+
+def peaks_in_units(found: PeakResult, units: UnitSystem) -> "xr.Dataset":
+    """The labelled peaks, given in SI units, in others."""
+    slopes = [str(name) for name in found.dataset.data_vars if str(name).startswith("value_wrt_")]
+    quantity = found.peak.quantity
+    names = {name: sensitivity(quantity, name.removeprefix("value_wrt_")) for name in slopes}
+    return in_units(found.dataset, units, names={**names, "value": quantity})
 
 
 def _found(

@@ -9,7 +9,7 @@ from ..mechanism.catalogue import quantity
 from ..mechanism.status import PeakStatus
 from ..mechanism.unit_system import UnitSystem
 from .content import Content, Peak
-from .peaks import SIDEWAYS, WORDS, ClaimResult, PeakResult
+from .peaks import SIDEWAYS, WORDS, ClaimResult, PeakResult, peaks_in_units
 from .run import CheckResult, FeasibilityResult, Run, group_names
 
 ROWS = 24  # of a table; a longer one is thinned out
@@ -17,12 +17,15 @@ HUGE = 1e6  # percent: more is told as a power of ten
 GAPS = 5  # designs that cannot turn fully
 
 
-def report(content: Content, result: Run) -> str:
-    """The whole report."""
+def report(content: Content, result: Run, units: UnitSystem) -> str:
+    """The whole report, in these units."""
+    peaks = result.peaks
+    if not content.units:  # the data of peaks are in SI units then
+        peaks = tuple(found._replace(dataset=peaks_in_units(found, units)) for found in peaks)
     parts = [content.title] if content.title else []
     parts += [_checks(result.checks)] if result.checks else []
-    parts += [_feasibility(result.feasibility, content.units)] if result.feasibility else []
-    parts += [_peak(found, content.units) for found in result.peaks]
+    parts += [_feasibility(result.feasibility, units)] if result.feasibility else []
+    parts += [_peak(found, units) for found in peaks]
     parts += [_values(content, result)] if result.dataset is not None else []
     parts += [_files(content, result)] if result.files else []
     return "\n\n".join(parts)

@@ -16,13 +16,13 @@ from ..evaluation.grid import grid
 from ..evaluation.in_units import in_units
 from ..evaluation.labels import with_loads
 from ..loads.load import Load
-from ..mechanism.names import sensitivity
+from ..mechanism.unit_system import UnitSystem
 from ..support.extras import needed
 from ..support.files import check_target
 from ..support.progress import Progress, Steps
 from .content import Check, Content, Peak, Picture
 from .files import check_place, requirements_of, write
-from .peaks import PeakResult, batches, columns_of, peaks_of, provenance
+from .peaks import PeakResult, batches, columns_of, peaks_in_units, peaks_of, provenance
 from .stored import sweep_content
 from .values import Value
 
@@ -72,8 +72,8 @@ class Run(NamedTuple):
     files: tuple[Path, ...]
 
 
-def run(content: Content, watch: Progress | None) -> Run:
-    """Compute, draw and write all that a scene asks for."""
+def run(content: Content, watch: Progress | None, shown_in: UnitSystem) -> Run:
+    """Compute, write and draw all that a scene asks for; pictures in the units shown."""
     _require_rooms(content)
     _check_files(content)
     stored = content.store is not None
@@ -98,7 +98,7 @@ def run(content: Content, watch: Progress | None) -> Run:
             dataset,
             dict(zip(group_names(peaks), (f.dataset for f in peaks), strict=True)),
         )
-    files += [_picture(picture, content, steps) for picture in content.pictures]
+    files += [_picture(picture, content, shown_in, steps) for picture in content.pictures]
     steps.next("")
     return Run(dataset, checks, peaks, _feasibility(content.inputs), tuple(files))
 
@@ -106,10 +106,7 @@ def run(content: Content, watch: Progress | None) -> Run:
 def _peaks(one: Peak, content: Content, steps: Steps) -> PeakResult:
     """Peaks in the units of the scene."""
     found = peaks_of(one, content, steps)
-    slopes = [str(name) for name in found.dataset.data_vars if str(name).startswith("value_wrt_")]
-    names = {name: sensitivity(one.quantity, name.removeprefix("value_wrt_")) for name in slopes}
-    names["value"] = one.quantity
-    return found._replace(dataset=in_units(found.dataset, content.units, names=names))
+    return found._replace(dataset=peaks_in_units(found, content.units))
 
 
 def _no_watch(done: int, total: int, what: str) -> None:
@@ -250,7 +247,7 @@ def group_names(peaks: tuple[PeakResult, ...]) -> list[str]:
     return names
 
 
-def _picture(picture: Picture, content: Content, steps: Steps) -> Path:
+def _picture(picture: Picture, content: Content, shown_in: UnitSystem, steps: Steps) -> Path:
     from ..plot import curves, save
 
     steps.next(f"drawing {picture.file}")
@@ -258,7 +255,7 @@ def _picture(picture: Picture, content: Content, steps: Steps) -> Path:
     shared = picture.quantity in content.outputs and set(picture.inputs) == set(content.inputs)
     names = content.outputs if shared else (picture.quantity,)
     values: Any = grid(names, **grid_options(content), **_arrays(picture.inputs))
-    dataset = in_units(values, content.units)
+    dataset = in_units(values, shown_in)
     axes: Any = curves(dataset, picture.quantity, over=picture.over, family=picture.family)[0].axes
     title = picture.title or content.title
     if title:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..definitions.tables import in_force, redefine
 from ..mechanism.own import definitions
+from ..mechanism.unit_system import SI, UnitSystem
 from ..support.progress import Progress
 from .content import Content
 from .peaks import PeakResult
@@ -15,6 +16,7 @@ from .read import plain_data, read
 from .report import report
 from .run import CheckResult, FeasibilityResult, Run, run
 from .schema import SceneError as SceneError
+from .units import units_written
 from .values import Value
 
 if TYPE_CHECKING:
@@ -44,7 +46,7 @@ class SceneResult:
     def report(self) -> str:
         """The text that `desaxe run` prints."""
         run = Run(self.dataset, self.checks, self.peaks, self.feasibility, self.files)
-        return report(self.scene.content, run)
+        return report(self.scene.content, run, self.scene.shown_in)
 
     def __str__(self) -> str:
         return self.report()
@@ -52,10 +54,14 @@ class SceneResult:
 
 @dataclass(frozen=True)
 class Scene:
-    """A checked scene: all of it in SI units. Two scenes that say the same are equal."""
+    """A checked scene: all of it in SI units. Two scenes that say the same are equal.
+
+    `shown_in` are the units of its report and its pictures: those that it names, else those of its texts.
+    """
 
     content: Content
     name: str = field(default="", compare=False)
+    shown_in: UnitSystem = field(default=SI, compare=False)
 
     @property
     def title(self) -> str:
@@ -74,7 +80,7 @@ class Scene:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Its quantities travel with it: they are known where it arrives, unless others have their names."""
-        return _arrived, (self.content, self.name)
+        return _arrived, (self.content, self.name, self.shown_in)
 
     def run(self, progress: Progress | None = None) -> SceneResult:
         """Compute everything, write the files that the scene names, and return it.
@@ -83,14 +89,14 @@ class Scene:
         directory. Needs the extra `labelled`, and `plot` where the scene has pictures.
         """
         with in_force(self.content.definitions):
-            found = run(self.content, progress)
+            found = run(self.content, progress, self.shown_in)
         return SceneResult(self, found.dataset, found.peaks, found.checks, found.feasibility, found.files)
 
 
-def _arrived(content: Content, name: str) -> Scene:
+def _arrived(content: Content, name: str, shown_in: UnitSystem = SI) -> Scene:
     known = definitions()
     redefine(own for own in content.definitions if own.name not in known)
-    return Scene(content, name)
+    return Scene(content, name, shown_in)
 
 
 def scene(source: str | PathLike[str] | Mapping[str, Any]) -> Scene:
@@ -105,6 +111,8 @@ def scene(source: str | PathLike[str] | Mapping[str, Any]) -> Scene:
     """
     name = "" if isinstance(source, Mapping) else str(source)
     try:
-        return Scene(read(plain_data(source), Path(name).parent if name else None), name)
+        data = plain_data(source)
+        content = read(data, Path(name).parent if name else None)
+        return Scene(content, name, content.units or units_written(data))
     except SceneError as error:
         raise SceneError(f"{name or 'scene'}: {error}") from None
