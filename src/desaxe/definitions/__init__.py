@@ -1,4 +1,4 @@
-"""Quantities of a user's own: `define`, `undefine`, and how they are read and checked.
+"""User-defined quantities: `define`, `undefine`, and their parser and checks.
 
 grammar     the text of an expression as a tree; nothing is ever evaluated as Python
 dimensions  the dimension of every part of a tree; both sides of a sum agree

@@ -1,4 +1,4 @@
-"""`define` and `undefine`: quantities of a user's own, known to every call from then on."""
+"""`define` and `undefine`: user-defined quantities, known to every later call."""
 
 from collections.abc import Iterable, Mapping
 from keyword import iskeyword
@@ -29,7 +29,7 @@ DEEPEST = 50  # definitions behind one another
 
 
 def define(name: str, expression: str, unit: str | None = None, meaning: str = "", **constants: Any) -> str:
-    """Define a quantity of your own: every call, plot and file knows it from then on, with its sensitivities.
+    """Define a quantity of your own: every later call, plot and file knows it, with its sensitivities.
 
         >>> import desaxe as dx
         >>> dx.define("shoe_power", "f * abs(N_C * V_C)", unit="W", meaning="power lost in the shoe", f=0.08)
@@ -58,7 +58,7 @@ def define(name: str, expression: str, unit: str | None = None, meaning: str = "
 
 
 def undefine(name: str) -> None:
-    """Forget a quantity of one's own; ValueError where there is none, or another one uses it."""
+    """Remove a user-defined quantity; ValueError if there is none of this name or another one uses it."""
     known = definitions()
     if name not in known:
         own = f"; there are {', '.join(known)}" if known else ""
@@ -71,7 +71,7 @@ def undefine(name: str) -> None:
 
 
 class Entry(NamedTuple):
-    """A definition as it was given."""
+    """The arguments of one definition, unchecked."""
 
     name: str
     expression: str
@@ -81,7 +81,7 @@ class Entry(NamedTuple):
 
 
 def install(made: Iterable[Definition]) -> None:
-    """Make definitions known that came from elsewhere: a file, another process.
+    """Register definitions from a file or another process.
 
     ValueError where one of them has the name of another definition: nothing is replaced silently.
     """
@@ -98,7 +98,7 @@ def install(made: Iterable[Definition]) -> None:
 
 
 def with_definitions(known: Mapping[str, Definition], new: Iterable[Definition]) -> dict[str, Definition]:
-    """All definitions, those that use a new one checked again."""
+    """Known and new definitions together; those that use a new one are checked again."""
     result = dict(known)
     for definition in new:
         result[definition.name] = definition
@@ -133,7 +133,7 @@ def _own_uses(definition: Definition, known: Mapping[str, Definition]) -> list[s
 
 
 def made_definition(entry: Entry, known: Mapping[str, Definition]) -> Definition:
-    """A definition from its texts, checked."""
+    """Check a definition and compile its expression."""
     _check_name(entry.name)
     meaning = _checked_text(entry.name, "meaning", entry.meaning, LONGEST_MEANING)
     if not isinstance(entry.expression, str):
@@ -199,14 +199,14 @@ def _constant(owner: str, name: str, value: Any) -> tuple[float, Dimension]:
 
 
 def _kept(value: Any) -> str | float:
-    """A constant as it is kept: a number, or a text with a unit."""
+    """A constant in its stored form: a number, or a text with a unit."""
     return value if isinstance(value, str) else str(value) if hasattr(value, "magnitude") else float(value)
 
 
 def _names_used(
     source: Source, tree: Node, own: str, numbers: Mapping[str, float], known: Mapping[str, Definition]
 ) -> tuple[str, ...]:
-    """The quantities and inputs of a tree, in order; an error at the first name that nobody knows."""
+    """The quantities and inputs of a tree, in order; ValueError that marks the first unknown name."""
     found: dict[str, None] = {}
     stack = [tree]
     while stack:
@@ -232,7 +232,7 @@ def _names_used(
 
 
 def _is_own(name: str, known: Mapping[str, Definition]) -> bool:
-    """True for another own quantity or one of its sensitivities."""
+    """True for another user-defined quantity or one of its sensitivities."""
     base = parts(name)[0]
     return base in known and name in rows_of(known[base], known)
 

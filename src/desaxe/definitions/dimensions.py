@@ -1,4 +1,4 @@
-"""The dimension of every part of an expression: what is added or compared must agree.
+"""Dimensional analysis of an expression: terms that are added or compared must have one dimension.
 
 Radians are dimensionless. A literal 0 agrees with everything, so that `max(power_in, 0)` has a meaning.
 """
@@ -49,7 +49,7 @@ def unit_from(dimension: Dimension) -> str | None:
 
 
 class Checker:
-    """Finds the dimension of a tree; `known` has that of every name, `numbers` what is a constant."""
+    """Finds the dimension of a tree; `known` maps names to dimensions, `numbers` has the constants."""
 
     def __init__(self, source: Source, known: Mapping[str, Dimension], numbers: Mapping[str, float]) -> None:
         self.source = source
@@ -98,7 +98,7 @@ class Checker:
     def _common(
         self, node: Node, parts: tuple[Node, ...], dimensions: list[Dimension | None]
     ) -> Dimension | None:
-        """The dimension that all parts have; an error that shows two that differ."""
+        """The common dimension of the parts; ValueError that shows two that differ."""
         first, *_ = [*(place for place, d in enumerate(dimensions) if d is not None), None]
         if first is None:
             return None
@@ -132,7 +132,7 @@ class Checker:
 
 
 def constant(node: Node, numbers: Mapping[str, float]) -> float | None:
-    """The value of a part that has no quantity or input in it; None for any other, and for what overflows."""
+    """The value of a constant part; None if it contains a quantity or input, or overflows."""
     if node.op == "number":
         return node.number
     if node.op == "name":

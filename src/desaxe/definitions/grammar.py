@@ -1,4 +1,4 @@
-"""The grammar of expressions: a text becomes a tree, or an error that points at the place.
+"""The grammar of expressions: parses a text into a tree, or marks the error in the text.
 
     comparison  sum [("<" | "<=" | ">" | ">=" | "==" | "!=") sum]     the first argument of `where` alone
     sum         product {("+" | "-") product}
@@ -56,7 +56,7 @@ class Token(NamedTuple):
 
     @property
     def end(self) -> int:
-        """Where it ends."""
+        """The position after the last character."""
         return self.at + len(self.text)
 
 
@@ -67,7 +67,7 @@ class Source(NamedTuple):
     text: str
 
     def refuse(self, at: int, end: int, problem: str) -> NoReturn:
-        """ValueError with the problem, the text, and a mark below the place."""
+        """Raise ValueError with the problem, the text, and a mark below the position."""
         start = max(0, min(at - _WINDOW // 3, len(self.text) - _WINDOW))
         shown = "".join(c if c.isprintable() else " " for c in self.text[start : start + _WINDOW])
         stop = max(at + 1, min(end, start + len(shown)))
@@ -81,7 +81,7 @@ class Source(NamedTuple):
 
 
 def parse(source: Source) -> Node:
-    """The tree of a text; ValueError that points at the place where it is none."""
+    """Parse a text; ValueError that marks the position of a syntax error."""
     return _Parser(source, _tokens(source)).whole()
 
 

@@ -45,7 +45,7 @@ class _Writer:
         return self.lines[-1].name
 
     def value(self, node: Node) -> Argument:
-        """What holds the value of a part."""
+        """The line, input or constant that holds the value of a part."""
         if node.op == "number":
             return node.number
         if node.op == "name":
@@ -100,7 +100,7 @@ class _Writer:
         return self.line("div", 1.0, result) if power < 0 else result
 
     def _whole_power(self, base: Argument, count: int) -> Argument:
-        """base to a whole power, by squares."""
+        """base to an integer power, by repeated squaring."""
         result: Argument = 1.0
         while count:
             if count & 1:

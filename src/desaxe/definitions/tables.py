@@ -20,7 +20,7 @@ KEYS = ("expression", "unit", "meaning", "constants")
 
 
 def read_definitions(tables: Mapping[str, Any]) -> tuple[Definition, ...]:
-    """The definitions of `[quantities]`, whatever their order; ValueError that names what is wrong."""
+    """Read the definitions of `[quantities]`, in any order; ValueError names the wrong one."""
     waiting = {name: _entry(name, table) for name, table in tables.items()}
     known = {name: old for name, old in definitions().items() if name not in waiting}
     made: dict[str, Definition] = {}
@@ -33,7 +33,7 @@ def read_definitions(tables: Mapping[str, Any]) -> tuple[Definition, ...]:
 
 
 def _mentions(expression: str, names: Mapping[str, Any], own: str) -> bool:
-    """Whether a name other than its own, or a sensitivity of it, stands in an expression."""
+    """True if an expression contains one of the names other than its own, or a sensitivity of one."""
     words = {word.partition("_wrt_")[0] for word in re.findall(r"[A-Za-z_]\w*", expression[:10_000])}
     return any(name in words for name in names if name != own)
 
@@ -65,13 +65,13 @@ def tables_of(made: Iterable[Definition]) -> dict[str, dict[str, Any]]:
 
 
 def text_of(names: Iterable[str]) -> str:
-    """The definitions that names need, as JSON: what a stored result says of them; empty without any."""
+    """The definitions that names need, as JSON for a stored result; empty if there are none."""
     own = used_by(names)
     return json.dumps(tables_of(own)) if own else ""
 
 
 def redefine(made: Iterable[Definition]) -> None:
-    """Make definitions known, in place of others of the same names."""
+    """Register definitions, replacing others of the same names."""
     known = definitions()
     new = [own for own in made if known.get(own.name) != own]
     if new:
@@ -80,7 +80,7 @@ def redefine(made: Iterable[Definition]) -> None:
 
 @contextmanager
 def in_force(made: Iterable[Definition]) -> Iterator[None]:
-    """Have definitions known for a while, whatever else has these names."""
+    """Register definitions for the duration of a block, shadowing others of the same names."""
     before = definitions()
     redefine(made)
     try:

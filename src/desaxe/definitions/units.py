@@ -86,7 +86,7 @@ def _from_text(name: str, text: str) -> tuple[float, Unit]:
 
 
 def _product(text: str) -> tuple[Fraction, Unit] | None:
-    """The factor and unit of a product of units of the table; None where one is not in it."""
+    """Factor and unit of a product of units; None if one is not in the table."""
     factor, unit = Fraction(1), NONE
     for place, part in enumerate(text.split("/")):
         for term in part.replace("*", " ").split():

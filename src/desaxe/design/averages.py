@@ -52,7 +52,7 @@ def angle_of(angle: Any) -> float:
 def _along(
     name: str, angles: Array, designs: Mapping[str, Any], branch: int
 ) -> tuple[Array, dict[str, Array]]:
-    """Values and derivatives by what varies (all inputs of one design): designs, then angles."""
+    """Values and derivatives by the varying inputs (all inputs of one design): designs, then angles."""
     given = {p: v for p, v in designs.items() if v is not None and p in INPUTS and p != "theta"}
     wide: dict[str, Any]
     wide = {p: v if callable(v) else np.asarray(v, float)[..., None] for p, v in given.items()}
@@ -76,7 +76,7 @@ def _rule() -> tuple[Array, Array]:
 
 
 class OwnMeasure:
-    """A function of a design (a dict of parameters) that gives its value and a dict of derivatives."""
+    """A user's function of a design (a dict of parameters) that returns a value and a dict of derivatives."""
 
     def __init__(self, function: Any) -> None:
         self.function = function

@@ -1,4 +1,4 @@
-"""`design_map`: quantities of designs over a plane or space of them, labelled, with what is feasible."""
+"""`design_map`: quantities over a plane or space of designs, labelled, with their feasibility."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any

@@ -89,7 +89,7 @@ def _input(name: str, value: Any) -> Array:
 
 
 def _angles(Y: Array, lengths: list[Array], branch: int) -> tuple[Array, NDArray[np.bool_]]:
-    """Both crank angles, ascending, NaN where there is none; and where the triangle is flat."""
+    """Both crank angles, ascending, NaN where there is none; and a mask of flat triangles."""
     ec, AB, BC = lengths
     with np.errstate(all="ignore"):  # status tells
         L = np.hypot(ec, Y)

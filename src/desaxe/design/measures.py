@@ -43,7 +43,7 @@ class Measured(NamedTuple):
 
 
 def checked(measure: Any) -> Measure:
-    """A measure as it is meant; an error that says what there is."""
+    """A measure in its canonical form; ValueError that lists the valid ones."""
     if isinstance(measure, OwnMeasure):
         return measure
     if callable(measure):
@@ -88,7 +88,7 @@ def unit_of(measure: Measure) -> str:
 
 
 def text_of(measure: Measure) -> str:
-    """How a measure is called in a message."""
+    """The name of a measure for messages."""
     if isinstance(measure, OwnMeasure):
         return measure.name
     return measure if isinstance(measure, str) else " ".join(map(str, measure))

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 
 class Maths(NamedTuple):
-    """What a closed form is computed with."""
+    """The functions that a closed form calls, for numbers or for arrays."""
 
     sqrt: Any
     atan2: Any
@@ -44,7 +44,7 @@ PLAIN = Maths(
 
 @cache
 def arrays() -> Maths:
-    """For arrays."""
+    """The functions for arrays, in NumPy."""
     import numpy as np
 
     return Maths(np.sqrt, np.arctan2, np.divide, np.where, np.ldexp, lambda a: np.frexp(a)[1])

@@ -1,4 +1,4 @@
-"""One root of a function of one number, in plain Python."""
+"""A root of a function of one variable, in plain Python."""
 
 from collections.abc import Callable
 from math import copysign, ulp
@@ -7,7 +7,7 @@ STEPS = 200
 
 
 def root(function: Callable[[float], float], a: float, b: float) -> float:
-    """Where the function changes its sign between a and b, to the last bits (Chandrupatla's method).
+    """The sign change of a function between a and b, to the last bits (Chandrupatla's method).
 
     An end at which it is 0 is the root. The caller sees to it that the signs differ.
     """
@@ -32,7 +32,7 @@ def root(function: Callable[[float], float], a: float, b: float) -> float:
 
 
 def _fraction(a: float, b: float, c: float, fa: float, fb: float, fc: float) -> float:
-    """Where to look next: by inverse quadratic interpolation if that is safe, else in the middle."""
+    """The next step as a fraction: by inverse quadratic interpolation if that is safe, else 1/2."""
     xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
     if not (phi * phi < xi and (1.0 - phi) * (1.0 - phi) < 1.0 - xi):
         return 0.5

@@ -48,7 +48,7 @@ def ball(interval: Interval) -> Any:
 
 
 def enclosures(program: Program, box: Mapping[str, Interval], bits: int = BITS) -> Enclosure:
-    """The outputs of a program over a box, with so many bits."""
+    """Enclosures of the outputs of a program over a box, in `bits` of precision."""
     with ctx.workprec(bits):
         run = _Run(program, box)
         for line in program.lines:
@@ -58,7 +58,7 @@ def enclosures(program: Program, box: Mapping[str, Interval], bits: int = BITS) 
 
 
 class _Run:
-    """The balls of the lines so far, by name; their flags, where there are any."""
+    """A run of a program: the balls and flags of the lines evaluated so far, by name."""
 
     def __init__(self, program: Program, box: Mapping[str, Interval]) -> None:
         self.box = box
@@ -167,14 +167,14 @@ class _Run:
 
 
 def _common(first: Any, second: Any) -> Any:
-    """Where two enclosures of the same agree."""
+    """The intersection of two enclosures of one value."""
     if not first.is_finite():
         return second
     return first.intersection(second) if second.is_finite() else first
 
 
 def _root(x: Any) -> Any:
-    """The root of what is not negative."""
+    """The root of the non-negative part of a ball."""
     if x > 0:
         return x.sqrt()
     return None if x < 0 else arb(0).union(x.upper().sqrt())
@@ -190,7 +190,7 @@ def _product(a: Any, b: Any) -> Any:
 
 
 def _power(a: Any, b: Any) -> Any:
-    """a to a power that is no whole number; of what is not negative."""
+    """a to a power that is no integer, of the non-negative part of a."""
     if a > 0:
         return a**b
     return None if a < 0 or not b > 0 else arb(0).union(a.upper() ** b)
@@ -213,7 +213,7 @@ _LOGIC: dict[str, Callable[..., bool | None]] = {
 
 
 def _rotated_sin(sine: Any, cosine: Any, quarters: Any) -> Any:
-    """The sine after so many quarter turns: of all that an unsure number of them may give."""
+    """The sine after a number of quarter turns; the union over all numbers in an uncertain one."""
     whole = quarters.unique_fmpz()
     if whole is None:
         return sine.union(-sine).union(cosine).union(-cosine)

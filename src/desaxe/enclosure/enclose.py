@@ -105,7 +105,7 @@ def enclose(
 
 
 class Function(NamedTuple):
-    """A quantity over boxes of what varies; with derivatives by it."""
+    """A quantity as a function of boxes of its varying inputs, with derivatives."""
 
     value: Program
     full: Program  # the value and its derivatives
@@ -122,7 +122,7 @@ class Function(NamedTuple):
         return enclosures(self.value, self._inputs(box))
 
     def at(self, point: Sequence[float]) -> Any:
-        """The value at a point, to enough bits; None where it is not surely defined."""
+        """The value at a point in sufficient precision; None if it may be undefined there."""
         inputs = self._inputs(tuple((x, x) for x in point))
         for bits in MORE_BITS:
             found = enclosures(self.value, inputs, bits)
@@ -156,12 +156,12 @@ def _function(name: str, given: dict[str, Any], branch: int) -> Function:
 
 
 def _turns(program: Program) -> bool:
-    """Whether only sine and cosine see theta."""
+    """True if theta enters only through sine and cosine."""
     return all(line.op in ("sin", "cos") for line in program.lines if "theta" in line.args)
 
 
 def _turned(theta: Interval) -> Interval:
-    """Of many turns one is enough."""
+    """The interval of theta, reduced to one turn if it is longer."""
     return TURN if theta[1] - theta[0] > TURN[1] else theta
 
 
@@ -170,7 +170,7 @@ def _program(wanted: Request) -> Program:
 
 
 def _interval(name: str, value: Any, wanted: str) -> Interval:
-    """A number or a pair, as a pair of doubles."""
+    """The interval of an input: a number, pair or range as two doubles."""
     if isinstance(value, PlusMinus):
         value = Between(*ends_of(name, value))
     if isinstance(value, str) and PLUS_MINUS.search(value):
@@ -218,7 +218,7 @@ def _range(function: Function, rtol: float, limit: int) -> dict[str, Any]:
 
 
 def _status(function: Function, limit: int) -> tuple[int, int]:
-    """0 defined in all of the box, 1 nowhere, 2 neither or not decided; and how many boxes it took."""
+    """The status (0 defined in all of the box, 1 nowhere, 2 otherwise) and the number of boxes used."""
     corners = [tuple((x, x) for x in corner) for corner in islice(product(*function.whole), CORNERS)]
     boxes, count, known = [function.whole], 0, {_defined(function, corner) for corner in corners}
     while boxes and not {True, False} <= known:
@@ -234,13 +234,13 @@ def _status(function: Function, limit: int) -> tuple[int, int]:
 
 
 def _defined(function: Function, box: Box) -> bool | None:
-    """Whether the quantity is defined in all of a box or nowhere; None if neither or not decided."""
+    """True if the quantity is defined in all of a box, False if nowhere, None if undecided."""
     found = function.defined(box)
     return False if found.values == (None,) else None if found.flags & PARTLY else True
 
 
 class Node(NamedTuple):
-    """A box, how large the quantity can be in it, and how much each input matters."""
+    """A box, the upper bound of the quantity in it, and the influence of each input."""
 
     upper: float
     box: Box
@@ -257,7 +257,7 @@ class Search:
         self.tight = True
 
     def largest(self, sign: int) -> float:
-        """A bound from above, as good as was asked for or as the limit of boxes allows."""
+        """An upper bound within the tolerance, or as tight as the limit of boxes allows."""
         heap: list[tuple[float, int, int, Node]] = []
         pieces: tuple[Box, ...] = (self.function.whole,)
         depth, end, bound = 0, self.count + self.limit, -inf
@@ -290,14 +290,14 @@ class Search:
         return _halves(self.function, node.box, node.weights, finest)
 
     def _goal(self, sign: int) -> float:
-        """A bound that is good enough: little more than what is attained."""
+        """The bound at which the search stops: the attained value plus the tolerance."""
         low, high = self.inner
         best = high if sign > 0 else -low
         margin = max(self.rtol * (high - low), 2 * LAST_BIT * abs(best), SMALLEST)
         return best + margin if isfinite(best) else -inf
 
     def _look(self, sign: int, box: Box) -> Node | None:
-        """What a box can hold; None if the quantity is defined nowhere in it."""
+        """Bound the quantity over a box; None if it is defined nowhere in it."""
         while True:
             self.count += 1
             found = self.function.over(box)
@@ -332,13 +332,13 @@ class Search:
 
 
 def _end(ends: Interval, slope: Any) -> Interval:
-    """The end of an input at which a quantity with this slope is largest; both where that is open."""
+    """The end of an input at which a quantity with this slope is largest; both if its sign is open."""
     low, high = ends
     return (high, high) if slope >= 0 else (low, low) if slope <= 0 else ends
 
 
 def _middle(ends: Interval) -> float:
-    """Where to cut: 0, where kinks are, if it is inside; else the middle. One of the ends if nothing is."""
+    """The point at which to bisect: 0, where kinks are, if it is inside; else the middle or an end."""
     low, high = ends
     return 0.0 if low < 0.0 < high else min(max(low + 0.5 * (high - low), low), high)
 

@@ -13,11 +13,11 @@ _FORMULA = re.compile(r"[A-Z]-eq\w+|A-listing-\w+|C-link\d-\w+")
 
 
 class Judged(Protocol):
-    """What is needed of an entry here."""
+    """The attributes of an entry that this module reads."""
 
     @property
     def id(self) -> str:
-        """Such as "B-eq20"."""
+        """Identifier of the entry, such as "B-eq20"."""
 
     @property
     def document(self) -> str:
@@ -29,7 +29,7 @@ class Judged(Protocol):
 
     @property
     def verdict(self) -> str:
-        """The verdict on it."""
+        """The verdict on the printed form."""
 
     @property
     def corrected(self) -> str:

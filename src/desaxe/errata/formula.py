@@ -81,7 +81,7 @@ def _tex(node: ast.expr, level: int) -> str:
 
 
 def _call(node: ast.Call) -> str:
-    """A function with its arguments; a root and a size in their own signs."""
+    """A function call as LaTeX; roots and absolute values in their own notation."""
     name = node.func.id if isinstance(node.func, ast.Name) else ""
     arguments = ", ".join(_tex(argument, 0) for argument in node.args)
     if name == "sqrt":
@@ -92,7 +92,7 @@ def _call(node: ast.Call) -> str:
 
 
 def _power(node: ast.BinOp) -> str:
-    """A power; one half is a root, and that of a sine stands at its name."""
+    """A power as LaTeX: sqrt for 1/2, and sin^n for a power of a sine."""
     if ast.unparse(node.right) == "1 / 2":
         return rf"\sqrt{{{_tex(node.left, 0)}}}"
     exponent = ast.unparse(node.right).replace(" ", "")

@@ -1,4 +1,4 @@
-"""What the papers print, and whether it is right: the ledgers in `errata/`, one TOML file a paper.
+"""The ledgers of the papers' errata: read, filtered, and written as text and Markdown.
 
 Each entry holds one equation, line of code, number or claim of a paper, the verdict on it, the corrected form
 and the test that proves the verdict. A ledger begins with the paper's `title` and `notes` on its conventions.
@@ -120,7 +120,7 @@ def markdown(entries: Iterable[Entry] | None = None) -> str:
 
 @cache
 def _sheets() -> dict[str, dict[str, Any]]:
-    """What the ledgers' files hold, by document letter, in alphabetical order."""
+    """The content of the ledgers' files by document letter, in alphabetical order."""
     folder = files("desaxe").joinpath("errata")
     paths = sorted((item for item in folder.iterdir() if item.name.endswith(".toml")), key=lambda s: s.name)
     sheets = [tomllib.loads(path.read_text("utf-8")) for path in paths]
@@ -140,7 +140,7 @@ def _require(what: str, value: str | None, allowed: tuple[str, ...]) -> None:
 
 
 def _block(entry: Entry, indent: int, width: int, tex: bool) -> str:
-    """One entry: verdict in the margin; id and place, what is printed, the correction, the evidence."""
+    """One entry as text: verdict in the margin; id, place, printed form, correction, evidence."""
     printed, corrected = forms(entry) if tex else ("", "")
     lines = [(entry.verdict, f"{entry.id}  ({entry.where})"), ("", f"printed: {entry.printed}")]
     lines += [("", f"  LaTeX: {printed}")] if printed else []
@@ -174,7 +174,7 @@ def _wrapped(margin: str, text: str, indent: int, width: int) -> str:
 
 
 def _summary(rows: tuple[Entry, ...]) -> str:
-    """How many entries there are of each verdict."""
+    """The number of entries of each verdict, as a line of text."""
     counts = ((sum(row.verdict == verdict for row in rows), verdict) for verdict in VERDICTS)
     parts = ", ".join(f"{count} {verdict}" for count, verdict in counts if count)
     noun = "entry" if len(rows) == 1 else "entries"
@@ -208,7 +208,7 @@ _SELECTION = "# Some entries of what the papers print, and whether it is right"
 
 
 def _counts() -> str:
-    """A table of how many entries of each verdict the papers have."""
+    """A table of the number of entries by paper and verdict."""
     rows = [("paper", *VERDICTS, "all"), ("---", *["---:"] * (len(VERDICTS) + 1))]
     for letter, ledger in _ledgers().items():
         counts = [sum(entry.verdict == verdict for entry in ledger) for verdict in VERDICTS]
@@ -232,7 +232,7 @@ def _first_page(rows: tuple[Entry, ...]) -> str:
 
 
 def _paper(letter: str, ledger: list[Entry]) -> str:
-    """One paper: its title, its conventions, what is not right entry by entry, what is right as a table."""
+    """One paper as Markdown: title, conventions, the wrong entries in full, the right ones as a table."""
     if not ledger:
         return ""
     wrong = [_item(entry) for entry in ledger if entry.verdict not in FINE]
@@ -248,7 +248,7 @@ def _paper(letter: str, ledger: list[Entry]) -> str:
 
 
 def _item(entry: Entry) -> str:
-    """An entry that is not right: verdict, place, what is printed, what it should be, and why."""
+    """A wrong entry as Markdown: verdict, place, printed form, correction, evidence."""
     is_formula = re.search(r"[*^]|:=|^\S+ = ", entry.corrected) and not entry.corrected.endswith(".")
     instead = _code(entry.corrected) if is_formula else _plain(entry.corrected)
     corrected = forms(entry)[1]
@@ -285,5 +285,5 @@ def _code(text: str) -> str:
 
 
 def _plain(text: str) -> str:
-    """Text whose signs Markdown would take for its own, escaped; an underscore within a word is none."""
+    """Escape Markdown's special characters in a text; an underscore within a word needs none."""
     return re.sub(r"([\\`*<>\[\]~#]|(?<!\w)_|_(?!\w))", r"\\\1", text)

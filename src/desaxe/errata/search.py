@@ -1,4 +1,4 @@
-"""Entries of the ledgers by what someone types: an id, an equation's number, or words of the text."""
+"""Search in the ledgers: by id, equation number, or words of the text."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -10,7 +10,7 @@ _EQUATION = re.compile(r"eq(?:uation|n)?s?[. ]*\(?(\d+[a-z]?)\)?", re.IGNORECASE
 
 
 def matching(rows: Iterable[Row], words: Sequence[str]) -> tuple[Row, ...]:
-    """The entries that the words name; without words all of them.
+    """The entries that match the words; all entries without words.
 
     "B-eq20" is one entry; "eq20" and "Eq. 20" are that equation of every paper, "eq37" also 37a and 37b.
     Other words are looked for in all fields but the test, in any case; all of them must occur.

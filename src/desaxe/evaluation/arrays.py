@@ -1,4 +1,4 @@
-"""`evaluate` over arrays: broadcast, run in blocks, put the answers where they are wanted."""
+"""`evaluate` over arrays: broadcast the inputs, run in blocks, fill the outputs."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from math import prod
@@ -28,7 +28,7 @@ FLOAT, STATUS = np.dtype(np.float64), np.dtype(np.int8)
 def evaluate_arrays(
     wanted: Request, given: Mapping[str, Any], threads: int | None, out: Any
 ) -> dict[str, Array]:
-    """The answers by the names asked for, in the broadcast shape."""
+    """The values by requested name, in the broadcast shape."""
     if out is None and threads is None and VARIABLE not in environ:
         ready = planned(wanted, given)
         if ready is not None:
@@ -47,7 +47,7 @@ def evaluate_arrays(
 
 
 def _refuse_other_dimensions(given: Mapping[str, Any]) -> None:
-    """Labelled arrays pair by the names of their dimensions, which arrays here do not have."""
+    """ValueError for labelled arrays of different dimensions: `evaluate` broadcasts by position."""
     labels = {name: value.dims for name, value in given.items() if hasattr(value, "dims") and value.dims}
     if len(set(labels.values())) > 1:
         told = ", ".join(f"{name} {dims}" for name, dims in labels.items())
@@ -55,7 +55,7 @@ def _refuse_other_dimensions(given: Mapping[str, Any]) -> None:
 
 
 def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]) -> Array:
-    """An input as a float64 array; an error that names it if it is missing, no number or wholly bad."""
+    """An input as a float64 array; an error names it if missing, not numeric, or without a valid element."""
     if type(value) is np.ndarray and value.dtype == FLOAT:
         return _not_wholly_bad(name, value)
     number = None if type(value) is np.ndarray else as_number(name, value, inputs, names)
@@ -93,7 +93,7 @@ def _not_wholly_bad(name: str, array: Array) -> Array:
 
 
 def broadcast_shape(arrays: Mapping[str, Array]) -> tuple[int, ...]:
-    """The common shape; an error that names every shape where there is none."""
+    """The broadcast shape; ValueError that names every shape if there is none."""
     try:
         return np.broadcast_shapes(*(array.shape for array in arrays.values()))
     except ValueError:
@@ -102,7 +102,7 @@ def broadcast_shape(arrays: Mapping[str, Array]) -> tuple[int, ...]:
 
 
 def outputs_for(names: Sequence[str], shape: tuple[int, ...], out: Any) -> dict[str, Array]:
-    """Where the answers go: new arrays, or those of `out`, checked."""
+    """The output arrays: new ones, or those of `out`, checked."""
     if out is None:
         size = sum(dtype_of(name).itemsize for name in names) * prod(shape)
         require(size, f"a result of the shape {tuple(shape)} and {len(names)} names")
@@ -123,12 +123,12 @@ def outputs_for(names: Sequence[str], shape: tuple[int, ...], out: Any) -> dict[
 
 
 def dtype_of(name: str) -> np.dtype[Any]:
-    """int8 for a status, float64 for all else."""
+    """The dtype of an output: int8 for a status, else float64."""
     return STATUS if name == "status" else FLOAT
 
 
 def scratch_for(places: Mapping[str, Array], inputs: Collection[Array]) -> dict[str, Array]:
-    """The places themselves where a kernel can write into them, else arrays to be copied from."""
+    """Buffers for a kernel: the outputs where it can write into them, else new arrays to copy from."""
     return {
         name: _buffer_for(name, place, [*inputs, *(p for n, p in places.items() if n != name)])
         for name, place in places.items()
@@ -142,7 +142,7 @@ def _buffer_for(name: str, place: Array, others: Iterable[Array]) -> Array:
 
 
 def copied_back(places: Mapping[str, Array], buffers: Mapping[str, Array], fresh: bool) -> dict[str, Array]:
-    """The filled places; a fresh answer without axes is a NumPy scalar, as from a ufunc."""
+    """The filled outputs; a new 0-d output becomes a NumPy scalar, as from a ufunc."""
     for name, place in places.items():
         if buffers[name] is not place:
             np.copyto(place, buffers[name], casting="same_kind")
@@ -157,7 +157,7 @@ def fill(
     threads: int | None,
     numpy_pays: bool = False,
 ) -> None:
-    """Fill outputs, which are contiguous, from scalars and what varies along loops.
+    """Fill contiguous outputs from scalars and the columns along loops.
 
     `numpy_pays`: a new request need not wait for its kernel, whose digits NumPy's may differ from.
     """

@@ -26,7 +26,7 @@ Array = NDArray[Any]
 
 
 class Part(NamedTuple):
-    """The names of a grid that one kernel computes. It has no arrays, so that it travels light.
+    """The names of a grid that one kernel computes; without arrays, so that it pickles small.
 
     names      as the user says them, in the order of the kernel's outputs
     dims       the dimensions of the outputs, in their order
@@ -45,7 +45,7 @@ class Part(NamedTuple):
 
     @property
     def outputs(self) -> dict[str, np.dtype[Any]]:
-        """What it computes, and of which type."""
+        """The names of the outputs and their dtypes."""
         if self.reduction is None:
             return {name: dtype_of(name) for name in self.names}
         found: dict[str, np.dtype[Any]] = {}
@@ -59,7 +59,7 @@ class Part(NamedTuple):
 
     @property
     def axes(self) -> tuple[str, ...]:
-        """The dimensions whose values it needs."""
+        """The dimensions whose values the part needs."""
         return self.dims if self.reduction is None else (*self.dims, self.reduction.axis)
 
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:

@@ -1,4 +1,4 @@
-"""How a grid is cut into chunks: from the request alone, so that every machine cuts it in the same way."""
+"""The chunks of a grid, from the request alone, so that every machine cuts it in the same way."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
@@ -41,7 +41,7 @@ def chunk_lengths(chunks: Any, sizes: Mapping[str, int], points: int) -> dict[st
 
 
 def uniform(lengths: Mapping[str, Sequence[int]]) -> dict[str, int]:
-    """The one length of the chunks along each dimension; ValueError where they differ.
+    """The uniform chunk length along each dimension; ValueError if the lengths differ.
 
     The last chunk of a dimension may be shorter: a store has chunks of one length.
     """
@@ -52,12 +52,12 @@ def uniform(lengths: Mapping[str, Sequence[int]]) -> dict[str, int]:
 
 
 def blocks_of(sizes: Mapping[str, int], chunk: Mapping[str, int]) -> Iterator[tuple[int, ...]]:
-    """The places of all chunks, in order."""
+    """The indices of all chunks, in order."""
     return product(*(range(-(-size // chunk[name])) for name, size in sizes.items()))
 
 
 def slices_of(place: Sequence[int], sizes: Mapping[str, int], chunk: Mapping[str, int]) -> Slices:
-    """The points of a chunk along each dimension."""
+    """The slice of a chunk along each dimension."""
     return {
         name: slice(k * chunk[name], min((k + 1) * chunk[name], sizes[name]))
         for name, k in zip(sizes, place, strict=True)

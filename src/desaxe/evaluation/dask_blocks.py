@@ -1,4 +1,4 @@
-"""A function of many outputs over the chunks of Dask arrays: one task a chunk, further ones take it apart."""
+"""A function of many outputs over the chunks of Dask arrays: one task a chunk, one more per output."""
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
@@ -14,7 +14,7 @@ Function = Callable[..., Mapping[str, Array]]
 
 
 def is_lazy(value: Any) -> bool:
-    """Whether a value is a Dask array, or a labelled array of one."""
+    """True for a Dask array, or a labelled array of one."""
     graph = getattr(value, "__dask_graph__", None)
     return graph is not None and graph() is not None
 
@@ -71,6 +71,6 @@ def numbered(arrays: Mapping[str, Any]) -> tuple[list[tuple[Any, tuple[int, ...]
 
 
 def _output(block: Any, name: str) -> Array:
-    """One output of a block."""
+    """One output of a computed block."""
     array: Array = block[name]
     return array

@@ -1,4 +1,4 @@
-"""`function`: a prepared callable of some inputs, for who calls again and again.
+"""`function`: a prepared callable of some inputs, for repeated calls.
 
 It is a NumPy ufunc around one compiled kernel, so broadcasting, `out=`, `where=`, labelled and chunked arrays
 are NumPy's; whatever the shape, every point runs through the same machine code.
@@ -108,7 +108,7 @@ class Function:
     def _in_order(
         self, args: tuple[Any, ...], named: dict[str, Any]
     ) -> tuple[tuple[Any, ...], dict[str, Any]]:
-        """All arguments by their place, and what is meant for NumPy."""
+        """All arguments in positional order, and the keywords for NumPy's ufunc."""
         rest = self.inputs[len(args) :]
         for name in self.inputs[: len(args)]:
             if name in named:
@@ -122,7 +122,7 @@ class Function:
         return (*args, *(named.pop(name) for name in rest)), named
 
     def _outputs(self, out: Any) -> tuple[Any, ...]:
-        """`out=` as NumPy wants it: an array, a sequence, or a dict name -> array."""
+        """`out=` as a tuple for NumPy, from an array, a sequence, or a dict name -> array."""
         if isinstance(out, Mapping):
             if set(out) != set(self.names):
                 raise ValueError(
@@ -179,7 +179,7 @@ class Function:
 
     @cached_property
     def scalar(self) -> Any:
-        """The same of numbers, for functions compiled by numba: a number for a name, a tuple for a list."""
+        """The function of numbers, callable from numba's code: a number for a name, a tuple for a list."""
         import_module("numba")
         return scalar_of(self.address, self.inputs, len(self.names), self._one, self)
 
@@ -212,7 +212,7 @@ def _constant_like(values: Any, constant: Any) -> Any:
 
 
 def _apart(argument: Any, outs: Sequence[Any]) -> Any:
-    """The argument, or a copy of it where an output lies in its memory."""
+    """The argument, or a copy of it if it shares memory with an output."""
     arrays = [out for out in outs if isinstance(out, np.ndarray)]
     if isinstance(argument, np.ndarray) and any(np.may_share_memory(argument, out) for out in arrays):
         return argument.copy()
@@ -220,7 +220,7 @@ def _apart(argument: Any, outs: Sequence[Any]) -> Any:
 
 
 def _number(name: str, value: Any) -> Any:
-    """An argument that NumPy's ufuncs refused, made of numbers; an error that names it if it is none."""
+    """Convert an argument that NumPy's ufunc refused to numbers; an error names it if that fails."""
     from .arrays import as_array
 
     return value if hasattr(value, "dims") else as_array(name, value, (), (name,))
@@ -232,7 +232,7 @@ def _number(name: str, value: Any) -> Any:
 def _compiled(
     names: tuple[str, ...], inputs: tuple[str, ...], fixed: Mapping[str, Any], failures: list[BaseException]
 ) -> tuple[Bound, tuple[bool, ...]]:
-    """The kernel behind its loop; for each output whether it is a status."""
+    """The kernel as a ufunc's inner loop; for each output a flag: it is a status."""
     branch, accuracy = fixed.get("branch", 1), fixed.get("accuracy", "standard")
     given: dict[str, Any] = {n: v for n, v in fixed.items() if n in INPUTS and v is not None}
     given.setdefault("alpha", None if "alpha" in inputs else 0.0)
@@ -261,7 +261,7 @@ def _fixed_number(name: str, given: Mapping[str, Any], wanted: Request) -> float
 
 
 def _key(wanted: Request, numbers: Mapping[str, float], inputs: Sequence[str]) -> KernelKey:
-    """The kernel for points of all inputs, each of which varies."""
+    """The key of the kernel in which every input varies."""
     zeros = [(name, 0.0) for name in STRUCTURAL_ZEROS if numbers.get(name) == 0.0]
     fixed = (*wanted.fixed, *zeros)
     form = wanted.form

@@ -125,7 +125,7 @@ def grid(
 def _filled(
     wanted: Request, axes: Mapping[str, Array], dimensions: Sequence[str], threads: int | None, out: Any
 ) -> dict[str, Array]:
-    """The answers over these dimensions, from one loop nest in their order."""
+    """The values over these dimensions, from one loop nest in their order."""
     require_inputs(wanted, axes)
     inputs = wanted.inputs
     shape = tuple(axes[name].size for name in dimensions)

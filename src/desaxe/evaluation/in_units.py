@@ -1,4 +1,4 @@
-"""Labelled results in the units that somebody works in."""
+"""Labelled results in other units than SI."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any

@@ -41,7 +41,7 @@ def input_attributes(name: str) -> dict[str, str]:
 
 @cache
 def source() -> str:
-    """What made a dataset: this version, and the formulas it was made with."""
+    """The source of a dataset: version of desaxe and digest of its derivation."""
     from ..mechanism.program import digest
     from ..support.version import version
 
@@ -55,7 +55,7 @@ def provenance(
     accuracy: str | float = "standard",
     title: str = "offset slider-crank",
 ) -> dict[str, Any]:
-    """Attributes of a dataset: what was asked for, and what answered."""
+    """Attributes of a dataset: the request, and the version that computed it."""
     axes = [name for name, array in inputs.items() if array.ndim]
     fixed = [
         f"{name} = {array.item()!r} {INPUTS[name].unit}".removesuffix(" 1")
@@ -109,5 +109,5 @@ def with_loads(dataset: "xr.Dataset", loads: Mapping[str, Any]) -> "xr.Dataset":
 
 
 def loads_text(loads: Mapping[str, Any]) -> str:
-    """What loads that vary with the motion are."""
+    """The loads that vary with the motion, as text for an attribute."""
     return "; ".join(f"{name}: {load!r}" for name, load in loads.items())

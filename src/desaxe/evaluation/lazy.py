@@ -23,7 +23,7 @@ AUTO = 2**21  # points of a chunk: 16 MiB of doubles
 def lazy_grid(
     outer: Outer, chunks: Any, branch: int, accuracy: Any, threads: int | None, reduce: Any = None
 ) -> "xr.Dataset":
-    """The grid of checked arguments, computed chunk by chunk when somebody asks for its values."""
+    """The grid of checked arguments as lazy arrays, computed chunk by chunk."""
     sizes = {name: outer.axes[name].size for name in outer.dimensions}
     state = outer.given.get("omega") is not None
     if reduce is None:

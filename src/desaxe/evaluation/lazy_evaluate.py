@@ -19,7 +19,7 @@ Array = NDArray[Any]
 def evaluate_lazily(
     wanted: Request, given: Mapping[str, Any], threads: int | None, out: Any
 ) -> dict[str, Any]:
-    """The answers by the names asked for, as Dask arrays of the broadcast shape.
+    """The values by requested name, as Dask arrays of the broadcast shape.
 
     An input that is all bad is an error elsewhere; here nobody has seen its values: they are NaN.
     """
@@ -49,7 +49,7 @@ def evaluate_lazily(
 
 
 class _Block:
-    """A request at a block of each of its arrays."""
+    """The task of one chunk: a request, applied to a block of each array."""
 
     def __init__(
         self, wanted: Request, scalars: Mapping[str, float], names: tuple[str, ...], threads: int

@@ -1,4 +1,4 @@
-"""Values under loads that vary with the motion: the loads at each point first, then the Program as ever."""
+"""Values under loads that vary with the motion: first the loads at each point, then the Program."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
@@ -63,7 +63,7 @@ def forces_at(plan: Plan, numbers: Mapping[str, Any], branch: int, accuracy: str
 
 
 def refuse_quality(quality: bool) -> None:
-    """The error bound of a table or function is not known."""
+    """ValueError for a quality under loads: the error of a table or function is unknown."""
     if quality:
         raise ValueError("quality=True takes numbers: F_X and F_Y at each angle, not a load that varies")
 
@@ -80,7 +80,7 @@ def loads_of(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Load]
 
 
 def with_labelled(inputs: Mapping[str, Any]) -> dict[str, Any]:
-    """The inputs, with the loads that labelled arrays over theta hold in their place."""
+    """The inputs, with labelled arrays over theta replaced by the loads that they stand for."""
     labelled = [n for n in VARIABLE if getattr(inputs.get(n), "dims", ()) == ("theta",)]
     return {**inputs, **{n: labelled_load(n, inputs[n]) for n in labelled}}
 
@@ -100,7 +100,7 @@ def split_axes(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Loa
 
 
 def labelled_load(name: str, array: Any, theta: Any = None) -> Load:
-    """The load over theta that a labelled array holds, at its own angles, else at those of `theta`.
+    """The load over theta of a labelled array, at its own angles or at those of `theta`.
 
     Where its angles are those of `theta`, and no period of a table, it is known at these alone.
     """
@@ -121,13 +121,13 @@ def labelled_load(name: str, array: Any, theta: Any = None) -> Load:
 
 
 class Samples(NamedTuple):
-    """A load that is known at some angles alone."""
+    """A load that is known only at samples of the crank angle."""
 
     angles: Array
     values: Array
 
     def at(self, theta: Any) -> Any:
-        """The values at angles that are among them."""
+        """The values at angles that are among the samples."""
         order = np.argsort(self.angles)
         place = order[np.searchsorted(self.angles[order], theta).clip(0, order.size - 1)]
         if (self.angles[place] != theta).any():

@@ -1,4 +1,4 @@
-"""Which loop each input of a broadcast varies along.
+"""Broadcast inputs as a loop nest: the loop that each input varies along.
 
 A sweep of a column of designs over a row of angles needs the sine of an angle once, not once a design. Where
 every input varies along one loop alone, the kernel is a nest of loops; else it is one loop over all points.

@@ -1,4 +1,4 @@
-"""`evaluate` over columns of one shape, asked for again: what was found out about the call is remembered.
+"""`evaluate` over columns of one shape, repeated: a cache of checked calls and their kernels.
 
 A plan is made when the kernel is in memory. From then on a call checks its inputs, makes room for the
 answers and runs the machine code, by the loop of `runtime.any_stride`, which also looks for angles that are
@@ -38,7 +38,7 @@ class _Call(NamedTuple):
 
 
 class _Plan(NamedTuple):
-    """A kernel behind its loop, and how the words of its table are made."""
+    """A kernel as a ufunc's inner loop, and the packing of the table of its arguments."""
 
     loop: Callable[[bytes, bytes, bytes, bytes], int]
     head: bytes  # of the loop's data
@@ -55,7 +55,7 @@ _ONE = struct.Struct("q").pack
 
 
 def planned(wanted: Request, given: Mapping[str, Any]) -> dict[str, Array] | None:
-    """The answers; None where the call is not an ordinary one, or its kernel is not in memory."""
+    """The values by name; None if the call is no ordinary one, or its kernel is not in memory."""
     call = _CALLS.get(id(wanted)) or _new_call(wanted)
     numbers: list[float] = []
     columns: list[Array] = []
@@ -97,7 +97,7 @@ def _all_wide(test: Callable[..., Any], given: Mapping[str, Any]) -> bool:
 
 
 def _address(array: Any) -> int:
-    """Where the values are; the first way takes a third of the time, but not of a read-only array."""
+    """The address of an array's memory, by the fastest way; a read-only array takes the slow one."""
     try:
         return addressof(c_char.from_buffer(array))
     except (TypeError, ValueError):

@@ -1,4 +1,4 @@
-"""`evaluate(..., quality=True)`: what a number is worth.
+"""`evaluate(..., quality=True)`: values with condition numbers, error bound and valid digits.
 
 A condition number |x/f df/dx| says how many times larger the relative error of f is than that of the
 input x. The bound of the rounding error is the library's promise: 8 last bits, times 1 plus the sum
@@ -28,7 +28,7 @@ MOST_DIGITS = 17.0  # what it takes to write a double down
 
 
 class Quality(NamedTuple):
-    """A number, or an array of them, and what it is worth.
+    """A value or array of values with condition numbers, error bound and valid digits.
 
     value        as `evaluate` gives it
     conditions   input -> |input/value d value/d input|: the percent by which the value changes when
@@ -125,12 +125,12 @@ def _steps_with_margin(
 
 
 def _bound(f: Array, steps: Mapping[str, Array]) -> Array:
-    """The promise, in the unit of the value; inf where a slope is not finite."""
+    """The error bound in the unit of the value; inf where a derivative is not finite."""
     total = np.abs(f) + sum(steps.values(), np.array(0.0))
     bound = np.where(np.isfinite(total), PROMISE * total + SMALLEST * (total > 0.0), np.inf)
     return np.where(np.isnan(f), np.nan, bound)
 
 
 def _shaped(array: Array, shape: tuple[int, ...]) -> Any:
-    """In the broadcast shape; a float for one point."""
+    """A copy in the broadcast shape; a float for one point."""
     return np.broadcast_to(array, shape).copy() if shape else float(array)

@@ -186,7 +186,7 @@ def named_by_reduction(
     axis: Array,
     rest: tuple[str, ...],
 ) -> dict[str, tuple[tuple[str, ...], Array]]:
-    """Places as values of the axis, counts as what was skipped."""
+    """Results by public name: indices become values of the axis, counts become numbers of skipped points."""
     found: dict[str, tuple[tuple[str, ...], Array]] = {}
     values = np.append(axis, np.nan)  # place -1
     for name in names:
@@ -201,7 +201,7 @@ def named_by_reduction(
 def reduced_attributes(
     names: Sequence[str], reduction: Reduction, axis: Mapping[str, str], state: bool
 ) -> dict[str, dict[str, Any]]:
-    """CF attributes of what `reduced` gives; `axis` are those of the reduced axis."""
+    """CF attributes of the results of `reduced`; `axis` has those of the reduced axis."""
     found: dict[str, dict[str, Any]] = {}
     for name in names:
         own = attributes(name, state)

@@ -1,4 +1,4 @@
-"""Points that a kernel leaves to others: angles too large for it, and a reach that hangs on rounding."""
+"""Repair of points that a kernel cannot decide: angles beyond its limit, and undecided assembly."""
 
 import ctypes
 from collections.abc import Mapping, Sequence
@@ -25,7 +25,7 @@ def limit_of(accuracy: str) -> float:
 def repair_for(
     key: KernelKey, numbers: Mapping[str, float], inputs: Sequence[str], failures: list[BaseException]
 ) -> Repair:
-    """What `any_stride.bind` calls for a kernel; what it raises is put into `failures`."""
+    """The callback of `any_stride.bind` for a kernel; its exceptions are appended to `failures`."""
     limit = limit_of(key.accuracy)
 
     def repair(args: int, size: int, steps: int) -> None:
@@ -45,7 +45,7 @@ def _repair(
     outs: Sequence[Array],
     limit: float,
 ) -> None:
-    """Answer these points again, each part by its kernel."""
+    """Recompute these points, each group by its own kernel."""
     size = outs[0].size
     theta = np.abs(columns["theta"]) if "theta" in columns and not key.far else np.zeros(size)
     far = (theta > limit) & (theta < np.inf)
@@ -65,7 +65,7 @@ def _repair(
 
 
 def _refuse(places: Sequence[Array]) -> None:
-    """Angles that twice the digits cannot reduce: bad input, as in `evaluate` over arrays."""
+    """Mark angles beyond the limit of double-double as bad input, as `evaluate` over arrays does."""
     for place in places:
         place[:] = 4 if place.dtype == np.int8 else np.nan
 
@@ -73,7 +73,7 @@ def _refuse(places: Sequence[Array]) -> None:
 def _arrays(
     args: int, size: int, steps: int, key: KernelKey, inputs: Sequence[str]
 ) -> tuple[dict[str, Array], list[Array]]:
-    """The memory that the loop was called with: the inputs that the kernel has, and the outputs."""
+    """The arguments of the loop as arrays: the inputs of the kernel, and the outputs."""
     count = len(inputs) + len(key.names)
     addresses, strides = ((ctypes.c_int64 * count).from_address(place) for place in (args, steps))
     kinds = ["<f8"] * len(inputs) + ["|i1" if "status" in name else "<f8" for name in key.names]
@@ -84,7 +84,7 @@ def _arrays(
 
 
 class _View:
-    """Memory at an address, as NumPy takes it."""
+    """Memory at an address, with NumPy's array interface."""
 
     def __init__(self, address: int, size: int, stride: int, kind: str) -> None:
         self.__array_interface__ = {

@@ -1,4 +1,4 @@
-"""Values of names from a dict of inputs: what `evaluate` does once its arguments are gathered.
+"""Values of names from a dict of inputs: the body of `evaluate`.
 
 A single point stays in this file and needs only `math`; as soon as an input is an array, `arrays` takes over.
 """
@@ -64,7 +64,7 @@ forget_on_change(_KNOWN)
 
 
 def _of_arrays(asked: Request, given: Mapping[str, Any], threads: int | None, out: Any) -> dict[str, Any]:
-    """The answers for arrays, lazy ones where one of them is a Dask array."""
+    """The values for arrays; lazy ones if an input is a Dask array."""
     if any(hasattr(given.get(name), "__dask_graph__") for name in asked.inputs):
         from .dask_blocks import is_lazy
 

@@ -1,4 +1,4 @@
-"""Where the slider passes a position, and its dead centres, as crank angles: nodes of a load over Y."""
+"""Crank angles of slider positions and of dead centres: the nodes of a load over Y."""
 
 from collections.abc import Iterable, Sequence
 from typing import Any
@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 
 
 def passages(Y: Sequence[float], lengths: Sequence[Array], branch: int) -> Array:
-    """For each design both angles [rad] at each position, NaN where there are none: (designs, 2 positions).
+    """Both crank angles [rad] at each position, NaN where there is none: shape (designs, 2 positions).
 
     lengths  ec, AB, BC, a value for each design
 
@@ -33,7 +33,7 @@ def passages(Y: Sequence[float], lengths: Sequence[Array], branch: int) -> Array
 
 
 def dead_centres(lengths: Sequence[Array]) -> Array:
-    """For each design the angles [rad] at which crank and rod are in line, on either branch; NaN without."""
+    """The angles [rad] of the dead centres of each design, on either branch; NaN where there is none."""
     ec, AB, BC = lengths
     with np.errstate(invalid="ignore", divide="ignore"):
         sines = np.stack([-ec / (AB + BC), ec / (BC - AB)], axis=-1)
@@ -42,7 +42,7 @@ def dead_centres(lengths: Sequence[Array]) -> Array:
 
 
 def repeated(angles: Array, low: float, high: float) -> Array:
-    """Angles in all turns that a range touches, NaN outside of it."""
+    """Repeat angles of one turn over a range; NaN outside of it."""
     turns: Any = 2.0 * np.pi * np.arange(np.floor(low / (2.0 * np.pi)) - 1, np.ceil(high / (2.0 * np.pi)) + 2)
     every: Array = (angles[..., None] + turns).reshape(*angles.shape[:-1], -1)
     return np.where((every >= low) & (every <= high), every, np.nan)
@@ -56,7 +56,7 @@ def kinks_between(
     branch: int,
     smooth: bool = False,
 ) -> list[float]:
-    """The angles in a range at which loads of one design have a kink, or with `smooth` where pieces meet too.
+    """The kinks of one design's loads in a range of angles; with `smooth` also where smooth pieces meet.
 
     lengths  ec, AB, BC
     """

@@ -15,11 +15,11 @@ TURN = 2.0 * pi
 
 
 class LoadWarning(UserWarning):
-    """A load that may mean something else than it says: an array of designs like one over theta."""
+    """A load that may be a mistake, such as an array of designs that looks like a load over theta."""
 
 
 class Load:
-    """What all loads have; `unit` is that of their values, None where they are plain numbers in SI."""
+    """Base class of loads; `unit` is that of the values, None for plain SI numbers."""
 
     over = "theta"
     parameters: tuple[str, ...] = ("theta",)  # that the load depends on
@@ -82,13 +82,13 @@ class TableOverTheta(OverTheta):
         return self.table.both(theta)
 
     def nodes(self, low: float, high: float, smooth: bool) -> list[float]:
-        """The angles where pieces meet; at each the smallest number at which the piece to the right holds."""
+        """The angles at which pieces meet, each rounded up into the piece to its right."""
         angles = self.table.knots if smooth else self.table.kinks
         found = [self._first_right(angle) for angle in self._repeated(angles, low, high)]
         return sorted(angle for angle in found if low <= angle <= high)
 
     def _first_right(self, angle: float) -> float:
-        """Whole periods are rounded: the number next to an angle from which on its piece holds."""
+        """The smallest double that belongs to the piece right of an angle: whole periods are rounded."""
         here = self.table.piece(self.table.reduced(angle + 1e-9))
         while self.table.piece(self.table.reduced(angle)) != here:
             angle = nextafter(angle, inf)
@@ -179,7 +179,7 @@ class OverY(Load):
 
 
 def _plain(x: Any) -> Any:
-    """A float, or what NumPy takes."""
+    """A float for a number, an array for anything else."""
     return float(x) if isinstance(x, (int, float)) else x
 
 
@@ -190,7 +190,7 @@ def _described(table: Table, kind: str, unit: str | None) -> str:
 
 
 def called(function: Callable[[Any], Any], theta: Any, what: str) -> Any:
-    """A user's function at a number or an array; one angle after the other where it takes no arrays."""
+    """Call a user's function with a number or an array; angle by angle if it takes no arrays."""
     if isinstance(theta, float):
         return _one(function, theta, what)
     import numpy as np

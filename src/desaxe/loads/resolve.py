@@ -47,7 +47,7 @@ def as_load(name: str, value: Any) -> Load:
 
 
 def takes(function: Callable[..., Any], count: int) -> bool:
-    """True where a function can be called with so many numbers; with one where a built-in does not tell."""
+    """True if a function accepts `count` numbers; a built-in without a signature is taken to accept one."""
     try:
         signature(function).bind(*[0.0] * count)
     except TypeError:
@@ -90,7 +90,7 @@ class Forces(NamedTuple):
 
 
 class Plan(NamedTuple):
-    """What to evaluate for names under loads that vary with the motion."""
+    """A plan to evaluate names under loads that vary with the motion."""
 
     shown: tuple[str, ...]
     names: tuple[str, ...]  # to evaluate: those asked for, and the slopes by the loads
@@ -118,7 +118,7 @@ class Plan(NamedTuple):
         return Forces(values, slopes)
 
     def totals(self, found: Mapping[str, Any], forces: Forces) -> dict[str, Any]:
-        """What was asked for, from the values of `names`."""
+        """The requested total derivatives, from the values of `names`."""
         result = {}
         for name in self.shown:
             total = found[name]
@@ -157,7 +157,7 @@ def _depends(name: str, force: str, mu: bool) -> bool:
 
 
 def _terms(name: str, force: str, load: Load, state: bool) -> tuple[Term, ...]:
-    """How a derivative depends on a load through its parameters."""
+    """The terms of a derivative that come through a load's dependence on the parameters."""
     base, parameters = parts(name)
     through = [p for p in parameters if p in load.parameters]
     if not through:
@@ -204,7 +204,7 @@ def _named(name: str, load: OverTheta, theta: Any) -> tuple[Any, Any]:
 
 
 def _over_position(load: Load, motion: Mapping[str, Any], way: Any) -> tuple[Any, Any]:
-    """A load over Y and its derivative by Y; at a dead centre the way that follows as theta grows."""
+    """A load over Y and its derivative by Y; at a dead centre for the direction that follows."""
     assert isinstance(load, OverY)
     Y, slope, bend = (motion[name] for name in POSITION)
     if isinstance(Y, float) and isinstance(way, float):
@@ -217,7 +217,7 @@ def _over_position(load: Load, motion: Mapping[str, Any], way: Any) -> tuple[Any
 
 
 def _finite_or_zero(value: Any) -> Any:
-    """No load where there is no motion: such a point is NaN by itself, with the status that it has."""
+    """The load with NaN replaced by 0: a point without motion has NaN and a status of its own."""
     if isinstance(value, float):
         return value if value - value == 0.0 else 0.0
     import numpy as np

@@ -40,15 +40,15 @@ class Table:
         return x + self.period if x < first else x - self.period if x >= first + self.period else x
 
     def piece(self, x: float) -> int:
-        """The row that holds at a place, which has been reduced."""
+        """The index of the piece at a reduced argument."""
         return bisect_right(self.knots, x)
 
     def origin(self, piece: int) -> float:
-        """Where the distance of a row is counted from."""
+        """The left end of a piece, from which its cubic is measured."""
         return self.knots[max(piece - 1, 0)]
 
     def both(self, x: Any) -> tuple[Any, Any]:
-        """Value and derivative at a number or an array; NaN at what is no finite number."""
+        """Value and derivative at a number or an array; NaN at a non-finite argument."""
         if not isinstance(x, float):
             return self._arrays(x)
         if x - x != 0.0:
@@ -79,7 +79,7 @@ class Table:
         return np.array(self.knots), np.array(self.rows).T
 
     def __getstate__(self) -> dict[str, Any]:
-        """Without the arrays, which are made again when they are needed."""
+        """The state without the arrays, which are rebuilt when needed."""
         return {"knots": self.knots, "rows": self.rows, "period": self.period}
 
     @property
@@ -98,7 +98,7 @@ class Table:
         return tuple(x for x, jump, _ in self._changes() if jump)
 
     def _changes(self) -> list[tuple[float, bool, bool]]:
-        """Each knot, whether the value jumps there, and whether the derivative does."""
+        """Each knot with two flags: the value jumps, the derivative jumps."""
         slopes = [abs(d) for row in self.rows for d in row[1:]]
         high, steep = max(abs(row[0]) for row in self.rows), max(slopes, default=0.0)
         found = []

@@ -174,7 +174,7 @@ def _table_over_theta(x: list[float], y: list[float], unit: str | None, kind: st
 
 
 def _warn_of_gap(x: list[float], kind: str, period: float) -> None:
-    """A spline across most of a turn without a point is no load that anybody means."""
+    """Warn of a spline with a gap of most of a turn between two points."""
     gaps = sorted(b - a for a, b in zip(x, [*x[1:], x[0] + period], strict=True))
     if kind == "cubic" and gaps[-1] > max(period / 4.0, WIDE * gaps[len(gaps) // 2]):
         warn(
@@ -224,7 +224,7 @@ def _period(period: Any) -> float:
 
 
 def _numbers(what: str, given: Any, units: tuple[str, ...]) -> tuple[list[float], str | None]:
-    """Finite numbers, and the unit that they carried, one of `units`; None where they are plain."""
+    """Finite numbers and their unit, one of `units`; None for plain numbers."""
     said = given.attrs.get("units") if hasattr(given, "dims") else None
     if said in units:
         return _finite(what, given.values.tolist()), said
@@ -258,7 +258,7 @@ def _is_plain(text: str) -> bool:
 
 
 def _first_that_fits(what: str, value: Any, units: tuple[str, ...]) -> tuple[str, Any]:
-    """The unit among some in which a quantity can be said, and its magnitude in it."""
+    """The first compatible unit, and the magnitude of a quantity in it."""
     from ..mechanism.units import in_unit
 
     for unit in units[:-1]:

@@ -1,4 +1,4 @@
-"""What a method is given: plain numbers mean the machine's units; SI units go on to the function."""
+"""Arguments of a method: plain numbers in the machine's units, converted to SI."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -18,7 +18,7 @@ def has_unit(name: str) -> bool:
 
 
 def in_si(system: UnitSystem, name: str, value: Any) -> Any:
-    """An argument in SI units; texts and pint quantities say their units themselves, functions are in SI."""
+    """An argument in SI units; texts and pint quantities carry their units, functions are in SI."""
     if not system or value is None:
         return value
     if name in BY_KEY and isinstance(value, Mapping):

@@ -120,7 +120,7 @@ class Machine(Mapping[str, Any]):
         return Plots(self)
 
     def scene(self, outputs: Any = ("Y", "V_C", "a_C"), **more: Any) -> Any:
-        """A scene of this machine: its inputs, the outputs, and what else the keys of a scene file say.
+        """A scene of this machine: its inputs, the outputs, and further keys of a scene file.
 
         outputs  names of quantities over the crank angle
         theta    the crank angles: a number, a list, or a range, by default that of a turn,

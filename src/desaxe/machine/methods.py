@@ -1,4 +1,4 @@
-"""How a public function becomes a method of a machine: its signature and documentation, the inputs filled in.
+"""Public functions as methods of a machine: signature and documentation, with the inputs filled in.
 
 A function of this table is a method of the same name. To add one, add its name.
 """
@@ -77,7 +77,7 @@ def method_of(function: Callable[..., Any], name: str) -> Callable[..., Any]:
 
 
 def _signature(own: Signature, name: str) -> Signature:
-    """The signature of the method: nothing that a machine gives is required."""
+    """The signature of the method: inputs of the machine are optional."""
     parameters = [Parameter("self", Parameter.POSITIONAL_OR_KEYWORD)]
     for parameter in own.parameters.values():
         if parameter.name in NOT_FILLED.get(name, ()) and parameter.kind is not Parameter.KEYWORD_ONLY:
@@ -136,7 +136,7 @@ def filled(machine: Mapping[str, Any], name: str, own: Signature, given: Mapping
 
 
 def _delivered(result: Any, out: Any) -> Any:
-    """The answer where the caller wants it: arrays that were filled in SI units hold those of the machine."""
+    """The result, also in `out`, whose SI values are converted to the machine's units."""
     if out is None:
         return result
     if not isinstance(result, dict):

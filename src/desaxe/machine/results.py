@@ -1,4 +1,4 @@
-"""What a call gives, in the units of a machine or as pint quantities."""
+"""Results of a call in the units of a machine, or as pint quantities."""
 
 import copy
 from collections.abc import Mapping
@@ -24,7 +24,7 @@ PLAIN = (
 
 
 class Shown(NamedTuple):
-    """How answers are shown: the units, and whether as pint quantities."""
+    """The form of results: a unit system, as plain numbers or as pint quantities."""
 
     system: UnitSystem
     as_quantity: bool
@@ -37,7 +37,7 @@ class Shown(NamedTuple):
         return registry().Quantity(shown, conversion.unit)
 
     def named(self, value: Any, name: str) -> Any:
-        """A value of a quantity: a number, an array, or one with its quality."""
+        """A value of a quantity: a number, an array, or a Quality."""
         if name == "status":
             return value
         conversion = self.system.of(name)
@@ -47,7 +47,7 @@ class Shown(NamedTuple):
         return self.number(value, conversion)
 
     def mapping(self, found: Mapping[Any, Any], own: Conversion | None) -> Any:
-        """A dict of results: by its keys, or in the unit of what was asked for."""
+        """A dict of results: each in the unit of its key, or all in the conversion `own`."""
         result = copy.copy(found)
         assert isinstance(result, dict)
         for key, value in found.items():

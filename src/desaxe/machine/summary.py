@@ -1,4 +1,4 @@
-"""How a machine shows itself: a small drawing, and what it is, as text and as HTML for notebooks."""
+"""The summary of a machine: a small drawing and a table, as text and as HTML for notebooks."""
 
 from collections.abc import Mapping
 from html import escape
@@ -26,7 +26,7 @@ LENGTHS = ("ec", "AB", "BC")
 
 
 class Pose(NamedTuple):
-    """The places of the joints, for a drawing: A is at the origin, Y points up."""
+    """Positions of the joints for a drawing: A is at the origin, Y points up."""
 
     B: tuple[float, float]
     C: tuple[float, float]
@@ -34,7 +34,7 @@ class Pose(NamedTuple):
 
 
 def rows_of(machine: Any) -> list[tuple[str, str, str]]:
-    """Name, value with unit, and meaning of everything that is told."""
+    """Rows of the summary: name, value with unit, and meaning."""
     shown = machine.in_units()
     rows = [
         (name, _value(shown[name], "" if name == "branch" else machine.units.of(name).unit), NAMES[name])
@@ -60,7 +60,7 @@ def _spaced(unit: str) -> str:
 
 
 def _geometry(machine: Any) -> list[tuple[str, str, str]]:
-    """Whether it turns, stroke and time ratio; of families of designs how many turn."""
+    """Rows on the geometry: full turns, stroke, time ratio; for arrays, the number of designs that turn."""
     lengths = {name: machine[name] for name in LENGTHS if name in machine}
     if len(lengths) < len(LENGTHS):
         return []
@@ -81,7 +81,7 @@ def _geometry(machine: Any) -> list[tuple[str, str, str]]:
 
 
 def pose_of(machine: Mapping[str, Any]) -> Pose | None:
-    """The first design at an angle at which it can be assembled; None where there is none, or no lengths."""
+    """The pose of the first design at a feasible angle; None without one, or without lengths."""
     if any(name not in machine for name in LENGTHS):
         return None
     ec, AB, BC = (_first(machine[name]) for name in LENGTHS)
@@ -150,7 +150,7 @@ def _drawing(pose: Pose) -> list[str]:
 
 
 def _stroke(x: float, y: float) -> str:
-    """A letter with about this slope."""
+    """The character with about this slope."""
     if abs(x) < 0.2 * abs(y):
         return "|"
     if abs(y) < 0.25 * abs(x):

@@ -1,4 +1,4 @@
-"""All that the library knows of the slider-crank by name.
+"""The slider-crank by name: inputs, quantities, units, status codes, the committed program.
 
 names         names of sensitivities, and the lists of parameters
 inputs        the inputs: meaning, unit, limits

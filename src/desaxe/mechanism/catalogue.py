@@ -1,4 +1,4 @@
-"""What can be asked for: every quantity and sensitivity, its unit, meaning and paper equation.
+"""The catalogue: every quantity and sensitivity with its unit, meaning and paper equation.
 
 The names are read from generated/index.py, where the derivation wrote them. Under a given state
 (`omega` instead of `omega0`) the sensitivity `_wrt_omega` stands where `_wrt_omega0` does.
@@ -14,7 +14,7 @@ from .own import Row, definitions, derived_names, leaves, rows
 
 
 class Quantity(NamedTuple):
-    """One name that can be asked for."""
+    """The record of a name: unit, meaning, source."""
 
     name: str
     unit: str
@@ -30,7 +30,7 @@ class UnknownQuantityError(KeyError, ValueError):
 
 
 class Catalogue(Mapping[str, Quantity]):
-    """Every name that can be asked for, with its record; printed, it is a table.
+    """A mapping from every valid name to its record; printed, it is a table.
 
     `"a_C" in catalogue`, `catalogue["T_in"].unit`, `list(catalogue)` (the names, in order). A name that
     there is not is an UnknownQuantityError, a KeyError and a ValueError.
@@ -66,12 +66,12 @@ def _names() -> Mapping[str, Row]:
 
 
 def quantities() -> Catalogue:
-    """Every quantity and sensitivity that can be asked for, in order: a mapping from name to record."""
+    """The catalogue: a mapping from every quantity and sensitivity to its record, in order."""
     return Catalogue()
 
 
 def has(name: str, state: bool = False) -> bool:
-    """True if a name can be asked for, under the law or under a given state."""
+    """True if a name exists, under the law or, with `state`, under a given state."""
     return (law_name(name) if state else name) in _names() and not (state and "omega0" in name)
 
 
@@ -87,14 +87,14 @@ def quantity(name: str, state: bool = False) -> Quantity:
 
 
 def _refuse_law(name: str) -> None:
-    """An own quantity that is made of omega0 has no meaning for a given state."""
+    """ValueError for a user's quantity that uses omega0: it has no meaning for a given state."""
     of_law = [leaf for leaf in leaves((name,), definitions()) if "omega0" in leaf]
     if of_law:
         raise ValueError(f"{name!r} is made of {of_law[0]}, which has no meaning for a given state omega=")
 
 
 def law_name(name: str) -> str:
-    """The name under the law of a name under a state: omega stands in the place of omega0."""
+    """Translate a name of a given state into that of the law: omega becomes omega0."""
     base, parameters = parts(name)
     return joined(base, ("omega0" if p == "omega" else p for p in parameters))
 

@@ -24,7 +24,7 @@ def single_constants() -> Trigonometry:
 
 @cache
 def double_constants() -> "DoubleTrigonometry":
-    """Sine and cosine coefficients for pairs of doubles."""
+    """Sine and cosine coefficients for double-double."""
     from ..compiler.passes.double_angles import DoubleTrigonometry
 
     return DoubleTrigonometry(**import_module("desaxe.generated.trigonometry").DOUBLE)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class Unit(NamedTuple):
-    """Exponents; `Unit(1, -2)` is m/s^2. `name` is what it is called, if that says more."""
+    """A unit as exponents: `Unit(1, -2)` is m/s^2; `name` is its own name, such as W."""
 
     m: int = 0
     s: int = 0
@@ -62,7 +62,7 @@ PARAMETER_UNITS = {
 
 
 def unit_text(unit: Unit) -> str:
-    """As pint and UDUNITS both read it: `m/s^2/rad`, `N*m`, `1`."""
+    """A unit as text for pint and UDUNITS: `m/s^2/rad`, `N*m`, `1`."""
     powers = {"N": 0, "kg": 0, "m": 0, "s": 0, "rad": 0, **unit.exponents}
     if powers["kg"] == 1 and powers["s"] <= -2:  # a force is in it
         powers.update(N=1, kg=0, m=powers["m"] - 1, s=powers["s"] + 2)

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple, TypedDict
 
 
 class Input(NamedTuple):
-    """One input. It must be finite and at least `least`."""
+    """An input: a finite number of at least `least`."""
 
     name: str
     unit: str
@@ -15,7 +15,7 @@ class Input(NamedTuple):
 
 
 class Inputs(TypedDict, total=False):
-    """The inputs as keyword arguments, for what completes and checks them; a test holds it to INPUTS."""
+    """The inputs as keyword arguments, for editors and type checkers; a test compares them with INPUTS."""
 
     theta: Any
     ec: Any
@@ -70,6 +70,6 @@ LEAST = {name: row.least for name, row in INPUTS.items() if row.least is not Non
 
 
 def is_good(name: str, value: float) -> bool:
-    """Whether a number is one that this input can have."""
+    """True for a valid value of this input."""
     least = INPUTS[name].least
     return -inf < value < inf and (least is None or least <= value)

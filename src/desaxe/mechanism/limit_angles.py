@@ -30,7 +30,7 @@ def theta_intervals(ec: float, AB: float, BC: float) -> list[tuple[float, float]
 
 
 def _gap(margin: float, rest: float, AB: float) -> float:
-    """How far from a quarter the crank must stay for this margin there.
+    """The smallest feasible angle between crank and quarter turn, for this margin there.
 
     1 - cos(gap) = -margin/AB, and 1 + cos(gap) = rest/AB where the gap is wide: neither cancels.
     """

@@ -1,4 +1,4 @@
-"""Quantities that a user has defined: the register, and what the catalogue says of them.
+"""User-defined quantities: the register, and their rows of the catalogue.
 
 A definition carries its value as a text like generated/program.py, in the names of the catalogue (`own_lines`
 puts it into the Program). Whoever remembers answers by name forgets them when a name gets another meaning
@@ -20,7 +20,7 @@ Row = tuple[str, str, str]  # unit, meaning, source
 
 
 class Definition(NamedTuple):
-    """A quantity of a user's own. `text` is the Program of its value, in names of the catalogue."""
+    """A user-defined quantity. `text` is the Program of its value, in names of the catalogue."""
 
     name: str
     expression: str
@@ -43,12 +43,12 @@ _CHANGES = [0]
 
 
 def forget_on_change(memory: MutableMapping[Any, Any]) -> None:
-    """Empty a memory whose keys are names whenever a name gets another meaning."""
+    """Register a cache keyed by names, to be emptied whenever a definition changes."""
     _MEMORIES.append(memory)
 
 
 def changes() -> int:
-    """How often a definition has changed: a memory that is filled slowly compares it before and after."""
+    """A counter of changed definitions: a cache compares it before and after a slow computation."""
     return _CHANGES[0]
 
 
@@ -58,12 +58,12 @@ def definitions() -> dict[str, Definition]:
 
 
 def rows() -> dict[str, Row]:
-    """Unit, meaning and expression of every own quantity and its sensitivities."""
+    """Unit, meaning and expression of every user-defined quantity and its sensitivities."""
     return _ROWS
 
 
 def replace_all(new: Mapping[str, Definition]) -> None:
-    """Put other definitions in place of those that there are; all memories are emptied."""
+    """Replace all definitions; caches that depend on them are emptied."""
     with _LOCK:
         found: dict[str, Row] = {}
         for definition in new.values():
@@ -100,7 +100,7 @@ def closure(names: Iterable[str], known: Mapping[str, Definition]) -> tuple[Defi
 
 
 def leaves(names: Iterable[str], known: Mapping[str, Definition]) -> tuple[str, ...]:
-    """The names of the derivation that own quantities are made of."""
+    """The names of the derivation that user-defined quantities use."""
     uses = (used for definition in closure(names, known) for used in definition.uses)
     return tuple(dict.fromkeys(used for used in uses if parts(used)[0] not in known))
 
@@ -139,7 +139,7 @@ def derivative_row(name: str, unit: str, parameters: tuple[str, ...]) -> Row:
 
 
 def depends(leaf: str, parameter: str) -> bool:
-    """Whether a name of the derivation, or an input, depends on a parameter."""
+    """True if a name of the derivation, or an input, depends on a parameter."""
     base = parts(leaf)[0]
     if leaf in INPUTS and leaf not in derived_names():
         return parameter in (leaf, LENGTH_OF.get(leaf))

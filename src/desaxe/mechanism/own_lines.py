@@ -1,4 +1,4 @@
-"""The lines of a user's own quantities in the Program, with their derivatives.
+"""The lines of user-defined quantities in the Program, with their derivatives.
 
 The chain rule on the lines of the expression, with the derivation's own sensitivities for the names that it
 uses. Only where a name has none (a sensitivity, the margin) its lines are differentiated as well. A magnitude
@@ -24,7 +24,7 @@ PREFIX, SUFFIX = "own_", "_own"
 
 
 def line_name(name: str, own: Iterable[Definition]) -> str:
-    """The line that holds a name: its own name, unless it is a user's quantity."""
+    """The name of the line of a quantity: prefixed for a user-defined one."""
     base, parameters = parts(name)
     is_own = any(definition.name == base for definition in own)
     return joined(f"{PREFIX}{base}{SUFFIX}", parameters) if is_own else name
@@ -53,7 +53,7 @@ RULES: Mapping[str, Rule] = {**EVERYWHERE, "abs": _abs, "copysign": _copysign}
 
 
 class _Chain(Chain):
-    """A chain for doubles: where there is no value there is no derivative."""
+    """A chain rule for doubles: the derivative of NaN is NaN."""
 
     def __init__(self, parameter: str, prefix: str) -> None:
         super().__init__(parameter, RULES, prefix)
@@ -64,7 +64,7 @@ class _Chain(Chain):
 
 
 class Needed(NamedTuple):
-    """The lines of own names, and what the derivation has to give them."""
+    """The lines that user-defined names need from the derivation, and the derivatives it does not have."""
 
     names: tuple[str, ...]
     slow: tuple[tuple[str, str], ...]  # (name, parameter) of derivatives that the derivation has not
@@ -72,7 +72,7 @@ class Needed(NamedTuple):
 
 @lru_cache(maxsize=256)
 def lines_needed(names: tuple[str, ...], own: tuple[Definition, ...]) -> Needed:
-    """The names of the derivation that own names are made of, their sensitivities included."""
+    """The names of the derivation that user-defined names use, with their sensitivities."""
     derived = derived_names()
     wanted: dict[str, None] = {}
     slow: dict[tuple[str, str], None] = {}
@@ -102,7 +102,7 @@ def _slope_name(leaf: str, parameter: str) -> str:
 
 
 def with_own_lines(base: Program, names: tuple[str, ...], own: tuple[Definition, ...]) -> Program:
-    """The program of own names; `base` has the lines of `lines_needed`, in one variant."""
+    """The program of user-defined names; `base` has the lines of `lines_needed`, in one variant."""
     needed = lines_needed(names, own)
     writer = _Writer(base, own, needed)
     for name in names:
@@ -209,7 +209,7 @@ BOUNDED = (
 
 @lru_cache(maxsize=256)
 def not_extended(own: tuple[Definition, ...]) -> tuple[str, str] | None:
-    """The first quantity that twice the digits are not available for, and its operation; None without one."""
+    """The first quantity without double-double, and the operation that lacks it; None if all have it."""
     for definition in own:
         for line in _value_lines(definition):
             angle = line.op in ("sin", "cos") and line.args[0] not in BOUNDED

@@ -19,7 +19,7 @@ from .own_lines import lines_needed, with_own_lines
 
 
 class Variant(NamedTuple):
-    """Which form of the program: for which way of giving the motion and the loads, and for which designs."""
+    """A variant of the program: law or given state, centres of mass, plain or stable form."""
 
     state: bool = False  # a given state instead of paper A's law
     default_centres: tuple[str, ...] = ()  # centres of mass halfway along their links
@@ -39,7 +39,7 @@ LAW = Variant()  # paper A's law, every centre of mass given
 
 
 def program_of(names: tuple[str, ...], form: Variant = LAW) -> Program:
-    """The program of these names (those of the law), in one form; own quantities as they are now.
+    """The program of these names (of the law) in one variant, with user-defined quantities as of now.
 
     Its outputs stand in the order of the names; `line_name` says what those of own quantities are called.
     """
@@ -72,7 +72,7 @@ def whole_program() -> Program:
 
 @cache
 def digest() -> str:
-    """What identifies the derivation and the compiler that wrote generated/."""
+    """The digest of the derivation and compiler that wrote generated/."""
     from importlib import import_module
 
     value: str = import_module("desaxe.generated").DIGEST

@@ -13,7 +13,7 @@ from .units import exact, in_si
 
 
 class RangeWarning(UserWarning):
-    """A bare pair is probably meant the other way."""
+    """The warning that a bare pair is probably meant the other way."""
 
 
 class PlusMinus(NamedTuple):

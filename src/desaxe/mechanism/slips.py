@@ -64,6 +64,6 @@ def slip(name: str, value: Any, units: UnitSystem = SI) -> str:
 
 
 def _is_share_of_turn(angle: float) -> bool:
-    """True for angles that somebody has computed with pi: multiples of 15 degrees."""
+    """True for a multiple of 15 degrees in radians, such as pi/6: no slip."""
     share = angle / (pi / 12.0)
     return isclose(share, round(share), rel_tol=1e-12)

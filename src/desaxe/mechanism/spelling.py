@@ -1,4 +1,4 @@
-"""What somebody meant by a name that there is not: another spelling, or another word for the same."""
+"""Suggestions for an unknown name: similar spellings, and synonyms."""
 
 from collections.abc import Iterable
 
@@ -38,7 +38,7 @@ WORDS = {
 
 
 def meant(word: str, allowed: Iterable[str], most: int = 1) -> list[str]:
-    """The names of those allowed that may be meant, the likeliest first; none where none is near.
+    """The allowed names that are similar to an unknown one, the likeliest first; empty if none is.
 
     Upper and lower case, which people mix up, count as the same.
     """
@@ -55,6 +55,6 @@ def meant(word: str, allowed: Iterable[str], most: int = 1) -> list[str]:
 
 
 def did_you_mean(word: str, allowed: Iterable[str]) -> str:
-    """The question, and a space after it; nothing where no name is near."""
+    """The question "Did you mean ...?" with a space after it; empty if no name is similar."""
     near = meant(word, allowed)
     return f"did you mean {near[0]}? " if near else ""

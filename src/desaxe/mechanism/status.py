@@ -1,4 +1,4 @@
-"""What the status of each call says: one enumeration a call, and the words for each code.
+"""The status codes: one enumeration a call, with the text of each code.
 
 A code means what its own call says: 2 is a change point of an `evaluate`, a limit angle of a `simulate`.
 Codes are numbers (int8 in arrays) and compare with these members: found["status"] == PeakStatus.AT_LIMIT.
@@ -8,12 +8,12 @@ from enum import IntEnum
 
 
 class Status(IntEnum):
-    """A code and what it says."""
+    """A status code with its text."""
 
     words: str
 
     def __new__(cls, code: int, words: str = "") -> "Status":
-        """A member that is its code and knows its words."""
+        """A member that is its integer code; `words` is its text."""
         member = int.__new__(cls, code)
         member._value_ = code
         member.words = words
@@ -21,7 +21,7 @@ class Status(IntEnum):
 
 
 class PointStatus(Status):
-    """Of a point: `evaluate`, `grid`."""
+    """The status of a point: `evaluate`, `grid`."""
 
     OK = 0, "ok"
     CANNOT_BE_ASSEMBLED = 1, "cannot be assembled here"
@@ -33,7 +33,7 @@ class PointStatus(Status):
 
 
 class PeakStatus(Status):
-    """Of a design over a range of crank angles: `peak`, `[[peak]]` of a scene."""
+    """The status of a design over a range of crank angles: `peak`, `[[peak]]` of a scene."""
 
     OK = 0, "ok"
     CANNOT_BE_ASSEMBLED = 1, "cannot be assembled at any of these angles"
@@ -48,7 +48,7 @@ class PeakStatus(Status):
 
 
 class TurnStatus(Status):
-    """Of a design: `feasibility`, `events`, `design_map`."""
+    """The status of a design: `feasibility`, `events`, `design_map`."""
 
     TURNS = 0, "the crank turns fully"
     CANNOT_TURN = 1, "the crank does not turn fully"
@@ -57,7 +57,7 @@ class TurnStatus(Status):
 
 
 class InverseStatus(Status):
-    """Of a slider position: `inverse`."""
+    """The status of a slider position: `inverse`."""
 
     OK = 0, "two solutions or one"
     OUT_OF_REACH = 1, "the slider cannot be there on this branch"
@@ -66,7 +66,7 @@ class InverseStatus(Status):
 
 
 class EnclosureStatus(Status):
-    """Of a box of inputs: `enclose`."""
+    """The status of a box of inputs: `enclose`."""
 
     DEFINED = 0, "defined in all of the box"
     NOWHERE = 1, "defined nowhere in the box"
@@ -74,7 +74,7 @@ class EnclosureStatus(Status):
 
 
 class ToleranceStatus(Status):
-    """Of scattering inputs: `tolerance`."""
+    """The status of inputs with tolerances: `tolerance`."""
 
     OK = 0, "ok"
     NO_VALUE = 1, "no value at the means"
@@ -83,7 +83,7 @@ class ToleranceStatus(Status):
 
 
 class OptimizeStatus(Status):
-    """Of a search: `optimize`."""
+    """The status of a search: `optimize`."""
 
     OPTIMUM = 0, "an optimum"
     NO_DESIGN = 1, "no design keeps the limits"
@@ -93,7 +93,7 @@ class OptimizeStatus(Status):
 
 
 class SynthesisStatus(Status):
-    """Of a synthesis: `synthesize`."""
+    """The status of a synthesis: `synthesize`."""
 
     FOUND = 0, "one design or more"
     NONE = 1, "no design"
@@ -101,7 +101,7 @@ class SynthesisStatus(Status):
 
 
 class DriveStatus(Status):
-    """Of a drive over a turn: `drive`."""
+    """The status of a drive over a turn: `drive`."""
 
     OK = 0, "ok"
     CANNOT_TURN = 1, "the crank cannot turn fully"
@@ -113,7 +113,7 @@ class DriveStatus(Status):
 
 
 class SimulationStatus(Status):
-    """Of a motion, how it ended: `simulate`."""
+    """The status of a motion, that is, how it ended: `simulate`."""
 
     DONE = 0, "reached its end"
     REST = 1, "at rest: the torque cannot move the crank"

@@ -1,4 +1,4 @@
-"""Units that somebody works in: what plain numbers mean at the border, and what answers are in.
+"""Unit systems: the units of plain numbers in inputs and results.
 
     UnitSystem.read("mm, deg, rpm")
     UnitSystem.read({"length": "mm", "torque": "kN m", "a_C": "standard_gravity"})
@@ -70,7 +70,7 @@ OTHERS = {
 
 
 class Conversion(NamedTuple):
-    """The unit in which something is shown, and what one of it is in the SI unit, exactly."""
+    """A displayed unit, and its exact factor to the SI unit."""
 
     unit: str
     si: Fraction = Fraction(1)
@@ -95,7 +95,7 @@ class Conversion(NamedTuple):
 
 
 class UnitSystem:
-    """The units of the dimensions and quantities that are named; everything else is in SI units.
+    """Units by dimension and by quantity; all others are SI.
 
     Sensitivities are quotients of them, or in SI units too where `quotients` is False.
     """
@@ -106,7 +106,7 @@ class UnitSystem:
 
     @classmethod
     def read(cls, units: "str | Mapping[str, str] | UnitSystem | None") -> "UnitSystem":
-        """The units that a text such as "mm, deg, rpm" or a mapping says; ValueError for any other."""
+        """Read a unit system from a text such as "mm, deg, rpm" or a mapping; ValueError for any other."""
         if isinstance(units, UnitSystem):
             return units
         if units is None or isinstance(units, str):
@@ -141,11 +141,11 @@ class UnitSystem:
         return repr(self.units)
 
     def of_unit(self, si: str) -> Conversion:
-        """What something with this SI unit is shown in."""
+        """The conversion of values in this SI unit."""
         return self._known.get(si) or Conversion(si)
 
     def of(self, name: str) -> Conversion:
-        """What a quantity, sensitivity, input or measure of a design is shown in."""
+        """The conversion of a quantity, sensitivity, input or measure of a design."""
         if name in self._own:
             return self._own[name]
         base, by = parts(name)
@@ -157,7 +157,7 @@ class UnitSystem:
         return self.of_unit(_si_unit(name))
 
     def slope(self, name: str | Conversion, by: str) -> Conversion:
-        """What a derivative of something by an input is shown in."""
+        """The conversion of a derivative by an input."""
         return (self.of(name) if isinstance(name, str) else name).per([self.of(by)])
 
     @cached_property
@@ -215,7 +215,7 @@ def _si_unit(name: str) -> str:
 
 
 def _simplified(name: str, quotient: str) -> str:
-    """The SI unit of a sensitivity that no choice of units changes, as the catalogue writes it."""
+    """The SI unit of a sensitivity, as the catalogue writes it, if no choice of units changes it."""
     try:
         return _si_unit(name)
     except ValueError:
@@ -223,7 +223,7 @@ def _simplified(name: str, quotient: str) -> str:
 
 
 def _dimension_of(unit: str) -> str:
-    """The dimension that a unit is of; a product such as N m is a torque, J an energy."""
+    """The dimension of a unit; N m is a torque, J an energy."""
     fitting = []
     for name, si in DIMENSIONS.items():
         try:
@@ -240,14 +240,14 @@ def _dimension_of(unit: str) -> str:
 
 
 def _si_of(name: str, unit: str, si: str) -> Fraction:
-    """What one of a unit is in the SI unit, exactly; ValueError where it is of another dimension."""
+    """The exact factor from a unit to the SI unit; ValueError for another dimension."""
     if unit == si:
         return Fraction(1)
     return exact(f"units: {name}", f"1 {unit}", si)
 
 
 def _scaled(value: Any, factor: Fraction) -> Any:
-    """A number times an exact factor, rounded once; of arrays in extended precision where there is such."""
+    """A number times an exact factor, rounded once; an array in extended precision where supported."""
     if isinstance(value, (int, float)):
         return float(Fraction(value) * factor) if isfinite(value) else float(value)
     import numpy as np

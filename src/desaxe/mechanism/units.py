@@ -1,4 +1,4 @@
-"""Units at the border: text such as "10 mm" and pint quantities become SI numbers (extra `units`).
+"""Units of inputs: text such as "10 mm" and pint quantities become SI numbers (extra `units`).
 
 Text is read as an exact fraction, converted exactly and rounded once, so that "350 mm" is the same
 double as 0.350. The unit must say the same as the input's own, angle included: "25 Hz" is no angular
@@ -75,7 +75,7 @@ def in_unit(name: str, value: Any, unit: str) -> Any:
 
 @cache
 def _factor(own: str, unit: str) -> Fraction | None:
-    """What a magnitude is multiplied by, exactly; None for a unit that only another registry knows."""
+    """The exact factor between two units; None for a unit that only another registry knows."""
     try:
         return Fraction(_exact_registry().Quantity(Fraction(1), own).to(unit).magnitude)
     except Exception:
@@ -83,7 +83,7 @@ def _factor(own: str, unit: str) -> Fraction | None:
 
 
 def unlabelled(name: str, array: Any) -> Any:
-    """What a labelled array holds; a pint quantity where its attribute `units` is not the input's unit."""
+    """The values of a labelled array; a pint quantity if its attribute `units` differs from the input's."""
     unit = array.attrs.get("units", INPUTS[name].unit)
     if unit == INPUTS[name].unit or hasattr(array.data, "magnitude"):
         return array.data
@@ -129,7 +129,7 @@ def _check_size(number: str) -> None:
 
 
 def _says_the_same(quantity: Any, unit: str) -> bool:
-    """Whether both are made of the same base units, radians among them."""
+    """True if both have the same base units, radians included."""
     own = quantity.to_root_units().units
     wanted = (1 * quantity._REGISTRY.Unit(unit)).to_root_units().units
     return dict(own._units) == dict(wanted._units)

@@ -1,4 +1,4 @@
-"""The truth from the raw loop closure and the free bodies, to any number of digits.
+"""Reference values from the raw loop closure and the free bodies, to any number of digits.
 
 Imports nothing else of desaxe.
 

@@ -27,7 +27,7 @@ def motion(rng: Rng, theta: float, scale: float = 1.0) -> Point:
 
 
 def point(rng: Rng, theta: float, ec: float, AB: float, BC: float) -> Point:
-    """A mechanism in some motion on some branch."""
+    """A point with a random motion on a random branch."""
     sizes = {"theta": theta, "ec": ec, "AB": AB, "BC": BC}
     return sizes | motion(rng, theta) | {"branch": rng.choice((1, 1, -1))}
 
@@ -44,19 +44,19 @@ def sizes(rng: Rng) -> tuple[float, float, float]:
 
 
 def reaches(theta: float, ec: float, AB: float, BC: float) -> bool:
-    """Whether the rod reaches, not counting the last bits."""
+    """True if the mechanism can be assembled, with some slack for rounding."""
     return abs(ec + AB * math.sin(theta)) < BC * (1 - 1e-9)
 
 
 def feasible_angle(rng: Rng, ec: float, AB: float, BC: float, turns: float = 1.5) -> float:
-    """An angle where the rod reaches, drawn from so many turns either way."""
+    """A random feasible angle within `turns` turns in either direction."""
     while not reaches(theta := rng.uniform(-turns, turns) * math.tau, ec, AB, BC):
         pass
     return theta
 
 
 def generic(rng: Rng) -> Point:
-    """Nothing special."""
+    """Generic points of the mechanism."""
     ec, AB, BC = sizes(rng)
     return point(rng, feasible_angle(rng, ec, AB, BC), ec, AB, BC)
 
@@ -108,13 +108,13 @@ def near_change_point(rng: Rng) -> Point:
 
 
 def feasible(theta: float, ec: float, AB: float, BC: float) -> bool:
-    """Whether the rod reaches, exactly."""
+    """True if the mechanism can be assembled, in 60 digits."""
     with mpmath.workdps(60):
         return bool(abs(ec + mpmath.mpf(AB) * mpmath.sin(mpmath.mpf(theta))) < BC)
 
 
 def eccentric_as_rod(rng: Rng) -> Point:
-    """|ec| within a last bit of BC: only the crank lets the rod reach, at angles from 1e-20."""
+    """|ec| within an ulp of BC, so that only the crank makes it feasible, at angles from 1e-20."""
     BC, sigma = rng.uniform(0.2, 1.0), side(rng)
     AB = BC * 10 ** rng.uniform(-1.0, 1.0)
     while True:
@@ -125,7 +125,7 @@ def eccentric_as_rod(rng: Rng) -> Point:
 
 
 def eccentric_as_crank(rng: Rng) -> Point:
-    """ec within a last bit of +-AB, at the opposite quarter: the pin meets the slider axis."""
+    """ec within an ulp of +-AB, at the opposite quarter turn: the pin meets the slider axis."""
     AB, sigma = rng.uniform(0.2, 1.0), side(rng)
     ec = rng.choice((math.nextafter(AB, 0), AB, math.nextafter(AB, 2)))
     theta = -sigma * QUARTER + side(rng) * log_uniform(rng, 1e-12, 0.1) * rng.choice((0, 1, 1, 1))
@@ -179,7 +179,7 @@ def far_angle(rng: Rng) -> Point:
 
 
 def concentric(rng: Rng) -> Point:
-    """ec = +-0, or next to nothing."""
+    """ec = +-0, or negligibly small."""
     _, AB, BC = sizes(rng)
     ec = rng.choice((0.0, -0.0, side(rng) * 10.0 ** rng.uniform(-300, -10), side(rng) * 5e-324))
     if rng.random() < 0.2:
@@ -193,7 +193,7 @@ def concentric(rng: Rng) -> Point:
 
 
 def folded_over(rng: Rng) -> Point:
-    """Rod and crank of nearly one length and nearly no eccentricity: on the way back Y is next to nothing."""
+    """Rod and crank of nearly equal length, ec nearly 0: folded back, Y nearly vanishes."""
     AB = rng.randrange(1, 2**20) / 2**20
     ec = rng.choice(
         (AB * log_uniform(rng, 1e-12, 1e-1), math.ldexp(rng.randrange(1, 2**20), -rng.randrange(20, 50)))
@@ -234,7 +234,7 @@ def tiny_angle(rng: Rng) -> Point:
 
 
 def nearly_stalled(rng: Rng) -> Point:
-    """omega0^2 + 2 alpha theta is nearly, or exactly, nothing."""
+    """omega0^2 + 2 alpha theta is nearly or exactly 0."""
     at = generic(rng)
     while at["theta"] == 0:
         at = generic(rng)
@@ -271,6 +271,6 @@ FAMILIES = {family.__name__: family for family in (*PLAIN, units)}
 
 
 def points(family: str, count: int, seed: int = 0) -> Iterator[Point]:
-    """So many seeded points of a family."""
+    """`count` seeded points of a family."""
     rng = random.Random(f"{family} {seed}")
     return islice(iter(lambda: FAMILIES[family](rng), None), count)

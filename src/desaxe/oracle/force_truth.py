@@ -1,4 +1,4 @@
-"""The truth about forces, torques and energies at one point, to as many digits as are asked for.
+"""Reference values of forces, torques and energies at one point, to any number of digits.
 
 Nothing here is shared with the package, and nothing is derived: the places of the three centres of mass are
 power series in time, from the raw loop closure of truth.py; their second coefficients are the accelerations,
@@ -59,18 +59,18 @@ class Point(NamedTuple):
 
     @property
     def still(self) -> bool:
-        """Whether the crank stands still."""
+        """True if the crank is at rest."""
         return stands_still(self.values[0], *self.values[4:6], self.law)
 
     @property
     def direction(self) -> int:
-        """Of the crank's motion, or of the one that alpha starts; 0 where nothing moves."""
+        """The sign of the crank's speed or, at rest, of alpha; 0 if nothing moves."""
         speed, alpha = self.values[4:6]
         return sign(speed) if not self.still else sign(alpha) if alpha else 0
 
 
 class Mechanism(NamedTuple):
-    """What there is, and where it is at which time."""
+    """The mechanism as functions of time: parameters, positions of joints and centres of mass."""
 
     given: dict[str, Jet]
     theta: Jet
@@ -81,7 +81,7 @@ class Mechanism(NamedTuple):
 
 
 def _jet(at: Point, number: int) -> Jet:
-    """A parameter, exact, and its own derivative if that is asked for. Zero is no term at all."""
+    """A parameter as an exact jet, with its derivative if it is one to differentiate by; 0 has no term."""
     value = at.values[number]
     terms = {(): arb_series([arb(value)])} if value or number < len(LAW) else {}
     return Jet(terms | ({(number,): arb_series([1])} if number in at.by else {}), len(at.by))
@@ -104,7 +104,7 @@ def _given(at: Point) -> dict[str, Jet]:
 
 @lru_cache(maxsize=256)
 def _mechanism(at: Point, bits: int, unit_speed: bool = False) -> Mechanism | None:
-    """The mechanism in its motion, or at the steady speed 1; None if there is none, or too few bits."""
+    """The moving mechanism, or that at speed 1; None if it cannot be assembled, or with too few bits."""
     with precision(bits, terms=3):
         given = _given(at)
         theta, ec, AB, BC, omega, alpha = (given[p] for p in LAW)
@@ -173,7 +173,7 @@ def _leading(coefficient: Jet) -> arb:
 
 
 def _without(unknown: str, row: Equation, pivot: Equation) -> Equation:
-    """A row less a multiple of the pivot's, in which the unknown has the coefficient 1, not written down."""
+    """Eliminate an unknown from a row by the pivot's row, whose coefficient 1 is not stored."""
     left, right = dict(row[0]), row[1]
     factor = left.pop(unknown, Jet({}, right.order))
     for name, coefficient in pivot[0].items():
@@ -183,7 +183,7 @@ def _without(unknown: str, row: Equation, pivot: Equation) -> Equation:
 
 
 def _solve(equations: list[Equation], still: bool) -> dict[str, Jet] | None:
-    """Gauss and Jordan, by the largest pivot of each row; empty if singular, None if the bits do not tell."""
+    """Gauss-Jordan elimination with row pivots; empty if singular, None if undecided in these bits."""
     solved: dict[str, Equation] = {}
     for equation in equations:
         left, right = equation
@@ -230,7 +230,7 @@ def _magnitude(x: Jet, y: Jet) -> Jet:
 
 
 def _touched(at: Point, bits: int) -> dict[str, Jet] | None:
-    """What friction touches, in the only balance there is; nothing if there is not one."""
+    """The forces that friction affects, of the only force balance; empty unless there is exactly one."""
     mechanism, balances = _mechanism(at, bits), _balances(at, bits)
     if mechanism is None or balances is None:
         return None
@@ -245,7 +245,7 @@ def _touched(at: Point, bits: int) -> dict[str, Jet] | None:
 
 @lru_cache(maxsize=256)
 def _shaking(at: Point, bits: int) -> dict[str, Jet] | None:
-    """What the frame feels: friction only moves it from one bearing to another, so it is left out."""
+    """Shaking force and moment; without friction, which acts between the links and the frame only."""
     mechanism = _mechanism(at, bits)
     with precision(bits):
         balance = mechanism and _solve(_equations(mechanism, 0), at.still)
@@ -329,7 +329,7 @@ def _point(
 
 
 def _value(jet: Jet | None, by: tuple[int, ...], bits: int, digits: int) -> mpmath.mpf | None:
-    """A partial derivative, if it has so many digits."""
+    """A partial derivative; None if it has fewer digits."""
     if jet is None:
         return None
     with precision(bits):
@@ -337,7 +337,7 @@ def _value(jet: Jet | None, by: tuple[int, ...], bits: int, digits: int) -> mpma
 
 
 def truth(name: str, *, digits: int = 50, **point: Any) -> mpmath.mpf:
-    """One quantity or sensitivity (``q``, ``q_wrt_p``, ``q_wrt_p_p``, ...) with so many correct digits."""
+    """One quantity or sensitivity (``q``, ``q_wrt_p``, ``q_wrt_p_p``, ...) to `digits` correct digits."""
     law = point.get("omega") is None
     if name.partition("_wrt_")[0] not in FORCES:
         motion = {p: value for p, value in point.items() if p not in OTHERS}
@@ -360,7 +360,7 @@ def truth_all(names: Iterable[str], **point: Any) -> dict[str, mpmath.mpf]:
 
 
 def force_balances(**point: Any) -> int | None:
-    """How many force balances there are: 0, 1 or 2; None where there is no mechanism, or no motion."""
+    """The number of force balances: 0, 1 or 2; None if it cannot be assembled or does not move."""
     at = _point((), **point)
     for bits in BITS[-1:] if at.still else BITS:
         balances = _balances(at, bits)

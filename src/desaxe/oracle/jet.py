@@ -54,18 +54,18 @@ class Jet:
         return result
 
     def sqrt(self) -> "Jet":
-        """Its square root."""
+        """The square root."""
         taylor, inverse = [self.terms[()].sqrt()], self.terms[()].rsqrt() ** 2
         for k in range(self.order):
             taylor.append(taylor[k] * inverse * (1 - 2 * k) / (2 * k + 2))
         return self.compose(taylor)
 
     def inverse(self) -> "Jet":
-        """One over it."""
+        """The reciprocal."""
         return self.compose([-((-1 / self.terms[()]) ** (k + 1)) for k in range(self.order + 1)])
 
     def sin_cos(self) -> tuple["Jet", ...]:
-        """Its sine and its cosine."""
+        """Sine and cosine."""
         sine, cosine = self.terms[()].sin(), self.terms[()].cos()
         cycles = (sine, cosine, -sine, -cosine), (cosine, -sine, -cosine, sine)
         taylors = ([c[k % 4] / math.factorial(k) for k in range(self.order + 1)] for c in cycles)
@@ -103,7 +103,7 @@ def _merge(left: tuple[int, ...], right: tuple[int, ...]) -> tuple[int, ...]:
 
 @contextmanager
 def precision(bits: int, terms: int = 4) -> Iterator[None]:
-    """Arithmetic with so many bits, and power series in time of so many terms: four go up to the jerk."""
+    """Set the precision of arithmetic, and the length of power series in time: 4 terms reach the jerk."""
     before = ctx.prec, ctx.cap
     ctx.prec, ctx.cap = bits, terms
     try:
@@ -124,21 +124,21 @@ def _number(x: arb) -> mpmath.mpf:
 
 
 def settled(x: arb, digits: int) -> mpmath.mpf | None:
-    """The number inside an enclosure, if that is good enough; zero if it is far below the smallest double."""
+    """The number in an enclosure of `digits` digits, else None; 0 if far below the smallest double."""
     if x.is_finite() and (x == 0 or x.rel_accuracy_bits() > digits * math.log2(10)):
         return _number(x)
     return mpmath.mpf(0) if x.is_finite() and abs(x) < _NOTHING else None
 
 
 def limit(x: mpmath.mpf) -> mpmath.mpf:
-    """What a number becomes when the crank stops: 0 or infinite if it goes there with the speed."""
+    """The limit of a number as the crank stops: 0 or infinite if it scales with the speed."""
     if x == 0 or not mpmath.isfinite(x) or abs(mpmath.mag(x)) < _REST_MAGNITUDE:
         return x
     return mpmath.mpf(0) if mpmath.mag(x) < 0 else mpmath.sign(x) * mpmath.inf
 
 
 def tendency(x: arb, still: bool = False) -> int | None:
-    """The sign of what a number is, or becomes when the crank stops; None if the enclosure does not tell."""
+    """The sign of a number, or of its limit as the crank stops; None if the enclosure is too wide."""
     smallest = arb(2) ** -_REST_MAGNITUDE if still else _NOTHING
     if x.is_finite() and (x == 0 or abs(x) < smallest):
         return 0

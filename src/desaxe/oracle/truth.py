@@ -1,4 +1,4 @@
-"""The truth about one point of the offset slider-crank, to as many digits as are asked for.
+"""Reference values at one point of the offset slider-crank, to any number of digits.
 
 Nothing here is shared with the package.  The raw loop closure
 
@@ -95,7 +95,7 @@ def _quantities(parameters: list[Jet], branch: int, law: bool) -> dict[str, Jet]
 
 @lru_cache(maxsize=16)
 def stands_still(theta: float, speed: float, alpha: float, law: bool) -> bool:
-    """Whether the crank's speed is exactly zero."""
+    """True if the crank's speed is exactly 0."""
     start = Fraction(speed)
     return start * start + 2 * Fraction(alpha) * Fraction(theta) == 0 if law else start == 0
 
@@ -136,7 +136,7 @@ def truth(
     branch: int = 1,
     digits: int = 50,
 ) -> mpmath.mpf:
-    """One quantity or sensitivity (``q``, ``q_wrt_p``, ``q_wrt_p_p``, ...) with so many correct digits."""
+    """One quantity or sensitivity (``q``, ``q_wrt_p``, ``q_wrt_p_p``, ...) to `digits` correct digits."""
     law = omega is None
     quantity, monomial = split(name, LAW if law else STATE)
     values = tuple(map(float, (theta, ec, AB, BC, omega0 if omega is None else omega, alpha)))
@@ -169,7 +169,7 @@ def conditions(
     oracle: Callable[..., mpmath.mpf] = truth,
     **point: Any,
 ) -> float:
-    """Sum of |x/f df/dx| over theta, AB, BC, omega0 (or omega), alpha and a gap, an input in place of ec.
+    """Sum of |x/f df/dx| over theta, AB, BC, omega0 (or omega), alpha and a gap, which replaces ec.
 
     The gap is the margin in |ec| = BC - AB - margin, or another of ``GAPS``: what is exact may be small.
     An oracle with more inputs may count others of them too.
@@ -189,7 +189,7 @@ def conditions(
 
 
 def ulp_error(value: float, exact: mpmath.mpf) -> float:
-    """|value - exact| in units of the last bit of a double at the exact value."""
+    """|value - exact| in ulp of the exact value."""
     if mpmath.isfinite(exact) and math.isfinite(value):
         exponent = mpmath.mag(exact) - 1 if exact else -1022
         return float(mpmath.ldexp(abs(mpmath.mpf(value) - exact), 52 - max(exponent, -1022)))
@@ -197,7 +197,7 @@ def ulp_error(value: float, exact: mpmath.mpf) -> float:
 
 
 def relative_error(value: float, exact: mpmath.mpf) -> float:
-    """|value - exact| / |exact|; only zero is right where the truth is zero."""
+    """|value - exact| / |exact|; infinite for any error of an exact 0."""
     if exact and mpmath.isfinite(exact) and math.isfinite(value):
         return float(abs((mpmath.mpf(value) - exact) / exact))
     return math.inf if ulp_error(value, exact) else 0.0

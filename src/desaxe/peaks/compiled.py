@@ -125,7 +125,7 @@ _LOCK = fork_safe_lock()
 
 
 def kernel_for(search: Search, designs: int) -> Kernel:
-    """The search, compiled if that pays for so many more designs."""
+    """The search, compiled if that pays for this number of further designs."""
     found = _LOADED.get(search)
     if found is not None:
         return found
@@ -142,7 +142,7 @@ def kernel_for(search: Search, designs: int) -> Kernel:
 
 @lru_cache(maxsize=1024)
 def _on_disk(search: Search) -> bool:
-    """Whether an earlier process has left its machine code."""
+    """True if an earlier process has stored the machine code."""
     return is_kept("search", source_of(search))
 
 
@@ -167,7 +167,7 @@ def plain_finish(search: Search) -> Kernel:
 
 
 def search_with(sweep: Kernel, points: Kernel, finish: Kernel) -> Kernel:
-    """The search in plain Python with functions of one's own."""
+    """The search in plain Python with other functions in place of the stubs."""
     scope = _scope(1) | {"sweep": sweep, "points": points, "finish": finish}
     exec(_code(), scope)
     return _quiet(scope["search"])
@@ -179,7 +179,7 @@ def _code() -> CodeType:
 
 
 def _scope(work: int) -> dict[str, Any]:
-    """What the text of the search imports, for plain Python."""
+    """The names that the text of the search imports, for plain Python."""
     numpy = {"floor": np.floor, "empty": np.empty, "int64": np.int64}
     return {name: getattr(math, name) for name in MATH_NAMES} | numpy | {"uint64": int, "WORK": work}
 

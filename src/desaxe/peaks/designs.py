@@ -1,4 +1,4 @@
-"""Peaks of flat designs: what a request needs to be searched for, and the search of all designs."""
+"""Peaks of flat designs: the plan of a request, and the search over all designs."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -29,7 +29,7 @@ KINDS = ("absmax", "max", "min")
 
 
 class Plan(NamedTuple):
-    """A request to search, the parameters of its gradient, and every input that the answer needs."""
+    """A request to search, the parameters of its gradient, and all inputs that it needs."""
 
     wanted: Request
     parameters: tuple[str, ...]
@@ -42,7 +42,7 @@ forget_on_change(_PLANS)
 
 
 def plan_of(name: str, given: dict[str, Any], branch: int, accuracy: Any) -> Plan:
-    """The plan of what is asked for, from its names alone."""
+    """The plan of a request, which depends on its names only."""
     shown = frozenset(n for n, value in given.items() if value is not None)
     if type(accuracy) is not str:
         accuracy = accuracy_of(accuracy)
@@ -77,7 +77,7 @@ def _new_plan(name: str, given: dict[str, Any], branch: int, accuracy: Any) -> P
 
 
 def search_of(plan: Plan, arrays: dict[str, Array], ends: tuple[float, float]) -> Search:
-    """What to compile: a scalar of 0 makes whole terms vanish, if nothing has to be differentiated by it."""
+    """The search to compile; a scalar input of 0 is folded unless the gradient needs it."""
     wanted = plan.wanted
     name = wanted.names[0]
     kept = needs_own(name, plan.parameters)
@@ -168,7 +168,7 @@ def _in_form(search: Search, columns: dict[str, Array], rows: NDArray[np.intp]) 
 
 
 def _good(designs: Designs) -> dict[str, Array]:
-    """The inputs, NaN where they are bad: one that is would give a finite, wrong answer."""
+    """The inputs with NaN for invalid values, which would give a finite, wrong result."""
     if designs.size == 1:
         return designs.columns  # checked where it came in
     good = {}

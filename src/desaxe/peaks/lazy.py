@@ -39,7 +39,7 @@ class PeakBlock(NamedTuple):
 
     @property
     def outputs(self) -> dict[str, np.dtype[Any]]:
-        """What it computes, and of which type: `gradient_<parameter>` among them."""
+        """The names of the outputs, `gradient_<parameter>` among them, and their dtypes."""
         names = ("value", "theta", *(f"{GRADIENT}{name}" for name in self.search.parameters))
         return {**dict.fromkeys(names, np.dtype(np.float64)), "status": np.dtype(np.int8)}
 
@@ -59,7 +59,7 @@ class PeakBlock(NamedTuple):
         return {name: out.reshape(shape) for name, out in outs.items()}
 
     def _found(self, flat: Mapping[str, Array], size: int) -> dict[str, Array]:
-        """The outputs of designs without bad inputs, at least two: one alone takes another way."""
+        """The outputs of two or more designs without invalid inputs: a single one takes another code path."""
         columns = {name: np.resize(column, max(size, 2)) for name, column in flat.items()}
         columns |= {name: np.full(max(size, 2), value) for name, value in self.scalars}
         with compiled_only():
@@ -93,7 +93,7 @@ def lazy_peak(
     ends: tuple[float, float],
     threads: int | None,
 ) -> dict[str, Any]:
-    """What `peak` gives, as Dask arrays."""
+    """The results of `peak` as Dask arrays."""
     with needed("Dask arrays"):
         from dask.base import tokenize
 

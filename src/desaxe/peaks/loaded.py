@@ -49,7 +49,7 @@ class _Differences(NamedTuple):
     load: FunctionOverTheta
 
     def at(self, theta: Any) -> Any:
-        """At a number or an array."""
+        """Load and derivative at a number or an array."""
         theta = np.asarray(theta, float)
         total = np.zeros(theta.shape)
         for steps, weight in STENCIL:
@@ -59,7 +59,7 @@ class _Differences(NamedTuple):
 
 
 class Kinks(NamedTuple):
-    """For each design (a row) angles at which a load has a kink, NaN in empty places.
+    """Angles at which a load has a kink, a row for each design, padded with NaN.
 
     fixed    whether the angle stays where it is when the lengths change
     turning  whether it is a dead centre
@@ -103,7 +103,7 @@ def kinks_of(designs: Designs) -> tuple[Kinks, Array]:
 
 
 def with_nodes(groups: Groups, nodes: Array) -> Groups:
-    """One group for each design, with its own nodes besides those of its class."""
+    """A group of its own for each design: the nodes of its class and its own."""
     order, starts, shared, node_starts = groups
     grids = []
     for g in range(starts.size - 1):

@@ -1,4 +1,4 @@
-"""Where a search looks: crank angles shared by the designs of one class.
+"""The nodes of a search: crank angles shared by the designs of one class.
 
 The rod's height is S = sqrt(BC^2 - u^2): over complex theta it branches at pi/2 +- i d with
 cosh(d) = (BC - ec)/AB, and at -pi/2 +- i d' with cosh(d') = (BC + ec)/AB. Next to a quarter whose
@@ -22,7 +22,7 @@ CLASSES = 52  # the last one is for margins of 4^-51 crank lengths and less, 0 a
 
 
 def classes(ec: Array, AB: Array, BC: Array) -> NDArray[np.int16]:
-    """For each design one number for the distances of its branch points: its two classes in one."""
+    """One integer a design that combines the classes of its two branch points."""
     with np.errstate(all="ignore"):
         near = (BC - AB) / AB
         offset = ec / AB

@@ -123,7 +123,7 @@ def _range(theta: Any, name: str) -> tuple[float, float]:
 
 
 def _whole_period(loads: Mapping[str, Load]) -> tuple[float, float]:
-    """One turn, or as many as the longest period of a load has."""
+    """One turn, or the longest period of a load."""
     periods = [load.period for load in loads.values() if isinstance(load, OverTheta)]
     return 0.0, max([TURN[1], *periods])
 
@@ -148,7 +148,7 @@ def _flat(array: Array, shape: tuple[int, ...]) -> Array:
 
 
 def _shaped(found: dict[str, Any], shape: tuple[int, ...]) -> dict[str, Any]:
-    """The answers in the shape of the designs; plain numbers for one design."""
+    """The results in the shape of the designs; plain numbers for one design."""
 
     def shaped(array: NDArray[Any]) -> Any:
         return array.reshape(shape) if shape else array[0].item()

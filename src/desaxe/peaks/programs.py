@@ -1,4 +1,4 @@
-"""What a search computes: a quantity, its slope over theta, its gradient.
+"""The Programs of a search: a quantity, its slope over theta, its gradient.
 
 Derivatives that are not derived (a second one of a torque, a third one of a motion) are those of the program,
 line by line: they keep the digits that its lines keep.
@@ -25,7 +25,7 @@ WITHOUT_COURSE = ("status", "margin")  # these have no course over theta, and no
 
 
 class Search(NamedTuple):
-    """What a search is compiled for."""
+    """The key of a compiled search."""
 
     name: str  # the quantity, as the program calls it
     parameters: tuple[str, ...]  # of the gradient
@@ -49,7 +49,7 @@ def needs_own(name: str, parameters: Sequence[str]) -> list[str]:
 
 
 def _by(name: str, parameter: str) -> str:
-    """The derivative of a name, as the program calls it: a state's omega stands in omega0's place."""
+    """The line of a derivative: the program calls a state's omega by omega0."""
     return sensitivity(name, "omega0" if parameter == "omega" else parameter)
 
 
@@ -76,7 +76,7 @@ def programs_of(search: Search, written_out: bool) -> Programs:
 
 
 def _whole(search: Search) -> tuple[Program, list[str]]:
-    """One program of everything, and its outputs: value, slope, gradient."""
+    """One program of value, slope and gradient, and the names of its outputs."""
     name = search.name
     wanted = [name, sensitivity(name, "theta")]
     derived = [n for n in wanted if has(n)]

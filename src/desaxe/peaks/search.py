@@ -44,7 +44,7 @@ STEPS = 100  # a bracket of any width is down to its last bit before
 
 
 def score(kind: int, value: float) -> float:
-    """What is to be made as large as possible."""
+    """The objective: |value|, value or -value, to be maximised."""
     return fabs(value) if kind == 0 else (value if kind == 1 else -value)
 
 
@@ -87,7 +87,7 @@ def bound(
 
 
 def candidates(count: Any, nodes: Any, upper: Any, best: Any, places: Any, owners: Any) -> int:
-    """The intervals that may hold something better than the best node: their start, their owner."""
+    """Collect the intervals whose bound exceeds the best node: index and design; return their number."""
     found = 0
     for j in range(1, nodes.size):
         row = upper[j]
@@ -144,7 +144,7 @@ def quartic(k0: float, k1: float, k2: float, k3: float, k4: float, s: float) -> 
 
 
 def quartic_slope(k1: float, k2: float, k3: float, k4: float, s: float) -> float:
-    """Its derivative."""
+    """The derivative of the quartic."""
     return k1 + s * (2.0 * k2 + s * (3.0 * k3 + s * (4.0 * k4)))
 
 
@@ -192,7 +192,7 @@ def begin(count: Any, roots: Any) -> None:
 
 
 def newton(count: Any, roots: Any, slope: Any) -> int:
-    """One step for every root that is not done; how many are still to do.
+    """One Newton step for every unfinished root; return the number of unfinished ones.
 
     The slope's derivative is that of the quartic at first, then the one that the last two slopes tell.
     """
@@ -229,7 +229,7 @@ def newton(count: Any, roots: Any, slope: Any) -> int:
 def choose(
     kind: int, count: Any, roots: Any, whose: Any, value: Any, best: Any, theta: Any, taken: Any
 ) -> None:
-    """The angle of the best of the roots, if it is as good as the best node."""
+    """Choose for each design the best root, if it is as good as the best node."""
     for c in range(count):
         i = whose[c]
         new = score(kind, value[c])

@@ -1,4 +1,4 @@
-"""Designs that end somewhere: limit angles, a stall, friction that turns round or jams.
+"""Special designs: with limit angles, a stall, or friction that reverses or jams.
 
 Their nodes are their own: graded towards the quarters, the limit angles and, with friction, the dead
 centres, down to the distance of two doubles. What their extrema mean is told here.
@@ -38,11 +38,11 @@ class Designs(NamedTuple):
 
     @property
     def size(self) -> int:
-        """How many there are."""
+        """The number of designs."""
         return next(iter(self.columns.values())).size
 
     def part(self, rows: Any) -> "Designs":
-        """Some of them."""
+        """The designs of these rows."""
         return self._replace(columns={name: column[rows] for name, column in self.columns.items()})
 
     def values(self, names: tuple[str, ...], rows: NDArray[np.intp], theta: Array) -> dict[str, Any]:
@@ -54,7 +54,7 @@ class Designs(NamedTuple):
 
 
 def are_special(designs: Designs) -> NDArray[np.bool_]:
-    """Which designs cannot turn fully, stall in the range or near it, or rub."""
+    """Mask of the designs that cannot turn fully, stall in the range or near it, or have friction."""
     columns = designs.columns
     special = np.full(designs.size, designs.rubs)
     if all(name in columns for name in LENGTHS):
@@ -134,7 +134,7 @@ def _dead_centres(designs: Designs) -> list[list[float]]:
 
 
 class Found(NamedTuple):
-    """What the search found for some designs, to be completed in place."""
+    """The results of a search for some designs, to be completed in place."""
 
     value: Array
     theta: Array
@@ -151,7 +151,7 @@ def complete(
     found: Found,
     kinks: Array | None = None,
 ) -> NDArray[np.bool_]:
-    """Put in limits, brinks and status; which extrema have a gradient.
+    """Add limit angles, ends of the force balance and status to the results; return which have a gradient.
 
     value   signed, also for "absmax"
     kinks   for each design angles at which a load has a kink: there the slope does not vanish
@@ -173,7 +173,7 @@ def complete(
 
 
 def score(kind: str, value: Array) -> Array:
-    """What is to be made as large as possible; NaN never wins."""
+    """The objective, to be maximised; -inf for NaN."""
     good = {"absmax": np.abs(value), "max": value, "min": -value}[kind]
     return np.where(np.isnan(good), -np.inf, good)
 
@@ -181,7 +181,7 @@ def score(kind: str, value: Array) -> Array:
 def _at_brinks(
     name: str, kind: str, designs: Designs, nodes: Array, swept: dict[str, Any], found: Found
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Let the last angles before friction leaves no balance of forces, or two, take part.
+    """Let the last angles with exactly one force balance take part in the search.
 
     Which designs have their extremum where it jams, and which at either.
     """
@@ -209,7 +209,7 @@ def _at_brinks(
 
 
 def _status(status: NDArray[np.int8]) -> NDArray[np.int8]:
-    """What friction does at some of the angles; else 0 where any is ok, else what is wrong at the first."""
+    """The status of a design: that of friction at any angle, else 0 if one angle is ok, else the first."""
     usable = ((status == 0) | (status == 2)).any(axis=1)
     found = np.where(usable, np.int8(0), status[:, 0]).astype(np.int8)
     for code in (TWO_BALANCES, JAMS):
@@ -238,14 +238,14 @@ def _mark_limits(kind: str, found: Found, value: Array, nodes: Array, ends: list
 
 
 def _grows(nodes: Array, value: Array, end: float, last: float) -> bool:
-    """Whether a quantity grows without bound towards an end: as the distance to a negative power."""
+    """True if a quantity is unbounded towards an end, like a negative power of the distance."""
     away = np.abs(nodes - end)
     farther = value[np.argmin(np.abs(np.log2(np.maximum(away, 1e-16)) + 20.0))]  # 2^-20 away
     return bool(abs(last) > 16.0 * abs(farther))
 
 
 def _turn(designs: Designs, found: Found, nodes: Array, value: Array) -> NDArray[np.bool_]:
-    """Which extrema are at a kink or jump, whose angle moves with the design."""
+    """Mask of the extrema at a kink or jump whose angle moves with the design."""
     if not designs.rubs:
         return np.zeros(designs.size, np.bool_)
     low, high = designs.theta

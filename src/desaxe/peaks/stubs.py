@@ -1,4 +1,4 @@
-"""What the text of `search` calls: the cosine. A search module has its quantity's own in their place."""
+"""Stubs of the functions that `search` calls, for the cosine; each compiled module has its own instead."""
 
 from math import cos, sin
 from typing import Any

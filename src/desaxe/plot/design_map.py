@@ -104,7 +104,7 @@ def _levels(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], str]:
 
 
 def _widened(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Each NaN next to a number takes its value, so that colours reach under the edge of the hatching."""
+    """Fill each NaN next to a number with its value, so that colours reach under the hatching."""
     wide = values
     for axis in (0, 1):
         for step in (1, -1):
@@ -117,7 +117,7 @@ def _widened(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _label(axes: Any, lines: Any, across: Any, up: Any) -> None:
-    """Every second line that is long enough gets its level, if there is room for it."""
+    """Label every second contour that is long enough, where there is space."""
     from matplotlib.patheffects import withStroke
 
     size = np.array([np.ptp(across) or 1.0, np.ptp(up) or 1.0])

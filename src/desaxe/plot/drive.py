@@ -81,7 +81,7 @@ def _speed(ax: "Axes", result: Any) -> "Line2D":
 
 
 def _scale(result: Any) -> float:
-    """What an angle of the result is multiplied with to be in degrees."""
+    """The factor from the angles of the result to degrees."""
     return {"rad": degrees(1.0), "deg": 1.0}.get(result.unit("theta")) or 360.0 / _turn(result)
 
 

@@ -1,4 +1,4 @@
-"""A dict of arrays, as `evaluate` gives it, as the Dataset that pictures are made of."""
+"""A dict of arrays from `evaluate` as a Dataset to plot."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def as_dataset(found: Any, over: str, inputs: Mapping[str, Any]) -> "xr.Dataset":
-    """The Dataset of a dict of arrays; a Dataset as it is.
+    """The Dataset of a dict of arrays; a Dataset is returned unchanged.
 
     `inputs` are those that the arrays were computed with, beside or instead of those that an answer of
     `evaluate` remembers. Each varies along one axis of the arrays. Raises TypeError where the one `over`

@@ -23,7 +23,7 @@ ANGLES = np.linspace(0.0, 2.0 * pi, 361)
 
 @dataclass(frozen=True)
 class Sketch:
-    """A drawn mechanism, to be turned: `links` (crank and rod), `slider`, `pins`, `arc`, `note`."""
+    """A drawn mechanism, which `turn` moves: `links` (crank and rod), `slider`, `pins`, `arc`, `note`."""
 
     axes: "Axes"
     links: tuple[Any, Any]
@@ -37,7 +37,7 @@ class Sketch:
 
     @property
     def artists(self) -> "list[Artist]":
-        """All that moves."""
+        """The moving artists."""
         return [*self.links, self.slider, self.pins, self.arc, *self.names, self.note]
 
     def turn(self, theta: Any) -> "list[Artist]":
@@ -108,7 +108,7 @@ def _number(name: str, value: Any) -> float:
 
 
 def _box(lengths: dict[str, float], reach: Any) -> tuple[float, float, float, float]:
-    """What must be seen: crank circle and slider at all angles."""
+    """The limits of the axes: crank circle and slider at all angles."""
     ec, AB = lengths["ec"], lengths["AB"]
     room = 0.45 * AB
     ends = [-AB, AB, *(reach[np.isfinite(reach)])]
@@ -116,7 +116,7 @@ def _box(lengths: dict[str, float], reach: Any) -> tuple[float, float, float, fl
 
 
 def _frame(ax: "Axes", lengths: dict[str, float], reach: Any, box: tuple[float, ...]) -> None:
-    """What stands still: the crank's circle, its bearing, the guide, the eccentricity, the axes."""
+    """Draw the fixed parts: the crank's circle, its bearing, the guide, the eccentricity, the axes."""
     from matplotlib.patches import Polygon
 
     ec, AB = lengths["ec"], lengths["AB"]

@@ -8,7 +8,7 @@ from ..support.files import replacing
 
 
 def save(figure: Any, path: str | PathLike[str], dpi: float | None = None) -> Path:
-    """Write a figure or animation to a file of the kind that its name says; folders are made as needed.
+    """Write a figure or animation to a file, in the format of its suffix; missing folders are created.
 
     figure  a matplotlib Figure (.png, .svg, .pdf), or an animation (.gif, .html)
     dpi     dots per inch; by default 150, and 80 of an animation

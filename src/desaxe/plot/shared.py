@@ -1,4 +1,4 @@
-"""What all pictures share: which values are drawn, what labels say, how curves are told apart."""
+"""Shared by all pictures: selection of values, labels, colours and legends."""
 
 import re
 import textwrap
@@ -96,7 +96,7 @@ def mark_gaps(ax: "Axes", lines: "Sequence[Line2D]") -> None:
 
 
 def _spans(places: NDArray[np.float64], missing: NDArray[np.bool_]) -> list[tuple[float, float]]:
-    """The stretches in which values are missing, from the last place with one to the next."""
+    """The intervals of missing values, from the last value before to the first one after."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], missing, [False]]).astype(np.int8)))
     last = places.size - 1
     return [
@@ -112,7 +112,7 @@ def shown(array: "xr.DataArray") -> NDArray[np.float64]:
 
 
 def worth_showing(curves: Sequence[NDArray[np.float64]]) -> tuple[float, float] | None:
-    """Where curves with gaps may grow without bound, the range to show; None where there is no gap.
+    """The range to show for curves with gaps, which may be unbounded; None without gaps.
 
     It is that of the curves without gaps. Where each has some, it is that of most values. If this is
     nearly the range of all, nothing is cut.
@@ -146,7 +146,7 @@ def raised(unit: str) -> str:
 
 
 def meaning_of(array: "xr.DataArray") -> str:
-    """What a quantity is, in a few words."""
+    """The meaning of a quantity in a few words."""
     told = str(array.attrs.get("long_name", ""))
     if parts(str(array.name))[1]:
         return told  # "derivative of Y by theta, theta" says two things
@@ -192,14 +192,14 @@ def label_of(array: "xr.DataArray") -> str:
 
 
 def colours(count: int) -> list[Any]:
-    """Evenly spaced from viridis, without its palest end: told apart by the colour-blind and in print."""
+    """Evenly spaced colours of viridis without its palest end, distinct for the colour-blind and in print."""
     from matplotlib import colormaps
 
     return [colormaps["viridis"](0.9 * k / max(1, count - 1)) for k in range(count)]
 
 
 def _explain(ax: "Axes", family: "xr.DataArray", lines: "list[Line2D]", beside: bool) -> None:
-    """A legend, beside the curves where there is room, or a colour bar where they are many."""
+    """Add a legend, beside the curves where there is space, or a colour bar for many curves."""
     title = f"{family.name} {unit_of(family)}".rstrip()
     if len(lines) <= MOST_IN_LEGEND:
         place = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0)} if beside else {"loc": "best"}

@@ -56,7 +56,7 @@ def tornado(
 
 
 def _told(result: Any, changes: Mapping[str, Any], name: str) -> tuple[float, dict[str, float], str]:
-    """The value, its slopes by the inputs that change, and the label."""
+    """The value, its derivatives by the changed inputs, and the label."""
     if isinstance(result, Mapping) and "gradient" in result:
         value, gradient, label = result["value"], result["gradient"], _label(name)
     elif name in result:

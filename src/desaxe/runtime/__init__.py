@@ -1,4 +1,4 @@
-"""From a request to something that can be called.
+"""From a request to a callable: points, kernels, cache, machine code.
 
 request       names and inputs, checked
 accuracy      the accuracies that can be asked for

@@ -1,4 +1,4 @@
-"""The accuracies that can be asked for, and which of them keeps an error that a user states.
+"""The accuracies by name, and the cheapest one that keeps a given error.
 
 The error of a value is relative, and in proportion to 1 + the sum of its condition numbers: what the
 last digits of the inputs change anyway is not counted against it. `fast` rounds the inputs to float32
@@ -17,7 +17,7 @@ BOUNDS = {"standard": 8 * 2.0**-52, "extended": 2 * 2.0**-52}
 
 
 def accuracy_of(asked: Any) -> str:
-    """One of the accuracies by its name, or the cheapest one that keeps a stated error everywhere."""
+    """The accuracy of this name, or the cheapest one that keeps a given error everywhere."""
     if isinstance(asked, str) and asked in ACCURACIES:
         return asked
     if not isinstance(asked, (int, float)) or isinstance(asked, bool):

@@ -1,4 +1,4 @@
-"""A kernel over arrays of any stride: what NumPy calls a ufunc's inner loop, and what calls a single point.
+"""A kernel over arrays of any stride: the inner loop of a NumPy ufunc, also used for single points.
 
 A kernel wants its columns contiguous and apart. `bind` puts a loop in front of it that hands contiguous
 arrays on as they are and the others in blocks that stay in the first-level cache. So every caller runs the
@@ -164,7 +164,7 @@ class Bound(NamedTuple):
 
 @cache
 def loop() -> Native:
-    """The loop; it answers how many points are left for a repair."""
+    """The inner loop; it returns the number of points left for a repair."""
     return native("any_stride", TEXT)
 
 
@@ -176,7 +176,7 @@ def data_of(
     limit: float,
     repair: int = 0,
 ) -> tuple[bytes, str]:
-    """The data of the loop but for the words of the kernel's table, and the format of these; see `bind`."""
+    """The head of the loop's data, and the format of the kernel's table that follows; see `bind`."""
     arrays: list[int] = []
     words = ""
     for place, rank, size in zip(places, kernel.ranks, kernel.item_sizes, strict=True):
@@ -219,7 +219,7 @@ def bind(
 
 @cache
 def _clear_flags() -> int:
-    """The address of the C library's `feclearexcept`; 0 where there is none."""
+    """The address of the C library's `feclearexcept`; 0 if it has none."""
     with suppress(AttributeError, OSError, TypeError):
         library = ctypes.CDLL(getattr(math, "__file__", None))
         return ctypes.cast(library.feclearexcept, ctypes.c_void_p).value or 0

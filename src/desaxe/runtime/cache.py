@@ -1,4 +1,4 @@
-"""The folder where compiled kernels live: private, bounded, and never the reason for a crash.
+"""The cache folder of compiled kernels: private, bounded, and never the cause of an error.
 
 It is $DESAXE_CACHE_DIR or the user's cache folder. Nothing is loaded from it that another user could have
 written (see `support.private`). Where it cannot be used, a temporary folder of this process takes its place,
@@ -32,7 +32,7 @@ OURS = re.compile(r"[a-z]+_[0-9a-f]{20,64}\.\w+|__pycache__|upkeep\.lock|\.desax
 
 
 class Folder(NamedTuple):
-    """Where kernels are kept, whether the next process finds them there, and why not."""
+    """A cache folder: its path, its persistence, and the reason if it does not persist."""
 
     path: Path
     lasting: bool
@@ -41,7 +41,7 @@ class Folder(NamedTuple):
 
 @cache
 def folder() -> Folder:
-    """The cache folder of this process, decided when it is first asked for."""
+    """The cache folder of this process, chosen on first use."""
     path, why = _usual()
     if path is not None:
         try:
@@ -53,7 +53,7 @@ def folder() -> Folder:
 
 
 def _usual() -> tuple[Path | None, str]:
-    """Where the folder should be, as an absolute path; None and why where there is no such place."""
+    """The configured or default path of the folder; None and the reason if there is none."""
     named = os.environ.get(VARIABLE)
     if named:
         path = Path(named).expanduser() if named.startswith("~") else Path(named)
@@ -94,7 +94,7 @@ def _prepare(path: Path) -> None:
 
 
 def _temporary(why: str) -> Folder:
-    """A folder for this process; where there is none either, a place where nothing can be kept."""
+    """A temporary folder for this process, or a path that cannot be written; with a warning."""
     try:
         path = Path(tempfile.mkdtemp(prefix="desaxe-"))
     except OSError:

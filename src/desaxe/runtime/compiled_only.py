@@ -1,4 +1,4 @@
-"""Work in parts takes compiled code from the first point on: its digits do not depend on the parts."""
+"""Chunked work runs compiled code from the first point on, so that results do not depend on the chunks."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,7 +9,7 @@ _REQUIRED: ContextVar[bool] = ContextVar("compiled_only", default=False)
 
 @contextmanager
 def compiled_only() -> Iterator[None]:
-    """Answer no point in plain Python for the length of a block, however few there are."""
+    """Evaluate every point by compiled code for the duration of a block, however few there are."""
     token = _REQUIRED.set(True)
     try:
         yield
@@ -18,5 +18,5 @@ def compiled_only() -> Iterator[None]:
 
 
 def is_required() -> bool:
-    """Whether compiled code must be taken here."""
+    """True inside a `compiled_only` block."""
     return _REQUIRED.get()

@@ -1,4 +1,4 @@
-"""Few points: plain Python, one by one, as long as that takes less time than compiling a kernel would."""
+"""Few points: interpreted one by one while that is cheaper than compiling a kernel."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -16,7 +16,7 @@ Array = NDArray[Any]
 
 
 def are_good(name: str, array: Array) -> NDArray[np.bool_]:
-    """Which elements an input can have."""
+    """Mask of the elements that are valid values of an input."""
     least = INPUTS[name].least
     good: NDArray[np.bool_] = np.isfinite(array)
     return good if least is None else good & (array >= least)

@@ -1,4 +1,4 @@
-"""Kernels by what they compute: compiled once, kept on disk, loaded by the next process.
+"""Kernels by key: compiled once, stored on disk, loaded by the next process.
 
 `runtime.modules` compiles the text of a kernel and keeps its machine code.
 """
@@ -33,7 +33,7 @@ ASKED_AHEAD = 16  # points for each length: then designs are looked at ahead of 
 
 
 class KernelKey(NamedTuple):
-    """What a kernel is: its outputs, form, fixed inputs and the axis of every other input."""
+    """The key of a kernel: outputs, variant, fixed inputs, and the axis of every other input."""
 
     names: tuple[str, ...]
     form: Variant
@@ -52,7 +52,7 @@ class CompiledKernel(NamedTuple):
     axis_of: tuple[tuple[str, int | None], ...]
 
     def run(self, values: Mapping[str, Any], outs: Sequence[Any]) -> int:
-        """Fill the outputs; the answer is how many points hang on rounding."""
+        """Fill `outs`; return how many points are undecided (see `near_limit`)."""
         return self.function(*(values[name] for name, _ in self.axis_of), *outs)
 
 
@@ -81,7 +81,7 @@ def key_of(
 
 
 def _pays_to_ask(columns: Mapping[str, Any], axis_of: Mapping[str, int]) -> bool:
-    """Whether there are so few lengths and so many points that designs are better looked at ahead."""
+    """True if there are so few lengths per point that testing the designs in advance pays."""
     lengths = sum(columns[name].size for name in LENGTHS if name in columns)
     sizes = {axis: columns[name].size for name, axis in axis_of.items()} if lengths else {}
     return bool(lengths * ASKED_AHEAD <= prod(sizes.values()))
@@ -103,14 +103,14 @@ _LOCK = fork_safe_lock()
 
 
 def _is_seen(program: Program, angle: str) -> bool:
-    """Whether a bad value of an input may be seen by more than sine and cosine, which make it NaN."""
+    """True if an invalid value may reach other lines than sine and cosine, which turn it into NaN."""
     types = {line.name: line.type for line in program.lines}
     status = any(types.get(name) == "i64" for name in program.outputs)
     return status or any(angle in line.args and line.op not in ("sin", "cos") for line in program.lines)
 
 
 def is_ready(key: KernelKey) -> bool:
-    """Whether the kernel is in memory already."""
+    """True if the kernel is in memory."""
     return key in _LOADED
 
 
@@ -125,12 +125,12 @@ def kernel_for(key: KernelKey) -> CompiledKernel:
 
 
 def is_single(key: KernelKey) -> bool:
-    """Whether the kernel computes in float32."""
+    """True if the kernel computes in float32."""
     return key.accuracy == "fast" and not key.far
 
 
 def has_near_limit(key: KernelKey) -> bool:
-    """Whether points that hang on rounding are counted."""
+    """True if the kernel counts undecided points (see `near_limit`)."""
     return key.accuracy == "standard" and not key.reduce and plain_of(key) is not None
 
 
@@ -160,7 +160,7 @@ def kernel_of(key: KernelKey) -> Kernel:
 
 
 def counting(key: KernelKey) -> Program:
-    """The program of a key with one more output: whether a point may be one that is answered again.
+    """The program of a key with one more output, a flag: the point may need a repair.
 
     It holds for more points than `near_limit` selects, by whatever the two round differently: then the
     points that are answered again do not depend on which others are in the same call.
@@ -184,17 +184,17 @@ def _lowered_plain(program: Program, varying: Sequence[str], key: KernelKey) -> 
 
 
 def seen_inputs(program: Program, varying: Sequence[str]) -> list[str]:
-    """The inputs whose bad values a plain form must be kept from."""
+    """The inputs whose invalid values a plain form must be guarded from."""
     return [name for name in varying if name not in LENGTHS and _is_seen(program, name)]
 
 
 def _trigonometry(key: KernelKey) -> Trigonometry | None:
-    """The coefficients of a kernel's sine and cosine; None where angles are too far for them."""
+    """The coefficients of a kernel's sine and cosine; None if angles exceed their range."""
     return None if key.far else single_constants() if is_single(key) else constants()
 
 
 def source_of(key: KernelKey) -> str:
-    """The text that is compiled."""
+    """The source text of a kernel."""
     kernel = kernel_of(key)
     fixed = ", ".join(f"{name} = {value:g}" for name, value in key.fixed)
     motion = "a given state" if key.form.state else "paper A's law"
@@ -205,7 +205,7 @@ def source_of(key: KernelKey) -> str:
 
 
 def is_on_disk(key: KernelKey) -> bool:
-    """Whether an earlier process has left the kernel's machine code."""
+    """True if an earlier process has stored the kernel's machine code."""
     return is_kept("kernel", source_of(key))
 
 

@@ -1,4 +1,4 @@
-"""Machine code that stands alone: made by numba once, loaded by llvmlite ever after.
+"""Self-contained machine code: made once by numba, later loaded by llvmlite alone.
 
 Importing numba and filling its tables of types takes many times longer than loading a kernel. So the machine
 code is taken out of numba, with an entry that follows our own calling convention, and linked with the few
@@ -107,7 +107,7 @@ class Code(NamedTuple):
 
 
 class Loaded(NamedTuple):
-    """An entry in memory; its code lives as long as `keeper`."""
+    """A loaded entry point; its code stays in memory as long as `keeper`."""
 
     address: int
     ranks: tuple[int, ...]
@@ -117,7 +117,7 @@ class Loaded(NamedTuple):
 
 @cache
 def machine() -> str:
-    """What machine code depends on: LLVM and the processor."""
+    """A text that identifies the LLVM version and the processor, on which machine code depends."""
     import llvmlite
     import llvmlite.binding as llvm
 
@@ -129,7 +129,7 @@ def machine() -> str:
 
 
 def compile_text(text: str, title: str, scope: Mapping[str, Any]) -> Code | Loaded:
-    """Compile a text that defines `function` and `signature`; loaded right away if it cannot stand alone.
+    """Compile a text that defines `function` and `signature`; loaded at once if it is not self-contained.
 
     `scope` has names that the text uses and does not define, such as a user's own function.
     """
@@ -166,7 +166,7 @@ def compile_text(text: str, title: str, scope: Mapping[str, Any]) -> Code | Load
 
 
 def _entry(name: str, given: tuple[Any, ...], ranks: tuple[int, ...]) -> str:
-    """The entry: it reads the table, and passes on what numba's convention wants.
+    """The LLVM text of the entry: it unpacks the table into the arguments of numba's convention.
 
     That is a pointer for the answer and one for an error, then each number, and of each array (meminfo,
     parent, size, itemsize, data, shape, strides). A status is returned; -2 is an answer of None.
@@ -223,7 +223,7 @@ def _quoted(name: str) -> str:
 
 
 def _alone(library: Any, entry: Any) -> bytes | None:
-    """The machine code of a library and an entry; None if it calls more than we can give it."""
+    """The machine code of a library and an entry; None if it calls functions that we cannot provide."""
     import llvmlite.binding as llvm
 
     module = llvm.parse_assembly(library.get_llvm_str())
@@ -245,7 +245,7 @@ def _alone(library: Any, entry: Any) -> bytes | None:
 
 
 def _within(library: Any, entry: Any) -> int:
-    """The address of the entry of a library that only numba can load."""
+    """The entry address of a library that only numba can load."""
     whole = library.codegen.create_library("desaxe_entry")
     whole.add_linking_library(library)
     whole.add_llvm_module(entry)
@@ -263,7 +263,7 @@ _KEPT: list[Any] = []  # what belongs to numba's engine lives as long as the pro
 
 @cache
 def _outside() -> dict[str, int]:
-    """Where the functions that machine code may call are: those that this Python is linked with."""
+    """Addresses of the functions that machine code may call: those that this Python is linked with."""
     found: dict[str, int] = {}
     with suppress(AttributeError, OSError, TypeError):
         mathematics = ctypes.CDLL(getattr(math, "__file__", None))
@@ -275,7 +275,7 @@ def _outside() -> dict[str, int]:
 
 @cache
 def _target() -> Any:
-    """LLVM's machine, told where outside functions are: without one that is called it ends the process."""
+    """The LLVM target with the external functions registered: calling an unknown one would crash."""
     import llvmlite.binding as llvm
 
     for name, place in _outside().items():
@@ -286,7 +286,7 @@ def _target() -> Any:
 
 
 def load(code: Code) -> Loaded | None:
-    """Machine code made ready to be called; None where this process cannot."""
+    """Load machine code; None if this process cannot."""
     import llvmlite.binding as llvm
 
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _target().create_target_machine())

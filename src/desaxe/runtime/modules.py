@@ -37,7 +37,7 @@ class Native:
         self.pack = struct.Struct("".join(words)).pack
 
     def __call__(self, *arguments: Any) -> int:
-        """Run it; MemoryError where it finds no memory for its tables."""
+        """Run the code; MemoryError if it cannot allocate its tables."""
         return self.run(self.table(arguments))
 
     def table(self, arguments: Sequence[Any]) -> bytes:
@@ -54,7 +54,7 @@ class Native:
         return self.pack(*words)
 
     def run(self, table: bytes) -> int:
-        """Run it on a packed table, whose arrays somebody keeps alive."""
+        """Run the code on a packed table; the caller keeps its arrays alive."""
         answer = self.entry(table)
         if answer == NO_MEMORY:
             raise MemoryError("no memory for the tables of a kernel")
@@ -96,18 +96,18 @@ def _ready(made: Code | Loaded) -> Loaded:
 
 
 def path_of(kind: str, text: str) -> Path:
-    """Where the machine code of a text is kept."""
+    """The cache file of the machine code of a text."""
     digest = hashlib.sha256(f"{_HEAD}\n{machine()}\n{text}".encode()).hexdigest()
     return _cache.folder().path / f"{kind}_{digest[:40]}{SUFFIX}"
 
 
 def is_kept(kind: str, text: str) -> bool:
-    """Whether an earlier process has left the machine code of a text."""
+    """True if an earlier process has stored the machine code of a text."""
     return path_of(kind, text).exists()
 
 
 def _from_disk(path: Path) -> Loaded | None:
-    """The kept machine code if it is whole, for this machine, and writable by nobody else; else None."""
+    """The stored machine code if it is intact, for this machine, and writable by no other user; else None."""
     with suppress(OSError):
         code = read_code(path.name, _cache.read_bytes(path))
         return load(code) if code is not None else None
@@ -115,7 +115,7 @@ def _from_disk(path: Path) -> Loaded | None:
 
 
 def faults(folder: Path) -> dict[Path, str]:
-    """The files of the cache folder that would not be loaded here, and why not."""
+    """The files of the cache folder that would not be loaded here, each with the reason."""
     found = {}
     for entry in _cache.entries(folder):
         if entry.path.suffix == SUFFIX:
@@ -141,7 +141,7 @@ def read_code(name: str, data: bytes) -> Code | None:
 
 
 def _to_disk(path: Path, made: Code) -> None:
-    """Keep machine code; without a place to keep it, it is made anew in the next process."""
+    """Store machine code; if that fails, the next process compiles again."""
     head: dict[str, Any] = {"machine": machine(), "sha256": _digest(path.name, *made)}
     head |= {"ranks": made.ranks, "item_sizes": made.item_sizes}
     with suppress(OSError):

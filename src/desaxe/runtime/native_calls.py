@@ -1,4 +1,4 @@
-"""A bound kernel as others call it: a NumPy ufunc, a C function of one point, a function for numba's code."""
+"""A bound kernel as a NumPy ufunc, as a C function of one point, and as a function for numba's code."""
 
 import ctypes
 from collections.abc import Callable, Sequence
@@ -29,12 +29,12 @@ def _new_ufunc() -> Callable[..., Any]:
 
 
 def most_arguments() -> int:
-    """Inputs and outputs that a ufunc can have."""
+    """The largest number of inputs and outputs of a ufunc."""
     return 32 if import_module("numpy").__version__.startswith("1.") else 64
 
 
 def ufunc_of(bound: Bound, inputs: int, whole: Sequence[bool], name: str) -> tuple[Any, Any]:
-    """A ufunc that runs a bound kernel, and what must live as long; `whole` says which outputs are int8.
+    """A ufunc that runs a bound kernel, and the objects to keep alive; `whole` flags the int8 outputs.
 
     More arguments than a ufunc can have go to a function that does the same for plain arrays.
     """
@@ -50,7 +50,7 @@ def ufunc_of(bound: Bound, inputs: int, whole: Sequence[bool], name: str) -> tup
 
 
 def _wide(bound: Bound, whole: Sequence[bool]) -> Callable[..., Any]:
-    """What the ufunc would be."""
+    """A Python function with the ufunc's behaviour, for more arguments than a ufunc can have."""
     import numpy as np
 
     loop = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 4)(bound.loop)

@@ -1,4 +1,4 @@
-"""Points at which rounding decides whether the rod reaches the slider's axis, answered with twice the digits.
+"""Undecided points: rounding decides if they can be assembled, so they are recomputed in double-double.
 
 The last angle that a mechanism reaches falls between two doubles, and next to it the sine's last bits say on
 which side an angle lies. `standard` kernels count such points; here they are found, and answered by
@@ -19,7 +19,7 @@ AT_A_TIME = 2**20  # points
 
 
 def decide(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any]) -> None:
-    """Answer the undecided points of a kernel's call again."""
+    """Recompute the undecided points of a kernel's call."""
     if not_extended(key.form.own):
         return
     axis_of = dict(key.axis_of)
@@ -48,7 +48,7 @@ def _decide(
 
 
 def _answer(key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any], flat: Sequence[str]) -> None:
-    """Fill flat outputs from values, of which some are flat columns, with twice the digits.
+    """Fill flat outputs from scalars and flat columns, in double-double.
 
     Always by NumPy, however many they are: another tier may round differently.
     """

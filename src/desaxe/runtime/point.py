@@ -30,7 +30,7 @@ class Point(NamedTuple):
 def point_of(
     names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...], accuracy: str = "standard"
 ) -> Point:
-    """The function that computes them."""
+    """The function of a request at single points, with its inputs in order."""
     program = specialise(names, form, fixed, accuracy)
     if accuracy != "extended":
         return Point(_by_room(names, form, fixed), program.inputs)
@@ -50,7 +50,7 @@ def point_of(
 
 
 def _by_room(names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...]) -> Function:
-    """The function that goes by what a point needs.
+    """A function that picks the plain or the stable form for each point.
 
     That is the plain form in a design with wide margins, the stable one elsewhere, and twice the digits where
     rounding decides whether the rod reaches. The latter two are made when the first point needs them.

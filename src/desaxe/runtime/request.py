@@ -1,4 +1,4 @@
-"""The border: what is asked for and what is given, checked once, with errors that name the culprit."""
+"""The check of a request: names and inputs, once, with errors that name the wrong one."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache, wraps
@@ -23,7 +23,7 @@ OF_NO_EFFECT = (*LOADS, *LENGTHS, "branch")
 
 
 class MachineSpeed(float):
-    """A speed or an acceleration that a machine has: functions that do not take one need not refuse it."""
+    """A speed or acceleration of a Machine, which functions without that input ignore."""
 
     __slots__ = ()
 
@@ -44,7 +44,7 @@ class Request(NamedTuple):
 
 
 def check_common(given: Mapping[str, Any], branch: Any, threads: int | None = None) -> None:
-    """Refuse a law and a state at once, a branch that is none, and less than one thread."""
+    """Reject omega together with omega0, a branch other than 1 or -1, and threads < 1."""
     if given.get("omega") is not None and given.get("omega0") is not None:
         raise ValueError("give omega0= (the law) or omega= (a state), not both")
     number = isinstance(branch, (int, float)) or _is_numpy_number(branch)
@@ -55,7 +55,7 @@ def check_common(given: Mapping[str, Any], branch: Any, threads: int | None = No
 
 
 def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accuracy: Any) -> Request:
-    """The request, checked. What is not given and has no effect by default is fixed, and costs nothing."""
+    """Check a request. Absent inputs whose default has no effect are fixed and folded away."""
     check_common(given, branch)
     state = given.get("omega") is not None
     kept = accuracy_of(accuracy)
@@ -82,7 +82,7 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
 
 
 def check_extended(own: tuple[Definition, ...]) -> None:
-    """Reject twice the digits for operations that have none."""
+    """Reject `accuracy="extended"` for operations without double-double."""
     problem = not_extended(own)
     if problem is not None:
         raise ValueError(f"accuracy='extended' is not available for {problem[0]}: it uses {problem[1]}")
@@ -90,19 +90,19 @@ def check_extended(own: tuple[Definition, ...]) -> None:
 
 @lru_cache(maxsize=1024)
 def _moves(centre: str, names: tuple[str, ...], own: tuple[Definition, ...]) -> bool:
-    """Whether these names need a centre of mass, or only how it moves with its link."""
+    """True if these names depend on a centre of mass or on its derivative by its link's length."""
     program = program_of(names, Variant(own=own))
     lines = (line.name for line in program.lines)
     return centre in program.inputs or any(parts(name)[0] == centre for name in lines)
 
 
 def is_steady(alpha: Any) -> bool:
-    """Whether no acceleration is given, or a plain 0."""
+    """True if alpha is absent or a plain 0."""
     return alpha is None or (type(alpha) is float and alpha == 0.0)
 
 
 def check_inputs(caller: str, given: Iterable[str], allowed: Sequence[str]) -> None:
-    """Refuse an input that there is not."""
+    """TypeError for an unknown input, with similar names."""
     for name in given:
         if name not in allowed:
             raise _unknown_input(caller, name, allowed)
@@ -117,7 +117,7 @@ def _unknown_input(caller: str, name: str, allowed: Sequence[str]) -> TypeError:
 
 
 def with_known_inputs(function: Callable[P, T]) -> Callable[P, T]:
-    """The function; an input that it does not have is refused as `check_inputs` does.
+    """Decorate a function to refuse unknown inputs as `check_inputs` does.
 
     Masses and loads that have no effect on it are let through, and so are the speeds of a machine:
     `**machine` works everywhere.
@@ -146,7 +146,7 @@ def with_known_inputs(function: Callable[P, T]) -> Callable[P, T]:
 
 
 def with_named_inputs(function: Callable[P, T]) -> Callable[P, T]:
-    """The function with every input in its signature; its `**inputs` keep the order given."""
+    """Decorate a function to have every input in its signature; `**inputs` keeps the caller's order."""
     from inspect import Parameter, signature
 
     given = signature(function)
@@ -159,7 +159,7 @@ def with_named_inputs(function: Callable[P, T]) -> Callable[P, T]:
 
 
 def several(names: Any) -> tuple[str, ...]:
-    """The names of a list or anything else that holds them, each once."""
+    """The names of an iterable, without duplicates."""
     try:
         return tuple(dict.fromkeys(names))
     except TypeError:
@@ -169,7 +169,7 @@ def several(names: Any) -> tuple[str, ...]:
 
 
 def standstill(names: Iterable[str], given: Mapping[str, Any]) -> float | None:
-    """The speed to take where none is given: 0 where only `status` would use it, else None."""
+    """The default speed: 0 if only `status` would use it, else None."""
     others = tuple(name for name in names if name not in ("status", "margin"))
     return None if others and "omega0" in request(others, given, 1, "standard").inputs else 0.0
 

@@ -66,7 +66,7 @@ def _with_extended_forms(program: Program, accuracy: str) -> Program:
 
 
 def _needs(program: Program) -> dict[str, frozenset[str]]:
-    """Which of the names in KEPT each line depends on."""
+    """Map each line to the names of KEPT that it depends on."""
     needs: dict[str, frozenset[str]] = dict.fromkeys(program.inputs, frozenset())
     for line in program.lines:
         own = frozenset({line.name} & set(KEPT))

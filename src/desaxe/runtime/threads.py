@@ -1,4 +1,4 @@
-"""Blocks of the outermost axis, shared by threads; the answer is the same for any number of them.
+"""Blocks of the outermost axis, shared by threads; the results do not depend on their number.
 
 No block runs for long: between two of them an interrupt is heard, and it stops all threads.
 """
@@ -23,7 +23,7 @@ LEAST_BLOCK = 20_000
 
 
 def available() -> int:
-    """How many cores this process may use."""
+    """The number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -34,7 +34,7 @@ _INHERITED: "list[ThreadPoolExecutor]" = []  # in a forked child: pools without 
 
 
 def pool(threads: int) -> "ThreadPoolExecutor":
-    """The pool of so many threads, made when it is first used in this process."""
+    """The pool of this number of threads, created on first use."""
     found = _POOLS.get(threads)
     if found is None:
         from concurrent.futures import ThreadPoolExecutor  # logging comes with it
@@ -70,7 +70,7 @@ def run_in_blocks(
 
 
 def in_blocks(block: Callable[[int, int], None], length: int, points: int, threads: int | None) -> None:
-    """Call `block(start, stop)` for parts of an axis with so many points, on threads that pay."""
+    """Call `block(start, stop)` for parts of an axis, on as many threads as its points justify."""
     each = max(points // max(length, 1), 1)  # points of one step along the axis
     run_parts(block, length, threads, max(1, LEAST_BLOCK // each), max(1, LONGEST_BLOCK // each))
 
@@ -78,7 +78,7 @@ def in_blocks(block: Callable[[int, int], None], length: int, points: int, threa
 def run_parts(
     part: Callable[[int, int], None], length: int, threads: int | None, least: int, longest: int
 ) -> None:
-    """Call `part(start, stop)` for all parts of a length, on threads that have at least `least` of it each.
+    """Call `part(start, stop)` for all parts of a length, on threads with at least `least` of it each.
 
     No part is longer than `longest`. An exception, or an interrupt of the caller, ends the work of all
     threads after the part that each of them is in.
@@ -105,7 +105,7 @@ def run_parts(
 
 
 def run_together(works: Sequence[Callable[[], None]], stopped: Event) -> None:
-    """Run each on a thread; where one fails, or the caller is interrupted, `stopped` tells the others."""
+    """Run each function on a thread; if one fails, or the caller is interrupted, set `stopped`."""
     from concurrent.futures import wait
 
     begun = [pool(len(works)).submit(copy_context().run, work) for work in works]

@@ -1,4 +1,4 @@
-"""How a request over arrays is answered: in plain Python, in NumPy, or by a compiled kernel.
+"""The tiers of a request over arrays: plain Python, NumPy, or a compiled kernel.
 
 Compiling takes seconds, so it has to pay: few points are computed one by one, a new request in NumPy, and
 when it comes again it is compiled. The tiers keep the same promise, but may differ in the last digits;
@@ -31,7 +31,7 @@ def forced_tier() -> str | None:
 
 
 def tier_of(key: KernelKey, size: int, numpy_pays: bool = False) -> str:
-    """The tier for so many more points of a request; without `numpy_pays` NumPy only if it is forced."""
+    """The tier for `size` further points of a request; NumPy only with `numpy_pays` or if forced."""
     tier = tier_ahead(key, size, numpy_pays)
     if not is_ready(key):
         _ASKED[key] += size
@@ -39,7 +39,7 @@ def tier_of(key: KernelKey, size: int, numpy_pays: bool = False) -> str:
 
 
 def tier_ahead(key: KernelKey, size: int, numpy_pays: bool = False) -> str:
-    """The tier that so many points would have, if they were asked for now."""
+    """The tier that `size` further points would get now; nothing is counted."""
     forced = forced_tier()
     if forced is not None:
         return forced

@@ -1,4 +1,4 @@
-"""Programs spelled in NumPy: a request that is asked for the first time is not kept waiting for a compiler.
+"""Programs in NumPy, so that the first call of a request need not wait for the compiler.
 
 Points go through in blocks that stay in the cache. As in a kernel, the plain form is for designs with wide
 margins and the stable one for the others, and what rounding decides is answered with twice the digits.
@@ -90,7 +90,7 @@ def _decide(
     rows: NDArray[np.intp],
     near: NDArray[np.intp],
 ) -> None:
-    """Answer with twice the digits where rounding decides whether the rod reaches (see `near_limit`)."""
+    """Recompute undecided points in double-double (see `near_limit`)."""
     if not near.size or not_extended(key.form.own):
         return
     chosen = {name: value[near] if name in flat else value for name, value in values.items()}

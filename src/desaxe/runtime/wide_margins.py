@@ -1,4 +1,4 @@
-"""Which designs have wide margins: so far from every change point that the plain forms do not cancel.
+"""The wide-margin test: designs so far from every change point that the plain forms do not cancel.
 
 The test is the derivation's own; here it is answered ahead of a kernel that then need not ask.
 """
@@ -20,13 +20,13 @@ from .specialise import specialise
 
 
 def have_wide_margins(lengths: Mapping[str, Any], form: Variant) -> NDArray[np.bool_]:
-    """Whether designs have wide margins, from their `ec`, `AB` and `BC`, arrays that broadcast."""
+    """Mask of the designs with wide margins, from broadcastable arrays `ec`, `AB`, `BC`."""
     with np.errstate(all="ignore"):
         return np.asarray(_of_arrays(form)(*(lengths[name] for name in LENGTHS)))
 
 
 def all_have_wide_margins(form: Variant, ec: Any, AB: Any, BC: Any) -> bool:
-    """Whether every combination of these lengths has wide margins, of numbers or arrays of any shape.
+    """True if every combination of these lengths (numbers or arrays) has wide margins.
 
     The test says no more of all of them than of their extremes.
     """
@@ -35,7 +35,7 @@ def all_have_wide_margins(form: Variant, ec: Any, AB: Any, BC: Any) -> bool:
 
 
 def _extremes(values: Any) -> tuple[float, ...]:
-    """The least and the largest; NaN where one is NaN."""
+    """The smallest and the largest element; NaN if one is NaN."""
     return (values,) if isinstance(values, float) else (float(values.min()), float(values.max()))
 
 

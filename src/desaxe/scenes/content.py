@@ -13,7 +13,7 @@ from .values import Value
 
 
 class Check(NamedTuple):
-    """One printed value, and the inputs at which it is to be computed."""
+    """A printed value, and the inputs for the computed one."""
 
     title: str
     source: str
@@ -23,7 +23,7 @@ class Check(NamedTuple):
 
 
 class Claim(NamedTuple):
-    """What somebody says about the peak of one design: its increase over the baseline."""
+    """A claim about the peak of one design: its increase over the baseline."""
 
     source: str
     at: dict[str, float]
@@ -59,7 +59,7 @@ class Picture(NamedTuple):
 
 
 class Content(NamedTuple):
-    """All that a scene says, in SI units; inputs in the order in which they are written."""
+    """The content of a scene in SI units, its inputs in the order of the file."""
 
     title: str
     outputs: tuple[str, ...]

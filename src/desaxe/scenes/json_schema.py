@@ -29,7 +29,7 @@ def json_schema_text() -> str:
 
 
 def _for_toml(rule: Any) -> Any:
-    """Without null, which TOML does not have; with the words that stand for quantities and reductions."""
+    """A schema rule for TOML: without null, with the names of quantities and reductions."""
     if isinstance(rule, list):
         return [_for_toml(part) for part in rule]
     if not isinstance(rule, dict):

@@ -15,7 +15,7 @@ from .content import Content
 
 
 class GridKernel(NamedTuple):
-    """What the grid of a scene asks for, its axes in the order of the kernel's loops, and the key."""
+    """The kernel of a scene's grid: its request, its axes in loop order, its key."""
 
     request: Request
     axes: tuple[str, ...]
@@ -72,7 +72,7 @@ def _under_loads(
     names: Sequence[str],
     dimensions: Sequence[str],
 ) -> GridKernel:
-    """The same under loads that vary with the motion: inputs along theta, or, over Y, along all axes.
+    """The kernel under loads that vary with the motion: inputs along theta or, over Y, along all axes.
 
     The kernel computes the slopes by the loads too, which total derivatives need.
     """

@@ -17,7 +17,7 @@ COLUMNS = {"over_theta": ("values",), "over_Y": ("outward", "inward")}
 
 
 def without_objects(data: Mapping[str, Any]) -> dict[str, Any]:
-    """The data of a scene with a number in the place of each load that is one already."""
+    """The data of a scene with each Load object replaced by a number, for the schema."""
     return {
         section: {name: 0.0 if isinstance(value, Load) else value for name, value in table.items()}
         if section == "loads" and isinstance(table, Mapping)

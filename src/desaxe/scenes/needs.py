@@ -53,7 +53,7 @@ def require_for_grid(key: str, names: tuple[str, ...], inputs: Mapping[str, Any]
 
 
 def with_others(inputs: Mapping[str, Value], other: Mapping[str, Value]) -> dict[str, Value]:
-    """Inputs with others in their place; a given state takes the place of the law, and back."""
+    """Replace inputs by others; a given state replaces the law, and vice versa."""
     swapped = {"omega": "omega0", "omega0": "omega"}
     replaced = {swapped[name] for name in other if name in swapped}
     return {**{name: value for name, value in inputs.items() if name not in replaced}, **other}

@@ -1,4 +1,4 @@
-"""The peaks that a scene asks for, labelled, and what was claimed about some of them."""
+"""The peaks of a scene, labelled, and the claims about them."""
 
 from collections.abc import Mapping
 from math import pi, prod
@@ -38,7 +38,7 @@ class ClaimResult(NamedTuple):
 
 
 class PeakResult(NamedTuple):
-    """The peaks of all designs, labelled, and what was claimed about some of them.
+    """The peaks of all designs, labelled, and the checked claims about them.
 
     `dataset` has over the designs' dimensions: `value`, `theta`, `status`, `value_wrt_<parameter>`
     and, where there is a baseline, `increase` over it in percent. `mirrored` tells the designs with
@@ -53,13 +53,13 @@ class PeakResult(NamedTuple):
 
 
 def batches(one: Peak) -> int:
-    """How many steps a peak takes."""
+    """The number of batches of a peak."""
     designs = prod(len(values) for values in one.axes.values()) + len(one.claims) + bool(one.baseline)
     return -(-designs // DESIGNS)
 
 
 def peaks_of(one: Peak, content: Content, steps: Steps) -> PeakResult:
-    """The peaks of the designs, of the baseline and of what was claimed, in one go."""
+    """The peaks of designs, baseline and claims, found together."""
     others = [*([one.baseline] if one.baseline else []), *(claim.design for claim in one.claims)]
     columns = {
         name: np.append(column, [design[name] for design in others])
@@ -170,6 +170,6 @@ def columns_of(inputs: Mapping[str, Value]) -> dict[str, NDArray[np.float64]]:
 
 
 def provenance(content: Content) -> dict[str, str]:
-    """Attributes that say where a dataset comes from."""
+    """Attributes of provenance: title, source, conventions."""
     title = {"title": content.title} if content.title else {}
     return {**title, "source": source(), "Conventions": CONVENTIONS}

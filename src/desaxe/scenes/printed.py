@@ -1,4 +1,4 @@
-"""Numbers as somebody printed them: a computed value is shown with the same digits and unit."""
+"""Printed numbers of a paper: a computed value is shown with the same digits and unit."""
 
 from decimal import ROUND_HALF_EVEN, Context, Decimal
 from typing import NamedTuple
@@ -29,7 +29,7 @@ class Printed(NamedTuple):
         return exact.quantize(Decimal(1).scaleb(self.place), ROUND_HALF_EVEN, wide)
 
     def agrees(self, computed: float) -> bool:
-        """Whether a computed value rounds to the printed one."""
+        """True if a computed value rounds to the printed one."""
         return self.rounded(computed) == self.value
 
     def text(self, value: Decimal) -> str:
@@ -67,7 +67,7 @@ def read_percentage(key: str, written: str | float) -> Printed:
 
 
 def _factor(complaint: str, unit: str, si: str) -> float:
-    """What a value in the SI unit is multiplied with to be in a unit; people write m/s2 for m/s^2."""
+    """The factor from the SI unit to a unit, also in the spelling m/s2 for m/s^2."""
     if spelled(unit).replace(" ", "") == si or unit == "%":
         return 1.0
     from ..mechanism.units import registry

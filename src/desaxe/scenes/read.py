@@ -127,7 +127,7 @@ def _units(data: Mapping[str, Any]) -> UnitSystem:
 
 
 def _defined(tables: Mapping[str, Any]) -> tuple[Definition, ...]:
-    """The quantities of the scene's own, known from now on."""
+    """Register the scene's own quantities."""
     try:
         own = read_definitions(tables)
         redefine(own)
@@ -137,7 +137,7 @@ def _defined(tables: Mapping[str, Any]) -> tuple[Definition, ...]:
 
 
 def _accuracy(written: str | float) -> str:
-    """One of the accuracies, or the cheapest one that keeps an error everywhere."""
+    """The accuracy of a scene, by name or by a bound on the error."""
     try:
         return accuracy_of(written)
     except ValueError as error:
@@ -162,7 +162,7 @@ def _reduction(
 
 
 def _require_names(file: schema.SceneFile) -> None:
-    """The names of files say what is written into them."""
+    """SceneError for a file name whose suffix is no known format."""
     data = file.results.data
     if data is not None and not data.endswith(DATA):
         ends = ", ".join(DATA)

@@ -78,7 +78,7 @@ def _block(source: str, results: list[CheckResult]) -> str:
 
 
 def _feasibility(found: FeasibilityResult, units: UnitSystem) -> str:
-    """Up to where the crank turns, and which designs do not."""
+    """The section on feasibility: the limit of ec, and the designs that cannot turn."""
     lines = ["Feasibility"]
     if found.limit is not None:
         limit = (
@@ -103,7 +103,7 @@ def _feasibility(found: FeasibilityResult, units: UnitSystem) -> str:
 
 
 def _varying(designs: list[dict[str, float]], count: int) -> list[str]:
-    """The lengths that tell these designs apart; `ec` where there is one design only."""
+    """The lengths in which these designs differ; `ec` for a single design."""
     names = list(designs[0]) if designs else []
     varying = [name for name in names if len({design[name] for design in designs}) > 1]
     return varying or (["ec"] if count > 0 else [])
@@ -147,7 +147,7 @@ def _peak_rows(found: PeakResult, units: UnitSystem) -> list[list[str]]:
 
 
 def _percent(value: float) -> str:
-    """A change: a dash where there is none, a power of ten where it is huge, so that columns stay narrow."""
+    """A change in percent as short text: a dash for NaN, a power of ten if huge."""
     form = "+.1f" if abs(value) < HUGE else "+.3g"
     return "-" if isnan(value) else f"{value:{form}} %"
 
@@ -160,7 +160,7 @@ def _slope(found: PeakResult, name: str, index: tuple[int, ...]) -> str:
 
 
 def _thinned(indices: list[tuple[int, ...]]) -> list[tuple[int, ...]]:
-    """At most so many rows, evenly chosen, the first and last among them."""
+    """At most ROWS indices, evenly chosen, with the first and the last."""
     if len(indices) <= ROWS:
         return indices
     return [indices[round(k * (len(indices) - 1) / (ROWS - 1))] for k in range(ROWS)]
@@ -205,7 +205,7 @@ def _design(inputs: dict[str, float], units: UnitSystem) -> str:
 
 
 def _told(name: str, value: float, units: UnitSystem) -> str:
-    """An input in SI units with the unit that the scene is told in."""
+    """An input with its unit, in the units of the scene."""
     conversion = units.of(name)
     return f"{number(conversion.shown(value))} {conversion.unit}".removesuffix(" 1")
 
@@ -214,7 +214,7 @@ def _told(name: str, value: float, units: UnitSystem) -> str:
 
 
 def _values(content: Content, result: Run) -> str:
-    """What the labelled result holds."""
+    """The section on the labelled result: its names and axes."""
     assert result.dataset is not None
     shape = " x ".join(f"{name} ({size})" for name, size in result.dataset.sizes.items())
     kept = "" if content.data is not None else '\n  not kept in a file: give [results] data = "out/values.nc"'

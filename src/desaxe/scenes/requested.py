@@ -87,7 +87,7 @@ def _completed(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -
 
 
 def _sensitivities(key: str, table: schema.PeakTable, needed: Iterable[str]) -> tuple[str, ...]:
-    """The parameters of the wanted sensitivities."""
+    """The parameters of the requested sensitivities."""
     if table.sensitivities is None:
         return tuple(name for name in SENSITIVITIES if name in needed)
     only_inputs(key, table.sensitivities)
@@ -99,7 +99,7 @@ def _sensitivities(key: str, table: schema.PeakTable, needed: Iterable[str]) -> 
 
 
 def _slope(key: str, name: str, state: bool) -> str:
-    """The derivative of a quantity by theta, whose inputs a peak needs; itself where there is none."""
+    """The derivative of a quantity by theta, whose inputs a peak needs; the quantity itself without one."""
     if name in WITHOUT_COURSE:
         raise SceneError(f"{key} = {shown(name)}: it has no peak over theta")
     slope = sensitivity(name, "theta")
@@ -126,7 +126,7 @@ def _angles(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> t
 def _other_design(
     key: str, written: Mapping[str, float | str], axes: Mapping[str, Any], fixed: Mapping[str, float]
 ) -> dict[str, float]:
-    """All inputs of a design that says only what is different."""
+    """All inputs of a design of which only the differences are written."""
     design = {**fixed, **design_of(key, written)}
     for name in written:
         if name not in axes and name not in fixed:

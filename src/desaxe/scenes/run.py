@@ -51,7 +51,7 @@ class Infeasible(NamedTuple):
 
 
 class FeasibilityResult(NamedTuple):
-    """How many of the designs turn fully, and the first of those that do not.
+    """The number of designs that turn fully, and the first ones that do not.
 
     `limit` is the largest |ec| with which the crank turns fully [m], where AB and BC are numbers.
     """
@@ -63,7 +63,7 @@ class FeasibilityResult(NamedTuple):
 
 
 class Run(NamedTuple):
-    """All that a run gives."""
+    """The results of a run."""
 
     dataset: "xr.Dataset | None"
     checks: tuple[CheckResult, ...]
@@ -114,7 +114,7 @@ def _no_watch(done: int, total: int, what: str) -> None:
 
 
 def _require_rooms(content: Content) -> None:
-    """Fail at the start, not at the end, where an optional dependency is missing."""
+    """Fail early if an optional dependency is missing."""
     rooms = {"outputs": "xarray"} if content.outputs else {}
     rooms |= {"results.store": "zarr", "a results.store": "dask"} if content.store is not None else {}
     rooms |= {"[[peak]]": "xarray"} if content.peaks else {}
@@ -128,7 +128,7 @@ def _require_rooms(content: Content) -> None:
 
 
 def _check_files(content: Content) -> None:
-    """Fail at the start, not at the end, where a file cannot take its place."""
+    """Fail early if an output file cannot be written."""
     if content.data is not None:
         check_place(Path(content.data))
     for picture in content.pictures:
@@ -139,7 +139,7 @@ def _check_files(content: Content) -> None:
 
 
 def _blocks(content: Content) -> list[tuple[int, int]]:
-    """Where to cut the first axis, so that a large grid can report how far it is."""
+    """Blocks of the first axis, so that a large grid can report its progress."""
     lengths = [len(value) for value in content.inputs.values() if isinstance(value, tuple)]
     first = lengths[0] if lengths and content.reduction is None else 1
     count = max(1, min(first, prod(lengths) // BLOCK))
@@ -147,7 +147,7 @@ def _blocks(content: Content) -> list[tuple[int, int]]:
 
 
 def _values(content: Content, blocks: list[tuple[int, int]], steps: Steps) -> "xr.Dataset":
-    """The wanted outputs over the outer product of all inputs."""
+    """The requested outputs over the outer product of all inputs."""
     options = grid_options(content)
     arrays = _arrays(content.inputs)
     if content.reduction is not None:
@@ -188,7 +188,7 @@ def _longer(part: "xr.Dataset", first: str, values: NDArray[np.float64]) -> "xr.
 
 
 def grid_options(content: Content) -> dict[str, Any]:
-    """What a grid of this scene is told besides its inputs."""
+    """The options of this scene's grid."""
     return {"branch": content.branch, "accuracy": content.accuracy, "threads": content.threads}
 
 
@@ -206,7 +206,7 @@ def _check(check: Check, content: Content) -> CheckResult:
 
 
 def _feasibility(inputs: Mapping[str, Value]) -> FeasibilityResult | None:
-    """Which designs turn fully; None where a length is not given."""
+    """The feasibility of the scene's designs; None without all lengths, or for too many designs."""
     lengths = {name: value for name, value in inputs.items() if name in ("ec", "AB", "BC")}
     count = prod(len(value) for value in lengths.values() if isinstance(value, tuple))
     if len(lengths) < 3 or count > MOST_DESIGNS:
@@ -226,7 +226,7 @@ def _feasibility(inputs: Mapping[str, Value]) -> FeasibilityResult | None:
 
 
 def _gaps(intervals: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
-    """What of a turn is not in these intervals, beginning at angles from 0 to 2 pi."""
+    """The gaps of a turn between these intervals, starting at angles from 0 to 2 pi."""
     if not intervals:
         return ((0.0, 2.0 * pi),)
     starts = [start for start, _ in intervals[1:]] + [intervals[0][0] + 2.0 * pi]

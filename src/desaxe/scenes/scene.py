@@ -1,4 +1,4 @@
-"""`scene`: a mechanism, its motion and what is wanted of it, from a TOML file or a mapping."""
+"""`scene`: a mechanism, its motion and its outputs, from a TOML file or a mapping."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SceneResult:
-    """What a scene gave; printed, it is the report.
+    """The results of a scene; printed, they are the report.
 
     dataset      the outputs over the grid of all inputs, labelled, with `status` and `margin`; None
                  where the scene wants none
@@ -54,7 +54,7 @@ class SceneResult:
 
 @dataclass(frozen=True)
 class Scene:
-    """A checked scene: all of it in SI units. Two scenes that say the same are equal.
+    """A checked scene in SI units. Scenes with equal content are equal.
 
     `shown_in` are the units of its report and its pictures: those that it names, else those of its texts.
     """
@@ -70,7 +70,7 @@ class Scene:
 
     @property
     def outputs(self) -> tuple[str, ...]:
-        """The names of the wanted quantities."""
+        """The names of the requested quantities."""
         return self.content.outputs
 
     @property
@@ -79,7 +79,7 @@ class Scene:
         return dict(self.content.inputs)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Its quantities travel with it: they are known where it arrives, unless others have their names."""
+        """Pickle the scene with its own quantities, which are registered where it is loaded."""
         return _arrived, (self.content, self.name, self.shown_in)
 
     def run(self, progress: Progress | None = None) -> SceneResult:
@@ -100,7 +100,7 @@ def _arrived(content: Content, name: str, shown_in: UnitSystem = SI) -> Scene:
 
 
 def scene(source: str | PathLike[str] | Mapping[str, Any]) -> Scene:
-    """A scene from the path of a TOML file, or from the same thing as a mapping.
+    """Read and check a scene from a TOML file, or from a mapping of the same form.
 
     The file is data: nothing in it is ever executed. Quantities that it defines (`[quantities.NAME]`) are
     known to every call from then on, as those of `define` are. Raises SceneError (a ValueError) that

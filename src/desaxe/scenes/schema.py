@@ -1,4 +1,4 @@
-"""What a scene file may hold: its keys, their types, and what is said where one is wrong."""
+"""The schema of a scene file: its keys, their types, and the error messages."""
 
 from collections.abc import Iterator, Mapping
 from types import UnionType
@@ -50,7 +50,7 @@ class Section(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Range(Section, frozen=True):
-    """Evenly spaced values, both ends included: so many (`num`) or so far apart (`step`)."""
+    """Evenly spaced values, both ends included: by number (`num`) or by distance (`step`)."""
 
     start: Number
     stop: Number
@@ -170,7 +170,7 @@ class CheckTable(Section, frozen=True):
 
 
 class ClaimTable(Section, frozen=True):
-    """`[[peak.claim]]`: what somebody says about the peak of one design."""
+    """`[[peak.claim]]`: a claim about the peak of one design."""
 
     at: Design
     increase: Percent
@@ -266,7 +266,7 @@ def shown(value: Any) -> str:
 
 
 def hint(word: str, allowed: tuple[str, ...]) -> str:
-    """The allowed words, the nearest one first where there is one near."""
+    """The allowed words, preceded by the most similar one if there is one."""
     return f"{did_you_mean(word, allowed)}allowed: {', '.join(allowed)}"
 
 
@@ -329,7 +329,7 @@ def _parts(value: Any, kind: Any, key: str) -> Iterator[tuple[Any, Any, str]]:
 
 
 def _member(kind: Any, wanted: Any) -> Any:
-    """The first of the types that make up a type, itself included, that is wanted."""
+    """The first member of a union, or the type itself, that satisfies a predicate."""
     if get_origin(kind) is Annotated:
         return _member(get_args(kind)[0], wanted)
     if get_origin(kind) in (Union, UnionType):
@@ -342,7 +342,7 @@ def _origin(kind: Any) -> Any:
 
 
 def _allowed(kind: Any) -> str:
-    """What the description of a type says is allowed."""
+    """The description of the values that a type allows."""
     if get_origin(kind) is Annotated:
         return next(meta.description for meta in get_args(kind)[1:] if isinstance(meta, Meta)) or ""
     parts = [part for part in get_args(kind) if part is not type(None)]

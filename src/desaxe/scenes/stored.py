@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Arguments(NamedTuple):
-    """What a scene sweeps."""
+    """The arguments of a scene's sweep."""
 
     names: list[str]
     inputs: dict[str, Any]
@@ -58,7 +58,7 @@ def sweep_content(
     client: Any = None,
     by: Any = None,
 ) -> "xr.Dataset":
-    """The sweep of a scene; what is not given is what the scene says."""
+    """Run the sweep of a scene; options that are not given come from the scene."""
     wanted = arguments_of(content)
     return run_sweep(
         wanted.names,

@@ -30,7 +30,7 @@ def units_of(data: Mapping[str, Any]) -> UnitSystem:
 
 
 def with_units(data: Mapping[str, Any], units: UnitSystem) -> dict[str, Any]:
-    """The scene with a unit at each plain number that has one."""
+    """The scene with a unit attached to each plain number of a quantity with a unit."""
     if not units:
         return dict(data)
     return {

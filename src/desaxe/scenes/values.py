@@ -70,7 +70,7 @@ def _spread(key: str, name: str, written: schema.Range) -> tuple[float, ...]:
 
 
 def _exactly(name: str, written: float | str) -> Fraction:
-    """A number as it is written, so that the values of a range are those a person would write."""
+    """A number exactly as written, so that 0.1, 0.2, 0.3 of a range are the doubles of these texts."""
     return exact(name, written if isinstance(written, str) else repr(float(written)), INPUTS[name].unit)
 
 
@@ -98,7 +98,7 @@ def design_of(key: str, written: Mapping[str, float | str]) -> dict[str, float]:
 
 
 def only_inputs(key: str, names: Iterable[str]) -> None:
-    """Complain about a key that is no input."""
+    """SceneError for a key that is no input."""
     for name in names:
         if name not in INPUTS:
             raise SceneError(f"{key}.{name}: unknown input; {schema.hint(name, tuple(INPUTS))}")

@@ -1,4 +1,4 @@
-"""What a caller gives, read and checked: every error names the argument, the value and the limit."""
+"""The arguments of `simulate`, read and checked: errors name the argument, the value and the limit."""
 
 from collections.abc import Callable, Mapping
 from inspect import signature
@@ -66,7 +66,7 @@ def one(name: str, value: Any) -> float:
 
 
 def check_names(names: Any) -> tuple[str, ...]:
-    """The names to tell: each a quantity or sensitivity of the state form."""
+    """Check the requested names: quantities or sensitivities of a given state."""
     wanted = (names,) if isinstance(names, str) else several(names)
     for name in wanted:
         if name in OWN - {"omega"}:
@@ -120,7 +120,7 @@ def drive_of(torque: Any, F_X: Any, F_Y: Any) -> Drive:
 
 
 def model_of(values: Mapping[str, float], branch: int, theta0: float, drive: Drive) -> Model:
-    """The design in the chart that its motion wants; an error where it cannot start at theta0."""
+    """The model of a design in the coordinate of its motion; ValueError if it cannot start at theta0."""
     lengths = tuple(values[name] for name in LENGTHS)
     arc = arc_around(theta0, *lengths)
     if arc is None:
@@ -140,7 +140,7 @@ def model_of(values: Mapping[str, float], branch: int, theta0: float, drive: Dri
 
 
 def grows(values: Mapping[str, float]) -> bool:
-    """Whether the effective inertia grows without bound at a limit angle.
+    """True if the effective inertia is unbounded at a limit angle.
 
     There the mass that counts is m_slider BC^2 + m_rod r_rod^2 + I_rod, for the slider moves and the rod
     turns about the crank pin while the crank stands still.
@@ -171,12 +171,12 @@ def _check_inertia(model: Model, theta0: float) -> None:
 
 
 def _gap(theta: float, angle: float) -> float:
-    """How far apart two crank angles are, whole turns apart."""
+    """The distance of two crank angles, modulo whole turns."""
     return abs((theta - angle + pi) % TURN - pi)
 
 
 def read_times(times: Any, t_end: float) -> Any:
-    """The instants to tell, as an array; None for the default."""
+    """The requested instants as an array; None for the default."""
     if times is None:
         return None
     try:
@@ -202,7 +202,7 @@ def read_until(until: Any) -> tuple[float, ...]:
 
 
 def read_method(method: str) -> str:
-    """One of SciPy's integrators."""
+    """Check the method: the name of one of SciPy's integrators."""
     if not isinstance(method, str) or method not in METHODS:
         raise ValueError(f"method = {shown(method)}: it is one of {', '.join(METHODS)}")
     return method

@@ -35,7 +35,7 @@ function = designs
 
 
 class Family(NamedTuple):
-    """What designs have in common: the form of the program, and what is 0 in all of them."""
+    """A family of designs: the variant of the program, and the inputs that are 0 in all of them."""
 
     form: Variant
     fixed: tuple[tuple[str, float], ...]
@@ -86,7 +86,7 @@ def _function(name: str, program: Program, places: Mapping[str, str]) -> str:
 
 
 def _integrator() -> str:
-    """What numba compiles of `compiled`: every function jitted, and the last one with its signature."""
+    """The text of `dop853` for numba: every function jitted, the last one with its signature."""
     text = Path(str(dop853.__file__)).read_text(encoding="utf-8")
     functions = text.partition(LINE)[2].partition("\n")[2].strip().split("\ndef ")
     *helpers, last = [function.removeprefix("def ") for function in functions]

@@ -82,6 +82,6 @@ def _between_change_points(ec: float, AB: float, BC: float) -> list[tuple[float,
 
 
 def inside(arc: tuple[float, float], theta: float) -> bool:
-    """Whether theta is not one of the limit angles itself, to its last digits."""
+    """True if theta lies strictly between the limit angles, by more than rounding."""
     least = 4.0 * (nextafter(abs(theta), inf) - abs(theta))
     return theta - arc[0] > least and arc[1] - theta > least

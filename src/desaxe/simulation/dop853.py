@@ -65,7 +65,7 @@ def advance(y: Any, h: float, K: Any, weights: Any, count: int, out: Any) -> Non
 
 
 def trial(t: float, y: Any, h: float, p: Any, setup: Any, tables: Any, K: Any, new: Any) -> None:
-    """A step of order 8: its stages and where it comes to. K[0] has the rates at its start."""
+    """A step of order 8: its stages and its end. K[0] has the rates at its start."""
     A, B, C = tables[0], tables[1], tables[2]
     for s in range(1, 12):
         advance(y, h, K, A[s], s, new)
@@ -75,7 +75,7 @@ def trial(t: float, y: Any, h: float, p: Any, setup: Any, tables: Any, K: Any, n
 
 
 def error_of(h: float, y: Any, new: Any, rtol: Any, atol: Any, tables: Any, K: Any) -> float:
-    """The error of a step: 1 is just good enough."""
+    """The error of a step relative to the tolerance."""
     fifth, third = 0.0, 0.0
     for i in range(3):
         scale = atol[i] + max(abs(y[i]), abs(new[i])) * rtol[i]

@@ -28,7 +28,7 @@ class Law(Protocol):
 
 
 class State(NamedTuple):
-    """What (q, v) says of the crank: angle [rad], speed [rad/s], branch."""
+    """The state of the crank from (q, v): angle [rad], speed [rad/s], branch."""
 
     theta: float
     omega: float

@@ -1,4 +1,4 @@
-"""What happens inside a step of the integration: angles passed, standstills, kinks of friction."""
+"""Events inside a step of the integration: angles passed, standstills, kinks of friction."""
 
 from collections.abc import Callable, Iterator
 from itertools import pairwise
@@ -25,7 +25,7 @@ NEVER = -1  # of an event that does not end the motion
 
 
 class Mark(NamedTuple):
-    """A crank angle to watch for; `every` so far apart if it counts again; `status` if it ends the motion."""
+    """A crank angle to detect, repeated at intervals of `every`; `status` is that of the end if it is one."""
 
     kind: str
     angle: float
@@ -114,7 +114,7 @@ def _sampled(step: Step, instants: list[float]) -> Samples:
 def _passages(
     step: Step, model: Model, mark: Mark, samples: Samples, thetas: list[float], left: float
 ) -> Iterator[Found]:
-    """Where the crank passes an angle; a limit angle is watched by its coordinate."""
+    """The events at which the crank passes an angle; a limit angle is detected in the coordinate."""
     coordinate = model.coordinate
     limit = mark.kind == "limit"
     rows = samples.y[:, Q].tolist() if limit else thetas
@@ -150,13 +150,13 @@ def _between(a: float, b: float, angle: float, every: float) -> list[float]:
 
 
 def _changes(step: Step, place: int, samples: Samples) -> list[float]:
-    """When a coordinate changes its sign."""
+    """The events at which a coordinate changes its sign."""
     pairs = zip(pairwise(samples.y[:, place].tolist()), pairwise(samples.t), strict=True)
     return [root(lambda t: float(step.inside(t)[place]), *times) for (a, b), times in pairs if a * b < 0.0]
 
 
 def _kinks(step: Step, law: Rubbing, model: Model, samples: Samples) -> Iterator[Found]:
-    """Where the normal force changes its side, and where the friction jams: the first of these."""
+    """The first event at which the normal force changes sign or the friction jams."""
 
     def guide(t: float) -> Contact:
         q, v, _ = step.inside(t).tolist()
@@ -164,7 +164,7 @@ def _kinks(step: Step, law: Rubbing, model: Model, samples: Samples) -> Iterator
         return law.at(t, theta, branch, omega)
 
     def beyond(t: float, way: float) -> float:
-        """How far K sign(N) is above 1 (no solution), for way -1 below -1 (two)."""
+        """The excess of K sign(N) above 1 (no solution) or, for way -1, below -1 (two solutions)."""
         return way * law.pressed * guide(t).wedge - JAMS_AT
 
     contacts = [guide(t) for t in samples.t]

@@ -48,7 +48,7 @@ class Contact(NamedTuple):
 
     @property
     def solutions(self) -> int:
-        """How many sets of forces balance."""
+        """The number of force balances."""
         share = self.wedge * self.pressed
         return 0 if share >= JAMS_AT else 2 if share < -1.0 else 1
 
@@ -94,7 +94,7 @@ class Rubbing(Smooth):
 
 
 def ways_to_start(model: Model, t: float, theta: float, branch: float) -> list[tuple[float, Contact]]:
-    """Which ways the crank starts from rest: (way, the guide), of those that its own friction allows."""
+    """The directions in which the crank can start from rest, each with the contact at the guide."""
     found = []
     for way in (1.0, -1.0):
         here = contact(model, t, theta, branch, 0.0, way, side_ahead(model, theta, branch, way))
@@ -104,7 +104,7 @@ def ways_to_start(model: Model, t: float, theta: float, branch: float) -> list[t
 
 
 def breaks_away(model: Model, theta: float, branch: float, start: float, t_end: float) -> float | None:
-    """When torque or load, which change with time, move a crank at rest; None if they do not.
+    """The instant at which a time-dependent torque or load moves a crank at rest; None if it never does.
 
     Asked at many instants: a push that is over sooner than that is not noticed.
     """
@@ -122,7 +122,7 @@ def breaks_away(model: Model, theta: float, branch: float, start: float, t_end: 
 
 
 def _first(moves: Callable[[float], bool], a: float, b: float) -> float:
-    """The first instant in a bracket at which something holds, to the last digit."""
+    """The first instant in a bracket at which a condition is true, by bisection to the last digit."""
     while a < (middle := 0.5 * (a + b)) < b:
         a, b = (a, middle) if moves(middle) else (middle, b)
     return b

@@ -38,7 +38,7 @@ def told(run: Run, names: Sequence[str], times: Any, given: Mapping[str, Any]) -
 
 
 class Motion(NamedTuple):
-    """What a run leaves behind: enough to tell the state at any instant, and to be pickled."""
+    """The record of a run: enough to compute the state at any instant, and to be pickled."""
 
     model: Model
     pieces: list[Piece]
@@ -85,7 +85,7 @@ def _histories(run: Run | Motion, t: Array, without_alpha: bool = False) -> tupl
 
 
 def _set_end(run: Run | Motion, t: Array, theta: Array, omega: Array, alpha: Array) -> None:
-    """The event that ends the motion is where it says, not where the interpolant comes to.
+    """Set the end of the histories to the event that ends the motion, not to the interpolant.
 
     At a limit angle itself M_eff is infinite: there theta'' = -half sin(q) q'^2. What rests
     has no acceleration.
@@ -112,7 +112,7 @@ def _along(load: Any, t: Array, theta: Array, omega: Array) -> Any:
 
 
 def energy_residual(model: Model, accepted: Sequence[tuple[float, Array]]) -> float:
-    """How far the energies are from the work, relative to all work done or the largest kinetic energy.
+    """The energy error relative to the total work or the largest kinetic energy.
 
     max |kinetic + potential - W - initial| over the accepted steps, with the energies of the generated
     quantities at theta and omega.

@@ -35,7 +35,7 @@ STARTS = {"theta0": "rad", "omega_start": "rad/s", "torque": "N*m"}
 
 
 def is_array(value: Any) -> bool:
-    """Whether a value is one of many."""
+    """True for an array-like value, one for each design."""
     if value is None or callable(value) or isinstance(value, str):
         return False
     try:
@@ -193,7 +193,7 @@ def _run(
     threads: int | None,
     deadline: Deadline,
 ) -> None:
-    """The kernel over blocks of designs; each design is its own, so the answer does not depend on them."""
+    """Run the kernel over blocks of designs; designs are independent, so blocks do not change results."""
     parts = (DOP853.A, DOP853.B, DOP853.C, DOP853.E3, DOP853.E5, DOP853.D, DOP853.A_EXTRA, DOP853.C_EXTRA)
     tables = [np.ascontiguousarray(part, dtype=np.float64) for part in parts]
 

@@ -23,7 +23,7 @@ UNLOADED = ("omega", "alpha", "mu", "F_X", "F_Y")
 
 
 class Drive(NamedTuple):
-    """What acts on the mechanism at an instant: torque [N m], forces on the slider [N]."""
+    """The torque [N m] and the forces on the slider [N] that drive the mechanism."""
 
     torque: Load
     F_X: Load
@@ -37,7 +37,7 @@ def _gone(t: float, theta: float, omega: float) -> float:
 
 
 class Model:
-    """One design, its functions and what drives it."""
+    """One design: its inputs, functions and drive."""
 
     def __init__(
         self, values: Mapping[str, float], branch: int, coordinate: Coordinate, drive: Drive

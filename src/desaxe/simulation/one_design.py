@@ -1,4 +1,4 @@
-"""The motion, step by step: cut at every kink, and waiting where friction holds the crank."""
+"""The motion of one design, step by step: cut at every kink, at rest while friction holds the crank."""
 
 from collections.abc import Callable
 from math import copysign, inf
@@ -40,7 +40,7 @@ CHATTER = 20  # standstills in a row, all within a millionth of the time
 
 
 class Tolerance(NamedTuple):
-    """How the integration is controlled."""
+    """The control of the integration: method, tolerances, limits of steps."""
 
     method: str
     rtol: float
@@ -50,7 +50,7 @@ class Tolerance(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """A stretch of the motion: from, to, the state as a function of time, the law that holds."""
+    """A stretch of the motion: start, stop, the state as a function of time, the equations in force."""
 
     start: float
     stop: float
@@ -114,12 +114,12 @@ class Run:
         self.status, self.message = status, message
 
     def tell(self, kind: str, state: State, which: str = "") -> None:
-        """Note an event, now."""
+        """Record an event at the current instant."""
         self.events.append(Event(kind, self.t, state.theta, state.omega, which))
 
     @property
     def state(self) -> State:
-        """The crank, now."""
+        """The current state of the crank."""
         return state_of(self.model, float(self.y[Q]), float(self.y[V]))
 
     def _hold(self) -> None:
@@ -159,7 +159,7 @@ class Run:
         return Rubbing(self.model, way, side, pressed)
 
     def _pressed_soon(self, way: float, side: float, now: float) -> float:
-        """The sign of the normal force just after it has vanished: the motion without friction tells."""
+        """The sign of the normal force just after it has vanished, from the motion without friction."""
         y, law = self.y.copy(), Smooth(self.model)
         ahead = min(1e-6 * self.t_end, self.next_step or inf)
         y += ahead * np.array(law.rate(self.t, y))
@@ -269,7 +269,7 @@ class Run:
         self.stop(FAILED, f"the integration failed {where}: {reason}")
 
     def _meet_all(self, step: Step) -> bool:
-        """Note the events of a step; whether the motion is cut at one of them."""
+        """Record the events of a step; return True if one of them cuts the motion."""
         found = events_in(step, self.model, self.marks, self.left, self.deadline.check)
         events = [event for event in found if event.t <= self.t_end]
         place = 0
@@ -294,12 +294,12 @@ class Run:
         return mark.status != NEVER or mark.kind == KINK or turned
 
     def _note(self, found: Found, step: Step) -> None:
-        """Tell an event that the motion goes on through."""
+        """Record an event that does not cut the motion."""
         y = step.inside(found.t)
         self._tell_of(found, state_of(self.model, float(y[Q]), float(y[V])))
 
     def _tell_of(self, found: Found, state: State) -> None:
-        """Tell an event; it has its angle or its standstill exactly."""
+        """Record an event with its exact angle, or with exactly zero speed."""
         mark = found.mark
         if mark.kind == KINK:
             return
@@ -328,7 +328,7 @@ class Run:
             self._tell_end(leader._replace(t=t))
 
     def _tell_end(self, found: Found) -> None:
-        """Tell the event at which a stretch ends, and stop if the motion ends with it."""
+        """Record the event at which a stretch ends, and stop if the motion ends with it."""
         mark = found.mark
         limit = mark.kind == "limit"
         self._tell_of(found, State(mark.angle, self._speed_at_limit(), 1.0) if limit else self.state)
@@ -336,7 +336,7 @@ class Run:
             self.stop(mark.status, _words(mark, found.t))
 
     def _chatters(self) -> bool:
-        """Whether the crank turns round again and again at once: a torque that jumps with its speed."""
+        """True if the crank chatters at standstill, due to a torque that jumps with the sign of its speed."""
         last = self.events[-CHATTER:]
         kinds = {event.kind for event in last}
         if len(last) < CHATTER or kinds != {"standstill"} or last[-1].t - last[0].t > 1e-6 * self.t_end:
@@ -368,7 +368,7 @@ class Run:
         return t, y
 
     def _cut_at_limit(self, found: Found, step: Step) -> tuple[float, Array]:
-        """The same at a limit angle, next to which S and the rates lose their digits.
+        """Cut at a limit angle, next to which S and the rates lose their digits.
 
         Integrated to a little before it; the interpolant tells what is left.
         """

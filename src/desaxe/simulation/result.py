@@ -1,4 +1,4 @@
-"""What a simulation gives: a dict that shows itself on one screen."""
+"""The result of a simulation: a dict with a readable repr."""
 
 from typing import Any, NamedTuple
 
@@ -9,7 +9,7 @@ WORDS = {int(status): status.words for status in SimulationStatus}
 
 
 class Event(NamedTuple):
-    """Something that happens at an instant: kind, time [s], crank angle [rad], speed [rad/s].
+    """An event: kind, time [s], crank angle [rad], speed [rad/s].
 
     `which` says more: outer or inner dead centre, what the friction does.
     """

@@ -1,4 +1,4 @@
-"""`simulate`: what a caller sees."""
+"""`simulate`: the motion of the crank under a torque."""
 
 from collections.abc import Sequence
 from math import inf, sqrt

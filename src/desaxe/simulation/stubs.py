@@ -1,4 +1,4 @@
-"""What the text of `compiled` calls: a crank alone. A compiled module has the designs' own in their place."""
+"""Stubs of the functions that `dop853` calls, for a crank alone; a compiled module has its own instead."""
 
 from typing import Any
 

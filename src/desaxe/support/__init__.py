@@ -1,4 +1,4 @@
-"""The ground: what every room may use and what knows nothing of a mechanism.
+"""The ground floor: general helpers, open to every room, independent of the mechanism.
 
 extras         a missing optional dependency as one line that says what to install
 files          files written beside their place and swapped in

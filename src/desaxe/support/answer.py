@@ -1,4 +1,4 @@
-"""Answers: dicts that show themselves on one screen."""
+"""Results: dicts with a readable repr."""
 
 from collections.abc import Callable, Mapping
 from functools import wraps
@@ -13,7 +13,7 @@ WIDE = 96  # letters of a line
 
 
 class Answer(dict[str, Any]):
-    """A dict like any other, but for how it is shown: a line for each name, numbers with six digits.
+    """A dict whose repr has a line for each name and numbers in six digits.
 
     `inputs`, of `evaluate`: what it was asked for with, by name.
     """
@@ -25,7 +25,7 @@ class Answer(dict[str, Any]):
 
 
 def answering(function: Callable[P, T]) -> Callable[P, T]:
-    """The function with its dict as an Answer."""
+    """Decorate a function to return its dict as an Answer."""
 
     @wraps(function)
     def answered(*args: P.args, **inputs: P.kwargs) -> T:
@@ -36,7 +36,7 @@ def answering(function: Callable[P, T]) -> Callable[P, T]:
 
 
 def _lines(mapping: Mapping[Any, Any]) -> list[str]:
-    """A line for each name; below it those of a mapping that is too long for one."""
+    """A line for each name; a mapping too long for one line follows indented."""
     width = max((len(str(name)) for name in mapping), default=0)
     lines = []
     for name, value in mapping.items():

@@ -1,4 +1,4 @@
-"""A missing extra is one clear line that says what to install."""
+"""Optional dependencies: a missing one raises one line with the command that installs it."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -33,7 +33,7 @@ class MissingExtraError(ImportError):
 
 @contextmanager
 def needed(what: str, extra: str | None = None) -> Iterator[None]:
-    """Turn the ImportError of an optional dependency into the line that says what to install.
+    """Turn the ImportError of an optional dependency into MissingExtraError, and delay an interrupt.
 
     The extra is the one that has the dependency, or the one named here. The block imports, and nothing else:
     an interrupt waits for its end, since a package that is imported halfway cannot be imported again.
@@ -44,7 +44,7 @@ def needed(what: str, extra: str | None = None) -> Iterator[None]:
 
 @contextmanager
 def explained(what: str, extra: str | None = None) -> Iterator[None]:
-    """As `needed`, for a block that does more than to import."""
+    """Turn the ImportError of an optional dependency into MissingExtraError, in a block of any length."""
     try:
         yield
     except ModuleNotFoundError as error:

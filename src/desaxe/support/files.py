@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all, whatever stops the writer.
+"""Atomic writes: a file appears whole or not at all, even if the writer is killed.
 
 Everything is written into a staging folder beside its place and then swapped in by one step of the file
 system. A process that is killed leaves its staging folder behind; the next writer beside it removes that.
@@ -34,7 +34,7 @@ _KINDS = {
 
 @contextmanager
 def replacing(target: Path, mode: int | None = None) -> Iterator[Path]:
-    """Yield a path to write; it takes the place of `target` when the block ends without an error.
+    """Yield a temporary path; the file written there replaces `target` when the block succeeds.
 
     target  a file, or what does not exist yet; its folder is made. A link is replaced, not followed.
     mode    permissions; by default those of the file that is replaced, else those of a new file
@@ -60,7 +60,7 @@ def write_bytes(target: Path, data: bytes, mode: int | None = None) -> None:
 
 
 def check_target(target: Path) -> None:
-    """Refuse to replace what is no ordinary file, or one that may not be written."""
+    """Refuse a target that is no regular file, or not writable."""
     kind = kind_of(target)
     if kind:
         raise ValueError(f"{target}: this is {kind}; a file can only take the place of a file")
@@ -69,7 +69,7 @@ def check_target(target: Path) -> None:
 
 
 def require_space(folder: Path, size: int) -> None:
-    """Raise OSError where a file of so many bytes finds no room: some libraries end the process then."""
+    """Raise OSError if a file of `size` bytes does not fit on the disk: some libraries would crash."""
     reserve = getattr(os, "posix_fallocate", None)
     if reserve is None:
         return
@@ -82,7 +82,7 @@ def require_space(folder: Path, size: int) -> None:
 
 
 def kind_of(path: Path) -> str:
-    """What a path leads to, in words; empty for an ordinary file and for nothing at all."""
+    """The kind of a path that is no regular file, such as "folder"; empty for a file or no file."""
     try:
         found = stat.S_IFMT(path.stat().st_mode)
     except (FileNotFoundError, NotADirectoryError):
@@ -155,7 +155,7 @@ def _cleared(stray: Path) -> bool:
 
 
 def _restore(stray: Path) -> None:
-    """Put back what a process moved out of the way if it stopped before the new one was in its place."""
+    """Undo an interrupted replacement: move the old file or folder back."""
     with suppress(OSError):
         for path in (stray / _REPLACED).iterdir():
             if not os.path.lexists(stray.parent / path.name):
@@ -163,7 +163,7 @@ def _restore(stray: Path) -> None:
 
 
 def swap_in(staged: Path, target: Path, mode: int | None = None) -> None:
-    """Put a staged file or folder in the place of another; what was there is left in the staging folder."""
+    """Replace a file or folder by a staged one; the old one stays in the staging folder."""
     if mode is None and staged.is_file() and target.is_file() and not target.is_symlink():
         mode = stat.S_IMODE(target.stat().st_mode)
     if mode is not None:
@@ -180,7 +180,7 @@ def swap_in(staged: Path, target: Path, mode: int | None = None) -> None:
 
 
 def _flush(path: Path) -> None:
-    """See to it that a file or the names in a folder survive a power failure, where the system can."""
+    """Flush a file, or the entries of a folder, to the disk where the system supports it."""
     if path.is_dir() and sys.platform == "win32":
         return
     with suppress(PermissionError):
@@ -192,7 +192,7 @@ def _flush(path: Path) -> None:
 
 
 def _swap_by_renaming(staged: Path, target: Path) -> None:
-    """Two steps, for systems that cannot swap two names in one; `_restore` mends a stop between them."""
+    """Swap in two steps, for systems without an atomic exchange; `_restore` mends a stop in between."""
     aside = staged.parent / _REPLACED
     aside.mkdir()
     os.rename(target, aside / target.name)

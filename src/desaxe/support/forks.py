@@ -1,4 +1,4 @@
-"""What a forked process must not inherit: locks that another thread held, and threads that are not there.
+"""Fork safety: a child must inherit no locked lock and no handle of a thread that it does not have.
 
 `fork` copies one thread. A lock that any other thread holds at that moment stays locked for ever in the
 child, and a pool waits for threads that it does not have.
@@ -19,6 +19,6 @@ def fork_safe_lock() -> Any:
 
 
 def in_child(action: Callable[[], object]) -> None:
-    """Call `action` in every forked child, before anything else of it runs."""
+    """Register an action that runs first in every forked child."""
     if hasattr(os, "register_at_fork"):
         os.register_at_fork(after_in_child=action)

@@ -1,4 +1,4 @@
-"""Work that an interrupt must not cut in half: imports and compilations.
+"""Imports and compilations that an interrupt (SIGINT) must not cut in half.
 
 A package that was imported halfway cannot be imported again, and a compiler that was stopped halfway leaves
 its tables inconsistent: the next call in the same process would fail. Imports are short: they put an
@@ -21,7 +21,7 @@ _NAME = "desaxe-work"
 
 
 def is_at_work() -> bool:
-    """True while work goes on behind a caller that was interrupted."""
+    """True while work of an interrupted caller is still running."""
     return any(thread.name == _NAME for thread in threading.enumerate())
 
 
@@ -31,7 +31,7 @@ def _is_main() -> bool:
 
 @contextmanager
 def put_off() -> Iterator[None]:
-    """Put an interrupt (SIGINT) off until the block is done. Only the main thread is ever interrupted."""
+    """Delay an interrupt (SIGINT) until the block is done; only the main thread receives one."""
     if not _is_main() or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
         yield
         return
@@ -46,14 +46,14 @@ def put_off() -> Iterator[None]:
 
 
 def import_whole(name: str) -> None:
-    """Import a module, if it is not there yet, before an interrupt is heard."""
+    """Import a module with interrupts delayed; nothing if it is already imported."""
     if name not in sys.modules:
         with put_off():
             import_module(name)
 
 
 def finished(work: Callable[[], T]) -> T:
-    """The answer of some work that is finished even if its caller is interrupted meanwhile."""
+    """Run work to its end, even if the caller is interrupted meanwhile; return its result."""
     if not _is_main():
         return work()
     answer: list[Any] = []

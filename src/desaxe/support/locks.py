@@ -1,4 +1,4 @@
-"""Locks between processes, held through the operating system: they end with the process that holds them."""
+"""File locks between processes; the operating system releases them when the process ends."""
 
 import os
 import sys
@@ -13,7 +13,7 @@ _FIRST_PAUSE, _LONGEST_PAUSE = 0.002, 0.1
 
 @contextmanager
 def locked(path: Path, wait: float = WAIT, message: str = "") -> Iterator[bool]:
-    """Hold the lock of a file, which is made, or of an existing folder, for the length of a block.
+    """Lock a file (created if missing) or an existing folder for the duration of a block.
 
     Yields True while the lock is held and False where the file system has no locks. Raises TimeoutError
     after `wait` seconds, and OSError where the file cannot be opened. A link is not followed.
@@ -40,7 +40,7 @@ def _opened(path: Path) -> int | None:
 
 
 def _acquire(descriptor: int, path: Path, wait: float, message: str) -> bool:
-    """Try until the lock is held; short pauses, so that an interrupt is heard at once."""
+    """Wait for a lock with short pauses, so that an interrupt takes effect at once."""
     end, pause = time.monotonic() + wait, _FIRST_PAUSE
     while True:
         held = try_lock(descriptor)
@@ -53,7 +53,7 @@ def _acquire(descriptor: int, path: Path, wait: float, message: str) -> bool:
 
 
 def try_lock(descriptor: int) -> bool | None:
-    """Lock a descriptor at once: True, False where another holds it, None where there are no locks."""
+    """Try to lock a descriptor: True if locked, False if another process has it, None without support."""
     try:
         if sys.platform == "win32":
             import msvcrt
@@ -71,7 +71,7 @@ def try_lock(descriptor: int) -> bool | None:
 
 
 def release(descriptor: int) -> None:
-    """Let the lock go. Said, not left to closing: a forked child may hold a copy of the descriptor."""
+    """Release a lock explicitly: closing is not enough if a forked child has a copy of the descriptor."""
     with suppress(OSError):
         if sys.platform == "win32":
             import msvcrt

@@ -1,4 +1,4 @@
-"""Whether there is memory for a result, asked before it is computed."""
+"""A check for free memory before a result is allocated."""
 
 import os
 import sys
@@ -21,7 +21,7 @@ def require(size: int, what: str) -> None:
 
 
 def in_words(size: float) -> str:
-    """A number of bytes for people, in MB or GB."""
+    """A number of bytes as text, in MB or GB."""
     return f"{size / 1e9:.3g} GB" if size >= 1e9 else f"{size / 1e6:.3g} MB"
 
 

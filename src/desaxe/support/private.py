@@ -1,4 +1,4 @@
-"""Files and folders that only this user, or root, can have written.
+"""Trusted files and folders: owned by and writable only for this user or root.
 
 What is loaded as machine code must come from nobody else. So a file counts only if its owner is this user or
 root, if nobody else may write to it, and if it is an ordinary file and no link; all of that is asked of the
@@ -15,11 +15,11 @@ _OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
 
 
 class UntrustedError(OSError):
-    """A file or folder that somebody else owns or may write to, or a link."""
+    """A file or folder that another user owns or may write to, or a link."""
 
 
 def distrust(about: os.stat_result) -> str:
-    """Why a file or folder is not trusted; empty where it is."""
+    """The reason to distrust a file or folder; empty if it is trusted."""
     if sys.platform == "win32":  # the user's profile is private there, and owners are no numbers
         return ""
     if about.st_uid not in (os.geteuid(), 0):

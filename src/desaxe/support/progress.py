@@ -1,4 +1,4 @@
-"""How far a run is, and a bar on the terminal for one that takes long."""
+"""Progress of a run, and a progress bar on the terminal for a long one."""
 
 import sys
 from collections.abc import Callable, Iterator
@@ -15,7 +15,7 @@ FORMAT = "{n_fmt} of {total_fmt} steps |{bar}| {desc}"
 
 
 class Steps:
-    """Counts the steps of a run for whoever watches."""
+    """Counts the steps of a run and reports them to a callback."""
 
     def __init__(self, total: int, watch: Progress | None) -> None:
         self.done, self.total, self.watch = 0, total, watch
@@ -52,7 +52,7 @@ def progress_bar(delay: float = DELAY) -> Iterator[Progress | None]:
 
 
 def _show(tqdm: Any, state: list[tuple[int, int, str]], over: Event, delay: float) -> None:
-    """Draw the newest state until it is over; a thread of its own, since one step can take long."""
+    """Draw the current state until the run ends; in its own thread, since one step can take long."""
     if over.wait(delay):
         return
     with tqdm(total=state[0][1], bar_format=FORMAT, leave=False, file=sys.stderr, dynamic_ncols=True) as bar:

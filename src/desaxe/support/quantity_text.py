@@ -22,7 +22,7 @@ def split_quantity(text: str) -> tuple[str, str]:
 
 
 def spelled(unit: str) -> str:
-    """A unit in the spelling of the catalogue: people write m/s2 for m/s^2."""
+    """A unit in the spelling of the catalogue: m/s^2 for m/s2."""
     return re.sub(r"([^\W\d_])(?:\*\*)?(-?[1-9])(?![0-9])", r"\1^\2", unit)
 
 

@@ -1,4 +1,4 @@
-"""A mapping that keeps what was used last."""
+"""A cache of the most recently used values."""
 
 from collections import OrderedDict
 from contextlib import suppress
@@ -9,7 +9,7 @@ Value = TypeVar("Value")
 
 
 class Recent(Generic[Key, Value]):
-    """At most so many values by key; a new one takes the place of the one that was not used for longest."""
+    """A mapping of at most `most` values; a new one replaces the least recently used."""
 
     def __init__(self, most: int) -> None:
         self.most = most
@@ -22,7 +22,7 @@ class Recent(Generic[Key, Value]):
         return key in self._values
 
     def get(self, key: Key) -> Value | None:
-        """The value of a key, which is now the one used last; None where there is none."""
+        """The value of a key, now the most recently used; None if absent."""
         found = self._values.get(key)
         if found is not None:
             with suppress(KeyError):  # another thread has just put it out

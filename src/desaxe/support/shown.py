@@ -1,4 +1,4 @@
-"""A value in a message: short, whatever somebody gave."""
+"""A value in a message, shortened."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ LONGEST = 80
 
 
 def shown(value: Any) -> str:
-    """The value as Python writes it, cut in the middle where it is long."""
+    """The repr of a value, shortened in the middle."""
     if isinstance(value, int) and abs(value) >= 10**LONGEST:  # Python refuses to write the longest ones
         return f"a whole number of {value.bit_length()} bits"
     try:

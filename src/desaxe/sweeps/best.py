@@ -1,4 +1,4 @@
-"""The best designs of a grid that is stored nowhere: each chunk keeps its best, and the best of these win."""
+"""The best designs of a grid that is not stored: each chunk returns its best, which are merged."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import prod
@@ -32,7 +32,7 @@ KINDS = ("max", "min", "absmax")
 
 
 class Ranking(NamedTuple):
-    """What designs are ranked by.
+    """The criterion of a ranking of designs.
 
     name      the quantity
     kind      max, min or absmax, or a mean: what is taken of it
@@ -80,7 +80,7 @@ class BestTask(NamedTuple):
 
 
 class Found(NamedTuple):
-    """The best designs of a chunk: their places in the whole, values, angles, points without a value."""
+    """The best designs of a chunk: flat indices, values, angles, number of points without a value."""
 
     places: NDArray[np.int64]
     values: Array
@@ -91,7 +91,7 @@ class Found(NamedTuple):
 
 
 def ranking_of(name: str, kind: str | None, reduction: Reduction | None) -> Ranking:
-    """What designs are ranked by; the first kind that there is without one."""
+    """The ranking by a name and a kind; the first allowed kind by default."""
     known = KINDS if reduction is None else reduction.kinds
     kind = known[0] if kind is None else kind
     if kind not in known:

@@ -32,7 +32,7 @@ def seconds_of(parts: Sequence[Part | PeakPart], axes: Mapping[str, NDArray[Any]
 
 
 def told(points: int, variables: int, stored: int, layout: Layout, seconds: float, free: int) -> str:
-    """A line about a sweep that is to begin."""
+    """A line of text about a sweep before it starts."""
     return (
         f"{points:,} points, {variables} variables, at most {size_text(stored)} in {layout.chunks:,} chunks "
         f"of {shape_text(layout.chunk)}; about {time_text(seconds)}; {size_text(free)} free"
@@ -40,7 +40,7 @@ def told(points: int, variables: int, stored: int, layout: Layout, seconds: floa
 
 
 def time_text(seconds: float) -> str:
-    """A time as a person says it."""
+    """A time as text, in s, min or h."""
     if seconds < 120.0:
         return f"{seconds:.1f} s" if seconds < 10.0 else f"{seconds:.0f} s"
     return f"{seconds / 60.0:.0f} min" if seconds < 7200.0 else f"{seconds / 3600.0:.1f} h"

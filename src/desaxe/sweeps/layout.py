@@ -1,4 +1,4 @@
-"""How a sweep is cut into chunks, and the memory that a chunk takes while it is computed and written."""
+"""The chunks of a sweep, and the memory of a chunk while it is computed and written."""
 
 import re
 from collections.abc import Mapping
@@ -26,7 +26,7 @@ class Layout(NamedTuple):
 
     @property
     def chunks(self) -> int:
-        """How many chunks a variable of all dimensions has."""
+        """The number of chunks of a variable over all dimensions."""
         return prod(-(-size // self.chunk[name]) for name, size in self.sizes.items())
 
     @property
@@ -35,7 +35,7 @@ class Layout(NamedTuple):
         return self.per_point * prod(self.chunk.values())
 
     def at_once(self, memory: int | None) -> int:
-        """How many chunks are in flight in this memory, at least one."""
+        """The number of chunks in flight that fit into this memory, at least one."""
         return max(1, (memory or DEFAULT_MEMORY) // self.in_flight)
 
     def require_memory(self, memory: int | None) -> None:
@@ -89,7 +89,7 @@ def bytes_of(memory: Any) -> int | None:
 
 
 def size_text(count: float) -> str:
-    """Bytes as a person says them."""
+    """A number of bytes as text, in kB, MB, GB or TB."""
     for unit in ("bytes", "kB", "MB", "GB"):
         if count < 1000.0:
             return f"{count:.0f} bytes" if unit == "bytes" else f"{count:.3g} {unit}"
@@ -98,5 +98,5 @@ def size_text(count: float) -> str:
 
 
 def shape_text(chunk: Mapping[str, int]) -> str:
-    """A chunk as a person says it."""
+    """The shape of a chunk as text."""
     return " x ".join(f"{length} {name}" for name, length in chunk.items()) or "one point"

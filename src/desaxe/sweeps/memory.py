@@ -1,10 +1,10 @@
-"""How much memory is free."""
+"""Free memory of the system."""
 
 import os
 
 
 def free_memory() -> int | None:
-    """Bytes of memory that are free; None where the system does not tell."""
+    """Free memory in bytes; None if the system does not report it."""
     try:
         return os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     except (AttributeError, OSError, ValueError):

@@ -1,4 +1,4 @@
-"""How far a sweep is: points, rate and time left, on one line of a terminal."""
+"""Progress of a sweep on one line of a terminal: points, rate, time left."""
 
 import sys
 import time
@@ -10,7 +10,7 @@ PACE = 0.2  # seconds between two lines
 
 
 class Meter:
-    """Counts points for whoever watches; without a watcher, for a terminal if stderr is one."""
+    """Counts points and reports them to a callback, or on stderr if that is a terminal."""
 
     def __init__(self, total: int, watch: Watch | None) -> None:
         self.total, self.watch = total, watch

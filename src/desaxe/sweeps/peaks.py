@@ -42,7 +42,7 @@ class PeakPart(NamedTuple):
 
     @property
     def variables(self) -> dict[str, str]:
-        """What it is called in a store: `peak_absmax_a_C`, `peak_absmax_a_C_theta`, `..._wrt_ec`, ..."""
+        """Map outputs to variables of the store: `peak_absmax_a_C`, `peak_absmax_a_C_theta`, ..."""
         stem = f"peak_{self.block.kind}_{self.block.name}"
         return {
             output: stem + ("" if output == "value" else f"_{output.replace(GRADIENT, 'wrt_', 1)}")
@@ -51,7 +51,7 @@ class PeakPart(NamedTuple):
 
     @property
     def outputs(self) -> dict[str, np.dtype[Any]]:
-        """Its variables and their types."""
+        """The variables of the part and their dtypes."""
         return {self.variables[output]: dtype for output, dtype in self.block.outputs.items()}
 
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
@@ -85,7 +85,7 @@ def _slope_unit(name: str, parameter: str, state: bool) -> str:
 
 
 def peak_requests(peaks: Any, outer: Outer) -> tuple[PeakRequest, ...]:
-    """The peaks that are asked for: a name, several, or a dict name -> kind or kinds.
+    """The requested peaks, from a name, several names, or a dict name -> kind or kinds.
 
     They are taken over the range of the crank angles of the sweep, one turn where that is no axis.
     """

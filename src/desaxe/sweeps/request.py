@@ -1,4 +1,4 @@
-"""What identifies a sweep: its request, the version and the Program, as attributes of its store."""
+"""The identity of a sweep: request, version and digest of the Program, as attributes of its store."""
 
 import hashlib
 import json
@@ -51,7 +51,7 @@ def versions() -> tuple[str, str]:
 
 
 def _input(array: NDArray[Any]) -> Any:
-    """A number, or what tells one axis from another."""
+    """An input for the request: a number, or size, ends and hash of an axis."""
     if not array.ndim:
         return array.item()
     ends = {"from": float(array[0]), "to": float(array[-1])} if array.size else {}
@@ -60,7 +60,7 @@ def _input(array: NDArray[Any]) -> Any:
 
 
 def differences(there: Mapping[str, Any], here: Mapping[str, str]) -> list[str]:
-    """What a store was made for, where that is not what is asked for now; a line for each."""
+    """The differences between a store's request and the current one, a line for each."""
     lines = [
         f"{name} is {there.get(name)!r} there and {here[name]!r} here"
         for name in ("version", "digest")

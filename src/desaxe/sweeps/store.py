@@ -83,7 +83,7 @@ def sync(folder: Path) -> None:
 
 
 def create(root: Path, template: "xr.Dataset", chunk: Mapping[str, int], replace: bool) -> None:
-    """Put a store without chunks of its lazy variables in a place; `replace` one that is there.
+    """Create a store without the chunks of its lazy variables; `replace` an existing one.
 
     FileExistsError where there is one and it may not be replaced.
     """
@@ -136,7 +136,7 @@ def attributes(root: Path) -> dict[str, Any] | None:
 
 
 def set_state(root: Path, state: str) -> None:
-    """Write whether the store is complete into its attributes, unless it says so already."""
+    """Write the state (complete or not) into the store's attributes, if it differs."""
     path = root / METADATA
     metadata = json.loads(path.read_text(encoding="utf-8"))
     if metadata["attributes"].get(STATE) != state:
@@ -176,7 +176,7 @@ def chunk_path(root: Path, name: str, place: Sequence[int]) -> Path:
 
 
 def is_whole(root: Path, name: str, place: Sequence[int], region: Sequence[slice]) -> bool:
-    """Whether a chunk is there and has its checksum."""
+    """True if a chunk exists and its checksum is right."""
     if not chunk_path(root, name, place).is_file():
         return False
     try:

@@ -1,4 +1,4 @@
-"""A grid of any size, written chunk by chunk to a Zarr store in bounded memory, and gone on with."""
+"""A grid of any size, written chunk by chunk to a Zarr store in bounded memory; resumable."""
 
 import json
 import os
@@ -139,7 +139,7 @@ def _lazy(template: "xr.Dataset", dims: Sequence[str], dtype: Any, told: Mapping
 
 
 class Way(NamedTuple):
-    """How a sweep is run: memory for chunks in flight, a Dask client or threads, and who is told about it."""
+    """The options of a run: memory for chunks in flight, Dask client or threads, callbacks."""
 
     memory: int | None
     client: Any
@@ -149,7 +149,7 @@ class Way(NamedTuple):
 
 
 def stored_sweep(sweep: Sweep, store: str | PathLike[str], overwrite: bool, way: Way) -> "xr.Dataset":
-    """Run a sweep into a store, or go on with one that was stopped; the opened Dataset."""
+    """Run a sweep into a store, or resume one that was stopped; return the opened Dataset."""
     from .store import COMPLETE, held, open_store, remove_strays, set_state, sync_folders
 
     root = Path(os.path.abspath(store))
@@ -190,7 +190,7 @@ def _inner(crew: Crew, way: Way) -> int:
 
 
 def _placed(sweep: Sweep, root: Path, overwrite: bool, memory: int | None) -> Sweep:
-    """Make the store, or see that the one there is of this sweep; the sweep with the store's chunks."""
+    """Create the store, or check that the existing one is of this sweep; return the sweep with its chunks."""
     from .store import INCOMPLETE, STATE, attributes, create, held
 
     there = attributes(root)
@@ -222,7 +222,7 @@ def _placed(sweep: Sweep, root: Path, overwrite: bool, memory: int | None) -> Sw
 
 
 def _require_room(sweep: Sweep, root: Path, needed_bytes: int) -> None:
-    """Refuse what the disk has no room for."""
+    """OSError if the disk has too little free space for the store."""
     free = _free(root)
     if needed_bytes > free:
         raise OSError(
@@ -337,7 +337,7 @@ def run_sweep(
     watch: Watch | None,
     tell: Tell | None,
 ) -> "xr.Dataset":
-    """What `desaxe.sweep` does with names and inputs."""
+    """The body of `desaxe.sweep` for names and inputs."""
     _require_scale()
     room = bytes_of(memory)
     way = Way(room, client, threads, watch, tell)

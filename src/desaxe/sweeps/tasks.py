@@ -1,4 +1,4 @@
-"""A chunk of a sweep as a task: what a thread, or a worker on another machine, needs for it."""
+"""A chunk of a sweep as a task for a thread or for a worker on another machine."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -88,7 +88,7 @@ def compute(task: Task) -> Computed:
 
 
 def is_absent(root: Path, outputs: Sequence[Output]) -> bool:
-    """Whether a chunk of these outputs is not in the store; one that is there may still be damaged."""
+    """True if a chunk of these outputs is missing in the store; an existing one may still be damaged."""
     return any(not chunk_path(root, name, o.place).is_file() for o in outputs for name in o.variables)
 
 

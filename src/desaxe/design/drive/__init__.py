@@ -1,4 +1,4 @@
-"""What a drive has to give over a cycle.
+"""Torque, power and flywheel of a drive over a cycle.
 
 drive     `desaxe.drive`: torque, power, work, flywheel and starting torque of one design
 panels    a turn in panels on which everything is a polynomial: integrals, roots, extremes

@@ -21,7 +21,7 @@ Motion = Callable[[Array], dict[str, Array]]  # angles -> omega and alpha there
 
 
 class NoCycleError(Exception):
-    """There is no torque somewhere on the turn; `status` says why."""
+    """The torque is undefined at some angle of the turn; `status` is the reason."""
 
     def __init__(self, status: int) -> None:
         self.status = status
@@ -59,13 +59,13 @@ class Design:
 
     @property
     def has_friction(self) -> bool:
-        """Whether the guide has friction."""
+        """True if the guide has friction."""
         return bool(self.numbers.get("mu"))
 
     def values(
         self, names: Sequence[str], theta: Array, motion: Motion | None = None, **other: Any
     ) -> dict[str, Array]:
-        """Quantities at angles. A motion gives the state there; `other` inputs replace those given."""
+        """Quantities at angles. `motion` returns the state there; `other` replaces inputs of the design."""
         state = {} if motion is None else {**motion(theta), "omega0": None}
         inputs = {**self.numbers, **self.loads, **state, **other}
         present = {name: value for name, value in inputs.items() if value is not None}

@@ -1,4 +1,4 @@
-"""`drive`: what a drive must give over a turn: torque, power, work, flywheel, starting torque."""
+"""`drive`: torque, power, work, flywheel and starting torque required over a turn."""
 
 from functools import partial
 from math import copysign, inf, nan, pi, sqrt
@@ -17,7 +17,7 @@ DIFFERENTIATED = tuple(name for name in FIGURES if not name.startswith("theta_")
 
 
 def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, **inputs: Any) -> Drive:
-    """What a drive must give over one turn of a design: torque, power, work, flywheel, starting torque.
+    """Torque, power, work, flywheel and starting torque that one turn of a design requires.
 
     fluctuation  (fastest - slowest)/mean speed that a flywheel is to keep under a constant torque
     reverse      True: the starting torque is that for either way of turning
@@ -84,7 +84,7 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
 
 
 def _status(design: Design) -> int:
-    """What can be said without any force."""
+    """The status from geometry and speed alone, without forces."""
     if design.margin < 0.0:
         return 1
     last = design.numbers["omega0"] ** 2 + 4.0 * pi * design.direction * design.numbers.get("alpha", 0.0)
@@ -96,7 +96,7 @@ def _status(design: Design) -> int:
 def _over_a_turn(
     design: Design, found: dict[str, Any], slopes: dict[str, dict[str, float]], course: dict[str, Array]
 ) -> None:
-    """All but flywheel and starting torque; torque and power over the turn."""
+    """The figures other than flywheel and starting torque, and the arrays of torque and power."""
     names = ["T_in", *(f"T_in_wrt_{name}" for name in design.parameters)]
     turn = torque_over(design, names)
     torque, way = turn.values["T_in"], design.direction
@@ -196,5 +196,5 @@ def _starting(
 
 
 def _in_turn(theta: float, alpha: float) -> float:
-    """An angle from 0 on, within a turn; with alpha a turn is not like the next, and it stays."""
+    """An angle shifted into 0 ... 2 pi; unchanged with alpha, where turns differ."""
     return theta if alpha else theta % (2.0 * pi)

@@ -1,4 +1,4 @@
-"""The flywheel for a wanted fluctuation of speed under a constant drive torque T, friction included.
+"""The flywheel for a required fluctuation of speed under a constant drive torque T, friction included.
 
 With z = omega^2 over the crank angle, J the flywheel, M the effective inertia and L the torque of loads,
 gravity and friction, (J + M) z/2 = C + W. Here W is the integral of T - L, and T the mean of L. If the speed
@@ -54,7 +54,7 @@ class State(NamedTuple):
 
 
 def flywheel_for(design: Design, fluctuation: float) -> Flywheel | None:
-    """The least flywheel with which the speed fluctuates no more than wanted; None where none is found."""
+    """The smallest flywheel that keeps the required fluctuation of speed; None if none is found."""
     state = _store(design, fluctuation, None)
     settled = not design.has_friction
     for _ in range(0 if settled else ROUNDS):
@@ -71,7 +71,7 @@ def flywheel_for(design: Design, fluctuation: float) -> Flywheel | None:
 
 
 def _store(design: Design, fluctuation: float, before: State | None) -> State:
-    """The flywheel under the loads and, as it is in the motion before, the friction."""
+    """One iteration: the flywheel under the loads and the friction of the previous motion."""
     names = ["T_in", "M_eff", "M_eff_wrt_theta"]
     motion = None if before is None else before.motion
 

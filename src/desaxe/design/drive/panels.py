@@ -42,16 +42,16 @@ class Panels:
 
     @cached_property
     def weight(self) -> Array:
-        """What a value at each node counts in an integral."""
+        """The quadrature weight of each node."""
         return 0.5 * (self.stop - self.start)[:, None] * WEIGHT
 
     @property
     def edges(self) -> list[float]:
-        """Where panels begin and end."""
+        """The edges of the panels, ascending."""
         return [*self.start.tolist(), float(self.stop[-1])]
 
     def integral(self, values: Array) -> float:
-        """Over all panels."""
+        """The integral over all panels."""
         return float(np.sum(self.weight * values))
 
     def running(self, values: Array) -> Array:

@@ -1,4 +1,4 @@
-"""What `drive` returns: a dict that prints as a report and draws itself."""
+"""The result of `drive`: a dict with a report and a plot."""
 
 from collections.abc import Mapping
 from math import degrees, isnan
@@ -57,7 +57,7 @@ class Drive(dict[str, Any]):
         return {**self, **found, "gradient": gradient}
 
     def report(self) -> str:
-        """The figures as a text for a data sheet; angles that are in radians are told in degrees."""
+        """The figures as text for a data sheet; angles in radians are shown in degrees."""
         lines = ["Drive over one turn", f"  {self._design()}"]
         if self["status"]:
             lines.append(f"  status {self['status']}: {STATUS[self['status']]}")

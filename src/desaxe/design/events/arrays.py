@@ -1,4 +1,4 @@
-"""`events` for arrays of designs: the same closed forms in NumPy, the velocities by bisection."""
+"""`events` for arrays of designs: closed forms in NumPy, velocities by bisection."""
 
 from typing import Any
 
@@ -18,7 +18,7 @@ HALVINGS = 55  # of a turn: down to the last bits
 def events_of_arrays(
     given: dict[str, Any], branch: int, with_speed: bool, with_velocities: bool = True
 ) -> dict[str, Any]:
-    """The answers in the broadcast shape of the inputs; see `events`."""
+    """The results of `events` in the broadcast shape of the inputs."""
     inputs = {n: as_array(n, value, tuple(given), ("events",)) for n, value in given.items()}
     shape = broadcast_shape(inputs)
     ec, AB, BC, omega = (np.broadcast_to(a, shape) for a in inputs.values())
@@ -47,13 +47,13 @@ def events_of_arrays(
 
 
 def _turned(turn: NDArray[np.int_], ahead: Known, behind: Known) -> Known:
-    """The one where the crank turns this way, the other where it turns that way."""
+    """`ahead` where the crank turns forwards, `behind` where it turns backwards."""
     slopes = (np.where(turn > 0, a, b) for a, b in zip(ahead.slopes, behind.slopes, strict=True))
     return Known(np.where(turn > 0, ahead.value, behind.value), tuple(slopes))
 
 
 def _rod_places(ec: Array, AB: Array, stuck: NDArray[np.bool_]) -> dict[str, Array]:
-    """Where the rod leans most, and least."""
+    """Crank angles of the largest and the smallest inclination of the rod."""
     steep = np.where(ec < 0.0, -np.pi / 2, np.pi / 2)
     with np.errstate(invalid="ignore"):
         flat = np.where(np.abs(ec) <= AB, -np.arctan2(ec, np.sqrt(AB - ec) * np.sqrt(AB + ec)), -steep)

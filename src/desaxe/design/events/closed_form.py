@@ -50,7 +50,7 @@ class Sides(NamedTuple):
 
 
 def closed_form(ec: Any, AB: Any, BC: Any, maths: Maths) -> dict[str, Known]:
-    """Everything by name, for branch 1 and a crank that turns forwards; NaN where there is none.
+    """All events by name, for branch 1 and a crank that turns forwards; NaN where one does not exist.
 
     `theta_inner` is told from pi on: on the other branch it is near 0, with all its digits.
     """
@@ -154,7 +154,7 @@ def _negative(slopes: tuple[Any, Any, Any]) -> tuple[Any, Any, Any]:
 
 
 def placed(known: dict[str, Known], branch: int, turn: int) -> dict[str, Known]:
-    """As it is on this branch: mirrored across X where it is -1, advance and return as the crank turns."""
+    """The events on this branch (mirrored across X for -1) and for this direction of rotation."""
     found = dict(known)
     for name in MIRRORED:
         value, (a, b, c), power = known[name]

@@ -83,7 +83,7 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
 
 
 def rod_places(ec: float, AB: float, stuck: bool) -> dict[str, float]:
-    """Where the rod leans most, and least."""
+    """Crank angles of the largest and the smallest inclination of the rod."""
     steep = copysign(pi / 2, ec) if ec else pi / 2
     flat = -PLAIN.atan2(ec, PLAIN.sqrt(AB - ec) * PLAIN.sqrt(AB + ec)) if abs(ec) <= AB else -steep
     return {

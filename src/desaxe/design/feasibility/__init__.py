@@ -1,4 +1,4 @@
-"""Which designs can be assembled and turn.
+"""Feasibility: can a design be assembled, can it turn.
 
 feasibility  one design, in plain Python
 arrays       many designs, in NumPy

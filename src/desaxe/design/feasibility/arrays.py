@@ -1,4 +1,4 @@
-"""`feasibility` for arrays of designs: the same answers as for a number, in NumPy."""
+"""`feasibility` for arrays of designs, in NumPy."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ KINDS = ("crank", "change point", "rocker", "none", "bad input")
 
 
 def of_arrays(ec: Array, AB: Array, BC: Array) -> dict[str, Any]:
-    """The answers in the broadcast shape; see `feasibility`."""
+    """The results of `feasibility` in the broadcast shape."""
     ec, AB, BC = np.broadcast_arrays(ec, AB, BC)
     bad = ~(np.isfinite(ec) & np.isfinite(AB) & np.isfinite(BC) & (AB >= 0.0) & (BC > 0.0))
     ec, AB, BC = (np.where(bad, np.nan, a) for a in (ec, AB, BC))
@@ -38,7 +38,7 @@ def of_arrays(ec: Array, AB: Array, BC: Array) -> dict[str, Any]:
 
 
 def _intervals(ec: Array, AB: Array, BC: Array) -> Array:
-    """Two (first, last) each, NaN where there is none; see `mechanism.limit_angles.theta_intervals`."""
+    """Two intervals (first, last) a design, NaN where absent; see `limit_angles.theta_intervals`."""
     upper, lower = sum_of_three(BC, -AB, -ec), sum_of_three(BC, -AB, ec)
     over, under = sum_of_three(BC, AB, -ec), sum_of_three(BC, AB, ec)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -66,7 +66,7 @@ def _intervals(ec: Array, AB: Array, BC: Array) -> Array:
 
 
 def _gap(margin: Array, rest: Array, AB: Array) -> Array:
-    """How far from a quarter the crank must stay; see `desaxe.design.feasibility.feasibility`."""
+    """Smallest angle between crank and quarter turn, of arrays; see `limit_angles._gap`."""
     narrow = 2.0 * np.arcsin(np.sqrt(np.maximum(-margin, 0.0) / (2.0 * AB)))
     wide = np.pi - 2.0 * np.arcsin(np.sqrt(rest / (2.0 * AB)))
     return np.where(-margin < AB, narrow, wide)

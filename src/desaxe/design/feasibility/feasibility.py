@@ -11,7 +11,7 @@ from ...support.answer import answering
 @answering
 @with_known_inputs
 def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
-    """Where a design can be assembled.
+    """Type of a design, its margin, and the crank angles at which it can be assembled.
 
     ec, AB, BC: numbers (or text with a unit) in metres, or arrays, which broadcast like NumPy. Gives a dict:
 

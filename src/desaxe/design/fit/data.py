@@ -30,7 +30,7 @@ class Data(NamedTuple):
 
     @property
     def size(self) -> int:
-        """How many numbers were measured."""
+        """The number of measured values."""
         return sum(int(np.isfinite(column).sum()) for column in self.measured.values())
 
 

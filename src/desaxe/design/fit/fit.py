@@ -112,7 +112,7 @@ def _sigma(name: str, value: Any) -> float:
 
 
 def _set_sigma(model: Model, loss: str, seed: int) -> None:
-    """Put the scatter of the residuals in sigma's place; a robust one, since a robust loss needs a scale."""
+    """Set sigma to the scatter of the residuals, robustly: a robust loss needs a scale."""
     (name,) = model.sigma
     model.sigma[name] = float(np.nanstd(model.data.measured[name])) or 1.0
     for _ in range(1 if loss == "linear" else 3):

@@ -1,4 +1,4 @@
-"""The measurements as the machine would give them, with exact derivatives by every unknown.
+"""The model of a fit: predicted measurements, with exact derivatives by every unknown.
 
     measured = scale * q(theta + theta_offset; parameters) + bias
 

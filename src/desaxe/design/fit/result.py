@@ -1,4 +1,4 @@
-"""What a fit found: a dict that shows itself as a report, predicts, and draws itself."""
+"""The result of `fit`: a dict with a report, predictions and a plot."""
 
 from typing import Any
 
@@ -48,7 +48,7 @@ class Fit(dict[str, Any]):
         return found
 
     def report(self) -> str:
-        """A table of the unknowns, and what the data say about them, as text."""
+        """A table of the unknowns with standard errors and intervals, as text."""
         lines = [f"fit: {self['message']}", ""]
         wide = max(map(len, self["names"]))
         lines.append(f"  {'':{wide}}  {'value':>13}  {'std. error':>11}  95 % interval")

@@ -53,7 +53,7 @@ def _best(runs: list[Any]) -> Any:
 
 
 def _is_good(residuals: Array) -> bool:
-    """True where most residuals are as small as their sigma says, whatever a few outliers do."""
+    """True if most residuals are within their sigma; a few outliers do not count."""
     return bool(np.median(np.abs(residuals)) < 1.0)  # 0.67 is expected
 
 

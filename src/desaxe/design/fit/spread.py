@@ -1,4 +1,4 @@
-"""How sure a fit is: covariance, and the directions of the unknowns that the data leave open.
+"""Uncertainty of a fit: covariance, and the directions of the unknowns that the data do not determine.
 
 Columns of the Jacobian are scaled by the unknowns' sizes, so that its singular values are the reciprocals of
 relative uncertainties. A direction is left open where its singular value is 0 to rounding.
@@ -59,7 +59,7 @@ def _sparse(rows: Array) -> Array:
 
 
 def inflation(residuals: Array, loss: str) -> float:
-    """How much a robust loss widens the covariance: mean(psi^2)/mean(psi')^2 (Huber's M-estimates)."""
+    """Inflation of the covariance by a robust loss: mean(psi^2)/mean(psi')^2 (Huber's M-estimates)."""
     if loss == "linear":
         return 1.0
     z = residuals * residuals

@@ -1,4 +1,4 @@
-"""What `optimize` is asked for: objectives, the space of designs and limits, read and checked."""
+"""The request of `optimize`: objectives, space of designs and limits, read and checked."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -18,7 +18,7 @@ from .problem import EQUAL, LOWER, UPPER, Limit, Piece, Space
 
 
 class Goal(NamedTuple):
-    """A measure and whether it is to be large (1) or small (-1)."""
+    """A measure and its sense: 1 to maximise, -1 to minimise."""
 
     measure: Measure
     sense: int
@@ -35,7 +35,7 @@ def goals_of(maximize: Any, minimize: Any) -> list[Goal]:
 
 
 def _several(wanted: Any) -> list[Any]:
-    """The objectives, of one or of a list of them; a pair (kind, quantity) is one."""
+    """One or several objectives as a list; a pair (kind, quantity) is one objective."""
     if wanted is None:
         return []
     many = isinstance(wanted, tuple) and (
@@ -141,7 +141,7 @@ def upper_limits(key: Any, measure: Measure, bound: float) -> list[Limit]:
 
 
 def problems(goal: Goal) -> list[list[Piece]]:
-    """Problems of which the best is taken, each with the pieces whose largest is made small."""
+    """The minimax problems of a goal, whose best optimum counts; each is a list of pieces."""
     sides = sides_of(goal.measure)
     pieces = [Piece(part, -goal.sense * sign) for part, sign in sides.parts]
     together = sides.largest == (goal.sense < 0)

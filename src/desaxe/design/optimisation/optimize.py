@@ -1,4 +1,4 @@
-"""`optimize`: the best design within limits, what the limits cost, or why there is none."""
+"""`optimize`: the best design within limits, with the multipliers of the limits; or why there is none."""
 
 from collections.abc import Mapping
 from typing import Any

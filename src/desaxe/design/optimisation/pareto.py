@@ -57,7 +57,7 @@ def _values(goals: list[Goal], space: Space, result: dict[str, Any]) -> list[flo
 
 
 def _best(gains: Any) -> list[int]:
-    """The rows that no other row beats, by the first objective from its best on."""
+    """Indices of the non-dominated rows, sorted by the first objective, its best first."""
     slack = 1e-9 * np.maximum(np.abs(gains).max(axis=0), 1e-300)
     kept: list[int] = []
     for row in np.lexsort(-gains.T[::-1]):
@@ -67,7 +67,7 @@ def _best(gains: Any) -> list[int]:
 
 
 def _none(goals: list[Goal], space: Space, result: dict[str, Any]) -> dict[str, Any]:
-    """Without a best in each objective there is no front."""
+    """The empty front, returned if an objective has no optimum."""
     nothing = np.empty(0)
     return {
         **dict.fromkeys(space.names, nothing),

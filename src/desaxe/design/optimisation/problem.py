@@ -25,7 +25,7 @@ class Limit(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """One of the smooth functions, sign * measure, whose largest is made as small as possible."""
+    """One of the smooth functions, sign * measure, whose maximum is minimised."""
 
     measure: Any  # a measure, or a function of designs
     sign: float
@@ -56,7 +56,7 @@ class Evaluated(NamedTuple):
 
 
 class Functions:
-    """Some functions of a space, each told as sign * (measure - bound); the last answer is remembered."""
+    """Functions sign * (measure - bound) over a space of designs; the last result is cached."""
 
     def __init__(self, space: Space, rows: Sequence[tuple[Any, float, float]]) -> None:
         self.space = space
@@ -64,7 +64,7 @@ class Functions:
         self._last: tuple[bytes, Evaluated] | None = None
 
     def __call__(self, z: Array) -> Evaluated:
-        """All of them at rows of variables."""
+        """Values and gradients of all functions at rows of variables."""
         key = np.ascontiguousarray(z).tobytes()
         if self._last is None or self._last[0] != key:
             self._last = key, self._evaluated(np.atleast_2d(z))

@@ -1,4 +1,4 @@
-"""What the search of `optimize` found, told: the design, what holds it back, what that costs, in words."""
+"""The result of `optimize`: the design, its active limits with their multipliers, a message."""
 
 from typing import Any
 
@@ -51,7 +51,7 @@ def told(goal: Goal, space: Space, found: Found, search: Search, grows: bool) ->
 
 
 def _named(space: Space, found: Found, search: Search) -> tuple[dict[Any, str], dict[Any, float]]:
-    """Which limits hold the optimum back, and their multipliers, by name."""
+    """The active limits and the multipliers, by name."""
     n, count = len(space.names), len(search.limits)
     active: dict[Any, str] = {}
     multipliers: dict[Any, float] = {limit.key: 0.0 for limit in search.limits} | dict.fromkeys(
@@ -100,7 +100,7 @@ def _message(
 
 
 def _missed(found: Found, search: Search) -> str:
-    """The limit that is broken most, and by how much."""
+    """The most violated limit, and the violation, as text."""
     value = search.scaled(found.z)[0][search.count :]
     worst = int(np.argmax(np.where(search.equal, np.abs(value), -value)))
     limit = search.limits[worst]

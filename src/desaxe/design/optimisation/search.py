@@ -1,4 +1,4 @@
-"""The search behind `optimize`: scan, SLSQP from the best places, last digits from the optimality conditions.
+"""The search behind `optimize`: scan, SLSQP from the best points, Newton on the optimality conditions.
 
 Made as small as possible is the largest of the problem's pieces (one, mostly), in the variable t:
 
@@ -41,7 +41,7 @@ class Found(NamedTuple):
 
 
 class Search:
-    """One problem: pieces to make small, limits to keep."""
+    """The search of one problem: minimise the largest piece within the limits."""
 
     def __init__(self, space: Space, pieces: Sequence[Piece], limits: Sequence[Limit], seed: int) -> None:
         self.space, self.pieces, self.limits, self.seed = space, tuple(pieces), tuple(limits), seed
@@ -54,7 +54,7 @@ class Search:
     # ---- where to start ---------------------------------------------------------------------------
 
     def scan(self) -> None:
-        """Designs all over the space; the scale of every function from them."""
+        """Evaluate designs spread over the space; set the scale of every function from them."""
         n = len(self.space.names)
         spread = (
             qmc.Sobol(n, rng=self.seed) if "rng" in _parameters(qmc.Sobol) else qmc.Sobol(n, seed=self.seed)
@@ -71,7 +71,7 @@ class Search:
         self.scanned = found / self.scale
 
     def starts(self, count: int) -> list[Array]:
-        """The best places of the scan, not all in one corner."""
+        """The best points of the scan, at some distance from each other."""
         value = self.scanned[:, : self.count].max(axis=1)
         violation = self._violation(self.scanned[:, self.count :])
         value = np.where(np.isfinite(value), value, WORST)
@@ -83,17 +83,17 @@ class Search:
         return chosen[:count]
 
     def margins(self) -> list[int]:
-        """The numbers of the lower limits of the margin, implied or asked for."""
+        """Indices of the lower limits of the margin, implied or requested."""
         keys = (None, "margin")
         return [k for k, limit in enumerate(self.limits) if limit.side == LOWER and limit.key in keys]
 
     def is_near_margin(self, z: Array) -> bool:
-        """Whether the crank can hardly turn any more."""
+        """True if the design is close to a lower limit of its margin."""
         value = self.scaled(z)[0][self.count :]
         return any(value[number] < CLOSE for number in self.margins())
 
     def at_limit(self, z: Array, number: int) -> Array:
-        """The nearest place at which a limit is met exactly, if it is linear."""
+        """The nearest point on a limit, by one linear step."""
         value, slope = self.scaled(z)
         row = self.count + number
         step: Array = slope[row] * value[row] / max(float(slope[row] @ slope[row]), 1e-300)
@@ -108,7 +108,7 @@ class Search:
     # ---- one run ----------------------------------------------------------------------------------
 
     def scaled(self, z: Array) -> tuple[Array, Array]:
-        """Scaled values and slopes of all functions at one place; finite ones always."""
+        """Scaled values and gradients of all functions at one point, always finite."""
         found = self.functions(np.clip(np.nan_to_num(z, nan=0.5), 0.0, 1.0))
         value, slope = found.value[0] / self.scale, found.slope[0] / self.scale[:, None]
         bad = ~np.isfinite(value)
@@ -116,14 +116,14 @@ class Search:
         return value, np.where(np.isfinite(slope), slope, 0.0)
 
     def run(self, start: Array, pinned: int | None = None) -> Found:
-        """SLSQP from one place; on the limit of this number, if there is one that pins it."""
+        """SLSQP from one point; `pinned` is the index of a limit to stay on."""
         n, m = len(start), self.count
         several = m > 1
         first = self.scaled(start)[0][:m].max()
         z0 = np.append(start, first) if several else start
 
         def sides(z: Array) -> tuple[Array, Array]:
-            """What must stay positive, and its slopes."""
+            """The constraint functions, which stay positive, and their gradients."""
             value, slope = self.scaled(z[:n])
             if not several:
                 return value[m:], slope[m:]
@@ -157,7 +157,7 @@ class Search:
         return found
 
     def probed(self, found: Found) -> Found:
-        """From a place that is not settled, without derivatives (COBYLA): peaks may tie there in a kink."""
+        """Continue from an unsettled point without derivatives (COBYLA): two peaks may tie in a kink."""
         m = self.count
         both = np.flatnonzero(self.equal)
 
@@ -180,7 +180,7 @@ class Search:
     # ---- optimality -------------------------------------------------------------------------------
 
     def judged(self, z: Array) -> Found:
-        """How good a place is, and the multipliers that come nearest to the optimality conditions."""
+        """A point with its violation, and the multipliers that best satisfy the optimality conditions."""
         n, m = len(z), self.count
         value, slope = self.scaled(z)
         pieces, limits = value[:m], value[m:]

@@ -37,7 +37,7 @@ class Family(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """Designs, the range that the third wish could have, and whether its ends are reached."""
+    """The designs found, the range of feasible values of the third requirement, and why there is none."""
 
     designs: list[dict[str, float]]
     low: float

@@ -1,4 +1,4 @@
-"""Designs of a wanted stroke, time ratio and largest acceleration: every crossing along the family."""
+"""Designs with a required stroke, time ratio and peak acceleration: every crossing along the family."""
 
 from math import isclose, log10, sqrt
 from typing import Any
@@ -18,7 +18,7 @@ TURNS = 1e-9  # of the rod: lengths rounded to doubles do not tell a smaller mar
 
 
 def of_peak(family: Family, wanted: float, omega0: float) -> Answer:
-    """Every design at which the largest |a_C| is as wanted, and the least that there is."""
+    """Every design of the family with the required peak |a_C|, and the smallest feasible peak."""
     if omega0 == 0.0:
         raise ValueError("omega0 = 0: a crank at rest has no acceleration to wish for")
 
@@ -65,7 +65,7 @@ def _places(low: float) -> Array:
 
 
 def _lowest(function: Any, a: float, b: float) -> float:
-    """Where it is least between a and b, by golden sections."""
+    """The minimiser of a function between a and b, by golden section."""
     golden = (sqrt(5.0) - 1.0) / 2.0
     c, d = b - golden * (b - a), a + golden * (b - a)
     fc, fd = function(c), function(d)

@@ -1,4 +1,4 @@
-"""`synthesize`: the designs that have a wanted stroke and time ratio.
+"""`synthesize`: the designs with a required stroke and time ratio.
 
 With beta = pi (ratio - 1)/(ratio + 1), the angle that the stroke H is seen under from the crank's centre, the
 triangle of both dead centres gives
@@ -52,7 +52,7 @@ def synthesize(
     omega0: Any = None,
     slow_stroke: int = 1,
 ) -> dict[str, Any]:
-    """Every design with this stroke and time ratio, and one more wish; or why there is none.
+    """Every design with this stroke, time ratio and one further requirement; or why there is none.
 
     stroke       distance between the dead centres [m]
     time_ratio   the longer over the shorter stroke, from 1 to below 3

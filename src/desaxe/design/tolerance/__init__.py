@@ -1,4 +1,4 @@
-"""How far a quantity scatters when its inputs do.
+"""The scatter of a quantity whose inputs have tolerances.
 
 tolerance  the public call
 uncertain  inputs with a tolerance or a distribution

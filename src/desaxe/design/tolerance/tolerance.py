@@ -1,4 +1,4 @@
-"""`tolerance`: how far a quantity scatters when its inputs do, told in four ways that check each other."""
+"""`tolerance`: the scatter of a quantity whose inputs have tolerances, by four independent methods."""
 
 from collections.abc import Mapping, Sequence
 from itertools import product
@@ -34,7 +34,7 @@ MANY, SOME = 100_000, 10_000  # samples of a quantity at a point, and of a peak
 
 
 class Function(NamedTuple):
-    """A quantity at a crank angle, or of a whole design, as a function of what varies."""
+    """A quantity at a crank angle, or of a whole design, as a function of the varying inputs."""
 
     measure: Measure
     at_point: bool
@@ -43,7 +43,7 @@ class Function(NamedTuple):
     branch: int
 
     def values(self, columns: Mapping[str, Any]) -> Array:
-        """Over samples; NaN where there is none."""
+        """The values over samples; NaN where undefined."""
         if self.at_point:
             found = evaluate(str(self.measure), branch=self.branch, **self.fixed, **columns)
         else:
@@ -61,7 +61,7 @@ class Function(NamedTuple):
         return np.stack([np.broadcast_to(gradient.get(p, 0.0), (size,)) for p in self.varying], -1)
 
     def bends(self, centre: Mapping[str, Any], steps: Array) -> tuple[Array, bool]:
-        """The second derivatives at a place, NaN where there are none, and whether all are exact."""
+        """The second derivatives at a point (NaN where undefined), and a flag: all are exact."""
         n = len(self.varying)
         pairs = [(i, j) for i in range(n) for j in range(i, n)]
         bends = np.empty((n, n))
@@ -79,7 +79,7 @@ class Function(NamedTuple):
         return near, False
 
     def _differences(self, centre: Mapping[str, Any], steps: Array) -> tuple[Array, float]:
-        """Of the exact first derivatives, over the steps; and what these change the quantity by."""
+        """Second derivatives by differences of the exact first ones, and the largest change over a step."""
         n = len(self.varying)
         moves = np.vstack([np.diag(steps), -np.diag(steps)])
         middle = np.array([centre[p] for p in self.varying])
@@ -89,7 +89,7 @@ class Function(NamedTuple):
 
     @property
     def state(self) -> bool:
-        """Whether a state omega is given."""
+        """True if the motion is a given state (omega)."""
         return "omega" in self.fixed or "omega" in self.varying
 
 
@@ -105,7 +105,7 @@ def tolerance(
     seed: int = 0,
     **inputs: Any,
 ) -> dict[str, Any]:
-    """How far a quantity scatters when its inputs do.
+    """The scatter of a quantity whose inputs have tolerances or distributions.
 
     name          a quantity at a crank angle, as for `evaluate` ("a_C", with theta=), or one of a whole
                   design: "stroke", "time_ratio", ..., or a peak such as ("absmax", "a_C")
@@ -296,7 +296,7 @@ def _sobol(function: Function, rough: Sequence[Inexact], count: int, seed: int) 
 
 
 def _worst_case(function: Function, value: float, slopes: Array, rough: Sequence[Inexact]) -> Any:
-    """How far it goes within all tolerances; see `tolerance`."""
+    """The extreme values within all tolerances; see `tolerance`."""
     if any(row.tolerance is None for row in rough):
         return None
     if function.at_point:
@@ -312,7 +312,7 @@ def _worst_case(function: Function, value: float, slopes: Array, rough: Sequence
 
 
 def _covered(worst: dict[str, Any] | None, samples: Array, sigmas: float | None) -> dict[str, Any] | None:
-    """The worst case with what it does not cover: how many sigmas it is of, which share lies outside."""
+    """The worst case with its coverage: the sigmas of the tolerances, and the share outside of them."""
     if worst is None:
         return None
     known = samples[np.isfinite(samples)]

@@ -29,7 +29,7 @@ class Inexact(NamedTuple):
     kind: Any  # "normal", "uniform" or a distribution with .ppf
 
     def at(self, share: Array) -> Array:
-        """The values that so many shares of all are below."""
+        """Quantiles of the distribution."""
         if self.kind == "uniform":
             return self.mean + (2.0 * share - 1.0) * float(self.tolerance or 0.0)
         if self.kind == "normal":
@@ -41,7 +41,7 @@ class Inexact(NamedTuple):
         return np.asarray(self.kind.ppf(share))
 
     def drawn(self, random: np.random.Generator, count: int) -> Array:
-        """Random values."""
+        """Random samples of the input."""
         if self.kind == "normal":
             return random.normal(self.mean, self.std, count)
         return self.at(random.random(count))
@@ -66,7 +66,7 @@ def read(name: str, value: Any, distribution: str, sigmas: float) -> float | Ine
 
 
 def _pair(name: str, value: Any) -> tuple[float, float] | None:
-    """Value and tolerance from a pair, range or text such as "10 mm +- 0.1 mm"; None where there is none."""
+    """Value and tolerance of a pair, range or text such as "10 mm +- 0.1 mm"; None for an exact input."""
     bare = type(value) in (tuple, list)
     if isinstance(value, str):
         parts = PLUS_MINUS.split(value)

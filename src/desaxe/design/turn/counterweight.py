@@ -1,4 +1,4 @@
-"""`counterweight`: what balances how much of the first harmonic of the shaking force.
+"""`counterweight`: the mass that balances a share of the first harmonic of the shaking force.
 
 With z = F_Y + i F_X (theta turns from Y towards X, so that exp(i theta) points along the crank) the first
 harmonic is z = f exp(i theta) + b exp(-i theta): a force that turns with the crank and one that turns
@@ -94,7 +94,7 @@ def _told(f: Any, b: Any, f2: Any, b2: Any, z: Any) -> dict[str, float]:
 
 
 def _ahead(weight: Any) -> float:
-    """An angle from 0 on."""
+    """An angle shifted into 0 ... 2 pi."""
     return float(phase(weight) % (2.0 * pi)) if weight else 0.0
 
 

@@ -1,4 +1,4 @@
-"""`flywheel`: torque ripple, and the inertia that keeps the speed within a wanted fluctuation.
+"""`flywheel`: torque ripple, and the inertia that keeps the speed within a required fluctuation.
 
 A constant drive torque, the mean of what the loads take over a turn, leaves the energy
 
@@ -25,7 +25,7 @@ MOST_TURNS = 4  # after which the loads must repeat; two in a four-stroke engine
 
 @answering
 def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str, Any]:
-    """Torque ripple over a turn, and the flywheel for a wanted fluctuation of speed.
+    """Torque ripple over a turn, and the flywheel for a required fluctuation of speed.
 
     fluctuation  (fastest - slowest)/mean speed that is allowed, such as 0.02
     inputs       of one design with masses and loads, as in `evaluate`; omega0 is the mean speed. F_X and
@@ -107,7 +107,7 @@ def _extremes(turn: Turn, torque: Array) -> list[tuple[float, float]]:
 
 
 def _integral(torque: Array) -> Array:
-    """The integral over theta of what differs from the mean, itself of mean 0."""
+    """The integral over theta of the deviation from the mean, with mean 0."""
     c = np.fft.rfft(torque)
     c[0] = 0.0
     c[1:] /= 1j * np.arange(1, len(c))
@@ -123,7 +123,7 @@ class Machine(NamedTuple):
     speed: float
 
     def speeds(self, J: float) -> Array:
-        """omega(theta) with this flywheel, with the energy at which the mean speed is as wanted."""
+        """omega(theta) with this flywheel, at the energy of the required mean speed."""
 
         def at(energy: float) -> Array:
             return np.sqrt(2.0 * np.maximum(energy + self.work, 0.0) / np.maximum(J + self.effective, 1e-300))
@@ -155,7 +155,7 @@ class Machine(NamedTuple):
         return (fastest - slowest) / (0.5 * (fastest + slowest))
 
     def inertia(self, wanted: float, estimate: float) -> float:
-        """The least flywheel with which the speed fluctuates no more than wanted."""
+        """The smallest flywheel that keeps the required fluctuation of speed."""
         if self.fluctuation(0.0) <= wanted:
             return 0.0
         high = max(estimate, 1e-300)

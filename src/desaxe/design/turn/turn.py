@@ -75,7 +75,7 @@ class Turn:
 
 
 def _turns(caller: str, loads: Mapping[str, Load], most: int) -> int:
-    """After how many turns the loads repeat; ValueError for more than `most`."""
+    """The number of turns after which the loads repeat; ValueError for more than `most`."""
     turns = 1
     for name, load in loads.items():
         if not isinstance(load, OverTheta):
@@ -91,7 +91,7 @@ def _turns(caller: str, loads: Mapping[str, Load], most: int) -> int:
 
 
 def _repeats(load: OverTheta, angle: float) -> bool:
-    """True where a table repeats after an angle; a function is taken to."""
+    """True if a table repeats after an angle; a function is assumed to."""
     periods = angle / load.period
     return not isinstance(load, TableOverTheta) or abs(periods - round(periods)) < 1e-9
 

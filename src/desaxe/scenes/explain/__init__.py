@@ -1,4 +1,4 @@
-"""`explain`: what a scene will do before it does it, as a database explains a query.
+"""`explain`: the plan of a scene before it runs, as a database explains a query.
 
 explain   the plan of a scene, as data
 steps     what was skipped and why, and what each pass saved

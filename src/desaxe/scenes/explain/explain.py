@@ -1,4 +1,4 @@
-"""The plan of a scene: what will run in which loop, what was skipped and why, what it will cost."""
+"""The plan of a scene: the operations of each loop, the skipped lines with reasons, the cost."""
 
 import json
 import shutil
@@ -57,7 +57,7 @@ class Plan:
         return self.data[key]
 
     def as_dict(self) -> dict[str, Any]:
-        """All of it, ready for JSON."""
+        """The plan as plain dicts and lists."""
         found: dict[str, Any] = json.loads(self.to_json())
         return found
 
@@ -203,7 +203,7 @@ def _loop(loop: Loop, points: int) -> dict[str, Any]:
 
 
 def _run(content: Content, found: GridKernel, loops: list[Loop], compiled: bool) -> dict[str, Any]:
-    """How it will run, and how long that takes."""
+    """The execution of the grid: tier, threads, estimated times."""
     points = found.points
     cached, path = _cached(found.key)
     plain = estimate.plain_time(sum(loop.operations for loop in loops), points)
@@ -233,7 +233,7 @@ def _run(content: Content, found: GridKernel, loops: list[Loop], compiled: bool)
 
 
 def _cached(key: KernelKey) -> tuple[str, str]:
-    """Where the kernel is: in memory, on disk, or not compiled; and the file of its machine code."""
+    """The state of a kernel ("memory", "disk" or "no"), and the file of its machine code."""
     path = path_of("kernel", source_of(key))
     if is_ready(key):
         return "memory", str(path)
@@ -257,7 +257,7 @@ def _memory(content: Content, found: GridKernel) -> dict[str, int]:
 
 
 def _also(content: Content) -> list[dict[str, Any]]:
-    """What runs besides the grid."""
+    """The work besides the grid: peaks, pictures, checks."""
     found: list[dict[str, Any]] = []
     for peak in content.peaks:
         designs = prod(len(values) for values in peak.axes.values())

@@ -1,4 +1,4 @@
-"""Operations per loop of a kernel: how often each body runs, and what that is per point."""
+"""Operations per loop of a kernel: runs of each body, operations per run and per point."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -11,7 +11,7 @@ from ...compiler.program import Line
 
 
 class Loop(NamedTuple):
-    """A straight line of operations and how often it runs.
+    """A loop body: its operations and how often it runs.
 
     `along` are the axes that it runs over, the outermost first; a `table` runs before the main loops
     and keeps what they read. `cost` is the operations' throughput in additions. A `close` one runs in the
@@ -29,7 +29,7 @@ class Loop(NamedTuple):
 
     @property
     def work(self) -> int:
-        """Operations in all; what close designs take comes on top."""
+        """Total operations, without those of the stable form."""
         return 0 if self.close else self.runs * self.operations
 
 

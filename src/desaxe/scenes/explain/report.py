@@ -62,7 +62,7 @@ def _cut(line: str) -> str:
 
 
 def _wrapped(word: str, parts: list[str]) -> list[str]:
-    """Parts after a word; only a single part is broken inside."""
+    """Wrapped lines of a label and its parts; only a single part may be broken inside."""
     whole = [part.replace(" ", "\xa0") for part in parts] if len(parts) > 1 else parts
     rows = wrap(", ".join(whole), WIDTH - 11, break_long_words=False)
     return [f"  {word if not index else '':8} {row}".replace("\xa0", " ") for index, row in enumerate(rows)]
@@ -99,7 +99,7 @@ def _passes(plan: Mapping[str, Any]) -> str:
 
 
 def _is_compiled(plan: Mapping[str, Any]) -> bool:
-    """Whether a kernel runs."""
+    """True if the plan runs a kernel."""
     compiled: bool = plan["run"]["way"] == "compiled"
     return compiled
 
@@ -109,7 +109,7 @@ def _few(value: float) -> str:
 
 
 def _loops(plan: Mapping[str, Any]) -> str:
-    """What runs in which loop."""
+    """The table of loops: runs, operations, operations per point."""
     rows = [["", "runs", "operations", "per point"]]
     names = [""]
     for loop in plan["loops"]:
@@ -148,7 +148,7 @@ def _values(loop: Mapping[str, Any]) -> str:
 
 
 def _how(plan: Mapping[str, Any]) -> str:
-    """How it runs, how long, how much memory."""
+    """The section on execution: tier, time, memory."""
     run, seconds = plan["run"], plan["run"]["seconds"]
     lines = ["Execution"]
     points = f"{plan['points']:,} point{'s' if plan['points'] != 1 else ''}"

@@ -1,4 +1,4 @@
-"""What a scene does not need: inputs that are fixed, lines that vanish, and what each pass saved."""
+"""The savings of a scene: fixed inputs, vanished lines, and operations saved by each pass."""
 
 from collections.abc import Mapping
 from itertools import pairwise
@@ -23,7 +23,7 @@ class Step(NamedTuple):
 
 
 class Skipped(NamedTuple):
-    """Something that is not computed: what, why, and how many operations that saves at each point."""
+    """A skipped part: its name, the reason, and the operations saved at each point."""
 
     what: str
     why: str

@@ -1,4 +1,4 @@
-"""What a whole run takes, the first one of a machine and later ones: grid, peaks, pictures, files, start-up.
+"""Times of a whole run, the first and later ones: grid, peaks, pictures, files, start-up.
 
 The times are of a quiet machine; `explain` has run nothing.
 """

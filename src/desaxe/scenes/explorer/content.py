@@ -1,4 +1,4 @@
-"""What an explorer page knows: inputs, designs, quantities, and a function for each quantity.
+"""The content of an explorer page: inputs, designs, quantities, and a function for each quantity.
 
 A quantity and its first sensitivities are one Program, cut to them: the page computes what it draws.
 """
@@ -48,7 +48,7 @@ class Function(NamedTuple):
 
 
 class Content(NamedTuple):
-    """All of it, in SI units."""
+    """The content of a page, in SI units."""
 
     title: str
     branch: int
@@ -62,7 +62,7 @@ class Content(NamedTuple):
 
     @property
     def quantities(self) -> list[Quantity]:
-        """Everything that the page can show."""
+        """The records of all quantities of the page."""
         state = "omega" in self.designs[0]
         return [quantity(name, state) for function in self.functions for name in function.names]
 
@@ -103,7 +103,7 @@ def _tables(inputs: Mapping[str, Any]) -> dict[str, TableOverTheta]:
 
 
 def left_out_text(content: Content) -> str:
-    """Which of the values given no design of the page has; nothing where it has all."""
+    """The input values that no design of the page has, as text; empty if there are none."""
     told = []
     for name, values in content.left_out.items():
         unit = INPUTS[name].unit
@@ -120,12 +120,12 @@ def _left_out(name: str, value: Value, designs: Iterable[Mapping[str, float]]) -
 
 
 def _loaded(given: Mapping[str, Value]) -> bool:
-    """Whether anything is said about masses and forces."""
+    """True if a mass or a force is among the inputs."""
     return any(name in given for name in LOADS)
 
 
 def _grouped(wanted: Iterable[str], given: Mapping[str, Value]) -> dict[str, list[str]]:
-    """Quantity -> itself, its first sensitivities, and others of it that are asked for."""
+    """Group names by quantity: the quantity, its first sensitivities, and further requested ones."""
     state = "omega" in given
     found: dict[str, list[str]] = {STATE[0]: list(STATE)}
     for name in wanted:
@@ -163,7 +163,7 @@ def _function(
 
 
 def _request(names: tuple[str, ...], given: Mapping[str, Value], branch: int) -> Request:
-    """The request in which every input that is given can be changed: no value of it is built in."""
+    """The request in which every given input stays variable."""
     return request(names, dict.fromkeys(given, 1.0) | {"theta": 1.0}, branch, "standard")
 
 

@@ -26,7 +26,7 @@ def explore(
     title: str = TITLE,
     **inputs: Any,
 ) -> Path:
-    """Write an explorer page: one HTML file that needs no network, to be opened or sent to somebody.
+    """Write an explorer page: one HTML file that works offline in any browser.
 
     source  a scene (`desaxe.scene`, a TOML file or a mapping); or give inputs instead, as to `evaluate`:
             ec, AB, BC [m], omega0 (or omega) [rad/s], alpha [rad/s^2], masses and loads, each a number,
@@ -58,7 +58,7 @@ def content_of(
     title: str = TITLE,
     inputs: Mapping[str, Any] = MappingProxyType({}),
 ) -> Content:
-    """The content of the page that `explore` writes for the same."""
+    """The content of the page that `explore` writes for these arguments."""
     if source is None:
         check_common(inputs, branch)
         check_inputs("explore", inputs, tuple(INPUTS))
@@ -75,7 +75,7 @@ def content_of(
 
 
 def _of_scene(source: Any, names: Iterable[str] | None) -> Content:
-    """What a scene shows: its outputs, or what its peaks and pictures are about."""
+    """The content of a scene: its outputs, and the quantities of its peaks and pictures."""
     from ..scene import Scene, scene
 
     known = source if isinstance(source, Scene) else scene(source)

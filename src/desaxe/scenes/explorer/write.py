@@ -54,7 +54,7 @@ def _program(content: Content) -> str:
 
 
 def _data(content: Content) -> dict[str, Any]:
-    """What the scripts read."""
+    """The data that the scripts of the page read."""
     return {
         "title": content.title,
         "branch": content.branch,

@@ -38,7 +38,7 @@ def axes_text(axes: Mapping[str, Sequence[float]]) -> str:
 
 
 def _rule(values: Sequence[float]) -> str:
-    """An expression that gives just these values, if there is one."""
+    """An expression for exactly these values; empty if there is none."""
     array = np.array(values)
     if len(values) < 3:
         return ""

@@ -102,7 +102,7 @@ def compile(
 
 
 def texts_of(scene: Scene, place: Path, to: str = "numba", libm: bool = True) -> dict[Path, str]:
-    """The files that a scene gives in a language, and their texts; nothing is written."""
+    """The files of a scene in a language, with their texts; nothing is written."""
     if to == "numba":
         _require_importable(place)
         return {place: module_text(scene, place.name)}
@@ -126,12 +126,12 @@ def texts_of(scene: Scene, place: Path, to: str = "numba", libm: bool = True) ->
 
 
 def differing(texts: Mapping[Path, str]) -> list[Path]:
-    """The files that are not there or hold another text."""
+    """The files that are missing or have another text."""
     return [f for f, text in texts.items() if not f.is_file() or f.read_bytes() != text.encode()]
 
 
 def require_name(name: str, place: Path) -> None:
-    """The name of a module is a name in every language: letters, digits and underscores."""
+    """ValueError for a module name that is not valid in every language."""
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or keyword.iskeyword(name):
         word = re.sub(r"\W", "_", name, flags=re.ASCII)
         good = word if re.match(r"[A-Za-z]", word) and not keyword.iskeyword(word) else f"press_{word}"
@@ -139,7 +139,7 @@ def require_name(name: str, place: Path) -> None:
 
 
 def _require_importable(place: Path) -> None:
-    """A module is imported by the name of its file."""
+    """ValueError for a file name that Python cannot import."""
     name = place.stem
     if place.suffix != ".py" or not name.isidentifier() or keyword.iskeyword(name):
         word = re.sub(r"\W", "_", name)
@@ -206,7 +206,7 @@ IMPORTS = {
 
 
 def _called(imports: Mapping[str, set[str]], body: str) -> dict[str, set[str]]:
-    """The imports of a text; a name of both NumPy and math is NumPy's, which serves numba too."""
+    """The imports that a text needs; NumPy's for a name that math has too, since numba accepts it."""
     found = {m: imports.get(m, set()) | IMPORTS.get(m, set()) for m in {**imports, **IMPORTS}}
     found["math"] = found["math"] - imports.get("numpy", set())
     found["numpy"] = {n for n in found["numpy"] if n in imports.get("numpy", ()) or n not in found["math"]}
@@ -281,7 +281,7 @@ def _scalars(key: KernelKey, shown: tuple[str, ...], inputs: tuple[str, ...]) ->
 
 
 def _kernels(key: KernelKey, inputs: tuple[str, ...], sources: list[str]) -> Kernel:
-    """Append the kernels of arrays and of the grid; the latter, which tells the order of its inputs."""
+    """Append the sources of the array and the grid kernel; return the latter, which has the input order."""
     points = key._replace(axis_of=tuple((n, 0) for n in sorted(inputs)), axes=1, reduce=())
     single = is_single(key)
     own = _prefixed("point")
@@ -338,7 +338,7 @@ def _fixed(key: KernelKey) -> str:
 def _docstring(
     scene: Scene, name: str, key: KernelKey, shown: tuple[str, ...], inputs: tuple[str, ...], operations: int
 ) -> str:
-    """Where the module comes from, what it computes, in which units."""
+    """The module's docstring: its source, its contents, its units."""
     from ...support.version import version
 
     source = Path(scene.name).name

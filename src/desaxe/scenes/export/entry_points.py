@@ -1,4 +1,4 @@
-"""What people call in a compiled module: `point`, `evaluate`, `run`, as text."""
+"""The public functions of a compiled module as text: `point`, `evaluate`, `run`."""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""How the loops of a written module are compiled: at the first call, once, kept beside the module."""
+"""Lazy compilation of a written module's loops: at the first call, cached beside the module."""
 
 # The tails of `emit_numba` and `emit_reduced`.
 LAZY = '''def kernel(*arrays):

@@ -96,5 +96,5 @@ def calls_text(plan: Plan, inputs: Sequence[str], axes: Sequence[str], fixed_the
 
 
 def renames() -> dict[str, str]:
-    """What the kernels' own calls are named behind those under the loads."""
+    """New names of the kernels' functions that those under loads call."""
     return {"point": "point_at_load", "evaluate": "evaluate_at_load", "OUTPUTS": "PARTS"}

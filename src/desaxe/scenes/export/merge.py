@@ -1,4 +1,4 @@
-"""Several generated modules as one: imports together, what is the same once, what differs renamed."""
+"""Several generated modules merged into one: shared imports and functions once, others renamed."""
 
 import ast
 import re
@@ -25,7 +25,7 @@ def pieces(source: str) -> tuple[dict[str, set[str]], list[str]]:
 
 
 def renamed(source: str, names: Mapping[str, str], called: bool = False) -> str:
-    """The text with whole words replaced; only where they are `called`, if that is said."""
+    """Replace whole words in a text; with `called` only where a call follows."""
     words = "|".join(sorted(map(re.escape, names), key=len, reverse=True))
     pattern = re.compile(rf"\b({words})\b" + (r"(?=\()" if called else ""))
     return pattern.sub(lambda match: names[match[1]], source)

@@ -34,7 +34,7 @@ LOADED = "force_status"
 
 
 class Part(NamedTuple):
-    """The names of one file: of one quantity, one order of derivatives, one way of giving the motion."""
+    """The names of one file: one quantity, one order of derivatives, law or given state."""
 
     file: str
     names: tuple[str, ...]
@@ -73,7 +73,7 @@ def _is_ours(path: Path) -> bool:
 
 
 def _differences(texts: dict[str, str], folder: Path) -> list[str]:
-    """What differs from the files in a folder, as a unified diff."""
+    """A unified diff between the package and the files in a folder."""
     there = {path.name: path.read_text(encoding="utf-8") for path in sorted(folder.glob("*.py"))}
     found: list[str] = []
     for name in sorted({*texts, *there}):
@@ -148,7 +148,7 @@ def _parts(own: Definition, known: dict[str, Definition]) -> list[Part]:
 
 
 def _part_program(part: Part, made: Sequence[Definition]) -> tuple[Program, tuple[str, ...]]:
-    """The program of a part with the status, its outputs under the names that people ask for."""
+    """The program of a part with its status, and the public names of its outputs."""
     used = program_of(part.names, Variant(own=tuple(made))).inputs
     status = LOADED if "mu" in used else "status"
     names = (*part.names, status, "margin")

@@ -58,7 +58,7 @@ def module_of(scene: Scene, order: Order) -> Module:
 
 
 def require_outputs(scene: Scene) -> None:
-    """SceneError where nothing is asked for over the scene's axes."""
+    """SceneError if the scene has no outputs."""
     if scene.content.outputs:
         return
     peaks = ", ".join(peak.quantity for peak in scene.content.peaks)
@@ -67,7 +67,7 @@ def require_outputs(scene: Scene) -> None:
 
 
 def left_out(content: Content, reduction: bool = True) -> list[str]:
-    """What a scene asks for and a compiled module does not have, by name."""
+    """The parts of a scene that a compiled module leaves out, by name."""
     found = [f"[[peak]] {peak.quantity}" for peak in content.peaks]
     if reduction and content.reduction is not None:
         found.append(f"[reduce] over {content.reduction.axis}")
@@ -75,7 +75,7 @@ def left_out(content: Content, reduction: bool = True) -> list[str]:
 
 
 def heading(scene: Scene, command: str) -> tuple[str, ...]:
-    """What a module computes, and how it was made."""
+    """The head comment of a module: its contents, and the command that made it."""
     from ...support.version import version
 
     said = hashlib.sha256(repr(scene.content).encode()).hexdigest()[:16]
@@ -112,7 +112,7 @@ def _reach(asked: Request) -> float:
 
 
 def _asked(content: Content, names: Iterable[str]) -> tuple[Request, Fixed]:
-    """The request, and all that the scene fixes: what it does not say and nothing depends on is 0."""
+    """The request of a scene, and its fixed inputs; an absent input without effect is 0."""
     given: dict[str, Any] = dict(content.inputs)
     if "omega0" not in given and "omega" not in given:
         given["omega0"] = 0.0  # nothing that is asked for needs a speed

@@ -1,4 +1,4 @@
-"""What a press's controller asks besides values: the crank angle for a slider position, and the limit angles.
+"""Solvers for a controller: the crank angle for a slider position, and the limit angles.
 
 Both are closed forms, written as Programs, so that every language that takes them has the same digits.
 """
@@ -86,7 +86,7 @@ def solvers(fixed: Mapping[str, float]) -> dict[str, Solver]:
 
 
 def _cut(text: str, fixed: Mapping[str, float]) -> Program:
-    """The program with what is fixed folded in; bad arguments give NaN and status 4."""
+    """The program with fixed inputs folded in; invalid arguments give NaN and status 4."""
     program = read_function(text)
     program = optimise(program, {name: fixed[name] for name in program.inputs if name in fixed})[0]
     return guard_inputs(program, program.inputs, LEAST, {})
