@@ -8,6 +8,7 @@ import time
 from functools import cache
 from pathlib import Path
 from random import Random
+from shutil import copytree
 
 from tests.reliability.rig import CRASHED, GOOD, HUNG, WRONG, Trial, Verdict
 
@@ -52,7 +53,7 @@ other.join()
     "while a thread compiles": """
 other = threading.Thread(target=lambda: dx.evaluate("V_C_wrt_ec", theta=theta, **design))
 other.start()
-time.sleep(0.05)
+time.sleep(MOMENT)
 number = os.fork()
 if not number:
     os._exit(0 if value() == first else 3)
@@ -97,7 +98,10 @@ def warm() -> Path:
 
 def fork_after_threads(folder: Path, random: Random) -> Verdict:
     way = random.choice(list(FORKS))
-    code, _, error = run(f"{START}\nfirst = value()\n{FORKS[way]}\nsys.exit(code)", warm(), 60.0)
+    place = folder / "cache"  # without the kernel that a thread may have left in the common one
+    copytree(warm(), place)
+    program = FORKS[way].replace("MOMENT", f"{random.uniform(0.0, 1.0)}")
+    code, _, error = run(f"{START}\nfirst = value()\n{program}\nsys.exit(code)", place, 60.0)
     if code is None:
         return Verdict(HUNG, way)
     return GOOD if code == 0 else Verdict(WRONG if code == 3 else CRASHED, f"{way}: {code} {error[-300:]}")

@@ -21,7 +21,7 @@ from ..compiler.operations import HELPERS, MATH_NAMES
 from ..runtime.modules import is_kept, native
 from ..runtime.threads import run_parts
 from ..runtime.tiers import COMPILED, forced_tier
-from ..support.forks import fork_safe_lock
+from ..support.forks import ForkSafeLock
 from ..support.recent import Recent
 from . import search as text
 from .nodes import Array
@@ -121,7 +121,7 @@ def run(
 
 _LOADED: Recent[Search, Kernel] = Recent(MOST_LOADED)
 _ASKED: Counter[Search] = Counter()
-_LOCK = fork_safe_lock()
+_LOCK = ForkSafeLock()
 
 
 def kernel_for(search: Search, designs: int) -> Kernel:

@@ -17,7 +17,7 @@ from ..mechanism.constants import constants, double_constants, single_constants
 from ..mechanism.inputs import LEAST
 from ..mechanism.names import LENGTHS, LOADS
 from ..mechanism.program import Variant
-from ..support.forks import fork_safe_lock
+from ..support.forks import ForkSafeLock
 from ..support.recent import Recent
 from .accuracy import check_angle
 from .modules import Native, is_kept, native
@@ -99,7 +99,7 @@ def _largest(angles: Any) -> float:
 
 MOST_LOADED = 256  # kernels in memory
 _LOADED: Recent[KernelKey, CompiledKernel] = Recent(MOST_LOADED)
-_LOCK = fork_safe_lock()
+_LOCK = ForkSafeLock()
 
 
 def _is_seen(program: Program, angle: str) -> bool:

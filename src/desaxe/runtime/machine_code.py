@@ -19,6 +19,8 @@ from functools import cache
 from importlib import import_module
 from typing import Any, NamedTuple
 
+from ..support.forks import wait_first
+
 ENTRY = "desaxe_entry"
 NO_MEMORY = -1
 DOUBLE, WHOLE = -1, -2  # the ranks of numbers
@@ -133,6 +135,7 @@ def compile_text(text: str, title: str, scope: Mapping[str, Any]) -> Code | Load
 
     `scope` has names that the text uses and does not define, such as a user's own function.
     """
+    wait_first()
     import llvmlite.binding as llvm
 
     compiler, registry, sigutils, types = (

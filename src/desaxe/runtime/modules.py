@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ..support import private
-from ..support.forks import fork_safe_lock
+from ..support.forks import ForkSafeLock
 from ..support.interrupts import finished
 from . import cache as _cache
 from .machine_code import DOUBLE, NO_MEMORY, Code, Loaded, compile_text, load, machine
@@ -24,7 +24,7 @@ from .machine_code import DOUBLE, NO_MEMORY, Code, Loaded, compile_text, load, m
 SUFFIX = ".code"
 _HEAD = "desaxe machine code 2"
 _prototype = CFUNCTYPE(c_int64, c_char_p)  # lets go of the GIL while it runs
-_LOCK = fork_safe_lock()
+_LOCK = ForkSafeLock()
 
 
 class Native:

@@ -20,6 +20,7 @@ from ..mechanism.names import CENTRES, LENGTHS, LOADS
 from ..mechanism.units import in_unit
 from ..runtime.threads import run_parts
 from ..support.deadline import Deadline
+from ..support.forks import ForkSafeLock, wait_first
 from ..support.interrupts import finished
 from ..support.shown import shown
 from .checks import check_signature, grows
@@ -32,6 +33,7 @@ Array = NDArray[np.float64]
 SAMPLES = 101  # instants told where none are given
 LONGEST_PART = 16  # designs in one native call, so that an interrupt is heard
 STARTS = {"theta0": "rad", "omega_start": "rad/s", "torque": "N*m"}
+_LOCK = ForkSafeLock()
 
 
 def is_array(value: Any) -> bool:
@@ -120,7 +122,13 @@ def _column(name: str, value: Any, unit: str) -> Array:
 @lru_cache(maxsize=32)
 def _compiled(torque: Callable[..., Any]) -> Any:
     """The torque's function, compiled; TypeError where numba cannot."""
-    return finished(lambda: _compile(torque))
+
+    def made() -> Any:
+        wait_first()
+        with _LOCK:
+            return _compile(torque)
+
+    return finished(made)
 
 
 def _compile(torque: Callable[..., Any]) -> Any:

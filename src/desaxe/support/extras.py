@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from .forks import IMPORTS, wait_first
 from .interrupts import put_off
 
 EXTRAS = {
@@ -36,9 +37,10 @@ def needed(what: str, extra: str | None = None) -> Iterator[None]:
     """Turn the ImportError of an optional dependency into MissingExtraError, and delay an interrupt.
 
     The extra is the one that has the dependency, or the one named here. The block imports, and nothing else:
-    an interrupt waits for its end, since a package that is imported halfway cannot be imported again.
+    interrupts and forks wait for its end, since a package that is imported halfway cannot be imported again.
     """
-    with put_off(), explained(what, extra):
+    wait_first()
+    with put_off(), IMPORTS, explained(what, extra):
         yield
 
 

@@ -14,6 +14,8 @@ from contextlib import contextmanager
 from importlib import import_module
 from typing import Any, TypeVar
 
+from .forks import IMPORTS
+
 T = TypeVar("T")
 
 
@@ -48,7 +50,7 @@ def put_off() -> Iterator[None]:
 def import_whole(name: str) -> None:
     """Import a module with interrupts delayed; nothing if it is already imported."""
     if name not in sys.modules:
-        with put_off():
+        with put_off(), IMPORTS:
             import_module(name)
 
 
