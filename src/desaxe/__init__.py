@@ -139,10 +139,11 @@ def __getattr__(name: str) -> Any:
         return import_module(MODULES[name])
     if name not in PUBLIC:
         raise AttributeError(f"module 'desaxe' has no attribute {name!r}")
-    from .support.extras import needed
+    from .support.extras import explained
+    from .support.interrupts import import_whole
 
-    with needed(name):
-        value = getattr(import_module(PUBLIC[name]), name)
+    with explained(name):
+        value = getattr(import_whole(PUBLIC[name]), name)
     globals()[name] = value
     return value
 

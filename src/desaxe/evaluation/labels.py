@@ -11,7 +11,8 @@ from ..definitions.tables import text_of
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.status import PointStatus
-from ..support.extras import needed
+from ..support.extras import explained
+from ..support.interrupts import import_whole
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -84,8 +85,10 @@ def labelled(
     accuracy: str | float = "standard",
 ) -> "xr.Dataset":
     """A Dataset of values by name (dimensions, array); a 1-d input is a dimension, a number is not."""
-    with needed("a labelled result"):
-        import xarray
+    with explained("a labelled result"):
+        import_whole("xarray")
+    import xarray
+
     variables = {name: (dims, array, attributes(name, state)) for name, (dims, array) in values.items()}
     for name, (_, _, told) in variables.items():
         if "status" in variables and name not in ("status", "margin"):

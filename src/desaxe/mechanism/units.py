@@ -11,7 +11,8 @@ from functools import cache
 from math import isfinite
 from typing import Any
 
-from ..support.extras import MissingExtraError, needed
+from ..support.extras import MissingExtraError, explained
+from ..support.interrupts import import_whole
 from ..support.quantity_text import quantity_text, split_quantity
 from ..support.shown import shown
 from .inputs import INPUTS
@@ -42,8 +43,8 @@ def _exact_registry() -> Any:
 
 
 def _registry(number: type) -> Any:
-    with needed("a value with a unit"):
-        import pint
+    with explained("a value with a unit"):
+        pint = import_whole("pint")
     units: Any = pint.UnitRegistry(non_int_type=number)
     units.define("@alias revolution = rev")
     units.define("@alias revolutions_per_minute = RPM")

@@ -15,6 +15,7 @@ from ..mechanism.names import CENTRES, LENGTHS, LOADS
 from ..mechanism.units import in_unit
 from ..runtime.request import as_number, several
 from ..support.checks import real_number
+from ..support.deadline import Deadline
 from ..support.shown import shown
 from .coordinate import FREE, TURN, Coordinate, arc_around, inside
 from .held import Held
@@ -84,7 +85,7 @@ def check_signature(name: str, value: Callable[..., Any]) -> None:
         )
 
 
-def load(name: str, value: Any, unit: str) -> Load:
+def load(name: str, value: Any, unit: str, deadline: Deadline) -> Load:
     """A torque or force as a function of (t, theta, omega), checked wherever it is called."""
     if not callable(value):
         number = scalar(name, value, unit)
@@ -94,10 +95,11 @@ def load(name: str, value: Any, unit: str) -> Load:
         return Held(as_load(name, value))
 
     def checked(t: float, theta: float, omega: float) -> float:
+        deadline.check()
         found = value(t, theta, omega)
         try:
-            number = float(found)
-        except (TypeError, ValueError, OverflowError):
+            number = found if type(found) is float else real_number(name, found)
+        except (TypeError, ValueError):
             raise TypeError(
                 f"{name} gave {shown(found)} at t = {t:g}: a number in {unit} is wanted"
             ) from None
@@ -111,10 +113,14 @@ def load(name: str, value: Any, unit: str) -> Load:
     return checked
 
 
-def drive_of(torque: Any, F_X: Any, F_Y: Any) -> Drive:
-    """Torque and forces; what is not given is 0."""
+def drive_of(torque: Any, F_X: Any, F_Y: Any, deadline: Deadline) -> Drive:
+    """Torque and forces; what is not given is 0. Functions are called within the time of a simulation."""
     forces = (0.0 if F_X is None else F_X, 0.0 if F_Y is None else F_Y)
-    three = load("torque", torque, "N*m"), load("F_X", forces[0], "N"), load("F_Y", forces[1], "N")
+    three = (
+        load("torque", torque, "N*m", deadline),
+        load("F_X", forces[0], "N", deadline),
+        load("F_Y", forces[1], "N", deadline),
+    )
     steady = not any(map(callable, (torque, *forces)))
     return Drive(*three, steady, tuple(one for one in three if isinstance(one, Held)))
 

@@ -21,7 +21,7 @@ from ..mechanism.units import in_unit
 from ..runtime.threads import run_parts
 from ..support.deadline import Deadline
 from ..support.forks import ForkSafeLock, wait_first
-from ..support.interrupts import finished
+from ..support.interrupts import finished, stopped_early
 from ..support.shown import shown
 from .checks import check_signature, grows
 from .compiled import Family, kernel_of
@@ -31,7 +31,8 @@ from .result import DONE, NO_START, WORDS, Simulation
 
 Array = NDArray[np.float64]
 SAMPLES = 101  # instants told where none are given
-LONGEST_PART = 16  # designs in one native call, so that an interrupt is heard
+LONGEST_PART = 16  # designs in one native call, that threads share the work evenly
+MOST_STEPS = 3  # its place in `how`
 STARTS = {"theta0": "rad", "omega_start": "rad/s", "torque": "N*m"}
 _LOCK = ForkSafeLock()
 
@@ -57,11 +58,14 @@ def simulate_many(
     deadline: Deadline,
 ) -> Simulation:
     """The motions; how: relative tolerance, t_end, longest step, most steps."""
-    torque = _compiled(starts["torque"]) if callable(starts["torque"]) else None
     arrays = _arrays(given) | {
         name: _column(name, 0.0 if callable(value) else value, STARTS[name]) for name, value in starts.items()
     }
+    empty = next((name for name, array in arrays.items() if not array.size), None)
+    if empty is not None:
+        raise ValueError(f"{empty}: an empty array; at least one design is wanted")
     shape = broadcast_shape(arrays)
+    torque = _compiled(starts["torque"]) if callable(starts["torque"]) else None
     scalars = {name: float(array) if array.ndim == 0 else array for name, array in arrays.items()}
     family = Family(form_of(given_centres(given)), fixed_zeros(scalars))
     flat = {name: np.broadcast_to(array, shape).reshape(-1) for name, array in arrays.items()}
@@ -205,11 +209,18 @@ def _run(
     parts = (DOP853.A, DOP853.B, DOP853.C, DOP853.E3, DOP853.E5, DOP853.D, DOP853.A_EXTRA, DOP853.C_EXTRA)
     tables = [np.ascontiguousarray(part, dtype=np.float64) for part in parts]
 
+    how = shared[1]
+
     def block(a: int, b: int) -> None:
-        deadline.check()
         kernel(rows[a:b], setup[a:b], *shared, *tables, *(out[a:b] for out in outs))
 
-    run_parts(block, len(setup), threads, 1, LONGEST_PART)
+    def stop() -> None:  # the kernel looks at the most steps before each one
+        how[MOST_STEPS] = 0.0
+
+    def work() -> None:
+        run_parts(block, len(setup), threads, 1, LONGEST_PART)
+
+    stopped_early(work, stop, deadline)
 
 
 def _told(

@@ -99,15 +99,30 @@ class Run:
     def to_the_end(self) -> "Run":
         """Run until the end time, or what comes before it."""
         while self.status == NEVER:
-            self._hold()
-            law = self._law()
-            if law is not None:
-                self._follow(law)
+            try:
+                self._stretch()
+            except TimeoutError:  # of a load, or of the search for events
+                if not self.deadline.over:
+                    raise
+                self._late()
+        self.deadline.lift()
         for held in self.model.drive.held:
             held.release()
         if not self.pieces:  # stopped where it started
             self._keep_still(0.0)
         return self
+
+    def _stretch(self) -> None:
+        """Move on to the next kink, or the end."""
+        self._hold()
+        law = self._law()
+        if law is not None:
+            self._follow(law)
+
+    def _late(self) -> None:
+        reason = f"not done within timeout = {self.deadline.seconds:g} s, after {self.steps} steps"
+        self.deadline.lift()
+        self._fail(Smooth(self.model), reason)
 
     def stop(self, status: int, message: str) -> None:
         """End the motion."""
@@ -230,8 +245,7 @@ class Run:
                 self._fail(law, reason)
                 return
             if self.deadline.over:
-                reason = f"not done within timeout = {self.deadline.seconds:g} s, after {self.steps} steps"
-                self._fail(law, reason)
+                self._late()
                 return
             self.next_step = solver.t - self.t
             step = Step(law, self.t, self.y, solver.dense_output(), solver.t)
@@ -239,11 +253,7 @@ class Run:
             if not turns <= MOST_TURNS:
                 self._fail(law, f"{turns:.3g} turns in one step, at most {MOST_TURNS}: give max_step=")
                 return
-            try:
-                if self._meet_all(step):
-                    return
-            except TimeoutError as late:
-                self._fail(law, str(late))
+            if self._meet_all(step):
                 return
             self._accept(Piece(step.t, step.end, step.inside, law), solver.y.copy())
             self.left = inf

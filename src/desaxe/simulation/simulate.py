@@ -127,7 +127,7 @@ def simulate(
         how = (rtol, end, longest, max_steps)
         return simulate_many(given, starts, int(branch), wanted, instants, how, threads, deadline)
     start = scalar("theta0", theta0, "rad"), scalar("omega_start", omega_start, "rad/s")
-    drive = drive_of(torque, given["F_X"], given["F_Y"])
+    drive = drive_of(torque, given["F_X"], given["F_Y"], deadline)
     values = design_values(given)
     model = model_of(values, int(branch), start[0], drive)
     tolerance = Tolerance(
@@ -182,8 +182,8 @@ def energy_scale(model: Model, theta: float, omega: float, t_end: float) -> floa
 
 
 def _size(load: Load, t: float, theta: float, omega: float) -> float:
-    """The magnitude of a load; 0 where it has no value, which only matters if the motion gets there."""
+    """The magnitude of a load; 0 without a value or time for it: the motion tells, if it gets there."""
     try:
         return abs(load(t, theta, omega))
-    except ValueError:
+    except (ValueError, TimeoutError):
         return 0.0

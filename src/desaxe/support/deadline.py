@@ -6,6 +6,8 @@ from typing import Any
 
 from .checks import time_limit
 
+LONGEST = 1e9  # seconds: beyond it there is no limit
+
 
 class Deadline:
     """Counts from when it is made; `check` raises TimeoutError when the time is over."""
@@ -22,4 +24,16 @@ class Deadline:
     def check(self) -> None:
         """Raise TimeoutError when the time is over."""
         if self.over:
-            raise TimeoutError(f"{self.what}: not done within timeout = {self.seconds:g} s")
+            raise self.error()
+
+    def lift(self) -> None:
+        """From now on there is no limit: what there is, is told."""
+        self._end = inf
+
+    def error(self) -> TimeoutError:
+        """What is raised when the time is over."""
+        return TimeoutError(f"{self.what}: not done within timeout = {self.seconds:g} s")
+
+    def left(self) -> float | None:
+        """Seconds that are left, as a thread may be waited for; None without a limit."""
+        return max(self._end - time.monotonic(), 0.0) if self._end < LONGEST else None

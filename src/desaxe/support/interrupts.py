@@ -1,9 +1,9 @@
 """Imports and compilations that an interrupt (SIGINT) must not cut in half.
 
 A package that was imported halfway cannot be imported again, and a compiler that was stopped halfway leaves
-its tables inconsistent: the next call in the same process would fail. Imports are short: they put an
-interrupt off until they are done. Compilations are long: they run in a thread of their own, which interrupts
-do not reach, so that the caller stops at once and the work is finished behind it.
+its tables inconsistent: the next call in the same process would fail. So both run in a thread of their own,
+which interrupts do not reach: the caller stops at once, and the work is finished behind it. Short imports put
+an interrupt off until they are done. Compiled loops do not hear of an interrupt either, but can be stopped.
 """
 
 import signal
@@ -11,13 +11,15 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from contextvars import copy_context
 from importlib import import_module
-from typing import Any, TypeVar
+from types import ModuleType
+from typing import Generic, TypeVar
 
+from .deadline import Deadline
 from .forks import IMPORTS
 
 T = TypeVar("T")
-
 
 _NAME = "desaxe-work"
 
@@ -47,31 +49,55 @@ def put_off() -> Iterator[None]:
         raise KeyboardInterrupt
 
 
-def import_whole(name: str) -> None:
-    """Import a module with interrupts delayed; nothing if it is already imported."""
-    if name not in sys.modules:
-        with put_off(), IMPORTS:
-            import_module(name)
+def import_whole(name: str) -> ModuleType:
+    """Import a module to its end, even if the caller is interrupted meanwhile."""
+    if name in sys.modules:
+        return import_module(name)
+
+    def work() -> ModuleType:
+        with IMPORTS:
+            return import_module(name)
+
+    return finished(work)
 
 
 def finished(work: Callable[[], T]) -> T:
     """Run work to its end, even if the caller is interrupted meanwhile; return its result."""
-    if not _is_main():
-        return work()
-    answer: list[Any] = []
-    error: list[BaseException] = []
+    return _Work(work).answer() if _is_main() else work()
 
-    def run() -> None:
+
+def stopped_early(work: Callable[[], T], stop: Callable[[], object], deadline: Deadline) -> T:
+    """Run compiled work, which `stop` ends soon, called at an interrupt and when the time is over."""
+    at_work = _Work(work)
+    try:
+        return at_work.answer(deadline)
+    except BaseException:
+        stop()
+        at_work.thread.join()
+        raise
+
+
+class _Work(Generic[T]):
+    """Work in a thread of its own, which starts at once."""
+
+    def __init__(self, work: Callable[[], T]) -> None:
+        self._found: list[T] = []
+        self._error: list[BaseException] = []
+        self.thread = threading.Thread(target=copy_context().run, args=(self._run, work), name=_NAME)
+        with put_off():
+            self.thread.start()
+
+    def _run(self, work: Callable[[], T]) -> None:
         try:
-            answer.append(work())
+            self._found.append(work())
         except BaseException as raised:
-            error.append(raised)
+            self._error.append(raised)
 
-    thread = threading.Thread(target=run, name=_NAME)
-    with put_off():
-        thread.start()
-    thread.join()
-    if error:
-        raise error[0]
-    found: T = answer[0]
-    return found
+    def answer(self, deadline: Deadline | None = None) -> T:
+        """Return what the work returns, or raise what it raises; TimeoutError when the time is over."""
+        self.thread.join(deadline.left() if deadline else None)
+        if self._error:
+            raise self._error[0]
+        if deadline and not self._found:
+            raise deadline.error()
+        return self._found[0]
