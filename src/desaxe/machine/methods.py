@@ -115,6 +115,8 @@ def call(
     named = {**dict(zip(positional, args, strict=False)), **inputs}
     warn_of_slips(named, system, stacklevel=4)
     given = {key: in_si(system, key, value) for key, value in named.items()}
+    if system and "units" in own.parameters:
+        given.setdefault("units", system)
     found = function(**given, **filled(machine, name, own, given))
     if not system and not as_quantity:
         return found

@@ -353,6 +353,30 @@ def test_tables_and_files_in_other_units(visit, several_designs):
     assert "m" in page.inner_text("#field-AB .unit")
 
 
+def test_a_machine_brings_its_units(visit, folder):
+    """Fields, values, tables and files in inches and standard gravities; the scene is the same machine."""
+    units = {"length": "in", "angle": "deg", "a_C": "standard_gravity"}
+    press = dx.Machine(ec=1, AB=2, BC=7.3, omega0="300 rpm", m_slider=3, F_Y=-50, units=units)
+    page = visit(press.explore(path=folder / "inches.html"))
+    theta, inputs = page.evaluate("desaxe.state.theta"), design(page)
+    assert inputs["BC"] == press["BC"] == 7.3 * 0.0254
+    assert page.input_value("#number-BC") == "7.3"
+    assert "4.3 in" in page.inner_text("#margin-words")
+    assert page.inner_text("#loads-words") == f"m_slider = 3 kg, F_Y = {MINUS}50 N"
+    si = {name: dx.evaluate(name, theta=theta, **inputs) for name in ("a_C", "a_C_wrt_ec", "Y", "omega_BC")}
+    scale = {"a_C": 1 / 9.80665, "a_C_wrt_ec": 0.0254 / 9.80665, "Y": 1 / 0.0254, "omega_BC": 1.0}
+    for name, times in scale.items():
+        assert reading(page, name)[0] == pytest.approx(times * si[name], rel=1e-7)
+    heads = next(csv.reader(io.StringIO(page.evaluate("desaxe.valuesText()"))))
+    assert heads[1:3] == [f"{n} (this design)" for n in (
+        "a_C [standard_gravity]", "a_C_wrt_ec [standard_gravity/in]"
+    )]  # fmt: skip
+    saved = folder / "inches.toml"
+    saved.write_text(page.evaluate("desaxe.sceneText()"), encoding="utf-8")
+    assert dx.Machine.read(saved) == press
+    assert dx.scene(saved).run().dataset.a_C.units == "standard_gravity"
+
+
 def test_loads_can_be_set(visit, folder):
     page = visit(
         dx.explore(path=folder / "loaded.html", ec=0.01, AB=0.04, BC=0.064, omega0=100.0, m_slider=1.0)

@@ -14,6 +14,7 @@ from ...loads.resolve import plan_of, split
 from ...mechanism.catalogue import Quantity, quantities, quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import CENTRES, LOADS, PARAMETERS, joined, parts
+from ...mechanism.unit_system import SI, UnitSystem
 from ...runtime.request import Request, request
 from ...runtime.specialise import specialise
 
@@ -48,7 +49,7 @@ class Function(NamedTuple):
 
 
 class Content(NamedTuple):
-    """The content of a page, in SI units."""
+    """The content of a page in SI units; `units`: of values, tables, files; `fields`: of the controls."""
 
     title: str
     branch: int
@@ -59,6 +60,8 @@ class Content(NamedTuple):
     left_out: Mapping[str, tuple[float, ...]]  # input -> its values that no design has
     given: tuple[str, ...]  # the inputs that were given
     loads: Mapping[str, TableOverTheta] = MappingProxyType({})
+    units: UnitSystem = SI
+    fields: UnitSystem = SI
 
     @property
     def quantities(self) -> list[Quantity]:
@@ -106,8 +109,9 @@ def left_out_text(content: Content) -> str:
     """The input values that no design of the page has, as text; empty if there are none."""
     told = []
     for name, values in content.left_out.items():
-        unit = INPUTS[name].unit
-        listed = f"{name} = {', '.join(f'{value:.6g}' for value in values)} {unit}".removesuffix(" 1")
+        own = (content.units or content.fields).of(name)
+        numbers = ", ".join(f"{own.shown(value):.6g}" for value in values)
+        listed = f"{name} = {numbers} {own.unit}".removesuffix(" 1")
         told.append(listed if len(values) <= LISTED else f"{len(values)} of the values of {name}")
     return "; ".join(told)
 

@@ -9,6 +9,7 @@ from typing import Any
 from ...evaluation.loaded import loads_of
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LOADS
+from ...mechanism.unit_system import UnitSystem
 from ...runtime.request import as_number, check_common, check_inputs
 from .content import Content, Value, content
 from .write import write_page
@@ -24,6 +25,7 @@ def explore(
     names: Iterable[str] | None = None,
     branch: int = 1,
     title: str = TITLE,
+    units: str | Mapping[str, str] | UnitSystem | None = None,
     **inputs: Any,
 ) -> Path:
     """Write an explorer page: one HTML file that works offline in any browser.
@@ -36,6 +38,9 @@ def explore(
     path    the file to write
     branch  of inputs: +1 (the papers) or -1; a scene has its own, and its own title
     title   what the page is headed with
+    units   what the fields, values, tables and files of the page are in when it is opened, such as
+            "mm, deg, rpm"; by default the scene's, or values in SI units. Inputs here are in SI units
+            all the same
     names   the quantities that the page knows, each with its first sensitivities; without it those of
             the motion, drive torque and guide force where masses or loads are given, and those that the
             scene names
@@ -48,7 +53,9 @@ def explore(
         dx.explore("examples/compactor.toml", "explorer.html")
         dx.explore(ec=["0 mm", "150 mm"], AB="125 mm", BC="350 mm", omega0="1500 rpm")
     """
-    return write_page(content_of(source, names, branch, title, inputs), Path(path))
+    own = UnitSystem.read(units)
+    found = content_of(source, names, branch, title, inputs)
+    return write_page(found._replace(units=own) if own else found, Path(path))
 
 
 def content_of(
@@ -85,7 +92,8 @@ def _of_scene(source: Any, names: Iterable[str] | None) -> Content:
     title = inside.title or TITLE
     shown = [name for name in asked if name not in ("status", "margin")]
     inputs: dict[str, Any] = dict(inside.inputs)
-    return content(title, inside.branch, inputs, shown or START, names)
+    found = content(title, inside.branch, inputs, shown or START, names)
+    return found._replace(units=inside.units, fields=known.shown_in)
 
 
 def _value(name: str, given: Any) -> Value:

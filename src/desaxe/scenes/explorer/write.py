@@ -11,12 +11,14 @@ from ...compiler.languages.javascript import HEADER
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import parts
 from ...mechanism.status import PointStatus
+from ...mechanism.unit_system import DIMENSIONS, UnitSystem
 from ...support.extras import needed
 from ...support.files import check_target, write_text
 from .content import Content, left_out_text
 
 # In the order in which they build on each other.
 SCRIPTS = ("numbers", "designs", "words", "mechanism", "charts", "controls", "files", "main")
+_COMMENT = re.compile(r"^\s*//.*\n", re.MULTILINE)  # of a line of its own: the page has none to read
 _PLACE = re.compile(r"@@(\w+)@@")
 
 
@@ -37,7 +39,7 @@ def page(content: Content) -> str:
         "plotly": get_plotlyjs(),
         "content": json.dumps(_data(content), ensure_ascii=False).replace("<", "\\u003c"),
         "program": _program(content),
-        "scripts": "\n".join(_asset(f"{name}.js") for name in SCRIPTS),
+        "scripts": _COMMENT.sub("", "\n".join(_asset(f"{name}.js") for name in SCRIPTS)),
     }
     return _PLACE.sub(lambda found: parts_of_page[found[1]], _asset("page.html"))
 
@@ -61,6 +63,9 @@ def _data(content: Content) -> dict[str, Any]:
         "theta": content.theta,
         "designs": content.designs,
         "left_out": left_out_text(content),
+        "units": _units(content.units),
+        "fields": _units(content.fields),
+        "sizes": {**_sizes(content.fields), **_sizes(content.units)},
         "shown": content.shown,
         "inputs": {
             name: {
@@ -73,6 +78,7 @@ def _data(content: Content) -> dict[str, Any]:
             for name in content.designs[0]
             for row in (INPUTS[name],)
         },
+        "dimensions": {unit: name.replace(" ", "_") for name, unit in DIMENSIONS.items()},
         "parameters": {name: row.unit for name, row in INPUTS.items()},
         "functions": {
             f.quantity: {"names": f.names, "inputs": f.inputs, "terms": f.terms} for f in content.functions
@@ -89,6 +95,20 @@ def _data(content: Content) -> dict[str, Any]:
         "quantities": {row.name: _about(row.name, row.unit, row.meaning) for row in content.quantities},
         "status": {str(int(status)): status.words for status in PointStatus},
     }
+
+
+def _units(units: UnitSystem) -> dict[str, str]:
+    """SI unit, or name of a quantity -> the unit that it is shown in."""
+    return {DIMENSIONS.get(name, name): unit for name, unit in units.units.items()}
+
+
+def _sizes(units: UnitSystem) -> dict[str, list[str]]:
+    """Unit -> what one of it is in SI units, as a fraction."""
+    found = {
+        name: units.of_unit(DIMENSIONS[name]) if name in DIMENSIONS else units.of(name)
+        for name in units.units
+    }
+    return {row.unit: [str(row.si.numerator), str(row.si.denominator)] for row in found.values()}
 
 
 def _about(name: str, unit: str, meaning: str) -> dict[str, Any]:

@@ -25,39 +25,39 @@ function buildControls() {
   const names = Object.keys(CONTENT.inputs);
   const main = SLIDERS.filter((name) => names.includes(name)), rest = names.filter((name) => !main.includes(name));
   const form = document.getElementById("controls");
-  const more = rest.length ? `<details id="more"><summary>Masses and loads</summary>${rest.map(field).join("")}</details>` : "";
+  const more = rest.length ? `<details id="more"><summary>Masses and loads<span id="loads-words"></span></summary>${rest.map(field).join("")}</details>` : "";
   form.innerHTML = main.map((name) => field(name, true)).join("") + more;
   form.addEventListener("submit", (event) => event.preventDefault());
   for (const name of names) listenTo(name, main.includes(name));
 }
 
 function field(name, slider) {
-  const { unit, meaning } = CONTENT.inputs[name], label = NAMES[name] ?? symbol(name);
+  const { meaning } = CONTENT.inputs[name], label = NAMES[name] ?? symbol(name);
   const range = slider === true ? `<input type="range" id="slide-${name}" aria-label="${meaning}">` : "";
   return (
     `<div class="field" id="field-${name}"><label for="number-${name}" title="${meaning}">${label}</label>` +
     `<span class="number"><input type="number" step="any" id="number-${name}" aria-describedby="wrong-${name}">` +
-    `<span class="unit" data-unit="${unit}">${shownUnit(unit)}</span></span>${range}` +
+    `<span class="unit" data-unit="${name}">${shownUnit(name)}</span></span>${range}` +
     `<p class="wrong" id="wrong-${name}" role="alert"></p></div>`
   );
 }
 
 // What a value reads as in its field, and the value that a text in it means: one that already reads so stays
 // the same double, so that typing it again changes nothing.
-const fieldText = (name, value) => String(Number(toShown(CONTENT.inputs[name].unit, value).toPrecision(8)));
+const fieldText = (name, value) => String(Number(toShown(name, value).toPrecision(8)));
 
 function fieldValue(name, text) {
   const known = [...state.designs, ...CONTENT.designs].map((design) => design[name]);
   const same = known.find((value) => fieldText(name, value) === text.trim());
-  return same ?? toSI(CONTENT.inputs[name].unit, text);
+  return same ?? toSI(name, text);
 }
 
 // The span of a slider in the unit of its field; a value beyond it widens it as long as it stands.
 function spread(name) {
   const range = document.getElementById(`slide-${name}`);
   if (!range) return;
-  const { unit } = CONTENT.inputs[name], [low, high] = spans[name].map((v) => toShown(unit, v));
-  const step = stepOf(high - low), shown = toShown(unit, state.designs[0][name]);
+  const [low, high] = spans[name].map((v) => toShown(name, v));
+  const step = stepOf(high - low), shown = toShown(name, state.designs[0][name]);
   range.step = step;
   range.min = Math.min(Math.ceil(low / step) * step, Math.floor(shown / step) * step);
   range.max = Math.max(Math.floor(high / step + 1e-9) * step, Math.ceil(shown / step) * step);
@@ -94,10 +94,21 @@ function buildUnits() {
   });
 }
 
+// The masses and loads that are not 0.
+function loadWords(design) {
+  const there = Object.keys(CONTENT.inputs).filter((name) => !SLIDERS.includes(name));
+  const words = there.map((name) => {
+    const own = design[name] ? `${plainSymbol(name, false)} = ${shownInput(name, design[name])}` : "";
+    return name in CONTENT.loads ? `${plainSymbol(name, false)} over θ${own ? `, and ${own}` : ""}` : own;
+  });
+  return words.filter(Boolean).join(", ");
+}
+
 // A multiple of the step without the dust of binary fractions.
 const snapped = (value, step) => Number((Math.round(value / step) * step).toPrecision(12));
 
 function showControls(source) {
+  if (document.getElementById("more")) setText("loads-words", loadWords(state.designs[0]));
   for (const [name, value] of Object.entries(state.designs[0])) {
     const number = document.getElementById(`number-${name}`), range = document.getElementById(`slide-${name}`);
     if (number !== source && document.activeElement !== number) {

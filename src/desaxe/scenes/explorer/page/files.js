@@ -15,6 +15,14 @@ const SECTIONS = [
   ["loads", ["F_X", "F_Y", "g_X", "g_Y", "mu"]],
 ];
 
+// A value with the unit that is chosen, where that stands for the same double; else in SI units.
+function written(name, value) {
+  if (!Object.keys(units.values).length) return String(value);
+  const text = String(Number(toShown(name, value).toPrecision(15))), unit = siUnit(name);
+  if (unit === "1") return String(value);
+  return toSI(name, text) === value ? `"${text} ${fieldUnit(name)}"` : `"${value} ${unit}"`;
+}
+
 // The designs as one scene, where they differ in one input; else the one that is being changed.
 function sceneText() {
   const { designs, shown } = state;
@@ -26,17 +34,20 @@ function sceneText() {
     return `{ over_theta = [${points.join(", ")}], kind = "${kind}", period = ${period} }`;
   };
   const valueOf = (name) => name in CONTENT.loads ? tableOf(name, kept[0][name]) : (differing.length === 1 && name === differing[0]
-    ? `[${[...new Set(kept.map((d) => d[name]))].join(", ")}]`
-    : `${kept[0][name]}`);
-  const lines = ["# Written by the explorer page of desaxe, in SI units and radians: desaxe run scene.toml", ""];
+    ? `[${[...new Set(kept.map((d) => written(name, d[name])))].join(", ")}]`
+    : written(name, kept[0][name]));
+  const own = Object.entries(units.values).map(([unit, shown]) => `${CONTENT.dimensions[unit] ?? unit} = "${shown}"`);
+  const told = own.length ? "" : ", in SI units and radians";
+  const lines = [`# Written by the explorer page of desaxe${told}: desaxe run scene.toml`, ""];
   lines.push(`title = ${JSON.stringify(CONTENT.title)}`, `outputs = ${JSON.stringify([...new Set(shown)])}`);
+  if (own.length) lines.push("", "[units]", ...own);
   for (const [section, names] of SECTIONS) {
     const given = names.filter((name) => name in CONTENT.inputs && (CONTENT.inputs[name].given || kept.some((d) => d[name] !== 0)));
     if (!given.length) continue;
-    lines.push("", `[${section}]`, ...given.map((name) => `${name} = ${valueOf(name)} # ${CONTENT.inputs[name].unit}`));
+    lines.push("", `[${section}]`, ...given.map((name) => `${name} = ${valueOf(name)}${own.length ? "" : ` # ${CONTENT.inputs[name].unit}`}`));
     if (section === "mechanism") lines.push(`branch = ${CONTENT.branch}`);
     if (section === "motion") {
-      const [from, to] = CONTENT.theta;
+      const [from, to] = CONTENT.theta.map((angle) => written("theta", angle));
       lines.push(`theta = { start = ${from}, stop = ${to}, num = ${SAMPLES} }`);
     }
   }

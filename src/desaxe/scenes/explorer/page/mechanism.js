@@ -105,7 +105,8 @@ function linkage(design, theta, { place, scale }, look, index) {
 }
 
 function scaleBar({ scale, width, height }, look) {
-  const [length] = [1, 2, 5].map((m) => niceBelow((width / 3) / scale, m)).sort((p, q) => q - p);
+  const most = toShown("BC", width / 3 / scale);
+  const length = toSI("BC", String(Math.max(...[1, 2, 5].map((m) => niceBelow(most, m)))));
   const end = 12 + length * scale, y = height - 12;
   const bar = `M12 ${y - 4}v8M12 ${y}H${end}M${end} ${y - 4}v8`;
   return stroked(bar, look.soft, 1.2) + text([end + 6, y + 4], shownInput("BC", length), look.soft);

@@ -7,17 +7,20 @@ const DIGITS = 10n ** 50n, PI = 314159265358979323846264338327950288419716939937
 const ONE = [1n, 1n];
 const SIZES = {
   mm: [1n, 1000n], cm: [1n, 100n], in: [127n, 5000n], "kg*mm^2": [1n, 1000000n],
-  deg: [PI, 180n * DIGITS], rpm: [PI, 30n * DIGITS], ...CONTENT.sizes,
+  deg: [PI, 180n * DIGITS], rpm: [PI, 30n * DIGITS],
+  ...Object.fromEntries(Object.entries(CONTENT.sizes).map(([unit, size]) => [unit, size.map(BigInt)])),
 };
 const many = (unit) => {
   const [p, q] = (SIZES[unit] ?? ONE).map(Number);
   return q / p;
 };
 
-// What the fields are in, and what values, tables and files are in: SI unit -> unit. What is not named is in SI.
-const FIELDS = { m: "mm", "kg*m^2": "kg*mm^2", "rad/s": "rpm", rad: "deg" };
+// What the fields are in, and what values, tables and files are in: SI unit, or the name of a quantity or input,
+// -> unit. What is not named is in SI.
+const FIELDS = { m: "mm", "kg*m^2": "kg*mm^2", "rad/s": "rpm", rad: "deg", ...CONTENT.fields };
+const ASKED = { title: Object.values(CONTENT.units).join(", "), fields: { ...FIELDS, ...CONTENT.units }, values: CONTENT.units };
 const UNITS = {
-  ...(CONTENT.units ? { asked: { title: "as asked for", fields: { ...FIELDS, ...CONTENT.units }, values: CONTENT.units } } : {}),
+  ...(ASKED.title ? { asked: ASKED } : {}),
   si: { title: "values in SI: m, rad, s", fields: FIELDS, values: {} },
   mm: { title: "mm, °, rpm", fields: FIELDS, values: { m: "mm", rad: "deg", "rad/s": "rpm" } },
   in: { title: "inch, °, rpm", fields: { ...FIELDS, m: "in" }, values: { m: "in", rad: "deg", "rad/s": "rpm" } },
@@ -25,15 +28,17 @@ const UNITS = {
 };
 let units = Object.values(UNITS)[0];
 
-const fieldUnit = (unit) => units.fields[unit] ?? unit;
-const shownUnit = (unit) => printedUnit(fieldUnit(unit));
-const toShown = (unit, value) => value * many(fieldUnit(unit));
+// The unit of the field of an input, or of a quantity with an SI unit.
+const fieldUnit = (name) => units.fields[name] ?? units.fields[siUnit(name)] ?? siUnit(name);
+const siUnit = (name) => CONTENT.parameters[name] ?? name;
+const shownUnit = (name) => printedUnit(fieldUnit(name));
+const toShown = (name, value) => value * many(fieldUnit(name));
 
 // A text in the unit of its field, in SI units: the exact product, rounded once, as Python reads "62.3 mm".
-function toSI(unit, text) {
+function toSI(name, text) {
   const found = /^([-+]?)(\d*)\.?(\d*)(?:[eE]([-+]?\d+))?$/.exec(text.trim());
   if (!found || !(found[2] + found[3])) return NaN;
-  const [, sign, whole, part, power] = found, [p, q] = SIZES[fieldUnit(unit)] ?? ONE;
+  const [, sign, whole, part, power] = found, [p, q] = SIZES[fieldUnit(name)] ?? ONE;
   const scaled = (BigInt(whole + part) * p * 10n ** 60n) / q;
   return Number(`${sign}${scaled}e${Number(power ?? 0) - part.length - 60}`);
 }
@@ -41,16 +46,14 @@ function toSI(unit, text) {
 // The unit of a value, and how many of it make one SI unit. A derivative is a quotient of units.
 function shownIn(name) {
   const about = CONTENT.quantities[name];
-  if (!about?.by.length) return inUnits((about ?? CONTENT.inputs[name] ?? { unit: name }).unit);
-  const [top, below] = [inUnits(CONTENT.quantities[about.base].unit), about.by.map((p) => inUnits(inputUnit(p)))];
+  if (!about?.by.length) return inUnits((about ?? CONTENT.inputs[name] ?? { unit: name }).unit, name);
+  const below = about.by.map((p) => inUnits(siUnit(p), p)), top = inUnits(CONTENT.quantities[about.base].unit, about.base);
   const times = below.reduce((product, [, each]) => product / each, top[1]);
   return times === 1 ? [about.unit, 1] : [[top[0], ...below.map(([unit]) => unit)].join("/"), times];
 }
 
-const inputUnit = (name) => (name === "theta" ? "rad" : CONTENT.parameters[name]);
-
-function inUnits(unit) {
-  const own = units.values[unit];
+function inUnits(unit, name) {
+  const own = units.values[name] ?? units.values[unit];
   if (own) return [own, many(own)];
   const speed = /^m(\/s(?:\^\d)?)$/.exec(unit);
   return speed && units.values.m ? [units.values.m + speed[1], many(units.values.m)] : [unit, 1];
@@ -84,10 +87,7 @@ function raised(text) {
   return [...text].map((c) => (c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[c])).join("");
 }
 
-function shownInput(name, value) {
-  const unit = CONTENT.inputs[name].unit;
-  return `${digits(toShown(unit, value))} ${shownUnit(unit)}`.trim();
-}
+const shownInput = (name, value) => `${digits(toShown(name, value))} ${shownUnit(name)}`.trim();
 
 // a_C_wrt_ec -> ∂a_C/∂ec, with subscripts as HTML or as plain text.
 function symbol(name, html = true) {
