@@ -14,7 +14,7 @@ Answer = Callable[[Array, Array], None]  # rows of inputs, rows for outputs
 
 
 def rows_at_once(inputs: Inputs) -> int:
-    """How many steps of the first axis make a block."""
+    """The number of steps of the first axis in a block."""
     return max(1, min(inputs.shape[0], POINTS // max(1, int(np.prod(inputs.shape[1:])))))
 
 
@@ -24,7 +24,7 @@ def block_size(inputs: Inputs) -> int:
 
 
 def in_blocks(inputs: Inputs, answer: Answer, outputs: int) -> Iterator[tuple[slice, Array]]:
-    """For each block: which steps of the first axis, and the answers in the block's shape.
+    """For each block its slice of the first axis, and the results in the block's shape.
 
     What does not depend on the first axis is written once.
     """
@@ -43,7 +43,7 @@ def in_blocks(inputs: Inputs, answer: Answer, outputs: int) -> Iterator[tuple[sl
 
 
 def filled(inputs: Inputs, answer: Answer, out: Sequence[Array]) -> Sequence[Array]:
-    """The answers at all points, block by block."""
+    """Fill `out` at all points, block by block."""
     for part, found in in_blocks(inputs, answer, len(out)):
         for place, row in zip(out, found, strict=True):
             place[part] = row

@@ -1,4 +1,4 @@
-"""One contender in a process of its own, on cores of its own, that does what it is told.
+"""One contender in a process and on cores of its own, driven by messages.
 
 The cores are set before anything that starts threads is imported. A child prepares a work (that compiles
 it, and runs it once), then runs rounds of it whenever the parent says so, and forgets it. On one core the
@@ -22,7 +22,7 @@ THREADS = ("OMP_NUM_THREADS", "NUMEXPR_NUM_THREADS", "NUMEXPR_MAX_THREADS", "NUM
 
 
 def serve(connection: Connection, name: str, cores: Sequence[int]) -> None:
-    """Answer until there is nothing more to do, or nobody who asks; an exception is answered as its text."""
+    """Answer messages until the connection closes; an exception is returned as its text."""
     with suppress(EOFError):
         _serve(connection, name, cores)
 
@@ -74,7 +74,7 @@ class Child:
         return taken
 
     def start(self, key: str, count: int) -> None:
-        """Compile and answer once."""
+        """Compile and run once."""
         from .work import BY_KEY
 
         self._made(key, BY_KEY[key].inputs(count))()
@@ -87,14 +87,14 @@ class Child:
         return (self.clock() - started) / self.repeats
 
     def again(self, times: int) -> float:
-        """Seconds of so many calls, one after the other."""
+        """Seconds of `times` consecutive calls."""
         started = self.clock()
         for _ in range(times):
             self.run()
         return self.clock() - started
 
     def values(self, key: str, inputs: "Inputs") -> list[Any]:
-        """The answers at these inputs."""
+        """The results at these inputs."""
         os.environ["DESAXE_TIER"] = "compiled"
         import numpy as np
 
@@ -131,13 +131,13 @@ class Child:
 
 
 def _trim() -> None:
-    """Let the C library give back what it keeps for later, where it can."""
+    """Return unused memory of the C library to the system, where it can."""
     with suppress(AttributeError, OSError):
         ctypes.CDLL(None).malloc_trim(0)
 
 
 def _resident(what: str) -> float:
-    """Bytes, as Linux tells them."""
+    """A memory figure of this process in bytes, as Linux reports it."""
     with open("/proc/self/status", encoding="ascii") as file:
         line = next(line for line in file if line.startswith(what))
     return 1024.0 * int(line.split()[1])

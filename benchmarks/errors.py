@@ -30,7 +30,7 @@ def cases(family: str, count: int) -> list[Case]:
 
 
 def judged(contender: Contender, racer: Racer | None) -> Judged:
-    """The contender as the audit knows one: rows of inputs go to its process, rows of answers come back."""
+    """A contender in the audit's form: rows of inputs go to its process, rows of results come back."""
 
     def run(inputs: Array, _: Array) -> Iterable[Array]:
         if racer is None:

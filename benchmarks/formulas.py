@@ -16,7 +16,7 @@ spent = [0.0]  # seconds of deriving them: a user of a peer has the formulas at 
 
 
 def symbol(name: str) -> sp.Symbol:
-    """Of an input."""
+    """The symbol of an input."""
     return sp.Symbol(name, real=True)
 
 

@@ -1,4 +1,4 @@
-"""How the time grows with the number of points, from one to 10^8.
+"""Growth of the time with the number of points, from one to 10^8.
 
 More than a million are computed a million at a time, in the same memory, by everyone whom it does not take
 too long.

@@ -1,4 +1,4 @@
-"""The whole run: everything that the report tells, as plain data."""
+"""The whole run: all data of the report, as plain data."""
 
 import os
 import platform
@@ -28,7 +28,7 @@ Data = dict[str, Any]
 
 
 class Effort(NamedTuple):
-    """How much is measured."""
+    """The effort of a run: rounds and numbers of points."""
 
     quick: bool
     rounds: int
@@ -36,7 +36,7 @@ class Effort(NamedTuple):
     judged: int = 200  # points of each family
 
     def count(self, work: Work) -> int:
-        """How many points a work has."""
+        """The number of points of a work."""
         if self.points is not None and work.is_of_points:
             return self.points
         return work.quick if self.quick else work.points
@@ -104,12 +104,12 @@ def measure(works: Sequence[Work], effort: Effort, watch: Progress | None = None
 
 
 def _plain(found: dict[str, Found | str]) -> Data:
-    """As JSON has it."""
+    """The measurements as plain data for JSON."""
     return {n: one._asdict() if isinstance(one, Found) else {"refused": one} for n, one in found.items()}
 
 
 def _operations(work: Work) -> int:
-    """Operations at each point that the wanted names reach, a sine or a root counted as one."""
+    """Operations at each point for the requested names, a sine or a root counted as one."""
     zeros = {"alpha": 0.0, **{n: x for n, x in work.inputs(1).scalars.items() if x == 0.0}}
     return cost_of(specialise(work.names, Variant(), tuple(sorted(zeros.items())))).operations
 

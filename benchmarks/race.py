@@ -15,11 +15,11 @@ FEWEST = 2  # rounds all the same
 
 
 class RefusedError(RuntimeError):
-    """What a contender cannot do, in its own words."""
+    """A contender cannot do a work; the message is its own."""
 
 
 class Found(NamedTuple):
-    """Of one contender at one work."""
+    """The measurements of one contender at one work."""
 
     seconds: float  # the best round
     first: float  # compilation and the first call
@@ -52,7 +52,7 @@ class Racer:
         return answer
 
     def stop(self) -> None:
-        """Let it end."""
+        """End the process."""
         if self.process.is_alive():
             self.connection.send(None)
         self.process.join(10.0)

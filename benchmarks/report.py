@@ -1,4 +1,4 @@
-"""What a run found, as the page docs/benchmarks.md and as README's table; times are ratios, always."""
+"""The results of a run as the page docs/benchmarks.md and as README's table; times are ratios, always."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -63,7 +63,7 @@ def page(data: Data) -> str:
 
 
 def readme_table(data: Data) -> str:
-    """What stands between the markers in README."""
+    """The table between the markers in README."""
     head = ["time as a multiple of `standard`'s", *SHOWN.values(), "error: generic", "next to a change point"]
     rows = []
     for name in [*data["who"], LIMITS]:
@@ -85,7 +85,7 @@ def with_table(readme: str, data: Data) -> str:
 
 
 def terminal(data: Data) -> str:
-    """What a run prints."""
+    """The tables of a run as text for the terminal."""
     parts = [
         data["machine"],
         by_contender(data, data["one core"]),
@@ -101,7 +101,7 @@ def terminal(data: Data) -> str:
 
 
 def ratio(works: Mapping[str, Any], name: str, by: str = STANDARD) -> float:
-    """Time as a multiple of somebody's; NaN where one of them has none."""
+    """Time as a multiple of another contender's; NaN if one of them has none."""
     mine, base = works.get(name, {}).get("seconds"), works.get(by, {}).get("seconds")
     return mine / base if mine and base else float("nan")
 
@@ -135,7 +135,7 @@ def _made(data: Data) -> str:
 
 
 def _absent(data: Data) -> str:
-    """Who is left out, and what it needs."""
+    """A line on the contenders that are not installed."""
     return f"\nnot installed, and left out: {', '.join(data['absent'])}" if data["absent"] else ""
 
 
@@ -215,7 +215,7 @@ def _growth(data: Data) -> str:
 
 
 def _starts(data: Data) -> str:
-    """Compilation as seconds over desaxe's, memory as megabytes over the answer's own."""
+    """Compile times in seconds beyond desaxe's, memory in megabytes beyond the result's own."""
     works = {
         key: found for key, found in data["one core"].items() if key in ("point", "first", "grid", "peak")
     }

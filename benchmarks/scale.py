@@ -1,4 +1,4 @@
-"""How the cost of a sweep grows: `python -m benchmarks.scale --write` writes docs/scale.md.
+"""Growth of the cost of a sweep: `python -m benchmarks.scale --write` writes docs/scale.md.
 
 Every row is a process of its own, whose peak memory is the system's figure for it. Kernels are compiled
 before they are timed. `--most 1e9` goes on to larger sweeps, as far as the disk has room.
@@ -35,7 +35,7 @@ FEW_CHUNKS, MANY_CHUNKS = 10, 400  # of the same million points
 
 
 def inputs(points: int) -> dict[str, Any]:
-    """A grid of so many points over theta, ec and BC, of which some cannot be assembled."""
+    """A grid of about `points` points over theta, ec and BC, some of which cannot be assembled."""
     side = max(2, round((points / 1000) ** 0.5)) if points < 10**7 else 100
     theta = max(2, points // side**2)
     return {
@@ -45,7 +45,7 @@ def inputs(points: int) -> dict[str, Any]:
 
 
 def designs(points: int) -> dict[str, Any]:
-    """The same points with 720 angles of many designs, for reductions over theta."""
+    """About `points` points as 720 angles of many designs, for reductions over theta."""
     side = max(2, round((points / 720) ** 0.5))
     return {
         "theta": np.linspace(0.0, 2.0 * np.pi, 720), "ec": np.linspace(-0.15, 0.15, side), "AB": 0.125,

@@ -1,4 +1,4 @@
-"""Cold starts: from the start of a new process to its first answers.
+"""Cold starts: from the start of a new process to its first results.
 
 A first start finds no cache of any kind, a second one what the first has kept on disk. Deriving the
 formulas is not counted: whoever uses another tool has them at hand.

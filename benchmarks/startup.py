@@ -1,4 +1,4 @@
-"""`python -m benchmarks.startup`: what a new process waits for before its first answer.
+"""`python -m benchmarks.startup`: times of a new process up to its first result.
 
 Each row is the median of several new processes, which take turns. A kernel that an earlier process
 compiled is loaded from disk, without numba where it stands alone. What numba would need for that is

@@ -1,4 +1,4 @@
-"""What is computed: the works that every contender is given, and their inputs.
+"""The works that every contender computes, and their inputs.
 
 A work has axes. Random points have one, which every input runs along; a grid has one for each input. Inputs
 that are one number for all points are known when the work is prepared, so whoever can folds them.
@@ -35,7 +35,7 @@ class Inputs(NamedTuple):
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Of the answer."""
+        """The shape of the result."""
         sizes = {axis: self.columns[name].size for name, axis in self.axis.items()}
         return tuple(sizes[axis] for axis in sorted(sizes))
 
@@ -46,7 +46,7 @@ class Inputs(NamedTuple):
 
 
 class Work(NamedTuple):
-    """What is asked for, and how its inputs are made from a number of points (None: its own number)."""
+    """A work: its names, and a function that makes its inputs from a number of points."""
 
     key: str
     title: str
@@ -60,7 +60,7 @@ class Work(NamedTuple):
 
     @property
     def is_of_points(self) -> bool:
-        """Whether it can be had at any number of points."""
+        """True if the work exists at any number of points."""
         return self.inputs in (_random, _concentric)
 
 
@@ -74,7 +74,7 @@ def _random(count: int) -> Inputs:
 
 
 def _with_close(count: int, share: float) -> Inputs:
-    """Some of the rods are but a twentieth longer than they must be for the crank to turn."""
+    """Random points; a share of the rods is only 5 % longer than a full turn needs."""
     points = _random(count)
     columns = points.columns
     close = np.random.default_rng(2).random(count) < share
@@ -108,13 +108,13 @@ def _angles() -> Array:
 
 
 def _sweep(count: int) -> Inputs:
-    """One mechanism through one turn."""
+    """`count` angles of one turn of one mechanism."""
     theta = np.linspace(0.0, 2.0 * np.pi, count)
     return Inputs({"theta": theta}, {"theta": 0}, {"ec": 0.01, "AB": 0.125, "BC": 0.35, "omega0": OMEGA0})
 
 
 def _sweeps(count: int) -> Inputs:
-    """So many points: mechanisms of their own, each through the same turn."""
+    """`count` points: random mechanisms, each over the same angles of one turn."""
     designs = _drawn(PARAMETERS[1:], max(1, count // ANGLES))
     axis = {**dict.fromkeys(designs, 0), "theta": 1}
     return Inputs({**designs, "theta": _angles()}, axis, {"omega0": OMEGA0})
@@ -141,7 +141,7 @@ def _registers(count: int) -> Inputs:
 
 
 def swept(inputs: Inputs, theta_first: bool) -> Inputs:
-    """What a dense grid of 720 angles makes of designs: another axis, before or after theirs."""
+    """Designs with a further axis of 720 angles, before or after theirs."""
     axis = {**dict.fromkeys(inputs.columns, int(theta_first)), "theta": int(not theta_first)}
     return Inputs({**inputs.columns, "theta": _angles()}, axis, inputs.scalars)
 

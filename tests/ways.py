@@ -23,7 +23,7 @@ def columns(*shape):
 
 
 def one_by_one(name, theta, ec):
-    """The same, a number at a time, in the broadcast shape."""
+    """The values of a quantity, one number at a time, in the broadcast shape."""
     theta, ec = np.broadcast_arrays(theta, ec)
     out = np.empty(theta.shape)
     for index in np.ndindex(theta.shape):

@@ -1,4 +1,4 @@
-"""Who takes part: one file for each, run as its own users would run it well.
+"""The contenders: one file each, used as its own experienced users would use it.
 
 A contender's `prepare(work, inputs, out, threads)` compiles, and gives a function that computes the work and
 returns an array for each name: those of `out`, where there are such and it can write into them, or its own.
@@ -31,7 +31,7 @@ class Contender(NamedTuple):
 
     @property
     def is_here(self) -> bool:
-        """Whether it can run on this machine."""
+        """True if the contender can run on this machine."""
         return which(self.needs) is not None if self.needs == "gcc" else find_spec(self.needs) is not None
 
     def load(self) -> Prepare:

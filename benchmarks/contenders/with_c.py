@@ -85,7 +85,7 @@ def _compiled(source: str, fast_math: bool) -> ctypes._CFuncPtr:
 
 
 def _source(names: Sequence[str], points: Inputs, peak: bool, threads: int, fast_math: bool) -> str:
-    """The whole file: a loop for each axis, answers at its end."""
+    """The whole file: a loop for each axis, results stored at its end."""
     lines, answers = _lines(names, points)
     parameters = [f"const double *restrict {name}_" for name in points.columns]
     parameters += [f"double *restrict {name}_" for name in (("best", "where") if peak else names)]
@@ -121,7 +121,7 @@ def _stored(names: Sequence[str], answers: Sequence[sp.Expr], last: int) -> str:
 
 
 def _lines(names: Sequence[str], points: Inputs) -> tuple[list[Line], list[sp.Expr]]:
-    """Common subexpressions and answers, in sine, cosine and roots as symbols."""
+    """Common subexpressions and results, with sine, cosine and roots as symbols."""
     theta = symbol("theta")
     angles = {sp.sin(theta): SINE, sp.cos(theta): COSINE}
     shared, answers = sp.cse([form.subs(angles) for form in forms(names, points)], sp.numbered_symbols("t"))
@@ -141,7 +141,7 @@ def _lines(names: Sequence[str], points: Inputs) -> tuple[list[Line], list[sp.Ex
 
 
 def _statements(lines: list[Line], points: Inputs, axis: int) -> Iterator[str]:
-    """Those lines whose inputs are all known in this loop, and not before."""
+    """The lines that belong to this loop: all their inputs are known here, and not before."""
     depth = {symbol(name): own for name, own in points.axis.items()}
     depth[SINE] = depth[COSINE] = points.axis.get("theta", -1)
     for name, form in lines:

@@ -19,7 +19,7 @@ from . import Run
 
 
 def prepare(work: Work, inputs: Inputs, out: Sequence[Array] | None, threads: int, fast_math: bool) -> Run:
-    """Points are a matrix as it wants it; other shapes go block by block."""
+    """Points as the matrix that heyoka takes; other shapes go block by block."""
     heyoka.set_nthreads(threads)
     points = swept(inputs, theta_first=False) if work.kind == "peak" else inputs
     variables = [heyoka.expression(name) for name in points.columns]

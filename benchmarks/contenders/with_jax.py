@@ -14,7 +14,7 @@ jax.config.update("jax_enable_x64", True)
 
 
 def prepare(work: Work, inputs: Inputs, out: Sequence[Array] | None, threads: int) -> Run:
-    """The inputs are on its device already; it allocates its answers, and uses the cores it is given."""
+    """The inputs are on JAX's device already; it allocates its results, and uses the process's cores."""
     del out, threads
     points = swept(inputs, theta_first=False) if work.kind == "peak" else inputs
     function = lambdified(work.names, points, "jax")

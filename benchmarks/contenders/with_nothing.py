@@ -1,4 +1,4 @@
-"""The limits of the machine: storing a work's answer, and what a root, a division, a sine and cosine cost.
+"""The limits of the machine: storing a work's result; the cost of a root, a division, a sine and cosine.
 
 These run over a column that stays in the first cache, in loops that numba vectorises; sine and cosine are
 the ones that desaxe writes into its loops.
@@ -25,7 +25,7 @@ BOTH = "def both(theta):\n    sine = sin(theta)\n    cosine = cos(theta)\n    re
 
 
 def prepare(work: Work, inputs: Inputs, out: Sequence[Array] | None, threads: int) -> Run:
-    """Fill an answer's memory, or run over a column again and again."""
+    """Fill the memory of a result, or repeat an operation over a column."""
     del threads
     if work.kind == "limit":
         return _repeated(work.key, inputs.columns["theta"])

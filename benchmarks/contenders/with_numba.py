@@ -43,7 +43,7 @@ def _compiled(text: str, names: dict[str, Any], parallel: bool) -> Callable[...,
 
 
 def _nest(names: Sequence[str], points: Inputs) -> str:
-    """A loop for each axis; answers at its end."""
+    """A loop for each axis, results stored at its end."""
     indices = [f"i{axis}" for axis in range(len(points.shape))]
     places = ", ".join(f"{name}[{', '.join(indices)}]" for name in names)
     return _loops(points, [*points.columns, *names], f"{places}, = point({_arguments(points)})")

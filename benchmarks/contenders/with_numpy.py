@@ -10,7 +10,7 @@ from . import Run
 
 
 def prepare(work: Work, inputs: Inputs, out: Sequence[Array] | None, threads: int) -> Run:
-    """NumPy allocates its answers and uses one core."""
+    """NumPy allocates its results and uses one core."""
     del out, threads
     points = swept(inputs, theta_first=False) if work.kind == "peak" else inputs
     function = lambdified(work.names, points, "numpy")

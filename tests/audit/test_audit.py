@@ -22,7 +22,7 @@ ALWAYS = ("desaxe fast", "desaxe standard", "desaxe extended", "NumPy lambdify",
 
 
 def found_without(name):
-    """What is installed, were it not for one package."""
+    """A stand-in for `find_spec` that hides one package."""
     return lambda asked: None if asked == name else object()
 
 

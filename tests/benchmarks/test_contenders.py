@@ -51,7 +51,7 @@ def test_values_are_the_truths(contender, work):
 
 
 def scale(name, point):
-    """What a value of this name is about as large as, near its zeros too."""
+    """The typical size of a quantity, also near its zeros."""
     return OMEGA0 * (OMEGA0 if name.startswith("a_C") else 1.0) * point["AB"] / 0.1 ** name.count("wrt")
 
 

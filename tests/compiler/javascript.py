@@ -18,7 +18,7 @@ console.log(JSON.stringify(cases.map((one) => point(...inputs.map((n) => number(
 
 
 def run_node(source, data):
-    """What a script prints as JSON, given data as JSON on its input."""
+    """Run a script by node with data as JSON on its input; return the JSON that it prints."""
     node = compute_driver_executable()[0]
     command = [node, "-e", f'"use strict";\n{source}']
     done = subprocess.run(command, input=json.dumps(data), capture_output=True, text=True, check=False)

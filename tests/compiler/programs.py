@@ -103,12 +103,12 @@ def in_doubles(program: Program, values: Mapping[str, float]) -> dict[str, Any]:
 
 
 def same(a: Mapping[str, Any], b: Mapping[str, Any]) -> bool:
-    """Whether all values are equal; NaN is NaN."""
+    """True if all values are equal; NaN equals NaN."""
     return a.keys() == b.keys() and all(a[n] == b[n] or (a[n] != a[n] and b[n] != b[n]) for n in a)
 
 
 def same_bits(a: Any, b: Any) -> bool:
-    """Whether two numbers are the same double, its sign too; NaN is NaN."""
+    """True if two numbers are the same double, sign included; NaN equals NaN."""
     a, b = float(a), float(b)
     return struct.pack("d", a) == struct.pack("d", b) or (math.isnan(a) and math.isnan(b))
 

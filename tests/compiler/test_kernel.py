@@ -125,7 +125,7 @@ def placed(order):
 
 
 def filled(kernel, order):
-    """What the kernel puts into a small grid."""
+    """The outputs of the kernel over a small grid."""
     values = {"theta": np.linspace(0, 7, 9), "ec": np.linspace(-0.1, 0.3, 4)}
     values |= {"AB": np.linspace(0.1, 0.2, 3), "BC": np.linspace(0.3, 0.4, 5)}
     scope = {}

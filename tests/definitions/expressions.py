@@ -67,7 +67,7 @@ def leaf(name, point, *parameters):
 
 
 def depends(base):
-    """Whether a quantity depends on masses and loads."""
+    """True if a quantity depends on masses and loads."""
     return f"{base}_wrt_m_rod" in dx.quantities()
 
 

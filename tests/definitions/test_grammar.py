@@ -1,4 +1,4 @@
-"""What is no expression is refused at once, with a mark below the place."""
+"""Invalid expressions are refused at once, with a mark below the error."""
 
 import time
 

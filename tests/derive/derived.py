@@ -7,5 +7,5 @@ from desaxe.derive.build import Derivation, build
 
 @cache
 def derivation() -> Derivation:
-    """What `python -m derive` would write."""
+    """The derivation that `python -m derive` writes."""
     return build()

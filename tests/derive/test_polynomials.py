@@ -1,4 +1,4 @@
-"""The polynomials level their error far below a double's last bit, and the parts of pi/2 add up."""
+"""The polynomials level their error far below an ulp, and the parts of pi/2 add up."""
 
 import math
 

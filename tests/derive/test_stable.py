@@ -20,7 +20,7 @@ def slope(order, theta, ec, AB, BC):
 
 
 def names_at(theta, ec, AB, BC):
-    """What the names of the forms are here."""
+    """The values of the forms' symbols at a point."""
     sine, cosine = mpmath.sin(theta), mpmath.cos(theta)
     side = 1 if sine >= 0 else -1
     offset = ec + AB * sine

@@ -58,7 +58,7 @@ def run_python(text, scope, page, line):
 
 
 def looks_like(value, text):
-    """Whether a value is what is printed, numbers to the digits that are."""
+    """True if a value agrees with the printed text, numbers to the printed digits."""
     value = value.tolist() if isinstance(value, np.ndarray) else value
     if isinstance(value, (tuple, list)):
         wanted = ast.literal_eval(text)

@@ -40,7 +40,7 @@ TOLERANCES = {
 
 
 def holds(found, exact):
-    """Whether a value, known to 50 digits, is in the range; NaN is nowhere."""
+    """True if the range holds a value known to 50 digits, or if the value is NaN."""
     with mpmath.workdps(60):
         slack = abs(exact) * mpmath.mpf(10) ** -45
         inside = mpmath.mpf(found["lower"]) - slack <= exact <= mpmath.mpf(found["upper"]) + slack
@@ -48,7 +48,7 @@ def holds(found, exact):
 
 
 def excess(found):
-    """How much wider the answer is than what is surely attained, relative to that."""
+    """Excess width of the range over the attained one, relative to the latter."""
     low, high = found["inner"]
     return ((low - found["lower"]) + (found["upper"] - high)) / (high - low)
 

@@ -1,4 +1,4 @@
-"""What comes in and goes out of `desaxe.evaluate`: shapes, layouts, names, out=."""
+"""Arrays in and out of `desaxe.evaluate`: shapes, layouts, names, out=."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What `desaxe.evaluate` refuses, what a bad element does, and units."""
+"""Checks of `desaxe.evaluate`: refused arguments, invalid elements, units."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""How a grid is cut into chunks."""
+"""The chunks of a grid."""
 
 import pytest
 

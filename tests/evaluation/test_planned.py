@@ -12,7 +12,7 @@ NAMES = ["V_C", "a_C", "status"]
 
 @pytest.fixture
 def both(monkeypatch):
-    """What a call gives by its plan and in the general way, and whether there was a plan."""
+    """The results of a call by its plan and by the general path, and a flag: there was a plan."""
 
     def run(names, **inputs):
         taken = []

@@ -32,7 +32,7 @@ MOST = sys.float_info.max
 
 
 def is_kept(name, value, at, oracle=truth, sensitivity=conditions):
-    """Whether the promise is kept, at a point where there is a mechanism."""
+    """True if the value keeps its promised bound, or if there is no mechanism at the point."""
     exact = oracle(name, **at)
     if mpmath.isnan(exact):
         return True  # beyond the last angle by less than a double, say

@@ -23,7 +23,7 @@ def names_for(point):
 
 
 def is_right(name, value, exact, point):
-    """Whether a value is as near to the truth as it must be; an infinite limit at rest may be NaN."""
+    """True if a value is within its bound of the truth; an infinite limit at rest may be NaN."""
     if math.isinf(exact):
         return math.isnan(value) or value == exact
     error = relative_error(value, exact)

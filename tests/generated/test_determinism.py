@@ -1,4 +1,4 @@
-"""The same bytes whatever the hash seed: nothing is ever taken in the order of a set."""
+"""Determinism: the generated files do not depend on the hash seed."""
 
 import pytest
 import os

@@ -1,4 +1,4 @@
-"""What is committed is what is derived, and `--check` notices each kind of difference."""
+"""The committed files equal the derived ones, and `--check` notices each kind of difference."""
 
 import ast
 import shutil

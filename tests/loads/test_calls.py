@@ -23,7 +23,7 @@ LOADS = {
 
 
 def work(load, a, b):
-    """What the load does between two crank angles: the integral of F dY."""
+    """The work of the load between two crank angles: the integral of F dY."""
 
     def power(theta):
         Y, slope = (dx.evaluate(n, theta=theta, ec=0.01, AB=0.04, BC=0.064) for n in ("Y", "Y_wrt_theta"))

@@ -1,4 +1,4 @@
-"""What a user who took another name is told: the name that was meant, or none, and never a wrong one."""
+"""Suggestions for wrong names: the intended name or none, never another one."""
 
 import inspect
 

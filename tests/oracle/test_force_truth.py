@@ -117,7 +117,7 @@ def moment(force, place):
 
 
 def momentum(at, moving):
-    """What forces and moments about A on crank, on rod and on slider must add up to, less the weights."""
+    """The sums of forces and of moments about A that crank, rod and slider need, less the weights."""
     g = mpmath.matrix([at["g_X"], at["g_Y"]])
     spins = at["I_crank"] * at["alpha"], at["I_rod"] * moving["direction"][2], 0
     for body, name, spin in zip(("crank", "rod", "slider"), ("crank", "rod", "C"), spins, strict=True):

@@ -83,7 +83,7 @@ def package(name, motion):
 
 
 def close(got, want, scale, digits):
-    """Agreement to so many digits of the larger of the value and its scale."""
+    """Agreement to `digits` digits of the larger of the value and its scale."""
     return abs(got - want) <= mpf(10) ** -digits * (abs(want) + scale)
 
 

@@ -102,7 +102,7 @@ def relative_a(v, key):
 
 
 def printed_a(v, key):
-    """What the sides of a wrong form, or of a form with one side, must come to."""
+    """The values of the sides of a wrong form, or of a form with one side, of paper A."""
     parts = [v[f"a_C{n}"] for n in (1, 2, 3, 4)]
     signed = v["a_C"], parts[0] + parts[1] - parts[2] - parts[3]
     return {
@@ -179,7 +179,7 @@ def special_b(v, key):
 
 
 def printed_b(v, key):
-    """What the sides of a wrong form must come to: the left one what it names, the right one as printed."""
+    """The values of the sides of a wrong form of paper B: the named quantity, and the printed expression."""
     q = B.Case(*(v[name] for name in ("theta", "e", "k", "c", "omega")), mp)
     m_2, m_3 = v["m_2"], v["m_3"]
     return {
@@ -249,7 +249,7 @@ def names_of(key, number):
 
 
 def misses(key, text, printed):
-    """What is wrong with the formula of an entry: nothing, or what it says and what it should come to."""
+    """The error of an entry's formula as text, with found and expected values; empty if it is right."""
     with mp.workdps(2 * ne.DIGITS):
         for number in range(SAMPLES):
             v, expected = names_of(key, number)

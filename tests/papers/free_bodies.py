@@ -115,7 +115,7 @@ def slider_rows(motion: Motion, bodies: Bodies) -> list:
 
 
 def drive_power(motion: Motion, bodies: Bodies) -> mpf:
-    """What the drive must supply, W: the growth of kinetic energy, less the work of gravity and load."""
+    """The power of the drive, W: growth of kinetic energy, less the work of gravity and load."""
     with mp.workdps(2 * loop.DIGITS):
         bodies = Bodies(*(value if value is None else mpf(value) for value in bodies))
         growth = loop.rate(lambda t: kinetic_energy(motion, bodies, t), 1)

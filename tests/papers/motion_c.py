@@ -26,7 +26,7 @@ class Rule(NamedTuple):
 
 @cache
 def rule(stages: int, digits: int) -> Rule:
-    """The rule of so many stages, for so many digits."""
+    """The collocation rule of this number of stages, in this number of digits."""
     with mp.workdps(2 * digits + 10):
         legendre = mp.taylor(lambda x: mp.legendre(stages, x), 0, stages)
         roots = sorted(mp.re(root) for root in mp.polyroots(legendre[::-1], maxsteps=500, extraprec=400))
@@ -67,7 +67,7 @@ def rod_turning_of(B: list[Pair], C: list[Pair], state: State) -> Pair:
 
 
 def angular_acceleration(state: State, torque: mpf, theta: mpf, omega: mpf) -> mpf:
-    """Of the crank, free under the torque alone: M alpha + M' omega^2/2 = T."""
+    """Acceleration of the crank under the torque alone: M alpha + M' omega^2/2 = T."""
     value, slope = inertia(state, theta)
     return (torque - slope * omega**2 / 2) / value
 

@@ -131,7 +131,7 @@ def rod_acceleration(state: State) -> mpf:
 
 
 class Bodies(NamedTuple):
-    """What the free bodies need besides the unknowns; R from each centre of mass to a joint."""
+    """The known values of the free bodies; R from each centre of mass to a joint."""
 
     R12: Vector
     R32: Vector
@@ -167,7 +167,7 @@ def bodies(state: State) -> Bodies:
 
 
 def imbalance(state: State, at: Bodies, unknowns: list[mpf], friction: mpf) -> list[mpf]:
-    """What is missing to each body's force and moment balance; zero for the right unknowns.
+    """The residuals of each body's force and moment balance; zero for the right unknowns.
 
     `friction` is F14x/F14y: plus or minus mu.
     """
@@ -194,7 +194,7 @@ def matrix(state: State, friction: mpf | int = 0) -> mp.matrix:
 
 
 def right_hand_side(state: State) -> mp.matrix:
-    """What stands on the other side: inertia less applied forces."""
+    """The right-hand side: inertia less applied forces."""
     return mp.matrix([-value for value in imbalance(state, bodies(state), [mpf(0)] * 8, mpf(0))])
 
 
@@ -238,7 +238,7 @@ def effective_inertia(state: State) -> mpf:
 
 
 def effective_inertia_slope(state: State) -> mpf:
-    """Its derivative by theta, kg m2/rad."""
+    """The derivative of the effective inertia by theta, kg m2/rad."""
     paths = ((state.m_crank, crank_centre), (state.m_rod, rod_centre), (state.m_slider, slider))
     first, second = rod_turning(state)
     moving = (2 * mpf(mass) * dot(*by_theta(path, state)[1:]) for mass, path in paths)

@@ -44,7 +44,7 @@ WEIGHTLESS = [state._replace(g_X=0.0, g_Y=0.0) for state in STATES]  # the paper
 
 
 def at_rest(state):
-    """The same mechanism held still."""
+    """The state of a mechanism at rest, otherwise unchanged."""
     return state._replace(omega=0.0, alpha=0.0)
 
 

@@ -10,7 +10,7 @@ from desaxe.errata.search import matching
 
 
 def shown(capsys, *words):
-    """What the command prints."""
+    """The output of `desaxe errata` with these words."""
     assert main(["errata", *words]) == 0
     return capsys.readouterr().out
 

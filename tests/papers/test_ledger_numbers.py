@@ -46,7 +46,7 @@ def held(name, degrees=0):
 
 
 def of_listing(name):
-    """What paper C's listing computes."""
+    """The value that paper C's listing computes for an unknown."""
     return float(RUN["x"][C.UNKNOWNS.index(name)])
 
 
@@ -108,7 +108,7 @@ CORRECTED = {
 
 
 def agree(text, wanted):
-    """Whether the numbers of a text are these, each to half a unit of its last digit."""
+    """True if the numbers of a text are these, each to half a unit of its last digit."""
     found = NUMBER.findall(text)
     return len(found) == len(wanted) and all(
         abs(float(number) - true)

@@ -189,7 +189,7 @@ def curves(names, ec, theta, BC=ROD):
 
 
 def turns_fully(ec, BC=ROD):
-    """Whether V_C exists all round, the two extreme angles included; the loop says the same."""
+    """True if V_C exists on the whole turn, the two extreme angles included; checked by the raw loop."""
     angles = [n * math.pi / 360 for n in range(720)]
     reached = [bool(mp.im(loop.truth("Y", Motion(theta, ec, CRANK, BC, SPEED))) == 0) for theta in angles]
     assert np.isfinite(curves(["V_C"], ec, angles, BC)[0]).tolist() == reached

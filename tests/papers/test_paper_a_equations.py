@@ -153,7 +153,7 @@ def test_eq14():
 
 
 def alpha_part(q, p, axis):
-    """What alpha adds to the pin's acceleration in the package's frame: tangent to the pin's velocity."""
+    """The part of the pin's acceleration due to alpha, in the package's frame: along the pin's velocity."""
     return q(f"V_B_{axis}") * p.alpha / p.omega
 
 

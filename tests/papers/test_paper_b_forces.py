@@ -74,7 +74,7 @@ def test_eq33():
 
 
 def rod_as_two_masses(motion, masses):
-    """The same mechanism with the rod's mass at its ends: everything else stays."""
+    """Forces of the mechanism with the rod's mass moved to its ends, otherwise unchanged."""
     q, w = exact_case(motion), exact_masses(masses)
     moved = Bodies(m_crank=B.printed_eq32(q, w), r_crank=q.k, m_slider=B.printed_eq34(q, w))
     return free_bodies.solve(motion, moved)
@@ -129,7 +129,7 @@ def test_eq36():
 
 
 def rest_of_mass(q, masses):
-    """What of crank and rod is not at the pin, kg: at the crank centre and at the slider."""
+    """The mass of crank and rod that is not at the pin, kg: at the crank centre and at the slider."""
     w = exact_masses(masses)
     return w.m_k * (1 - w.k_1 / q.k) + B.printed_eq33(q, w)
 
@@ -285,7 +285,7 @@ def test_eq42a():
 
 
 def slips_of_eq42b(q, m_3):
-    """What the sum of the printed and the right form leaves: of the missing e and of the last sign, N."""
+    """The sum of the printed and the right form of Eq. 42b, N: due to the missing e and the last sign."""
     lost = q.omega**2 * q.k * (q.e - 1) * q.sin / q.root(1)
     return m_3 * (lost - 2 * B.a_s_terms(q, 1, 3)[2])
 
@@ -377,7 +377,7 @@ def test_eq47():
 
 
 def inertia_torque(f, q):
-    """What the accelerated masses do to the crank: the opposite of the drive's torque, N m."""
+    """The inertia torque on the crank: the opposite of the drive's torque, N m."""
     return -f["T_in"]
 
 

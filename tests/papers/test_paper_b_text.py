@@ -421,7 +421,7 @@ def test_torque_readings(reading):
 
 
 def within(value, claim, share=0.1):
-    """Whether a value is within a tenth of a claim."""
+    """True if a value is within a tenth of a claim."""
     return abs(value - claim) <= share * claim
 
 
@@ -457,7 +457,7 @@ def test_torque_search():
 
 
 def all_near(c, masses, signs, form):
-    """Whether the peaks of both strokes are within a tenth of all claims."""
+    """True if the peaks of both strokes are within a tenth of all claims."""
 
     def torque(q):
         a_s = sum(sign * term for sign, term in zip(signs, B.a_s_terms(q, 1, 3), strict=True))

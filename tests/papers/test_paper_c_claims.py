@@ -71,7 +71,7 @@ def reach(ec, tilt=0.0):
 
 
 def misfit(torque_per_newton):
-    """What remains of the printed torques for the best force, N mm, and that force, N."""
+    """The residual of the printed torques for the best force, N mm, and that force, N."""
     force = torque_per_newton @ PRINTED / (torque_per_newton @ torque_per_newton)
     return float(np.linalg.norm(force * torque_per_newton - PRINTED)), float(force)
 

@@ -293,7 +293,7 @@ HELD = {
 
 
 def of_the_listing(label):
-    """What the listing computes for a row of the table."""
+    """The value that the listing computes for a row of the table."""
     return RUN["x"][C.UNKNOWNS.index("F14y" if label == "F14x" else label)]
 
 

@@ -37,7 +37,7 @@ def package(names, state):
 
 
 def scale(state, name, solution):
-    """What a force, or a torque, of this solution is measured against."""
+    """The scale of a force or torque of this solution."""
     lengths = (state.AB, state.BC, state.r_crank, state.r_rod)
     arm = max(map(abs, lengths)) if name == "T_in" else 1.0
     return arm * float(force_scale(solution)) + (abs(float(solution["T12"])) if name == "T_in" else 0.0)
@@ -144,7 +144,7 @@ def moved(state, t):
 
 
 def growth(state, quantity):
-    """Its time derivative along the motion."""
+    """The time derivative of a quantity along the motion."""
     h = mpf(10) ** -20
     return (quantity(moved(state, h)) - quantity(moved(state, -h))) / (2 * h)
 

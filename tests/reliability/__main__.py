@@ -72,7 +72,7 @@ def table(rows: list[tuple[str, Counter[str]]]) -> str:
 
 
 def foot() -> str:
-    """Where the page was made."""
+    """The foot of the page: Python version and system."""
     return f"\nPython {platform.python_version()} on {platform.system()} {platform.machine()}.\n"
 
 

@@ -43,7 +43,7 @@ def strays(folder: Path) -> list[str]:
 
 
 def for_ever(work, *sets):
-    """A child's work: write one set after the other until somebody stops it."""
+    """The work of a child process: write one set after the other until it is killed."""
 
     def loop():
         while True:
@@ -81,12 +81,12 @@ def two_writers_of_generated(folder: Path, random: Random) -> Verdict:
 
 
 def dataset(value: float) -> xr.Dataset:
-    """A result of which a mixture of two can be told from either."""
+    """A result whose numbers are all equal, so that a mixture of two results is recognised."""
     return xr.Dataset({name: ("x", np.full(2000, value), {"units": "m"}) for name in ("a", "b", "c")})
 
 
 def value_of(path: Path) -> float:
-    """What every number of a result is; NaN where it is no whole result."""
+    """The common value of all numbers of a result; NaN if the result is not whole."""
     if path.suffix == ".zarr":
         found = xr.open_zarr(path, consolidated=False).load()
     elif path.suffix == ".nc":
@@ -148,7 +148,7 @@ def no_room_for_results(folder: Path, random: Random) -> Verdict:
 
 
 def stopped_between_two_names(folder: Path, random: Random) -> Verdict:
-    """Where two names cannot be swapped in one step: the next writer beside it puts the old one back."""
+    """A stop between the two renames of a swap: the next writer in the folder restores the old file."""
     stray = folder / f"{files.PREFIX}{random.randrange(10**6)}"
     (stray / "replaced" / "values.zarr").mkdir(parents=True)
     results.write(folder / "other.npz", dataset(1.0), {})

@@ -1,4 +1,4 @@
-"""Trials of input: values that nobody should give, to every public call.
+"""Trials of input: absurd values for every argument of every public call.
 
 A call may answer, or refuse with a ValueError or TypeError that names the input; MemoryError and TimeoutError
 are refusals, too. Anything else, a warning included, is a crash, and ten seconds without an end are a hang.

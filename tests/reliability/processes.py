@@ -163,7 +163,7 @@ LATE = 2.0  # seconds: one, with room for a machine that does other things as we
 
 
 def a_lock_for_ever(folder: Path, random: Random) -> Verdict:
-    """Another process holds the lock of a kernel: told after some seconds, and done without it."""
+    """Another process holds the lock of a kernel: a warning after some seconds, then work without it."""
     program = f"""{START}
 import fcntl
 from desaxe.runtime import cache, modules

@@ -13,7 +13,7 @@ OUTCOMES = (RIGHT, WRONG, CRASHED, HUNG, LOST)
 
 
 class Verdict(NamedTuple):
-    """How a trial ended, and what was seen where it did not end right."""
+    """The outcome of a trial, with a note if it failed."""
 
     outcome: str
     note: str = ""
@@ -54,7 +54,7 @@ def child(work: Callable[[], object]) -> int:
 
 
 def ended(number: int, seconds: float) -> int | None:
-    """How a child ended: its exit code, or minus a signal's number; None where it had to be killed."""
+    """The exit code of a child, or minus a signal's number; None if it had to be killed."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         done, status = os.waitpid(number, os.WNOHANG)

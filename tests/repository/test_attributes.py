@@ -16,7 +16,7 @@ GENERATED = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "genera
 
 @pytest.fixture(scope="module")
 def attribute(tmp_path_factory):
-    """What git says of an attribute, by this repository's .gitattributes alone."""
+    """The value of an attribute in git, by this repository's .gitattributes alone."""
     folder = tmp_path_factory.mktemp("attributes")
     plain = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
     subprocess.run(["git", "init", "--quiet"], cwd=folder, env=plain, check=True)

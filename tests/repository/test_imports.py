@@ -1,4 +1,4 @@
-"""What is loaded when: nothing heavy before it is needed, in a new process each."""
+"""Lazy imports: nothing heavy is loaded before it is needed, in a new process each."""
 
 import subprocess
 import sys
@@ -12,7 +12,7 @@ KERNEL = "theta=numpy.linspace(0, 6, 3000), ec=0.01, AB=0.125, BC=0.35, omega0=1
 
 
 def loaded_by(code):
-    """Which of the heavy modules are loaded after this code."""
+    """The heavy modules that are loaded after this code."""
     report = f"import sys; print(*(name for name in {HEAVY!r} if name in sys.modules))"
     command = [sys.executable, "-W", "error", "-c", f"{code}\n{report}"]
     return set(subprocess.run(command, capture_output=True, text=True, check=True).stdout.split())

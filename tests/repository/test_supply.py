@@ -1,4 +1,4 @@
-"""What is run as code, what is read, what is built: nothing from outside, and the same bytes each time."""
+"""Supply chain: nothing is fetched or run from outside, and builds give the same bytes each time."""
 
 import ast
 import hashlib

@@ -25,7 +25,7 @@ def copy_of_the_tree(folder):
 
 
 def output_of(command, **where):
-    """What a command prints; if it fails, the test shows its complaint."""
+    """Run a command and return its output; the test fails with its error output."""
     done = subprocess.run(command, capture_output=True, text=True, check=False, **where)
     assert done.returncode == 0, done.stderr
     return done.stdout

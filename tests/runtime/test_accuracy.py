@@ -33,13 +33,13 @@ def speed_squared(point):
 
 
 def is_stalled(point):
-    """Whether the crank stopped before this angle, or stands still there."""
+    """True if the crank stops before this angle, or is at rest there."""
     with mpmath.workdps(60):
         return speed_squared(point) <= 0
 
 
 def scale(name, point):
-    """What the floor of the extended accuracy is 2^-96 of."""
+    """The scale of a quantity, of which 2^-96 is the floor of the extended accuracy."""
     quantity, _, parameter = name.partition("_wrt_")
     length, turns = DEGREES[quantity]
     speed = mpmath.sqrt(speed_squared(point))

@@ -149,7 +149,7 @@ def start(folder, *options, **environment):
 
 
 def answer(process):
-    """Its sum, how many kernels it found on disk and how many it compiled; and its complaints."""
+    """The output of a process: its sum, numbers of loaded and compiled kernels, error output."""
     out, complaints = process.communicate()
     assert process.returncode == 0, complaints
     total, hits, misses = out.split()

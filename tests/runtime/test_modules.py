@@ -82,7 +82,7 @@ def folder(tmp_path, monkeypatch):
 
 
 def added():
-    """What the text gives: arrays of any stride, a number, the answer."""
+    """The result of the text for arrays of any stride and a number."""
     out = np.zeros(6)
     answer = modules.native("add", ADD)(np.arange(6.0).reshape(3, 2), 0.5, out[::2])
     return answer, out.tolist()

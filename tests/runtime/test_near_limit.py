@@ -1,4 +1,4 @@
-"""The last angle that a rod reaches lies between two doubles: which doubles it reaches is told exactly."""
+"""A limit angle lies between two doubles: the status of both is exact."""
 
 import numpy as np
 import pytest
@@ -46,7 +46,7 @@ def digits():
 
 
 def reaches(theta, ec, AB, BC):
-    """Whether |ec + AB sin(theta)| < BC, proved."""
+    """True if |ec + AB sin(theta)| < BC, proved in ball arithmetic."""
     pin = abs(arb(ec) + arb(AB) * arb(theta).sin())
     inside = pin < arb(BC)
     assert inside or pin > arb(BC)

@@ -1,4 +1,4 @@
-"""Which tier answers, and what NumPy's answers are worth."""
+"""The choice of the tier, and the accuracy of the NumPy tier."""
 
 import math
 import os

@@ -19,7 +19,7 @@ from tests.example_scenes import COMPACTOR, SMALL, changed
 
 @pytest.fixture(scope="module")
 def compactor(tmp_path_factory):
-    """The example, run in a folder of its own: that folder, the result and the steps it told."""
+    """The example, run in a folder of its own: folder, result, and reported steps."""
     folder = tmp_path_factory.mktemp("compactor")
     steps = []
     with contextlib.chdir(folder):

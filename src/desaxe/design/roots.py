@@ -7,7 +7,7 @@ STEPS = 200
 
 
 def root(function: Callable[[float], float], a: float, b: float) -> float:
-    """The sign change of a function between a and b, to the last bits (Chandrupatla's method).
+    """The sign change of a function between a and b, to a few ulp (Chandrupatla's method).
 
     An end at which it is 0 is the root. The caller sees to it that the signs differ.
     """

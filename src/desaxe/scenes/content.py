@@ -1,4 +1,4 @@
-"""What a scene says, checked and in SI units."""
+"""The content of a scene, checked and in SI units."""
 
 from collections.abc import Mapping
 from types import MappingProxyType

@@ -37,7 +37,7 @@ class PeakPart(NamedTuple):
 
     @property
     def axes(self) -> tuple[str, ...]:
-        """The dimensions whose values it needs."""
+        """The dimensions whose values the part needs."""
         return self.dims
 
     @property

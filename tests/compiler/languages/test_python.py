@@ -43,7 +43,7 @@ def test_the_coverage_set_against_exact(point):
 
 
 def exact_error(point):
-    """What rounding takes from x + y: exactly 0 over the reals, but what the emitted code is to find."""
+    """The rounding error of x + y: exactly 0 over the reals, but the emitted code must find it."""
     return mpmath.mpf(point["x"]) + mpmath.mpf(point["y"]) - mpmath.mpf(point["x"] + point["y"])
 
 

@@ -27,7 +27,7 @@ def tool(name):
 
 
 def run(*command, **more):
-    """What a command prints; a test fails where the command does."""
+    """Run a command and return its output; the test fails if the command does."""
     done = subprocess.run([*map(str, command)], capture_output=True, text=True, check=False, **more)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout

@@ -22,7 +22,7 @@ def value(build, values):
 
 
 def three_words(rng):
-    """A number of three doubles, each within the last bit of the one before."""
+    """A number of three doubles, each within half an ulp of the one before."""
     first = rng.uniform(0.1, 4.0) * rng.choice((-1, 1))
     second = first * 2.0**-53 * rng.uniform(-1, 1)
     return first, second, second * 2.0**-53 * rng.uniform(-1, 1)

@@ -72,7 +72,7 @@ def test_the_committed_program_keeps_its_meaning(fixed):
 
 
 def operations(*names, state=False, **fixed):
-    """How many operations a request costs a point."""
+    """The number of operations of a request at a point."""
     return len(optimise(program_of(names, Variant(state)), fixed)[0].lines)
 
 

@@ -1,4 +1,4 @@
-"""Slicing: only what the wanted outputs reach stays, unchanged and in order."""
+"""Slicing: only the lines that the requested outputs need stay, unchanged and in order."""
 
 import pytest
 from hypothesis import given, settings

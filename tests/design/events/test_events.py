@@ -25,7 +25,7 @@ LENGTHS = ("ec", "AB", "BC")
 
 
 class Oracle:
-    """Where the slider stops: dY/dtheta = 0 on the raw loop, |C - B| = BC, by bisection between quarters."""
+    """Dead centres: dY/dtheta = 0 on the raw loop, |C - B| = BC, by bisection between quarters."""
 
     def __init__(self, ec, AB, BC):
         self.ec, self.AB, self.BC = mp.mpf(ec), mp.mpf(AB), mp.mpf(BC)

@@ -1,4 +1,4 @@
-"""Where a design can be assembled, against the status of a fine sweep and exact margins."""
+"""Feasible crank angles, against the status of a fine sweep and exact margins."""
 
 import math
 from fractions import Fraction

@@ -1,4 +1,4 @@
-"""Designs from wishes: they have what was wished for, none is left out, and limits are the limits."""
+"""Synthesis: designs have the required values, none is missing, and the limits are exact."""
 
 import math
 import re

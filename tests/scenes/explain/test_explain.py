@@ -1,4 +1,4 @@
-"""Plans: operations after each pass, loops, what is skipped, and whether what is told comes true."""
+"""Plans: operations after each pass, loops, skipped lines, and estimates against the facts."""
 
 import json
 

@@ -48,7 +48,7 @@ def standing(browser, one_design):
 
 @contextmanager
 def visiting(browser):
-    """What opens pages, and closes them at the end."""
+    """A function that opens pages, which are closed after the test."""
     contexts, complaints = [], []
 
     def visit(path, width=1360, height=900, **options):
@@ -70,5 +70,5 @@ def visiting(browser):
 
 
 def _foreign(url):
-    """The page asks nobody for anything."""
+    """The page makes no request to any server."""
     return [] if url.startswith(("file:", "data:", "blob:")) else [url]

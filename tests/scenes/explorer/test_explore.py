@@ -1,4 +1,4 @@
-"""What goes into a page and what does not; no browser is needed."""
+"""The content of a page; no browser is needed."""
 
 import json
 import re

@@ -24,7 +24,7 @@ def verdict(page):
 
 
 def drawn_lines(page, chart=0):
-    """How many pieces each drawn curve has."""
+    """The number of pieces of each drawn curve."""
     traces = f"[...document.querySelectorAll('#plot-{chart} .scatterlayer .trace')]"
     return page.evaluate(
         f"{traces}.map((trace) => trace.querySelectorAll('.js-line').length).filter(Boolean)"
@@ -190,7 +190,7 @@ def test_a_curve_is_where_evaluate_has_a_value(ec, standing):
 
 
 def next_to_a_limit(theta, lengths):
-    """Whether it cannot be assembled a few doubles away: there the page, unlike Python, may not know."""
+    """True within a few doubles of a limit angle, where the page, unlike Python, may be undecided."""
     away = 4 * math.ulp(theta)
     near = (dx.evaluate("status", theta=angle, **lengths) for angle in (theta - away, theta + away))
     return len(set(near)) > 1
@@ -418,7 +418,7 @@ def test_what_is_read_stands_out(scheme, visit, one_design):
 
 
 def contrast(one, other):
-    """Of two colours such as #1b2330."""
+    """The contrast ratio of two colours such as #1b2330."""
     lights = []
     for colour in (one, other):
         parts = [int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)]

@@ -38,7 +38,7 @@ def rows(branch, largest=math.inf):
 
 
 def columns(branch, largest=math.inf):
-    """The same as arrays, in the order of the arguments."""
+    """The rows as arrays, in the order of the arguments."""
     return [np.array([row[name] for row in rows(branch, largest)]) for name in INPUTS]
 
 

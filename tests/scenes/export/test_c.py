@@ -89,7 +89,7 @@ def test_names_and_units(sources):
 
 
 def is_well_conditioned(there):
-    """Not next to a dead centre or a change point, where a last bit of the angle changes the rates."""
+    """True unless a dead centre or change point is so close that an ulp of the angle changes the rates."""
     found = dx.evaluate(["Y_wrt_theta", "Y_wrt_theta_theta"], **there)
     return abs(found["Y_wrt_theta"]) > 0.05 * there["AB"] > 0.001 * abs(found["Y_wrt_theta_theta"])
 

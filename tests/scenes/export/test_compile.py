@@ -93,7 +93,7 @@ def points_of(scene):
 
 @pytest.fixture(scope="module")
 def alone():
-    """What every module gives in a process without desaxe; the workers of a test run share it."""
+    """The results of every module in a process without desaxe, shared by the workers of a test run."""
     folder = Path(os.environ["DESAXE_CACHE_DIR"]) / "modules"
     folder.mkdir(exist_ok=True)
     kept = folder / "found.json"
@@ -337,7 +337,7 @@ def test_a_name_that_python_cannot_import(name, better, tmp_path):
 
 
 def operations_in(point):
-    """How many there are in the assignments of a function, counted in its text."""
+    """The number of operations in the assignments of a function, counted in its text."""
     nodes = [n for line in point.body if isinstance(line, ast.Assign) for n in ast.walk(line.value)]
     single = (ast.BinOp, ast.Call, ast.IfExp)
     count = sum(isinstance(node, single) for node in nodes)

@@ -36,7 +36,7 @@ def coverage_kernel():
 
 
 def covered(**columns):
-    """What the kernel of the coverage set gives for these columns."""
+    """The outputs of the coverage kernel for these columns."""
     size = len(columns["x"])
     outs = {name: np.full(size, -1, np.int8 if name == STATUS else float) for name in NAMES}
     coverage_kernel()(*(np.ascontiguousarray(columns[name], float) for name in "xyz"), *outs.values())
