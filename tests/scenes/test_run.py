@@ -12,7 +12,6 @@ import pytest
 import xarray
 
 import desaxe as dx
-from desaxe.scenes import run as scene_run
 from desaxe.support.progress import progress_bar
 from tests.example_scenes import COMPACTOR, SMALL, changed
 
@@ -175,7 +174,7 @@ def test_accuracy_reaches_values_peaks_and_checks():
 
 def test_large_grid_in_blocks(monkeypatch):
     whole = dx.scene(SMALL).run().dataset
-    monkeypatch.setattr(scene_run, "BLOCK", 5)
+    monkeypatch.setattr("desaxe.scenes.blocks.BLOCK", 5)
     steps = []
     parts = dx.scene(SMALL).run(lambda *step: steps.append(step)).dataset
     assert xarray.testing.assert_identical(parts, whole) is None

@@ -3,6 +3,8 @@
 from importlib import import_module
 from pathlib import Path
 
+from ..runtime.written import replacing_ours, require_ours
+from ..support.files import check_target, require_writable
 from ..support.progress import progress_bar
 from .report import PICTURE, by_family, overview, report, share_of, ulp_of
 from .run import FULL, QUICK, Audit, audit
@@ -10,15 +12,19 @@ from .run import FULL, QUICK, Audit, audit
 PAGE = "accuracy.md"
 
 
-def command(quick: bool, folder: str | None) -> int:
+def command(quick: bool, folder: str | None, overwrite: bool = False) -> int:
     """Audit; the tables on stdout, and files if there is a folder for them."""
-    if folder is not None:
-        import_module("matplotlib.figure")  # told at once if it is missing, not after minutes
+    if folder is not None:  # what is wrong with it is told at once, not after minutes
+        import_module("matplotlib.figure")
+        for name in (PAGE, PICTURE):
+            check_target(Path(folder) / name)
+            require_ours(Path(folder) / name, overwrite)
+            require_writable(Path(folder) / name)
     with progress_bar() as watch:
         found = audit(QUICK if quick else FULL, watch)
-    print(text(found))
+    print(text(found), flush=True)
     if folder is not None:
-        for path in write(found, Path(folder)):
+        for path in write(found, Path(folder), overwrite):
             print(f"wrote {path}")
     return 0
 
@@ -36,13 +42,14 @@ def text(found: Audit) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def write(found: Audit, folder: Path) -> list[Path]:
+def write(found: Audit, folder: Path, overwrite: bool = False) -> list[Path]:
     """accuracy.md and accuracy.png in a folder, which is made if need be."""
     from ..plot.save import save
-    from ..support.files import write_text
     from .picture import draw
 
-    page = folder / PAGE
-    picture = save(draw(found), folder / PICTURE, dpi=130)
-    write_text(page, report(found))
+    page, picture = folder / PAGE, folder / PICTURE
+    with replacing_ours(page, overwrite) as staged:
+        staged.write_text(report(found), encoding="utf-8")
+    with replacing_ours(picture, overwrite) as staged:
+        save(draw(found), staged, dpi=130)
     return [page, picture]

@@ -87,12 +87,13 @@ def add_audit(commands: Any) -> None:
     parser.add_argument(
         "-o", metavar="FOLDER", dest="folder", help="write accuracy.md and accuracy.png there"
     )
+    parser.add_argument("--overwrite", action="store_true", help="replace files that desaxe did not write")
 
 
 def _audit(options: argparse.Namespace) -> int:
     from ..audit.command import command
 
-    return command(options.quick, options.folder)
+    return command(options.quick, options.folder, options.overwrite)
 
 
 _DOCTOR = """\

@@ -3,6 +3,7 @@
 import argparse
 import json
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 from .parser import add_command
@@ -33,13 +34,21 @@ def add_fit(commands: Any) -> None:
     parser.add_argument("--nuisance", metavar="NAME", nargs="+", default=(), help="offset, biases, scales")
     parser.add_argument("--loss", default="linear", help="linear, soft_l1, huber, cauchy or arctan")
     parser.add_argument("--picture", metavar="FILE", help="draw measurements and fit")
+    parser.add_argument(
+        "--overwrite", action="store_true", help="replace a picture that desaxe did not write"
+    )
     parser.add_argument("--json", action="store_true", help="print JSON")
 
 
 def _fit(options: argparse.Namespace) -> int:
     from ..design.fit.fit import fit
+    from ..runtime.written import replacing_ours, require_ours
     from ..scenes.scene import scene
+    from ..support.files import require_writable
 
+    if options.picture:
+        require_ours(Path(options.picture), options.overwrite)
+        require_writable(Path(options.picture))
     known = scene(options.scene).content
     numbers: dict[str, Any] = {
         name: value for name, value in known.inputs.items() if isinstance(value, (int, float))
@@ -50,11 +59,12 @@ def _fit(options: argparse.Namespace) -> int:
     }
     sigma = dict(_pair("--sigma", word) for word in options.sigma) or None
     found = fit(options.data, over, sigma, options.nuisance, options.loss, branch=known.branch, **fixed)
+    print(json.dumps(_plain(found), indent=2) if options.json else found.report(), flush=True)
     if options.picture:
         from ..plot.save import save
 
-        save(found.plot(), options.picture)
-    print(json.dumps(_plain(found), indent=2) if options.json else found.report())
+        with replacing_ours(Path(options.picture), options.overwrite) as staged:
+            save(found.plot(), staged)
     return 0
 
 

@@ -30,8 +30,9 @@ A scene is a TOML file. It is data only: nothing in it is executed. Its keys:
                   or store = "press.zarr" with chunks = { theta = 1000 }, memory = "200 MB"
 
 `desaxe scene --schema > scene.schema.json` and a first line `#:schema scene.schema.json` let
-editors complete and check these keys. Files are written relative to the current directory. Pictures
-and values need the extras `plot` and `labelled`.
+editors complete and check these keys. Files are written relative to the current directory; what
+desaxe wrote itself is replaced, another file only with --overwrite. All places are looked at before
+anything is computed. Pictures and values need the extras `plot` and `labelled`.
 
 examples:
   desaxe run examples/compactor.toml
@@ -43,17 +44,20 @@ def add_run(commands: Any) -> None:
     """Add `desaxe run`."""
     parser = add_command(commands, "run", "run a scene: values, peaks, checks, pictures", _RUN, _scene)
     parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
+    add_overwrite(parser)
+
+
+def add_overwrite(parser: argparse.ArgumentParser) -> None:
+    """Add --overwrite, the leave to replace what desaxe did not write."""
+    parser.add_argument(
+        "--overwrite", action="store_true", help="replace files that desaxe did not write, or others changed"
+    )
 
 
 def _scene(options: argparse.Namespace) -> int:
-    from ..scenes.scene import scene
-    from ..support.progress import progress_bar
+    from ..scenes.command import run_scene
 
-    wanted = scene(options.scene)
-    with progress_bar() as progress:
-        result = wanted.run(progress)
-    print(result)
-    return 0
+    return run_scene(options.scene, options.overwrite)
 
 
 _SCENE = """\
@@ -138,12 +142,15 @@ def add_compile(commands: Any) -> None:
     parser.add_argument(
         "--check", action="store_true", help="write nothing; exit 1 and show a diff if files are not fresh"
     )
+    add_overwrite(parser)
 
 
 def _compile(options: argparse.Namespace) -> int:
     from ..scenes.export.command import run_compile
 
-    return run_compile(options.scene, options.place, options.to, not options.no_libm, options.check)
+    return run_compile(
+        options.scene, options.place, options.to, not options.no_libm, options.check, options.overwrite
+    )
 
 
 _EXPLORE = """\
@@ -166,15 +173,18 @@ def add_explore(commands: Any) -> None:
     parser.add_argument(
         "--names", metavar="NAMES", help="the quantities that the page knows, beside the scene's"
     )
+    add_overwrite(parser)
 
 
 def _explore(options: argparse.Namespace) -> int:
     from ..scenes.explorer.content import left_out_text
     from ..scenes.explorer.explore import content_of
-    from ..scenes.explorer.write import write_page
+    from ..scenes.explorer.write import require_page, write_page
 
+    place = Path(options.file)
+    require_page(place, options.overwrite)
     found = content_of(options.scene, options.names.split(",") if options.names else None)
-    print(write_page(found, Path(options.file)))
+    print(write_page(found, place, options.overwrite))
     left = left_out_text(found)
     if left:
         print(f"desaxe: not shown on the page: {left}", file=sys.stderr)

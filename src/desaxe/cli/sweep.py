@@ -3,6 +3,7 @@
 import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 from ..support.extras import needed
@@ -33,7 +34,9 @@ def add_sweep(commands: Any) -> None:
     parser.add_argument("-o", metavar="STORE", dest="store", help="the store; [results] store without")
     parser.add_argument("--chunks", metavar="CHUNKS", help="auto, a number, or theta=1000,ec=10")
     parser.add_argument("--memory", metavar="SIZE", help='of the chunks in flight, such as "200 MB"')
-    parser.add_argument("--overwrite", action="store_true", help="replace a store of another sweep")
+    parser.add_argument(
+        "--overwrite", action="store_true", help="replace a store of another sweep, or a file"
+    )
     parser.add_argument("--netcdf", metavar="FILE", help="write it as NetCDF too, if it fits into memory")
     parser.add_argument("--best", metavar="K", type=int, help="the best K designs instead of the grid")
     parser.add_argument("--by", metavar="NAME", help="what they are ranked by: a_C, or absmax:a_C")
@@ -49,6 +52,8 @@ def _sweep(options: argparse.Namespace) -> int:
     wanted = scene(options.scene)
     if options.store is None and wanted.content.store is None and options.best is None:
         raise UsageError("where to? give -o STORE.zarr, or [results] store in the scene")
+    if options.netcdf is not None:
+        _require_netcdf(options.netcdf, options.overwrite)
     with _client(options) as client:
         found = sweep_content(
             wanted.content,
@@ -68,7 +73,7 @@ def _sweep(options: argparse.Namespace) -> int:
         shape = " x ".join(f"{name} ({size})" for name, size in found.sizes.items())
         print(f"{place}: {', '.join(map(str, found.data_vars))} over {shape or 'one point'}")
     if options.netcdf is not None:
-        _write_netcdf(found, options.netcdf)
+        _write_netcdf(found, options.netcdf, options.overwrite)
     return 0
 
 
@@ -112,21 +117,28 @@ def _client(options: argparse.Namespace) -> Iterator[Any]:
         yield client
 
 
-def _write_netcdf(found: Any, place: str) -> None:
-    """Write the store's Dataset as one file, if there is memory for it."""
-    from pathlib import Path
+def _require_netcdf(place: str, overwrite: bool) -> None:
+    """Fail before the sweep where the NetCDF file could not be written."""
+    from ..scenes.files import check_place
+    from ..support.files import require_writable
 
+    if not place.endswith(".nc"):
+        raise UsageError(f"--netcdf {place}: its name must end in .nc")
+    check_place(Path(place), overwrite)
+    require_writable(Path(place))
+
+
+def _write_netcdf(found: Any, place: str, overwrite: bool) -> None:
+    """Write the Dataset as one file, if there is memory for it."""
     from ..scenes.files import write
     from ..sweeps.layout import size_text
     from ..sweeps.memory import free_memory
 
-    if not place.endswith(".nc"):
-        raise UsageError(f"--netcdf {place}: its name must end in .nc")
     free = free_memory()
     if free is not None and found.nbytes > free // 2:
         raise MemoryError(
             f"--netcdf {place}: {size_text(found.nbytes)} do not fit into the free memory "
             f"({size_text(free)}); the Zarr store is complete"
         )
-    write(Path(place), found.load(), {})
+    write(Path(place), found.load(), {}, overwrite)
     print(f"{place}: the same as NetCDF")

@@ -11,6 +11,7 @@ from ..mechanism.unit_system import SI, UnitSystem
 from ..mechanism.units import exact
 from ..scenes.scene import scene
 from ..scenes.schema import SceneError
+from ..support.files import write_text
 
 SECTIONS = {
     "mechanism": ("AB", "BC", "ec", "branch"),
@@ -51,7 +52,7 @@ def write_scene(
     data = _data(machine, outputs, more)
     scene(data)
     place = Path(path)
-    place.write_text(_toml(data), encoding="utf-8")
+    write_text(place, _toml(data))
     return place
 
 

@@ -9,6 +9,7 @@ kernels       compiled loops for arrays
 modules       text -> digest -> lock -> file -> machine code, for kernels, peaks and simulation
 machine_code  machine code kept on disk, loaded without numba
 cache         the folder of compiled kernels
+written       which files desaxe wrote, and may replace
 wide_margins  which designs may take the plain forms
 near_limit    points at which rounding decides whether the rod reaches
 threads       blocks of an array shared by threads

@@ -28,7 +28,9 @@ LIMIT_VARIABLE = "DESAXE_CACHE_MB"
 LIMIT = 256  # MB on disk, unless the variable says otherwise
 WAIT = 10.0  # seconds for another process that compiles the same kernel
 _STRAY_AGE = 3600.0  # seconds after which a file that is being written is one that was left
-OURS = re.compile(r"[a-z]+_[0-9a-f]{20,64}\.\w+|__pycache__|upkeep\.lock|\.desaxe-\w+")  # names that we give
+OURS = re.compile(
+    r"[a-z]+_[0-9a-f]{20,64}\.\w+|__pycache__|upkeep\.lock|written|\.desaxe-\w+"
+)  # names that we give
 
 
 class Folder(NamedTuple):

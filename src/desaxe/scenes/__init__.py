@@ -9,8 +9,15 @@ content      what a scene says, checked and in SI units
 read         a file or mapping as Content
 needs        the inputs that quantities need
 requested    [[check]], [[peak]] and [[picture]] as what they ask for
-run          Content -> grid, checks, files
+places       what a run needs and where it writes, looked at before it computes
+run          Content -> values, peaks, checks, then files
+command      `desaxe run`
+blocks       the grid, block by block
 peaks        peaks over designs
+turning      which designs turn fully
+pictures     families of curves as files
+stored       a scene as a sweep into its store
+sweep        `desaxe.sweep`
 kernel       the kernel of a scene's grid
 files        NetCDF, Zarr, CSV, npz
 report       the result as text

@@ -1,18 +1,20 @@
 """Labelled results as files: NetCDF, Zarr, CSV for spreadsheets, npz for NumPy.
 
 A file, or a Zarr store, appears whole or not at all: it is written beside its place, then swapped in. The
-tables of a CSV are several files, each of them whole.
+tables of a CSV are several files, each of them whole. What desaxe did not write is left as it is, unless it
+may be overwritten.
 """
 
 import csv
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..runtime.written import remember, require_ours
 from ..support.files import check_target, kind_of, require_space, staging, swap_in
 
 _NETCDF_EXTRA = 65_536  # bytes for what HDF5 writes besides the numbers of a group
@@ -31,9 +33,11 @@ def requirements_of(data: str) -> dict[str, str]:
     }.get(Path(data).suffix, {})
 
 
-def write(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> list[Path]:
+def write(
+    path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]", overwrite: bool = False
+) -> list[Path]:
     """Write the values and, as groups, the peaks; return the files that were written."""
-    check_place(path)
+    check_place(path, overwrite)
     with staging(path.parent) as folder:
         try:
             _WRITERS[path.suffix](folder / path.name, values, groups)
@@ -41,20 +45,29 @@ def write(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Data
             raise OSError(f"{path}: not written: {error}") from error
         staged = sorted(folder.iterdir())
         for file in staged:
-            check_place(path.parent / file.name)
+            check_place(path.parent / file.name, overwrite)
         for file in staged:
+            remember(file)
             swap_in(file, path.parent / file.name)
     return [path.parent / file.name for file in staged]
 
 
-def check_place(path: Path) -> None:
-    """Refuse to replace what is no earlier result: a folder that is no Zarr store, a pipe, a device."""
+def files_of(path: Path, values: bool, groups: Iterable[str]) -> list[Path]:
+    """The files that `write` makes: the one of that name, but a table of each part as CSV."""
+    if path.suffix != ".csv":
+        return [path]
+    return [*([path] if values else []), *(path.with_name(f"{path.stem}_{name}.csv") for name in groups)]
+
+
+def check_place(path: Path, overwrite: bool = False) -> None:
+    """Refuse to replace what is no earlier result: another file, a folder that is no Zarr store, a pipe."""
     if path.suffix != ".zarr" or not os.path.lexists(path):
         check_target(path)
     elif kind_of(path) != "a folder" or path.is_symlink():
         raise ValueError(f"{path}: this is no Zarr store, and would be replaced")
     elif any(path.iterdir()) and not any((path / name).exists() for name in _STORE):
         raise ValueError(f"{path}: this folder holds no Zarr store, and would be replaced")
+    require_ours(path, overwrite)
 
 
 def _apart(peaks: "xr.Dataset") -> "xr.Dataset":
@@ -85,10 +98,9 @@ def _zarr(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Data
 
 def _csv(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:
     """A table for each part: a column for each dimension and name, units in the heading."""
-    parts = {path.name: values} if values is not None else {}
-    parts |= {f"{path.stem}_{name}.csv": peaks for name, peaks in groups.items()}
-    for name, part in parts.items():
-        with open(path.with_name(name), "w", encoding="utf-8", newline="") as file:
+    parts = [*([] if values is None else [values]), *groups.values()]
+    for place, part in zip(files_of(path, values is not None, groups), parts, strict=True):
+        with open(place, "w", encoding="utf-8", newline="") as file:
             csv.writer(file).writerows(_table(part))
 
 

@@ -1,6 +1,6 @@
 """The peaks of a scene, labelled, and the claims about them."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import pi, prod
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -173,3 +173,13 @@ def provenance(content: Content) -> dict[str, str]:
     """Attributes of provenance: title, source, conventions."""
     title = {"title": content.title} if content.title else {}
     return {**title, "source": source(), "Conventions": CONVENTIONS}
+
+
+def group_names(peaks: Sequence[Peak]) -> list[str]:
+    """A name for each peak, such as `peak_absmax_a_C`; further ones of the same kind get a number."""
+    names: list[str] = []
+    for one in peaks:
+        name = f"peak_{one.kind}_{one.quantity}"
+        again = sum(other == name or other.startswith(f"{name}__") for other in names)
+        names.append(f"{name}__{again + 1}" if again else name)
+    return names

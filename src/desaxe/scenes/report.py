@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from math import degrees, isfinite, isnan, pi
+from pathlib import Path
 
 import numpy as np
 
@@ -9,8 +10,10 @@ from ..mechanism.catalogue import quantity
 from ..mechanism.status import PeakStatus
 from ..mechanism.unit_system import UnitSystem
 from .content import Content, Peak
-from .peaks import SIDEWAYS, WORDS, ClaimResult, PeakResult, peaks_in_units
-from .run import CheckResult, FeasibilityResult, Run, group_names
+from .peaks import SIDEWAYS, WORDS, ClaimResult, PeakResult, group_names, peaks_in_units
+from .places import data_files
+from .run import CheckResult, Run
+from .turning import FeasibilityResult
 
 ROWS = 24  # of a table; a longer one is thinned out
 HUGE = 1e6  # percent: more is told as a power of ten
@@ -27,7 +30,7 @@ def report(content: Content, result: Run, units: UnitSystem) -> str:
     parts += [_feasibility(result.feasibility, units)] if result.feasibility else []
     parts += [_peak(found, units) for found in peaks]
     parts += [_values(content, result)] if result.dataset is not None else []
-    parts += [_files(content, result)] if result.files else []
+    parts += [files_report(content, result)] if result.files or result.failures else []
     return "\n\n".join(parts)
 
 
@@ -226,15 +229,20 @@ def _values(content: Content, result: Run) -> str:
     return f"Values\n  {', '.join(content.outputs)}{of} over {shape or 'one point'}{kept}"
 
 
-def _files(content: Content, result: Run) -> str:
-    """A line for each file that was written."""
+def files_report(content: Content, result: Run) -> str:
+    """A line for each file that was written, and for each that was not."""
     rows: list[tuple[str, str]] = []
-    pictures = [f"{picture.quantity} over {picture.over}" for picture in content.pictures]
     if content.data is not None:
-        rows += [("", "the values")] if result.dataset is not None else []
-        rows += [("", f"group {name}") for name in group_names(result.peaks)]
-        data = result.files[: len(result.files) - len(pictures)]
-        rows = [(str(path), what) for path, (_, what) in zip([*data, *[""] * len(rows)], rows, strict=False)]
-    paths = result.files[len(result.files) - len(pictures) :]
-    rows += [(str(path), what) for path, what in zip(paths, pictures, strict=True)]
-    return "\n".join(["Written", *table(rows, left=2)])
+        files = [str(file) for file in data_files(content) if file in result.files]
+        told = ["the values"] if content.outputs else []
+        told += [f"group {name}" for name in group_names(content.peaks)]
+        rows += zip([*files, *[""] * len(told)], told, strict=False) if files else []
+    rows += [
+        (str(Path(picture.file)), f"{picture.quantity} over {picture.over}")
+        for picture in content.pictures
+        if Path(picture.file) in result.files
+    ]
+    parts = ["\n".join(["Written", *table(rows, left=2)])] if rows else []
+    if result.failures:
+        parts.append("\n".join(["Not written", *(f"  {failure}" for failure in result.failures)]))
+    return "\n\n".join(parts)

@@ -14,8 +14,9 @@ from .content import Content
 from .peaks import PeakResult
 from .read import plain_data, read
 from .report import report
-from .run import CheckResult, FeasibilityResult, Run, run
+from .run import CheckResult, Run, compute, steps_of, write_files
 from .schema import SceneError as SceneError
+from .turning import FeasibilityResult
 from .units import units_written
 from .values import Value
 
@@ -34,6 +35,7 @@ class SceneResult:
     checks       one for each printed value: `computed` [SI] and whether it `agrees`
     feasibility  how many designs turn fully, and the gaps of those that do not
     files        what was written
+    failures     what could not be written, and why: a line for each
     """
 
     scene: "Scene"
@@ -42,14 +44,23 @@ class SceneResult:
     checks: tuple[CheckResult, ...]
     feasibility: FeasibilityResult | None
     files: "tuple[Path, ...]"
+    failures: tuple[str, ...] = ()
 
     def report(self) -> str:
         """The text that `desaxe run` prints."""
-        run = Run(self.dataset, self.checks, self.peaks, self.feasibility, self.files)
+        run = Run(self.dataset, self.checks, self.peaks, self.feasibility, self.files, self.failures)
         return report(self.scene.content, run, self.scene.shown_in)
 
     def __str__(self) -> str:
         return self.report()
+
+
+class NotWrittenError(OSError):
+    """Some results could not be written; `result` has all of them, and the files that were."""
+
+    def __init__(self, result: SceneResult) -> None:
+        super().__init__("; ".join(result.failures))
+        self.result = result
 
 
 @dataclass(frozen=True)
@@ -82,15 +93,26 @@ class Scene:
         """Pickle the scene with its own quantities, which are registered where it is loaded."""
         return _arrived, (self.content, self.name, self.shown_in)
 
-    def run(self, progress: Progress | None = None) -> SceneResult:
+    def run(self, progress: Progress | None = None, *, overwrite: bool = False) -> SceneResult:
         """Compute everything, write the files that the scene names, and return it.
 
         `progress(done, total, what)` is called before each step. Paths are relative to the current
-        directory. Needs the extra `labelled`, and `plot` where the scene has pictures.
+        directory. A file that desaxe wrote is replaced; another one, or one that was changed since, only
+        with `overwrite`. Needs the extra `labelled`, and `plot` where the scene has pictures.
+
+        Raises FileExistsError, ValueError or OSError, before anything is computed, for a place that
+        cannot be written; NotWrittenError, which has the result, where writing failed after all.
         """
+        steps = steps_of(self.content, progress)
         with in_force(self.content.definitions):
-            found = run(self.content, progress, self.shown_in)
-        return SceneResult(self, found.dataset, found.peaks, found.checks, found.feasibility, found.files)
+            found = compute(self.content, steps, overwrite)
+            found = write_files(self.content, found, steps, self.shown_in, overwrite)
+        result = SceneResult(
+            self, found.dataset, found.peaks, found.checks, found.feasibility, found.files, found.failures
+        )
+        if found.failures:
+            raise NotWrittenError(result)
+        return result
 
 
 def _arrived(content: Content, name: str, shown_in: UnitSystem = SI) -> Scene:

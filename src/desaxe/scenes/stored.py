@@ -1,12 +1,16 @@
 """A scene as a sweep: its grid and peaks in a Zarr store."""
 
+import os
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ..sweeps.meter import Watch
 from ..sweeps.peaks import PeakRequest
+from ..sweeps.place import require_place
+from ..sweeps.prepared import Sweep, prepared
 from ..sweeps.sweep import Tell, run_sweep
 from .content import Content
 from .schema import SceneError
@@ -42,6 +46,22 @@ def arguments_of(content: Content) -> Arguments:
     reduce = None if content.reduction is None else {content.reduction.axis: content.reduction.kinds}
     peaks = tuple(PeakRequest(peak.quantity, peak.kind, peak.theta) for peak in content.peaks)
     return Arguments(list(content.outputs), arrays, reduce, peaks)
+
+
+def prepared_content(content: Content) -> Sweep:
+    """The sweep of a scene into its store; nothing is computed or written."""
+    wanted = arguments_of(content)
+    chunks = "auto" if content.chunks is None else content.chunks
+    return prepared(
+        wanted.names, wanted.inputs, chunks, content.memory, content.branch, content.accuracy,
+        content.threads, wanted.reduce, wanted.peaks,
+    )  # fmt: skip
+
+
+def require_store(content: Content, overwrite: bool) -> None:
+    """Fail at the start where the sweep of a scene may not go to its store, or has no room."""
+    assert content.store is not None
+    require_place(prepared_content(content), Path(os.path.abspath(content.store)), overwrite, content.memory)
 
 
 def sweep_content(

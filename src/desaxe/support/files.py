@@ -68,6 +68,18 @@ def check_target(target: Path) -> None:
         raise PermissionError(13, "Permission denied", str(target))
 
 
+def require_writable(path: Path) -> None:
+    """OSError where nothing can be made at a path, whose folders need not exist yet."""
+    with suppress(FileNotFoundError):
+        path.lstat()
+    folder = next(one for one in path.absolute().parents if os.path.lexists(one))
+    try:
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise type(error)(error.errno, error.strerror, str(folder)) from None
+
+
 def require_space(folder: Path, size: int) -> None:
     """Raise OSError if a file of `size` bytes does not fit on the disk: some libraries would crash."""
     reserve = getattr(os, "posix_fallocate", None)

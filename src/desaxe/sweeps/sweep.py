@@ -1,8 +1,6 @@
 """A grid of any size, written chunk by chunk to a Zarr store in bounded memory; resumable."""
 
-import json
 import os
-import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing
 from importlib import import_module
@@ -12,130 +10,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..evaluation.blocks import Part, grid_parts, margin_parts, reduced_parts
 from ..evaluation.chunks import blocks_of, slices_of
-from ..evaluation.labels import attributes as attributes_of
-from ..evaluation.labels import labelled
-from ..evaluation.lazy import lazy_grid
-from ..evaluation.outer import Outer, outer_of
-from ..evaluation.reduce import Reduction, reduction_of
-from ..loads.resolve import without_loads
-from ..mechanism.names import LENGTHS
-from ..runtime.accuracy import accuracy_of
 from ..runtime.threads import available
 from ..support.extras import needed
 from .best import Search, best_designs, search_for
 from .cluster import Crew, cluster, run_all
 from .cluster import threads as thread_crew
 from .estimate import seconds_of, told
-from .layout import Layout, bytes_of, layout_of, size_text
+from .layout import Layout, bytes_of
 from .meter import Meter, Watch
-from .peaks import PeakPart, peak_parts, peak_requests
-from .request import IDENTITY, differences, identity
+from .place import free_at, placed, require_room
+from .prepared import Sweep, prepared
 from .tasks import Output, Task, compute, is_absent, run, values_for
 
 if TYPE_CHECKING:
     import xarray as xr
 
-Array = NDArray[Any]
 Tell = Callable[[str], None]
-
-
-class Sweep(NamedTuple):
-    """A sweep that is ready to run.
-
-    outer       the checked names and inputs
-    layout      its dimensions and chunks
-    parts       what is computed in each chunk
-    template    its Dataset with lazy variables, for names, dimensions and attributes
-    identity    the attributes that tell whether a store is of the same sweep
-    """
-
-    outer: Outer
-    layout: Layout
-    parts: tuple[Part | PeakPart, ...]
-    template: "xr.Dataset"
-    identity: dict[str, str]
-
-    @property
-    def points(self) -> int:
-        """Points of the grid, those behind a reduced one included."""
-        return prod(self.outer.axes[name].size for name in self.outer.dimensions)
-
-    @property
-    def bytes(self) -> int:
-        """Bytes of the variables before they are compressed."""
-        return sum(v.dtype.itemsize * v.size for v in self.template.data_vars.values())
-
-
-def prepared(
-    names: str | Sequence[str],
-    inputs: Mapping[str, Any],
-    chunks: Any,
-    memory: int | None,
-    branch: int,
-    accuracy: Any,
-    threads: int | None,
-    reduce: Any,
-    peaks: Any,
-) -> Sweep:
-    """The sweep of these arguments, checked; nothing is computed or written."""
-    outer = outer_of(names, inputs, branch, threads, always=reduce is None)
-    without_loads("sweep", outer.loads)
-    for name in outer.dimensions:
-        if not outer.axes[name].size:
-            raise ValueError(f"{name}: a sweep needs at least one value of it")
-    kept = accuracy_of(accuracy)
-    reduction = None if reduce is None else reduction_of(reduce, outer.dimensions, outer.names)
-    requests = peak_requests(peaks, outer)
-    refined = peak_parts(requests, outer, branch, accuracy)
-    if not (outer.names or refined):
-        raise ValueError("sweep: nothing is asked for, give names or peaks=")
-    template = _template(outer, branch, accuracy, reduction, refined)
-    sizes = {name: template.sizes[name] for name in outer.dimensions if name in template.dims}
-    whole = [v for v in template.data_vars.values() if len(v.dims) == len(sizes)]
-    stored = sum(variable.dtype.itemsize for variable in whole)
-    length = None if reduction is None else outer.axes[reduction.axis].size
-    layout = layout_of(chunks, sizes, stored, length, memory)
-    if reduction is not None:
-        parts = reduced_parts(outer, branch, accuracy, reduction, layout.chunk)
-    elif outer.names:
-        parts = grid_parts(outer, branch, accuracy, layout.chunk)
-    else:
-        parts = margin_parts(outer, branch, accuracy, layout.chunk)
-    own = [part.key.form.own for part in parts] + [part.block.search.form.own for part in refined]
-    told = identity(outer, branch, kept, reduction, requests, [repr(one) for one in own if one])
-    return Sweep(outer, layout, (*parts, *refined), template, told)
-
-
-def _template(
-    outer: Outer, branch: int, accuracy: Any, reduction: Reduction | None, peaks: Sequence[PeakPart]
-) -> "xr.Dataset":
-    """The Dataset of a sweep with lazy variables: its names, dimensions and attributes."""
-    state = outer.given.get("omega") is not None
-    if reduction is not None:
-        template = lazy_grid(outer, -1, branch, accuracy, 1, {reduction.axis: reduction.kinds})
-    elif outer.names:
-        template = lazy_grid(outer, -1, branch, accuracy, 1)
-    else:
-        kept = {name: array for name, array in outer.coordinates.items() if name != "theta"}
-        template = labelled({}, kept, branch, state, accuracy)
-    if "margin" not in template and all(name in outer.axes for name in LENGTHS):
-        dims = [name for name in outer.dimensions if name in LENGTHS]
-        template = template.assign(margin=_lazy(template, dims, np.float64, attributes_of("margin", state)))
-    for part in peaks:
-        told = part.attributes(state)
-        lazy = {n: _lazy(template, part.dims, dtype, told[n]) for n, dtype in part.outputs.items()}
-        template = template.assign(lazy)
-    return template
-
-
-def _lazy(template: "xr.Dataset", dims: Sequence[str], dtype: Any, told: Mapping[str, Any]) -> Any:
-    import dask.array as da
-
-    return dims, da.empty([template.sizes[name] for name in dims], dtype=dtype, chunks=-1), dict(told)
 
 
 class Way(NamedTuple):
@@ -153,13 +45,13 @@ def stored_sweep(sweep: Sweep, store: str | PathLike[str], overwrite: bool, way:
     from .store import COMPLETE, held, open_store, remove_strays, set_state, sync_folders
 
     root = Path(os.path.abspath(store))
-    sweep = _placed(sweep, root, overwrite, way.memory)
+    sweep = placed(sweep, root, overwrite, way.memory)
     with held(root):
         remove_strays(root)
         absent = _absent_bytes(sweep, root)
         if absent:
             sweep.layout.require_memory(way.memory)
-            _require_room(sweep, root, absent)
+            require_room(sweep, root, absent)
         meter = Meter(sweep.points, way.watch)
         with closing(meter), _crew(sweep.layout, way) as crew:
             if absent and way.tell is not None:
@@ -174,7 +66,7 @@ def stored_sweep(sweep: Sweep, store: str | PathLike[str], overwrite: bool, way:
 def _told(sweep: Sweep, root: Path, cores: int) -> str:
     seconds = seconds_of(sweep.parts, sweep.outer.axes, sweep.bytes) / cores
     variables = len(sweep.template.data_vars)
-    return told(sweep.points, variables, sweep.bytes, sweep.layout, seconds, _free(root))
+    return told(sweep.points, variables, sweep.bytes, sweep.layout, seconds, free_at(root))
 
 
 def _crew(layout: Layout, way: Way) -> AbstractContextManager[Crew]:
@@ -187,55 +79,6 @@ def _crew(layout: Layout, way: Way) -> AbstractContextManager[Crew]:
 def _inner(crew: Crew, way: Way) -> int:
     """Threads of each kernel, so that all cores work where few chunks fit into memory."""
     return 1 if way.client is not None else max(1, (way.threads or available()) // crew.size)
-
-
-def _placed(sweep: Sweep, root: Path, overwrite: bool, memory: int | None) -> Sweep:
-    """Create the store, or check that the existing one is of this sweep; return the sweep with its chunks."""
-    from .store import INCOMPLETE, STATE, attributes, create, held
-
-    there = attributes(root)
-    if root.exists() and there is None and (not root.is_dir() or any(root.iterdir())):
-        raise FileExistsError(f"{root}: this is no Zarr store; it is left as it is")
-    if there is None or overwrite:
-        sweep.layout.require_memory(memory)
-        _require_room(sweep, root, sweep.bytes)
-        chunks = json.dumps(sweep.layout.chunk)
-        told = {**sweep.template.attrs, **sweep.identity, "chunks": chunks, STATE: INCOMPLETE}
-        template = sweep.template.assign_attrs(told)
-        if there is None:
-            if root.is_dir():
-                root.rmdir()
-            create(root, template, sweep.layout.chunk, False)
-        else:
-            with held(root):
-                create(root, template, sweep.layout.chunk, True)
-        return sweep
-    if not set(IDENTITY) <= set(there):
-        raise FileExistsError(f"{root}: a store that no sweep wrote; overwrite=True replaces it")
-    found = differences(there, sweep.identity)
-    if found:
-        raise FileExistsError(
-            f"{root}: a store of another sweep: {'; '.join(found)}. overwrite=True replaces it"
-        )
-    chunk = {name: int(length) for name, length in json.loads(there["chunks"]).items()}
-    return sweep._replace(layout=sweep.layout._replace(chunk=chunk))
-
-
-def _require_room(sweep: Sweep, root: Path, needed_bytes: int) -> None:
-    """OSError if the disk has too little free space for the store."""
-    free = _free(root)
-    if needed_bytes > free:
-        raise OSError(
-            28,
-            f"the store takes up to {size_text(needed_bytes)} ({sweep.points:,} points, "
-            f"{len(sweep.template.data_vars)} variables), {size_text(free)} are free",
-            str(root),
-        )
-
-
-def _free(root: Path) -> int:
-    """Bytes that are free where a store is, or will be."""
-    return shutil.disk_usage(next(path for path in root.parents if path.exists())).free
 
 
 def _outputs(sweep: Sweep, place: tuple[int, ...]) -> tuple[tuple[Output, ...], dict[str, slice]]:

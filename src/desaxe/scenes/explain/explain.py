@@ -21,12 +21,11 @@ from ...runtime.modules import path_of
 from ...runtime.specialise import specialise
 from ...runtime.threads import LEAST_BLOCK, available
 from ...runtime.tiers import BREAK_EVEN, COMPILED, tier_ahead
-from ...sweeps.sweep import prepared
 from ..content import Content
 from ..kernel import GridKernel, grid_kernel
 from ..scene import Scene
 from ..scene import scene as scene_of
-from ..stored import arguments_of
+from ..stored import prepared_content
 from ..values import Value
 from . import estimate
 from .loops import Loop, loops_of
@@ -106,12 +105,7 @@ def _sweep(content: Content) -> dict[str, Any] | None:
     """The chunks of a scene that goes to a store, what they take in memory, and the disk for all of them."""
     if content.store is None:
         return None
-    wanted = arguments_of(content)
-    chunks = "auto" if content.chunks is None else content.chunks
-    made = prepared(
-        wanted.names, wanted.inputs, chunks, content.memory, content.branch, content.accuracy,
-        content.threads, wanted.reduce, wanted.peaks,
-    )  # fmt: skip
+    made = prepared_content(content)
     layout = made.layout
     at_once = min(content.threads or available(), layout.at_once(content.memory), layout.chunks)
     return {

@@ -12,7 +12,7 @@ from ...mechanism.names import LOADS
 from ...mechanism.unit_system import UnitSystem
 from ...runtime.request import as_number, check_common, check_inputs
 from .content import Content, Value, content
-from .write import write_page
+from .write import require_page, write_page
 
 TITLE = "Offset slider-crank"
 START = ("a_C", "a_C_wrt_ec")  # what the two charts show first where a scene names nothing
@@ -26,6 +26,7 @@ def explore(
     branch: int = 1,
     title: str = TITLE,
     units: str | Mapping[str, str] | UnitSystem | None = None,
+    overwrite: bool = False,
     **inputs: Any,
 ) -> Path:
     """Write an explorer page: one HTML file that works offline in any browser.
@@ -44,6 +45,7 @@ def explore(
     names   the quantities that the page knows, each with its first sensitivities; without it those of
             the motion, drive torque and guide force where masses or loads are given, and those that the
             scene names
+    overwrite  replace a file that is no such page; without it FileExistsError
 
     Returns the path. On the page lengths, speed and acceleration can be changed; it draws the mechanism
     to scale and quantities over the crank angle, with the numbers of `evaluate`: from the same Program,
@@ -53,9 +55,11 @@ def explore(
         dx.explore("examples/compactor.toml", "explorer.html")
         dx.explore(ec=["0 mm", "150 mm"], AB="125 mm", BC="350 mm", omega0="1500 rpm")
     """
+    place = Path(path)
+    require_page(place, overwrite)
     own = UnitSystem.read(units)
     found = content_of(source, names, branch, title, inputs)
-    return write_page(found._replace(units=own) if own else found, Path(path))
+    return write_page(found._replace(units=own) if own else found, place, overwrite)
 
 
 def content_of(

@@ -12,20 +12,29 @@ from ...mechanism.inputs import INPUTS
 from ...mechanism.names import parts
 from ...mechanism.status import PointStatus
 from ...mechanism.unit_system import DIMENSIONS, UnitSystem
+from ...runtime.written import replacing_ours, require_ours
 from ...support.extras import needed
-from ...support.files import check_target, write_text
+from ...support.files import check_target, require_writable
 from .content import Content, left_out_text
 
 # In the order in which they build on each other.
 SCRIPTS = ("numbers", "designs", "words", "mechanism", "charts", "controls", "files", "main")
 _COMMENT = re.compile(r"^\s*//.*\n", re.MULTILINE)  # of a line of its own: the page has none to read
+MARK = b'content="desaxe explore"'  # in the head of every page
 _PLACE = re.compile(r"@@(\w+)@@")
 
 
-def write_page(content: Content, path: Path) -> Path:
-    """Write the page; its path."""
+def require_page(path: Path, overwrite: bool) -> None:
+    """OSError where no page can be written, or where something else than a page is."""
     check_target(path)
-    write_text(path, page(content))
+    require_ours(path, overwrite, MARK)
+    require_writable(path)
+
+
+def write_page(content: Content, path: Path, overwrite: bool = False) -> Path:
+    """Write the page; its path."""
+    with replacing_ours(path, overwrite, MARK) as staged:
+        staged.write_text(page(content), encoding="utf-8")
     return path
 
 

@@ -9,13 +9,13 @@ from .compile import compile, texts_of
 from .portable import left_out
 
 
-def run_compile(source: str, place: str, to: str, libm: bool, check: bool) -> int:
+def run_compile(source: str, place: str, to: str, libm: bool, check: bool, overwrite: bool) -> int:
     """Write the files, or with `check` compare them; return the exit status."""
     scene = scene_of(source)
     texts = texts_of(scene, Path(place), to, libm)
     if check:
         return _compare(texts, source, place)
-    compile(scene, place, to, libm=libm)
+    compile(scene, place, to, libm=libm, overwrite=overwrite)
     for file, text in texts.items():
         print(f"{file}: {len(text.splitlines())} lines")
     lost = left_out(scene.content, reduction=to != "numba")

@@ -1,0 +1,30 @@
+"""The pictures of a scene."""
+
+from pathlib import Path
+from typing import Any
+
+from ..evaluation.grid import grid
+from ..evaluation.in_units import in_units
+from ..mechanism.unit_system import UnitSystem
+from ..runtime.written import replacing_ours
+from .blocks import arrays_of, grid_options
+from .content import Content, Picture
+
+
+def draw(picture: Picture, content: Content, shown_in: UnitSystem, overwrite: bool) -> Path:
+    """Draw the curves of a picture, in the units shown, into its file; return its path."""
+    from ..plot import curves, save
+
+    # With the names of the outputs the kernel of the grid serves here too, where all inputs are the same.
+    shared = picture.quantity in content.outputs and set(picture.inputs) == set(content.inputs)
+    names = content.outputs if shared else (picture.quantity,)
+    values: Any = grid(names, **grid_options(content), **arrays_of(picture.inputs))
+    dataset = in_units(values, shown_in)
+    axes: Any = curves(dataset, picture.quantity, over=picture.over, family=picture.family)[0].axes
+    title = picture.title or content.title
+    if title:
+        axes.set_title(title, loc="left")
+    path = Path(picture.file)
+    with replacing_ours(path, overwrite) as staged:
+        save(axes.figure, staged)
+    return path

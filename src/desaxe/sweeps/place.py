@@ -1,0 +1,96 @@
+"""The place of a store: whether a sweep may write there, and whether the disk has room for it."""
+
+import json
+import os
+import shutil
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from ..support.files import require_writable
+from .layout import size_text
+from .prepared import Sweep
+from .request import IDENTITY, differences
+
+CHUNKS = "chunks"  # the attribute that tells the layout
+
+
+def kept_at(root: Path, told: Mapping[str, str], overwrite: bool) -> dict[str, Any] | None:
+    """The attributes of the store to go on with; None where one is to be made, perhaps in another's place.
+
+    told  what identifies the sweep, and its chunks: a store that differs in these alone is gone on with,
+          unless it may be overwritten
+
+    FileExistsError for what may not be replaced, other OSErrors where nothing can be written.
+    """
+    from .store import attributes
+
+    there = attributes(root)
+    if there is None:
+        if os.path.lexists(root) and (not root.is_dir() or any(root.iterdir())):
+            raise FileExistsError(f"{root}: this is no Zarr store; it is left as it is")
+        require_writable(root)
+        return None
+    ours = set(IDENTITY) <= set(there)
+    found = differences(there, told) if ours else ["no sweep wrote it"]
+    if found and not overwrite:
+        raise FileExistsError(
+            f"{root}: a store of another sweep: {'; '.join(found)}. overwrite=True replaces it"
+        )
+    return None if found or (overwrite and there.get(CHUNKS) != told[CHUNKS]) else there
+
+
+def require_place(sweep: Sweep, root: Path, overwrite: bool, memory: int | None) -> Sweep | None:
+    """The sweep with the chunks of the store to go on with; None where a store is to be made."""
+    there = kept_at(root, {**sweep.identity, CHUNKS: json.dumps(sweep.layout.chunk)}, overwrite)
+    if there is None:
+        sweep.layout.require_memory(memory)
+        require_room(sweep, root, sweep.bytes)
+        return None
+    chunk = {name: int(length) for name, length in json.loads(there[CHUNKS]).items()}
+    return sweep._replace(layout=sweep.layout._replace(chunk=chunk))
+
+
+def placed(sweep: Sweep, root: Path, overwrite: bool, memory: int | None) -> Sweep:
+    """Create the store, or check that the existing one is of this sweep; return the sweep with its chunks."""
+    from .store import INCOMPLETE, STATE, create
+
+    kept = require_place(sweep, root, overwrite, memory)
+    if kept is not None:
+        return kept
+    told = {**sweep.template.attrs, **sweep.identity, CHUNKS: json.dumps(sweep.layout.chunk)}
+    with free_for(root) as replace:
+        create(root, sweep.template.assign_attrs({**told, STATE: INCOMPLETE}), sweep.layout.chunk, replace)
+    return sweep
+
+
+@contextmanager
+def free_for(root: Path) -> Iterator[bool]:
+    """Make room for a new store: an empty folder leaves, another store is held; yields if there is one."""
+    from .store import attributes, held
+
+    if attributes(root) is None:
+        if root.is_dir():
+            root.rmdir()
+        yield False
+        return
+    with held(root):
+        yield True
+
+
+def require_room(sweep: Sweep, root: Path, needed_bytes: int) -> None:
+    """OSError if the disk has too little free space for the store."""
+    free = free_at(root)
+    if needed_bytes > free:
+        raise OSError(
+            28,
+            f"the store takes up to {size_text(needed_bytes)} ({sweep.points:,} points, "
+            f"{len(sweep.template.data_vars)} variables), {size_text(free)} are free",
+            str(root),
+        )
+
+
+def free_at(root: Path) -> int:
+    """Bytes that are free where a store is, or will be."""
+    return shutil.disk_usage(next(path for path in root.parents if path.exists())).free

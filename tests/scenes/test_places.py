@@ -1,0 +1,227 @@
+"""What a run writes: looked at first, never over another's file, never at the cost of the report."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+import desaxe as dx
+from desaxe.cli.command import main
+from desaxe.runtime import written
+from desaxe.scenes.command import run_scene
+from desaxe.scenes.scene import NotWrittenError
+from tests.example_scenes import SMALL
+from tests.ways import take_way
+
+TOML = """
+outputs = ["V_C"]
+[mechanism]
+AB = 0.125
+BC = 0.35
+ec = [0.0, 0.05]
+[motion]
+theta = { start = 0, stop = "360 deg", num = 5 }
+omega0 = 157.08
+[[peak]]
+quantity = "a_C"
+[results]
+data = "%s"
+"""
+PICTURE = '[[picture]]\nfile = "%s"\nquantity = "V_C"\nfamily = { ec = [0, 0.05] }\n'
+FOREIGN = "years of work"
+
+
+@pytest.fixture(autouse=True)
+def _here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    take_way(monkeypatch, "plain")
+
+
+def scene_file(data="out/a.csv", picture=None):
+    """A scene on disk."""
+    text = TOML % data + (PICTURE % picture if picture else "")
+    Path("press.toml").write_text(text, encoding="utf-8")
+    return "press.toml"
+
+
+@pytest.fixture
+def nothing_is_computed(monkeypatch):
+    def fail(*_):
+        raise AssertionError("something was computed")
+
+    monkeypatch.setattr("desaxe.scenes.run.peaks_of", fail)
+    monkeypatch.setattr("desaxe.scenes.run.values_of_grid", fail)
+
+
+@pytest.mark.parametrize("data", ["a.nc", "a.zarr", "a.csv", "a.npz"])
+def test_its_own_file_is_replaced(data, capsys):
+    assert main(["run", scene_file(data)]) == 0
+    assert main(["run", scene_file(data)]) == 0
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize("foreign", ["a.csv", "a_peak_absmax_a_C.csv", "a.png"])
+def test_another_file_stays_and_nothing_is_computed(foreign, nothing_is_computed, capsys):
+    Path(foreign).write_text(FOREIGN)
+    assert main(["run", scene_file("a.csv", "a.png")]) == 2
+    out, err = capsys.readouterr()
+    assert f"{foreign}: this is not, or no longer, what desaxe wrote" in err
+    assert out == ""
+    assert sorted(os.listdir()) == sorted([foreign, "press.toml"])
+    assert Path(foreign).read_text() == FOREIGN
+
+
+def test_overwrite_replaces_it(tmp_path):
+    Path("a.csv").write_text(FOREIGN)
+    assert main(["run", scene_file("a.csv"), "--overwrite"]) == 0
+    assert Path("a.csv").read_text().startswith("ec [m],theta [rad],V_C [m/s]")
+    assert main(["run", scene_file("a.csv")]) == 0
+
+
+def test_a_file_that_was_edited_is_no_longer_ours(capsys):
+    assert main(["run", scene_file("a.csv")]) == 0
+    with open("a.csv", "a") as file:
+        file.write("a note\n")
+    assert main(["run", scene_file("a.csv")]) == 2
+    assert Path("a.csv").read_text().endswith("a note\n")
+
+
+def test_a_copy_is_known_too_and_an_empty_file_is_free():
+    assert main(["run", scene_file("a.csv")]) == 0
+    os.rename("a.csv", "b.csv")
+    os.rename("a_peak_absmax_a_C.csv", "b_peak_absmax_a_C.csv")
+    Path("c.csv").touch()
+    assert main(["run", scene_file("b.csv")]) == 0
+    assert main(["run", scene_file("c.csv")]) == 0
+
+
+def test_two_results_in_one_place_are_refused(nothing_is_computed, capsys):
+    text = TOML % "a.csv" + PICTURE % "a.png" + PICTURE % "./a.png"
+    Path("press.toml").write_text(text)
+    assert main(["run", "press.toml"]) == 2
+    assert "picture #2.file = 'a.png': picture #1.file is written there" in capsys.readouterr().err
+
+
+def test_a_folder_a_file_for_a_folder_or_a_long_name_is_refused(nothing_is_computed, capsys):
+    Path("a.csv").mkdir()
+    Path("taken").touch()
+    for data, words in [
+        ("a.csv", "this is a folder"),
+        ("taken/a.csv", "Not a directory"),
+        (f"{'x' * 300}.csv", "File name too long"),
+    ]:
+        assert main(["run", scene_file(data)]) == 2
+        assert words in capsys.readouterr().err
+
+
+def test_a_folder_that_cannot_be_written_is_refused(nothing_is_computed, capsys, monkeypatch):
+    def closed(*_, **options):
+        raise PermissionError(13, "Permission denied", "inner")
+
+    monkeypatch.setattr("tempfile.TemporaryFile", closed)  # root may write everywhere
+    assert main(["run", scene_file("out/a.csv")]) == 2
+    assert f"{Path.cwd()}: Permission denied" in capsys.readouterr().err
+
+
+def test_what_is_larger_than_the_disk_is_refused(nothing_is_computed, capsys, monkeypatch):
+    class Usage:
+        free = 30
+
+    monkeypatch.setattr("shutil.disk_usage", lambda _: Usage)
+    assert main(["run", scene_file("a.csv")]) == 2
+    assert "it takes 40 bytes or more, 30 bytes are free" in capsys.readouterr().err
+
+
+def test_the_report_is_not_lost_and_other_files_are_written(capsys, monkeypatch):
+    """The disk is full for one file: the report is there, and the picture."""
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("desaxe.scenes.files._table", full)
+    assert main(["run", scene_file("a.csv", "a.png")]) == 2
+    out, err = capsys.readouterr()
+    assert "Largest magnitude of a_C" in out
+    assert "Written\n  a.png" in out
+    assert err == "desaxe: error: a.csv: not written: [Errno 28] No space left on device\n"
+    assert sorted(os.listdir()) == ["a.png", "press.toml"]
+    with pytest.raises(NotWrittenError, match=r"a\.csv: not written") as raised:
+        dx.scene("press.toml").run()
+    assert raised.value.result.dataset is not None
+    assert raised.value.result.files == (Path("a.png"),)
+    assert "Not written\n  a.csv" in str(raised.value.result)
+
+
+def test_a_store_that_fails_costs_no_report(capsys, monkeypatch):
+    def full(*_, **__):
+        raise OSError(28, "No space left on device", "a.zarr/V_C/c/0/0")
+
+    monkeypatch.setattr("desaxe.scenes.run.sweep_content", full)
+    Path("press.toml").write_text((TOML % "x").replace('data = "x"', 'store = "a.zarr"'))
+    assert main(["run", "press.toml"]) == 2
+    out, err = capsys.readouterr()
+    assert "Largest magnitude of a_C" in out
+    assert "a.zarr: not written: No space left on device" in err
+
+
+def test_a_folder_that_vanishes_is_made_again(monkeypatch):
+    Path("out").mkdir()
+    from desaxe.scenes import run
+
+    values = run.values_of_grid
+
+    def vanish(*arguments):
+        Path("out").rmdir()
+        return values(*arguments)
+
+    monkeypatch.setattr("desaxe.scenes.run.values_of_grid", vanish)
+    assert main(["run", scene_file("out/a.csv")]) == 0
+    assert Path("out/a.csv").is_file()
+
+
+def test_a_file_that_appears_meanwhile_stays(capsys, monkeypatch):
+    from desaxe.scenes import run
+
+    values = run.values_of_grid
+
+    def appear(*arguments):
+        Path("a.csv").write_text(FOREIGN)
+        return values(*arguments)
+
+    monkeypatch.setattr("desaxe.scenes.run.values_of_grid", appear)
+    assert main(["run", scene_file("a.csv")]) == 2
+    assert "Largest magnitude" in capsys.readouterr().out
+    assert Path("a.csv").read_text() == FOREIGN
+
+
+def test_files_are_written_though_nobody_reads_the_report(monkeypatch):
+    def closed(*_, **options):
+        raise BrokenPipeError(32, "Broken pipe")
+
+    scene_file("a.csv")
+    monkeypatch.setattr("desaxe.scenes.command.print", closed, raising=False)
+    with pytest.raises(BrokenPipeError):
+        run_scene("press.toml", overwrite=False)
+    assert Path("a.csv").is_file()
+
+
+def test_the_same_rule_for_pages_and_sources(tmp_path, capsys):
+    scene = dx.scene({**SMALL, "peak": []})
+    for make, name in [(dx.compile, "kernels.py"), (dx.explore, "page.html")]:
+        Path(name).write_text(FOREIGN)
+        with pytest.raises(FileExistsError, match="no longer, what desaxe wrote"):
+            make(scene, name)
+        make(scene, name, overwrite=True)
+        Path(name).write_text(Path(name).read_text() + "\n")  # a checkout may change ends of lines
+        make(scene, name)
+
+
+def test_what_is_remembered_is_bounded(monkeypatch, tmp_path):
+    monkeypatch.setattr(written, "MOST", 10)
+    folder = tmp_path / written.FOLDER
+    monkeypatch.setattr("desaxe.runtime.cache.folder", lambda: type("", (), {"path": tmp_path}))
+    for number in range(15):
+        (tmp_path / "file").write_text(str(number))
+        written.remember(tmp_path / "file")
+    assert len(os.listdir(folder)) <= 10
+    assert written.is_ours(tmp_path / "file")
