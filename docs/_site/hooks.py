@@ -1,18 +1,27 @@
-"""What the pages say about the package comes from the package, when the site is built.
+"""Hooks of MkDocs: generated parts of pages, and equations.
 
-A line `<!-- desaxe: WHAT ARGUMENTS -->` is replaced by what the function of that name gives: one of
-`formulas` (equations, lines that are computed) or `reference` (functions, scene files, quantities).
+A line `<!-- desaxe: WRITER ARGUMENTS -->` is replaced by the text that the function of that name returns: one
+of `formulas` (equations, lines of the Program) or `reference` (functions, scene files, quantities). Inline
+LaTeX in GitHub's notation, a code span between dollar signs, becomes MathML, which needs no script.
 """
 
 import re
+from html import unescape
 
 import formulas
 import reference
+from latex2mathml.converter import convert
 
 MARK = re.compile(r"^<!-- desaxe: (\w+) ?(.*?) -->$", re.M)
+MATHS = re.compile(r"\$<code>(.+?)</code>\$", re.S)
 WRITERS = {writer.__name__: writer for writer in (*formulas.WRITERS, *reference.WRITERS)}
 
 
 def on_page_markdown(markdown, **_):
-    """The event of MkDocs."""
+    """Replace the marks of a page before it is converted to HTML."""
     return MARK.sub(lambda found: WRITERS[found[1]](*found[2].split()), markdown)
+
+
+def on_page_content(html, **_):
+    """Replace the inline LaTeX of a converted page by MathML."""
+    return MATHS.sub(lambda found: f'<span class="math">{convert(unescape(found[1]))}</span>', html)

@@ -61,7 +61,7 @@ def test_every_ledger_names_its_paper():
 
 
 def test_plain_text_is_escaped():
-    assert _errata._plain("a*b_c <d> [e] _f_") == r"a\*b_c \<d\> \[e\] \_f\_"
+    assert _errata._plain("a*b_c <d> [e] _f_ ~g") == r"a\*b_c &lt;d\> \[e\] \_f\_ &#126;g"
 
 
 def test_first_page_has_every_numbered_equation_once():

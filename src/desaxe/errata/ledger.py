@@ -286,4 +286,5 @@ def _code(text: str) -> str:
 
 def _plain(text: str) -> str:
     """Escape Markdown's special characters in a text; an underscore within a word needs none."""
-    return re.sub(r"([\\`*<>\[\]~#]|(?<!\w)_|_(?!\w))", r"\\\1", text)
+    escaped = re.sub(r"([\\`*>\[\]#]|(?<!\w)_|_(?!\w))", r"\\\1", text)
+    return escaped.replace("<", "&lt;").replace("~", "&#126;")
