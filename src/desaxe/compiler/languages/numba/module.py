@@ -37,6 +37,7 @@ def apart(typingctx):
         for argument in context.call_conv.get_arguments(builder.function):
             if argument.type.is_pointer:
                 argument.add_attribute("noalias")
+        set.add(builder.function.attributes, '"prefer-vector-width"="512"')
         return context.get_dummy_value()
 
     return types.none(), code
