@@ -79,7 +79,11 @@ def test_an_element_has_the_same_value_among_any_others(where, monkeypatch):
     whole = dx.evaluate(names, **columns, **machine)
     wide_margins = 0.125 + np.abs(columns["ec"]) < SHARE * 0.35
     assert 0.3 < wide_margins.mean() < 0.9
-    for chosen in (wide_margins, ~wide_margins, slice(0, 1), slice(700, 1_100), slice(None, None, -1)):
+    # Blocks of 512 of which none, some, most and all points are close, each after one of another kind.
+    some, close = np.flatnonzero(wide_margins), np.resize(np.flatnonzero(~wide_margins), 1_600)
+    orders = np.concatenate([close, some[:100], close[:1_200], some, close[:700], some, close])
+    parts = (wide_margins, ~wide_margins, slice(0, 1), slice(700, 1_100), slice(None, None, -1), orders)
+    for chosen in parts:
         part = dx.evaluate(names, **{n: column[chosen] for n, column in columns.items()}, **machine)
         for name in names:
             assert np.array_equal(part[name], whole[name][chosen], equal_nan=True)

@@ -93,7 +93,7 @@ def _exceed(angles: Any, limit: float) -> bool:
         return abs(angles) > limit
     import numpy as np
 
-    # Where their squares add up to less, none is; this sum is the quickest test, and no work for other threads.
+    # Where their squares add up to less, none is. No test is quicker, and this one starts no threads.
     if np.einsum("i,i->", angles, angles) < 0.5 * limit * limit:
         return False
     sizes = np.abs(angles)
@@ -153,7 +153,8 @@ def kernel_of(key: KernelKey) -> Kernel:
     if key.form.wide_margins:
         return nest(_lowered_plain(program, varying, key), axes, key.axes)
     stable = counting(key) if has_near_limit(key) else program
-    stable = guarded_for_loops(stable, varying, Limits(LEAST), _trigonometry(key))
+    checked = [name for name in varying if name in LENGTHS or _is_seen(stable, name)]
+    stable = guarded_for_loops(stable, checked, Limits(LEAST), _trigonometry(key))
     plain = plain_of(key)
     if plain is None:
         return nest(stable, axes, key.axes)

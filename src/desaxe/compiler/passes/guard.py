@@ -45,10 +45,10 @@ def guard_inputs(
 def _check(name: str, least: float | None, largest: float | None) -> list[Line]:
     """The lines `<name>_is_good` and `<name>_good`, which is NaN for an invalid value."""
     op, bound = ("lt", inf) if largest is None else ("le", largest)
-    lines = [
-        Line(f"{name}_size", "abs", (name,)),
-        Line(f"{name}_is_finite", op, (f"{name}_size", bound), "bool"),
-    ]
+    size, lines = name, []
+    if least is None or least < 0.0:  # else the least value is a bound below already
+        size, lines = f"{name}_size", [Line(f"{name}_size", "abs", (name,))]
+    lines.append(Line(f"{name}_is_finite", op, (size, bound), "bool"))
     good = f"{name}_is_finite"
     if least is not None:
         lines.append(Line(f"{name}_is_enough", "le", (least, name), "bool"))

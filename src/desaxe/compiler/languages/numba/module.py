@@ -27,16 +27,18 @@ except RuntimeError:  # numba found no folder that it can write to
     kernel = njit(signature, error_model="numpy", nogil=True)(loops)
 """
 TO_COMPILE = "function = loops\n"  # the tail of a text that the runtime compiles
-# Without it, LLVM tests before a loop whether any two arrays overlap, and lets the loop run one by one where
-# that takes too many tests: from some twelve outputs on.
+# Without the promise, LLVM tests before a loop whether any two arrays overlap, and lets the loop run one by
+# one where that takes too many tests: from some twelve outputs on. Without the attribute it takes vectors of
+# 256 bits where the processor has some of 512, which take half as many instructions.
 _APART = """@intrinsic
 def apart(typingctx):
-    \"\"\"The promise that what is written to shares no memory with anything else.\"\"\"
+    \"\"\"The promise that what is written to shares no memory with anything else; the widest vectors.\"\"\"
 
     def code(context, builder, signature, args):
         for argument in context.call_conv.get_arguments(builder.function):
             if argument.type.is_pointer:
                 argument.add_attribute("noalias")
+        # past llvmlite's list of attributes, which has none with a value
         set.add(builder.function.attributes, '"prefer-vector-width"="512"')
         return context.get_dummy_value()
 

@@ -3,12 +3,15 @@
 Where the test belongs to an outer loop, it picks the loop. Where it changes from point to point, a block of
 points runs through the plain loop, which flags those that fail the test; they are gathered, run
 through the stable loop, and put back. So both loops are free of branches, and vectorise, and a few points
-next to singular ones cost little: flags are looked at eight at a time.
+next to singular ones cost little: flags are looked at eight at a time. Where most points of a block fail,
+all are copied, which is cheaper than to gather them; after a block in which all failed, the next is tested
+before the plain loop, which it may do without. None of that changes a value.
 """
 
 from collections.abc import Mapping
 
 from ...kernel import Kernel, StableBranch, level_program, stable_branch_programs
+from ...program import names_in
 from ...text import INDENT, write_lines
 
 # Rooms on the stack: the compiler knows that nothing else points there, and nothing has to be allocated.
@@ -18,7 +21,9 @@ def room(typingctx):
 
     def code(context, builder, signature, args):
         kind = context.get_value_type(types.float64)
-        return builder.alloca(kind, size=context.get_constant(types.int64, SIZE))
+        place = builder.alloca(kind, size=context.get_constant(types.int64, SIZE))
+        place.align = 64
+        return place
 
     return types.CPointer(types.float64)(), code
 
@@ -80,6 +85,27 @@ def eight_flags(typingctx, flags, word):
         return builder.load(builder.gep(builder.bitcast(args[0], kind), [args[1]]))
 
     return types.uint64(flags, types.uint64), code
+
+
+@intrinsic
+def is_flagged(typingctx, flags, place):
+    \"\"\"The flag of a point of a block.\"\"\"
+
+    def code(context, builder, signature, args):
+        byte = builder.load(builder.gep(args[0], [args[1]]))
+        return context.cast(builder, byte, types.uint8, types.boolean)
+
+    return types.boolean(flags, types.uint64), code
+
+
+@intrinsic
+def count_flags(typingctx, eight):
+    \"\"\"How many of eight flags are set.\"\"\"
+
+    def code(context, builder, signature, args):
+        return builder.ctpop(args[0])
+
+    return types.uint64(types.uint64), code
 
 
 @intrinsic
@@ -192,42 +218,80 @@ def _mixed(
     cast: str,
 ) -> list[str]:
     """Blocks: all points in the plain form, then those that fail the test in the stable one."""
-    last, names = kernel.axes - 1, _kept(kernel)
-    stable = write_lines(stable_branch_programs(kernel)[1], "numba")
-    # The stable loop takes eight points at a time; what the last eight lack is filled with the last point.
-    gathered = [f"i{last} = uint64(get(place, min(k, count - uint64(1))))"]
-    gathered += [f"{name} = {text}" for name, text in loads.items()]
-    gathered += [f"put({name}_kept, k, {name})" for name in names]
-    index = ", ".join([*(f"i{axis}" for axis in range(last)), "uint64(get(place, k))"])
-    block = f"for i{last} in range(start, stop):"
-    kept = f"{cast}(get({{}}_kept, k))" if cast else "get({}_kept, k)"
-    again = [f"{name} = {kept.format(name)}" for name in names] + stable
-    tally = [f"tally += 1 if {close.undecided} and k < count else 0"] if close.undecided else []
-    pairs = list(zip(kernel.outputs, close.outputs, strict=True))
-    again += [f"put(out_{name}_kept, k, {value})" for name, value in pairs]
-    eights = [
-        "for first in range(uint64(0), count, uint64(8)):",
-        *_under("for k in range(first, first + uint64(8)):", [*again, *tally], 1),
-    ]
-    back = [f"out_{name}[{index}] = get(out_{name}_kept, k)" for name, _ in pairs]
+    here, block = f"i{kernel.axes - 1}", block_of(kernel)
+    test, stable = (write_lines(program, "numba") for program in stable_branch_programs(kernel))
+    tested = {name for line in close.test_lines for name in names_in(line.args)}
+    ahead = [f"{name} = {text}" for name, text in loads.items() if name in tested]
+    flag = f"put_flag(close, {here} - start, not {close.test})"
+    points = f"for {here} in range(start, stop):"
+    gathered, back = _gathered(kernel, loads), _put_back(kernel)
     return [
         f"length = {length}",
-        f"for start in range(uint64(0), length, uint64({block_of(kernel)})):",
-        f"{INDENT}stop = min(start + uint64({block_of(kernel)}), length)",
-        f"{INDENT}words = (stop - start + uint64(7)) >> uint64(3)",
+        "every = False",
+        f"for start in range(uint64(0), length, uint64({block})):",
+        f"{INDENT}stop = min(start + uint64({block}), length)",
+        f"{INDENT}size = stop - start",
+        f"{INDENT}words = (size + uint64(7)) >> uint64(3)",
         f"{INDENT}clear_flags(close, words - uint64(1))",
-        *_under(block, [*plain, f"put_flag(close, i{last} - start, not {close.test})"], 1),
-        f"{INDENT}some = uint64(0)",
-        f"{INDENT}for word in range(words):",
-        f"{INDENT * 2}some |= eight_flags(close, word)",
-        f"{INDENT}if some:",
-        *(INDENT * 2 + row for row in _PLACES),
-        *_under("for k in range((count + uint64(7)) & ~uint64(7)):", gathered, 2),
-        *(INDENT * 2 + row for row in _tallied(eights, tally)),
-        *_under("for k in range(count):", back, 2),
+        f"{INDENT}count = uint64(0)",
+        f"{INDENT}if every:",
+        *_under(points, [*ahead, *test, flag], 2),
+        *_under("for word in range(words):", [_COUNT], 2),
+        f"{INDENT}if count < size:",
+        *_under(points, [*plain, flag], 2),
+        f"{INDENT * 2}count = uint64(0)",
+        *_under("for word in range(words):", [_COUNT], 2),
+        f"{INDENT}every = count == size",
+        f"{INDENT}if count:",
+        f"{INDENT * 2}most = size == uint64({block}) and count >= uint64({block - block // 4})",
+        *_under("if most:", gathered[0], 2),
+        *_under("else:", gathered[1], 2),
+        *(INDENT * 2 + row for row in _stable_loop(kernel, close, stable, cast)),
+        *_under("if most:", back[0], 2),
+        *_under("else:", back[1], 2),
     ]
 
 
+def _gathered(kernel: Kernel, loads: Mapping[str, str]) -> tuple[list[str], list[str]]:
+    """Keep all points of a block, or those that are flagged.
+
+    The stable loop takes eight points at a time; what the last eight lack is filled with the last point,
+    which may be counted more than once as undecided.
+    """
+    here = f"i{kernel.axes - 1}"
+    kept = [f"{name} = {text}" for name, text in loads.items()]
+    kept += [f"put({name}_kept, k, {name})" for name in _kept(kernel)]
+    every = ["count = size", *_under("for k in range(size):", [f"{here} = start + k", *kept], 0)]
+    index = f"{here} = uint64(get(place, min(k, count - uint64(1))))"
+    some = _under("for k in range((count + uint64(7)) & ~uint64(7)):", [index, *kept], 0)
+    return every, [*_PLACES, *some]
+
+
+def _stable_loop(kernel: Kernel, close: StableBranch, stable: list[str], cast: str) -> list[str]:
+    """The stable form of the points that are kept."""
+    read = f"{cast}(get({{}}_kept, k))" if cast else "get({}_kept, k)"
+    body = [f"{name} = {read.format(name)}" for name in _kept(kernel)] + stable
+    pairs = zip(kernel.outputs, close.outputs, strict=True)
+    body += [f"put(out_{name}_kept, k, {value})" for name, value in pairs]
+    tally = [f"tally += 1 if {close.undecided} else 0"] if close.undecided else []
+    eight = _under("for k in range(first, first + uint64(8)):", [*body, *tally], 0)
+    return _tallied(_under("for first in range(uint64(0), count, uint64(8)):", eight, 0), tally)
+
+
+def _put_back(kernel: Kernel) -> tuple[list[str], list[str]]:
+    """Put the stable values back where all points of a block are kept, and where some are."""
+    index = "".join(f"i{axis}, " for axis in range(kernel.axes - 1))
+    chosen = ["flag = is_flagged(close, k)"]
+    some = []
+    for name in kernel.outputs:
+        out, value = f"out_{name}[{index}{{}}]", f"get(out_{name}_kept, k)"
+        place = out.format("start + k")
+        chosen += [f"before, after = {place}, {value}", f"{place} = after if flag else before"]
+        some.append(f"{out.format('uint64(get(place, k))')} = {value}")
+    return _under("for k in range(size):", chosen, 0), _under("for k in range(count):", some, 0)
+
+
+_COUNT = "count += count_flags(eight_flags(close, word))"
 # Where the flagged points of a block are: places and their count. A flag is the lowest bit of its byte.
 _PLACES = """count = uint64(0)
 for word in range(words):
