@@ -3,9 +3,11 @@
 machine    `desaxe.Machine`: a mapping of inputs in SI units, and the units that its owner works in
 methods    the table of public functions that are methods, and how a function becomes one
 arguments  what a call is given, in SI units
+function   a prepared callable in those units
 results    what a call gives, in the units of the machine, or as pint quantities
 plots      `machine.plot("a_C")` and the pictures of `desaxe.plot`
 scenes     a machine from a scene, and a scene from a machine
+load_tables  loads that vary with the motion in such a scene
 summary    how a machine shows itself: drawing, lengths, speed, masses, loads, stroke
 """
 

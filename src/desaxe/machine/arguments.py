@@ -1,6 +1,7 @@
 """Arguments of a method: plain numbers in the machine's units, converted to SI."""
 
 from collections.abc import Mapping
+from os import PathLike
 from typing import Any
 
 from ..mechanism.inputs import INPUTS
@@ -8,7 +9,7 @@ from ..mechanism.unit_system import OTHERS, UnitSystem
 from .results import conversion_of
 
 # Arguments that carry no unit of their own name: what they are about is said by their keys.
-BY_KEY = ("over", "keep", "changes", "sigma")
+BY_KEY = ("over", "keep", "changes", "sigma", "data")
 POSITIONS = {"Y", "V_C", "a_C"}
 
 
@@ -21,6 +22,10 @@ def in_si(system: UnitSystem, name: str, value: Any) -> Any:
     """An argument in SI units; texts and pint quantities carry their units, functions are in SI."""
     if not system or value is None:
         return value
+    if name == "data" and not isinstance(value, (str, PathLike)):
+        from ..design.fit.data import columns_of
+
+        value = columns_of(value)
     if name in BY_KEY and isinstance(value, Mapping):
         return {key: converted(system, _measure(key), part) for key, part in value.items()}
     return converted(system, name, value) if has_unit(name) else value

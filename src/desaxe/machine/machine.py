@@ -15,6 +15,7 @@ from .scenes import inputs_of_scene, is_scene, scene_of, write_scene
 from .summary import html_of, text_of
 
 LOADS = ("F_X", "F_Y")
+OUTPUTS = ("Y", "V_C", "a_C")
 SPEEDS = ("omega0", "omega", "alpha")
 
 
@@ -119,7 +120,7 @@ class Machine(Mapping[str, Any]):
         """Pictures: `plot("a_C")` over the crank angle, `plot.mechanism()` and others of `desaxe.plot`."""
         return Plots(self)
 
-    def scene(self, outputs: Any = ("Y", "V_C", "a_C"), **more: Any) -> Any:
+    def scene(self, outputs: Any = OUTPUTS, **more: Any) -> Any:
         """A scene of this machine: its inputs, the outputs, and further keys of a scene file.
 
         outputs  names of quantities over the crank angle
@@ -131,11 +132,39 @@ class Machine(Mapping[str, Any]):
         """
         return scene_of(self, outputs, more)
 
-    def to_scene(self, path: str | PathLike[str], outputs: Any = ("Y", "V_C", "a_C"), **more: Any) -> Any:
+    def explain(self, outputs: Any = OUTPUTS, **more: Any) -> Any:
+        """`desaxe.explain` of the scene of this machine: what computing it does in which loop, and its cost.
+
+        Arguments are those of `scene`.
+        """
+        from ..scenes.explain.explain import explain
+
+        return explain(self.scene(outputs, **more))
+
+    def compile(
+        self,
+        path: str | PathLike[str],
+        outputs: Any = OUTPUTS,
+        to: str = "numba",
+        *,
+        libm: bool = True,
+        check: bool = False,
+        **more: Any,
+    ) -> Any:
+        """`desaxe.compile` of the scene of this machine: source code that needs nothing of desaxe; its path.
+
+        path, to, libm, check as there, others as in `scene`. The code takes and gives SI units.
+        """
+        from ..scenes.export.compile import compile
+
+        return compile(self.scene(outputs, **more), path, to, libm=libm, check=check)
+
+    def to_scene(self, path: str | PathLike[str], outputs: Any = OUTPUTS, **more: Any) -> Any:
         """Write the scene of this machine as a TOML file for `Machine.read` and `desaxe run`; its path.
 
-        Other arguments are those of `scene`. The file stands for the same doubles. Raises TypeError for a
-        load that is a function, which is no data.
+        Other arguments are those of `scene`. The file stands for the same doubles; tables of loads stand in
+        it, long ones in a CSV file beside it. Raises TypeError for a load that is a function, which is no
+        data.
         """
         return write_scene(self, path, outputs, more)
 

@@ -32,9 +32,12 @@ METHODS = {
     "counterweight": "desaxe.design.turn.counterweight",
     "flywheel": "desaxe.design.turn.flywheel",
     "drive": "desaxe.design.drive.drive",
+    "fit": "desaxe.design.fit.fit",
+    "function": "desaxe.evaluation.function",
     "explore": "desaxe.scenes.explorer.explore",
 }
 NOT_FILLED = {"synthesize": ("AB", "BC", "omega0"), "explore": ("source",)}
+WISHES = ("BC", "AB", "max_pressure_angle", "peak_a_C")  # one of them beside stroke and time ratio
 EITHER = {"omega": "omega0", "omega0": "omega"}  # a given state takes the place of the law, and back
 INTRODUCTION = "`desaxe.{name}` with the inputs of this machine; those given here replace them."
 UNITS = """
@@ -82,7 +85,11 @@ def _signature(own: Signature, name: str) -> Signature:
     for parameter in own.parameters.values():
         if parameter.name in NOT_FILLED.get(name, ()) and parameter.kind is not Parameter.KEYWORD_ONLY:
             continue
-        given = parameter.kind is Parameter.KEYWORD_ONLY and parameter.name in FILLED
+        given = parameter.kind is Parameter.KEYWORD_ONLY and parameter.name in (
+            *FILLED,
+            "stroke",
+            "time_ratio",
+        )
         parameters.append(parameter.replace(default=None) if given else parameter)
     extra = Parameter("as_quantity", Parameter.KEYWORD_ONLY, default=False, annotation=bool)
     last = next((i for i, p in enumerate(parameters) if p.kind is Parameter.VAR_KEYWORD), len(parameters))
@@ -120,21 +127,42 @@ def call(
     found = function(**given, **filled(machine, name, own, given))
     if not system and not as_quantity:
         return found
-    result = shown(name, found, {**machine.in_units(), **named}, Shown(system, as_quantity))
+    show = Shown(system, as_quantity)
+    if name == "function":
+        from .function import FunctionInUnits
+
+        return FunctionInUnits(found, show)
+    result = shown(name, found, {**machine.in_units(), **named}, show)
     return _delivered(result, given.get("out"))
 
 
 def filled(machine: Mapping[str, Any], name: str, own: Signature, given: Mapping[str, Any]) -> dict[str, Any]:
     """The inputs of a machine that a function takes and that are not given in this call."""
     anything = any(p.kind is Parameter.VAR_KEYWORD for p in own.parameters.values())
-    free = given.get("over") or ()
+    free = given.get("over") or (given.get("inputs", ("theta",)) if name == "function" else ())
+    free = (free,) if isinstance(free, str) else tuple(free)
     left = {*given, *(EITHER[key] for key in (*given, *free) if key in EITHER), *free}
     left.update(NOT_FILLED.get(name, ()))
-    return {
+    found = {
         key: value
         for key, value in machine.items()
         if key not in left and (anything or key in own.parameters)
     }
+    return found | _wishes(machine, given) if name == "synthesize" else found
+
+
+def _wishes(machine: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
+    """Requirements of a synthesis that the machine meets itself: stroke, time ratio, rod, or the speed."""
+    found = {}
+    if not all(key in given for key in ("stroke", "time_ratio")):
+        lengths = {key: machine[key] for key in FILLED if key in machine}
+        own = import_function("events")(**lengths) if len(lengths) == len(FILLED) else {}
+        found = {key: own[key] for key in ("stroke", "time_ratio") if key in own and key not in given}
+    if not any(given.get(key) is not None for key in WISHES) and "BC" in machine:
+        found["BC"] = machine["BC"]
+    if given.get("peak_a_C") is not None and "omega0" in machine and "omega0" not in given:
+        found["omega0"] = machine["omega0"]
+    return found
 
 
 def _delivered(result: Any, out: Any) -> Any:

@@ -112,6 +112,8 @@ def shown(name: str, found: Any, call: Mapping[str, Any], show: Shown) -> Any:
         return {key: show.named(value, key) for key, value in found.items()}
     if name == "drive":
         return found.as_quantities(system) if show.as_quantity else found.in_units(system)
+    if name == "fit":
+        return found.in_units(system, show.as_quantity)
     if name == "simulate":
         return _motion(found, show)
     if name == "optimize":

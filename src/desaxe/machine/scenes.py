@@ -6,12 +6,14 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from ..loads.resolve import split
 from ..mechanism.inputs import INPUTS
 from ..mechanism.unit_system import SI, UnitSystem
 from ..mechanism.units import exact
 from ..scenes.scene import scene
 from ..scenes.schema import SceneError
-from ..support.files import write_text
+from ..support.files import check_target, write_text
+from .load_tables import load_table
 
 SECTIONS = {
     "mechanism": ("AB", "BC", "ec", "branch"),
@@ -41,23 +43,30 @@ def inputs_of_scene(source: str | PathLike[str] | Mapping[str, Any]) -> tuple[di
 
 
 def scene_of(machine: Mapping[str, Any], outputs: Any, more: Mapping[str, Any]) -> Any:
-    """The scene of a machine."""
-    return scene(_data(machine, outputs, more))
+    """The scene of a machine; loads that vary with the motion are in it as they are."""
+    return scene(_data(machine, outputs, more, split(machine)[1]))
 
 
 def write_scene(
     machine: Mapping[str, Any], path: str | PathLike[str], outputs: Any, more: Mapping[str, Any]
 ) -> Path:
-    """Write the scene of a machine as TOML, once it is known to be right."""
-    data = _data(machine, outputs, more)
-    scene(data)
+    """Write the scene of a machine as TOML, once it is known to be right, and its long tables beside it."""
     place = Path(path)
+    loads = split(machine)[1]
+    scene(_data(machine, outputs, more, loads))
+    tables = {name: load_table(name, load, place) for name, load in loads.items()}
+    for file in (place, *(table.file for table in tables.values() if table.file is not None)):
+        check_target(file)
+    for table in tables.values():
+        if table.file is not None:
+            write_text(table.file, table.text)
+    data = _data(machine, outputs, more, {name: table.data for name, table in tables.items()})
     write_text(place, _toml(data))
     return place
 
 
-def _data(machine: Any, outputs: Any, more: Mapping[str, Any]) -> dict[str, Any]:
-    """The scene as plain data; inputs are texts with units that stand for the same doubles."""
+def _data(machine: Any, outputs: Any, more: Mapping[str, Any], loads: Mapping[str, Any]) -> dict[str, Any]:
+    """The scene as data; inputs are texts with units that stand for the same doubles, `loads` as they are."""
     other = dict(more)
     theta = other.pop("theta", TURN)
     data: dict[str, Any] = {"title": other.pop("title", "")} if "title" in other else {}
@@ -65,7 +74,11 @@ def _data(machine: Any, outputs: Any, more: Mapping[str, Any]) -> dict[str, Any]
     if machine.units:
         data["units"] = dict(machine.units.units)
     for section, names in SECTIONS.items():
-        values = {name: _written(machine, name) for name in names if name in machine}
+        values = {
+            name: loads[name] if name in loads else _written(machine, name)
+            for name in names
+            if name in machine
+        }
         if section == "motion":
             values = {"theta": theta, **values}
         if values:
@@ -77,8 +90,6 @@ def _written(machine: Any, name: str) -> Any:
     value = machine[name]
     if name == "branch":
         return value
-    if callable(value):
-        raise TypeError(f"{name}: a function is no data, and cannot stand in a scene")
     if hasattr(value, "tolist"):
         return [_number(machine.units, name, part) for part in value.tolist()]
     return _number(machine.units, name, value)

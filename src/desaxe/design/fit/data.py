@@ -36,7 +36,7 @@ class Data(NamedTuple):
 
 def read_data(data: Any, state: bool) -> Data:
     """The measurements, checked; errors name the column."""
-    columns = read_csv(Path(data)) if isinstance(data, (str, PathLike)) else _columns(data)
+    columns = read_csv(Path(data)) if isinstance(data, (str, PathLike)) else columns_of(data)
     course = [name for name in COURSE if name in columns]
     if len(course) != 1:
         raise TypeError(f"fit: data has one of theta and t, got {', '.join(map(str, columns)) or 'nothing'}")
@@ -56,7 +56,7 @@ def read_data(data: Any, state: bool) -> Data:
     return Data(course[0], np.where(np.isfinite(at), at, 0.0), measured)
 
 
-def _columns(data: Any) -> dict[str, Any]:
+def columns_of(data: Any) -> dict[str, Any]:
     """The columns of a mapping, a DataFrame or a Dataset; a course may be its index or coordinate."""
     if hasattr(data, "data_vars"):
         found = {str(name): array for name, array in data.data_vars.items()}

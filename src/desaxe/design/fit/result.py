@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from ...mechanism.catalogue import quantity
+from ...mechanism.unit_system import SI, Conversion, UnitSystem
 from ...support.extras import needed
 from .model import Model
 
@@ -17,54 +18,78 @@ WORDS = {
 
 
 class Fit(dict[str, Any]):
-    """The result of `fit`; see there for its keys."""
+    """The result of `fit`; see there for its keys. `units` are those of its numbers, report and plot."""
 
-    def __init__(self, found: dict[str, Any], model: Model) -> None:
-        super().__init__(found)
-        self._model = model
+    def __init__(self, found: dict[str, Any], model: Model, units: UnitSystem = SI) -> None:
+        super().__init__(_in_units(found, model, units) if units else found)
+        self._found, self._model, self.units = found, model, units
 
     def __reduce__(self) -> Any:
-        return Fit, (dict(self), self._model)
+        return Fit, (self._found, self._model, self.units)
+
+    def in_units(self, units: UnitSystem, as_quantity: bool = False) -> "Fit":
+        """The result in other units; with `as_quantity` value, std_error and interval as pint quantities."""
+        shown = Fit(self._found, self._model, units)
+        if as_quantity:
+            from ...mechanism.units import registry
+
+            for key in ("value", "std_error", "interval"):
+                rows = {n: (part, _unit_of(n, self._model, units).unit) for n, part in shown[key].items()}
+                shown[key] = {n: registry().Quantity(part, unit) for n, (part, unit) in rows.items()}
+        return shown
+
+    @property
+    def _numbers(self) -> dict[str, Any]:
+        """The numbers that are shown, without pint."""
+        return _in_units(self._found, self._model, self.units)
 
     def predict(self, theta: Any = None, t: Any = None) -> dict[str, tuple[Any, Any]]:
         """Each quantity as (value, standard error of the fitted curve) at crank angles [rad] or times [s].
 
+        Angles, times and values are in the units of this result.
         The band of a further measurement is wider: add its sigma squared to the square of the standard error.
         """
         course = self._model.data.course
         at = {"theta": theta, "t": t}[course]
         if at is None:
             raise TypeError(f"predict: this fit is over {course}: give {course}=")
-        at = np.atleast_1d(np.asarray(at, float))
-        x = np.array([self["value"][name] for name in self["names"]])
+        at = np.atleast_1d(np.asarray(self.units.of(course).to_si(np.asarray(at, float))))
+        x = np.array([self._found["value"][name] for name in self["names"]])
         values, slopes = self._model.quantities(x, at)
         found = {}
         for q, value in values.items():
             rows = np.array(
                 [slopes[q].get(name, np.zeros_like(at)) * np.ones_like(at) for name in self["names"]]
             )
-            variance = np.einsum("ki,kl,li->i", rows, self["covariance"], rows)
-            found[q] = value, np.sqrt(variance)
+            variance = np.einsum("ki,kl,li->i", rows, self._found["covariance"], rows)
+            own = self.units.of(q)
+            found[q] = own.shown(value), own.shown(np.sqrt(variance))
         return found
 
     def report(self) -> str:
         """A table of the unknowns with standard errors and intervals, as text."""
         lines = [f"fit: {self['message']}", ""]
-        wide = max(map(len, self["names"]))
+        shown, titles = self._numbers, {name: self._title(name) for name in self["names"]}
+        wide = max(map(len, titles.values()))
         lines.append(f"  {'':{wide}}  {'value':>13}  {'std. error':>11}  95 % interval")
-        for name in self["names"]:
-            low, high = self["interval"][name]
-            value, error = self["value"][name], self["std_error"][name]
-            lines.append(f"  {name:{wide}}  {value:13.7g}  {error:11.3g}  {low:.6g} ... {high:.6g}")
+        for name, title in titles.items():
+            low, high = shown["interval"][name]
+            value, error = shown["value"][name], shown["std_error"][name]
+            lines.append(f"  {title:{wide}}  {value:13.7g}  {error:11.3g}  {low:.6g} ... {high:.6g}")
         for direction in self["unidentified"]:
             weights = ", ".join(f"{weight:+.3g} {name}" for name, weight in direction.items())
             lines.append(f"  left open (relative changes): {weights}")
         for q, rest in self["residuals"].items():
             rms, samples = np.sqrt(np.nanmean(rest**2)), np.isfinite(rest).sum()
-            lines.append(f"  residuals of {q}: rms {rms:.4g} in {samples} samples")
+            lines.append(f"  residuals of {self._title(q)}: rms {rms:.4g} in {samples} samples")
         return "\n".join(lines)
 
     __repr__ = report
+
+    def _title(self, name: str) -> str:
+        """Label a name with its unit, if units were asked for."""
+        unit = _unit_of(name, self._model, self.units).unit if self.units else "1"
+        return name if unit == "1" else f"{name} [{unit}]"
 
     def plot(self, figure: Any = None) -> Any:
         """Measurements, the fitted curve with its 95 % band, and the residuals: a matplotlib Figure."""
@@ -73,20 +98,48 @@ class Fit(dict[str, Any]):
         data = self._model.data
         figure = figure or Figure(figsize=(8.0, 2.2 + 2.4 * len(data.measured)), layout="constrained")
         axes = figure.subplots(len(data.measured), 2, squeeze=False, sharex=True, width_ratios=(2, 1))
-        fine = np.linspace(data.at.min(), data.at.max(), 721)
+        along = self.units.of(data.course)
+        at = along.shown(data.at)
+        fine = np.linspace(at.min(), at.max(), 721)
         bands = self.predict(**{data.course: fine})
         for (left, right), (q, column) in zip(axes, data.measured.items(), strict=True):
-            value, error = bands[q]
-            left.plot(data.at, column, ".", ms=3, color="0.45", label="measured")
+            (value, error), own = bands[q], self.units.of(q)
+            left.plot(at, own.shown(column), ".", ms=3, color="0.45", label="measured")
             left.plot(fine, value, color="tab:blue", label="fitted")
             left.fill_between(
                 fine, value - 1.96 * error, value + 1.96 * error, color="tab:blue", alpha=0.3, lw=0
             )
-            left.set_ylabel(f"{q} [{quantity(q, self._model.state).unit}]")
-            right.plot(data.at, self["residuals"][q], ".", ms=3, color="0.45")
+            unit = own.unit if self.units else quantity(q, self._model.state).unit
+            left.set_ylabel(f"{q} [{unit}]")
+            right.plot(at, self["residuals"][q], ".", ms=3, color="0.45")
             right.axhline(0.0, color="tab:blue", lw=1)
             right.set_ylabel("measured - fitted")
         axes[0][0].legend(frameon=False)
         for ax in axes[-1]:
-            ax.set_xlabel("crank angle [rad]" if data.course == "theta" else "time [s]")
+            ax.set_xlabel(f"{'crank angle' if data.course == 'theta' else 'time'} [{along.unit}]")
         return figure
+
+
+def _unit_of(name: str, model: Model, units: UnitSystem) -> Conversion:
+    """The conversion of an unknown or a quantity: a bias is in the unit of its quantity, a scale in none."""
+    measured = model.data.measured
+    if any(name == f"{q}_scale" for q in measured):
+        return Conversion("1")
+    return units.of(next((q for q in measured if name == f"{q}_bias"), name))
+
+
+def _in_units(found: dict[str, Any], model: Model, units: UnitSystem) -> dict[str, Any]:
+    """The result in other units; relative directions, correlations and words stay what they are."""
+    own = {name: _unit_of(name, model, units) for name in found["names"]}
+    sizes = np.array([float(own[name].si) for name in found["names"]])
+    return {
+        **found,
+        **{key: {n: own[n].shown(v) for n, v in found[key].items()} for key in ("value", "std_error")},
+        "interval": {n: tuple(map(own[n].shown, ends)) for n, ends in found["interval"].items()},
+        "covariance": found["covariance"] / np.outer(sizes, sizes),
+        "residuals": {q: units.of(q).shown(rest) for q, rest in found["residuals"].items()},
+        "jacobian": {
+            q: {n: units.of(q).per([own[n]]).shown(slope) for n, slope in rows.items()}
+            for q, rows in found["jacobian"].items()
+        },
+    }

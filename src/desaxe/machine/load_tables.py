@@ -1,0 +1,41 @@
+"""Loads that vary with the motion as the data of a scene: points in it, or a CSV file beside it."""
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ..loads.load import Load, OverY, TableOverTheta
+
+INLINE = 24  # points that stand in the scene itself
+
+
+class LoadTable(NamedTuple):
+    """The data of a load in a scene, and the file of its points, if they are many."""
+
+    data: dict[str, Any]
+    file: Path | None = None
+    text: str = ""
+
+
+def load_table(name: str, load: Load, scene: Path) -> LoadTable:
+    """The table of a load for a scene at this path; TypeError for a load that is a function.
+
+    Points are in SI units with all their digits, so that the load that is read equals this one.
+    """
+    if isinstance(load, TableOverTheta):
+        columns = [load.table.knots, load.table.values]
+        more: dict[str, Any] = {"kind": load.kind, "period": load.period}
+        over, heads = "over_theta", ["theta [rad]", name]
+    elif isinstance(load, OverY):
+        ways = [load.outward] if load.inward is None else [load.outward, load.inward]
+        columns = [load.outward.knots, *(table.values for table in ways)]
+        more = {"kind": load.kind}
+        over, heads = "over_Y", ["Y [m]", *(f"{name} {way}" for way in ("outward", "inward")[: len(ways)])]
+    else:
+        raise TypeError(f"{name}: a function is no data, and cannot stand in a scene file; give a table")
+    more |= {"value": load.unit} if load.unit is not None else {}
+    rows = list(zip(*columns, strict=True))
+    if len(rows) <= INLINE:
+        return LoadTable({over: [list(row) for row in rows], **more})
+    file = scene.with_name(f"{scene.stem}_{name}.csv")
+    lines = [",".join(heads), *(",".join(map(repr, row)) for row in rows)]
+    return LoadTable({over: file.name, **more}, file, "\n".join(lines) + "\n")
