@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[2]
 # Every place that runs a text as code; what it runs was written by our compiler from its own Program.
 RUNS_TEXT = {
     "src/desaxe/runtime/wide_margins.py",
-    "src/desaxe/runtime/machine_code.py",
+    "src/desaxe/runtime/compiled_text.py",
     "src/desaxe/runtime/native_calls.py",
     "src/desaxe/runtime/vectorised.py",
     "src/desaxe/scenes/export/axes.py",

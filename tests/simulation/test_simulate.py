@@ -498,10 +498,38 @@ def test_a_simulation_can_be_pickled(mu):
 
 
 def test_without_scipy_one_line_says_what_to_install():
-    code = "import sys; sys.modules['scipy'] = None; import desaxe as dx; dx.simulate"
+    motion = "torque=0.25, t_end=0.1, ec=0.0, AB=1.0, BC=2.0, m_crank=1.0, I_crank=1.0"
+    code = (
+        "import sys; sys.modules['scipy'] = None; import desaxe as dx\n"
+        f"print(dx.simulate({motion})['status']); dx.simulate(method='Radau', {motion})"
+    )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.stdout.strip() == "0"
     last = done.stderr.strip().splitlines()[-1]
-    assert last.endswith("simulate needs scipy: python -m pip install 'desaxe[simulate]'")
+    assert last.endswith("simulate: method=Radau needs scipy: python -m pip install 'desaxe[simulate]'")
+
+
+def test_the_steps_and_their_inside_are_those_of_scipy():
+    from scipy.integrate import DOP853
+
+    from desaxe.simulation.stepper import Dop853
+
+    def rate(t, y):
+        return (y[1], 3.0 * (1.0 - y[0] ** 2) * y[1] - y[0], y[0] * t)
+
+    y, how = np.array([2.0, 0.0, 0.0]), {"rtol": np.array([1e-9, 1e-8, 1e-7]), "atol": np.full(3, 1e-9)}
+    ours = Dop853(rate, 0.0, y, 9.0, max_step=np.inf, first_step=None, **how)
+    theirs = DOP853(rate, 0.0, y, 9.0, **how)
+    while theirs.status == "running":
+        assert ours.step() is None
+        assert theirs.step() is None
+        np.testing.assert_allclose(ours.t, theirs.t, rtol=1e-12)
+        np.testing.assert_allclose(ours.y, theirs.y, rtol=1e-10, atol=1e-12)
+        t = np.linspace(theirs.t_old, theirs.t, 5)
+        inside = ours.dense_output()
+        np.testing.assert_allclose(inside(t), theirs.dense_output()(t), rtol=1e-10, atol=1e-11)
+        np.testing.assert_allclose(inside(t[2]), theirs.dense_output()(t[2]), rtol=1e-10, atol=1e-11)
+    assert ours.status == "finished"
 
 
 def test_scipy_is_not_loaded_before_it_is_needed():

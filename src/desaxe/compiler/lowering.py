@@ -17,17 +17,18 @@ a Program and gives one, or a Kernel, and changes neither its inputs nor its out
 """
 
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from .forms import in_two_forms, parted
 from .kernel import Kernel, tabulate
-from .passes.double_angles import DoubleTrigonometry
-from .passes.double_double import double_double
 from .passes.fuse import fuse_products
 from .passes.guard import guard_inputs
 from .passes.trigonometry import Trigonometry, expand_trigonometry
 from .passes.value_numbering import value_numbering
 from .program import Program
+
+if TYPE_CHECKING:
+    from .passes.double_angles import DoubleTrigonometry
 
 
 class Limits(NamedTuple):
@@ -59,9 +60,11 @@ def guarded_for_loops(
 
 
 def guarded_pairs(
-    program: Program, varying: Iterable[str], limits: Limits, trigonometry: DoubleTrigonometry
+    program: Program, varying: Iterable[str], limits: Limits, trigonometry: "DoubleTrigonometry"
 ) -> Program:
     """Stages 3 and 4, in double-double arithmetic."""
+    from .passes.double_double import double_double
+
     return double_double(guard_inputs(program, tuple(varying), *limits), trigonometry)
 
 

@@ -10,5 +10,4 @@ inverse            the crank angle for a slider position
 design_map         quantities over a space of designs
 measures           quantities of a design by name, with derivatives
 number_or_array    one closed form for a number and for arrays
-roots              one root of a function
 """

@@ -23,7 +23,6 @@ from ..runtime.threads import run_parts
 from ..runtime.tiers import COMPILED, forced_tier
 from ..support.forks import ForkSafeLock
 from ..support.recent import Recent
-from . import search as text
 from .nodes import Array
 from .programs import Programs, Search, programs_of
 
@@ -79,7 +78,7 @@ def _loops(programs: Programs, column: str) -> tuple[list[str], int]:
 @cache
 def _functions() -> list[str]:
     """The constants and functions of `search`, without types, which numba finds by itself."""
-    source = Path(str(text.__file__)).read_text(encoding="utf-8")
+    source = Path(__file__).with_name("search.py").read_text(encoding="utf-8")
     first, *others = source.partition(LINE)[2].partition("\n")[2].strip().split("\ndef ")
     bare = [first.strip() + "\n", *(f"def {other.strip()}\n" for other in others)]
     for kind in (" -> Any", ": Any", ": int", ": float", " -> None", " -> int", " -> float"):

@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 from ..compiler.lowering import for_loops
 from ..compiler.passes.differentiate import RULES, Chain, Rule, Step
-from ..compiler.passes.double_double import double_double
 from ..compiler.passes.pipeline import optimise
 from ..compiler.passes.slicing import keep_outputs
 from ..compiler.program import Line, Program
@@ -67,6 +66,8 @@ def programs_of(search: Search, written_out: bool) -> Programs:
 
     finish = (value, slope, *gradient)
     if search.extended:
+        from ..compiler.passes.double_double import double_double
+
         last = double_double(keep_outputs(whole, finish), double_constants())
     else:
         last = prepared(finish)

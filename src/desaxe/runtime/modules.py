@@ -19,7 +19,7 @@ from ..support import private
 from ..support.forks import ForkSafeLock
 from ..support.interrupts import finished
 from . import cache as _cache
-from .machine_code import DOUBLE, NO_MEMORY, Code, Loaded, compile_text, load, machine
+from .machine_code import DOUBLE, NO_MEMORY, Code, Loaded, load, machine
 
 SUFFIX = ".code"
 _HEAD = "desaxe machine code 2"
@@ -71,7 +71,7 @@ def _native(kind: str, text: str) -> Native:
     with _LOCK, _cache.locked(path):
         loaded = _from_disk(path)
         if loaded is None:
-            made = compile_text(text, kind, {})
+            made = _compiled(text, kind, {})
             if isinstance(made, Code):
                 _to_disk(path, made)
             loaded = _ready(made)
@@ -83,9 +83,15 @@ def native_here(text: str, scope: Mapping[str, Any]) -> Native:
 
     def made() -> Native:
         with _LOCK:
-            return Native(_ready(compile_text(text, "with a function of the user's", scope)))
+            return Native(_ready(_compiled(text, "with a function of the user's", scope)))
 
     return finished(made)
+
+
+def _compiled(text: str, title: str, scope: Mapping[str, Any]) -> Code | Loaded:
+    from .compiled_text import compile_text
+
+    return compile_text(text, title, scope)
 
 
 def _ready(made: Code | Loaded) -> Loaded:

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiler.operations import HELPERS
-from ..compiler.passes.double_double import double_double
 from ..compiler.passes.guard import guard_inputs
 from ..compiler.program import Program
 from ..compiler.text import INDENT, with_short_temporaries, write_lines
@@ -116,6 +115,8 @@ def _forms(key: KernelKey) -> _Forms:
     own = dict(key.axis_of)
     varying = [name for name in inputs if name in own]
     if key.accuracy == "extended":
+        from ..compiler.passes.double_double import double_double
+
         guarded = guard_inputs(program, varying, LEAST, {"theta": double_constants().limit})
         return _Forms(inputs, _function(double_double(guarded, double_constants()), inputs), None, None)
     if key.form.wide_margins:

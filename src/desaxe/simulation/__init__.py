@@ -9,7 +9,9 @@ friction      guide friction, which depends on the acceleration that it changes
 one_design    one motion, step by step, with its events
 events        what happens inside a step
 many_designs  arrays of designs in one compiled call
-dop853        the integrator that numba compiles
+stepper       the integrator of one motion
+dop853        the same for many designs, which numba compiles
+tableau       the coefficients of both
 compiled      the module of a family of designs
 history       histories of angle, speed, quantities and energy
 result        the result and its statuses

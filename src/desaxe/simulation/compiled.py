@@ -11,7 +11,6 @@ from ..compiler.text import INDENT, with_short_temporaries, write_lines
 from ..mechanism.program import Variant
 from ..runtime.modules import Native, native, native_here
 from ..runtime.specialise import specialise
-from . import dop853
 from .model import MOVING, STILL, UNLOADED
 
 LINE = "# ---- compiled"
@@ -35,7 +34,7 @@ function = designs
 
 
 class Family(NamedTuple):
-    """A family of designs: the variant of the program, and the inputs that are 0 in all of them."""
+    """What designs have in common: the form of the program, and what is 0 in all of them."""
 
     form: Variant
     fixed: tuple[tuple[str, float], ...]
@@ -87,7 +86,7 @@ def _function(name: str, program: Program, places: Mapping[str, str]) -> str:
 
 def _integrator() -> str:
     """The text of `dop853` for numba: every function jitted, the last one with its signature."""
-    text = Path(str(dop853.__file__)).read_text(encoding="utf-8")
+    text = Path(__file__).with_name("dop853.py").read_text(encoding="utf-8")
     functions = text.partition(LINE)[2].partition("\n")[2].strip().split("\ndef ")
     *helpers, last = [function.removeprefix("def ") for function in functions]
     bare = [f"{_NJIT}def {function.strip()}\n" for function in helpers]

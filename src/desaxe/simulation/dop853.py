@@ -3,8 +3,7 @@
 It stands in a module behind the functions `still`, `moving`, `potential` and `torque` that are written from
 the Program for the designs at hand (`module`). The method is that of Hairer, Norsett and Wanner, "Solving
 Ordinary Differential Equations I", section II, with the step control, the error norm and the dense output
-of scipy.integrate.DOP853, whose public coefficients are passed in: one design takes the steps that
-`simulate` takes for it alone.
+of `stepper`: one design takes the steps that `simulate` takes for it alone.
 
 setup   a row per design: branch, limit angles, half of the arc (see `chart`), torque, F_Y, theta0,
         omega_start, an energy that the loads suggest

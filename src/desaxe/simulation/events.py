@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
+from ..support import roots
 from .checks import SMALL
 from .coordinate import TURN
 from .equations import Law, state_of
@@ -184,4 +184,4 @@ def root(function: Callable[..., float], a: float, b: float, *more: float) -> fl
     at_a, at_b = function(a, *more), function(b, *more)
     if at_a * at_b >= 0.0:
         return a if abs(at_a) < abs(at_b) else b
-    return float(brentq(function, a, b, more, xtol=1e-15 * max(abs(b), 1e-300), rtol=1e-15))
+    return roots.root(lambda t: function(t, *more), a, b)

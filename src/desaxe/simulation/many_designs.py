@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import DOP853
 
 from ..evaluation.arrays import as_array, broadcast_shape
 from ..evaluation.evaluate import evaluate
@@ -23,6 +22,7 @@ from ..support.deadline import Deadline
 from ..support.forks import ForkSafeLock, wait_first
 from ..support.interrupts import finished, stopped_early
 from ..support.shown import shown
+from . import tableau
 from .checks import check_signature, grows
 from .compiled import Family, kernel_of
 from .coordinate import TURN, arc_around, inside
@@ -206,8 +206,9 @@ def _run(
     deadline: Deadline,
 ) -> None:
     """Run the kernel over blocks of designs; designs are independent, so blocks do not change results."""
-    parts = (DOP853.A, DOP853.B, DOP853.C, DOP853.E3, DOP853.E5, DOP853.D, DOP853.A_EXTRA, DOP853.C_EXTRA)
-    tables = [np.ascontiguousarray(part, dtype=np.float64) for part in parts]
+    A, C, last = tableau.A, tableau.C, tableau.STAGES
+    step = A[:last, :last].copy(), tableau.B, C[:last], tableau.E3, tableau.E5
+    tables = (*step, tableau.D, A[last + 1 :], C[last + 1 :])
 
     how = shared[1]
 

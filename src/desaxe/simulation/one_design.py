@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import integrate
 
 from ..support.deadline import Deadline
+from ..support.extras import needed
 from .checks import SMALL
 from .coordinate import TURN
 from .equations import Law, Resting, Smooth, State, state_of
@@ -31,6 +31,7 @@ from .events import (
 from .friction import Contact, Rubbing, breaks_away, contact, side_ahead, ways_to_start
 from .model import Model
 from .result import DONE, FAILED, JAMS, LIMIT, REST, Event
+from .stepper import Dop853
 
 Array = NDArray[np.float64]
 SAME = 1e-9  # of a step: events so close together are one instant
@@ -228,7 +229,12 @@ class Run:
         how = self.tolerance
         first = None if self.next_step is None else min(self.next_step, t_bound - t)
         # An angle counts absolutely, however many turns it has made; implicit methods take one rtol only.
-        rtol = how.rtol if how.method in ("Radau", "BDF") else np.array([3e-14, how.rtol, how.rtol])
+        several = np.array([3e-14, how.rtol, how.rtol])
+        if how.method == "DOP853":
+            return Dop853(law.rate, t, y, t_bound, several, how.atol, how.max_step, first)
+        with needed(f"simulate: method={how.method}", "simulate"):
+            from scipy import integrate
+        rtol = how.rtol if how.method in ("Radau", "BDF") else several
         return getattr(integrate, how.method)(
             law.rate, t, y, t_bound, rtol=rtol, atol=how.atol, max_step=how.max_step, first_step=first
         )

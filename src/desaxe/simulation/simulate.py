@@ -78,7 +78,7 @@ def simulate(
                  a limit angle, and where no or two sets of forces balance the acceleration as given
     rtol, atol   tolerances of the integration; atol for the angle [rad], sqrt(kinetic energy) and work, by
                  default rtol times 0.001 rad and a hundredth of the energy that start and loads suggest
-    method       one of SciPy's integrators: DOP853, RK45, RK23, Radau, BDF, LSODA
+    method       DOP853, or by SciPy (extra `simulate`) RK45, RK23, Radau, BDF, LSODA
     times        instants to tell [s]; 1001 from start to end without
     until        crank angle or angles [rad]: the first that is reached ends the motion
     max_step     longest step [s], for loads that act briefly

@@ -10,22 +10,29 @@ javascript  one JavaScript function, for the explorer and for the module
 python      plain Python over `math`, for single points
 numba/      self-contained modules of compiled loops
 
-A new language is a file or folder here and its column of the operation table; `LANGUAGES` lists it.
+A new language is a file or folder here and its column of the operation table; `languages` lists it.
 """
 
-from .c import C
-from .es_module import JavaScript
-from .jax import Jax
-from .octave import Octave
-from .protocol import Language
+from typing import TYPE_CHECKING
 
-LANGUAGES: tuple[Language, ...] = (C(), Jax(), Octave(), JavaScript())
+if TYPE_CHECKING:
+    from .protocol import Language
 
 
-def language_of(name: str) -> Language:
+def languages() -> "tuple[Language, ...]":
+    """All but numba, imported when they are asked for: a kernel needs none of them."""
+    from .c import C
+    from .es_module import JavaScript
+    from .jax import Jax
+    from .octave import Octave
+
+    return C(), Jax(), Octave(), JavaScript()
+
+
+def language_of(name: str) -> "Language":
     """The language of this name; ValueError with those that there are."""
-    found = next((language for language in LANGUAGES if language.name == name), None)
+    found = next((language for language in languages() if language.name == name), None)
     if found is None:
-        known = ", ".join(["numba", *(language.name for language in LANGUAGES)])
+        known = ", ".join(["numba", *(language.name for language in languages())])
         raise ValueError(f"to = {name!r}: it is one of {known}")
     return found

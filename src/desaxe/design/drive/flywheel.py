@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..roots import root
+from ...support.roots import root
 from .cycle import Design
 from .panels import Array, Panels, resolved
 

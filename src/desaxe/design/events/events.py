@@ -7,8 +7,8 @@ from ...evaluation.evaluate import evaluate
 from ...mechanism.names import LENGTHS
 from ...runtime.request import as_number, check_common, with_known_inputs
 from ...support.answer import answering
+from ...support.roots import root
 from ..number_or_array import PLAIN, sum_of_three
-from ..roots import root
 from .closed_form import VELOCITIES, closed_form, placed, stroke_ends
 
 

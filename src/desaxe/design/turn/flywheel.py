@@ -16,7 +16,7 @@ import numpy as np
 
 from ...peaks.peak import peak
 from ...support.answer import answering
-from ..roots import root
+from ...support.roots import root
 from .turn import Array, Turn, extreme
 
 POINTS = 16384
