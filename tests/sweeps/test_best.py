@@ -5,6 +5,9 @@ import pytest
 import xarray as xr
 
 import desaxe as dx
+from desaxe.sweeps import best
+from desaxe.sweeps.kept import NAME, Found, Kept
+from desaxe.sweeps.sweep import NotStoredError
 from tests.ways import take_way
 
 INPUTS = {
@@ -57,12 +60,68 @@ def test_by_a_reduction(grid):
 
 def test_points_are_designs_where_theta_is_a_number(grid, tmp_path):
     inputs = {**INPUTS, "theta": INPUTS["theta"][7]}
-    best = dx.sweep(["V_C", "a_C"], best=4, by="V_C", store=tmp_path / "best.zarr", **inputs)
+    root = tmp_path / "best.zarr"
+    best = dx.sweep(["V_C", "a_C"], best=4, by="V_C", store=root, **inputs)
     flat = grid["V_C"].isel(theta=7).values.reshape(-1)
     np.testing.assert_array_equal(best["V_C"], np.sort(flat[~np.isnan(flat)])[::-1][:4])
-    assert xr.open_zarr(tmp_path / "best.zarr").identical(best.assign_attrs(state="complete").chunk())
-    with pytest.raises(FileExistsError, match="it is there already"):
-        dx.sweep("V_C", best=4, by="V_C", store=tmp_path / "best.zarr", **inputs)
+    assert xr.open_zarr(root).identical(best)
+    assert best.attrs["state"] == "complete"
+    before = {path: path.stat().st_mtime_ns for path in root.rglob("*")}
+    assert dx.sweep(["V_C", "a_C"], best=4, by="V_C", store=root, **inputs).identical(best)
+    assert {path: path.stat().st_mtime_ns for path in root.rglob("*")} == before
+    with pytest.raises(FileExistsError, match="best is 4 there and 5 here"):
+        dx.sweep(["V_C", "a_C"], best=5, by="V_C", store=root, **inputs)
+
+
+def files(root):
+    return {path.relative_to(root): path.read_bytes() for path in root.rglob("*") if path.is_file()}
+
+
+def test_a_search_that_was_stopped_goes_on(tmp_path, monkeypatch):
+    """The chunks that are done are not computed again, and the store has the same bytes."""
+    monkeypatch.setattr("desaxe.sweeps.layout.REDUCED", (400, 400))
+    whole, stopped = tmp_path / "whole.zarr", tmp_path / "stopped.zarr"
+    dx.sweep(NAMES, best=5, by="a_C", store=whole, threads=1, **INPUTS)
+    block, begun = best._best_of_block, []
+
+    def stop(task):
+        begun.append(task.number)
+        if len(begun) == 5:
+            raise KeyboardInterrupt
+        return block(task)
+
+    monkeypatch.setattr(best, "_best_of_block", stop)
+    with pytest.raises(KeyboardInterrupt):
+        dx.sweep(NAMES, best=5, by="a_C", store=stopped, threads=1, **INPUTS)
+    assert xr.open_zarr(stopped).attrs["state"] == "incomplete"
+    first, begun[:] = begun[:2], range(5, 50)  # others may have been done at that moment
+    dx.sweep(NAMES, best=5, by="a_C", store=stopped, threads=1, **INPUTS)
+    assert begun[45:]
+    assert not set(first) & set(begun[45:])
+    assert files(stopped) == files(whole)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["stopped.zarr", "whole.zarr"]
+
+
+def test_a_damaged_state_is_not_used(tmp_path):
+    kept = Kept(3, tmp_path)
+    kept.add(1, Found(np.array([4]), np.array([2.0]), np.array([0.1]), np.array([0]), 7, 9))
+    kept.close()
+    assert Kept(3, tmp_path).done.tolist() == [False, True, False]
+    assert Kept(3, tmp_path).points == 9
+    assert Kept(4, tmp_path).points == 0
+    path = tmp_path / NAME
+    path.write_bytes(path.read_bytes()[:-1] + b"x")
+    assert Kept(3, tmp_path).points == 0
+
+
+def test_what_cannot_be_stored_is_not_lost(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("desaxe.sweeps.store.write_whole", full)
+    with pytest.raises(NotStoredError, match=r"best\.zarr: not written: No space") as raised:
+        dx.sweep(NAMES, best=2, by="a_C", store=tmp_path / "best.zarr", **INPUTS)
+    assert raised.value.result.sizes["rank"] == 2
 
 
 def test_fewer_designs_than_asked_for():

@@ -47,25 +47,18 @@ def add_sweep(commands: Any) -> None:
 
 def _sweep(options: argparse.Namespace) -> int:
     from ..scenes.scene import scene
-    from ..scenes.stored import sweep_content
+    from ..sweeps.sweep import NotStoredError
 
     wanted = scene(options.scene)
     if options.store is None and wanted.content.store is None and options.best is None:
         raise UsageError("where to? give -o STORE.zarr, or [results] store in the scene")
     if options.netcdf is not None:
         _require_netcdf(options.netcdf, options.overwrite)
-    with _client(options) as client:
-        found = sweep_content(
-            wanted.content,
-            tell=print,
-            store=options.store,
-            chunks=_chunks(options.chunks),
-            memory=options.memory,
-            overwrite=options.overwrite,
-            client=client,
-            best=options.best,
-            by=_by(options.by),
-        )
+    try:
+        found = _swept(wanted.content, options)
+    except NotStoredError as error:
+        print(error.result.to_dataframe().to_string(), flush=True)
+        raise
     if options.best is not None:
         print(found.to_dataframe().to_string())
     place = options.store or (wanted.content.store if options.best is None else None)
@@ -75,6 +68,24 @@ def _sweep(options: argparse.Namespace) -> int:
     if options.netcdf is not None:
         _write_netcdf(found, options.netcdf, options.overwrite)
     return 0
+
+
+def _swept(content: Any, options: argparse.Namespace) -> Any:
+    """The sweep of a scene, on threads here or on a Dask cluster."""
+    from ..scenes.stored import sweep_content
+
+    with _client(options) as client:
+        return sweep_content(
+            content,
+            tell=print,
+            store=options.store,
+            chunks=_chunks(options.chunks),
+            memory=options.memory,
+            overwrite=options.overwrite,
+            client=client,
+            best=options.best,
+            by=_by(options.by),
+        )
 
 
 def _chunks(text: str | None) -> Any:

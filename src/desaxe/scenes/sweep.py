@@ -52,7 +52,7 @@ def sweep(
                whole); dimensions not named are whole
     memory     bytes, or text such as "200 MB", that the chunks in flight may take (256 MB without);
                the process itself takes some 200 MB more
-    overwrite  replace a store of another sweep
+    overwrite  replace a store of another sweep or with other chunks; one of this sweep is resumed
     client     a `distributed.Client`: the chunks are computed and written by its workers, which must
                see the same folder
     threads    chunks at once, as many as there are cores without; fewer where memory ends

@@ -12,5 +12,6 @@ store     the store: its skeleton, chunks that are whole or absent, what is left
 tasks     a chunk as a task that travels to a worker
 cluster   tasks in threads or on a Dask cluster, a bounded number at a time
 best      the best designs of a sweep, without a store
+kept      the state of such a search on disk
 meter     points, rate and time left on a terminal
 """

@@ -1,6 +1,7 @@
 """The best designs of a grid that is not stored: each chunk returns its best, which are merged."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing
 from math import prod
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -17,11 +18,14 @@ from ..evaluation.outer import Outer, outer_of
 from ..evaluation.reduce import Reduction, reduced_attributes, reduction_of
 from ..loads.resolve import without_loads
 from ..mechanism.spelling import did_you_mean
+from ..runtime.accuracy import accuracy_of
 from ..runtime.compiled_only import compiled_only
 from ..runtime.request import several
 from .cluster import Crew, run_all
+from .kept import Found, Kept
 from .layout import Layout, layout_of
 from .meter import Meter
+from .request import identity, versions
 from .tasks import check_version
 
 if TYPE_CHECKING:
@@ -57,6 +61,7 @@ class Search(NamedTuple):
     layout: Layout
     branch: int
     accuracy: Any
+    identity: dict[str, str]
 
     @property
     def points(self) -> int:
@@ -67,6 +72,7 @@ class Search(NamedTuple):
 class BestTask(NamedTuple):
     """A chunk of a search, as it travels: what to compute, and where it stands in the whole."""
 
+    number: int
     part: Part
     ranking: Ranking
     best: int
@@ -77,17 +83,6 @@ class BestTask(NamedTuple):
     threads: int
     version: str
     digest: str
-
-
-class Found(NamedTuple):
-    """The best designs of a chunk: flat indices, values, angles, number of points without a value."""
-
-    places: NDArray[np.int64]
-    values: Array
-    theta: Array
-    skipped: Array
-    feasible: int
-    points: int
 
 
 def ranking_of(name: str, kind: str | None, reduction: Reduction | None) -> Ranking:
@@ -119,8 +114,9 @@ def search_for(
     accuracy: Any,
     threads: int | None,
     memory: int | None,
+    count: int,
 ) -> Search:
-    """The search, checked. Where theta is an axis, a design is ranked by its extreme over theta."""
+    """The search for `count` designs, checked; over an axis theta a design is ranked by its extreme."""
     name, kind = _named(by, reduce)
     wanted = dict.fromkeys(((names,) if isinstance(names, str) else several(names)) + (name,))
     outer = outer_of(tuple(wanted), inputs, branch, threads, always=False)
@@ -138,12 +134,18 @@ def search_for(
     else:
         part = reduced_parts(alone, branch, accuracy, reduction, layout.chunk)[0]
     others = tuple(name for name in outer.names if name != ranking.name)
-    return Search(outer, others, ranking, reduction, part, layout, branch, accuracy)
+    own = [repr(part.key.form.own)] if part.key.form.own else []
+    told = identity(outer, branch, accuracy_of(accuracy), reduction, (), own, (count, *ranking[:2]))
+    return Search(outer, others, ranking, reduction, part, layout, branch, accuracy, told)
 
 
-def best_of_block(task: BestTask) -> Found:
-    """The best designs of a chunk."""
+def best_of_block(task: BestTask) -> tuple[int, Found]:
+    """The number of a chunk and its best designs."""
     check_version(task.version, task.digest)
+    return task.number, _best_of_block(task)
+
+
+def _best_of_block(task: BestTask) -> Found:
     arrays = task.part.compute(task.values, task.threads)
     name, kind, variable, smallest = task.ranking
     values = arrays[variable]
@@ -167,28 +169,36 @@ def best_of_block(task: BestTask) -> Found:
     return Found(places, flat[variable], angles, flat[f"{name}_skipped"], feasible, task.points)
 
 
-def best_designs(search: Search, count: int, crew: Crew, meter: Meter, inner: int) -> "xr.Dataset":
-    """Run a search; the best designs, the best one first."""
-    kept: Found | None = None
-    for found in run_all(crew, best_of_block, _tasks(search, count, inner), ahead=crew.size):
-        meter.add(found.points, True)
-        kept = found if kept is None else _merged(kept, found, count, search.ranking)
-    assert kept is not None
-    return _labelled(search, kept)
+def best_designs(
+    search: Search, count: int, crew: Crew, meter: Meter, inner: int, kept: Kept | None = None
+) -> "xr.Dataset":
+    """Run a search, or resume it from the chunks that are kept; return the best designs, the best first."""
+    kept = Kept(search.layout.chunks) if kept is None else kept
+    meter.add(kept.points, False)
+    with closing(kept):
+        tasks = _tasks(search, count, inner, kept.done)
+        for number, found in run_all(crew, best_of_block, tasks, ahead=crew.size):
+            meter.add(found.points, True)
+            best = found if kept.best is None else _merged(kept.best, found, count, search.ranking)
+            kept.add(number, best)
+    assert kept.best is not None
+    return _labelled(search, kept.best)
 
 
-def _tasks(search: Search, count: int, inner: int) -> Iterator[BestTask]:
-    from .request import versions
-
+def _tasks(search: Search, count: int, inner: int, done: Array) -> Iterator[BestTask]:
     layout, shape = search.layout, tuple(search.layout.sizes.values())
     scale = search.points // max(1, prod(shape))
-    for place in blocks_of(layout.sizes, layout.chunk):
+    for number, place in enumerate(blocks_of(layout.sizes, layout.chunk)):
+        if done[number]:
+            continue
         regions = slices_of(place, layout.sizes, layout.chunk)
         axes = search.outer.axes
         values = {n: axes[n][regions[n]] if n in regions else axes[n] for n in search.part.axes}
         points = scale * prod(part.stop - part.start for part in regions.values())
         starts = tuple(part.start for part in regions.values())
-        yield BestTask(search.part, search.ranking, count, values, starts, shape, points, inner, *versions())
+        yield BestTask(
+            number, search.part, search.ranking, count, values, starts, shape, points, inner, *versions()
+        )
 
 
 def _merged(one: Found, other: Found, count: int, ranking: Ranking) -> Found:
@@ -231,4 +241,5 @@ def _labelled(search: Search, kept: Found) -> "xr.Dataset":
     variables["feasible"] = ((), kept.feasible / search.points, total)
     found = labelled({}, scalars, search.branch, state, search.accuracy)
     ranks = ("rank", np.arange(1, kept.places.size + 1), {"units": "1", "long_name": "the best one is 1"})
+    found = found.assign_attrs(search.identity)
     return found.assign(variables).assign_coords(rank=ranks).set_coords([*design, *attained])

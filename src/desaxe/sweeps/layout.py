@@ -1,5 +1,6 @@
 """The chunks of a sweep, and the memory of a chunk while it is computed and written."""
 
+import json
 import re
 from collections.abc import Mapping
 from math import prod
@@ -37,6 +38,10 @@ class Layout(NamedTuple):
     def at_once(self, memory: int | None) -> int:
         """The number of chunks in flight that fit into this memory, at least one."""
         return max(1, (memory or DEFAULT_MEMORY) // self.in_flight)
+
+    def cut(self, chunk: str) -> "Layout":
+        """The same with the chunks of a store, as its attribute tells them."""
+        return self._replace(chunk={name: int(length) for name, length in json.loads(chunk).items()})
 
     def require_memory(self, memory: int | None) -> None:
         """MemoryError where a chunk takes more memory than is allowed."""

@@ -8,7 +8,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from ..support.files import remove_strays as remove_folders
 from ..support.files import require_writable
+from .best import Search
 from .layout import size_text
 from .prepared import Sweep
 from .request import IDENTITY, differences
@@ -48,8 +50,7 @@ def require_place(sweep: Sweep, root: Path, overwrite: bool, memory: int | None)
         sweep.layout.require_memory(memory)
         require_room(sweep, root, sweep.bytes)
         return None
-    chunk = {name: int(length) for name, length in json.loads(there[CHUNKS]).items()}
-    return sweep._replace(layout=sweep.layout._replace(chunk=chunk))
+    return sweep._replace(layout=sweep.layout.cut(there[CHUNKS]))
 
 
 def placed(sweep: Sweep, root: Path, overwrite: bool, memory: int | None) -> Sweep:
@@ -63,6 +64,29 @@ def placed(sweep: Sweep, root: Path, overwrite: bool, memory: int | None) -> Swe
     with free_for(root) as replace:
         create(root, sweep.template.assign_attrs({**told, STATE: INCOMPLETE}), sweep.layout.chunk, replace)
     return sweep
+
+
+def placed_search(search: Search, root: Path, overwrite: bool) -> Search:
+    """Create a store for the best designs, or check the existing one; return the search with its chunks."""
+    from .store import INCOMPLETE, STATE, create
+
+    told = {**search.identity, CHUNKS: json.dumps(search.layout.chunk)}
+    there = kept_at(root, told, overwrite)
+    if there is None:
+        import xarray
+
+        with free_for(root) as replace:
+            create(root, xarray.Dataset(attrs={**told, STATE: INCOMPLETE}), {}, replace)
+        return search
+    return search._replace(layout=search.layout.cut(there[CHUNKS]))
+
+
+def clear(root: Path) -> None:
+    """Remove what killed writers left, in a store and beside it."""
+    from .store import remove_strays
+
+    remove_strays(root)
+    remove_folders(root.parent)
 
 
 @contextmanager

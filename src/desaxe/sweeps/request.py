@@ -24,10 +24,12 @@ def identity(
     reduction: Reduction | None,
     peaks: Sequence[PeakRequest],
     own: Sequence[str],
+    best: tuple[int, str, str] | None = None,
 ) -> dict[str, str]:
     """The attributes that a store of this sweep has: no time, path or host is among them.
 
-    `own` tells the definitions of quantities that are not the library's.
+    `own` tells the definitions of quantities that are not the library's, `best` how many designs are
+    searched, by which quantity and kind.
     """
     request = {
         "names": list(outer.names),
@@ -38,6 +40,8 @@ def identity(
         "accuracy": accuracy,
         "inputs": {name: _input(array) for name, array in outer.axes.items()},
     }
+    if best is not None:
+        request["best"], request["by"] = best[0], list(best[1:])
     own = text_of(outer.names)
     if own:
         request["quantities"] = json.loads(own)

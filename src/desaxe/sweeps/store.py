@@ -51,10 +51,11 @@ class DurableStore(LocalStore):
 
     def set_sync(self, key: str, value: Buffer) -> None:
         """Write a file, in the calling thread."""
-        _write_durably(Path(self.root) / key, value.to_bytes())
+        write_durably(Path(self.root) / key, value.to_bytes())
 
 
-def _write_durably(path: Path, data: bytes) -> None:
+def write_durably(path: Path, data: bytes) -> None:
+    """Write a file that appears whole, and stays after a power failure."""
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_name(f"{path.name}.{uuid.uuid4().hex}{PARTIAL}")
     try:
@@ -117,13 +118,10 @@ def create(root: Path, template: "xr.Dataset", chunk: Mapping[str, int], replace
         sync(root.parent)
 
 
-def write_whole(root: Path, dataset: "xr.Dataset", replace: bool) -> None:
-    """Write a Dataset in memory as a store that is complete from the start."""
-    there = root.exists()
-    if there and attributes(root) is None:
-        raise FileExistsError(f"{root}: this is no Zarr store; it is left as it is")
+def write_whole(root: Path, dataset: "xr.Dataset") -> None:
+    """Replace a store by a Dataset in memory, as one that is complete."""
     sizes = {str(name): max(1, size) for name, size in dataset.sizes.items()}
-    create(root, dataset.assign_attrs({STATE: COMPLETE}), sizes, replace and there)
+    create(root, dataset.assign_attrs({STATE: COMPLETE}), sizes, True)
 
 
 def attributes(root: Path) -> dict[str, Any] | None:
@@ -141,7 +139,7 @@ def set_state(root: Path, state: str) -> None:
     metadata = json.loads(path.read_text(encoding="utf-8"))
     if metadata["attributes"].get(STATE) != state:
         metadata["attributes"][STATE] = state
-        _write_durably(path, json.dumps(metadata, indent=2).encode())
+        write_durably(path, json.dumps(metadata, indent=2).encode())
         sync(root)
 
 

@@ -18,9 +18,10 @@ from .best import Search, best_designs, search_for
 from .cluster import Crew, cluster, run_all
 from .cluster import threads as thread_crew
 from .estimate import seconds_of, told
+from .kept import Kept
 from .layout import Layout, bytes_of
 from .meter import Meter, Watch
-from .place import free_at, placed, require_room
+from .place import CHUNKS, clear, free_at, placed, placed_search, require_room
 from .prepared import Sweep, prepared
 from .tasks import Output, Task, compute, is_absent, run, values_for
 
@@ -47,7 +48,7 @@ def stored_sweep(sweep: Sweep, store: str | PathLike[str], overwrite: bool, way:
     root = Path(os.path.abspath(store))
     sweep = placed(sweep, root, overwrite, way.memory)
     with held(root):
-        remove_strays(root)
+        clear(root)
         absent = _absent_bytes(sweep, root)
         if absent:
             sweep.layout.require_memory(way.memory)
@@ -134,23 +135,39 @@ def unstored_sweep(sweep: Sweep, way: Way) -> "xr.Dataset":
 
 
 def best_sweep(
-    search: Search,
-    count: int,
-    store: str | PathLike[str] | None,
-    overwrite: bool,
-    way: Way,
+    search: Search, count: int, store: str | PathLike[str] | None, overwrite: bool, way: Way
 ) -> "xr.Dataset":
-    """Run a search for the best designs; they are written to a store where there is one to write to."""
-    from .store import write_whole
+    """Run a search for the best designs, or resume the one whose store it is; the Dataset."""
+    if store is None:
+        return _searched(search, count, way, None)
+    from .store import COMPLETE, STATE, attributes, held, open_store, write_whole
 
-    root = None if store is None else Path(os.path.abspath(store))
-    if root is not None and root.exists() and not overwrite:
-        raise FileExistsError(f"{root}: it is there already; overwrite=True replaces it")
+    root = Path(os.path.abspath(store))
+    search = placed_search(search, root, overwrite)
+    with held(root):
+        clear(root)
+        there = attributes(root) or {}
+        if there.get(STATE) != COMPLETE:
+            found = _searched(search, count, way, root)
+            try:
+                write_whole(root, found.assign_attrs({CHUNKS: there[CHUNKS]}))
+            except OSError as error:
+                raise NotStoredError(root, error, found) from error
+    return open_store(root)
+
+
+def _searched(search: Search, count: int, way: Way, root: Path | None) -> "xr.Dataset":
     with closing(Meter(search.points, way.watch)) as meter, _crew(search.layout, way) as crew:
-        found = best_designs(search, count, crew, meter, _inner(crew, way))
-    if root is not None:
-        write_whole(root, found, overwrite)
-    return found
+        kept = Kept(search.layout.chunks, root)
+        return best_designs(search, count, crew, meter, _inner(crew, way), kept)
+
+
+class NotStoredError(OSError):
+    """The best designs were found and could not be stored; `result` has them."""
+
+    def __init__(self, root: Path, error: OSError, result: "xr.Dataset") -> None:
+        super().__init__(f"{root}: not written: {error.strerror or error}")
+        self.result = result
 
 
 def _absent_bytes(sweep: Sweep, root: Path) -> int:
@@ -188,7 +205,7 @@ def run_sweep(
         count = _count(best, by)
         if peaks:
             raise TypeError("best= and peaks=: give one of them")
-        search = search_for(names, inputs, by, reduce, branch, accuracy, threads, room)
+        search = search_for(names, inputs, by, reduce, branch, accuracy, threads, room, count)
         return best_sweep(search, count, store, overwrite, way)
     if store is None and reduce is None and (names or not peaks):
         raise TypeError('sweep: store= is missing: where the grid goes, such as "press.zarr"')
