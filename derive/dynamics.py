@@ -171,7 +171,7 @@ def _define_friction(sheet: Sheet) -> None:
                  meaning="friction of the guide on the slider along Y")  # fmt: skip
     sheet.define("one_balance", select(alone, 0, nan), rigid=True)
     balance = select(lt(wedge, 1), select(lt(wedge, -1), 6, 0), 5)
-    sheet.define("force_status", assembled(balance), unit=NONE, meaning="status where forces are asked for")
+    sheet.define("force_status", assembled(balance), unit=NONE, meaning="status of a request for forces")
 
 
 def _define_joints(sheet: Sheet) -> None:

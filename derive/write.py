@@ -142,7 +142,7 @@ def _program(program: Program, name: str, what: str, digest: str) -> str:
 def _index(derivation: Derivation, digest: str) -> str:
     notes = derivation.program.notes
     rows = [f'    "{name}": {tuple(notes[name])!r},' for name in derivation.names]
-    what = "Every name that can be asked for: its unit, meaning and paper equation."
+    what = "Every name with its unit, meaning and paper equation."
     banner = _banner(what, digest, f"{len(rows)} names")
     return f'"""{banner}"""\n\nNAMES = {{\n' + "\n".join(rows) + "\n}\n"
 

@@ -241,8 +241,8 @@ def frozen(shape):
 
 
 BAD_OUTS = [
-    ("V_C", np.empty(4), ValueError, r"out= for V_C: an array of shape \(3,\) is wanted, got \(4,\)"),
-    ("V_C", np.empty((1, 3)), ValueError, r"shape \(3,\) is wanted, got \(1, 3\)"),
+    ("V_C", np.empty(4), ValueError, r"out= for V_C: expected an array of shape \(3,\), got \(4,\)"),
+    ("V_C", np.empty((1, 3)), ValueError, r"shape \(3,\), got \(1, 3\)"),
     ("V_C", [0.0] * 3, ValueError, "an array of shape"),
     ("V_C", np.empty(3, int), TypeError, "out= for V_C: int64 cannot hold float64"),
     ("status", np.empty(3, bool), TypeError, "out= for status: bool cannot hold int8"),

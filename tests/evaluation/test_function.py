@@ -119,7 +119,7 @@ def test_keywords_in_any_order(f):
         (lambda: f(theta=0.3), "ec is missing"),
         (lambda: f(0.3, 0.01, theta=1.0), "theta was given twice"),
         (lambda: f(0.3, BC=1.0), "no input 'BC'"),
-        (lambda: f(0.3, 1j), "ec: real numbers are wanted"),
+        (lambda: f(0.3, 1j), "ec: expected real numbers"),
         (lambda: dx.function("a_C", ec=0.0, AB=[1.0, 2.0], BC=3.0, omega0=1.0), "AB is fixed"),
         (lambda: dx.function("a_C", inputs=("ec",), ec=0.0, **SIZES), "it cannot be fixed too"),
         (lambda: dx.function("a_C", ec=0.0, AB=0.1, BC=0.3), "omega0 is missing"),
@@ -144,7 +144,7 @@ def test_out(f, one):
     found = f(theta, 0.01, out=outs)
     assert found[1] is outs["a_C"]
     assert np.array_equal(outs["a_C"], f(theta, 0.01)[1])
-    with pytest.raises(ValueError, match="3 arrays are wanted, got 1"):
+    with pytest.raises(ValueError, match="expected 3 arrays, got 1"):
         f(theta, 0.01, out=place)
 
 

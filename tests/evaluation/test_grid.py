@@ -101,7 +101,7 @@ def test_out_needs_no_labels():
     assert answer["a_C"] is place
     labelled = dx.grid("a_C", theta=THETA, ec=[0.0, 0.1], **MACHINE)["a_C"]
     np.testing.assert_allclose(place, labelled, rtol=1e-13)  # one may be plain Python, the other a kernel
-    with pytest.raises(ValueError, match=r"shape \(7, 2\) is wanted"):
+    with pytest.raises(ValueError, match=r"expected an array of shape \(7, 2\)"):
         dx.grid("a_C", theta=THETA, ec=[0.0, 0.1], out=np.empty((2, 7)), **MACHINE)
 
 

@@ -152,8 +152,8 @@ def test_small_grids_compile_nothing(monkeypatch):
         ({"theta": []}, "nothing is taken of theta"),
         ({"theta": "max", "ec": "max"}, "one axis and what is taken of it"),
         ("theta", "one axis and what is taken of it"),
-        ({"theta": np.max}, "the name of a reduction or a list of names is wanted, of max, min,"),
-        ({"theta": 3}, "reduce: theta = 3: the name of a reduction"),
+        ({"theta": np.max}, "expected the name of a reduction or a list of names, of max, min,"),
+        ({"theta": 3}, "reduce: theta = 3: expected the name of a reduction"),
     ],
 )
 def test_complaints(reduce, message):
@@ -163,5 +163,5 @@ def test_complaints(reduce, message):
 
 
 def test_a_status_is_not_reduced():
-    with pytest.raises(ValueError, match="leave it out, each name tells how many points it skipped"):
+    with pytest.raises(ValueError, match="leave it out; each name has a count of skipped points"):
         dx.grid(["a_C", "status"], reduce={"theta": "max"}, theta=[0, 1], ec=0, BC=0.35, **MACHINE)

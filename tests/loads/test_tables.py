@@ -40,7 +40,7 @@ def test_units():
     load = dx.over_theta(["0 deg", "90 deg", "180 deg"], ["0 kN", "-2 kN", "0.1 kN"], kind="linear")
     assert load(np.pi / 2) == -2000.0
     torque = dx.over_theta([0.0, 1.0], ["1 N*m", "2 N*m"], kind="step")
-    with pytest.raises(ValueError, match=r"F_Y: the load is in N\*m, N is wanted"):
+    with pytest.raises(ValueError, match=r"F_Y: the load is in N\*m, expected N"):
         dx.evaluate("T_in", theta=0.0, F_Y=torque, ec=0.0, AB=0.1, BC=0.3)
 
 
@@ -82,7 +82,7 @@ def test_files(tmp_path):
     path.write_text("Y out in\n10 1 2\n20 3 4\n", "utf-8")
     assert dx.over_Y.read(path, Y="mm", value="N") == dx.over_Y(["10 mm", "20 mm"], ["1 N", "3 N"], [2, 4])
     path.write_text("0, 1\n1, one\n", "utf-8")
-    with pytest.raises(ValueError, match=r"press.csv, line 2: 2 or more numbers"):
+    with pytest.raises(ValueError, match=r"press.csv, line 2: expected 2 or more numbers"):
         dx.over_theta.read(path)
     path.write_text("0, 1\n9, 2\n", "utf-8")
     with pytest.raises(ValueError, match=r"press.csv: over_theta: the angles go over 9 rad"):

@@ -103,12 +103,12 @@ def test_a_quantity_that_was_meant(word, name):
 def test_what_is_no_name_is_told(names):
     point = {"theta": 1.0, "ec": 0.0, "omega0": 1.0, **SIZES}
     for options in ({}, {"quality": True}):
-        with pytest.raises(TypeError, match=r"the name of a quantity or a list of names is wanted"):
+        with pytest.raises(TypeError, match=r"expected the name of a quantity or a list of names"):
             dx.evaluate(names, **point, **options)
-    with pytest.raises(TypeError, match=r"the name of a quantity or a list of names is wanted"):
+    with pytest.raises(TypeError, match=r"expected the name of a quantity or a list of names"):
         dx.simulate(**RUN, m_slider=1.0, names=names)
 
 
 def test_a_peak_is_that_of_one_name():
-    with pytest.raises(TypeError, match=r"peak: one name is wanted, such as 'a_C', got \['a_C'\]"):
+    with pytest.raises(TypeError, match=r"peak: expected one name, such as 'a_C', got \['a_C'\]"):
         dx.peak(["a_C"], ec=0.0, omega0=1.0, **SIZES)

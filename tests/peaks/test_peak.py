@@ -192,7 +192,7 @@ def test_a_state_has_a_peak_too():
     [
         ({"kind": "largest"}, "kind = 'largest': it is one of absmax, max, min"),
         ({"theta": (1.0, 0.0)}, r"theta = \(1.0, 0.0\)"),
-        ({"theta": 1.0}, r"theta = 1.0: a range \(lower end, upper end\) is wanted"),
+        ({"theta": 1.0}, r"theta = 1.0: expected a range \(lower end, upper end\)"),
         ({"AB": -1.0}, "AB = -1.0"),
     ],
 )

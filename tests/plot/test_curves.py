@@ -161,7 +161,7 @@ def test_polar_on_given_axes():
     dataset = dx.grid("T_in", ec=[0, 0.01], **PRESS)
     axes = figure.add_subplot(projection="polar")
     assert polar(dataset, "T_in", ax=axes) == list(axes.lines)[:2]
-    with pytest.raises(ValueError, match="polar Axes are wanted"):
+    with pytest.raises(ValueError, match="expected polar Axes"):
         polar(dataset, "T_in", ax=figure.add_subplot())
     with pytest.raises(ValueError, match="two components of a vector, got 1"):
         polar(dataset, ("T_in",))

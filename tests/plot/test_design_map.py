@@ -98,7 +98,7 @@ def test_all_or_nothing_feasible():
     [
         ({"name": "V_C"}, "no 'V_C' in this dataset"),
         ({"name": "stroke", "x": "theta"}, "stroke has no dimension 'theta'"),
-        ({"name": "stroke", "x": "ec", "y": "ec"}, "two dimensions are wanted"),
+        ({"name": "stroke", "x": "ec", "y": "ec"}, "expected two dimensions"),
     ],
 )
 def test_complaints(plane, options, words):

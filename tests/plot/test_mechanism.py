@@ -111,7 +111,7 @@ def test_complaints(tmp_path):
         animate(dataset.isel(theta=0, ec=0))
     with pytest.raises(ValueError, match="the dataset has no BC"):
         animate(dataset.drop_vars("BC"))
-    with pytest.raises(ValueError, match="two Axes are wanted"):
+    with pytest.raises(ValueError, match="expected two Axes"):
         animate(dataset.isel(ec=0), "a_C", ax=Figure().add_subplot())
     movie = animate(dataset.isel(ec=0), frames=2)
     with pytest.raises(ValueError, match=r"written as \.gif or \.html"):

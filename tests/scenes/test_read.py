@@ -251,7 +251,7 @@ def test_mistake(mistake):
 
 
 def test_nothing_asked_for():
-    with pytest.raises(SceneError, match="nothing is asked for"):
+    with pytest.raises(SceneError, match="the scene requests nothing"):
         dx.scene({"mechanism": {"AB": 1}})
     check = {"at": {"theta": 1, "ec": 0}, "printed": {"Y": 1}}
     data = {**changed("outputs", []), "check": [check], "results": {"data": "a.nc"}}

@@ -154,7 +154,7 @@ def test_a_torque_function(torque):
     [
         (lambda t, theta, omega: dx.evaluate("Y", theta=theta, ec=0.0, AB=1.0, BC=2.0), "cannot"),
         (lambda t, theta, omega: (t, theta), "torque: the function gives"),
-        (lambda t, theta: 0.0, "torque: a function of (t, theta, omega) is wanted"),
+        (lambda t, theta: 0.0, "torque: expected a function of (t, theta, omega)"),
     ],
 )
 def test_a_torque_that_numba_cannot_compile(torque, message):
@@ -179,7 +179,7 @@ def test_a_torque_that_numba_cannot_compile(torque, message):
         ),
         ({"torque": [1.0, 2.0]}, ValueError, "the shapes do not broadcast together"),
         ({"torque": ["3 N"] * 4}, ValueError, "torque = '3 N': it must be a quantity in N*m"),
-        ({"torque": [None] * 4}, TypeError, "torque: real numbers are wanted"),
+        ({"torque": [None] * 4}, TypeError, "torque: expected real numbers"),
         ({"omega_start": math.inf}, ValueError, "omega_start = inf: it must be a finite number"),
         ({"m_slider": [-1.0] * 4}, ValueError, "m_slider: every value is bad"),
         ({"threads": 0}, ValueError, "threads = 0: a whole number, at least 1"),

@@ -169,7 +169,7 @@ def test_a_sweep_of_numbers_alone_is_one_point(tmp_path):
         ),
         ({"theta": []}, ValueError, "theta: a sweep needs at least one value"),
         ({"chunks": {"omega0": 2}}, ValueError, "'omega0' is no dimension"),
-        ({"client": "tcp://nowhere"}, TypeError, "a distributed.Client is wanted"),
+        ({"client": "tcp://nowhere"}, TypeError, "expected a distributed.Client"),
     ],
 )
 def test_what_cannot_be_is_refused_and_nothing_is_written(tmp_path, options, error, words):

@@ -23,7 +23,7 @@ MARKERS = {"desaxe": "o", "textbook": "D", "digits": "s"}
 ORDER = {"digits": 3, "textbook": 3, "desaxe": 4}  # what is drawn over what
 TITLE = (
     f"Worst error over time per point, for {', '.join(NAMES)}. Lower left is better; "
-    "the grey line joins those whom nobody beats."
+    "the grey line joins those that no other dominates."
 )
 LEAST, ABOVE = 1e-4, 1e3  # of the error axis: its lower end, and what is above its top
 FONT = 9.0

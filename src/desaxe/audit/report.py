@@ -149,7 +149,7 @@ def _dominated(found: Audit) -> Iterator[str]:
             f"{name} (by {min(beaten_by(found, name, measure), key=found.ratios.__getitem__)})"
             for name in beaten
         ]
-        yield f"* {measure}: {'; '.join(by) or 'nobody'}"
+        yield f"* {measure}: {'; '.join(by) or 'none'}"
 
 
 def _times(found: Audit, name: str) -> str:

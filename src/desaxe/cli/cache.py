@@ -13,7 +13,7 @@ grows beyond its limit ($DESAXE_CACHE_MB, 256 by default). Whatever is removed i
 
 examples:
   desaxe cache             where it is and what is in it
-  desaxe cache verify      exit code 1 where a file is damaged, or could have been written by somebody else
+  desaxe cache verify      exit code 1 where a file is damaged, or may have been written by another user
   desaxe cache trim        remove what is damaged, of another machine or version, or beyond the limit
   desaxe cache clear       remove all of it"""
 
@@ -26,7 +26,7 @@ def add_cache(commands: Any) -> None:
         nargs="?",
         default="list",
         choices=("list", "verify", "trim", "clear"),
-        help="list by default",
+        help="action (default: list)",
     )
 
 

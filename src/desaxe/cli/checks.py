@@ -97,7 +97,7 @@ def _audit(options: argparse.Namespace) -> int:
 
 
 _DOCTOR = """\
-Exit code 0 where desaxe can be used, 1 where not. Compiles one small kernel, which takes a second.
+Exit code: 0 if desaxe is usable, else 1. Compiles one small kernel, which takes a second.
 
 example:
   desaxe doctor"""

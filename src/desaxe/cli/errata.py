@@ -15,19 +15,21 @@ examples:
   desaxe errata --wrong --document A  what is wrong in one paper
   desaxe errata --verdict sign        those with a wrong sign
   desaxe errata --equations           only the wrong numbered equations, a line each
-  desaxe errata --markdown            everything, or what was asked for, as a page in Markdown"""
+  desaxe errata --markdown            the selected entries as a page in Markdown"""
 
 
 def add_errata(commands: Any) -> None:
     """Add `desaxe errata`."""
     parser = add_command(
-        commands, "errata", "what the papers print, and what of it is right", _ERRATA, _errata
+        commands, "errata", "the papers' printed equations and numbers, with verdicts", _ERRATA, _errata
     )
     parser.add_argument(
         "words", metavar="WORD", nargs="*", help="an id, an equation (eq20), or words to find"
     )
     parser.add_argument("--document", metavar="LETTER", type=str.upper, help="the paper: A, B or C")
-    parser.add_argument("--verdict", metavar="WORD", help="such as correct, sign, typo, wrong claim")
+    parser.add_argument(
+        "--verdict", metavar="WORD", help="one verdict, such as correct, sign, typo, wrong claim"
+    )
     parser.add_argument("--wrong", action="store_true", help="only what needs a correction")
     parser.add_argument("--latex", action="store_true", help="equations in LaTeX too")
     form = parser.add_mutually_exclusive_group()

@@ -28,12 +28,24 @@ def add_fit(commands: Any) -> None:
     parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
     parser.add_argument("data", metavar="DATA", help="path of a CSV file")
     parser.add_argument(
-        "--over", metavar="NAME[=START|=LOW:HIGH]", nargs="+", required=True, help="the unknowns"
+        "--over",
+        metavar="NAME[=START|=LOW:HIGH]",
+        nargs="+",
+        required=True,
+        help="the unknowns, with a start or a range",
     )
-    parser.add_argument("--sigma", metavar="NAME=VALUE", nargs="+", default=(), help="standard deviations")
-    parser.add_argument("--nuisance", metavar="NAME", nargs="+", default=(), help="offset, biases, scales")
-    parser.add_argument("--loss", default="linear", help="linear, soft_l1, huber, cauchy or arctan")
-    parser.add_argument("--picture", metavar="FILE", help="draw measurements and fit")
+    parser.add_argument(
+        "--sigma", metavar="NAME=VALUE", nargs="+", default=(), help="standard deviations of quantities"
+    )
+    parser.add_argument(
+        "--nuisance",
+        metavar="NAME",
+        nargs="+",
+        default=(),
+        help="errors of instruments: offset, biases, scales",
+    )
+    parser.add_argument("--loss", default="linear", help="linear (default), soft_l1, huber, cauchy or arctan")
+    parser.add_argument("--picture", metavar="FILE", help="write a picture of measurements and fit")
     parser.add_argument(
         "--overwrite", action="store_true", help="replace a picture that desaxe did not write"
     )
@@ -84,7 +96,7 @@ def _unknown(word: str, numbers: dict[str, Any]) -> tuple[str, Any]:
 def _pair(option: str, word: str) -> tuple[str, Any]:
     name, equals, value = word.partition("=")
     if not equals:
-        raise UsageError(f"{option} {word}: NAME=VALUE is wanted")
+        raise UsageError(f"{option} {word}: expected NAME=VALUE")
     return name, value
 
 

@@ -48,7 +48,7 @@ def add_point(commands: Any) -> None:
         "words", nargs="*", metavar="NAME | INPUT=VALUE", help="quantities (V_C a_C, or V_C,a_C) and inputs"
     )
     parser.add_argument("--json", action="store_true", help="print JSON")
-    parser.add_argument("--list", action="store_true", help="print the quantities that can be asked for")
+    parser.add_argument("--list", action="store_true", help="print all quantities with units and meanings")
     parser.add_argument("--quality", action="store_true", help="print conditions and digits as well")
 
 

@@ -62,7 +62,7 @@ def _scene(options: argparse.Namespace) -> int:
 
 _SCENE = """\
 examples:
-  desaxe scene my_press.toml                     says what is wrong with it, or nothing
+  desaxe scene my_press.toml                     prints what is wrong with it, or nothing
   desaxe scene --schema > scene.schema.json      for editors: #:schema scene.schema.json"""
 
 
@@ -135,9 +135,11 @@ def add_compile(commands: Any) -> None:
     parser = add_command(commands, "compile", "write a scene as source code of its own", _COMPILE, _compile)
     parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
     parser.add_argument("-o", metavar="PLACE", dest="place", required=True, help="the file, or its folder")
-    parser.add_argument("--to", metavar="LANGUAGE", default="numba", help="by default numba")
+    parser.add_argument("--to", metavar="LANGUAGE", default="numba", help="language (default: numba)")
     parser.add_argument(
-        "--no-libm", action="store_true", help="c: with elementary functions of its own, for bare metal"
+        "--no-libm",
+        action="store_true",
+        help="C without libm: elementary functions of its own, for bare metal",
     )
     parser.add_argument(
         "--check", action="store_true", help="write nothing; exit 1 and show a diff if files are not fresh"
@@ -164,14 +166,14 @@ examples:
 
 def add_explore(commands: Any) -> None:
     """Add `desaxe explore`."""
-    what = "write a page on which the designs of a scene can be looked at and changed"
+    what = "write an interactive HTML page of the designs of a scene"
     parser = add_command(commands, "explore", what, _EXPLORE, _explore)
     parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
     parser.add_argument(
-        "-o", metavar="FILE", dest="file", default="explorer.html", help="explorer.html without"
+        "-o", metavar="FILE", dest="file", default="explorer.html", help="the page (default: explorer.html)"
     )
     parser.add_argument(
-        "--names", metavar="NAMES", help="the quantities that the page knows, beside the scene's"
+        "--names", metavar="NAMES", help="further quantities of the page, separated by commas"
     )
     add_overwrite(parser)
 

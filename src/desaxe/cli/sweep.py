@@ -31,18 +31,20 @@ def add_sweep(commands: Any) -> None:
     """Add `desaxe sweep`."""
     parser = add_command(commands, "sweep", "a grid of any size into a Zarr store, resumable", _SWEEP, _sweep)
     parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
-    parser.add_argument("-o", metavar="STORE", dest="store", help="the store; [results] store without")
+    parser.add_argument(
+        "-o", metavar="STORE", dest="store", help="path of the store (default: that of [results])"
+    )
     parser.add_argument("--chunks", metavar="CHUNKS", help="auto, a number, or theta=1000,ec=10")
-    parser.add_argument("--memory", metavar="SIZE", help='of the chunks in flight, such as "200 MB"')
+    parser.add_argument("--memory", metavar="SIZE", help='memory for the chunks in flight, such as "200 MB"')
     parser.add_argument(
         "--overwrite", action="store_true", help="replace a store of another sweep, or a file"
     )
     parser.add_argument("--netcdf", metavar="FILE", help="write it as NetCDF too, if it fits into memory")
     parser.add_argument("--best", metavar="K", type=int, help="the best K designs instead of the grid")
-    parser.add_argument("--by", metavar="NAME", help="what they are ranked by: a_C, or absmax:a_C")
+    parser.add_argument("--by", metavar="NAME", help="criterion of --best: a_C, or absmax:a_C")
     where = parser.add_mutually_exclusive_group()
     where.add_argument("--workers", metavar="N", type=int, help="processes on this machine")
-    where.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster")
+    where.add_argument("--scheduler", metavar="ADDRESS", help="address of a Dask scheduler")
 
 
 def _sweep(options: argparse.Namespace) -> int:

@@ -248,7 +248,7 @@ class _Parser:
             self.source.refuse(max(0, token.at - 1), token.at, "the expression ends too early")
         before = self.tokens[self.place - 1].kind if self.place else ""
         wanted = "a sign such as +" if before in ("number", "name") or other else "a number, a name or ("
-        self.source.refuse(token.at, token.end, f"unexpected {token.text!r}: {wanted}{other} is wanted here")
+        self.source.refuse(token.at, token.end, f"unexpected {token.text!r}: expected {wanted}{other}")
 
 
 def _joined(op: str, left: Node, right: Node) -> Node:

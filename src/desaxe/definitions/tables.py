@@ -40,16 +40,16 @@ def _mentions(expression: str, names: Mapping[str, Any], own: str) -> bool:
 
 def _entry(name: str, table: Any) -> Entry:
     if not isinstance(table, Mapping):
-        raise ValueError(f"quantities.{name} = {table!r}: a table with an expression is wanted")
+        raise ValueError(f"quantities.{name} = {table!r}: expected a table with an expression")
     wrong = [key for key in table if key not in KEYS]
     if wrong:
         raise ValueError(f"quantities.{name}.{wrong[0]}: unknown key; there are {', '.join(KEYS)}")
     expression, constants = table.get("expression"), table.get("constants", {})
     if not isinstance(expression, str):
-        raise ValueError(f"quantities.{name}.expression = {expression!r}: a text is wanted")
+        raise ValueError(f"quantities.{name}.expression = {expression!r}: expected a text")
     if not isinstance(constants, Mapping):
         raise ValueError(
-            f"quantities.{name}.constants = {constants!r}: a table such as {{f = 0.08}} is wanted"
+            f"quantities.{name}.constants = {constants!r}: expected a table such as {{f = 0.08}}"
         )
     return Entry(name, expression, table.get("unit"), table.get("meaning", ""), dict(constants))
 

@@ -54,7 +54,7 @@ def constant_value(name: str, value: Any) -> tuple[float, Unit]:
     elif hasattr(value, "magnitude") and hasattr(value, "to_root_units"):
         number, unit = _from_pint(value)
     elif isinstance(value, bool) or not (isinstance(value, (int, float)) or hasattr(value, "is_integer")):
-        raise TypeError(f"constant {name} = {value!r}: a number or a text such as '1 mm' is wanted")
+        raise TypeError(f"constant {name} = {value!r}: expected a number or a text such as '1 mm'")
     else:
         number, unit = _as_float(value), NONE
     if not isfinite(number):
@@ -126,7 +126,7 @@ def _from_pint(quantity: Any) -> tuple[float, Unit]:
     unit, factor = NONE, 1.0
     for base, power in dict(root.units._units).items():
         if base not in _BASES or power != int(power):
-            raise ValueError(f"constant {quantity}: a unit of m, s, kg and rad is wanted")
+            raise ValueError(f"constant {quantity}: expected a unit of m, s, kg and rad")
         unit = _times(unit, _BASES[base], int(power))
         factor *= 1e-3**power if base == "gram" else 1.0
     return float(root.magnitude) * factor, unit

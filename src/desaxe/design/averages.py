@@ -45,7 +45,7 @@ def angle_of(angle: Any) -> float:
     """The angle of a measure in radians; ValueError or TypeError where it is none."""
     number = as_number("theta", angle, ("theta",), ("at",))
     if number is None:
-        raise TypeError(f"at = {angle!r}: one angle is wanted, such as '60 deg'")
+        raise TypeError(f"at = {angle!r}: expected one angle, such as '60 deg'")
     return number
 
 

@@ -80,9 +80,9 @@ def _input(name: str, value: Any) -> Array:
     try:
         array = np.asarray(value)
     except (ValueError, TypeError, OverflowError):  # rows of different lengths
-        raise TypeError(f"{name} = {shown(value)}: a number or an array of numbers is wanted") from None
+        raise TypeError(f"{name} = {shown(value)}: expected a number or an array of numbers") from None
     if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name} = {shown(value)}: real numbers are wanted, got {array.dtype}")
+        raise TypeError(f"{name} = {shown(value)}: expected real numbers, got {array.dtype}")
     if not array.ndim and not np.isfinite(array):
         raise ValueError(f"{name} = {shown(value)}: it must be a finite number")
     return array.astype(np.float64, copy=False)

@@ -42,7 +42,7 @@ LAST_BIT = 2.0**-52
 SMALLEST = 2.0**-1073
 LITTLE = 0.1  # of a negative end: an upper end so small is probably a tolerance
 TOLERANCE = "a value and its tolerance are dx.plus_minus(value, tolerance)"
-ENDS = f'a number or a pair (low, high) is wanted, such as ("9.9 mm", "10.1 mm"); {TOLERANCE}'
+ENDS = f'expected a number or a pair (low, high), such as ("9.9 mm", "10.1 mm"); {TOLERANCE}'
 
 
 @answering
@@ -88,9 +88,9 @@ def enclose(
     check_inputs("enclose", loads, (*INPUTS, "branch", "rtol", "boxes"))
     quantity(name, omega is not None)
     if name == "status":
-        raise ValueError("status is no real number: the status of enclose tells it")
+        raise ValueError("status is no real number: see `status` of the result")
     if not real_number("rtol", rtol) > 0.0:
-        raise ValueError(f"rtol = {rtol}: more than nothing is wanted")
+        raise ValueError(f"rtol = {rtol}: expected a number above 0")
     whole_number("boxes", boxes, 1, 10**7)
     given = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
     check_common(given, branch)
@@ -185,7 +185,7 @@ def _interval(name: str, value: Any, wanted: str) -> Interval:
     low, high = (as_number(name, end, (name,), (wanted,)) for end in (first, last))
     if low is None or high is None or low > high:
         raise ValueError(
-            f"{name} = ({first}, {last}): two numbers are wanted, the lower one first; {TOLERANCE}"
+            f"{name} = ({first}, {last}): expected two numbers, the lower one first; {TOLERANCE}"
         )
     if not isinstance(value, Between) and name != "theta" and 0.0 < high <= LITTLE * -low:
         warn(

@@ -74,13 +74,13 @@ def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str])
     try:
         array = np.asarray(value)
     except (ValueError, TypeError, OverflowError):  # rows of different lengths
-        raise TypeError(f"{name} = {shown(value)}: a number or an array of numbers is wanted") from None
+        raise TypeError(f"{name} = {shown(value)}: expected a number or an array of numbers") from None
     if array.dtype.kind == "U":
         from ..mechanism.units import in_si
 
         array = np.array([in_si(name, text) for text in array.reshape(-1).tolist()]).reshape(array.shape)
     if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name}: real numbers are wanted, got an array of {array.dtype}: {shown(value)}")
+        raise TypeError(f"{name}: expected real numbers, got an array of {array.dtype}: {shown(value)}")
     return _not_wholly_bad(name, array.astype(FLOAT, copy=False))
 
 
@@ -114,7 +114,7 @@ def outputs_for(names: Sequence[str], shape: tuple[int, ...], out: Any) -> dict[
     for name, place in places.items():
         if not isinstance(place, np.ndarray) or place.shape != shape:
             got = getattr(place, "shape", type(place).__name__)
-            raise ValueError(f"out= for {name}: an array of shape {shape} is wanted, got {got}")
+            raise ValueError(f"out= for {name}: expected an array of shape {shape}, got {got}")
         if not np.can_cast(dtype_of(name), place.dtype, "same_kind"):
             raise TypeError(f"out= for {name}: {place.dtype} cannot hold {dtype_of(name)}")
         if not place.flags.writeable:

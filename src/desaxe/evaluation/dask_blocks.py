@@ -25,7 +25,7 @@ def as_dask(name: str, value: Any) -> Any:
 
     array = da.asarray(getattr(value, "data", value) if hasattr(value, "dims") else value)
     if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name}: real numbers are wanted, got a Dask array of {array.dtype}")
+        raise TypeError(f"{name}: expected real numbers, got a Dask array of {array.dtype}")
     return array
 
 

@@ -53,7 +53,7 @@ def function(
     free = (inputs,) if isinstance(inputs, str) else several(inputs)
     check_inputs("function", free, tuple(INPUTS))
     if not shown:
-        raise ValueError("names = (): the name of a quantity or a list of names is wanted")
+        raise ValueError("names = (): expected the name of a quantity or a list of names")
     twice = [name for name in free if fixed.get(name) is not None]
     if twice:
         raise TypeError(f"function: {twice[0]} is an input of each call, it cannot be fixed too")
@@ -131,7 +131,7 @@ class Function:
             return tuple(out[name] for name in self.names)
         found = tuple(out) if isinstance(out, (tuple, list)) else (out,)
         if len(found) != len(self.names):
-            raise ValueError(f"out=: {len(self.names)} arrays are wanted, got {len(found)}")
+            raise ValueError(f"out=: expected {len(self.names)} arrays, got {len(found)}")
         return found
 
     def jacobian(self, *args: Any, **named: Any) -> dict[str, dict[str, Any]]:

@@ -24,7 +24,7 @@ Array = NDArray[Any]
 Fill = Callable[[], dict[str, Array]]
 
 
-NO_STATUS = "a status has no largest or mean: leave it out, each name tells how many points it skipped"
+NO_STATUS = "a status has no largest or mean: leave it out; each name has a count of skipped points"
 
 
 class Reduction(NamedTuple):
@@ -48,7 +48,7 @@ def reduction_of(asked: Any, dimensions: Sequence[str], names: Sequence[str]) ->
         )
     if callable(kinds) or not isinstance(kinds, Iterable):
         raise TypeError(
-            f"reduce: {axis} = {kinds!r}: the name of a reduction or a list of names is wanted, "
+            f"reduce: {axis} = {kinds!r}: expected the name of a reduction or a list of names, "
             f"of {', '.join(KINDS)}"
         )
     kinds = (kinds,) if isinstance(kinds, str) else tuple(dict.fromkeys(kinds))

@@ -203,7 +203,7 @@ def called(function: Callable[[Any], Any], theta: Any, what: str) -> Any:
     if found.dtype.kind not in "fiub" or found.shape not in ((), theta.shape):
         raise ValueError(
             f"{what}: a function of {theta.size} angles gave the shape {found.shape} of {found.dtype}; "
-            f"numbers of the shape {theta.shape} are wanted"
+            f"expected numbers of the shape {theta.shape}"
         )
     found = np.broadcast_to(found.astype(float), theta.shape)
     bad = np.isfinite(theta) & ~np.isfinite(found)
@@ -225,7 +225,7 @@ def _one(function: Callable[[Any], Any], theta: float, what: str) -> float:
         number = float(found)
     except (TypeError, ValueError):
         raise TypeError(
-            f"{what}: the function gave {found!r} at theta = {theta:g}: a number is wanted"
+            f"{what}: the function gave {found!r} at theta = {theta:g}: expected a number"
         ) from None
     if isfinite(theta) and not isfinite(number):
         raise ValueError(f"{what}: the function gave {number} at theta = {theta:g}: it must be finite")

@@ -36,7 +36,7 @@ def as_load(name: str, value: Any) -> Load:
     if isinstance(value, Load):
         wanted = "N*m" if name == "torque" else INPUTS[name].unit
         if value.unit not in (None, wanted):
-            raise ValueError(f"{name}: the load is in {value.unit}, {wanted} is wanted")
+            raise ValueError(f"{name}: the load is in {value.unit}, expected {wanted}")
         return value
     if not takes(value, 1):
         raise TypeError(
@@ -63,7 +63,7 @@ def split(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Load]]:
     varying = [name for name in inputs if name not in numbers]
     for name in varying:
         if name not in VARIABLE:
-            raise TypeError(f"{name}: a number is wanted; {' and '.join(VARIABLE)} may vary with the motion")
+            raise TypeError(f"{name}: expected a number; {' and '.join(VARIABLE)} may vary with the motion")
     return numbers, {name: as_load(name, inputs[name]) for name in varying}
 
 

@@ -59,7 +59,7 @@ class _OverTheta:
             if values is not None:
                 raise TypeError(f"{name}: values = {values!r} beside a function; give values or a function")
             if derivative is not None and not callable(derivative):
-                raise TypeError(f"{name}: derivative = {derivative!r}: a function of theta is wanted")
+                raise TypeError(f"{name}: derivative = {derivative!r}: expected a function of theta")
             places, _ = _numbers(f"{name}: nodes", nodes, ("rad",))
             return FunctionOverTheta(angles, derivative, tuple(places), length)
         if derivative is not None or len(nodes):
@@ -203,9 +203,9 @@ def _check(name: str, places: str, x: list[float], columns: Sequence[list[float]
         raise ValueError(f"{name}: kind = {kind!r}: it is one of {', '.join(KINDS)}")
     for column in columns:
         if len(column) != len(x):
-            raise ValueError(f"{name}: {len(x)} {places} and {len(column)} values; as many are wanted")
+            raise ValueError(f"{name}: {len(x)} {places} and {len(column)} values; expected as many of both")
     if len(x) < 2:
-        raise ValueError(f"{name}: {len(x)} of the {places}; at least two points are wanted")
+        raise ValueError(f"{name}: {len(x)} of the {places}; expected at least two points")
 
 
 def _falls(x: Sequence[float]) -> str:
@@ -216,7 +216,7 @@ def _falls(x: Sequence[float]) -> str:
 def _period(period: Any) -> float:
     found, _ = _numbers("over_theta: period", [period], ("rad",))
     if not found[0] > 0.0:
-        raise ValueError(f"over_theta: period = {period!r}: an angle above 0 is wanted")
+        raise ValueError(f"over_theta: period = {period!r}: expected an angle above 0")
     return found[0]
 
 
@@ -236,9 +236,9 @@ def _numbers(what: str, given: Any, units: tuple[str, ...]) -> tuple[list[float]
         unit, found = _first_that_fits(what, given, units)
         return _finite(what, found.tolist()), unit
     if isinstance(given, str) or not hasattr(given, "__iter__"):
-        raise TypeError(f"{what} = {given!r}: a list or array of numbers is wanted")
+        raise TypeError(f"{what} = {given!r}: expected a list or array of numbers")
     if getattr(given, "ndim", 1) != 1:
-        raise ValueError(f"{what}: a 1-d array is wanted, got the shape {given.shape}")
+        raise ValueError(f"{what}: expected a 1-d array, got the shape {given.shape}")
     own: str | None = None
     found = []
     for value in given.tolist() if hasattr(given, "tolist") else given:
@@ -301,7 +301,7 @@ def _rows(path: str | PathLike[str], least: int) -> list[list[str]]:
         if len(cells) >= least and all(map(_is_plain, cells[:least])):
             rows.append([cell for cell in cells if cell])
         elif rows or heading:
-            raise ValueError(f"{path}, line {number}: {least} or more numbers are wanted, such as 90, -400")
+            raise ValueError(f"{path}, line {number}: expected {least} or more numbers, such as 90, -400")
         else:
             heading = True
     if not rows:

@@ -63,7 +63,7 @@ class Machine(Mapping[str, Any]):
         **inputs: Any,
     ) -> None:
         if source is not None and not isinstance(source, Mapping):
-            raise TypeError(f"Machine: a mapping is wanted, got {source!r}; Machine.read takes a path")
+            raise TypeError(f"Machine: expected a mapping, got {source!r}; Machine.read takes a path")
         given = dict(source or {})
         if is_scene(given):
             given, own = inputs_of_scene(given)

@@ -91,7 +91,7 @@ def unit_of(text: str) -> Unit:
             match = _TERM.fullmatch(term)
             if match is None or match[1] not in _COHERENT:
                 raise ValueError(
-                    f"unit {text!r}: a product of {', '.join(_COHERENT)} is wanted, such as 'N*m'"
+                    f"unit {text!r}: expected a product of {', '.join(_COHERENT)}, such as 'N*m'"
                 )
             power = int(match[2] or 1) * (-1 if place else 1)
             unit = _COHERENT[match[1]]

@@ -1,6 +1,6 @@
 """The committed program, sliced to the requested names.
 
-Reads the text of generated/program.py: only the lines that the wanted names reach are parsed, so
+Reads the text of generated/program.py: only the lines that the requested names need are parsed, so
 the first answer of a process comes quickly.
 """
 

@@ -97,4 +97,4 @@ def _number(name: str, value: Any, whole: Any) -> Fraction:
     try:
         return Fraction(repr(float(number)))
     except (TypeError, ValueError):
-        raise ValueError(f"{name} = {whole!r}: two finite numbers or texts with a unit are wanted") from None
+        raise ValueError(f"{name} = {whole!r}: expected two finite numbers or texts with a unit") from None

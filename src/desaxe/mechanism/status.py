@@ -88,7 +88,7 @@ class OptimizeStatus(Status):
     OPTIMUM = 0, "an optimum"
     NO_DESIGN = 1, "no design keeps the limits"
     UNBOUNDED = 2, "the objective grows without bound towards the limit of turning"
-    AT_LIMIT = 3, "the best is at the limit of turning, nearly reached at the design told"
+    AT_LIMIT = 3, "the best is at the limit of turning, nearly reached by the design returned"
     UNSETTLED = 4, "the search did not settle"
 
 
@@ -97,7 +97,7 @@ class SynthesisStatus(Status):
 
     FOUND = 0, "one design or more"
     NONE = 1, "no design"
-    OPEN = 2, "the one more wish leaves the design open"
+    OPEN = 2, "the further requirement leaves the design undetermined"
 
 
 class DriveStatus(Status):

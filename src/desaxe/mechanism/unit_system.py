@@ -115,13 +115,13 @@ class UnitSystem:
         elif isinstance(units, Mapping):
             rows = [(_key(name), unit) for name, unit in units.items()]
         else:
-            raise TypeError(f'units = {units!r}: a text such as "mm, deg, rpm" or a mapping is wanted')
+            raise TypeError(f'units = {units!r}: expected a text such as "mm, deg, rpm" or a mapping')
         found: dict[str, str] = {}
         for name, unit in rows:
             if name in found:
                 raise ValueError(f"units: two units of {name}, {found[name]!r} and {unit!r}")
             if not isinstance(unit, str):
-                raise TypeError(f"units: {name} = {unit!r}, a text such as 'mm' is wanted")
+                raise TypeError(f"units: {name} = {unit!r}, expected a text such as 'mm'")
             found[name] = spelled(unit.strip())
             _si_of(name, found[name], DIMENSIONS.get(name) or _si_unit(name))
         return cls(found)

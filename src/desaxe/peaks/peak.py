@@ -76,7 +76,7 @@ def peak(
     Raises ValueError for an unknown quantity or kind.
     """
     if not isinstance(name, str):
-        raise TypeError(f"peak: one name is wanted, such as 'a_C', got {shown_value(name)}")
+        raise TypeError(f"peak: expected one name, such as 'a_C', got {shown_value(name)}")
     if not isinstance(kind, str) or kind not in KINDS:
         raise ValueError(f"kind = {shown_value(kind)}: it is one of {', '.join(KINDS)}")
     given = {"ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega, **loads}
@@ -110,7 +110,7 @@ def _range(theta: Any, name: str) -> tuple[float, float]:
     try:
         first, last = theta
     except (TypeError, ValueError):
-        raise ValueError(f"theta = {shown_value(theta)}: a range (lower end, upper end) is wanted") from None
+        raise ValueError(f"theta = {shown_value(theta)}: expected a range (lower end, upper end)") from None
     low, high = (as_number("theta", end, ("theta",), (name,)) for end in (first, last))
     if low is None or high is None or low > high:
         raise ValueError(

@@ -72,7 +72,7 @@ def _axes(design: dict[str, float], both: bool, ax: Any) -> tuple[Any, Any]:
     if ax is not None:
         left, *rest = np.atleast_1d(ax)
         if both and not rest:
-            raise ValueError("ax: two Axes are wanted, for the mechanism and for the curve")
+            raise ValueError("ax: expected two Axes, for the mechanism and for the curve")
         return left, rest[0] if rest else None
     from matplotlib.figure import Figure
 

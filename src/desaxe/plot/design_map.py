@@ -63,7 +63,7 @@ def _plane(dataset: "xr.Dataset", name: str, x: str | None, y: str | None) -> tu
     x = x or next((d for d in dims if d != y), "x")
     y = y or next((d for d in dims if d != x), "y")
     if x == y:
-        raise ValueError(f"x = y = {x!r}: two dimensions are wanted")
+        raise ValueError(f"x = y = {x!r}: expected two dimensions")
     return choose(dataset, name, [y, x]), x, y
 
 

@@ -44,7 +44,7 @@ def polar(
     beside = ax is None
     axes: Any = Figure(figsize=SIZE, layout="constrained").add_subplot(projection="polar") if beside else ax
     if axes.name != "polar":
-        raise ValueError("ax: polar Axes are wanted, such as figure.add_subplot(projection='polar')")
+        raise ValueError("ax: expected polar Axes, such as figure.add_subplot(projection='polar')")
     lines = drawn(axes, np.asarray(array["theta"].values, dtype=np.float64), array, beside)
     _finish(axes, array, lines)
     if beside:

@@ -164,7 +164,7 @@ def several(names: Any) -> tuple[str, ...]:
         return tuple(dict.fromkeys(names))
     except TypeError:
         raise TypeError(
-            f"names = {shown(names)}: the name of a quantity or a list of names is wanted"
+            f"names = {shown(names)}: expected the name of a quantity or a list of names"
         ) from None
 
 

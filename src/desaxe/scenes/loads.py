@@ -80,9 +80,7 @@ def _from_points(over: str, points: Sequence[Any], given: dict[str, Any]) -> Loa
         rows = [row if isinstance(row, tuple) else (row,) for row in points]
         widths = {len(row) for row in rows}
         if widths - {2, 3 if others else 2} or len(widths) != 1:
-            raise ValueError(
-                f"points such as [[0, 0], [1.57, -400]] are wanted, or {first} = [...] beside it"
-            )
+            raise ValueError(f"expected points such as [[0, 0], [1.57, -400]], or {first} = [...] beside it")
         points, *columns = (list(column) for column in zip(*rows, strict=True))
         given |= dict(zip((first, *others), columns, strict=False))
     if any(isinstance(point, tuple) for point in points):

@@ -65,6 +65,6 @@ def single(key: str, names: Iterable[str], inputs: Mapping[str, Value]) -> dict[
     for name in names:
         value = inputs[name]
         if isinstance(value, tuple):
-            raise SceneError(f"{key}: {name} has {len(value)} values, one is wanted: give at.{name}")
+            raise SceneError(f"{key}: {name} has {len(value)} values, expected one: give at.{name}")
         found[name] = value
     return found

@@ -75,7 +75,9 @@ def read(data: Mapping[str, Any], folder: Path | None = None) -> Content:
     if outputs:
         require_for_grid("outputs", outputs, inputs)
     if not (outputs or file.peak or file.check or file.picture):
-        raise SceneError("nothing is asked for: give outputs = [...], [[peak]], [[check]] or [[picture]]")
+        raise SceneError(
+            "the scene requests nothing: give outputs = [...], [[peak]], [[check]] or [[picture]]"
+        )
     _require_names(file)
     checks = [
         c for index, table in enumerate(file.check, 1) for c in checks_of(f"check #{index}", table, inputs)

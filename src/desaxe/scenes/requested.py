@@ -30,7 +30,7 @@ def checks_of(key: str, table: schema.CheckTable, inputs: Mapping[str, Value]) -
         printed = read_printed(place, written, table.digits, quantity(name, "omega" in there).unit)
         checks.append(Check(table.title, table.source, name, printed, single(place, needed, there)))
     if not checks:
-        raise SceneError(f"{key}.printed = {{}}: at least one printed value is wanted")
+        raise SceneError(f"{key}.printed = {{}}: expected at least one printed value")
     return checks
 
 
@@ -133,7 +133,7 @@ def _other_design(
             raise SceneError(f"{key}.{name}: the peak does not depend on it")
     for name in axes:
         if name not in design:
-            raise SceneError(f"{key}: {name} has {len(axes[name])} values, one is wanted: give {key}.{name}")
+            raise SceneError(f"{key}: {name} has {len(axes[name])} values, expected one: give {key}.{name}")
     return {name: design[name] for name in (*axes, *fixed)}
 
 

@@ -26,7 +26,7 @@ def values_of(key: str, name: str, written: float | str | tuple[float | str, ...
     """A number, or the values of a list or range, in the SI unit of an input."""
     if isinstance(written, tuple):
         if not written:
-            raise SceneError(f"{key} = []: at least one value is wanted")
+            raise SceneError(f"{key} = []: expected at least one value")
         return tuple(number_of(f"{key} #{index}", name, part) for index, part in enumerate(written, 1))
     if isinstance(written, schema.Range):
         return _spread(key, name, written)

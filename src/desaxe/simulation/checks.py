@@ -49,7 +49,7 @@ def design_values(given: Mapping[str, Any]) -> dict[str, float]:
             continue
         if callable(value) and name not in ("F_X", "F_Y"):
             raise TypeError(
-                f"{name} = {shown(value)}: a number is wanted; torque, F_X and F_Y may be functions"
+                f"{name} = {shown(value)}: expected a number; torque, F_X and F_Y may be functions"
             )
         if callable(value):
             values[name] = nan  # it varies: nothing may be folded
@@ -62,7 +62,7 @@ def one(name: str, value: Any) -> float:
     """A number for an input of the mechanism."""
     number = as_number(name, value, LENGTHS, ("simulate",))
     if number is None:
-        raise TypeError(f"{name} = {value!r}: a number is wanted")
+        raise TypeError(f"{name} = {value!r}: expected a number")
     return number
 
 
@@ -71,7 +71,7 @@ def check_names(names: Any) -> tuple[str, ...]:
     wanted = (names,) if isinstance(names, str) else several(names)
     for name in wanted:
         if name in OWN - {"omega"}:
-            raise ValueError(f"names: {name!r} is told already, for the simulation itself")
+            raise ValueError(f"names: {name!r} is always among the results")
         quantity(name, state=True)
     return wanted
 
@@ -80,7 +80,7 @@ def check_signature(name: str, value: Callable[..., Any]) -> None:
     """A load that varies is a function of (t, theta, omega), or of theta alone."""
     if not (takes(value, 3) or takes(value, 1)):
         raise TypeError(
-            f"{name}: a function of (t, theta, omega) is wanted, or of theta alone, "
+            f"{name}: expected a function of (t, theta, omega), or of theta alone, "
             f"got one of {signature(value)}"
         )
 
@@ -100,9 +100,7 @@ def load(name: str, value: Any, unit: str, deadline: Deadline) -> Load:
         try:
             number = found if type(found) is float else real_number(name, found)
         except (TypeError, ValueError):
-            raise TypeError(
-                f"{name} gave {shown(found)} at t = {t:g}: a number in {unit} is wanted"
-            ) from None
+            raise TypeError(f"{name} gave {shown(found)} at t = {t:g}: expected a number in {unit}") from None
         if not isfinite(number) and isfinite(theta) and isfinite(omega):
             raise ValueError(
                 f"{name} gave {number} at t = {t:g}, theta = {theta:g}, omega = {omega:g}: "
@@ -191,9 +189,9 @@ def read_times(times: Any, t_end: float) -> Any:
             raise TypeError
         array = array.astype(np.float64)
     except (ValueError, TypeError, OverflowError):
-        raise TypeError(f"times = {shown(times)}: a row of finite instants in s is wanted") from None
+        raise TypeError(f"times = {shown(times)}: expected a row of finite instants in s") from None
     if array.ndim != 1 or not array.size or not np.isfinite(array).all():
-        raise ValueError("times: a row of finite instants in s is wanted")
+        raise ValueError("times: expected a row of finite instants in s")
     if array[0] < 0.0 or array[-1] > t_end or (np.diff(array) < 0.0).any():
         raise ValueError(f"times: they must ascend from 0 to t_end = {t_end:g}")
     return array

@@ -63,7 +63,7 @@ def simulate_many(
     }
     empty = next((name for name, array in arrays.items() if not array.size), None)
     if empty is not None:
-        raise ValueError(f"{empty}: an empty array; at least one design is wanted")
+        raise ValueError(f"{empty}: an empty array; expected at least one design")
     shape = broadcast_shape(arrays)
     torque = _compiled(starts["torque"]) if callable(starts["torque"]) else None
     scalars = {name: float(array) if array.ndim == 0 else array for name, array in arrays.items()}
@@ -111,12 +111,12 @@ def _column(name: str, value: Any, unit: str) -> Array:
     try:
         array = np.asarray(number)
     except (ValueError, TypeError, OverflowError):  # rows of different lengths
-        raise TypeError(f"{name} = {shown(value)}: a number or an array of numbers is wanted") from None
+        raise TypeError(f"{name} = {shown(value)}: expected a number or an array of numbers") from None
     if array.dtype.kind == "U":
         texts = array.reshape(-1).tolist()
         array = np.array([in_unit(name, text, unit) for text in texts]).reshape(array.shape)
     if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name}: real numbers are wanted, got an array of {array.dtype}: {shown(value)}")
+        raise TypeError(f"{name}: expected real numbers, got an array of {array.dtype}: {shown(value)}")
     array = array.astype(np.float64)
     if not array.ndim and not np.isfinite(array):
         raise ValueError(f"{name} = {shown(value)}: it must be a finite number")
@@ -160,7 +160,7 @@ def _compile(torque: Callable[..., Any]) -> Any:
         ) from None
     result = fast.overloads[(float64, float64, float64)].signature.return_type
     if not isinstance(result, (Float, Integer)):
-        raise TypeError(f"torque: the function gives {result}, a number in N*m is wanted")
+        raise TypeError(f"torque: the function gives {result}, expected a number in N*m")
     return fast
 
 

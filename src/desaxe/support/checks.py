@@ -27,7 +27,7 @@ def real_number(name: str, value: Any) -> float:
     kind = getattr(getattr(value, "dtype", None), "kind", "f")
     plain = isinstance(value, (int, float)) or hasattr(value, "dtype")
     if isinstance(value, bool) or not plain or kind not in "fiu" or getattr(value, "shape", ()) != ():
-        raise TypeError(f"{name} = {shown(value)}: a number is wanted")
+        raise TypeError(f"{name} = {shown(value)}: expected a number")
     try:
         return float(value)
     except OverflowError:

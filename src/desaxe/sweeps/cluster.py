@@ -36,7 +36,7 @@ def cluster(client: Any) -> Iterator[Crew]:
         import distributed
 
     if not isinstance(client, distributed.Client):
-        raise TypeError(f"client = {client!r}: a distributed.Client is wanted")
+        raise TypeError(f"client = {client!r}: expected a distributed.Client")
     _check_workers(client)
     with client.get_executor(pure=False) as executor:
         yield Crew(executor, max(1, sum(client.nthreads().values())))

@@ -72,7 +72,7 @@ def prepared(
     requests = peak_requests(peaks, outer)
     refined = peak_parts(requests, outer, branch, accuracy)
     if not (outer.names or refined):
-        raise ValueError("sweep: nothing is asked for, give names or peaks=")
+        raise ValueError("sweep: nothing is requested, give names or peaks=")
     template = _template(outer, branch, accuracy, reduction, refined)
     sizes = {name: template.sizes[name] for name in outer.dimensions if name in template.dims}
     whole = [v for v in template.data_vars.values() if len(v.dims) == len(sizes)]

@@ -135,7 +135,7 @@ def test_no_time_ratio_of_three():
 @pytest.mark.parametrize(
     ("arguments", "error", "words"),
     [
-        ({"AB": 0.1}, TypeError, "just one of BC, AB, max_pressure_angle, peak_a_C is wanted, got BC and AB"),
+        ({"AB": 0.1}, TypeError, "expected just one of BC, AB, max_pressure_angle, peak_a_C, got BC and AB"),
         ({"BC": None}, TypeError, "got none"),
         ({"time_ratio": 0.9}, ValueError, "time_ratio = 0.9: the longer over the shorter"),
         ({"stroke": -1}, ValueError, "stroke = -1: it must be finite and more than 0"),

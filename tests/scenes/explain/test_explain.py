@@ -89,7 +89,7 @@ def test_masses_of_nothing():
 def test_an_input_that_nothing_needs():
     plan = dx.explain({**CONCENTRIC, "outputs": ["phi"], "reduce": {"theta": "max"}})
     (told,) = [one for one in plan["skipped"] if one["what"] == "omega0"]
-    assert told["why"] == "given, but nothing that is asked for depends on it"
+    assert told["why"] == "given, but no requested name depends on it"
 
 
 @pytest.mark.parametrize("rods", [[0.34, 0.35], [0.19, 0.35]])
@@ -214,7 +214,7 @@ Skipped
 Operations at each point after each pass
   pass         operations   saved
   derivation         2473           every line of the derivation
-  slice                89    2384   only the lines that the wanted names reach
+  slice                89    2384   only the lines that the requested names need
   fold                 62      27   fixed inputs folded in; terms with a factor 0 vanish
   plain                23      39   every design has wide margins: shorter forms
 

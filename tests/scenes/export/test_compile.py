@@ -315,9 +315,9 @@ def test_an_angle_beyond_reach_is_refused(tmp_path):
     assert found["status"].tolist() == [0, 4, 4]
     assert Path(module.__file__).parent == tmp_path
     for call in (module.point, module.evaluate):
-        with pytest.raises(TypeError, match="theta = '60 deg': numbers in SI units are wanted, not text"):
+        with pytest.raises(TypeError, match="theta = '60 deg': expected numbers in SI units, not text"):
             call("60 deg")
-    with pytest.raises(TypeError, match="numbers in SI units are wanted"):
+    with pytest.raises(TypeError, match="expected numbers in SI units"):
         module.evaluate(["60 deg", "61 deg"])
 
 

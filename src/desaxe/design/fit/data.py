@@ -66,7 +66,7 @@ def columns_of(data: Any) -> dict[str, Any]:
         return index | {str(name): data[name].to_numpy() for name in data.columns}
     if not isinstance(data, Mapping):
         raise TypeError(
-            f"data = {type(data).__name__}: a mapping name -> samples, a table or a CSV file is wanted"
+            f"data = {type(data).__name__}: expected a mapping name -> samples, a table or a CSV file"
         )
     return {str(name): column for name, column in data.items()}
 
@@ -80,9 +80,9 @@ def _column(name: str, values: Any, unit: str) -> Array:
     try:
         column = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError):
-        raise TypeError(f"data: {name}: real numbers are wanted") from None
+        raise TypeError(f"data: {name}: expected real numbers") from None
     if np.iscomplexobj(values) or column.ndim != 1:
-        raise TypeError(f"data: {name}: a row of real numbers is wanted, got the shape {column.shape}")
+        raise TypeError(f"data: {name}: expected a row of real numbers, got the shape {column.shape}")
     if np.isinf(column).any():
         raise ValueError(f"data: {name}: an infinite sample; a missing one is NaN")
     return column

@@ -76,7 +76,7 @@ def fit(
     unknowns = unknowns_of(over, nuisance, read, fixed)
     if read.size < len(unknowns):
         raise ValueError(
-            f"fit: {read.size} samples for {len(unknowns)} unknowns: as many are wanted at least"
+            f"fit: {read.size} samples for {len(unknowns)} unknowns: at least as many are needed"
         )
     given = _sigmas(sigma, read)
     model = Model(read, unknowns, fixed, branch, given or dict.fromkeys(read.measured, 1.0))
@@ -95,7 +95,7 @@ def _sigmas(sigma: Mapping[str, Any] | None, data: Data) -> dict[str, float]:
             )
         return {}
     if not isinstance(sigma, Mapping) or set(sigma) != set(data.measured):
-        raise ValueError(f"sigma = {shown(sigma)}: a dict with {', '.join(data.measured)} is wanted")
+        raise ValueError(f"sigma = {shown(sigma)}: expected a dict with {', '.join(data.measured)}")
     return {name: _sigma(name, value) for name, value in sigma.items()}
 
 
@@ -107,7 +107,7 @@ def _sigma(name: str, value: Any) -> float:
         number = in_unit(name, value, quantity(name).unit)
     plain = isinstance(number, (int, float, np.number)) and not isinstance(number, bool)
     if not plain or not 0.0 < float(number) < np.inf:
-        raise ValueError(f"sigma: {name} = {shown(value)}: a finite number > 0 is wanted")
+        raise ValueError(f"sigma: {name} = {shown(value)}: expected a finite number > 0")
     return float(number)
 
 

@@ -31,7 +31,7 @@ def unknowns_of(
 ) -> list[Unknown]:
     """The unknowns, checked: parameters first, then nuisances."""
     if not isinstance(over, Mapping) or not over:
-        raise TypeError("over: a dict parameter -> start or (low, high) is wanted, such as {'AB': 0.1}")
+        raise TypeError("over: expected a dict parameter -> start or (low, high), such as {'AB': 0.1}")
     nuisance = (nuisance,) if isinstance(nuisance, str) else tuple(dict.fromkeys(nuisance))
     found = [_parameter(name, value, fixed) for name, value in over.items()]
     longest = max((u.scale for u in found if INPUTS[u.name].unit == "m"), default=1.0)
@@ -49,7 +49,7 @@ def _parameter(name: str, value: Any, fixed: Mapping[str, Any]) -> Unknown:
     least = LEAST.get(name, -inf)
     if isinstance(value, (tuple, list)):
         if len(value) != 2:
-            raise ValueError(f"over: {name} = {shown(value)}: a start or (low, high) is wanted")
+            raise ValueError(f"over: {name} = {shown(value)}: expected a start or (low, high)")
         low, high = (_number(name, end) for end in value)
         if not max(low, least) < high:
             raise ValueError(f"over: {name} = {shown(value)}: low must be below high")
@@ -62,7 +62,7 @@ def _parameter(name: str, value: Any, fixed: Mapping[str, Any]) -> Unknown:
 def _number(name: str, value: Any) -> float:
     number = as_number(name, value, (name,), ("fit",))
     if number is None:
-        raise TypeError(f"over: {name} = {shown(value)}: a number or (low, high) is wanted")
+        raise TypeError(f"over: {name} = {shown(value)}: expected a number or (low, high)")
     return number
 
 

@@ -67,14 +67,14 @@ def space_of(over: Mapping[str, Any], fixed: Mapping[str, Any], branch: int, dea
 
 def _check_mapping(name: str, given: Any, example: str) -> None:
     if not isinstance(given, Mapping):
-        raise TypeError(f"{name} = {shown(given)}: a dict is wanted, such as {example}")
+        raise TypeError(f"{name} = {shown(given)}: expected a dict, such as {example}")
 
 
 def _pair(name: str, bounds: Any) -> tuple[float, float]:
     try:
         low, high = (_number(name, end) for end in bounds)
     except (TypeError, ValueError) as error:
-        raise type(error)(f"over: {name} = {bounds!r}: two finite bounds are wanted ({error})") from None
+        raise type(error)(f"over: {name} = {bounds!r}: expected two finite bounds ({error})") from None
     if not low < high:
         raise ValueError(f"over: {name} = ({low:g}, {high:g}): the lower bound first, and smaller")
     return low, high
@@ -98,7 +98,7 @@ def limits_of(keep: Mapping[Any, Any]) -> list[Limit]:
         pair = bounds if isinstance(bounds, (tuple, list)) else (bounds, bounds)
         if len(pair) != 2:
             raise ValueError(
-                f"keep: {text_of(measure)} = {bounds!r}: a pair (low, high) or a number is wanted"
+                f"keep: {text_of(measure)} = {bounds!r}: expected a pair (low, high) or a number"
             )
         low, high = (None if end is None else _in_si(measure, end) for end in pair)
         if low is not None and high is not None and low >= high:

@@ -67,7 +67,7 @@ def synthesize(
     solutions  list of designs, each a dict ec, AB, BC, by the length of the rod
     limits     dict of the one more wish -> (low, high): for what there is a design with this stroke and
                time ratio, the ends told to double precision; NaN where there is none
-    status     0 one or more; 1 none; 2 the one more wish leaves the design open
+    status     0 one or more; 1 none; 2 the further requirement leaves the design undetermined
     message    how many, or why none
 
     Closed forms in plain Python (see this module's docstring); the peak acceleration is refined. Raises
@@ -82,7 +82,7 @@ def synthesize(
     given = [name for name, value in thirds.items() if value is not None]
     if len(given) != 1:
         got = " and ".join(given) or "none"
-        raise TypeError(f"synthesize: just one of {', '.join(THIRDS)} is wanted, got {got}")
+        raise TypeError(f"synthesize: expected just one of {', '.join(THIRDS)}, got {got}")
     if not isinstance(slow_stroke, (int, float)) or slow_stroke not in (1, -1):
         raise ValueError(f"slow_stroke = {shown(slow_stroke)}: it is +1 (outward) or -1 (inward)")
     (third,) = given

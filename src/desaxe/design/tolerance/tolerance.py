@@ -186,7 +186,7 @@ def _check(distribution: str, sigmas: Any, samples: Any, sobol: Any, seed: Any) 
     if not isinstance(distribution, str) or distribution not in DISTRIBUTIONS:
         raise ValueError(f"distribution = {shown(distribution)}: it is one of {', '.join(DISTRIBUTIONS)}")
     if not (isinstance(sigmas, (int, float)) and 1e-6 <= sigmas <= 1e6):
-        raise ValueError(f"sigmas = {shown(sigmas)}: a finite number above 0 is wanted, from 1e-6 to 1e6")
+        raise ValueError(f"sigmas = {shown(sigmas)}: expected a finite number above 0, from 1e-6 to 1e6")
     if samples is not None:
         whole_number("samples", samples, 2, MOST_SAMPLES)
     if (
@@ -195,7 +195,7 @@ def _check(distribution: str, sigmas: Any, samples: Any, sobol: Any, seed: Any) 
         or not 0 <= sobol <= MOST_BASE
         or sobol & (sobol - 1)
     ):
-        raise ValueError(f"sobol = {shown(sobol)}: a power of two is wanted, at most {MOST_BASE}, or 0")
+        raise ValueError(f"sobol = {shown(sobol)}: expected a power of two, at most {MOST_BASE}, or 0")
     whole_number("seed", seed, 0, 2**32 - 1)
 
 

@@ -79,7 +79,7 @@ def _pair(name: str, value: Any) -> tuple[float, float] | None:
         middle, half = middle_of(name, value)
         return _number(name, middle), half
     if len(value) != 2:
-        raise ValueError(f"{name} = {value!r}: a pair (value, tolerance) is wanted")
+        raise ValueError(f"{name} = {value!r}: expected a pair (value, tolerance)")
     nominal, tolerance = _with_tolerance(name, value)
     if bare and nominal and LARGE * abs(nominal) <= tolerance < inf:
         low, high = value
@@ -105,7 +105,7 @@ def _with_tolerance(name: str, value: Sequence[Any]) -> tuple[float, float]:
     try:
         return nominal, float(value[1])
     except (TypeError, ValueError):
-        raise TypeError(f"{name} = {value!r}: a pair (value, tolerance) of numbers is wanted") from None
+        raise TypeError(f"{name} = {value!r}: expected a pair (value, tolerance) of numbers") from None
 
 
 def _percent(name: str, text: str) -> float:
@@ -118,7 +118,5 @@ def _percent(name: str, text: str) -> float:
 def _number(name: str, value: Any) -> float:
     number = as_number(name, value, (name,), ("tolerance",))
     if number is None:
-        raise TypeError(
-            f"{name} = {value!r}: a number, a pair (value, tolerance) or a distribution is wanted"
-        )
+        raise TypeError(f"{name} = {value!r}: expected a number, a pair (value, tolerance) or a distribution")
     return number

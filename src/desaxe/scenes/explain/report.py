@@ -162,7 +162,7 @@ def _how(plan: Mapping[str, Any]) -> str:
         width = "float32" if run["float32"] else "float64"
         lines.append(f"  kernel   compiled with numba in {width}, {threads}: {told}")
         lines.append(
-            f"  why      {points}; from {run['break_even']:,} on (asked for in one process) a kernel pays"
+            f"  why      {points}; from {run['break_even']:,} on (requested in one process) a kernel pays"
         )
         numbers = [one["name"] for one in plan["inputs"] if one.get("value")]
         if numbers:

@@ -31,7 +31,7 @@ class Skipped(NamedTuple):
 
 
 WHAT = {
-    "slice": "only the lines that the wanted names reach",
+    "slice": "only the lines that the requested names need",
     "fold": "fixed inputs folded in; terms with a factor 0 vanish",
     "number": "what is computed twice is computed once",
     "unused": "lines that nothing needs any more",
@@ -90,7 +90,7 @@ def skipped_of(key: KernelKey, request: Request, given: Mapping[str, Any]) -> li
         length = "AB" if name == "r_crank" else "BC"
         found.append(Skipped(name, f"not given: half of {length}, moving with it", 0))
     useless = [n for n in given if n in INPUTS and n not in request.inputs and n not in dict(fixed)]
-    return found + [Skipped(n, "given, but nothing that is asked for depends on it", 0) for n in useless]
+    return found + [Skipped(n, "given, but no requested name depends on it", 0) for n in useless]
 
 
 def _without(name: str) -> str:

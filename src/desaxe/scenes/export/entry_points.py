@@ -31,7 +31,7 @@ DOUBLES = '''def doubles(**inputs):
     held = {name: asarray(given) for name, given in inputs.items()}
     for name, numbers in held.items():
         if numbers.dtype.kind in "US":
-            raise TypeError(f"{name} = {inputs[name]!r}: numbers in SI units are wanted, not text")
+            raise TypeError(f"{name} = {inputs[name]!r}: expected numbers in SI units, not text")
     return [asarray(numbers, float64) for numbers in held.values()]
 '''
 
