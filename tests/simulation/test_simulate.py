@@ -448,7 +448,7 @@ def test_units():
         ({"theta0": math.nan}, ValueError, "theta0 = nan: it must be a finite number"),
         ({"branch": 2}, ValueError, "branch = 2: it is +1 or -1"),
         ({"names": ["V_D"]}, ValueError, "unknown quantity 'V_D'"),
-        ({"names": ["status"]}, ValueError, "'status' is told already"),
+        ({"names": ["status"]}, ValueError, "'status' is always among the results"),
         ({"method": "Euler"}, ValueError, "method = 'Euler': it is one of DOP853"),
         ({"rtol": 1e-16}, ValueError, "rtol = 1e-16: it must be a number from 3e-14 to 0.1"),
         ({"atol": [1.0, 2.0]}, ValueError, "atol: one number or three"),
