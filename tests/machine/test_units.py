@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 import desaxe as dx
 from desaxe.cli import main
@@ -366,3 +367,35 @@ def test_what_is_no_slip():
                 "motion": {"theta": 60},
             }
         )
+
+
+def test_pictures_of_labelled_results_in_other_units(tmp_path):
+    """Bars, angles and lengths are right whatever the labels are in, and say their units."""
+    top = PRESS.peak("T_in")
+    bars = PRESS.plot.tornado("T_in", {"ec": 1, "AB": "0.5 mm"})
+    widths = sorted(abs(bar.get_width()) for bar in bars[0])
+    wanted = sorted([abs(top["gradient"]["ec"]), 0.5 * abs(top["gradient"]["AB"])])
+    assert widths == pytest.approx(wanted, rel=1e-9)
+    assert "ec ± 1 mm" in [label.get_text() for label in bars[0][0].axes.get_yticklabels()]
+    names = ["a_C", "a_C_wrt_ec"]
+    one = PRESS.grid(names, theta=[60]).isel(theta=0)
+    (bar,) = dx.plot.tornado(one, {"ec": "0.1 mm"}, name="a_C")[0]
+    assert abs(bar.get_width()) == pytest.approx(0.1 * abs(float(one.a_C_wrt_ec)), rel=1e-9)
+    assert "mm s" in bar.axes.get_xlabel() or "mm/s" in bar.axes.get_xlabel()
+    course = PRESS.grid("T_in", theta=[0, 90, 360])
+    assert dx.plot.polar(course, "T_in")[0].get_xdata() == pytest.approx([0, math.pi / 2, 2 * math.pi])
+    left, right = Figure().subplots(1, 2)
+    moving = dx.plot.animate(PRESS.grid("a_C", theta=[0, 90, 360]), "a_C", frames=2, ax=(left, right))
+    moving.save(tmp_path / "press.gif")
+    assert (left.get_xlabel(), right.get_xlim()) == ("X [mm]", (0.0, 360.0))
+
+
+def test_words_of_results_in_units():
+    found = PRESS.optimize(maximize="stroke", over={"ec": (0, 60)}, keep={"margin": (100, None)})
+    assert "ec = 50 mm" in found["message"]
+    with pytest.raises(TypeError, match=r"ec must be a number.*\[desaxe.drive\(ec=value, ...\) for value in"):
+        PRESS.drive(ec=[0, 10])
+    labelled = PRESS.grid("T_in", theta=[0, 60], as_quantity=True)
+    assert labelled.T_in.data.to("kN m").magnitude == pytest.approx(
+        dx.evaluate("T_in", **{**SI, "theta": [0.0, math.pi / 3]}) / 1e3, rel=1e-12
+    )

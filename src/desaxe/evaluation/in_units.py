@@ -39,9 +39,11 @@ def in_units(
             values = np.asarray(given[key], dtype=np.float64)
         attributes = {**array.attrs, "units": conversion.unit}
         if as_quantity and key in dataset.data_vars and conversion.unit != "1":
+            import numpy as np
+
             from ..mechanism.units import registry
 
-            values = registry().Quantity(values, conversion.unit)
+            values = registry().Quantity(values if lazy else np.asarray(values), conversion.unit)
             del attributes["units"]
         changed = {key: (array.dims, values, attributes)}
         result = result.assign_coords(changed) if key in dataset.coords else result.assign(changed)

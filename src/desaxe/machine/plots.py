@@ -5,7 +5,7 @@ from math import pi
 from typing import Any
 
 from .. import plot
-from ..mechanism.unit_system import Conversion
+from ..plot.mechanism import label_lengths
 from .arguments import in_si
 
 ANGLES = 721  # of a turn
@@ -40,23 +40,20 @@ class Plots:
     ) -> Any:
         """Draw a quantity, or the magnitude of a vector, in polar coordinates: see `desaxe.plot.polar`."""
         names = [name] if isinstance(name, str) else list(name)
-        dataset = self._over_theta(names, inputs)
-        turning = self._machine.replace(units=None).grid(names, **self._in_si(inputs)).theta
-        return plot.polar(dataset.assign_coords(theta=turning), name, family=family, ax=ax)
+        return plot.polar(self._over_theta(names, inputs), name, family=family, ax=ax)
 
     def mechanism(self, theta: Any = "60 deg", *, ax: Any = None) -> Any:
         """Draw the machine to scale at a crank angle: see `desaxe.plot.mechanism`."""
         lengths = {key: self._machine[key] for key in ("ec", "AB", "BC", "branch") if key in self._machine}
         sketch = plot.mechanism(theta=in_si(self._machine.units, "theta", theta), ax=ax, **lengths)
-        _label(sketch.axes, self._machine.units.of("ec"))
+        label_lengths(sketch.axes, self._machine.units.of("ec"))
         return sketch
 
     def animate(
         self, name: str | None = None, *, frames: int = 60, seconds: float = 3.0, ax: Any = None
     ) -> Any:
         """The machine as it turns, beside a quantity's curve: see `desaxe.plot.animate`."""
-        names = ["Y"] if name is None else [name]
-        dataset = self._machine.replace(units=None).grid(names, **self._in_si({}))
+        dataset = self._over_theta("Y" if name is None else name, {})
         return plot.animate(dataset, name, frames=frames, seconds=seconds, ax=ax)
 
     def tornado(
@@ -66,15 +63,8 @@ class Plots:
 
         changes  dict input -> half its range, in the units of the machine
         """
-        machine = self._machine
-        steps = {
-            key: value
-            if isinstance(value, str)
-            else f"{value!r} {machine.units.of(key).unit}".removesuffix(" 1")
-            for key, value in changes.items()
-        }
-        peak = machine.replace(units=None).peak(name, kind=kind, **self._in_si(inputs, angles=False))
-        return plot.tornado(peak, steps, name=name, ax=ax)
+        peak = self._machine.peak(name, kind=kind, **inputs)
+        return plot.tornado(peak, changes, name=name, units=self._machine.units, ax=ax)
 
     def design_map(
         self, name: Any, *, x: str | None = None, y: str | None = None, ax: Any = None, **inputs: Any
@@ -97,24 +87,6 @@ class Plots:
         if "theta" in inputs:
             return self._machine.grid(names, **inputs)
         return self._machine.grid(names, **inputs, theta=self._machine.units.of("theta").shown(_turn()))
-
-    def _in_si(self, inputs: Mapping[str, Any], angles: bool = True) -> dict[str, Any]:
-        """The inputs of a call in SI units, and the angles of a turn."""
-        found = {key: in_si(self._machine.units, key, value) for key, value in inputs.items()}
-        return {**found, "theta": found.get("theta", _turn())} if angles else found
-
-
-def _label(ax: Any, length: Conversion) -> None:
-    """Show the axes of a sketch, and the lengths written in it, in another unit than metres."""
-    if length.si == 1:
-        return
-    for axis in (ax.xaxis, ax.yaxis):
-        axis.set_major_formatter(lambda value, _: f"{length.shown(value):g}")
-        axis.set_label_text(axis.get_label_text().replace("[m]", f"[{length.unit}]"))
-    for text in ax.texts:
-        written = text.get_text()
-        if written.startswith("ec = ") and written.endswith(" m"):
-            text.set_text(f"ec = {length.shown(float(written[5:-2])):.4g} {length.unit}")
 
 
 def _turn() -> Any:

@@ -1,6 +1,7 @@
 """Results of a call in the units of a machine, or as pint quantities."""
 
 import copy
+import re
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -157,8 +158,14 @@ def _optimum(found: Mapping[str, Any], call: Mapping[str, Any], show: Shown) -> 
         name = measure[-1] if isinstance(measure, (tuple, list)) else measure
         return conversion_of(show.system, str(name)) or Conversion("1")
 
+    def in_own_unit(match: re.Match[str]) -> str:
+        conversion = unit_of(match[1])
+        return f"{match[1]} = {conversion.shown(float(match[2])):.6g} {conversion.unit}".removesuffix(" 1")
+
     objectives = [call[side] for side in ("maximize", "minimize") if call.get(side) is not None]
     result: dict[str, Any] = show.mapping(found, None)
+    names = "|".join(map(re.escape, call["over"]))
+    result["message"] = re.sub(rf"\b({names}) = ([-+.0-9e]*[0-9])", in_own_unit, found["message"])
     value = found["value"]
     if isinstance(value, Mapping):
         result["value"] = {key: show.number(part, unit_of(key)) for key, part in value.items()}

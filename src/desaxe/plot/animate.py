@@ -5,10 +5,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..mechanism.names import LENGTHS
+from ..mechanism.unit_system import UnitSystem
 from ..support.extras import needed
 from .curves import curves
-from .mechanism import mechanism
-from .shared import ORANGE, shown
+from .mechanism import label_lengths, mechanism
+from .shared import ORANGE, input_in_si, shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,8 +36,9 @@ def animate(
         from matplotlib.animation import FuncAnimation
     design = _design(dataset)
     left, right = _axes(design, name is not None, ax)
-    theta = np.asarray(dataset["theta"].values, dtype=np.float64)
+    theta = input_in_si(dataset["theta"])
     sketch = mechanism(theta=theta[0], branch=int(dataset.attrs.get("branch", 1)), ax=left, **design)
+    label_lengths(left, UnitSystem.read({"ec": dataset["ec"].attrs.get("units", "m")}).of("ec"))
     moving: Any = None
     if name is not None:
         (line,) = curves(dataset, name, ax=right)
@@ -65,7 +67,7 @@ def _design(dataset: "xr.Dataset") -> dict[str, float]:
         wanted = ", ".join(f"{n}=..." for n in wide)
         told = f"choose a value first, dataset.sel({wanted})" if wide else "it needs the dimension theta"
         raise ValueError(f"animate: one design over the crank angle; {told}")
-    return {n: float(dataset[n]) for n in LENGTHS}
+    return {n: float(input_in_si(dataset[n])) for n in LENGTHS}
 
 
 def _axes(design: dict[str, float], both: bool, ax: Any) -> tuple[Any, Any]:

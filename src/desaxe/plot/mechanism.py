@@ -8,6 +8,7 @@ import numpy as np
 
 from ..evaluation.evaluate import evaluate
 from ..mechanism.names import LENGTHS
+from ..mechanism.unit_system import Conversion
 from ..runtime.request import as_number, check_common, with_known_inputs
 from ..support.extras import needed
 from .shared import BLUE, ORANGE
@@ -159,3 +160,16 @@ def _moving(ax: "Axes", AB: float) -> tuple[Any, ...]:
     )
     note = ax.set_title("", loc="left", fontsize="medium")
     return links, slider, pins, arc, names, note
+
+
+def label_lengths(ax: Any, length: Conversion) -> None:
+    """Show the axes of a sketch, and the lengths written in it, in another unit than metres."""
+    if length.si == 1:
+        return
+    for axis in (ax.xaxis, ax.yaxis):
+        axis.set_major_formatter(lambda value, _: f"{length.shown(value):g}")
+        axis.set_label_text(axis.get_label_text().replace("[m]", f"[{length.unit}]"))
+    for text in ax.texts:
+        written = text.get_text()
+        if written.startswith("ec = ") and written.endswith(" m"):
+            text.set_text(f"ec = {length.shown(float(written[5:-2])):.4g} {length.unit}")

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..support.extras import needed
-from .shared import chosen, drawn, fixed_inputs, label_of, worth_showing
+from .shared import chosen, drawn, fixed_inputs, input_in_si, label_of, worth_showing
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -45,7 +45,7 @@ def polar(
     axes: Any = Figure(figsize=SIZE, layout="constrained").add_subplot(projection="polar") if beside else ax
     if axes.name != "polar":
         raise ValueError("ax: expected polar Axes, such as figure.add_subplot(projection='polar')")
-    lines = drawn(axes, np.asarray(array["theta"].values, dtype=np.float64), array, beside)
+    lines = drawn(axes, input_in_si(array["theta"]), array, beside)
     _finish(axes, array, lines)
     if beside:
         axes.set_title(fixed_inputs(array, TITLE), loc="left", fontsize="medium", pad=12)

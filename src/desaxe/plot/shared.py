@@ -111,6 +111,14 @@ def shown(array: "xr.DataArray") -> NDArray[np.float64]:
     return values * degrees(1.0) if array.attrs.get("units") == "rad" else values
 
 
+def input_in_si(array: "xr.DataArray") -> NDArray[np.float64]:
+    """The values of a labelled input in its SI unit, whatever it is labelled in."""
+    from ..mechanism.units import in_si, unlabelled
+
+    held = unlabelled(str(array.name), array)
+    return np.asarray(in_si(str(array.name), held) if hasattr(held, "magnitude") else held, dtype=np.float64)
+
+
 def worth_showing(curves: Sequence[NDArray[np.float64]]) -> tuple[float, float] | None:
     """The range to show for curves with gaps, which may be unbounded; None without gaps.
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
+from ..mechanism.unit_system import UnitSystem
 from ..support.extras import needed
 from .shared import BLUE, ORANGE, label_of, raised
 
@@ -17,14 +18,22 @@ WIDTH, HEIGHT = 7.6, 0.42  # inches: of all, of a bar
 
 
 def tornado(
-    result: Any, changes: Mapping[str, Any], *, name: str = "", ax: "Axes | None" = None
+    result: Any,
+    changes: Mapping[str, Any],
+    *,
+    name: str = "",
+    units: str | Mapping[str, str] | UnitSystem | None = None,
+    ax: "Axes | None" = None,
 ) -> "list[BarContainer]":
     """Draw what a change of each input does to a quantity, by its exact sensitivities; returns the bars.
 
     result   a dict with `value` and `gradient`, as `desaxe.peak` and `desaxe.tolerance` give for one design;
              or a Dataset of `desaxe.grid` at one point, with the quantity and its sensitivities
-    changes  dict input -> half its range: in SI units, or texts such as "0.1 mm"; signs do not matter
+    changes  dict input -> half its range: in the units of the result, or texts such as "0.1 mm"; signs do
+             not matter
     name     the quantity: of a Dataset it is needed, of a dict it makes the label
+    units    the units of a dict's numbers, as a machine gives them ("mm, deg, rpm"); SI units without. A
+             Dataset knows its own
     ax       where to draw: a matplotlib Axes; by default a new Figure (`bars[0][0].figure`)
 
     To first order: each bar ends at value -+ slope times change, orange where the input is larger, blue where
@@ -32,8 +41,9 @@ def tornado(
     """
     with needed("plot.tornado"):
         from matplotlib.figure import Figure
-    value, slopes, label = _told(result, changes, name)
-    steps = {p: abs(_number(p, change)) for p, change in changes.items()}
+    system = _units_of(result, changes) if hasattr(result, "data_vars") else UnitSystem.read(units)
+    value, slopes, label = _told(result, changes, name, system)
+    steps = {p: abs(_number(p, change, system)) for p, change in changes.items()}
     order = sorted(steps, key=lambda p: abs(slopes[p]) * steps[p])
     if ax is None:
         size = (WIDTH, 1.5 + HEIGHT * len(order))
@@ -44,7 +54,7 @@ def tornado(
         ax.barh(rows, [sign * move for move in moves], left=value, color=colour, height=0.65, label=told)
         for sign, colour, told in ((1.0, ORANGE, "input larger"), (-1.0, BLUE, "input smaller"))
     ]
-    ax.set_yticks(rows, [f"{p} ± {_text(p, changes[p])}" for p in order])
+    ax.set_yticks(rows, [f"{p} ± {_text(p, changes[p], system)}" for p in order])
     ax.axvline(value, color="0.2", linewidth=1.0)
     ax.set_xlabel(label)
     ax.grid(True, axis="x", color="0.9", linewidth=0.8)
@@ -55,10 +65,18 @@ def tornado(
     return bars
 
 
-def _told(result: Any, changes: Mapping[str, Any], name: str) -> tuple[float, dict[str, float], str]:
+def _units_of(dataset: Any, changes: Mapping[str, Any]) -> UnitSystem:
+    """The units of the inputs of a Dataset."""
+    there = {p: dataset[p].attrs.get("units") for p in changes if p in dataset.coords}
+    return UnitSystem.read({p: unit for p, unit in there.items() if unit not in (None, "1")})
+
+
+def _told(
+    result: Any, changes: Mapping[str, Any], name: str, system: UnitSystem
+) -> tuple[float, dict[str, float], str]:
     """The value, its derivatives by the changed inputs, and the label."""
     if isinstance(result, Mapping) and "gradient" in result:
-        value, gradient, label = result["value"], result["gradient"], _label(name)
+        value, gradient, label = result["value"], result["gradient"], _label(name, system)
     elif name in result:
         rows = {p: sensitivity(name, p) for p in changes}
         gradient = {p: result[row].values for p, row in rows.items() if row in result}
@@ -79,25 +97,24 @@ def _scalar(value: Any) -> float:
         raise ValueError("a tornado is of one design: choose it first, dataset.sel(...)") from None
 
 
-def _label(name: str) -> str:
+def _label(name: str, system: UnitSystem) -> str:
     if not name:
         return "value"
-    known = quantity(name)
-    return f"{known.meaning}, {name} {raised(known.unit)}".rstrip()
+    return f"{quantity(name).meaning}, {name} {raised(system.of(name).unit)}".rstrip()
 
 
-def _number(parameter: str, change: Any) -> float:
+def _number(parameter: str, change: Any, system: UnitSystem) -> float:
     if parameter not in INPUTS:
         raise TypeError(f"changes: no input {parameter!r}")
     if not isinstance(change, (int, float)):
         from ..mechanism.units import in_si
 
-        change = in_si(parameter, change)
+        change = system.of(parameter).shown(float(in_si(parameter, change)))
     return float(change)
 
 
-def _text(parameter: str, change: Any) -> str:
+def _text(parameter: str, change: Any, system: UnitSystem) -> str:
     if not isinstance(change, (int, float)):
         return str(change)
-    unit = INPUTS[parameter].unit
+    unit = system.of(parameter).unit
     return f"{abs(change):.4g}" + (f" {unit.replace('*', ' ')}" if unit != "1" else "")

@@ -98,7 +98,10 @@ class Design:
 def _number(caller: str, name: str, value: Any) -> float:
     number = as_number(name, value, (name,), (caller,))
     if number is None:
-        raise TypeError(f"{caller}: {name} must be a number, this is about one design")
+        raise TypeError(
+            f"{caller}: {name} must be a number, this is about one design: call it for each of them, as in "
+            f"[desaxe.{caller}({name}=value, ...) for value in values]"
+        )
     return number
 
 
