@@ -120,7 +120,7 @@ def test_the_grid_is_never_stored(monkeypatch):
     from desaxe.evaluation import grid as _grid
 
     monkeypatch.setenv("DESAXE_TIER", "compiled")
-    monkeypatch.setattr(_grid, "_filled", lambda *_: pytest.fail("the whole grid was computed"))
+    monkeypatch.setattr(_grid, "filled_grid", lambda *_: pytest.fail("the whole grid was computed"))
     found = dx.grid("a_C", reduce={"theta": "absmax"}, theta=TURN, ec=[0, 0.1], BC=0.35, **MACHINE)
     assert set(found.data_vars) == {"a_C_absmax", "a_C_absmax_theta", "a_C_skipped"}
 
@@ -150,9 +150,20 @@ def test_small_grids_compile_nothing(monkeypatch):
         ({"thta": "max"}, "did you mean theta?"),
         ({"theta": "absmx"}, "did you mean absmax?"),
         ({"theta": []}, "nothing is taken of theta"),
-        ({"theta": "max", "ec": "max"}, "one axis and what is taken of it"),
-        ("theta", "one axis and what is taken of it"),
-        ({"theta": np.max}, "expected the name of a reduction or a list of names, of max, min,"),
+        ({"theta": "max", ("ec", "theta"): "max"}, "reduce: 'theta' is reduced twice"),
+        ("theta", "an axis and what is taken of it"),
+        ({}, "an axis and what is taken of it"),
+        ({"theta": "p101"}, "a percentile is from p0 to p100"),
+        ({"theta": ("max", "V_C")}, "reduce: nothing is taken of a_C"),
+        ({"theta": ["max", ("max", "a_D")]}, "unknown quantity 'a_D'"),
+        (
+            {"theta": [lambda d: (1.0, {}), "max", lambda d: (2.0, {})]},
+            "two results would be called <lambda>",
+        ),
+        ({"theta": ("rms", "a_C"), "ec": "max"}, "a measure of one name goes along one axis"),
+        ({("theta", "ec"): ("at", 1.0, "a_C")}, "goes along one axis, not theta, ec"),
+        ({"theta": np.max}, "reduce: nothing is taken of a_C"),
+        ({"theta": ["max", np.max]}, "must give (value, {parameter: derivative}) of numbers"),
         ({"theta": 3}, "reduce: theta = 3: expected the name of a reduction"),
     ],
 )
@@ -165,3 +176,80 @@ def test_complaints(reduce, message):
 def test_a_status_is_not_reduced():
     with pytest.raises(ValueError, match="leave it out; each name has a count of skipped points"):
         dx.grid(["a_C", "status"], reduce={"theta": "max"}, theta=[0, 1], ec=0, BC=0.35, **MACHINE)
+
+
+# ---- several axes, single names, functions --------------------------------------------------------
+
+BOTH = {"theta": TURN[::40], "ec": [0.0, 0.1, 0.24, 0.6], "BC": [0.35, 0.4], **MACHINE}
+FEASIBLE = {**BOTH, "ec": [0.0, 0.1, 0.2]}
+
+
+@pytest.mark.usefixtures("way")
+def test_two_axes_at_once_are_all_their_points():
+    found = dx.grid(
+        "a_C", reduce={("theta", "ec"): [*KINDS, "std", "median", "p95", ("percentile", 12.5)]}, **BOTH
+    )
+    values = dx.grid("a_C", **BOTH).a_C.transpose("BC", "theta", "ec").values.reshape(2, -1)
+    assert found.a_C_rms.dims == ("BC",)
+    for kind in KINDS:
+        np.testing.assert_allclose(found[f"a_C_{kind}"], by_numpy(kind, values, -1), rtol=1e-13)
+    np.testing.assert_allclose(found.a_C_std, np.nanstd(values, -1), rtol=1e-13)
+    for name, q in (("median", 50), ("p95", 95), ("p12.5", 12.5)):
+        np.testing.assert_allclose(found[f"a_C_{name}"], np.nanpercentile(values, q, -1), rtol=1e-13)
+    np.testing.assert_array_equal(found.a_C_skipped, np.isnan(values).sum(-1))
+    for BC, most, theta, ec in zip(
+        [0.35, 0.4], found.a_C_absmax, found.a_C_absmax_theta, found.a_C_absmax_ec, strict=True
+    ):
+        there = dx.evaluate("a_C", theta=float(theta), ec=float(ec), BC=BC, **MACHINE)
+        assert abs(there) == pytest.approx(float(most), rel=1e-13)
+    assert found.a_C_rms.attrs["cell_methods"] == "theta: ec: root_mean_square"
+    assert found.a_C_rms.attrs["units"] == "m/s^2"
+
+
+def test_one_axis_after_the_other_in_the_order_given():
+    whole = dx.grid("a_C", **FEASIBLE).a_C
+    found = dx.grid("a_C", reduce={"theta": ["max", "mean"], "ec": ["min", "mean"]}, **FEASIBLE)
+    np.testing.assert_allclose(found.a_C_max_min, whole.max("theta").min("ec"), rtol=1e-14)
+    np.testing.assert_allclose(found.a_C_max_mean, whole.max("theta").mean("ec"), rtol=1e-14)
+    np.testing.assert_allclose(found.a_C_mean, whole.mean(["theta", "ec"]), rtol=1e-12)  # of all points
+    np.testing.assert_array_equal(found.a_C_max_min_ec, whole.max("theta").idxmin("ec"))
+    there = whole.sel(ec=found.a_C_max_min_ec, theta=found.a_C_max_min_theta)
+    np.testing.assert_allclose(there, found.a_C_max_min, rtol=1e-13)
+    assert "a_C_max_mean_theta" not in found
+    other = dx.grid("a_C", reduce={"ec": "min", "theta": "max"}, **FEASIBLE)
+    np.testing.assert_allclose(other.a_C_min_max, whole.min("ec").max("theta"), rtol=1e-14)
+
+
+def test_measures_of_single_names_and_a_function_of_the_design():
+    def squares(design):
+        """ec^2 + BC, and its derivatives."""
+        return design["ec"] ** 2 + design["BC"], {"ec": 2 * design["ec"], "BC": 1.0}
+
+    inputs = {**FEASIBLE, "m_slider": 2.0}
+    asked = [("rms", "T_in"), ("at", "60 deg", "Y"), (("percentile", 95), "T_in"), squares]
+    found = dx.grid([], reduce=asked, **inputs)
+    whole = dx.grid("T_in", **inputs).T_in
+    np.testing.assert_allclose(found.T_in_rms, np.sqrt((whole**2).mean("theta")), rtol=1e-13)
+    np.testing.assert_allclose(found.T_in_p95, whole.quantile(0.95, "theta"), rtol=1e-12)
+    sixty = dx.grid("Y", **{**FEASIBLE, "theta": "60 deg"}).Y
+    np.testing.assert_allclose(found.Y_at_60_deg, sixty, rtol=1e-15)
+    np.testing.assert_array_equal(found.squares_wrt_ec, np.broadcast_to([[0.0], [0.2], [0.4]], (3, 2)))
+    assert found.squares_wrt_BC.dims == ("ec", "BC")
+    assert set(found.sizes) == {"ec", "BC"}
+
+
+def test_a_large_one_is_computed_in_blocks(monkeypatch):
+    from desaxe.evaluation import joint
+
+    whole = dx.grid("a_C", reduce={("theta", "ec"): ["p95", "max"]}, **FEASIBLE)
+    monkeypatch.setattr(joint, "POINTS", 1)
+    assert whole.identical(dx.grid("a_C", reduce={("theta", "ec"): ["p95", "max"]}, **FEASIBLE))
+
+
+def test_own_quantities_are_told_in_a_reduced_result():
+    dx.define("shoe", "0.08 * abs(N_C * V_C)", unit="W")
+    try:
+        found = dx.grid("shoe", reduce={"theta": "mean"}, **{**FEASIBLE, "m_slider": 1.0})
+        assert "0.08 * abs(N_C * V_C)" in found.attrs["quantities"]
+    finally:
+        dx.undefine("shoe")

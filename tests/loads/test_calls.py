@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 import desaxe as dx
+from desaxe.design.measures import measured
 
 BODIES = {"ec": 0.01, "AB": 0.04, "BC": 0.064, "m_rod": 0.5, "m_slider": 0.8}
 TURN = 2 * np.pi
@@ -71,28 +72,43 @@ def test_one_parameter_is_theta_and_three_are_t_theta_omega():
         dx.simulate(torque=lambda t, theta: 0.0, **given)
 
 
-def test_a_turn_costs_the_work_of_the_load_in_every_call():
-    machine = BODIES | {"omega0": 50.0}
-    mean = -work(STEP, 0.0, TURN) / TURN
-    wheel = dx.flywheel(fluctuation=0.05, F_Y=STEP, **machine)
-    assert wheel["mean_torque"] == pytest.approx(mean, rel=1e-3)  # equal steps across jumps
-    assert wheel["max_torque"] == dx.peak("T_in", kind="max", F_Y=STEP, **machine)["value"]
-    assert dx.drive(F_Y=STEP, **machine)["torque_mean"] == pytest.approx(mean, rel=1e-10)
-    smooth = dx.harmonics("T_in", F_Y=LOADS["cubic"], **machine)
-    assert smooth["mean"] == pytest.approx(-work(LOADS["cubic"], 0.0, TURN) / TURN, rel=1e-8)
+@pytest.mark.parametrize("kind", ["cubic", "step", "stroke"])
+def test_a_turn_costs_the_work_of_the_load_in_every_call(kind):
+    load, machine = LOADS[kind], BODIES | {"omega0": 50.0}
+    mean = -work(load, 0.0, TURN) / TURN
+    wheel = dx.flywheel(fluctuation=0.05, F_Y=load, **machine)
+    motor = dx.drive(fluctuation=0.05, F_Y=load, **machine)
+    series = dx.harmonics("T_in", orders=2, F_Y=load, **machine)
+    for found in (wheel["mean_torque"], motor["torque_mean"], series["mean"]):
+        assert found == pytest.approx(mean, rel=1e-9, abs=1e-11)
+    assert wheel["max_torque"] == dx.peak("T_in", kind="max", F_Y=load, **machine)["value"]
+    assert wheel["inertia"] == pytest.approx(motor["flywheel_inertia"], rel=1e-12)
+
+
+def test_harmonics_across_jumps_are_integrals():
+    """Of a force that jumps: the guide carries it where nothing has mass, and nothing else."""
+    light = {"ec": 0.0, "AB": 0.04, "BC": 0.064}
+    found = dx.harmonics("F_C_Y", orders=40, F_Y=STEP, **light)
+    knots, values = [0.0, 1.0, 2.0, 4.0, TURN], [0.0, 400.0, 50.0, -20.0]  # the slider on the rod
+    for n in (1, 7, 40):
+        pieces = zip(pairwise(knots), values, strict=True)
+        cosine = sum(v * (np.sin(n * b) - np.sin(n * a)) / n / np.pi for (a, b), v in pieces)
+        assert abs(found["cos"][n]) == pytest.approx(abs(cosine), abs=1e-11)
+    squares = sum(v * v * (b - a) for (a, b), v in zip(pairwise(knots), values, strict=True)) / TURN
+    series = found["mean"] ** 2 + 0.5 * np.sum(found["amplitude"][1:] ** 2)
+    assert found["remainder"] == pytest.approx(np.sqrt(squares - series), rel=1e-9)
 
 
 def test_a_four_stroke_load_repeats_after_two_turns():
     load = dx.over_theta([0.0, 1.0, 7.0, 8.0], [0.0, -10.0, 0.0, -500.0], kind="linear", period=2 * TURN)
     machine = BODIES | {"omega0": 50.0}
     wheel = dx.flywheel(fluctuation=0.05, F_Y=load, **machine)
-    assert wheel["mean_torque"] == pytest.approx(-work(load, 0.0, 2 * TURN) / (2 * TURN), rel=1e-6)
+    assert wheel["mean_torque"] == pytest.approx(-work(load, 0.0, 2 * TURN) / (2 * TURN), rel=1e-9)
     with pytest.raises(ValueError, match="F_Y: harmonics is over a turn, after which the load must repeat"):
         dx.harmonics("T_in", F_Y=load, **machine)
 
 
 def test_tolerance_and_optimum_follow_the_load():
-    pytest.importorskip("SALib")
     machine = {"theta": 4.0, "omega0": 50.0, "m_slider": 0.8, "ec": 0.01, "F_Y": STROKE}
     lengths = {"AB": (0.04, 1e-5), "BC": (0.064, 1e-5)}
     found = dx.tolerance("T_in", samples=2000, sobol=0, **lengths, **machine)
@@ -104,3 +120,27 @@ def test_tolerance_and_optimum_follow_the_load():
     best = dx.optimize(minimize=("absmax", "T_in"), over={"ec": (0.0, 0.02)}, starts=1, **fixed)
     scan = [dx.peak("T_in", ec=ec, **fixed)["value"] for ec in np.linspace(0.0, 0.02, 5)]
     assert best["value"] <= min(scan) * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("measure", [("rms", "T_in"), ("mean", "N_C"), ("rms", "F_C_Y")])
+def test_averages_and_their_gradients_across_jumps_that_move(measure):
+    steps = dx.over_Y([0.02, 0.05, 0.08, 0.1], [-900, -200, -50, -30], [-90, -40, -15, -3], kind="step")
+    machine = {"AB": 0.04, "BC": 0.064, "m_slider": 0.8, "omega0": 50.0, "F_Y": steps}
+
+    def at(ec):
+        return measured([measure], {**machine, "ec": np.array([ec])})[measure]
+
+    series = dx.harmonics(measure[1], orders=0, ec=0.01, **machine)
+    right = series["mean"] if measure[0] == "mean" else np.hypot(series["mean"], series["remainder"])
+    assert at(0.01).value[0] == pytest.approx(right, rel=1e-9, abs=1e-9)
+    slope = (at(0.01 + 1e-6).value - at(0.01 - 1e-6).value) / 2e-6
+    assert at(0.01).gradient["ec"] == pytest.approx(slope, rel=1e-6)
+
+
+def test_an_average_goes_over_all_turns_of_a_load_and_drive_refuses_them():
+    load = dx.over_theta([0.0, 1.0, 7.0, 8.0], [0.0, -10.0, 0.0, -500.0], kind="linear", period=2 * TURN)
+    machine = BODIES | {"omega0": 50.0, "F_Y": load}
+    mean = measured([("mean", "T_in")], machine)[("mean", "T_in")].value
+    assert mean == pytest.approx(-work(load, 0.0, 2 * TURN) / (2 * TURN), rel=1e-9)
+    with pytest.raises(ValueError, match="F_Y: drive is over a turn, after which the load must repeat"):
+        dx.drive(**machine)

@@ -4,6 +4,7 @@ import importlib.util
 import re
 import sys
 
+import jsonschema
 import numpy as np
 import pytest
 
@@ -138,7 +139,6 @@ def test_what_no_module_can_hold_is_refused(tmp_path):
 
 
 def test_the_schema_knows_loads():
-    jsonschema = pytest.importorskip("jsonschema")
     rules = json_schema()
     scene = {"outputs": ["T_in"], "loads": {"F_Y": {"over_theta": "press.csv", "theta": "deg"}}}
     jsonschema.validate(scene, rules)

@@ -4,6 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
+import xarray
 from mpmath import mp, mpf
 from scipy.interpolate import CubicSpline
 
@@ -83,7 +84,6 @@ def test_arrays_grids_and_numbers_agree():
 
 
 def test_a_labelled_array_is_a_load_over_theta():
-    xarray = pytest.importorskip("xarray")
     theta, ec = np.linspace(0, TURN, 73), [0.0, 0.01]
     fixed = {name: value for name, value in {**DESIGN, **BODIES}.items() if name != "ec"}
     values = spline()(theta)

@@ -1,36 +1,80 @@
 """Measures over the crank's turn and at one angle: ("rms", name), ("mean", name), ("at", "60 deg", name).
 
-Averages are over the angle, by Gauss's rule on equal panels: of a smooth quantity all digits are right, and
-kinks and jumps, which friction makes, cost some.
+Averages are over the angle, by Gauss's rule on panels between the angles at which a load has kinks or jumps,
+over as many turns as it takes to repeat: all digits are right but next to a kink that friction makes.
 """
 
 from collections.abc import Mapping
-from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
+from ..loads.angles import dead_centres, meeting_angles, passages, repeated, turns_of
+from ..loads.load import Load, OverY
 from ..mechanism.catalogue import has
 from ..mechanism.inputs import INPUTS
-from ..mechanism.names import sensitivity
+from ..mechanism.names import LENGTHS, sensitivity
 from ..runtime.request import as_number
 
 Array = NDArray[np.float64]
 AVERAGES = ("mean", "rms")
 PANELS, POINTS = 64, 8
+BESIDE = 1e-11  # rad from a jump: what is rounded of its angle is less
+MOST_TURNS = 4  # after which loads repeat
 
 
 def average(kind: str, name: str, designs: Mapping[str, Any], branch: int) -> tuple[Array, dict[str, Array]]:
     """The mean or the root of the mean square of a quantity over a turn, and its derivatives."""
-    angles, weights = _rule()
+    angles, weights = _rule(designs, branch)
     value, slopes = _along(name, angles, designs, branch)
+
+    def mean(values: Array) -> Array:
+        return np.asarray((values * weights).sum(axis=-1))
+
+    moving = _jumps_that_move(kind, name, designs, branch)
     if kind == "mean":
-        return value @ weights, {p: slope @ weights for p, slope in slopes.items()}
+        return mean(value), {p: mean(slope) + moving.get(p, 0.0) for p, slope in slopes.items()}
     with np.errstate(invalid="ignore", divide="ignore"):
-        rms = np.sqrt((value * value) @ weights)
-        return rms, {p: (value * slope) @ weights / rms for p, slope in slopes.items()}
+        rms = np.sqrt(mean(value * value))
+        return rms, {p: (mean(value * slope) + 0.5 * moving.get(p, 0.0)) / rms for p, slope in slopes.items()}
+
+
+def _jumps_that_move(kind: str, name: str, designs: Mapping[str, Any], branch: int) -> dict[str, Array]:
+    """The derivative of a mean, or a mean square, by each length that comes from jumps that move.
+
+    Jumps of loads over the stroke do. One at the angle t adds (before - after) dt/dp. It stays at a position,
+    Y(t, p) = Y_k, or at a dead centre, Y_wrt_theta = 0.
+    """
+    found: dict[str, Array] = {}
+    loads = [load for load in designs.values() if isinstance(load, OverY)]
+    if not loads:
+        return found
+    end = 2.0 * np.pi * turns_of("an average", _loads(designs), MOST_TURNS)
+    lengths = {n: np.asarray(designs[n], float) for n in LENGTHS}
+    sides = [side.ravel() for side in np.broadcast_arrays(*(np.atleast_1d(v) for v in lengths.values()))]
+    shape = np.broadcast_shapes(*(v.shape for v in lengths.values()))
+    positions = [passages(load.jumps, sides, branch) for load in loads]
+    turning = [dead_centres(sides)] if any(load.inward is not None for load in loads) else []
+    for fixed, angles in (("Y", positions), ("Y_wrt_theta", turning)):
+        if not angles:
+            continue
+        places = repeated(np.concatenate(angles, axis=-1), 0.0, end).reshape(*shape, -1)
+        here = np.where(np.isnan(places), 1.0, places)
+        before, after = (_along(name, here + side * BESIDE, designs, branch)[0] for side in (-1.0, 1.0))
+        jump = before - after if kind == "mean" else before**2 - after**2
+        names = [sensitivity(fixed, p) for p in ("theta", *LENGTHS)]
+        wide: dict[str, Any] = {n: v[..., None] for n, v in lengths.items()}
+        by = evaluate(names, theta=here, branch=branch, **wide)
+        for p, slope in zip(LENGTHS, names[1:], strict=True):
+            terms = np.where(np.isnan(places), 0.0, -jump * by[slope] / by[names[0]])
+            found[p] = found.get(p, 0.0) + terms.sum(axis=-1) / end
+    return found
+
+
+def _loads(designs: Mapping[str, Any]) -> dict[str, Load]:
+    return {p: load for p, load in designs.items() if isinstance(load, Load)}
 
 
 def at_angle(
@@ -66,40 +110,21 @@ def _along(
     return full[name], {p: full[slope] for p, slope in slopes.items()}
 
 
-@cache
-def _rule() -> tuple[Array, Array]:
-    """Angles of one turn, and weights whose sum is 1."""
+def _rule(designs: Mapping[str, Any], branch: int) -> tuple[Array, Array]:
+    """Angles, and weights whose sum is 1; a row for each design where the kinks of a load move with it."""
+    loads = _loads(designs)
+    turns = turns_of("an average", loads, MOST_TURNS)
+    edges = np.linspace(0.0, 2.0 * np.pi * turns, PANELS * turns + 1)
+    if loads:
+        lengths = np.broadcast_arrays(*(np.atleast_1d(np.asarray(designs[n], float)) for n in LENGTHS))
+        kinks = meeting_angles(loads.values(), float(edges[-1]), [side.ravel() for side in lengths], branch)
+        kinks = np.where(np.isnan(kinks), 0.0, kinks)
+        equal = np.broadcast_to(edges, (kinks.shape[0], edges.size))
+        edges = np.sort(np.concatenate([equal, kinks], axis=1), axis=1)
+        edges = edges[0] if edges.shape[0] == 1 else edges.reshape(*lengths[0].shape, -1)
     nodes, weights = np.polynomial.legendre.leggauss(POINTS)
-    starts = np.arange(PANELS)[:, None]
-    angles = (starts + 0.5 * (nodes + 1.0)) * (2.0 * np.pi / PANELS)
-    return angles.reshape(-1), np.tile(weights / (2.0 * PANELS), PANELS)
-
-
-class OwnMeasure:
-    """A user's function of a design (a dict of parameters) that returns a value and a dict of derivatives."""
-
-    def __init__(self, function: Any) -> None:
-        self.function = function
-        self.name = getattr(function, "__name__", "function")
-
-    def __call__(self, designs: Mapping[str, Any]) -> tuple[Array, dict[str, Array]]:
-        """Values and derivatives of designs, one after the other."""
-        numbers = {p: np.asarray(v, float) for p, v in designs.items() if v is not None and not callable(v)}
-        shape = np.broadcast_shapes(*(v.shape for v in numbers.values()))
-        rows = {p: np.broadcast_to(v, shape).reshape(-1) for p, v in numbers.items()}
-        size = int(np.prod(shape))
-        answers = [self._one({p: float(v[row]) for p, v in rows.items()}) for row in range(size)]
-        value = np.array([answer[0] for answer in answers]).reshape(shape)
-        names = dict.fromkeys(p for _, gradient in answers for p in gradient)
-        return value, {
-            p: np.array([gradient.get(p, 0.0) for _, gradient in answers]).reshape(shape) for p in names
-        }
-
-    def _one(self, design: dict[str, float]) -> tuple[float, Mapping[str, float]]:
-        try:
-            value, gradient = self.function(design)
-            return float(value), {p: float(slope) for p, slope in gradient.items()}
-        except (TypeError, ValueError, AttributeError) as error:
-            raise TypeError(
-                f"{self.name}(design) must give (value, {{parameter: derivative}}) of numbers: {error}"
-            ) from error
+    middle, half = 0.5 * (edges[..., 1:] + edges[..., :-1]), 0.5 * np.diff(edges)
+    angles = middle[..., None] + half[..., None] * nodes
+    shares = half[..., None] * weights / (2.0 * np.pi * turns)
+    rows = (*edges.shape[:-1], -1)
+    return angles.reshape(rows), np.broadcast_to(shares, angles.shape).reshape(rows)

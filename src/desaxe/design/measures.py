@@ -11,13 +11,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..evaluation.own_measure import OwnMeasure
 from ..mechanism.catalogue import quantities, quantity
 from ..mechanism.names import LENGTHS
 from ..mechanism.spelling import meant
 from ..peaks.designs import KINDS
 from ..peaks.peak import peak
 from ..support.shown import shown
-from .averages import AVERAGES, OwnMeasure, angle_of, at_angle, average
+from .averages import AVERAGES, angle_of, at_angle, average
 from .events.arrays import events_of_arrays
 from .number_or_array import sum_of_three
 

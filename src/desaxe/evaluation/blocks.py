@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..compiler.languages.numba.reductions import EXTREMES, outputs_of
 from ..mechanism.names import LENGTHS
+from ..mechanism.own import Definition
 from ..runtime.compiled_only import compiled_only
 from ..runtime.kernels import KernelKey, key_of
 from ..runtime.point import point_of
@@ -20,7 +21,9 @@ from ..runtime.request import Request, request
 from ..runtime.threads import run_in_blocks
 from .arrays import dtype_of
 from .outer import Outer, first_joined, join_from, require_inputs
-from .reduce import Reduction, fill_reduced, named_by_reduction
+from .reduce import fill_reduced, named_by_reduction
+from .reductions import Reduction
+from .sources import Source, source_of
 
 Array = NDArray[Any]
 
@@ -42,6 +45,11 @@ class Part(NamedTuple):
     scalars: tuple[tuple[str, float], ...]
     joined: int
     reduction: Reduction | None = None
+
+    @property
+    def own(self) -> tuple[Definition, ...]:
+        """The definitions that it needs."""
+        return self.key.form.own
 
     @property
     def outputs(self) -> dict[str, np.dtype[Any]]:
@@ -70,11 +78,52 @@ class Part(NamedTuple):
             return _compute_reduced(self, self.reduction, values, threads)
 
 
-def grid_parts(outer: Outer, branch: int, accuracy: Any, block: Mapping[str, int]) -> tuple[Part, ...]:
+class LoadedPart(NamedTuple):
+    """The names of a grid under loads that vary with the motion.
+
+    Its kernel is chosen block by block, so that the last digit may depend on the blocks.
+    """
+
+    names: tuple[str, ...]
+    dims: tuple[str, ...]
+    source: Source
+    reduction: None = None
+
+    @property
+    def own(self) -> tuple[Definition, ...]:
+        """The definitions that it needs."""
+        return self.source.wanted.form.own
+
+    @property
+    def outputs(self) -> dict[str, np.dtype[Any]]:
+        """The outputs by name, and their types."""
+        return {name: dtype_of(name) for name in self.names}
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """The dimensions whose values it needs."""
+        return self.dims
+
+    def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
+        """The outputs of a block by name, from the values along each of its `axes`."""
+        with compiled_only():
+            return self.source.values({name: values[name] for name in self.dims}, self.dims, threads)
+
+
+def grid_parts(
+    outer: Outer, branch: int, accuracy: Any, block: Mapping[str, int]
+) -> tuple[Part | LoadedPart, ...]:
     """The parts of a grid that is cut into blocks of these lengths."""
-    return tuple(
-        _part(request(names, outer.given, branch, accuracy), outer.axes, along, block)
-        for names, along in outer.groups()
+    (names, along), *margin = outer.groups()
+    if not outer.loads:
+        first: Part | LoadedPart = _part(
+            request(names, outer.given, branch, accuracy), outer.axes, along, block
+        )
+    else:
+        source = source_of(names, outer.given, outer.axes, outer.loads, branch, accuracy)
+        first = LoadedPart(tuple(names), tuple(along), source)
+    return first, *(
+        _part(request(own, outer.given, branch, accuracy), outer.axes, along, block) for own, along in margin
     )
 
 
@@ -90,12 +139,14 @@ def reduced_parts(
     places = {name: order.index(name) for name in columns}
     key = key_of(wanted, scalars, columns, places, len(order))._replace(reduce=reduction.kinds)
     part = Part(wanted.shown, rest, key, tuple(scalars.items()), len(order) - 1, reduction)
-    return part, *margin_parts(outer, branch, accuracy, block)
+    return part, *margin_parts(outer, branch, accuracy, block, (reduction.axis,))
 
 
-def margin_parts(outer: Outer, branch: int, accuracy: Any, block: Mapping[str, int]) -> tuple[Part, ...]:
-    """The part of the margin, if all lengths are given."""
-    if not all(name in outer.axes for name in LENGTHS):
+def margin_parts(
+    outer: Outer, branch: int, accuracy: Any, block: Mapping[str, int], reduced: Sequence[str] = ()
+) -> tuple[Part, ...]:
+    """The part of the margin, if all lengths are given and none of them is reduced."""
+    if not all(name in outer.axes and name not in reduced for name in LENGTHS):
         return ()
     names, along = outer.groups()[1]
     return (_part(request(names, outer.given, branch, accuracy), outer.axes, along, block),)

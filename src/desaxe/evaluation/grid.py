@@ -4,16 +4,13 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, Unpack, overload
 
-import numpy as np
 from numpy.typing import NDArray
 
-from ..loads.resolve import without_loads
 from ..mechanism.inputs import Inputs
-from ..runtime.request import Request, request, with_named_inputs
-from .arrays import copied_back, fill, outputs_for, scratch_for
+from ..runtime.request import request, several, with_named_inputs
+from .filled import filled_grid
 from .loaded import filled_under_loads
-from .loops import Loops
-from .outer import join_axes, outer_of, require_inputs
+from .outer import outer_of, require_inputs
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,7 +26,7 @@ def grid(
     accuracy: str | float = "standard",
     threads: int | None = None,
     out: None = None,
-    reduce: Mapping[str, str | Sequence[str]] | None = None,
+    reduce: Any = None,
     chunks: Any = None,
     **inputs: Unpack[Inputs],
 ) -> "xr.Dataset": ...
@@ -55,7 +52,7 @@ def grid(
     accuracy: str | float = "standard",
     threads: int | None = None,
     out: Any = None,
-    reduce: Mapping[str, str | Sequence[str]] | None = None,
+    reduce: Any = None,
     chunks: Any = None,
     **inputs: Any,
 ) -> "xr.Dataset | dict[str, Array]":
@@ -73,7 +70,12 @@ def grid(
     `reduce={"theta": "absmax"}` (max, min, absmax, mean, rms, or a list of these) reduces an axis
     without storing the grid: the Dataset has `a_C_absmax` over the other axes, `a_C_absmax_theta`,
     where the largest or smallest sample is, and `a_C_skipped`, how many points along the axis have no
-    value. The extremes are those of the samples; `peak` refines them.
+    value. The extremes are those of the samples; `peak` refines them. Other kinds are std, median and
+    percentiles ("p95", or ("percentile", 95)). `{("theta", "ec"): "rms"}` goes over all points of both axes,
+    `{"theta": "max", "ec": "mean"}` over one after the other: `a_C_max_mean`; equal kinds in a row go over
+    all their axes at once. Of single names, along one axis: `{"theta": [("rms", "T_in"), ("at", "60 deg",
+    "Y")]}` gives `T_in_rms` and `Y_at_60_deg`, and a function f of a design, which gives its value and a dict
+    of its derivatives, gives `f` and `f_wrt_ec`, ...; a list of these alone goes along theta.
 
     `chunks={"theta": 1000}` (as in xarray: a dict, a number or "auto"; dimensions not named are whole)
     gives lazy Dask arrays, each chunk computed by compiled kernels when it is needed, with the same
@@ -81,9 +83,14 @@ def grid(
 
         dx.grid(["a_C"], theta=th, ec=ecs, AB=.125, BC=bcs, omega0=157.08).a_C.max("theta")
     """
+    if reduce is not None:
+        from .joint import joint_grid, joint_part
+        from .reduce import reduced_grid
+        from .reductions import names_reduced, reductions_of
+
+        names = ((names,) if isinstance(names, str) else several(names)) + names_reduced(reduce)
     outer = outer_of(names, inputs, branch, threads, always=out is None)
     if chunks is not None:
-        without_loads("grid with chunks=", outer.loads)
         if out is not None:
             raise TypeError("chunks= and out=: give one of them")
         from .lazy import lazy_grid
@@ -99,17 +106,18 @@ def grid(
     def filled(some: Sequence[str], along: Sequence[str], out: Any = None) -> dict[str, Array]:
         if outer.loads:
             return filled_under_loads(some, everything, along, (branch, accuracy, threads), out)
-        return _filled(request(some, given, branch, accuracy), axes, along, threads, out)
+        return filled_grid(request(some, given, branch, accuracy), axes, along, threads, out)
 
     if reduce is not None:
         if out is not None:
             raise TypeError("reduce= and out=: give one of them")
-        from .reduce import reduced_grid
-
+        reductions = reductions_of(reduce, dimensions, wanted)
+        if outer.loads or reductions.alone is None:
+            return joint_grid(joint_part(outer, branch, accuracy, reductions), outer, branch, threads)
         asked = request(wanted, given, branch, accuracy)
         require_inputs(asked, everything)
         whole = partial(filled, wanted, dimensions)
-        return reduced_grid(asked, axes, dimensions, reduce, branch, threads, whole, bool(outer.loads))
+        return reduced_grid(asked, axes, dimensions, reductions.alone, branch, threads, whole)
     if out is not None:
         return filled(wanted, dimensions, out)
     from .labels import labelled, with_loads
@@ -120,23 +128,3 @@ def grid(
     state = given.get("omega") is not None
     dataset = labelled({n: arrays[n] for n in outer.shown}, outer.coordinates, branch, state, accuracy)
     return with_loads(dataset, outer.loads)
-
-
-def _filled(
-    wanted: Request, axes: Mapping[str, Array], dimensions: Sequence[str], threads: int | None, out: Any
-) -> dict[str, Array]:
-    """The values over these dimensions, from one loop nest in their order."""
-    require_inputs(wanted, axes)
-    inputs = wanted.inputs
-    shape = tuple(axes[name].size for name in dimensions)
-    places = outputs_for(wanted.shown, shape, out)
-    buffers = places if out is None else scratch_for(places, axes.values())
-    if all(shape):
-        # At least one axis, so that a grid of numbers alone goes the same way.
-        order = list(dimensions) or [""]
-        scalars = {name: float(axes[name].reshape(-1)[0]) for name in inputs if name not in order}
-        columns = {name: np.ascontiguousarray(axes[name]) for name in inputs if name in order}
-        places_of = {name: order.index(name) for name in columns}
-        sizes = join_axes(order, columns, places_of, shape or (1,))
-        fill(wanted, scalars, Loops(sizes, columns, places_of), list(buffers.values()), threads)
-    return copied_back(places, buffers, False)

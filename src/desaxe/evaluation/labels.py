@@ -55,8 +55,9 @@ def provenance(
     branch: int,
     accuracy: str | float = "standard",
     title: str = "offset slider-crank",
+    of: Iterable[str] = (),
 ) -> dict[str, Any]:
-    """Attributes of a dataset: the request, and the version that computed it."""
+    """Attributes of a dataset: the request, and the version that computed it; `of`: names behind `names`."""
     axes = [name for name, array in inputs.items() if array.ndim]
     fixed = [
         f"{name} = {array.item()!r} {INPUTS[name].unit}".removesuffix(" 1")
@@ -64,7 +65,7 @@ def provenance(
         if not array.ndim
     ]
     names = tuple(names)
-    own = text_of(names)
+    own = text_of((*names, *of))
     scene = ", ".join(names) + (f" over {', '.join(axes)}" if axes else "")
     return {
         **({"quantities": own} if own else {}),
@@ -106,9 +107,11 @@ def with_loads(dataset: "xr.Dataset", loads: Mapping[str, Any]) -> "xr.Dataset":
     if not loads:
         return dataset
     over_theta = {name: load for name, load in loads.items() if load.over == "theta"}
-    theta = dataset["theta"]
-    columns = {n: (theta.dims, load(theta.values), input_attributes(n)) for n, load in over_theta.items()}
-    return dataset.assign_coords(columns).assign_attrs(loads=loads_text(loads))
+    if "theta" in dataset.dims:
+        theta = dataset["theta"]
+        columns = {n: (theta.dims, load(theta.values), input_attributes(n)) for n, load in over_theta.items()}
+        dataset = dataset.assign_coords(columns)
+    return dataset.assign_attrs(loads=loads_text(loads))
 
 
 def loads_text(loads: Mapping[str, Any]) -> str:

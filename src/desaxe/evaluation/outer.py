@@ -1,6 +1,6 @@
 """The arguments of a grid, checked, and its axes joined to loops that are long enough to vectorise."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from math import prod
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -114,7 +114,7 @@ def join_from(
     return (*shape[:first], prod(rest))
 
 
-def require_inputs(wanted: Request, axes: Mapping[str, Array]) -> None:
+def require_inputs(wanted: Request, axes: Container[str]) -> None:
     """Raise TypeError for an input that is needed and not given."""
     missing = [name for name in wanted.inputs if name not in axes]
     if missing:

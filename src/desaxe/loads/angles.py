@@ -1,12 +1,13 @@
 """Crank angles of slider positions and of dead centres: the nodes of a load over Y."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from math import gcd
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .load import Load, OverTheta, OverY
+from .load import TURN, Load, OverTheta, OverY, TableOverTheta
 
 Array = NDArray[np.float64]
 
@@ -70,3 +71,43 @@ def kinks_between(
             every = repeated(angles[None, :], low, high)
             found += every[np.isfinite(every)].tolist()
     return sorted(set(found))
+
+
+def turns_of(caller: str, loads: Mapping[str, Load], most: int) -> int:
+    """After how many turns the loads repeat; ValueError for more than `most`."""
+    turns = 1
+    for name, load in loads.items():
+        if not isinstance(load, OverTheta):
+            continue
+        own = next((n for n in range(1, most + 1) if _repeats(load, n * TURN)), None)
+        if own is None:
+            raise ValueError(
+                f"{name}: {caller} is over {'a turn' if most == 1 else f'at most {most} turns'}, after which "
+                f"the load must repeat; its period is {load.period:.6g} rad"
+            )
+        turns = turns * own // gcd(turns, own)
+    return turns
+
+
+def _repeats(load: OverTheta, angle: float) -> bool:
+    """True where a table repeats after an angle; a function is taken to."""
+    periods = angle / load.period
+    return not isinstance(load, TableOverTheta) or abs(periods - round(periods)) < 1e-9
+
+
+def meeting_angles(loads: Iterable[Load], high: float, lengths: Sequence[Array], branch: int) -> Array:
+    """For each design the angles from 0 to `high` at which pieces of loads meet, NaN in empty places.
+
+    One row for all designs where no load is over the slider's position.
+    """
+    found = [np.empty((1, 0))]
+    for load in loads:
+        if isinstance(load, OverTheta):
+            found.append(np.array([load.nodes(0.0, high, smooth=True)]))
+        elif isinstance(load, OverY):
+            angles = np.concatenate(
+                [passages(load.positions(smooth=True), lengths, branch), dead_centres(lengths)], axis=-1
+            )
+            found.append(repeated(angles, 0.0, high))
+    size = max(part.shape[0] for part in found)
+    return np.concatenate([np.broadcast_to(part, (size, part.shape[1])) for part in found], axis=1)

@@ -4,21 +4,24 @@ Such a load is a callable: over theta a function of the angle [rad], over Y one 
 way the slider goes. It stands wherever F_X or F_Y does, compares by its content, and can be pickled.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
+from hashlib import sha256
 from math import ceil, floor, inf, isfinite, nextafter, pi
 from typing import Any
 
 from .table import Table
 
 TURN = 2.0 * pi
+SAMPLES = 1024  # of a function, by which it is told from others
 
 
 class LoadWarning(UserWarning):
     """A load that may be a mistake, such as an array of designs that looks like a load over theta."""
 
 
-class Load:
+class Load(ABC):
     """Base class of loads; `unit` is that of the values, None for plain SI numbers."""
 
     over = "theta"
@@ -30,26 +33,35 @@ class Load:
         """True where the derivative of the load is known."""
         return True
 
+    @property
+    def identity(self) -> str:
+        """A digest of all that the load is: that of a function is of its values over a period."""
+        return sha256(self._content().encode()).hexdigest()
+
+    @abstractmethod
+    def _content(self) -> str:
+        """The definition of the load as a text."""
+
 
 class OverTheta(Load):
     """A load over the crank angle."""
 
     @property
+    @abstractmethod
     def period(self) -> float:
         """The angle after which the load, or the nodes of a function, repeat [rad]."""
-        raise NotImplementedError
 
     def __call__(self, theta: Any) -> Any:
         """The load at crank angles [rad]: a number or an array."""
         return self.both(_plain(theta))[0]
 
+    @abstractmethod
     def both(self, theta: Any) -> tuple[Any, Any]:
         """The load and its derivative, None where that is not known."""
-        raise NotImplementedError
 
+    @abstractmethod
     def nodes(self, low: float, high: float, smooth: bool) -> list[float]:
         """The angles in a range at which the load is not smooth; with `smooth`, where its pieces meet too."""
-        raise NotImplementedError
 
     def _repeated(self, angles: tuple[float, ...], low: float, high: float) -> list[float]:
         """Angles of one period in all periods that a range touches."""
@@ -96,6 +108,9 @@ class TableOverTheta(OverTheta):
             angle = before
         return angle
 
+    def _content(self) -> str:
+        return f"{self.table!r}"
+
     def __repr__(self) -> str:
         return f"<load over theta: {_described(self.table, self.kind, self.unit)}>"
 
@@ -127,6 +142,10 @@ class FunctionOverTheta(OverTheta):
     def nodes(self, low: float, high: float, smooth: bool) -> list[float]:
         """The nodes in a range."""
         return sorted(a for a in self._repeated(self.angles, low, high) if low <= a <= high)
+
+    def _content(self) -> str:
+        angles = [self.every * k / SAMPLES for k in range(SAMPLES)]
+        return f"{[self(angle) for angle in angles]} {self.angles} {self.every}"
 
     def __repr__(self) -> str:
         name = getattr(self.function, "__name__", type(self.function).__name__)
@@ -172,6 +191,9 @@ class OverY(Load):
         """The positions at which the load is not smooth; with `smooth`, at which its pieces meet too."""
         tables = [table for table in (self.outward, self.inward) if table is not None]
         return sorted({x for table in tables for x in (table.knots if smooth else table.kinks)})
+
+    def _content(self) -> str:
+        return f"{self.outward!r} {self.inward!r}"
 
     def __repr__(self) -> str:
         ways = "" if self.inward is None else ", another one inward"

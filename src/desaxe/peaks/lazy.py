@@ -7,8 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiler.passes.guard import BAD_INPUT
+from ..definitions.tables import redefine
 from ..evaluation.arrays import as_array, broadcast_shape
 from ..evaluation.dask_blocks import as_dask, is_lazy, numbered, outputs_of_blocks
+from ..loads.load import Load
 from ..runtime.compiled_only import compiled_only
 from ..runtime.interpreted import are_good
 from ..runtime.request import as_number
@@ -31,6 +33,7 @@ class PeakBlock(NamedTuple):
     scalars: tuple[tuple[str, float], ...]
     names: tuple[str, ...]
     threads: int = 1
+    loads: tuple[tuple[str, Load], ...] = ()
 
     @property
     def name(self) -> str:
@@ -62,10 +65,13 @@ class PeakBlock(NamedTuple):
         """The outputs of two or more designs without invalid inputs: a single one takes another code path."""
         columns = {name: np.resize(column, max(size, 2)) for name, column in flat.items()}
         columns |= {name: np.full(max(size, 2), value) for name, value in self.scalars}
+        if self.loads:  # evaluated by name: a worker that has just begun knows no own quantities
+            redefine(self.search.form.own)
         with compiled_only():
             found = peaks_of_designs(
-                self.plan, self.kind, self.search, columns, self.branch, self.ends, self.threads
-            )
+                self.plan, self.kind, self.search, columns, self.branch, self.ends, self.threads,
+                dict(self.loads),
+            )  # fmt: skip
         return {**found, **{f"{GRADIENT}{n}": slope for n, slope in found["gradient"].items()}}
 
 
@@ -77,11 +83,14 @@ def peak_block(
     branch: int,
     ends: tuple[float, float],
     threads: int | None,
+    loads: Mapping[str, Load],
 ) -> PeakBlock:
     """The block of a request; an input of 0 is folded where it is a number."""
-    shapes = {n: np.array(scalars[n]) if n in scalars else np.zeros(2) for n in plan.needs}
+    needs = [n for n in plan.needs if n not in loads]
+    shapes = {n: np.array(scalars[n]) if n in scalars else np.zeros(2) for n in needs}
     search = search_of(plan, shapes, ends)
-    return PeakBlock(plan, kind, search, branch, ends, tuple(scalars.items()), varying, threads or 1)
+    numbers, own = tuple(scalars.items()), tuple(loads.items())
+    return PeakBlock(plan, kind, search, branch, ends, numbers, varying, threads or 1, own)
 
 
 def lazy_peak(
@@ -92,6 +101,7 @@ def lazy_peak(
     branch: int,
     ends: tuple[float, float],
     threads: int | None,
+    loads: Mapping[str, Load],
 ) -> dict[str, Any]:
     """The results of `peak` as Dask arrays."""
     with needed("Dask arrays"):
@@ -99,7 +109,7 @@ def lazy_peak(
 
     scalars: dict[str, float] = {}
     arrays: dict[str, Any] = {}
-    for n in plan.needs:
+    for n in (n for n in plan.needs if n not in loads):
         value = given.get(n)
         number = None if is_lazy(value) else as_number(n, value, plan.needs, (name,))
         if number is not None:
@@ -108,8 +118,9 @@ def lazy_peak(
             arrays[n] = as_dask(n, value if is_lazy(value) else as_array(n, value, plan.needs, (name,)))
     broadcast_shape(arrays)
     arguments, along = numbered(arrays)
-    block = peak_block(kind, plan, scalars, tuple(arrays), branch, ends, threads)
-    token = tokenize(repr(block), *(array.name for array in arrays.values()))
+    block = peak_block(kind, plan, scalars, tuple(arrays), branch, ends, threads, loads)
+    what = [load.identity for load in loads.values()]
+    token = tokenize(repr(block), what, *(array.name for array in arrays.values()))
     found = outputs_of_blocks(block.compute, arguments, along, block.outputs, token)
     gradient = {n: found.pop(f"{GRADIENT}{n}") for n in block.search.parameters}
     return {"value": found["value"], "theta": found["theta"], "gradient": gradient, "status": found["status"]}

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..evaluation.arrays import as_array, broadcast_shape
 from ..evaluation.loaded import loads_of
 from ..loads.load import Load, LoadWarning, OverTheta
-from ..loads.resolve import VARIABLE, without_loads
+from ..loads.resolve import VARIABLE
 from ..mechanism.inputs import INPUTS
 from ..runtime.request import as_number, check_common, check_inputs
 from ..support.answer import answering
@@ -95,8 +95,7 @@ def peak(
         if any(is_lazy(given.get(n)) for n in plan.needs):
             from .lazy import lazy_peak
 
-            without_loads("peak of Dask arrays", varying)
-            return lazy_peak(name, kind, plan, given, branch, ends, threads)
+            return lazy_peak(name, kind, plan, given, branch, ends, threads, varying)
     arrays = {n: as_array(n, given.get(n), plan.needs, (name,)) for n in plan.needs if n not in varying}
     shape = broadcast_shape(arrays)
     columns = {n: _flat(a, shape) for n, a in arrays.items()}

@@ -35,9 +35,8 @@ def values_of_grid(content: Content, blocks: list[tuple[int, int]], steps: Steps
     options = grid_options(content)
     arrays = arrays_of(content.inputs)
     if content.reduction is not None:
-        axis, kinds = content.reduction
         steps.next("values")
-        reduced: Any = grid(content.outputs, reduce={axis: kinds}, **options, **arrays)
+        reduced: Any = grid(content.outputs, reduce=content.reduction, **options, **arrays)
         return cast("xr.Dataset", reduced.assign_attrs(provenance(content)))
     first = next((name for name, value in arrays.items() if isinstance(value, np.ndarray)), "")
     whole: Any = None

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from ..evaluation.reduce import Reduction
+from ..evaluation.reductions import Reduction, Reductions
 from ..loads.load import Load
 from ..mechanism.own import Definition
 from ..mechanism.unit_system import SI, UnitSystem
@@ -70,10 +70,15 @@ class Content(NamedTuple):
     peaks: tuple[Peak, ...]
     pictures: tuple[Picture, ...]
     data: str | None
-    reduction: Reduction | None = None
+    reduction: Reductions | None = None
     threads: int | None = None
     units: UnitSystem = SI
     store: str | None = None
     chunks: Any = None
     memory: int | None = None
     definitions: tuple[Definition, ...] = ()
+
+    @property
+    def fused(self) -> Reduction | None:
+        """The reduction, where a kernel takes it without storing the grid."""
+        return None if self.reduction is None else self.reduction.alone

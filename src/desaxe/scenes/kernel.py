@@ -37,11 +37,9 @@ def grid_kernel(content: Content, joined: bool = False) -> GridKernel:
     names = list(content.outputs)
     if content.reduction is None:
         names = list(dict.fromkeys([*(name for name in names if name != "margin"), "status"]))
-    else:
-        dimensions = [
-            *(name for name in dimensions if name != content.reduction.axis),
-            content.reduction.axis,
-        ]
+    fused = content.fused
+    if fused is not None:
+        dimensions = [*(name for name in dimensions if name != fused.axis), fused.axis]
     given, loads = split(content.inputs)
     if "omega0" not in given and "omega" not in given:
         given["omega0"] = 0.0  # nothing that is asked for needs a speed
@@ -49,19 +47,19 @@ def grid_kernel(content: Content, joined: bool = False) -> GridKernel:
         return _under_loads(content, given, loads, names, dimensions)
     asked = request(names, given, content.branch, content.accuracy)
     order = dimensions or [""]
-    if content.reduction is not None and len(order) == 1:
+    if fused is not None and len(order) == 1:
         order = ["", *order]
     needed = [name for name in asked.inputs if name not in dimensions]
     scalars = {name: float(np.asarray(given.get(name, 0.0)).reshape(-1)[0]) for name in needed}
     columns = {name: np.array(given[name]) for name in asked.inputs if name in dimensions}
     places = {name: order.index(name) for name in columns}
     sizes = tuple(np.size(given[name]) if name else 1 for name in order)
-    if joined and content.reduction is None:
+    if joined and fused is None:
         sizes = join_axes(order, columns, places, sizes)
         order = [*order[: len(sizes) - 1], " x ".join(order[len(sizes) - 1 :])]
     key = key_of(asked, scalars, columns, places, len(order))
-    if content.reduction is not None:
-        key = key._replace(reduce=content.reduction.kinds)
+    if fused is not None:
+        key = key._replace(reduce=fused.kinds)
     return GridKernel(asked, tuple(order), sizes, key)
 
 

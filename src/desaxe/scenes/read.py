@@ -9,7 +9,7 @@ from typing import Any
 
 from ..definitions.tables import read_definitions, redefine
 from ..evaluation.chunks import chunk_lengths
-from ..evaluation.reduce import NO_STATUS, Reduction, reduction_of
+from ..evaluation.reductions import NO_STATUS, Reductions, names_reduced, reductions_of
 from ..loads.load import Load
 from ..mechanism.inputs import INPUTS
 from ..mechanism.own import Definition
@@ -108,7 +108,7 @@ def _storage(
         raise SceneError(f"results.{error}") from None
     if results.chunks is not None and outputs:
         axes = {name: len(value) for name, value in inputs.items() if isinstance(value, tuple)}
-        reduced = dict.fromkeys(file.reduce, 1)
+        reduced = {axis.strip() for key in file.reduce for axis in key.split(",")}
         try:
             chunk_lengths(results.chunks, {n: s for n, s in axes.items() if n not in reduced}, 1)
         except (ValueError, TypeError) as error:
@@ -148,7 +148,7 @@ def _accuracy(written: str | float) -> str:
 
 def _reduction(
     file: schema.SceneFile, outputs: tuple[str, ...], inputs: Mapping[str, Value]
-) -> Reduction | None:
+) -> Reductions | None:
     """The reduction that a scene asks for instead of the grid."""
     if not file.reduce:
         return None
@@ -158,9 +158,13 @@ def _reduction(
         raise SceneError(f'outputs #{outputs.index("status") + 1} = "status": with [reduce] {NO_STATUS}')
     axes = [name for name, value in inputs.items() if isinstance(value, tuple)]
     try:
-        return reduction_of(file.reduce, axes, outputs)
+        found = reductions_of(file.reduce, axes, outputs)
+        absent = [name for name in names_reduced(file.reduce) if name not in outputs]
     except (ValueError, TypeError) as error:
         raise SceneError(str(error)) from None
+    if absent:
+        raise SceneError(f"reduce: {absent[0]} is not among the outputs")
+    return found
 
 
 def _require_names(file: schema.SceneFile) -> None:

@@ -225,7 +225,7 @@ def _values(content: Content, result: Run) -> str:
         kept = f"\n  in the store {content.store}"
         return f"Values\n  {', '.join(map(str, result.dataset.data_vars))} over {shape or 'one point'}{kept}"
     taken = content.reduction
-    of = f" ({', '.join(taken.kinds)} over {taken.axis})" if taken else ""
+    of = f" ({', '.join(taken.kinds)} over {', '.join(taken.axes)})" if taken else ""
     return f"Values\n  {', '.join(content.outputs)}{of} over {shape or 'one point'}{kept}"
 
 

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 import msgspec
 from msgspec import Meta, Struct
 
-from ..compiler.languages.numba.reductions import KINDS
+from ..evaluation.reductions import ALLOWED
 from ..mechanism.inputs import INPUTS
 from ..mechanism.spelling import did_you_mean
 
@@ -108,11 +108,14 @@ Axes = Annotated[
 Reduced = Annotated[
     dict[
         str,
-        Annotated[str | tuple[str, ...], Meta(description=f"one of {', '.join(KINDS)}, or a list of these")],
+        Annotated[
+            str | tuple[str | tuple[str | float, ...], ...],
+            Meta(description=f'one of {ALLOWED}, ["rms", name], ["at", "60 deg", name], or a list of these'),
+        ],
     ],
     Meta(
-        description='a table axis = what is taken of it, such as { theta = "absmax" }',
-        extra_json_schema=_INPUT_NAMES,
+        description='a table axis = what is taken of it, such as { theta = "absmax" }; several axes at once '
+        'are a key "theta, ec"',
     ),
 ]
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..evaluation.reductions import Reductions
 from ..sweeps.meter import Watch
 from ..sweeps.peaks import PeakRequest
 from ..sweeps.place import require_place
@@ -24,7 +25,7 @@ class Arguments(NamedTuple):
 
     names: list[str]
     inputs: dict[str, Any]
-    reduce: dict[str, tuple[str, ...]] | None
+    reduce: Reductions | None
     peaks: tuple[PeakRequest, ...]
 
 
@@ -43,9 +44,8 @@ def arguments_of(content: Content) -> Arguments:
                     "sweep these in a scene of their own"
                 )
     arrays = {name: np.array(value) if isinstance(value, tuple) else value for name, value in inputs.items()}
-    reduce = None if content.reduction is None else {content.reduction.axis: content.reduction.kinds}
     peaks = tuple(PeakRequest(peak.quantity, peak.kind, peak.theta) for peak in content.peaks)
-    return Arguments(list(content.outputs), arrays, reduce, peaks)
+    return Arguments(list(content.outputs), arrays, content.reduction, peaks)
 
 
 def prepared_content(content: Content) -> Sweep:

@@ -9,14 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiler.languages.numba.reductions import KINDS as REDUCTIONS
-from ..evaluation.blocks import Part, grid_parts, reduced_parts
+from ..evaluation.blocks import grid_parts
 from ..evaluation.chunks import blocks_of, slices_of
 from ..evaluation.evaluate import evaluate
 from ..evaluation.labels import attributes as attributes_of
-from ..evaluation.labels import input_attributes, labelled
+from ..evaluation.labels import input_attributes, labelled, with_loads
+from ..evaluation.lazy import AnyPart, parts_of_reduced
 from ..evaluation.outer import Outer, outer_of
-from ..evaluation.reduce import Reduction, reduced_attributes, reduction_of
-from ..loads.resolve import without_loads
+from ..evaluation.reduce import reduced_attributes
+from ..evaluation.reductions import Reduction, reductions_of
 from ..mechanism.spelling import did_you_mean
 from ..runtime.accuracy import accuracy_of
 from ..runtime.compiled_only import compiled_only
@@ -57,7 +58,7 @@ class Search(NamedTuple):
     others: tuple[str, ...]
     ranking: Ranking
     reduction: Reduction | None
-    part: Part
+    part: AnyPart
     layout: Layout
     branch: int
     accuracy: Any
@@ -73,7 +74,7 @@ class BestTask(NamedTuple):
     """A chunk of a search, as it travels: what to compute, and where it stands in the whole."""
 
     number: int
-    part: Part
+    part: AnyPart
     ranking: Ranking
     best: int
     values: dict[str, Array]
@@ -120,22 +121,27 @@ def search_for(
     name, kind = _named(by, reduce)
     wanted = dict.fromkeys(((names,) if isinstance(names, str) else several(names)) + (name,))
     outer = outer_of(tuple(wanted), inputs, branch, threads, always=False)
-    without_loads("sweep", outer.loads)
     if reduce is None and "theta" in outer.dimensions:
         reduce = {"theta": kind if kind in KINDS else KINDS[0]}
-    reduction = None if reduce is None else reduction_of(reduce, outer.dimensions, outer.names)
+    asked = None if reduce is None else reductions_of(reduce, outer.dimensions, outer.names)
+    reduction = None if asked is None else asked.alone
+    if asked is not None and reduction is None:
+        raise ValueError(
+            f"reduce: designs are ranked by one axis and {', '.join(REDUCTIONS)}; rank a reduced sweep itself"
+        )
     ranking = ranking_of(name, kind, reduction)
     alone = outer._replace(names=(ranking.name,))
     sizes = {name: outer.axes[name].size for name in outer.dimensions}
     length = None if reduction is None else sizes.pop(reduction.axis)
     layout = layout_of("auto", sizes, 64, length or 1, memory)
-    if reduction is None:
+    part: AnyPart
+    if asked is None:
         part = grid_parts(alone, branch, accuracy, layout.chunk)[0]
     else:
-        part = reduced_parts(alone, branch, accuracy, reduction, layout.chunk)[0]
+        part = parts_of_reduced(alone, branch, accuracy, asked, layout.chunk)[0]
     others = tuple(name for name in outer.names if name != ranking.name)
-    own = [repr(part.key.form.own)] if part.key.form.own else []
-    told = identity(outer, branch, accuracy_of(accuracy), reduction, (), own, (count, *ranking[:2]))
+    own = [repr(part.own)] if part.own else []
+    told = identity(outer, branch, accuracy_of(accuracy), asked, (), own, (count, *ranking[:2]))
     return Search(outer, others, ranking, reduction, part, layout, branch, accuracy, told)
 
 
@@ -225,7 +231,8 @@ def _labelled(search: Search, kept: Found) -> "xr.Dataset":
         told = reduced_attributes([ranking.name], reduction, own, state)[ranking.variable]
     variables: dict[str, Any] = {ranking.variable: ("rank", kept.values, told)}
     if kept.places.size and (reduction is None or attained):
-        point: dict[str, Any] = {**{n: a.item() for n, a in scalars.items()}, **design, **attained}
+        point: dict[str, Any] = {n: a.item() for n, a in scalars.items()}
+        point |= {**outer.loads, **design, **attained}
         options: dict[str, Any] = {"branch": search.branch, "accuracy": search.accuracy}
         for name in search.others:
             with compiled_only():
@@ -242,4 +249,5 @@ def _labelled(search: Search, kept: Found) -> "xr.Dataset":
     found = labelled({}, scalars, search.branch, state, search.accuracy)
     ranks = ("rank", np.arange(1, kept.places.size + 1), {"units": "1", "long_name": "the best one is 1"})
     found = found.assign_attrs(search.identity)
-    return found.assign(variables).assign_coords(rank=ranks).set_coords([*design, *attained])
+    found = found.assign(variables).assign_coords(rank=ranks).set_coords([*design, *attained])
+    return with_loads(found, outer.loads)

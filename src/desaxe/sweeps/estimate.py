@@ -7,7 +7,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from ..evaluation.blocks import Part
+from ..evaluation.lazy import AnyPart
 from .layout import Layout, shape_text, size_text
 from .peaks import PeakPart
 
@@ -15,7 +15,7 @@ TRIAL = 2**17  # points of a trial
 STORING = 6e-9  # s to compress, check and write a byte, on one core
 
 
-def seconds_of(parts: Sequence[Part | PeakPart], axes: Mapping[str, NDArray[Any]], stored: int) -> float:
+def seconds_of(parts: Sequence[AnyPart | PeakPart], axes: Mapping[str, NDArray[Any]], stored: int) -> float:
     """The expected time on one core, from running every part at some of its points; `stored` in bytes."""
     total = STORING * stored
     for part in parts:

@@ -118,10 +118,12 @@ def peak_parts(
 def _peak_part(one: PeakRequest, outer: Outer, branch: int, accuracy: Any) -> PeakPart:
     given = {"alpha": 0.0, "omega": None, "omega0": None, **outer.given}
     given.pop("theta", None)
-    plan = plan_of(one.name, given, branch, accuracy)
-    for name in plan.needs:
+    plan = plan_of(one.name, {**given, **outer.loads}, branch, accuracy)
+    loads = {n: load for n, load in outer.loads.items() if n in plan.parameters}
+    needs = [name for name in plan.needs if name not in loads]
+    for name in needs:
         if name not in outer.axes:
             raise TypeError(f"peak of {one.name}: {name} is missing (needed: {', '.join(plan.needs)})")
-    dims = tuple(name for name in outer.dimensions if name in plan.needs)
-    scalars = {name: float(outer.axes[name].reshape(-1)[0]) for name in plan.needs if name not in dims}
-    return PeakPart(peak_block(one.kind, plan, scalars, dims, branch, one.theta, 1), dims)
+    dims = tuple(name for name in outer.dimensions if name in needs)
+    scalars = {name: float(outer.axes[name].reshape(-1)[0]) for name in needs if name not in dims}
+    return PeakPart(peak_block(one.kind, plan, scalars, dims, branch, one.theta, 1, loads), dims)

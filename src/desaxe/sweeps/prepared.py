@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..evaluation.blocks import Part, grid_parts, margin_parts, reduced_parts
+from ..evaluation.blocks import grid_parts, margin_parts
 from ..evaluation.labels import attributes as attributes_of
 from ..evaluation.labels import labelled
-from ..evaluation.lazy import lazy_grid
+from ..evaluation.lazy import AnyPart, lazy_grid, parts_of_reduced
 from ..evaluation.outer import Outer, outer_of
-from ..evaluation.reduce import Reduction, reduction_of
-from ..loads.resolve import without_loads
+from ..evaluation.reductions import Reductions, names_reduced, reductions_of
 from ..mechanism.names import LENGTHS
 from ..runtime.accuracy import accuracy_of
+from ..runtime.request import several
 from .layout import Layout, layout_of
 from .peaks import PeakPart, peak_parts, peak_requests
 from .request import identity
@@ -35,7 +35,7 @@ class Sweep(NamedTuple):
 
     outer: Outer
     layout: Layout
-    parts: tuple[Part | PeakPart, ...]
+    parts: tuple[AnyPart | PeakPart, ...]
     template: "xr.Dataset"
     identity: dict[str, str]
 
@@ -62,13 +62,14 @@ def prepared(
     peaks: Any,
 ) -> Sweep:
     """The sweep of these arguments, checked; nothing is computed or written."""
+    if reduce is not None:
+        names = ((names,) if isinstance(names, str) else several(names)) + names_reduced(reduce)
     outer = outer_of(names, inputs, branch, threads, always=reduce is None)
-    without_loads("sweep", outer.loads)
     for name in outer.dimensions:
         if not outer.axes[name].size:
             raise ValueError(f"{name}: a sweep needs at least one value of it")
     kept = accuracy_of(accuracy)
-    reduction = None if reduce is None else reduction_of(reduce, outer.dimensions, outer.names)
+    reduction = None if reduce is None else reductions_of(reduce, outer.dimensions, outer.names)
     requests = peak_requests(peaks, outer)
     refined = peak_parts(requests, outer, branch, accuracy)
     if not (outer.names or refined):
@@ -77,32 +78,33 @@ def prepared(
     sizes = {name: template.sizes[name] for name in outer.dimensions if name in template.dims}
     whole = [v for v in template.data_vars.values() if len(v.dims) == len(sizes)]
     stored = sum(variable.dtype.itemsize for variable in whole)
-    length = None if reduction is None else outer.axes[reduction.axis].size
+    length = None if reduction is None else prod(outer.axes[axis].size for axis in reduction.axes)
     layout = layout_of(chunks, sizes, stored, length, memory)
     if reduction is not None:
-        parts = reduced_parts(outer, branch, accuracy, reduction, layout.chunk)
+        parts = parts_of_reduced(outer, branch, accuracy, reduction, layout.chunk)
     elif outer.names:
         parts = grid_parts(outer, branch, accuracy, layout.chunk)
     else:
         parts = margin_parts(outer, branch, accuracy, layout.chunk)
-    own = [part.key.form.own for part in parts] + [part.block.search.form.own for part in refined]
+    own = [part.own for part in parts] + [part.block.search.form.own for part in refined]
     told = identity(outer, branch, kept, reduction, requests, [repr(one) for one in own if one])
     return Sweep(outer, layout, (*parts, *refined), template, told)
 
 
 def _template(
-    outer: Outer, branch: int, accuracy: Any, reduction: Reduction | None, peaks: Sequence[PeakPart]
+    outer: Outer, branch: int, accuracy: Any, reduction: Reductions | None, peaks: Sequence[PeakPart]
 ) -> "xr.Dataset":
     """The Dataset of a sweep with lazy variables: its names, dimensions and attributes."""
     state = outer.given.get("omega") is not None
     if reduction is not None:
-        template = lazy_grid(outer, -1, branch, accuracy, 1, {reduction.axis: reduction.kinds})
+        template = lazy_grid(outer, -1, branch, accuracy, 1, reduction)
     elif outer.names:
         template = lazy_grid(outer, -1, branch, accuracy, 1)
     else:
         kept = {name: array for name, array in outer.coordinates.items() if name != "theta"}
         template = labelled({}, kept, branch, state, accuracy)
-    if "margin" not in template and all(name in outer.axes for name in LENGTHS):
+    reduced = () if reduction is None else reduction.axes
+    if "margin" not in template and all(n in outer.axes and n not in reduced for n in LENGTHS):
         dims = [name for name in outer.dimensions if name in LENGTHS]
         template = template.assign(margin=_lazy(template, dims, np.float64, attributes_of("margin", state)))
     for part in peaks:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..definitions.tables import text_of
 from ..evaluation.outer import Outer
-from ..evaluation.reduce import Reduction
+from ..evaluation.reductions import Reductions
 from ..mechanism.program import digest
 from ..support.version import version as desaxe_version
 from .peaks import PeakRequest
@@ -21,7 +21,7 @@ def identity(
     outer: Outer,
     branch: int,
     accuracy: str,
-    reduction: Reduction | None,
+    reduction: Reductions | None,
     peaks: Sequence[PeakRequest],
     own: Sequence[str],
     best: tuple[int, str, str] | None = None,
@@ -33,12 +33,13 @@ def identity(
     """
     request = {
         "names": list(outer.names),
-        "reduce": {} if reduction is None else {reduction.axis: list(reduction.kinds)},
+        "reduce": {} if reduction is None else reduction.plain(),
         "peaks": [list(one) for one in peaks],
         "definitions": [hashlib.sha256(text.encode()).hexdigest() for text in own],
         "branch": int(branch),
         "accuracy": accuracy,
-        "inputs": {name: _input(array) for name, array in outer.axes.items()},
+        "inputs": {name: _input(array) for name, array in outer.axes.items()}
+        | {name: {"load": repr(load), "sha256": load.identity} for name, load in outer.loads.items()},
     }
     if best is not None:
         request["best"], request["by"] = best[0], list(best[1:])
@@ -88,6 +89,8 @@ def differences(there: Mapping[str, Any], here: Mapping[str, str]) -> list[str]:
 def _shown(value: Any) -> str:
     if value is None:
         return "not given"
+    if isinstance(value, Mapping) and "load" in value:
+        return f"{value['load']} (sha256 {value['sha256'][:8]})"
     if isinstance(value, Mapping) and "sha256" in value:
         ends = f" from {value['from']!r} to {value['to']!r}" if "from" in value else ""
         return f"{value['values']} values{ends} (sha256 {value['sha256'][:8]})"

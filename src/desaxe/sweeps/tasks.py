@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from numpy.typing import NDArray
 
-from ..evaluation.blocks import Part
+from ..evaluation.lazy import AnyPart
 from ..mechanism.program import digest
 from ..support.version import version as desaxe_version
 from .peaks import PeakPart
@@ -18,7 +18,7 @@ Array = NDArray[Any]
 class Output(NamedTuple):
     """A part of a grid, which of its variables are to be written, and where."""
 
-    part: Part | PeakPart
+    part: AnyPart | PeakPart
     variables: tuple[str, ...]
     place: tuple[int, ...]
     region: tuple[slice, ...]

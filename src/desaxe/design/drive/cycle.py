@@ -8,7 +8,7 @@ import numpy as np
 
 from ...evaluation.evaluate import evaluate
 from ...evaluation.loaded import loads_of
-from ...loads.angles import kinks_between
+from ...loads.angles import kinks_between, turns_of
 from ...mechanism.inputs import INPUTS
 from ...runtime.request import as_number, check_common, check_inputs, request
 from ..events.closed_form import closed_form, placed
@@ -35,6 +35,7 @@ class Design:
         check_common({}, branch)
         self.branch = int(branch)
         given, self.loads = loads_of({name: value for name, value in inputs.items() if value is not None})
+        turns_of(caller, self.loads, 1)
         self.numbers = {name: _number(caller, name, value) for name, value in given.items()}
         if not self.numbers.get("alpha"):
             self.numbers.pop("alpha", None)

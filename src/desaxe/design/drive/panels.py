@@ -86,14 +86,19 @@ class Panels:
         samples = coefficients @ legendre.legvander(np.array([-1.0, *NODE, 1.0]), NODES - 1).T
         bound = coefficients[:, 0] + np.abs(coefficients[:, 1:]).sum(1)
         best, place, inside = -np.inf, 0.0, False
-        for panel in np.flatnonzero(bound >= samples.max()):
+        top = float(samples.max())
+        for panel in np.flatnonzero(bound >= top - RESOLVED * abs(top)):
             flat = _real_roots(legendre.legder(coefficients[panel]))
             x = np.array([*flat, -1.0, 1.0])
             here = legendre.legval(x, coefficients[panel])
-            top = int(np.argmax(here))
-            if here[top] > best:
+            number = int(np.argmax(here))
+            if here[number] > best:
                 middle, half = self._shape(panel)
-                best, place, inside = float(here[top]), float(middle + half * x[top]), top < len(flat)
+                best, place, inside = (
+                    float(here[number]),
+                    float(middle + half * x[number]),
+                    number < len(flat),
+                )
         return sign * best, place, inside
 
     def split(self, places: list[float]) -> "Panels":

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...evaluation.own_measure import OwnMeasure
 from ...support.deadline import Deadline
-from ..averages import OwnMeasure
 from ..measures import measured
 
 Array = NDArray[np.float64]

@@ -9,7 +9,8 @@ the mean speed being (fastest + slowest)/2. The textbook's first order, J = (max
 - mean)/(fluctuation omega0^2) at constant speed, is told beside it.
 """
 
-from math import inf, isinf, pi
+from collections.abc import Callable
+from math import inf, isinf, pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,7 +18,8 @@ import numpy as np
 from ...peaks.peak import peak
 from ...support.answer import answering
 from ...support.roots import root
-from .turn import Array, Turn, extreme
+from ..drive.panels import Panels
+from .turn import AT_REST, Array, Turn, extreme
 
 POINTS = 16384
 MOST_TURNS = 4  # after which the loads must repeat; two in a four-stroke engine
@@ -45,7 +47,8 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
                            friction
     theta_fastest, theta_slowest   where the crank turns fastest and slowest with it [rad]
 
-    At 16384 equal steps of the turn and by parabolas between them, integrals by the fast Fourier transform.
+    At 16384 equal steps of the turn and by parabolas between them, integrals by the fast Fourier transform;
+    under a table of a load in panels between its kinks and jumps, to rounding.
     Raises as `harmonics` does, and ValueError for a crank at rest.
 
         >>> import desaxe as dx
@@ -61,14 +64,15 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
     speed = turn.numbers.get("omega0")
     if not speed:
         raise ValueError("flywheel: omega0, the mean speed, is missing or 0")
-    told = turn.values(["T_in", "M_eff"], POINTS)
+    told, over = _sampled(turn)
     torque = told["T_in"]
-    stored = turn.turns * _integral(torque)
-    energy = extreme(stored, 1.0)[0] - extreme(stored, -1.0)[0]
-    (highest, theta_highest), (lowest, theta_lowest) = _extremes(turn, torque)
+    mean = over.mean(torque)
+    stored = over.integral(torque - mean)
+    energy = over.extreme(stored, 1.0)[0] - over.extreme(stored, -1.0)[0]
+    (highest, theta_highest), (lowest, theta_lowest) = _extremes(turn, torque, over)
     estimate = energy / (fluctuation * speed**2)
     result = {
-        "mean_torque": float(torque.mean()),
+        "mean_torque": mean,
         "max_torque": highest,
         "min_torque": lowest,
         "theta_max_torque": theta_highest,
@@ -80,26 +84,72 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
         inertia, without, speeds = estimate, float("nan"), -stored * np.sign(speed)
     else:
         # At rest the drive carries the loads alone.
-        loads = turn.values(["T_in"], POINTS, omega0=0.0)["T_in"]
-        machine = Machine(told["M_eff"], -turn.turns * _integral(loads), abs(speed))
+        loads = told[f"T_in{AT_REST}"]
+        machine = Machine(told["M_eff"], -over.integral(loads - over.mean(loads)), abs(speed), over.extreme)
         without = machine.fluctuation(0.0)
         inertia = machine.inertia(fluctuation, estimate)
-        speeds = machine.speeds(inertia)
+        speeds = machine.squares(inertia)  # largest where the speed is
     return {
         **result,
         "inertia": inertia,
         "inertia_first_order": estimate,
         "fluctuation_without": without,
-        "theta_fastest": turn.turns * extreme(speeds, 1.0)[1],
-        "theta_slowest": turn.turns * extreme(speeds, -1.0)[1],
+        "theta_fastest": over.extreme(speeds, 1.0)[1],
+        "theta_slowest": over.extreme(speeds, -1.0)[1],
     }
 
 
-def _extremes(turn: Turn, torque: Array) -> list[tuple[float, float]]:
+class EqualSteps(NamedTuple):
+    """Integrals and extremes of functions at equal steps of some turns."""
+
+    turns: int
+
+    def mean(self, values: Array) -> float:
+        """The mean over the turns."""
+        return float(values.mean())
+
+    def integral(self, values: Array) -> Array:
+        """The integral over theta, without a constant, of a function whose mean is 0."""
+        return self.turns * _integral(values)
+
+    def extreme(self, values: Array, sign: float) -> tuple[float, float]:
+        """The largest (sign 1) or smallest (-1) value and its angle."""
+        value, theta = extreme(values, sign)
+        return value, self.turns * theta
+
+
+class InPanels(NamedTuple):
+    """Integrals and extremes of functions in panels between kinks and jumps."""
+
+    panels: Panels
+
+    def mean(self, values: Array) -> float:
+        """The mean over the turns."""
+        return self.panels.integral(values) / self.panels.edges[-1]
+
+    def integral(self, values: Array) -> Array:
+        """The integral over theta, without a constant."""
+        return self.panels.running(values)
+
+    def extreme(self, values: Array, sign: float) -> tuple[float, float]:
+        """The largest (sign 1) or smallest (-1) value and its angle."""
+        return self.panels.extreme(values, sign)[:2]
+
+
+def _sampled(turn: Turn) -> tuple[dict[str, Array], EqualSteps | InPanels]:
+    """Torque at speed and, as friction allows, at rest, and the effective inertia, over all turns."""
+    if turn.kinks:
+        panels = turn.panels(["T_in", "M_eff", *([] if turn.numbers.get("mu") else [f"T_in{AT_REST}"])])
+        return panels.values, InPanels(panels)
+    told = turn.values(["T_in", "M_eff"], POINTS)
+    told[f"T_in{AT_REST}"] = turn.values(["T_in"], POINTS, omega0=0.0)["T_in"]
+    return told, EqualSteps(turn.turns)
+
+
+def _extremes(turn: Turn, torque: Array, over: EqualSteps | InPanels) -> list[tuple[float, float]]:
     """The largest and smallest torque and their angles; under loads, which may jump, by `peak`."""
     if not turn.loads or turn.numbers.get("mu"):
-        found = [extreme(torque, sign) for sign in (1.0, -1.0)]
-        return [(value, turn.turns * theta) for value, theta in found]
+        return [over.extreme(torque, sign) for sign in (1.0, -1.0)]
     ends = (0.0, 2.0 * pi * turn.turns)
     inputs: dict[str, Any] = {**turn.numbers, **turn.loads, "branch": turn.branch}
     peaks = [peak("T_in", kind=kind, theta=ends, **inputs) for kind in ("max", "min")]
@@ -121,19 +171,19 @@ class Machine(NamedTuple):
     effective: Array
     work: Array
     speed: float
+    extreme: Callable[[Array, float], tuple[float, float]]
 
-    def speeds(self, J: float) -> Array:
-        """omega(theta) with this flywheel, at the energy of the required mean speed."""
+    def squares(self, J: float) -> Array:
+        """omega(theta)^2 with this flywheel, at the energy of the required mean speed."""
 
         def at(energy: float) -> Array:
-            return np.sqrt(2.0 * np.maximum(energy + self.work, 0.0) / np.maximum(J + self.effective, 1e-300))
+            return 2.0 * np.maximum(energy + self.work, 0.0) / np.maximum(J + self.effective, 1e-300)
 
         def excess(energy: float) -> float:
-            omega = at(energy)
-            return (extreme(omega, 1.0)[0] + extreme(omega, -1.0)[0]) / 2.0 - self.speed
+            return sum(self._ends(at(energy))) / 2.0 - self.speed
 
         if not (J + self.effective).any():
-            return np.full_like(self.work, self.speed)  # without inertia there is nothing to store
+            return np.full_like(self.work, self.speed**2)  # without inertia there is nothing to store
         low = -float(self.work.min())
         if excess(low) > 0.0:
             return at(low)  # it stops, and is faster than wanted elsewhere
@@ -142,15 +192,20 @@ class Machine(NamedTuple):
             high = low + 2.0 * (high - low)
         return at(root(excess, low, high))
 
+    def _ends(self, squares: Array) -> tuple[float, float]:
+        """The smallest and the largest speed; the squares are smooth where the crank stops, too."""
+        low, high = (self.extreme(squares, sign)[0] for sign in (-1.0, 1.0))
+        return sqrt(max(low, 0.0)), sqrt(max(high, 0.0))
+
     def fluctuation(self, J: float) -> float:
         """(fastest - slowest)/mean; infinite where it stops, or nothing has inertia."""
         if not self.effective.any() and not self.work.any():
             return 0.0  # neither inertia nor load: any speed is constant
         if J + float(self.effective.min()) <= 0.0:
             return inf
-        omega = self.speeds(J)
-        slowest, fastest = extreme(omega, -1.0)[0], extreme(omega, 1.0)[0]
-        if float(omega.min()) <= 0.0 or slowest <= 0.0 or isinf(fastest):
+        squares = self.squares(J)
+        slowest, fastest = self._ends(squares)
+        if float(squares.min()) <= 0.0 or slowest <= 0.0 or isinf(fastest):
             return inf
         return (fastest - slowest) / (0.5 * (fastest + slowest))
 

@@ -1,7 +1,12 @@
-"""Quantities over one whole turn at constant speed, at equal steps of the crank angle."""
+"""Quantities over one whole turn at constant speed.
+
+At equal steps of the crank angle, by the fast Fourier transform, where they are smooth; across kinks and
+jumps, which a table over the angle or the stroke has, in panels between them.
+"""
 
 from collections.abc import Mapping, Sequence
-from math import fsum, gcd, pi
+from functools import cached_property
+from math import fsum, pi
 from typing import Any
 
 import numpy as np
@@ -9,13 +14,16 @@ from numpy.typing import NDArray
 
 from ...evaluation.evaluate import evaluate
 from ...evaluation.loaded import loads_of
-from ...loads.load import Load, OverTheta, TableOverTheta
+from ...loads.angles import kinks_between, turns_of
 from ...loads.resolve import VARIABLE
 from ...mechanism.inputs import INPUTS
+from ...mechanism.names import LENGTHS
 from ...runtime.request import as_number, check_common, check_inputs, is_steady
+from ..drive.panels import Panels, resolved
 
 Array = NDArray[np.float64]
 LEAST, MOST = 128, 131072  # steps of a turn
+AT_REST = "_at_rest"
 CONVERGED = 1e-14  # of the largest coefficient: what halving the steps may change
 
 
@@ -30,7 +38,7 @@ class Turn:
         self.branch = branch
         given, self.loads = loads_of({n: v for n, v in inputs.items() if v is not None})
         self.numbers = {name: _number(caller, name, value) for name, value in given.items()}
-        self.turns = _turns(caller, self.loads, turns)
+        self.turns = turns_of(caller, self.loads, turns)
         for name in ("ec", "AB", "BC"):
             if name not in self.numbers:
                 as_number(name, None, ("ec", "AB", "BC"), (caller,))
@@ -44,6 +52,40 @@ class Turn:
         """The quantities at `points` equal steps from theta = 0; `other` inputs replace those given."""
         theta = 2.0 * pi * self.turns * np.arange(points) / points
         inputs: dict[str, Any] = {**self.numbers, **self.loads, **other}
+        return self._at(names, theta, inputs)
+
+    def panels(self, names: Sequence[str], **other: float) -> Panels:
+        """The quantities in panels between the angles at which a load has a kink; `other` as in `values`.
+
+        A name may end in "_at_rest": the value at the speed 0.
+        """
+        inputs: dict[str, Any] = {**self.numbers, **self.loads, **other}
+        end = 2.0 * pi * self.turns
+
+        def functions(theta: Array) -> dict[str, Array]:
+            moving = [name for name in names if not name.endswith(AT_REST)]
+            found = self._at(moving, theta, inputs)
+            resting = [name.removesuffix(AT_REST) for name in names if name not in moving]
+            rest = self._at(resting, theta, {**inputs, "omega0": 0.0}) if resting else {}
+            found |= {f"{name}{AT_REST}": value for name, value in rest.items()}
+            return {name: np.broadcast_to(found[name], theta.shape) for name in names}
+
+        breaks = sorted({0.0, *self.kinks, end})
+        if self.numbers.get("mu"):
+            free = {**inputs, "mu": 0.0}
+            smooth = resolved(lambda theta: self._at(["N_C"], theta, free), breaks)
+            breaks = sorted({*breaks, *smooth.roots(smooth.values["N_C"])})
+        return resolved(functions, breaks)
+
+    @cached_property
+    def kinks(self) -> list[float]:
+        """The angles at which pieces of a load meet."""
+        end = 2.0 * pi * self.turns
+        lengths = [self.numbers[name] for name in LENGTHS]
+        return kinks_between(self.loads.values(), 0.0, end, lengths, self.branch, smooth=True)
+
+    def _at(self, names: Sequence[str], theta: Array, inputs: Mapping[str, Any]) -> dict[str, Array]:
+        """The quantities at angles; ValueError where one of them has no value."""
         found = evaluate([*names, "status"], theta=theta, branch=self.branch, **inputs)
         bad = ~np.isfinite([found[name] for name in names]).all(axis=0)
         if bad.any():
@@ -72,28 +114,6 @@ class Turn:
             if error <= CONVERGED * size or points >= MOST:
                 return now, max(error, float(np.finfo(float).eps) * size)
             before, points = now, 2 * points
-
-
-def _turns(caller: str, loads: Mapping[str, Load], most: int) -> int:
-    """The number of turns after which the loads repeat; ValueError for more than `most`."""
-    turns = 1
-    for name, load in loads.items():
-        if not isinstance(load, OverTheta):
-            continue
-        own = next((n for n in range(1, most + 1) if _repeats(load, n * 2.0 * pi)), None)
-        if own is None:
-            raise ValueError(
-                f"{name}: {caller} is over {'a turn' if most == 1 else f'at most {most} turns'}, after which "
-                f"the load must repeat; its period is {load.period:.6g} rad"
-            )
-        turns = turns * own // gcd(turns, own)
-    return turns
-
-
-def _repeats(load: OverTheta, angle: float) -> bool:
-    """True if a table repeats after an angle; a function is assumed to."""
-    periods = angle / load.period
-    return not isinstance(load, TableOverTheta) or abs(periods - round(periods)) < 1e-9
 
 
 def extreme(values: Array, sign: float) -> tuple[float, float]:

@@ -129,8 +129,9 @@ def _cells(content: Content) -> int:
         return 0
     if content.reduction is None:
         return prod(lengths) * (len(lengths) + len(content.outputs) + 2)
-    rows = prod(lengths) // len(cast("tuple[float, ...]", content.inputs[content.reduction.axis]))
-    return rows * (len(lengths) - 1 + len(content.outputs) * (2 * len(content.reduction.kinds) + 1))
+    taken = content.reduction
+    rows = prod(lengths) // prod(len(cast("tuple[float, ...]", content.inputs[a])) for a in taken.axes)
+    return rows * (len(lengths) - len(taken.axes) + len(content.outputs) * (2 * len(taken.kinds) + 1))
 
 
 def _output(name: str, content: Content) -> dict[str, str]:
@@ -171,10 +172,17 @@ def _grid(content: Content) -> dict[str, Any]:
         "skipped": [one._asdict() for one in skipped_of(found.key, found.request, content.inputs)],
         "loops": [_loop(loop, found.points) for loop in loops],
         "operations": {"straight": straight, "per_point": total / found.points, "total": total},
-        "reduction": None if content.reduction is None else content.reduction._asdict(),
+        "reduction": _reduction(content),
         "run": _run(content, found, loops, compiled),
         "memory": _memory(content, found),
     }
+
+
+def _reduction(content: Content) -> dict[str, Any] | None:
+    taken = content.reduction
+    if taken is None:
+        return None
+    return {"axis": ", ".join(taken.axes), "kinds": taken.kinds, "stored": content.fused is None}
 
 
 def _compiled_loops(found: GridKernel) -> list[Loop]:
@@ -202,7 +210,7 @@ def _run(content: Content, found: GridKernel, loops: list[Loop], compiled: bool)
     cached, path = _cached(found.key)
     plain = estimate.plain_time(sum(loop.operations for loop in loops), points)
     outs = len(found.key.names) - ("status" in found.key.names)
-    one = estimate.loops_time(loops, 0 if content.reduction else points * outs)
+    one = estimate.loops_time(loops, 0 if content.fused else points * outs)
     length = found.sizes[0]
     threads = max(1, min(content.threads or available(), points // LEAST_BLOCK, length))
     first = {"memory": 0.0, "disk": estimate.LOAD}.get(cached, estimate.IMPORT + estimate.compile_time(loops))
@@ -243,8 +251,10 @@ def _memory(content: Content, found: GridKernel) -> dict[str, int]:
     if content.reduction is None:
         return {"result": whole, "grid": whole, "inputs": inputs}
     each = sum(2 if kind in ("max", "min", "absmax") else 1 for kind in content.reduction.kinds) + 1
+    sizes = zip(found.axes, found.sizes, strict=True)
+    kept = [size for name, size in sizes if name not in content.reduction.axes]
     return {
-        "result": estimate.bytes_of(each * len(names), 0, found.sizes[:-1]),
+        "result": estimate.bytes_of(each * len(names), 0, kept),
         "grid": whole,
         "inputs": inputs,
     }

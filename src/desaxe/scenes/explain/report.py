@@ -28,9 +28,8 @@ def _asked(plan: Mapping[str, Any]) -> str:
         lines += [_cut(line) for line in table(rows, left=3)]
         taken = plan["reduction"]
         if taken:
-            lines.append(
-                f"  of each over {taken['axis']}: {', '.join(taken['kinds'])}; the grid is not stored"
-            )
+            how = "block by block" if taken["stored"] else "the grid is not stored"
+            lines.append(f"  of each over {taken['axis']}: {', '.join(taken['kinds'])}; {how}")
         else:
             lines.append("  and at every point its status; the margin once per design")
     lines += _wrapped("accuracy", [f"{plan['accuracy']}: {plan['promise']}"])

@@ -188,7 +188,7 @@ def module_text(scene: Scene, name: str = "my_kernels.py") -> str:
     calls += [axes_text(axes)] if axes else []
     if grid is None:
         calls.append('def run():\n    """The values; every input is fixed."""\n    return evaluate()')
-    elif content.reduction is None:
+    elif content.fused is None:
         calls.append(run_function(shown, list(axes), grid.inputs, state))
     else:
         calls.append(run_reduced_function(shown, key.reduce, found.axes, grid.inputs, grid.outputs))

@@ -69,8 +69,8 @@ def require_outputs(scene: Scene) -> None:
 def left_out(content: Content, reduction: bool = True) -> list[str]:
     """The parts of a scene that a compiled module leaves out, by name."""
     found = [f"[[peak]] {peak.quantity}" for peak in content.peaks]
-    if reduction and content.reduction is not None:
-        found.append(f"[reduce] over {content.reduction.axis}")
+    if content.reduction is not None and (reduction or content.fused is None):
+        found.append(f"[reduce] over {', '.join(content.reduction.axes)}")
     return list(dict.fromkeys(found))
 
 

@@ -1,0 +1,106 @@
+"""Reductions over several axes of arrays in memory, one group of axes after the other.
+
+A number without a value (NaN) is skipped. Where an axis has been reduced already, each number stands for as
+many points as it was made of, so that a mean over two axes is that of all their points.
+"""
+
+import warnings
+from collections.abc import Mapping, Sequence
+from math import prod
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiler.languages.numba.reductions import EXTREMES
+from .reductions import percent_of
+
+Array = NDArray[Any]
+
+
+class Field(NamedTuple):
+    """Values over dimensions, how many points each stands for, and along which values its extreme is."""
+
+    dims: tuple[str, ...]
+    values: Array
+    counts: Array
+    places: Mapping[str, Array]
+
+    def counted_anew(self) -> "Field":
+        """Each value that there is as one point."""
+        return self._replace(counts=(self.values == self.values).astype(np.int64))
+
+
+def field_of(dims: Sequence[str], values: Array) -> Field:
+    """Values of which none is reduced."""
+    return Field(tuple(dims), values, np.empty(0), {}).counted_anew()
+
+
+def folded(field: Field, axes: Sequence[str], kind: str, coordinates: Mapping[str, Array]) -> Field:
+    """One kind along some axes at once."""
+    rest = tuple(name for name in field.dims if name not in axes)
+    if not axes:
+        return field
+    lengths = [field.values.shape[field.dims.index(name)] for name in axes]
+
+    def rows(array: Array) -> Array:
+        ends = range(len(rest), len(field.dims))
+        moved = np.moveaxis(array, [field.dims.index(name) for name in axes], list(ends))
+        return moved.reshape(*moved.shape[: len(rest)], prod(lengths))
+
+    values, counts = rows(field.values), rows(field.counts)
+    total = counts.sum(axis=-1)
+    if kind not in EXTREMES:
+        return Field(rest, np.where(total > 0, average(kind, values, counts), np.nan), total, {})
+    at = place(kind, values, counts > 0)
+    here = np.maximum(at, 0)[..., None]
+
+    def taken(array: Array) -> Array:
+        if not array.shape[-1]:
+            return np.full(array.shape[:-1], np.nan)
+        return np.where(at >= 0, np.take_along_axis(array, here, -1)[..., 0], np.nan)
+
+    index = np.unravel_index(np.maximum(at, 0), lengths) if prod(lengths) else [at] * len(lengths)
+    own = {
+        axis: np.where(at >= 0, np.append(coordinates[axis], np.nan)[number], np.nan)
+        for axis, number in zip(axes, index, strict=True)
+    }
+    places = {name: taken(rows(array)) for name, array in field.places.items()}
+    return Field(rest, taken(np.abs(values) if kind == "absmax" else values), total, {**places, **own})
+
+
+def place(kind: str, rows: Array, good: Array) -> Array:
+    """The index of the extreme of each row, the first of equals; -1 where nothing is good."""
+    if not rows.shape[-1]:
+        return np.full(rows.shape[:-1], -1)
+    turned: Array = np.abs(rows) if kind == "absmax" else -rows if kind == "min" else rows
+    # Before the first -inf that is a number there may be one that stands for a NaN.
+    found = np.argmax(np.where(good, turned, -np.inf) + np.where(good, 0.0, -np.inf), axis=-1)
+    found = np.where(np.take_along_axis(good, found[..., None], -1)[..., 0], found, np.argmax(good, axis=-1))
+    return np.where(good.any(axis=-1), found, -1)
+
+
+def average(kind: str, rows: Array, counts: Array) -> Array:
+    """A mean, rms, standard deviation (of all points, divided by their number) or percentile of each row."""
+    if not rows.shape[-1]:
+        return np.full(rows.shape[:-1], np.nan)
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore", RuntimeWarning)  # a row without a number is NaN
+        if kind == "mean":
+            return _mean(rows, counts)
+        if kind == "rms":
+            return _scaled_root(rows, counts)
+        if kind == "std":
+            return _scaled_root(rows - _mean(rows, counts)[..., None], counts)
+        return np.asarray(np.nanpercentile(rows, percent_of(kind), axis=-1))
+
+
+def _mean(rows: Array, counts: Array) -> Array:
+    return np.asarray(np.where(counts > 0, rows * counts, 0.0).sum(axis=-1) / counts.sum(axis=-1))
+
+
+def _scaled_root(rows: Array, counts: Array) -> Array:
+    """The root of the mean square, of any scale: a power of two brings the squares into range."""
+    largest = np.nanmax(np.where(np.isinf(rows), np.nan, np.abs(rows)), axis=-1, keepdims=True)
+    factor = np.ldexp(1.0, -np.frexp(np.where(largest > 0.0, largest, 1.0))[1].clip(-1000, 1000))
+    return np.asarray(np.sqrt(_mean((rows * factor) ** 2, counts)) / factor[..., 0])

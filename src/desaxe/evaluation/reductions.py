@@ -1,0 +1,279 @@
+"""The argument `reduce=`: kinds along axes, measures of single names, functions of a design.
+
+{"theta": "absmax"}                             along one axis
+{"theta": ["max", "p95"], "ec": "mean"}         one axis after the other, in this order
+{("theta", "ec"): "rms"}                        along both at once; in a file "theta, ec"
+{"theta": [("rms", "T_in"), ("at", "60 deg", "Y"), f]}     of single names, and a function of a design
+a list of these alone                           goes along theta
+"""
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from ..compiler.languages.numba.reductions import EXTREMES, KINDS
+from ..mechanism.spelling import did_you_mean
+from ..runtime.request import as_number
+from ..support.shown import shown
+from .own_measure import OwnMeasure
+
+NO_STATUS = "a status has no largest or mean: leave it out; each name has a count of skipped points"
+OTHERS = ("std", "median")  # kinds that no kernel computes on the way, beside percentiles
+ALLOWED = f"{', '.join((*KINDS, *OTHERS))}, and percentiles such as p95"
+EXAMPLE = '{"theta": "absmax"}'
+
+
+class Reduction(NamedTuple):
+    """Kinds of every name along one axis: what a kernel computes without storing the grid."""
+
+    axis: str
+    kinds: tuple[str, ...]
+
+
+class Step(NamedTuple):
+    """Kinds along some axes at once: of every name, and of single names as (kind, name)."""
+
+    axes: tuple[str, ...]
+    kinds: tuple[str, ...]
+    single: tuple[tuple[str, str], ...] = ()
+
+    def kinds_of(self, name: str) -> tuple[str, ...]:
+        """The kinds that are taken of a name."""
+        return tuple(dict.fromkeys((*self.kinds, *(kind for kind, own in self.single if own == name))))
+
+
+class At(NamedTuple):
+    """A name at one place of the reduced axis; `text` is how the place was given."""
+
+    place: float
+    name: str
+    text: str
+
+    @property
+    def variable(self) -> str:
+        """The name of the result: `Y_at_60_deg`."""
+        return f"{self.name}_at_{re.sub(r'[^0-9A-Za-z.+-]+', '_', self.text).strip('_')}"
+
+
+class Reductions(NamedTuple):
+    """A request of `reduce=`: steps in their order, and where there is one step measures beside it."""
+
+    steps: tuple[Step, ...]
+    at: tuple[At, ...] = ()
+    functions: tuple[OwnMeasure, ...] = ()
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """All reduced axes."""
+        return tuple(axis for step in self.steps for axis in step.axes)
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """All kinds, in their order."""
+        each = ((*step.kinds, *(kind for kind, _ in step.single)) for step in self.steps)
+        return tuple(dict.fromkeys(kind for kinds in each for kind in kinds))
+
+    @property
+    def alone(self) -> Reduction | None:
+        """The request as kinds along one axis that a kernel computes; None where it is more than that."""
+        step = self.steps[0]
+        more = self.at or self.functions or step.single or len(self.steps) > 1 or len(step.axes) > 1
+        return None if more or set(step.kinds) - set(KINDS) else Reduction(step.axes[0], step.kinds)
+
+    def plain(self) -> dict[str, list[Any]]:
+        """The request in plain lists, which tell it from another."""
+        found: dict[str, list[Any]] = {
+            ", ".join(s.axes): [*s.kinds, *map(list, s.single)] for s in self.steps
+        }
+        last = ", ".join(self.steps[-1].axes)
+        found[last] += [["at", one.place, one.name] for one in self.at]
+        found[last] += [function.name for function in self.functions]
+        return found
+
+    def chains(self, name: str) -> list[list[tuple[tuple[str, ...], str]]]:
+        """Lists of (axes, kind) that are taken of a name; equal kinds in a row go along all axes at once."""
+        chains: list[list[tuple[tuple[str, ...], str]]] = [[]]
+        for step in self.steps:
+            chains = [_extended(chain, step.axes, kind) for chain in chains for kind in step.kinds_of(name)]
+        return chains
+
+
+def _extended(
+    chain: list[tuple[tuple[str, ...], str]], axes: tuple[str, ...], kind: str
+) -> list[tuple[tuple[str, ...], str]]:
+    if chain and chain[-1][1] == kind:
+        return [*chain[:-1], ((*chain[-1][0], *axes), kind)]
+    return [*chain, (axes, kind)]
+
+
+def chain_name(name: str, chain: Sequence[tuple[tuple[str, ...], str]]) -> str:
+    """`a_C_max`, or of several steps `a_C_max_mean`."""
+    return "_".join([name, *(kind for _, kind in chain)])
+
+
+def extremes_at_end(chain: Sequence[tuple[tuple[str, ...], str]]) -> tuple[str, ...]:
+    """The axes along which the result of a chain has a place: those since its last average."""
+    found: tuple[str, ...] = ()
+    for axes, kind in chain:
+        found = (*found, *axes) if kind in EXTREMES else ()
+    return found
+
+
+# ---- from what the user says ------------------------------------------------------------------------
+
+
+def reductions_of(asked: Any, dimensions: Sequence[str], names: Sequence[str]) -> Reductions:
+    """A request, checked; ValueError or TypeError that names what is wrong."""
+    if isinstance(asked, Reductions):
+        return asked
+    entries = _entries(asked)
+    used: list[str] = []
+    found = []
+    at: list[At] = []
+    functions: list[OwnMeasure] = []
+    for key, taken in entries.items():
+        axes = _axes(key, dimensions, used)
+        used += axes
+        kinds: dict[str, None] = {}
+        single: dict[tuple[str, str], None] = {}
+        for one in _listed(key, taken):
+            measure = _measure(one)
+            if measure is None:
+                kinds[kind_of(one)] = None
+            elif len(entries) > 1:
+                raise ValueError(
+                    f"reduce: {shown(one)}: a measure of one name goes along one axis, without others"
+                )
+            elif isinstance(measure, OwnMeasure):
+                functions.append(measure)
+            elif measure[0] == "at":
+                at.append(_at(axes, *measure[1:]))
+            else:
+                single[kind_of(measure[0]), measure[1]] = None
+        if not (kinds or single or at or functions):
+            raise ValueError(f"reduce: nothing is taken of {_text(axes)}; allowed: {ALLOWED}")
+        found.append(Step(axes, tuple(kinds), tuple(single)))
+    result = Reductions(tuple(found), tuple(dict.fromkeys(at)), tuple(functions))
+    _check_names(result, names)
+    return result
+
+
+def names_reduced(asked: Any) -> tuple[str, ...]:
+    """The names that measures of a request are of, which need not be asked for beside it."""
+    if isinstance(asked, Reductions):
+        return ()
+    found: dict[str, None] = {}
+    for key, taken in _entries(asked).items():
+        for one in _listed(key, taken):
+            measure = _measure(one)
+            if isinstance(measure, tuple):
+                found[measure[-1]] = None
+    return tuple(found)
+
+
+def kind_of(kind: Any) -> str:
+    """A kind as it is called: "max", "std", "p95"."""
+    if isinstance(kind, (tuple, list)) and len(kind) == 2 and kind[0] == "percentile":
+        kind = f"p{kind[1]:g}" if isinstance(kind[1], (int, float)) else f"p{kind[1]}"
+    if kind in KINDS or kind in OTHERS:
+        return str(kind)
+    if isinstance(kind, str) and re.fullmatch(r"p\d+(\.\d+)?", kind):
+        if float(kind[1:]) > 100.0:
+            raise ValueError(f"reduce: {kind!r}: a percentile is from p0 to p100")
+        return f"p{float(kind[1:]):g}"
+    raise ValueError(
+        f"reduce: {shown(kind)}: {did_you_mean(str(kind)[:40], (*KINDS, *OTHERS))}allowed: {ALLOWED}"
+    )
+
+
+def percent_of(kind: str) -> float:
+    """The percentage of a percentile."""
+    return 50.0 if kind == "median" else float(kind[1:])
+
+
+def _entries(asked: Any) -> Mapping[Any, Any]:
+    """The request as a mapping; measures alone go along theta."""
+    alone = asked if isinstance(asked, list) else [asked]
+    if alone and all(_measure(one) is not None for one in alone):
+        return {"theta": alone}
+    if not isinstance(asked, Mapping) or not asked:
+        raise TypeError(f"reduce = {shown(asked)}: an axis and what is taken of it, such as {EXAMPLE}")
+    return asked
+
+
+def _axes(key: Any, dimensions: Sequence[str], used: Sequence[str]) -> tuple[str, ...]:
+    axes = tuple(part.strip() for part in key.split(",")) if isinstance(key, str) else key
+    if not isinstance(axes, tuple) or not axes:
+        raise TypeError(f"reduce: {shown(key)}: expected an axis or a tuple of axes")
+    for number, axis in enumerate(axes):
+        if axis not in dimensions:
+            there = ", ".join(dimensions) or "none"
+            hint = did_you_mean(str(axis)[:40], dimensions)
+            raise ValueError(f"reduce: {shown(axis)} is no axis of this grid; {hint}axes: {there}")
+        if axis in used or axis in axes[:number]:
+            raise ValueError(f"reduce: {axis!r} is reduced twice")
+    return axes
+
+
+def _listed(key: Any, taken: Any) -> list[Any]:
+    """The kinds and measures of an axis as a list."""
+    single = isinstance(taken, str) or callable(taken) or _measure(taken) is not None
+    if single or (isinstance(taken, (tuple, list)) and len(taken) == 2 and taken[0] == "percentile"):
+        return [taken]
+    if isinstance(taken, Mapping) or not isinstance(taken, Iterable):
+        raise TypeError(
+            f"reduce: {_text(key)} = {shown(taken)}: expected the name of a reduction or a list of names, "
+            f"of {ALLOWED}"
+        )
+    return list(taken)
+
+
+def _measure(one: Any) -> OwnMeasure | tuple[Any, ...] | None:
+    """("rms", name), ("at", place, name) or a function; None for a kind."""
+    if callable(one):
+        return one if isinstance(one, OwnMeasure) else OwnMeasure(one)
+    if isinstance(one, (tuple, list)) and len(one) == 3 and one[0] == "at":
+        return "at", one[1], str(one[2])
+    if isinstance(one, (tuple, list)) and len(one) == 2 and all(isinstance(part, str) for part in one):
+        return None if _is_kind(one[1]) or not _is_kind(one[0]) else (one[0], one[1])
+    if isinstance(one, (tuple, list)) and len(one) == 2 and isinstance(one[1], str) and not _is_text(one[0]):
+        return (kind_of(one[0]), one[1])  # (("percentile", 95), name)
+    return None
+
+
+def _is_text(one: Any) -> bool:
+    return isinstance(one, str)
+
+
+def _is_kind(text: str) -> bool:
+    try:
+        return bool(kind_of(text))
+    except ValueError:
+        return False
+
+
+def _at(axes: tuple[str, ...], place: Any, name: str) -> At:
+    if len(axes) > 1:
+        raise ValueError(f"reduce: ('at', {shown(place)}, {name!r}) goes along one axis, not {_text(axes)}")
+    number = as_number(axes[0], place, axes, ("at",))
+    if number is None:
+        raise TypeError(f"reduce: at = {shown(place)}: expected one value of {axes[0]}")
+    return At(number, name, place if isinstance(place, str) else f"{number:g}")
+
+
+def _check_names(found: Reductions, names: Sequence[str]) -> None:
+    if "status" in names:
+        raise ValueError(f"reduce: {NO_STATUS}")
+    measured = {one.name for one in found.at}
+    idle = [name for name in names if not found.chains(name) and name not in measured]
+    if idle:
+        raise ValueError(f"reduce: nothing is taken of {idle[0]}; allowed: {ALLOWED}")
+    called = [one.variable for one in found.at] + [one.name for one in found.functions]
+    called += [chain_name(name, chain) for name in names for chain in found.chains(name)]
+    twice = [name for name in called if called.count(name) > 1]
+    if twice:
+        raise ValueError(f"reduce: two results would be called {twice[0]}")
+
+
+def _text(axes: Any) -> str:
+    return axes if isinstance(axes, str) else ", ".join(map(str, axes))

@@ -1,0 +1,52 @@
+"""Loads that vary with the motion in lazy grids, sweeps and lazy peaks: as in memory."""
+
+import dask.array as da
+import numpy as np
+import pytest
+
+import desaxe as dx
+
+ANGLES, POINTS = np.linspace(0.0, 2 * np.pi, 25), [-400.0, 200.0, -50.0, 20.0]
+MACHINE = {"AB": 0.04, "BC": np.array([0.064, 0.07]), "m_slider": 0.8, "omega0": 50.0}
+EC = np.linspace(0.0, 0.015, 5)
+LOADS = {
+    "linear": dx.over_theta([0.0, 1.0, 2.0, 4.0], POINTS, kind="linear"),
+    "stroke": dx.over_Y([0.02, 0.05, 0.08, 0.1], POINTS, [0.0, 9.0, 9.0, 0.0]),
+}
+
+
+@pytest.mark.parametrize("kind", LOADS)
+def test_lazy_grids_and_stores_have_the_values_of_a_grid(kind, tmp_path):
+    inputs = {"theta": ANGLES, "ec": EC, "F_Y": LOADS[kind], **MACHINE}
+    names = ["T_in", "T_in_wrt_theta", "N_C_wrt_BC"]
+    whole = dx.grid(names, **inputs)
+    lazy = dx.grid(names, chunks={"theta": 7, "ec": 3}, **inputs)
+    store = dx.sweep(names, store=tmp_path / "press.zarr", chunks={"theta": 10}, **inputs)
+    for found in (lazy, store):
+        for name in (*names, "status", "margin"):
+            np.testing.assert_allclose(found[name], whole[name], rtol=1e-12, atol=1e-11, err_msg=name)
+        assert found.attrs["loads"] == whole.attrs["loads"]
+    other = LOADS[kind] is LOADS["linear"] and dx.over_theta(
+        [0.0, 1.0, 2.0, 4.0], POINTS[::-1], kind="linear"
+    )
+    if other:
+        with pytest.raises(FileExistsError, match="F_Y is <load over theta: 4 points, linear, -400 to 200>"):
+            dx.sweep(names, store=tmp_path / "press.zarr", **{**inputs, "F_Y": other})
+        again = dx.grid("T_in", chunks=-1, **{**inputs, "F_Y": other})
+        assert again.T_in.data.name != lazy.T_in.data.name  # Dask knows them by their names
+
+
+def test_reductions_best_designs_and_peaks_follow_the_load():
+    inputs = {"theta": ANGLES, "ec": EC, "F_Y": LOADS["stroke"], **MACHINE}
+    whole = dx.grid("T_in", **inputs).T_in
+    found = dx.sweep("T_in", reduce={"theta": "absmax"}, peaks="T_in", **inputs)
+    np.testing.assert_allclose(found.T_in_absmax, abs(whole).max("theta"), rtol=1e-12)
+    peaks = dx.peak("T_in", ec=EC[:, None], F_Y=LOADS["stroke"], **MACHINE)
+    np.testing.assert_allclose(found.peak_absmax_T_in, peaks["value"], rtol=1e-12)
+    np.testing.assert_allclose(found.peak_absmax_T_in_wrt_ec, peaks["gradient"]["ec"], rtol=1e-9, atol=1e-8)
+    lazy = dx.peak("T_in", ec=da.from_array(EC[:, None], chunks=2), F_Y=LOADS["stroke"], **MACHINE)
+    np.testing.assert_allclose(lazy["value"], peaks["value"], rtol=1e-12)
+    best = dx.sweep("T_in", best=2, by=("absmax", "T_in"), **inputs)
+    assert best.T_in_absmax.values == pytest.approx(np.sort(found.T_in_absmax.values.ravel())[::-1][:2])
+    spread = dx.sweep("T_in", reduce={("theta", "ec"): "p95"}, chunks={"BC": 1}, **inputs)
+    np.testing.assert_allclose(spread.T_in_p95, whole.quantile(0.95, ["theta", "ec"]), rtol=1e-12)
