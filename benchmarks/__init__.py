@@ -1,1 +1,19 @@
-"""Run time against error, beside everyone else, in one run: `python -m benchmarks`."""
+"""Run time against error, beside everyone else, in one run: `python -m benchmarks`.
+
+work         the works and their inputs
+contenders/  desaxe and its peers, one file each
+formulas     the textbook forms that the peers compute
+peaks        the best of 720 angles, for all peers
+blocks       blocks of points, for peers that take a matrix
+child        one contender in a process of its own
+race         contenders in turns at a work
+errors       errors against the truth, by the rig of `desaxe.audit`
+measure      a whole run as plain data
+growth       time over the number of points
+starts       cold starts
+report       docs/benchmarks.md and README's table
+picture      the pictures of that page
+startup      `python -m benchmarks.startup`: time to the first result
+motions      `python -m benchmarks.motions`: simulations
+scale        `python -m benchmarks.scale`: sweeps
+"""

@@ -3,6 +3,16 @@
 A contender's `prepare(work, inputs, out, threads)` compiles, and gives a function that computes the work and
 returns an array for each name: those of `out`, where there are such and it can write into them, or its own.
 A peak is the largest magnitude at any of 720 angles, which is what everyone but desaxe computes.
+
+with_c        SymPy's C, by gcc
+with_casadi   CasADi
+with_desaxe   desaxe, at each accuracy
+with_heyoka   heyoka
+with_jax      JAX
+with_nothing  storing a result, single operations
+with_numba    numba
+with_numexpr  numexpr
+with_numpy    SymPy's lambdify in NumPy
 """
 
 from collections.abc import Callable, Sequence

@@ -37,3 +37,23 @@ def test_first_lines_say_what_a_function_does(room):
         if VAGUE.match(line) or HOME_MADE.search(line)
     ]
     assert not vague, "\n".join(vague)
+
+
+@pytest.mark.parametrize("room", ["src/desaxe", "derive", "benchmarks"])
+def test_every_room_lists_its_files(room):
+    missing = []
+    for init in sorted((ROOT / room).rglob("__init__.py")):
+        folder = init.parent
+        text = ast.get_docstring(ast.parse(init.read_text(encoding="utf-8"))) or ""
+        listed = {line.split()[0].rstrip("/") for line in text.splitlines() if line.strip()}
+        files = {path.stem for path in folder.glob("*.py")} - {"__init__", "__main__"}
+        rooms = {path.parent.name for path in folder.glob("*/__init__.py")}
+        if folder.name != "desaxe":  # README lists its rooms, in the order of their floors
+            missing += [f"{folder.relative_to(ROOT)}: {name}" for name in sorted((files | rooms) - listed)]
+    assert not missing
+
+
+def test_readme_lists_every_room():
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    rooms = sorted(path.parent.name for path in (ROOT / "src" / "desaxe").glob("*/__init__.py"))
+    assert [room for room in rooms if f"{room}/ " not in readme] == []

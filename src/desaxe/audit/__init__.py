@@ -1,1 +1,10 @@
-"""Accuracy and time of desaxe, measured against an independent reference."""
+"""Accuracy and time of desaxe, measured against an independent reference.
+
+command     `desaxe audit`: measure, print, write the page
+run         the audit: times and errors, family by family
+contenders  every accuracy of desaxe, and other tools
+times       time per point, alternating, on one core
+errors      errors against the oracle, in shares of the promise and in ulp
+report      the result as Markdown
+picture     the result as a picture
+"""

@@ -1,11 +1,16 @@
 """The command `desaxe`.
 
 command  the sub-commands, and how errors reach the terminal
-parser   what they share: one-line complaints, help, the sign convention
-point, scene, fit, errata, checks   the sub-commands, a file for each group
-words    names and inputs as words of a command line
-cache    the folder of compiled kernels
-doctor   what is installed, and whether loops vectorise here
+parser   a parser with one-line errors, help, the sign convention
+words    names and inputs as command-line arguments
+point    `desaxe point`
+scene    `desaxe run`, `scene`, `explain`, `compile`, `explore`
+sweep    `desaxe sweep`
+fit      `desaxe fit`
+errata   `desaxe errata`
+checks   `desaxe derive`, `audit`, `doctor`
+cache    `desaxe cache`: the folder of compiled kernels
+doctor   the report of `desaxe doctor`
 """
 
 from .command import main as main

@@ -1,14 +1,22 @@
 """Values of quantities: at a point, over arrays, over a grid.
 
-evaluate  numbers in, a float out; arrays in, arrays out
-arrays    inputs that broadcast, outputs and scratch
-loops     the loop that each input of a broadcast varies along
-grid      an outer product as a labelled dataset
-outer     its arguments, and axes joined to long loops
-chunks    how a grid is cut
-blocks    parts of a grid, for chunks
-lazy      grids and arrays of Dask
-reduce    the largest, the mean, ... of an axis, without storing the grid
-labels    units and CF attributes
-quality   condition numbers and error bounds
+evaluate       numbers in, a float out; arrays in, arrays out
+arrays         inputs that broadcast, outputs and scratch
+loops          the loop that each input of a broadcast varies along
+grid           an outer product as a labelled dataset
+outer          its arguments, and axes joined to long loops
+chunks         how a grid is cut
+blocks         parts of a grid, for chunks
+lazy           grids and arrays of Dask
+reduce         the largest, the mean, ... of an axis, without storing the grid
+labels         units and CF attributes
+quality        condition numbers and error bounds
+values         values of names from a dict of inputs: the body of `evaluate`
+function       a prepared callable of some inputs
+planned        repeated calls of one shape: a cache of checked calls
+loaded         values under loads that vary with the motion
+repair         points that a kernel leaves undecided, recomputed
+lazy_evaluate  `evaluate` of Dask arrays
+dask_blocks    a function of many outputs over the chunks of Dask arrays
+in_units       labelled results in other units
 """

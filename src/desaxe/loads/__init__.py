@@ -1,4 +1,11 @@
-"""Loads over the crank angle or the slider's position: tables, files and functions."""
+"""Loads over the crank angle or the slider's position: tables, files and functions.
+
+load       the loads: over theta or Y, from a table or a function
+table      tables as piecewise cubics
+tabulated  `over_theta`, `over_Y`: loads from lists, files and functions
+angles     crank angles of slider positions and dead centres
+resolve    loads as numbers at each point, and total derivatives
+"""
 
 from .load import Load, LoadWarning
 from .tabulated import over_theta, over_Y

@@ -8,4 +8,11 @@ spelling      the name that was meant by one that does not exist
 program       the committed Program, sliced to some names, and its variants
 constants     coefficients of the written-out sine and cosine
 limit_angles  the crank angles at which the mechanism can be assembled
+status        the status codes of every call, with their words
+dimensions    units as exponents of m, s, rad and kg
+unit_system   the units of plain numbers in inputs and results
+ranges        `between` and `plus_minus`: inputs with a range or tolerance
+slips         plain numbers that are almost surely in another unit
+own           user-defined quantities: the register
+own_lines     their lines in the Program, with derivatives
 """

@@ -4,7 +4,10 @@ peak      the public call
 programs  a quantity, its slope over theta and its gradient, as Programs
 nodes     the crank angles at which a search starts
 search    the search of one design, in loops that numba compiles
-special   designs that end somewhere: limit angles, stall, friction
+special   special designs: limit angles, stall, friction
 compiled  the module of a search
 stubs     stand-ins for the functions of a quantity
+designs   the search over all designs of a request
+loaded    peaks under loads that vary with the motion
+lazy      peaks as Dask arrays
 """

@@ -9,6 +9,8 @@ mechanism   crank, rod and slider to scale at a crank angle
 drive       drive torque over a turn, and the speed with its flywheel
 animate     the same as it turns, beside a quantity's curve
 save        a figure or animation to a file
+shared      what all of them share: values, labels, colours, legends
+from_dict   a dict of arrays as a Dataset
 
 Each draws on `ax=`, or on a new Figure, and returns what it drew.
 """

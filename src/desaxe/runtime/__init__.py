@@ -1,18 +1,23 @@
 """From a request to a callable: points, kernels, cache, machine code.
 
-request       names and inputs, checked
-accuracy      the accuracies that can be asked for
-specialise    the Program of a request, after all passes
-point         a function of floats for single points
-interpreted   few points in plain Python
-kernels       compiled loops for arrays
-modules       text -> digest -> lock -> file -> machine code, for kernels, peaks and simulation
+request        names and inputs, checked
+accuracy       the accuracies and their bounds
+specialise     the Program of a request, after all passes
+point          a function of floats for single points
+interpreted    few points in plain Python
+kernels        compiled loops for arrays
+modules        text -> digest -> lock -> file -> machine code, for kernels, peaks and simulation
 compiled_text  a text through numba and LLVM to machine code
-machine_code  machine code that stands alone, loaded without numba
-loader        LLVM as a loader, without the Python of llvmlite
-cache         the folder of compiled kernels
-written       which files desaxe wrote, and may replace
-wide_margins  which designs may take the plain forms
-near_limit    points at which rounding decides whether the rod reaches
-threads       blocks of an array shared by threads
+machine_code   self-contained machine code, loaded without numba
+loader         LLVM as a loader, without the Python of llvmlite
+cache          the folder of compiled kernels
+written        which files desaxe wrote, and may replace
+wide_margins   which designs may take the plain forms
+near_limit     undecided points, recomputed in double-double
+threads        blocks of an array shared by threads
+tiers          plain Python, NumPy or compiled code for a request
+vectorised     Programs in NumPy, for the first call of a request
+any_stride     a kernel over arrays of any stride: the inner loop of a ufunc
+native_calls   a kernel as a ufunc, a C function, a function for numba
+compiled_only  a block in which compiled code is required
 """

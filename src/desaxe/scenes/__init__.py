@@ -24,4 +24,6 @@ report       the result as text
 explain/     what a scene will do before it does it
 export/      a scene as a module of its own
 explorer/    a scene as a page for the browser
+loads        loads of a scene: tables and files
+units        `[units]`: units attached to plain numbers
 """

@@ -16,4 +16,5 @@ compiled      the module of a family of designs
 history       histories of angle, speed, quantities and energy
 result        the result and its statuses
 stubs         stand-ins for the functions of a design
+held          loads as functions of time, smooth between their kinks
 """

@@ -1,10 +1,19 @@
 """The ground floor: general helpers, open to every room, independent of the mechanism.
 
 extras         a missing optional dependency as one line that says what to install
-files          files written beside their place and swapped in
+files          files written whole or not at all
 locks          a lock across processes
 roots          one root of a function
 progress       how far long work is, and a bar on the terminal
 quantity_text  a number with its unit as text
 version        the version of this installation
+private        files and folders that only this user can have written
+forks          locks and threads that a forked process must not inherit
+interrupts     work that Ctrl-C must not cut in half
+memory         a check for free memory
+checks         options of calls, checked
+deadline       a time limit
+answer         results: dicts with a readable repr
+recent         a cache of the most recently used values
+shown          a value in a message, shortened
 """

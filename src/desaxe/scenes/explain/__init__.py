@@ -5,4 +5,5 @@ steps     what was skipped and why, and what each pass saved
 loops     operations per loop of a kernel
 estimate  time and memory, from the operations' costs
 report    the plan as text
+total     time of a whole run, the first and later ones
 """

@@ -9,4 +9,6 @@ scalars       a function for each output, for @njit functions
 axes          the scene's lists and ranges
 first_call    how its loops are compiled
 merge         several generated Python modules as one
+loaded        loads over theta in a Python module
+package       `desaxe derive --quantities`: a package of a user's own quantities
 """
