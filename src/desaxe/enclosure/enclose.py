@@ -27,6 +27,7 @@ from ..runtime.request import Request, as_number, check_common, check_inputs, re
 from ..runtime.specialise import specialise
 from ..support.answer import answering
 from ..support.checks import real_number, whole_number
+from ..support.deadline import Deadline
 from ..support.quantity_text import PLUS_MINUS
 from .balls import BITS, PARTLY, Enclosure, Interval, ball, enclosures
 
@@ -59,6 +60,7 @@ def enclose(
     branch: int = 1,
     rtol: float = 1e-6,
     boxes: int = 10_000,
+    timeout: float | None = 120.0,
     **loads: Any,
 ) -> dict[str, Any]:
     """The range of a quantity or sensitivity over a box of inputs, guaranteed.
@@ -70,6 +72,7 @@ def enclose(
 
     rtol     how much wider than the true range the answer may be at each end, relative to the range
     boxes    give up after so many boxes at each end; the answer is a guarantee even so, only wider
+    timeout  seconds after which it ends with a TimeoutError; None for no limit
 
     Gives a dict:
 
@@ -85,20 +88,21 @@ def enclose(
 
     Needs the extra `rigorous`. Raises ValueError for an unknown name, or `status`, or a bad value.
     """
-    check_inputs("enclose", loads, (*INPUTS, "branch", "rtol", "boxes"))
+    check_inputs("enclose", loads, (*INPUTS, "branch", "rtol", "boxes", "timeout"))
     quantity(name, omega is not None)
     if name == "status":
         raise ValueError("status is no real number: see `status` of the result")
     if not real_number("rtol", rtol) > 0.0:
         raise ValueError(f"rtol = {rtol}: expected a number above 0")
     whole_number("boxes", boxes, 1, 10**7)
+    deadline = Deadline("enclose", timeout)
     given = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
     check_common(given, branch)
     without_loads("enclose", loads)
     given.update(loads)
     function = _function(name, given, branch)
     with ctx.workprec(BITS):
-        return _range(function, rtol, boxes)
+        return _range(function, rtol, boxes, deadline)
 
 
 # ---- the quantity over boxes ----------------------------------------------------------------------
@@ -200,11 +204,11 @@ def _interval(name: str, value: Any, wanted: str) -> Interval:
 # ---- the search -----------------------------------------------------------------------------------
 
 
-def _range(function: Function, rtol: float, limit: int) -> dict[str, Any]:
-    status, count = _status(function, limit)
+def _range(function: Function, rtol: float, limit: int, deadline: Deadline) -> dict[str, Any]:
+    status, count = _status(function, limit, deadline)
     if status == 1:
         return {"lower": nan, "upper": nan, "inner": (nan, nan), "status": 1, "tight": True, "boxes": count}
-    search = Search(function, rtol, limit)
+    search = Search(function, rtol, limit, deadline)
     upper, lower = search.largest(1), -search.largest(-1)
     low, high = search.inner
     return {
@@ -217,11 +221,12 @@ def _range(function: Function, rtol: float, limit: int) -> dict[str, Any]:
     }
 
 
-def _status(function: Function, limit: int) -> tuple[int, int]:
+def _status(function: Function, limit: int, deadline: Deadline) -> tuple[int, int]:
     """The status (0 defined in all of the box, 1 nowhere, 2 otherwise) and the number of boxes used."""
     corners = [tuple((x, x) for x in corner) for corner in islice(product(*function.whole), CORNERS)]
     boxes, count, known = [function.whole], 0, {_defined(function, corner) for corner in corners}
     while boxes and not {True, False} <= known:
+        deadline.check()
         box, count = boxes.pop(), count + 1
         here = _defined(function, box)
         known.add(here)
@@ -250,8 +255,8 @@ class Node(NamedTuple):
 class Search:
     """Branch and bound for the largest value of a quantity (sign 1) or of its negative (sign -1)."""
 
-    def __init__(self, function: Function, rtol: float, limit: int) -> None:
-        self.function, self.rtol, self.limit = function, rtol, limit
+    def __init__(self, function: Function, rtol: float, limit: int, deadline: Deadline) -> None:
+        self.function, self.rtol, self.limit, self.deadline = function, rtol, limit, deadline
         self.inner = (inf, -inf)  # attained
         self.count = 0
         self.tight = True
@@ -299,6 +304,7 @@ class Search:
     def _look(self, sign: int, box: Box) -> Node | None:
         """Bound the quantity over a box; None if it is defined nowhere in it."""
         while True:
+            self.deadline.check()
             self.count += 1
             found = self.function.over(box)
             value, *slopes = found.values

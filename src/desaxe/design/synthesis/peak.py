@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ...peaks.peak import peak
 from ...support.roots import root
+from ...support.deadline import Deadline
 from ..number_or_array import sum_of_three
 from .family import Answer, Family
 
@@ -17,12 +18,13 @@ NEAREST = 1e-12  # to the ends of the family, at which the acceleration grows wi
 TURNS = 1e-9  # of the rod: lengths rounded to doubles do not tell a smaller margin
 
 
-def of_peak(family: Family, wanted: float, omega0: float) -> Answer:
+def of_peak(family: Family, wanted: float, omega0: float, deadline: Deadline) -> Answer:
     """Every design of the family with the required peak |a_C|, and the smallest feasible peak."""
     if omega0 == 0.0:
         raise ValueError("omega0 = 0: a crank at rest has no acceleration to wish for")
 
     def height(x: Any) -> Any:
+        deadline.check()
         rows = [family.design(float(at)) for at in np.atleast_1d(x)]
         lengths: dict[str, Any] = {name: np.array([row[name] for row in rows]) for name in ("ec", "AB", "BC")}
         margin = sum_of_three(lengths["BC"], -lengths["AB"], -lengths["ec"])

@@ -24,6 +24,7 @@ from ...runtime.request import as_number, with_known_inputs
 from ...support.answer import answering
 from ...support.checks import real_number
 from ...support.roots import root
+from ...support.deadline import Deadline
 from ...support.shown import shown
 from .family import Answer, Family
 
@@ -51,6 +52,7 @@ def synthesize(
     peak_a_C: Any = None,
     omega0: Any = None,
     slow_stroke: int = 1,
+    timeout: float | None = 120.0,
 ) -> dict[str, Any]:
     """Every design with this stroke, time ratio and one further requirement; or why there is none.
 
@@ -61,6 +63,7 @@ def synthesize(
                  margin is more than 1e-9 of the rod)
     slow_stroke  +1: the slider is slow on its way outward (branch 1, crank turning forwards), ec > 0;
                  -1: inward, ec < 0: the mirror image
+    timeout      seconds after which it ends with a TimeoutError; None for no limit
 
     Numbers are in SI units; texts with units are understood. Gives a dict:
 
@@ -85,6 +88,7 @@ def synthesize(
         raise TypeError(f"synthesize: expected just one of {', '.join(THIRDS)}, got {got}")
     if not isinstance(slow_stroke, (int, float)) or slow_stroke not in (1, -1):
         raise ValueError(f"slow_stroke = {shown(slow_stroke)}: it is +1 (outward) or -1 (inward)")
+    deadline = Deadline("synthesize", timeout)
     (third,) = given
     H, ratio, value = (
         _wish(n, v) for n, v in (("stroke", stroke), ("time_ratio", time_ratio), (third, thirds[third]))
@@ -99,7 +103,7 @@ def synthesize(
         from .peak import of_peak
 
         speed = as_number("omega0", omega0, ("stroke", "time_ratio", third, "omega0"), ("synthesize",))
-        answer = of_peak(family, value, float(speed or 0.0))
+        answer = of_peak(family, value, float(speed or 0.0), deadline)
     else:
         answer = _FORMS[third](family, value)
     return _told(third, value, slow_stroke, answer)
