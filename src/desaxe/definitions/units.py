@@ -10,6 +10,7 @@ from typing import Any
 
 from ..mechanism.dimensions import ANGLE, ENERGY, FORCE, LENGTH, MASS, NONE, POWER, Unit
 from ..support.quantity_text import spelled, split_quantity
+from ..support.shown import shown
 
 _PI = Fraction(pi)
 _PASCAL, _SECOND = Unit(-1, -2, kg=1), Unit(s=1)
@@ -53,13 +54,19 @@ def constant_value(name: str, value: Any) -> tuple[float, Unit]:
         number, unit = _from_text(name, value)
     elif hasattr(value, "magnitude") and hasattr(value, "to_root_units"):
         number, unit = _from_pint(value)
-    elif isinstance(value, bool) or not (isinstance(value, (int, float)) or hasattr(value, "is_integer")):
-        raise TypeError(f"constant {name} = {value!r}: expected a number or a text such as '1 mm'")
+    elif isinstance(value, bool) or not _is_number(value):
+        raise TypeError(f"constant {name} = {shown(value)}: expected a number or a text such as '1 mm'")
     else:
         number, unit = _as_float(value), NONE
     if not isfinite(number):
         raise ValueError(f"constant {name} = {value!r}: it must be finite")
     return number, unit
+
+
+def _is_number(value: Any) -> bool:
+    """True for Python's and NumPy's real numbers; a time span is none."""
+    kind = getattr(getattr(value, "dtype", None), "kind", "f")
+    return isinstance(value, (int, float)) or (hasattr(value, "is_integer") and kind in "fiu")
 
 
 def _as_float(value: Any) -> float:

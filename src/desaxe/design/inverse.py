@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ..evaluation.arrays import as_array, broadcast_shape
 from ..evaluation.evaluate import evaluate
+from ..evaluation.extremes import are_extreme
 from ..mechanism.inputs import INPUTS, Input
 from ..runtime.request import check_common, with_known_inputs
 from ..support.answer import answering
@@ -70,7 +71,7 @@ def inverse(
 
 def _input(name: str, value: Any) -> Array:
     if value is None:
-        raise TypeError("inverse: Y is missing (needed: Y, ec, AB, BC)")
+        raise TypeError(f"inverse: {name} is missing (needed: Y, ec, AB, BC)")
     if name in INPUTS:
         return as_array(name, value, ("Y", "ec", "AB", "BC"), ("inverse",))
     if isinstance(value, str) or hasattr(value, "magnitude"):
@@ -90,6 +91,8 @@ def _input(name: str, value: Any) -> Array:
 
 def _angles(Y: Array, lengths: list[Array], branch: int) -> tuple[Array, NDArray[np.bool_]]:
     """Both crank angles, ascending, NaN where there is none; and a mask of flat triangles."""
+    if any(np.any(are_extreme("Y", length)) for length in (Y, *lengths)):
+        Y, *lengths = _near_1(Y, *lengths)
     ec, AB, BC = lengths
     with np.errstate(all="ignore"):  # status tells
         L = np.hypot(ec, Y)
@@ -108,6 +111,12 @@ def _angles(Y: Array, lengths: list[Array], branch: int) -> tuple[Array, NDArray
     twice = flat & (theta[..., 0] == theta[..., 1])
     theta[..., 1] = np.where(twice, np.nan, theta[..., 1])
     return theta, flat
+
+
+def _near_1(*lengths: Array) -> list[Array]:
+    """Lengths times a power of two: their squares neither overflow nor lose their digits."""
+    power = np.frexp(np.maximum.reduce(np.broadcast_arrays(*map(np.abs, lengths))))[1]
+    return [np.ldexp(length, -power) for length in lengths]
 
 
 def _add_rates(

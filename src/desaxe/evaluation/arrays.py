@@ -17,6 +17,7 @@ from ..runtime.threads import run_in_blocks
 from ..runtime.tiers import COMPILED, INTERPRETED, VARIABLE, tier_of
 from ..support.memory import require
 from ..support.shown import shown
+from .extremes import are_extreme, can_rescale, in_si, is_extreme, rescaled
 from .loops import Loops, loops_over, spread
 from .planned import planned
 
@@ -161,6 +162,45 @@ def fill(
 
     `numpy_pays`: a new request need not wait for its kernel, whose digits NumPy's may differ from.
     """
+    _fill(wanted, scalars, loops, outs, threads, numpy_pays)
+    extreme = extreme_points(scalars, loops) if can_rescale(wanted) else None
+    if extreme is not None:
+        _fill_extreme(wanted, scalars, loops, outs, extreme)
+
+
+def _fill_extreme(
+    wanted: Request, scalars: dict[str, float], loops: Loops, outs: Sequence[Array], points: Array
+) -> None:
+    """Compute points near the ends of the double range again, in units in which they are not."""
+    sizes, columns, axis_of = loops
+    given = {name: spread(column, axis_of[name], sizes)[points] for name, column in columns.items()}
+    inputs, powers = rescaled({**scalars, **given})
+    own = {name: np.ascontiguousarray(np.broadcast_to(v, points.shape)) for name, v in inputs.items()}
+    places = [np.empty(points.shape, out.dtype) for out in outs]
+    _fill(wanted, {}, Loops(points.shape, own, dict.fromkeys(own, 0)), places, None, True)
+    for out, found in zip(outs, in_si(wanted.shown, places, powers, wanted.form.state), strict=True):
+        out.reshape(-1)[points] = found
+
+
+def extreme_points(scalars: Mapping[str, float], loops: Loops) -> Array | None:
+    """The flat places of points with an input near the ends of the double range; None without any."""
+    sizes, columns, axis_of = loops
+    everywhere = any(is_extreme(name, value) for name, value in scalars.items())
+    masks = {name: are_extreme(name, column) for name, column in columns.items()}
+    some = [spread(mask, axis_of[name], sizes) for name, mask in masks.items() if mask is not False]
+    if not some and not everywhere:
+        return None
+    return np.arange(prod(sizes)) if everywhere else np.flatnonzero(np.logical_or.reduce(some))
+
+
+def _fill(
+    wanted: Request,
+    scalars: dict[str, float],
+    loops: Loops,
+    outs: Sequence[Array],
+    threads: int | None,
+    numpy_pays: bool,
+) -> None:
     sizes, columns, axis_of = loops
     key = key_of(wanted, scalars, columns, axis_of, len(sizes))
     outs = [out.reshape(sizes) for out in outs]

@@ -5,6 +5,8 @@ from itertools import product
 from math import prod
 from typing import Any
 
+import numpy as np
+
 from ..mechanism.spelling import did_you_mean
 
 Slices = dict[str, slice]
@@ -80,7 +82,7 @@ def _lengths(name: str, wanted: Any, size: int) -> tuple[int, ...]:
 def _length(name: str, wanted: Any, size: int) -> int:
     if wanted is None or wanted == -1:
         return max(size, 1)
-    if isinstance(wanted, bool) or not hasattr(wanted, "__index__"):
+    if isinstance(wanted, bool) or not hasattr(wanted, "__index__") or np.ndim(wanted):
         raise TypeError(f'chunks of {name} = {wanted!r}: a whole number, "auto" or -1 for the whole')
     if int(wanted) < 1:
         raise ValueError(f'chunks of {name} = {wanted}: at least 1, "auto" or -1 for the whole')

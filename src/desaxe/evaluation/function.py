@@ -24,6 +24,7 @@ from ..runtime.native_calls import point_caller, scalar_of, ufunc_of
 from ..runtime.request import Request, as_number, check_common, check_inputs, request, several, standstill
 from ..runtime.specialise import plain_form
 from ..runtime.wide_margins import all_have_wide_margins
+from ..support.shown import shown as as_shown
 from .repair import limit_of, repair_for
 
 Array = NDArray[Any]
@@ -130,6 +131,9 @@ class Function:
                 )
             return tuple(out[name] for name in self.names)
         found = tuple(out) if isinstance(out, (tuple, list)) else (out,)
+        for name, place in zip(self.names, found, strict=False):
+            if not hasattr(place, "__array_ufunc__"):
+                raise TypeError(f"out= for {name}: an array is wanted, got {as_shown(place)}")
         if len(found) != len(self.names):
             raise ValueError(f"out=: expected {len(self.names)} arrays, got {len(found)}")
         return found

@@ -20,6 +20,8 @@ from ..runtime.kernels import is_ready, kernel_for, key_of
 from ..runtime.request import Request
 from ..runtime.specialise import plain_form
 from ..runtime.wide_margins import of_numbers
+from .extremes import MOST as LARGEST
+from .extremes import is_extreme
 from .repair import limit_of
 
 Array = NDArray[Any]
@@ -63,10 +65,10 @@ def planned(wanted: Request, given: Mapping[str, Any]) -> dict[str, Array] | Non
     shape: tuple[int, ...] | None = None
     for name in call.inputs:
         value = given.get(name)
-        if type(value) is int or type(value) is np.float64:
+        if type(value) is np.float64 or (type(value) is int and -LARGEST < value < LARGEST):
             value = float(value)
         if type(value) is float:
-            if not is_good(name, value):
+            if not is_good(name, value) or is_extreme(name, value):
                 return None
             numbers.append(value)
             kinds.append(value == 0.0)
@@ -77,7 +79,7 @@ def planned(wanted: Request, given: Mapping[str, Any]) -> dict[str, Array] | Non
                     return None
             elif value.shape != shape:
                 return None
-            if not is_good(name, value.item(0)):
+            if not is_good(name, value.item(0)) or is_extreme(name, value.item(0)):
                 return None
             columns.append(value)
             kinds.append(None)

@@ -12,6 +12,7 @@ from ..runtime.accuracy import accuracy_of
 from ..runtime.point import Point, point_of
 from ..runtime.request import Request, as_number, check_common, is_steady, request, several, standstill
 from ..support.interrupts import import_whole
+from .extremes import LEAST, MOST, can_rescale, in_si, is_extreme, rescaled
 
 
 def values(
@@ -42,20 +43,32 @@ def values(
         if changes() == before:  # no name has got another meaning meanwhile
             _KNOWN[key] = known
     asked, point = known
-    numbers = []
+    numbers, extreme = [], False
     for name in point.inputs:
         value = given[name]
-        if type(value) is not float or not is_good(name, value):
-            value = as_number(name, value, point.inputs, wanted)
+        if type(value) is not float or not LEAST < value < MOST:
+            if type(value) is not float or not is_good(name, value):
+                value = as_number(name, value, point.inputs, wanted)
             if value is None:  # not a number: an array
                 import_whole("numpy")
                 answers = _of_arrays(asked, given, threads, out)
                 return answers[names] if isinstance(names, str) else answers
+            extreme = extreme or is_extreme(name, value)
         numbers.append(value)
     if out is not None:
         raise TypeError("out= is for arrays, but every input is a number")
-    answer = point.function(*numbers)
+    answer = point.function(*numbers) if not extreme else _extreme(asked, point, numbers)
     return answer[0] if isinstance(names, str) else dict(zip(wanted, answer, strict=True))
+
+
+def _extreme(asked: Request, point: Point, numbers: Sequence[float]) -> Sequence[Any]:
+    """The answer of a point near the ends of the double range."""
+    if not can_rescale(asked):
+        return point.function(*numbers)
+    inputs, powers = rescaled(dict(zip(point.inputs, numbers, strict=True)))
+    answer = point.function(*map(float, inputs.values()))
+    found = in_si(asked.shown, answer, powers, asked.form.state)
+    return [float(a) if type(b) is float else b for a, b in zip(found, answer, strict=True)]
 
 
 MOST_KNOWN = 1024  # requests that are remembered

@@ -2,17 +2,19 @@
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from math import isfinite
+from math import inf, isfinite
 from os import PathLike
-from pathlib import Path
 from typing import Any
 from warnings import warn
 
+from ..support.files import as_path, read_bytes
+from ..support.shown import shown
 from .load import TURN, FunctionOverTheta, Load, LoadWarning, OverY, TableOverTheta
 from .table import KINDS, held, periodic
 
 CLOSED = 1e-6  # of a period: a last angle so near to its end repeats the first one
 WIDE = 4.0  # times the usual distance between points
+MOST_BYTES = 100_000_000  # of a file
 EQUAL = 1e-9  # of the largest value: what differs by less is the same
 
 
@@ -274,10 +276,12 @@ def _finite(what: str, values: list[Any]) -> list[float]:
     for value in values:
         try:
             number = float(value)
+        except OverflowError:
+            number = inf
         except (TypeError, ValueError):
-            raise TypeError(f"{what}: {value!r} is no number") from None
+            raise TypeError(f"{what}: {shown(value)} is no number") from None
         if isinstance(value, bool) or not isfinite(number):
-            raise ValueError(f"{what}: {value!r}; every one must be a finite number")
+            raise ValueError(f"{what}: {shown(value)}; every one must be a finite number")
         found.append(number)
     return found
 
@@ -288,9 +292,11 @@ def _finite(what: str, values: list[Any]) -> list[float]:
 def _rows(path: str | PathLike[str], least: int) -> list[list[str]]:
     """The cells of the lines of a file that have numbers; ValueError names the line where one has none."""
     try:
-        text = Path(path).read_text(encoding="utf-8-sig")
+        text = read_bytes(as_path("path", path), MOST_BYTES).decode("utf-8-sig")
     except UnicodeDecodeError:
         raise ValueError(f"{path}: not a text in UTF-8") from None
+    except ValueError as error:
+        raise ValueError(f"{shown(path)}: {error}") from None
     rows: list[list[str]] = []
     heading = False
     for number, line in enumerate(text.splitlines(), 1):

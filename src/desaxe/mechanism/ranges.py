@@ -8,8 +8,9 @@ plus_minus("10 mm", "0.1 mm") has the ends of between("9.9 mm", "10.1 mm").
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+from ..support.shown import shown
 from .inputs import INPUTS
-from .units import exact, in_si
+from .units import exact, in_si, rounded
 
 
 class RangeWarning(UserWarning):
@@ -65,7 +66,7 @@ def between(low: Any, high: Any) -> Between:
 def ends_of(name: str, given: PlusMinus) -> tuple[float, float]:
     """Both ends of a value with its tolerance; ValueError for a bad one."""
     value, tolerance = _tolerance(name, given)
-    return float(value - tolerance), float(value + tolerance)
+    return rounded(name, str(given), value - tolerance), rounded(name, str(given), value + tolerance)
 
 
 def middle_of(name: str, given: Between) -> tuple[float, float]:
@@ -73,7 +74,7 @@ def middle_of(name: str, given: Between) -> tuple[float, float]:
     low, high = (_number(name, end, given) for end in given)
     if low > high:
         raise ValueError(f"{name} = {given!r}: the lower end comes first")
-    return float((low + high) / 2), float((high - low) / 2)
+    return rounded(name, str(given), (low + high) / 2), rounded(name, str(given), (high - low) / 2)
 
 
 def _tolerance(name: str, given: PlusMinus) -> tuple[Fraction, Fraction]:
@@ -96,5 +97,7 @@ def _number(name: str, value: Any, whole: Any) -> Fraction:
     number = in_si(name, value) if hasattr(value, "magnitude") else value
     try:
         return Fraction(repr(float(number)))
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} = {whole!r}: expected two finite numbers or texts with a unit") from None
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(
+            f"{name} = {shown(whole)}: expected two finite numbers or texts with a unit"
+        ) from None

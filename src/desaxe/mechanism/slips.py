@@ -3,9 +3,10 @@
 A warning, never an error, for single numbers that a person has typed: never in calls with arrays.
 """
 
+import sys
 import warnings
 from collections.abc import Mapping
-from math import isclose, isfinite, pi
+from math import isclose, pi
 from typing import Any
 
 from .unit_system import SI, UnitSystem
@@ -19,6 +20,7 @@ LARGEST = {
     **dict.fromkeys(("g_X", "g_Y"), 100.0),
     "mu": 5.0,
 }
+LARGEST_DOUBLE = sys.float_info.max
 SMALLEST = dict.fromkeys(("g_X", "g_Y"), 0.1)
 MOST_TURNS = 2.0
 # What to write instead, of the number that was written.
@@ -46,8 +48,12 @@ def warn_of_slips(written: Mapping[str, Any], units: UnitSystem = SI, stacklevel
 
 def slip(name: str, value: Any, units: UnitSystem = SI) -> str:
     """The warning about a number that is almost surely a slip; empty for texts, arrays, plausible numbers."""
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not value or not isfinite(value):
-        return ""
+    if (
+        isinstance(value, bool)
+        or not isinstance(value, (int, float))
+        or not 0.0 < abs(value) <= LARGEST_DOUBLE
+    ):
+        return ""  # a larger whole number is refused elsewhere
     conversion = units.of(name) if name in REMEDIES else None
     if conversion is None:
         return ""

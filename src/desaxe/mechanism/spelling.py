@@ -47,6 +47,8 @@ def meant(word: str, allowed: Iterable[str], most: int = 1) -> list[str]:
     by_case: dict[str, list[str]] = {}
     for name in allowed:
         by_case.setdefault(name.lower(), []).append(name)
+    if not isinstance(word, str):
+        return []
     key = word.lower()
     spelled = [name for near in get_close_matches(key, by_case, most, 0.6) for name in by_case[near]]
     same = [name for name in WORDS.get(key, ()) if name in by_case.get(name.lower(), ())]

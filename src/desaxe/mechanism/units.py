@@ -60,7 +60,7 @@ def in_unit(name: str, value: Any, unit: str) -> Any:
     """The magnitude of a text or pint quantity in a unit."""
     if isinstance(value, str):
         plain = _plain_number(value)
-        return _rounded(name, value, exact(name, value, unit)) if plain is None else plain
+        return rounded(name, value, exact(name, value, unit)) if plain is None else plain
     if not _says_the_same(value, unit):
         raise ValueError(f"{name} = {shown(value)}: {_wanted(unit)}")
     factor = _factor(str(value.units), unit)
@@ -70,7 +70,7 @@ def in_unit(name: str, value: Any, unit: str) -> Any:
     magnitude = value.magnitude
     if isinstance(magnitude, (int, float, Decimal, Fraction)) and isfinite(magnitude):
         written = repr(float(magnitude)) if isinstance(magnitude, float) else magnitude
-        return _rounded(name, str(value), Fraction(written) * factor)  # as the same text
+        return rounded(name, str(value), Fraction(written) * factor)  # as the same text
     return magnitude / float(1 / factor) if factor.numerator == 1 else magnitude * float(factor)
 
 
@@ -96,7 +96,8 @@ def unlabelled(name: str, array: Any) -> Any:
         raise ValueError(f"{name} in {unit!r}: unknown unit; {_wanted(INPUTS[name].unit)}") from None
 
 
-def _rounded(name: str, text: str, value: Fraction) -> float:
+def rounded(name: str, text: str, value: Fraction) -> float:
+    """The number as a double; ValueError beyond the largest one."""
     try:
         return float(value)
     except OverflowError:

@@ -14,9 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.arrays import as_array, broadcast_shape
+from ..evaluation.extremes import Powers, are_extreme, can_rescale, rescaled, scaled, shift
 from ..evaluation.loaded import loads_of
 from ..loads.load import Load, LoadWarning, OverTheta
 from ..loads.resolve import VARIABLE
+from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..runtime.request import as_number, check_common, check_inputs
 from ..support.answer import answering
@@ -100,8 +102,25 @@ def peak(
     shape = broadcast_shape(arrays)
     columns = {n: _flat(a, shape) for n, a in arrays.items()}
     search = search_of(plan, arrays, ends)
+    powers = None
+    if (
+        not varying
+        and can_rescale(plan.wanted)
+        and any(np.any(are_extreme(n, c)) for n, c in columns.items())
+    ):
+        columns, powers = rescaled(columns)
     found = peaks_of_designs(plan, kind, search, columns, branch, ends, threads, varying)
+    if powers is not None:
+        _to_si(found, name, powers, omega is not None)
     return _shaped(found, shape)
+
+
+def _to_si(found: dict[str, Any], name: str, powers: Powers, state: bool) -> None:
+    """Replace value and gradient, in the units of `rescaled`, by those in SI units."""
+    unit = shift(quantity(name, state).unit, powers)
+    found["value"] = scaled(found["value"], -unit)
+    for parameter, slope in found["gradient"].items():
+        found["gradient"][parameter] = scaled(slope, shift(INPUTS[parameter].unit, powers) - unit)
 
 
 def _range(theta: Any, name: str) -> tuple[float, float]:

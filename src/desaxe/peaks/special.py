@@ -165,7 +165,8 @@ def complete(
     at_kink = kinks is not None and (np.abs(kinks - found.theta[:, None]) <= AT_KINK).any(axis=1)
     turns |= _turn(designs, found, nodes, value) & np.logical_not(at_kink)
     found.value[jams] = np.copysign(np.inf, found.value[jams])
-    found.status[turns & (found.status == 0)] = 2
+    # Without a value at any angle but a change point, which is all that a stalling crank reaches, too.
+    found.status[(turns | np.isnan(found.value)) & (found.status == 0)] = 2
     usable: NDArray[np.bool_] = (
         np.isin(found.status, (0, JAMS, TWO_BALANCES)) & ~turns & np.isfinite(found.value)
     )

@@ -1,6 +1,5 @@
 """From what is written in a scene file to inputs in SI units and names that exist."""
 
-import tomllib
 import warnings
 from collections.abc import Mapping
 from os import PathLike
@@ -16,6 +15,7 @@ from ..mechanism.own import Definition
 from ..mechanism.slips import UnitWarning
 from ..mechanism.unit_system import UnitSystem
 from ..runtime.accuracy import accuracy_of
+from ..support.toml import read_toml
 from ..sweeps.layout import bytes_of
 from . import schema
 from .content import Content
@@ -37,11 +37,9 @@ def plain_data(source: str | PathLike[str] | Mapping[str, Any]) -> dict[str, Any
     if not isinstance(source, (str, PathLike)):
         raise TypeError(f"a scene is the path of a TOML file or a mapping, got {type(source).__name__}")
     try:
-        return tomllib.loads(Path(source).read_bytes().decode("utf-8"))
-    except UnicodeDecodeError as error:
-        raise SceneError(f"not a text in UTF-8: {error}") from None
-    except tomllib.TOMLDecodeError as error:
-        raise SceneError(f"not a TOML file: {error}") from None
+        return read_toml(Path(source))
+    except ValueError as error:
+        raise SceneError(str(error)) from None
 
 
 def _plain(value: Any) -> Any:

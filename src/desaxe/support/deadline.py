@@ -27,11 +27,11 @@ class Deadline:
             raise self.error()
 
     def lift(self) -> None:
-        """From now on there is no limit: what there is, is told."""
+        """Remove the limit."""
         self._end = inf
 
     def error(self) -> TimeoutError:
-        """What is raised when the time is over."""
+        """Return the error to raise when the time is over."""
         return TimeoutError(f"{self.what}: not done within timeout = {self.seconds:g} s")
 
     def left(self) -> float | None:

@@ -15,8 +15,10 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 from .locks import try_lock
+from .shown import shown
 
 PREFIX = ".desaxe-"
 _REPLACED = (
@@ -57,6 +59,27 @@ def write_bytes(target: Path, data: bytes, mode: int | None = None) -> None:
     """Write a file whole or not at all."""
     with replacing(target, mode) as staged:
         staged.write_bytes(data)
+
+
+def as_path(name: str, value: Any) -> Path:
+    """An argument as a path; TypeError or ValueError that names it."""
+    if not isinstance(value, (str, os.PathLike)):
+        raise TypeError(f"{name} = {shown(value)}: the path of a file is wanted")
+    if "\0" in os.fspath(value):
+        raise ValueError(f"{name} = {shown(value)}: no path has a null character")
+    return Path(value)
+
+
+def read_bytes(path: str | os.PathLike[str], most: int) -> bytes:
+    """The content of a regular file of at most `most` bytes; ValueError, without its name, for any other."""
+    kind = kind_of(as_path("path", path))
+    if kind:
+        raise ValueError(f"this is {kind}, no file to read")
+    with open(path, "rb") as file:
+        data = file.read(most + 1)
+    if len(data) > most:
+        raise ValueError(f"a file of more than {most // 1_000_000} MB")
+    return data
 
 
 def check_target(target: Path) -> None:

@@ -7,6 +7,7 @@ from math import prod
 from typing import Any, NamedTuple
 
 from ..evaluation.chunks import chunk_lengths, uniform
+from ..support.shown import shown
 
 DEFAULT_MEMORY = 256_000_000  # bytes of the chunks in flight
 IN_FLIGHT = 2  # chunks at once that an automatic layout leaves memory for
@@ -87,9 +88,9 @@ def bytes_of(memory: Any) -> int | None:
     elif isinstance(memory, bool) or not isinstance(memory, (int, float)):
         raise TypeError(f'memory = {memory!r}: a number of bytes, or text such as "200 MB"')
     else:
-        number = float(memory)
+        number = float(min(memory, 2**63))
     if not 1.0 <= number < 2.0**63:
-        raise ValueError(f"memory = {memory!r}: at least one byte")
+        raise ValueError(f"memory = {shown(memory)}: at least one byte, less than 2^63")
     return int(number)
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from ..evaluation.chunks import blocks_of, slices_of
 from ..runtime.threads import available
 from ..support.extras import needed
+from ..support.files import as_path
 from .best import Search, best_designs, search_for
 from .cluster import Crew, cluster, run_all
 from .cluster import threads as thread_crew
@@ -207,6 +208,7 @@ def run_sweep(
             raise TypeError("best= and peaks=: give one of them")
         search = search_for(names, inputs, by, reduce, branch, accuracy, threads, room, count)
         return best_sweep(search, count, store, overwrite, way)
+    store = store if store is None else as_path("store", store)
     if store is None and reduce is None and (names or not peaks):
         raise TypeError('sweep: store= is missing: where the grid goes, such as "press.zarr"')
     made = prepared(names, inputs, chunks, room, branch, accuracy, threads, reduce, peaks)

@@ -14,9 +14,12 @@ from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.units import in_unit, registry
 from ...support.extras import MissingExtraError
+from ...support.files import read_bytes
 from ...support.quantity_text import spelled
+from ...support.shown import shown
 
 Array = NDArray[np.float64]
+MOST_BYTES = 100_000_000  # of a file
 COURSE = {"theta": "rad", "t": "s"}  # what samples are taken over, and its unit
 _HEADING = re.compile(r"\s*([^\[\]()]+?)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?\s*")
 
@@ -79,7 +82,7 @@ def _column(name: str, values: Any, unit: str) -> Array:
         values = in_unit(name, values, unit)
     try:
         column = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise TypeError(f"data: {name}: expected real numbers") from None
     if np.iscomplexobj(values) or column.ndim != 1:
         raise TypeError(f"data: {name}: expected a row of real numbers, got the shape {column.shape}")
@@ -93,8 +96,10 @@ def read_csv(path: Path) -> dict[str, Array]:
 
     Lines before the heading are skipped, and so are columns that are no quantity.
     """
-    with open(path, encoding="utf-8-sig", newline="") as file:
-        text = file.read()
+    try:
+        text = read_bytes(path, MOST_BYTES).decode("utf-8-sig")
+    except ValueError as error:
+        raise ValueError(f"data: {shown(str(path))}: {error}") from None
     separator = ";" if text.count(";") > text.count(",") else ","
     rows = [row for row in csv.reader(text.splitlines(), delimiter=separator) if any(c.strip() for c in row)]
     start = next((k for k, row in enumerate(rows) if _names(row) & set(COURSE)), None)

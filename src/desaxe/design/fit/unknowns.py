@@ -67,6 +67,8 @@ def _number(name: str, value: Any) -> float:
 
 
 def _nuisance(name: str, data: Data) -> Unknown:
+    if not isinstance(name, str):
+        raise TypeError(f"nuisance: {shown(name)}: a name is wanted")
     if name == OFFSET:
         return Unknown(name, 0.0, -inf, inf, 1.0)
     for kind in ("bias", "scale"):

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...peaks.peak import peak
-from ...support.roots import root
 from ...support.deadline import Deadline
+from ...support.roots import root
 from ..number_or_array import sum_of_three
 from .family import Answer, Family
 

@@ -23,8 +23,8 @@ from ...mechanism.inputs import INPUTS, Input
 from ...runtime.request import as_number, with_known_inputs
 from ...support.answer import answering
 from ...support.checks import real_number
-from ...support.roots import root
 from ...support.deadline import Deadline
+from ...support.roots import root
 from ...support.shown import shown
 from .family import Answer, Family
 

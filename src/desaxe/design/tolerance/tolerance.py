@@ -11,7 +11,7 @@ from ...evaluation.evaluate import evaluate
 from ...evaluation.loaded import loads_of
 from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS
-from ...mechanism.names import sensitivity
+from ...mechanism.names import LENGTHS, sensitivity
 from ...mechanism.ranges import Between
 from ...runtime.request import check_common, check_inputs
 from ...support.answer import answering
@@ -156,7 +156,8 @@ def tolerance(
     given = {**{n: read(n, v, distribution, sigmas) for n, v in numbers.items()}, **loads}
     rough = [value for value in given.values() if isinstance(value, Inexact)]
     if not rough:
-        raise ValueError("tolerance: every input is exact; give one as (value, tolerance)")
+        missing = "".join(f"; {name} is missing" for name in LENGTHS if name not in given)
+        raise ValueError(f"tolerance: every input is exact; give one as (value, tolerance){missing}")
     function = _function(name, given, branch)
     centre = {row.name: row.mean for row in rough}
     value = float(np.reshape(function.values({n: np.array([x]) for n, x in centre.items()}), -1)[0])

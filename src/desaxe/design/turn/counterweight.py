@@ -101,7 +101,10 @@ def _ahead(weight: Any) -> float:
 def _radius(value: Any) -> float:
     from ...runtime.request import as_number
 
-    number = as_number("r_crank", value, ("radius",), ("counterweight",))
+    try:
+        number = as_number("r_crank", value, ("radius",), ("counterweight",))
+    except ValueError as error:
+        raise ValueError(str(error).replace("r_crank", "radius", 1)) from None
     if number is None or number <= 0.0:
         raise ValueError(f"radius = {value!r}: it must be a length > 0")
     return number

@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 from ...mechanism.catalogue import quantity
 from ...support.answer import answering
+from ...support.checks import whole_number
 from ..drive.panels import RESOLVED
-from .turn import Turn
+from .turn import MOST, Turn
 
 WAVES = 4.0  # rad of the highest wave in a panel of 16 nodes: what Gauss's rule integrates to rounding
 
@@ -46,8 +47,7 @@ def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> 
     quantity(name)
     if name == "status":
         raise ValueError("status is no real number")
-    if not isinstance(orders, int) or orders < 0:
-        raise ValueError(f"orders = {orders!r}: a whole number, at least 0")
+    orders = whole_number("orders", orders, 0, MOST // 16)
     turn = Turn("harmonics", inputs, branch)
     if turn.kinks:
         c, remainder, error, points = _across_kinks(turn, name, orders)

@@ -29,7 +29,7 @@ from ...mechanism.program import digest
 from ...runtime.kernels import KernelKey, is_single, kernel_of
 from ...runtime.specialise import specialise
 from ...runtime.written import replacing_ours, require_ours
-from ...support.files import check_target, require_writable
+from ...support.files import as_path, check_target, require_writable
 from ..content import Content
 from ..kernel import GridKernel, grid_kernel
 from ..scene import Scene
@@ -90,7 +90,7 @@ def compile(
         dx.compile("examples/compactor.toml", "my_kernels.py")
         dx.compile("examples/compactor.toml", "press", to="c")
     """
-    place = Path(path)
+    place = as_path("path", path)
     texts = texts_of(scene if isinstance(scene, Scene) else scene_of(scene), place, to, libm)
     if check:
         stale = differing(texts)

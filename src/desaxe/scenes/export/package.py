@@ -7,7 +7,6 @@ module for arrays and as plain Python for a single point. The files say from whi
 
 import hashlib
 import json
-import tomllib
 from collections.abc import Sequence
 from difflib import unified_diff
 from importlib.resources import files
@@ -27,6 +26,7 @@ from ...mechanism.names import parts
 from ...mechanism.own import Definition, definitions, rows_of
 from ...mechanism.program import Variant, digest, program_of
 from ...runtime.specialise import specialise
+from ...support.toml import read_toml
 from ...support.version import version
 
 FACTS = ("status", "margin")
@@ -123,9 +123,9 @@ def package_texts(source: Path, name: str) -> dict[str, str]:
 
 def _read(source: Path) -> tuple[Definition, ...]:
     try:
-        data = tomllib.loads(source.read_text(encoding="utf-8"))
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ValueError(f"{source}: not a TOML file: {error}") from None
+        data = read_toml(source)
+    except ValueError as error:
+        raise ValueError(f"{source}: {error}") from None
     tables = data.get("quantities")
     if not isinstance(tables, dict) or not tables:
         raise ValueError(f"{source}: there is no [quantities.NAME] in it")

@@ -1,0 +1,191 @@
+"""Cases that fuzzing has found: each gives an error of ours that names the input, or the right value."""
+
+import datetime
+import os
+from math import inf, isnan, nan
+
+import mpmath
+import numpy as np
+import pytest
+
+import desaxe as dx
+from desaxe.oracle.truth import truth_all
+from desaxe.support.toml import DEEPEST, read_toml
+
+LENGTHS = {"ec": 0.01, "AB": 0.125, "BC": 0.35}
+MACHINE = {**LENGTHS, "omega0": 157.08}
+HUGE = 10**400
+SIMULATED = {**LENGTHS, "I_crank": 0.01, "torque": 1.0, "t_end": 0.01}
+TOLERANCES = {"ec": (0.02, 1e-4), "AB": 0.04, "BC": 0.064}
+TH = np.linspace(0.1, 6.0, 9)
+SAMPLES = {"theta": TH, "Y": dx.evaluate("Y", theta=TH, **LENGTHS)}
+FUNCTION_INPUTS = {"inputs": ("theta",), **MACHINE}
+
+
+def peak(**inputs):
+    return dx.peak("a_C", **{**MACHINE, **inputs})
+
+
+def point(**inputs):
+    return dx.evaluate("a_C", **{"theta": 1.0, **MACHINE, **inputs})
+
+
+# What is called, and the words that the error must have.
+REFUSED = {
+    "angle beyond every double": (lambda: point(theta="1e400deg"), ["theta", "1e400deg"]),
+    "range": (lambda: peak(theta=("0 deg", "1e400deg")), ["theta", "1e400deg"]),
+    "between": (lambda: dx.enclose("a_C", theta=dx.between(0, "1e400deg"), **MACHINE), ["theta"]),
+    "plus_minus": (lambda: dx.enclose("a_C", theta=dx.plus_minus(1, "1e400deg"), **MACHINE), ["theta"]),
+    "a time span": (lambda: point(theta=np.timedelta64(1, "s")), ["theta", "timedelta64"]),
+    "a date": (lambda: point(theta=datetime.datetime(2020, 1, 1)), ["theta", "datetime"]),
+    "branches": (lambda: point(branch=np.array([1, -1])), ["branch", "-1"]),
+    "accuracies": (lambda: point(accuracy=["fast"]), ["accuracy", "fast"]),
+    "rtol": (lambda: dx.enclose("a_C", theta=1.0, rtol="x", **MACHINE), ["rtol", "'x'"]),
+    "boxes": (lambda: dx.enclose("a_C", theta=1.0, boxes="x", **MACHINE), ["boxes", "'x'", "10000000"]),
+    "ec of tolerance": (lambda: dx.tolerance("stroke", ec=None, AB=0.1, BC=0.3), ["ec is missing"]),
+    "ec of inverse": (lambda: dx.inverse(Y=0.3, ec=None, AB=0.1, BC=0.3), ["ec is missing"]),
+    "turns": (lambda: peak(theta=(0, 1e16)), ["theta", "1e+16", "1000"]),
+    "samples": (lambda: dx.tolerance("stroke", samples=10**12, **TOLERANCES), ["samples", "100000000"]),
+    "alpha of a grid": (lambda: dx.grid("a_C", theta=[1.0], alpha=nan, **MACHINE), ["alpha", "nan"]),
+    "alpha of a point": (lambda: point(alpha=nan), ["alpha", "nan"]),
+    "a huge stroke": (lambda: dx.synthesize(stroke=HUGE, time_ratio=1.1, BC=0.3), ["stroke", "1.8e308"]),
+    "a huge ratio": (lambda: dx.synthesize(stroke=0.1, time_ratio=10**5000, BC=0.3), ["time_ratio"]),
+    "complex point": (lambda: point(theta=1 + 1j), ["theta", "1j", "real"]),
+    "complex peak": (lambda: peak(ec=1j), ["ec", "1j", "real"]),
+    "complex inverse": (lambda: dx.inverse(Y=1j, **LENGTHS), ["Y", "1j", "real"]),
+    "no torque": (lambda: dx.simulate(**{**SIMULATED, "torque": []}), ["torque", "empty"]),
+    "text torque": (lambda: dx.simulate(**{**SIMULATED, "torque": lambda t, a, w: "1"}), ["torque", "'1'"]),
+    "complex torque": (
+        lambda: dx.simulate(**{**SIMULATED, "torque": lambda t, a, w: np.complex128(1j)}),
+        ["torque", "1j"],
+    ),
+    "NaN torque": (lambda: dx.simulate(**{**SIMULATED, "torque": lambda t, a, w: nan}), ["torque", "nan"]),
+    "a huge length": (lambda: dx.Machine(**{**MACHINE, "ec": HUGE}), ["ec", "bits"]),
+    "a huge angle": (lambda: dx.Machine(**MACHINE).evaluate("a_C", theta=HUGE), ["theta", "bits"]),
+    "a huge period": (lambda: dx.over_theta([0.0, 1.0], [0.0, 1.0], period=HUGE), ["period", "bits"]),
+    "a load from nothing": (lambda: dx.over_theta.read(None), ["path", "None"]),
+    "bytes as names": (lambda: dx.function("a_C", inputs=b"x", **MACHINE), ["120"]),
+    "text as out": (lambda: dx.function("a_C", **FUNCTION_INPUTS)(1.0, out="x"), ["out", "'x'"]),
+    "a constant": (lambda: dx.define("zz", "k*a_C", k=np.timedelta64(1, "s")), ["k", "timedelta64"]),
+    "nuisance": (lambda: dx.fit(SAMPLES, over={"AB": (0.1, 0.2)}, ec=0.01, BC=0.35, nuisance=b"x"), ["nuis"]),
+    "a huge sample": (lambda: dx.fit({"theta": [0.0], "Y": [HUGE]}, over={"AB": (0.1, 0.2)}), ["data", "Y"]),
+    "orders": (lambda: dx.harmonics("a_C", orders=HUGE, **MACHINE), ["orders", "bits"]),
+    "radius": (lambda: dx.counterweight(radius="x", m_slider=1.0, **MACHINE), ["radius", "'x'"]),
+    "memory": (lambda: dx.sweep("a_C", store="x", memory=HUGE, theta=[1.0, 2.0], **MACHINE), ["memory"]),
+    "store": (lambda: dx.sweep("a_C", store=1.0, theta=[1.0, 2.0], **MACHINE), ["store", "1.0"]),
+    "a device": (lambda: dx.scene("/dev/zero"), ["/dev/zero", "device"]),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refused_in_words_of_ours(what):
+    call, words = REFUSED[what]
+    with pytest.raises((ValueError, TypeError)) as caught:
+        call()
+    assert all(word in str(caught.value) for word in words), str(caught.value)
+    assert "/desaxe/" in str(caught.traceback[-1].path)
+
+
+@pytest.mark.parametrize("call", [dx.enclose, dx.optimize, dx.synthesize])
+def test_time_limits(call):
+    wanted = {
+        dx.enclose: {"name": "a_C", "theta": dx.between(0, 7), **MACHINE, "ec": dx.between(0, 0.2)},
+        dx.optimize: {"maximize": "stroke", "over": {"ec": (0.0, 0.1)}, "AB": 0.125, "BC": 0.35},
+        dx.synthesize: {"stroke": 0.1, "time_ratio": 1.1, "peak_a_C": 900.0, "omega0": 100.0},
+    }
+    with pytest.raises(TimeoutError, match=rf"{call.__name__}: not done within timeout = 0.001 s"):
+        call(**wanted[call], timeout=1e-3)
+    with pytest.raises(ValueError, match="timeout = -1"):
+        call(**wanted[call], timeout=-1)
+
+
+def test_slow_torques_end_with_what_there_is():
+    calls = []
+
+    def torque(t, theta, omega):
+        calls.append(t)
+        if len(calls) > 40:
+            while dx.simulate and run_out[0] > 0:
+                run_out[0] -= 1
+        return 1.0
+
+    run_out = [10**7]
+    found = dx.simulate(**{**SIMULATED, "torque": torque, "t_end": 1e9}, timeout=0.2)
+    assert found["status"] == 4
+    assert "timeout = 0.2" in found["message"]
+
+
+def test_a_pipe_is_no_scene(tmp_path):
+    os.mkfifo(tmp_path / "a.toml")
+    with pytest.raises(ValueError, match="this is a pipe"):
+        dx.scene(tmp_path / "a.toml")
+
+
+@pytest.mark.parametrize(
+    "text", ["a = " + "[" * 100_000, "a" + ".a" * 100_000 + " = 1", "[a" + ".a" * 60 + "]"]
+)
+def test_deep_toml(text, tmp_path):
+    (tmp_path / "a.toml").write_text(text)
+    with pytest.raises(ValueError, match=f"deeper than {DEEPEST}"):
+        read_toml(tmp_path / "a.toml")
+
+
+def test_a_peak_where_crank_and_rod_are_as_long_as_the_offset():
+    for alpha, value in ((0.0, inf), (-1.0, inf), (-50.0, nan)):  # the last one stalls before it turns
+        found = dx.peak("a_C", AB=0.1, BC=0.1, ec=0.1, omega0=10.0, alpha=alpha)
+        assert found["status"] == 2
+        np.testing.assert_equal(found["value"], value)
+
+
+# ---- near the ends of the double range ---------------------------------------------------------------
+
+NAMES = ["Y", "V_C", "a_C", "j_C", "omega_BC", "alpha_BC", "V_C_wrt_ec", "a_C_wrt_ec_BC", "margin"]
+EXTREME = [
+    {"theta": 1.0, "ec": 0.03 * s, "AB": 0.125 * s, "BC": 0.35 * s, "omega0": w, "alpha": a}
+    for s, w, a in [
+        (1e-200, 157.0, 3.0),
+        (1e-300, 157.0, 0.0),
+        (1e-310, 1e10, 0.0),
+        (1e200, 157.0, 3.0),
+        (1e300, 1e-10, 0.0),
+        (1.0, 1e160, 1.0),
+        (1.0, 5e-324, 5e-324),
+        (1.0, 1e-200, 1e-300),
+        (1e-250, -1e200, 1e300),
+    ]
+]
+
+
+@pytest.mark.parametrize("inputs", EXTREME)
+@pytest.mark.parametrize("arrays", [False, True], ids=["point", "arrays"])
+def test_values_near_the_ends_of_the_double_range(inputs, arrays):
+    given = {n: np.full(3, v) for n, v in inputs.items()} if arrays else inputs
+    if arrays:
+        given["BC"][1] = 0.35 * 2.0**10  # the others of an array are not disturbed
+    found = dx.evaluate([*NAMES, "status"], **given)
+    assert np.ravel(found["status"])[0] == 0
+    for name, true in truth_all(NAMES, **inputs).items():
+        value = float(np.ravel(found[name])[-1])
+        with mpmath.workdps(30):
+            off = abs(mpmath.mpf(value) - true) if np.isfinite(value) else 0.0
+            assert off <= 1e-12 * abs(true) + 1e-323 or value == float(true), name
+        if isnan(value) or abs(value) == inf:
+            assert value == float(true), name
+
+
+def test_peaks_and_positions_near_the_ends_of_the_double_range():
+    near = dx.peak("a_C", ec=0.0, AB=0.125, BC=0.35, omega0=157.08)
+    for power in (-700, 700):
+        far = dx.peak("a_C", ec=0.0, AB=0.125 * 2.0**power, BC=0.35 * 2.0**power, omega0=157.08)
+        assert far["value"] == near["value"] * 2.0**power
+        assert far["gradient"]["AB"] == near["gradient"]["AB"]
+        assert far["gradient"]["omega0"] == near["gradient"]["omega0"] * 2.0**power
+    assert dx.inverse(Y=1e308, ec=0, AB=1e308, BC=1e308)["theta"] == pytest.approx([-np.pi / 3, np.pi / 3])
+    assert dx.inverse(Y=3e-300, ec=0, AB=1e-300, BC=3e-300)["theta"][1] == pytest.approx(np.arccos(1 / 6))
+
+
+def test_a_grid_near_the_ends_of_the_double_range():
+    far = dx.grid("V_C", theta=[1.0, 2.0], ec=[0.0, 1e-302], AB=1e-300, BC=3e-300, omega0=[1.0, 1e200])
+    near = dx.grid("V_C", theta=[1.0, 2.0], ec=[0.0, 1e-2], AB=1.0, BC=3.0, omega0=[1.0, 2.0])
+    np.testing.assert_allclose(far["V_C"][..., 0], 1e-300 * near["V_C"][..., 0], rtol=1e-14)
+    np.testing.assert_allclose(far["V_C"][..., 1], 1e-100 * near["V_C"][..., 0], rtol=1e-14)
