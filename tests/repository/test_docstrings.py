@@ -45,7 +45,7 @@ def test_every_room_lists_its_files(room):
     for init in sorted((ROOT / room).rglob("__init__.py")):
         folder = init.parent
         text = ast.get_docstring(ast.parse(init.read_text(encoding="utf-8"))) or ""
-        listed = {line.split()[0].rstrip("/") for line in text.splitlines() if line.strip()}
+        listed = set(re.findall(r"\w+", text))
         files = {path.stem for path in folder.glob("*.py")} - {"__init__", "__main__"}
         rooms = {path.parent.name for path in folder.glob("*/__init__.py")}
         if folder.name != "desaxe":  # README lists its rooms, in the order of their floors

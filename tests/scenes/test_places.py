@@ -1,4 +1,4 @@
-"""What a run writes: looked at first, never over another's file, never at the cost of the report."""
+"""Output files of a run: checked first, never over a foreign file, never at the cost of the report."""
 
 import os
 from pathlib import Path

@@ -19,4 +19,10 @@ repair         points that a kernel leaves undecided, recomputed
 lazy_evaluate  `evaluate` of Dask arrays
 dask_blocks    a function of many outputs over the chunks of Dask arrays
 in_units       labelled results in other units
+filled         the values of a grid from one loop nest
+reductions     the argument `reduce=`, checked
+sources        requests that compute the values of a block of a grid
+fold           reductions over several axes of arrays in memory
+joint          reductions over several axes, of single names, of further kinds
+own_measure    a user's function of a design as a measure
 """

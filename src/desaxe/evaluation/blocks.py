@@ -101,7 +101,7 @@ class LoadedPart(NamedTuple):
 
     @property
     def axes(self) -> tuple[str, ...]:
-        """The dimensions whose values it needs."""
+        """The dimensions whose values the part needs."""
         return self.dims
 
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:

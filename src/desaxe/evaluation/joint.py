@@ -50,7 +50,7 @@ class JointPart(NamedTuple):
 
     @property
     def axes(self) -> tuple[str, ...]:
-        """The dimensions whose values it needs."""
+        """The dimensions whose values the part needs."""
         return (*self.dims, *self.reductions.axes)
 
     @property

@@ -88,7 +88,7 @@ def _pays_to_ask(columns: Mapping[str, Any], axis_of: Mapping[str, int]) -> bool
 
 
 def _exceed(angles: Any, limit: float) -> bool:
-    """Whether a finite magnitude is above the limit."""
+    """True if a finite magnitude exceeds the limit."""
     if isinstance(angles, float):
         return abs(angles) > limit
     import numpy as np

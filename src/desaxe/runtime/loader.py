@@ -107,7 +107,7 @@ class _Direct:
         return f"{self._text('GetHostCPUName').decode()}, {features}"
 
     def load(self, code: bytes, entry: str, outside: Mapping[str, int]) -> tuple[int, Any]:
-        """As `Loader` says."""
+        """Load machine code with the addresses of outside functions; see `Loader.load`."""
         for name, place in outside.items():
             self._call("AddSymbol", name.encode(), place)
         error = _TEXT()
@@ -139,7 +139,7 @@ class _Binding:
         return f"{llvm.get_host_cpu_name()}, {features}"
 
     def load(self, code: bytes, entry: str, outside: Mapping[str, int]) -> tuple[int, Any]:
-        """As `Loader` says."""
+        """Load machine code with the addresses of outside functions; see `Loader.load`."""
         import llvmlite.binding as llvm
 
         for name, place in outside.items():

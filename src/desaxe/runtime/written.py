@@ -1,4 +1,4 @@
-"""Which files desaxe wrote: it replaces those, and others only when it is told to.
+"""A record of the files that desaxe wrote: it replaces those, others only with `overwrite`.
 
 The SHA-256 of whatever is written is remembered as the name of an empty file in the cache folder's `written`.
 So no file carries a mark, copies and renamed files are known too, and what somebody edited is theirs. Text
@@ -48,7 +48,7 @@ def _trim(folder: Path) -> None:
 
 
 def is_ours(path: Path, mark: bytes = b"") -> bool:
-    """Whether desaxe wrote what is at a path; `mark` is in the head of texts that say so themselves.
+    """True if desaxe wrote the file at a path; `mark` is a text in the head of files that say so themselves.
 
     An empty file is as good as none.
     """

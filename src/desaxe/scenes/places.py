@@ -1,4 +1,4 @@
-"""What a run needs, and where it will write: looked at before anything is computed."""
+"""The needs of a run and its output files, checked before anything is computed."""
 
 import shutil
 from importlib import import_module

@@ -34,7 +34,7 @@ class CheckResult(NamedTuple):
 
 
 class Run(NamedTuple):
-    """All that a run gives; `failures` says what could not be written, and why."""
+    """The results of a run; `failures` lists the files that could not be written, with reasons."""
 
     dataset: "xr.Dataset | None"
     checks: tuple[CheckResult, ...]

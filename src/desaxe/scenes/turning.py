@@ -1,4 +1,4 @@
-"""Which designs of a scene turn fully, and what the others cannot reach."""
+"""The designs of a scene that turn fully, and the angles that the others cannot reach."""
 
 from collections.abc import Mapping
 from math import pi, prod

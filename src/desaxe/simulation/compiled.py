@@ -34,7 +34,7 @@ function = designs
 
 
 class Family(NamedTuple):
-    """What designs have in common: the form of the program, and what is 0 in all of them."""
+    """A family of designs: the variant of the program, and the inputs that are 0 in all of them."""
 
     form: Variant
     fixed: tuple[tuple[str, float], ...]

@@ -90,7 +90,7 @@ class Dop853:
             K[s] = self.rate(start + C[s] * h, y + (K[:s].T @ A[s, :s]) * h)
 
     def _trial(self, h: float) -> Array:
-        """Where a step of this length comes to; its stages are in K."""
+        """The state after a step of this length; its stages are in K."""
         self.K[0] = self.f
         self._stages(self.t, self.y, h, 1, STAGES)
         y: Array = self.y + h * (self.K[:STAGES].T @ B)
@@ -98,7 +98,7 @@ class Dop853:
         return y
 
     def _error(self, h: float, y: Array) -> float:
-        """The error of a step: 1 is just good enough."""
+        """The error of a step relative to the tolerance."""
         scale = self.atol + np.maximum(np.abs(self.y), np.abs(y)) * self.rtol
         K = self.K[: STAGES + 1].T
         fifth, third = (float(part @ part) for part in (K @ E5 / scale, K @ E3 / scale))

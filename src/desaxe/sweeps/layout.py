@@ -41,7 +41,7 @@ class Layout(NamedTuple):
         return max(1, (memory or DEFAULT_MEMORY) // self.in_flight)
 
     def cut(self, chunk: str) -> "Layout":
-        """The same with the chunks of a store, as its attribute tells them."""
+        """The layout with the chunks of an existing store, from its attribute."""
         return self._replace(chunk={name: int(length) for name, length in json.loads(chunk).items()})
 
     def require_memory(self, memory: int | None) -> None:
