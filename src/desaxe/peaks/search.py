@@ -275,13 +275,13 @@ def search(
             thetas, values, slopes = inner
             gather(some, owners, block, own)
             interior(some, grid, places, owners, slope, thetas, even)
-            points(3, some, thetas, own, values, slopes)
+            points(int64(3), some, thetas, own, values, slopes)
             ready = brackets(some, grid, places, owners, slope, thetas, slopes, even, roots, whose)
             begin(ready, roots)
             gather(ready, whose, block, own)
             left, step = ready, 0
             while left > 0 and step < STEPS:
-                points(1, ready, roots[THETA : THETA + 1], own, values, slopes)
+                points(int64(1), ready, roots[THETA : THETA + 1], own, values, slopes)
                 left = newton(ready, roots, slopes[0])
                 step += 1
             choose(kind, ready, roots, whose, values[0], best, here, taken)

@@ -13,7 +13,7 @@ def sweep(count: Any, nodes: Any, block: Any, work: Any, value: Any, slope: Any)
             value[j, i], slope[j, i] = cos(nodes[j]), -sin(nodes[j])
 
 
-def points(rows: int, count: Any, theta: Any, block: Any, value: Any, slope: Any) -> None:
+def points(rows: Any, count: Any, theta: Any, block: Any, value: Any, slope: Any) -> None:
     """The quantity and its derivative by theta, each at its own angle."""
     for j in range(rows):
         for i in range(count):

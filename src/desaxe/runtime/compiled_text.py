@@ -1,13 +1,21 @@
 """From a text to machine code: numba compiles it, LLVM optimises all of its functions at once."""
 
 from collections.abc import Mapping
+from functools import cache
 from importlib import import_module
+from importlib.util import find_spec
 from typing import Any
 
 from ..support.forks import wait_first
 from .machine_code import DOUBLE, ENTRY, NO_MEMORY, WHOLE, Code, Loaded, outside
 
 NAME = "desaxe_native"  # of the module of a text
+# numba's passes for closures, comprehensions, generators, literals of the user's and array expressions.
+UNUSED = {
+    "WithLifting", "InlineClosureLikes", "RewriteDynamicRaises", "MakeFunctionToJitFunction", "LiteralUnroll",
+    "LiteralPropagationSubPipelinePass", "FindLiterallyCalls", "InlineInlinables", "InlineOverloads",
+    "NopythonRewrites", "DumpParforDiagnostics",
+}  # fmt: skip
 # What numba's runtime would do for our texts. A view of another shape is only taken of contiguous arrays.
 _SUPPORT = """
 declare ptr @PyMem_RawMalloc(i64)
@@ -91,6 +99,7 @@ def compile_text(text: str, title: str, scope: Mapping[str, Any]) -> Code | Load
         import_module(f"numba.core.{name}") for name in ("compiler", "registry", "sigutils", "types")
     )
     lock = import_module("numba.core.compiler_lock").global_compiler_lock
+    _load_arrays()
     namespace = {"__name__": NAME, **scope}
     with lock:
         exec(compile(text, f"<desaxe {title}>", "exec"), namespace)
@@ -104,10 +113,12 @@ def compile_text(text: str, title: str, scope: Mapping[str, Any]) -> Code | Load
         for helper in namespace.values():
             if getattr(helper, "__module__", None) == NAME and hasattr(helper, "_compiler"):
                 helper._compiler.targetdescr = parts
+                helper._compiler.pipeline_class = parts.pipeline
         context = parts.typing_context, parts.target_context
-        made = compiler.compile_extra(*context, namespace["function"], given, answer, flags, {})
+        function = namespace["function"]
+        made = compiler.compile_extra(*context, function, given, answer, flags, {}, None, parts.pipeline)
         library = made.library
-        library._ensure_finalized()
+        _link_parts(library)
         ranks = tuple(
             kind.ndim if isinstance(kind, types.Array) else DOUBLE if kind == types.float64 else WHOLE
             for kind in given
@@ -119,6 +130,23 @@ def compile_text(text: str, title: str, scope: Mapping[str, Any]) -> Code | Load
         if alone is not None:
             return Code(ranks, sizes, alone)
         return Loaded(_within(target, library, entry), ranks, sizes, library)
+
+
+@cache
+def _load_arrays() -> None:
+    """Import numba's arrays without SciPy's BLAS, which numba imports to see whether it is there."""
+    linalg: Any = import_module("numba.np.linalg")
+    imports_it = linalg.ensure_blas
+
+    def ensure_blas() -> None:
+        if find_spec("scipy") is None:
+            imports_it()  # raises the ImportError that numba expects
+
+    linalg.ensure_blas = ensure_blas
+    try:
+        import_module("numba.np.arraymath")
+    finally:
+        linalg.ensure_blas = imports_it
 
 
 class _Parts:
@@ -135,19 +163,42 @@ class _Parts:
         vars(made).update(vars(target.target_context.codegen()))
         self.options, self.typing_context = target.options, target.typing_context
         self.target_context = target.target_context.subtarget(_internal_codegen=made)
+        compiler = import_module("numba.core.compiler")
+        self.pipeline = type("PartCompiler", (compiler.CompilerBase,), {"define_pipelines": _pipelines})
 
 
-def _link_only(library: Any) -> None:
+def _pipelines(compiler: Any) -> list[Any]:
+    """numba's passes but for those that look for what no text of ours has."""
+    builder = import_module("numba.core.compiler").DefaultPassBuilder
+    every = builder.define_nopython_pipeline(compiler.state)
+    every.passes = [one for one in every.passes if one[0].__name__ not in UNUSED]
+    every.finalize()
+    return [every]
+
+
+def _as_it_is(library: Any) -> None:
     library._finalized = True
 
 
-# What a part does otherwise than numba's libraries: it is linked into its caller, and never called by itself.
+# How a part differs from numba's libraries: it is linked once, by `_link_parts`, and never called by itself.
 _PART = {
     "_optimize_functions": lambda self, module: None,
-    "_optimize_final_module": lambda self: None,
-    "_finalize_final_module": _link_only,
+    "finalize": _as_it_is,
     "get_pointer_to_function": lambda self, name: 0,
 }
+
+
+def _link_parts(library: Any) -> None:
+    """Link everything that a part calls, directly or not, into its module."""
+    met, left = {library}, [library]
+    while left:
+        for other in left.pop()._linking_libraries:
+            if other not in met:
+                met.add(other)
+                part = other.codegen is library.codegen
+                module = other._final_module if part else other._get_module_for_linking()
+                library._final_module.link_in(module, preserve=not part)
+                left += [other] if part else []
 
 
 def _entry(name: str, given: tuple[Any, ...], ranks: tuple[int, ...]) -> str:

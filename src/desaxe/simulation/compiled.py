@@ -20,7 +20,7 @@ from math import asin, atan2, copysign, cos, fabs, inf, nan, pi, sin, sqrt
 
 from numba import njit, types
 from numba.extending import intrinsic
-from numpy import empty, floor, nextafter
+from numpy import empty, floor, int64, nextafter
 '''
 _NUMBER = "def torque(t, theta, omega, number):\n    return number\n"
 _FUNCTION = "def torque(t, theta, omega, number):\n    return given_torque(t, theta, omega)\n"

@@ -3,7 +3,8 @@
 It stands in a module behind the functions `still`, `moving`, `potential` and `torque` that are written from
 the Program for the designs at hand (`module`). The method is that of Hairer, Norsett and Wanner, "Solving
 Ordinary Differential Equations I", section II, with the step control, the error norm and the dense output
-of `stepper`: one design takes the steps that `simulate` takes for it alone.
+of `stepper`: one design takes the steps that `simulate` takes for it alone. A constant that is passed on is
+an int64, for numba compiles a function anew for each literal.
 
 setup   a row per design: branch, limit angles, half of the arc (see `chart`), torque, F_Y, theta0,
         omega_start, an energy that the loads suggest
@@ -13,7 +14,7 @@ tables  A, B, C, E3, E5, D and the rows of A and C for the dense output
 from math import asin, copysign, cos, inf, nan, pi, sin, sqrt
 from typing import Any
 
-from numpy import empty, nextafter
+from numpy import empty, int64, nextafter
 
 from .stubs import moving, potential, still, torque
 
@@ -43,7 +44,12 @@ def rates(t: float, y: Any, p: Any, setup: Any, out: Any) -> None:
     out[2] = push * omega
 
 
-def combined(K: Any, weights: Any, count: int, column: int) -> float:
+def square(x: float) -> float:
+    """x^2: numba compiles a loop for a power."""
+    return x * x
+
+
+def combined(K: Any, weights: Any, count: Any, column: int) -> float:
     """The sum of the first stages by their weights."""
     total = 0.0
     for j in range(count):
@@ -51,7 +57,7 @@ def combined(K: Any, weights: Any, count: int, column: int) -> float:
     return total
 
 
-def advance(y: Any, h: float, K: Any, weights: Any, count: int, out: Any) -> None:
+def advance(y: Any, h: float, K: Any, weights: Any, count: Any, out: Any) -> None:
     """y + h times the sum of the first stages by their weights, half of which are 0."""
     q, v, w = 0.0, 0.0, 0.0
     for j in range(count):
@@ -69,7 +75,7 @@ def trial(t: float, y: Any, h: float, p: Any, setup: Any, tables: Any, K: Any, n
     for s in range(1, 12):
         advance(y, h, K, A[s], s, new)
         rates(t + C[s] * h, new, p, setup, K[s])
-    advance(y, h, K, B, 12, new)
+    advance(y, h, K, B, int64(12), new)
     rates(t + h, new, p, setup, K[12])
 
 
@@ -78,8 +84,8 @@ def error_of(h: float, y: Any, new: Any, rtol: Any, atol: Any, tables: Any, K: A
     fifth, third = 0.0, 0.0
     for i in range(3):
         scale = atol[i] + max(abs(y[i]), abs(new[i])) * rtol[i]
-        fifth += (combined(K, tables[4], 13, i) / scale) ** 2
-        third += (combined(K, tables[3], 13, i) / scale) ** 2
+        fifth += square(combined(K, tables[4], int64(13), i) / scale)
+        third += square(combined(K, tables[3], int64(13), i) / scale)
     if fifth == 0.0 and third == 0.0:
         return 0.0
     error: float = abs(h) * fifth / sqrt((fifth + 0.01 * third) * 3.0)
@@ -91,8 +97,8 @@ def first_step(t_end: float, y: Any, p: Any, setup: Any, rtol: Any, atol: Any, K
     d0, d1, d2 = 0.0, 0.0, 0.0
     for i in range(3):
         scale = atol[i] + abs(y[i]) * rtol[i]
-        d0 += (y[i] / scale) ** 2 / 3.0
-        d1 += (K[0, i] / scale) ** 2 / 3.0
+        d0 += square(y[i] / scale) / 3.0
+        d1 += square(K[0, i] / scale) / 3.0
     d0, d1 = sqrt(d0), sqrt(d1)
     h = min(1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1, t_end)
     for i in range(3):
@@ -100,7 +106,7 @@ def first_step(t_end: float, y: Any, p: Any, setup: Any, rtol: Any, atol: Any, K
     rates(h, new, p, setup, K[1])
     for i in range(3):
         scale = atol[i] + abs(y[i]) * rtol[i]
-        d2 += ((K[1, i] - K[0, i]) / scale) ** 2 / 3.0
+        d2 += square((K[1, i] - K[0, i]) / scale) / 3.0
     d2 = sqrt(d2) / h
     then = max(1e-6, h * 1e-3) if d1 <= 1e-15 and d2 <= 1e-15 else (0.01 / max(d1, d2)) ** 0.125
     return min(100.0 * h, then, t_end)
@@ -119,10 +125,10 @@ def dense(t: float, y: Any, h: float, new: Any, p: Any, setup: Any, tables: Any,
         F[1, i] = h * K[0, i] - change
         F[2, i] = 2.0 * change - h * (K[12, i] + K[0, i])
         for row in range(4):
-            F[3 + row, i] = h * combined(K, D[row], 16, i)
+            F[3 + row, i] = h * combined(K, D[row], int64(16), i)
 
 
-def inside(x: float, y: Any, F: Any, i: int) -> float:
+def inside(x: float, y: Any, F: Any, i: Any) -> float:
     """A coordinate at the part x of a step."""
     total = 0.0
     for k in range(7):
@@ -136,7 +142,7 @@ def crossing(y: Any, F: Any, bound: float) -> float:
     before = y[0] < bound
     for _ in range(60):
         x = 0.5 * (low + high)
-        if (inside(x, y, F, 0) < bound) == before:
+        if (inside(x, y, F, int64(0)) < bound) == before:
             low = x
         else:
             high = x
@@ -159,7 +165,7 @@ def over_limit(before: float, after: float, first: float, last: float) -> float:
 
 
 def tell(
-    t: float, q: float, v: float, p: Any, setup: Any, theta: Any, omega: Any, alpha: Any, row: int
+    t: float, q: float, v: float, p: Any, setup: Any, theta: Any, omega: Any, alpha: Any, row: Any
 ) -> None:
     """Angle, speed and acceleration of a state, into the histories."""
     angle, _, side = place(q, setup)
@@ -196,7 +202,7 @@ def start(p: Any, setup: Any, rtol: float, t_end: float, y: Any, atol: Any) -> b
         if here < inf:
             energy = max(energy, here)
     if energy == 0.0:
-        energy = inertia / t_end**2
+        energy = inertia / square(t_end)
     atol[0] = 1e-3 * rtol
     atol[1] = 0.01 * rtol * sqrt(energy)
     atol[2] = 0.01 * rtol * energy
@@ -226,7 +232,7 @@ def follow(
     if not start(p, setup, rtol, t_end, y, atol):
         return 6, nan, nan, nan
     first, last = (-pi / 2, pi / 2) if setup[3] > 0.0 else (setup[1], setup[2])
-    t, row, count = 0.0, 0, len(times)
+    t, row, count = 0.0, int64(0), len(times)
     while row < count and times[row] <= 0.0:
         tell(0.0, y[0], y[1], p, setup, theta, omega, alpha, row)
         row += 1
@@ -275,7 +281,8 @@ def follow(
                 new[i] = inside(stop, y, F, i)
         while row < count and times[row] <= end:
             x = (times[row] - t) / h
-            tell(times[row], inside(x, y, F, 0), inside(x, y, F, 1), p, setup, theta, omega, alpha, row)
+            q, v = inside(x, y, F, int64(0)), inside(x, y, F, int64(1))
+            tell(times[row], q, v, p, setup, theta, omega, alpha, row)
             row += 1
         turned += abs(new[2] - y[2])
         kinetic = 0.5 * new[1] * new[1]
