@@ -360,3 +360,28 @@ def test_a_scene_without_outputs(tmp_path):
     with pytest.raises(SceneError, match=r"nothing to compile.* \[\[peak\]\] a_C is searched for by"):
         dx.compile({**SMALL, "outputs": [], "peak": [{"quantity": "a_C"}]}, tmp_path / "m.py")
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["grid", "reduced", "one_axis"])
+def test_run_takes_other_axes(name, tmp_path):
+    """The axes of the scene are only what holds where none are given."""
+    module = imported(dx.compile(SCENES[name], tmp_path / f"axes_{name}.py"))
+    own, theta = module.run(), np.linspace(0.3, 2.0, 5)
+    found = module.run(theta=theta)
+    other = {**SCENES[name], "motion": {**SCENES[name]["motion"], "theta": theta.tolist()}}
+    dataset = dx.scene(other).run().dataset
+    for key, values in found.items():
+        if key in dataset:
+            np.testing.assert_allclose(values, dataset[key].values, rtol=1e-12)
+    one = module.run(theta=0.3)
+    assert [values.shape for values in module.run().values()] == [values.shape for values in own.values()]
+    if name == "grid":
+        assert found["V_C"].shape == (3, 7, 5)
+        np.testing.assert_array_equal(one["V_C"][..., 0], found["V_C"][..., 0])
+        assert module.run(ec=[0.01], theta=theta)["V_C"].shape == (1, 7, 5)
+        with pytest.raises(ValueError, match="theta: at most"):
+            module.run(theta=[1e12])
+        with pytest.raises(TypeError, match="ec = '1 mm'"):
+            module.run(ec="1 mm")
+        with pytest.raises(ValueError, match="ec: expected a number or one dimension"):
+            module.run(ec=[[0.0]])

@@ -1,6 +1,6 @@
 """The axes of a scene in a written module: a range by its ends and step, a list by its values."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from textwrap import wrap
 from typing import Any
@@ -35,6 +35,40 @@ def axes_text(axes: Mapping[str, Sequence[float]]) -> str:
         rows.append("    ]),")
     text = "\n".join([*rows, "}"])
     return f"{SPACED}\n\n{text}" if "spaced(" in text else text
+
+
+CHOSEN = '''def chosen(**given):
+    """The scene's axes, with those that are given in their places: 1-d arrays in the order of AXES."""
+    axes = dict(AXES)
+    for name, values in given.items():
+        if values is not None:
+            (numbers,) = doubles(**{name: values})
+            if numbers.ndim > 1:
+                raise ValueError(f"{name}: expected a number or one dimension, got the shape {numbers.shape}")
+            axes[name] = ascontiguousarray(numbers.reshape(-1))
+'''
+REACH = """    theta = axes["theta"]
+    if (abs(theta[isfinite(theta)]) > LIMIT).any():
+        raise ValueError("theta: at most ROUNDED rad in magnitude; take whole turns off")
+"""
+
+
+def chosen_text(axes: Iterable[str], limit: float | None) -> str:
+    """`chosen`: the axes of a run; angles are checked against the largest one that is reduced exactly."""
+    check = ""
+    if limit is not None and "theta" in axes:
+        check = REACH.replace("LIMIT", repr(limit)).replace("ROUNDED", f"{limit:.0f}")
+    return CHOSEN + check + "    return axes\n"
+
+
+def arguments_of(axes: Iterable[str]) -> str:
+    """The parameters of a function whose axes may be given in the place of the scene's."""
+    return ", ".join(["*", *(f"{name}=None" for name in axes), "threads=None"])
+
+
+def taken_from(axes: Iterable[str]) -> str:
+    """The line that looks up the axes."""
+    return f"    axes = chosen({', '.join(f'{name}={name}' for name in axes)})"
 
 
 def _rule(values: Sequence[float]) -> str:

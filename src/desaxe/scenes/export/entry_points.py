@@ -10,6 +10,7 @@ from ...compiler.program import Program
 from ...compiler.text import with_short_temporaries, write_lines
 from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS
+from .axes import arguments_of, taken_from
 
 THREADS = '''def in_blocks(block, length, points, threads):
     """Call block(start, stop) for as many parts of an axis as there are threads that pay."""
@@ -151,19 +152,23 @@ def evaluate_function(
 def run_function(
     names: Sequence[str], axes: Sequence[str], inputs: Mapping[str, int | None], state: bool
 ) -> str:
-    """`run()`: the outputs over the outer product of the scene's axes."""
-    told = ["A dict of arrays, one dimension per axis: " + " x ".join(axes) + "."]
+    """`run()`: the outputs over the outer product of the scene's axes, or of others in their place."""
+    told = [
+        "A dict of arrays, one dimension per axis: " + " x ".join(axes) + ".",
+        "An axis that is given takes the place of the scene's.",
+    ]
     first = [
-        f'AXES["{name}"][start:stop]' if axis == 0 else f'AXES["{name}"]'
+        f'axes["{name}"][start:stop]' if axis == 0 else f'axes["{name}"]'
         for name, axis in inputs.items()
         if axis is not None
     ]
     kernel = "point_kernel" if len(axes) == 1 else "grid_kernel"
     return "\n".join(
         [
-            "def run(threads=None):",
+            f"def run({arguments_of(axes)}):",
             *indented(docstring(f"{', '.join(names)} over the scene's axes.", told)),
-            "    shape = tuple(axis.size for axis in AXES.values())",
+            taken_from(axes),
+            "    shape = tuple(axis.size for axis in axes.values())",
             "    out = {name: empty(shape, kind) for name, kind in OUTPUTS.items()}",
             "",
             "    def block(start, stop):",
@@ -194,15 +199,16 @@ def run_reduced_function(
     outs = outputs_of(own, kinds)
     shown = outputs_of(names, kinds)
     given = [
-        f'AXES["{name}"][start:stop]' if axis == 0 else f'AXES["{name}"]'
+        f'axes["{name}"][start:stop]' if axis == 0 else f'axes["{name}"]'
         for name, axis in inputs.items()
         if axis is not None
     ]
     lines = [
-        "def run(threads=None):",
+        f"def run({arguments_of([axis for axis in axes if axis])}):",
         *indented(docstring(f"{', '.join(names)} over the scene's axes, {last} reduced.", told)),
-        f"    shape = tuple(AXES[name].size for name in {tuple(rest)!r}) or (1,)",
-        f'    length = AXES["{last}"].size',
+        taken_from([axis for axis in axes if axis]),
+        f"    shape = tuple(axes[name].size for name in {tuple(rest)!r}) or (1,)",
+        f'    length = axes["{last}"].size',
         "    places = [",
         *(f"        empty(shape, {kind})," for _, kind in outs),
         "    ]",
@@ -211,7 +217,7 @@ def run_reduced_function(
         f"        reduced({', '.join([*given, 'length', '*(a[start:stop] for a in places)'])})",
         "",
         "    in_blocks(block, shape[0], prod(shape) * length, threads)",
-        f'    at = append(AXES["{last}"], nan)  # -1: nowhere',
+        f'    at = append(axes["{last}"], nan)  # -1: nowhere',
     ]
     if not rest:
         lines.append("    places = [place[0] for place in places]")

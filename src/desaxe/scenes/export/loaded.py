@@ -10,6 +10,7 @@ from textwrap import wrap
 from ...loads.load import Load, TableOverTheta
 from ...loads.resolve import Plan
 from ..schema import SceneError
+from .axes import arguments_of, taken_from
 
 LOOK_UP = '''def {name}_over_theta(theta):
     """The load {name} [{unit}] and its derivative by theta, at angles [rad]."""
@@ -78,14 +79,18 @@ def calls_text(plan: Plan, inputs: Sequence[str], axes: Sequence[str], fixed_the
     evaluate = [f"def evaluate({head}):", f'    """{", ".join(plan.shown)} at points of your own: a dict."""']
     evaluate += [*theta, *looked_up]
     evaluate += [f"    found = evaluate_at_load({', '.join([*inputs, 'threads=threads'])})", *terms, *shown]
-    run = ["def run(threads=None):", '    """The values over the scene\'s axes, one dimension an axis."""']
+    run = [
+        f"def run({arguments_of(axes)}):" if axes else "def run(threads=None):",
+        '    """The values over the scene\'s axes, one dimension an axis."""',
+    ]
     if axes:
         run += [
-            "    shape = tuple(axis.size for axis in AXES.values())",
+            taken_from(axes),
+            "    shape = tuple(axis.size for axis in axes.values())",
             "    places = range(len(shape))",
             "    along = {",
             "        name: axis.reshape([-1 if k == place else 1 for k in places])",
-            "        for place, (name, axis) in enumerate(AXES.items())",
+            "        for place, (name, axis) in enumerate(axes.items())",
             "    }",
             "    found = evaluate(**along, threads=threads)",
             "    return {name: array(broadcast_to(value, shape)) for name, value in found.items()}",
