@@ -26,11 +26,6 @@ VARIABLE = ("F_X", "F_Y")  # inputs that may vary with the motion
 POSITION = ("Y", "Y_wrt_theta", "Y_wrt_theta_theta")  # which load over Y holds: the position, and the way
 
 
-def is_load(value: Any) -> bool:
-    """True for a load that varies with the motion; a number, array or text is not callable."""
-    return callable(value)
-
-
 def as_load(name: str, value: Any) -> Load:
     """The load that a callable stands for: a plain function of one parameter is one over theta."""
     if isinstance(value, Load):

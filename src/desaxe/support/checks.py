@@ -1,6 +1,5 @@
 """Checks of options, with errors that name the option, the value and the limit."""
 
-from math import isfinite
 from typing import Any
 
 from .shown import shown
@@ -12,14 +11,6 @@ def whole_number(name: str, value: Any, least: int, most: int) -> int:
     if not whole or not least <= int(value) <= most:
         raise ValueError(f"{name} = {shown(value)}: a whole number, at least {least} and at most {most}")
     return int(value)
-
-
-def finite_number(name: str, value: Any, unit: str = "") -> float:
-    """A finite real number as a float."""
-    number = real_number(name, value)
-    if not isfinite(number):
-        raise ValueError(f"{name} = {shown(value)}{unit}: it must be a finite number")
-    return number
 
 
 def real_number(name: str, value: Any) -> float:

@@ -7,6 +7,7 @@ theirs: `grad`, `jacfwd`, `hessian`, `vmap` and `jit` see exact derivatives in t
 
 import keyword
 
+from ..operations import HELPERS as SHARED
 from ..program import Program
 from ..text import INDENT, with_short_temporaries
 from .protocol import Module, Symbol
@@ -32,12 +33,7 @@ RENAMED = {"atan2": "arctan2", "fabs": "abs", "pow": "power"}  # readable text -
 OWN = ("asarray", "custom_jvp", "finfo", "float32", "result_type", "stop_gradient", "zeros_like", "int8")
 WORDS = {"nan": "nan", "inf": "inf", "True": "True", "False": "False"}
 HELPERS = {
-    "two_sum_error": '''def two_sum_error(a, b):
-    """What rounding took from a + b, exactly (Knuth)."""
-    total = a + b
-    of_b = total - a
-    return (a - (total - of_b)) + (b - of_b)
-''',
+    "two_sum_error": SHARED["two_sum_error"],
     "two_product_error": '''def two_product_error(a, b):
     """What rounding took from a * b, exactly (Dekker)."""
     product = a * b

@@ -7,7 +7,6 @@ next, from 82 additions a point to 1034. `python -m benchmarks.startup` measures
 
 from collections.abc import Sequence
 from math import prod
-from typing import NamedTuple
 
 from .loops import Loop
 
@@ -19,16 +18,6 @@ IMPORT = 0.6  # s for numba and its tables in a process that has not used it yet
 LOAD = 0.06  # s to load a kernel that an earlier process compiled
 COMPILE = 0.3  # s to compile a kernel, and for each of its lines
 COMPILE_LINE = 2e-3
-
-
-class Estimate(NamedTuple):
-    """Seconds of the loops on one core and on `threads`, before the first result, and bytes."""
-
-    one_core: float
-    threads: int
-    first: float
-    again: float
-    bytes: int
 
 
 def loops_time(loops: Sequence[Loop], stored: int) -> float:

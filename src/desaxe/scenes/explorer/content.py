@@ -31,7 +31,6 @@ VALUES = (  # without their sensitivities, which would make the page twice as la
 )  # fmt: skip
 CHANGED = tuple(name for name in LOADS if name not in CENTRES)  # on the page; 0 where not given
 STATE = ("status", "margin")
-SHAPE = ("ec", "AB", "BC")
 MOST_DESIGNS = 5  # that a page compares when it is opened: a colour is left for one that is kept
 FROM_MANY = 4  # of more values than that, evenly chosen
 LISTED = 6  # values that are left out; of more it is told how many

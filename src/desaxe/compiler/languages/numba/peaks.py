@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from ...cost import cost_of
 from ...passes.slicing import drop_unused, keep_outputs
-from ...program import Program, names_in
+from ...program import Line, Program, names_in
 from ...text import INDENT, with_short_temporaries, write_lines
 
 READ = 2.0  # what reading a value costs, in additions
@@ -93,20 +93,10 @@ def finish_function(program: Program, rows: Rows) -> str:
 
 def _split(program: Program, fast: str) -> tuple[Program, Program]:
     """Split a program: the costly part that is independent of the input `fast`, and the rest."""
-    dependent = {fast}
-    for line in program.lines:
-        if dependent & set(names_in(line.args)):
-            dependent.add(line.name)
-    still = [line for line in program.lines if line.name not in dependent]
-    used = {n for line in program.lines if line.name in dependent for n in names_in(line.args)}
-    used |= set(program.outputs)
-    types = {line.name: line.type for line in still}
     worth = [
         line.name
-        for line in still
-        if line.name in used
-        and types[line.name] == "f64"
-        and cost_of(keep_outputs(program, (line.name,))).throughput > READ
+        for line in _independent(program, {fast})
+        if line.type == "f64" and cost_of(keep_outputs(program, (line.name,))).throughput > READ
     ]
     kept = keep_outputs(program, worth)
     lines = tuple(line for line in program.lines if line.name not in worth)
@@ -115,15 +105,17 @@ def _split(program: Program, fast: str) -> tuple[Program, Program]:
 
 def _without(program: Program, inputs: set[str]) -> Program:
     """The lines that depend on none of these inputs, as a program of what the others use of them."""
-    dependent = set(inputs)
+    return keep_outputs(program, tuple(line.name for line in _independent(program, inputs)))
+
+
+def _independent(program: Program, inputs: set[str]) -> list[Line]:
+    """The lines that depend on none of these inputs, and that the others or the result use."""
+    dependent, used = set(inputs), set(program.outputs)
     for line in program.lines:
         if dependent & set(names_in(line.args)):
             dependent.add(line.name)
-    own = [line for line in program.lines if line.name not in dependent]
-    used = {n for line in program.lines if line.name in dependent for n in names_in(line.args)}
-    used |= set(program.outputs)
-    outputs = tuple(line.name for line in own if line.name in used)
-    return keep_outputs(program, outputs)
+            used |= set(names_in(line.args))
+    return [line for line in program.lines if line.name in used - dependent]
 
 
 def _in(lines: Sequence[str]) -> list[str]:
