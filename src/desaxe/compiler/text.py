@@ -12,8 +12,10 @@ each name up in the text and never parses the rest.
 """
 
 import ast
+import re
 from collections.abc import Iterable, Sequence
 from textwrap import wrap
+from typing import NamedTuple
 
 from .operations import CALL, OPERATIONS, result_type
 from .program import Argument, Line, Note, Program, ProgramError, names_in, renamed_temporaries, type_of
@@ -135,6 +137,7 @@ class ProgramText:
         self.name, _, inputs = text[start:end].partition("(")
         self.inputs = tuple(name.strip() for name in inputs.split(",") if name.strip())
         self._text = text[end:]
+        self._parsed: dict[str, _Parsed] = {}
 
     def outputs(self) -> tuple[str, ...]:
         """The names that the function returns, in order."""
@@ -153,25 +156,42 @@ class ProgramText:
     def read(self, outputs: Sequence[str] | None = None) -> Program:
         """The program of these outputs (all without): only what they reach is parsed."""
         wanted = list(self.outputs() if outputs is None else outputs)
-        found: dict[str, tuple[int, ast.expr, Note | None]] = {}
+        found: dict[str, _Parsed] = {}
         stack = [name for name in wanted if name not in self.inputs]
         while stack:
             name = stack.pop()
             if name in found:
                 continue
-            right, at = self.line(name)
-            expression, _, comment = right.partition("  # ")
-            tree = ast.parse(expression, mode="eval").body
-            found[name] = at, tree, _note(comment)
-            stack += [used for used in _free_names(tree) if used not in found and used not in self.inputs]
-        ordered = sorted(found.items(), key=lambda item: item[1][0])
+            found[name] = self._line_of(name)
+            stack += [used for used in found[name].names if used not in found and used not in self.inputs]
+        ordered = sorted(found.items(), key=lambda item: item[1].place)
         reader = _Reader(self.inputs)
-        for name, (_, tree, _) in ordered:
-            reader.assign(name, tree)
+        for name, line in ordered:
+            reader.assign(name, line.tree)
         used = {name for line in reader.lines for name in names_in(line.args)} | set(wanted)
-        notes = {name: note for name, (_, _, note) in ordered if note is not None}
+        notes = {name: line.note for name, line in ordered if line.note is not None}
         inputs = tuple(name for name in self.inputs if name in used)
         return Program(inputs, tuple(reader.lines), tuple(wanted), notes)
+
+    def _line_of(self, name: str) -> "_Parsed":
+        """The line of a name, parsed when it is first asked for."""
+        line = self._parsed.get(name)
+        if line is None:
+            right, place = self.line(name)
+            expression, _, comment = right.partition("  # ")
+            names = tuple(n for n in _NAMES.findall(expression) if n not in _WORDS)
+            tree = ast.parse(expression, mode="eval").body
+            line = self._parsed[name] = _Parsed(place, tree, _note(comment), names)
+        return line
+
+
+class _Parsed(NamedTuple):
+    """A line of the text: where it stands, its right-hand side, its note, and the names that it uses."""
+
+    place: int
+    tree: ast.expr
+    note: Note | None
+    names: tuple[str, ...]
 
 
 def read_function(text: str) -> Program:
@@ -185,14 +205,8 @@ def _note(comment: str) -> Note | None:
     return None if not comment else Note(*parts) if len(parts) > 1 else Note("", comment)
 
 
-def _free_names(tree: ast.expr) -> Iterable[str]:
-    calls = (node.func for node in ast.walk(tree) if isinstance(node, ast.Call))
-    called = {function.id for function in calls if isinstance(function, ast.Name)}
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Name) and node.id not in (*called, "nan", "inf"):
-            yield node.id
-
-
+_NAMES = re.compile(r"\b[^\W\d]\w*\b(?!\()")  # what is called is no name of a line
+_WORDS = {"and", "else", "if", "inf", "nan", "not", "or", "False", "True"}
 _BINARY = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul", ast.Div: "div"}
 _COMPARE = {ast.Lt: "lt", ast.LtE: "le", ast.Eq: "eq"}
 _BOOLEAN = {ast.And: "and", ast.Or: "or"}

@@ -164,9 +164,9 @@ def _result(model: Model, found: Any, loss: str, absolute: bool) -> Fit:
 
 
 def _student(freedom: int) -> float:
-    from scipy.stats import t
+    from scipy.special import stdtrit
 
-    return float(t.ppf(0.975, freedom)) if freedom else np.inf
+    return float(stdtrit(freedom, 0.975)) if freedom else np.inf
 
 
 def _at_bound(model: Model, x: Any) -> dict[str, str]:
