@@ -1,6 +1,8 @@
 """Own quantities: values and sensitivities against the oracle, and what a definition changes and does not."""
 
 import math
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -180,3 +182,22 @@ def test_a_definition_can_have_the_name_of_a_line():
 def test_angles_of_an_expression_have_any_size():
     with defined("wave", "sin(50 * theta)"):
         assert math.isclose(dx.evaluate("wave", theta=1e9), mp.sin(50 * mp.mpf(1e9)), rel_tol=1e-12)
+
+
+def test_a_unit_that_only_the_unit_library_knows_is_looked_up_in_a_fresh_process():
+    """The library is imported within another import, whose lock no second thread may wait for."""
+    code = """
+import desaxe as dx
+dx.define("line_load", "F_C / w", w="2 inch")
+try:
+    dx.define("other", "w * F_C", w="1 mmm")
+except ValueError as error:
+    print(error)
+"""
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
+    assert ran.stdout == "other: constant w = '1 mmm': unknown unit\n"
+
+
+def test_one_over_nothing_is_no_foreign_traceback():
+    with defined("pole", "1 / 0 * a_C"):
+        assert not math.isfinite(dx.evaluate("pole", **POINT))

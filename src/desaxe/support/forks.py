@@ -22,14 +22,22 @@ class ForkSafeLock:
 
     def __init__(self) -> None:
         self._lock = RLock()
+        self._entered = local()
         _LOCKS.append(self)
+
+    @property
+    def is_mine(self) -> bool:
+        """True in a block of this thread that holds the lock: no other thread can acquire it meanwhile."""
+        return getattr(self._entered, "depth", 0) > 0
 
     def __enter__(self) -> None:
         self._lock.acquire()
+        self._entered.depth = getattr(self._entered, "depth", 0) + 1
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        self._entered.depth -= 1
         self._lock.release()
 
     def acquire_until(self, end: float) -> bool:

@@ -62,8 +62,12 @@ def import_whole(name: str) -> ModuleType:
 
 
 def finished(work: Callable[[], T]) -> T:
-    """Run work to its end, even if the caller is interrupted meanwhile; return its result."""
-    return _Work(work).answer() if _is_main() else work()
+    """Run work to its end, even if the caller is interrupted meanwhile; return its result.
+
+    Within an import, which is not interrupted either, it stays in this thread: another one would wait for the
+    lock of imports for ever.
+    """
+    return _Work(work).answer() if _is_main() and not IMPORTS.is_mine else work()
 
 
 def stopped_early(work: Callable[[], T], stop: Callable[[], object], deadline: Deadline) -> T:
