@@ -149,15 +149,16 @@ class Machine(Mapping[str, Any]):
         *,
         libm: bool = True,
         check: bool = False,
+        overwrite: bool = False,
         **more: Any,
     ) -> Any:
         """`desaxe.compile` of the scene of this machine: source code that needs nothing of desaxe; its path.
 
-        path, to, libm, check as there, others as in `scene`. The code takes and gives SI units.
+        path, to, libm, check, overwrite as there, others as in `scene`. The code takes and gives SI units.
         """
         from ..scenes.export.compile import compile
 
-        return compile(self.scene(outputs, **more), path, to, libm=libm, check=check)
+        return compile(self.scene(outputs, **more), path, to, libm=libm, check=check, overwrite=overwrite)
 
     def to_scene(self, path: str | PathLike[str], outputs: Any = OUTPUTS, **more: Any) -> Any:
         """Write the scene of this machine as a TOML file for `Machine.read` and `desaxe run`; its path.

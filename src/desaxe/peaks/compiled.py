@@ -44,7 +44,7 @@ from numpy import empty, floor, int64, uint64
 
 WORK = {work}
 '''
-_SIGNATURE = """ints, row, rows = types.int64[::1], types.float64[::1], types.float64[:, ::1]
+SIGNATURE = """ints, row, rows = types.int64[::1], types.float64[::1], types.float64[:, ::1]
 signature = types.void(rows, ints, ints, row, ints, types.int64, row, rows)
 function = search
 """
@@ -63,7 +63,7 @@ def source_of(search: Search) -> str:
         *(_NJIT + loop for loop in loops),
         *(helper if helper.startswith("BLOCK") else _NJIT + helper for helper in helpers),
         last,
-        _SIGNATURE,
+        SIGNATURE,
     ]
     return "\n\n".join(parts)
 

@@ -20,6 +20,8 @@ STEP = 0.34  # of t
 FAR = 1.2  # rad: as if no branch point were farther away
 CLASSES = 52  # the last one is for margins of 4^-51 crank lengths and less, 0 among them
 
+FINEST = CLASSES - 1
+
 
 def classes(ec: Array, AB: Array, BC: Array) -> NDArray[np.int16]:
     """One integer a design that combines the classes of its two branch points."""
@@ -43,14 +45,14 @@ def shared_nodes(number: int, low: float, high: float) -> Array:
     angles = [low, high]
     for half in range(floor(low / pi) - 1, ceil(high / pi) + 1):
         quarter = pi * (0.5 + half)
-        for distance in _graded(left if half % 2 else right):
+        for distance in graded(left if half % 2 else right):
             angles += [quarter - distance, quarter + distance]
     inside = [angle for angle in angles if low <= angle <= high]
     return np.array(sorted(set(inside)))
 
 
 @lru_cache(maxsize=64)
-def _graded(number: int) -> tuple[float, ...]:
+def graded(number: int) -> tuple[float, ...]:
     """Distances from a quarter up to pi/2, for a class."""
     d = acosh(1.0 + 4.0**-number) if number < 20 else 2.0**0.5 * 2.0**-number
     far = (FAR * FAR - d * d) ** 0.5 if d < FAR else 0.0  # beyond, steps of theta are equal

@@ -232,15 +232,46 @@ def test_ranges_are_written_as_ranges(written, rule, tmp_path):
 def test_what_is_left_out_is_told(tmp_path, capsys):
     from desaxe.cli import main
 
+    place = tmp_path / "press.h"
+    assert main(["compile", str(COMPACTOR), "--to", "c", "-o", str(tmp_path / "press")]) == 0
+    assert "not compiled (`desaxe run` has it): [[peak]] a_C, [[peak]] V_C" in capsys.readouterr().err
+    rubbing = {**FORCES, "peak": [{"quantity": "T_in"}, {"quantity": "a_C"}]}
+    text = module_text(dx.scene(rubbing))
+    assert "Not in here (`desaxe run` has it): [[peak]] T_in." in text
+    assert "def peak_absmax_T_in" not in text
+    stuck = {**GRID, "peak": [{"quantity": "V_C", "over": {"ec": [0, 0.24], "BC": [0.35]}}]}
+    assert "Not in here (`desaxe run` has it): [[peak]] V_C." in module_text(dx.scene(stuck))
     place = tmp_path / "compactor_kernels.py"
     assert main(["compile", str(COMPACTOR), "-o", str(place)]) == 0
-    assert "not compiled (`desaxe run` has it): [[peak]] a_C, [[peak]] V_C" in capsys.readouterr().err
-    assert "Not in here (`desaxe run` has it): [[peak]] a_C" in place.read_text(encoding="utf-8")
+    assert "not compiled" not in capsys.readouterr().err
     assert main(["compile", str(COMPACTOR), "-o", str(place), "--check"]) == 0
     place.write_text(place.read_text(encoding="utf-8") + "\n", encoding="utf-8")
     assert main(["compile", str(COMPACTOR), "-o", str(place), "--check"]) == 1
     with pytest.raises(ValueError, match="not what the scene gives"):
         dx.compile(COMPACTOR, place, check=True)
+
+
+def test_peaks_of_a_scene(tmp_path):
+    """Of its own designs and of others, next to a change point too: as `desaxe.peak` has them."""
+    module = imported(dx.compile(COMPACTOR, tmp_path / "peak_kernels.py"))
+    design = {"AB": 0.125, "BC": 0.35, "omega0": "1500 rpm"}
+    ecs = module.PEAKS["peak_absmax_a_C"]["axes"]["ec"]
+    near = 0.225 - 2.0 ** -np.arange(8.0, 40.0, 4.0)
+    for name, kind, quantity in (
+        ("peak_absmax_a_C", "absmax", "a_C"),
+        ("peak_max_a_C", "max", "a_C"),
+        ("peak_absmax_V_C", "absmax", "V_C"),
+    ):
+        function = getattr(module, name)
+        for found, ec in ((function(), ecs), (function(ec=near, threads=1), near)):
+            wanted = dx.peak(quantity, ec=ec, kind=kind, **design)
+            np.testing.assert_allclose(found["value"], wanted["value"], rtol=1e-13)
+            np.testing.assert_allclose(found["value_wrt_ec"], wanted["gradient"]["ec"], rtol=1e-7, atol=1e-6)
+            assert not found["status"].any()
+    with pytest.raises(ValueError, match=r"'ec': 0.23,.*cannot turn fully"):
+        module.peak_absmax_a_C(ec=[0.0, 0.23])
+    text = (tmp_path / "peak_kernels.py").read_text(encoding="utf-8")
+    assert "    peak_max_a_C(): maximum of a_C [m/s^2]" in text
 
 
 # ---- the text ------------------------------------------------------------------------------------

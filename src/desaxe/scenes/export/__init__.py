@@ -6,6 +6,7 @@ portable      a scene as the `Module` that every language writes
 solvers       crank angles for a slider position, limit angles
 entry_points  the functions that people call in the Python module
 scalars       a function for each output, for @njit functions
+peaks         the scene's peaks in the Python module
 axes          the scene's lists and ranges
 first_call    how its loops are compiled
 merge         several generated Python modules as one

@@ -26,7 +26,7 @@ def axes_text(axes: Mapping[str, Sequence[float]]) -> str:
     """`AXES`, and the function that spreads their values."""
     rows = ["# The scene's axes, the outermost first.", "AXES = {"]
     for name, values in axes.items():
-        rule = _rule(values)
+        rule = rule_of(values)
         if rule:
             rows.append(f'    "{name}": {rule},')
             continue
@@ -37,15 +37,20 @@ def axes_text(axes: Mapping[str, Sequence[float]]) -> str:
     return f"{SPACED}\n\n{text}" if "spaced(" in text else text
 
 
-CHOSEN = '''def chosen(**given):
-    """The scene's axes, with those that are given in their places: 1-d arrays in the order of AXES."""
-    axes = dict(AXES)
+WITH_AXES = '''def with_axes(axes, given):
+    """The axes of the scene, with those that are given in their places: 1-d arrays in the same order."""
+    axes = dict(axes)
     for name, values in given.items():
         if values is not None:
             (numbers,) = doubles(**{name: values})
             if numbers.ndim > 1:
                 raise ValueError(f"{name}: expected a number or one dimension, got the shape {numbers.shape}")
             axes[name] = ascontiguousarray(numbers.reshape(-1))
+    return axes
+'''
+CHOSEN = '''def chosen(**given):
+    """The axes of a run."""
+    axes = with_axes(AXES, given)
 '''
 REACH = """    theta = axes["theta"]
     if (abs(theta[isfinite(theta)]) > LIMIT).any():
@@ -71,7 +76,7 @@ def taken_from(axes: Iterable[str]) -> str:
     return f"    axes = chosen({', '.join(f'{name}={name}' for name in axes)})"
 
 
-def _rule(values: Sequence[float]) -> str:
+def rule_of(values: Sequence[float]) -> str:
     """An expression for exactly these values; empty if there is none."""
     array = np.array(values)
     if len(values) < 3:

@@ -5,8 +5,7 @@ import sys
 from pathlib import Path
 
 from ..scene import scene as scene_of
-from .compile import compile, texts_of
-from .portable import left_out
+from .compile import compile, lost_of, texts_of
 
 
 def run_compile(source: str, place: str, to: str, libm: bool, check: bool, overwrite: bool) -> int:
@@ -18,7 +17,7 @@ def run_compile(source: str, place: str, to: str, libm: bool, check: bool, overw
     compile(scene, place, to, libm=libm, overwrite=overwrite)
     for file, text in texts.items():
         print(f"{file}: {len(text.splitlines())} lines")
-    lost = left_out(scene.content, reduction=to != "numba")
+    lost = lost_of(scene.content, to)
     if lost:
         print(f"not compiled (`desaxe run` has it): {', '.join(lost)}", file=sys.stderr)
     return 0

@@ -35,7 +35,7 @@ from ..kernel import GridKernel, grid_kernel
 from ..scene import Scene
 from ..scene import scene as scene_of
 from ..schema import SceneError
-from .axes import axes_text, chosen_text
+from .axes import SPACED, WITH_AXES, axes_text, chosen_text
 from .entry_points import (
     AFFINITY,
     DOUBLES,
@@ -48,6 +48,7 @@ from .entry_points import (
 from .first_call import COMPILED, LAZY, LAZY_REDUCED
 from .loaded import calls_text, renames, require_tables, table_text
 from .merge import import_lines, merged, renamed
+from .peaks import left_out_of_module, peak_texts
 from .portable import Order, left_out, module_of, require_outputs
 from .scalars import scalars_source
 
@@ -81,8 +82,9 @@ def compile(
     What the scene fixes is folded in; what it gives as a list or range is an argument, in the order theta,
     ec, AB, BC, omega0 (or omega), alpha, then masses and loads. `to` is the language:
 
-    numba       FILE.py, which needs NumPy and numba: `point(...)`, `evaluate(...)` and `run()`, and for each
-                output a function to call from an @njit of your own
+    numba       FILE.py, which needs NumPy and numba: `point(...)`, `evaluate(...)`, `run()`, which takes
+                other axes, too, and for each output a function to call from an @njit of your own; for each
+                [[peak]] of designs that turn fully, without friction, a function such as `peak_absmax_a_C()`
     c           C99: FOLDER/name.h and name.c, where `name` is the folder's: `int name_point(in, out)`,
                 `void name_array(n, in, out)`, `name_inverse`, `name_limits`
     octave      name.m for GNU Octave and MATLAB: `[a_C, V_C] = name(theta, ec)`
@@ -143,6 +145,13 @@ def texts_of(scene: Scene, place: Path, to: str = "numba", libm: bool = True) ->
     return {folder / file: text for file, text in language.files(module, not libm).items()}
 
 
+def lost_of(content: Content, to: str) -> list[str]:
+    """The parts of a scene that its module in a language leaves out, by name."""
+    if to != "numba":
+        return left_out(content)
+    return left_out_of_module(content, left_out(content, reduction=False))
+
+
 def differing(texts: Mapping[Path, str]) -> list[Path]:
     """The files that are missing or have another text."""
     return [f for f, text in texts.items() if not f.is_file() or f.read_bytes() != text.encode()]
@@ -192,9 +201,13 @@ def module_text(scene: Scene, name: str = "my_kernels.py") -> str:
     if program.inputs:
         grid = _kernels(key, program.inputs, sources)
     sources.append(_scalars(key, shown, program.inputs))
+    peaks = peak_texts(content)
+    sources += peaks.searches
+    compiles = bool(program.inputs or peaks.searches)
     imports, statements = merged(_shared(sources))
     limit = None if key.far else _limit(key)
-    calls = [THREADS] if program.inputs else []
+    calls = [THREADS] if compiles else []
+    calls += [WITH_AXES] if axes or peaks.functions else []
     calls.append(evaluate_function(program, shown, state, limit, bool(program.inputs)))
     calls += [axes_text(axes), chosen_text(axes, limit)] if axes else []
     if grid is None:
@@ -203,7 +216,10 @@ def module_text(scene: Scene, name: str = "my_kernels.py") -> str:
         calls.append(run_function(shown, list(axes), grid.inputs, state))
     else:
         calls.append(run_reduced_function(shown, key.reduce, found.axes, grid.inputs, grid.outputs))
-    tables = [*([AFFINITY, DOUBLES, COMPILED] if program.inputs else [])]
+    calls += peaks.functions
+    if "spaced(" in "".join(peaks.functions) and not any("def spaced" in call for call in calls):
+        calls.insert(0, SPACED)
+    tables = [*([AFFINITY, DOUBLES, COMPILED] if compiles else [])]
     tables += [f"INPUTS = {program.inputs!r}", _outputs(shown), _fixed(key)]
     body = "\n\n\n".join(part.strip("\n") for part in [*tables, *statements, *calls]) + "\n"
     head = _docstring(scene, name, key, shown, program.inputs, cost_of(program).operations)
@@ -216,7 +232,8 @@ IMPORTS = {
     "math": {"prod"},
     "numpy": {
         "append", "arange", "array", "asarray", "ascontiguousarray", "broadcast_arrays", "empty", "float64",
-        "int8", "isfinite", "linspace", "nan", "broadcast_to", "floor", "searchsorted", "where",
+        "int8", "isfinite", "linspace", "nan", "broadcast_to", "floor", "pi", "searchsorted",
+        "unique", "where",
     },
     "os": {"cpu_count"},
     "threading": {"Lock"},
@@ -261,7 +278,7 @@ def _module_under_loads(
     tables = [AFFINITY, DOUBLES, COMPILED, f"INPUTS = {tuple(n for n in inputs if n not in plan.loads)!r}"]
     tables += [renamed(_outputs(plan.names), own), _outputs(plan.shown), _fixed(key)]
     tables += [table_text(n, load, "N") for n, load in plan.loads.items() if isinstance(load, TableOverTheta)]
-    calls = [THREADS, inner, *([axes_text(axes), chosen_text(axes, limit)] if axes else [])]
+    calls = [THREADS, inner, *([axes_text(axes), WITH_AXES, chosen_text(axes, limit)] if axes else [])]
     calls.append(calls_text(plan, inputs, list(axes), fixed_theta))
     body = "\n\n\n".join(part.strip("\n") for part in [*tables, *statements, *calls]) + "\n"
     shown_inputs = tuple(n for n in inputs if n not in plan.loads)
@@ -361,6 +378,7 @@ def _docstring(
 
     source = Path(scene.name).name
     command = f"desaxe compile {source} -o {name}" if source else f'desaxe.compile(scene, "{name}")'
+    peak_lines = peak_texts(scene.content).lines
     tables = [load.table for load in scene.content.inputs.values() if isinstance(load, TableOverTheta)]
     said = hashlib.sha256(repr((scene.content, *tables)).encode() if tables else repr(scene.content).encode())
     state = key.form.state
@@ -376,13 +394,14 @@ def _docstring(
         "    point(...)      one point in plain Python",
         "    evaluate(...)   numbers or arrays that broadcast",
         "    run()           the scene's own grid; run(theta=...) with other axes",
+        *(f"    {line}" for line in peak_lines),
         f"    {shown[0]}(*INPUTS)   one output as a number, from @njit functions, too",
         "",
         f"Accuracy {key.accuracy}; SI units and radians. Y points along the slider axis towards the slider,",
         "theta turns from +Y towards +X.",
         "",
     ]
-    lost = left_out(scene.content, reduction=False)
+    lost = lost_of(scene.content, "numba")
     lines += [f"Not in here (`desaxe run` has it): {', '.join(lost)}.", ""] if lost else []
     rows = [("inputs", n, INPUTS[n].unit, INPUTS[n].meaning) for n in inputs]
     rows += [("outputs", n, quantity(n, state).unit, quantity(n, state).meaning) for n in shown]

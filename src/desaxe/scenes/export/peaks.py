@@ -1,0 +1,239 @@
+"""Peaks of a scene in a written module: the search over the crank angle, for designs that turn fully.
+
+The module has the text of the search (`desaxe.peaks`) as it is, and one set of nodes that is dense enough for
+every design, since their number grows with the logarithm of the margin only. Peaks that need nodes of their
+own (friction, a load that varies, designs that stall or cannot turn fully) are left out, by name.
+"""
+
+import re
+from collections.abc import Mapping, Sequence
+from textwrap import wrap
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...evaluation.arrays import as_array
+from ...mechanism.catalogue import quantity
+from ...mechanism.inputs import INPUTS
+from ...mechanism.names import LENGTHS
+from ...mechanism.own_lines import has_kinks
+from ...peaks import special
+from ...peaks.compiled import SIGNATURE, source_of
+from ...peaks.designs import KINDS, Plan, plan_of, search_of
+from ...peaks.nodes import FINEST, graded
+from ...peaks.programs import Search, programs_of
+from ..content import Content, Peak
+from ..peaks import WORDS, columns_of, group_names
+from .axes import rule_of
+from .merge import renamed
+
+ROWS = "types.float64[:, ::1]"
+INDICES = "types.int64[::1]"
+OWN = ("sweep", "points", "finish", "search", "WORK", "signature")  # of each search
+SHARED = (
+    "score", "gather", "bound", "candidates", "interior", "brackets", "quartic", "quartic_slope", "begin",
+    "newton", "choose",
+)  # fmt: skip
+NODES = '''# Distances of nodes from a quarter turn: denser towards it, for narrow peaks at a change point.
+DISTANCES = array([
+{rows}
+])
+
+
+def nodes_between(low, high):
+    """The crank angles at which a search begins, both ends included."""
+    quarters = pi * (arange(low // pi - 1.0, high // pi + 2.0) + 0.5)
+    near = quarters[:, None] + append(DISTANCES, -DISTANCES)
+    return unique(append(near[(near >= low) & (near <= high)], [low, high]))
+'''
+EXTREMUM = '''def require_turning(columns, low, high):
+    """ValueError for designs that stall or cannot turn fully: their extremes need more than this search."""
+    good = columns["BC"] - columns["AB"] - abs(columns["ec"]) > 0.0
+    if "alpha" in columns and "omega0" in columns:
+        square, twice = columns["omega0"] ** 2, 2.0 * columns["alpha"]
+        good &= (square + twice * (low - 1.0) > 0.0) & (square + twice * (high + 1.0) > 0.0)
+    if not good.all():
+        design = {name: float(column[~good][0]) for name, column in columns.items()}
+        raise ValueError(f"{design}: it stalls or cannot turn fully, which needs desaxe.peak")
+
+
+def extremum(one, given, threads):
+    """The peaks of all designs: of the scene's axes, with those that are given in their places."""
+    axes = with_axes(one["axes"], given)
+    shape = tuple(axis.size for axis in axes.values())
+    size = prod(shape)
+    columns = {name: empty(size) for name in (*axes, *one["fixed"])}
+    for place, (name, axis) in enumerate(axes.items()):
+        along = axis.reshape([-1 if k == place else 1 for k in range(len(shape))])
+        columns[name][:] = broadcast_to(along, shape).reshape(-1)
+    for name, value in one["fixed"].items():
+        columns[name][:] = value
+    low, high = one["theta"]
+    require_turning(columns, low, high)
+    table = empty((len(one["inputs"]), size))
+    for row, name in zip(table, one["inputs"], strict=True):
+        row[:] = columns[name]
+    nodes = nodes_between(low, high)
+    order, edges = arange(size), array([0, nodes.size])
+    theta, out = empty(size), empty((one["rows"], size))
+    search = compiled(one["search"], one["signature"])
+
+    def block(start, stop):
+        search(table, order, array([start, stop]), nodes, edges, one["kind"], theta, out)
+
+    in_blocks(block, size, 1_000 * size, threads)
+    value = abs(out[0]) if one["kind"] == 0 else out[0]
+    found = {"value": value, "theta": theta, "status": where(isfinite(value), 0, 4).astype(int8)}
+    found |= {name: out[row] if row else 0.0 * value for name, row in one["slopes"].items()}
+    return {name: column.reshape(shape) for name, column in found.items()}
+'''
+
+
+class Found(NamedTuple):
+    """A peak that a module can have: its function's name, the search, the inputs that are numbers."""
+
+    name: str
+    peak: Peak
+    search: Search
+    fixed: dict[str, float]
+
+
+class PeakTexts(NamedTuple):
+    """The searches, as modules to be merged; the functions, as text; their names and meanings."""
+
+    searches: list[str]
+    functions: list[str]
+    lines: list[str]
+
+
+def carried(content: Content) -> list[Found]:
+    """The peaks of a scene that a module has."""
+    if any(callable(value) for value in content.inputs.values()):
+        return []  # a module under loads has their tables in its calls
+    named = zip(group_names(content.peaks), content.peaks, strict=True)
+    return [found for name, one in named if (found := _found(name, one, content)) is not None]
+
+
+def _found(name: str, one: Peak, content: Content) -> Found | None:
+    """The search of a peak; None for one that needs nodes of its own."""
+    if one.loads:
+        return None
+    some = dict.fromkeys(one.axes, np.array([1.0, 2.0]))  # no value of an axis is built in
+    given: dict[str, Any] = {**dict.fromkeys(("ec", "AB", "BC", "omega0", "omega")), "alpha": 0.0}
+    given |= {**one.fixed, **some}
+    plan = plan_of(one.quantity, given, content.branch, content.accuracy)
+    if "omega0" in plan.needs and given["omega0"] is None:
+        given["omega0"] = 0.0
+    arrays = {n: as_array(n, given[n], plan.needs, (name,)) for n in plan.needs if given.get(n) is not None}
+    if "mu" in plan.parameters or has_kinks(plan.wanted.form.own) or _special(plan, one, content):
+        return None
+    search = search_of(plan, arrays, one.theta)
+    used = (*programs_of(search, True).inputs, *LENGTHS, "omega0", "alpha")
+    fixed = {
+        n: float(given[n]) for n in dict.fromkeys(used) if n not in one.axes and given.get(n) is not None
+    }
+    return Found(name, one, search, fixed)
+
+
+def _special(plan: Plan, one: Peak, content: Content) -> bool:
+    """True if a design of the scene stalls or cannot turn fully."""
+    columns = columns_of({**one.axes, **one.fixed})
+    return bool(special.are_special(special.Designs(columns, content.branch, one.theta, False)).any())
+
+
+def peak_texts(content: Content) -> PeakTexts:
+    """The text of the peaks of a scene; nothing where it has none, or none that a module can have."""
+    found = carried(content)
+    searches: dict[Search, str] = {}
+    for one in found:
+        searches.setdefault(one.search, f"search{len(searches)}")
+    sources = [_search_text(search, prefix) for search, prefix in searches.items()]
+    rows = [row for one in found for row in _table_rows(one, searches[one.search])]
+    functions = [_nodes_text(), EXTREMUM, "\n".join(["PEAKS = {", *rows, "}"])] if found else []
+    state = "omega" in content.inputs
+    functions += [_function(one, state) for one in found]
+    lines = [f"{one.name}(): {_meaning(one, state)}" for one in found]
+    return PeakTexts(sources, functions, lines)
+
+
+def _search_text(search: Search, prefix: str) -> str:
+    """The module of a search under names of its own."""
+    source = source_of(search).replace(SIGNATURE, "")
+    words = {name: prefix if name == "search" else f"{prefix}_{name}" for name in OWN}
+    text = renamed(source, words)
+    text = renamed(text, {name: f"search_{name}" for name in SHARED}, called=True)
+    kinds = (ROWS, INDICES, INDICES, "types.float64[::1]", INDICES, "types.int64", "types.float64[::1]", ROWS)
+    return f"{text}\n\n{prefix}_signature = types.void(\n    {', '.join(kinds)}\n)\n"
+
+
+def _nodes_text() -> str:
+    numbers = wrap(", ".join(map(repr, graded(FINEST))) + ",", 90)
+    return NODES.format(rows="\n".join(f"    {row}" for row in numbers))
+
+
+def _table_rows(one: Found, prefix: str) -> list[str]:
+    """The row of a peak in PEAKS."""
+    slots = {n: 2 + k for k, n in enumerate(one.search.parameters)}
+    slopes = {f"value_wrt_{n}": slots.get(n, 0) for n in one.peak.sensitivities}
+    axes = []
+    for name, values in one.peak.axes.items():
+        rule = rule_of(values)
+        if rule:
+            axes.append(f'            "{name}": {rule},')
+            continue
+        axes += [f'            "{name}": array([']
+        axes += [f"                {row}" for row in wrap(", ".join(map(repr, values)) + ",", 80)]
+        axes += ["            ]),"]
+    return [
+        f'    "{one.name}": {{',
+        f'        "search": {prefix}, "signature": {prefix}_signature, "kind": {KINDS.index(one.peak.kind)},',
+        f'        "theta": {tuple(map(float, one.peak.theta))!r}, "rows": {2 + len(slots)},',
+        f'        "inputs": {programs_of(one.search, True).inputs!r},',
+        f'        "fixed": {one.fixed!r},',
+        f'        "slopes": {slopes!r},',
+        '        "axes": {',
+        *axes,
+        "        },",
+        "    },",
+    ]
+
+
+def _meaning(one: Found, state: bool) -> str:
+    row = quantity(one.peak.quantity, state)
+    low, high = one.peak.theta
+    return (
+        f"{WORDS[one.peak.kind]} of {one.peak.quantity} [{row.unit}] over theta from {low:g} to {high:g} rad"
+    )
+
+
+def _function(one: Found, state: bool) -> str:
+    axes = list(one.peak.axes)
+    head = ", ".join(["*", *(f"{name}=None" for name in axes), "threads=None"])
+    slopes = ", ".join(f"`value_wrt_{name}`" for name in one.peak.sensitivities)
+    over = " x ".join(f"{name} [{INPUTS[name].unit}]" for name in axes) or "nothing"
+    told = (
+        f"A dict of arrays over {over}: `value`, `theta` where it is reached, `status` (0, or 4 for bad "
+        f"input){', exact derivatives ' if slopes else ''}{slopes}. An axis that is given takes the place of "
+        "the scene's. Raises ValueError for a design that stalls or cannot turn fully."
+    )
+    lines = [f"    {row}" for row in wrap(re.sub(r"\s+", " ", told), 92)]
+    given = ", ".join(f'"{name}": {name}' for name in axes)
+    title = _meaning(one, state)
+    return "\n".join(
+        [
+            f"def {one.name}({head}):",
+            f'    """{title[0].upper()}{title[1:]}.',
+            "",
+            *lines,
+            '    """',
+            f'    return extremum(PEAKS["{one.name}"], {{{given}}}, threads)',
+        ]
+    )
+
+
+def left_out_of_module(content: Content, lost: Sequence[str]) -> list[str]:
+    """Drop the peaks that the Python module has from the list of what other languages leave out."""
+    here = {one.name for one in carried(content)}
+    named: Mapping[str, Peak] = dict(zip(group_names(content.peaks), content.peaks, strict=True))
+    gone = {f"[[peak]] {one.quantity}" for name, one in named.items() if name not in here}
+    return [words for words in lost if not words.startswith("[[peak]]") or words in gone]
