@@ -146,12 +146,12 @@ def quantities():
 
 
 def statuses():
-    """What each code of each call says."""
+    """A table of the codes of every call."""
     rows = []
     for table in TABLES:
-        of, _, calls = inspect.getdoc(table).rstrip(".").partition(": ")
+        of, _, calls = inspect.getdoc(table).splitlines()[0].rstrip(".").partition(": ")
         codes = "<br>".join(f"{status:d} {status.words}" for status in table)
-        rows.append(f"| {calls} | {of[3:]} | `{table.__name__}` | {codes} |")
+        rows.append(f"| {calls} | {of.removeprefix('The status of ')} | `{table.__name__}` | {codes} |")
     return "\n".join(["| call | status of | in `desaxe.status` | codes |", "|---|---|---|---|", *rows])
 
 

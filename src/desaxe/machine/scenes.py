@@ -10,17 +10,12 @@ from ..loads.resolve import split
 from ..mechanism.inputs import INPUTS
 from ..mechanism.unit_system import SI, UnitSystem
 from ..mechanism.units import exact
+from ..scenes.needs import SECTIONS
 from ..scenes.scene import scene
 from ..scenes.schema import SceneError
 from ..support.files import check_target, write_text
 from .load_tables import load_table
 
-SECTIONS = {
-    "mechanism": ("AB", "BC", "ec", "branch"),
-    "motion": ("theta", "omega0", "omega", "alpha"),
-    "masses": ("m_crank", "m_rod", "m_slider", "I_crank", "I_rod", "r_crank", "r_rod"),
-    "loads": ("F_X", "F_Y", "g_X", "g_Y", "mu"),
-}
 TURN = {"start": 0, "stop": "360 deg", "num": 721}
 
 
@@ -73,10 +68,10 @@ def _data(machine: Any, outputs: Any, more: Mapping[str, Any], loads: Mapping[st
     data["outputs"] = [outputs] if isinstance(outputs, str) else list(outputs)
     if machine.units:
         data["units"] = dict(machine.units.units)
-    for section, names in SECTIONS.items():
+    for section, table in SECTIONS.items():
         values = {
             name: loads[name] if name in loads else _written(machine, name)
-            for name in names
+            for name in table.__struct_fields__
             if name in machine
         }
         if section == "motion":

@@ -4,6 +4,8 @@ import re
 from functools import cache
 from typing import NamedTuple
 
+from .inputs import INPUTS
+
 
 class Unit(NamedTuple):
     """A unit as exponents: `Unit(1, -2)` is m/s^2; `name` is its own name, such as W."""
@@ -44,21 +46,6 @@ FORCE = Unit(1, -2, kg=1)
 TORQUE = Unit(2, -2, kg=1)
 ENERGY = Unit(2, -2, kg=1, name="J")
 POWER = Unit(2, -3, kg=1, name="W")
-
-PARAMETER_UNITS = {
-    "theta": ANGLE,
-    "ec": LENGTH,
-    "AB": LENGTH,
-    "BC": LENGTH,
-    "omega0": ANGULAR_SPEED,
-    "alpha": ANGULAR_ACCELERATION,
-    **dict.fromkeys(("m_crank", "m_rod", "m_slider"), MASS),
-    **dict.fromkeys(("I_crank", "I_rod"), INERTIA),
-    **dict.fromkeys(("r_crank", "r_rod"), LENGTH),
-    **dict.fromkeys(("F_X", "F_Y"), FORCE),
-    **dict.fromkeys(("g_X", "g_Y"), ACCELERATION),
-    "mu": NONE,
-}
 
 
 def unit_text(unit: Unit) -> str:
@@ -102,3 +89,6 @@ def unit_of(text: str) -> Unit:
                 kg + power * unit.kg,
             )
     return Unit(m, s, rad, kg, _COHERENT[text.strip()].name if text.strip() in _COHERENT else "")
+
+
+PARAMETER_UNITS = {name: unit_of(row.unit) for name, row in INPUTS.items()}

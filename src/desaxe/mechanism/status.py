@@ -21,7 +21,11 @@ class Status(IntEnum):
 
 
 class PointStatus(Status):
-    """The status of a point: `evaluate`, `grid`."""
+    """The status of a point: `evaluate`, `grid`.
+
+    Decided by `derive/quantities.py` (0 to 3), `compiler/passes/guard.py` (4), `derive/dynamics.py` (5, 6);
+    next to a limit angle by `runtime/near_limit.py`.
+    """
 
     OK = 0, "ok"
     CANNOT_BE_ASSEMBLED = 1, "cannot be assembled here"
@@ -33,7 +37,10 @@ class PointStatus(Status):
 
 
 class PeakStatus(Status):
-    """The status of a design over a range of crank angles: `peak`, `[[peak]]` of a scene."""
+    """The status of a design over a range of crank angles: `peak`, `[[peak]]` of a scene.
+
+    Decided by `peaks/special.py`.
+    """
 
     OK = 0, "ok"
     CANNOT_BE_ASSEMBLED = 1, "cannot be assembled at any of these angles"
@@ -48,7 +55,10 @@ class PeakStatus(Status):
 
 
 class TurnStatus(Status):
-    """The status of a design: `feasibility`, `events`, `design_map`."""
+    """The status of a design: `feasibility`, `events`, `design_map`.
+
+    Decided by `design/feasibility/`, `design/events/` and `design/design_map.py`.
+    """
 
     TURNS = 0, "the crank turns fully"
     CANNOT_TURN = 1, "the crank does not turn fully"
@@ -57,7 +67,10 @@ class TurnStatus(Status):
 
 
 class InverseStatus(Status):
-    """The status of a slider position: `inverse`."""
+    """The status of a slider position: `inverse`.
+
+    Decided by `design/inverse.py`.
+    """
 
     OK = 0, "two solutions or one"
     OUT_OF_REACH = 1, "the slider cannot be there on this branch"
@@ -66,7 +79,10 @@ class InverseStatus(Status):
 
 
 class EnclosureStatus(Status):
-    """The status of a box of inputs: `enclose`."""
+    """The status of a box of inputs: `enclose`.
+
+    Decided by `_status` in `enclosure/enclose.py`.
+    """
 
     DEFINED = 0, "defined in all of the box"
     NOWHERE = 1, "defined nowhere in the box"
@@ -74,7 +90,10 @@ class EnclosureStatus(Status):
 
 
 class ToleranceStatus(Status):
-    """The status of inputs with tolerances: `tolerance`."""
+    """The status of inputs with tolerances: `tolerance`.
+
+    Decided by `design/tolerance/tolerance.py`.
+    """
 
     OK = 0, "ok"
     NO_VALUE = 1, "no value at the means"
@@ -83,7 +102,10 @@ class ToleranceStatus(Status):
 
 
 class OptimizeStatus(Status):
-    """The status of a search: `optimize`."""
+    """The status of a search: `optimize`.
+
+    Decided by `design/optimisation/result.py`, of several objectives by `pareto.py`.
+    """
 
     OPTIMUM = 0, "an optimum"
     NO_DESIGN = 1, "no design keeps the limits"
@@ -93,7 +115,10 @@ class OptimizeStatus(Status):
 
 
 class SynthesisStatus(Status):
-    """The status of a synthesis: `synthesize`."""
+    """The status of a synthesis: `synthesize`.
+
+    Decided by `design/synthesis/synthesize.py`.
+    """
 
     FOUND = 0, "one design or more"
     NONE = 1, "no design"
@@ -101,7 +126,10 @@ class SynthesisStatus(Status):
 
 
 class DriveStatus(Status):
-    """The status of a drive over a turn: `drive`."""
+    """The status of a drive over a turn: `drive`.
+
+    Decided by `_status` in `design/drive/drive.py` and by `design/drive/cycle.py`.
+    """
 
     OK = 0, "ok"
     CANNOT_TURN = 1, "the crank cannot turn fully"
@@ -112,8 +140,22 @@ class DriveStatus(Status):
     TWO_FORCE_BALANCES = 6, "friction: two sets of forces balance somewhere on the turn"
 
 
+class FitStatus(Status):
+    """The status of a fit: `fit`.
+
+    Decided by `design/fit/fit.py`.
+    """
+
+    CONVERGED = 0, "converged"
+    STOPPED = 1, "stopped at the limit of evaluations"
+    OPEN = 2, "the data leave a combination of the unknowns open"
+
+
 class SimulationStatus(Status):
-    """The status of a motion, that is, how it ended: `simulate`."""
+    """The status of a motion at its end: `simulate`.
+
+    Decided by `simulation/one_design.py`; of arrays by `simulation/many_designs.py` and `dop853.py`.
+    """
 
     DONE = 0, "reached its end"
     REST = 1, "at rest: the torque cannot move the crank"
@@ -126,5 +168,5 @@ class SimulationStatus(Status):
 
 TABLES = (
     PointStatus, PeakStatus, TurnStatus, InverseStatus, EnclosureStatus, ToleranceStatus, OptimizeStatus,
-    SynthesisStatus, DriveStatus, SimulationStatus,
+    SynthesisStatus, DriveStatus, FitStatus, SimulationStatus,
 )  # fmt: skip

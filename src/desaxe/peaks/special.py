@@ -159,7 +159,7 @@ def complete(
     rows = np.arange(designs.size)
     swept = designs.values((name, "status"), np.repeat(rows, nodes.shape[1]), nodes.reshape(-1))
     value, status = (swept[n].reshape(nodes.shape) for n in (name, "status"))
-    jams, turns = _at_brinks(name, kind, designs, nodes, swept, found)
+    jams, turns = _at_force_limits(name, kind, designs, nodes, swept, found)
     found.status[:] = _status(status)
     _mark_limits(kind, found, value, nodes, ends)
     at_kink = kinks is not None and (np.abs(kinks - found.theta[:, None]) <= AT_KINK).any(axis=1)
@@ -179,7 +179,7 @@ def score(kind: str, value: Array) -> Array:
     return np.where(np.isnan(good), -np.inf, good)
 
 
-def _at_brinks(
+def _at_force_limits(
     name: str, kind: str, designs: Designs, nodes: Array, swept: dict[str, Any], found: Found
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Let the last angles with exactly one force balance take part in the search.

@@ -42,7 +42,7 @@ def tornado(
     with needed("plot.tornado"):
         from matplotlib.figure import Figure
     system = _units_of(result, changes) if hasattr(result, "data_vars") else UnitSystem.read(units)
-    value, slopes, label = _told(result, changes, name, system)
+    value, slopes, label = _value_and_slopes(result, changes, name, system)
     steps = {p: abs(_number(p, change, system)) for p, change in changes.items()}
     order = sorted(steps, key=lambda p: abs(slopes[p]) * steps[p])
     if ax is None:
@@ -71,7 +71,7 @@ def _units_of(dataset: Any, changes: Mapping[str, Any]) -> UnitSystem:
     return UnitSystem.read({p: unit for p, unit in there.items() if unit not in (None, "1")})
 
 
-def _told(
+def _value_and_slopes(
     result: Any, changes: Mapping[str, Any], name: str, system: UnitSystem
 ) -> tuple[float, dict[str, float], str]:
     """The value, its derivatives by the changed inputs, and the label."""

@@ -33,7 +33,7 @@ def point_of(
     """The function of a request at single points, with its inputs in order."""
     program = specialise(names, form, fixed, accuracy)
     if accuracy != "extended":
-        return Point(_by_room(names, form, fixed), program.inputs)
+        return Point(_by_margin(names, form, fixed), program.inputs)
     from ..compiler.passes.double_double import double_double
 
     program = double_double(program, double_constants())
@@ -49,7 +49,7 @@ def point_of(
     return Point(checked, program.inputs)
 
 
-def _by_room(names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...]) -> Function:
+def _by_margin(names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...]) -> Function:
     """A function that picks the plain or the stable form for each point.
 
     That is the plain form in a design with wide margins, the stable one elsewhere, and twice the digits where

@@ -85,7 +85,7 @@ def _feasibility(found: FeasibilityResult, units: UnitSystem) -> str:
     lines = ["Feasibility"]
     if found.limit is not None:
         limit = (
-            f"|ec| < BC - AB = {_told('ec', found.limit, units)}"
+            f"|ec| < BC - AB = {_with_unit('ec', found.limit, units)}"
             if found.limit > 0.0
             else "no ec, since BC <= AB"
         )
@@ -93,7 +93,7 @@ def _feasibility(found: FeasibilityResult, units: UnitSystem) -> str:
     lines.append(f"  {found.turning} of {found.designs} designs of this scene turn fully")
     axes = _varying([one.design for one in found.infeasible], found.designs)
     for one in found.infeasible[:GAPS]:
-        design = ", ".join(f"{name} = {_told(name, one.design[name], units)}" for name in axes)
+        design = ", ".join(f"{name} = {_with_unit(name, one.design[name], units)}" for name in axes)
         gaps = " and ".join(f"{degrees(a):.2f} to {degrees(b):.2f}" for a, b in one.gaps)
         if any(b - a >= 2.0 * pi for a, b in one.gaps):
             lines.append(f"  infeasible: {design} cannot be assembled at any angle")
@@ -203,11 +203,11 @@ def _claim(one: Peak, result: ClaimResult, units: UnitSystem) -> str:
 
 def _design(inputs: dict[str, float], units: UnitSystem) -> str:
     return ", ".join(
-        f"{name} = {_told(name, value, units) if value else 0}" for name, value in inputs.items()
+        f"{name} = {_with_unit(name, value, units) if value else 0}" for name, value in inputs.items()
     )
 
 
-def _told(name: str, value: float, units: UnitSystem) -> str:
+def _with_unit(name: str, value: float, units: UnitSystem) -> str:
     """An input with its unit, in the units of the scene."""
     conversion = units.of(name)
     return f"{number(conversion.shown(value))} {conversion.unit}".removesuffix(" 1")

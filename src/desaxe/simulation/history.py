@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 SAMPLES = 1001  # instants told where none are given
 
 
-def told(run: Run, names: Sequence[str], times: Any, given: Mapping[str, Any]) -> Simulation:
+def result_of(run: Run, names: Sequence[str], times: Any, given: Mapping[str, Any]) -> Simulation:
     """The result of a motion."""
     t = np.linspace(0.0, run.t, SAMPLES) if times is None else times[times <= run.t]
     theta, omega, alpha = _histories(run, t)

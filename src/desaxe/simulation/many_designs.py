@@ -80,7 +80,7 @@ def simulate_many(
     _run(
         kernel_of(family, torque), rows, setup, (t, np.array(how, dtype=np.float64)), outs, threads, deadline
     )
-    return _told(arrays, shape, t, outs, names, branch)
+    return _result(arrays, shape, t, outs, names, branch)
 
 
 def given_centres(given: Mapping[str, Any]) -> dict[str, Any]:
@@ -224,7 +224,7 @@ def _run(
     stopped_early(work, stop, deadline)
 
 
-def _told(
+def _result(
     arrays: Mapping[str, Array],
     shape: tuple[int, ...],
     t: Array,

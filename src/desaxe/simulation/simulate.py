@@ -21,7 +21,7 @@ from .checks import (
     read_until,
     scalar,
 )
-from .history import told
+from .history import result_of
 from .many_designs import is_array, simulate_many
 from .model import Load, Model
 from .one_design import Run, Tolerance
@@ -142,7 +142,7 @@ def simulate(
     with np.errstate(all="ignore"):  # values beyond every double end the motion with a status
         run.to_the_end()
     shown = {**values, "branch": branch, "F_X": drive.F_X, "F_Y": drive.F_Y}
-    return told(run, wanted, instants, shown)
+    return result_of(run, wanted, instants, shown)
 
 
 def _check_many(method: str, atol: Any, until: Any) -> None:

@@ -31,7 +31,7 @@ def seconds_of(parts: Sequence[AnyPart | PeakPart], axes: Mapping[str, NDArray[A
     return total
 
 
-def told(points: int, variables: int, stored: int, layout: Layout, seconds: float, free: int) -> str:
+def announcement(points: int, variables: int, stored: int, layout: Layout, seconds: float, free: int) -> str:
     """A line of text about a sweep before it starts."""
     return (
         f"{points:,} points, {variables} variables, at most {size_text(stored)} in {layout.chunks:,} chunks "

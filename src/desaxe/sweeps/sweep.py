@@ -18,7 +18,7 @@ from ..support.files import as_path
 from .best import Search, best_designs, search_for
 from .cluster import Crew, cluster, run_all
 from .cluster import threads as thread_crew
-from .estimate import seconds_of, told
+from .estimate import announcement, seconds_of
 from .kept import Kept
 from .layout import Layout, bytes_of
 from .meter import Meter, Watch
@@ -57,7 +57,7 @@ def stored_sweep(sweep: Sweep, store: str | PathLike[str], overwrite: bool, way:
         meter = Meter(sweep.points, way.watch)
         with closing(meter), _crew(sweep.layout, way) as crew:
             if absent and way.tell is not None:
-                way.tell(_told(sweep, root, crew.size))
+                way.tell(_announcement(sweep, root, crew.size))
             _write(sweep, root, crew, meter, _inner(crew, way))
         remove_strays(root)  # of workers that were killed
         sync_folders(root)
@@ -65,10 +65,10 @@ def stored_sweep(sweep: Sweep, store: str | PathLike[str], overwrite: bool, way:
     return open_store(root)
 
 
-def _told(sweep: Sweep, root: Path, cores: int) -> str:
+def _announcement(sweep: Sweep, root: Path, cores: int) -> str:
     seconds = seconds_of(sweep.parts, sweep.outer.axes, sweep.bytes) / cores
     variables = len(sweep.template.data_vars)
-    return told(sweep.points, variables, sweep.bytes, sweep.layout, seconds, free_at(root))
+    return announcement(sweep.points, variables, sweep.bytes, sweep.layout, seconds, free_at(root))
 
 
 def _crew(layout: Layout, way: Way) -> AbstractContextManager[Crew]:
@@ -113,13 +113,13 @@ def _ahead(crew: Crew) -> int:
 
 
 def _tasks(sweep: Sweep, root: Path | None, inner: int) -> Iterator[Task]:
-    layout, told = sweep.layout, (sweep.identity["version"], sweep.identity["digest"])
+    layout, versions = sweep.layout, (sweep.identity["version"], sweep.identity["digest"])
     scale = sweep.points // max(1, prod(layout.sizes.values()))
     for place in blocks_of(layout.sizes, layout.chunk):
         outputs, regions = _outputs(sweep, place)
         points = scale * prod(part.stop - part.start for part in regions.values())
         values = values_for(outputs, sweep.outer.axes, regions)
-        yield Task(str(root), outputs, values, points, inner, *told)
+        yield Task(str(root), outputs, values, points, inner, *versions)
 
 
 def unstored_sweep(sweep: Sweep, way: Way) -> "xr.Dataset":

@@ -77,23 +77,23 @@ class Drive(dict[str, Any]):
         return _conversion(self.units, name).unit.replace("*", " ")
 
     def _rows(self) -> list[tuple[str, str]]:
-        def told(name: str, angle: str | None = None) -> str:
+        def figure(name: str, angle: str | None = None) -> str:
             where = "" if angle is None or isnan(self[angle]) else f" at {self._angle(angle)}"
             return "-" if isnan(self[name]) else f"{self[name]:.6g} {self.unit(name)}{where}"
 
         turns = 60.0 / _conversion(self.units, "period").to_si(self["period"])
         return [
-            ("speed", f"{turns:.6g} rpm, {told('period')} a turn"),
-            ("torque, mean", told("torque_mean")),
-            ("torque, rms", told("torque_rms")),
-            ("torque, peak", told("torque_peak", "theta_peak")),
-            ("starting torque", told("starting_torque", "theta_start")),
-            ("power, mean", told("power_mean")),
-            ("power, peak", told("power_peak")),
-            ("work in, out", f"{told('work_in')}, {told('work_out')} a turn"),
+            ("speed", f"{turns:.6g} rpm, {figure('period')} a turn"),
+            ("torque, mean", figure("torque_mean")),
+            ("torque, rms", figure("torque_rms")),
+            ("torque, peak", figure("torque_peak", "theta_peak")),
+            ("starting torque", figure("starting_torque", "theta_start")),
+            ("power, mean", figure("power_mean")),
+            ("power, peak", figure("power_peak")),
+            ("work in, out", f"{figure('work_in')}, {figure('work_out')} a turn"),
             (
                 "flywheel",
-                f"{told('flywheel_inertia')} for a fluctuation of {100 * self['fluctuation']:.3g} %",
+                f"{figure('flywheel_inertia')} for a fluctuation of {100 * self['fluctuation']:.3g} %",
             ),
         ]
 

@@ -5,16 +5,13 @@ from typing import Any
 import numpy as np
 
 from ...mechanism.catalogue import quantity
+from ...mechanism.status import FitStatus
 from ...mechanism.unit_system import SI, Conversion, UnitSystem
 from ...support.extras import needed
 from .model import Model
 
-DONE, STOPPED, OPEN = range(3)
-WORDS = {
-    DONE: "converged",
-    STOPPED: "stopped at the limit of evaluations",
-    OPEN: "the data leave a combination of the unknowns open",
-}
+DONE, STOPPED, OPEN = map(int, FitStatus)
+WORDS = {int(status): status.words for status in FitStatus}
 
 
 class Fit(dict[str, Any]):

@@ -6,7 +6,7 @@ import numpy as np
 
 from .objectives import Goal, lower_limits, problems
 from .problem import UPPER, Array, Limit, Space
-from .result import SATISFIED, SETTLED, told
+from .result import SATISFIED, SETTLED, result_of
 from .search import Found, Search
 
 EDGES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # of the rod: how near to the limit of turning the search goes
@@ -29,7 +29,7 @@ def solved(goal: Goal, space: Space, limits: list[Limit], starts: int, seed: int
         if found.violation > SATISFIED or not at_edge or _power(history) > GROWS:
             break
         places = [found.z]
-    return told(goal, space, *best, _power(history) > GROWS)
+    return result_of(goal, space, *best, _power(history) > GROWS)
 
 
 def _best(

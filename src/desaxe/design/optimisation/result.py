@@ -14,7 +14,7 @@ SATISFIED = 1e-7  # of its scale: a limit that is broken by less is kept
 SETTLED = 1e-4  # residual of the optimality conditions
 
 
-def told(goal: Goal, space: Space, found: Found, search: Search, grows: bool) -> dict[str, Any]:
+def result_of(goal: Goal, space: Space, found: Found, search: Search, grows: bool) -> dict[str, Any]:
     """The result of `optimize` for one objective; `grows` where it does without bound towards the edge."""
     design = {name: float(x[0]) for name, x in space.designs(found.z).items() if name in space.names}
     active, multipliers = _named(space, found, search)

@@ -97,7 +97,7 @@ def synthesize(
         raise ValueError(f"time_ratio = {ratio}: the longer over the shorter stroke is at least 1")
     if ratio >= 3.0:
         why = f"time_ratio = {ratio:g}: below 3 wherever the crank turns fully"
-        return _told(third, value, slow_stroke, Answer([], *2 * (float("nan"),), why))
+        return _result(third, value, slow_stroke, Answer([], *2 * (float("nan"),), why))
     family = Family(H, pi * (ratio - 1.0) / (ratio + 1.0))
     if third == "peak_a_C":
         from .peak import of_peak
@@ -106,7 +106,7 @@ def synthesize(
         answer = of_peak(family, value, float(speed or 0.0), deadline)
     else:
         answer = _FORMS[third](family, value)
-    return _told(third, value, slow_stroke, answer)
+    return _result(third, value, slow_stroke, answer)
 
 
 def _wish(name: str, value: Any) -> float:
@@ -123,7 +123,7 @@ def _wish(name: str, value: Any) -> float:
     return number
 
 
-def _told(third: str, value: float, slow_stroke: int, answer: Answer) -> dict[str, Any]:
+def _result(third: str, value: float, slow_stroke: int, answer: Answer) -> dict[str, Any]:
     count = len(answer.designs)
     unit = (WANTED.get(third) or INPUTS[third]).unit
     message = f"{count} design{'s' if count != 1 else ''}"

@@ -66,8 +66,8 @@ def counterweight(
     forces = turn.values(FORCES, max(POINTS, 2 * (len(X) - 1)))
     z = forces["F_shaking_Y"] + 1j * forces["F_shaking_X"]
     turned = z + weight * np.exp(2j * pi * np.arange(z.size) / z.size)
-    before = _told(forward[1], backward[1], forward[2], backward[2], z)
-    after = _told(left, backward[1], forward[2], backward[2], turned)
+    before = _shaking(forward[1], backward[1], forward[2], backward[2], z)
+    after = _shaking(left, backward[1], forward[2], backward[2], turned)
     product = abs(weight) / speed**2
     result = {
         "product": float(product),
@@ -83,7 +83,7 @@ def counterweight(
     return result
 
 
-def _told(f: Any, b: Any, f2: Any, b2: Any, z: Any) -> dict[str, float]:
+def _shaking(f: Any, b: Any, f2: Any, b2: Any, z: Any) -> dict[str, float]:
     return {
         "X": float(abs(f - np.conj(b))),
         "Y": float(abs(f + np.conj(b))),
