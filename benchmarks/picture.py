@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SIZE = (9.0, 5.6)  # inches
-DASHES = {"desaxe fast": (0, (1, 1)), "desaxe standard": "-", "desaxe extended": (0, (4, 2))}
+DASHES = {"desaxe standard": "-", "desaxe extended": (0, (4, 2))}
 SHADES = ("#C44E00", "#8C564B", "#7F7F7F", "#BCBD22", "#9467BD", "#2CA02C", "#98DF8A", "#E377C2", "#D62728")
 
 

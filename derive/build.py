@@ -14,7 +14,7 @@ from desaxe.mechanism.names import CENTRES, LOADS, PARAMETERS, parts, sensitivit
 from .dynamics import FORCES, LUMPS, centres_sheet
 from .freeze import freeze
 from .motion import state_sheet
-from .polynomials import double_trigonometry, single_trigonometry, trigonometry
+from .polynomials import double_trigonometry, trigonometry
 from .quantities import FACTS, QUANTITIES, SECOND_ORDER, build_sheet
 from .sheet import Sheet, symbol
 
@@ -35,7 +35,6 @@ class Derivation(NamedTuple):
     centres: Program  # the lines of centres of mass that are halfway along their links
     names: tuple[str, ...]
     trigonometry: Trigonometry
-    single_trigonometry: Trigonometry  # for float32
     double_trigonometry: DoubleTrigonometry  # to twice the digits
 
 
@@ -75,7 +74,6 @@ def build() -> Derivation:
         *overlays,
         public_names(),
         trigonometry(),
-        single_trigonometry(),
         double_trigonometry(),
     )
 

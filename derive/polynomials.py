@@ -19,11 +19,6 @@ PARTS = 4  # so that angles next to a multiple of pi/2 keep all their digits
 TERMS = 6
 EXCHANGES = 8
 
-# For float32, whose angles are near a multiple of pi/2 only as far as its digits go.
-SINGLE_TURNS = 10
-SINGLE_PARTS = 3
-SINGLE_TERMS = 3
-
 # For twice the digits, with a third word: a term needs as many words as it is larger than 2^-130 or so.
 DOUBLE_TURNS = 30
 DOUBLE_PARTS = 5
@@ -33,23 +28,14 @@ DOUBLE_STEPS = (2.0**-28, 2.0**-80)  # of the first term: smaller ones need two 
 
 def trigonometry() -> Trigonometry:
     """The constants for doubles."""
-    return _trigonometry(TURNS, PARTS, TERMS, 53)
-
-
-def single_trigonometry() -> Trigonometry:
-    """The constants for float32."""
-    return _trigonometry(SINGLE_TURNS, SINGLE_PARTS, SINGLE_TERMS, 24)
-
-
-def _trigonometry(turns: int, parts: int, terms: int, digits: int) -> Trigonometry:
     with mp.workdps(60):
         return Trigonometry(
-            limit=float(mp.floor(2**turns * mp.pi / 2)),
+            limit=float(mp.floor(2**TURNS * mp.pi / 2)),
             two_over_pi=float(2 / mp.pi),
-            pi_half=_parts(mp.pi / 2, turns, parts, digits),
-            pi_half_words=_parts(mp.pi / 2, 0, 2, digits),
-            sine=_rounded(_minimax(_sine_rest, lambda z: mp.sin(mp.sqrt(z)) / (mp.sqrt(z) * z), terms)),
-            cosine=_rounded(_minimax(_cosine_rest, lambda z: mp.cos(mp.sqrt(z)) / z**2, terms)),
+            pi_half=_parts(mp.pi / 2, TURNS, PARTS),
+            pi_half_words=_parts(mp.pi / 2, 0, 2),
+            sine=_rounded(_minimax(_sine_rest, lambda z: mp.sin(mp.sqrt(z)) / (mp.sqrt(z) * z), TERMS)),
+            cosine=_rounded(_minimax(_cosine_rest, lambda z: mp.cos(mp.sqrt(z)) / z**2, TERMS)),
         )
 
 
@@ -81,11 +67,11 @@ def _in_words(coefficients: list[mpf]) -> tuple[tuple[float, ...], ...]:
     return tuple(found)
 
 
-def _parts(value: mpf, turns: int, count: int, digits: int = 53) -> tuple[float, ...]:
+def _parts(value: mpf, turns: int, count: int) -> tuple[float, ...]:
     """Split a value into `count` doubles; all but the last leave `turns` bits free for exact products."""
     parts = []
     for _ in range(count - 1):
-        scale = mpf(2) ** (digits - 1 - turns - mp.floor(mp.log(value, 2)))
+        scale = mpf(2) ** (52 - turns - mp.floor(mp.log(value, 2)))
         part = mp.floor(value * scale) / scale
         parts.append(float(part))
         value -= part

@@ -62,7 +62,7 @@ CONTENDERS = (
     Contender("C fast math", "with_c", "gcc", options=(("fast_math", True),)),
     *(
         Contender(f"desaxe {tier}", "with_desaxe", "desaxe", "desaxe", (("accuracy", tier),))
-        for tier in ("fast", "standard", "extended")
+        for tier in ("standard", "extended")
     ),
 )
 MACHINE = Contender(LIMITS, "with_nothing", "numba", "limit")

@@ -18,7 +18,7 @@ from desaxe.audit.times import times
 from desaxe.cli import main
 from desaxe.oracle.families import FAMILIES, points
 
-ALWAYS = ("desaxe fast", "desaxe standard", "desaxe extended", "NumPy lambdify", "numba", "mpmath 50 digits")
+ALWAYS = ("desaxe standard", "desaxe extended", "NumPy lambdify", "numba", "mpmath 50 digits")
 
 
 def found_without(name):

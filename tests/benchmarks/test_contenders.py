@@ -13,7 +13,6 @@ from desaxe.oracle.truth import truth
 
 HERE = [one for one in CONTENDERS if one.is_here]
 COUNTS = {"sweep": 9, "sweeps": 4 * 720, "grid": 40_000, "grid_out": 40_000, "peak": 3}
-CLOSE = {"desaxe fast": 2e-5}  # float32 throughout, V_C and a_C near their zeros
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
 
 
@@ -47,7 +46,7 @@ def test_values_are_the_truths(contender, work):
         point = point_of(inputs, index)
         for name, array in zip(work.names, found, strict=True):
             size = scale(name, dict(point))
-            assert array[index] == pytest.approx(float(exact(name, point)), **tolerance(contender, size))
+            assert array[index] == pytest.approx(float(exact(name, point)), **tolerance(size))
 
 
 def scale(name, point):
@@ -55,16 +54,15 @@ def scale(name, point):
     return OMEGA0 * (OMEGA0 if name.startswith("a_C") else 1.0) * point["AB"] / 0.1 ** name.count("wrt")
 
 
-def tolerance(contender, size):
-    close = CLOSE.get(contender.name, 1e-13)
-    return {"rel": close, "abs": close * size}
+def tolerance(size):
+    return {"rel": 1e-13, "abs": 1e-13 * size}
 
 
 @pytest.mark.parametrize("contender", HERE, ids=lambda one: one.name)
 def test_peaks_are_the_truths(contender):
     """A dense grid of 720 angles is as close as half a step allows; desaxe's are refined."""
     inputs, (values, angles) = answers(contender, BY_KEY["peak"])
-    close = 1e-4 if contender.kind == "textbook" else 2e-6 if "fast" in contender.name else 1e-12
+    close = 1e-4 if contender.kind == "textbook" else 1e-12
     for row, (value, angle) in enumerate(zip(values, angles, strict=True)):
         design = {name: float(column[row]) for name, column in inputs.columns.items()}
         best, where = largest(tuple(design.items()))

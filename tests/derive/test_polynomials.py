@@ -5,8 +5,8 @@ import math
 import mpmath
 import pytest
 
-from desaxe.derive.polynomials import double_trigonometry, single_trigonometry, trigonometry
-from desaxe.mechanism.constants import constants, double_constants, single_constants
+from desaxe.derive.polynomials import double_trigonometry, trigonometry
+from desaxe.mechanism.constants import constants, double_constants
 
 HALF_BIT = 2.0**-53
 ANGLES = [math.pi / 4 * k / 200 for k in range(1, 201)]
@@ -40,7 +40,6 @@ def test_the_cosine(made):
 # Constants, digits of the numbers that they reduce, bits of pi/2 in all.
 REDUCTIONS = {
     "double": (trigonometry, 53, 150),
-    "single": (single_trigonometry, 24, 50),
     "twice": (double_trigonometry, 53, 143),
 }
 
@@ -76,10 +75,3 @@ def test_those_of_twice_the_digits_are_taylors():
             assert error * (mpmath.pi / 4) ** (2 * k) < 2.0**-132
         after = 1 / mpmath.factorial(2 * len(made.sine) + 1)
         assert after * (mpmath.pi / 4) ** (2 * len(made.sine)) < 2.0**-135
-
-
-def test_those_of_float32():
-    made = single_trigonometry()
-    assert made == single_constants()
-    sine = worst(mpmath.sin, lambda y: y + y**3 * mpmath.polyval(made.sine[::-1], y * y))
-    assert HALF_BIT < sine < 2.0**-26

@@ -1,4 +1,4 @@
-"""The other accuracies: twice the digits rounded once, and float32."""
+"""The other accuracies: twice the digits rounded once, and an error that a user states."""
 
 import math
 import sys
@@ -10,8 +10,8 @@ import pytest
 import desaxe as dx
 from desaxe.oracle import force_truth
 from desaxe.oracle.families import FAMILIES, Rng, points
-from desaxe.oracle.truth import LAW, all_names, conditions, relative_error, truth_all, ulp_error
-from desaxe.runtime.accuracy import ACCURACIES, BOUNDS, accuracy_of
+from desaxe.oracle.truth import LAW, all_names, truth_all, ulp_error
+from desaxe.runtime.accuracy import ACCURACIES, accuracy_of
 from tests.evaluation.test_stress import bodies
 from tests.points import draw
 
@@ -193,24 +193,9 @@ def test_the_torque_in_extended(family):
             assert near or ulp_error(values[name], exact) <= 2, (name, loaded)
 
 
-@pytest.mark.thorough
-def test_fast_keeps_eight_ulp_of_float32_at_generic_points():
-    rows = [point for point in draw("generic", 60) if abs(point["theta"]) < 100]
-    columns = {name: np.tile([row[name] for row in rows], 60) for name in LAW}
-    answers = dx.evaluate(NAMES, accuracy="fast", **columns)
-    worst = {}
-    for index, row in enumerate(rows):
-        exact = truth_all(NAMES, **row)
-        for name, column in answers.items():
-            share = relative_error(float(column[index]), exact[name]) / (1 + conditions(name, **row))
-            worst[name] = max(worst.get(name, 0.0), share)
-    assert max(worst.values()) <= 8 * 2.0**-24
-    assert max(worst.values()) > BOUNDS["standard"]  # it is another kernel
-
-
 @pytest.mark.parametrize(
     ("asked", "kept"),
-    [(1e-3, "standard"), (1e-9, "standard"), (1e-15, "extended"), (1, "standard")]
+    [("fast", "standard"), (1e-3, "standard"), (1e-9, "standard"), (1e-15, "extended"), (1, "standard")]
     + [(name, name) for name in ACCURACIES],
 )
 def test_the_cheapest_that_keeps_an_error(asked, kept):
@@ -226,10 +211,11 @@ def test_an_accuracy_that_there_is_not(asked):
 def test_status_and_nan_are_those_of_standard():
     columns = {"theta": np.linspace(0, 7, 3000), "ec": 0.3, "AB": 0.125, "BC": 0.35, "omega0": 10.0}
     standard = dx.evaluate(["a_C", "status"], **columns)
-    for accuracy in ("fast", "extended"):
-        other = dx.evaluate(["a_C", "status"], accuracy=accuracy, **columns)
-        assert np.array_equal(other["status"], standard["status"])
-        assert np.array_equal(np.isnan(other["a_C"]), np.isnan(standard["a_C"]))
+    other = dx.evaluate(["a_C", "status"], accuracy="extended", **columns)
+    assert np.array_equal(other["status"], standard["status"])
+    assert np.array_equal(np.isnan(other["a_C"]), np.isnan(standard["a_C"]))
+    other = dx.evaluate(["a_C", "status"], accuracy="fast", **columns)
+    assert all(np.array_equal(other[name], standard[name], equal_nan=True) for name in standard)
 
 
 def test_an_angle_that_extended_cannot_reduce_is_told():

@@ -24,8 +24,7 @@ last digits of the inputs change anyway is not counted. 1 is that promise just k
 move. Errors below 2^-96 of the value's scale count as half an ulp at most; exact zeros have no ulp and are
 left out.
 
-Far angles, beyond a few hundred turns, `fast` computes as `standard` does. 50 digits are not enough for the
-textbook's formula everywhere.
+50 digits are not enough for the textbook's formula everywhere.
 
 `none` is the top of either scale: no digit is right, or there is no number where there is a value.
 """

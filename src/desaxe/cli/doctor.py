@@ -221,6 +221,6 @@ def _assembly() -> Iterator[str]:
     key = key_of(wanted, {}, columns, dict.fromkeys(INPUTS, 0), axes=1)
     njit: Any = import_module("numba").njit
     scope: dict[str, Any] = {}
-    exec(emit_numba(kernel_of(key), "A kernel.", False, TO_COMPILE), scope)
+    exec(emit_numba(kernel_of(key), "A kernel.", TO_COMPILE), scope)
     compiled = njit(scope["signature"], error_model="numpy", nogil=True)(scope["function"])
     yield from compiled.inspect_asm().values()

@@ -228,22 +228,19 @@ HELPERS = {
 _ROTATED = '''@intrinsic
 def NAME(typingctx, sine, cosine, quarters):
     """The WHAT of an angle and a whole number of quarter turns, from the angle's sine and cosine."""
-    kind = max((sine, cosine, quarters), key=lambda given: given.bitwidth)
-    wide = kind.bitwidth
-    whole = types.int64 if wide == 64 else types.int32
 
     def code(context, builder, signature, args):
         sine, cosine, quarters = args
-        integer = context.get_value_type(whole)
-        # Beyond 2^52 (2^23) the last bits of a number are those of the whole number that was added.
-        shift = context.get_constant(kind, 1.5 * 2.0 ** (52 if wide == 64 else 23))
+        integer = context.get_value_type(types.int64)
+        # Beyond 2^52 the last bits of a number are those of the whole number that was added.
+        shift = context.get_constant(types.float64, 1.5 * 2.0**52)
         bits = builder.bitcast(builder.fadd(quarters, shift), integer)
         odd = builder.trunc(bits, context.get_value_type(types.boolean))
         value = builder.bitcast(builder.select(odd, ODD, EVEN), integer)
-        sign = builder.shl(builder.lshr(TURNS, integer(1)), integer(wide - 1))
+        sign = builder.shl(builder.lshr(TURNS, integer(1)), integer(63))
         return builder.bitcast(builder.xor(value, sign), args[0].type)
 
-    return kind(kind, kind, kind), code
+    return types.float64(types.float64, types.float64, types.float64), code
 '''
 
 
@@ -263,13 +260,11 @@ NUMBA_HELPERS = {
 def mul_add(typingctx, a, b, c):
     """a * b + c, rounded once where the machine can, else twice."""
 
-    kind = max((a, b, c), key=lambda given: given.bitwidth)
-
     def code(context, builder, signature, args):
         a, b, c = args
         return builder.fadd(builder.fmul(a, b, flags=("contract",)), c, flags=("contract",))
 
-    return kind(kind, kind, kind), code
+    return types.float64(types.float64, types.float64, types.float64), code
 ''',
     "rotated_sin": _rotated("rotated_sin", "sine", "cosine", "bits"),
     "rotated_cos": _rotated("rotated_cos", "cosine", "sine", "builder.add(bits, integer(1))"),

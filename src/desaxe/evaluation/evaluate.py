@@ -62,9 +62,8 @@ def evaluate(
     mu       Coulomb friction of the slider's guide, against its motion or the one that alpha starts; where
              nothing moves or starts there is none: give a tiny omega0 for the torque that sets it going
     accuracy "standard": within 8 ulp x (1 + the sum of condition numbers), next to singular points too;
-             "extended": within 2 ulp, in pairs of doubles, 3 to 16 times the time; "fast": for arrays, in
-             float32, for points that are far from singular ones; or the error that you can bear, such as
-             1e-14, for the cheaper of the first two that keeps it
+             "extended": within 2 ulp, in pairs of doubles, 3 to 16 times the time; or the error that you can
+             bear, such as 1e-14, for the cheaper of the two that keeps it; "fast" is "standard"
     threads  for arrays: how many threads share the work, all that pay without
     out      for arrays: where to put the answer, an array or a dict name -> array
     quality  True: for each name, in place of the value, an object with `value`, `conditions` (input ->

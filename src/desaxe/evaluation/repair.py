@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanism.constants import constants, double_constants, single_constants
+from ..mechanism.constants import constants, double_constants
 from ..runtime.any_stride import Repair
 from ..runtime.kernels import KernelKey, has_near_limit, kernel_for
 from ..runtime.near_limit import decide
@@ -17,9 +17,7 @@ Array = NDArray[Any]
 
 def limit_of(accuracy: str) -> float:
     """The largest angle that the written-out sine and cosine of an accuracy reduce exactly."""
-    if accuracy == "extended":
-        return double_constants().limit
-    return single_constants().limit if accuracy == "fast" else constants().limit
+    return double_constants().limit if accuracy == "extended" else constants().limit
 
 
 def repair_for(

@@ -17,12 +17,6 @@ def constants() -> Trigonometry:
 
 
 @cache
-def single_constants() -> Trigonometry:
-    """Sine and cosine coefficients for float32."""
-    return Trigonometry(**import_module("desaxe.generated.trigonometry").SINGLE)
-
-
-@cache
 def double_constants() -> "DoubleTrigonometry":
     """Sine and cosine coefficients for double-double."""
     from ..compiler.passes.double_angles import DoubleTrigonometry

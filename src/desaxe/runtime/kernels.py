@@ -13,7 +13,7 @@ from ..compiler.languages.numba.reductions import emit_reduced
 from ..compiler.lowering import Limits, guarded_for_loops, guarded_pairs, nest, nest_of_two_forms
 from ..compiler.passes.trigonometry import Trigonometry
 from ..compiler.program import Line, Program
-from ..mechanism.constants import constants, double_constants, single_constants
+from ..mechanism.constants import constants, double_constants
 from ..mechanism.inputs import LEAST
 from ..mechanism.names import LENGTHS, LOADS
 from ..mechanism.program import Variant
@@ -65,8 +65,7 @@ def key_of(
 ) -> KernelKey:
     """The key of a request whose scalars and columns are known."""
     check_angle(wanted.accuracy, scalars.get("theta", 0.0))
-    limit = single_constants().limit if wanted.accuracy == "fast" else constants().limit
-    far = _exceed(columns.get("theta", scalars.get("theta", 0.0)), limit)
+    far = _exceed(columns.get("theta", scalars.get("theta", 0.0)), constants().limit)
     zeros = [(name, 0.0) for name in STRUCTURAL_ZEROS if scalars.get(name) == 0.0]
     fixed = (*wanted.fixed, *zeros)
     axis = tuple(sorted(axis_of.items()))
@@ -108,8 +107,8 @@ _LOCK = ForkSafeLock()
 def _is_seen(program: Program, angle: str) -> bool:
     """True if an invalid value may reach other lines than sine and cosine, which turn it into NaN."""
     types = {line.name: line.type for line in program.lines}
-    status = any(types.get(name) == "i64" for name in program.outputs)
-    return status or any(angle in line.args and line.op not in ("sin", "cos") for line in program.lines)
+    told = angle in program.outputs or any(types.get(name) == "i64" for name in program.outputs)
+    return told or any(angle in line.args and line.op not in ("sin", "cos") for line in program.lines)
 
 
 def is_ready(key: KernelKey) -> bool:
@@ -125,11 +124,6 @@ def kernel_for(key: KernelKey) -> CompiledKernel:
             found = _LOADED.get(key) or _load(key)
             _LOADED[key] = found
     return found
-
-
-def is_single(key: KernelKey) -> bool:
-    """True if the kernel computes in float32."""
-    return key.accuracy == "fast" and not key.far
 
 
 def has_near_limit(key: KernelKey) -> bool:
@@ -153,7 +147,7 @@ def kernel_of(key: KernelKey) -> Kernel:
     if key.form.wide_margins:
         return nest(_lowered_plain(program, varying, key), axes, key.axes)
     stable = counting(key) if has_near_limit(key) else program
-    checked = [name for name in varying if name in LENGTHS or _is_seen(stable, name)]
+    checked = [name for name in varying if name != "theta" or _is_seen(stable, name)]
     stable = guarded_for_loops(stable, checked, Limits(LEAST), _trigonometry(key))
     plain = plain_of(key)
     if plain is None:
@@ -194,7 +188,7 @@ def seen_inputs(program: Program, varying: Sequence[str]) -> list[str]:
 
 def _trigonometry(key: KernelKey) -> Trigonometry | None:
     """The coefficients of a kernel's sine and cosine; None if angles exceed their range."""
-    return None if key.far else single_constants() if is_single(key) else constants()
+    return None if key.far else constants()
 
 
 def source_of(key: KernelKey) -> str:
@@ -204,8 +198,8 @@ def source_of(key: KernelKey) -> str:
     motion = "a given state" if key.form.state else "paper A's law"
     docstring = f"desaxe kernel: {', '.join(key.names)}; {motion}; {fixed}."
     if key.reduce:
-        return emit_reduced(kernel, key.reduce, docstring, is_single(key))
-    return emit_numba(kernel, docstring, is_single(key), TO_COMPILE)
+        return emit_reduced(kernel, key.reduce, docstring)
+    return emit_numba(kernel, docstring, TO_COMPILE)
 
 
 def is_on_disk(key: KernelKey) -> bool:

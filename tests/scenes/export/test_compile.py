@@ -43,7 +43,6 @@ SCENES = {
     "state": STATE,
     "forces": FORCES,
     "extended": {**STATE, "accuracy": "extended"},
-    "fast": {**GRID, "accuracy": "fast"},
     "one_axis": {**SMALL, "mechanism": {"ec": 0, "AB": 0.125, "BC": 0.35}},
     "one_row_reduced": {
         **SMALL, "mechanism": {"ec": 0, "AB": 0.125, "BC": 0.35}, "reduce": {"theta": "absmax"}
@@ -110,14 +109,8 @@ def alone():
 
 
 def same(name, found, wanted):
-    """Bit for bit; in float32, where constants are folded in doubles, to its digits.
-
-    One point alone is computed in the stable form, whatever the design.
-    """
-    if name == "fast" and found.dtype.kind == "f":
-        scale = np.nanmax(np.abs(wanted), initial=0.0)
-        np.testing.assert_allclose(found, wanted, rtol=1e-3, atol=1e-5 * scale)
-    elif name == "no_axis":
+    """Bit for bit; one point alone is computed in the stable form, whatever the design."""
+    if name == "no_axis":
         np.testing.assert_allclose(found, wanted, rtol=1e-14)
     else:
         np.testing.assert_array_equal(found, wanted)
@@ -158,7 +151,7 @@ def test_arrays_are_those_of_evaluate(name, alone, monkeypatch):
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", [name for name in SCENES if name != "fast"])
+@pytest.mark.parametrize("name", SCENES)
 def test_one_point_is_that_of_evaluate(name, alone):
     names = list(alone[name]["number"])
     one = {n: v[0] for n, v in points_of(SCENES[name]).items()}
@@ -175,7 +168,7 @@ def test_scalars_are_those_of_evaluate(name, alone):
     names = list(alone[name]["number"])
     one = {n: v[0] for n, v in points_of(SCENES[name]).items()}
     inputs = {**inputs_of(SCENES[name]), **one}
-    wanted = dx.evaluate(names, **{**inputs, "accuracy": inputs["accuracy"].replace("fast", "standard")})
+    wanted = dx.evaluate(names, **inputs)
     found = [float.fromhex(text) for text in alone[name]["scalars"]]
     np.testing.assert_allclose(found, [float(wanted[n]) for n in names], rtol=1e-14)
 

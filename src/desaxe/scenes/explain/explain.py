@@ -16,7 +16,7 @@ from ...mechanism.catalogue import quantity
 from ...mechanism.constants import double_constants
 from ...mechanism.inputs import INPUTS
 from ...mechanism.program import digest
-from ...runtime.kernels import KernelKey, is_ready, is_single, kernel_of, source_of
+from ...runtime.kernels import KernelKey, is_ready, kernel_of, source_of
 from ...runtime.modules import path_of
 from ...runtime.specialise import specialise
 from ...runtime.threads import LEAST_BLOCK, available
@@ -33,7 +33,6 @@ from .steps import skipped_of, steps_of
 from .total import costs_of
 
 PROMISES = {
-    "fast": "float32 throughout, for points far from singular ones: no promise next to a change point",
     "standard": "at most 8 ulp x (1 + the sum of the condition numbers), wherever it can be assembled",
     "extended": "2 ulp, but for the last double inside a limit angle, with a floor of 2^-96 of the scale",
 }
@@ -218,7 +217,6 @@ def _run(content: Content, found: GridKernel, loops: list[Loop], compiled: bool)
         "way": "compiled" if compiled else "plain Python",
         "tier": tier_ahead(found.key, found.points),
         "break_even": BREAK_EVEN,
-        "float32": is_single(found.key),
         "far_angles": found.key.far,
         "wide_margins": found.key.form.wide_margins,
         "threads": threads if compiled else 1,

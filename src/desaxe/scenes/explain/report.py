@@ -158,8 +158,7 @@ def _how(plan: Mapping[str, Any]) -> str:
             "no": "not compiled yet; kept on disk afterwards",
         }[run["cached"]]
         threads = f"{run['threads']} threads" if run["threads"] > 1 else "one thread"
-        width = "float32" if run["float32"] else "float64"
-        lines.append(f"  kernel   compiled with numba in {width}, {threads}: {told}")
+        lines.append(f"  kernel   compiled with numba in float64, {threads}: {told}")
         lines.append(
             f"  why      {points}; from {run['break_even']:,} on (requested in one process) a kernel pays"
         )

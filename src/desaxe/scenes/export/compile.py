@@ -22,11 +22,11 @@ from ...compiler.program import Program
 from ...loads.load import TableOverTheta
 from ...loads.resolve import Plan, plan_of, split
 from ...mechanism.catalogue import quantity
-from ...mechanism.constants import constants, double_constants, single_constants
+from ...mechanism.constants import constants, double_constants
 from ...mechanism.inputs import INPUTS, LEAST
 from ...mechanism.names import ORDER
 from ...mechanism.program import digest
-from ...runtime.kernels import KernelKey, is_single, kernel_of
+from ...runtime.kernels import KernelKey, kernel_of
 from ...runtime.specialise import specialise
 from ...runtime.written import replacing_ours, require_ours
 from ...support.files import as_path, check_target, require_writable
@@ -318,20 +318,14 @@ def _scalars(key: KernelKey, shown: tuple[str, ...], inputs: tuple[str, ...]) ->
 def _kernels(key: KernelKey, inputs: tuple[str, ...], sources: list[str]) -> Kernel:
     """Append the sources of the array and the grid kernel; return the latter, which has the input order."""
     points = key._replace(axis_of=tuple((n, 0) for n in sorted(inputs)), axes=1, reduce=())
-    single = is_single(key)
     own = _prefixed("point")
     kernel = kernel_of(points)
-    sources.append(renamed(emit_numba(kernel, "Points.", single, LAZY), own))
+    sources.append(renamed(emit_numba(kernel, "Points.", LAZY), own))
     if key.axes == 1:
         return kernel
     grid = kernel_of(key)
     own = _prefixed("grid")
-    if key.reduce:
-        text = emit_reduced(grid, key.reduce, "", single, LAZY_REDUCED)
-    else:
-        text = emit_numba(grid, "", single, LAZY)
-    if single:  # constants of float32 have names of their own in each module
-        own |= {f"k{index}": f"grid_k{index}" for index in range(1000)}
+    text = emit_reduced(grid, key.reduce, "", LAZY_REDUCED) if key.reduce else emit_numba(grid, "", LAZY)
     sources.append(renamed(text, own))
     return grid
 
@@ -353,9 +347,7 @@ def _shared(sources: list[str]) -> list[str]:
 
 def _limit(key: KernelKey) -> float:
     """The largest angle that the written-out sine and cosine reduce exactly."""
-    if key.accuracy == "extended":
-        return double_constants().limit
-    return single_constants().limit if key.accuracy == "fast" else constants().limit
+    return double_constants().limit if key.accuracy == "extended" else constants().limit
 
 
 def _outputs(shown: tuple[str, ...]) -> str:

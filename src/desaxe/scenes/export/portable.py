@@ -91,11 +91,11 @@ def _facts(
     content: Content, asked: Request, fixed: Fixed, arguments: Iterable[str], order: Order
 ) -> tuple[str, ...]:
     """Accuracy, frame, what is folded in and what is left out."""
-    kept = "standard" if content.accuracy == "fast" else content.accuracy
     numbers = [f"{n} = {value!r} {INPUTS[n].unit}".removesuffix(" 1") for n, value in fixed if n in INPUTS]
     branch = dict(fixed)["branch"]
     lines = [
-        f"Accuracy {kept}; SI units and radians. Y points along the slider axis towards the slider,",
+        f"Accuracy {content.accuracy}; SI units and radians. "
+        "Y points along the slider axis towards the slider,",
         f"theta turns from +Y towards +X. {'A given state' if asked.form.state else 'Constant alpha'}; "
         f"branch {branch:+.0f}.",
     ]

@@ -15,7 +15,7 @@ from textwrap import wrap
 
 from ...kernel import Kernel, level_program, stable_branch_programs
 from ...operations import HELPERS, NUMBA_HELPERS, OPERATIONS
-from ...program import Argument, Line, Program
+from ...program import Line, Program
 from ...text import INDENT, WIDTH, write_lines
 from .two_forms import has_two_forms, inner_loops, rooms, scratch
 
@@ -48,46 +48,9 @@ def apart(typingctx):
 _INPUT = 'axis = types.Array(types.float64, 1, "C", readonly=True)\n'
 
 
-def emit_numba(kernel: Kernel, docstring: str, single: bool = False, tail: str = _COMPILE) -> str:
-    """The source of the module; `single` computes in float32, from doubles to doubles.
-
-    `tail` says what becomes of `loops` and its `signature`: a module of its own compiles them.
-    """
-    if not single:
-        return "\n\n".join([_header(kernel, docstring, []), *_helpers(kernel), _function(kernel, tail)])
-    kernel, constants = _named_constants(kernel)
-    rows = "\n".join(f"{name} = float32({value!r})" for value, name in constants.items())
-    names = ["float32", *(word for word in ("inf", "nan") if word in map(repr, constants))]
-    return "\n\n".join(
-        [
-            _header(kernel, docstring, names) + rows + "\n",
-            *_helpers(kernel),
-            _function(kernel, tail, "float32"),
-        ]
-    )
-
-
-def _named_constants(kernel: Kernel) -> tuple[Kernel, dict[float, str]]:
-    """The kernel with its real constants as names: numba takes a number in the text for a double."""
-    names: dict[float, str] = {}
-
-    def named(argument: Argument) -> Argument:
-        if not isinstance(argument, float):
-            return argument
-        known = next((n for value, n in names.items() if repr(value) == repr(argument)), "")
-        return known or names.setdefault(argument, f"k{len(names)}")
-
-    def body(lines: tuple[Line, ...]) -> tuple[Line, ...]:
-        return tuple(line._replace(args=tuple(map(named, line.args))) for line in lines)
-
-    def nest(kernel: Kernel) -> Kernel:
-        close = kernel.close
-        if close is not None:
-            close = close._replace(lines=body(close.lines), test_lines=body(close.test_lines))
-        tables = tuple(table._replace(kernel=nest(table.kernel)) for table in kernel.tables)
-        return kernel._replace(levels=tuple(map(body, kernel.levels)), tables=tables, close=close)
-
-    return nest(kernel), names
+def emit_numba(kernel: Kernel, docstring: str, tail: str = _COMPILE) -> str:
+    """The source of the module; `tail` says what becomes of `loops` and its `signature`."""
+    return "\n\n".join([_header(kernel, docstring, []), *_helpers(kernel), _function(kernel, tail)])
 
 
 def emit_numba_with_front(kernel: Kernel, docstring: str, front: str, optional: Container[str] = ()) -> str:
@@ -154,7 +117,7 @@ def _called(op: str) -> str:
     return name if bracket and name not in HELPERS else ""
 
 
-def _function(kernel: Kernel, tail: str, cast: str = "") -> str:
+def _function(kernel: Kernel, tail: str) -> str:
     """The loops as a plain function, and what the tail makes of it."""
     types = ["types.float64" if axis is None else "axis" for axis in kernel.inputs.values()]
     shape = ", ".join([":"] * (kernel.axes - 1) + ["::1"])
@@ -166,7 +129,7 @@ def _function(kernel: Kernel, tail: str, cast: str = "") -> str:
             "def loops(",
             *(f"{INDENT}{name}," for name in names),
             "):",
-            *_body(kernel, cast),
+            *_body(kernel),
             f"\n\nsignature = types.{'int64' if counts(kernel) else 'void'}(",
             *(INDENT + row for row in rows),
             ")",
@@ -185,26 +148,23 @@ def _parameters(kernel: Kernel) -> list[str]:
     return [name if axis is None else f"{name}_axis" for name, axis in kernel.inputs.items()]
 
 
-def _body(kernel: Kernel, cast: str) -> list[str]:
-    """The loops, those of the tables first; every input is cast where it is read."""
-    scalars = [name for name, axis in kernel.inputs.items() if axis is None and cast]
+def _body(kernel: Kernel) -> list[str]:
+    """The loops, those of the tables first."""
     lines = [f"{INDENT}apart()"] if kernel.axes else []
-    lines += [f"{INDENT}{name} = {cast}({name})" for name in scalars]
     lines += [INDENT + row for row in scratch(kernel)]
     lines += [f"{INDENT}undecided = 0"] if counts(kernel) else []
     everywhere = tuple(range(kernel.axes))
     for table in kernel.tables:
         shape = ", ".join(f"out_{kernel.outputs[0]}.shape[{axis}]" for axis in table.along)
         lines += [f"{INDENT}{name}_table = empty(({shape},))" for name in table.kernel.outputs]
-        lines += _loops(table.kernel, cast, table.along, kernel.outputs[0], {}, "{}_table")
+        lines += _loops(table.kernel, table.along, kernel.outputs[0], {}, "{}_table")
     reads = {name: table.along for table in kernel.tables for name in table.kernel.outputs}
-    lines += _loops(kernel, cast, everywhere, kernel.outputs[0], reads, "out_{}")
+    lines += _loops(kernel, everywhere, kernel.outputs[0], reads, "out_{}")
     return [*lines, f"{INDENT}return undecided"] if counts(kernel) else lines
 
 
 def _loops(
     kernel: Kernel,
-    cast: str,
     along: tuple[int, ...],
     measure: str,
     reads: Mapping[str, tuple[int, ...]],
@@ -217,12 +177,10 @@ def _loops(
         # sign cannot count from the end: where LLVM has to allow for that, it mistakes arrays that lie
         # next to each other in memory for overlapping ones, and a long loop then runs one by one.
         length = f"uint64(out_{measure}.shape[{axis}])"
-        read = f"{cast}({{0}}_axis[i{axis}])" if cast else f"{{0}}_axis[i{axis}]"
-        loads = {name: read.format(name) for name, on in kernel.inputs.items() if on == depth}
-        tables = {name: f"{name}_table[{_index(on)}]" for name, on in reads.items() if on[-1] == axis}
-        loads |= {name: f"{cast}({text})" if cast else text for name, text in tables.items()}
+        loads = {name: f"{name}_axis[i{axis}]" for name, on in kernel.inputs.items() if on == depth}
+        loads |= {name: f"{name}_table[{_index(on)}]" for name, on in reads.items() if on[-1] == axis}
         if kernel.close is not None and depth == len(along) - 1:
-            return lines + [INDENT * (depth + 1) + row for row in inner_loops(kernel, length, loads, cast)]
+            return lines + [INDENT * (depth + 1) + row for row in inner_loops(kernel, length, loads)]
         lines.append(f"{INDENT * (depth + 1)}for i{axis} in range({length}):")
         lines += [f"{INDENT * (depth + 2)}{name} = {text}" for name, text in loads.items()]
         lines += _indented(level_program(kernel, depth + 1), depth + 2)

@@ -138,7 +138,6 @@ def emit_reduced(
     kernel: Kernel,
     kinds: Sequence[str],
     docstring: str,
-    single: bool = False,
     tails: tuple[str, str] = TO_COMPILE,
 ) -> str:
     """The source of a module whose `reduced(*inputs, length, *outputs)` reduces the innermost axis.
@@ -152,7 +151,7 @@ def emit_reduced(
     imports = "from math import frexp, inf, nan, sqrt\n\nfrom numpy import empty, full, int64, zeros"
     return "\n\n".join(
         [
-            emit_numba(kernel, docstring, single, tails[0]).rstrip() + "\n",
+            emit_numba(kernel, docstring, tails[0]).rstrip() + "\n",
             f"# Reductions of the innermost axis.\n{imports}\n",
             *helpers,
             _driver(kernel, kinds, tails[1]),

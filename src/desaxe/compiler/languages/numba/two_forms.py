@@ -168,11 +168,8 @@ def _kept(kernel: Kernel) -> list[str]:
     return [*(name for name, axis in kernel.inputs.items() if axis == last), *tables]
 
 
-def inner_loops(kernel: Kernel, length: str, loads: Mapping[str, str], cast: str) -> list[str]:
-    """The text of the innermost loop over `length` points; `loads` has what each of them reads.
-
-    `cast` is applied to what is read back from the points kept; "" for none.
-    """
+def inner_loops(kernel: Kernel, length: str, loads: Mapping[str, str]) -> list[str]:
+    """The text of the innermost loop over `length` points; `loads` has what each of them reads."""
     if kernel.close is None:
         raise ValueError("this kernel has one form")
     read = [f"{name} = {text}" for name, text in loads.items()]
@@ -183,7 +180,7 @@ def inner_loops(kernel: Kernel, length: str, loads: Mapping[str, str], cast: str
         *_stores(kernel, kernel.outputs),
     ]
     if has_two_forms(kernel):
-        return _mixed(kernel, kernel.close, length, loads, plain, cast)
+        return _mixed(kernel, kernel.close, length, loads, plain)
     lines = write_lines(stable_branch_programs(kernel)[1], "numba")
     tally = [f"tally += 1 if {undecided} else 0"] if undecided else []
     stable = [*read, *lines, *tally, *_stores(kernel, kernel.close.outputs)]
@@ -215,7 +212,6 @@ def _mixed(
     length: str,
     loads: Mapping[str, str],
     plain: list[str],
-    cast: str,
 ) -> list[str]:
     """Blocks: all points in the plain form, then those that fail the test in the stable one."""
     here, block = f"i{kernel.axes - 1}", block_of(kernel)
@@ -246,7 +242,7 @@ def _mixed(
         f"{INDENT * 2}most = size == uint64({block}) and count >= uint64({block - block // 4})",
         *_under("if most:", gathered[0], 2),
         *_under("else:", gathered[1], 2),
-        *(INDENT * 2 + row for row in _stable_loop(kernel, close, stable, cast)),
+        *(INDENT * 2 + row for row in _stable_loop(kernel, close, stable)),
         *_under("if most:", back[0], 2),
         *_under("else:", back[1], 2),
     ]
@@ -267,10 +263,9 @@ def _gathered(kernel: Kernel, loads: Mapping[str, str]) -> tuple[list[str], list
     return every, [*_PLACES, *some]
 
 
-def _stable_loop(kernel: Kernel, close: StableBranch, stable: list[str], cast: str) -> list[str]:
+def _stable_loop(kernel: Kernel, close: StableBranch, stable: list[str]) -> list[str]:
     """The stable form of the points that are kept."""
-    read = f"{cast}(get({{}}_kept, k))" if cast else "get({}_kept, k)"
-    body = [f"{name} = {read.format(name)}" for name in _kept(kernel)] + stable
+    body = [f"{name} = get({name}_kept, k)" for name in _kept(kernel)] + stable
     pairs = zip(kernel.outputs, close.outputs, strict=True)
     body += [f"put(out_{name}_kept, k, {value})" for name, value in pairs]
     tally = [f"tally += 1 if {close.undecided} else 0"] if close.undecided else []
