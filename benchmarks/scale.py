@@ -1,7 +1,8 @@
 """Growth of the cost of a sweep: `python -m benchmarks.scale --write` writes docs/scale.md.
 
 Every row is a process of its own, whose peak memory is the system's figure for it. Kernels are compiled
-before they are timed. `--most 1e9` goes on to larger sweeps, as far as the disk has room.
+before they are timed. A sweep of ten times the points follows while the disk has room for it, and it takes
+`--seconds` at most at the rate of the last one; what was not run is told as extrapolated.
 """
 
 import argparse
@@ -31,6 +32,7 @@ SENSITIVE = [
     "a_C_wrt_BC_BC",
 ]
 BEGIN, END = "<!-- written by `python -m benchmarks.scale --write`: begin -->", "<!-- end -->"
+WORKERS_POINTS = 4 * 10**8
 FEW_CHUNKS, MANY_CHUNKS = 10, 400  # of the same million points
 
 
@@ -116,41 +118,66 @@ def measured(spec: dict[str, Any]) -> dict[str, float]:
     return found
 
 
-def all_measured(most: int, at: str) -> dict[str, Any]:
+def all_measured(seconds: float, at: str) -> dict[str, Any]:
     """Every table of the page."""
-    stored = [10**k for k in range(6, 11) if 10**k <= most]
-    reduced = [10**k for k in range(7, 12) if 10**k <= 10 * most]
-    found: dict[str, Any] = {"stored": [], "reduced": [], "workers": {}}
-    for points in stored:
-        found["stored"].append(measured({"kind": "stored", "points": points, "at": at}))
-        print("stored", found["stored"][-1], file=sys.stderr)
-    for points in reduced:
-        found["reduced"].append(measured({"kind": "reduced", "points": points}))
-        print("reduced", found["reduced"][-1], file=sys.stderr)
+    found: dict[str, Any] = {"load": os.getloadavg()[0], "free": shutil.disk_usage(at).free}
+    found["stored"] = _grown("stored", 10**6, 10**9, seconds, at)
+    found["reduced"] = _grown("reduced", 10**7, 10**10, seconds, at)
     theta = inputs(10**6)["theta"].size
     times = []
     for count in (FEW_CHUNKS, MANY_CHUNKS):
         spec = {"kind": "stored", "points": 10**6, "chunk": -(-theta // count), "threads": 1, "at": at}
         times.append(min(measured(dict(spec))["seconds"] for _ in range(3)))
     found["chunk"] = (times[1] - times[0]) / (MANY_CHUNKS - FEW_CHUNKS)
+    found["workers"] = {}
     for workers in (1, 2):
-        found["workers"][workers] = measured({"kind": "workers", "points": 2 * 10**8, "workers": workers})
+        spec = {"kind": "workers", "points": WORKERS_POINTS, "workers": workers}
+        found["workers"][workers] = measured(spec)
         print("workers", found["workers"][workers], file=sys.stderr)
     return found
 
 
-def text_of(found: dict[str, Any], at: str) -> str:
+def _grown(kind: str, points: int, most: int, seconds: float, at: str) -> list[dict[str, float]]:
+    """Measurements of ten times as many points each, up to `most`, while time and disk allow."""
+    rows = [measured({"kind": kind, "points": points, "at": at})]
+    while rows[-1]["points"] < 0.5 * most and _is_affordable(rows[-1], seconds, at):
+        rows.append(measured({"kind": kind, "points": points * 10 ** len(rows), "at": at}))
+        print(kind, rows[-1], file=sys.stderr)
+    return rows
+
+
+def _is_affordable(row: dict[str, float], seconds: float, at: str) -> bool:
+    """True if ten times a measurement fits into the time and, with a third to spare, on the disk."""
+    return 10 * row["seconds"] <= seconds and 13 * row["disk"] <= shutil.disk_usage(at).free
+
+
+def _minutes(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min"
+
+
+def _lookout(rows: list[dict[str, float]], points: float, stored: bool) -> str:
+    """Time, and disk if there is any, of so many points: as measured, or extrapolated."""
+    last = rows[-1]
+    share = points / last["points"]
+    time = _minutes(share * last["seconds"])
+    disk = f" and {share * last['disk'] / 1e9:.0f} GB" if stored else ""
+    return f"{points:.0e} points {time}{disk} ({'measured' if share < 1.1 else 'extrapolated'})"
+
+
+def text_of(found: dict[str, Any]) -> str:
     """The measured part of the page."""
     one, two = (found["workers"][k]["seconds"] for k in (1, 2))
-    last, largest = found["stored"][-1], found["reduced"][-1]
-    rate, byte = last["points"] / last["seconds"], last["disk"] / last["points"]
-    fast = largest["points"] / largest["seconds"]
-    free = shutil.disk_usage(at).free
+    last = found["stored"][-1]
+    rate, chunk = last["points"] / last["seconds"], found["chunk"]
+    quiet = found["load"] < 0.7
+    state = "with nothing else to do" if quiet else f"while it had other work (a load of {found['load']:.1f})"
+    noise = "" if quiet else ": times vary by half between runs, memory and disk do not"
+    stored = [_lookout(found["stored"], points, True) for points in (1e9, 1e10)]
     return "\n".join([
         BEGIN,
         "",
         f"Measured on {platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}, "
-        "while the machine had other work: times vary by half between runs, memory and disk do not.",
+        f"{state}{noise}.",
         "",
         f"Stored: {', '.join(f'`{name}`' for name in NAMES)}, `status` and `margin` over theta, ec and BC.",
         "",
@@ -176,19 +203,17 @@ def text_of(found: dict[str, Any], at: str) -> str:
         f"{found['workers'][1]['points']:.0e} points: {one:.1f} s on one Dask worker, {two:.1f} s on two, "
         f"{one / two:.2f} times as fast.",
         "",
-        f"A chunk costs {1e3 * found['chunk']:.0f} ms besides its points: to hand it out, look whether it is "
+        f"A chunk costs {1e3 * chunk:.0f} ms besides its points: to hand it out, look whether it is "
         f"there, and write {len(NAMES) + 1} files that survive a power failure.",
         "",
         "What follows, at these rates:",
         "",
-        f"* 1e9 points stored take {1e9 / rate / 60:.0f} min and {1e9 * byte / 1e9:.0f} GB, 1e10 points "
-        f"{1e10 / rate / 60:.0f} min and {1e10 * byte / 1e9:.0f} GB; {free / 1e9:.0f} GB were free here. "
+        f"* Stored: {', '.join(stored)}; {found['free'] / 1e9:.0f} GB were free here. "
         "Memory does not grow with the points.",
-        f"* 1e10 points reduced take {1e10 / fast / 60:.0f} min, and next to no disk: reduce, or ask for the "
+        f"* Reduced: {_lookout(found['reduced'], 1e10, False)}, and next to no disk: reduce, or ask for the "
         "best designs, unless every point is wanted.",
-        f"* Chunks of a million points or more keep the cost of chunks below "
-        f"{100 * found['chunk'] / (found['chunk'] + 1e6 / rate):.0f} % of a stored sweep; ten thousand "
-        f"points would be {100 * found['chunk'] / (found['chunk'] + 1e4 / rate):.0f} %.",
+        f"* The cost of chunks is {_share(chunk, 1e6, rate)} of a stored sweep with a million points a "
+        f"chunk, {_share(chunk, 1e4, rate)} with ten thousand.",
         "* More workers pay while each has a core of its own and the disk keeps up: a stored sweep is bound "
         "by compressing and writing, a reduced one by the cores.",
         "",
@@ -196,10 +221,14 @@ def text_of(found: dict[str, Any], at: str) -> str:
     ])  # fmt: skip
 
 
+def _share(chunk: float, points: float, rate: float) -> str:
+    return f"{100 * chunk / (chunk + points / rate):.0f} %"
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Measure, print the text, and write it into the page if asked to."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.scale", description=__doc__)
-    parser.add_argument("--most", type=float, default=1e8, help="points of the largest stored sweep")
+    parser.add_argument("--seconds", type=float, default=270.0, help="the longest of the sweeps (270)")
     parser.add_argument(
         "--at", default=tempfile.gettempdir(), help="the folder for stores, removed afterwards"
     )
@@ -209,7 +238,7 @@ def main(arguments: list[str] | None = None) -> int:
     if options.job:
         print(json.dumps(job(json.loads(options.job))))
         return 0
-    text = text_of(all_measured(int(options.most), options.at), options.at)
+    text = text_of(all_measured(options.seconds, options.at))
     print(text)
     if options.write:
         page = PAGE.read_text(encoding="utf-8")

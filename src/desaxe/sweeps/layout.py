@@ -12,7 +12,7 @@ from ..support.shown import shown
 DEFAULT_MEMORY = 256_000_000  # bytes of the chunks in flight
 IN_FLIGHT = 2  # chunks at once that an automatic layout leaves memory for
 STORED = 2**21  # points of a stored chunk: 16 MiB of doubles
-REDUCED = (2**22, 2**26)  # points of the grid behind a chunk of a reduced one
+REDUCED = (2**23, 2**26)  # points of the grid behind a chunk of a reduced one
 SHARES = 64  # chunks into which a reduced grid is cut if that keeps it between these
 WRITING = 3 * 8  # bytes a point while an array is written: copied, compressed, and masked
 UNITS = {"": 1, "B": 1, "kB": 10**3, "MB": 10**6, "GB": 10**9, "TB": 10**12,
