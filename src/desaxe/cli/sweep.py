@@ -50,6 +50,7 @@ def add_sweep(commands: Any) -> None:
 def _sweep(options: argparse.Namespace) -> int:
     from ..scenes.scene import scene
     from ..sweeps.sweep import NotStoredError
+    from ..sweeps.tasks import VersionError
 
     wanted = scene(options.scene)
     if options.store is None and wanted.content.store is None and options.best is None:
@@ -61,6 +62,8 @@ def _sweep(options: argparse.Namespace) -> int:
     except NotStoredError as error:
         print(error.result.to_dataframe().to_string(), flush=True)
         raise
+    except VersionError as error:
+        raise UsageError(str(error)) from None
     if options.best is not None:
         print(found.to_dataframe().to_string())
     place = options.store or (wanted.content.store if options.best is None else None)

@@ -31,19 +31,18 @@ def threads(count: int) -> Iterator[Crew]:
 
 @contextmanager
 def cluster(client: Any) -> Iterator[Crew]:
-    """The workers of a Dask client, once each of them is known to have this desaxe."""
+    """The workers of a Dask client."""
+    with client.get_executor(pure=False) as executor:
+        yield Crew(executor, max(1, sum(client.nthreads().values())))
+
+
+def require_workers(client: Any) -> None:
+    """Refuse what is no client, a cluster without workers, and by name workers with another desaxe."""
     with needed("client="):
         import distributed
 
     if not isinstance(client, distributed.Client):
         raise TypeError(f"client = {client!r}: expected a distributed.Client")
-    _check_workers(client)
-    with client.get_executor(pure=False) as executor:
-        yield Crew(executor, max(1, sum(client.nthreads().values())))
-
-
-def _check_workers(client: Any) -> None:
-    """Refuse a cluster without workers, and name the workers that have another desaxe."""
     if not client.nthreads():
         client.wait_for_workers(1, timeout=30)
     answers = client.run(check_version, desaxe_version(), digest(), on_error="return")

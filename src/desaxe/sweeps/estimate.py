@@ -13,6 +13,7 @@ from .peaks import PeakPart
 
 TRIAL = 2**17  # points of a trial
 STORING = 6e-9  # s to compress, check and write a byte, on one core
+CHUNK = 2.5e-3  # s for the file of a chunk of a variable, besides its bytes
 
 
 def seconds_of(parts: Sequence[AnyPart | PeakPart], axes: Mapping[str, NDArray[Any]], stored: int) -> float:

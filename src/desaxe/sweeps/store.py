@@ -64,9 +64,11 @@ def write_durably(path: Path, data: bytes) -> None:
             file.flush()
             os.fsync(file.fileno())
         os.replace(partial, path)
-    except BaseException:
+    except BaseException as error:
         with suppress(OSError):
             partial.unlink()
+        if isinstance(error, OSError) and error.filename is None:  # of a write to a full disk
+            raise OSError(error.errno, error.strerror, str(path)) from error
         raise
 
 

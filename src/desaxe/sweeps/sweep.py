@@ -16,9 +16,9 @@ from ..runtime.threads import available
 from ..support.extras import needed
 from ..support.files import as_path
 from .best import Search, best_designs, search_for
-from .cluster import Crew, cluster, run_all
+from .cluster import Crew, cluster, require_workers, run_all
 from .cluster import threads as thread_crew
-from .estimate import announcement, seconds_of
+from .estimate import CHUNK, announcement, seconds_of
 from .kept import Kept
 from .layout import Layout, bytes_of
 from .meter import Meter, Watch
@@ -66,8 +66,9 @@ def stored_sweep(sweep: Sweep, store: str | PathLike[str], overwrite: bool, way:
 
 
 def _announcement(sweep: Sweep, root: Path, cores: int) -> str:
-    seconds = seconds_of(sweep.parts, sweep.outer.axes, sweep.bytes) / cores
     variables = len(sweep.template.data_vars)
+    seconds = seconds_of(sweep.parts, sweep.outer.axes, sweep.bytes) / cores
+    seconds += CHUNK * sweep.layout.chunks * variables
     return announcement(sweep.points, variables, sweep.bytes, sweep.layout, seconds, free_at(root))
 
 
@@ -201,6 +202,8 @@ def run_sweep(
     """The body of `desaxe.sweep` for names and inputs."""
     _require_scale()
     room = bytes_of(memory)
+    if client is not None:
+        require_workers(client)
     way = Way(room, client, threads, watch, tell)
     if best is not None or by is not None:
         count = _count(best, by)
