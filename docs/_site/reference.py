@@ -150,8 +150,9 @@ def statuses():
     rows = []
     for table in TABLES:
         of, _, calls = inspect.getdoc(table).splitlines()[0].rstrip(".").partition(": ")
+        name = f'<code style="white-space: nowrap">{table.__name__}</code>'
         codes = "<br>".join(f"{status:d} {status.words}" for status in table)
-        rows.append(f"| {calls} | {of.removeprefix('The status of ')} | `{table.__name__}` | {codes} |")
+        rows.append(f"| {calls} | {of.removeprefix('The status of ')} | {name} | {codes} |")
     return "\n".join(["| call | status of | in `desaxe.status` | codes |", "|---|---|---|---|", *rows])
 
 

@@ -25,5 +25,5 @@ sources        requests that compute the values of a block of a grid
 fold           reductions over several axes of arrays in memory
 joint          reductions over several axes, of single names, of further kinds
 own_measure    a user's function of a design as a measure
-extremes       the largest values of an axis and where they are
+extremes       inputs near the ends of the double range, rescaled
 """

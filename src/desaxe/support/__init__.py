@@ -16,5 +16,5 @@ deadline       a time limit
 answer         results: dicts with a readable repr
 recent         a cache of the most recently used values
 shown          a value in a message, shortened
-toml           plain data as TOML
+toml           untrusted TOML files, read with limits on size and depth
 """
