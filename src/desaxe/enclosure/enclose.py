@@ -70,8 +70,8 @@ def enclose(
     among them: `enclose("a_C", theta=1.0, ec=dx.plus_minus("10 mm", "0.1 mm"), ...)`. Every combination of
     values within the ranges counts.
 
-    rtol     how much wider than the true range the answer may be at each end, relative to the range
-    boxes    give up after so many boxes at each end; the answer is a guarantee even so, only wider
+    rtol     how much wider than the true range the result may be at each end, relative to the range
+    boxes    the limit of boxes at each end; the result is guaranteed even then, only wider
     timeout  seconds after which it ends with a TimeoutError; None for no limit
 
     Gives a dict:

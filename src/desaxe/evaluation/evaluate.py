@@ -41,7 +41,7 @@ def evaluate(
 ) -> Any:
     """Values of quantities and sensitivities, at one point or over arrays that broadcast like NumPy.
 
-    `names` is one name (the answer is a float or an array) or a list of names (a dict name -> the
+    `names` is one name (the result is a float or an array) or a list of names (a dict name -> the
     same). `desaxe.quantities()` lists them: `Y`, `V_C`, `a_C`, `omega_BC`, `a_C_wrt_ec`, ...,
     `status` (int8) and `margin` among them.
 
@@ -65,14 +65,14 @@ def evaluate(
              "extended": within 2 ulp, in pairs of doubles, 3 to 16 times the time; or the error that you can
              bear, such as 1e-14, for the cheaper of the two that keeps it; "fast" is "standard"
     threads  for arrays: how many threads share the work, all that pay without
-    out      for arrays: where to put the answer, an array or a dict name -> array
+    out      for arrays: the array to fill, or a dict name -> array
     quality  True: for each name, in place of the value, an object with `value`, `conditions` (input ->
              |input/value d value/d input|), `error_bound` (of the rounding) and `digits`
 
-    What the wanted names do not need may be left out; masses and loads are 0 without. A number may
+    Inputs that the names do not need may be left out; masses and loads are 0 without. A number may
     carry its unit: "10 mm", or a pint quantity. An infeasible point gives NaN; ask for `status` to learn
     why: 0 ok, 1 cannot be assembled here, 2 at a change point, 3 stalled, 4 bad input (an array's element
-    only), and where a force or mu is asked about 5 friction jams (no forces balance) or 6 two sets of
+    only), and, for forces or with mu, 5 friction jams (no forces balance) or 6 two sets of
     forces balance. Raises ValueError for an unknown name or a bad value, TypeError for a missing input.
     """
     if unknown:

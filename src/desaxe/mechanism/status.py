@@ -98,7 +98,7 @@ class ToleranceStatus(Status):
     OK = 0, "ok"
     NO_VALUE = 1, "no value at the means"
     SOME_WITHOUT = 2, "some samples have no value"
-    KINK = 3, "a kink at the means: derivatives tell little"
+    KINK = 3, "a kink at the means: derivatives say little"
 
 
 class OptimizeStatus(Status):

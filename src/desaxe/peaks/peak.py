@@ -53,7 +53,7 @@ def peak(
 
     kind    "absmax" (the largest magnitude), "max" or "min"
     theta   range of crank angles [rad]; its ends count. By default a turn, or the period of a longer load
-    threads how many share the work, all that pay without; the answer is the same
+    threads the number that share the work, by default all that pay; the result is the same
     others  as in `evaluate`, masses and loads among them. F_X and F_Y may vary with the motion; at a jump
             both one-sided limits count, and `gradient` by such a force is that by a constant added to it
 
@@ -71,7 +71,7 @@ def peak(
               forces balance at some: the value is that of all others, inf where it grows without
               bound towards those at which friction jams
 
-    Where two angles share the extreme value, as by symmetry at ec = 0, one of them is told, and the
+    Where two angles share the extreme value, as by symmetry at ec = 0, one of them is returned, and the
     gradient is the one-sided derivative there.
 
     Warns (LoadWarning) of a long array for F_X or F_Y and no other array: those are designs, not angles.

@@ -74,12 +74,12 @@ def simulate(
     AB, BC, ec, branch, masses, centres of mass, gravity, mu   as in `evaluate`
     F_X, F_Y     external force on the slider [N]: the same, or `over_Y`; the integration starts again at
                  the kinks and jumps of tables, and at the nodes of a function
-    names        quantities and sensitivities of a given state to tell along the motion, by `evaluate`: NaN at
+    names        quantities and sensitivities of a given state along the motion, by `evaluate`: NaN at
                  a limit angle, and where no or two sets of forces balance the acceleration as given
     rtol, atol   tolerances of the integration; atol for the angle [rad], sqrt(kinetic energy) and work, by
                  default rtol times 0.001 rad and a hundredth of the energy that start and loads suggest
     method       DOP853, or by SciPy (extra `simulate`) RK45, RK23, Radau, BDF, LSODA
-    times        instants to tell [s]; 1001 from start to end without
+    times        instants of the histories [s]; by default 1001 from start to end
     until        crank angle or angles [rad]: the first that is reached ends the motion
     max_step     longest step [s], for loads that act briefly
     max_steps    more steps than this are a failure

@@ -31,7 +31,7 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
     torque_peak               the largest magnitude of T_in [N m], at `theta_peak` [rad]
     work_in, work_out         what the drive puts in and what it takes back in a turn [J], both >= 0
     power_mean, power_peak    net work over the time of a turn, and the largest magnitude of T_in omega [W]
-    flywheel_inertia          [kg m2] on the crank: the least with which the speed fluctuates as wanted about
+    flywheel_inertia          [kg m2] on the crank: the smallest that keeps the required fluctuation about
                               |omega0|, the mean of fastest and slowest, under a constant torque; friction
                               included. 0 if none is needed, NaN with alpha
     flywheel_torque           that constant torque [N m]; without friction it is torque_mean

@@ -22,7 +22,7 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
     omega0      constant speed of the crank [rad/s]; negative turns backwards. Without it the crank turns
                 forwards, and velocities are per rad/s of it [m/s per rad/s]
 
-    Gives a dict, floats for one design and arrays for many. Angles are told in the turn from -pi/2 to
+    Gives a dict, floats for one design and arrays for many. Angles are in the turn from -pi/2 to
     3 pi/2, in which dead centres move without a jump when `ec` changes its sign:
 
     theta_outer, theta_inner    crank angles [rad] at which the slider is farthest from the crank and nearest
@@ -41,7 +41,7 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
     gradient                    dict name -> dict ec, AB, BC (omega0) -> exact derivative. Where |ec| has a
                                 kink, at ec = 0, the mean of both sides; at a change point what is
                                 infinite is infinite
-    status                      0 the crank turns fully; 1 it does not: dead centres are told if there are
+    status                      0 the crank turns fully; 1 it does not: dead centres are given if there are
                                 such, all else is NaN; 2 at a change point, margin = 0; 4 bad input
 
     Closed forms in which nothing cancels (see `closed_form`), but for the velocities: those are refined

@@ -43,7 +43,7 @@ def fit(
               quantity only may be measured, and the scatter of its residuals takes sigma's place
     nuisance  further unknowns: "theta_offset" [rad] (the crank is at theta + theta_offset), and of each
               quantity "a_C_bias", "a_C_scale": measured = scale * a_C + bias
-    loss      "linear" (least squares), or "soft_l1", "huber", "cauchy", "arctan", which shrug off outliers
+    loss      "linear" (least squares), or "soft_l1", "huber", "cauchy", "arctan", robust to outliers
     fixed     all other inputs, as for `evaluate`
 
     Gives a dict (its `report()`, `plot()` and `predict(theta)` show more):

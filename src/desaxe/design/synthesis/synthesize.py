@@ -68,8 +68,8 @@ def synthesize(
     Numbers are in SI units; texts with units are understood. Gives a dict:
 
     solutions  list of designs, each a dict ec, AB, BC, by the length of the rod
-    limits     dict of the one more wish -> (low, high): for what there is a design with this stroke and
-               time ratio, the ends told to double precision; NaN where there is none
+    limits     dict of the third requirement -> (low, high): the range with designs of this stroke and
+               time ratio, the ends in double precision; NaN where there is none
     status     0 one or more; 1 none; 2 the further requirement leaves the design undetermined
     message    how many, or why none
 

@@ -113,7 +113,7 @@ def tolerance(
                   tolerance) and a text "10 mm +- 0.1 mm" or "10 mm +- 1 %"; `dx.between(low, high)`; or a
                   distribution of scipy.stats, frozen. (A bare pair in `enclose` is (low, high).)
                   F_X and F_Y may vary with the motion
-    distribution  within a tolerance: "normal", the tolerance being so many `sigmas`, or "uniform"
+    distribution  within a tolerance: "normal", the tolerance being that many `sigmas`, or "uniform"
     samples       of the Monte Carlo, by default 100000, or 10000 of a peak
     sobol         base samples of the Sobol indices, a power of two; 0 leaves them out
 
@@ -139,7 +139,7 @@ def tolerance(
                    errors; linearity, first against second order std, relative; contributions against Sobol's
                    first indices, the largest difference
     status         0 ok; 1 no value at the means; 2 some samples have none, and then no Sobol indices; 3 a
-                   kink at the means, such as that of |ec| at ec = 0: derivatives tell little, and of
+                   kink at the means, such as that of |ec| at ec = 0: derivatives say little, and of
                    second order nothing
 
     Inputs vary independently. Sobol indices need the extra `design`. Raises as `evaluate` does.

@@ -28,7 +28,7 @@ def counterweight(
 
     along   "both": the largest first-harmonic force in any direction is made as small as possible, which
             leaves one of constant size that turns against the crank; "Y" or "X": none is left along that axis
-    radius  of the counterweight's centre of mass [m], if its mass is wanted
+    radius  of the counterweight's centre of mass [m], to compute its mass
     inputs  of one design at constant speed, with masses, as in `evaluate`
 
     Gives a dict:

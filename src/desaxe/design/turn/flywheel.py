@@ -31,7 +31,7 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
 
     fluctuation  (fastest - slowest)/mean speed that is allowed, such as 0.02
     inputs       of one design with masses and loads, as in `evaluate`; omega0 is the mean speed. F_X and
-                 F_Y may vary with the motion, over one turn or up to four: what is told is then of all
+                 F_Y may vary with the motion, over one turn or up to four: the results are then of all
 
     Gives a dict:
 
@@ -39,9 +39,9 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
                                           `theta_max_torque` and `theta_min_torque` [rad]
     ripple                 largest less smallest torque [N m]
     energy_fluctuation     what a flywheel must store at constant speed [J]
-    inertia                of the flywheel, added to the crank [kg m2]: the least with which the speed
-                           fluctuates as wanted under a constant torque; 0 if none is needed. With friction
-                           that of first order
+    inertia                of the flywheel, added to the crank [kg m2]: the smallest that keeps the
+                           required fluctuation under a constant torque; 0 if none is needed. With
+                           friction that of first order
     inertia_first_order    energy_fluctuation/(fluctuation omega0^2) [kg m2], the textbook's estimate
     fluctuation_without    the fluctuation without a flywheel; infinite if the crank would stop, NaN with
                            friction

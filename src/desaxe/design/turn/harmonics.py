@@ -20,7 +20,7 @@ def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> 
     """The harmonics of a quantity over a turn at constant speed.
 
     name    any quantity or sensitivity, such as "F_shaking_Y", "T_in" or "a_C"
-    orders  the highest harmonic that is wanted
+    orders  the highest harmonic
     inputs  of one design, as in `evaluate`; F_X and F_Y may vary with the motion
 
     Gives a dict; the quantity is mean + sum over n of cos[n] cos(n theta) + sin[n] sin(n theta):
