@@ -37,7 +37,7 @@ def _serve(connection: Connection, name: str, cores: Sequence[int]) -> None:
         what, *arguments = order
         try:
             connection.send((True, getattr(child, what)(*arguments)))
-        except Exception as error:  # whatever a contender cannot do is told, and does not end the race
+        except Exception as error:  # what a contender cannot do is reported, and does not end the race
             connection.send((False, f"{type(error).__name__}: {error}".partition("\n")[0]))
 
 

@@ -14,7 +14,7 @@ PAGE = "accuracy.md"
 
 def command(quick: bool, folder: str | None, overwrite: bool = False) -> int:
     """Audit; the tables on stdout, and files if there is a folder for them."""
-    if folder is not None:  # what is wrong with it is told at once, not after minutes
+    if folder is not None:  # fail at once, not after minutes
         import_module("matplotlib.figure")
         for name in (PAGE, PICTURE):
             check_target(Path(folder) / name)

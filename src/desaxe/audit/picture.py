@@ -18,7 +18,7 @@ KINDS = {
     "textbook": "textbook formula in doubles",
     "digits": "textbook formula in 50 digits",
 }
-COLOURS = {"desaxe": "#0072B2", "textbook": "#C44E00", "digits": "#444444"}  # told apart by the colour-blind
+COLOURS = {"desaxe": "#0072B2", "textbook": "#C44E00", "digits": "#444444"}  # distinct for the colour-blind
 MARKERS = {"desaxe": "o", "textbook": "D", "digits": "s"}
 ORDER = {"digits": 3, "textbook": 3, "desaxe": 4}  # what is drawn over what
 TITLE = (
@@ -153,7 +153,7 @@ def _name(ax: "Axes", at: tuple[float, float], name: str, colour: str, taken: li
             here = across + shift, up + rise - tall / 2, across + shift + wide, up + rise + tall / 2
             if _is_free(here, taken, edges):
                 places[abs(rise) + 0.12 * abs(shift + wide / 2), shift, rise] = here
-    if not places:  # no room: where everybody looks first
+    if not places:  # no free place: on the right, where one looks first
         places[0.0, 8.0, 0] = size
     _, shift, rise = nearest = min(places)
     taken.append(places[nearest])

@@ -25,7 +25,7 @@ def read_definitions(tables: Mapping[str, Any]) -> tuple[Definition, ...]:
     known = {name: old for name, old in definitions().items() if name not in waiting}
     made: dict[str, Definition] = {}
     while waiting:
-        # What no other one that waits stands in; in a circle none is left, and the first tells of it.
+        # The definitions that use no other pending one; a circle leaves none, and the first reports it.
         ready = [n for n, entry in waiting.items() if not _mentions(entry.expression, waiting, n)]
         for name in ready or [next(iter(waiting))]:
             made[name] = made_definition(waiting.pop(name), {**known, **made})

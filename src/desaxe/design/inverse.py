@@ -94,7 +94,7 @@ def _angles(Y: Array, lengths: list[Array], branch: int) -> tuple[Array, NDArray
     if any(np.any(are_extreme("Y", length)) for length in (Y, *lengths)):
         Y, *lengths = _near_1(Y, *lengths)
     ec, AB, BC = lengths
-    with np.errstate(all="ignore"):  # status tells
+    with np.errstate(all="ignore"):  # the status says so
         L = np.hypot(ec, Y)
         # tan^2(beta/2) of the angle between AB and AC, as products of exact-ish differences.
         above = (BC - (L - AB)) * (BC + (L - AB))

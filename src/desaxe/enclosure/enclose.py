@@ -145,7 +145,7 @@ def _function(name: str, given: dict[str, Any], branch: int) -> Function:
     alone = request((name,), plain, branch, EXACT)
     for p in alone.inputs:
         if p not in intervals:
-            as_number(p, None, alone.inputs, (name,))  # tells that it is missing
+            as_number(p, None, alone.inputs, (name,))  # raises if it is missing
     own = {p: intervals[p] for p in alone.inputs}
     varying = tuple(p for p, (low, high) in own.items() if low < high)
     slopes = tuple(sensitivity(name, p) for p in varying)

@@ -14,7 +14,7 @@ from typing import Any
 from .table import Table
 
 TURN = 2.0 * pi
-SAMPLES = 1024  # of a function, by which it is told from others
+SAMPLES = 1024  # of a function, by which it is distinguished from others
 
 
 class LoadWarning(UserWarning):

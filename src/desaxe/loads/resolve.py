@@ -88,7 +88,7 @@ class Plan(NamedTuple):
     """A plan to evaluate names under loads that vary with the motion."""
 
     shown: tuple[str, ...]
-    names: tuple[str, ...]  # to evaluate: those asked for, and the slopes by the loads
+    names: tuple[str, ...]  # to evaluate: the requested ones, and the slopes by the loads
     terms: Mapping[str, tuple[Term, ...]]
     loads: Mapping[str, Load]  # those that matter
     motion: tuple[str, ...]  # names of the motion, at a fixed load, which the loads and derivatives need

@@ -31,7 +31,7 @@ class Machine(Mapping[str, Any]):
             one dimension for families of designs. Or a mapping of these, or a scene as a mapping
             (`Machine.read` takes the path of one). What is not given has no effect
     branch  +1 or -1
-    units   the units of plain numbers, here and in the methods, and of results, pictures, reports and exports:
+    units   the units of plain numbers, here and in the methods, and of results, pictures, reports, exports:
             "mm, deg, rpm", or a mapping of dimensions and quantities to units, {"length": "mm"}. Only
             what is named changes; velocity and acceleration follow the length, per second, so that g_Y is in
             mm/s^2 then, and sensitivities are quotients. SI units and radians without

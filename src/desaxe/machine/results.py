@@ -12,7 +12,7 @@ from ..mechanism.names import parts
 from ..mechanism.unit_system import OTHERS, Conversion, UnitSystem
 from ..mechanism.units import registry
 
-# Keys whose values are in the unit of what was asked for, and keys whose values are plain numbers.
+# Keys whose values are in the unit of the requested quantity, and keys whose values are plain numbers.
 OWN = (
     "value", "lower", "upper", "inner", "mean", "std", "least", "largest", "mean_error", "std_error",
     "percentiles", "cos", "sin", "amplitude", "remainder", "error", "first_order", "second_order",

@@ -2,7 +2,7 @@
 
 from math import asin, fsum, pi, sqrt
 
-CHANGE_POINT_ULPS = 4  # |margin| within so many ulp of BC is called a change-point design
+CHANGE_POINT_ULPS = 4  # |margin| within this number of ulp of BC is called a change-point design
 
 
 def theta_intervals(ec: float, AB: float, BC: float) -> list[tuple[float, float]]:

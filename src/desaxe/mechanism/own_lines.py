@@ -151,7 +151,7 @@ class _Writer:
         if len(parameters) == 2:
             slope = self._second(first, *parameters).slope(slope) if isinstance(slope, str) else 0.0
         if line_of_name not in self.known:
-            # A derivative that is 0 is so only where there is a value: that is told by a factor, which
+            # A derivative that is 0 is so only where there is a value: a factor says so, which
             # `specialise` sees to.
             op, args = ("mul", (value, 0.0)) if slope == 0.0 else ("copy", (slope,))
             self._append([Line(line_of_name, op, args)])

@@ -30,7 +30,7 @@ class Search(NamedTuple):
     parameters: tuple[str, ...]  # of the gradient
     form: Variant
     fixed: tuple[tuple[str, float], ...]
-    extended: bool = False  # what is told at the peak, in pairs of doubles
+    extended: bool = False  # value, slope and gradient at the peak in double-double
     far: bool = False  # angles beyond what the written-out sine and cosine reduce exactly
 
 

@@ -228,7 +228,7 @@ def _mark_limits(kind: str, found: Found, value: Array, nodes: Array, ends: list
         if abs(nodes[row, near] - end) > 1e-6:
             continue
         bounded = not _grows(nodes[row, usable], value[row, usable], end, value[row, near])
-        # The search may have stopped beyond `near`, where only more digits tell that the rod does not reach.
+        # The search may have stopped beyond `near`, where only more digits show that it is infeasible.
         at_end = abs(found.theta[row] - end) <= max(abs(nodes[row, near] - end), 0.5 * GRADED[-1])
         grows = not bounded and score(kind, value[row, near]) >= score(kind, found.value[row])
         if at_end or grows:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
-BLUE, ORANGE = "#0072B2", "#D55E00"  # of Okabe and Ito, told apart by the colour-blind
+BLUE, ORANGE = "#0072B2", "#D55E00"  # of Okabe and Ito, distinct for the colour-blind
 MOST_IN_LEGEND = 10  # curves; more get a colour bar
 BOUNDED = 3.0  # of the range of curves without gaps: others that stay within that are shown whole
 WIDE = 58  # letters of a label in one line

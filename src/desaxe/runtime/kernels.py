@@ -27,7 +27,7 @@ from .specialise import plain_form, specialise
 # A scalar of 0 for one of these makes whole terms vanish, so it is folded into the kernel.
 STRUCTURAL_ZEROS = ("ec", "alpha", *LOADS)
 REACH = ("less_rounded", "less_unsure")  # BC - |u|, and what rounding may take from it
-NEAR_LIMIT = 4.0  # times that: points of which some may hang on rounding
+NEAR_LIMIT = 4.0  # times that: points of which some may be undecided
 SPARE = 2.0  # times what rounding may take: points nearer to the limit are answered again
 ASKED_AHEAD = 16  # points for each length: then designs are looked at ahead of the kernel
 

@@ -13,7 +13,7 @@ from .kernels import KernelKey, is_on_disk, is_ready
 
 VARIABLE = "DESAXE_TIER"
 INTERPRETED, NUMPY, COMPILED = TIERS = ("interpreted", "numpy", "compiled")
-# A request is answered in plain Python until so many points of it have been asked for in this process.
+# A request runs in plain Python until this number of its points has been requested in this process.
 BREAK_EVEN = 2_000
 # A new request of more points than BREAK_EVEN is answered by NumPy once, if it has no more than these.
 NUMPY_PAYS = 250_000

@@ -42,7 +42,7 @@ def grid_kernel(content: Content, joined: bool = False) -> GridKernel:
         dimensions = [*(name for name in dimensions if name != fused.axis), fused.axis]
     given, loads = split(content.inputs)
     if "omega0" not in given and "omega" not in given:
-        given["omega0"] = 0.0  # nothing that is asked for needs a speed
+        given["omega0"] = 0.0  # no requested name needs a speed
     if loads:
         return _under_loads(content, given, loads, names, dimensions)
     asked = request(names, given, content.branch, content.accuracy)

@@ -31,7 +31,7 @@ def needs_of(names: Iterable[str], inputs: Mapping[str, Any]) -> tuple[str, ...]
     """The inputs that quantities can use, under the law or for a given state."""
     state = "omega" in inputs
     law = tuple(law_name(name) if state else name for name in names)
-    if "mu" in inputs:  # then the status tells what the friction does, too
+    if "mu" in inputs:  # then the status includes that of friction
         law = tuple("force_status" if name == "status" else name for name in law)
     return tuple(name for name in program_of(law, Variant(state)).inputs if name != "branch")
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from ..support.quantity_text import spelled, split_quantity
 from .schema import SceneError, shown
 
-MOST_DIGITS = 15  # in front of the point; a larger number is told as a power of ten
+MOST_DIGITS = 15  # in front of the point; a larger number is written as a power of ten
 
 
 class Printed(NamedTuple):

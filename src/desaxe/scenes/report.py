@@ -16,7 +16,7 @@ from .run import CheckResult, Run
 from .turning import FeasibilityResult
 
 ROWS = 24  # of a table; a longer one is thinned out
-HUGE = 1e6  # percent: more is told as a power of ten
+HUGE = 1e6  # percent: more is written as a power of ten
 GAPS = 5  # designs that cannot turn fully
 
 

@@ -16,7 +16,7 @@ from .printed import read_percentage, read_printed
 from .schema import SceneError, shown
 from .values import Value, design_of, number_of, only_inputs, values_of
 
-SENSITIVITIES = LENGTHS  # of a peak, those on which it depends, unless others are asked for
+SENSITIVITIES = LENGTHS  # of a peak, those on which it depends, unless others are requested
 
 
 def checks_of(key: str, table: schema.CheckTable, inputs: Mapping[str, Value]) -> list[Check]:

@@ -34,9 +34,9 @@ class Mark(NamedTuple):
     status: int = NEVER
 
 
-KINK = "kink of a load"  # where the integration starts again: nothing to tell
+KINK = "kink of a load"  # where the integration starts again: no event to report
 STANDSTILL = Mark("standstill", 0.0)
-LOST = Mark("normal force", 0.0)  # it changes its side: no event to tell, but a kink
+LOST = Mark("normal force", 0.0)  # it changes its side: no event to report, but a kink
 JAMMED = Mark("friction jams", 0.0, status=JAMS)
 
 

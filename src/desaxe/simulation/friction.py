@@ -17,7 +17,7 @@ from typing import NamedTuple
 from .equations import Smooth
 from .model import Model
 
-JAMS_AT = 1.0 - 1e-6  # of K sign(N): a million times the force without friction is as good as none
+JAMS_AT = 1.0 - 1e-6  # of K sign(N): a million times the force without friction counts as none
 NOISE = 1e-12  # of the terms of N_free: below it, its sign is rounding
 WAITS = 2000  # instants at which a crank held by friction is asked whether the torque can move it
 

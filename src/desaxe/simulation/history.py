@@ -17,7 +17,7 @@ from .one_design import Piece, Run
 from .result import FAILED, LIMIT, REST, Event, Simulation
 
 Array = NDArray[np.float64]
-SAMPLES = 1001  # instants told where none are given
+SAMPLES = 1001  # instants of the histories by default
 
 
 def result_of(run: Run, names: Sequence[str], times: Any, given: Mapping[str, Any]) -> Simulation:

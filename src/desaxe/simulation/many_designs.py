@@ -30,7 +30,7 @@ from .model import fixed_zeros, form_of
 from .result import DONE, NO_START, WORDS, Simulation
 
 Array = NDArray[np.float64]
-SAMPLES = 101  # instants told where none are given
+SAMPLES = 101  # instants of the histories by default
 LONGEST_PART = 16  # designs in one native call, that threads share the work evenly
 MOST_STEPS = 3  # its place in `how`
 STARTS = {"theta0": "rad", "omega_start": "rad/s", "torque": "N*m"}

@@ -6,7 +6,7 @@ from contextlib import suppress
 from math import inf
 from pathlib import Path
 
-ALWAYS = 100_000_000  # bytes that nobody is asked for
+ALWAYS = 100_000_000  # bytes that are not checked
 _CGROUP = Path("/sys/fs/cgroup")
 
 

@@ -15,7 +15,7 @@ from .layout import size_text
 from .prepared import Sweep
 from .request import IDENTITY, differences
 
-CHUNKS = "chunks"  # the attribute that tells the layout
+CHUNKS = "chunks"  # the attribute with the layout
 
 
 def kept_at(root: Path, told: Mapping[str, str], overwrite: bool) -> dict[str, Any] | None:

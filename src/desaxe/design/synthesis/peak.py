@@ -15,7 +15,7 @@ from .family import Answer, Family
 Array = NDArray[np.float64]
 PER_DECADE = 15  # places
 NEAREST = 1e-12  # to the ends of the family, at which the acceleration grows without bound
-TURNS = 1e-9  # of the rod: lengths rounded to doubles do not tell a smaller margin
+TURNS = 1e-9  # of the rod: lengths in doubles do not resolve a smaller margin
 
 
 def of_peak(family: Family, wanted: float, omega0: float, deadline: Deadline) -> Answer:

@@ -186,7 +186,7 @@ class Machine(NamedTuple):
             return np.full_like(self.work, self.speed**2)  # without inertia there is nothing to store
         low = -float(self.work.min())
         if excess(low) > 0.0:
-            return at(low)  # it stops, and is faster than wanted elsewhere
+            return at(low)  # it stops, and is faster than required elsewhere
         high = low + float(np.max(J + self.effective)) * self.speed**2
         while excess(high) < 0.0:
             high = low + 2.0 * (high - low)

@@ -33,7 +33,7 @@ CHANGED = tuple(name for name in LOADS if name not in CENTRES)  # on the page; 0
 STATE = ("status", "margin")
 MOST_DESIGNS = 5  # that a page compares when it is opened: a colour is left for one that is kept
 FROM_MANY = 4  # of more values than that, evenly chosen
-LISTED = 6  # values that are left out; of more it is told how many
+LISTED = 6  # values that are left out; of more only their number is shown
 
 
 class Function(NamedTuple):

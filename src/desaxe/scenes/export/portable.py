@@ -115,7 +115,7 @@ def _asked(content: Content, names: Iterable[str]) -> tuple[Request, Fixed]:
     """The request of a scene, and its fixed inputs; an absent input without effect is 0."""
     given: dict[str, Any] = dict(content.inputs)
     if "omega0" not in given and "omega" not in given:
-        given["omega0"] = 0.0  # nothing that is asked for needs a speed
+        given["omega0"] = 0.0  # no requested name needs a speed
     asked = request(list(dict.fromkeys(names)), given, content.branch, content.accuracy)
     values = {n: given.get(n, 0.0) for n in asked.inputs}
     fixed = dict(asked.fixed) | {n: value for n, value in values.items() if not isinstance(value, tuple)}
@@ -136,7 +136,7 @@ def _forms(asked: Request, names: tuple[str, ...], fixed: Fixed, freestanding: b
     if plain is None:
         return forms
     test = specialise(("wide_margins",), asked.form, fixed)
-    # The test implies that lengths are good.
+    # The test implies valid lengths.
     own = [name for name in plain.inputs if name not in LENGTHS]
     guarded = guard_inputs(plain, own, LEAST, largest)
     if test.lines[-1].args == (True,):
