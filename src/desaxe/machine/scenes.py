@@ -67,7 +67,7 @@ def _data(machine: Any, outputs: Any, more: Mapping[str, Any], loads: Mapping[st
     data: dict[str, Any] = {"title": other.pop("title", "")} if "title" in other else {}
     data["outputs"] = [outputs] if isinstance(outputs, str) else list(outputs)
     if machine.units:
-        data["units"] = dict(machine.units.units)
+        data["units"] = {name.replace(" ", "_"): unit for name, unit in machine.units.units.items()}
     for section, table in SECTIONS.items():
         values = {
             name: loads[name] if name in loads else _written(machine, name)
