@@ -399,3 +399,12 @@ def test_words_of_results_in_units():
     assert labelled.T_in.data.to("kN m").magnitude == pytest.approx(
         dx.evaluate("T_in", **{**SI, "theta": [0.0, math.pi / 3]}) / 1e3, rel=1e-12
     )
+
+
+def test_best_designs_are_in_units():
+    found = PRESS.sweep("a_C", theta=[0, 90, 180], ec=[0, 10, 20], best=1, by="a_C")
+    wanted = dx.sweep(
+        "a_C", **{**SI, "theta": [0.0, math.pi / 2, math.pi], "ec": [0.0, 0.01, 0.02]}, best=1, by="a_C"
+    )
+    assert found.ec.values == pytest.approx(1e3 * wanted.ec.values)
+    assert found.ec.units == "mm"

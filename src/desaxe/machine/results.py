@@ -104,8 +104,7 @@ def shown(name: str, found: Any, call: Mapping[str, Any], show: Shown) -> Any:
     """The result of a public function, called with these arguments, as it is shown."""
     system = show.system
     if hasattr(found, "data_vars"):  # of grid, design_map, sweep
-        plain = {key: value for key, value in call.items() if key in found.coords and _is_plain(value)}
-        return in_units(found, system, plain, as_quantity=show.as_quantity)
+        return in_units(found, system, _as_given(found, call), as_quantity=show.as_quantity)
     if name in ("evaluate", "grid"):
         names = call["names"]
         if isinstance(names, str):
@@ -123,6 +122,16 @@ def shown(name: str, found: Any, call: Mapping[str, Any], show: Shown) -> Any:
     measure = own[-1] if isinstance(own, (tuple, list)) else own
     conversion = None if measure is None else conversion_of(system, measure)
     return show.mapping(found, conversion) if isinstance(found, Mapping) else found
+
+
+def _as_given(found: Any, call: Mapping[str, Any]) -> dict[str, Any]:
+    """The coordinates that were given as plain numbers; of the best designs they are others."""
+    kept = {key: value for key, value in call.items() if key in found.coords and _is_plain(value)}
+    return {
+        key: value
+        for key, value in kept.items()
+        if found[key].shape == ((len(value),) if hasattr(value, "__len__") else ())
+    }
 
 
 def _is_plain(value: Any) -> bool:
