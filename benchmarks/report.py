@@ -211,7 +211,7 @@ def _growth(data: Data) -> str:
         ]
         for name in data["who"]
     ]
-    return table(["V_C, a_C at so many points", *(f"{int(size):,}" for size in sizes)], rows)
+    return table(["V_C, a_C: number of points", *(f"{int(size):,}" for size in sizes)], rows)
 
 
 def _starts(data: Data) -> str:

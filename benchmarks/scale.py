@@ -156,7 +156,7 @@ def _minutes(seconds: float) -> str:
 
 
 def _lookout(rows: list[dict[str, float]], points: float, stored: bool) -> str:
-    """Time, and disk if there is any, of so many points: as measured, or extrapolated."""
+    """Time, and disk if there is any, of a number of points: as measured, or extrapolated."""
     last = rows[-1]
     share = points / last["points"]
     time = _minutes(share * last["seconds"])

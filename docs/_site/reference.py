@@ -106,12 +106,12 @@ def _verbatim(text):
 
 def scene():
     """The keys of a scene file, from the types that check it."""
-    top = _keys(schema.SceneFile, leave=(*SECTIONS, "check", "peak", "picture", "results"))
+    top = _keys(schema.SceneFile, leave=(*SECTIONS, "check", "peak", "picture", "results", "quantities"))
     tables = [
         *((f"[{name}]", table) for name, table in SECTIONS.items()),
         ("[[check]]", schema.CheckTable), ("[[peak]]", schema.PeakTable),
         ("[[peak.claim]]", schema.ClaimTable), ("[[picture]]", schema.PictureTable),
-        ("[results]", schema.Results),
+        ("[results]", schema.Results), ("[quantities.NAME]", schema.QuantityTable),
     ]  # fmt: skip
     return "\n\n".join(
         ["## At the top", top, *(f"## {head}\n\n{_doc(t)}\n\n{_keys(t)}" for head, t in tables)]

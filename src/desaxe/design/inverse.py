@@ -38,7 +38,7 @@ def inverse(
     branch       +1 or -1: only angles at which the mechanism is on this branch
     V_C, a_C     the slider's velocity [m/s] and acceleration [m/s^2], if known
 
-    Gives a dict; the last axis of each array has the two solutions, NaN where there is none:
+    Returns a dict; the last axis of each array has the two solutions, NaN where there is none:
 
     theta    crank angles [rad] in (-pi, pi], ascending
     omega    crank speed [rad/s], given V_C

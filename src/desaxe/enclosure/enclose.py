@@ -74,7 +74,7 @@ def enclose(
     boxes    the limit of boxes at each end; the result is guaranteed even then, only wider
     timeout  seconds after which it ends with a TimeoutError; None for no limit
 
-    Gives a dict:
+    Returns a dict:
 
     lower, upper   no value in the box is below or above these; rounded outwards. -inf and inf where no
                    bound can be proved, as next to a limit angle

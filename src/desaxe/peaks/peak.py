@@ -57,7 +57,7 @@ def peak(
     others  as in `evaluate`, masses and loads among them. F_X and F_Y may vary with the motion; at a jump
             both one-sided limits count, and `gradient` by such a force is that by a constant added to it
 
-    Gives a dict, floats for one design and arrays for many:
+    Returns a dict, floats for one design and arrays for many:
 
     value     the extreme value; a magnitude for "absmax". inf where it grows without bound at a
               limit angle of a mechanism that cannot turn fully

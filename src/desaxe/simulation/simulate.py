@@ -87,7 +87,7 @@ def simulate(
                  of it, and many designs with a TimeoutError
     threads      for many designs: how many threads share them, all there are without
 
-    Gives a dict that shows itself on one screen:
+    Returns a dict that shows itself on one screen:
 
     t, theta, omega, alpha, <names>   histories, as far as the motion goes
     events           named tuples (kind, t, theta, omega, which): "dead centre", "standstill", "angle",

@@ -25,7 +25,7 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
                  alpha it is that at theta = 0, and the turn is the first one. F_X and F_Y may vary
                  with the motion
 
-    Gives a dict, which prints as a report and has `plot()`. Means are over time:
+    Returns a dict, which prints as a report and has `plot()`. Means are over time:
 
     torque_mean, torque_rms   of T_in [N m]; the root of the mean square heats a motor
     torque_peak               the largest magnitude of T_in [N m], at `theta_peak` [rad]

@@ -22,7 +22,7 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
     omega0      constant speed of the crank [rad/s]; negative turns backwards. Without it the crank turns
                 forwards, and velocities are per rad/s of it [m/s per rad/s]
 
-    Gives a dict, floats for one design and arrays for many. Angles are in the turn from -pi/2 to
+    Returns a dict, floats for one design and arrays for many. Angles are in the turn from -pi/2 to
     3 pi/2, in which dead centres move without a jump when `ec` changes its sign:
 
     theta_outer, theta_inner    crank angles [rad] at which the slider is farthest from the crank and nearest

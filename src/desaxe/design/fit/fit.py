@@ -46,7 +46,7 @@ def fit(
     loss      "linear" (least squares), or "soft_l1", "huber", "cauchy", "arctan", robust to outliers
     fixed     all other inputs, as for `evaluate`
 
-    Gives a dict (its `report()`, `plot()` and `predict(theta)` show more):
+    Returns a dict (its `report()`, `plot()` and `predict(theta)` show more):
 
     value, std_error   dict name -> value and standard error, parameters and nuisances
     interval           dict name -> (low, high), 95 %

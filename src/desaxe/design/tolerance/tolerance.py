@@ -117,7 +117,7 @@ def tolerance(
     samples       of the Monte Carlo, by default 100000, or 10000 of a peak
     sobol         base samples of the Sobol indices, a power of two; 0 leaves them out
 
-    Gives a dict:
+    Returns a dict:
 
     value          with every input at its mean
     gradient       dict of the exact derivatives by what varies

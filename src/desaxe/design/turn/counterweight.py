@@ -31,7 +31,7 @@ def counterweight(
     radius  of the counterweight's centre of mass [m], to compute its mass
     inputs  of one design at constant speed, with masses, as in `evaluate`
 
-    Gives a dict:
+    Returns a dict:
 
     product           mass times radius [kg m]
     angle             from the crank to the counterweight [rad], positive like theta; pi is opposite the crank

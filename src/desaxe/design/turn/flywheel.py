@@ -33,7 +33,7 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
     inputs       of one design with masses and loads, as in `evaluate`; omega0 is the mean speed. F_X and
                  F_Y may vary with the motion, over one turn or up to four: the results are then of all
 
-    Gives a dict:
+    Returns a dict:
 
     mean_torque, max_torque, min_torque   that the drive applies at constant speed [N m], the last two at
                                           `theta_max_torque` and `theta_min_torque` [rad]

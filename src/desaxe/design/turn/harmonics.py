@@ -23,7 +23,7 @@ def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> 
     orders  the highest harmonic
     inputs  of one design, as in `evaluate`; F_X and F_Y may vary with the motion
 
-    Gives a dict; the quantity is mean + sum over n of cos[n] cos(n theta) + sin[n] sin(n theta):
+    Returns a dict; the quantity is mean + sum over n of cos[n] cos(n theta) + sin[n] sin(n theta):
 
     order              0, 1, ..., orders
     cos, sin           coefficients by order, in the quantity's unit; cos[0] is the mean
