@@ -2,8 +2,10 @@
 
 import ast
 import hashlib
+import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 from tests.repository.test_wheel import BUILD, copy_of_the_tree
@@ -60,3 +62,15 @@ def test_two_wheels_have_the_same_bytes(tmp_path):
         (wheel,) = (tree / "wheel").glob("*.whl")
         digests.add(hashlib.sha256(wheel.read_bytes()).hexdigest())
     assert len(digests) == 1
+
+
+def test_every_dependency_has_its_licence_listed():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    extras = project["optional-dependencies"]
+    own = [*project["dependencies"]]
+    for extra in re.search(r"\[(.*)\]", extras["all"][0])[1].split(","):
+        own += extras[extra]
+    names = {re.match(r"[\w-]+", requirement)[0] for requirement in own} - {"desaxe"}
+    page = (ROOT / "docs" / "security.md").read_text("utf-8")
+    listed = {name for row in re.findall(r"^\| ([\w, -]+) \|", page, re.M) for name in row.split(", ")}
+    assert not names - listed

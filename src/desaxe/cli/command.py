@@ -24,6 +24,7 @@ from .scene import add_compile, add_explain, add_explore, add_run, add_scene
 from .sweep import add_sweep
 from .words import UsageError
 
+LONGEST = 2_000  # characters of an error
 INTERRUPTED, TERMINATED = 130, 143  # as a shell reports them
 
 
@@ -109,7 +110,9 @@ def _run(words: list[str]) -> int:
 def _one_line(error: Exception) -> str:
     if isinstance(error, OSError) and error.strerror:
         return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
-    return " ".join(str(error).split())
+    text = " ".join(str(error).split())
+    text = text if text.isprintable() else repr(text)[1:-1]  # what steers a terminal
+    return text if len(text) <= LONGEST else f"{text[: LONGEST // 2]} ... {text[-LONGEST // 2 :]}"
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -155,7 +155,7 @@ def _plain(search: Search) -> Kernel:
     return _quiet(scope["search"])
 
 
-@cache
+@lru_cache(maxsize=1024)
 def plain_finish(search: Search) -> Kernel:
     """`finish(count, theta, block, out)` in plain Python: value, slope and gradient at a fixed load."""
     programs = programs_of(search, False)

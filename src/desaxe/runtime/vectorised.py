@@ -5,7 +5,7 @@ margins and the stable one for the others, and what rounding decides is answered
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -107,7 +107,7 @@ def _decide(
             out[rows[near[some]]] = answer
 
 
-@cache
+@lru_cache(maxsize=1024)
 def _forms(key: KernelKey) -> _Forms:
     """The programs of a key, each as a function of all inputs."""
     program = specialise(key.names, key.form, key.fixed, key.accuracy)

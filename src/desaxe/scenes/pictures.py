@@ -23,7 +23,7 @@ def draw(picture: Picture, content: Content, shown_in: UnitSystem, overwrite: bo
     axes: Any = curves(dataset, picture.quantity, over=picture.over, family=picture.family)[0].axes
     title = picture.title or content.title
     if title:
-        axes.set_title(title, loc="left")
+        axes.set_title(" ".join(title.split()), loc="left", parse_math=False)  # text, no TeX
     path = Path(picture.file)
     with replacing_ours(path, overwrite) as staged:
         save(axes.figure, staged)

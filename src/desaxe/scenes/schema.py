@@ -1,5 +1,6 @@
 """The schema of a scene file: its keys, their types, and the error messages."""
 
+import re
 from collections.abc import Iterator, Mapping
 from types import UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
@@ -10,6 +11,9 @@ from msgspec import Meta, Struct
 from ..evaluation.reductions import ALLOWED
 from ..mechanism.inputs import INPUTS
 from ..mechanism.spelling import did_you_mean
+from ..support.shown import shown as as_text
+
+_CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
 
 
 class SceneError(ValueError):
@@ -252,10 +256,26 @@ class SceneFile(Section, frozen=True):
 
 def decoded(data: Mapping[str, Any]) -> SceneFile:
     """The scene that plain data stands for; SceneError names the first key that is wrong."""
+    _refuse_control_characters(data, "")
     try:
         return msgspec.convert(data, SceneFile)
     except msgspec.ValidationError as error:
         raise SceneError(_complaint(data, SceneFile, "") or str(error)) from None
+
+
+def _refuse_control_characters(value: Any, place: str) -> None:
+    """Reject texts that steer a terminal, or that look other than they are; lines and tabs are fine."""
+    if isinstance(value, str):
+        found = _CONTROL.search(value)
+        if found:
+            raise SceneError(f"{place} = {shown(value)}: it has the control character {found[0]!r}")
+    elif isinstance(value, Mapping):
+        for name, part in value.items():
+            _refuse_control_characters(name, "a key")
+            _refuse_control_characters(part, f"{place}.{name}" if place else str(name))
+    elif isinstance(value, (list, tuple)) and not all(isinstance(part, (int, float)) for part in value):
+        for number, part in enumerate(value, 1):
+            _refuse_control_characters(part, f"{place} #{number}")
 
 
 def shown(value: Any) -> str:
@@ -263,8 +283,9 @@ def shown(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
+        value = value if value.isprintable() else repr(value)[1:-1]
         return f'"{value}"' if len(value) <= 80 else f'"{value[:40]} ... {value[-20:]}"'
-    text = "a table" if isinstance(value, Mapping) else repr(value)
+    text = "a table" if isinstance(value, Mapping) else as_text(value)
     return text if len(text) <= 60 else text[:57] + "..."
 
 
