@@ -39,7 +39,7 @@ def test_blocks_hold_every_point_once():
 @pytest.mark.parametrize(
     ("chunks", "error", "words"),
     [
-        ({"teta": 3}, ValueError, "'teta' is no dimension of this grid; did you mean theta"),
+        ({"teta": 3}, ValueError, "'teta' is not a dimension of this grid; did you mean theta"),
         ({"theta": 0}, ValueError, "chunks of theta = 0: at least 1"),
         ({"theta": 2.5}, TypeError, "chunks of theta = 2.5: a whole number"),
         ({"theta": True}, TypeError, "chunks of theta = True"),

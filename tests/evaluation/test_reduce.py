@@ -146,7 +146,7 @@ def test_small_grids_compile_nothing(monkeypatch):
 @pytest.mark.parametrize(
     ("reduce", "message"),
     [
-        ({"BC": "max"}, "reduce: 'BC' is no axis of this grid; axes: theta, ec"),
+        ({"BC": "max"}, "reduce: 'BC' is not an axis of this grid; axes: theta, ec"),
         ({"thta": "max"}, "did you mean theta?"),
         ({"theta": "absmx"}, "did you mean absmax?"),
         ({"theta": []}, "nothing is taken of theta"),

@@ -126,7 +126,7 @@ def test_loads_are_written_and_read(load, units, tmp_path):
 
 def test_a_function_is_no_data(tmp_path):
     press = PRESS.replace(F_Y=math.sin)
-    with pytest.raises(TypeError, match="F_Y: a function is no data"):
+    with pytest.raises(TypeError, match="F_Y: a function is not data"):
         press.to_scene(tmp_path / "press.toml")
     assert not list(tmp_path.iterdir())
     assert float(press.scene("T_in", theta=1.0).run().dataset.T_in) == press.evaluate("T_in", theta=1.0)

@@ -66,7 +66,7 @@ def test_the_command(tmp_path, capsys):
     [
         ({"store": "a.zarr", "data": "a.nc"}, "give a store or a file"),
         ({"store": "a.zarr", "memory": "much"}, "results.memory = 'much'"),
-        ({"store": "a.zarr", "chunks": {"AB": 3}}, "results.chunks: 'AB' is no dimension"),
+        ({"store": "a.zarr", "chunks": {"AB": 3}}, "results.chunks: 'AB' is not a dimension"),
     ],
 )
 def test_bad_results_are_refused(results, words):

@@ -168,7 +168,7 @@ def test_a_sweep_of_numbers_alone_is_one_point(tmp_path):
             r"takes 1\d\d kB .* 100 kB are allowed",
         ),
         ({"theta": []}, ValueError, "theta: a sweep needs at least one value"),
-        ({"chunks": {"omega0": 2}}, ValueError, "'omega0' is no dimension"),
+        ({"chunks": {"omega0": 2}}, ValueError, "'omega0' is not a dimension"),
         ({"client": "tcp://nowhere"}, TypeError, "expected a distributed.Client"),
     ],
 )

@@ -62,7 +62,7 @@ def undefine(name: str) -> None:
     known = definitions()
     if name not in known:
         own = f"; there are {', '.join(known)}" if known else ""
-        raise ValueError(f"{name!r} is no defined quantity{own}")
+        raise ValueError(f"{name!r} is not a defined quantity{own}")
     users = [other.name for other in known.values() if name in (parts(used)[0] for used in other.uses)]
     if users:
         raise ValueError(f"{name} is used by {', '.join(users)}: undefine that first")
@@ -188,7 +188,7 @@ def _checked_text(name: str, what: str, text: Any, longest: int) -> str:
 
 def _constant(owner: str, name: str, value: Any) -> tuple[float, Dimension]:
     if not (name.isascii() and name.isidentifier()) or len(name) > LONGEST_NAME:
-        raise ValueError(f"{owner}: {name[:LONGEST_NAME]!r} is no name of a constant")
+        raise ValueError(f"{owner}: {name[:LONGEST_NAME]!r} is not a valid name of a constant")
     if name in derived_names() or name in INPUTS or name in ARITY or name == "pi" or name in rows():
         raise ValueError(f"{owner}: constant {name!r} has the name of a quantity, an input or a function")
     try:
@@ -218,7 +218,7 @@ def _names_used(
         if base == own:
             source.refuse(node.at, node.end, f"{own} would be defined by itself")
         if base == "status":
-            source.refuse(node.at, node.end, "status is no real number")
+            source.refuse(node.at, node.end, "status is not a real number")
         if node.name not in derived_names() and node.name not in INPUTS and not _is_own(node.name, known):
             everything = (*derived_names(), *INPUTS, *known, *numbers)
             hint = did_you_mean(node.name, everything) if len(node.name) <= LONGEST_NAME else ""
@@ -260,7 +260,7 @@ def _unit(source: Source, unit: str | None, found: Dimension) -> str:
         derived = unit_from(found)
         if derived is None:
             source.refuse(
-                0, len(source.text), f"its dimension, {found}, has no unit: a power of it is no whole number"
+                0, len(source.text), f"its dimension, {found}, has no unit: a power of it is not an integer"
             )
         return derived
     text = _checked_text(source.name, "unit", unit, 40)

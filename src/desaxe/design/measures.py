@@ -75,7 +75,7 @@ def checked(measure: Any) -> Measure:
         )
     there = f"{'There' if hint else 'there'} are {', '.join(UNITS)}"
     raise ValueError(
-        f"{shown(measure)} is no quantity of a design; {hint}{there} and the peaks, "
+        f"{shown(measure)} is not a quantity of a design; {hint}{there} and the peaks, "
         f'such as ("absmax", "a_C"), of the kinds {", ".join((*KINDS, *AVERAGES))}, '
         'and ("at", "60 deg", "a_C")'
     )

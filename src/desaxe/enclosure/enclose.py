@@ -91,7 +91,7 @@ def enclose(
     check_inputs("enclose", loads, (*INPUTS, "branch", "rtol", "boxes", "timeout"))
     quantity(name, omega is not None)
     if name == "status":
-        raise ValueError("status is no real number: see `status` of the result")
+        raise ValueError("status is not a real number: see `status` of the result")
     if not real_number("rtol", rtol) > 0.0:
         raise ValueError(f"rtol = {rtol}: expected a number above 0")
     whole_number("boxes", boxes, 1, 10**7)

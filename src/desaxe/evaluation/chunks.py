@@ -27,7 +27,7 @@ def chunk_lengths(chunks: Any, sizes: Mapping[str, int], points: int) -> dict[st
             if name not in sizes:
                 known = ", ".join(sizes) or "none"
                 raise ValueError(
-                    f"chunks: {name!r} is no dimension of this grid; "
+                    f"chunks: {name!r} is not a dimension of this grid; "
                     f"{did_you_mean(str(name), list(sizes))}dimensions: {known}"
                 )
         wanted = {name: chunks.get(name, -1) for name in sizes}

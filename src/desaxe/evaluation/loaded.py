@@ -112,7 +112,7 @@ def labelled_load(name: str, array: Any, theta: Any = None) -> Load:
         raise ValueError(f"{name}: {y.size} values over theta, which has {x.size}")
     try:
         if x.size and x[-1] - x[0] < TURN - GAP * np.diff(x).max(initial=0.0):
-            raise ValueError(f"its angles go from {x[0]:g} to {x[-1]:g} rad, which is no whole turn")
+            raise ValueError(f"its angles go from {x[0]:g} to {x[-1]:g} rad, which is not a whole turn")
         return over_theta(x, y)
     except ValueError as error:
         if theta is None or not np.array_equal(x, as_array("theta", theta, ("theta",), (name,))):

@@ -91,7 +91,7 @@ def _slope_names(name: str, needs: Sequence[str], state: bool) -> dict[str, str]
     if name == "margin":  # its derivatives are 1 and -1
         return {}
     if name == "status":
-        raise ValueError("quality of status: it is no real number")
+        raise ValueError("quality of status: it is not a real number")
     found = {p: sensitivity(name, p) for p in needs}
     try:
         for slope in found.values():

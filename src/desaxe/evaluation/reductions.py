@@ -209,7 +209,7 @@ def _axes(key: Any, dimensions: Sequence[str], used: Sequence[str]) -> tuple[str
         if axis not in dimensions:
             there = ", ".join(dimensions) or "none"
             hint = did_you_mean(str(axis)[:40], dimensions)
-            raise ValueError(f"reduce: {shown(axis)} is no axis of this grid; {hint}axes: {there}")
+            raise ValueError(f"reduce: {shown(axis)} is not an axis of this grid; {hint}axes: {there}")
         if axis in used or axis in axes[:number]:
             raise ValueError(f"reduce: {axis!r} is reduced twice")
     return axes

@@ -279,7 +279,7 @@ def _finite(what: str, values: list[Any]) -> list[float]:
         except OverflowError:
             number = inf
         except (TypeError, ValueError):
-            raise TypeError(f"{what}: {shown(value)} is no number") from None
+            raise TypeError(f"{what}: {shown(value)} is not a number") from None
         if isinstance(value, bool) or not isfinite(number):
             raise ValueError(f"{what}: {shown(value)}; every one must be a finite number")
         found.append(number)

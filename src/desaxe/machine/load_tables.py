@@ -31,7 +31,7 @@ def load_table(name: str, load: Load, scene: Path) -> LoadTable:
         more = {"kind": load.kind}
         over, heads = "over_Y", ["Y [m]", *(f"{name} {way}" for way in ("outward", "inward")[: len(ways)])]
     else:
-        raise TypeError(f"{name}: a function is no data, and cannot stand in a scene file; give a table")
+        raise TypeError(f"{name}: a function is not data, and cannot stand in a scene file; give a table")
     more |= {"value": load.unit} if load.unit is not None else {}
     rows = list(zip(*columns, strict=True))
     if len(rows) <= INLINE:

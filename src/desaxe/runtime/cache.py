@@ -78,7 +78,7 @@ def _prepare(path: Path) -> None:
     try:
         private.make_folder(path)
     except FileExistsError:
-        raise private.UntrustedError(f"{path}: it is no folder") from None
+        raise private.UntrustedError(f"{path}: it is not a folder") from None
     about = path.lstat()
     mine = sys.platform != "win32" and about.st_uid == os.geteuid() and stat.S_ISDIR(about.st_mode)
     if mine and about.st_mode & 0o077 and all(OURS.fullmatch(name) for name in os.listdir(path)):

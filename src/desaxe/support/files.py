@@ -41,7 +41,7 @@ def replacing(target: Path, mode: int | None = None) -> Iterator[Path]:
     target  a file, or what does not exist yet; its folder is made. A link is replaced, not followed.
     mode    permissions; by default those of the file that is replaced, else those of a new file
 
-    Raises ValueError where `target` is no ordinary file, OSError where it cannot be written.
+    Raises ValueError where `target` is not a regular file, OSError where it cannot be written.
     """
     check_target(target)
     with staging(target.parent) as folder:
@@ -122,7 +122,7 @@ def kind_of(path: Path) -> str:
         found = stat.S_IFMT(path.stat().st_mode)
     except (FileNotFoundError, NotADirectoryError):
         return ""
-    return "" if found == stat.S_IFREG else _KINDS.get(found, "no ordinary file")
+    return "" if found == stat.S_IFREG else _KINDS.get(found, "not a regular file")
 
 
 @contextmanager

@@ -36,7 +36,7 @@ def read_bytes(path: Path) -> bytes:
     )
     with open(os.open(path, flags), "rb") as file:
         about = os.fstat(file.fileno())
-        why = distrust(about) if stat.S_ISREG(about.st_mode) else "it is no ordinary file"
+        why = distrust(about) if stat.S_ISREG(about.st_mode) else "it is not a regular file"
         if why:
             raise UntrustedError(f"{path}: {why}")
         return file.read()
@@ -54,7 +54,7 @@ def check_folder(path: Path) -> None:
     if stat.S_ISLNK(about.st_mode):
         raise UntrustedError(f"{path}: it is a link")
     if not stat.S_ISDIR(about.st_mode):
-        raise UntrustedError(f"{path}: it is no folder")
+        raise UntrustedError(f"{path}: it is not a folder")
     why = distrust(about)
     if why:
         raise UntrustedError(f"{path}: {why}")

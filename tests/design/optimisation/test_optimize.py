@@ -224,7 +224,7 @@ def test_how_far_a_design_is_from_turning():
     ("arguments", "error", "words"),
     [
         ({"maximize": None}, TypeError, "say what to maximize"),
-        ({"maximize": "strok"}, ValueError, "'strok' is no quantity of a design; did you mean 'stroke'"),
+        ({"maximize": "strok"}, ValueError, "'strok' is not a quantity of a design; did you mean 'stroke'"),
         ({"maximize": ("absmax", "a_D")}, ValueError, "unknown quantity 'a_D'"),
         ({"over": {"ecc": (0, 1)}}, TypeError, "no input 'ecc'; did you mean ec"),
         ({"over": {"ec": (1, 0)}}, ValueError, r"over: ec = \(1, 0\): the lower bound first"),

@@ -200,7 +200,7 @@ def test_bad_arguments():
         dx.flywheel(fluctuation="2 %", **PRESS)
     with pytest.raises(ValueError, match=r"orders = 2\.5: a whole number"):
         dx.harmonics("a_C", orders=2.5, ec=0, AB=0.1, BC=0.3, omega0=1.0)
-    with pytest.raises(ValueError, match="status is no real number"):
+    with pytest.raises(ValueError, match="status is not a real number"):
         dx.harmonics("status", ec=0, AB=0.1, BC=0.3, omega0=1.0)
     with pytest.raises(ValueError, match="fluctuation = 3"):
         dx.flywheel(fluctuation=3, **PRESS)

@@ -43,7 +43,7 @@ class Design:
             if name not in self.numbers:
                 as_number(name, None, (*LENGTHS, "omega0"), (caller,))
         if not self.numbers["omega0"]:
-            raise ValueError(f"{caller}: omega0 = 0 is no cycle; it must be the speed of the crank")
+            raise ValueError(f"{caller}: omega0 = 0 gives no cycle; it must be the speed of the crank")
         everything = {**self.numbers, **self.loads}
         asked = request(("T_in",), everything, self.branch, "standard")
         self.parameters = tuple(n for n in asked.inputs if n != "theta" and n not in self.loads)

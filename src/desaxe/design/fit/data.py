@@ -148,4 +148,4 @@ def _number(path: Path, row: list[str], place: int, separator: str) -> float:
     try:
         return float(text.replace(",", ".") if separator == ";" else text)
     except ValueError:
-        raise ValueError(f"{path}: {text!r} is no number") from None
+        raise ValueError(f"{path}: {text!r} is not a number") from None

@@ -43,7 +43,7 @@ def _parameter(name: str, value: Any, fixed: Mapping[str, Any]) -> Unknown:
     allowed = [known for known in INPUTS if known != "theta"]
     if name not in allowed:
         meant = did_you_mean(str(name), allowed)
-        raise ValueError(f"over: {name!r} is no parameter; {meant}there are {', '.join(allowed)}")
+        raise ValueError(f"over: {name!r} is not a parameter; {meant}there are {', '.join(allowed)}")
     if fixed.get(name) is not None:
         raise TypeError(f"{name} is given in over= and as a fixed input: leave one of them out")
     least = LEAST.get(name, -inf)

@@ -210,7 +210,7 @@ def _function(name: Any, given: Mapping[str, Any], branch: int) -> Function:
         return Function(checked(name), False, fixed, varying, branch)
     quantity(name, "omega" in given)
     if name == "status":
-        raise ValueError("status is no real number")
+        raise ValueError("status is not a real number")
     if name == "margin":
         return Function("margin", False, fixed, varying, branch)
     names = [sensitivity(name, p) for p in varying]

@@ -46,7 +46,7 @@ def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> 
     """
     quantity(name)
     if name == "status":
-        raise ValueError("status is no real number")
+        raise ValueError("status is not a real number")
     orders = whole_number("orders", orders, 0, MOST // 16)
     turn = Turn("harmonics", inputs, branch)
     if turn.kinks:
