@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 import desaxe as dx
 from desaxe.cli import main
+from desaxe.cli.command import warnings_in_a_line
 from desaxe.mechanism.units import registry
 from desaxe.scenes.schema import SceneError
 
@@ -323,6 +324,7 @@ def test_units_of_a_scene_that_are_none():
         ({"AB": 125, "BC": 350}, 'BC = "350 mm"'),
         ({"omega0": 1500}, 'omega0 = 1500 rad/s, write omega0 = "1500 rpm"'),
         ({"g_Y": -9810}, '"-9.81 m/s^2"'),
+        ({"AB": 0.125, "units": "mm"}, 'AB = 0.125 mm, write AB = "0.125 m"'),
         ({"g_Y": -9.81, "units": "mm"}, '"-9.81 m/s^2"'),
         ({"mu": 12}, "write mu = 0.12"),
     ],
@@ -347,6 +349,9 @@ def test_slips_of_calls_scenes_and_commands(capsys):
     with pytest.warns(dx.UnitWarning, match='"125 mm"'):
         main(["point", "Y", "theta=1", "ec=0", "AB=125", "BC=0.35"])
     capsys.readouterr()
+    with warnings_in_a_line():
+        assert warnings.formatwarning("a slip", dx.UnitWarning, "command.py", 1) == "desaxe: a slip\n"
+        assert "command.py" in warnings.formatwarning("another", UserWarning, "command.py", 1)
 
 
 def test_what_is_no_slip():

@@ -8,8 +8,9 @@ import argparse
 import os
 import signal
 import sys
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from typing import Any
 
 from ..support.extras import MissingExtraError, explained
@@ -103,8 +104,24 @@ def _run(words: list[str]) -> int:
     if run is None:
         parser.print_help()
         return 0
-    with explained(f"desaxe {words[0]}"):
+    with explained(f"desaxe {words[0]}"), warnings_in_a_line():
         return run(options)
+
+
+@contextmanager
+def warnings_in_a_line() -> Iterator[None]:
+    """Print warnings of desaxe without the place in its source."""
+    usual = warnings.formatwarning
+
+    def told(message: Any, category: Any, *place: Any, **more: Any) -> str:
+        own = category.__module__.startswith("desaxe.")
+        return f"desaxe: {message}\n" if own else usual(message, category, *place, **more)
+
+    warnings.formatwarning = told
+    try:
+        yield
+    finally:
+        warnings.formatwarning = usual
 
 
 def _one_line(error: Exception) -> str:

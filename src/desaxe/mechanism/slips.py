@@ -22,6 +22,7 @@ LARGEST = {
 }
 LARGEST_DOUBLE = sys.float_info.max
 SMALLEST = dict.fromkeys(("g_X", "g_Y"), 0.1)
+LINKS, SHORTEST = ("AB", "BC"), 5e-4  # shorter ones were given in metres where another unit was named
 MOST_TURNS = 2.0
 # What to write instead, of the number that was written.
 REMEDIES = {
@@ -62,10 +63,12 @@ def slip(name: str, value: Any, units: UnitSystem = SI) -> str:
         wrong = si > 2.0 * pi * MOST_TURNS and conversion.unit == "rad" and not _is_share_of_turn(si)
     else:
         wrong = si > LARGEST[name] or si < SMALLEST.get(name, 0.0)
-    if not wrong:
+    in_metres = name in LINKS and conversion.si != 1 and si < SHORTEST
+    if not wrong and not in_metres:
         return ""
     earth = 9.81 if value > 0 else -9.81
-    remedy = REMEDIES[name].format(number=value, earth=earth, hundredth=value / 100)
+    remedy = '"{number:.6g} m"' if in_metres else REMEDIES[name]
+    remedy = remedy.format(number=value, earth=earth, hundredth=value / 100)
     return f"{name} = {value:.6g} {conversion.unit}".removesuffix(" 1") + f", write {name} = {remedy}"
 
 
