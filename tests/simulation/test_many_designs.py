@@ -172,11 +172,6 @@ def test_a_torque_that_numba_cannot_compile(torque, message):
         ({"until": 3.0}, ValueError, "until= is for one design at a time"),
         ({"atol": 1e-9}, ValueError, "atol= is for one design at a time"),
         ({"method": "Radau"}, ValueError, "method= is for one design at a time"),
-        (
-            {"F_Y": lambda t, theta, omega: 1.0},
-            TypeError,
-            "F_Y: a function or table is for one design at a time",
-        ),
         ({"torque": [1.0, 2.0]}, ValueError, "the shapes do not broadcast together"),
         ({"torque": ["3 N"] * 4}, ValueError, "torque = '3 N': it must be a quantity in N*m"),
         ({"torque": [None] * 4}, TypeError, "torque: expected real numbers"),

@@ -75,7 +75,12 @@ def _under_loads(
     The kernel computes the slopes by the loads too, which total derivatives need.
     """
     plan = plan_of(names, loads, "omega" in given, "mu" in given)
-    asked = request(plan.names, {**given, **dict.fromkeys(loads, 1.0)}, content.branch, content.accuracy)
+    asked = request(
+        (*plan.names, *(n for n in plan.motion if n not in plan.names)),
+        {**given, **dict.fromkeys(loads, 1.0)},
+        content.branch,
+        content.accuracy,
+    )
     flat = any(isinstance(load, OverY) for load in plan.loads.values())
     order = [" x ".join(dimensions)] if flat else list(dimensions) or [""]
     lengths = [np.size(given[name]) for name in dimensions] or [1]

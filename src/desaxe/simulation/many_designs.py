@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from ..evaluation.arrays import as_array, broadcast_shape
 from ..evaluation.evaluate import evaluate
-from ..loads.load import Load
 from ..loads.resolve import takes
 from ..mechanism.inputs import LEAST
 from ..mechanism.limit_angles import theta_intervals
@@ -59,7 +58,7 @@ def simulate_many(
 ) -> Simulation:
     """The motions; how: relative tolerance, t_end, longest step, most steps."""
     arrays = _arrays(given) | {
-        name: _column(name, 0.0 if callable(value) else value, STARTS[name]) for name, value in starts.items()
+        name: column(name, 0.0 if callable(value) else value, STARTS[name]) for name, value in starts.items()
     }
     empty = next((name for name, array in arrays.items() if not array.size), None)
     if empty is not None:
@@ -93,8 +92,6 @@ def _arrays(given: Mapping[str, Any]) -> dict[str, Array]:
     arrays = {}
     for name in (*LENGTHS, *LOADS):
         value = given.get(name)
-        if callable(value):
-            raise TypeError(f"{name}: a function or table is for one design at a time; many take numbers")
         if value is None and name in LOADS:
             if name in CENTRES:
                 continue
@@ -105,7 +102,7 @@ def _arrays(given: Mapping[str, Any]) -> dict[str, Array]:
     return arrays
 
 
-def _column(name: str, value: Any, unit: str) -> Array:
+def column(name: str, value: Any, unit: str) -> Array:
     """Starts and torques as an array of finite or bad numbers."""
     number = in_unit(name, value, unit) if isinstance(value, str) or hasattr(value, "magnitude") else value
     try:
@@ -142,8 +139,6 @@ def _compile(torque: Callable[..., Any]) -> Any:
     from numba.core.types import Float, Integer
 
     plain = getattr(torque, "py_func", torque)
-    if isinstance(plain, Load):
-        raise TypeError("torque: a table over theta is for one design at a time")
     check_signature("torque", plain)
     try:
         fast: Any = torque if isinstance(torque, Dispatcher) else njit(error_model="numpy")(torque)
@@ -184,6 +179,11 @@ def _setup(flat: Mapping[str, Array], branch: int) -> tuple[Array, NDArray[np.in
     loads = np.abs(flat["F_Y"]) * AB
     columns = (np.full(theta.size, float(branch)), *arcs.T, flat["torque"], flat["F_Y"], theta)
     return np.stack([*columns, flat["omega_start"], loads], axis=1), status
+
+
+def starting(flat: Mapping[str, Array], branch: int) -> NDArray[np.int8]:
+    """For each design NO_START where no motion can start, another number elsewhere."""
+    return _setup(flat, branch)[1]
 
 
 def _arc(values: Mapping[str, float]) -> tuple[float, float, float] | None:
@@ -242,12 +242,13 @@ def _result(
         }
         result |= evaluate(list(names), theta=theta, omega=omega, alpha=alpha, branch=branch, **inputs)
     result["status"] = status.reshape(shape)
-    result["message"] = _message(status)
+    result["message"] = message(status)
     end, residual, work = (numbers[:, k].reshape(shape) for k in range(3))
     return Simulation(result, t_last=end, energy_residual=residual, work=work)
 
 
-def _message(status: NDArray[np.int8]) -> str:
+def message(status: NDArray[np.int8]) -> str:
+    """The number of designs of each status, in words."""
     counts = Counter(status.tolist())
     words = {**WORDS, DONE: "reached t_end"}
     return f"{status.size} designs: " + ", ".join(f"{counts[c]} {words[c]}" for c in sorted(counts))

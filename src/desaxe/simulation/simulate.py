@@ -1,12 +1,13 @@
 """`simulate`: the motion of the crank under a torque."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import inf, sqrt
 from typing import Any
 
 import numpy as np
 
 from ..evaluation.loaded import with_labelled
+from ..loads.load import Load as LoadOverMotion
 from ..runtime.request import check_common, with_known_inputs
 from ..support.checks import whole_number
 from ..support.deadline import Deadline
@@ -21,6 +22,7 @@ from .checks import (
     read_until,
     scalar,
 )
+from .each_design import simulate_each
 from .history import result_of
 from .many_designs import is_array, simulate_many
 from .model import Load, Model
@@ -101,9 +103,10 @@ def simulate(
 
     Many designs at once: lengths, masses, constant loads, theta0, omega_start and a constant torque may be
     arrays that broadcast like NumPy. All run in compiled code (numba compiles a torque function), without
-    friction. Histories then have the shape (designs..., times), 101 instants without `times`, NaN where a
-    motion has ended. status (also 6: bad input, or no mechanism at the start), energy_residual, work and
-    t_last, where each ends, have the shape of the designs; there are no events and no solution.
+    friction; where F_X, F_Y or a table of the torque vary with the motion one after the other. Histories then
+    have the shape (designs..., times), 101 instants without `times`, NaN where a motion has ended. status
+    (also 6: bad input, or no mechanism at the start), energy_residual, work and t_last, where each ends, have
+    the shape of the designs; there are no events and no solution.
 
     Equation: M_eff alpha + M_eff' omega^2/2 = torque - static torque - friction (paper C, section 3).
     Raises ValueError where no motion can start (no mechanism there, no inertia) and for a bad value.
@@ -124,6 +127,17 @@ def simulate(
     starts = {"theta0": theta0, "omega_start": omega_start, "torque": torque}
     if any(map(is_array, (*given.values(), *starts.values()))):
         _check_many(method, atol, until)
+        if any(map(callable, (given["F_X"], given["F_Y"]))) or isinstance(torque, LoadOverMotion):
+
+            def one(inputs: Mapping[str, Any], begin: Mapping[str, Any], t: Any) -> Simulation:
+                deadline.check()
+                return simulate(
+                    **inputs, **begin, t_end=end, names=wanted, branch=branch, rtol=rtol, times=t,
+                    max_step=None if longest == inf else longest, max_steps=max_steps,
+                    timeout=deadline.left(),
+                )  # fmt: skip
+
+            return simulate_each(one, given, starts, int(branch), wanted, instants, end)
         how = (rtol, end, longest, max_steps)
         return simulate_many(given, starts, int(branch), wanted, instants, how, threads, deadline)
     start = scalar("theta0", theta0, "rad"), scalar("omega_start", omega_start, "rad/s")

@@ -19,7 +19,7 @@ from ...compiler.operations import HELPERS, NUMBA_HELPERS
 from ...compiler.passes.double_double import double_double
 from ...compiler.passes.guard import guard_inputs
 from ...compiler.program import Program
-from ...loads.load import TableOverTheta
+from ...loads.load import Load
 from ...loads.resolve import Plan, plan_of, split
 from ...mechanism.catalogue import quantity
 from ...mechanism.constants import constants, double_constants
@@ -182,12 +182,13 @@ def module_text(scene: Scene, name: str = "my_kernels.py") -> str:
     require_tables(scene.name or "scene", loads)
     if loads and content.reduction is not None:
         raise SceneError(
-            f"{scene.name or 'scene'}: a module under a load over theta stores its grid: no [reduce]"
+            f"{scene.name or 'scene'}: a module under a load that varies stores its grid: no [reduce]"
         )
     found = grid_kernel(content)
     anywhere = found.key.form._replace(wide_margins=False)  # the module takes other designs, too
     key = _all_fixed(found.key._replace(form=anywhere), found, numbers, loads)
-    axes = {n: value for n in found.axes if isinstance(value := content.inputs.get(n), tuple)}
+    order = content.inputs if loads else found.axes
+    axes = {n: value for n in order if isinstance(value := content.inputs.get(n), tuple)}
     state = found.request.form.state
     shown = found.request.shown
     program = _in_order(specialise(key.names, key.form, key.fixed, key.accuracy))
@@ -262,24 +263,25 @@ def _module_under_loads(
     program: Program,
     axes: Mapping[str, tuple[float, ...]],
 ) -> str:
-    """The text of the module of a scene whose loads are tables over theta."""
+    """The text of the module of a scene whose loads are tables."""
     state, inputs = key.form.state, program.inputs
     own = renames()
+    parts = tuple(dict.fromkeys((*plan.names, *plan.motion)))
     single = key._replace(axis_of=tuple((n, 0) for n in sorted(inputs)), axes=1, reduce=())
-    sources = [point_function(program, plan.names, state)]
+    sources = [point_function(program, parts, state)]
     _kernels(single, inputs, sources)
     imports, statements = merged(
         _shared([renamed(sources[0], {"point": own["point"]}, called=True), *sources[1:]])
     )
     limit = None if key.far else _limit(key)
-    inner = renamed(evaluate_function(program, plan.names, state, limit, True), own)
+    inner = renamed(evaluate_function(program, parts, state, limit, True), own)
     fixed = scene.content.inputs.get("theta")
     fixed_theta = float(fixed) if isinstance(fixed, float) else None
     tables = [AFFINITY, DOUBLES, COMPILED, f"INPUTS = {tuple(n for n in inputs if n not in plan.loads)!r}"]
-    tables += [renamed(_outputs(plan.names), own), _outputs(plan.shown), _fixed(key)]
-    tables += [table_text(n, load, "N") for n, load in plan.loads.items() if isinstance(load, TableOverTheta)]
+    tables += [renamed(_outputs(parts), own), _outputs(plan.shown), _fixed(key)]
+    tables += [table_text(n, load, "N") for n, load in plan.loads.items()]
     calls = [THREADS, inner, *([axes_text(axes), WITH_AXES, chosen_text(axes, limit)] if axes else [])]
-    calls.append(calls_text(plan, inputs, list(axes), fixed_theta))
+    calls.append(calls_text(plan, inputs, list(axes), fixed_theta, dict(key.fixed)))
     body = "\n\n\n".join(part.strip("\n") for part in [*tables, *statements, *calls]) + "\n"
     shown_inputs = tuple(n for n in inputs if n not in plan.loads)
     head = _docstring(scene, name, key, plan.shown, shown_inputs, cost_of(program).operations)
@@ -290,7 +292,7 @@ def _all_fixed(
     key: KernelKey, found: GridKernel, inputs: Mapping[str, Any], loads: Iterable[str]
 ) -> KernelKey:
     """The key with every number of the scene folded in; loads that vary with the motion stay inputs."""
-    left = {*found.axes, *loads}
+    left = {*(n for n, value in inputs.items() if isinstance(value, tuple)), *loads}
     numbers = {n: inputs.get(n, 0.0) for n in found.request.inputs if n not in left}
     fixed = dict(key.fixed) | {n: float(value) for n, value in numbers.items()}
     return key._replace(fixed=tuple(fixed.items()))
@@ -371,8 +373,8 @@ def _docstring(
     source = Path(scene.name).name
     command = f"desaxe compile {source} -o {name}" if source else f'desaxe.compile(scene, "{name}")'
     peak_lines = peak_texts(scene.content).lines
-    tables = [load.table for load in scene.content.inputs.values() if isinstance(load, TableOverTheta)]
-    said = hashlib.sha256(repr((scene.content, *tables)).encode() if tables else repr(scene.content).encode())
+    loads = [load.identity for load in scene.content.inputs.values() if isinstance(load, Load)]
+    said = hashlib.sha256(repr((scene.content, *loads) if loads else scene.content).encode())
     state = key.form.state
     lines = [
         f"{scene.title or 'An offset slider-crank'}: {', '.join(shown)}.",
