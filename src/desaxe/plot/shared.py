@@ -85,14 +85,16 @@ def mark_gaps(ax: "Axes", lines: "Sequence[Line2D]") -> None:
         ax.text((low + high) / 2, 0.5, note, transform=across, rotation=90, color="0.35",
                 ha="center", va="center", fontsize="small", zorder=1)  # fmt: skip
         note = ""
+    middle, top = 0.0, 0.0
     for k, (line, own) in enumerate(zip(lines, values, strict=True)):
         foot = 0.008 + 0.016 * k
         for low, high in _spans(angles, np.isnan(own) & ~everywhere):
             ax.plot([low, high], [foot, foot], color=line.get_color(), linewidth=3.0, alpha=0.55,
                     transform=across, solid_capstyle="butt", zorder=3)  # fmt: skip
-            ax.text((low + high) / 2, foot + 0.015, note, transform=across, color="0.35", ha="center",
-                    fontsize="small", zorder=3)  # fmt: skip
-            note = ""
+            middle, top = (low + high) / 2, foot
+    if top and note:
+        ax.text(middle, top + 0.015, note, transform=across, color="0.35", ha="center", fontsize="small",
+                zorder=3)  # fmt: skip
 
 
 def _spans(places: NDArray[np.float64], missing: NDArray[np.bool_]) -> list[tuple[float, float]]:
