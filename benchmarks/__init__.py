@@ -8,12 +8,13 @@ blocks       blocks of points, for peers that take a matrix
 child        one contender in a process of its own
 race         contenders in turns at a work
 errors       errors against the truth, by the rig of `desaxe.audit`
+load         bytes and operations of a work at each point
 measure      a whole run as plain data
 growth       time over the number of points
 starts       cold starts
 report       docs/benchmarks.md and README's table
 picture      the pictures of that page
-startup      `python -m benchmarks.startup`: time to the first result
+startup      first calls and second processes; `python -m benchmarks.startup` alone
 motions      `python -m benchmarks.motions`: simulations
 scale        `python -m benchmarks.scale`: sweeps
 """

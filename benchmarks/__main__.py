@@ -15,6 +15,7 @@ RESULTS = Path(__file__).parent / "results" / "measured.json"
 README = ROOT / "README.md"
 DOCS = ROOT / "docs"
 PAGE = DOCS / "benchmarks.md"
+STARTS = "starts"  # no race: processes of desaxe alone
 DESCRIPTION = """\
 desaxe beside NumPy, numba, numexpr, JAX, CasADi, heyoka and C at the same works, on one core and on all:
 time as a multiple of desaxe's, error against the truth. The peers come with the extra `peers`, C with gcc;
@@ -49,7 +50,11 @@ def _parser() -> argparse.ArgumentParser:
     )
     keys = [work.key for work in WORKS]
     parser.add_argument(
-        "--only", action="append", choices=keys, metavar="WORK", help="this work alone; repeatable"
+        "--only",
+        action="append",
+        choices=[*keys, STARTS],
+        metavar="WORK",
+        help=f"this work alone; repeatable; {STARTS}: desaxe's first calls and second processes",
     )
     parser.add_argument(
         "--quick", action="store_true", help="five small works, few rounds, no cold starts: a minute"
@@ -79,6 +84,7 @@ def _listed() -> str:
     from .contenders import CONTENDERS
 
     works = [f"  {work.key:11}{work.title}" for work in WORKS]
+    works.append(f"  {STARTS:11}first calls and second processes of desaxe")
     missing = {one.name: "" if one.is_here else f"not here: needs {one.needs}" for one in CONTENDERS}
     return "\n".join(
         ["works", *works, "contenders", *(f"  {n:18}{why}".rstrip() for n, why in missing.items())]
@@ -87,7 +93,7 @@ def _listed() -> str:
 
 def _measure(options: argparse.Namespace) -> None:
     try:
-        from .measure import FULL, QUICK, measure
+        from .measure import FULL, QUICK, Effort, measure
     except ModuleNotFoundError as missing:
         raise SystemExit(f"the benchmarks need {missing.name}: python -m pip install -e '.[dev]'") from None
     from desaxe.support.progress import progress_bar
@@ -98,9 +104,12 @@ def _measure(options: argparse.Namespace) -> None:
         raise SystemExit("--write stores works in full: without --quick and --points")
     effort = QUICK if options.quick else FULL
     effort = effort._replace(points=options.points, rounds=options.rounds or effort.rounds)
-    works = [BY_KEY[key] for key in options.only or ()] or (BRIEF if options.quick else WORKS)
+    only = options.only or ()
+    works = [BY_KEY[key] for key in only if key != STARTS]
     with progress_bar() as watch:
-        data = measure(works, effort, watch)
+        data = measure([], Effort(False, 2)) if STARTS in only else {}
+        if works or not only:
+            data |= measure(works or (BRIEF if options.quick else WORKS), effort, watch)
     print(terminal(data))
     if options.write:
         data = _into_stored(data) if options.only else data
@@ -111,8 +120,10 @@ def _measure(options: argparse.Namespace) -> None:
 def _into_stored(data: "Data") -> "Data":
     """The stored run with these works measured anew; times are compared inside a work only."""
     stored: Data = json.loads(RESULTS.read_text(encoding="utf-8"))
-    for part in ("points", "one core", "all cores", "operations"):
-        merged = {**stored[part], **data.get(part, {})}
+    if "calls" in data:
+        stored["calls"] = data["calls"]
+    for part in ("points", "one core", "all cores", "operations", "load"):
+        merged = {**stored.get(part, {}), **data.get(part, {})}
         stored[part] = {work.key: merged[work.key] for work in WORKS if work.key in merged}
     return stored
 

@@ -15,9 +15,10 @@ from desaxe.mechanism.program import Variant
 from desaxe.runtime.specialise import specialise
 from desaxe.support.progress import Progress, Steps
 
-from . import growth
+from . import growth, startup
 from .contenders import CONTENDERS, LIMITS, MACHINE
 from .errors import FAMILIES, cases, errors
+from .load import load_of
 from .race import Found, race, racers
 from .starts import starts
 from .work import BRIEF, WORKS, Work
@@ -48,6 +49,8 @@ QUICK = Effort(quick=True, rounds=2, judged=10)
 
 def measure(works: Sequence[Work], effort: Effort, watch: Progress | None = None) -> Data:
     """Race everyone at these works; all else (cores, growth, starts) belongs to a run of all works."""
+    if not works:
+        return {"machine": _machine(len(_cores())), "calls": startup.measure(effort.rounds)}
     whole = len(works) == len(BRIEF if effort.quick else WORKS)
     here, cores = [one for one in CONTENDERS if one.is_here], _cores()
     several = [work for work in works if work.every_core and len(cores) > 1 and not effort.quick]
@@ -97,8 +100,12 @@ def measure(works: Sequence[Work], effort: Effort, watch: Progress | None = None
     if whole and not effort.quick:
         steps.next("new processes")
         data["starts"] = starts(here, cores[-1], 2)
+        data["calls"] = startup.measure(2)
     data["operations"] = {
         work.key: _operations(work) for work in works if work.kind in ("values", "prepared")
+    }
+    data["load"] = {
+        work.key: load_of(work)._asdict() for work in works if work.kind in ("values", "prepared", "grid")
     }
     return data
 

@@ -7,8 +7,9 @@ from desaxe.audit.errors import TOP, ULPS
 from desaxe.audit.report import number, table
 
 from .contenders import LIMITS, STANDARD
+from .load import DOUBLE
 from .measure import Data
-from .work import BY_KEY, TURNS
+from .work import BY_KEY, DEGREE, MEMORY, TURNS
 
 PICTURE, GROWTH_PICTURE = "benchmarks.png", "benchmarks-points.png"
 COMMAND = "python -m benchmarks --write"
@@ -58,7 +59,9 @@ def page(data: Data) -> str:
             _growth(data),
         ]
     parts += ["## Compilation, cold start, memory", _starts(data)]
-    parts += ["## The limits of the machine", _limits(data)]
+    if "calls" in data:
+        parts += ["## First calls and second processes", _calls(data)]
+    parts += ["## The limits of the machine", _limits(data), _bounds(data)]
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
@@ -86,6 +89,8 @@ def with_table(readme: str, data: Data) -> str:
 
 def terminal(data: Data) -> str:
     """The tables of a run as text for the terminal."""
+    if "one core" not in data:
+        return f"{data['machine']}\n\n{_calls(data)}\n"
     parts = [
         data["machine"],
         by_contender(data, data["one core"]),
@@ -96,7 +101,9 @@ def terminal(data: Data) -> str:
         parts.append(_all_cores(data))
     if "growth" in data:
         parts.append(_growth(data))
-    parts += [_starts(data), _operations(data), _limits(data)]
+    if "calls" in data:
+        parts.append(_calls(data))
+    parts += [_starts(data), _operations(data), _limits(data), _bounds(data)]
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
@@ -248,6 +255,53 @@ def _megabytes(found: Mapping[str, Any]) -> str:
     return f"{max(0.0, found['memory']):.0f}" if "memory" in found else ""
 
 
+def _calls(data: Data) -> str:
+    """Seconds of desaxe's calls in new processes."""
+    rows = [[name, f"{t['first']:.2f}", f"{t['second']:.3f}"] for name, t in data["calls"].items()]
+    head = ["seconds of processor time, over importing NumPy", "first call", "second process"]
+    return (
+        f"{table(head, rows)}\n\n"
+        "A first call finds no cache of any kind: it is answered by NumPy, or compiles. A second process\n"
+        "finds what an earlier one has compiled, and imports neither numba nor llvmlite's binding."
+    )
+
+
+def _bounds(data: Data) -> str:
+    """Table of each work's share of the memory limit and of the issue limit."""
+    limits, rows = data["limits"], []
+    if not {"copy", "multiply_add"} <= set(limits):
+        return ""
+    turns = 1024 * TURNS
+    for key, load in data.get("load", {}).items():
+        found = data["one core"].get(key, {})
+        seconds = found.get(STANDARD, {}).get("seconds")
+        if not seconds:
+            continue
+        points = data["points"][key]
+        memory = limits["copy"] / MEMORY * load["bytes"] / (2 * DOUBLE)
+        filled = found.get(LIMITS, {}).get("seconds", 0.0) / points
+        memory = memory if BY_KEY[key].given else filled
+        issue = load["slots"] * limits["multiply_add"] / (turns * DEGREE)
+        issue += load["divisions"] * limits["divide"] / turns + load["roots"] * limits["sqrt"] / turns
+        least = max(memory, issue)
+        cells = [str(load["bytes"]), f"{load['slots'] + load['divisions'] + load['roots']:.0f}"]
+        cells += [digits(points * part / seconds) for part in (memory, issue)]
+        bound = (
+            "the call" if points * least < 0.1 * seconds else "memory" if memory == least else "operations"
+        )
+        rows.append([key, *cells, bound])
+    head = ["desaxe standard", "bytes a point", "operations a point", "memory", "operations", "bound by"]
+    return (
+        f"{table(head, rows)}\n\n"
+        "How far from the machine's limits: the time that moving its bytes takes, and the time that issuing\n"
+        "its operations takes, as shares of desaxe's time; 1 is the limit. Bytes are moved as fast as a\n"
+        f"loop copies {MEMORY:,} doubles (where the answer is allocated: as `{LIMITS}`\n"
+        "allocates and fills it), operations are issued as fast as multiplications and additions in\n"
+        "registers, with divisions and roots at their own speed. Of columns that stay in a cache the share\n"
+        "can exceed 1. Where both are small, the call itself takes the time."
+    )
+
+
 def _limits(data: Data) -> str:
     each = {key: seconds / (1024 * TURNS) for key, seconds in data["limits"].items()}
     raced = {key: data["one core"].get(key, {}) for key in ("concentric", "point", "first")}
@@ -255,6 +309,7 @@ def _limits(data: Data) -> str:
     rows = [
         [BY_KEY[limit].title, *(digits(s / data["points"][key] / each[limit]) for key, s in known if s)]
         for limit in each
+        if limit in ("sqrt", "divide", "sincos")
     ]
     head = ["desaxe standard's time at a point, in", *(key for key, s in known if s)]
     return (

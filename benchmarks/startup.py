@@ -1,67 +1,49 @@
-"""`python -m benchmarks.startup`: times of a new process up to its first result.
+"""`python -m benchmarks.startup`: what desaxe's calls take in a new process, over importing NumPy.
 
-Each row is the median of several new processes, which take turns. A kernel that an earlier process
-compiled is loaded from disk, without numba where it stands alone. What numba would need for that is
-shown too: its own import, and the tables of types that it fills before the first kernel, which import
-scipy.linalg where SciPy is installed.
+A first call finds no cache of any kind, a second process the machine code that an earlier one has compiled.
+Each figure is processor time, the least of some new processes.
 """
 
 import argparse
-import json
 import os
-import statistics
 import subprocess
 import sys
 import tempfile
 
-WORK = """
+BEFORE = """
+import os, time
 import numpy as np
+ANGLES, DESIGNS = np.linspace(0.0, 6.0, 100_000), np.linspace(0.0, 0.05, 2_000)
+LENGTHS = {"AB": 0.125, "BC": 0.35}
+CRANK = {**LENGTHS, "omega0": 157.08}
+MASSES = {**LENGTHS, "ec": 0.01, "m_crank": 1.0, "I_crank": 0.01, "m_slider": 1.0}
+start = time.process_time()
 import desaxe as dx
-points = {"theta": np.linspace(0, 6, 200_000), "ec": 0.01, "AB": 0.125, "BC": 0.35, "omega0": 157.0}
 """
-FIRST = 'dx.evaluate("a_C", threads=1, **points)\n'
-# Name -> what runs before the clock, and what it times.
-ROWS = {
-    "import desaxe": ("", "import desaxe"),
-    "one point, plain Python": (
-        "",
-        "import desaxe as dx; dx.evaluate('a_C', theta=1.0, ec=0.01, AB=0.125, BC=0.35, omega0=157.0)",
+AFTER = "\nprint(time.process_time() - start)"
+CALLS = {
+    "`evaluate` of a name at 100,000 points": 'dx.evaluate("a_C", theta=ANGLES, ec=0.01, **CRANK)',
+    "`grid` of 720 x 32 x 16 into memory of the caller": (
+        'dx.grid("a_C", theta=ANGLES[:720], ec=DESIGNS[:32], BC=np.linspace(0.3, 0.4, 16), AB=0.125, '
+        "omega0=157.08, out=np.empty((720, 32, 16)))"
     ),
-    "import numpy": ("", "import numpy"),
-    "import numba": ("import numpy", "import numba"),
-    "numba's first load of anything": (
-        "import numba, numpy, math",
-        "from numba.core.registry import cpu_target\n"
-        "cpu_target.typing_context.refresh(); cpu_target.target_context.refresh()",
+    "`function` of 2 names at 720 angles": (
+        'dx.function(["V_C", "a_C"], inputs=("theta", "ec"), **CRANK)(ANGLES[:720], 0.01)'
     ),
-    "of this, scipy.linalg": ("import numba, numpy", "import scipy.linalg"),
-    "desaxe's modules for arrays": (
-        "import numba, numpy",
-        "import desaxe as dx; dx.evaluate; import desaxe.evaluation.arrays",
+    "`peak` of 2,000 designs": 'dx.peak("a_C", ec=DESIGNS, **CRANK)',
+    "`events` of 2,000 designs": "dx.events(ec=DESIGNS, **LENGTHS)",
+    "`simulate`, one motion": "dx.simulate(torque=1.0, t_end=0.1, **MASSES)",
+    "`simulate`, 20 motions": "dx.simulate(torque=np.linspace(1.0, 2.0, 20), t_end=0.1, **MASSES)",
+    "`tolerance` of a peak, without Sobol indices": (
+        'dx.tolerance(("absmax", "a_C"), ec=dx.plus_minus(0.01, 0.001), sobol=0, **CRANK)'
     ),
-    "program, cut and passes": (
-        WORK + "import desaxe.evaluation.arrays, numba",
-        "from desaxe.runtime import kernels as _kernels\n"
-        "kept = _kernels._load\n"
-        "def load(key):\n"
-        "    _kernels.source_of(key)\n"
-        "    raise KeyError\n"
-        "_kernels._load = load\n"
-        "try:\n    dx.evaluate('a_C', threads=1, **points)\nexcept KeyError:\n    pass",
-    ),
-    "first kernel, all else loaded": (
-        WORK + "import numba\n" + "dx.evaluate('V_C', threads=1, **points)",
-        FIRST,
-    ),
-    "first kernel from disk, all in all": ("", WORK + FIRST),
-    "the same compiled for the first time": ("", WORK + FIRST),
 }
 
 
-def seconds(before: str, timed: str, cache: str) -> float:
-    """The time of some lines in a new process."""
-    code = f"import time\n{before}\nstart = time.perf_counter()\n{timed}\nprint(time.perf_counter() - start)"
-    environment = {**os.environ, "DESAXE_CACHE_DIR": cache}
+def seconds(call: str, cache: str, tier: str = "") -> float:
+    """Processor time of a call in a new process."""
+    environment = {**os.environ, "DESAXE_CACHE_DIR": cache, "DESAXE_TIER": tier}
+    code = f"{BEFORE}{call}{AFTER}"
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=False
     )
@@ -70,34 +52,28 @@ def seconds(before: str, timed: str, cache: str) -> float:
     return float(done.stdout)
 
 
-def measure(rounds: int) -> dict[str, float]:
-    """The median of every row."""
-    found: dict[str, list[float]] = {name: [] for name in ROWS}
-    with tempfile.TemporaryDirectory() as kept:
-        for name in ROWS:  # what is loaded from disk is there
-            if not name.startswith("the same"):
-                seconds(*ROWS[name], kept)
+def measure(rounds: int) -> dict[str, dict[str, float]]:
+    """Call -> seconds of a first call, and of one in a second process."""
+    found = {}
+    for name, call in CALLS.items():
+        first = []
         for _ in range(rounds):
-            for name, row in ROWS.items():
-                with tempfile.TemporaryDirectory() as empty:
-                    cache = empty if name.startswith("the same") else kept
-                    found[name].append(seconds(*row, cache))
-    return {name: statistics.median(times) for name, times in found.items()}
+            with tempfile.TemporaryDirectory() as empty:
+                first.append(seconds(call, empty))
+        with tempfile.TemporaryDirectory() as kept:
+            seconds(call, kept, "compiled")
+            second = min(seconds(call, kept) for _ in range(2 * rounds))
+        found[name] = {"first": min(first), "second": second}
+    return found
 
 
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.startup", description=__doc__)
-    parser.add_argument("--rounds", type=int, default=7)
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    options = parser.parse_args()
-    found = measure(options.rounds)
-    if options.json:
-        print(json.dumps(found, indent=2))
-        return
-    numba = found["import numba"]
-    for name, time in found.items():
-        print(f"{name:40} {1e3 * time:8.1f} ms   {time / numba:6.3f} of importing numba")
+    parser.add_argument("--rounds", type=int, default=2)
+    found = measure(parser.parse_args().rounds)
+    for name, times in found.items():
+        print(f"{name:52} first {times['first']:6.2f} s   second process {times['second']:6.3f} s")
 
 
 if __name__ == "__main__":

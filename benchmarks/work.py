@@ -22,6 +22,8 @@ SECOND = tuple(
 OMEGA0 = 157.08  # rad/s
 RANGES = {"theta": (-7.0, 7.0), "ec": (-0.05, 0.05), "AB": (0.1, 0.15), "BC": (0.3, 0.4)}
 ANGLES = 720  # of a sweep
+DEGREE = 16  # multiplications and additions at a point, where these are measured
+MEMORY = 1 << 22  # doubles: a column that no cache holds
 TURNS = 1000  # through a column, where the machine itself is measured
 MILLION = 1_000_000
 
@@ -140,6 +142,11 @@ def _registers(count: int) -> Inputs:
     return Inputs({"theta": column}, {"theta": 0}, {})
 
 
+def _memory(count: int) -> Inputs:
+    """A column that no cache holds."""
+    return Inputs({"theta": np.linspace(0.5, 2.0, count)}, {"theta": 0}, {})
+
+
 def swept(inputs: Inputs, theta_first: bool) -> Inputs:
     """Designs with a further axis of 720 angles, before or after theirs."""
     axis = {**dict.fromkeys(inputs.columns, int(theta_first)), "theta": int(not theta_first)}
@@ -159,7 +166,7 @@ WORKS = (
     Work("first", "the same with 8 first sensitivities", (*KINEMATICS, *FIRST), _random, MILLION, 20_000,
          every_core=True),
     Work("second", "the same with 20 second sensitivities too", (*KINEMATICS, *FIRST, *SECOND), _random,
-         MILLION // 4, 10_000),
+         MILLION // 4, 10_000, every_core=True),
     Work("audited", "V_C, a_C, a_C_wrt_ec at random points", (*KINEMATICS, "a_C_wrt_ec"), _random, MILLION,
          20_000),
     Work("mixed", "V_C, a_C at random points, of which one in 50 is of a design close to its change point",
@@ -178,11 +185,17 @@ WORKS = (
     Work("grid_out", "the same grid into memory of the caller", ("a_C",), _grid, GRID, 60_000, kind="grid",
          every_core=True),
     Work("peak", "peak of a_C over theta for 8,192 designs (others: the best of 720 angles)", ("a_C",),
-         _designs, 8192, 64, kind="peak", given=False),
+         _designs, 8192, 64, kind="peak", given=False, every_core=True),
 )  # fmt: skip
-LIMITS = tuple(
-    Work(name, title, (name,), _registers, 1024, 1024, kind="limit")
-    for name, title in (("sqrt", "a square root"), ("divide", "a division"), ("sincos", "sine and cosine"))
+REGISTERS = {
+    "sqrt": "a square root",
+    "divide": "a division",
+    "sincos": "sine and cosine",
+    "multiply_add": "multiplications and additions",
+}
+LIMITS = (
+    *(Work(name, title, (name,), _registers, 1024, 1024, kind="limit") for name, title in REGISTERS.items()),
+    Work("copy", "copying a double", ("copy",), _memory, MEMORY, MEMORY, kind="limit"),
 )
 BY_KEY = {work.key: work for work in (*WORKS, *LIMITS)}
 BRIEF = tuple(BY_KEY[key] for key in ("point", "first", "concentric", "grid_out", "peak"))  # of a quick run

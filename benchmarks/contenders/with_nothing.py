@@ -1,4 +1,4 @@
-"""The limits of the machine: storing a work's result; the cost of a root, a division, a sine and cosine.
+"""The limits of the machine: storing a work's result; copying; the cost of a root, a division, a sine, a sum.
 
 These run over a column that stays in the first cache, in loops that numba vectorises; sine and cosine are
 the ones that desaxe writes into its loops.
@@ -18,7 +18,7 @@ from desaxe.compiler.passes.value_numbering import value_numbering
 from desaxe.compiler.text import read_function
 from desaxe.mechanism.constants import constants
 
-from ..work import TURNS, Array, Inputs, Work
+from ..work import DEGREE, TURNS, Array, Inputs, Work
 from . import Run
 
 BOTH = "def both(theta):\n    sine = sin(theta)\n    cosine = cos(theta)\n    return sine, cosine\n"
@@ -27,6 +27,8 @@ BOTH = "def both(theta):\n    sine = sin(theta)\n    cosine = cos(theta)\n    re
 def prepare(work: Work, inputs: Inputs, out: Sequence[Array] | None, threads: int) -> Run:
     """Fill the memory of a result, or repeat an operation over a column."""
     del threads
+    if work.key == "copy":
+        return _copied(inputs.columns["theta"])
     if work.kind == "limit":
         return _repeated(work.key, inputs.columns["theta"])
     shape = inputs.shape
@@ -42,8 +44,10 @@ def prepare(work: Work, inputs: Inputs, out: Sequence[Array] | None, threads: in
 
 def _repeated(key: str, column: Array) -> Run:
     """TURNS times over the column."""
-    kernel = {"sqrt": _roots, "divide": _quotients}[key] if key != "sincos" else _sines()
-    compiled = kernel if key == "sincos" else numba.njit(error_model="numpy")(kernel)
+    kernels = {"sqrt": _roots, "divide": _quotients, "multiply_add": _polynomial}
+    compiled = (
+        _sines() if key == "sincos" else numba.njit(error_model="numpy", fastmath={"contract"})(kernels[key])
+    )
     answers = [np.empty(column.size), np.empty(column.size)]
 
     def turns(x: Array, y: Array, z: Array, count: int) -> None:
@@ -67,6 +71,33 @@ def _roots(x: Array, y: Array, _: Array) -> None:
 def _quotients(x: Array, y: Array, _: Array) -> None:
     for i in range(x.size):
         y[i] = 1.0 / x[i]
+
+
+def _polynomial(x: Array, y: Array, _: Array) -> None:
+    """DEGREE multiplications and additions at each point."""
+    for i in range(x.size):
+        here = x[i]
+        total = here
+        for _ in range(DEGREE):
+            total = total * here + 0.5
+        y[i] = total
+
+
+def _copied(column: Array) -> Run:
+    """A pass over memory: a double is read and a double is written."""
+    target = np.zeros(column.size)
+
+    def copy(x: Array, y: Array) -> None:
+        for i in range(x.size):
+            y[i] = 1.0 * x[i] + 0.0
+
+    loop = numba.njit(copy)
+
+    def run() -> Sequence[Array]:
+        loop(column, target)
+        return [target]
+
+    return run
 
 
 def _sines() -> Any:

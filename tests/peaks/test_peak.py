@@ -266,7 +266,8 @@ def test_two_maxima_next_to_the_inner_dead_centre():
 
 
 @pytest.mark.parametrize("threads", [2, 3])
-def test_the_same_for_any_number_of_threads(threads):
+def test_the_same_for_any_number_of_threads(threads, monkeypatch):
+    monkeypatch.setenv("DESAXE_TIER", "compiled")
     designs = random_designs(5, 5000, False)
     one, more = (dx.peak("a_C", threads=n, **designs) for n in (1, threads))
     for name in ("value", "theta", "status"):
@@ -275,8 +276,9 @@ def test_the_same_for_any_number_of_threads(threads):
         assert np.array_equal(slope, more["gradient"][name], equal_nan=True)
 
 
-def test_alone_among_others_and_in_plain_python(monkeypatch):
-    """A design alone has the answer it has among others; the plain text differs by the sine's last bit."""
+def test_alone_among_others_and_in_every_tier(monkeypatch):
+    """A design alone has the answer it has among others; the tiers differ by the sine's last bit."""
+    monkeypatch.setenv("DESAXE_TIER", "compiled")
     designs = random_designs(7, 1000, True)
     many = dx.peak("a_C", **designs)
     alone = [{n: float(column[k]) for n, column in designs.items()} for k in range(0, 1000, 50)]
@@ -289,6 +291,10 @@ def test_alone_among_others_and_in_plain_python(monkeypatch):
         assert one["gradient"]["ec"] == many["gradient"]["ec"][50 * k]
         assert other["value"] == pytest.approx(one["value"], rel=4e-15)
         assert one["status"] == other["status"] == many["status"][50 * k]
+    monkeypatch.setattr(module, "kernel_for", lambda search, count: module._by_arrays(search))
+    by_numpy = dx.peak("a_C", **designs)
+    np.testing.assert_array_equal(by_numpy["status"], many["status"])
+    np.testing.assert_allclose(by_numpy["value"], many["value"], rtol=4e-15)
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,7 @@
 """The module of a search: its loops from the Programs, and the text of `search` behind them.
 
-Its machine code is kept on disk, like that of every kernel. The same text runs in plain Python for the
-first few designs, for which nobody waits for a compiler.
+Its machine code is kept on disk, like that of every kernel. The same text runs in plain Python,
+with its functions in NumPy, for the first designs, so that nobody waits for a compiler.
 """
 
 import math
@@ -20,9 +20,10 @@ from ..compiler.languages.numba.module import helper_sources
 from ..compiler.operations import HELPERS, MATH_NAMES
 from ..runtime.modules import is_kept, native
 from ..runtime.threads import run_parts
-from ..runtime.tiers import COMPILED, forced_tier
+from ..runtime.tiers import INTERPRETED, NUMPY, forced_tier
 from ..support.forks import ForkSafeLock
 from ..support.recent import Recent
+from .by_arrays import functions_of
 from .nodes import Array
 from .programs import Programs, Search, programs_of
 
@@ -32,7 +33,7 @@ LINE = "# ---- compiled"
 MOST_LOADED = 64  # searches in memory
 LEAST_PART = 1_024  # designs of a thread
 LONGEST_PART = 8_192  # designs: less than half a second
-BREAK_EVEN = 600  # designs in plain Python that take as long as the compiler
+BREAK_EVEN = 16_384  # designs by NumPy, a second or so of them: beyond, compiling pays
 _NJIT = '@njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)\n'
 _HEADER = '''"""desaxe search: extreme values of {name} over theta."""
 
@@ -131,8 +132,10 @@ def kernel_for(search: Search, designs: int) -> Kernel:
     _ASKED[search] += designs
     forced = forced_tier()
     early = forced is None and _ASKED[search] < BREAK_EVEN and not _on_disk(search)
-    if early or forced not in (None, COMPILED):
+    if forced == INTERPRETED:
         return _plain(search)
+    if early or forced == NUMPY:
+        return _by_arrays(search)
     with _LOCK:
         found = _LOADED.get(search) or native("search", source_of(search))
         _LOADED[search] = found
@@ -147,12 +150,18 @@ def _on_disk(search: Search) -> bool:
 
 @lru_cache(maxsize=1024)
 def _plain(search: Search) -> Kernel:
-    """The search as plain Python, for the first few designs."""
+    """The search as plain Python, design by design."""
     loops, work = _loops(programs_of(search, False), "python")
     scope = _scope(max(work, 1))
     source = "\n\n".join([*HELPERS.values(), *loops, *_functions()])
     exec(compile(source, f"<desaxe search {search.name}>", "exec"), scope)
     return _quiet(scope["search"])
+
+
+@lru_cache(maxsize=1024)
+def _by_arrays(search: Search) -> Kernel:
+    """The search with its functions in NumPy: no request waits for a compiler when it is first made."""
+    return search_with(*functions_of(programs_of(search, False)))
 
 
 @lru_cache(maxsize=1024)

@@ -94,7 +94,7 @@ def _decide(
         return
     chosen = {name: value[near] if name in flat else value for name, value in values.items()}
     test = specialise(REACH, key.form, key.fixed)
-    reach, unsure = _compiled(test)(*(chosen[name] for name in test.inputs))
+    reach, unsure = compile_numpy(test)(*(chosen[name] for name in test.inputs))
     undecided = (np.abs(reach) <= SPARE * unsure) & (unsure > 0.0)
     undecided &= np.abs(chosen["theta"]) <= double_constants().limit
     some = np.flatnonzero(np.broadcast_to(undecided, near.size))
@@ -132,10 +132,10 @@ def _forms(key: KernelKey) -> _Forms:
 
 
 def _function(program: Program, inputs: tuple[str, ...]) -> Function:
-    return _compiled(program._replace(inputs=inputs))
+    return compile_numpy(program._replace(inputs=inputs))
 
 
-def _compiled(program: Program) -> Function:
+def compile_numpy(program: Program) -> Function:
     """A program as a function of arrays and numbers."""
     program = with_short_temporaries(program)
     lines = [*write_lines(program, "jax"), f"return ({', '.join(program.outputs)},)"]

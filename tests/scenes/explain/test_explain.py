@@ -252,7 +252,7 @@ def test_the_sum_holds_all_that_runs(tmp_path, monkeypatch):
     parts = {part["what"]: part for part in total["parts"]}
     assert list(parts) == ["start", "grid", "absmax of a_C", "values.csv", "pictures"]
     assert parts["values.csv"]["later"] > 20.0  # 84 million numbers
-    assert parts["absmax of a_C"]["first"] > parts["absmax of a_C"]["later"]
+    assert parts["absmax of a_C"]["first"] == parts["absmax of a_C"]["later"] > 0.0  # 2,001 designs: by NumPy
     assert total["first"] == sum(part["first"] for part in total["parts"]) > total["later"]
     stored = dx.explain({**scene, "results": {"store": "v.zarr", "chunks": {"ec": 100}, "memory": "200 MB"}})
     assert stored["sweep"]["chunks"] == 21
