@@ -123,3 +123,21 @@ def test_without_a_browser_the_tests_say_what_to_install(ci, outcome, monkeypatc
     monkeypatch.setenv("CI", ci)
     with pytest.raises(outcome.Exception, match="playwright install chromium"):
         browser_path("/nowhere/else")
+
+
+def test_the_units_of_a_page(tmp_path):
+    """Those asked for, else those of [units]; fields are in the units that the texts are written in."""
+    plain = content_of(dx.explore(path=tmp_path / "a.html", **SIZES))
+    assert (plain["units"], plain["fields"]) == ({}, {})
+    asked = content_of(dx.explore(path=tmp_path / "b.html", units={"length": "in", "a_C": "cm/s^2"}, **SIZES))
+    assert asked["units"] == {"m": "in", "a_C": "cm/s^2"}
+    assert asked["sizes"] == {"in": ["127", "5000"], "cm/s^2": ["1", "100"]}
+    motion = {"theta": {"start": 0, "stop": "360 deg", "num": 5}, "omega0": "25 turn/s"}
+    data = {"outputs": ["a_C"], "mechanism": {"AB": "5 in", "BC": "0.35 m", "ec": 0}, "motion": motion}
+    written = content_of(dx.explore(data, tmp_path / "c.html"))
+    assert written["units"] == {}
+    assert (written["fields"]["m"], written["fields"]["rad/s"]) == ("in", "turn/s")
+    named = content_of(dx.explore({**data, "units": "mm, rpm"}, tmp_path / "d.html"))
+    assert named["units"] == {"m": "mm", "rad/s": "rpm"}
+    with pytest.raises(ValueError, match="units"):
+        dx.explore(path=tmp_path / "e.html", units="mmm", **SIZES)
