@@ -2,7 +2,8 @@
 
 A line `<!-- desaxe: WRITER ARGUMENTS -->` is replaced by the text that the function of that name returns: one
 of `formulas` (equations, lines of the Program) or `reference` (functions, scene files, quantities). Inline
-LaTeX in GitHub's notation, a code span between dollar signs, becomes MathML, which needs no script.
+LaTeX in GitHub's notation, a code span between dollar signs, becomes MathML, which needs no script. Each
+notebook becomes a page.
 """
 
 import re
@@ -11,10 +12,28 @@ from html import unescape
 import formulas
 import reference
 from latex2mathml.converter import convert
+from mkdocs.structure.files import File
+
+import notebooks
 
 MARK = re.compile(r"^<!-- desaxe: (\w+) ?(.*?) -->$", re.M)
 MATHS = re.compile(r"\$<code>(.+?)</code>\$", re.S)
 WRITERS = {writer.__name__: writer for writer in (*formulas.WRITERS, *reference.WRITERS)}
+
+
+def on_config(config, **_):
+    """List the notebooks in the navigation."""
+    config.nav.append(
+        {"Notebooks": [{notebooks.title(page): path} for path, page in notebooks.pages().items()]}
+    )
+    return config
+
+
+def on_files(files, config, **_):
+    """Add the page of each notebook."""
+    for path, page in notebooks.pages().items():
+        files.append(File.generated(config, path, content=page))
+    return files
 
 
 def on_page_markdown(markdown, **_):
