@@ -144,3 +144,26 @@ def test_the_schema_knows_loads():
     jsonschema.validate(scene, rules)
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.validate({"loads": {"F_Y": {"over_phi": "press.csv"}}}, rules)
+
+
+def test_a_module_of_given_states_has_its_inputs_in_one_order(tmp_path):
+    """Speeds of both signs and none, where alpha decides the way; F_Y as a load and as an axis."""
+    stroke = dx.over_Y([0.02, 0.05, 0.1], [-900, -200, -30], [-90, -40, -3])
+    for count, force in enumerate((stroke, [-100.0, 50.0])):
+        scene = dx.scene({
+            "outputs": ["T_in", "T_in_wrt_AB"],
+            "mechanism": {"AB": 0.04, "BC": 0.064, "ec": 0.01},
+            "motion": {"omega": [-50.0, 0.0, 50.0], "alpha": -3.0, "theta": [0.5, 2.0, 4.0, 5.0]},
+            "masses": {"m_slider": 0.8},
+            "loads": {"F_Y": force},
+        })  # fmt: skip
+        name = f"states_{count}"
+        spec = importlib.util.spec_from_file_location(name, dx.compile(scene, tmp_path / f"{name}.py"))
+        module = sys.modules[name] = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        right, found = scene.run().dataset, module.run()
+        axes = np.meshgrid(*module.AXES.values(), indexing="ij")
+        points = module.evaluate(**dict(zip(module.AXES, axes, strict=True)))
+        for key in ("T_in", "T_in_wrt_AB"):
+            for values in (found[key], points[key]):
+                np.testing.assert_allclose(values, right[key].transpose(*module.AXES), rtol=1e-12)

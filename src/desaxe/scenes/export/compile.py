@@ -322,6 +322,9 @@ def _kernels(key: KernelKey, inputs: tuple[str, ...], sources: list[str]) -> Ker
     points = key._replace(axis_of=tuple((n, 0) for n in sorted(inputs)), axes=1, reduce=())
     own = _prefixed("point")
     kernel = kernel_of(points)
+    kernel = kernel._replace(
+        inputs={name: kernel.inputs[name] for name in inputs}
+    )  # as `evaluate` passes them
     sources.append(renamed(emit_numba(kernel, "Points.", LAZY), own))
     if key.axes == 1:
         return kernel
