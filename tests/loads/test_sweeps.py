@@ -1,10 +1,15 @@
 """Loads that vary with the motion in lazy grids, sweeps and lazy peaks: as in memory."""
 
+import pickle
+import subprocess
+import sys
+
 import dask.array as da
 import numpy as np
 import pytest
 
 import desaxe as dx
+from desaxe.sweeps.prepared import prepared
 
 ANGLES, POINTS = np.linspace(0.0, 2 * np.pi, 25), [-400.0, 200.0, -50.0, 20.0]
 MACHINE = {"AB": 0.04, "BC": np.array([0.064, 0.07]), "m_slider": 0.8, "omega0": 50.0}
@@ -50,3 +55,42 @@ def test_reductions_best_designs_and_peaks_follow_the_load():
     assert best.T_in_absmax.values == pytest.approx(np.sort(found.T_in_absmax.values.ravel())[::-1][:2])
     spread = dx.sweep("T_in", reduce={("theta", "ec"): "p95"}, chunks={"BC": 1}, **inputs)
     np.testing.assert_allclose(spread.T_in_p95, whole.quantile(0.95, ["theta", "ec"]), rtol=1e-12)
+
+
+def test_where_only_numbers_make_sense_a_load_is_refused_by_name():
+    machine = {"ec": 0.01, "AB": 0.04, "BC": 0.064, "omega0": 50.0, "F_Y": LOADS["linear"]}
+    with pytest.raises(TypeError, match=r"F_Y: quality=True takes numbers, .* give its values at"):
+        dx.evaluate("T_in", theta=1.0, quality=True, **machine)
+    with pytest.raises(TypeError, match=r"F_Y: function takes numbers, .* give F_Y among inputs="):
+        dx.function("T_in", **machine)
+    with pytest.raises(TypeError, match=r"F_Y: enclose takes numbers, .* F_Y = \(low, high\)"):
+        dx.enclose("T_in", theta=(0.0, 1.0), **machine)
+
+
+def test_what_travels_to_a_worker_needs_no_definitions_there(tmp_path):
+    """Own quantities under a load: the parts of a sweep in a process that knows neither."""
+    theta, name = ANGLES[1:-1], dx.define("shoe", "0.08 * abs(N_C * V_C)", unit="W")
+    inputs = {"theta": theta, "ec": EC, "F_Y": LOADS["linear"], **MACHINE}
+    try:
+        made = prepared(name, inputs, "auto", None, 1, "standard", 1, {"theta": "p95"}, name)
+        right = dx.grid(name, reduce={"theta": "p95"}, **inputs).shoe_p95.values
+        designs = {"ec": EC[:, None], "F_Y": LOADS["linear"], **MACHINE}
+        top = dx.peak(name, theta=(theta[0], theta[-1]), **designs)["value"]
+        with pytest.raises(ValueError, match="peaks: each is of one design, and ec is reduced"):
+            dx.sweep(name, reduce={("theta", "ec"): "p95"}, peaks=name, **inputs)
+    finally:
+        dx.undefine(name)
+    (tmp_path / "parts").write_bytes(pickle.dumps((made.parts, made.outer.axes)))
+    code = """
+import pickle, sys
+parts, axes = pickle.load(open(sys.argv[1], "rb"))
+found = {}
+for part in parts:
+    found |= part.compute({name: axes[name] for name in part.axes})
+pickle.dump((found["shoe_p95"], found["peak_absmax_shoe"]), open(sys.argv[2], "wb"))
+"""
+    files = [str(tmp_path / file) for file in ("parts", "found")]
+    subprocess.run([sys.executable, "-c", code, *files], timeout=120, check=True)
+    p95, peaks = pickle.loads((tmp_path / "found").read_bytes())
+    np.testing.assert_allclose(p95, right, rtol=1e-12)
+    np.testing.assert_allclose(peaks, top, rtol=1e-12)

@@ -98,7 +98,7 @@ def enclose(
     deadline = Deadline("enclose", timeout)
     given = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
     check_common(given, branch)
-    without_loads("enclose", loads)
+    without_loads("enclose", loads, "the range of its values, {name} = (low, high)")
     given.update(loads)
     function = _function(name, given, branch)
     with ctx.workprec(BITS):

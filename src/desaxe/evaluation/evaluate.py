@@ -97,7 +97,7 @@ def evaluate(
         if any(map(callable, loads)):
             from .loaded import evaluate_loaded, refuse_quality
 
-            refuse_quality(quality)
+            refuse_quality(quality, given)
             return evaluate_loaded(names, given, branch, accuracy, threads, out)
     if quality:
         from .quality import evaluate_quality

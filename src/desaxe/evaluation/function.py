@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..definitions.define import install
+from ..loads.resolve import without_loads
 from ..mechanism.catalogue import has, law_name, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS, sensitivity
@@ -53,6 +54,7 @@ def function(
     shown = (names,) if isinstance(names, str) else several(names)
     free = (inputs,) if isinstance(inputs, str) else several(inputs)
     check_inputs("function", free, tuple(INPUTS))
+    without_loads("function", fixed, "{name} among inputs= and load(theta) for it in each call")
     if not shown:
         raise ValueError("names = (): expected the name of a quantity or a list of names")
     twice = [name for name in free if fixed.get(name) is not None]

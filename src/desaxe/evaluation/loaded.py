@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..loads.load import TURN, FunctionOverTheta, Load
-from ..loads.resolve import VARIABLE, Forces, Plan, plan_of, split, way_of
+from ..loads.resolve import VARIABLE, Forces, Plan, plan_of, split, way_of, without_loads
 from ..loads.tabulated import over_theta
 from ..mechanism.names import LENGTHS
 from ..runtime.request import as_number, check_common, several
@@ -62,10 +62,10 @@ def forces_at(plan: Plan, numbers: Mapping[str, Any], branch: int, accuracy: str
     return plan.forces(theta, motion, way_of(speeds))
 
 
-def refuse_quality(quality: bool) -> None:
-    """ValueError for a quality under loads: the error of a table or function is unknown."""
+def refuse_quality(quality: bool, given: Mapping[str, Any]) -> None:
+    """TypeError for a quality under loads: the error of a table or function is unknown."""
     if quality:
-        raise ValueError("quality=True takes numbers: F_X and F_Y at each angle, not a load that varies")
+        without_loads("quality=True", given, "its values at these angles, {name} = load(theta)")
 
 
 def numeric(name: str, value: Any, names: Sequence[str]) -> Any:

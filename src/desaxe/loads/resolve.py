@@ -62,11 +62,14 @@ def split(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Load]]:
     return numbers, {name: as_load(name, inputs[name]) for name in varying}
 
 
-def without_loads(caller: str, inputs: Mapping[str, Any]) -> None:
-    """Refuse loads where only numbers make sense."""
+def without_loads(caller: str, inputs: Mapping[str, Any], instead: str) -> None:
+    """TypeError for a load where only numbers make sense; `instead` is what to give for {name}."""
     for name, value in inputs.items():
         if callable(value):
-            raise TypeError(f"{name}: {caller} takes numbers, not a load that varies with the motion")
+            raise TypeError(
+                f"{name}: {caller} takes numbers, not a load that varies with the motion; give "
+                f"{instead.format(name=name)}"
+            )
 
 
 class Term(NamedTuple):

@@ -72,6 +72,11 @@ def prepared(
     reduction = None if reduce is None else reductions_of(reduce, outer.dimensions, outer.names)
     requests = peak_requests(peaks, outer)
     refined = peak_parts(requests, outer, branch, accuracy)
+    lost = [
+        name for part in refined for name in part.dims if reduction is not None and name in reduction.axes
+    ]
+    if lost:
+        raise ValueError(f"peaks: each is of one design, and {lost[0]} is reduced; sweep them by themselves")
     if not (outer.names or refined):
         raise ValueError("sweep: nothing is requested, give names or peaks=")
     template = _template(outer, branch, accuracy, reduction, refined)
