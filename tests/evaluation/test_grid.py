@@ -9,6 +9,7 @@ import xarray as xr
 
 import desaxe as dx
 from desaxe.mechanism.inputs import INPUTS, Inputs
+from tests.ways import take_way
 
 THETA = np.linspace(0.0, 6.0, 7)
 MACHINE = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
@@ -169,3 +170,25 @@ def test_statics_need_no_motion():
 def test_bad_arguments(arguments, error, words):
     with pytest.raises(error, match=words):
         dx.grid("a_C", **{"theta": THETA, "ec": 0.1, **MACHINE, **arguments})
+
+
+def test_the_order_of_axes_changes_no_digit(monkeypatch):
+    """Nor does broadcasting or reducing: which loop an operation is moved to must not change its rounding."""
+    take_way(monkeypatch, "compiled")
+    axes = {
+        "theta": np.linspace(0.0, 6.2, 50),
+        "ec": np.linspace(-0.3, 0.3, 13),
+        "BC": np.linspace(0.2, 0.5, 7),
+    }
+    numbers, names = {"AB": 0.125, "omega0": 157.08}, ["Y", "V_C", "a_C", "a_C_wrt_ec"]
+    first = dx.grid(names, **axes, **numbers)
+    last = dx.grid(names, ec=axes["ec"], theta=axes["theta"], BC=axes["BC"], **numbers)
+    reduced = dx.grid(names, reduce={"theta": ["max", "absmax"]}, **axes, **numbers)
+    points = dx.evaluate(
+        names, **dict(zip(axes, np.meshgrid(*axes.values(), indexing="ij"), strict=True)), **numbers
+    )
+    for name in names:
+        np.testing.assert_array_equal(first[name], last[name].transpose(*axes))
+        np.testing.assert_array_equal(first[name], points[name])
+        np.testing.assert_array_equal(first[name].max("theta"), reduced[f"{name}_max"])
+        np.testing.assert_array_equal(abs(first[name]).max("theta"), reduced[f"{name}_absmax"])

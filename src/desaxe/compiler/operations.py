@@ -261,8 +261,10 @@ def mul_add(typingctx, a, b, c):
     """a * b + c, rounded once where the machine can, else twice."""
 
     def code(context, builder, signature, args):
-        a, b, c = args
-        return builder.fadd(builder.fmul(a, b, flags=("contract",)), c, flags=("contract",))
+        # One instruction for LLVM: a product that it moved out of a loop would not be fused any more.
+        number = args[0].type
+        kind = type(builder.function.ftype)(number, [number] * 3)
+        return builder.call(builder.module.declare_intrinsic("llvm.fmuladd", [number], kind), args)
 
     return types.float64(types.float64, types.float64, types.float64), code
 ''',
