@@ -29,18 +29,18 @@ times as long as desaxe. Every contender has a process of its own on the same co
 turns, one at a time, and each time is the best round: the processor's time on one core, the clock's on all.
 Compilation is not in these times: it has a table of its own.
 
-Everyone but desaxe computes the textbook's closed form (`desaxe.equation`) at constant speed, as its own
-users would run it well: numbers are put in before compiling, inputs lie as it wants them, and answers go into
-memory that is there already where it can write into such.
+Everyone but desaxe computes the textbook's closed form (`desaxe.equation`) at constant speed, as an
+experienced user would run it: numbers are folded in before compiling, inputs have the layout that it prefers,
+and results go into allocated memory where it supports that.
 
 * heyoka derives its own sensitivities (`diff_tensors`), faster ones than SymPy's; on grids, sweeps and peaks
   it and CasADi get blocks of 131,072 points.
 * C is a nest of loops from SymPy's printer with each shared subexpression in the outermost loop that knows
   its inputs, one call of `sincos`, no call of `pow`, by `gcc -O3 -march=native`. With `-ffast-math` its sines
   have loops of their own over strips, which gcc vectorises (`libmvec`).
-* On the labelled grid the others give plain arrays; desaxe gives an xarray.Dataset with status and margin.
-* Of a peak the others take the best of 720 angles; desaxe refines it, with its gradient.
-* `{LIMITS}` fills the memory of the answer and computes nothing.
+* On the labelled grid the others return plain arrays, desaxe an xarray.Dataset with status and margin.
+* For a peak the others take the best of 720 angles; desaxe refines it, with its gradient.
+* `{LIMITS}` fills the memory of the result and computes nothing.
 """
 
 

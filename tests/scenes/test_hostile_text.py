@@ -52,7 +52,7 @@ def files_in(folder):
 
 
 def comments_alone(text, pattern):
-    """What is left of a source without its comments."""
+    """A source text without its comments."""
     return re.sub(pattern, "", text, flags=re.S | re.M)
 
 

@@ -12,21 +12,21 @@ PLAIN = "in plain ulp"
 CLEARLY = 0.95  # a time is shorter only if by this much: the rest is noise
 
 READING = """\
-**Time** is that of one generic point in a long array, on one core, as a multiple of what
-`accuracy="standard"` takes; the best of several rounds, with everyone in turn.
+**Time** is that of one generic point in a long array, on one core, as a multiple of that of
+`accuracy="standard"`; the best of several rounds, in which the contenders alternate.
 
-**Share of the promise.** `standard` promises 8 ulp x (1 + the sum of the value's condition numbers): what the
-last digits of the inputs change anyway is not counted. 1 is that promise just kept, 0.01 a hundredth of it,
-1000 three digits lost that the inputs do have. Values whose promise leaves no digit are left out.
+**Share of the promise.** `standard` promises 8 ulp x (1 + the sum of the value's condition numbers): the
+change of the value by the last digits of the inputs is not counted. 1 is the whole bound, 0.01 a hundredth
+of it, 1000 three digits lost that the inputs do have. Values whose bound leaves no digit are left out.
 
 **Plain ulp.** The error in units of the value's last bit, whatever its condition: 0.5 is correctly rounded,
-`extended` promises 2. Even an exact formula, evaluated in doubles, loses here what the inputs' last digits
-move. Errors below 2^-96 of the value's scale count as half an ulp at most; exact zeros have no ulp and are
-left out.
+`extended` promises 2. Even an exact formula, evaluated in doubles, loses here as much as the inputs' last
+digits change the value. Errors below 2^-96 of the value's scale count as half an ulp at most; exact zeros
+have no ulp and are left out.
 
 50 digits are not enough for the textbook's formula everywhere.
 
-`none` is the top of either scale: no digit is right, or there is no number where there is a value.
+`none` is the top of either scale: no digit is right, or the result is no number where a value exists.
 """
 
 
@@ -138,8 +138,8 @@ def beaten_by(found: Audit, name: str, measure: str) -> list[str]:
 
 def _dominated(found: Audit) -> Iterator[str]:
     """Lines that list, measure by measure, the contenders that another one dominates."""
-    yield "Dominated, that is slower than another whose worst error is no larger, by the fastest; who has"
-    yield "no digit right at some point is left out:\n"
+    yield "Dominated: slower than another whose worst error is no larger (the fastest in brackets). Those"
+    yield "with no digit right at some point are left out:\n"
     for measure in measures(found, found.who[0].name):
         top = TOP if measure == PLAIN else TOP / ULPS
         some = [name for name in found.ratios if measures(found, name)[measure] < top]
