@@ -253,3 +253,11 @@ def test_own_quantities_are_told_in_a_reduced_result():
         assert "0.08 * abs(N_C * V_C)" in found.attrs["quantities"]
     finally:
         dx.undefine("shoe")
+
+
+def test_in_units_every_result_is_that_of_its_quantity():
+    machine = dx.Machine(AB="125 mm", BC="350 mm", ec="10 mm", omega0="1500 rpm", units="mm")
+    found = machine.grid("Y", theta=TURN[::40], reduce={"theta": ["std", ("at", "60 deg", "Y")]})
+    in_metres = dx.grid("Y", theta=TURN[::40], AB=0.125, BC=0.35, ec=0.01).Y
+    assert found.Y_std.units == found.Y_at_60_deg.units == "mm"
+    assert float(found.Y_std) == pytest.approx(1000.0 * float(in_metres.std()), rel=1e-12)

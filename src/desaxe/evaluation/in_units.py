@@ -53,7 +53,8 @@ def in_units(
 def conversion_of_variable(units: UnitSystem, name: str, unit: str) -> Conversion:
     """The conversion of a variable with this SI unit: that of the quantity that its name is about."""
     stripped = [name.removeprefix(f"{kind}_") for kind in KINDS]
-    stripped += [name.removesuffix(f"_{kind}") for kind in KINDS]
+    words = name.split("_")  # a_C_max_mean, Y_at_60_deg
+    stripped += ["_".join(words[:count]) for count in range(len(words) - 1, 0, -1)]
     for known in dict.fromkeys([name, *stripped]):
         try:
             if "_wrt_" in known or SI.of(known).unit == unit:
