@@ -17,12 +17,12 @@ def both(monkeypatch):
     def run(names, **inputs):
         taken = []
 
-        def watched(wanted, given):
-            found = planned.planned(wanted, given)
+        def watched(wanted, given, out):
+            found = planned.planned(wanted, given, out)
             taken.append(found is not None)
             return found
 
-        monkeypatch.setattr(arrays, "planned", lambda wanted, given: None)
+        monkeypatch.setattr(arrays, "planned", lambda wanted, given, out: None)
         for _ in range(4):  # until its kernel is compiled
             general = dx.evaluate(names, **inputs)
         monkeypatch.setattr(arrays, "planned", watched)
@@ -84,3 +84,31 @@ def test_a_read_only_column_and_bad_numbers(both):
         dx.evaluate(NAMES, theta=theta, ec=np.nan, **SIZES)
     with pytest.raises(ValueError, match="theta: every value is bad"):
         dx.evaluate(NAMES, theta=np.full(900, np.nan), ec=0.01, **SIZES)
+
+
+def test_memory_of_the_caller_is_filled_or_left_to_the_general_way(both, monkeypatch):
+    theta = np.linspace(0.0, 6.0, 5000)
+    fresh, _, by_plan = both(["V_C", "a_C"], theta=theta, ec=0.01, **SIZES)
+    assert by_plan
+
+    def filled(out, **inputs):
+        found = dx.evaluate(["V_C", "a_C"], **{"theta": theta, **inputs}, ec=0.01, **SIZES, out=out)
+        assert all(found[name] is out[name] for name in out)
+        return all(np.array_equal(found[name], fresh[name]) for name in out)
+
+    taken = []
+
+    def watched(wanted, given, out):
+        taken.append(planned.planned(wanted, given, out))
+        return taken[-1]
+
+    monkeypatch.setattr(arrays, "planned", watched)
+    assert filled({name: np.empty(5000) for name in ("a_C", "V_C")})
+    assert taken.pop() is not None
+    strided = {name: np.empty((5000, 2))[:, 0] for name in ("V_C", "a_C")}
+    assert filled(strided)
+    shared = np.concatenate([theta, np.empty(5000)])  # an output begins inside of the input
+    assert filled({"V_C": shared[2500:7500], "a_C": np.empty(5000)}, theta=shared[:5000])
+    assert taken == [None, None]
+    with pytest.raises(ValueError, match="out"):
+        dx.evaluate(["V_C", "a_C"], theta=theta, ec=0.01, **SIZES, out={"V_C": np.empty(3)})

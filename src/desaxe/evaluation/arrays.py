@@ -30,8 +30,8 @@ def evaluate_arrays(
     wanted: Request, given: Mapping[str, Any], threads: int | None, out: Any
 ) -> dict[str, Array]:
     """The values by requested name, in the broadcast shape."""
-    if out is None and threads is None and VARIABLE not in environ:
-        ready = planned(wanted, given)
+    if environ.get(VARIABLE, COMPILED) == COMPILED and (out is None or type(out) is dict):
+        ready = planned(wanted, given, out)
         if ready is not None:
             return ready
     inputs = wanted.inputs

@@ -56,7 +56,7 @@ _CALLS: dict[int, _Call] = {}
 _ONE = struct.Struct("q").pack
 
 
-def planned(wanted: Request, given: Mapping[str, Any]) -> dict[str, Array] | None:
+def planned(wanted: Request, given: Mapping[str, Any], out: Any = None) -> dict[str, Array] | None:
     """The values by name; None if the call is no ordinary one, or its kernel is not in memory."""
     call = _CALLS.get(id(wanted)) or _new_call(wanted)
     numbers: list[float] = []
@@ -90,7 +90,7 @@ def planned(wanted: Request, given: Mapping[str, Any]) -> dict[str, Array] | Non
     if call.has_wide_margins is not None:
         kinds.append(_all_wide(call.has_wide_margins, given))
     plan = call.plans.get(tuple(kinds)) or _new_plan(call, tuple(kinds), given)
-    return None if plan is None else _run(plan, numbers, columns, shape)
+    return None if plan is None else _run(plan, numbers, columns, shape, out)
 
 
 def _all_wide(test: Callable[..., Any], given: Mapping[str, Any]) -> bool:
@@ -108,13 +108,38 @@ def _address(array: Any) -> int:
 
 
 def _run(
-    plan: _Plan, numbers: list[float], columns: list[Array], shape: tuple[int, ...]
+    plan: _Plan, numbers: list[float], columns: list[Array], shape: tuple[int, ...], out: Any
 ) -> dict[str, Array] | None:
-    found = {name: np.empty(shape, kind) for name, kind in plan.kinds}
-    places = map(_address, (*columns, *found.values()))
+    if out is None:
+        found: dict[str, Array] | None = {name: np.empty(shape, kind) for name, kind in plan.kinds}
+    else:
+        found = _given(plan, shape, out)
+    if found is None:
+        return None
+    places = [*map(_address, columns), *map(_address, found.values())]
+    if out is not None and _overlap(places, len(columns), 8 * columns[0].size):
+        return None
     table = plan.pack(*[0 if word is None else numbers[word] for word in plan.words])
     left = plan.loop(plan.addresses(*places), _ONE(columns[0].size), plan.steps, plan.head + table)
     return None if left else found
+
+
+def _given(plan: _Plan, shape: tuple[int, ...], out: dict[str, Any]) -> dict[str, Array] | None:
+    """The caller's arrays by name; None unless a kernel can write into them as they are."""
+    found: dict[str, Array] = {}
+    for name, kind in plan.kinds:
+        array = out.get(name)
+        if type(array) is not np.ndarray or array.dtype is not kind or array.shape != shape:
+            return None
+        if not (array.flags.c_contiguous and array.flags.writeable):
+            return None
+        found[name] = array
+    return found if len(out) == len(found) else None
+
+
+def _overlap(places: list[int], inputs: int, size: int) -> bool:
+    """True if an output shares memory with another array."""
+    return any(abs(places[k] - place) < size for k in range(inputs, len(places)) for place in places[:k])
 
 
 def _new_call(wanted: Request) -> _Call:

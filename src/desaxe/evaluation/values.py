@@ -4,6 +4,7 @@ A single point stays in this file and needs only `math`; as soon as an input is 
 """
 
 from collections.abc import Mapping, Sequence
+from sys import modules
 from typing import Any
 
 from ..mechanism.inputs import is_good
@@ -50,8 +51,9 @@ def values(
             if type(value) is not float or not is_good(name, value):
                 value = as_number(name, value, point.inputs, wanted)
             if value is None:  # not a number: an array
-                import_whole("numpy")
-                answers = _of_arrays(asked, given, threads, out)
+                if "numpy" not in modules:
+                    import_whole("numpy")
+                answers = _of_arrays(asked, point.inputs, given, threads, out)
                 return answers[names] if isinstance(names, str) else answers
             extreme = extreme or is_extreme(name, value)
         numbers.append(value)
@@ -76,15 +78,19 @@ _KNOWN: dict[tuple[Any, ...], tuple[Request, Point]] = {}
 forget_on_change(_KNOWN)
 
 
-def _of_arrays(asked: Request, given: Mapping[str, Any], threads: int | None, out: Any) -> dict[str, Any]:
+def _of_arrays(
+    asked: Request, inputs: Sequence[str], given: Mapping[str, Any], threads: int | None, out: Any
+) -> dict[str, Any]:
     """The values for arrays; lazy ones if an input is a Dask array."""
-    if any(hasattr(given.get(name), "__dask_graph__") for name in asked.inputs):
-        from .dask_blocks import is_lazy
+    for name in inputs:
+        value = given.get(name)
+        if type(value) is not float and hasattr(value, "__dask_graph__"):
+            from .dask_blocks import is_lazy
 
-        if any(is_lazy(given.get(name)) for name in asked.inputs):
-            from .lazy_evaluate import evaluate_lazily
+            if is_lazy(value):
+                from .lazy_evaluate import evaluate_lazily
 
-            return evaluate_lazily(asked, given, threads, out)
+                return evaluate_lazily(asked, given, threads, out)
     from .arrays import evaluate_arrays
 
     return evaluate_arrays(asked, given, threads, out)
