@@ -115,6 +115,23 @@ def test_a_bad_element_is_nan_and_told(bad, monkeypatch):
         assert np.isnan(dx.evaluate(name, **columns, omega0=3.0)[1])
 
 
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("theta", 3e6), ("ec", 1e-200), ("ec", 1e150), ("AB", 1e-180), ("AB", 0.0), ("BC", 1e200)],
+)
+def test_a_point_that_a_kernel_cannot_compute_is_told(name, value, monkeypatch):
+    """Too large an angle, or a length near the ends of the double range, at one point of many."""
+    rng, names = np.random.default_rng(4), ["V_C", "a_C", "status"]
+    columns = {"theta": rng.uniform(-7, 7, 1_100), "ec": rng.uniform(-0.05, 0.05, 1_100)}
+    columns |= {"AB": rng.uniform(0.1, 0.15, 1_100), "BC": rng.uniform(0.17, 0.4, 1_100)}
+    columns[name][700] = value
+    monkeypatch.setenv("DESAXE_TIER", "compiled")
+    found = dx.evaluate(names, **columns, omega0=3.0)
+    alone = dx.evaluate(names, **{n: float(column[700]) for n, column in columns.items()}, omega0=3.0)
+    for each in names:
+        assert found[each][700] == pytest.approx(alone[each], rel=1e-12, abs=0.0, nan_ok=True)
+
+
 def test_what_has_one_form_is_not_asked_twice():
     law = {"theta": 1.0, "omega0": 1.0, "alpha": 1.0}
     asked = request(["omega"], law, 1, "standard")

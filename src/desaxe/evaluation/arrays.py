@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..mechanism.inputs import INPUTS, is_good
 from ..runtime.interpreted import are_good, fill_by_points
-from ..runtime.kernels import key_of
+from ..runtime.kernels import hopeful_key_of, key_of, tells_unsafe
 from ..runtime.point import point_of
 from ..runtime.request import Request, as_number
 from ..runtime.threads import run_in_blocks
@@ -162,8 +162,8 @@ def fill(
 
     `numpy_pays`: a new request need not wait for its kernel, whose digits NumPy's may differ from.
     """
-    _fill(wanted, scalars, loops, outs, threads, numpy_pays)
-    extreme = extreme_points(scalars, loops) if can_rescale(wanted) else None
+    safe = _fill(wanted, scalars, loops, outs, threads, numpy_pays)
+    extreme = extreme_points(scalars, loops) if not safe and can_rescale(wanted) else None
     if extreme is not None:
         _fill_extreme(wanted, scalars, loops, outs, extreme)
 
@@ -200,19 +200,28 @@ def _fill(
     outs: Sequence[Array],
     threads: int | None,
     numpy_pays: bool,
-) -> None:
+) -> bool:
+    """Compute all points; True if their kernel would have told of extreme ones, and told of none."""
     sizes, columns, axis_of = loops
-    key = key_of(wanted, scalars, columns, axis_of, len(sizes))
+    asked = wanted, scalars, columns, axis_of, len(sizes)
+    key = hopeful_key_of(*asked)
+    hopeful = tells_unsafe(key)
+    key = key if hopeful else key_of(*asked)
     outs = [out.reshape(sizes) for out in outs]
     if not columns:
         point = point_of(key.names, key.form, key.fixed, key.accuracy)
         for out, value in zip(outs, point.run(scalars), strict=True):
             out[...] = value
-        return
+        return False
     tier = tier_of(key, outs[0].size, numpy_pays)
     if tier == COMPILED:
-        run_in_blocks(key, {**scalars, **columns}, outs, threads)
-        return
+        values = {**scalars, **columns}
+        counted = run_in_blocks(key, values, outs, threads)
+        if not counted:
+            return hopeful and not any(is_extreme(name, value) for name, value in scalars.items())
+        if hopeful and key_of(*asked).far:
+            run_in_blocks(key_of(*asked), values, outs, threads)
+        return False
     flat = [out.reshape(-1) for out in outs]
     wide = {name: spread(column, axis_of[name], sizes) for name, column in columns.items()}
     if tier == INTERPRETED:
@@ -221,3 +230,4 @@ def _fill(
         from ..runtime.vectorised import fill_by_arrays
 
         fill_by_arrays(key, scalars, wide, flat)
+    return False

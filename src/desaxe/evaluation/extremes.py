@@ -10,11 +10,11 @@ from typing import Any
 
 from ..mechanism.catalogue import quantity
 from ..mechanism.dimensions import unit_of
-from ..mechanism.inputs import INPUTS
+from ..mechanism.inputs import INPUTS, SAFE
 from ..mechanism.names import LENGTHS
 from ..runtime.request import Request
 
-LEAST, MOST = 1e-100, 1e100  # magnitudes between which nothing overflows, nor underflows to a wrong value
+LEAST, MOST = SAFE
 SPEEDS = {"omega0": 1, "omega": 1, "alpha": 2, "g_X": 2, "g_Y": 2}  # -> its power of 1/time
 GRAVITY = ("g_X", "g_Y")
 SMALLEST = 5e-324

@@ -66,6 +66,7 @@ INPUTS = {
         Input("mu", "1", "Coulomb friction coefficient of the slider's guide", 0.0, "a finite number >= 0"),
     )
 }
+SAFE = 1e-100, 1e100  # magnitudes between which nothing overflows, nor underflows to a wrong value
 LEAST = {name: row.least for name, row in INPUTS.items() if row.least is not None}
 
 

@@ -14,7 +14,7 @@ from ..compiler.lowering import Limits, guarded_for_loops, guarded_pairs, nest, 
 from ..compiler.passes.trigonometry import Trigonometry
 from ..compiler.program import Line, Program
 from ..mechanism.constants import constants, double_constants
-from ..mechanism.inputs import LEAST
+from ..mechanism.inputs import LEAST, SAFE
 from ..mechanism.names import LENGTHS, LOADS
 from ..mechanism.program import Variant
 from ..support.forks import ForkSafeLock
@@ -64,8 +64,20 @@ def key_of(
     axes: int,
 ) -> KernelKey:
     """The key of a request whose scalars and columns are known."""
+    key = hopeful_key_of(wanted, scalars, columns, axis_of, axes)
+    return key._replace(far=_exceed(columns.get("theta", scalars.get("theta", 0.0)), constants().limit))
+
+
+def hopeful_key_of(
+    wanted: Request,
+    scalars: Mapping[str, float],
+    columns: Mapping[str, Any],
+    axis_of: Mapping[str, int],
+    axes: int,
+) -> KernelKey:
+    """The key if no angle of a column is too large: for a kernel that `tells_unsafe`, which is run first."""
     check_angle(wanted.accuracy, scalars.get("theta", 0.0))
-    far = _exceed(columns.get("theta", scalars.get("theta", 0.0)), constants().limit)
+    far = abs(scalars.get("theta", 0.0)) > constants().limit
     zeros = [(name, 0.0) for name in STRUCTURAL_ZEROS if scalars.get(name) == 0.0]
     fixed = (*wanted.fixed, *zeros)
     axis = tuple(sorted(axis_of.items()))
@@ -89,7 +101,7 @@ def _pays_to_ask(columns: Mapping[str, Any], axis_of: Mapping[str, int]) -> bool
 def _exceed(angles: Any, limit: float) -> bool:
     """True if a finite magnitude exceeds the limit."""
     if isinstance(angles, float):
-        return abs(angles) > limit
+        return limit < abs(angles)
     import numpy as np
 
     # Where their squares add up to less, none is. No test is quicker, and this one starts no threads.
@@ -131,6 +143,15 @@ def has_near_limit(key: KernelKey) -> bool:
     return key.accuracy == "standard" and not key.reduce and plain_of(key) is not None
 
 
+def tells_unsafe(key: KernelKey) -> bool:
+    """True if the kernel counts the points with an angle too large for it, or an input that is not SAFE.
+
+    So the columns need not be read for that ahead, which takes as long as many a kernel.
+    """
+    varies = key.axes == 1 and any(name in LENGTHS for name, _ in key.axis_of)
+    return varies and not key.far and not key.form.wide_margins and has_near_limit(key)
+
+
 def plain_of(key: KernelKey) -> Program | None:
     """The plain form of a key's program, where it has two."""
     return plain_form(key.names, key.form, key.fixed) if key.accuracy != "extended" else None
@@ -153,6 +174,8 @@ def kernel_of(key: KernelKey) -> Kernel:
     if plain is None:
         return nest(stable, axes, key.axes)
     test = specialise(("wide_margins",), key.form, key.fixed)
+    if tells_unsafe(key):
+        test = _where_safe(test, varying)
     first = _lowered_plain(plain, varying, key)
     return nest_of_two_forms(first, stable, test, len(key.names), axes, key.axes)
 
@@ -170,9 +193,76 @@ def counting(key: KernelKey) -> Program:
         Line("reach_band", "mul", (NEAR_LIMIT, unsure)),
         Line("near_limit", "lt", ("reach_size", "reach_band"), "bool"),
     )
-    return program._replace(
-        lines=(*program.lines, *lines), outputs=(*program.outputs[: len(key.names)], "near_limit")
-    )
+    outputs = program.outputs[: len(key.names)]
+    if not tells_unsafe(key):
+        return program._replace(lines=(*program.lines, *lines), outputs=(*outputs, "near_limit"))
+    unsafe = _unsafe([name for name in program.inputs if name in dict(key.axis_of)])
+    told = Line("left_over", "or", ("near_limit", "unsafe"), "bool")
+    return program._replace(lines=(*program.lines, *lines, *unsafe, told), outputs=(*outputs, "left_over"))
+
+
+def _unsafe(names: Sequence[str]) -> list[Line]:
+    """Lines of which the last, `unsafe`, says if an input may be.
+
+    A bad input is NaN, and not unsafe: nothing is left to compute. A crank without length is, to save a line.
+    """
+    least, most = SAFE
+    lines = [Line(f"{name}_magnitude", "abs", (name,)) for name in names]
+    found: list[str] = []
+
+    def tell(name: str, op: str, *args: str | float) -> str:
+        lines.append(Line(name, op, args, "bool"))
+        return name
+
+    for name in names:
+        size = f"{name}_magnitude"
+        found.append(tell(f"{name}_large", "lt", constants().limit if name == "theta" else most, size))
+        if name in ("AB", "BC"):
+            found.append(tell(f"{name}_small", "lt", size, least))
+        elif name != "theta":
+            parts = tell(f"{name}_small", "lt", size, least), tell(f"{name}_some", "lt", 0.0, size)
+            found.append(tell(f"{name}_lost", "and", *parts))
+    return [*lines, *_joined("or", found, "unsafe")]
+
+
+def _where_safe(test: Program, names: Sequence[str]) -> Program:
+    """The test for wide margins, which fails where an input is unsafe too; lengths have fewer ways to be."""
+    (wide,), (least, most) = test.outputs, SAFE
+    lines = [line._replace(name="wide_alone") if line.name == wide else line for line in test.lines]
+    held = ["wide_alone"]
+
+    def needs(name: str, op: str, *args: str | float) -> str:
+        lines.append(Line(name, op, args, "bool"))
+        return name
+
+    for name in names:
+        if name == "AB":  # at most 7/8 BC
+            held.append(needs("AB_safe", "le", least, name))
+        elif name == "BC":  # more than AB
+            held.append(needs("BC_safe", "le", name, most))
+        else:
+            size = f"{name}_magnitude"
+            lines.append(Line(size, "abs", (name,)))
+            if name != "ec":  # less than BC
+                held.append(
+                    needs(f"{name}_below", "le", size, constants().limit if name == "theta" else most)
+                )
+            if name != "theta":
+                parts = needs(f"{name}_none", "eq", name, 0.0), needs(f"{name}_above", "le", least, size)
+                held.append(needs(f"{name}_safe", "or", *parts))
+    lines += _joined("and", held, wide)
+    return test._replace(inputs=tuple(dict.fromkeys((*test.inputs, *names))), lines=tuple(lines))
+
+
+def _joined(op: str, conditions: Sequence[str], name: str) -> list[Line]:
+    """Two or more conditions as one of this name."""
+    lines: list[Line] = []
+    before, *others = conditions
+    for count, condition in enumerate(others, 1):
+        own = name if count == len(others) else f"{name}_{count}"
+        lines.append(Line(own, op, (before, condition), "bool"))
+        before = own
+    return lines
 
 
 def _lowered_plain(program: Program, varying: Sequence[str], key: KernelKey) -> Program:

@@ -53,9 +53,13 @@ in_child(_forget_pools)
 
 def run_in_blocks(
     key: KernelKey, values: Mapping[str, Any], outs: Sequence[Any], threads: int | None
-) -> None:
-    """Run the kernel of a key over its outermost axis in as many blocks as there are threads."""
+) -> bool:
+    """Run the kernel of a key over its outermost axis in as many blocks as there are threads.
+
+    True if it counted points: undecided ones, which are then decided, or unsafe ones (see `tells_unsafe`).
+    """
     kernel = kernel_for(key)
+    counted: list[int] = []
     outer = {name for name, axis in kernel.axis_of if axis == 0}
 
     def block(start: int, stop: int) -> None:
@@ -64,9 +68,11 @@ def run_in_blocks(
         if kernel.run(part, places):
             from .near_limit import decide
 
+            counted.append(start)
             decide(key, part, places)
 
     in_blocks(block, outs[0].shape[0], outs[0].size, threads)
+    return bool(counted)
 
 
 def in_blocks(block: Callable[[int, int], None], length: int, points: int, threads: int | None) -> None:
