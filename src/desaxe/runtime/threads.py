@@ -18,8 +18,9 @@ if TYPE_CHECKING:
 
 MOST_THREADS = 256
 LONGEST_BLOCK = 4_000_000  # points: half a second for the costliest kernels
-# A block smaller than this costs more to hand out than to compute.
-LEAST_BLOCK = 20_000
+# A smaller block costs more to hand out, some 80 us, than to compute: the light one for few values a point.
+LEAST_BLOCK, LEAST_LIGHT_BLOCK = 20_000, 60_000
+HEAVY = 8  # values of a point, each of 0.5 ns or more
 
 
 def available() -> int:
@@ -71,14 +72,18 @@ def run_in_blocks(
             counted.append(start)
             decide(key, part, places)
 
-    in_blocks(block, outs[0].shape[0], outs[0].size, threads)
+    light = len(outs) < HEAVY and key.accuracy != "extended"
+    least = LEAST_LIGHT_BLOCK if light else LEAST_BLOCK
+    in_blocks(block, outs[0].shape[0], outs[0].size, threads, least)
     return bool(counted)
 
 
-def in_blocks(block: Callable[[int, int], None], length: int, points: int, threads: int | None) -> None:
+def in_blocks(
+    block: Callable[[int, int], None], length: int, points: int, threads: int | None, least: int = LEAST_BLOCK
+) -> None:
     """Call `block(start, stop)` for parts of an axis, on as many threads as its points justify."""
     each = max(points // max(length, 1), 1)  # points of one step along the axis
-    run_parts(block, length, threads, max(1, LEAST_BLOCK // each), max(1, LONGEST_BLOCK // each))
+    run_parts(block, length, threads, max(1, least // each), max(1, LONGEST_BLOCK // each))
 
 
 def run_parts(
