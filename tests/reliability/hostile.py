@@ -23,6 +23,8 @@ from tests.reliability.rig import CRASHED, GOOD, HUNG, Trial, Verdict
 SECONDS = 20
 LENGTHS = {"ec": 0.01, "AB": 0.125, "BC": 0.35}
 MACHINE = {**LENGTHS, "omega0": 157.08}
+ANGLES = np.linspace(0.1, 6.0, 9)
+SAMPLES = {"theta": ANGLES, "Y": dx.evaluate("Y", theta=ANGLES, **LENGTHS)}
 VALUES: list[Any] = [
     "x",
     "",
@@ -133,7 +135,48 @@ def calls() -> dict[str, Call]:
             {"maximize": "stroke", "over": {"ec": (0.0, 0.1)}, "AB": 0.125, "BC": 0.35, "timeout": 5.0},
             ("minimize", "keep", "starts", "seed", "points", "branch"),
         ),
+        "function": Call(
+            evaluated_function,
+            ("a_C",),
+            {"inputs": ("theta",), **MACHINE},
+            ("branch", "accuracy", "alpha", "m_rod"),
+        ),
+        "drive": Call(
+            dx.drive,
+            (),
+            {"fluctuation": 0.02, "m_slider": 1.0, "F_Y": 10.0, **MACHINE},
+            ("alpha", "mu", "branch", "I_rod"),
+        ),
+        "Machine": Call(dx.Machine, (), dict(MACHINE), ("units", "branch", "m_slider", "F_Y", "alpha")),
+        "define": Call(defined, (), {"expression": "k*a_C", "k": 2.0}, ("unit", "meaning")),
+        "over_theta": Call(
+            dx.over_theta,
+            (),
+            {"angles": [0.0, 1.0, 2.0], "values": [1.0, 2.0, 1.0]},
+            ("kind", "period"),
+        ),
+        "over_Y": Call(dx.over_Y, (), {"positions": [0.1, 0.2], "outward": [1.0, 2.0]}, ("inward", "kind")),
+        "fit": Call(
+            dx.fit,
+            (SAMPLES,),
+            {"over": {"AB": (0.1, 0.2)}, "ec": 0.01, "BC": 0.35},
+            ("sigma", "nuisance", "loss", "branch"),
+        ),
+        "harmonics of a design": Call(dx.harmonics, ("a_C",), dict(MACHINE), ("orders", "branch")),
+        "counterweight": Call(dx.counterweight, (), {"m_slider": 1.0, **MACHINE}, ("radius", "along")),
     }
+
+
+def evaluated_function(name: str, **inputs: Any) -> Any:
+    return dx.function(name, **inputs)(1.0)
+
+
+def defined(**inputs: Any) -> None:
+    try:
+        dx.define("of_a_fuzz", **inputs)
+    finally:
+        if "of_a_fuzz" in dx.quantities():
+            dx.undefine("of_a_fuzz")
 
 
 class _Late(BaseException):
@@ -163,13 +206,15 @@ def judged(call: str, name: str, value: Any) -> Verdict:
     try:
         with within(SECONDS), warnings.catch_warnings():
             warnings.simplefilter("error")
+            for kind in (dx.UnitWarning, dx.LoadWarning):  # which say what they are about
+                warnings.simplefilter("ignore", kind)
             function(*arguments, **{**inputs, name: value})
     except _Late:
         return Verdict(HUNG, told)
     except (ValueError, TypeError, MemoryError, TimeoutError) as error:
         last = traceback.extract_tb(error.__traceback__)[-1]
         ours = "/desaxe/" in last.filename
-        words = {name, call.split()[0], *inputs, "M_eff", "no quantity"}
+        words = {name, call.split()[0], *inputs, "M_eff", "no quantity", "of_a_fuzz", "no value"}
         named = any(word in str(error) for word in words) or isinstance(error, (MemoryError, TimeoutError))
         return (
             GOOD if ours and named else Verdict(CRASHED, f"{told}: {error} ({last.filename}:{last.lineno})")

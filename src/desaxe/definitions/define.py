@@ -10,6 +10,7 @@ from ..mechanism.inputs import INPUTS
 from ..mechanism.names import parts
 from ..mechanism.own import Definition, definitions, derived_names, replace_all, rows, rows_of
 from ..mechanism.spelling import did_you_mean
+from ..support.shown import shown
 from .dimensions import NONE, Checker, Dimension, dimension_of, unit_from
 from .grammar import ARITY, Node, Source, parse
 from .lines import value_text
@@ -178,7 +179,7 @@ def _check_name(name: Any) -> None:
 
 def _checked_text(name: str, what: str, text: Any, longest: int) -> str:
     if not isinstance(text, str):
-        raise TypeError(f"{name}: the {what} is a text, got {text!r}")
+        raise TypeError(f"{name}: the {what} is a text, got {shown(text)}")
     if len(text) > longest or not text.isprintable() or any(mark in text for mark in MARKS):
         raise ValueError(
             f"{name}: the {what} is one line of at most {longest} characters, without {' '.join(MARKS)}"

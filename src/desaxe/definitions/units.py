@@ -59,7 +59,7 @@ def constant_value(name: str, value: Any) -> tuple[float, Unit]:
     else:
         number, unit = _as_float(value), NONE
     if not isfinite(number):
-        raise ValueError(f"constant {name} = {value!r}: it must be finite")
+        raise ValueError(f"constant {name} = {shown(value)}: it must be finite")
     return number, unit
 
 

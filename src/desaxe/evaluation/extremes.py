@@ -16,6 +16,7 @@ from ..runtime.request import Request
 
 LEAST, MOST = SAFE
 SPEEDS = {"omega0": 1, "omega": 1, "alpha": 2, "g_X": 2, "g_Y": 2}  # -> its power of 1/time
+WIDEST = 1e30
 GRAVITY = ("g_X", "g_Y")
 SMALLEST = 5e-324
 _NOTHING = -(10**6)  # the exponent of 0
@@ -25,6 +26,14 @@ Powers = tuple[Any, Any, Any]  # of two, by which m, s and kg are multiplied
 def is_extreme(name: str, value: float) -> bool:
     """True for a finite number that is not 0 and beyond LEAST or MOST; angles have no such range."""
     return name != "theta" and value != 0.0 and not LEAST <= abs(value) <= MOST
+
+
+def check_range(caller: str, name: str, number: float) -> float:
+    """The number; ValueError beyond WIDEST, where sums of products of several inputs lose their digits."""
+    if name != "theta" and number != 0.0 and not 1.0 / WIDEST <= abs(number) <= WIDEST:
+        limit = f"{caller} takes 0 and magnitudes from {1.0 / WIDEST:g} to {WIDEST:g}"
+        raise ValueError(f"{name} = {number:g}: {limit}")
+    return number
 
 
 def are_extreme(name: str, values: Any) -> Any:

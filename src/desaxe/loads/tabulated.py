@@ -15,6 +15,7 @@ from .table import KINDS, held, periodic
 CLOSED = 1e-6  # of a period: a last angle so near to its end repeats the first one
 WIDE = 4.0  # times the usual distance between points
 MOST_BYTES = 100_000_000  # of a file
+LONGEST_PERIOD = 1e9
 EQUAL = 1e-9  # of the largest value: what differs by less is the same
 
 
@@ -201,8 +202,8 @@ def _table_over_Y(
 
 
 def _check(name: str, places: str, x: list[float], columns: Sequence[list[float]], kind: str) -> None:
-    if kind not in KINDS:
-        raise ValueError(f"{name}: kind = {kind!r}: it is one of {', '.join(KINDS)}")
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise ValueError(f"{name}: kind = {shown(kind)}: it is one of {', '.join(KINDS)}")
     for column in columns:
         if len(column) != len(x):
             raise ValueError(f"{name}: {len(x)} {places} and {len(column)} values; expected as many of both")
@@ -217,8 +218,9 @@ def _falls(x: Sequence[float]) -> str:
 
 def _period(period: Any) -> float:
     found, _ = _numbers("over_theta: period", [period], ("rad",))
-    if not found[0] > 0.0:
-        raise ValueError(f"over_theta: period = {period!r}: expected an angle above 0")
+    if not 0.0 < found[0] <= LONGEST_PERIOD:
+        limit = f"expected an angle above 0 and at most {LONGEST_PERIOD:g} rad"
+        raise ValueError(f"over_theta: period = {shown(period)}: {limit}")
     return found[0]
 
 
@@ -238,7 +240,7 @@ def _numbers(what: str, given: Any, units: tuple[str, ...]) -> tuple[list[float]
         unit, found = _first_that_fits(what, given, units)
         return _finite(what, found.tolist()), unit
     if isinstance(given, str) or not hasattr(given, "__iter__"):
-        raise TypeError(f"{what} = {given!r}: expected a list or array of numbers")
+        raise TypeError(f"{what} = {shown(given)}: expected a list or array of numbers")
     if getattr(given, "ndim", 1) != 1:
         raise ValueError(f"{what}: expected a 1-d array, got the shape {given.shape}")
     own: str | None = None

@@ -16,6 +16,7 @@ from math import isfinite
 from typing import Any, NamedTuple
 
 from ..support.quantity_text import spelled
+from ..support.shown import shown
 from .catalogue import quantity
 from .inputs import INPUTS
 from .names import parts
@@ -115,7 +116,7 @@ class UnitSystem:
         elif isinstance(units, Mapping):
             rows = [(_key(name), unit) for name, unit in units.items()]
         else:
-            raise TypeError(f'units = {units!r}: expected a text such as "mm, deg, rpm" or a mapping')
+            raise TypeError(f'units = {shown(units)}: expected a text such as "mm, deg, rpm" or a mapping')
         found: dict[str, str] = {}
         for name, unit in rows:
             if name in found:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...evaluation.evaluate import evaluate
+from ...evaluation.extremes import check_range
 from ...evaluation.loaded import loads_of
 from ...loads.angles import kinks_between, turns_of
 from ...mechanism.inputs import INPUTS
@@ -103,7 +104,7 @@ def _number(caller: str, name: str, value: Any) -> float:
             f"{caller}: {name} must be a number, this is about one design: call it for each of them, as in "
             f"[desaxe.{caller}({name}=value, ...) for value in values]"
         )
-    return number
+    return check_range(caller, name, number)
 
 
 def torque_over(design: Design, names: Sequence[str], **other: Any) -> Panels:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ...support.shown import shown
 from .cycle import JAMS, Design, NoCycleError, torque_over
 from .flywheel import flywheel_for
 from .panels import Array, Panels, resolved
@@ -13,6 +14,7 @@ from .result import FIGURES, Drive
 
 CREEP = 1e-100  # rad/s: friction acts, inertia does not; a torque below it is none
 STALLED = 3
+LEAST_FLUCTUATION = 1e-9
 DIFFERENTIATED = tuple(name for name in FIGURES if not name.startswith("theta_"))
 
 
@@ -56,10 +58,11 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
         [0.323, 26.468, 1.845]
     """
     if isinstance(fluctuation, bool) or not (
-        isinstance(fluctuation, (int, float)) and 0.0 < fluctuation < 2.0
+        isinstance(fluctuation, (int, float)) and LEAST_FLUCTUATION <= fluctuation < 2.0
     ):
         raise ValueError(
-            f"fluctuation = {fluctuation!r}: a number above 0 and below 2, where the crank stops"
+            f"fluctuation = {shown(fluctuation)}: a number above 0, at least {LEAST_FLUCTUATION:g}, "
+            "and below 2, where the crank stops"
         )
     design = Design("drive", inputs, branch)
     status = _status(design)

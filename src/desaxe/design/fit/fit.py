@@ -68,10 +68,8 @@ def fit(
         raise TypeError("fit: theta belongs into data")
     state = dict.fromkeys((*over, *fixed), 1.0) if isinstance(over, Mapping) else fixed
     check_common(state, branch)
-    if loss not in LOSSES:
-        raise ValueError(
-            f"loss = {shown(loss)}: {did_you_mean(str(loss), LOSSES)}there are {', '.join(LOSSES)}"
-        )
+    if not isinstance(loss, str) or loss not in LOSSES:
+        raise ValueError(f"loss = {shown(loss)}: {did_you_mean(loss, LOSSES)}there are {', '.join(LOSSES)}")
     read = read_data(data, "omega" in state)
     unknowns = unknowns_of(over, nuisance, read, fixed)
     if read.size < len(unknowns):

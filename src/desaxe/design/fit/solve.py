@@ -16,6 +16,7 @@ TOLERANCE = 1e-13
 EVALUATIONS = 300
 
 
+@np.errstate(all="ignore")  # squares beyond every double are no better than other bad fits
 def solve(model: Model, loss: str, seed: int, absolute: bool = False) -> Any:
     """SciPy's result at the best optimum. ValueError where no start is feasible.
 

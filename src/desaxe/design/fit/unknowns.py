@@ -32,7 +32,10 @@ def unknowns_of(
     """The unknowns, checked: parameters first, then nuisances."""
     if not isinstance(over, Mapping) or not over:
         raise TypeError("over: expected a dict parameter -> start or (low, high), such as {'AB': 0.1}")
-    nuisance = (nuisance,) if isinstance(nuisance, str) else tuple(dict.fromkeys(nuisance))
+    try:
+        nuisance = (nuisance,) if isinstance(nuisance, str) else tuple(dict.fromkeys(nuisance))
+    except TypeError:
+        raise TypeError(f"nuisance = {shown(nuisance)}: expected a list of names") from None
     found = [_parameter(name, value, fixed) for name, value in over.items()]
     longest = max((u.scale for u in found if INPUTS[u.name].unit == "m"), default=1.0)
     found = [u._replace(scale=longest) if u.name == "ec" else u for u in found]

@@ -12,7 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from ...evaluation.extremes import check_range
 from ...support.answer import answering
+from ...support.shown import shown
 from .turn import Turn, extreme
 
 ALONG = {"both": 0.0, "Y": 1.0, "X": -1.0}
@@ -52,8 +54,8 @@ def counterweight(
         >>> round(found["product"], 6), round(found["balanced"], 6)      # half of m_slider AB
         (0.01, 0.5)
     """
-    if along not in ALONG:
-        raise ValueError(f"along = {along!r}: it is one of {', '.join(ALONG)}")
+    if not isinstance(along, str) or along not in ALONG:
+        raise ValueError(f"along = {shown(along)}: it is one of {', '.join(ALONG)}")
     turn = Turn("counterweight", inputs, branch)
     speed = turn.numbers.get("omega0")
     if not speed:
@@ -106,5 +108,5 @@ def _radius(value: Any) -> float:
     except ValueError as error:
         raise ValueError(str(error).replace("r_crank", "radius", 1)) from None
     if number is None or number <= 0.0:
-        raise ValueError(f"radius = {value!r}: it must be a length > 0")
-    return number
+        raise ValueError(f"radius = {shown(value)}: it must be a length > 0")
+    return check_range("counterweight", "radius", number)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...evaluation.evaluate import evaluate
+from ...evaluation.extremes import check_range
 from ...evaluation.loaded import loads_of
 from ...loads.angles import kinks_between, turns_of
 from ...loads.resolve import VARIABLE
@@ -131,4 +132,4 @@ def _number(caller: str, name: str, value: Any) -> float:
     if number is None:
         more = " or a function of theta, over_theta or over_Y" if name in VARIABLE else ""
         raise TypeError(f"{name}: {caller} takes a number{more}, got {type(value).__name__}")
-    return number
+    return check_range(caller, name, number)
