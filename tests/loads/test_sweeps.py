@@ -20,7 +20,7 @@ LOADS = {
 }
 
 
-@pytest.mark.parametrize("kind", LOADS)
+@pytest.mark.parametrize("kind", ["linear", pytest.param("stroke", marks=pytest.mark.thorough)])
 def test_lazy_grids_and_stores_have_the_values_of_a_grid(kind, tmp_path):
     inputs = {"theta": ANGLES, "ec": EC, "F_Y": LOADS[kind], **MACHINE}
     names = ["T_in", "T_in_wrt_theta", "N_C_wrt_BC"]
@@ -67,6 +67,7 @@ def test_where_only_numbers_make_sense_a_load_is_refused_by_name():
         dx.enclose("T_in", theta=(0.0, 1.0), **machine)
 
 
+@pytest.mark.thorough
 def test_what_travels_to_a_worker_needs_no_definitions_there(tmp_path):
     """Own quantities under a load: the parts of a sweep in a process that knows neither."""
     theta, name = ANGLES[1:-1], dx.define("shoe", "0.08 * abs(N_C * V_C)", unit="W")
