@@ -237,7 +237,8 @@ def _entry(name: str, given: tuple[Any, ...], ranks: tuple[int, ...]) -> str:
     return "\n".join(
         [
             f"declare i32 @{_quoted(name)}({kinds})",
-            f"define i64 @{ENTRY}({taken}) {{",
+            # what is called is inlined, and has the widest vectors only if this has them
+            f'define i64 @{ENTRY}({taken}) "prefer-vector-width"="512" {{',
             "  %answer = alloca i64",
             "  %error = alloca ptr",
             "  store i64 0, ptr %answer",

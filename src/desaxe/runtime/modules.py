@@ -22,7 +22,7 @@ from . import cache as _cache
 from .machine_code import DOUBLE, NO_MEMORY, Code, Loaded, load, machine
 
 SUFFIX = ".code"
-_HEAD = "desaxe machine code 2"
+_HEAD = "desaxe machine code 3"
 _prototype = CFUNCTYPE(c_int64, c_char_p)  # lets go of the GIL while it runs
 _LOCK = ForkSafeLock()
 
