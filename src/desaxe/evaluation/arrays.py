@@ -201,7 +201,7 @@ def _fill(
     threads: int | None,
     numpy_pays: bool,
 ) -> bool:
-    """Compute all points; True if their kernel would have told of extreme ones, and told of none."""
+    """Compute all points; True if the kernel checks for extreme ones and found none."""
     sizes, columns, axis_of = loops
     asked = wanted, scalars, columns, axis_of, len(sizes)
     key = hopeful_key_of(*asked)
