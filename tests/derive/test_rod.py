@@ -1,5 +1,7 @@
 """The rod's functions: every partial derivative, followed along the crank, is its independent difference."""
 
+from functools import cache
+
 import mpmath
 import pytest
 import sympy as sp
@@ -15,6 +17,9 @@ NAMES = [
     "S_1", "S_2", "S_3", "phi_u_1", "phi_BC_2", "phi_u_BC_1", "phi_u_u_2", "S_u_2", "S_BC_3", "S_u_BC_2",
     "S_BC_BC_1", "S_u_u_2",
 ]  # fmt: skip
+
+
+sheet = cache(build_sheet)
 
 
 def numbers():
@@ -58,7 +63,7 @@ def turning(theta, order):
 @pytest.mark.parametrize("name", NAMES)
 def test_a_rod_function_is_its_difference(name):
     with mpmath.workdps(DIGITS):
-        expression = resolve_rod(build_sheet(), name).expression
+        expression = resolve_rod(sheet(), name).expression
         values = known()
         names = sorted(s.name for s in expression.free_symbols)
         formula = sp.lambdify([sp.Symbol(n, real=True) for n in names], expression, mpmath)
@@ -92,4 +97,4 @@ def test_units(name, unit):
 
 
 def test_the_rod_itself_is_no_derivative():
-    assert resolve_rod(build_sheet(), "S") is None
+    assert resolve_rod(sheet(), "S") is None

@@ -21,6 +21,7 @@ from desaxe.oracle.force_truth import (
     truth_all,
 )
 from desaxe.oracle.truth import relative_error
+from tests.effort import cases
 from tests.points import draw
 
 PROMISE = 8 * 2.0**-52
@@ -74,10 +75,11 @@ GEOMETRIES = ("generic", "branch -1", "long crank", "concentric", "backwards", "
 STATES = ("state", "state at rest", "state that starts", "at rest", "from rest")
 
 
+@pytest.mark.sampled
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("geometry", [*GEOMETRIES, *STATES])
 def test_values_and_all_first_sensitivities(geometry, kind):
-    for point in points(geometry, kind, 5):
+    for point in points(geometry, kind, cases(2, 5)):
         assert not misses(dx.evaluate(names_for(point), **point), point), point
 
 

@@ -14,6 +14,7 @@ from desaxe.oracle.force_truth import FORCES, OTHERS
 from desaxe.oracle.force_truth import conditions as force_conditions
 from desaxe.oracle.force_truth import truth as force_truth
 from desaxe.oracle.truth import LAW, QUANTITIES, SECOND_ORDER, STATE, conditions, truth
+from tests.effort import cases
 from tests.evaluation.test_force_values import points
 from tests.points import draw
 
@@ -52,9 +53,10 @@ def near_the_change_point():
         yield {"theta": side * math.pi / 2 + distance, **lengths, **motion}, 2.0 ** (power - 48)
 
 
+@pytest.mark.sampled
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_bound_holds(kind):
-    for point in draw(kind, 8):
+    for point in draw(kind, cases(3, 8)):
         assert not too_small(dx.evaluate(names_for(point), **point, quality=True), point), point
 
 
@@ -63,9 +65,10 @@ def test_the_bound_holds_next_to_the_change_point():
         assert not too_small(dx.evaluate(names_for(point), **point, quality=True), point), point
 
 
+@pytest.mark.sampled
 @pytest.mark.parametrize("kind", ["smooth", "friction", "default_centres", "loads alone"])
 def test_the_bound_holds_for_forces(kind):
-    for point in points("slowing down", kind, 8):
+    for point in points("slowing down", kind, cases(3, 8)):
         found = dx.evaluate(FORCES, **point, quality=True)
         assert not too_small(found, point, force_truth), point
 

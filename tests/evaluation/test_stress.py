@@ -184,7 +184,8 @@ def test_odd_numbers_in_a_column(name, way, monkeypatch):
     """No crash; NaN and status 4 where the number is bad; a number that is good is told apart."""
     take_way(monkeypatch, way)
     column = np.array([*ODD, USUAL[name]])
-    found = dx.evaluate([*NAMES, "status"], **USUAL | {name: column})
+    columns = {each: np.full(len(column), usual) for each, usual in USUAL.items()}  # one kernel serves all
+    found = dx.evaluate([*NAMES, "status"], **columns | {name: column})
     least = {"AB": 0.0, "BC": 5e-324}.get(name, -math.inf)
     for place, number in enumerate(column):
         bad = not (math.isfinite(number) and number >= least)

@@ -1,6 +1,7 @@
 """docs/ERRATA.md: generated from the ledgers, fresh, and complete."""
 
 import re
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ from desaxe.errata import ledger as _errata
 from desaxe.errata.ledger import FINE, VERDICTS, entries, markdown
 
 PAGE = Path(__file__).resolve().parents[2] / "docs/ERRATA.md"
+whole_page = cache(markdown)
 
 
 def test_page_is_fresh():
@@ -19,7 +21,7 @@ def test_page_is_fresh():
 @pytest.mark.parametrize("entry", entries(), ids=lambda entry: entry.id)
 def test_entry_is_on_the_page(entry):
     """In the list or in the table; a bar in a table is escaped."""
-    page = markdown()
+    page = whole_page()
     wrong = entry.verdict not in FINE
     printed = entry.printed if wrong else entry.printed.replace("|", "\\|")
     assert f"`{printed}`" in page

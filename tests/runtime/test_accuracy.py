@@ -12,6 +12,7 @@ from desaxe.oracle import force_truth
 from desaxe.oracle.families import FAMILIES, Rng, points
 from desaxe.oracle.truth import LAW, all_names, truth_all, ulp_error
 from desaxe.runtime.accuracy import ACCURACIES, accuracy_of
+from tests.effort import cases
 from tests.evaluation.test_stress import bodies
 from tests.points import draw
 
@@ -72,14 +73,16 @@ def change_points(count):
         yield point | {"omega0": 50.0, "alpha": float(rng.choice([0.0, 3.0]))}
 
 
+@pytest.mark.sampled
 @pytest.mark.parametrize("kind", KINDS)
 def test_extended_is_exact_to_the_last_digit(kind):
-    for point in draw(kind, 25):
+    for point in draw(kind, cases(8, 25)):
         assert not broken(NAMES, point), point
 
 
+@pytest.mark.sampled
 def test_extended_is_exact_next_to_the_change_point():
-    for point in change_points(60):
+    for point in change_points(cases(20, 60)):
         assert not broken(NAMES, point), point
 
 
@@ -94,9 +97,10 @@ def test_a_kernel_is_as_exact(draw_points):
             assert is_exact(name, float(column[index]), exact[name], row), (name, row)
 
 
+@pytest.mark.sampled
 @pytest.mark.parametrize("family", FAMILIES)
 def test_extended_keeps_its_promise_in_every_family(family):
-    for point in points(family, 120, seed=6):
+    for point in points(family, cases(25, 120), seed=6):
         assert is_stalled(point) or not broken(NAMES, point), point
 
 
@@ -110,15 +114,17 @@ def gap(point):
 LAST = [point for point in points("last_angle", 900, seed=7) if gap(point) < 2.0**-53]
 
 
+@pytest.mark.sampled
 def test_extended_at_the_last_double_inside_a_limit_angle():
     """Of BC and |u| more than 53 bits are the same, and of a_C_wrt_BC a power of what is left of them."""
     assert len(LAST) > 50
-    for point in LAST:
+    for point in LAST[:: cases(4, 1)]:
         assert not broken(NAMES, point), point
 
 
+@pytest.mark.sampled
 def test_extended_knows_the_last_double_inside_a_limit_angle():
-    for point in points("last_angle", 150, seed=8):
+    for point in points("last_angle", cases(40, 150), seed=8):
         for away in (math.inf, -math.inf):
             theta = point["theta"]
             for _ in range(3):
@@ -139,9 +145,10 @@ def just_started(count):
         yield point | {"omega0": 30.0, "alpha": float(rng.choice([0.0, 9.0]))}
 
 
+@pytest.mark.sampled
 def test_extended_where_alpha_has_not_done_much_yet():
     names = ["a_C_wrt_alpha", "alpha_BC_wrt_alpha"]
-    for point in just_started(150):
+    for point in just_started(cases(40, 150)):
         values = dx.evaluate(names, accuracy="extended", **point)
         exact = truth_all(names, **point)
         assert all(ulp_error(values[name], exact[name]) <= 1 for name in names), point
@@ -175,11 +182,12 @@ def test_an_angle_of_a_billion_radians():
 TORQUE = ["T_in", *(f"T_in_wrt_{parameter}" for parameter in LAW)]
 
 
+@pytest.mark.sampled
 @pytest.mark.parametrize("family", [family for family in FAMILIES if family != "units"])
 def test_the_torque_in_extended(family):
     """Its scale: the weight of all masses at the crank pin, and of the force there."""
     rng = Rng(f"extended torque: {family}")
-    for at in points(family, 25, seed=12):
+    for at in points(family, cases(6, 25), seed=12):
         if is_stalled(at):
             continue
         loaded = at | bodies(rng, at) | {"mu": 0.0}

@@ -72,6 +72,7 @@ def test_a_slider_by_keyboard(visit, one_design):
     assert reading(page, "a_C") == [pytest.approx(value, rel=1e-7)] != before
 
 
+@pytest.mark.thorough
 def test_a_slider_by_mouse(visit, one_design):
     page = visit(one_design)
     box = page.locator("#slide-BC").bounding_box()
@@ -106,6 +107,7 @@ def test_a_bad_number_is_refused_in_words(visit, one_design):
     assert page.inner_text("#wrong-BC") == ""
 
 
+@pytest.mark.thorough
 def test_the_crank_turns_by_keys(visit, one_design):
     page = visit(one_design)
     page.keyboard.press("ArrowRight")
@@ -132,6 +134,7 @@ def test_everything_can_be_reached_by_tab(visit, one_design):
     assert inputs | buttons | {"quantity-0", "by-0", "quantity-1", "by-1"} <= reached
 
 
+@pytest.mark.thorough
 def test_every_control_has_a_name(visit, several_designs):
     nameless = """[...document.querySelectorAll('main input, main select, main button')]
         .filter((e) => !(e.labels?.length || e.getAttribute('aria-label') || e.textContent.trim()))
@@ -156,6 +159,7 @@ def test_an_infeasible_design(visit, one_design):
     assert "does not reach" in page.inner_text("#mechanism")
 
 
+@pytest.mark.thorough
 def test_no_curve_where_nothing_can_be_assembled(visit, one_design):
     page = visit(one_design)
     page.fill("#number-ec", "900")
@@ -166,6 +170,7 @@ def test_no_curve_where_nothing_can_be_assembled(visit, one_design):
     assert page.inner_text("#note-0") == "No curve: this has no value at any of these angles."
 
 
+@pytest.mark.thorough
 def test_a_gap_narrower_than_a_sample_is_no_line(visit, one_design):
     """A hundredth of a degree, in which no sample of the even ones lies but the quarter itself."""
     page = visit(one_design)
@@ -196,6 +201,7 @@ def next_to_a_limit(theta, lengths):
     return len(set(near)) > 1
 
 
+@pytest.mark.thorough
 def test_a_crank_that_stalls(visit, one_design):
     page = visit(one_design)
     page.fill("#number-alpha", "-4000")
@@ -227,6 +233,7 @@ def test_several_designs_are_compared(visit, several_designs):
     assert "differ in more than one input" in page.inner_text("#export-note")
 
 
+@pytest.mark.thorough
 def test_a_few_huge_values_do_not_hide_the_others(visit, one_design):
     """Next to a limit angle, and at the narrow peak of a design next to its change point."""
     page = visit(one_design)
@@ -273,6 +280,7 @@ def test_a_field_means_what_python_means(unit, text, si, standing):
     assert standing.evaluate("([u, t]) => desaxe.toSI(u, t)", [unit, text]) == wanted
 
 
+@pytest.mark.thorough
 def test_a_slider_comes_back_from_a_large_entry(visit, one_design):
     page = visit(one_design)
     before = page.get_attribute("#slide-ec", "max")
@@ -284,6 +292,7 @@ def test_a_slider_comes_back_from_a_large_entry(visit, one_design):
     assert page.get_attribute("#slide-ec", "max") == before
 
 
+@pytest.mark.thorough
 def test_turning_is_that_of_feasibility(visit, one_design):
     """0.35 - 0.125 - 0.225 is -2.8e-17 in doubles: so near its change point, yet it cannot turn fully."""
     page = visit(one_design)
@@ -314,6 +323,7 @@ def test_the_figures_of_a_design(branch, visit, folder):
     assert figure(page, "stroke")[1] == f"{1e3 * dx.events(ec=0.1, AB=0.125, BC=0.35)['stroke']:.3f} mm"
 
 
+@pytest.mark.thorough
 def test_a_peak_without_bound_is_told(visit, several_designs):
     page = visit(several_designs)
     page.click("[data-take='2']")
@@ -321,6 +331,7 @@ def test_a_peak_without_bound_is_told(visit, several_designs):
     assert figure(page, "peak-a_C")[0].split("\n") == ["no bound", "next to a limit angle"]
 
 
+@pytest.mark.thorough
 def test_the_slider_axis_is_upright(visit, one_design):
     """As in the sketch of README: Y up, X to the right, the slider axis at X = -ec."""
     page = visit(one_design)
@@ -393,6 +404,7 @@ def test_loads_can_be_set(visit, folder):
         assert found == pytest.approx(dx.evaluate(name, theta=theta, **given), rel=1e-12)
 
 
+@pytest.mark.thorough
 def test_what_changes_is_said(visit, one_design):
     page = visit(one_design)
     page.keyboard.press("ArrowRight")
@@ -403,6 +415,7 @@ def test_what_changes_is_said(visit, one_design):
     page.wait_for_function("document.getElementById('said').textContent.includes('a_C = no value')")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_what_is_read_stands_out(scheme, visit, one_design):
     """WCAG 2: text 4.5 to 1 against what it stands on, curves and the edges of controls 3 to 1."""
@@ -427,6 +440,7 @@ def contrast(one, other):
     return (max(lights) + 0.05) / (min(lights) + 0.05)
 
 
+@pytest.mark.thorough
 def test_a_finger_reads_a_curve_and_moves_the_page(visit, several_designs):
     page = visit(several_designs, 390, 844, has_touch=True, is_mobile=True)
     page.locator("#plot-0").scroll_into_view_if_needed()
@@ -462,6 +476,7 @@ def test_any_quantity_and_sensitivity(visit, one_design):
     assert reading(page, "omega_BC_wrt_AB") == [pytest.approx(value, rel=1e-7)]
 
 
+@pytest.mark.thorough
 def test_values_follow_the_pointer(visit, one_design):
     page = visit(one_design)
     box = page.locator("#plot-0 .nsewdrag").bounding_box()
@@ -492,6 +507,7 @@ def test_the_scene_runs(visit, several_designs, tmp_path):
     assert column == pytest.approx(dataset["a_C"].isel(ec=0).values, rel=1e-11)
 
 
+@pytest.mark.thorough
 def test_the_scene_of_a_feeder_comes_back(visit, folder, tmp_path):
     page = visit(dx.explore("examples/feeder.toml", folder / "feeder.html"))
     saved(page, "#save-scene").save_as(tmp_path / "scene.toml")
@@ -507,6 +523,7 @@ def test_the_scene_of_a_feeder_comes_back(visit, folder, tmp_path):
     assert reading(page, "T_in")[0] == pytest.approx(wanted, rel=1e-7)
 
 
+@pytest.mark.thorough
 def test_the_table_of_values_has_every_digit(visit, several_designs, tmp_path):
     page = visit(several_designs)
     saved(page, "#save-csv").save_as(tmp_path / "values.csv")
@@ -521,6 +538,7 @@ def test_the_table_of_values_has_every_digit(visit, several_designs, tmp_path):
             assert not text or float(text) == pytest.approx(value, rel=1e-12)
 
 
+@pytest.mark.thorough
 def test_the_picture_is_one(visit, several_designs, tmp_path):
     saved(visit(several_designs), "#save-png").save_as(tmp_path / "picture.png")
     data = (tmp_path / "picture.png").read_bytes()
@@ -531,7 +549,9 @@ def test_the_picture_is_one(visit, several_designs, tmp_path):
     assert len(data) > 50_000  # not an empty one
 
 
-@pytest.mark.parametrize("width", [390, 360, 768, 1024])
+@pytest.mark.parametrize(
+    "width", [390, *(pytest.param(width, marks=pytest.mark.thorough) for width in (360, 768, 1024))]
+)
 def test_it_fits_the_screen(width, visit, several_designs):
     page = visit(several_designs, width, 844, has_touch=True, is_mobile=width < 700)
     assert page.evaluate("document.documentElement.scrollWidth") <= width
@@ -544,6 +564,7 @@ def test_it_fits_the_screen(width, visit, several_designs):
     assert page.evaluate(small) == []
 
 
+@pytest.mark.thorough
 def test_light_and_dark(visit, one_design):
     page = visit(one_design, color_scheme="dark")
     colour = "getComputedStyle(document.body).backgroundColor"
