@@ -331,9 +331,9 @@ JAVASCRIPT_HELPERS = {
 }
 """,
     "rotated_cos": """function rotated_cos(sine, cosine, quarters) {
-  const turn = quarters - 4 * floor(quarters / 4);
+  const turn = quarters - 4 * floor(quarters / 4), next = quarters + 1;
   const value = turn % 2 === 1 ? sine : cosine;
-  return turn === 1 || turn === 2 ? -value : value;
+  return next - 4 * floor(next / 4) >= 2 ? -value : value;
 }
 """,
 }
