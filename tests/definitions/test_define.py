@@ -145,7 +145,7 @@ def test_nothing_is_stale():
     for name in ("own", "own_wrt_ec"):
         with pytest.raises(ValueError, match="unknown quantity"):
             dx.evaluate(name, **POINT)
-    with pytest.raises(ValueError, match="no defined quantity"):
+    with pytest.raises(ValueError, match="is not a defined quantity"):
         dx.undefine("own")
 
 

@@ -21,9 +21,9 @@ REFUSED = {
     "V_C + a_C": r"'V_C' is m/s, 'a_C' is m/s\^2", "V_C + 1": "'1' is a plain number",
     "hypot(V_C, Y)": "'V_C' is m/s, 'Y' is m", "sqrt()": "unexpected",
     "atan2(V_C)": "takes 2 arguments, got 1", "eval(V_C)": "unknown function 'eval'",
-    "status + 1": "no real number", "2 * pi": "constant", "own * 2": "defined by itself",
+    "status + 1": "not a real number", "2 * pi": "constant", "own * 2": "defined by itself",
     "own_wrt_ec": "defined by itself", "V_C^2": r"a power is \*\*", "V_C // 2": "unexpected",
-    "1_0 * V_C": "unexpected", "sqrt(V_C)": "no whole number",
+    "1_0 * V_C": "unexpected", "sqrt(V_C)": "not an integer",
 }  # fmt: skip
 
 

@@ -174,7 +174,7 @@ def test_a_derivative_without_bound_gives_a_bound_without_bound():
     [
         (ValueError, "quality of j_C_wrt_ec: not available.* that of j_C is", "j_C_wrt_ec", {}),
         (ValueError, "quality of a_C_wrt_ec_AB", "a_C_wrt_ec_AB", {}),
-        (ValueError, "no real number", "status", {}),
+        (ValueError, "not a real number", "status", {}),
         (ValueError, "did you mean", "a_c", {}),
         (TypeError, "out= is for plain values", "a_C", {"out": np.empty(())}),
         (ValueError, "'standard' alone", "a_C", {"accuracy": "extended"}),

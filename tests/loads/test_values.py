@@ -94,7 +94,7 @@ def test_a_labelled_array_is_a_load_over_theta():
     np.testing.assert_allclose(grid.T_in.sel(ec=0.01), alone, rtol=1e-12)
     part = dx.grid("T_in", theta=theta[:20], ec=ec, F_Y=labelled[:20], **fixed)  # no whole turn
     np.testing.assert_allclose(part.T_in.sel(ec=0.01), alone[:20], rtol=1e-12)
-    with pytest.raises(ValueError, match="no whole turn"):
+    with pytest.raises(ValueError, match="not a whole turn"):
         dx.grid("T_in", theta=theta, ec=ec, F_Y=labelled[:20], **fixed)
     with pytest.raises(ValueError, match="F_Y has the dimensions theta, ec"):
         dx.grid("T_in", theta=theta, ec=ec, F_Y=labelled.expand_dims(ec=2, axis=1), **fixed)

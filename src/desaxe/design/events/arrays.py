@@ -87,7 +87,7 @@ def _velocities(
         middle = 0.5 * (a + b)
         same = np.sign(evaluate("a_C", theta=middle, omega0=1.0, **here)) == np.sign(first)
         a, b = np.where(same, middle, a), np.where(same, b, middle)
-    angle = np.where(first * last < 0.0, a, end)
+    angle = np.where(np.sign(first) * np.sign(last) < 0.0, a, end)
     names = ["V_C", *(f"V_C_wrt_{p}" for p in slopes)]
     found = evaluate(names, theta=angle, omega0=omega, **here)
     value[turns], theta[turns] = side * found["V_C"], np.where(angle < -np.pi / 2, angle + 2 * np.pi, angle)
