@@ -7,7 +7,11 @@ import desaxe as dx
 from desaxe.design.measures import checked, measured
 
 MACHINE = {"AB": 0.125, "BC": 0.35, "omega0": 150.0, "m_slider": 0.8, "m_rod": 0.5}
-MEASURES = [("rms", "T_in"), ("mean", "power_in"), ("at", "60 deg", "a_C"), ("rms", "F_B")]
+MEASURES = [
+    ("rms", "T_in"),
+    ("at", "60 deg", "a_C"),
+    *(pytest.param(m, marks=pytest.mark.thorough) for m in (("mean", "power_in"), ("rms", "F_B"))),
+]
 
 
 @pytest.mark.parametrize("measure", MEASURES, ids=str)

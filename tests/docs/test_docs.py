@@ -25,7 +25,11 @@ PAGES = sorted(
 WITH_BLOCKS = [page for page in PAGES if BLOCK.search((ROOT / page).read_text(encoding="utf-8"))]
 
 
-@pytest.mark.parametrize("page", WITH_BLOCKS)
+# The page on clusters starts one.
+ONCE = [pytest.param(p, marks=pytest.mark.thorough if p == "docs/scale.md" else ()) for p in WITH_BLOCKS]
+
+
+@pytest.mark.parametrize("page", ONCE)
 def test_its_code_runs(page, tmp_path, monkeypatch, capsys):
     """In the order of the page, as one session; what it writes goes elsewhere."""
     monkeypatch.chdir(tmp_path)
@@ -112,6 +116,7 @@ def test_every_block_that_could_run_does():
     assert {"README.md", *(f"docs/{name}.md" for name in wanted)} <= set(WITH_BLOCKS)
 
 
+@pytest.mark.thorough
 def test_the_site(tmp_path):
     """Built as strictly as there is; what is generated stands in it, and links lead somewhere."""
     command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(tmp_path)]

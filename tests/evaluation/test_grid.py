@@ -180,7 +180,7 @@ def test_the_order_of_axes_changes_no_digit(monkeypatch):
         "ec": np.linspace(-0.3, 0.3, 13),
         "BC": np.linspace(0.2, 0.5, 7),
     }
-    numbers, names = {"AB": 0.125, "omega0": 157.08}, ["Y", "V_C", "a_C", "a_C_wrt_ec"]
+    numbers, names = {"AB": 0.125, "omega0": 157.08}, ["V_C", "a_C_wrt_ec"]
     first = dx.grid(names, **axes, **numbers)
     last = dx.grid(names, ec=axes["ec"], theta=axes["theta"], BC=axes["BC"], **numbers)
     reduced = dx.grid(names, reduce={"theta": ["max", "absmax"]}, **axes, **numbers)

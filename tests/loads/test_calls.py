@@ -108,6 +108,7 @@ def test_a_four_stroke_load_repeats_after_two_turns():
         dx.harmonics("T_in", F_Y=load, **machine)
 
 
+@pytest.mark.thorough
 def test_tolerance_and_optimum_follow_the_load():
     machine = {"theta": 4.0, "omega0": 50.0, "m_slider": 0.8, "ec": 0.01, "F_Y": STROKE}
     lengths = {"AB": (0.04, 1e-5), "BC": (0.064, 1e-5)}

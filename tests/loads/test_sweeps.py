@@ -41,6 +41,7 @@ def test_lazy_grids_and_stores_have_the_values_of_a_grid(kind, tmp_path):
         assert again.T_in.data.name != lazy.T_in.data.name  # Dask knows them by their names
 
 
+@pytest.mark.thorough
 def test_reductions_best_designs_and_peaks_follow_the_load():
     inputs = {"theta": ANGLES, "ec": EC, "F_Y": LOADS["stroke"], **MACHINE}
     whole = dx.grid("T_in", **inputs).T_in

@@ -13,12 +13,8 @@ NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 FIGURES = {"02_paper_a": range(9, 13), "03_paper_b": range(5, 19), "04_paper_c": range(5, 12)}
 
 
-def in_each_run(path):
-    """The tour runs always, the others in a thorough run."""
-    return path if path.stem == "01_tour" else pytest.param(path, marks=pytest.mark.thorough)
-
-
-@pytest.mark.parametrize("path", [in_each_run(path) for path in NOTEBOOKS], ids=lambda path: path.stem)
+@pytest.mark.thorough
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_it_runs(path):
     notebook = nbformat.read(path, as_version=4)
     NotebookClient(notebook, timeout=300, resources={"metadata": {"path": FOLDER}}).execute()

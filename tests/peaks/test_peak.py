@@ -265,6 +265,7 @@ def test_two_maxima_next_to_the_inner_dead_centre():
         assert abs(value / exact - 1) < 1e-14
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("threads", [2, 3])
 def test_the_same_for_any_number_of_threads(threads, monkeypatch):
     monkeypatch.setenv("DESAXE_TIER", "compiled")

@@ -158,6 +158,7 @@ def test_extended_where_alpha_has_not_done_much_yet():
         assert all(ulp_error(values[name], exact[name]) <= 1 for name in names), state
 
 
+@pytest.mark.thorough
 def test_a_kernel_is_as_exact_at_the_hardest_points():
     """The last double inside a limit angle, and a crank that has just started."""
     names = ["a_C", "a_C_wrt_BC", "a_C_wrt_alpha", "alpha_BC_wrt_alpha"]

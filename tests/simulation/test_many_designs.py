@@ -47,6 +47,7 @@ def test_each_design_moves_as_it_does_alone(branch):
     assert (many["energy_residual"] < 1e-9).all()
 
 
+@pytest.mark.thorough
 def test_the_end_of_a_motion():
     torques = np.array([0.25, -0.5])
     many = dx.simulate(torque=torques, t_end=0.3, rtol=1e-11, omega_start=8.0, **LOADED)

@@ -52,6 +52,7 @@ def test_they_are_those_of_the_whole_grid(grid, monkeypatch, by, sign):
     assert best["a_C_" + kind].attrs["units"] == "m/s^2"
 
 
+@pytest.mark.thorough
 def test_by_a_reduction(grid):
     best = dx.sweep("V_C", best=3, by="V_C_mean", reduce={"theta": ["max", "mean"]}, **INPUTS)
     expected = np.sort(grid["V_C"].mean("theta").values.reshape(-1))[::-1][:3]

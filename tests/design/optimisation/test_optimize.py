@@ -86,6 +86,7 @@ def scanned(kind, name, ec, BC, keep, sense):
     return ec[best], BC[best], sense * value[best]
 
 
+@pytest.mark.thorough
 def test_against_a_scan_and_moved_limits():
     ec, BC = np.linspace(0.0, 0.15, 301), np.linspace(0.3, 0.5, 201)
     wanted = scanned("absmax", "a_C", ec, BC, 1.2, -1)

@@ -463,6 +463,7 @@ def swipe_up(page, x, y, length):
     finger.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
 
 
+@pytest.mark.thorough
 def test_any_quantity_and_sensitivity(visit, one_design):
     page = visit(one_design)
     for option in page.locator("#quantity-0 option").all():

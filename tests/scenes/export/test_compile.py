@@ -151,6 +151,7 @@ def test_arrays_are_those_of_evaluate(name, alone, monkeypatch):
 
 
 @pytest.mark.thorough
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", SCENES)
 def test_one_point_is_that_of_evaluate(name, alone):
     names = list(alone[name]["number"])
@@ -162,6 +163,7 @@ def test_one_point_is_that_of_evaluate(name, alone):
     assert [alone[name]["number"][n] for n in names] == [[text] for text in alone[name]["point"]]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", SCENES)
 def test_scalars_are_those_of_evaluate(name, alone):
     """One function for each output, in the order of INPUTS, compiled for the @njit functions of others."""
@@ -244,6 +246,7 @@ def test_what_is_left_out_is_told(tmp_path, capsys):
         dx.compile(COMPACTOR, place, check=True)
 
 
+@pytest.mark.thorough
 def test_peaks_of_a_scene(tmp_path):
     """Of its own designs and of others, next to a change point too: as `desaxe.peak` has them."""
     module = imported(dx.compile(COMPACTOR, tmp_path / "peak_kernels.py"))

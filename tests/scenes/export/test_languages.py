@@ -22,6 +22,7 @@ def module(tmp_path_factory):
         yield imported(dx.compile(scene(1), place, to="jax"))
 
 
+@pytest.mark.thorough
 def test_the_promise_is_kept_by_jax(module):
     """As it stands, and compiled whole."""
     import jax
@@ -87,6 +88,7 @@ def test_second_derivatives(module):
         jax.hessian(lambda ec: module.a_C_wrt_ec(1.0, ec, 0.125, 0.25, 10.0, 0.5))(0.1)
 
 
+@pytest.mark.thorough
 def test_transformations(module):
     import jax
     import jax.numpy as jnp
