@@ -78,9 +78,10 @@ def widened(rng, point, names, width):
 @pytest.mark.parametrize(
     "kind", ["generic", "branch -1", "long crank", "slowing down", "state", "concentric"]
 )
+@pytest.mark.sampled
 def test_a_point_is_enclosed_to_a_last_bit(kind):
     names = all_names(STATE if kind == "state" else LAW)
-    for number, point in enumerate(draw(kind, 5)):
+    for number, point in enumerate(draw(kind, cases(2, 5))):
         for name in names[number::10]:
             found, exact = dx.enclose(name, **point), truth(name, **point)
             assert holds(found, exact), (name, point)
@@ -89,10 +90,11 @@ def test_a_point_is_enclosed_to_a_last_bit(kind):
             assert found["tight"]
 
 
+@pytest.mark.sampled
 @pytest.mark.parametrize("kind", ["friction", "default_centres"])
 def test_forces_at_a_point(kind):
     names = force_names()
-    for number, point in enumerate(points("slowing down", kind, 6)):
+    for number, point in enumerate(points("slowing down", kind, cases(2, 6))):
         for name in names[number::18]:
             found = dx.enclose(name, **point)
             assert holds(found, truth(name, **point)), (name, point)

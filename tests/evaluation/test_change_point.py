@@ -67,7 +67,7 @@ def test_at_the_change_point(AB, ec, side, branch):
 
 @pytest.mark.parametrize(("AB", "ec"), MECHANISMS)
 @pytest.mark.parametrize("side", SIDES)
-@pytest.mark.parametrize("power", range(20, 51, 5))
+@pytest.mark.parametrize("power", range(20, 51, cases(15, 5)))
 def test_small_margins(AB, ec, side, power):
     """A little short of the change point, and a little beyond it where the rod still reaches."""
     for sign, distance in itertools.product(SIDES, DISTANCES_AND_NONE):

@@ -67,7 +67,7 @@ def compiled(names, rows):
 @pytest.mark.sampled
 @pytest.mark.parametrize("family", FAMILIES)
 def test_the_promise_is_kept(family, monkeypatch):
-    rows = list(points(family, cases(20, 200)))
+    rows = list(points(family, cases(12, 200)))
     take_way(monkeypatch, "compiled")
     for row, by_kernel in zip(rows, compiled(NAMES, rows), strict=True):
         plain = dx.evaluate(NAMES, **row)

@@ -121,6 +121,7 @@ def test_the_crank_turns_by_keys(visit, one_design):
     assert page.evaluate("desaxe.state.theta") == stopped
 
 
+@pytest.mark.thorough
 def test_everything_can_be_reached_by_tab(visit, one_design):
     page = visit(one_design)
     reached = set()
@@ -254,6 +255,7 @@ def figure(page, name):
     return page.locator(f"#figures tr[data-figure='{name}'] td").all_inner_texts()
 
 
+@pytest.mark.thorough
 def test_typing_what_is_there_changes_nothing(visit, several_designs, folder):
     page = visit(several_designs)
     page.fill("#number-omega0", "1500")
@@ -345,6 +347,7 @@ def test_the_slider_axis_is_upright(visit, one_design):
     assert y[1] < c[1]
 
 
+@pytest.mark.thorough
 def test_tables_and_files_in_other_units(visit, several_designs):
     page = visit(several_designs)
     page.select_option("#units", "mm")
@@ -364,6 +367,7 @@ def test_tables_and_files_in_other_units(visit, several_designs):
     assert "m" in page.inner_text("#field-AB .unit")
 
 
+@pytest.mark.thorough
 def test_a_machine_brings_its_units(visit, folder):
     """Fields, values, tables and files in inches and standard gravities; the scene is the same machine."""
     units = {"length": "in", "angle": "deg", "a_C": "standard_gravity"}
@@ -388,6 +392,7 @@ def test_a_machine_brings_its_units(visit, folder):
     assert dx.scene(saved).run().dataset.a_C.units == "standard_gravity"
 
 
+@pytest.mark.thorough
 def test_loads_can_be_set(visit, folder):
     page = visit(
         dx.explore(path=folder / "loaded.html", ec=0.01, AB=0.04, BC=0.064, omega0=100.0, m_slider=1.0)
@@ -493,6 +498,7 @@ def saved(page, button):
     return waiting.value
 
 
+@pytest.mark.thorough
 def test_the_scene_runs(visit, several_designs, tmp_path):
     page = visit(several_designs)
     download = saved(page, "#save-scene")
