@@ -214,7 +214,7 @@ def judged(call: str, name: str, value: Any) -> Verdict:
     except (ValueError, TypeError, MemoryError, TimeoutError) as error:
         last = traceback.extract_tb(error.__traceback__)[-1]
         ours = "/desaxe/" in last.filename
-        words = {name, call.split()[0], *inputs, "M_eff", "no quantity", "of_a_fuzz", "no value"}
+        words = {name, call.split()[0], *inputs, "M_eff", "not a quantity", "of_a_fuzz", "no value"}
         named = any(word in str(error) for word in words) or isinstance(error, (MemoryError, TimeoutError))
         return (
             GOOD if ours and named else Verdict(CRASHED, f"{told}: {error} ({last.filename}:{last.lineno})")
