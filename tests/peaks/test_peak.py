@@ -1,6 +1,7 @@
 """Peaks against mpmath on the closed form, also where they are as narrow as the root of the margin."""
 
 import math
+from fractions import Fraction
 
 import mpmath
 import numpy as np
@@ -119,6 +120,28 @@ def test_rates_of_a_mechanism_that_cannot_turn_have_no_bound(name, digits):
     rockers = (AB + np.abs(ec) - 1e-6 > BC) & (np.abs(ec) < AB + BC - 1e-6)
     found = dx.peak(name, AB=AB[rockers], BC=BC[rockers], ec=ec[rockers], omega0=90.0)
     assert np.count_nonzero(rockers) > 500
+    assert np.isinf(found["value"]).all()
+    assert (found["status"] == 2).all()
+
+
+def test_a_margin_below_zero_by_less_than_its_rounding():
+    """BC - AB - |ec| in exact fractions decides: below zero there are limit angles, however near."""
+    grid = [(k / 1000.0, j / 1000.0) for k in range(5, 400, 23) for j in range(5, 400, 31)]
+    AB, ec = np.array(grid).T
+    BC = AB + ec
+    exact = [Fraction(c) - Fraction(a) - Fraction(e) for a, e, c in zip(AB, ec, BC, strict=True)]
+    short = np.array([margin < 0 for margin in exact])
+    assert np.count_nonzero(short & (BC - AB - ec >= 0.0)) > 0
+    for name in ("V_C", "a_C"):
+        found = dx.peak(name, AB=AB, ec=ec, BC=BC, omega0=90.0)
+        assert np.array_equal(np.isinf(found["value"]), short)
+        assert np.array_equal(found["status"] == 2, short)
+
+
+@pytest.mark.parametrize("name", ["V_C", "a_C"])
+def test_an_arc_narrower_than_a_microradian_has_no_bound_either(name):
+    short = 10.0 ** -np.arange(9.0, 15.5, 0.5)  # |ec| short of AB + BC by this share: arcs down to 1e-7 rad
+    found = dx.peak(name, AB=1.0, BC=2.0, ec=-3.0 * (1.0 - short), omega0=90.0)
     assert np.isinf(found["value"]).all()
     assert (found["status"] == 2).all()
 

@@ -23,6 +23,9 @@ BLOCK = 1024  # designs at a time
 AT_KINK = 2.0**-40  # rad: an extremum so near to a kink is at the kink
 SMOOTH = 1e-6  # of the median slope: what is left of the slope at the top of a smooth peak is less
 JAMS, TWO_BALANCES = 5, 6  # the status where friction leaves no balance of forces, or two
+MARGIN_ROUNDING = 2.0**-50  # of BC: more than BC - AB - |ec| may lose to rounding
+WHOLE_TURN = [(0.0, 2.0 * np.pi)]  # the feasible angles of a design that turns fully
+FARTHER = 2.0**-20  # rad from a limit angle: unbounded quantities have grown from there on, in a wide arc
 REACH = 1.0  # rad: a stall nearer to the range than this shapes what is in it
 
 
@@ -58,7 +61,8 @@ def are_special(designs: Designs) -> NDArray[np.bool_]:
     columns = designs.columns
     special = np.full(designs.size, designs.rubs)
     if all(name in columns for name in LENGTHS):
-        special |= ~(columns["BC"] - columns["AB"] - np.abs(columns["ec"]) > 0.0)
+        ec, AB, BC = (columns[name] for name in LENGTHS)
+        special |= ~(BC - AB - np.abs(ec) > MARGIN_ROUNDING * BC)
     if "alpha" in columns and "omega0" in columns:
         low, high = designs.theta
         stop = _stall(columns["omega0"], columns["alpha"])
@@ -104,8 +108,11 @@ def _limit_angles(designs: Designs) -> list[list[float]]:
     lengths = [columns[n] for n in LENGTHS if n in columns]
     if len(lengths) == 3:
         ec, AB, BC = lengths
-        for row in np.flatnonzero(BC - AB - np.abs(ec) < 0.0):
-            for interval in theta_intervals(*(float(c[row]) for c in lengths)):
+        for row in np.flatnonzero(BC - AB - np.abs(ec) <= MARGIN_ROUNDING * BC):
+            intervals = theta_intervals(*(float(c[row]) for c in lengths))
+            if intervals == WHOLE_TURN:  # the margin, rounded once, is not negative
+                continue
+            for interval in intervals:
                 for end in interval:
                     first = end + 2.0 * np.pi * np.ceil((low - end) / (2.0 * np.pi))
                     found[row] += list(np.arange(first, high + 1e-12, 2.0 * np.pi))
@@ -227,7 +234,9 @@ def _mark_limits(kind: str, found: Found, value: Array, nodes: Array, ends: list
         near = np.flatnonzero(usable)[np.argmin(np.abs(nodes[row, usable] - end))]
         if abs(nodes[row, near] - end) > 1e-6:
             continue
-        bounded = not _grows(nodes[row, usable], value[row, usable], end, value[row, near])
+        others = [abs(angle - end) for other, angle in ends if other == row and angle != end]
+        reference = min(FARTHER, 0.5 * min(others, default=np.inf))
+        bounded = not _grows(nodes[row, usable], value[row, usable], end, value[row, near], reference)
         # The search may have stopped beyond `near`, where only more digits show that it is infeasible.
         at_end = abs(found.theta[row] - end) <= max(abs(nodes[row, near] - end), 0.5 * GRADED[-1])
         grows = not bounded and score(kind, value[row, near]) >= score(kind, found.value[row])
@@ -238,10 +247,10 @@ def _mark_limits(kind: str, found: Found, value: Array, nodes: Array, ends: list
                 found.value[row] = np.copysign(np.inf, value[row, near])
 
 
-def _grows(nodes: Array, value: Array, end: float, last: float) -> bool:
-    """True if a quantity is unbounded towards an end, like a negative power of the distance."""
-    away = np.abs(nodes - end)
-    farther = value[np.argmin(np.abs(np.log2(np.maximum(away, 1e-16)) + 20.0))]  # 2^-20 away
+def _grows(nodes: Array, value: Array, end: float, last: float, reference: float) -> bool:
+    """True if a quantity is unbounded towards an end: there far above its value at the reference distance."""
+    away = np.log2(np.maximum(np.abs(nodes - end), 1e-16))
+    farther = value[np.argmin(np.abs(away - np.log2(reference)))]
     return bool(abs(last) > 16.0 * abs(farther))
 
 
