@@ -1,7 +1,7 @@
 """Every quantity: its equation, its unit, what it means and where the papers have it.
 
 To add one, add its equation here (or a room of its own for a family of them) and its name to
-`QUANTITIES`; its sensitivities, catalogue row and tests of freshness and accuracy follow.
+`KINEMATICS`; its sensitivities, catalogue row and tests of freshness and accuracy follow.
 """
 
 from itertools import pairwise

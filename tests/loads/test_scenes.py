@@ -167,3 +167,34 @@ def test_a_module_of_given_states_has_its_inputs_in_one_order(tmp_path):
         for key in ("T_in", "T_in_wrt_AB"):
             for values in (found[key], points[key]):
                 np.testing.assert_allclose(values, right[key].transpose(*module.AXES), rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("table", "wanted"),
+    [
+        ({"over_Y": [[225, 0, 0], [475, -2, -0.05]]}, ([0, -2000], [0, -50])),
+        ({"over_Y": [225, 475], "outward": [0, -2], "inward": [0, "-50 N"]}, ([0, -2000], [0, -50])),
+        ({"over_Y": [[0.225, 0], [0.475, -2000]], "Y": "m", "value": "N"}, ([0, -2000], None)),
+    ],
+)
+def test_plain_points_are_in_the_units_of_the_scene(table, wanted):
+    scene = {"outputs": ["N_C"], "units": {"length": "mm", "force": "kN"}, "loads": {"F_Y": table}}
+    scene |= {"mechanism": {"ec": 12, "AB": 125, "BC": 350}, "motion": {"theta": [0.0, 1.0], "omega0": 10.0}}
+    load = dx.scene(scene).inputs["F_Y"]
+    plain = dx.over_Y(["225 mm", "475 mm"], *(None if part is None else part for part in wanted))
+    assert (load.outward, load.inward) == (plain.outward, plain.inward)
+
+
+def test_angles_of_a_table_are_in_the_units_of_the_scene(tmp_path):
+    machine = dx.Machine(
+        ec=12, AB=125, BC=350, omega0=1500, m_slider=0.8, units="mm, deg, rpm",
+        F_Y=dx.over_theta(["0 deg", "90 deg", "180 deg"], [0, -500, 0], kind="linear"),
+    )  # fmt: skip
+    written = dx.scene(machine.to_scene(tmp_path / "press.toml", outputs=["T_in"]))
+    assert written.inputs["F_Y"] == machine["F_Y"]
+    scene = {
+        "outputs": ["T_in"], "units": "mm, deg", "mechanism": {"ec": 12, "AB": 125, "BC": 350},
+        "motion": {"theta": [0, 90], "omega0": 157.0},
+        "loads": {"F_Y": {"over_theta": [[0, 0], [90, -500], [180, 0]], "kind": "linear", "period": 360}},
+    }  # fmt: skip
+    assert dx.scene(scene).inputs["F_Y"] == machine["F_Y"]

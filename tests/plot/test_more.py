@@ -150,3 +150,13 @@ def test_a_bounded_curve_with_gaps_is_shown_whole():
         low, high = dx.plot.curves(grid, name)[0].axes.get_ylim()
         values = grid[name].values
         assert (np.nanmax(values) > high or np.nanmin(values) < low) == cut
+
+
+def test_save_takes_what_a_plot_returns(tmp_path):
+    machine = dx.Machine(ec=0.012, AB=0.125, BC=0.35, omega0=157.0, m_slider=0.8)
+    plots = machine.plot("a_C"), machine.plot(["Y", "V_C"]), machine.plot.mechanism(1.0)
+    for number, shown in enumerate(plots):
+        assert dx.plot.save(shown, tmp_path / f"{number}.png").stat().st_size > 1000
+    with pytest.raises(TypeError, match="save: int: expected a figure"):
+        dx.plot.save(3, tmp_path / "none.png")
+    assert not (tmp_path / "none.png").exists()

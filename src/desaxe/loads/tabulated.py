@@ -1,5 +1,6 @@
 """`over_theta` and `over_Y`: loads from tables, files and functions."""
 
+import re
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from math import inf, isfinite
@@ -7,7 +8,9 @@ from os import PathLike
 from typing import Any
 from warnings import warn
 
+from ..mechanism.slips import LARGEST, UnitWarning
 from ..support.files import as_path, read_bytes
+from ..support.quantity_text import spelled
 from ..support.shown import shown
 from .load import TURN, FunctionOverTheta, Load, LoadWarning, OverY, TableOverTheta
 from .table import KINDS, held, periodic
@@ -16,6 +19,8 @@ CLOSED = 1e-6  # of a period: a last angle so near to its end repeats the first 
 WIDE = 4.0  # times the usual distance between points
 MOST_BYTES = 100_000_000  # of a file
 LONGEST_PERIOD = 1e9
+UNIT_OF_HEADING = re.compile(r"\[([^\]]*)\]")
+FARTHEST = LARGEST["ec"]  # m: a position beyond is almost surely in another unit
 EQUAL = 1e-9  # of the largest value: what differs by less is the same
 
 
@@ -76,20 +81,23 @@ class _OverTheta:
     def read(
         self,
         path: str | PathLike[str],
-        theta: str = "rad",
+        theta: str | None = None,
         value: str | None = None,
         kind: str = "cubic",
         period: Any = TURN,
     ) -> Load:
         """A load over the crank angle from the first two columns of a text file.
 
-        theta, value   units of the columns, such as "deg" and "N"; value in SI units without
+        theta, value   units of the columns, such as "deg" and "N"; without, those of the heading, such as
+                       "theta [deg], F_Y [kN]", else SI units
         kind, period   as in `over_theta`
 
         Columns are parted by commas, semicolons, tabs or blanks; a first line without numbers is a heading,
         and lines that begin with # are left out. Raises ValueError, which names the line.
         """
-        rows = _rows(path, 2)
+        heading, rows = _rows(path, 2)
+        theta = _column_unit(path, "theta", theta, heading[:1]) or "rad"
+        value = _column_unit(path, "value", value, heading[1:2])
         x, _ = _in_units("theta", [row[0] for row in rows], theta, ("rad",))
         y, unit = _in_units("value", [row[1] for row in rows], value, ("N", "N*m"))
         try:
@@ -121,7 +129,14 @@ class _OverY:
 
     def __call__(self, positions: Any, outward: Any, inward: Any = None, kind: str = "linear") -> Load:
         """A load over the slider's position; see `help(desaxe.over_Y)`."""
-        x, _ = _numbers("over_Y: positions", positions, ("m",))
+        x, own = _numbers("over_Y: positions", positions, ("m",))
+        if own is None and isinstance(positions, (list, tuple)) and max(map(abs, x), default=0.0) > FARTHEST:
+            warn(
+                f"over_Y: positions up to {max(x, key=abs):.6g} m, almost surely a slip: write "
+                f'"{max(x, key=abs):.6g} mm"; plain numbers are metres, for a machine in other units too',
+                UnitWarning,
+                stacklevel=2,
+            )
         forth, unit = _numbers("over_Y: outward", outward, ("N",))
         back = None
         if inward is not None:
@@ -130,13 +145,15 @@ class _OverY:
         return _table_over_Y(x, forth, back, unit, kind)
 
     def read(
-        self, path: str | PathLike[str], Y: str = "m", value: str | None = None, kind: str = "linear"
+        self, path: str | PathLike[str], Y: str | None = None, value: str | None = None, kind: str = "linear"
     ) -> Load:
         """A load over the slider's position from a text file: position, outward and perhaps inward.
 
         Y, value are the units of the columns; the form of the file is that of `over_theta.read`.
         """
-        rows = _rows(path, 2)
+        heading, rows = _rows(path, 2)
+        Y = _column_unit(path, "Y", Y, heading[:1]) or "m"
+        value = _column_unit(path, "value", value, heading[1:3])
         x, _ = _in_units("Y", [row[0] for row in rows], Y, ("m",))
         forth, unit = _in_units("value", [row[1] for row in rows], value, ("N",))
         wide = all(len(row) > 2 for row in rows)
@@ -291,8 +308,24 @@ def _finite(what: str, values: list[Any]) -> list[float]:
 # ---- files ------------------------------------------------------------------------------------------
 
 
-def _rows(path: str | PathLike[str], least: int) -> list[list[str]]:
-    """The cells of the lines of a file that have numbers; ValueError names the line where one has none."""
+def _column_unit(
+    path: str | PathLike[str], name: str, given: str | None, heading: Sequence[str]
+) -> str | None:
+    """The unit of a column: as given, else in brackets in its heading; ValueError if they differ."""
+    for cell in heading:
+        found = UNIT_OF_HEADING.search(cell)
+        unit = spelled(found[1].strip()) if found else given
+        if given is not None and unit is not None and unit != spelled(given):
+            raise ValueError(f"{path}: {name} = {given!r}, but its heading is {cell!r}")
+        given = unit
+    return given
+
+
+def _rows(path: str | PathLike[str], least: int) -> tuple[list[str], list[list[str]]]:
+    """The cells of the heading, and those of the lines that have numbers.
+
+    ValueError names the line that has none.
+    """
     try:
         text = read_bytes(as_path("path", path), MOST_BYTES).decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -300,7 +333,7 @@ def _rows(path: str | PathLike[str], least: int) -> list[list[str]]:
     except ValueError as error:
         raise ValueError(f"{shown(path)}: {error}") from None
     rows: list[list[str]] = []
-    heading = False
+    heading: list[str] = []
     for number, line in enumerate(text.splitlines(), 1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
@@ -311,10 +344,10 @@ def _rows(path: str | PathLike[str], least: int) -> list[list[str]]:
         elif rows or heading:
             raise ValueError(f"{path}, line {number}: expected {least} or more numbers, such as 90, -400")
         else:
-            heading = True
+            heading = cells
     if not rows:
         raise ValueError(f"{path}: no line has {least} numbers")
-    return rows
+    return heading, rows
 
 
 def _in_units(

@@ -16,23 +16,26 @@ class LoadTable(NamedTuple):
     text: str = ""
 
 
-def load_table(name: str, load: Load, scene: Path) -> LoadTable:
+def load_table(name: str, load: Load, scene: Path, unit: str | None = None) -> LoadTable:
     """The table of a load for a scene at this path; TypeError for a load that is a function.
 
     Points are in SI units with all their digits, so that the load that is read equals this one.
+    unit   of its plain values, where the scene names another one
     """
     if isinstance(load, TableOverTheta):
         columns = [load.table.knots, load.table.values]
         more: dict[str, Any] = {"kind": load.kind, "period": load.period}
-        over, heads = "over_theta", ["theta [rad]", name]
+        over, along, heads = "over_theta", {"theta": "rad"}, ["theta [rad]", name]
     elif isinstance(load, OverY):
         ways = [load.outward] if load.inward is None else [load.outward, load.inward]
         columns = [load.outward.knots, *(table.values for table in ways)]
         more = {"kind": load.kind}
-        over, heads = "over_Y", ["Y [m]", *(f"{name} {way}" for way in ("outward", "inward")[: len(ways)])]
+        over, along = "over_Y", {"Y": "m"}
+        heads = ["Y [m]", *(f"{name} {way}" for way in ("outward", "inward")[: len(ways)])]
     else:
         raise TypeError(f"{name}: a function is not data, and cannot stand in a scene file; give a table")
-    more |= {"value": load.unit} if load.unit is not None else {}
+    unit = load.unit or unit
+    more |= along | ({"value": unit} if unit is not None else {})
     rows = list(zip(*columns, strict=True))
     if len(rows) <= INLINE:
         return LoadTable({over: [list(row) for row in rows], **more})

@@ -49,7 +49,7 @@ def write_scene(
     place = Path(path)
     loads = split(machine)[1]
     scene(_data(machine, outputs, more, loads))
-    tables = {name: load_table(name, load, place) for name, load in loads.items()}
+    tables = {name: load_table(name, load, place, _si_unit(machine, name)) for name, load in loads.items()}
     for file in (place, *(table.file for table in tables.values() if table.file is not None)):
         check_target(file)
     for table in tables.values():
@@ -58,6 +58,11 @@ def write_scene(
     data = _data(machine, outputs, more, {name: table.data for name, table in tables.items()})
     write_text(place, _toml(data))
     return place
+
+
+def _si_unit(machine: Any, name: str) -> str | None:
+    """The SI unit of a load whose plain numbers mean another one in the machine's scene."""
+    return None if machine.units.of(name).si == 1 else INPUTS[name].unit
 
 
 def _data(machine: Any, outputs: Any, more: Mapping[str, Any], loads: Mapping[str, Any]) -> dict[str, Any]:

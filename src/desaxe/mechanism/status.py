@@ -23,8 +23,10 @@ class Status(IntEnum):
 class PointStatus(Status):
     """The status of a point: `evaluate`, `grid`.
 
-    Decided by `derive/quantities.py` (0 to 3), `compiler/passes/guard.py` (4), `derive/dynamics.py` (5, 6);
-    next to a limit angle by `runtime/near_limit.py`.
+    Decided by `derive/stable.py` (0 to 3), `compiler/passes/guard.py` (4), `derive/dynamics.py` (5, 6: in the
+    place of the first by `runtime/request.py`, where a force is requested); next to a limit angle in
+    double-double by `runtime/near_limit.py`, which `runtime/point.py`, `runtime/threads.py` and
+    `evaluation/repair.py` call.
     """
 
     OK = 0, "ok"

@@ -231,7 +231,9 @@ def _dimension_of(unit: str) -> str:
             _si_of(name, unit, si)
         except ValueError as error:
             if "unknown unit" in str(error) or "it must be a number" in str(error):
-                raise
+                raise ValueError(
+                    f'units: {unit!r} is not a known unit; expected units such as "mm, deg, rpm"'
+                ) from None
         else:
             fitting.append(name)
     if not fitting:

@@ -1,5 +1,6 @@
 """Pictures as files."""
 
+from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,8 @@ from ..support.files import replacing
 def save(figure: Any, path: str | PathLike[str], dpi: float | None = None) -> Path:
     """Write a figure or animation to a file, in the format of its suffix; missing folders are created.
 
-    figure  a matplotlib Figure (.png, .svg, .pdf), or an animation (.gif, .html)
+    figure  a matplotlib Figure or what a function of `desaxe.plot` returns (.png, .svg, .pdf), or an
+            animation (.gif, .html)
     dpi     dots per inch; by default 150, and 80 of an animation
 
     A file appears whole or not at all. Returns its path.
@@ -20,8 +22,20 @@ def save(figure: Any, path: str | PathLike[str], dpi: float | None = None) -> Pa
         if hasattr(figure, "to_jshtml"):
             _animation(figure, staged, dpi or 80.0)
         else:
-            figure.savefig(staged, dpi=dpi or 150.0)
+            _figure_of(figure).savefig(staged, dpi=dpi or 150.0)
     return target
+
+
+def _figure_of(shown: Any) -> Any:
+    """The figure of axes, of the first of several axes, or of a sketch; TypeError for anything else."""
+    first = shown
+    while isinstance(first, Mapping) or (isinstance(first, Sequence) and not hasattr(first, "axes")):
+        first = next(iter(first.values() if isinstance(first, Mapping) else first), None)
+    if not hasattr(first, "savefig"):
+        first = getattr(getattr(first, "axes", first), "figure", None)
+    if not hasattr(first, "savefig"):
+        raise TypeError(f"save: {type(shown).__name__}: expected a figure, or what desaxe.plot returns")
+    return first
 
 
 def _animation(animation: Any, path: Path, dpi: float) -> None:

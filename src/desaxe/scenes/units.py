@@ -14,6 +14,7 @@ from ..support.quantity_text import split_quantity
 
 SECTIONS = ("mechanism", "motion", "masses", "loads")
 ENDS = ("start", "stop", "step")
+TABLES = {"over_theta": "theta", "over_Y": "Y"}  # a load over a place, whose points may stand in the scene
 WORDS = ("printed", "quantities", "reduce")  # tables whose texts are no values of inputs
 # What the text of an input says of all quantities of its dimension; a rate does not follow the lengths.
 SHARED = {
@@ -53,12 +54,37 @@ def _part(value: Any, key: str, units: UnitSystem) -> Any:
 
 
 def _input(value: Any, name: str, units: UnitSystem) -> Any:
-    """The values of an input: a number, a list, or a range."""
+    """The values of an input: a number, a list, a range, or a load that varies with the motion."""
     if isinstance(value, list):
         return [units.of(name).to_si(float(part)) if _is_number(part) else part for part in value]
     if isinstance(value, Mapping):
+        along = next((place for key, place in TABLES.items() if isinstance(value.get(key), list)), None)
+        if along is not None:
+            return _table(value, name, along, units)
         return {key: _input(part, name, units) if key in ENDS else part for key, part in value.items()}
     return _written(value, name, units)
+
+
+def _table(load: Mapping[str, Any], name: str, along: str, units: UnitSystem) -> dict[str, Any]:
+    """The points of a load over theta or Y; a unit that stands beside them holds for all of a column."""
+
+    def column(number: Any, index: int) -> Any:
+        its, beside = (along, along) if index == 0 else (name, "value")
+        return number if load.get(beside) is not None else _written(number, its, units)
+
+    def points(key: str, rows: Any) -> Any:
+        index = 0 if key in TABLES else 1
+        if not isinstance(rows, list):
+            plain = key == "period" and load.get(along) is None
+            return _written(rows, along, units) if plain else rows
+        return [
+            [column(number, place) for place, number in enumerate(row)]
+            if isinstance(row, list)
+            else column(row, index)
+            for row in rows
+        ]
+
+    return {key: points(key, part) for key, part in load.items()}
 
 
 def _written(value: Any, name: str, units: UnitSystem) -> Any:

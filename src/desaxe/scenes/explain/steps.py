@@ -49,7 +49,7 @@ def steps_of(key: KernelKey, request: Request, inside: int) -> list[Step]:
     _, costs = optimise(program, dict(fixed))
     counts = [("derivation", whole), ("slice", costs[0].cost.operations)]
     names = {"fold": "fold", "number": "number", "slice": "unused"}
-    counts += [(names[step.name], step.cost.operations) for step in costs[1:]]
+    counts += [(names.get(step.name, step.name), step.cost.operations) for step in costs[1:]]
     counts.append(("keep", cost_of(specialise(request.names, request.form, fixed)).operations))
     if key.form.wide_margins:
         counts.append(("plain", cost_of(specialise(key.names, key.form, fixed)).operations))
@@ -58,7 +58,7 @@ def steps_of(key: KernelKey, request: Request, inside: int) -> list[Step]:
     steps = [Step("derivation", "every line of the derivation", whole, 0)]
     for (_, before), (name, after) in pairwise(counts):
         if before != after or name in ("slice", "fold"):
-            steps.append(Step(name, WHAT[name], after, before - after))
+            steps.append(Step(name, WHAT.get(name, f"the pass {name}"), after, before - after))
     return steps
 
 
