@@ -83,7 +83,7 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
         for gradient in slopes.values():
             gradient.update(dict.fromkeys(lost, nan))
     about = {"fluctuation": float(fluctuation), "gradient": slopes, "status": status}
-    return Drive({**found, **about}, design.numbers, design.branch, course)
+    return Drive({**found, **about}, {**design.numbers, **design.loads}, design.branch, course)
 
 
 def _status(design: Design) -> int:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from ...mechanism.status import DriveStatus
 from ...mechanism.unit_system import SI, Conversion, UnitSystem
 from ...mechanism.units import registry
+from ...support.answer import Answer
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -14,18 +15,18 @@ if TYPE_CHECKING:
 STATUS = {int(status): status.words for status in DriveStatus if status}
 
 
-class Drive(dict[str, Any]):
+class Drive(Answer):
     """The figures by name, `gradient` and `status`; `report()`, `plot()`.
 
-    `inputs` are those of the design in SI units, `branch` is its branch. `course` has arrays over the turn:
-    `theta`, `T_in`, `power_in` and, with the flywheel, `theta_of_speed` and `speed`. `units` are the units of
-    all but `inputs`.
+    `inputs` are those of the design in SI units, varying loads included, `branch` is its branch. `course` has
+    arrays over the turn: `theta`, `T_in`, `power_in` and, with the flywheel, `theta_of_speed` and `speed`.
+    `units` are the units of all but `inputs`.
     """
 
     def __init__(
         self,
         figures: Mapping[str, Any],
-        inputs: Mapping[str, float],
+        inputs: Mapping[str, Any],
         branch: int,
         course: "Mapping[str, NDArray[Any]]",
         units: UnitSystem = SI,
@@ -68,6 +69,9 @@ class Drive(dict[str, Any]):
     def _design(self) -> str:
         told = []
         for name, value in self.inputs.items():
+            if callable(value):
+                told.append(f"{name}: {value!r}".replace("<", "").replace(">", ""))
+                continue
             conversion = self.units.of(name)
             told.append(f"{name} = {conversion.shown(value):.6g} {conversion.unit}".removesuffix(" 1"))
         return ", ".join(told)
