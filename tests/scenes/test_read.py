@@ -391,3 +391,10 @@ def test_percentages():
         assert printed.text(printed.value) == "33 %"
         assert printed.agrees(33.4)
         assert not printed.agrees(33.6)
+
+
+def test_a_unit_without_quotes_is_told(tmp_path):
+    path = tmp_path / "bare.toml"
+    path.write_text("[mechanism]\nAB = 125 mm\n", encoding="utf-8")
+    with pytest.raises(SceneError, match=r'in quotes: AB = "125 mm"'):
+        dx.scene(path)

@@ -20,7 +20,7 @@ from ...runtime.kernels import KernelKey, is_ready, kernel_of, source_of
 from ...runtime.modules import path_of
 from ...runtime.specialise import specialise
 from ...runtime.threads import LEAST_BLOCK, available
-from ...runtime.tiers import BREAK_EVEN, COMPILED, tier_ahead
+from ...runtime.tiers import BREAK_EVEN, COMPILED, forced_tier, tier_ahead
 from ..content import Content
 from ..kernel import GridKernel, grid_kernel
 from ..scene import Scene
@@ -216,6 +216,7 @@ def _run(content: Content, found: GridKernel, loops: list[Loop], compiled: bool)
     return {
         "way": "compiled" if compiled else "plain Python",
         "tier": tier_ahead(found.key, found.points),
+        "forced": forced_tier(),
         "break_even": BREAK_EVEN,
         "far_angles": found.key.far,
         "wide_margins": found.key.form.wide_margins,

@@ -151,6 +151,7 @@ def _how(plan: Mapping[str, Any]) -> str:
     run, seconds = plan["run"], plan["run"]["seconds"]
     lines = ["Execution"]
     points = f"{plan['points']:,} point{'s' if plan['points'] != 1 else ''}"
+    forced = f"{points}; DESAXE_TIER = {run['forced']}" if run["forced"] else ""
     if run["way"] == "compiled":
         told = {
             "memory": "in this process already",
@@ -159,17 +160,18 @@ def _how(plan: Mapping[str, Any]) -> str:
         }[run["cached"]]
         threads = f"{run['threads']} threads" if run["threads"] > 1 else "one thread"
         lines.append(f"  kernel   compiled with numba in float64, {threads}: {told}")
-        lines.append(
-            f"  why      {points}; from {run['break_even']:,} on (requested in one process) a kernel pays"
-        )
+        why = f"{points}; from {run['break_even']:,} on (requested in one process) a kernel pays"
+        lines.append(f"  why      {forced or why}")
         numbers = [one["name"] for one in plan["inputs"] if one.get("value")]
         if numbers:
             while_roomy = " while AB + |ec| < 7/8 BC" if run["wide_margins"] else ""
             reused = f"other values of {', '.join(numbers)} (but 0) compile nothing new{while_roomy}"
             lines += _wrapped("reuse", [reused])
     else:
-        lines.append("  kernel   none: plain Python over math, nothing is compiled, numba is not imported")
-        lines.append(f"  why      {points}; below {run['break_even']:,} a compilation does not pay")
+        how = "NumPy" if run["tier"] == "numpy" else "plain Python over math"
+        lines.append(f"  kernel   none: {how}, nothing is compiled, numba is not imported")
+        why = f"{points}; below {run['break_even']:,} a compilation does not pay"
+        lines.append(f"  why      {forced or why}")
     if run["far_angles"]:
         lines.append("  angles   some are so large that sine and cosine are those of the C library (slower)")
     per = f"{_time(seconds['per_point'])} a point" + (" and core" if run["way"] == "compiled" else "")
