@@ -36,7 +36,7 @@ def read_toml(path: Path) -> dict[str, Any]:
 
 
 def _hint(text: str, error: str) -> str:
-    """What to write where the line of an error has a number with a unit that is not in quotes."""
+    """The advice to quote a number with a unit, if the line of an error has one without quotes."""
     place = re.search(r"at line (\d+)", error)
     lines = text.splitlines()
     number = int(place[1]) - 1 if place else len(lines)
