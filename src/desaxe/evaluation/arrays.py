@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..mechanism.inputs import INPUTS, is_good
 from ..runtime.interpreted import are_good, fill_by_points
-from ..runtime.kernels import hopeful_key_of, key_of, tells_unsafe
+from ..runtime.kernels import key_of, tells_unsafe
 from ..runtime.point import point_of
 from ..runtime.request import Request, as_number
 from ..runtime.threads import run_in_blocks
@@ -204,7 +204,7 @@ def _fill(
     """Compute all points; True if the kernel checks for extreme ones and found none."""
     sizes, columns, axis_of = loops
     asked = wanted, scalars, columns, axis_of, len(sizes)
-    key = hopeful_key_of(*asked)
+    key = key_of(*asked, hopeful=True)
     hopeful = tells_unsafe(key)
     key = key if hopeful else key_of(*asked)
     outs = [out.reshape(sizes) for out in outs]

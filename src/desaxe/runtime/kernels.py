@@ -62,22 +62,15 @@ def key_of(
     columns: Mapping[str, Any],
     axis_of: Mapping[str, int],
     axes: int,
+    hopeful: bool = False,
 ) -> KernelKey:
-    """The key of a request whose scalars and columns are known."""
-    key = hopeful_key_of(wanted, scalars, columns, axis_of, axes)
-    return key._replace(far=_exceed(columns.get("theta", scalars.get("theta", 0.0)), constants().limit))
+    """The key of a request whose scalars and columns are known.
 
-
-def hopeful_key_of(
-    wanted: Request,
-    scalars: Mapping[str, float],
-    columns: Mapping[str, Any],
-    axis_of: Mapping[str, int],
-    axes: int,
-) -> KernelKey:
-    """The key if no angle of a column is too large: for a kernel that `tells_unsafe`, which is run first."""
+    hopeful   take the angles of a column as small enough: for a kernel that `tells_unsafe`, and is run first
+    """
     check_angle(wanted.accuracy, scalars.get("theta", 0.0))
-    far = abs(scalars.get("theta", 0.0)) > constants().limit
+    angles = scalars.get("theta", 0.0) if hopeful else columns.get("theta", scalars.get("theta", 0.0))
+    far = _exceed(angles, constants().limit)
     zeros = [(name, 0.0) for name in STRUCTURAL_ZEROS if scalars.get(name) == 0.0]
     fixed = (*wanted.fixed, *zeros)
     axis = tuple(sorted(axis_of.items()))
