@@ -53,6 +53,20 @@ def pytest_collection_modifyitems(config, items):
         config.hook.pytest_deselected(items=left_out)
 
 
+@pytest.fixture(autouse=True)
+def nothing_asked_for():
+    """What earlier tests asked for does not bring a kernel nearer: two calls of a test take one tier."""
+    tiers._ASKED.clear()
+
+
+@pytest.fixture
+def cold(monkeypatch):
+    """A process that has no kernel, in memory or on disk."""
+    monkeypatch.setattr(tiers, "is_ready", lambda key: False)
+    monkeypatch.setattr(tiers, "is_on_disk", lambda key: False)
+    monkeypatch.delenv(tiers.VARIABLE, raising=False)
+
+
 @pytest.fixture(params=["plain", "numpy", "compiled"])
 def way(request, monkeypatch):
     """The ways that arrays can take, whatever their size."""

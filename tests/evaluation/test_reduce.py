@@ -136,7 +136,7 @@ def test_labels():
     assert "theta" not in found.coords
 
 
-def test_small_grids_compile_nothing(monkeypatch):
+def test_small_grids_compile_nothing(cold, monkeypatch):
     monkeypatch.setattr(_kernels, "_load", None)
     theta = np.linspace(0.0, 3.0, 7)
     dx.grid("phi", theta=theta, ec=[0.01, 0.02], AB=0.11, BC=0.37)

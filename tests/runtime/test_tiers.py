@@ -18,13 +18,9 @@ KEY = KernelKey(("V_C",), Variant(), (("branch", 1.0),), (("theta", 0),), 1)
 
 
 @pytest.fixture
-def cold(monkeypatch):
-    """A process in which nothing was asked for, and nothing is kept."""
+def cold(cold, monkeypatch):
+    """The same outside of tests: NumPy comes first."""
     monkeypatch.setattr(tiers, "NUMPY_PAYS", 250_000)
-    monkeypatch.setattr(tiers, "_ASKED", type(tiers._ASKED)())
-    monkeypatch.setattr(tiers, "is_ready", lambda key: False)
-    monkeypatch.setattr(tiers, "is_on_disk", lambda key: False)
-    monkeypatch.delenv(tiers.VARIABLE, raising=False)
 
 
 def test_few_points_then_numpy_once_then_a_kernel(cold):

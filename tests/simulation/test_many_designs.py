@@ -79,7 +79,7 @@ def test_names_are_those_of_evaluate():
     many = dx.simulate(torque=0.25, t_end=0.5, names=["V_C", "T_in"], **{**LOADED, "ec": ECS})
     state = {name: many[name] for name in ("theta", "omega", "alpha")}
     again = dx.evaluate("V_C", **state, **{**LOADED, "ec": ECS[:, None]})
-    np.testing.assert_array_equal(many["V_C"], again)
+    np.testing.assert_allclose(many["V_C"], again, rtol=1e-13, atol=1e-15)
     np.testing.assert_allclose(many["T_in"], 0.25, rtol=0, atol=1e-10)
 
 

@@ -12,6 +12,7 @@ from desaxe.runtime.kernels import kernel_of
 from desaxe.scenes.kernel import grid_kernel
 from tests.example_scenes import COMPACTOR, SMALL
 
+pytestmark = pytest.mark.usefixtures("cold")
 TURN = {"start": 0, "stop": "360 deg", "num": 721}
 CONCENTRIC = {
     "outputs": ["V_C"],
