@@ -55,7 +55,7 @@ def pytest_collection_modifyitems(config, items):
 
 @pytest.fixture(autouse=True)
 def nothing_asked_for():
-    """What earlier tests asked for does not bring a kernel nearer: two calls of a test take one tier."""
+    """Forget what earlier tests asked for, so that two calls of a test take the same tier."""
     tiers._ASKED.clear()
 
 

@@ -19,7 +19,7 @@ KEY = KernelKey(("V_C",), Variant(), (("branch", 1.0),), (("theta", 0),), 1)
 
 @pytest.fixture
 def cold(cold, monkeypatch):
-    """The same outside of tests: NumPy comes first."""
+    """A process without kernels in which, as outside of tests, NumPy comes first."""
     monkeypatch.setattr(tiers, "NUMPY_PAYS", 250_000)
 
 

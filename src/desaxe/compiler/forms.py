@@ -9,7 +9,7 @@ from collections.abc import Iterable
 
 from .kernel import Kernel, StableBranch
 from .passes.value_numbering import value_numbering
-from .program import Line, Program, names_in, renamed
+from .program import Line, Program, reaching, renamed
 
 _SUFFIX = "_close"
 
@@ -45,15 +45,6 @@ def parted(kernel: Kernel, count: int) -> Kernel:
     outputs, (test, *results) = kernel.outputs[:count], kernel.outputs[count:]
     stable, undecided = tuple(results[:count]), (*results[count:], None)[0]
     *outer, inner = kernel.levels
-    plain_lines = _reaching(inner, (*outputs, test))
-    close = StableBranch(test, _reaching(inner, results), stable, _reaching(inner, (test,)), undecided)
+    plain_lines = reaching(inner, (*outputs, test))
+    close = StableBranch(test, reaching(inner, results), stable, reaching(inner, (test,)), undecided)
     return kernel._replace(levels=(*outer, plain_lines), outputs=outputs, close=close)
-
-
-def _reaching(lines: tuple[Line, ...], outputs: Iterable[str]) -> tuple[Line, ...]:
-    """The lines that the outputs need."""
-    wanted = set(outputs)
-    for line in reversed(lines):
-        if line.name in wanted:
-            wanted.update(names_in(line.args))
-    return tuple(line for line in lines if line.name in wanted)

@@ -9,7 +9,7 @@
     5 fuse           passes.fuse.fuse_products         a product and its sum are one instruction
     6 two forms      forms.in_two_forms                the plain form where a test holds, else the stable
     7 hoist          kernel.tabulate                   each line in the outermost loop that has what it needs
-    8 language       languages                         text
+    8 language       languages                         text; numba's stable form in two loops (stages.staged)
     9 machine code   the runtime                       compiled once, kept on disk
 
 Stages 1 and 2 belong to a request, 8 and 9 to a language. What lies between is this file: each function takes
@@ -17,6 +17,8 @@ a Program and gives one, or a Kernel, and changes neither its inputs nor its out
 """
 
 from collections.abc import Iterable, Mapping
+from math import inf
+from sys import float_info
 from typing import TYPE_CHECKING, NamedTuple
 
 from .forms import in_two_forms, parted
@@ -56,7 +58,21 @@ def guarded_for_loops(
     plain: bool = False,
 ) -> Program:
     """Stages 3 to 5, in doubles."""
-    return for_loops(guard_inputs(program, tuple(varying), *limits), trigonometry, plain)
+    return for_loops(_bounded(guard_inputs(program, tuple(varying), *limits)), trigonometry, plain)
+
+
+def _bounded(program: Program) -> Program:
+    """The program with x <= the largest double for x < inf.
+
+    LLVM makes of x < inf and 0 <= x one test of the number's bits, which takes a vector four times as long.
+    """
+    lines = (
+        line._replace(op="le", args=(line.args[0], float_info.max))
+        if line.op == "lt" and line.args[1] == inf
+        else line
+        for line in program.lines
+    )
+    return program._replace(lines=tuple(lines))
 
 
 def guarded_pairs(

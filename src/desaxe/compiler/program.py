@@ -112,6 +112,15 @@ def reached(program: Program) -> set[str]:
     return wanted
 
 
+def reaching(lines: tuple[Line, ...], outputs: Iterable[str]) -> tuple[Line, ...]:
+    """The lines that the outputs need."""
+    wanted = set(outputs)
+    for line in reversed(lines):
+        if line.name in wanted:
+            wanted.update(names_in(line.args))
+    return tuple(line for line in lines if line.name in wanted)
+
+
 def renamed_temporaries(program: Program, order: Iterable[str]) -> Program:
     """Rename the temporaries of a program to t0, t1, ... in this order."""
     keep = set(program.inputs) | set(program.outputs) | set(program.notes)

@@ -9,6 +9,7 @@ from functools import cache
 import mpmath
 import numpy as np
 import pytest
+from numba import njit
 
 from desaxe.compiler.kernel import hoist
 from desaxe.compiler.languages.numba.module import emit_numba
@@ -17,6 +18,8 @@ from desaxe.compiler.passes.trigonometry import expand_trigonometry
 from desaxe.compiler.program import Line, Program
 from desaxe.mechanism.constants import constants
 from desaxe.mechanism.inputs import INPUTS, LEAST
+from desaxe.mechanism.program import Variant
+from desaxe.runtime.kernels import KernelKey, source_of
 from tests.compiler.coverage_set import NAMES, POINTS, coverage
 from tests.compiler.programs import committed, exactly, in_doubles, program_of_nested
 
@@ -150,6 +153,9 @@ def bound(tree):
     )
 
 
+PACKED_ROOT = r"\bv?sqrtpd\b" if platform.machine() in ("x86_64", "AMD64") else r"\bfsqrt.*\.2d\b"
+
+
 def options(source):
     """The options of every call of njit, those of the kernel last."""
     calls = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call)]
@@ -203,9 +209,22 @@ def test_a_loop_of_many_outputs_runs_several_points_at_once():
     scope = {}
     exec(emit_numba(hoist(program, {"x": 0}, 1), "many outputs"), scope)
     (text,) = scope["kernel"].inspect_asm().values()
-    packed = r"\bv?sqrtpd\b" if platform.machine() in ("x86_64", "AMD64") else r"\bfsqrt.*\.2d\b"
-    assert len(re.findall(packed, text)) >= count
+    assert len(re.findall(PACKED_ROOT, text)) >= count
     x, outs = np.linspace(0, 1, 37), [np.empty(37) for _ in range(count)]
     scope["kernel"](x, *outs)
     for k, out in enumerate(outs):
         assert np.array_equal(out, np.sqrt(x + (k + 1.0)))
+
+
+def test_both_forms_of_a_kernel_run_several_points_at_once():
+    """The stable loops read and write by pointers, of which LLVM must know that they do not overlap."""
+    axes = tuple((name, 0) for name in ("AB", "BC", "ec", "theta"))
+    key = KernelKey(("V_C", "a_C"), Variant(), (("alpha", 0.0), ("branch", 1.0)), axes, 1)
+    counts = []
+    for form in (Variant(wide_margins=True), Variant()):
+        scope = {}
+        exec(source_of(key._replace(form=form)), scope)
+        compiled = njit(scope["signature"], error_model="numpy")(scope["function"])
+        (text,) = compiled.inspect_asm().values()
+        counts.append(len(re.findall(PACKED_ROOT, text)))
+    assert counts[1] > counts[0] > 0

@@ -17,7 +17,7 @@ from ...kernel import Kernel, level_program, stable_branch_programs
 from ...operations import HELPERS, NUMBA_HELPERS, OPERATIONS
 from ...program import Line, Program
 from ...text import INDENT, WIDTH, write_lines
-from .two_forms import has_two_forms, inner_loops, rooms, scratch
+from .two_forms import has_two_forms, inner_loops, rooms, scratch, stable_function
 
 _TYPES = {"f64": "float64", "i64": "int8"}  # a status is stored as int8
 _NUMPY_CALLS = {"floor"}  # numba's math.floor gives an integer, which does not vectorise
@@ -80,6 +80,7 @@ def _header(kernel: Kernel, docstring: str, numpy_names: list[str]) -> str:
         {*numpy_names, *constants, *(called & _NUMPY_CALLS), *(["uint64"] * (kernel.axes > 0))}
     )
     imports = [f"from math import {', '.join(calls)}\n"] if calls else []
+    imports += ["from llvmlite import ir"] if has_two_forms(kernel) else []
     imports.append("from numba import njit, types")
     if kernel.axes or any(line.op in NUMBA_HELPERS for line in lines):
         imports.append("from numba.extending import intrinsic")
@@ -108,7 +109,7 @@ def helper_sources(operations: Container[str]) -> list[str]:
 def _helpers(kernel: Kernel) -> list[str]:
     sources = helper_sources({line.op for line in _all_lines(kernel)})
     sources += [_APART] if kernel.axes else []
-    return [*sources, rooms(kernel)] if has_two_forms(kernel) else sources
+    return [*sources, rooms(kernel), stable_function(kernel)] if has_two_forms(kernel) else sources
 
 
 def _called(op: str) -> str:

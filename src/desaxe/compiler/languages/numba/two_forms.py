@@ -2,16 +2,18 @@
 
 Where the test belongs to an outer loop, it picks the loop. Where it changes from point to point, a block of
 points runs through the plain loop, which flags those that fail the test; they are gathered, run
-through the stable loop, and put back. So both loops are free of branches, and vectorise, and a few points
+through the stable loops, and put back. So all loops are free of branches, and vectorise, and a few points
 next to singular ones cost little: flags are looked at eight at a time. Where most points of a block fail,
-all are copied, which is cheaper than to gather them; after a block in which all failed, the next is tested
-before the plain loop, which it may do without. None of that changes a value.
+the stable loops read all of them where they are, which is cheaper than to gather them; after a block in which
+all failed, the next is tested before the plain loop, which it may do without. None of that changes a value.
 """
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 from ...kernel import Kernel, StableBranch, level_program, stable_branch_programs
-from ...program import names_in
+from ...program import Program, names_in
+from ...stages import staged
 from ...text import INDENT, write_lines
 
 # Rooms on the stack: the compiler knows that nothing else points there, and nothing has to be allocated.
@@ -109,14 +111,54 @@ def count_flags(typingctx, eight):
 
 
 @intrinsic
-def first_flag(typingctx, eight):
-    \"\"\"Which of eight flags is the first that is set.\"\"\"
+def put_places(typingctx, room, count, eight, first):
+    \"\"\"Keep the places of the points of eight that are flagged; what follows is not for use.\"\"\"
 
     def code(context, builder, signature, args):
-        zeros = builder.cttz(args[0], context.get_constant(types.boolean, True))
-        return builder.lshr(zeros, context.get_constant(types.uint64, 3))
+        room, count, eight, first = args
+        word, byte = ir.IntType(64), ir.IntType(8)
+        rows = [[k for k in range(8) if flags >> k & 1] for flags in range(256)]
+        table = bytearray(k for row in rows for k in (row + [0] * 8)[:8])
+        kept = builder.module.globals.get("places_of_flags")
+        if kept is None:
+            kind = ir.ArrayType(byte, len(table))
+            kept = ir.GlobalVariable(builder.module, kind, "places_of_flags")
+            kept.linkage, kept.global_constant, kept.initializer = "internal", True, kind(table)
+        # The product moves the lowest bits of the eight bytes next to each other.
+        flags = builder.lshr(builder.mul(eight, word(0x0102040810204080)), word(56))
+        row = builder.gep(builder.bitcast(kept, ir.VectorType(byte, 8).as_pointer()), [flags])
+        eight_words, lanes = ir.VectorType(word, 8), ir.VectorType(ir.IntType(32), 8)
+        own = builder.zext(builder.load(row, align=8), eight_words)
+        none = ir.Constant(eight_words, ir.Undefined)
+        start = builder.insert_element(none, first, ir.IntType(32)(0))
+        starts = builder.shuffle_vector(start, none, lanes([0] * 8))
+        to = builder.bitcast(builder.gep(room, [count]), eight_words.as_pointer())
+        builder.store(builder.add(own, starts), to, align=8)
+        return context.get_dummy_value()
 
-    return types.uint64(types.uint64), code
+    return types.none(room, types.uint64, types.uint64, types.uint64), code
+
+
+@intrinsic
+def place_at(typingctx, room, k):
+    \"\"\"A place that is kept.\"\"\"
+
+    def code(context, builder, signature, args):
+        words = builder.bitcast(args[0], ir.IntType(64).as_pointer())
+        return builder.load(builder.gep(words, [args[1]]))
+
+    return types.uint64(room, types.uint64), code
+
+
+@intrinsic
+def from_element(typingctx, array, place):
+    \"\"\"The elements of an array from one of them on, counted in memory, as a room.\"\"\"
+
+    def code(context, builder, signature, args):
+        own = context.make_array(signature.args[0])(context, builder, args[0])
+        return builder.gep(own.data, [args[1]])
+
+    return types.CPointer(types.float64)(array, types.uint64), code
 
 
 @intrinsic
@@ -136,9 +178,43 @@ STACK = 32_768  # numbers that all rooms together may take
 APART = 72  # numbers between rooms: at a multiple of 4096 bytes a store holds up loads from other rooms
 
 
+LANES = 8  # points that the stable loops take at a time
+
+
+class _Stable(NamedTuple):
+    """The stable form as a function of the module: what its loops read, compute and keep."""
+
+    points: tuple[str, ...]  # what changes along the innermost axis
+    outer: tuple[str, ...]  # what it has from outer loops
+    first: Program | None  # of what the second stage reads from rooms; None if there is one stage
+    second: Program
+
+    @property
+    def kept(self) -> tuple[str, ...]:
+        """The rooms between the stages."""
+        return self.first.outputs if self.first else ()
+
+
+def _stable_of(kernel: Kernel) -> _Stable:
+    program = stable_branch_programs(kernel)[1]
+    outputs = [*_branch(kernel).outputs, *filter(None, [_branch(kernel).undecided])]
+    stages = staged(program._replace(outputs=tuple(dict.fromkeys(outputs))))
+    points = tuple(_inner(kernel))
+    own = {line.name for line in program.lines}.union(points)
+    used = dict.fromkeys([name for line in program.lines for name in names_in(line.args)] + outputs)
+    outer = tuple(name for name in used if name not in own)
+    return _Stable(points, outer, stages and stages.first, stages.second if stages else program)
+
+
+def _branch(kernel: Kernel) -> StableBranch:
+    if kernel.close is None:
+        raise ValueError("this kernel has one form")
+    return kernel.close
+
+
 def block_of(kernel: Kernel) -> int:
     """The number of points of a block, such that its buffers fit on the stack."""
-    rooms = 1 + len(_kept(kernel)) + len(kernel.outputs)
+    rooms = 1 + len(_inner(kernel)) + len(kernel.outputs) + len(_stable_of(kernel).kept)
     return max(16, min(BIGGEST, (STACK // rooms - APART) // 16 * 16))
 
 
@@ -154,39 +230,80 @@ def has_two_forms(kernel: Kernel) -> bool:
 
 
 def scratch(kernel: Kernel) -> list[str]:
-    """Allocate the buffers of points that fail the test: indices, inputs, outputs."""
+    """Allocate the buffers of points that fail the test: places, inputs, outputs, and between the stages."""
     if not has_two_forms(kernel):
         return []
-    names = [*_kept(kernel), *(f"out_{name}" for name in kernel.outputs)]
-    return ["close = flags()", "place = room()", *(f"{name}_kept = room()" for name in names)]
+    rooms = [f"{name}_kept" for name in (*_inner(kernel), *(f"out_{name}" for name in kernel.outputs))]
+    rooms += [f"{name}_room" for name in _stable_of(kernel).kept]
+    return ["close = flags()", "place = room()", *(f"{name} = room()" for name in rooms)]
 
 
-def _kept(kernel: Kernel) -> list[str]:
+def _inner(kernel: Kernel) -> list[str]:
     """The inputs and tables that change along the innermost axis."""
     last = kernel.axes - 1
     tables = (name for table in kernel.tables if table.along[-1] == last for name in table.kernel.outputs)
     return [*(name for name, axis in kernel.inputs.items() if axis == last), *tables]
 
 
+def stable_function(kernel: Kernel) -> str:
+    """The source of the stable form: a function of a number of points, a multiple of LANES.
+
+    It reads and writes rooms, and answers how many points are undecided. As a function it can promise that
+    none of them overlap, wherever they are.
+    """
+    close, stable = _branch(kernel), _stable_of(kernel)
+    reads = [f"{name} = get({name}_from, k)" for name in stable.points]
+    writes = [
+        f"put(out_{name}_to, k, {value})" for name, value in zip(kernel.outputs, close.outputs, strict=True)
+    ]
+    rows = ["apart()"]
+    if stable.first:
+        keep = [f"put({name}_room, k, {name})" for name in stable.kept]
+        rows += _by_eight([*_used(reads, stable.first), *write_lines(stable.first, "numba"), *keep])
+        reads += [f"{name} = get({name}_room, k)" for name in stable.kept]
+    tally = [f"tally += 1 if {close.undecided} else 0"] if close.undecided else []
+    body = [*_used(reads, stable.second), *write_lines(stable.second, "numba"), *writes, *tally]
+    rows += [*(["tally = 0"] if tally else []), *_by_eight(body)]
+    rows += ["return tally"] if tally else []
+    head = ["def stable(", *(f"{INDENT}{name}," for name in ("count", *_parameters(kernel))), "):"]
+    return "\n".join(['@njit(error_model="numpy")', *head, *(INDENT + row for row in rows)]) + "\n"
+
+
+def _used(reads: list[str], program: Program) -> list[str]:
+    """The reads that a program needs."""
+    used = {name for line in program.lines for name in names_in(line.args)}.union(program.outputs)
+    return [read for read in reads if read.partition(" ")[0] in used]
+
+
+def _parameters(kernel: Kernel) -> list[str]:
+    """The parameters of the stable form after the number of points."""
+    stable = _stable_of(kernel)
+    rooms = [*(f"{name}_from" for name in stable.points), *(f"out_{name}_to" for name in kernel.outputs)]
+    return [*rooms, *(f"{name}_room" for name in stable.kept), *stable.outer]
+
+
+def _by_eight(body: list[str]) -> list[str]:
+    eight = _under(f"for k in range(first, first + uint64({LANES})):", body, 0)
+    return _under(f"for first in range(uint64(0), count, uint64({LANES})):", eight, 0)
+
+
 def inner_loops(kernel: Kernel, length: str, loads: Mapping[str, str]) -> list[str]:
     """The text of the innermost loop over `length` points; `loads` has what each of them reads."""
-    if kernel.close is None:
-        raise ValueError("this kernel has one form")
+    close = _branch(kernel)
     read = [f"{name} = {text}" for name, text in loads.items()]
-    undecided = kernel.close.undecided
     plain = [
         *read,
         *write_lines(level_program(kernel, kernel.axes), "numba"),
         *_stores(kernel, kernel.outputs),
     ]
     if has_two_forms(kernel):
-        return _mixed(kernel, kernel.close, length, loads, plain)
+        return _mixed(kernel, close, length, loads, plain)
     lines = write_lines(stable_branch_programs(kernel)[1], "numba")
-    tally = [f"tally += 1 if {undecided} else 0"] if undecided else []
-    stable = [*read, *lines, *tally, *_stores(kernel, kernel.close.outputs)]
+    tally = [f"tally += 1 if {close.undecided} else 0"] if close.undecided else []
+    stable = [*read, *lines, *tally, *_stores(kernel, close.outputs)]
     loop = f"for i{kernel.axes - 1} in range({length}):"
     return [
-        f"if {kernel.close.test}:",
+        f"if {close.test}:",
         *_under(loop, plain, 1),
         "else:",
         *(INDENT + row for row in _tallied(_under(loop, stable, 0), tally)),
@@ -215,12 +332,11 @@ def _mixed(
 ) -> list[str]:
     """Blocks: all points in the plain form, then those that fail the test in the stable one."""
     here, block = f"i{kernel.axes - 1}", block_of(kernel)
-    test, stable = (write_lines(program, "numba") for program in stable_branch_programs(kernel))
+    test = write_lines(stable_branch_programs(kernel)[0], "numba")
     tested = {name for line in close.test_lines for name in names_in(line.args)}
     ahead = [f"{name} = {text}" for name, text in loads.items() if name in tested]
     flag = f"put_flag(close, {here} - start, not {close.test})"
     points = f"for {here} in range(start, stop):"
-    gathered, back = _gathered(kernel, loads), _put_back(kernel)
     return [
         f"length = {length}",
         "every = False",
@@ -239,63 +355,85 @@ def _mixed(
         *_under("for word in range(words):", [_COUNT], 2),
         f"{INDENT}every = count == size",
         f"{INDENT}if count:",
-        f"{INDENT * 2}most = size == uint64({block}) and count >= uint64({block - block // 4})",
-        *_under("if most:", gathered[0], 2),
-        *_under("else:", gathered[1], 2),
-        *(INDENT * 2 + row for row in _stable_loop(kernel, close, stable)),
-        *_under("if most:", back[0], 2),
-        *_under("else:", back[1], 2),
+        # A part of eight points would be read, and written, past its end.
+        f"{INDENT * 2}most = size % uint64({LANES}) == uint64(0) and count >= size - (size >> uint64(2))",
+        f"{INDENT * 2}direct = most and every",
+        *_under("if not most:", _gathered(kernel, loads), 2),
+        *(INDENT * 2 + row for row in _call(kernel, loads)),
+        *(INDENT * 2 + row for row in _put_back(kernel)),
     ]
 
 
-def _gathered(kernel: Kernel, loads: Mapping[str, str]) -> tuple[list[str], list[str]]:
-    """Keep all points of a block, or those that are flagged.
+def _gathered(kernel: Kernel, loads: Mapping[str, str]) -> list[str]:
+    """Copy the flagged points; what the last eight lack is filled with the last point.
 
-    The stable loop takes eight points at a time; what the last eight lack is filled with the last point,
-    which may be counted more than once as undecided.
+    That point may be counted more than once as undecided.
     """
     here = f"i{kernel.axes - 1}"
-    kept = [f"{name} = {text}" for name, text in loads.items()]
-    kept += [f"put({name}_kept, k, {name})" for name in _kept(kernel)]
-    every = ["count = size", *_under("for k in range(size):", [f"{here} = start + k", *kept], 0)]
-    index = f"{here} = uint64(get(place, min(k, count - uint64(1))))"
-    some = _under("for k in range((count + uint64(7)) & ~uint64(7)):", [index, *kept], 0)
-    return every, [*_PLACES, *some]
+    copies = [f"{name} = {text}" for name, text in loads.items()]
+    copies += [f"put({name}_kept, k, {name})" for name in _inner(kernel)]
+    body = [f"{here} = place_at(place, k)", *copies]
+    return [*_PLACES, *_under(f"for k in range({_FILLED}):", body, 0)]
 
 
-def _stable_loop(kernel: Kernel, close: StableBranch, stable: list[str]) -> list[str]:
-    """The stable form of the points that are kept."""
-    body = [f"{name} = get({name}_kept, k)" for name in _kept(kernel)] + stable
-    pairs = zip(kernel.outputs, close.outputs, strict=True)
-    body += [f"put(out_{name}_kept, k, {value})" for name, value in pairs]
-    tally = [f"tally += 1 if {close.undecided} else 0"] if close.undecided else []
-    eight = _under("for k in range(first, first + uint64(8)):", [*body, *tally], 0)
-    return _tallied(_under("for first in range(uint64(0), count, uint64(8)):", eight, 0), tally)
-
-
-def _put_back(kernel: Kernel) -> tuple[list[str], list[str]]:
-    """Put the stable values back where all points of a block are kept, and where some are."""
-    index = "".join(f"i{axis}, " for axis in range(kernel.axes - 1))
-    chosen = ["flag = is_flagged(close, k)"]
-    some = []
+def _call(kernel: Kernel, loads: Mapping[str, str]) -> list[str]:
+    """Run the stable form, on arrays where they are or on copies."""
+    stable, rows = _stable_of(kernel), []
+    for name in stable.points:
+        array, _, places = loads[name].removesuffix("]").partition("[")
+        rows.append(f"{name}_from = {_element(array, places.split(', '))} if most else {name}_kept")
+    outer = [f"i{axis}" for axis in range(kernel.axes - 1)]
     for name in kernel.outputs:
-        out, value = f"out_{name}[{index}{{}}]", f"get(out_{name}_kept, k)"
-        place = out.format("start + k")
-        chosen += [f"before, after = {place}, {value}", f"{place} = after if flag else before"]
-        some.append(f"{out.format('uint64(get(place, k))')} = {value}")
-    return _under("for k in range(size):", chosen, 0), _under("for k in range(count):", some, 0)
+        room = f"out_{name}_kept"
+        there = f"{_element(f'out_{name}', [*outer, 'start'])} if direct else {room}"
+        rows.append(f"out_{name}_to = {there if _is_number(kernel, name) else room}")
+    rows.append(f"taken = size if most else {_FILLED}")
+    call = f"stable(taken, {', '.join(_parameters(kernel))})"
+    return [*rows, f"undecided += {call}" if _branch(kernel).undecided else call]
+
+
+def _element(array: str, places: list[str]) -> str:
+    """The elements of a contiguous array from the start of the block on."""
+    flat = "start" if len(places) == 1 else places[0]
+    for axis in range(1, len(places)):
+        place = "start" if axis == len(places) - 1 else places[axis]
+        flat = f"({flat}) * uint64({array}.shape[{axis}]) + {place}"
+    return f"from_element({array}, {flat})"
+
+
+def _is_number(kernel: Kernel, name: str) -> bool:
+    """True for an output of doubles; a status is not."""
+    return kernel.types.get(name, "f64") == "f64"
+
+
+def _put_back(kernel: Kernel) -> list[str]:
+    """Put the stable values back that are not yet where they belong."""
+    index = "".join(f"i{axis}, " for axis in range(kernel.axes - 1))
+    numbers = [name for name in kernel.outputs if _is_number(kernel, name)]
+    others = [name for name in kernel.outputs if not _is_number(kernel, name)]
+
+    def chosen(names: list[str]) -> list[str]:
+        rows = ["flag = is_flagged(close, k)"]
+        for name in names:
+            place, value = f"out_{name}[{index}start + k]", f"get(out_{name}_kept, k)"
+            rows += [f"before, after = {place}, {value}", f"{place} = after if flag else before"]
+        return _under("for k in range(size):", rows, 0)
+
+    some = [f"out_{name}[{index}place_at(place, k)] = get(out_{name}_kept, k)" for name in kernel.outputs]
+    rows = _under("if not most:", _under("for k in range(count):", some, 0), 0)
+    rows += _under("elif not every:", chosen(numbers), 0) if numbers else []
+    return rows + (_under("if most:", chosen(others), 0) if others else [])
 
 
 _COUNT = "count += count_flags(eight_flags(close, word))"
+_FILLED = f"(count + uint64({LANES - 1})) & ~uint64({LANES - 1})"  # a whole number of eights
 # Where the flagged points of a block are: places and their count. A flag is the lowest bit of its byte.
 _PLACES = """count = uint64(0)
 for word in range(words):
     eight = eight_flags(close, word)
-    at = start + (word << uint64(3))
-    while eight:
-        put(place, count, at + first_flag(eight))
-        count += uint64(1)
-        eight &= eight - uint64(1)""".splitlines()
+    put_places(place, count, eight, start + (word << uint64(3)))
+    count += count_flags(eight)
+put_places(place, count, uint64(0), place_at(place, count - uint64(1)))""".splitlines()
 
 
 def _under(head: str, body: list[str], depth: int) -> list[str]:
