@@ -17,13 +17,13 @@ def both(monkeypatch):
     def run(names, **inputs):
         taken = []
 
-        def watched(wanted, given, out):
-            found = planned.planned(wanted, given, out)
+        def watched(*call):
+            found = planned.planned(*call)
             taken.append(found is not None)
             return found
 
         monkeypatch.setenv("DESAXE_TIER", "compiled")
-        monkeypatch.setattr(arrays, "planned", lambda wanted, given, out: None)
+        monkeypatch.setattr(arrays, "planned", lambda *call: None)
         general = dx.evaluate(names, **inputs)
         monkeypatch.setattr(arrays, "planned", watched)
         return dx.evaluate(names, **inputs), general, taken == [True]
@@ -98,8 +98,8 @@ def test_memory_of_the_caller_is_filled_or_left_to_the_general_way(both, monkeyp
 
     taken = []
 
-    def watched(wanted, given, out):
-        taken.append(planned.planned(wanted, given, out))
+    def watched(*call):
+        taken.append(planned.planned(*call))
         return taken[-1]
 
     monkeypatch.setattr(arrays, "planned", watched)
@@ -112,3 +112,24 @@ def test_memory_of_the_caller_is_filled_or_left_to_the_general_way(both, monkeyp
     assert taken == [None, None]
     with pytest.raises(ValueError, match="out"):
         dx.evaluate(["V_C", "a_C"], theta=theta, ec=0.01, **SIZES, out={"V_C": np.empty(3)})
+
+
+@pytest.mark.parametrize("threads", [None, 1, 2, 3])
+def test_many_points_are_shared_by_threads(both, threads):
+    theta = np.linspace(-7.0, 7.0, 300_001)
+    given = {"theta": theta, "ec": 0.1 * np.cos(theta), **SIZES, "threads": threads}
+    found, general, was_planned = both(NAMES, **given)
+    assert was_planned
+    assert same(found, general)
+
+
+def test_many_points_of_which_some_are_left_over(both):
+    """They go the general way, and so do the calls that follow."""
+    theta = np.linspace(-7.0, 7.0, 50_000)
+    given = {"ec": np.full_like(theta, 0.02), "AB": 0.126, "BC": 0.35, "omega0": 157.08}
+    assert both(NAMES, theta=theta, **given)[2]
+    far = np.where(theta > 6.9, 1e9, theta)
+    for angles in (far, theta):
+        found, general, was_planned = both(NAMES, theta=angles, **given)
+        assert not was_planned
+        assert same(found, general)

@@ -31,7 +31,7 @@ def evaluate_arrays(
 ) -> dict[str, Array]:
     """The values by requested name, in the broadcast shape."""
     if environ.get(VARIABLE, COMPILED) == COMPILED and (out is None or type(out) is dict):
-        ready = planned(wanted, given, out)
+        ready = planned(wanted, given, out, threads)
         if ready is not None:
             return ready
     inputs = wanted.inputs

@@ -16,17 +16,19 @@ from numpy.typing import NDArray
 from ..mechanism.inputs import is_good
 from ..mechanism.names import LENGTHS
 from ..runtime.any_stride import data_of, loop
-from ..runtime.kernels import is_ready, kernel_for, key_of
+from ..runtime.kernels import is_ready, kernel_for, key_of, tells_unsafe
 from ..runtime.request import Request
 from ..runtime.specialise import plain_form
+from ..runtime.threads import LONGEST_BLOCK, least_of, run_parts
 from ..runtime.wide_margins import of_numbers
+from ..support.memory import require
+from .extremes import LEAST, is_extreme
 from .extremes import MOST as LARGEST
-from .extremes import is_extreme
 from .repair import limit_of
 
 Array = NDArray[Any]
 FLOAT, STATUS = np.dtype(np.float64), np.dtype(np.int8)
-MOST = 20_000  # points: more may be shared by threads
+SMALL = 20_000  # points: so few are run at once, and again if some are left over
 _Loop = CFUNCTYPE(c_int64, c_char_p, c_char_p, c_char_p, c_char_p)
 
 
@@ -44,11 +46,12 @@ class _Plan(NamedTuple):
 
     loop: Callable[[bytes, bytes, bytes, bytes], int]
     head: bytes  # of the loop's data
-    pack: Callable[..., bytes]  # the words of the kernel's table
-    words: tuple[int | None, ...]  # which number each is; None for what the loop fills in
+    pack: Callable[..., bytes]  # the numbers of the kernel's table; the loop fills in the rest
+    order: tuple[int, ...]  # of the numbers
     addresses: Callable[..., bytes]
     steps: bytes
     kinds: tuple[tuple[str, np.dtype[Any]], ...]
+    refused: list[int]  # the sizes of calls of which points were left over
     kept: Any
 
 
@@ -56,7 +59,9 @@ _CALLS: dict[int, _Call] = {}
 _ONE = struct.Struct("q").pack
 
 
-def planned(wanted: Request, given: Mapping[str, Any], out: Any = None) -> dict[str, Array] | None:
+def planned(
+    wanted: Request, given: Mapping[str, Any], out: Any = None, threads: int | None = None
+) -> dict[str, Array] | None:
     """The values by name; None if the call is no ordinary one, or its kernel is not in memory."""
     call = _CALLS.get(id(wanted)) or _new_call(wanted)
     numbers: list[float] = []
@@ -68,18 +73,19 @@ def planned(wanted: Request, given: Mapping[str, Any], out: Any = None) -> dict[
         if type(value) is np.float64 or (type(value) is int and -LARGEST < value < LARGEST):
             value = float(value)
         if type(value) is float:
-            if not is_good(name, value) or is_extreme(name, value):
+            if not (LEAST < value < LARGEST or _is_ordinary(name, value)):
                 return None
             numbers.append(value)
             kinds.append(value == 0.0)
         elif type(value) is np.ndarray and value.dtype is FLOAT and value.flags.c_contiguous:
             if shape is None:
                 shape = value.shape
-                if not shape or not 1 < value.size <= MOST:
+                if not shape or value.size < 2:
                     return None
             elif value.shape != shape:
                 return None
-            if not is_good(name, value.item(0)) or is_extreme(name, value.item(0)):
+            first = value.item(0)
+            if not (LEAST < first < LARGEST or _is_ordinary(name, first)):
                 return None
             columns.append(value)
             kinds.append(None)
@@ -90,7 +96,12 @@ def planned(wanted: Request, given: Mapping[str, Any], out: Any = None) -> dict[
     if call.has_wide_margins is not None:
         kinds.append(_all_wide(call.has_wide_margins, given))
     plan = call.plans.get(tuple(kinds)) or _new_plan(call, tuple(kinds), given)
-    return None if plan is None else _run(plan, numbers, columns, shape, out)
+    return None if plan is None else _run(plan, numbers, columns, shape, out, threads)
+
+
+def _is_ordinary(name: str, value: float) -> bool:
+    """True for a valid number that is not near the ends of the double range."""
+    return is_good(name, value) and not is_extreme(name, value)
 
 
 def _all_wide(test: Callable[..., Any], given: Mapping[str, Any]) -> bool:
@@ -98,30 +109,57 @@ def _all_wide(test: Callable[..., Any], given: Mapping[str, Any]) -> bool:
     return type(ec) is float and type(AB) is float and type(BC) is float and bool(test(ec, AB, BC)[0])
 
 
-def _address(array: Any) -> int:
-    """The address of an array's memory, by the fastest way; a read-only array takes the slow one."""
+def _addresses(arrays: list[Array]) -> list[int]:
+    """The addresses of the arrays' memory, by the fastest way; read-only arrays take the slow one."""
     try:
-        return addressof(c_char.from_buffer(array))
+        return [addressof(_bytes_of(array)) for array in arrays]  # type: ignore[arg-type]
     except (TypeError, ValueError):
-        address: int = array.__array_interface__["data"][0]
-        return address
+        return [array.__array_interface__["data"][0] for array in arrays]
+
+
+_bytes_of = c_char.from_buffer
 
 
 def _run(
-    plan: _Plan, numbers: list[float], columns: list[Array], shape: tuple[int, ...], out: Any
+    plan: _Plan,
+    numbers: list[float],
+    columns: list[Array],
+    shape: tuple[int, ...],
+    out: Any,
+    threads: int | None,
 ) -> dict[str, Array] | None:
+    size = columns[0].size
+    if size > SMALL:
+        if plan.refused:
+            return None
+        require(size * sum(kind.itemsize for _, kind in plan.kinds), f"a result of the shape {shape}")
     if out is None:
         found: dict[str, Array] | None = {name: np.empty(shape, kind) for name, kind in plan.kinds}
     else:
         found = _given(plan, shape, out)
     if found is None:
         return None
-    places = [*map(_address, columns), *map(_address, found.values())]
-    if out is not None and _overlap(places, len(columns), 8 * columns[0].size):
+    places = _addresses([*columns, *found.values()])
+    if out is not None and _overlap(places, len(columns), 8 * size):
         return None
-    table = plan.pack(*[0 if word is None else numbers[word] for word in plan.words])
-    left = plan.loop(plan.addresses(*places), _ONE(columns[0].size), plan.steps, plan.head + table)
+    table = plan.pack(*[numbers[place] for place in plan.order])
+    if size > SMALL:
+        return found if _run_in_parts(plan, places, plan.head + table, size, threads) else None
+    left = plan.loop(plan.addresses(*places), _ONE(size), plan.steps, plan.head + table)
     return None if left else found
+
+
+def _run_in_parts(plan: _Plan, places: list[int], data: bytes, size: int, threads: int | None) -> bool:
+    """Run many points, on threads where that pays; False if some are left over, and then for good."""
+    steps = struct.unpack(f"{len(places)}q", plan.steps)
+
+    def part(start: int, stop: int) -> None:
+        own = [place + start * step for place, step in zip(places, steps, strict=True)]
+        if plan.loop(plan.addresses(*own), _ONE(stop - start), plan.steps, data):
+            plan.refused.append(size)
+
+    run_parts(part, size, threads, least_of(len(plan.kinds)), LONGEST_BLOCK)
+    return not plan.refused
 
 
 def _given(plan: _Plan, shape: tuple[int, ...], out: dict[str, Any]) -> dict[str, Array] | None:
@@ -166,22 +204,24 @@ def _new_plan(call: _Call, kinds: tuple[Any, ...], given: Mapping[str, Any]) -> 
     names = [name for name, _ in kernel.axis_of]
     places: list[int | float] = [float(own.index(n)) if n in scalars else order.index(n) for n in names]
     places += range(len(order), len(order) + len(wanted.names))
-    angle = order.index("theta") if "theta" in order and "theta" in names else None
-    head, format_ = data_of(kernel.function, places, len(order), angle, limit_of(key.accuracy))
-    words: list[int | None] = []
-    for place, rank in zip(places, kernel.function.ranks, strict=True):
-        words += [int(place)] if rank < 0 else [None, None, None]
+    # A kernel that counts unsafe points looks at the angles itself.
+    looked_at = "theta" in order and "theta" in names and not tells_unsafe(key)
+    angle = order.index("theta") if looked_at else None
+    head, _ = data_of(kernel.function, places, len(order), angle, limit_of(key.accuracy))
+    ranks = kernel.function.ranks
+    words = "".join("d" if rank < 0 else "24x" for rank in ranks)
     results = tuple((name, STATUS if name == "status" else FLOAT) for name in wanted.shown)
     steps = [8] * len(order) + [kind.itemsize for _, kind in results]
     inner = loop()
     plan = _Plan(
         _Loop(inner.address),
         head,
-        struct.Struct(format_).pack,
-        tuple(words),
+        struct.Struct(words).pack,
+        tuple(int(place) for place, rank in zip(places, ranks, strict=True) if rank < 0),
         struct.Struct(f"{len(steps)}q").pack,
         struct.pack(f"{len(steps)}q", *steps),
         results,
+        [],
         (inner, kernel),
     )
     call.plans[kinds] = plan

@@ -3,8 +3,8 @@
 A single point stays in this file and needs only `math`; as soon as an input is an array, `arrays` takes over.
 """
 
-from collections.abc import Mapping, Sequence
-from sys import modules
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from typing import Any
 
 from ..mechanism.inputs import is_good
@@ -48,11 +48,11 @@ def values(
     for name in point.inputs:
         value = given[name]
         if type(value) is not float or not LEAST < value < MOST:
-            if type(value) is not float or not is_good(name, value):
+            if type(value) is _ARRAY[0]:
+                value = None
+            elif type(value) is not float or not is_good(name, value):
                 value = as_number(name, value, point.inputs, wanted)
             if value is None:  # not a number: an array
-                if "numpy" not in modules:
-                    import_whole("numpy")
                 answers = _of_arrays(asked, point.inputs, given, threads, out)
                 return answers[names] if isinstance(names, str) else answers
             extreme = extreme or is_extreme(name, value)
@@ -78,19 +78,30 @@ _KNOWN: dict[tuple[Any, ...], tuple[Request, Point]] = {}
 forget_on_change(_KNOWN)
 
 
+_ARRAY: list[type] = [object]  # NumPy's type of array, when it is known
+
+
+@cache
+def _evaluate_arrays() -> Callable[..., dict[str, Any]]:
+    """`arrays.evaluate_arrays`, imported when the first array comes."""
+    _ARRAY[0] = import_whole("numpy").ndarray
+    from .arrays import evaluate_arrays
+
+    return evaluate_arrays
+
+
 def _of_arrays(
     asked: Request, inputs: Sequence[str], given: Mapping[str, Any], threads: int | None, out: Any
 ) -> dict[str, Any]:
     """The values for arrays; lazy ones if an input is a Dask array."""
+    evaluate_arrays = _evaluate_arrays()
     for name in inputs:
         value = given.get(name)
-        if type(value) is not float and hasattr(value, "__dask_graph__"):
+        if type(value) not in (float, _ARRAY[0]) and hasattr(value, "__dask_graph__"):
             from .dask_blocks import is_lazy
 
             if is_lazy(value):
                 from .lazy_evaluate import evaluate_lazily
 
                 return evaluate_lazily(asked, given, threads, out)
-    from .arrays import evaluate_arrays
-
     return evaluate_arrays(asked, given, threads, out)

@@ -72,10 +72,14 @@ def run_in_blocks(
             counted.append(start)
             decide(key, part, places)
 
-    light = len(outs) < HEAVY and key.accuracy != "extended"
-    least = LEAST_LIGHT_BLOCK if light else LEAST_BLOCK
+    least = LEAST_BLOCK if key.accuracy == "extended" else least_of(len(outs))
     in_blocks(block, outs[0].shape[0], outs[0].size, threads, least)
     return bool(counted)
+
+
+def least_of(values: int) -> int:
+    """The least points of a block that is worth a thread, by the number of values of a point."""
+    return LEAST_LIGHT_BLOCK if values < HEAVY else LEAST_BLOCK
 
 
 def in_blocks(
