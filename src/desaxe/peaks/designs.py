@@ -163,8 +163,13 @@ def _in_form(search: Search, columns: dict[str, Array], rows: NDArray[np.intp]) 
     known = all(name in columns for name in LENGTHS)
     if search.extended or not known or plain_form(derived, search.form, search.fixed) is None:
         return search
-    wide_margins = have_wide_margins({name: columns[name][rows] for name in LENGTHS}, search.form).all()
+    wide_margins = have_wide_margins({name: _at(columns[name], rows) for name in LENGTHS}, search.form).all()
     return search._replace(form=search.form._replace(wide_margins=True)) if wide_margins else search
+
+
+def _at(column: Array, rows: NDArray[np.intp]) -> Array:
+    """The values of some designs; of all of them without a copy."""
+    return column if rows.size == column.size else column[rows]
 
 
 def _good(designs: Designs) -> dict[str, Array]:
@@ -181,7 +186,7 @@ def _good(designs: Designs) -> dict[str, Array]:
 
 def _classed(designs: Designs, rows: NDArray[np.intp]) -> Groups:
     """The designs by their classes, which share nodes."""
-    lengths = [designs.columns[n][rows] for n in LENGTHS if n in designs.columns]
+    lengths = [_at(designs.columns[n], rows) for n in LENGTHS if n in designs.columns]
     numbers = np.zeros(rows.size, np.int16) if len(lengths) < 3 else classes(*lengths)
     if rows.size == 1 or (numbers == numbers[0]).all():
         nodes = shared_nodes(int(numbers[0]), *designs.theta)

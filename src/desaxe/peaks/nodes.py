@@ -33,9 +33,9 @@ def classes(ec: Array, AB: Array, BC: Array) -> NDArray[np.int16]:
 
 def _class(margin: Array) -> NDArray[np.int16]:
     """The least k with margin >= 4^-k."""
-    exponent = np.frexp(margin)[1]  # margin in [2^(e-1), 2^e)
-    k = np.clip((2 - exponent) // 2, 0, CLASSES - 1)
-    return np.where(margin > 0.0, k, CLASSES - 1).astype(np.int16)
+    exponent = np.frexp(margin)[1].astype(np.int16)  # margin in [2^(e-1), 2^e)
+    k = np.minimum(np.maximum((2 - exponent) >> 1, 0), CLASSES - 1)
+    return np.where(margin > 0.0, k, np.int16(CLASSES - 1))
 
 
 @lru_cache(maxsize=1024)
