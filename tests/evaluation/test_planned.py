@@ -49,6 +49,8 @@ EC = np.linspace(-0.3, 0.3, 900).reshape(30, 30)
         {"theta": THETA, "ec": 0.0},
         {"theta": THETA, "ec": 0.22},
         {"theta": THETA, "ec": EC},
+        {"theta": THETA.T, "ec": EC[::-1]},
+        {"theta": np.repeat(THETA, 2, axis=1)[:, ::2], "ec": "10 mm"},
     ],
 )
 def test_ordinary_calls_have_a_plan(both, inputs):

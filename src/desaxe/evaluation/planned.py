@@ -77,7 +77,11 @@ def planned(
                 return None
             numbers.append(value)
             kinds.append(value == 0.0)
-        elif type(value) is np.ndarray and value.dtype is FLOAT and value.flags.c_contiguous:
+        elif type(value) is np.ndarray and value.dtype is FLOAT:
+            if not value.flags.c_contiguous:
+                if 0 in value.strides:  # a value for many points, of which the general way makes use
+                    return None
+                value = np.ascontiguousarray(value)
             if shape is None:
                 shape = value.shape
                 if not shape or value.size < 2:

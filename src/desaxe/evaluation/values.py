@@ -97,7 +97,11 @@ def _of_arrays(
     evaluate_arrays = _evaluate_arrays()
     for name in inputs:
         value = given.get(name)
-        if type(value) not in (float, _ARRAY[0]) and hasattr(value, "__dask_graph__"):
+        if type(value) is float or type(value) is _ARRAY[0]:
+            continue
+        if type(value) is str:
+            given = {**given, name: as_number(name, value, inputs, asked.shown)}
+        elif hasattr(value, "__dask_graph__"):
             from .dask_blocks import is_lazy
 
             if is_lazy(value):

@@ -7,7 +7,7 @@ speed, although to a unit library a radian is nothing.
 
 from decimal import Decimal
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 from math import isfinite
 from typing import Any
 
@@ -59,8 +59,7 @@ def in_si(name: str, value: Any) -> Any:
 def in_unit(name: str, value: Any, unit: str) -> Any:
     """The magnitude of a text or pint quantity in a unit."""
     if isinstance(value, str):
-        plain = _plain_number(value)
-        return rounded(name, value, exact(name, value, unit)) if plain is None else plain
+        return (_of_short_text if len(value) <= SHORT else _of_text)(name, value, unit)
     if not _says_the_same(value, unit):
         raise ValueError(f"{name} = {shown(value)}: {_wanted(unit)}")
     factor = _factor(str(value.units), unit)
@@ -72,6 +71,15 @@ def in_unit(name: str, value: Any, unit: str) -> Any:
         written = repr(float(magnitude)) if isinstance(magnitude, float) else magnitude
         return rounded(name, str(value), Fraction(written) * factor)  # as the same text
     return magnitude / float(1 / factor) if factor.numerator == 1 else magnitude * float(factor)
+
+
+def _of_text(name: str, text: str, unit: str) -> float:
+    plain = _plain_number(text)
+    return rounded(name, text, exact(name, text, unit)) if plain is None else plain
+
+
+SHORT = 40  # letters of a text that is worth remembering
+_of_short_text = lru_cache(maxsize=1024)(_of_text)
 
 
 @cache

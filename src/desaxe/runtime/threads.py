@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 MOST_THREADS = 256
 LONGEST_BLOCK = 4_000_000  # points: half a second for the costliest kernels
 # A smaller block costs more to hand out, some 80 us, than to compute: the light one for few values a point.
-LEAST_BLOCK, LEAST_LIGHT_BLOCK = 20_000, 60_000
+LEAST_BLOCK, LEAST_LIGHT_BLOCK = 20_000, 80_000
 HEAVY = 8  # values of a point, each of 0.5 ns or more
+PARTS = 4  # of each thread: one that wakes late leaves some to the others
 
 
 def available() -> int:
@@ -100,7 +101,7 @@ def run_parts(
     """
     most = length // least
     workers = min(threads or available(), most, MOST_THREADS) if most > 1 else 1
-    count = max(workers, -(-length // longest))
+    count = max(workers * PARTS if workers > 1 else 1, -(-length // longest))
     edges = pairwise(length * k // count for k in range(count + 1))
     if workers == 1:
         for start, stop in edges:
@@ -120,11 +121,16 @@ def run_parts(
 
 
 def run_together(works: Sequence[Callable[[], None]], stopped: Event) -> None:
-    """Run each function on a thread; if one fails, or the caller is interrupted, set `stopped`."""
+    """Run each function, the first on the caller's thread; if one fails or is interrupted, set `stopped`.
+
+    A caller that only waited would leave its core to a thread that it wakes, often to both of two.
+    """
     from concurrent.futures import wait
 
-    begun = [pool(len(works)).submit(copy_context().run, work) for work in works]
+    first, *others = works
+    begun = [pool(len(others)).submit(copy_context().run, work) for work in others]
     try:
+        first()
         for done in begun:
             done.result()
     except BaseException:
