@@ -70,7 +70,9 @@ def planned(
     shape: tuple[int, ...] | None = None
     for name in call.inputs:
         value = given.get(name)
-        if type(value) is np.float64 or (type(value) is int and -LARGEST < value < LARGEST):
+        if type(value) is not float and (
+            isinstance(value, float) or (type(value) is int and -LARGEST < value < LARGEST)
+        ):
             value = float(value)
         if type(value) is float:
             if not (LEAST < value < LARGEST or _is_ordinary(name, value)):

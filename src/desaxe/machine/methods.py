@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from functools import wraps
 from importlib import import_module
 from inspect import Parameter, Signature, signature
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..mechanism.slips import warn_of_slips
 from .arguments import in_si
@@ -68,15 +68,33 @@ def import_function(name: str) -> Callable[..., Any]:
 def method_of(function: Callable[..., Any], name: str) -> Callable[..., Any]:
     """A function as a method of a machine."""
     own = signature(function)
+    takes = _takes(own, name)
 
     @wraps(function)
     def method(self: Any, *args: Any, as_quantity: bool = False, **inputs: Any) -> Any:
-        return call(self, name, function, own, args, inputs, as_quantity)
+        return call(self, name, function, takes, args, inputs, as_quantity)
 
     method.__qualname__ = f"Machine.{name}"
     method.__doc__ = f"{INTRODUCTION.format(name=name)}\n{UNITS}\n    {function.__doc__}"
     method.__dict__["__signature__"] = _signature(own, name)
     return method
+
+
+class Takes(NamedTuple):
+    """The parameters of a function, those that need no name, and a flag: it takes any other name."""
+
+    names: frozenset[str]
+    positional: tuple[str, ...]
+    anything: bool
+
+
+def _takes(own: Signature, name: str) -> Takes:
+    parameters, dropped = own.parameters.values(), NOT_FILLED.get(name, ())
+    kinds = Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD
+    positional = tuple(p.name for p in parameters if p.kind in kinds and p.name not in dropped)
+    return Takes(
+        frozenset(own.parameters), positional, any(p.kind is Parameter.VAR_KEYWORD for p in parameters)
+    )
 
 
 def _signature(own: Signature, name: str) -> Signature:
@@ -104,15 +122,13 @@ def call(
     machine: Any,
     name: str,
     function: Callable[..., Any],
-    own: Signature,
+    takes: Takes,
     args: tuple[Any, ...],
     inputs: Mapping[str, Any],
     as_quantity: bool,
 ) -> Any:
     """Call a public function with a machine's inputs and those given, which replace them."""
-    kinds = Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD
-    dropped = NOT_FILLED.get(name, ())
-    positional = [p.name for p in own.parameters.values() if p.kind in kinds and p.name not in dropped]
+    positional = takes.positional
     if len(args) > len(positional):
         raise TypeError(f"{name}() takes {len(positional)} arguments without a name, got {len(args)}")
     twice = [key for key in positional[: len(args)] if key in inputs]
@@ -122,9 +138,9 @@ def call(
     named = {**dict(zip(positional, args, strict=False)), **inputs}
     warn_of_slips(named, system, stacklevel=4)
     given = {key: in_si(system, key, value) for key, value in named.items()}
-    if system and "units" in own.parameters:
+    if system and "units" in takes.names:
         given.setdefault("units", system)
-    found = function(**given, **filled(machine, name, own, given))
+    found = function(**given, **filled(machine, name, takes, given))
     if not system and not as_quantity:
         return found
     show = Shown(system, as_quantity)
@@ -136,9 +152,8 @@ def call(
     return _delivered(result, given.get("out"))
 
 
-def filled(machine: Mapping[str, Any], name: str, own: Signature, given: Mapping[str, Any]) -> dict[str, Any]:
+def filled(machine: Mapping[str, Any], name: str, takes: Takes, given: Mapping[str, Any]) -> dict[str, Any]:
     """The inputs of a machine that a function takes and that are not given in this call."""
-    anything = any(p.kind is Parameter.VAR_KEYWORD for p in own.parameters.values())
     free = given.get("over") or (given.get("inputs", ("theta",)) if name == "function" else ())
     free = (free,) if isinstance(free, str) else tuple(free)
     left = {*given, *(EITHER[key] for key in (*given, *free) if key in EITHER), *free}
@@ -146,7 +161,7 @@ def filled(machine: Mapping[str, Any], name: str, own: Signature, given: Mapping
     found = {
         key: value
         for key, value in machine.items()
-        if key not in left and (anything or key in own.parameters)
+        if key not in left and (takes.anything or key in takes.names)
     }
     return found | _wishes(machine, given) if name == "synthesize" else found
 
