@@ -135,3 +135,16 @@ def test_many_points_of_which_some_are_left_over(both):
         found, general, was_planned = both(NAMES, theta=angles, **given)
         assert not was_planned
         assert same(found, general)
+
+
+@pytest.mark.parametrize("first", [float, np.float64, lambda ec: f"{ec} m"])
+def test_a_number_of_another_type_has_no_plan_of_another_design(both, first):
+    """The form of a kernel goes by the design, whatever type its numbers have."""
+    theta = np.linspace(1.5, 1.64, 1001)
+    machine = {"AB": 0.3, "BC": np.float64(0.8), "omega0": 3.0}
+    for ec in (0.01, 0.4999999999):
+        found, general, was_planned = both(["a_C"], theta=theta, ec=first(ec), **machine)
+        assert was_planned
+        assert same(found, general)
+    exact = dx.evaluate("a_C", accuracy="extended", theta=theta, ec=ec, **machine)
+    np.testing.assert_allclose(found["a_C"], exact, rtol=1e-12)

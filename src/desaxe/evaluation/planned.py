@@ -64,8 +64,8 @@ def planned(
 ) -> dict[str, Array] | None:
     """The values by name; None if the call is no ordinary one, or its kernel is not in memory."""
     call = _CALLS.get(id(wanted)) or _new_call(wanted)
-    numbers: list[float] = []
-    columns: list[Array] = []
+    numbers: dict[str, float] = {}
+    columns: dict[str, Array] = {}
     kinds: list[bool | None] = []
     shape: tuple[int, ...] | None = None
     for name in call.inputs:
@@ -77,7 +77,7 @@ def planned(
         if type(value) is float:
             if not (LEAST < value < LARGEST or _is_ordinary(name, value)):
                 return None
-            numbers.append(value)
+            numbers[name] = value
             kinds.append(value == 0.0)
         elif type(value) is np.ndarray and value.dtype is FLOAT:
             if not value.flags.c_contiguous:
@@ -93,16 +93,18 @@ def planned(
             first = value.item(0)
             if not (LEAST < first < LARGEST or _is_ordinary(name, first)):
                 return None
-            columns.append(value)
+            columns[name] = value
             kinds.append(None)
         else:
             return None
     if shape is None:
         return None
     if call.has_wide_margins is not None:
-        kinds.append(_all_wide(call.has_wide_margins, given))
-    plan = call.plans.get(tuple(kinds)) or _new_plan(call, tuple(kinds), given)
-    return None if plan is None else _run(plan, numbers, columns, shape, out, threads)
+        kinds.append(_all_wide(call.has_wide_margins, numbers))
+    plan = call.plans.get(tuple(kinds)) or _new_plan(call, tuple(kinds), numbers, columns)
+    if plan is None:
+        return None
+    return _run(plan, list(numbers.values()), list(columns.values()), shape, out, threads)
 
 
 def _is_ordinary(name: str, value: float) -> bool:
@@ -110,9 +112,10 @@ def _is_ordinary(name: str, value: float) -> bool:
     return is_good(name, value) and not is_extreme(name, value)
 
 
-def _all_wide(test: Callable[..., Any], given: Mapping[str, Any]) -> bool:
-    ec, AB, BC = given["ec"], given["AB"], given["BC"]
-    return type(ec) is float and type(AB) is float and type(BC) is float and bool(test(ec, AB, BC)[0])
+def _all_wide(test: Callable[..., Any], numbers: Mapping[str, float]) -> bool:
+    """True for one design, of wide margins."""
+    ec, AB, BC = (numbers.get(name) for name in LENGTHS)
+    return ec is not None and AB is not None and BC is not None and bool(test(ec, AB, BC)[0])
 
 
 def _addresses(arrays: list[Array]) -> list[int]:
@@ -138,7 +141,8 @@ def _run(
     if size > SMALL:
         if plan.refused:
             return None
-        require(size * sum(kind.itemsize for _, kind in plan.kinds), f"a result of the shape {shape}")
+        if out is None:
+            require(size * sum(kind.itemsize for _, kind in plan.kinds), f"a result of the shape {shape}")
     if out is None:
         found: dict[str, Array] | None = {name: np.empty(shape, kind) for name, kind in plan.kinds}
     else:
@@ -195,13 +199,12 @@ def _new_call(wanted: Request) -> _Call:
     return call
 
 
-def _new_plan(call: _Call, kinds: tuple[Any, ...], given: Mapping[str, Any]) -> _Plan | None:
+def _new_plan(
+    call: _Call, kinds: tuple[Any, ...], scalars: Mapping[str, float], given: Mapping[str, Array]
+) -> _Plan | None:
     """The plan for inputs of these kinds, if the kernel is in memory and the angles are not too large."""
     wanted = call.request
-    scalars = {
-        name: float(given[name]) for name, kind in zip(call.inputs, kinds, strict=False) if kind is not None
-    }
-    columns = {name: given[name].reshape(-1) for name in call.inputs if name not in scalars}
+    columns = {name: column.reshape(-1) for name, column in given.items()}
     key = key_of(wanted, scalars, columns, dict.fromkeys(columns, 0), 1)
     if key.far or "theta" in scalars or not is_ready(key):
         return None

@@ -101,7 +101,7 @@ def run_parts(
     """
     most = length // least
     workers = min(threads or available(), most, MOST_THREADS) if most > 1 else 1
-    count = max(workers * PARTS if workers > 1 else 1, -(-length // longest))
+    count = max(1, min(length, max(workers * PARTS if workers > 1 else 1, -(-length // longest))))
     edges = pairwise(length * k // count for k in range(count + 1))
     if workers == 1:
         for start, stop in edges:
@@ -115,7 +115,11 @@ def run_parts(
                 start, stop = ways.pop()
             except IndexError:  # another thread was faster
                 return
-            part(start, stop)
+            try:
+                part(start, stop)
+            except BaseException:
+                stopped.set()
+                raise
 
     run_together([work] * workers, stopped)
 

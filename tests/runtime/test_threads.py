@@ -1,0 +1,48 @@
+"""Parts of a length on threads: all of it once, the caller's thread among them, and one failure ends all."""
+
+import threading
+import time
+
+import pytest
+
+from desaxe.runtime.threads import run_parts
+
+
+@pytest.mark.parametrize(
+    ("length", "threads", "least", "longest"),
+    [(1, None, 1, 10), (3, 2, 1, 10), (3, 8, 1, 10), (100, 2, 10, 7), (100, 1, 10, 7), (1_000, 3, 1, 1_000)],
+)
+def test_every_point_belongs_to_one_part(length, threads, least, longest):
+    parts = []
+    run_parts(lambda start, stop: parts.append((start, stop)), length, threads, least, longest)
+    parts.sort()
+    assert all(start < stop <= start + longest for start, stop in parts)
+    assert [start for start, _ in parts] == [0, *(stop for _, stop in parts[:-1])]
+    assert parts[-1][1] == length
+
+
+def test_the_caller_works_too():
+    seen = set()
+
+    def part(start, stop):
+        seen.add(threading.get_ident())
+        time.sleep(0.01)
+
+    run_parts(part, 100, 2, 1, 100)
+    assert threading.get_ident() in seen
+    assert len(seen) == 2
+
+
+@pytest.mark.parametrize("by_caller", [True, False])
+def test_a_failure_ends_the_work_of_all(by_caller):
+    own, done = threading.get_ident(), []
+
+    def part(start, stop):
+        time.sleep(0.01)
+        if (threading.get_ident() == own) is by_caller:
+            raise KeyboardInterrupt if by_caller else ValueError
+        done.append(start)
+
+    with pytest.raises(KeyboardInterrupt if by_caller else ValueError):
+        run_parts(part, 1_000, 2, 1, 2)
+    assert len(done) < 250
