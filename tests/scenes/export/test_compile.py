@@ -53,7 +53,7 @@ SCENES = {
     "far": {**STATE, "motion": {"theta": [1e9, 2e9], "omega": 3}},
 }  # fmt: skip
 
-ALLOWED = {"concurrent.futures", "math", "os", "threading", "numba", "numba.extending", "numpy"}
+ALLOWED = {"concurrent.futures", "math", "os", "threading", "numba", "numba.core", "numba.extending", "numpy"}
 # Runs in a process of its own, where importing desaxe fails; prints every value as hex.
 ALONE = """
 import importlib, json, sys

@@ -80,8 +80,8 @@ def _header(kernel: Kernel, docstring: str, numpy_names: list[str]) -> str:
         {*numpy_names, *constants, *(called & _NUMPY_CALLS), *(["uint64"] * (kernel.axes > 0))}
     )
     imports = [f"from math import {', '.join(calls)}\n"] if calls else []
-    imports += ["from llvmlite import ir"] if has_two_forms(kernel) else []
     imports.append("from numba import njit, types")
+    imports += ["from numba.core import cgutils"] if has_two_forms(kernel) else []
     if kernel.axes or any(line.op in NUMBA_HELPERS for line in lines):
         imports.append("from numba.extending import intrinsic")
     imports += [f"from numpy import {', '.join(from_numpy)}"] if from_numpy else []

@@ -116,23 +116,20 @@ def put_places(typingctx, room, count, eight, first):
 
     def code(context, builder, signature, args):
         room, count, eight, first = args
-        word, byte = ir.IntType(64), ir.IntType(8)
+        word, byte = (context.get_value_type(kind) for kind in (types.uint64, types.uint8))
         rows = [[k for k in range(8) if flags >> k & 1] for flags in range(256)]
-        table = bytearray(k for row in rows for k in (row + [0] * 8)[:8])
-        kept = builder.module.globals.get("places_of_flags")
-        if kept is None:
-            kind = ir.ArrayType(byte, len(table))
-            kept = ir.GlobalVariable(builder.module, kind, "places_of_flags")
-            kept.linkage, kept.global_constant, kept.initializer = "internal", True, kind(table)
+        table = cgutils.create_constant_array(byte, [k for row in rows for k in (row + [0] * 8)[:8]])
+        kept = builder.bitcast(cgutils.global_constant(builder, "places", table), byte.as_pointer())
         # The product moves the lowest bits of the eight bytes next to each other.
         flags = builder.lshr(builder.mul(eight, word(0x0102040810204080)), word(56))
-        row = builder.gep(builder.bitcast(kept, ir.VectorType(byte, 8).as_pointer()), [flags])
-        eight_words, lanes = ir.VectorType(word, 8), ir.VectorType(ir.IntType(32), 8)
-        own = builder.zext(builder.load(row, align=8), eight_words)
-        none = ir.Constant(eight_words, ir.Undefined)
-        start = builder.insert_element(none, first, ir.IntType(32)(0))
-        starts = builder.shuffle_vector(start, none, lanes([0] * 8))
-        to = builder.bitcast(builder.gep(room, [count]), eight_words.as_pointer())
+        # As vectors: LLVM leaves eight single additions alone.
+        vector, undefined = cgutils.ir.VectorType, cgutils.ir.Undefined
+        row = builder.gep(builder.bitcast(kept, vector(byte, 8).as_pointer()), [flags])
+        own = builder.zext(builder.load(row, align=1), vector(word, 8))
+        none = cgutils.ir.Constant(vector(word, 8), undefined)
+        start = builder.insert_element(none, first, cgutils.int32_t(0))
+        starts = builder.shuffle_vector(start, none, vector(cgutils.int32_t, 8)([0] * 8))
+        to = builder.bitcast(builder.gep(room, [count]), vector(word, 8).as_pointer())
         builder.store(builder.add(own, starts), to, align=8)
         return context.get_dummy_value()
 
@@ -144,7 +141,7 @@ def place_at(typingctx, room, k):
     \"\"\"A place that is kept.\"\"\"
 
     def code(context, builder, signature, args):
-        words = builder.bitcast(args[0], ir.IntType(64).as_pointer())
+        words = builder.bitcast(args[0], context.get_value_type(types.uint64).as_pointer())
         return builder.load(builder.gep(words, [args[1]]))
 
     return types.uint64(room, types.uint64), code
