@@ -97,8 +97,8 @@ class Function:
         if len(args) != len(self.inputs):
             raise TypeError(f"function of ({', '.join(self.inputs)}): {len(args)} arguments were given")
         if out is not None:
-            named["out"] = self._outputs(out)
-            args = tuple(_apart(argument, named["out"]) for argument in args)
+            named["out"] = outs = self._outputs(out)
+            args = tuple([_apart(argument, outs) for argument in args])
         try:
             found = self._ufunc(*args, **named)
         except (TypeError, ValueError):
@@ -126,7 +126,7 @@ class Function:
 
     def _outputs(self, out: Any) -> tuple[Any, ...]:
         """`out=` as a tuple for NumPy, from an array, a sequence, or a dict name -> array."""
-        if isinstance(out, Mapping):
+        if type(out) is not tuple and isinstance(out, Mapping):
             if set(out) != set(self.names):
                 raise ValueError(
                     f"out= is a dict with the keys {', '.join(self.names)}, got {', '.join(out)}"
@@ -217,11 +217,19 @@ def _constant_like(values: Any, constant: Any) -> Any:
     return np.where(np.isnan(values), np.nan, constant)[()]
 
 
+def _may_share(array: NDArray[Any], out: Any) -> bool:
+    """True if an output may share memory with an array; two that own theirs do not, which is seen at once."""
+    if not isinstance(out, np.ndarray) or (array is not out and array.flags.owndata and out.flags.owndata):
+        return False
+    return bool(np.may_share_memory(array, out))
+
+
 def _apart(argument: Any, outs: Sequence[Any]) -> Any:
     """The argument, or a copy of it if it shares memory with an output."""
-    arrays = [out for out in outs if isinstance(out, np.ndarray)]
-    if isinstance(argument, np.ndarray) and any(np.may_share_memory(argument, out) for out in arrays):
-        return argument.copy()
+    if isinstance(argument, np.ndarray):
+        for out in outs:
+            if _may_share(argument, out):
+                return argument.copy()
     return argument
 
 
