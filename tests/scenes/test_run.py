@@ -437,8 +437,10 @@ def test_data_in_every_format(tmp_path, monkeypatch):
         assert result.files[0] == Path(name)
         assert f"{name} " in str(result)
     dataset, peaks = result.dataset, result.peaks[0].dataset
-    with xarray.open_zarr(tmp_path / "a.zarr", consolidated=False) as written:
+    with xarray.open_zarr(tmp_path / "a.zarr") as written:  # a warning would be an error
         xarray.testing.assert_equal(written.load(), dataset)
+    with xarray.open_zarr(tmp_path / "a.zarr", group="peak_absmax_a_C") as written:
+        np.testing.assert_array_equal(written.value, peaks.value)
     with np.load(tmp_path / "a.npz") as written:
         np.testing.assert_array_equal(written["a_C"], dataset.a_C)
         np.testing.assert_array_equal(written["peak_absmax_a_C/value"], peaks.value)
