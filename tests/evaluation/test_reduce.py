@@ -68,6 +68,7 @@ def test_over_another_axis():
     assert found.a_C_max_ec.units == "m"
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("way")
 def test_of_one_design():
     found = compare(["a_C"], "theta", theta=TURN[::10], ec=0.01, BC=0.35, **MACHINE)

@@ -49,7 +49,7 @@ def points(count, seed=7):
 
 
 @pytest.mark.parametrize("group", NAMES)
-@pytest.mark.parametrize("branch", [1, -1])
+@pytest.mark.parametrize("branch", [1, pytest.param(-1, marks=pytest.mark.thorough)])
 def test_a_kernel_gives_what_evaluate_gives(group, branch):
     columns = points(60)
     found = evaluate(group, **columns, branch=branch)

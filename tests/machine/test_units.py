@@ -413,3 +413,23 @@ def test_best_designs_are_in_units():
     )
     assert found.ec.values == pytest.approx(1e3 * wanted.ec.values)
     assert found.ec.units == "mm"
+
+
+def test_a_text_without_a_unit_is_in_that_of_the_machine():
+    written = dx.Machine(**{name: str(value) for name, value in PLAIN.items()}, units="mm, deg, rpm")
+    assert dict(written) == dict(PRESS)
+    assert written.evaluate("Y", theta="60") == PRESS.evaluate("Y", theta=60)
+    assert PRESS.replace(AB="51")["AB"] == 0.051
+    pairs = [PRESS.tolerance("stroke", ec=ec)["first_order"]["std"] for ec in ("12 +- 0.1", (12, 0.1))]
+    assert pairs[0] == pairs[1]
+    scene = {
+        "outputs": ["Y"],
+        "mechanism": {"ec": "10", "AB": "50", "BC": ["200", 210]},
+        "motion": {"theta": "60"},
+    }
+    dataset = dx.scene({**scene, "units": "mm, deg, rpm"}).run().dataset
+    assert (float(dataset.AB), dataset.BC.values.tolist(), float(dataset.theta)) == (
+        50.0,
+        [200.0, 210.0],
+        60.0,
+    )

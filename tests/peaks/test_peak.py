@@ -305,16 +305,16 @@ def test_alone_among_others_and_in_every_tier(monkeypatch):
     monkeypatch.setenv("DESAXE_TIER", "compiled")
     designs = random_designs(7, 1000, True)
     many = dx.peak("a_C", **designs)
-    alone = [{n: float(column[k]) for n, column in designs.items()} for k in range(0, 1000, 50)]
+    alone = [{n: float(column[k]) for n, column in designs.items()} for k in range(0, 1000, 125)]
     compiled = [dx.peak("a_C", **design) for design in alone]
     monkeypatch.setattr(module, "kernel_for", lambda search, count: module._plain(search))
     plain = [dx.peak("a_C", **design) for design in alone]
     for k, (one, other) in enumerate(zip(compiled, plain, strict=True)):
-        assert one["value"] == many["value"][50 * k]
-        assert one["theta"] == many["theta"][50 * k]
-        assert one["gradient"]["ec"] == many["gradient"]["ec"][50 * k]
+        assert one["value"] == many["value"][125 * k]
+        assert one["theta"] == many["theta"][125 * k]
+        assert one["gradient"]["ec"] == many["gradient"]["ec"][125 * k]
         assert other["value"] == pytest.approx(one["value"], rel=4e-15)
-        assert one["status"] == other["status"] == many["status"][50 * k]
+        assert one["status"] == other["status"] == many["status"][125 * k]
     monkeypatch.setattr(module, "kernel_for", lambda search, count: module._by_arrays(search))
     by_numpy = dx.peak("a_C", **designs)
     np.testing.assert_array_equal(by_numpy["status"], many["status"])
@@ -386,3 +386,18 @@ def test_bad_designs_disturb_no_other():
     assert np.isnan(found["value"][1:3]).all()
     assert found["value"][0] == found["value"][3]
     assert np.isnan(found["gradient"]["ec"][1:3]).all()
+
+
+@pytest.mark.parametrize(
+    "bad", [{"ec": math.nan}, {"ec": math.inf}, {"BC": -1.0}, {"BC": math.nan, "AB": -1.0}]
+)
+@pytest.mark.parametrize(("name", "loads"), [("a_C", {}), ("T_in", {"m_slider": 1.0, "mu": 0.1})])
+def test_a_bad_design_is_told_alone(name, loads, bad):
+    """Also where no other design of the call needs a closer look."""
+    good = {"ec": 0.01, "AB": 0.06, "BC": 0.22, "omega0": 94.2}
+    columns = {key: np.array([value, bad.get(key, value), value]) for key, value in good.items()}
+    found = dx.peak(name, **columns, **loads)
+    assert found["status"].tolist() == [0, 4, 0]
+    assert np.isnan(found["value"]).tolist() == [False, True, False]
+    assert np.isnan(found["gradient"]["ec"]).tolist() == [False, True, False]
+    assert found["value"][0] == pytest.approx(dx.peak(name, **good, **loads)["value"], rel=1e-12)

@@ -9,6 +9,7 @@ import pytest
 import desaxe as dx
 from desaxe.runtime.request import request
 from desaxe.runtime.specialise import plain_form, specialise
+from tests.effort import cases
 from tests.evaluation.test_stress import NAMES, compiled, is_kept
 from tests.ways import take_way
 
@@ -59,9 +60,10 @@ def eccentric_as_crank(count=60):
         }  # fmt: skip
 
 
+@pytest.mark.sampled
 def test_the_side_of_the_axis_is_known_where_the_pin_meets_it(monkeypatch):
     take_way(monkeypatch, "compiled")
-    rows, names = list(eccentric_as_crank()), ["a_C", "alpha_BC", *SIDES]
+    rows, names = list(eccentric_as_crank(cases(20, 60))), ["a_C", "alpha_BC", *SIDES]
     for row, by_kernel in zip(rows, compiled(names, rows), strict=True):
         plain = dx.evaluate(names, **row)
         for values in (plain, by_kernel):

@@ -65,7 +65,8 @@ def evaluate(
              "extended": within 2 ulp, in pairs of doubles, 3 to 16 times the time; or the error that you can
              bear, such as 1e-14, for the cheaper of the two that keeps it; "fast" is "standard"
     threads  for arrays: how many threads share the work, all that pay without
-    out      for arrays: the array to fill, or a dict name -> array
+    out      for arrays: the array to fill, or a dict name -> array; those that share memory are filled one
+             after the other
     quality  True: for each name, in place of the value, an object with `value`, `conditions` (input ->
              |input/value d value/d input|), `error_bound` (of the rounding) and `digits`
 

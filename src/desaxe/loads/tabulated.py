@@ -180,7 +180,7 @@ def _table_over_theta(x: list[float], y: list[float], unit: str | None, kind: st
     if span > (1.0 + CLOSED) * period:
         raise ValueError(
             f"{name}: the angles go over {span:g} rad, the period is {period:g} rad; give a longer period= "
-            "or one period of the table"
+            f'or one period of the table (degrees are texts: "{x[-1]:g} deg")'
         )
     if span >= (1.0 - CLOSED) * period:
         if abs(y[-1] - y[0]) > EQUAL * max(map(abs, y)):

@@ -6,6 +6,7 @@ from typing import Any
 
 from ..mechanism.inputs import INPUTS
 from ..mechanism.unit_system import OTHERS, UnitSystem
+from ..support.quantity_text import PLUS_MINUS, with_unit_of
 from .results import conversion_of
 
 # Arguments that carry no unit of their own name: what they are about is said by their keys.
@@ -38,8 +39,10 @@ def _measure(key: Any) -> str:
 
 def converted(system: UnitSystem, name: str, value: Any) -> Any:
     """A number, array or pair of a named quantity in SI units."""
-    if value is None or isinstance(value, (str, bool)) or hasattr(value, "magnitude"):
+    if value is None or isinstance(value, bool) or hasattr(value, "magnitude"):
         return value
+    if isinstance(value, str):
+        return _with_unit(system, name, value)
     if isinstance(value, (tuple, list)):
         parts = [converted(system, name, part) for part in value]
         return type(value)(*parts) if hasattr(value, "_fields") else type(value)(parts)
@@ -48,3 +51,12 @@ def converted(system: UnitSystem, name: str, value: Any) -> Any:
     plain = isinstance(value, (int, float)) or hasattr(value, "dtype")
     conversion = conversion_of(system, name) if plain else None
     return value if conversion is None else conversion.to_si(value)
+
+
+def _with_unit(system: UnitSystem, name: str, text: str) -> str:
+    """A text, of which a number without a unit is in the machine's, as if it were no text."""
+    conversion = conversion_of(system, name)
+    if conversion is None:
+        return text
+    value, *tolerance = PLUS_MINUS.split(text)
+    return " +- ".join([str(with_unit_of(f"1 {conversion.unit}", value)), *tolerance])

@@ -8,6 +8,7 @@ plus_minus("10 mm", "0.1 mm") has the ends of between("9.9 mm", "10.1 mm").
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+from ..support.quantity_text import with_unit_of
 from ..support.shown import shown
 from .inputs import INPUTS
 from .units import exact, in_si, rounded
@@ -40,7 +41,8 @@ class Between(NamedTuple):
 def plus_minus(value: Any, tolerance: Any) -> PlusMinus:
     """A value and its tolerance, for `enclose` and `tolerance`: value - tolerance .. value + tolerance.
 
-    Each is a number in SI units, or text with a unit; the tolerance may be in percent of the value.
+    Each is a number in SI units, or text with a unit; the tolerance may be in percent of the value. A text
+    without a unit beside one that has it is in that unit.
 
         >>> import desaxe as dx
         >>> rod = {"AB": 0.125, "BC": 0.35, "theta": 1.0}
@@ -79,7 +81,7 @@ def middle_of(name: str, given: Between) -> tuple[float, float]:
 
 def _tolerance(name: str, given: PlusMinus) -> tuple[Fraction, Fraction]:
     value = _number(name, given.value, given)
-    tolerance = given.tolerance
+    tolerance = with_unit_of(given.value, given.tolerance)
     if isinstance(tolerance, str) and tolerance.strip().endswith("%"):
         share = _number("mu", tolerance.strip().removesuffix("%"), given) / 100  # a plain number
         found = share * abs(value)

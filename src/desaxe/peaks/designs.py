@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compiler.passes.guard import BAD_INPUT
 from ..loads.load import Load
 from ..mechanism.catalogue import has, quantity
 from ..mechanism.constants import constants
@@ -128,7 +129,9 @@ def _peaks(name: str, kind: str, search: Search, designs: Designs, threads: int 
         run_under_loads(name, search, designs, groups, number, theta, out)
     elif rows.size:
         run(_in_form(search, columns, rows), columns, _classed(designs, rows), number, theta, out, threads)
-    rows = np.flatnonzero(ends | np.isnan(out[0]) if rows.size else ends)
+    bad = np.any([np.isnan(column) for column in columns.values()], axis=0)
+    out[:, bad], status[bad] = np.nan, BAD_INPUT
+    rows = np.flatnonzero((ends | np.isnan(out[0]) if rows.size else ends) & ~bad)
     for start in range(0, rows.size, special.BLOCK):
         part = rows[start : start + special.BLOCK]
         some = designs.part(part)

@@ -65,6 +65,7 @@ def single(key: str, names: Iterable[str], inputs: Mapping[str, Value]) -> dict[
     for name in names:
         value = inputs[name]
         if isinstance(value, tuple):
-            raise SceneError(f"{key}: {name} has {len(value)} values, expected one: give at.{name}")
+            family = f", or family.{name} for a curve of each" if key.startswith("picture") else ""
+            raise SceneError(f"{key}: {name} has {len(value)} values, expected one: give at.{name}{family}")
         found[name] = value
     return found

@@ -321,12 +321,20 @@ def _fits(value: Any, kind: Any) -> bool:
     return True
 
 
+def _section_of(name: str) -> str:
+    """Tell the section of an input that stands elsewhere; empty for any other key."""
+    sections = {"mechanism": Mechanism, "motion": Motion, "masses": Masses, "loads": Loads}
+    homes = (key for key, kind in sections.items() if name in kind.__struct_fields__)
+    return next((f"{name} belongs in [{key}]" for key in homes if name in INPUTS), "")
+
+
 def _wrong_keys(value: Mapping[str, Any], struct: type[Struct], key: str) -> str | None:
     fields = msgspec.structs.fields(struct)
     names = tuple(field.name for field in fields)
     for name in value:
         if name not in names:
-            return f"{_dotted(key, name)} = {shown(value[name])}: unknown key; {hint(str(name), names)}"
+            told = _section_of(str(name)) or hint(str(name), names)
+            return f"{_dotted(key, name)} = {shown(value[name])}: unknown key; {told}"
     for field in fields:
         if field.required and field.name not in value:
             return f"{_dotted(key, field.name)} is missing: it must be {_allowed(field.type)}"

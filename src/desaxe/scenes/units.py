@@ -10,7 +10,7 @@ from typing import Any
 from ..mechanism.inputs import INPUTS
 from ..mechanism.slips import slip
 from ..mechanism.unit_system import DIMENSIONS, SI, UnitSystem
-from ..support.quantity_text import split_quantity
+from ..support.quantity_text import split_quantity, with_unit_of
 
 SECTIONS = ("mechanism", "motion", "masses", "loads")
 ENDS = ("start", "stop", "step")
@@ -56,7 +56,8 @@ def _part(value: Any, key: str, units: UnitSystem) -> Any:
 def _input(value: Any, name: str, units: UnitSystem) -> Any:
     """The values of an input: a number, a list, a range, or a load that varies with the motion."""
     if isinstance(value, list):
-        return [units.of(name).to_si(float(part)) if _is_number(part) else part for part in value]
+        own = units.of(name)
+        return [own.to_si(float(p)) if _is_number(p) else with_unit_of(f"1 {own.unit}", p) for p in value]
     if isinstance(value, Mapping):
         along = next((place for key, place in TABLES.items() if isinstance(value.get(key), list)), None)
         if along is not None:
@@ -88,8 +89,10 @@ def _table(load: Mapping[str, Any], name: str, along: str, units: UnitSystem) ->
 
 
 def _written(value: Any, name: str, units: UnitSystem) -> Any:
-    """A number with its unit, as a text."""
+    """A number with its unit, as a text; a text that is a number alone has the same unit."""
     conversion = units.of(name)
+    if isinstance(value, str):
+        return with_unit_of(f"1 {conversion.unit}", value)
     return f"{value!r} {conversion.unit}" if _is_number(value) and conversion.si != 1 else value
 
 

@@ -21,6 +21,18 @@ def split_quantity(text: str) -> tuple[str, str]:
     return match[1], match[2] or ""
 
 
+def with_unit_of(other: object, text: object) -> object:
+    """A text that is a number alone with the unit of another text; anything else as it is.
+
+    A drawing's "12 mm +- 0.1" is a tolerance of 0.1 mm.
+    """
+    if isinstance(text, str) and isinstance(other, str):
+        parts, known = _FORM.fullmatch(text), _FORM.fullmatch(other)
+        if parts and known and known[2] and not parts[2]:
+            return f"{parts[1]} {known[2]}"
+    return text
+
+
 def spelled(unit: str) -> str:
     """A unit in the spelling of the catalogue: m/s^2 for m/s2."""
     return re.sub(r"([^\W\d_])(?:\*\*)?(-?[1-9])(?![0-9])", r"\1^\2", unit)

@@ -244,3 +244,16 @@ def test_without_salib_one_line_says_what_to_install():
     last = run.stderr.strip().splitlines()[-1]
     assert "sobol=0 leaves them out" in last
     assert last.endswith("python -m pip install 'desaxe[design]'")
+
+
+@pytest.mark.parametrize("ec", ["12 mm +- 0.1", "12 mm ± 0.1 mm", dx.plus_minus("12 mm", "0.1")])
+def test_a_tolerance_without_a_unit_is_in_that_of_its_value(ec):
+    rod = {"AB": 0.06, "BC": 0.22}
+    found = dx.tolerance("stroke", ec=ec, **rod)["first_order"]["std"]
+    assert found == dx.tolerance("stroke", ec=dx.plus_minus(0.012, 1e-4), **rod)["first_order"]["std"]
+
+
+def test_so_has_an_enclosure():
+    rod = {"AB": 0.06, "BC": 0.22, "theta": 1.0}
+    found = dx.enclose("Y", ec=dx.plus_minus("12 mm", "0.1"), **rod)
+    assert found == dx.enclose("Y", ec=dx.between("11.9 mm", "12.1 mm"), **rod)

@@ -70,7 +70,12 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("case", CASES)
+USUAL = ("generic", "the other branch", "next to a change point", "forces")
+
+
+@pytest.mark.parametrize(
+    "case", [c if c in USUAL else pytest.param(c, marks=pytest.mark.thorough) for c in CASES]
+)
 def test_values_and_sensitivities(case, visit, tmp_path):
     points = CASES[case]()
     inputs = {name: value for name, value in points[0].items() if name not in ("theta", "branch")}

@@ -389,7 +389,7 @@ def test_a_scene_without_outputs(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("name", ["grid", "reduced", "one_axis"])
+@pytest.mark.parametrize("name", ["grid", pytest.param("reduced", marks=pytest.mark.thorough), "one_axis"])
 def test_run_takes_other_axes(name, tmp_path):
     """The axes of the scene are only what holds where none are given."""
     module = imported(dx.compile(SCENES[name], tmp_path / f"axes_{name}.py"))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...mechanism.ranges import Between, RangeWarning, middle_of
 from ...runtime.request import as_number
-from ...support.quantity_text import PLUS_MINUS
+from ...support.quantity_text import PLUS_MINUS, with_unit_of
 
 Array = NDArray[np.float64]
 DISTRIBUTIONS = ("normal", "uniform")
@@ -96,14 +96,15 @@ def _pair(name: str, value: Any) -> tuple[float, float] | None:
 def _with_tolerance(name: str, value: Sequence[Any]) -> tuple[float, float]:
     """The two numbers of a pair (value, tolerance)."""
     nominal = _number(name, value[0])
-    if isinstance(value[1], str) and value[1].strip().endswith("%"):
-        return nominal, _percent(name, value[1]) * abs(nominal)
-    if isinstance(value[1], str) or hasattr(value[1], "magnitude"):
+    second: Any = with_unit_of(*value)
+    if isinstance(second, str) and second.strip().endswith("%"):
+        return nominal, _percent(name, second) * abs(nominal)
+    if isinstance(second, str) or hasattr(second, "magnitude"):
         from ...mechanism.units import in_si
 
-        return nominal, float(in_si(name, value[1]))
+        return nominal, float(in_si(name, second))
     try:
-        return nominal, float(value[1])
+        return nominal, float(second)
     except (TypeError, ValueError):
         raise TypeError(f"{name} = {value!r}: expected a pair (value, tolerance) of numbers") from None
 

@@ -392,7 +392,7 @@ def _docstring(
         "    evaluate(...)   numbers or arrays that broadcast",
         "    run()           the scene's own grid; run(theta=...) with other axes",
         *(f"    {line}" for line in peak_lines),
-        f"    {shown[0]}(*INPUTS)   one output as a number, from @njit functions, too",
+        *([] if loads else [f"    {shown[0]}(*INPUTS)   one output as a number, from @njit functions, too"]),
         "",
         f"Accuracy {key.accuracy}; SI units and radians. Y points along the slider axis towards the slider,",
         "theta turns from +Y towards +X.",
