@@ -422,14 +422,8 @@ def test_a_text_without_a_unit_is_in_that_of_the_machine():
     assert PRESS.replace(AB="51")["AB"] == 0.051
     pairs = [PRESS.tolerance("stroke", ec=ec)["first_order"]["std"] for ec in ("12 +- 0.1", (12, 0.1))]
     assert pairs[0] == pairs[1]
-    scene = {
-        "outputs": ["Y"],
-        "mechanism": {"ec": "10", "AB": "50", "BC": ["200", 210]},
-        "motion": {"theta": "60"},
-    }
-    dataset = dx.scene({**scene, "units": "mm, deg, rpm"}).run().dataset
-    assert (float(dataset.AB), dataset.BC.values.tolist(), float(dataset.theta)) == (
-        50.0,
-        [200.0, 210.0],
-        60.0,
-    )
+    lengths = {"ec": "10", "AB": "50", "BC": ["200", 210]}
+    scene = {"outputs": ["Y"], "mechanism": lengths, "motion": {"theta": "60"}, "units": "mm, deg, rpm"}
+    dataset = dx.scene(scene).run().dataset
+    assert (float(dataset.AB), dataset.BC.values.tolist()) == (50.0, [200.0, 210.0])
+    assert float(dataset.theta) == pytest.approx(60.0, rel=1e-15)
