@@ -105,7 +105,7 @@ def calls_text(
                 f'    found["{name}"] = found["{name}"] + found["{term.slope}"] * {term.force}_slope{by}'
             )
     looked_up = [
-        f"    {n}, {n}_slope = {n}_over_theta(asarray(theta, float64))"
+        f"    {n}, {n}_slope = {n}_over_theta(doubles(theta=theta)[0])"
         for n, load in plan.loads.items()
         if isinstance(load, OverTheta)
     ]
