@@ -61,7 +61,8 @@ def _fit(options: argparse.Namespace) -> int:
     if options.picture:
         require_ours(Path(options.picture), options.overwrite)
         require_writable(Path(options.picture))
-    known = scene(options.scene).content
+    whole = scene(options.scene)
+    known = whole.content
     numbers: dict[str, Any] = {
         name: value for name, value in known.inputs.items() if isinstance(value, (int, float))
     }
@@ -71,7 +72,8 @@ def _fit(options: argparse.Namespace) -> int:
     }
     sigma = dict(_pair("--sigma", word) for word in options.sigma) or None
     found = fit(options.data, over, sigma, options.nuisance, options.loss, branch=known.branch, **fixed)
-    print(json.dumps(_plain(found), indent=2) if options.json else found.report(), flush=True)
+    told = found.in_units(whole.shown_in)  # JSON is in SI units
+    print(json.dumps(_plain(found), indent=2) if options.json else told.report(), flush=True)
     if options.picture:
         from ..plot.save import save
 

@@ -114,12 +114,12 @@ def test_prediction_report_picture_and_pickle(tmp_path):
     found = pickle.loads(pickle.dumps(fitted(measured(1))))
     value, error = found.predict(theta=THETA)["a_C"]
     assert np.abs((value - CLEAN) / error).max() < 5.0
-    assert "theta_offset" in found.report()
+    assert "theta_offset [rad]" in found.report()
     assert repr(found) == found.report()
     found.plot().savefig(tmp_path / "fit.png")
 
 
-def test_tables_labels_and_files(tmp_path):
+def test_tables_labels_and_files(tmp_path, capsys):
     data = measured(1)
     expected = fitted(data)["value"]
     assert fitted(pandas.DataFrame(data))["value"] == expected
@@ -148,6 +148,13 @@ def test_tables_labels_and_files(tmp_path):
         "--json",
     ]
     assert main(["fit", str(scene), str(path), *words]) == 0
+    capsys.readouterr()
+    scene.write_text(
+        'units = "mm"\n' + scene.read_text(encoding="utf-8").replace("0.36", "360"), encoding="utf-8"
+    )
+    assert main(["fit", str(scene), str(path), *words[:-1]]) == 0
+    (row,) = [line.split() for line in capsys.readouterr().out.splitlines() if " AB [mm] " in line]
+    assert float(row[2]) == pytest.approx(1e3 * expected["AB"], rel=1e-6)
 
 
 @pytest.mark.parametrize(

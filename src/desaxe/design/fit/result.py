@@ -84,8 +84,8 @@ class Fit(dict[str, Any]):
     __repr__ = report
 
     def _title(self, name: str) -> str:
-        """Label a name with its unit, if units were asked for."""
-        unit = _unit_of(name, self._model, self.units).unit if self.units else "1"
+        """Label a name with its unit."""
+        unit = _unit_of(name, self._model, self.units).unit
         return name if unit == "1" else f"{name} [{unit}]"
 
     def plot(self, figure: Any = None) -> Any:
