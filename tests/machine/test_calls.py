@@ -40,7 +40,7 @@ def test_fits():
     wanted, own = plain.predict(theta=math.pi / 3)["Y"]
     np.testing.assert_allclose([value, error], [1e3 * wanted, 1e3 * own], rtol=1e-6)
     assert "AB [mm]" in shown.report()
-    assert "AB  " in plain.report()
+    assert "AB [m]" in plain.report()
     axes = shown.plot().axes
     assert (axes[0].get_ylabel(), axes[-1].get_xlabel()) == ("Y [mm]", "crank angle [deg]")
     held = IN_MM.fit({"theta": np.degrees(THETA), "Y": 1e3 * noisy}, {"ec": 0.0}, as_quantity=True)
