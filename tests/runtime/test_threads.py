@@ -33,6 +33,13 @@ def test_the_caller_works_too():
     assert len(seen) == 2
 
 
+def test_parts_may_have_parts_of_their_own():
+    """The threads that would help are busy then: nobody waits for them."""
+    done = []
+    run_parts(lambda a, b: run_parts(lambda c, d: done.append(d - c), 8, 2, 1, 8), 8, 2, 1, 8)
+    assert sum(done) == 64
+
+
 @pytest.mark.parametrize("by_caller", [True, False])
 def test_a_failure_ends_the_work_of_all(by_caller):
     own, done = threading.get_ident(), []

@@ -64,7 +64,7 @@ def guarded_for_loops(
 def _bounded(program: Program) -> Program:
     """The program with x <= the largest double for x < inf.
 
-    LLVM makes of x < inf and 0 <= x one test of the number's bits, which takes a vector four times as long.
+    LLVM makes of x < inf and 0 <= x one test of the number's bits: ten instructions of a vector, not two.
     """
     lines = (
         line._replace(op="le", args=(line.args[0], float_info.max))

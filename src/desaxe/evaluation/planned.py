@@ -118,10 +118,10 @@ def _all_wide(test: Callable[..., Any], numbers: Mapping[str, float]) -> bool:
     return ec is not None and AB is not None and BC is not None and bool(test(ec, AB, BC)[0])
 
 
-def _addresses(arrays: list[Array]) -> list[int]:
+def _addresses(arrays: list[Any]) -> list[int]:
     """The addresses of the arrays' memory, by the fastest way; read-only arrays take the slow one."""
     try:
-        return [addressof(_bytes_of(array)) for array in arrays]  # type: ignore[arg-type]
+        return [addressof(_bytes_of(array)) for array in arrays]
     except (TypeError, ValueError):
         return [array.__array_interface__["data"][0] for array in arrays]
 

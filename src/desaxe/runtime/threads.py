@@ -127,7 +127,9 @@ def run_parts(
 def run_together(works: Sequence[Callable[[], None]], stopped: Event) -> None:
     """Run each function, the first on the caller's thread; if one fails or is interrupted, set `stopped`.
 
-    A caller that only waited would leave its core to a thread that it wakes, often to both of two.
+    A caller that only waited would leave its core to a thread that it wakes, often to both of two. A function
+    that no thread has begun when the first returns finds nothing to do, and is not waited for: the threads
+    may be busy with another caller's work.
     """
     from concurrent.futures import wait
 
@@ -136,7 +138,8 @@ def run_together(works: Sequence[Callable[[], None]], stopped: Event) -> None:
     try:
         first()
         for done in begun:
-            done.result()
+            if not done.cancel():
+                done.result()
     except BaseException:
         stopped.set()
         wait(begun)

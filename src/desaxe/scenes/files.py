@@ -19,7 +19,6 @@ import numpy as np
 from ..runtime.written import remember, require_ours
 from ..support.files import check_target, kind_of, require_space, staging, swap_in
 
-CONSOLIDATED = "Consolidated metadata is currently not part"  # of the format, a warning says
 _NETCDF_EXTRA = 65_536  # bytes for what HDF5 writes besides the numbers of a group
 
 if TYPE_CHECKING:
@@ -97,6 +96,8 @@ def _netcdf(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Da
 def _zarr(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:
     for group, part in _parts(values, groups):
         part.to_zarr(path, mode="a" if path.exists() else "w", group=group, consolidated=False)
+    from ..sweeps.store import CONSOLIDATED
+
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message=CONSOLIDATED)
         import_module("zarr").consolidate_metadata(path)  # what xarray looks for when it opens the store

@@ -172,10 +172,8 @@ def clear_flags(typingctx, flags, word):
 """
 BIGGEST = 512  # points of a block: their inputs and outputs stay in the first-level cache
 STACK = 32_768  # numbers that all rooms together may take
-APART = 72  # numbers between rooms: at a multiple of 4096 bytes a store holds up loads from other rooms
-
-
 LANES = 8  # points that the stable loops take at a time
+APART = 72  # numbers between rooms: at a multiple of 4096 bytes a store holds up loads from other rooms
 
 
 class _Stable(NamedTuple):
