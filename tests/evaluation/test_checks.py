@@ -122,6 +122,10 @@ def test_a_bad_speed_is_nan_itself(way):
 REFUSED = [
     ("V_c", {}, ValueError, "unknown quantity 'V_c'; did you mean V_C, "),
     ("velocity", {}, ValueError, r"unknown quantity 'velocity'.*desaxe\.quantities\(\)"),
+    ("V_C, a_C", {}, ValueError, re.escape("'V_C, a_C': several names are a list, such as ['V_C', 'a_C']")),
+    ("V_C", {"theta": True}, TypeError, "theta: expected real numbers, got a bool: True"),
+    ("V_C", {"theta": "60,5 deg"}, ValueError, 'a number with a unit such as "60 deg"'),
+    ("V_C", {"omega0": "900 1/min"}, ValueError, 'a number with a unit such as "1500 rpm"'),
     ("V_C_wrt_omega", {}, ValueError, "'V_C_wrt_omega' needs a state: give omega= instead of omega0="),
     (
         "V_C",
@@ -138,7 +142,6 @@ REFUSED = [
     ("V_C", {"ec": np.float32(np.inf)}, ValueError, "ec = .*inf.*: it must be a finite number"),
     ("V_C", {"theta": 10**400}, ValueError, "theta = .*: it must be a finite number"),
     ("V_C", {"theta": 1j}, TypeError, "theta: expected real numbers"),
-    ("V_C", {"theta": True}, TypeError, "theta: expected real numbers, got an array of bool"),
     ("V_C", {"theta": np.array([True])}, TypeError, "theta: .*, got an array of bool"),
     ("V_C", {"theta": np.array([1j])}, TypeError, "theta: .*, got an array of complex128"),
     ("V_C", {"theta": [None]}, TypeError, "theta: expected real numbers"),

@@ -5,6 +5,7 @@ import sys
 
 import cf_xarray  # noqa: F401  the accessor .cf
 import numpy as np
+import pandas as pd
 import pint
 import pint_xarray
 import pytest
@@ -163,6 +164,14 @@ def test_a_coordinate_in_other_units_is_converted_everywhere():
 def test_units_that_do_not_fit(unit, words):
     with pytest.raises(ValueError, match=words):
         dx.grid("Y", theta=xr.DataArray(DEGREES, dims="t", attrs={"units": unit}), ec=0, AB=0.1, BC=0.3)
+
+
+def test_series_of_different_rows_are_not_paired_by_position():
+    theta, ec = pd.Series([0.0, 1.0, 2.0]), pd.Series([0.0, 0.1, 0.2])
+    together = dx.evaluate("a_C", theta=theta, ec=ec, **MACHINE)
+    np.testing.assert_array_equal(together, dx.evaluate("a_C", theta=theta.values, ec=ec.values, **MACHINE))
+    with pytest.raises(ValueError, match=r"theta and ec: Series of different index; align them"):
+        dx.evaluate("a_C", theta=theta, ec=ec[::-1], **MACHINE)
 
 
 # ---- plots that xarray and hvplot make ----------------------------------------------------------------

@@ -35,7 +35,7 @@ def evaluate_arrays(
         if ready is not None:
             return ready
     inputs = wanted.inputs
-    _refuse_other_dimensions({name: given.get(name) for name in inputs})
+    _refuse_other_labels({name: given.get(name) for name in inputs})
     arrays = {name: as_array(name, given.get(name), inputs, wanted.shown) for name in inputs}
     shape = broadcast_shape(arrays)
     places = outputs_for(wanted.shown, shape, out)
@@ -47,12 +47,17 @@ def evaluate_arrays(
     return copied_back(places, buffers, out is None)
 
 
-def _refuse_other_dimensions(given: Mapping[str, Any]) -> None:
-    """ValueError for labelled arrays of different dimensions: `evaluate` broadcasts by position."""
+def _refuse_other_labels(given: Mapping[str, Any]) -> None:
+    """ValueError for labelled arrays of different dimensions or rows: `evaluate` broadcasts by position."""
     labels = {name: value.dims for name, value in given.items() if hasattr(value, "dims") and value.dims}
     if len(set(labels.values())) > 1:
         told = ", ".join(f"{name} {dims}" for name, dims in labels.items())
         raise ValueError(f"labelled arrays of different dimensions: {told}; use grid, or pass their .values")
+    rows = [(name, value.index) for name, value in given.items() if hasattr(value, "iloc")]
+    for name, index in rows[1:]:
+        first, expected = rows[0]
+        if len(index) == len(expected) and not index.equals(expected):
+            raise ValueError(f"{first} and {name}: Series of different index; align them or pass .values")
 
 
 def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]) -> Array:
@@ -81,7 +86,8 @@ def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str])
 
         array = np.array([in_si(name, text) for text in array.reshape(-1).tolist()]).reshape(array.shape)
     if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name}: expected real numbers, got an array of {array.dtype}: {shown(value)}")
+        kind = f"an array of {array.dtype}" if array.ndim else f"a {type(value).__name__}"
+        raise TypeError(f"{name}: expected real numbers, got {kind}: {shown(value)}")
     return _not_wholly_bad(name, array.astype(FLOAT, copy=False))
 
 

@@ -117,6 +117,8 @@ def _unknown(name: str, state: bool) -> str:
             return f"{name!r}: the parameters of a sensitivity stand in one order, {ordered!r}"
         if len(parameters) > 1:
             return f"{name!r}: this derivative is not derived (second order: Y, V_C, a_C, omega_BC, alpha_BC)"
+    if "," in name or len(name.split()) > 1:
+        return f"unknown quantity {name!r}: several names are a list, such as ['V_C', 'a_C']"
     near = (
         meant(name, _names(), 3)
         or [

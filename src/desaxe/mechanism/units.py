@@ -115,7 +115,7 @@ def rounded(name: str, text: str, value: Fraction) -> float:
 def exact(name: str, text: str, unit: str) -> Fraction:
     """The number that a text with a unit is in another unit, exactly (pi to 50 digits)."""
     try:
-        number, own = split_quantity(text)
+        number, own = split_quantity(text, EXAMPLES.get(unit, EXAMPLES["m"]))
         _check_size(number)
         if not own:
             return Fraction(number)

@@ -7,7 +7,6 @@ from math import isfinite
 from ..loads.load import Load
 from ..mechanism.inputs import INPUTS, is_good
 from ..mechanism.units import exact, in_si
-from ..support.quantity_text import quantity_text
 from . import schema
 from .schema import SceneError, shown
 
@@ -43,11 +42,7 @@ def number_of(key: str, name: str, written: float | str) -> float:
 
 def _from_text(key: str, name: str, written: str) -> float:
     try:
-        text = quantity_text(written)
-    except ValueError as error:
-        raise SceneError(f"{key} = {shown(written)}: {error}") from None
-    try:
-        return float(in_si(name, text))
+        return float(in_si(name, written))
     except ValueError as error:
         # What the units' complaint says after the name and the value that it repeats.
         reason = str(error).partition(": ")[2] or str(error)

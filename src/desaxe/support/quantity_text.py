@@ -13,11 +13,11 @@ PLUS_MINUS = re.compile(r"\u00b1|\+-|\+/-")  # between a value and its tolerance
 _FORM = re.compile(rf"\s*({_NUMBER})\s*({_UNIT})?\s*")
 
 
-def split_quantity(text: str) -> tuple[str, str]:
+def split_quantity(text: str, example: str = '"125 mm"') -> tuple[str, str]:
     """The number and the unit (may be empty) of a text; ValueError where it is anything else."""
     match = _FORM.fullmatch(text)
     if match is None:
-        raise ValueError('it must be a number, or a number with a unit such as "125 mm"')
+        raise ValueError(f"it must be a number, or a number with a unit such as {example}")
     return match[1], match[2] or ""
 
 
