@@ -300,6 +300,28 @@ def test_the_same_for_any_number_of_threads(threads, monkeypatch):
         assert np.array_equal(slope, more["gradient"][name], equal_nan=True)
 
 
+@pytest.mark.parametrize("bad", [False, True], ids=["all good", "one bad"])
+@pytest.mark.parametrize("one_special", [False, True], ids=["all turn", "one does not"])
+def test_the_same_in_parts(monkeypatch, bad, one_special):
+    """Threads that take parts of the designs all through change no digit, wide margins or not."""
+    monkeypatch.setenv("DESAXE_TIER", "compiled")
+    designs = {name: column.copy() for name, column in random_designs(6, 400, False).items()}
+    designs["alpha"][:] = 0.0  # none stalls
+    if bad:
+        designs["AB"][7] = -1.0
+    if one_special:
+        designs["BC"][300] = 0.5 * designs["AB"][300]
+    whole = dx.peak("a_C", threads=1, **designs)
+    monkeypatch.setattr("desaxe.peaks.designs.LEAST_ALL_THROUGH", 100)
+    parts = dx.peak("a_C", threads=2, **designs)
+    assert (whole["status"] != 0).sum() == bad + one_special
+    for name in ("value", "theta", "status"):
+        np.testing.assert_array_equal(whole[name], parts[name])
+    assert list(whole["gradient"]) == list(parts["gradient"])
+    for name, slope in whole["gradient"].items():
+        np.testing.assert_array_equal(slope, parts["gradient"][name])
+
+
 def test_alone_among_others_and_in_every_tier(monkeypatch):
     """A design alone has the answer it has among others; the tiers differ by the sine's last bit."""
     monkeypatch.setenv("DESAXE_TIER", "compiled")

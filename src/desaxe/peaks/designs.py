@@ -10,23 +10,47 @@ from ..compiler.passes.guard import BAD_INPUT
 from ..loads.load import Load
 from ..mechanism.catalogue import has, quantity
 from ..mechanism.constants import constants
-from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS, sensitivity
 from ..mechanism.own import changes, forget_on_change
 from ..mechanism.own_lines import has_kinks
 from ..runtime.accuracy import accuracy_of
+from ..runtime.interpreted import are_good
 from ..runtime.kernels import STRUCTURAL_ZEROS
 from ..runtime.request import Request, is_steady, request
 from ..runtime.specialise import plain_form
-from ..runtime.wide_margins import have_wide_margins
+from ..runtime.threads import run_parts
+from ..runtime.wide_margins import all_have_wide_margins, have_wide_margins
 from . import special
-from .compiled import Groups, run
+from .compiled import LONGEST_PART, Groups, kernel_for, run
 from .loaded import kinks_of, moved_with_kinks, run_under_loads, with_nodes, with_slopes
 from .nodes import Array, classes, shared_nodes
 from .programs import WITHOUT_COURSE, Search, needs_own
 from .special import Designs
 
 KINDS = ("absmax", "max", "min")
+# Designs of a thread that does all of the work on them; of fewer, threads share the search alone.
+LEAST_ALL_THROUGH = 16_384
+
+
+class Checked(NamedTuple):
+    """Designs whose invalid inputs are NaN, where those are, and which designs have nodes of their own."""
+
+    designs: Designs
+    bad: NDArray[np.bool_]
+    special: NDArray[np.bool_]
+
+    def part(self, rows: slice) -> "Checked":
+        """Consecutive designs."""
+        return Checked(self.designs.part(rows), self.bad[rows], self.special[rows])
+
+
+class Work(NamedTuple):
+    """What is searched for, which kind of extremum, and how; `usual` is for designs that are not special."""
+
+    name: str
+    kind: str
+    search: Search
+    usual: Search
 
 
 class Plan(NamedTuple):
@@ -81,19 +105,15 @@ def search_of(plan: Plan, arrays: dict[str, Array], ends: tuple[float, float]) -
     """The search to compile; a scalar input of 0 is folded unless the gradient needs it."""
     wanted = plan.wanted
     name = wanted.names[0]
-    kept = needs_own(name, plan.parameters)
-    zeros = [
-        (n, 0.0)
-        for n in STRUCTURAL_ZEROS
-        if n in plan.parameters
-        and n not in kept
-        and n in arrays
-        and arrays[n].size == 1
-        and arrays[n].item() == 0.0
-    ]
+    known = [n for n in STRUCTURAL_ZEROS if n in plan.parameters and n in arrays]
+    zeros = [n for n in known if arrays[n].size == 1 and arrays[n].item() == 0.0]
+    if zeros:
+        kept = needs_own(name, plan.parameters)
+        zeros = [n for n in zeros if n not in kept]
+    fixed = (*wanted.fixed, *((n, 0.0) for n in zeros))
     extended = wanted.accuracy == "extended"
     far = max(abs(ends[0]), abs(ends[1])) > constants().limit
-    return Search(name, plan.parameters, wanted.form, (*wanted.fixed, *zeros), extended, far)
+    return Search(name, plan.parameters, wanted.form, fixed, extended, far)
 
 
 def peaks_of_designs(
@@ -108,30 +128,51 @@ def peaks_of_designs(
 ) -> dict[str, Any]:
     """Value, angle, gradient and status of flat designs; `varying` are their loads that vary with theta."""
     kinks = "mu" in plan.parameters or has_kinks(plan.wanted.form.own)
-    designs = Designs(columns, branch, ends, kinks, dict(varying or {}), plan.wanted.accuracy)
-    return _peaks(plan.wanted.shown[0], kind, search, designs, threads)
+    loads = with_slopes(varying) if varying else {}
+    checked = _checked(Designs(columns, branch, ends, kinks, loads, plan.wanted.accuracy))
+    size = checked.designs.size
+    usual = search if loads else _in_form(search, checked)
+    work = Work(plan.wanted.shown[0], kind, search, usual)
+    if loads or size < 2 * LEAST_ALL_THROUGH or (checked.special & ~checked.bad).any():
+        return _peaks(work, checked, threads)
+    kernel_for(usual, size)  # one for all parts: their order must not change a digit
+    found: dict[int, dict[str, Any]] = {}
+
+    def part(first: int, last: int) -> None:
+        found[first] = _peaks(work, checked.part(slice(first, last)), 1)
+
+    run_parts(part, size, threads, LEAST_ALL_THROUGH, LONGEST_PART)
+    return _joined([found[first] for first in sorted(found)])
 
 
-def _peaks(name: str, kind: str, search: Search, designs: Designs, threads: int | None) -> dict[str, Any]:
-    """Value, angle, gradient and status of flat designs."""
+def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:
+    """The results of consecutive designs as those of all."""
+    columns = {name: [part[name] for part in parts] for name in parts[0]}
+    return {
+        name: _joined(column) if isinstance(column[0], dict) else np.concatenate(column)
+        for name, column in columns.items()
+    }
+
+
+def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
+    """Value, angle, gradient and status of some designs."""
+    name, kind, search, usual = work
+    designs, bad, own_nodes = checked
+    columns = designs.columns
     out = np.empty((2 + len(search.parameters), designs.size))
     theta = np.empty(designs.size)
     status = np.zeros(designs.size, np.int8)
-    columns = _good(designs)
     number = KINDS.index(kind)
-    ends = special.are_special(designs)
-    rows = np.flatnonzero(~ends)
-    if designs.loads:
-        designs = designs._replace(columns=columns, loads=with_slopes(designs.loads))
+    rows = np.flatnonzero(~own_nodes)
     kinks, own = kinks_of(designs) if designs.loads else (None, np.empty((designs.size, 0)))
     if rows.size and designs.loads:
         groups = with_nodes(_classed(designs, rows), own)
         run_under_loads(name, search, designs, groups, number, theta, out)
     elif rows.size:
-        run(_in_form(search, columns, rows), columns, _classed(designs, rows), number, theta, out, threads)
-    bad = np.any([np.isnan(column) for column in columns.values()], axis=0)
-    out[:, bad], status[bad] = np.nan, BAD_INPUT
-    rows = np.flatnonzero((ends | np.isnan(out[0]) if rows.size else ends) & ~bad)
+        run(usual, columns, _classed(designs, rows), number, theta, out, threads)
+    if bad.any():
+        out[:, bad], status[bad] = np.nan, BAD_INPUT
+    rows = np.flatnonzero((own_nodes | np.isnan(out[0]) if rows.size else own_nodes) & ~bad)
     for start in range(0, rows.size, special.BLOCK):
         part = rows[start : start + special.BLOCK]
         some = designs.part(part)
@@ -156,18 +197,22 @@ def _peaks(name: str, kind: str, search: Search, designs: Designs, threads: int 
     return {"value": value, "theta": theta, "gradient": gradient, "status": status}
 
 
-def _in_form(search: Search, columns: dict[str, Array], rows: NDArray[np.intp]) -> Search:
-    """The search in plain forms, if those are shorter and all these designs have wide margins.
+def _in_form(search: Search, checked: Checked) -> Search:
+    """The search in plain forms, if those are shorter and all designs of the usual kind have wide margins.
 
     A second one, for a few that are not, would take longer to compile than it saves.
     """
+    columns, rows = checked.designs.columns, np.flatnonzero(~checked.special)
     names = search.name, sensitivity(search.name, "theta")
     derived = tuple(name for name in names if has(name))
-    known = all(name in columns for name in LENGTHS)
-    if search.extended or not known or plain_form(derived, search.form, search.fixed) is None:
+    if not rows.size or search.extended or not all(name in columns for name in LENGTHS):
         return search
-    wide_margins = have_wide_margins({name: _at(columns[name], rows) for name in LENGTHS}, search.form).all()
-    return search._replace(form=search.form._replace(wide_margins=True)) if wide_margins else search
+    if plain_form(derived, search.form, search.fixed) is None:
+        return search
+    lengths = {name: _at(columns[name], rows) for name in LENGTHS}
+    if all_have_wide_margins(search.form, **lengths) or have_wide_margins(lengths, search.form).all():
+        return search._replace(form=search.form._replace(wide_margins=True))
+    return search
 
 
 def _at(column: Array, rows: NDArray[np.intp]) -> Array:
@@ -175,16 +220,18 @@ def _at(column: Array, rows: NDArray[np.intp]) -> Array:
     return column if rows.size == column.size else column[rows]
 
 
-def _good(designs: Designs) -> dict[str, Array]:
-    """The inputs with NaN for invalid values, which would give a finite, wrong result."""
-    if designs.size == 1:
-        return designs.columns  # checked where it came in
-    good = {}
-    for name, column in designs.columns.items():
-        least = INPUTS[name].least
-        fine = np.isfinite(column) if least is None else np.isfinite(column) & (column >= least)
-        good[name] = column if fine.all() else np.where(fine, column, np.nan)
-    return good
+def _checked(designs: Designs) -> Checked:
+    """The designs with NaN for invalid values, which would give a finite, wrong result."""
+    bad = np.zeros(designs.size, np.bool_)
+    columns = dict(designs.columns)
+    if designs.size > 1:  # one was checked where it came in
+        for name, column in columns.items():
+            fine = are_good(name, column)
+            if not fine.all():
+                columns[name] = np.where(fine, column, np.nan)
+                bad |= ~fine
+    designs = designs._replace(columns=columns)
+    return Checked(designs, bad, special.are_special(designs))
 
 
 def _classed(designs: Designs, rows: NDArray[np.intp]) -> Groups:
@@ -196,7 +243,7 @@ def _classed(designs: Designs, rows: NDArray[np.intp]) -> Groups:
         return Groups(rows, np.array([0, rows.size]), nodes, np.array([0, nodes.size]))
     places = np.argsort(numbers, kind="stable")
     numbers = numbers[places]
-    first = np.flatnonzero(np.diff(numbers, prepend=-1))
+    first = np.append(0, 1 + np.flatnonzero(numbers[1:] != numbers[:-1]))
     grids = [shared_nodes(int(number), *designs.theta) for number in numbers[first]]
     starts = np.append(first, rows.size)
     node_starts = np.cumsum([0, *(grid.size for grid in grids)])

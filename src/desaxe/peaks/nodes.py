@@ -33,9 +33,9 @@ def classes(ec: Array, AB: Array, BC: Array) -> NDArray[np.int16]:
 
 def _class(margin: Array) -> NDArray[np.int16]:
     """The least k with margin >= 4^-k."""
-    exponent = np.frexp(margin)[1].astype(np.int16)  # margin in [2^(e-1), 2^e)
-    k = np.minimum(np.maximum((2 - exponent) >> 1, 0), CLASSES - 1)
-    return np.where(margin > 0.0, k, np.int16(CLASSES - 1))
+    exponent = (margin.view(np.int64) >> 52).astype(np.int16)  # margin in [2^(e-1023), 2^(e-1022)), or e < 0
+    found: NDArray[np.int16] = np.minimum(np.maximum((1024 - exponent) >> 1, 0), CLASSES - 1)
+    return found
 
 
 @lru_cache(maxsize=1024)

@@ -103,11 +103,7 @@ def peak(
     columns = {n: _flat(a, shape) for n, a in arrays.items()}
     search = search_of(plan, arrays, ends)
     powers = None
-    if (
-        not varying
-        and can_rescale(plan.wanted)
-        and any(np.any(are_extreme(n, c)) for n, c in columns.items())
-    ):
+    if not varying and can_rescale(plan.wanted) and any(np.any(are_extreme(n, c)) for n, c in arrays.items()):
         columns, powers = rescaled(columns)
     found = peaks_of_designs(plan, kind, search, columns, branch, ends, threads, varying)
     if powers is not None:
