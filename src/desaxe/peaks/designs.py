@@ -45,7 +45,7 @@ class Checked(NamedTuple):
 
 
 class Work(NamedTuple):
-    """What is searched for, which kind of extremum, and how; `usual` is for designs that are not special."""
+    """A name, the kind of its extremum, and the searches for special designs and for the usual ones."""
 
     name: str
     kind: str

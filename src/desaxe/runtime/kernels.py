@@ -4,7 +4,7 @@
 """
 
 from collections.abc import Mapping, Sequence
-from math import prod
+from math import inf, prod
 from typing import Any, NamedTuple
 
 from ..compiler.kernel import Kernel
@@ -218,10 +218,21 @@ def _unsafe(names: Sequence[str]) -> list[Line]:
     return [*lines, *_joined("or", found, "unsafe")]
 
 
+_Condition = tuple[str, tuple[str | float, ...]]  # the operation and arguments of a line
+
+
 def _where_safe(test: Program, names: Sequence[str]) -> Program:
     """The test for wide margins, which fails where an input is unsafe too; lengths have fewer ways to be."""
     (wide,), (least, most) = test.outputs, SAFE
+    # AB is at most 7/8 BC, |ec| less than BC: conditions of the test's own, made narrower.
+    narrower: dict[str, tuple[_Condition, _Condition]] = {
+        "AB": (("le", (0.0, "AB")), ("le", (least, "AB"))),
+        "BC": (("lt", ("BC", inf)), ("le", ("BC", most))),
+    }
     lines = [line._replace(name="wide_alone") if line.name == wide else line for line in test.lines]
+    for before, after in (narrower[name] for name in names if name in narrower):
+        place = [(line.op, line.args) for line in lines].index(before)
+        lines[place] = lines[place]._replace(op=after[0], args=after[1])
     held = ["wide_alone"]
 
     def needs(name: str, op: str, *args: str | float) -> str:
@@ -229,21 +240,19 @@ def _where_safe(test: Program, names: Sequence[str]) -> Program:
         return name
 
     for name in names:
-        if name == "AB":  # at most 7/8 BC
-            held.append(needs("AB_safe", "le", least, name))
-        elif name == "BC":  # more than AB
-            held.append(needs("BC_safe", "le", name, most))
-        else:
-            size = f"{name}_magnitude"
-            lines.append(Line(size, "abs", (name,)))
-            if name != "ec":  # less than BC
-                held.append(
-                    needs(f"{name}_below", "le", size, constants().limit if name == "theta" else most)
-                )
-            if name != "theta":
-                parts = needs(f"{name}_none", "eq", name, 0.0), needs(f"{name}_above", "le", least, size)
-                held.append(needs(f"{name}_safe", "or", *parts))
-    lines += _joined("and", held, wide)
+        if name in narrower:
+            continue
+        size = f"{name}_magnitude"
+        lines.append(Line(size, "abs", (name,)))
+        if name != "ec":
+            held.append(needs(f"{name}_below", "le", size, constants().limit if name == "theta" else most))
+        if name != "theta":
+            parts = needs(f"{name}_none", "eq", name, 0.0), needs(f"{name}_above", "le", least, size)
+            held.append(needs(f"{name}_safe", "or", *parts))
+    if len(held) == 1:
+        lines[-1] = lines[-1]._replace(name=wide)
+    else:
+        lines += _joined("and", held, wide)
     return test._replace(inputs=tuple(dict.fromkeys((*test.inputs, *names))), lines=tuple(lines))
 
 

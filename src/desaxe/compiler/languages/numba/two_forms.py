@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from ...kernel import Kernel, StableBranch, level_program, stable_branch_programs
 from ...program import Program, names_in
-from ...stages import staged
+from ...stages import Stages, staged
 from ...text import INDENT, write_lines
 
 # Rooms on the stack: the compiler knows that nothing else points there, and nothing has to be allocated.
@@ -54,15 +54,15 @@ def get(typingctx, room, place):
 
 @intrinsic
 def flags(typingctx):
-    \"\"\"Room for a byte for each point of a block.\"\"\"
+    \"\"\"Room for a word for each point of a block: -1 where it is flagged, else 0.\"\"\"
 
     def code(context, builder, signature, args):
-        kind = context.get_value_type(types.uint8)
+        kind = context.get_value_type(types.int64)
         place = builder.alloca(kind, size=context.get_constant(types.int64, BLOCK))
-        place.align = 8
+        place.align = 64
         return place
 
-    return types.CPointer(types.uint8)(), code
+    return types.CPointer(types.int64)(), code
 
 
 @intrinsic
@@ -71,20 +71,22 @@ def put_flag(typingctx, flags, place, flag):
 
     def code(context, builder, signature, args):
         flags, place, flag = args
-        byte = context.cast(builder, flag, types.boolean, types.uint8)
-        builder.store(byte, builder.gep(flags, [place]))
+        word = builder.sext(flag, context.get_value_type(types.int64))
+        builder.store(word, builder.gep(flags, [place]))
         return context.get_dummy_value()
 
     return types.none(flags, types.uint64, types.boolean), code
 
 
 @intrinsic
-def eight_flags(typingctx, flags, word):
-    \"\"\"The flags of eight points in a row.\"\"\"
+def eight_flags(typingctx, flags, eight):
+    \"\"\"The flags of eight points in a row, a bit each.\"\"\"
 
     def code(context, builder, signature, args):
-        kind = context.get_value_type(types.uint64).as_pointer()
-        return builder.load(builder.gep(builder.bitcast(args[0], kind), [args[1]]))
+        kind = cgutils.ir.VectorType(context.get_value_type(types.int64), 8)
+        place = builder.gep(builder.bitcast(args[0], kind.as_pointer()), [args[1]])
+        bits = builder.icmp_signed("<", builder.load(place, align=64), kind([0] * 8))
+        return builder.zext(builder.bitcast(bits, cgutils.int8_t), context.get_value_type(types.uint64))
 
     return types.uint64(flags, types.uint64), code
 
@@ -94,8 +96,8 @@ def is_flagged(typingctx, flags, place):
     \"\"\"The flag of a point of a block.\"\"\"
 
     def code(context, builder, signature, args):
-        byte = builder.load(builder.gep(args[0], [args[1]]))
-        return context.cast(builder, byte, types.uint8, types.boolean)
+        word = builder.load(builder.gep(args[0], [args[1]]))
+        return builder.icmp_signed("<", word, word.type(0))
 
     return types.boolean(flags, types.uint64), code
 
@@ -111,17 +113,15 @@ def count_flags(typingctx, eight):
 
 
 @intrinsic
-def put_places(typingctx, room, count, eight, first):
+def put_places(typingctx, room, count, flags, first):
     \"\"\"Keep the places of the points of eight that are flagged; what follows is not for use.\"\"\"
 
     def code(context, builder, signature, args):
-        room, count, eight, first = args
+        room, count, flags, first = args
         word, byte = (context.get_value_type(kind) for kind in (types.uint64, types.uint8))
         rows = [[k for k in range(8) if flags >> k & 1] for flags in range(256)]
         table = cgutils.create_constant_array(byte, [k for row in rows for k in (row + [0] * 8)[:8]])
         kept = builder.bitcast(cgutils.global_constant(builder, "places", table), byte.as_pointer())
-        # The product moves the lowest bits of the eight bytes next to each other.
-        flags = builder.lshr(builder.mul(eight, word(0x0102040810204080)), word(56))
         # As vectors: LLVM leaves eight single additions alone.
         vector, undefined = cgutils.ir.VectorType, cgutils.ir.Undefined
         row = builder.gep(builder.bitcast(kept, vector(byte, 8).as_pointer()), [flags])
@@ -159,19 +159,20 @@ def from_element(typingctx, array, place):
 
 
 @intrinsic
-def clear_flags(typingctx, flags, word):
+def clear_flags(typingctx, flags, eight):
     \"\"\"Clear the flags of eight points in a row.\"\"\"
 
     def code(context, builder, signature, args):
-        kind = context.get_value_type(types.uint64)
+        kind = cgutils.ir.VectorType(context.get_value_type(types.int64), 8)
         place = builder.gep(builder.bitcast(args[0], kind.as_pointer()), [args[1]])
-        builder.store(kind(0), place)
+        builder.store(kind([0] * 8), place, align=64)
         return context.get_dummy_value()
 
     return types.none(flags, types.uint64), code
 """
 BIGGEST = 512  # points of a block: their inputs and outputs stay in the first-level cache
 STACK = 32_768  # numbers that all rooms together may take
+WIDE = "WIDE"  # the constant of a module: whether the processor has vectors of 512 bits
 LANES = 8  # points that the stable loops take at a time
 APART = 72  # numbers between rooms: at a multiple of 4096 bytes a store holds up loads from other rooms
 
@@ -209,7 +210,7 @@ def _branch(kernel: Kernel) -> StableBranch:
 
 def block_of(kernel: Kernel) -> int:
     """The number of points of a block, such that its buffers fit on the stack."""
-    rooms = 1 + len(_inner(kernel)) + len(kernel.outputs) + len(_stable_of(kernel).kept)
+    rooms = len(_rooms(kernel))
     return max(16, min(BIGGEST, (STACK // rooms - APART) // 16 * 16))
 
 
@@ -225,12 +226,18 @@ def has_two_forms(kernel: Kernel) -> bool:
 
 
 def scratch(kernel: Kernel) -> list[str]:
-    """Allocate the buffers of points that fail the test: places, inputs, outputs, and between the stages."""
+    """Allocate the flags of a block, and its rooms."""
     if not has_two_forms(kernel):
         return []
-    rooms = [f"{name}_kept" for name in (*_inner(kernel), *(f"out_{name}" for name in kernel.outputs))]
-    rooms += [f"{name}_room" for name in _stable_of(kernel).kept]
-    return ["close = flags()", "place = room()", *(f"{name} = room()" for name in rooms)]
+    return ["close = flags()", *(f"{name} = room()" for name in _rooms(kernel))]
+
+
+def _rooms(kernel: Kernel) -> list[str]:
+    """The buffers of a block: places, inputs and outputs of points that fail the test; between stages."""
+    kept = [f"{name}_kept" for name in (*_inner(kernel), *(f"out_{name}" for name in kernel.outputs))]
+    plain = _plain_stages(kernel)
+    between = dict.fromkeys((*_stable_of(kernel).kept, *(plain.first.outputs if plain else ())))
+    return ["place", *kept, *(f"{name}_room" for name in between)]
 
 
 def _inner(kernel: Kernel) -> list[str]:
@@ -330,7 +337,8 @@ def _mixed(
     test = write_lines(stable_branch_programs(kernel)[0], "numba")
     tested = {name for line in close.test_lines for name in names_in(line.args)}
     ahead = [f"{name} = {text}" for name, text in loads.items() if name in tested]
-    flag = f"put_flag(close, {here} - start, not {close.test})"
+    flag = [f"put_flag(close, {here} - start, not {close.test})"]
+    flag += [f"count += uint64(0) if {close.test} else uint64(1)"]
     points = f"for {here} in range(start, stop):"
     return [
         f"length = {length}",
@@ -342,12 +350,10 @@ def _mixed(
         f"{INDENT}clear_flags(close, words - uint64(1))",
         f"{INDENT}count = uint64(0)",
         f"{INDENT}if every:",
-        *_under(points, [*ahead, *test, flag], 2),
-        *_under("for word in range(words):", [_COUNT], 2),
+        *_under(points, [*ahead, *test, *flag], 2),
         f"{INDENT}if count < size:",
-        *_under(points, [*plain, flag], 2),
         f"{INDENT * 2}count = uint64(0)",
-        *_under("for word in range(words):", [_COUNT], 2),
+        *(INDENT * 2 + row for row in _plain_loops(kernel, points, loads, plain, [*test, *flag])),
         f"{INDENT}every = count == size",
         f"{INDENT}if count:",
         # A part of eight points would be read, and written, past its end.
@@ -357,6 +363,32 @@ def _mixed(
         *(INDENT * 2 + row for row in _call(kernel, loads)),
         *(INDENT * 2 + row for row in _put_back(kernel)),
     ]
+
+
+def _plain_loops(
+    kernel: Kernel, points: str, loads: Mapping[str, str], plain: list[str], flag: list[str]
+) -> list[str]:
+    """The plain form and the flags of a block: in stages where vectors are narrow.
+
+    Where they are wide, half as many operations compute a point, and the processor sees enough of them.
+    """
+    one = _under(points, [*plain, flag[-2], flag[-1]], 0)
+    stages = _plain_stages(kernel)
+    if stages is None:
+        return one
+    here = f"i{kernel.axes - 1} - start"
+    read = [f"{name} = {text}" for name, text in loads.items()]
+    keep = [f"put({name}_room, {here}, {name})" for name in stages.first.outputs]
+    first = [*write_lines(stages.first, "numba"), *keep]
+    kept = [f"{name} = get({name}_room, {here})" for name in stages.first.outputs]
+    second = [*write_lines(stages.second, "numba"), *_stores(kernel, kernel.outputs)]
+    loops = _under(points, [*read, *flag[:-2], *first, *flag[-2:]], 0)
+    loops += _under(points, [*_used(read, stages.second), *_used(kept, stages.second), *second], 0)
+    return [f"if {WIDE}:", *(INDENT + row for row in one), "else:", *(INDENT + row for row in loops)]
+
+
+def _plain_stages(kernel: Kernel) -> Stages | None:
+    return staged(level_program(kernel, kernel.axes)._replace(outputs=kernel.outputs))
 
 
 def _gathered(kernel: Kernel, loads: Mapping[str, str]) -> list[str]:
@@ -420,9 +452,8 @@ def _put_back(kernel: Kernel) -> list[str]:
     return rows + (_under("if most:", chosen(others), 0) if others else [])
 
 
-_COUNT = "count += count_flags(eight_flags(close, word))"
 _FILLED = f"(count + uint64({LANES - 1})) & ~uint64({LANES - 1})"  # a whole number of eights
-# Where the flagged points of a block are: places and their count. A flag is the lowest bit of its byte.
+# Where the flagged points of a block are: places and their count.
 _PLACES = """count = uint64(0)
 for word in range(words):
     eight = eight_flags(close, word)
