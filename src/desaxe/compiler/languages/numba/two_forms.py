@@ -337,8 +337,7 @@ def _mixed(
     test = write_lines(stable_branch_programs(kernel)[0], "numba")
     tested = {name for line in close.test_lines for name in names_in(line.args)}
     ahead = [f"{name} = {text}" for name, text in loads.items() if name in tested]
-    flag = [f"put_flag(close, {here} - start, not {close.test})"]
-    flag += [f"count += uint64(0) if {close.test} else uint64(1)"]
+    flag = f"put_flag(close, {here} - start, not {close.test})"
     points = f"for {here} in range(start, stop):"
     return [
         f"length = {length}",
@@ -350,10 +349,11 @@ def _mixed(
         f"{INDENT}clear_flags(close, words - uint64(1))",
         f"{INDENT}count = uint64(0)",
         f"{INDENT}if every:",
-        *_under(points, [*ahead, *test, *flag], 2),
+        *_under(points, [*ahead, *test, flag], 2),
+        *_under("for word in range(words):", [_COUNT], 2),
         f"{INDENT}if count < size:",
         f"{INDENT * 2}count = uint64(0)",
-        *(INDENT * 2 + row for row in _plain_loops(kernel, points, loads, plain, [*test, *flag])),
+        *(INDENT * 2 + row for row in _plain_loops(kernel, points, loads, plain, test, flag)),
         f"{INDENT}every = count == size",
         f"{INDENT}if count:",
         # A part of eight points would be read, and written, past its end.
@@ -366,13 +366,14 @@ def _mixed(
 
 
 def _plain_loops(
-    kernel: Kernel, points: str, loads: Mapping[str, str], plain: list[str], flag: list[str]
+    kernel: Kernel, points: str, loads: Mapping[str, str], plain: list[str], test: list[str], flag: str
 ) -> list[str]:
-    """The plain form and the flags of a block: in stages where vectors are narrow.
+    """The plain form, the flags of a block and their count: in stages where vectors are narrow.
 
-    Where they are wide, half as many operations compute a point, and the processor sees enough of them.
+    Where they are wide, half as many operations compute a point, and the processor sees enough of them;
+    there a sum in the loop would have LLVM take two vectors at a time, which is slower.
     """
-    one = _under(points, [*plain, flag[-2], flag[-1]], 0)
+    one = [*_under(points, [*plain, flag], 0), *_under("for word in range(words):", [_COUNT], 0)]
     stages = _plain_stages(kernel)
     if stages is None:
         return one
@@ -382,7 +383,8 @@ def _plain_loops(
     first = [*write_lines(stages.first, "numba"), *keep]
     kept = [f"{name} = get({name}_room, {here})" for name in stages.first.outputs]
     second = [*write_lines(stages.second, "numba"), *_stores(kernel, kernel.outputs)]
-    loops = _under(points, [*read, *flag[:-2], *first, *flag[-2:]], 0)
+    tally = f"count += uint64(0) if {_branch(kernel).test} else uint64(1)"
+    loops = _under(points, [*read, *test, *first, flag, tally], 0)
     loops += _under(points, [*_used(read, stages.second), *_used(kept, stages.second), *second], 0)
     return [f"if {WIDE}:", *(INDENT + row for row in one), "else:", *(INDENT + row for row in loops)]
 
@@ -452,6 +454,7 @@ def _put_back(kernel: Kernel) -> list[str]:
     return rows + (_under("if most:", chosen(others), 0) if others else [])
 
 
+_COUNT = "count += count_flags(eight_flags(close, word))"
 _FILLED = f"(count + uint64({LANES - 1})) & ~uint64({LANES - 1})"  # a whole number of eights
 # Where the flagged points of a block are: places and their count.
 _PLACES = """count = uint64(0)
