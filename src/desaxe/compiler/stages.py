@@ -1,8 +1,8 @@
 """A straight program in two stages, each a loop of its own over a block of points.
 
-The stable form of a point is one long chain: the angle's polynomials, then roots and divisions that wait for
-each other. A processor that looks some hundred operations ahead sees hardly more than one point of it, and
-waits. In two loops it sees several, and the units that compute have work.
+A point is one long chain: the angle's polynomials, then roots and divisions that wait for each other. A
+processor that looks some hundred operations ahead sees hardly more than one point of the stable form, or with
+narrow vectors of the plain one, and waits. In two loops it sees several, and its units have work.
 """
 
 from typing import NamedTuple
