@@ -97,8 +97,10 @@ class Function:
         if len(args) != len(self.inputs):
             raise TypeError(f"function of ({', '.join(self.inputs)}): {len(args)} arguments were given")
         if out is not None:
-            named["out"] = outs = self._outputs(out)
-            args = tuple([_apart(argument, outs) for argument in args])
+            if type(out) is not tuple or len(out) != len(self.names) or not _all_apart((*args, *out)):
+                out = self._outputs(out)
+                args = tuple([_apart(argument, out) for argument in args])
+            named["out"] = out
         try:
             found = self._ufunc(*args, **named)
         except (TypeError, ValueError):
@@ -215,6 +217,19 @@ def _needed(name: str, state: bool) -> tuple[str, ...]:
 def _constant_like(values: Any, constant: Any) -> Any:
     """The constant where there is a value, else NaN."""
     return np.where(np.isnan(values), np.nan, constant)[()]
+
+
+def _all_apart(arrays: tuple[Any, ...]) -> bool:
+    """True if it is seen at once that none shares memory with another: each is of an owner of its own."""
+    owners = set()
+    for array in arrays:
+        owner = getattr(array, "base", None)
+        if owner is None:  # else the array is a view, such as those that linspace returns
+            owner = array
+        if type(owner) is not np.ndarray or not owner.flags.owndata:
+            return False
+        owners.add(id(owner))
+    return len(owners) == len(arrays)
 
 
 def _may_share(array: NDArray[Any], out: Any) -> bool:
