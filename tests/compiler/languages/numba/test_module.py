@@ -231,13 +231,24 @@ def test_both_forms_of_a_kernel_run_several_points_at_once():
     assert counts[1] > counts[0] > 0
 
 
+WIDE = 'WIDE = "+avx512f" in get_host_cpu_features()'
+
+
+@cache
+def with_vectors(wide):
+    """A kernel of columns for wide or narrow vectors, and the names of its arguments."""
+    axes = tuple((name, 0) for name in ("AB", "BC", "ec", "theta"))
+    text = source_of(KernelKey(("V_C", "a_C"), Variant(), (("alpha", 0.0), ("branch", 1.0)), axes, 1))
+    assert text.count(WIDE) == 1
+    scope = {}
+    exec(text.replace(WIDE, f"WIDE = {wide}"), scope)
+    names = [name.removesuffix("_axis") for name in inspect.signature(scope["function"]).parameters]
+    return njit(scope["signature"], error_model="numpy")(scope["function"]), names
+
+
 @pytest.mark.parametrize("size", [7, 520, 1100])
 def test_one_loop_or_two_have_the_same_digits(size):
     """The plain form runs in stages where vectors are narrow: both ways exist on every machine."""
-    axes = tuple((name, 0) for name in ("AB", "BC", "ec", "theta"))
-    text = source_of(KernelKey(("V_C", "a_C"), Variant(), (("alpha", 0.0), ("branch", 1.0)), axes, 1))
-    own = 'WIDE = "+avx512f" in get_host_cpu_features()'
-    assert text.count(own) == 1
     rng = np.random.default_rng(size)
     given = {"theta": rng.uniform(-9.0, 9.0, size), "ec": rng.uniform(-0.1, 0.1, size), "omega0": 157.0}
     given["AB"] = rng.uniform(0.1, 0.13, size)
@@ -246,13 +257,9 @@ def test_one_loop_or_two_have_the_same_digits(size):
     given["theta"][::5], given["BC"][3::50] = np.nan, np.inf
     found = []
     for wide in (True, False):
-        scope = {}
-        exec(text.replace(own, f"WIDE = {wide}"), scope)
-        names = inspect.signature(scope["function"]).parameters
+        kernel, names = with_vectors(wide)
         outs = np.zeros((2, size))
-        arguments = [given[name.removesuffix("_axis")] for name in list(names)[:-2]]
-        left = njit(scope["signature"], error_model="numpy")(scope["function"])(*arguments, *outs)
-        found.append((left, outs))
+        found.append((kernel(*(given[name] for name in names[:-2]), *outs), outs))
     assert found[0][0] == found[1][0]
     np.testing.assert_array_equal(found[0][1], found[1][1])
     assert np.isnan(found[0][1]).any()
