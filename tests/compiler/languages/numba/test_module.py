@@ -231,7 +231,7 @@ def test_both_forms_of_a_kernel_run_several_points_at_once():
     assert counts[1] > counts[0] > 0
 
 
-WIDE = 'WIDE = "+avx512f" in get_host_cpu_features()'
+WIDE = 'WIDE = "+avx512f" in codegen.get_host_cpu_features()'
 
 
 @cache

@@ -44,10 +44,6 @@ def apart(typingctx):
 
     return types.none(), code
 """
-_OF_TWO_FORMS = [
-    "from numba.core import cgutils",
-    "from numba.core.codegen import get_host_cpu_features",
-]
 # An input may be an array that must not be written to; numba's signature strings cannot say so.
 _INPUT = 'axis = types.Array(types.float64, 1, "C", readonly=True)\n'
 
@@ -85,11 +81,11 @@ def _header(kernel: Kernel, docstring: str, numpy_names: list[str]) -> str:
     )
     imports = [f"from math import {', '.join(calls)}\n"] if calls else []
     imports.append("from numba import njit, types")
-    imports += _OF_TWO_FORMS if has_two_forms(kernel) else []
+    imports += ["from numba.core import cgutils, codegen"] if has_two_forms(kernel) else []
     if kernel.axes or any(line.op in NUMBA_HELPERS for line in lines):
         imports.append("from numba.extending import intrinsic")
     imports += [f"from numpy import {', '.join(from_numpy)}"] if from_numpy else []
-    given = [f'{WIDE} = "+avx512f" in get_host_cpu_features()\n'] if has_two_forms(kernel) else []
+    given = [f'{WIDE} = "+avx512f" in codegen.get_host_cpu_features()\n'] if has_two_forms(kernel) else []
     given += [_INPUT] if any(axis is not None for axis in kernel.inputs.values()) else []
     return "\n".join([f'"""{docstring}"""\n', *imports, "", *given])
 
