@@ -10,6 +10,7 @@ import pytest
 import desaxe as dx
 from desaxe.oracle.truth import truth
 from desaxe.peaks import compiled as module
+from desaxe.peaks import designs as parts_of_designs
 
 OMEGA = 157.08
 MACHINE = {"AB": 0.125, "BC": 0.35, "omega0": OMEGA}
@@ -313,7 +314,10 @@ def test_the_same_in_parts(monkeypatch, bad, one_special):
         designs["BC"][300] = 0.5 * designs["AB"][300]
     whole = dx.peak("a_C", threads=1, **designs)
     monkeypatch.setattr("desaxe.peaks.designs.LEAST_ALL_THROUGH", 100)
+    seen, joined = [], parts_of_designs._joined
+    monkeypatch.setattr(parts_of_designs, "_joined", lambda parts: seen.append(len(parts)) or joined(parts))
     parts = dx.peak("a_C", threads=2, **designs)
+    assert bool(seen) is not one_special  # a special design keeps them together
     assert (whole["status"] != 0).sum() == bad + one_special
     for name in ("value", "theta", "status"):
         np.testing.assert_array_equal(whole[name], parts[name])

@@ -32,7 +32,7 @@ def classes(ec: Array, AB: Array, BC: Array) -> NDArray[np.int16]:
 
 
 def _class(margin: Array) -> NDArray[np.int16]:
-    """The least k with margin >= 4^-k."""
+    """The least k with margin >= 4^-k; any for NaN."""
     exponent = (margin.view(np.int64) >> 52).astype(np.int16)  # margin in [2^(e-1023), 2^(e-1022)), or e < 0
     found: NDArray[np.int16] = np.minimum(np.maximum((1024 - exponent) >> 1, 0), CLASSES - 1)
     return found
