@@ -189,7 +189,7 @@ def test_status():
         ({"fluctuation": 2.5}, ValueError, "fluctuation = 2.5"),
         ({"omega0": 0.0}, ValueError, "omega0 = 0"),
         ({"omega0": None}, TypeError, "omega0 is missing"),
-        ({"AB": [0.1, 0.2]}, TypeError, "AB must be a number"),
+        ({"AB": [0.1, 0.2]}, TypeError, r"AB = \[0.1, 0.2\]: drive expects one number"),
         ({"omega": 3.0}, TypeError, "no input 'omega'"),
         ({"m_slidr": 3.0}, TypeError, "m_slider"),
         ({"m_slider": -1.0}, ValueError, "m_slider = -1.0"),

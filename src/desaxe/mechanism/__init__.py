@@ -4,6 +4,7 @@ names         names of sensitivities, and the lists of parameters
 inputs        the inputs: meaning, unit, limits
 catalogue     the quantities and sensitivities: unit, meaning, source
 units         text and pint quantities as SI numbers
+read          one reader of numbers, with or without a unit
 spelling      the name that was meant by one that does not exist
 program       the committed Program, sliced to some names, and its variants
 constants     coefficients of the written-out sine and cosine

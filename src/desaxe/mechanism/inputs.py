@@ -38,8 +38,7 @@ class Inputs(TypedDict, total=False):
     mu: Any
 
 
-# The smallest length that is more than nothing: a rod of 0 is no rod.
-_TINY = 5e-324
+TINY = 5e-324  # the least number that is more than nothing: a rod of 0 is no rod
 _INERTIA = "a finite moment of inertia >= 0"
 
 INPUTS = {
@@ -48,7 +47,7 @@ INPUTS = {
         Input("theta", "rad", "crank angle, from the slider axis"),
         Input("ec", "m", "eccentricity: the slider axis is at X = -ec"),
         Input("AB", "m", "crank length", 0.0, "a finite length >= 0"),
-        Input("BC", "m", "length of the connecting rod", _TINY, "a finite length > 0"),
+        Input("BC", "m", "length of the connecting rod", TINY, "a finite length > 0"),
         Input("omega0", "rad/s", "angular speed of the crank at theta = 0"),
         Input("alpha", "rad/s^2", "angular acceleration of the crank, constant"),
         Input("omega", "rad/s", "angular speed of the crank at this instant, instead of omega0"),

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..evaluation.evaluate import evaluate
+from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS
+from ..mechanism.read import read
 from ..mechanism.unit_system import Conversion
-from ..runtime.request import as_number, check_common, with_known_inputs
+from ..runtime.request import check_common, with_known_inputs
 from ..support.extras import needed
 from .shared import BLUE, ORANGE
 
@@ -102,10 +104,7 @@ def mechanism(*, theta: Any, ec: Any, AB: Any, BC: Any, branch: int = 1, ax: "Ax
 
 
 def _number(name: str, value: Any) -> float:
-    number = as_number(name, value, ("theta", *LENGTHS), ("mechanism",))
-    if number is None:
-        raise TypeError(f"{name}: a sketch shows one design at one angle, got {type(value).__name__}")
-    return number
+    return read(INPUTS[name], value, "plot.mechanism", "a number: a sketch shows one design at one angle")
 
 
 def _box(lengths: dict[str, float], reach: Any) -> tuple[float, float, float, float]:

@@ -2,15 +2,15 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache, wraps
-from math import inf
 from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from ..mechanism.catalogue import law_name, quantity
-from ..mechanism.inputs import INPUTS, is_good
+from ..mechanism.inputs import INPUTS
 from ..mechanism.names import CENTRES, LENGTHS, LOADS, parts
 from ..mechanism.own import Definition, used_by
 from ..mechanism.own_lines import not_extended
 from ..mechanism.program import Variant, program_of
+from ..mechanism.read import is_numpy_number, number_of
 from ..support.shown import shown
 from .accuracy import accuracy_of
 from .specialise import specialise
@@ -47,7 +47,7 @@ def check_common(given: Mapping[str, Any], branch: Any, threads: int | None = No
     """Reject omega together with omega0, a branch other than 1 or -1, and threads < 1."""
     if given.get("omega") is not None and given.get("omega0") is not None:
         raise ValueError("give omega0= (the law) or omega= (a state), not both")
-    number = isinstance(branch, (int, float)) or _is_numpy_number(branch)
+    number = isinstance(branch, (int, float)) or is_numpy_number(branch)
     if isinstance(branch, bool) or not number or branch not in (1, -1):
         raise ValueError(f"branch = {shown(branch)}: it is +1 or -1")
     if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int) or threads < 1):
@@ -178,22 +178,4 @@ def as_number(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]
     """The input as a float, None if it is an array; an error that names it if it is bad or missing."""
     if value is None:
         raise TypeError(f"{', '.join(names)}: {name} is missing (needed: {', '.join(inputs)})")
-    if isinstance(value, str) or hasattr(value, "magnitude"):
-        from ..mechanism.units import in_si
-
-        value = in_si(name, value)
-    if isinstance(value, bool) or not (isinstance(value, (int, float)) or _is_numpy_number(value)):
-        return None
-    try:
-        number = float(value)
-    except OverflowError:
-        number = inf
-    if not is_good(name, number):
-        raise ValueError(f"{name} = {shown(value)}: it must be {INPUTS[name].limit}")
-    return number
-
-
-def _is_numpy_number(value: Any) -> bool:
-    """A NumPy real scalar such as np.float32(1); a 0-d array is an array, and a time span no number."""
-    kind = getattr(getattr(value, "dtype", None), "kind", "")
-    return getattr(value, "shape", None) == () and hasattr(value, "is_integer") and kind in "fiu"
+    return number_of(INPUTS[name], value)

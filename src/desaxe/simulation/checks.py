@@ -10,10 +10,11 @@ import numpy as np
 from ..loads.load import Load as LoadOverMotion
 from ..loads.resolve import as_load, takes
 from ..mechanism.catalogue import quantity
+from ..mechanism.inputs import INPUTS, Input
 from ..mechanism.limit_angles import theta_intervals
 from ..mechanism.names import CENTRES, LENGTHS, LOADS
-from ..mechanism.units import in_unit
-from ..runtime.request import as_number, several
+from ..mechanism.read import read
+from ..runtime.request import several
 from ..support.checks import real_number
 from ..support.deadline import Deadline
 from ..support.shown import shown
@@ -28,16 +29,9 @@ SMALL = 1e-4  # rad: so near to a dead centre without inertia no motion is follo
 
 def scalar(name: str, value: Any, unit: str, least: float = -inf, limit: str = "a finite number") -> float:
     """A number, which may carry its unit."""
-    number = in_unit(name, value, unit) if isinstance(value, str) or hasattr(value, "magnitude") else value
-    if isinstance(number, np.ndarray) and number.ndim == 0:
-        number = number[()]
-    try:
-        number = real_number(name, number)
-    except TypeError:
-        raise TypeError(f"{name} = {shown(value)}: it must be {limit}") from None
-    if not (isfinite(number) and number >= least):
-        raise ValueError(f"{name} = {shown(value)}: it must be {limit}")
-    return number
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
+    return read(Input(name, unit, "", least, limit), value, "simulate", limit)
 
 
 def design_values(given: Mapping[str, Any]) -> dict[str, float]:
@@ -60,10 +54,7 @@ def design_values(given: Mapping[str, Any]) -> dict[str, float]:
 
 def one(name: str, value: Any) -> float:
     """A number for an input of the mechanism."""
-    number = as_number(name, value, LENGTHS, ("simulate",))
-    if number is None:
-        raise TypeError(f"{name} = {value!r}: expected a number")
-    return number
+    return read(INPUTS[name], value, "simulate")
 
 
 def check_names(names: Any) -> tuple[str, ...]:

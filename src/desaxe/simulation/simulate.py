@@ -8,6 +8,7 @@ import numpy as np
 
 from ..evaluation.loaded import with_labelled
 from ..loads.load import Load as LoadOverMotion
+from ..mechanism.inputs import TINY
 from ..runtime.request import check_common, with_known_inputs
 from ..support.checks import whole_number
 from ..support.deadline import Deadline
@@ -29,7 +30,6 @@ from .model import Load, Model
 from .one_design import Run, Tolerance
 from .result import Simulation
 
-TINY = 5e-324
 LEAST_ATOL = 1e-100  # with none at all a state of 0 would have no scale
 
 

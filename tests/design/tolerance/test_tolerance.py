@@ -213,7 +213,7 @@ def test_one_input_and_seeds():
         ({"samples": 1}, ValueError, "samples = 1"),
         ({"AC": 1.0}, TypeError, "no input 'AC'"),
         ({"ec": [0.1, 0.2, 0.3]}, ValueError, "a pair"),
-        ({"AB": np.array([0.1, 0.2])}, TypeError, "AB = .*a number, a pair"),
+        ({"AB": np.array([0.1, 0.2])}, TypeError, "AB = .*tolerance expects a number, a value and tol"),
         ({"ec": (0.1, math.inf)}, ValueError, "ec: a tolerance of inf; it must be finite"),
         ({"ec": (0.1, [1])}, TypeError, "ec = .*expected .*of numbers"),
         ({"ec": "0.1 m +- x %"}, ValueError, "ec: a tolerance of 'x %'"),

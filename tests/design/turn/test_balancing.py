@@ -182,7 +182,9 @@ def test_bad_arguments():
         dx.flywheel(fluctuation=0.02, F_Y=lambda theta: {}[theta], **PRESS)
     with pytest.raises(ValueError, match=r"harmonics: the crank cannot turn fully, margin = -0\.005"):
         dx.harmonics("Y", ec=0.23, AB=0.125, BC=0.35)
-    with pytest.raises(TypeError, match=r"F_Y: harmonics takes a number or a function of theta"):
+    with pytest.raises(
+        TypeError, match=r"F_Y = \[1.0, 2.0\]: harmonics expects a number or a function of theta"
+    ):
         dx.harmonics("T_in", F_Y=[1.0, 2.0], **PRESS)
     with pytest.raises(TypeError, match="no input 'alpha'"):
         dx.harmonics("a_C", alpha=1.0, ec=0.0, AB=0.1, BC=0.3, omega0=1.0)

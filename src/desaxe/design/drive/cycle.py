@@ -11,6 +11,7 @@ from ...evaluation.extremes import check_range
 from ...evaluation.loaded import loads_of
 from ...loads.angles import kinks_between, turns_of
 from ...mechanism.inputs import INPUTS
+from ...mechanism.read import read
 from ...runtime.request import as_number, check_common, check_inputs, request
 from ..events.closed_form import closed_form, placed
 from ..number_or_array import PLAIN
@@ -98,13 +99,9 @@ class Design:
 
 
 def _number(caller: str, name: str, value: Any) -> float:
-    number = as_number(name, value, (name,), (caller,))
-    if number is None:
-        raise TypeError(
-            f"{caller}: {name} must be a number, this is about one design: call it for each of them, as in "
-            f"[desaxe.{caller}({name}=value, ...) for value in values]"
-        )
-    return check_range(caller, name, number)
+    each = f"[desaxe.{caller}({name}=value, ...) for value in values]"
+    one = f"one number, for one design; call it for each of them, as in {each}"
+    return check_range(caller, name, read(INPUTS[name], value, caller, one))
 
 
 def torque_over(design: Design, names: Sequence[str], **other: Any) -> Panels:

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 
 from ...mechanism.catalogue import quantity
-from ...mechanism.inputs import INPUTS
+from ...mechanism.inputs import INPUTS, TINY, Input
+from ...mechanism.read import read
 from ...mechanism.spelling import did_you_mean
 from ...runtime.request import check_common, check_inputs
 from ...support.shown import shown
@@ -98,15 +99,8 @@ def _sigmas(sigma: Mapping[str, Any] | None, data: Data) -> dict[str, float]:
 
 
 def _sigma(name: str, value: Any) -> float:
-    number = value
-    if isinstance(value, str) or hasattr(value, "magnitude"):
-        from ...mechanism.units import in_unit
-
-        number = in_unit(name, value, quantity(name).unit)
-    plain = isinstance(number, (int, float, np.number)) and not isinstance(number, bool)
-    if not plain or not 0.0 < float(number) < np.inf:
-        raise ValueError(f"sigma: {name} = {shown(value)}: expected a finite number > 0")
-    return float(number)
+    row = Input(name, quantity(name).unit, "standard deviation", TINY, "a finite number > 0")
+    return read(row, value, "sigma", row.limit)
 
 
 def _set_sigma(model: Model, loss: str, seed: int) -> None:

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...mechanism.inputs import INPUTS, LEAST
+from ...mechanism.read import read
 from ...mechanism.spelling import did_you_mean
-from ...runtime.request import as_number
 from ...support.shown import shown
 from .data import Data
 
@@ -63,10 +63,7 @@ def _parameter(name: str, value: Any, fixed: Mapping[str, Any]) -> Unknown:
 
 
 def _number(name: str, value: Any) -> float:
-    number = as_number(name, value, (name,), ("fit",))
-    if number is None:
-        raise TypeError(f"over: {name} = {shown(value)}: expected a number or (low, high)")
-    return number
+    return read(INPUTS[name], value, "over", "a number or (low, high)")
 
 
 def _nuisance(name: str, data: Data) -> Unknown:

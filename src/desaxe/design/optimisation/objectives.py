@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...evaluation.loaded import loads_of
-from ...mechanism.inputs import INPUTS
+from ...mechanism.inputs import INPUTS, Input
 from ...mechanism.names import LENGTHS
-from ...runtime.request import as_number, check_inputs
-from ...support.checks import real_number
+from ...mechanism.read import read
+from ...runtime.request import check_inputs
 from ...support.deadline import Deadline
 from ...support.shown import shown
 from ..measures import UNITS, Measure, checked, text_of, unit_of
@@ -81,10 +81,7 @@ def _pair(name: str, bounds: Any) -> tuple[float, float]:
 
 
 def _number(name: str, value: Any) -> float:
-    number = as_number(name, value, (name,), ("optimize",))
-    if number is None:
-        raise TypeError(f"{name}: optimize takes numbers, got {type(value).__name__}")
-    return number
+    return read(INPUTS[name], value, "optimize")
 
 
 def limits_of(keep: Mapping[Any, Any]) -> list[Limit]:
@@ -114,14 +111,8 @@ def limits_of(keep: Mapping[Any, Any]) -> list[Limit]:
 
 
 def _in_si(measure: Measure, value: Any) -> float:
-    if isinstance(value, str) or hasattr(value, "magnitude"):
-        from ...mechanism.units import in_unit
-
-        value = in_unit(text_of(measure), value, unit_of(measure))
-    number = real_number(f"keep: {text_of(measure)}", value)
-    if not np.isfinite(number):
-        raise ValueError(f"keep: {text_of(measure)} = {number}: it must be finite, or None for no limit")
-    return number
+    row = Input(text_of(measure), unit_of(measure), "limit", limit="finite, or None for no limit")
+    return read(row, value, "keep")
 
 
 def lower_limits(key: Any, measure: Measure, bound: float) -> list[Limit]:

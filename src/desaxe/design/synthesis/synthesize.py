@@ -19,10 +19,10 @@ from itertools import pairwise
 from math import asin, cos, inf, isclose, pi, sin, sqrt
 from typing import Any
 
-from ...mechanism.inputs import INPUTS, Input
+from ...mechanism.inputs import INPUTS, TINY, Input
+from ...mechanism.read import read
 from ...runtime.request import as_number, with_known_inputs
 from ...support.answer import answering
-from ...support.checks import real_number
 from ...support.deadline import Deadline
 from ...support.roots import root
 from ...support.shown import shown
@@ -111,13 +111,7 @@ def synthesize(
 
 def _wish(name: str, value: Any) -> float:
     row = WANTED.get(name) or INPUTS[name]
-    if isinstance(value, str) or hasattr(value, "magnitude"):
-        from ...mechanism.units import in_unit
-
-        value = in_unit(name, value, row.unit)
-    number = real_number(name, value)
-    if not 0.0 < number < inf:
-        raise ValueError(f"{name} = {shown(value)}: it must be finite and more than 0")
+    number = read(row._replace(least=TINY, limit="finite and more than 0"), value, "synthesize")
     if name == "max_pressure_angle" and number > pi / 2:
         raise ValueError(f"max_pressure_angle = {number:g} rad: it is at most pi/2")
     return number

@@ -8,8 +8,9 @@ from warnings import warn
 import numpy as np
 from numpy.typing import NDArray
 
+from ...mechanism.inputs import INPUTS
 from ...mechanism.ranges import Between, RangeWarning, middle_of
-from ...runtime.request import as_number
+from ...mechanism.read import read as read_number
 from ...support.quantity_text import PLUS_MINUS, with_unit_of
 
 Array = NDArray[np.float64]
@@ -117,7 +118,4 @@ def _percent(name: str, text: str) -> float:
 
 
 def _number(name: str, value: Any) -> float:
-    number = as_number(name, value, (name,), ("tolerance",))
-    if number is None:
-        raise TypeError(f"{name} = {value!r}: expected a number, a pair (value, tolerance) or a distribution")
-    return number
+    return read_number(INPUTS[name], value, "tolerance", "a number, a value and tolerance, or a distribution")

@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 
 from ...evaluation.extremes import check_range
+from ...mechanism.inputs import TINY, Input
+from ...mechanism.read import read
 from ...support.answer import answering
 from ...support.shown import shown
 from .turn import Turn, extreme
@@ -20,6 +22,7 @@ from .turn import Turn, extreme
 ALONG = {"both": 0.0, "Y": 1.0, "X": -1.0}
 POINTS = 8192  # among which the largest force is looked for
 FORCES = ("F_shaking_X", "F_shaking_Y")
+RADIUS = Input("radius", "m", "from the crank centre to the counterweight", TINY, "a length > 0")
 
 
 @answering
@@ -101,12 +104,4 @@ def _ahead(weight: Any) -> float:
 
 
 def _radius(value: Any) -> float:
-    from ...runtime.request import as_number
-
-    try:
-        number = as_number("r_crank", value, ("radius",), ("counterweight",))
-    except ValueError as error:
-        raise ValueError(str(error).replace("r_crank", "radius", 1)) from None
-    if number is None or number <= 0.0:
-        raise ValueError(f"radius = {shown(value)}: it must be a length > 0")
-    return check_range("counterweight", "radius", number)
+    return check_range("counterweight", "radius", read(RADIUS, value, "counterweight", "a length > 0"))

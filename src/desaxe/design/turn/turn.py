@@ -19,6 +19,7 @@ from ...loads.angles import kinks_between, turns_of
 from ...loads.resolve import VARIABLE
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LENGTHS
+from ...mechanism.read import read
 from ...runtime.request import as_number, check_common, check_inputs, is_steady
 from ..drive.panels import Panels, resolved
 
@@ -128,8 +129,5 @@ def extreme(values: Array, sign: float) -> tuple[float, float]:
 
 
 def _number(caller: str, name: str, value: Any) -> float:
-    number = as_number(name, value, (name,), (caller,))
-    if number is None:
-        more = " or a function of theta, over_theta or over_Y" if name in VARIABLE else ""
-        raise TypeError(f"{name}: {caller} takes a number{more}, got {type(value).__name__}")
-    return check_range(caller, name, number)
+    more = " or a function of theta, over_theta or over_Y" if name in VARIABLE else ""
+    return check_range(caller, name, read(INPUTS[name], value, caller, f"a number{more}"))

@@ -1,0 +1,41 @@
+"""One reader of numbers: plain, as text with a unit, as a pint quantity or a NumPy scalar.
+
+A row says name, unit and limit: one of `INPUTS`, or a row of the caller's own for what is no input.
+"""
+
+from math import inf
+from typing import Any
+
+from ..support.shown import shown
+from .inputs import Input
+
+
+def number_of(row: Input, value: Any) -> float | None:
+    """The number in the row's unit; None for an array or anything else, ValueError beyond its limit."""
+    if isinstance(value, str) or hasattr(value, "magnitude"):
+        from .units import in_unit
+
+        value = in_unit(row.name, value, row.unit)
+    if isinstance(value, bool) or not (isinstance(value, (int, float)) or is_numpy_number(value)):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        number = inf
+    if not (-inf < number < inf and (row.least is None or row.least <= number)):
+        raise ValueError(f"{row.name} = {shown(value)}: it must be {row.limit}")
+    return number
+
+
+def read(row: Input, value: Any, caller: str, expected: str = "a number") -> float:
+    """The number in the row's unit; TypeError that says what the caller expects for anything else."""
+    number = number_of(row, value)
+    if number is None:
+        raise TypeError(f"{row.name} = {shown(value)}: {caller} expects {expected}")
+    return number
+
+
+def is_numpy_number(value: Any) -> bool:
+    """True for a NumPy real scalar such as np.float32(1); not for a 0-d array or a time span."""
+    kind = getattr(getattr(value, "dtype", None), "kind", "")
+    return getattr(value, "shape", None) == () and hasattr(value, "is_integer") and kind in "fiu"
