@@ -6,6 +6,7 @@ from desaxe.compiler.cost import cost_of
 from desaxe.compiler.passes.pipeline import PASSES, optimise
 from desaxe.compiler.passes.slicing import keep_outputs
 from desaxe.compiler.passes.trigonometry import expand_trigonometry
+from desaxe.support.text_table import table
 
 from .build import Derivation
 from .quantities import QUANTITIES
@@ -36,9 +37,4 @@ def _row(derivation: Derivation, name: str, fixed: Mapping[str, float]) -> list[
 
 
 def _table(titles: list[str], rows: list[list[object]]) -> str:
-    texts = [titles, *([str(cell) for cell in row] for row in rows)]
-    widths = [max(map(len, column)) for column in zip(*texts, strict=True)]
-    return "\n".join(
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in texts
-    )
+    return "\n".join(table([titles, *([str(cell) for cell in row] for row in rows)]))

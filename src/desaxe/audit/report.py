@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 
 from ..oracle.families import FAMILIES
+from ..support.text_table import table as text_table
 from .contenders import NAMES
 from .errors import TOP, ULPS, Statistics
 from .run import GENERIC, SEED, Audit
@@ -114,10 +115,9 @@ def number(x: float, top: float) -> str:
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """A Markdown table in even columns."""
-    wide = [max(len(row[column]) for row in (head, *rows)) for column in range(len(head))]
-    lines = [" | ".join(f"{text:{w}}" for text, w in zip(row, wide, strict=True)) for row in (head, *rows)]
-    rule = "|".join("-" * (w + 2) for w in wide)
-    return "\n".join(f"| {line} |" for line in (lines[0], *lines[1:])).replace("\n", f"\n|{rule}|\n", 1)
+    first, *others = text_table([[*row, ""] for row in (head, *rows)], gap=" | ", indent="| ")
+    rule = "".join(c if c == "|" else "-" for c in first)
+    return "\n".join([first, rule, *others])
 
 
 def measures(found: Audit, name: str) -> dict[str, float]:

@@ -5,6 +5,7 @@ import json
 from math import isfinite
 from typing import Any
 
+from ..support.text_table import table
 from .parser import SIGNS, add_command
 from .words import names_and_inputs
 
@@ -75,12 +76,10 @@ def _point(options: argparse.Namespace) -> int:
         print(json.dumps({**found, **({"status": PointStatus(status).words} if status else {})}, indent=2))
         return 0
     texts = [
-        f"{name} = {values[name]!r} {'' if row.unit == '1' else row.unit}".rstrip()
+        (f"{name} = {values[name]!r} {'' if row.unit == '1' else row.unit}".rstrip(), row.meaning)
         for name, row in rows.items()
     ]
-    width = max(map(len, texts))
-    for text, row in zip(texts, rows.values(), strict=True):
-        print(f"{text:{width}}   {row.meaning}")
+    print("\n".join(table(texts, gap="   ")))
     if status:
         print(f"status {status}: {PointStatus(status).words}")
     for name, its in worth.items():
@@ -110,10 +109,9 @@ def _list() -> int:
     from ..mechanism.catalogue import quantities
 
     rows = quantities().values()
-    wide = [max(len(getattr(row, field)) for row in rows) for field in ("name", "unit")]
-    for row in rows:
-        source = f" ({row.source})" if row.source else ""
-        print(f"{row.name:{wide[0]}}  {row.unit:{wide[1]}}  {row.meaning}{source}")
+    sources = [f" ({row.source})" if row.source else "" for row in rows]
+    cells = [(row.name, row.unit, row.meaning + source) for row, source in zip(rows, sources, strict=True)]
+    print("\n".join(table(cells)))
     return 0
 
 

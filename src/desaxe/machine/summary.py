@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 from ..design.events.events import events
 from ..design.feasibility.feasibility import feasibility
 from ..evaluation.evaluate import evaluate
+from ..support.text_table import table
 
 NAMES = {
     "AB": "crank", "BC": "connecting rod", "ec": "eccentricity", "omega0": "speed",
@@ -105,16 +106,14 @@ def _first(value: Any) -> float:
 
 def text_of(machine: Any) -> str:
     """The machine as text: the drawing beside its table."""
-    rows = rows_of(machine)
-    widths = [max((len(row[k]) for row in rows if len(row[k]) <= WIDEST), default=0) for k in (0, 1)]
-    table = [f"{name:{widths[0]}}  {value:{widths[1]}}  {meaning}" for name, value, meaning in rows]
+    lines = table(rows_of(machine), most=WIDEST)
     units = f", units={machine.units!r}" if machine.units else ""
     title = f"Machine({len(machine)} inputs{units})"
     pose = pose_of(machine)
     drawing = _drawing(pose) if pose else []
-    height = max(len(drawing), len(table))
+    height = max(len(drawing), len(lines))
     left = [*drawing, *[""] * (height - len(drawing))]
-    right = [*table, *[""] * (height - len(table))]
+    right = [*lines, *[""] * (height - len(lines))]
     wide = COLUMNS if drawing else 0
     return "\n".join([title, *(f"  {a:{wide}}  {b}".rstrip() for a, b in zip(left, right, strict=True))])
 

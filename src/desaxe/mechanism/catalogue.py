@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from ..support.shown import shown
+from ..support.text_table import table
 from .names import PARAMETERS, joined, parts, sensitivity
 from .own import Row, definitions, derived_names, leaves, rows
 
@@ -51,12 +52,7 @@ class Catalogue(Mapping[str, Quantity]):
         return isinstance(name, str) and has(name)
 
     def __repr__(self) -> str:
-        rows = [("name", "unit", "meaning", "source"), *self.values()]
-        widths = [max(len(row[i]) for row in rows) for i in range(3)]
-        return "\n".join(
-            "  ".join([*(cell.ljust(w) for cell, w in zip(row, widths, strict=False)), row[3]]).rstrip()
-            for row in rows
-        )
+        return "\n".join(table([("name", "unit", "meaning", "source"), *(row[:4] for row in self.values())]))
 
 
 def _names() -> Mapping[str, Row]:

@@ -9,6 +9,7 @@ import numpy as np
 from ..mechanism.catalogue import quantity
 from ..mechanism.status import PeakStatus
 from ..mechanism.unit_system import UnitSystem
+from ..support.text_table import table as text_table
 from .content import Content, Peak
 from .peaks import SIDEWAYS, WORDS, ClaimResult, PeakResult, group_names, peaks_in_units
 from .places import data_files
@@ -34,17 +35,9 @@ def report(content: Content, result: Run, units: UnitSystem) -> str:
     return "\n\n".join(parts)
 
 
-def table(rows: Sequence[Sequence[str]], left: int = 0) -> list[str]:
-    """Rows of cells as aligned lines; the first `left` columns are flush left, the others right."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = []
-    for row in rows:
-        cells = [
-            cell.ljust(width) if index < left else cell.rjust(width)
-            for index, (cell, width) in enumerate(zip(row, widths, strict=True))
-        ]
-        lines.append(("  " + "   ".join(cells)).rstrip())
-    return lines
+def table(rows: Sequence[Sequence[str]], align: str) -> list[str]:
+    """Rows of cells as lines of a report; a letter of `align` for each column, l or r."""
+    return text_table(rows, align, gap="   ", indent="  ")
 
 
 def number(value: float) -> str:
@@ -74,7 +67,7 @@ def _block(source: str, results: list[CheckResult]) -> str:
         last = check.title
         cells = printed.text(printed.value), printed.text(printed.rounded(computed))
         rows.append((title, check.quantity, *cells, full, "agrees" if agrees else "DIFFERS"))
-    return "\n".join(table(rows, left=2))
+    return "\n".join(table(rows, "llr"))
 
 
 # ---- feasibility ---------------------------------------------------------------------------------
@@ -122,7 +115,7 @@ def _peak(found: PeakResult, units: UnitSystem) -> str:
     low, high = (f"{degrees(angle):g}" for angle in one.theta)
     title = one.title or f"{WORDS[one.kind].capitalize()} of {one.quantity}, {known.meaning}"
     lines = [f"{title} (theta from {low} to {high} deg)"]
-    lines += table(_peak_rows(found, units))
+    lines += table(_peak_rows(found, units), "r")
     lines += _remarks(found)
     return "\n".join(lines + [_claim(one, claim, units) for claim in found.claims])
 
@@ -242,7 +235,7 @@ def files_report(content: Content, result: Run) -> str:
         for picture in content.pictures
         if Path(picture.file) in result.files
     ]
-    parts = ["\n".join(["Written", *table(rows, left=2)])] if rows else []
+    parts = ["\n".join(["Written", *table(rows, "llr")])] if rows else []
     if result.failures:
         parts.append("\n".join(["Not written", *(f"  {failure}" for failure in result.failures)]))
     return "\n\n".join(parts)

@@ -13,6 +13,7 @@ interrupts     work that Ctrl-C must not cut in half
 memory         a check for free memory
 checks         options of calls, checked
 deadline       a time limit
+text_table     tables as text, in even columns
 answer         results: dicts with a readable repr
 recent         a cache of the most recently used values
 shown          a value in a message, shortened

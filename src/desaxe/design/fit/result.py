@@ -8,6 +8,7 @@ from ...mechanism.catalogue import quantity
 from ...mechanism.status import FitStatus
 from ...mechanism.unit_system import SI, Conversion, UnitSystem
 from ...support.extras import needed
+from ...support.text_table import table
 from .model import Model
 
 DONE, STOPPED, OPEN = map(int, FitStatus)
@@ -67,12 +68,12 @@ class Fit(dict[str, Any]):
         """A table of the unknowns with standard errors and intervals, as text."""
         lines = [f"fit: {self['message']}", ""]
         shown, titles = self._numbers, {name: self._title(name) for name in self["names"]}
-        wide = max(map(len, titles.values()))
-        lines.append(f"  {'':{wide}}  {'value':>13}  {'std. error':>11}  95 % interval")
+        rows = [["", "value", "std. error", "95 % interval"]]
         for name, title in titles.items():
             low, high = shown["interval"][name]
             value, error = shown["value"][name], shown["std_error"][name]
-            lines.append(f"  {title:{wide}}  {value:13.7g}  {error:11.3g}  {low:.6g} ... {high:.6g}")
+            rows.append([title, f"{value:13.7g}", f"{error:11.3g}", f"{low:.6g} ... {high:.6g}"])
+        lines += table(rows, "lrrl", indent="  ")
         for direction in self["unidentified"]:
             weights = ", ".join(f"{weight:+.3g} {name}" for name, weight in direction.items())
             lines.append(f"  left open (relative changes): {weights}")

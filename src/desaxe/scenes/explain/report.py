@@ -25,7 +25,7 @@ def _asked(plan: Mapping[str, Any]) -> str:
     lines = ["Asked for"]
     if plan["outputs"]:
         rows = [[out["name"], _unit(out["unit"]), out["meaning"]] for out in plan["outputs"]]
-        lines += [_cut(line) for line in table(rows, left=3)]
+        lines += [_cut(line) for line in table(rows, "l")]
         taken = plan["reduction"]
         if taken:
             how = "block by block" if taken["stored"] else "the grid is not stored"
@@ -84,17 +84,13 @@ def _passes(plan: Mapping[str, Any]) -> str:
     for step in plan["steps"]:
         saved = f"{step['saved']:+d}".replace("+", "") if step["saved"] else ""
         rows.append([step["name"], str(step["operations"]), saved, step["what"]])
-    lines = table(rows, left=1)
     counts = plan["operations"]
     before = plan["steps"][-1]["operations"]
     per = counts["per_point"]
     if _is_compiled(plan) and per < 0.995 * before:
         what = "what does not depend on an axis leaves its loop"
         rows.append(["hoist", _few(per), _few(before - per), what])
-    lines = table([row[:3] for row in rows], left=1)
-    wide = max(map(len, lines))
-    texts = [f"{line:{wide}}   {row[3]}".rstrip() for line, row in zip(lines, rows, strict=True)]
-    return "\n".join(["Operations at each point after each pass", *texts])
+    return "\n".join(["Operations at each point after each pass", *table(rows, "lrrl")])
 
 
 def _is_compiled(plan: Mapping[str, Any]) -> bool:
@@ -109,8 +105,7 @@ def _few(value: float) -> str:
 
 def _loops(plan: Mapping[str, Any]) -> str:
     """The table of loops: runs, operations, operations per point."""
-    rows = [["", "runs", "operations", "per point"]]
-    names = [""]
+    rows = [["", "runs", "operations", "per point", ""]]
     for loop in plan["loops"]:
         if loop["table"]:
             place = f"table over {' x '.join(loop['along'])}" if loop["along"] else "for the tables, once"
@@ -118,18 +113,14 @@ def _loops(plan: Mapping[str, Any]) -> str:
             depth = len([axis for axis in loop["along"] if axis])
             place = "  " * max(0, depth - 1) + (f"for each {loop['along'][-1]}" if depth else "once")
         if loop["close"]:
-            rows.append(["  " * depth + "or, if close", "", str(loop["operations"]), "instead"])
-            names.append("the stable form, where margins are narrow")
+            form = "the stable form, where margins are narrow"
+            rows.append(["  " * depth + "or, if close", "", str(loop["operations"]), "instead", form])
             continue
-        rows.append([place, f"{loop['runs']:,}", str(loop["operations"]), _share(loop["per_point"])])
-        names.append(_values(loop))
+        cells = [place, f"{loop['runs']:,}", str(loop["operations"]), _share(loop["per_point"])]
+        rows.append([*cells, _values(loop)])
     counts = plan["operations"]
-    rows.append(["in all", "", str(counts["straight"]), _share(counts["per_point"])])
-    names.append("")
-    lines = table(rows, left=1)
-    wide = max(map(len, lines))
-    texts = [_cut(f"{line:{wide}}   {text}".rstrip()) for line, text in zip(lines, names, strict=True)]
-    return "\n".join(["Loops, from outside in", *texts])
+    rows.append(["in all", "", str(counts["straight"]), _share(counts["per_point"]), ""])
+    return "\n".join(["Loops, from outside in", *map(_cut, table(rows, "lrrrl"))])
 
 
 def _share(value: float) -> str:
@@ -205,7 +196,7 @@ def _bytes(count: int) -> str:
 
 def _also(plan: Mapping[str, Any]) -> str:
     rows = [[one["what"], f"{one['count']:,} {one['of']}", one["how"]] for one in plan["also"]]
-    return "\n".join(["Also", *(_cut(line) for line in table(rows, left=3))])
+    return "\n".join(["Also", *(_cut(line) for line in table(rows, "l"))])
 
 
 def _sweep(plan: Mapping[str, Any]) -> str:
@@ -226,4 +217,4 @@ def _total(plan: Mapping[str, Any]) -> str:
     rows = [["", "first run", "later runs"]]
     rows += [[part["what"], _time(part["first"]), _time(part["later"])] for part in total["parts"]]
     rows.append(["in all", f"about {_time(total['first'])}", f"about {_time(total['later'])}"])
-    return "\n".join(["Time of a run, in a new process", *table(rows, left=1)])
+    return "\n".join(["Time of a run, in a new process", *table(rows, "lr")])
