@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from ..compiler.program import RESERVED, Note
 from ..mechanism.dimensions import unit_of
 from ..mechanism.inputs import INPUTS
-from ..mechanism.names import parts
+from ..mechanism.names import INTERNAL, parts
 from ..mechanism.own import Definition, definitions, derived_names, replace_all, rows, rows_of
 from ..mechanism.spelling import did_you_mean
 from ..support.shown import shown
@@ -171,7 +171,7 @@ def _check_name(name: Any) -> None:
         raise ValueError(f"{name!r}: '_wrt_' and 'omega0' are parts of the names of sensitivities")
     if name in derived_names():
         raise ValueError(f"{name!r} is a quantity of desaxe already")
-    if name in INPUTS or name in TAKEN or iskeyword(name):
+    if name in INPUTS or name in TAKEN or name in INTERNAL or iskeyword(name):
         raise ValueError(f"{name!r} is a name of desaxe already")
     if name in ARITY or name in RESERVED or name == "pi":
         raise ValueError(f"{name!r} is a function of expressions")

@@ -66,10 +66,8 @@ class JointPart(NamedTuple):
     @property
     def outputs(self) -> dict[str, np.dtype[Any]]:
         """The outputs by name, and their types."""
-        return {
-            name: np.dtype(np.int64 if name.endswith("_skipped") else np.float64)
-            for name in self._variables()
-        }
+        counts = {f"{name}_skipped" for name in self.names}
+        return {name: np.dtype(np.int64 if name in counts else np.float64) for name in self._variables()}
 
     def _variables(self) -> list[str]:
         found = []

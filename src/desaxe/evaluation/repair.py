@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanism.constants import constants, double_constants
+from ..mechanism.names import STATUSES
 from ..runtime.any_stride import Repair
 from ..runtime.kernels import KernelKey, has_near_limit, kernel_for
 from ..runtime.near_limit import decide
@@ -74,7 +75,7 @@ def _arrays(
     """The arguments of the loop as arrays: the inputs of the kernel, and the outputs."""
     count = len(inputs) + len(key.names)
     addresses, strides = ((ctypes.c_int64 * count).from_address(place) for place in (args, steps))
-    kinds = ["<f8"] * len(inputs) + ["|i1" if "status" in name else "<f8" for name in key.names]
+    kinds = ["<f8"] * len(inputs) + ["|i1" if name in STATUSES else "<f8" for name in key.names]
     every = [_View(a, size, s, kind).array() for a, s, kind in zip(addresses, strides, kinds, strict=True)]
     own = dict(key.axis_of)
     columns = {name: array for name, array in zip(inputs, every, strict=False) if name in own}

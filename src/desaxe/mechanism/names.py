@@ -12,6 +12,18 @@ PARAMETERS = ("theta", "ec", "AB", "BC", "omega0", "alpha")
 LOADS = (
     "m_crank", "m_rod", "m_slider", "I_crank", "I_rod", "r_crank", "r_rod", "F_X", "F_Y", "g_X", "g_Y", "mu",
 )  # fmt: skip
+# A status: that of the motion, and that of a request for forces, which is shown by the same name.
+STATUS, FORCE_STATUS = STATUSES = ("status", "force_status")
+# What the library requests beside the names of a user: no quantity of his own is called so.
+INTERNAL = (
+    FORCE_STATUS,
+    "wide_margins",
+    "undecided",
+    "less_rounded",
+    "less_unsure",
+    "no_effect_on_rod",
+    "not_stalled",
+)
 CENTRES = ("r_crank", "r_rod")  # half of AB and of BC where they are not given
 # The order in which parameters stand in a name; omega, of a given state, stands in omega0's place.
 ORDER = ("theta", "ec", "AB", "BC", "omega0", "omega", "alpha", *LOADS)

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from ..mechanism.catalogue import law_name, quantity
 from ..mechanism.inputs import INPUTS
-from ..mechanism.names import CENTRES, LENGTHS, LOADS, parts
+from ..mechanism.names import CENTRES, FORCE_STATUS, LENGTHS, LOADS, STATUS, parts
 from ..mechanism.own import Definition, used_by
 from ..mechanism.own_lines import not_extended
 from ..mechanism.program import Variant, program_of
@@ -64,8 +64,8 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
     shown = tuple(names)
     own = tuple(law_name(name) if state else name for name in shown)
     inputs = program_of(own).inputs
-    if "status" in own and ("mu" in inputs or given.get("mu") is not None):
-        own = tuple("force_status" if name == "status" else name for name in own)
+    if STATUS in own and ("mu" in inputs or given.get("mu") is not None):
+        own = tuple(FORCE_STATUS if name == STATUS else name for name in own)
         inputs = program_of(own).inputs
     absent = [name for name in inputs if name in LOADS and given.get(name) is None]
     zeros = [(name, 0.0) for name in absent if name not in CENTRES]

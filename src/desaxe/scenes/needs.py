@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ..mechanism.catalogue import law_name, quantity
-from ..mechanism.names import LENGTHS, LOADS
+from ..mechanism.names import FORCE_STATUS, LENGTHS, LOADS, STATUS
 from ..mechanism.program import Variant, program_of
 from . import schema
 from .schema import SceneError, shown
@@ -32,7 +32,7 @@ def needs_of(names: Iterable[str], inputs: Mapping[str, Any]) -> tuple[str, ...]
     state = "omega" in inputs
     law = tuple(law_name(name) if state else name for name in names)
     if "mu" in inputs:  # then the status includes that of friction
-        law = tuple("force_status" if name == "status" else name for name in law)
+        law = tuple(FORCE_STATUS if name == STATUS else name for name in law)
     return tuple(name for name in program_of(law, Variant(state)).inputs if name != "branch")
 
 

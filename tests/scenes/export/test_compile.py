@@ -2,6 +2,7 @@
 
 import ast
 import json
+import math
 import os
 import re
 import subprocess
@@ -412,3 +413,39 @@ def test_run_takes_other_axes(name, tmp_path):
             module.run(ec="1 mm")
         with pytest.raises(ValueError, match="ec: expected a number or one dimension"):
             module.run(ec=[[0.0]])
+
+
+LISTS = {
+    "outputs": ["a_C"],
+    "mechanism": {"ec": [0.01, 0.02], "AB": [0.04, 0.05], "BC": [0.1, 0.2]},
+    "motion": {"theta": [0.0, 1.0], "omega0": [3.0, 4.0], "alpha": [1.0, 2.0]},
+}
+LOADED = {"masses": {"m_slider": [1.0, 2.0]}, "loads": {"F_Y": [-50.0, -60.0], "mu": [0.05, 0.1]}}
+MASS = {**LISTS, "outputs": ["T_in"], "masses": {"m_slider": 2}}
+OVER_THETA = dx.over_theta([0.0, 2.0, 4.0], [-50.0, -200.0, -80.0], kind="linear")
+OVER_Y = dx.over_Y([0.0, 0.1, 0.3], [-50.0, -200.0, -80.0], [0.0, 0.0, -10.0])
+BAD = {
+    "motion": LISTS,
+    "a given state": {**LISTS, "motion": {"theta": [0.0, 1.0], "omega": [3.0, 4.0]}},
+    "forces": {**LISTS, "outputs": ["T_in"], **LOADED},
+    "twice the digits": {**LISTS, "accuracy": "extended"},
+    "a load over theta": {**MASS, "loads": {"F_Y": OVER_THETA}},
+    "a load over Y": {**MASS, "loads": {"F_Y": OVER_Y}},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("scene", BAD.values(), ids=BAD)
+def test_every_bad_input_is_status_4(scene, tmp_path):
+    """NaN, an infinity, a length below zero: of a point, a number and an element, as `evaluate` says."""
+    module = imported(dx.compile(scene, tmp_path / "press.py"))
+    (output,) = scene["outputs"]
+    good = {name: value[0] for name, value in points_of(scene).items()}
+    place = list(module.OUTPUTS).index("status")
+    for name in module.INPUTS:
+        for value in (math.nan, math.inf, -math.inf, *([-0.1] if name in ("AB", "BC", "m_slider") else [])):
+            inputs = [{**good, name: value}[n] for n in module.INPUTS]
+            rows = [np.array([bad, good[n]]) for n, bad in zip(module.INPUTS, inputs, strict=True)]
+            alone, number, array = module.point(*inputs), module.evaluate(*inputs), module.evaluate(*rows)
+            assert (alone[place], number["status"], *array["status"]) == (4, 4, 4, 0), (name, value)
+            assert math.isnan(number[output])
+            assert np.isnan(array[output]).tolist() == [True, False]

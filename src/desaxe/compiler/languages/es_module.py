@@ -3,7 +3,7 @@
 from ..text import with_short_temporaries
 from .javascript import HEADER, emit_javascript
 from .protocol import Module, Symbol
-from .shared import one_line, with_safe_names
+from .shared import one_line, refuse_taken, with_safe_names
 
 KEYWORDS = frozenset(
     (
@@ -15,6 +15,7 @@ KEYWORDS = frozenset(
         "UNITS",
     )
 )  # fmt: skip
+EXPORTS = ("evaluate", "INPUTS", "OUTPUTS", "UNITS")
 EVALUATE = """\
 /** All outputs by name; numbers, or arrays of one length (a number goes with every element). */
 export function evaluate(inputs) {
@@ -61,8 +62,9 @@ def _source(module: Module) -> str:
     program = with_safe_names(with_short_temporaries(program), KEYWORDS)
     program = program._replace(outputs=program.outputs[: len(module.outputs)])
     units = ", ".join(f'{s.name}: "{s.unit}"' for s in _once((*module.inputs, *module.outputs)))
+    refuse_taken((symbol.name for symbol in module.outputs), EXPORTS)
     functions = [
-        f"/** {_about(symbol)} */\nexport function {symbol.name}({', '.join(inputs)}) {{\n"
+        f"/** {_about(symbol)} */\nfunction output_{place}({', '.join(inputs)}) {{\n"
         f"  return values({', '.join(inputs)})[{place}];\n}}\n"
         for place, symbol in enumerate(module.outputs)
     ]
@@ -76,6 +78,7 @@ def _source(module: Module) -> str:
             "",
             emit_javascript(program, "values"),
             *functions,
+            _exports(module),
             EVALUATE,
         ]
     )
@@ -84,8 +87,8 @@ def _source(module: Module) -> str:
 def _types(module: Module) -> str:
     given = ", ".join(f"{_safe(symbol.name)}: number" for symbol in module.inputs)
     functions = [
-        f"/** {_about(symbol)} */\nexport function {symbol.name}({given}): number;"
-        for symbol in module.outputs
+        f"/** {_about(symbol)} */\ndeclare function output_{place}({given}): number;"
+        for place, symbol in enumerate(module.outputs)
     ]
     return "\n".join(
         [
@@ -105,12 +108,18 @@ def _types(module: Module) -> str:
             "export const UNITS: Readonly<Record<string, string>>;",
             "",
             *functions,
-            "",
+            _exports(module),
             "export function evaluate(inputs: Inputs<number>): Outputs<number>;",
             "export function evaluate(inputs: Inputs): Outputs<Float64Array>;",
             "",
         ]
     )
+
+
+def _exports(module: Module) -> str:
+    """The outputs under their names, which inside of the module hide nothing: Math, Infinity, a keyword."""
+    names = ", ".join(f"output_{place} as {symbol.name}" for place, symbol in enumerate(module.outputs))
+    return f"export {{ {names} }};\n"
 
 
 def _safe(name: str) -> str:

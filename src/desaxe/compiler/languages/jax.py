@@ -11,7 +11,16 @@ from ..operations import HELPERS as SHARED
 from ..program import Program
 from ..text import INDENT, with_short_temporaries
 from .protocol import Module, Symbol
-from .shared import called, one_line, statements, types_of, with_helpers, with_safe_names
+from .shared import (
+    called,
+    one_line,
+    refuse_taken,
+    statements,
+    taken_in_python,
+    types_of,
+    with_helpers,
+    with_safe_names,
+)
 
 NUMPY = (
     "copysign",
@@ -125,9 +134,11 @@ def _text(module: Module) -> str:
     body = "\n\n".join([RULES, *functions, _tables(module), *public, evaluate])
     helpers = with_helpers("\n".join(functions), HELPERS)
     code = "\n\n".join([*helpers, body])
-    return "\n".join([_docstring(module), "", *_imports(code), "", "", code.rstrip("\n"), ""]).replace(
+    found = "\n".join([_docstring(module), "", *_imports(code), "", "", code.rstrip("\n"), ""]).replace(
         "\n\n\n\n", "\n\n\n"
     )
+    refuse_taken((symbol.name for symbol in module.outputs), taken_in_python(found))
+    return found
 
 
 def _docstring(module: Module) -> str:

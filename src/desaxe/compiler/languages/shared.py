@@ -1,5 +1,7 @@
 """Shared by the emitters: statements in a column's spelling, safe names, comment text."""
 
+import ast
+import builtins
 import re
 from collections.abc import Collection, Iterable, Mapping
 
@@ -31,6 +33,27 @@ def with_safe_names(program: Program, reserved: Collection[str]) -> Program:
     return program._replace(
         inputs=inputs, outputs=tuple(safe.get(name, name) for name in program.outputs), notes=notes
     )
+
+
+def refuse_taken(outputs: Iterable[str], taken: Collection[str]) -> None:
+    """ValueError for an output that would hide what else a module calls so."""
+    for name in outputs:
+        if name in taken:
+            raise ValueError(
+                f"outputs: {name!r} is a name of the module itself; give the quantity another name"
+            )
+
+
+def taken_in_python(text: str) -> set[str]:
+    """What a Python module imports, assigns or defines twice, and the built-in functions that it uses."""
+    tree = ast.parse(text)
+    nodes = [*ast.walk(tree)]
+    used = {node.id for node in nodes if isinstance(node, ast.Name)} & set(dir(builtins))
+    imported = {a.asname or a.name for node in nodes if isinstance(node, ast.ImportFrom) for a in node.names}
+    assigned = [t for node in tree.body if isinstance(node, ast.Assign) for t in node.targets]
+    defined = [node.name for node in tree.body if isinstance(node, ast.FunctionDef)]
+    twice = {name for name in defined if defined.count(name) > 1}
+    return used | imported | twice | {target.id for target in assigned if isinstance(target, ast.Name)}
 
 
 def types_of(program: Program) -> dict[str, str]:

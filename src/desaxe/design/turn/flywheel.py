@@ -139,7 +139,7 @@ class InPanels(NamedTuple):
 def _sampled(turn: Turn) -> tuple[dict[str, Array], EqualSteps | InPanels]:
     """Torque at speed and, as friction allows, at rest, and the effective inertia, over all turns."""
     if turn.kinks:
-        panels = turn.panels(["T_in", "M_eff", *([] if turn.numbers.get("mu") else [f"T_in{AT_REST}"])])
+        panels = turn.panels(["T_in", "M_eff"], at_rest=[] if turn.numbers.get("mu") else ["T_in"])
         return panels.values, InPanels(panels)
     told = turn.values(["T_in", "M_eff"], POINTS)
     told[f"T_in{AT_REST}"] = turn.values(["T_in"], POINTS, omega0=0.0)["T_in"]

@@ -56,21 +56,19 @@ class Turn:
         inputs: dict[str, Any] = {**self.numbers, **self.loads, **other}
         return self._at(names, theta, inputs)
 
-    def panels(self, names: Sequence[str], **other: float) -> Panels:
-        """The quantities in panels between the angles at which a load has a kink; `other` as in `values`.
+    def panels(self, names: Sequence[str], at_rest: Sequence[str] = ()) -> Panels:
+        """The quantities in panels between the angles at which a load has a kink.
 
-        A name may end in "_at_rest": the value at the speed 0.
+        Those of `at_rest`, at the speed 0, are called `<name>_at_rest`.
         """
-        inputs: dict[str, Any] = {**self.numbers, **self.loads, **other}
+        inputs: dict[str, Any] = {**self.numbers, **self.loads}
         end = 2.0 * pi * self.turns
 
         def functions(theta: Array) -> dict[str, Array]:
-            moving = [name for name in names if not name.endswith(AT_REST)]
-            found = self._at(moving, theta, inputs)
-            resting = [name.removesuffix(AT_REST) for name in names if name not in moving]
-            rest = self._at(resting, theta, {**inputs, "omega0": 0.0}) if resting else {}
+            found = self._at(names, theta, inputs)
+            rest = self._at(at_rest, theta, {**inputs, "omega0": 0.0}) if at_rest else {}
             found |= {f"{name}{AT_REST}": value for name, value in rest.items()}
-            return {name: np.broadcast_to(found[name], theta.shape) for name in names}
+            return {name: np.broadcast_to(value, theta.shape) for name, value in found.items()}
 
         breaks = sorted({0.0, *self.kinks, end})
         if self.numbers.get("mu"):

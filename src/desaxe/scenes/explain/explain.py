@@ -15,6 +15,7 @@ from ...loads.load import Load
 from ...mechanism.catalogue import quantity
 from ...mechanism.constants import double_constants
 from ...mechanism.inputs import INPUTS
+from ...mechanism.names import STATUSES
 from ...mechanism.program import digest
 from ...runtime.kernels import KernelKey, is_ready, kernel_of, source_of
 from ...runtime.modules import path_of
@@ -208,7 +209,7 @@ def _run(content: Content, found: GridKernel, loops: list[Loop], compiled: bool)
     points = found.points
     cached, path = _cached(found.key)
     plain = estimate.plain_time(sum(loop.operations for loop in loops), points)
-    outs = len(found.key.names) - ("status" in found.key.names)
+    outs = sum(name not in STATUSES for name in found.key.names)
     one = estimate.loops_time(loops, 0 if content.fused else points * outs)
     length = found.sizes[0]
     threads = max(1, min(content.threads or available(), points // LEAST_BLOCK, length))
@@ -243,7 +244,7 @@ def _cached(key: KernelKey) -> tuple[str, str]:
 
 def _memory(content: Content, found: GridKernel) -> dict[str, int]:
     """Bytes of the result, and of what the grid would have taken where it is reduced."""
-    names = [name for name in found.key.names if "status" not in name]
+    names = [name for name in found.key.names if name not in STATUSES]
     small = len(found.key.names) - len(names)
     whole = estimate.bytes_of(len(names), small, found.sizes)
     inputs = 8 * sum(found.sizes)

@@ -16,15 +16,16 @@ from .axes import arguments_of, taken_from
 
 LOOK_UP = '''def {name}_over_theta(theta):
     """The load {name} [{unit}] and its derivative by theta, at angles [rad]."""
-    first = {name}_KNOTS[0]
-    turned = theta - {period!r} * floor((theta - first) / {period!r})
+    first, finite = {name}_KNOTS[0], isfinite(theta)
+    turned = where(finite, theta, first)
+    turned = turned - {period!r} * floor((turned - first) / {period!r})
     turned = where(turned < first, turned + {period!r}, turned)
     turned = where(turned >= first + {period!r}, turned - {period!r}, turned)
     piece = searchsorted({name}_KNOTS, turned, side="right") - 1
     a, b, c, d = {name}_ROWS[:, piece]
     s = turned - {name}_KNOTS[piece]
     value, slope = a + s * (b + s * (c + s * d)), b + s * (2.0 * c + s * (3.0 * d))
-    return where(isfinite(theta), value, 0.0), slope
+    return where(finite, value, 0.0), slope
 '''
 
 

@@ -22,7 +22,7 @@ from ...compiler.text import write_function
 from ...definitions.tables import read_definitions, tables_of
 from ...mechanism.constants import constants
 from ...mechanism.inputs import INPUTS, LEAST
-from ...mechanism.names import parts
+from ...mechanism.names import FORCE_STATUS, STATUS, parts
 from ...mechanism.own import Definition, definitions, rows_of
 from ...mechanism.program import Variant, digest, program_of
 from ...runtime.specialise import specialise
@@ -30,7 +30,6 @@ from ...support.toml import read_toml
 from ...support.version import version
 
 FACTS = ("status", "margin")
-LOADED = "force_status"
 
 
 class Part(NamedTuple):
@@ -150,7 +149,7 @@ def _parts(own: Definition, known: dict[str, Definition]) -> list[Part]:
 def _part_program(part: Part, made: Sequence[Definition]) -> tuple[Program, tuple[str, ...]]:
     """The program of a part with its status, and the public names of its outputs."""
     used = program_of(part.names, Variant(own=tuple(made))).inputs
-    status = LOADED if "mu" in used else "status"
+    status = FORCE_STATUS if "mu" in used else STATUS
     names = (*part.names, status, "margin")
     program = specialise(names, Variant(part.state, own=tuple(made)), ())
     shown = tuple(name.replace("omega0", "omega") if part.state else name for name in part.names)

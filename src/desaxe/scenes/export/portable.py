@@ -11,7 +11,7 @@ from ...compiler.program import Program
 from ...mechanism.catalogue import law_name, quantities, quantity
 from ...mechanism.constants import constants, double_constants
 from ...mechanism.inputs import INPUTS, LEAST
-from ...mechanism.names import LENGTHS, ORDER, sensitivity
+from ...mechanism.names import LENGTHS, ORDER, STATUSES, sensitivity
 from ...mechanism.program import digest
 from ...runtime.request import Request, request
 from ...runtime.specialise import plain_form, specialise
@@ -145,7 +145,7 @@ def _forms(asked: Request, names: tuple[str, ...], fixed: Fixed, freestanding: b
 
 
 def _status_of(asked: Request) -> str:
-    return next(name for name in asked.names if name.endswith("status"))
+    return next(name for name in asked.names if name in STATUSES)
 
 
 def _derivatives(

@@ -1,0 +1,143 @@
+"""What an own quantity is called changes nothing: not its type, and not what else a file or a call has."""
+
+import ctypes
+import math
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from desaxe.mechanism.names import INTERNAL
+from desaxe.runtime.kernels import REACH
+from desaxe.runtime.specialise import KEPT
+from tests.compiler.languages.tools import es_module, imported, jax_in_doubles, library, point_values
+from tests.definitions.expressions import defined
+
+POINT = {"ec": 0.01, "AB": 0.04, "BC": 0.064, "omega0": 3.0}
+OF_STATUS = ("static_status", "status_of_drive", "out_status", "force_status_now")
+# Globals and keywords of JavaScript, names of C, functions of NumPy and Python.
+HOSTILE = (
+    "Infinity",
+    "NaN",
+    "Math",
+    "Object",
+    "new",
+    "default",
+    "double",
+    "NAN",
+    "errno",
+    "end",
+    "value",
+    "place",
+)
+
+
+def scene(name, **more):
+    content = {
+        "outputs": [name, "V_C", "status"],
+        "mechanism": {"ec": [0.01, 0.02], "AB": POINT["AB"], "BC": POINT["BC"]},
+        "motion": {"theta": [0.0, 1.0], "omega0": POINT["omega0"]},
+    }
+    return {**content, **more}
+
+
+@pytest.mark.parametrize("name", OF_STATUS)
+def test_a_name_with_status_in_it_is_no_status(name):
+    """At an angle that the kernel cannot reduce, where its answers are repaired."""
+    theta = np.array([0.3, 1e17, -3e18])
+    with defined(name, "2*V_C"):
+        found = dx.function([name, "V_C", "status"], inputs=("theta",), **POINT)(theta)
+        both = dx.evaluate([name, "V_C", "status"], theta=theta, **POINT)
+    np.testing.assert_array_equal(found[0], 2.0 * found[1])
+    np.testing.assert_array_equal(both[name], 2.0 * both["V_C"])
+    assert found[2].dtype == both["status"].dtype == np.int8
+    assert not found[2].any()
+
+
+@pytest.mark.parametrize("name", OF_STATUS)
+def test_the_status_in_c_is_the_status(name, tmp_path):
+    with defined(name, "-35*V_C*second", second="1 s/m"):
+        source = dx.compile(scene(name), tmp_path / "press", to="c") / "press.c"
+        loaded = library(source)
+        value = dx.evaluate(name, theta=1.0, **POINT)
+    status, out = point_values(loaded, "press", (1.0, 0.01), 3)
+    assert (status, out[2]) == (0, 0.0)
+    assert out[0] == pytest.approx(value, rel=1e-14)
+    assert point_values(loaded, "press", (math.nan, 0.01), 3)[0] == 4
+    assert ctypes.sizeof(ctypes.c_int) >= 4
+
+
+def test_a_plan_counts_it_as_a_value():
+    with defined("static_status", "2*V_C"):
+        one = dx.explain(dx.scene(scene("static_status"))).as_dict()["memory"]
+    with defined("static_speed", "2*V_C"):
+        other = dx.explain(dx.scene(scene("static_speed"))).as_dict()["memory"]
+    assert one == other
+
+
+def test_names_that_the_library_requests_itself_are_taken():
+    assert {*REACH, *KEPT.values()} < set(INTERNAL)
+    for name in INTERNAL:
+        with pytest.raises(ValueError, match=f"{name!r} is a name of desaxe already"):
+            dx.define(name, "2*V_C")
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_javascript_has_every_name(name, tmp_path):
+    with defined(name, "2*V_C"):
+        place = dx.compile(scene(name), tmp_path / "press.js", to="javascript")
+        wanted = 2.0 * dx.evaluate("V_C", theta=0.7, **POINT)
+    both, alone = es_module(place, [["evaluate", {"theta": 0.7, "ec": 0.01}], [name, 0.7, 0.01]])
+    assert both["status"] == 0
+    assert both[name] == alone == pytest.approx(wanted, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("to", "name"),
+    [
+        ("javascript", "evaluate"),
+        ("jax", "asarray"),
+        ("jax", "OUTPUTS"),
+        ("numba", "array"),
+        ("numba", "float64"),
+    ],
+)
+def test_a_name_that_would_hide_a_part_of_the_module_is_refused(to, name, tmp_path):
+    with (
+        defined(name, "2*V_C"),
+        pytest.raises(ValueError, match=f"{name!r} is a name of the module itself"),
+    ):
+        dx.compile(scene(name), tmp_path / ("press.js" if to == "javascript" else "press.py"), to=to)
+
+
+@pytest.mark.parametrize("name", ["kernel", "signature", "length", "x"])
+def test_other_names_are_right_in_python(name, tmp_path):
+    at = (0.7, 0.01)
+    with defined(name, "2*V_C"):
+        numba = imported(dx.compile(scene(name), tmp_path / "press_numba.py"))
+        jax = imported(dx.compile(scene(name), tmp_path / "press_jax.py", to="jax"))
+        wanted = 2.0 * dx.evaluate("V_C", theta=at[0], **POINT)
+    assert numba.point(*at)[0] == pytest.approx(wanted, rel=1e-14)
+    assert getattr(numba, name)(*at) == pytest.approx(wanted, rel=1e-14)
+    with jax_in_doubles():
+        assert float(getattr(jax, name)(*at)) == pytest.approx(wanted, rel=1e-13)
+
+
+def test_a_function_of_a_design_may_be_called_skipped():
+    def points_skipped(design):
+        return 2.5 * design["ec"], {"ec": 2.5}
+
+    inputs = {"theta": np.linspace(0.0, 6.0, 9), "ec": np.array([0.01, 0.02]), "AB": 0.04, "BC": 0.064}
+    reduce = {"theta": ["max", points_skipped]}
+    found = dx.grid("V_C", omega0=3.0, reduce=reduce, **inputs)
+    assert found["V_C_skipped"].dtype == np.int64
+    np.testing.assert_allclose(found["points_skipped"], [0.025, 0.05])
+
+
+def test_harmonics_of_a_name_that_ends_in_at_rest():
+    load = dx.over_theta([0.0, 2.0, 4.0], [-50.0, -200.0, -80.0], kind="linear")
+    design = {**POINT, "m_slider": 2.0, "F_Y": load}
+    with defined("torque_at_rest", "2*T_in"):
+        found = dx.harmonics("torque_at_rest", orders=3, **design)
+    wanted = dx.harmonics("T_in", orders=3, **design)
+    np.testing.assert_allclose(found["cos"], 2.0 * wanted["cos"], rtol=1e-12)
