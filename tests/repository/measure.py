@@ -1,4 +1,4 @@
-"""How large the source is, and how long a stranger's way through it: `python -m tests.repository.measure`.
+"""The size of the source, and of a stranger's way through it: `python -m tests.repository.measure`.
 
 Rules, one for each row that is printed:
 
@@ -116,7 +116,7 @@ READ = (".py", ".md", ".js", ".txt")
 
 
 def measure(root: Path) -> Iterator[tuple[str, int, list[str]]]:
-    """What is counted, how many, and which."""
+    """Each count with its name, and what was counted."""
     python = sources(root)
     counts = {path: code_lines(text) for path, text in python.items()}
     yield "code lines of src and derive", sum(counts.values()), []

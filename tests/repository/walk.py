@@ -1,4 +1,4 @@
-"""Which functions one call may reach, by a static walk over the source of the library.
+"""The functions that one call may reach, by a static walk over the source of the library.
 
 Rule: a function is reached if a reached body names it, through imports at the top of a file or inside of a
 function, whatever the branch; annotations do not count. A class is reached like a function, with its special
@@ -106,7 +106,7 @@ class Walk:
             self.left.append(found)
 
     def _resolved(self, module: str, name: str) -> Place | None:
-        """Where a name is defined; a module has the name ""."""
+        """The place of a name's definition; a module has the name ""."""
         while module in self.modules:
             if name in self.modules[module].defined:
                 return module, name
