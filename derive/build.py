@@ -8,9 +8,11 @@ from desaxe.compiler.passes.double_angles import DoubleTrigonometry
 from desaxe.compiler.passes.slicing import drop_unused
 from desaxe.compiler.passes.trigonometry import Trigonometry
 from desaxe.compiler.passes.value_numbering import value_numbering
-from desaxe.compiler.program import Program, validate
+from desaxe.compiler.program import Program, renamed, validate
+from desaxe.mechanism.closed.dead_centres import NAMES, SENSITIVITIES
 from desaxe.mechanism.names import CENTRES, LOADS, PARAMETERS, parts, sensitivity
 
+from .closed import whole_design
 from .dynamics import FORCES, LUMPS, centres_sheet
 from .freeze import freeze
 from .motion import state_sheet
@@ -38,8 +40,8 @@ class Derivation(NamedTuple):
     double_trigonometry: DoubleTrigonometry  # to twice the digits
 
 
-def public_names() -> tuple[str, ...]:
-    """All public names: quantities, sensitivities, facts."""
+def sheet_names() -> tuple[str, ...]:
+    """The public names of the sheet: quantities, sensitivities, facts."""
     first = [sensitivity(q, p) for q in QUANTITIES for p in parameters_of(q)]
     second = [
         sensitivity(sensitivity(q, p), t)
@@ -50,6 +52,13 @@ def public_names() -> tuple[str, ...]:
     return (*QUANTITIES, *FACTS, *first, *second)
 
 
+def public_names() -> tuple[str, ...]:
+    """All public names: those of the sheet, and those of a whole design behind the facts."""
+    facts = len(QUANTITIES) + len(FACTS)
+    names = sheet_names()
+    return (*names[:facts], *NAMES, *names[facts:], *SENSITIVITIES)
+
+
 def parameters_of(quantity: str) -> tuple[str, ...]:
     """Parameters that a quantity may depend on."""
     return (*PARAMETERS, *LOADS) if quantity in FORCES else PARAMETERS
@@ -58,12 +67,13 @@ def parameters_of(quantity: str) -> tuple[str, ...]:
 def build() -> Derivation:
     """Derive everything."""
     sheet = build_sheet()
-    for name in public_names():
+    for name in sheet_names():
         _derive(sheet, name)
     state, centres = state_sheet(), centres_sheet()
     motion = tuple(name for name in state.equations if sheet.equation(name) is not None)
     moving = tuple(name for name in centres.equations if name not in CENTRES)
-    program = freeze(sheet, INPUTS, (*public_names(), *INTERNAL, *motion, *moving))
+    program = freeze(sheet, INPUTS, (*sheet_names(), *INTERNAL, *motion, *moving))
+    program = _with_lines(program, whole_design())
     overlays = (
         _finished(freeze(state, ("omega", "alpha"), motion)),
         _finished(freeze(centres, ("AB", "BC"), (*CENTRES, *moving))),
@@ -75,6 +85,20 @@ def build() -> Derivation:
         public_names(),
         trigonometry(),
         double_trigonometry(),
+    )
+
+
+def _with_lines(program: Program, more: Program) -> Program:
+    """The program, followed by the lines of another one; ValueError where they share a name."""
+    own = {line.name: f"_design{n}" for n, line in enumerate(more.lines) if line.name.startswith("_")}
+    lines = renamed(more, own)
+    shared = {line.name for line in program.lines} & {line.name for line in lines.lines}
+    if shared:
+        raise ValueError(f"the sheet and the whole design both define {', '.join(sorted(shared))}")
+    return program._replace(
+        lines=(*program.lines, *lines.lines),
+        outputs=(*program.outputs, *lines.outputs),
+        notes={**program.notes, **lines.notes},
     )
 
 

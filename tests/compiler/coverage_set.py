@@ -39,6 +39,7 @@ TEXT = '''def coverage(x, y, z):
     lost_too = x * y + two_product_error(x, y) * 0.5
     added = mul_add(x + y, -z, x - y) + mul_add(x, y, mul_add(-x, y, z))
     lost_at_most = x + y + rounding(x) * 0.5
+    scale = power_of_two(x) + power_of_two(y) - power_of_two(z * z)
     quarter_turns = rotated_sin(x, y, floor(z)) + rotated_sin(x, y, -1.0)
     their_cosine = rotated_cos(x, y, floor(z)) + rotated_cos(x, y, 1.0)
     least = x if x < y else y

@@ -33,6 +33,7 @@ REFERENCE = {
 }  # fmt: skip
 REFERENCE["mul_add"] = lambda a, b, c: np.add(np.multiply(a, b), c)
 REFERENCE["hypot"] = lambda a, b: np.nan if a != a or b != b else np.hypot(a, b)
+REFERENCE["power_of_two"] = lambda a: np.exp2(np.ceil(np.log2(np.fmax(np.fmin(a, 2.0**960), 2.0**-960))))
 REFERENCE["extended_only"] = lambda a: False
 ERRORS = ("two_sum_error", "two_product_error", "rounding")  # exactly 0 over the reals
 CALLED = ("sin", "cos", "atan2", "hypot", "exp", "log", "pow")  # each library rounds these in its own way

@@ -16,10 +16,10 @@ RUNS_TEXT = {
     "src/desaxe/runtime/wide_margins.py",
     "src/desaxe/runtime/compiled_text.py",
     "src/desaxe/runtime/native_calls.py",
-    "src/desaxe/runtime/vectorised.py",
     "src/desaxe/scenes/export/axes.py",
     "src/desaxe/peaks/compiled.py",
     "src/desaxe/cli/doctor.py",
+    "src/desaxe/compiler/languages/arrays.py",
     "src/desaxe/compiler/languages/python.py",
 }
 UNTRUSTED_READERS = {"pickle", "marshal", "shelve", "dill", "cloudpickle", "joblib"}

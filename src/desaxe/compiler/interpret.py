@@ -96,6 +96,11 @@ def _two_product_error(a: float, b: float) -> float:
     return float(Fraction(a) * Fraction(b) - Fraction(product))
 
 
+def _power_of_two(a: float) -> float:
+    fraction, power = math.frexp(min(max(a, 2.0**-960), 2.0**960)) if a == a else (0.5, 961)
+    return math.ldexp(1.0, power - (fraction == 0.5))
+
+
 def _rotated(sine: float, cosine: float, quarters: float) -> float:
     value = cosine if quarters % 2.0 == 1.0 else sine
     return -value if quarters % 4.0 >= 2.0 else value
@@ -128,6 +133,7 @@ _IEEE: dict[str, Any] = {
     "two_product_error": _two_product_error,
     "mul_add": lambda a, b, c: a * b + c,
     "rounding": lambda a: 2.0**-51 * math.fabs(a),
+    "power_of_two": _power_of_two,
     "rotated_sin": _rotated,
     "rotated_cos": _rotated_cos,
     "lt": lambda a, b: a < b,

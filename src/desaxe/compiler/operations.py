@@ -5,8 +5,10 @@ costs and where it is undefined. A new operation, or a new language, is a change
 
 `exact` is the meaning over the real numbers, computed by a namespace of high-precision functions
 (``mpmath.mp`` in the tests); the error terms of two-sum and two-product are exactly 0 there,
-and so is `rounding`, a bound of such terms. `extended_only` guards a form of the same value that is of use to
-`double_digits` alone, which makes it its argument; everywhere else it is false.
+and so is `rounding`, a bound of such terms. `power_of_two` is a size that a Program divides lengths by,
+exactly, so that no square overflows, and multiplies its results with: no value depends on it. `extended_only`
+guards a form of the same value that is of use to `double_digits` alone, which makes it its argument;
+everywhere else it is false.
 `python`, `numba`, `javascript`, `c`, `jax` and `octave` are templates over the argument texts. Plain Python
 raises where IEEE 754 arithmetic answers inf or NaN: its division and square root are guarded in the template.
 `precedence` is that of the spelling in the readable text form; calls, and what stands in parentheses, bind
@@ -52,6 +54,11 @@ def _row(
     return name, Operation(
         name, signature, text, precedence, python, numba, javascript, c, jax, octave, cost, exact, **more
     )
+
+
+def _power_of_two(mp: Any, a: Any) -> Any:
+    fraction, power = mp.frexp(a)
+    return mp.ldexp(mp.mpf(1), min(max(power - (fraction == 0.5), -960), 960)) if a > 0 else mp.ldexp(1, -960)
 
 
 OPERATIONS: dict[str, Operation] = dict(
@@ -100,6 +107,7 @@ OPERATIONS: dict[str, Operation] = dict(
         ),
         _row("mul_add", "ffff", "mul_add({0}, {1}, {2})", CALL, 1, lambda mp, a, b, c: a * b + c),
         _row("rounding", "ff", "rounding({0})", CALL, 1.5, lambda mp, a: a * 0),
+        _row("power_of_two", "ff", "power_of_two({0})", CALL, 6, _power_of_two),
         _row(
             "rotated_sin", "ffff", "rotated_sin({0}, {1}, {2})", CALL, 4,
             lambda mp, sine, cosine, quarters: (sine, cosine, -sine, -cosine)[int(quarters) % 4],
@@ -165,6 +173,14 @@ HELPERS = {
     "rounding": '''def rounding(a):
     """What rounding may take from a number of this size in four operations."""
     return 4.440892098500626e-16 * fabs(a)
+''',
+    "power_of_two": '''def power_of_two(a):
+    """The power of two that is not below a size (Rump), from 2^-960 to 2^960."""
+    size = a if a < 9.7453140114e+288 else 9.7453140114e+288
+    size = size if 1.0261342003245941e-289 < size else 1.0261342003245941e-289
+    wide = 9007199254740992.0 * size
+    step = (wide + size) - wide
+    return step if 0.0 < step else size
 ''',
     "rotated_sin": '''def rotated_sin(sine, cosine, quarters):
     """The sine of an angle and a whole number of quarter turns, from the angle's sine and cosine."""
@@ -314,6 +330,13 @@ JAVASCRIPT_HELPERS = {
 """,
     "rounding": """function rounding(a) {
   return 4.440892098500626e-16 * fabs(a);
+}
+""",
+    "power_of_two": """function power_of_two(a) {
+  const least = 1.0261342003245941e-289, most = 9.7453140114e+288;
+  const size = a < most ? (least < a ? a : least) : most, wide = 9007199254740992 * size;
+  const step = (wide + size) - wide;
+  return step > 0 ? step : size;
 }
 """,
     "mul_add": """function mul_add(a, b, c) {

@@ -9,7 +9,6 @@ turn/            harmonics, balancing, flywheel: quantities over one turn
 inverse          the crank angle for a slider position
 design_map       quantities over a space of designs
 measures         quantities of a design by name, with derivatives
-number_or_array  one closed form for a number and for arrays
 drive/           torque, power, flywheel and starting torque of a drive
 fit/             parameters of a machine from measurements
 averages         mean, rms and values at an angle as measures

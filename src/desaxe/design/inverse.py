@@ -7,13 +7,17 @@ from numpy.typing import NDArray
 
 from ..evaluation.arrays import as_array, broadcast_shape
 from ..evaluation.evaluate import evaluate
-from ..evaluation.extremes import are_extreme
+from ..mechanism.closed.functions import closed_form
+from ..mechanism.closed.inverse import INVERSE
 from ..mechanism.inputs import INPUTS, Input
+from ..mechanism.names import LENGTHS
+from ..mechanism.status import InverseStatus
 from ..runtime.request import check_common, with_known_inputs
 from ..support.answer import answering
 from ..support.shown import shown
 
 Array = NDArray[np.float64]
+DEAD_CENTRE = InverseStatus.DEAD_CENTRE
 
 # What only this question takes; the lengths are those of every other.
 SLIDER_INPUTS = {
@@ -46,8 +50,7 @@ def inverse(
     status   0 two solutions or one, 1 the slider cannot be there on this branch, 2 dead centre: the
              crank's rates are not determined by the slider's, 4 bad input
 
-    The triangle A B C has the sides AB, BC and L = |AC|; its angle at A comes from the half-angle
-    form, which keeps its digits where the triangle is flat. Raises as `evaluate` does.
+    A closed form, `mechanism/closed/inverse.py`. Raises as `evaluate` does.
     """
     check_common({}, branch)
     if a_C is not None and V_C is None:
@@ -59,13 +62,13 @@ def inverse(
         if value is not None or name in (*INPUTS, "Y")
     }
     shape = broadcast_shape(arrays)
-    position, *lengths = (np.broadcast_to(arrays[n], shape)[..., None] for n in ("Y", "ec", "AB", "BC"))
-    theta, flat = _angles(position, lengths, branch)
+    position, *lengths = (np.broadcast_to(arrays[n], shape) for n in ("Y", *LENGTHS))
+    theta, status = _angles(position, lengths, branch, shape)
     result: dict[str, Any] = {"theta": theta}
     with np.errstate(all="ignore"):
         if V_C is not None:
-            _add_rates(result, arrays, lengths, branch, shape, flat)
-    result["status"] = _status(result["theta"], flat, arrays, shape)
+            _add_rates(result, arrays, lengths, branch, shape, status == DEAD_CENTRE)
+    result["status"] = _status(status, arrays, shape)
     return result
 
 
@@ -89,34 +92,15 @@ def _input(name: str, value: Any) -> Array:
     return array.astype(np.float64, copy=False)
 
 
-def _angles(Y: Array, lengths: list[Array], branch: int) -> tuple[Array, NDArray[np.bool_]]:
-    """Both crank angles, ascending, NaN where there is none; and a mask of flat triangles."""
-    if any(np.any(are_extreme("Y", length)) for length in (Y, *lengths)):
-        Y, *lengths = _near_1(Y, *lengths)
+def _angles(
+    position: Array, lengths: list[Array], branch: int, shape: tuple[int, ...]
+) -> tuple[Array, NDArray[np.int8]]:
+    """Both crank angles, ascending, NaN where there is none; and the status, but for bad inputs."""
     ec, AB, BC = lengths
-    with np.errstate(all="ignore"):  # the status says so
-        L = np.hypot(ec, Y)
-        # tan^2(beta/2) of the angle between AB and AC, as products of exact-ish differences.
-        above = (BC - (L - AB)) * (BC + (L - AB))
-        below = ((L + AB) - BC) * ((L + AB) + BC)
-        beta = 2.0 * np.arctan2(np.sqrt(above), np.sqrt(below))
-        theta = np.arctan2(-ec, Y) + beta * np.array([-1.0, 1.0])
-        theta = np.where(
-            theta > np.pi, theta - 2.0 * np.pi, np.where(theta <= -np.pi, theta + 2.0 * np.pi, theta)
-        )
-        rod_up = (Y - AB * np.cos(theta)) * branch
-        good = (rod_up >= 0.0) & (BC > 0.0) & (AB >= 0.0)
-    theta = np.sort(np.where(good, theta, np.nan), axis=-1)
-    flat = ((above == 0.0) | (below == 0.0))[..., 0]
-    twice = flat & (theta[..., 0] == theta[..., 1])
-    theta[..., 1] = np.where(twice, np.nan, theta[..., 1])
-    return theta, flat
-
-
-def _near_1(*lengths: Array) -> list[Array]:
-    """Lengths times a power of two: their squares neither overflow nor lose their digits."""
-    power = np.frexp(np.maximum.reduce(np.broadcast_arrays(*map(np.abs, lengths))))[1]
-    return [np.ldexp(length, -power) for length in lengths]
+    crank = np.where((AB >= 0.0) & (BC > 0.0), AB, np.nan)
+    first, second, status = closed_form(INVERSE, branch=float(branch)).arrays(position, ec, crank, BC)
+    theta = np.stack([np.broadcast_to(angle, shape) for angle in (first, second)], axis=-1)
+    return theta, np.broadcast_to(np.asarray(status, np.int8), shape)
 
 
 def _add_rates(
@@ -130,7 +114,7 @@ def _add_rates(
     """omega = V_C / Y', alpha = (a_C - omega^2 Y'') / Y', with Y' and Y'' by theta."""
     theta = result["theta"]
     sides = {
-        name: np.broadcast_to(v, theta.shape) for name, v in zip(("ec", "AB", "BC"), lengths, strict=True)
+        name: np.broadcast_to(v[..., None], theta.shape) for name, v in zip(LENGTHS, lengths, strict=True)
     }
     known = np.isfinite(theta)
     slope, bend = np.full(theta.shape, np.nan), np.full(theta.shape, np.nan)
@@ -147,12 +131,11 @@ def _add_rates(
         result["alpha"] = (acceleration - result["omega"] ** 2 * bend) / slope
 
 
-def _status(theta: Array, flat: NDArray[np.bool_], arrays: dict[str, Array], shape: tuple[int, ...]) -> Any:
+def _status(status: NDArray[np.int8], arrays: dict[str, Array], shape: tuple[int, ...]) -> Any:
     bad = np.zeros(shape, bool)
     for name, array in arrays.items():
         least = INPUTS[name].least if name in INPUTS else None
         good = np.isfinite(array) if least is None else np.isfinite(array) & (array >= least)
         bad |= ~np.broadcast_to(good, shape)
-    none = np.isnan(theta).all(axis=-1)
-    status = np.select([bad, none, flat], [np.int8(4), np.int8(1), np.int8(2)], np.int8(0)).astype(np.int8)
-    return status if shape else int(status)
+    found = np.where(bad, np.int8(4), status)
+    return found if shape else int(found)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..evaluation.own_measure import OwnMeasure
 from ..mechanism.catalogue import quantities, quantity
+from ..mechanism.closed.limits import margin_of
 from ..mechanism.names import LENGTHS
 from ..mechanism.spelling import meant
 from ..peaks.designs import KINDS
@@ -20,7 +21,6 @@ from ..peaks.peak import peak
 from ..support.shown import shown
 from .averages import AVERAGES, angle_of, at_angle, average
 from .events.arrays import events_of_arrays
-from .number_or_array import sum_of_three
 
 Array = NDArray[np.float64]
 Measure = str | tuple[Any, ...] | OwnMeasure
@@ -122,7 +122,7 @@ def measured(
 
 
 def _margin(ec: Array, AB: Array, BC: Array) -> Measured:
-    value = sum_of_three(BC, -AB, -np.abs(ec))
+    value = margin_of(ec, AB, BC)
     one = np.ones_like(value)
     return Measured(value, {"ec": -np.sign(ec) * one, "AB": -one, "BC": one})
 

@@ -241,6 +241,7 @@ _NUMBERS: dict[str, Callable[..., Any]] = {
     "two_product_error": lambda a, b: arb(0),
     "mul_add": lambda a, b, c: _product(a, b) + c,
     "rounding": lambda a: arb(0),
+    "power_of_two": lambda a: arb(1),  # no value depends on it
     "rotated_sin": _rotated_sin,
     "rotated_cos": lambda sine, cosine, quarters: _rotated_sin(cosine, -sine, quarters),
 }

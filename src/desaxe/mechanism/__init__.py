@@ -8,7 +8,7 @@ read          one reader of numbers, with or without a unit
 spelling      the name that was meant by one that does not exist
 program       the committed Program, sliced to some names, and its variants
 constants     coefficients of the written-out sine and cosine
-limit_angles  the crank angles at which the mechanism can be assembled
+closed        closed forms of the geometry as Programs: limit angles, dead centres, the inverse
 status        the status codes of every call, with their words
 dimensions    units as exponents of m, s, rad and kg
 unit_system   the units of plain numbers in inputs and results

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from ..compiler.languages.arrays import compile_arrays
 from ..compiler.program import Program
-from ..runtime.vectorised import compile_numpy
 from .nodes import Array
 from .programs import Programs
 
@@ -37,7 +37,7 @@ def functions_of(programs: Programs) -> tuple[Function, Function, Function]:
 
 def _over(program: Program, inputs: tuple[str, ...]) -> Callable[[Array, Array], tuple[Any, ...]]:
     """A program as a function of angles and the rows of a block."""
-    function = compile_numpy(program)
+    function = compile_arrays(program, np)
     places = [None if name == "theta" else inputs.index(name) for name in program.inputs]
 
     def values(theta: Array, block: Array) -> tuple[Any, ...]:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
 from ..loads.load import Load
-from ..mechanism.limit_angles import theta_intervals
+from ..mechanism.closed.limits import theta_intervals
 from ..mechanism.names import LENGTHS
 from .nodes import Array
 

@@ -4,17 +4,16 @@ Points go through in blocks that stay in the cache. As in a kernel, the plain fo
 margins and the stable one for the others, and what rounding decides is answered with twice the digits.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiler.operations import HELPERS
+from ..compiler.languages.arrays import Function, compile_arrays
 from ..compiler.passes.guard import guard_inputs
 from ..compiler.program import Program
-from ..compiler.text import INDENT, with_short_temporaries, write_lines
 from ..mechanism.constants import double_constants
 from ..mechanism.inputs import LEAST
 from ..mechanism.own_lines import not_extended
@@ -22,16 +21,8 @@ from .kernels import REACH, SPARE, KernelKey, counting, has_near_limit, plain_of
 from .specialise import specialise
 
 Array = NDArray[Any]
-Function = Callable[..., tuple[Any, ...]]
 
 BLOCK = 8192  # points: some hundred lines of them stay in the second-level cache
-_NAMES: dict[str, Any] = {
-    "atan2": np.arctan2, "copysign": np.copysign, "cos": np.cos, "exp": np.exp, "fabs": np.fabs,
-    "floor": np.floor, "hypot": np.hypot, "inf": np.inf, "log": np.log, "logical_and": np.logical_and,
-    "logical_not": np.logical_not, "logical_or": np.logical_or, "nan": np.nan, "pow": np.power,
-    "sin": np.sin, "sqrt": np.sqrt, "where": np.where,
-}  # fmt: skip
-_OWN_HELPERS = ("two_sum_error", "two_product_error", "mul_add", "extended_only", "rounding")
 
 
 class _Forms(NamedTuple):
@@ -94,7 +85,7 @@ def _decide(
         return
     chosen = {name: value[near] if name in flat else value for name, value in values.items()}
     test = specialise(REACH, key.form, key.fixed)
-    reach, unsure = compile_numpy(test)(*(chosen[name] for name in test.inputs))
+    reach, unsure = compile_arrays(test, np)(*(chosen[name] for name in test.inputs))
     undecided = (np.abs(reach) <= SPARE * unsure) & (unsure > 0.0)
     undecided &= np.abs(chosen["theta"]) <= double_constants().limit
     some = np.flatnonzero(np.broadcast_to(undecided, near.size))
@@ -132,16 +123,4 @@ def _forms(key: KernelKey) -> _Forms:
 
 
 def _function(program: Program, inputs: tuple[str, ...]) -> Function:
-    return compile_numpy(program._replace(inputs=inputs))
-
-
-def compile_numpy(program: Program) -> Function:
-    """A program as a function of arrays and numbers."""
-    program = with_short_temporaries(program)
-    lines = [*write_lines(program, "jax"), f"return ({', '.join(program.outputs)},)"]
-    text = [f"def function({', '.join(program.inputs)}):", *(INDENT + line for line in lines)]
-    source = "\n".join([*(HELPERS[name] for name in _OWN_HELPERS), *text])
-    scope = dict(_NAMES)
-    exec(compile(source, "<desaxe numpy>", "exec"), scope)
-    function: Function = scope["function"]
-    return function
+    return compile_arrays(program._replace(inputs=inputs), np)

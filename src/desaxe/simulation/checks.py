@@ -10,8 +10,8 @@ import numpy as np
 from ..loads.load import Load as LoadOverMotion
 from ..loads.resolve import as_load, takes
 from ..mechanism.catalogue import quantity
+from ..mechanism.closed.limits import theta_intervals
 from ..mechanism.inputs import INPUTS, Input
-from ..mechanism.limit_angles import theta_intervals
 from ..mechanism.names import CENTRES, LENGTHS, LOADS
 from ..mechanism.read import read
 from ..runtime.request import several

@@ -10,7 +10,7 @@ theta = middle + half sin(q), that is a smooth passage through q = pi/2: dtheta/
 from math import asin, copysign, cos, fsum, inf, nextafter, pi, sin, sqrt
 from typing import NamedTuple
 
-from ..mechanism.limit_angles import theta_intervals
+from ..mechanism.closed.limits import theta_intervals
 
 TURN = 2.0 * pi
 EDGE = 1e-13  # rad: a bounded motion goes on, for the integrator, with what holds just before the limit

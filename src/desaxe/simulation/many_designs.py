@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from ..evaluation.arrays import as_array, broadcast_shape
 from ..evaluation.evaluate import evaluate
 from ..loads.resolve import takes
+from ..mechanism.closed.limits import theta_intervals
 from ..mechanism.inputs import LEAST
-from ..mechanism.limit_angles import theta_intervals
 from ..mechanism.names import CENTRES, LENGTHS, LOADS
 from ..mechanism.units import in_unit
 from ..runtime.threads import run_parts

@@ -8,6 +8,7 @@ octave      one vectorised function for GNU Octave and MATLAB
 es_module   a JavaScript module and its types
 javascript  one JavaScript function, for the explorer and for the module
 python      plain Python over `math`, for single points
+arrays      Python over NumPy, for some points at once
 numba/      self-contained modules of compiled loops
 
 A new language is a file or folder here and its column of the operation table; `languages` lists it.

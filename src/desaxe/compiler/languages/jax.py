@@ -67,6 +67,16 @@ HELPERS = {
     """What rounding may take from a number of this size in four operations."""
     return 2.0 * finfo(result_type(a)).eps * fabs(a)
 ''',
+    "power_of_two": '''def power_of_two(a):
+    """The power of two that is not below a size (Rump), within what the floating type holds."""
+    kind = finfo(result_type(a))
+    most = 2.0 ** (kind.maxexp - 64)
+    size = where(a < most, a, most)
+    size = where(1.0 / most < size, size, 1.0 / most)
+    wide = 2.0 ** (kind.nmant + 1) * size
+    step = (wide + size) - wide
+    return where(0.0 < step, step, size)
+''',
     "rotated_sin": '''def rotated_sin(sine, cosine, quarters):
     """The sine of an angle and whole quarter turns, from the angle's own."""
     value = where(quarters % 2.0 == 1.0, cosine, sine)

@@ -87,6 +87,13 @@ end
   x = 4.440892098500626e-16 * abs(a);
 end
 """,
+    "power_of_two": """function x = power_of_two(a)
+  % The power of two that is not below a size (Rump), from 2^-960 to 2^960.
+  x = max(min(a, 2 ^ 960), 2 ^ -960);
+  step = (2 ^ 53 * x + x) - 2 ^ 53 * x;
+  x(step > 0) = step(step > 0);
+end
+""",
     "rotated_sin": """function x = rotated_sin(sine, cosine, quarters)
   % The sine of an angle and whole quarter turns, from the angle's own.
   x = select(mod(quarters, 2) == 1, cosine, sine);

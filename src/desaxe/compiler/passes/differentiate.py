@@ -18,17 +18,18 @@ def original(name: str) -> str:
 
 
 def with_derivatives(program: Program, parameters: tuple[str, ...]) -> Program:
-    """The program of one output, followed by its derivatives by the parameters."""
+    """The program, followed by the derivatives of its outputs that are numbers, by each of the parameters."""
     lines = list(program.lines)
     outputs = list(program.outputs)
+    numbers = [line.name for line in program.lines if line.name in outputs and line.type == "f64"]
     for parameter in parameters:
         chain = Chain(parameter)
         for line in program.lines:
             chain.through(line)
         lines += chain.lines
-        last = chain.slope(program.outputs[0])
-        outputs.append(f"{program.outputs[0]}{_JOINT}{parameter}")
-        lines.append(Line(outputs[-1], "copy", (last,)))
+        for output in numbers:
+            outputs.append(f"{output}{_JOINT}{parameter}")
+            lines.append(Line(outputs[-1], "copy", (chain.slope(output),)))
     return optimise(program._replace(lines=tuple(lines), outputs=tuple(outputs)))[0]
 
 
@@ -162,6 +163,7 @@ RULES: Mapping[str, Rule] = {
     "two_sum_error": lambda chain, line: ("copy", (0.0,)),
     "two_product_error": lambda chain, line: ("copy", (0.0,)),
     "rounding": lambda chain, line: ("copy", (0.0,)),
+    "power_of_two": lambda chain, line: ("copy", (0.0,)),  # no value depends on it
     "rotated_sin": _rotated,
     "rotated_cos": _rotated,
     # The sign of the second is constant but for jumps; the balls know which it is.

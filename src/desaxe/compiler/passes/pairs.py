@@ -170,4 +170,5 @@ RULES: Mapping[str, Callable[..., Pair]] = {
         cosine, pairs.neg(sine), quarters
     ),
     "select": Pairs.select,
+    "power_of_two": lambda pairs, a: Pair(pairs.line("power_of_two", a.high)),
 }

@@ -10,11 +10,11 @@ from ...evaluation.evaluate import evaluate
 from ...evaluation.extremes import check_range
 from ...evaluation.loaded import loads_of
 from ...loads.angles import kinks_between, turns_of
+from ...mechanism.closed.dead_centres import DEAD_CENTRES
+from ...mechanism.closed.functions import closed_form
 from ...mechanism.inputs import INPUTS
 from ...mechanism.read import read
 from ...runtime.request import as_number, check_common, check_inputs, request
-from ..events.closed_form import closed_form, placed
-from ..number_or_array import PLAIN
 from .panels import Array, Panels, resolved
 
 LENGTHS = ("ec", "AB", "BC")
@@ -84,8 +84,8 @@ class Design:
         """The ends of the turn, the angles at which the torque has a kink, and `edges`, in order."""
         low, high = sorted((0.0, self.direction * 2.0 * pi))
         ec, AB, BC = (self.numbers[name] for name in LENGTHS)
-        known = placed(closed_form(ec, AB, BC, PLAIN), self.branch, 1)
-        own = [low + (known[name].value - low) % (2.0 * pi) for name in ("theta_outer", "theta_inner")]
+        places = closed_form(DEAD_CENTRES, ("theta_outer", "theta_inner"), branch=float(self.branch))
+        own = [low + (angle - low) % (2.0 * pi) for angle in places.point(ec, AB, BC)]
         kinks = kinks_between(self.loads.values(), low, high, (ec, AB, BC), self.branch, smooth=True)
         found = sorted({low, *own, *edges, *kinks, high})
         if self.has_friction:

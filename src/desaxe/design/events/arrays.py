@@ -7,11 +7,14 @@ from numpy.typing import NDArray
 
 from ...evaluation.arrays import as_array, broadcast_shape
 from ...evaluation.evaluate import evaluate
+from ...mechanism.closed.dead_centres import DEAD_CENTRES
+from ...mechanism.closed.functions import closed_form
 from ...mechanism.names import LENGTHS
-from ..number_or_array import arrays, sum_of_three
-from .closed_form import VELOCITIES, Known, closed_form, placed, stroke_ends
+from ..feasibility.arrays import only_good
+from .found import VELOCITIES, Found, stroke_ends
 
 Array = NDArray[np.float64]
+STROKES = ("advance_angle", "return_angle")
 HALVINGS = 55  # of a turn: down to the last bits
 
 
@@ -22,49 +25,42 @@ def events_of_arrays(
     inputs = {n: as_array(n, value, tuple(given), ("events",)) for n, value in given.items()}
     shape = broadcast_shape(inputs)
     ec, AB, BC, omega = (np.broadcast_to(a, shape) for a in inputs.values())
-    bad = ~(
-        np.isfinite(ec) & np.isfinite(AB) & np.isfinite(BC) & np.isfinite(omega) & (AB >= 0.0) & (BC > 0.0)
-    )
-    ec, AB, BC, omega = (np.where(bad, np.nan, a) for a in (ec, AB, BC, omega))
-    turn = branch * np.where(omega < 0.0, -1, 1)
-    with np.errstate(all="ignore"):
-        known = placed(closed_form(ec, AB, BC, arrays()), branch, 1)
-        advance, back = known["advance_angle"], known["return_angle"]
-        known["advance_angle"] = _turned(turn, advance, back)
-        known["return_angle"] = _turned(turn, back, advance)
-        margin = sum_of_three(BC, -AB, -np.abs(ec))
-    status = np.select([bad, margin < 0.0, margin == 0.0], [4, 1, 2], 0).astype(np.int8)
-    result: dict[str, Any] = {name: np.asarray(value) for name, (value, _, _) in known.items()}
-    result["slow_stroke"] = np.where(bad, 0, turn * np.sign(np.nan_to_num(ec))).astype(np.int8)
-    result |= _rod_places(ec, AB, bad | (margin < 0.0))
-    gradient = {n: dict(zip(LENGTHS, slopes, strict=True)) for n, (_, slopes, _) in known.items()}
+    ec, AB, BC, omega = (np.broadcast_to(a, shape) for a in inputs.values())
+    bad, lengths = only_good(ec, AB, BC)
+    bad |= ~np.isfinite(omega)
+    ec, AB, BC, omega = (np.where(bad, np.nan, a) for a in (*lengths, omega))
+    outputs = closed_form(DEAD_CENTRES, branch=float(branch)).arrays(ec, AB, BC)
+    found = Found(tuple(np.array(np.broadcast_to(output, shape)) for output in outputs))
+    backwards = omega < 0.0
+    _swap(found.values, backwards)
+    for p in LENGTHS:
+        slopes = {name: found.gradient[name][p] for name in STROKES}
+        _swap(slopes, backwards)
+        for name in STROKES:
+            found.gradient[name][p] = slopes[name]
+    status = np.where(bad, 4, found.status).astype(np.int8)
+    turn = branch * np.where(backwards, -1, 1)
+    slow = np.where(bad, 0, turn * np.sign(np.nan_to_num(ec))).astype(np.int8)
+    result: dict[str, Any] = {**found.values, "slow_stroke": slow, **found.places}
+    gradient = found.gradient
     turns = (status == 0) | (status == 2)
     for name, direction in VELOCITIES.items() if with_velocities else ():
-        value, theta, slopes = _velocities(known, direction * branch, branch, turns, (ec, AB, BC, omega))
+        inputs_here = (ec, AB, BC, omega)
+        value, theta, slopes = _velocities(found.values, direction * branch, branch, turns, inputs_here)
         result |= {name: value, f"theta_{name}": theta}
         gradient[name] = slopes if with_speed else {p: slopes[p] for p in LENGTHS}
     return {**result, "gradient": gradient, "status": status}
 
 
-def _turned(turn: NDArray[np.int_], ahead: Known, behind: Known) -> Known:
-    """`ahead` where the crank turns forwards, `behind` where it turns backwards."""
-    slopes = (np.where(turn > 0, a, b) for a, b in zip(ahead.slopes, behind.slopes, strict=True))
-    return Known(np.where(turn > 0, ahead.value, behind.value), tuple(slopes))
-
-
-def _rod_places(ec: Array, AB: Array, stuck: NDArray[np.bool_]) -> dict[str, Array]:
-    """Crank angles of the largest and the smallest inclination of the rod."""
-    steep = np.where(ec < 0.0, -np.pi / 2, np.pi / 2)
-    with np.errstate(invalid="ignore"):
-        flat = np.where(np.abs(ec) <= AB, -np.arctan2(ec, np.sqrt(AB - ec) * np.sqrt(AB + ec)), -steep)
-    return {
-        "theta_max_pressure_angle": np.where(stuck, np.nan, steep),
-        "theta_min_pressure_angle": np.where(stuck, np.nan, flat),
-    }
+def _swap(values: dict[str, Any], backwards: NDArray[np.bool_]) -> None:
+    """Advance and return change places where the crank turns backwards."""
+    advance, back = (values[name] for name in STROKES)
+    turned = np.where(backwards, back, advance), np.where(backwards, advance, back)
+    values |= zip(STROKES, turned, strict=True)
 
 
 def _velocities(
-    known: dict[str, Known], side: int, branch: int, turns: NDArray[np.bool_], inputs: tuple[Array, ...]
+    values: dict[str, Any], side: int, branch: int, turns: NDArray[np.bool_], inputs: tuple[Array, ...]
 ) -> tuple[Array, Array, dict[str, Array]]:
     """The largest |V_C| while the slider moves to this side of Y: values, crank angles, derivatives."""
     *lengths, omega = (a[turns] for a in inputs)
@@ -73,7 +69,7 @@ def _velocities(
     slopes = {p: np.full(turns.shape, np.nan) for p in (*LENGTHS, "omega0")}
     if not omega.size:
         return value, theta, slopes
-    forth, back = (stroke_ends(known, way, branch) for way in (side, -side))
+    forth, back = (stroke_ends(values, way, branch) for way in (side, -side))
     ahead = omega >= 0.0
     a, b = (
         np.where(ahead, np.broadcast_to(f, turns.shape)[turns], np.broadcast_to(g, turns.shape)[turns])

@@ -1,15 +1,16 @@
 """`events`: the dead centres of a design, its strokes, and the extremes of its rod and slider."""
 
-from math import copysign, nan, pi
+from math import nan, pi
 from typing import Any
 
 from ...evaluation.evaluate import evaluate
+from ...mechanism.closed.dead_centres import DEAD_CENTRES
+from ...mechanism.closed.functions import closed_form
 from ...mechanism.names import LENGTHS
 from ...runtime.request import as_number, check_common, with_known_inputs
 from ...support.answer import answering
 from ...support.roots import root
-from ..number_or_array import PLAIN, sum_of_three
-from .closed_form import VELOCITIES, closed_form, placed, stroke_ends
+from .found import VELOCITIES, Found, stroke_ends
 
 
 @answering
@@ -44,9 +45,9 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
     status                      0 the crank turns fully; 1 it does not: dead centres are given if there are
                                 such, all else is NaN; 2 at a change point, margin = 0; 4 bad input
 
-    Closed forms in which nothing cancels (see `closed_form`), but for the velocities: those are refined
-    between the dead centres by the exact acceleration. Source: paper B, Secs. 2 and 4.2.1, Eq. 51, where
-    advance is the stroke outward. Raises as `evaluate` does.
+    Closed forms in which nothing cancels (`mechanism/closed/dead_centres.py`), but for the velocities: those
+    are refined between the dead centres by the exact acceleration. Source: paper B, Secs. 2 and
+    4.2.1, Eq. 51, where advance is the stroke outward. Raises as `evaluate` does.
 
         >>> import desaxe as dx
         >>> found = dx.events(ec=0.020, AB=0.040, BC=0.064)
@@ -61,35 +62,24 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
 
         return events_of_arrays(given, int(branch), omega0 is not None)
     e, crank, rod, omega = (float(value or 0.0) for value in numbers.values())
+    found = Found(closed_form(DEAD_CENTRES, branch=float(branch)).point(e, crank, rod))
     turn = int(branch) * (-1 if omega < 0.0 else 1)
-    known = placed(closed_form(e, crank, rod, PLAIN), int(branch), turn)
-    margin = sum_of_three(rod, -crank, -abs(e))
-    status = 1 if margin < 0.0 else 2 if margin == 0.0 else 0
-    result: dict[str, Any] = {name: value for name, (value, _, _) in known.items()}
-    result["slow_stroke"] = turn * ((e > 0.0) - (e < 0.0))
-    result |= rod_places(e, crank, status == 1)
-    gradient = {n: dict(zip(LENGTHS, slopes, strict=True)) for n, (_, slopes, _) in known.items()}
+    result = {**found.values, "slow_stroke": turn * ((e > 0.0) - (e < 0.0)), **found.places}
+    gradient = found.gradient
+    if omega < 0.0:
+        for each in (result, gradient):
+            each["advance_angle"], each["return_angle"] = each["return_angle"], each["advance_angle"]
     lengths, forward = {"ec": e, "AB": crank, "BC": rod}, -1 if omega < 0.0 else 1
     parameters = (*LENGTHS, "omega0") if omega0 is not None else LENGTHS
     for name, direction in VELOCITIES.items():
         value, theta, slopes = nan, nan, dict.fromkeys(parameters, nan)
-        if status != 1:
+        if found.status != 1:
             side = direction * int(branch)  # of Y
-            ends = stroke_ends(known, side * forward, int(branch))
+            ends = stroke_ends(found.values, side * forward, int(branch))
             value, theta, slopes = _velocity(ends, side, int(branch), omega, lengths)
         result |= {name: value, f"theta_{name}": theta}
         gradient[name] = {p: slopes[p] for p in parameters}
-    return {**result, "gradient": gradient, "status": status}
-
-
-def rod_places(ec: float, AB: float, stuck: bool) -> dict[str, float]:
-    """Crank angles of the largest and the smallest inclination of the rod."""
-    steep = copysign(pi / 2, ec) if ec else pi / 2
-    flat = -PLAIN.atan2(ec, PLAIN.sqrt(AB - ec) * PLAIN.sqrt(AB + ec)) if abs(ec) <= AB else -steep
-    return {
-        "theta_max_pressure_angle": nan if stuck else steep,
-        "theta_min_pressure_angle": nan if stuck else flat,
-    }
+    return {**result, "gradient": gradient, "status": found.status}
 
 
 def _velocity(

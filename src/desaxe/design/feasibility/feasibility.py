@@ -1,9 +1,10 @@
 """`feasibility`: can the mechanism be assembled, can it turn, at which crank angles."""
 
-from math import fsum, ulp
+from math import ulp
 from typing import Any
 
-from ...mechanism.limit_angles import CHANGE_POINT_ULPS, theta_intervals
+from ...mechanism.closed.functions import closed_form
+from ...mechanism.closed.limits import CHANGE_POINT_ULPS, LIMITS, in_intervals
 from ...runtime.request import as_number, with_known_inputs
 from ...support.answer import answering
 
@@ -40,8 +41,8 @@ def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
     if None in lengths.values():
         return _of_arrays(given)
     ec, AB, BC = lengths.values()
-    margin = fsum((BC, -AB, -abs(ec)))
-    intervals = theta_intervals(ec, AB, BC)
+    *angles, status, margin, link_margin = closed_form(LIMITS).point(ec, AB, BC)
+    intervals = in_intervals(angles)
     near = abs(margin) <= CHANGE_POINT_ULPS * ulp(BC)
     kind = "change point" if near else "crank" if margin > 0.0 else "rocker" if intervals else "none"
     slope = 0.0 if ec == 0.0 else (-1.0 if ec > 0.0 else 1.0)
@@ -51,8 +52,8 @@ def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
         "can_turn": margin >= 0.0,
         "theta_intervals": intervals,
         "kind": kind,
-        "grashof": fsum((max(AB, BC), -min(AB, BC), -abs(ec))) >= 0.0,
-        "status": 2 if margin == 0.0 else 0 if margin > 0.0 else 1,
+        "grashof": link_margin >= 0.0,
+        "status": status,
     }
 
 

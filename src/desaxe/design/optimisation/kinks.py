@@ -5,9 +5,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...mechanism.closed.limits import margins_of
 from ...mechanism.names import LENGTHS
 from ..measures import Array, Measure, Measured, measured
-from ..number_or_array import sum_of_three
 
 Smooth = Measure | Callable[[Mapping[str, Any]], Measured]
 
@@ -34,7 +34,7 @@ def _both(function: Callable[[Mapping[str, Any], float], Measured]) -> tuple[tup
 def _margin(designs: Mapping[str, Any], side: float) -> Measured:
     """BC - AB - side ec."""
     ec, AB, BC = _lengths(designs)
-    value = sum_of_three(BC, -AB, -side * ec)
+    value = margins_of(side * ec, AB, BC)[0]
     one = np.ones_like(value)
     return Measured(value, {"ec": -side * one, "AB": -one, "BC": one})
 
@@ -44,7 +44,7 @@ def _lean(designs: Mapping[str, Any], side: float) -> Measured:
     ec, AB, BC = _lengths(designs)
     reach = AB + side * ec
     with np.errstate(invalid="ignore", divide="ignore"):
-        rise = np.sqrt(sum_of_three(BC, -AB, -side * ec) * (BC + reach))
+        rise = np.sqrt(margins_of(side * ec, AB, BC)[0] * (BC + reach))
         return Measured(
             np.arctan2(reach, rise), {"ec": side / rise, "AB": 1.0 / rise, "BC": -reach / (BC * rise)}
         )

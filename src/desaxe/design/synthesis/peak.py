@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...mechanism.closed.limits import margin_of
 from ...peaks.peak import peak
 from ...support.deadline import Deadline
 from ...support.roots import root
-from ..number_or_array import sum_of_three
 from .family import Answer, Family
 
 Array = NDArray[np.float64]
@@ -27,7 +27,7 @@ def of_peak(family: Family, wanted: float, omega0: float, deadline: Deadline) ->
         deadline.check()
         rows = [family.design(float(at)) for at in np.atleast_1d(x)]
         lengths: dict[str, Any] = {name: np.array([row[name] for row in rows]) for name in ("ec", "AB", "BC")}
-        margin = sum_of_three(lengths["BC"], -lengths["AB"], -lengths["ec"])
+        margin = margin_of(**lengths)
         value = peak("a_C", omega0=omega0, **lengths)["value"]
         return np.where(margin > TURNS * lengths["BC"], value, np.inf)
 

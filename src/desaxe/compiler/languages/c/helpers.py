@@ -51,6 +51,14 @@ static inline double rounding(double a) {
   return 4.440892098500626e-16 * fabs(a);
 }
 """,
+    "power_of_two": """/* The power of two that is not below a size (Rump), from 2^-960 to 2^960. */
+static inline double power_of_two(double a) {
+  const double least = 1.0261342003245941e-289, most = 9.7453140114e+288;
+  const double size = a < most ? (least < a ? a : least) : most, wide = 9007199254740992.0 * size;
+  const double step = (wide + size) - wide;
+  return step > 0.0 ? step : size;
+}
+""",
     "rotated_sin": """/* The sine of an angle and whole quarter turns, from the angle's own. */
 static inline double rotated_sin(double sine, double cosine, double quarters) {
   const double turn = quarters - 4.0 * floor(0.25 * quarters);

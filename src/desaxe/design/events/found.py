@@ -1,0 +1,27 @@
+"""The outputs of the closed form of the dead centres, by name: numbers or arrays."""
+
+from math import pi
+from typing import Any
+
+from ...mechanism.closed.dead_centres import NAMES, PLACES, SENSITIVITIES
+from ...mechanism.names import LENGTHS, sensitivity
+
+VELOCITIES = {"V_outward": 1, "V_inward": -1}  # name -> direction along the stroke
+
+
+class Found:
+    """Values, their gradient, the angles of the extremes of the rod, and the status."""
+
+    def __init__(self, outputs: tuple[Any, ...]) -> None:
+        by_name = dict(zip((*NAMES, *SENSITIVITIES, *PLACES), outputs, strict=False))
+        self.status = outputs[-1]
+        self.values = {name: by_name[name] for name in NAMES}
+        self.places = {name: by_name[name] for name in PLACES}
+        self.gradient = {name: {p: by_name[sensitivity(name, p)] for p in LENGTHS} for name in NAMES}
+
+
+def stroke_ends(values: dict[str, Any], side: int, branch: int) -> tuple[Any, Any]:
+    """The crank angles, ascending, between which Y grows (side 1) or falls (-1) as the angle does."""
+    outer, inner = values["theta_outer"], values["theta_inner"]
+    top, bottom = (outer, inner) if branch > 0 else (inner, outer)
+    return (bottom - 2.0 * pi, top) if side > 0 else (top, bottom)

@@ -1,0 +1,7 @@
+"""Closed forms of the geometry as Programs: one text for numbers, arrays and every language.
+
+dead_centres  dead centres, stroke, time ratio, extreme angles of the rod, with their derivatives
+limits        the crank angles at which a design can be assembled
+inverse       the crank angles that put the slider at a position
+functions     a closed form in plain Python and in NumPy
+"""

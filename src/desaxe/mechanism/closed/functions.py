@@ -1,0 +1,45 @@
+"""Closed forms as functions: of numbers in plain Python, of arrays in NumPy."""
+
+from collections.abc import Callable
+from functools import cache, cached_property
+from typing import Any
+
+from ...compiler.passes.differentiate import with_derivatives
+from ...compiler.passes.pipeline import optimise
+from ...compiler.passes.slicing import keep_outputs
+from ...compiler.program import Program
+from ...compiler.text import read_function
+
+
+class ClosedForm:
+    """A Program that is a closed form, with some inputs fixed; functions are made when they are called."""
+
+    def __init__(self, text: str, outputs: tuple[str, ...], **fixed: float) -> None:
+        program = read_function(text)
+        self.program = optimise(keep_outputs(program, outputs or program.outputs), fixed)[0]
+
+    @cached_property
+    def point(self) -> Callable[..., tuple[Any, ...]]:
+        """The outputs from numbers: a square root below 0 is NaN, a number over 0 infinite."""
+        from ...compiler.languages.python import compile_python
+
+        return compile_python(self.program)
+
+    @cached_property
+    def arrays(self) -> Callable[..., tuple[Any, ...]]:
+        """The outputs from arrays that broadcast, by NumPy."""
+        import numpy as np
+
+        from ...compiler.languages.arrays import compile_arrays
+
+        return np.errstate(all="ignore")(compile_arrays(self.program, np))
+
+    def with_sensitivities(self, *parameters: str) -> Program:
+        """The program with the derivative of each output, a number, by each parameter, by differentiation."""
+        return with_derivatives(self.program, parameters)
+
+
+@cache
+def closed_form(text: str, outputs: tuple[str, ...] = (), **fixed: float) -> ClosedForm:
+    """The closed form of a Program's text; all outputs or some."""
+    return ClosedForm(text, outputs, **fixed)
