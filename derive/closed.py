@@ -162,5 +162,6 @@ class _Sector:
         """True if an expression is 0 wherever the roots are those of their squares."""
         rest = sp.numer(sp.together(expression))
         for root, square in self.roots.items():
-            rest = sp.rem(sp.expand(rest), root**2 - square, root)
-        return sp.expand(rest) == 0
+            if rest.has(root):
+                rest = sp.rem(sp.expand(rest), root**2 - square, root)
+        return bool(sp.expand(rest) == 0)

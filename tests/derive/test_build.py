@@ -11,6 +11,8 @@ from desaxe.derive.build import INPUTS, public_names
 from desaxe.derive.dynamics import FORCES
 from desaxe.derive.quantities import FACTS, KINEMATICS, SECOND_ORDER
 from desaxe.generated.index import NAMES
+from desaxe.mechanism.closed.dead_centres import NAMES as WHOLE
+from desaxe.mechanism.closed.dead_centres import SENSITIVITIES
 from desaxe.mechanism.names import LOADS, PARAMETERS
 from desaxe.oracle.force_truth import force_names
 from desaxe.oracle.truth import all_names
@@ -22,7 +24,7 @@ from tests.derive.derived import derivation
 def test_how_many_names():
     first, second = len(PARAMETERS), len(PARAMETERS) * (len(PARAMETERS) + 1) // 2
     assert (len(KINEMATICS), len(FORCES), len(SECOND_ORDER), len(FACTS)) == (18, 23, 5, 2)
-    assert len(public_names()) == 18 * (1 + first) + 23 * (1 + first + len(LOADS)) + 5 * second + 2
+    assert len(public_names()) == 18 * (1 + first) + 23 * (1 + first + len(LOADS)) + 5 * second + 2 + 12 * 4
 
 
 def test_no_name_comes_twice():
@@ -30,7 +32,8 @@ def test_no_name_comes_twice():
 
 
 def test_they_are_the_names_of_the_truth():
-    assert set(public_names()) == {*all_names(), *force_names(), "status"}
+    whole = {*WHOLE, *SENSITIVITIES}  # their truth: tests/mechanism/closed/truth.py
+    assert set(public_names()) == {*all_names(), *force_names(), "status", *whole}
 
 
 def test_they_are_the_names_that_can_be_asked_for():

@@ -4,6 +4,7 @@ A side of the crank whose margin is negative loses the angles within a gap of it
 -margin/AB and 1 + cos(gap) = (margin + 2 AB)/AB, so that tan(gap/2) has no cancellation.
 """
 
+from collections.abc import Sequence
 from math import pi
 from typing import Any
 
@@ -55,7 +56,7 @@ def theta_intervals(ec: float, AB: float, BC: float) -> list[tuple[float, float]
     return in_intervals(closed_form(LIMITS, ANGLES).point(ec, AB, BC))
 
 
-def in_intervals(angles: tuple[float, ...]) -> list[tuple[float, float]]:
+def in_intervals(angles: Sequence[float]) -> list[tuple[float, float]]:
     """The limit angles in pairs, without those that there are not."""
     pairs = (angles[0:2], angles[2:4])
     return [(start, end) for start, end in pairs if start == start]
