@@ -7,8 +7,11 @@
 SI units and radians. Nothing is imported until it is used: one point needs only `math`.
 """
 
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
+
+from .support.extras import explained as _explained
+from .support.interrupts import import_whole as _import_whole
+from .support.version import version as _version
 
 if TYPE_CHECKING:
     from . import plot as plot
@@ -132,18 +135,13 @@ if _clone:
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first used."""
     if name == "__version__":
-        from importlib.metadata import version
-
-        return version("desaxe")
+        return _version()
     if name in MODULES:
-        return import_module(MODULES[name])
+        return _import_whole(MODULES[name])
     if name not in PUBLIC:
         raise AttributeError(f"module 'desaxe' has no attribute {name!r}")
-    from .support.extras import explained
-    from .support.interrupts import import_whole
-
-    with explained(name):
-        value = getattr(import_whole(PUBLIC[name]), name)
+    with _explained(name):
+        value = getattr(_import_whole(PUBLIC[name]), name)
     globals()[name] = value
     return value
 

@@ -1,5 +1,5 @@
 """All kinds of trials."""
 
-from tests.reliability import cache, files, hostile, memory, processes
+from tests.reliability import cache, files, forks, hostile, memory, processes
 
-TRIALS = [*files.TRIALS, *cache.TRIALS, *processes.TRIALS, *hostile.TRIALS, *memory.TRIALS]
+TRIALS = [*files.TRIALS, *cache.TRIALS, *processes.TRIALS, *forks.TRIALS, *hostile.TRIALS, *memory.TRIALS]

@@ -8,6 +8,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from ..support.forks import IMPORTS
 from .operations import OPERATIONS
 from .program import Argument, Program
 
@@ -88,7 +89,8 @@ def _two_sum_error(a: float, b: float) -> float:
 
 
 def _two_product_error(a: float, b: float) -> float:
-    from fractions import Fraction  # with decimal and re: a large import for a rare constant
+    with IMPORTS:
+        from fractions import Fraction  # with decimal and re: a large import for a rare constant
 
     product = a * b
     if product - product != 0.0:

@@ -21,6 +21,7 @@ from math import inf
 from sys import float_info
 from typing import TYPE_CHECKING, NamedTuple
 
+from ..support.forks import IMPORTS
 from .forms import in_two_forms, parted
 from .kernel import Kernel, tabulate
 from .passes.fuse import fuse_products
@@ -79,7 +80,8 @@ def guarded_pairs(
     program: Program, varying: Iterable[str], limits: Limits, trigonometry: "DoubleTrigonometry"
 ) -> Program:
     """Stages 3 and 4, in double-double arithmetic."""
-    from .passes.double_double import double_double
+    with IMPORTS:
+        from .passes.double_double import double_double
 
     return double_double(guard_inputs(program, tuple(varying), *limits), trigonometry)
 

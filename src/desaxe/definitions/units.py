@@ -9,6 +9,7 @@ from math import isfinite, pi
 from typing import Any
 
 from ..mechanism.dimensions import ANGLE, ENERGY, FORCE, LENGTH, MASS, NONE, POWER, Unit
+from ..support.forks import IMPORTS
 from ..support.quantity_text import spelled, split_quantity
 from ..support.shown import shown
 
@@ -112,8 +113,9 @@ def _times(a: Unit, b: Unit, count: int) -> Unit:
 
 
 def _pint(name: str, text: str) -> Any:
-    from ..mechanism.units import registry
-    from ..support.extras import MissingExtraError, needed
+    with IMPORTS:
+        from ..mechanism.units import registry
+        from ..support.extras import MissingExtraError, needed
 
     number, unit = split_quantity(text)
     try:

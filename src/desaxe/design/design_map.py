@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..evaluation.arrays import as_array
-from ..evaluation.labels import STATUS_FLAGS, input_attributes, provenance
+from ..evaluation.labels import STATUS_FLAGS, import_xarray, input_attributes, provenance
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS, sensitivity
 from ..runtime.request import check_common, check_inputs
-from ..support.extras import needed
+from ..support.forks import IMPORTS
 from .feasibility.arrays import KINDS, of_arrays
 from .measures import Measure, checked, measured, text_of, unit_of
 
@@ -68,7 +68,8 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
                 np.broadcast_to(slope, designs["ec"].shape).reshape(shape),
                 told,
             )
-    with needed("design_map"):
+    import_xarray("design_map")
+    with IMPORTS:
         import xarray
     coordinates = {n: ((n,) if axis.ndim else (), axis, input_attributes(n)) for n, axis in axes.items()}
     names = [text_of(measure).replace(" ", "_") for measure in wanted]

@@ -14,6 +14,7 @@ from ..mechanism.names import LENGTHS
 from ..mechanism.status import InverseStatus
 from ..runtime.request import check_common, with_known_inputs
 from ..support.answer import answering
+from ..support.forks import IMPORTS
 from ..support.shown import shown
 
 Array = NDArray[np.float64]
@@ -78,7 +79,8 @@ def _input(name: str, value: Any) -> Array:
     if name in INPUTS:
         return as_array(name, value, ("Y", "ec", "AB", "BC"), ("inverse",))
     if isinstance(value, str) or hasattr(value, "magnitude"):
-        from ..mechanism.units import in_unit
+        with IMPORTS:
+            from ..mechanism.units import in_unit
 
         value = in_unit(name, value, SLIDER_INPUTS[name].unit)
     try:

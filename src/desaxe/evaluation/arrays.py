@@ -15,6 +15,8 @@ from ..runtime.point import point_of
 from ..runtime.request import Request, as_number
 from ..runtime.threads import run_in_blocks
 from ..runtime.tiers import COMPILED, INTERPRETED, VARIABLE, tier_of
+from ..runtime.vectorised import fill_by_arrays
+from ..support.forks import IMPORTS
 from ..support.memory import require
 from ..support.shown import shown
 from .extremes import are_extreme, can_rescale, in_si, is_extreme, rescaled
@@ -68,21 +70,24 @@ def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str])
     if number is not None:
         return np.array(number)
     if hasattr(value, "dims"):
-        from ..mechanism.units import unlabelled
+        with IMPORTS:
+            from ..mechanism.units import unlabelled
 
         value = unlabelled(name, value)
     if hasattr(value, "magnitude"):
-        from ..mechanism.units import in_si
+        with IMPORTS:
+            from ..mechanism.units import in_si
 
         value = in_si(name, value)
-    if np.ma.is_masked(value):
+    if hasattr(value, "mask") and np.ma.is_masked(value):  # who has one has imported them
         raise TypeError(f"{name}: a masked array; fill it first, for example with .filled(np.nan)")
     try:
         array = np.asarray(value)
     except (ValueError, TypeError, OverflowError):  # rows of different lengths
         raise TypeError(f"{name} = {shown(value)}: expected a number or an array of numbers") from None
     if array.dtype.kind == "U":
-        from ..mechanism.units import in_si
+        with IMPORTS:
+            from ..mechanism.units import in_si
 
         array = np.array([in_si(name, text) for text in array.reshape(-1).tolist()]).reshape(array.shape)
     if array.dtype.kind not in "fiu":
@@ -233,7 +238,5 @@ def _fill(
     if tier == INTERPRETED:
         fill_by_points(key, scalars, wide, flat)
     else:
-        from ..runtime.vectorised import fill_by_arrays
-
         fill_by_arrays(key, scalars, wide, flat)
     return False

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..support.extras import needed
+from ..support.forks import IMPORTS
 
 Array = NDArray[Any]
 Function = Callable[..., Mapping[str, Array]]
@@ -21,7 +22,8 @@ def is_lazy(value: Any) -> bool:
 
 def as_dask(name: str, value: Any) -> Any:
     """A Dask array of real numbers; a labelled array without its labels."""
-    import dask.array as da
+    with IMPORTS:
+        import dask.array as da
 
     array = da.asarray(getattr(value, "data", value) if hasattr(value, "dims") else value)
     if array.dtype.kind not in "fiu":

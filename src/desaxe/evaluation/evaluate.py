@@ -7,6 +7,7 @@ from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LOADS
 from ..runtime.request import check_inputs
 from ..support.answer import Answer
+from ..support.forks import IMPORTS
 from .values import values
 
 
@@ -96,12 +97,14 @@ def evaluate(
         loads = (m_crank, m_rod, m_slider, I_crank, I_rod, r_crank, r_rod, F_X, F_Y, g_X, g_Y, mu)
         given.update((name, load) for name, load in zip(LOADS, loads, strict=True) if load is not None)
         if any(map(callable, loads)):
-            from .loaded import evaluate_loaded, refuse_quality
+            with IMPORTS:
+                from .loaded import evaluate_loaded, refuse_quality
 
             refuse_quality(quality, given)
             return evaluate_loaded(names, given, branch, accuracy, threads, out)
     if quality:
-        from .quality import evaluate_quality
+        with IMPORTS:
+            from .quality import evaluate_quality
 
         return evaluate_quality(names, given, branch, accuracy, threads, out)
     found = values(names, given, branch, accuracy, threads, out)

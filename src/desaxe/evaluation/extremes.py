@@ -13,6 +13,7 @@ from ..mechanism.dimensions import unit_of
 from ..mechanism.inputs import INPUTS, SAFE
 from ..mechanism.names import LENGTHS
 from ..runtime.request import Request
+from ..support.forks import IMPORTS
 
 LEAST, MOST = SAFE
 SPEEDS = {"omega0": 1, "omega": 1, "alpha": 2, "g_X": 2, "g_Y": 2}  # -> its power of 1/time
@@ -38,7 +39,8 @@ def check_range(caller: str, name: str, number: float) -> float:
 
 def are_extreme(name: str, values: Any) -> Any:
     """An array of `is_extreme`, or False for an array without one."""
-    import numpy as np
+    with IMPORTS:
+        import numpy as np
 
     if name == "theta" or not values.size:
         return False
@@ -57,7 +59,8 @@ def can_rescale(wanted: Request) -> bool:
 
 def rescaled(values: Mapping[str, Any]) -> tuple[dict[str, Any], Powers]:
     """The inputs, numbers or arrays that broadcast, in the new units; and these."""
-    import numpy as np
+    with IMPORTS:
+        import numpy as np
 
     def exponent(name: str, more: Any = 0) -> Any:
         fraction, power = np.frexp(values[name])
@@ -97,7 +100,8 @@ def shift(unit: str, powers: Powers) -> Any:
 
 def scaled(value: Any, power: Any) -> Any:
     """The value times a power of two; a status, and what has no unit, as it is."""
-    import numpy as np
+    with IMPORTS:
+        import numpy as np
 
     if not np.any(power):
         return value

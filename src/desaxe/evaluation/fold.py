@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiler.languages.numba.reductions import EXTREMES
+from ..support.forks import imported
 from .reductions import percent_of
 
 Array = NDArray[Any]
@@ -92,6 +93,7 @@ def average(kind: str, rows: Array, counts: Array) -> Array:
             return _scaled_root(rows, counts)
         if kind == "std":
             return _scaled_root(rows - _mean(rows, counts)[..., None], counts)
+        imported("numpy.ma")  # by `nanpercentile`
         return np.asarray(np.nanpercentile(rows, percent_of(kind), axis=-1))
 
 

@@ -5,8 +5,6 @@ are NumPy's; whatever the shape, every point runs through the same machine code.
 """
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property
-from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -25,6 +23,9 @@ from ..runtime.native_calls import point_caller, scalar_of, ufunc_of
 from ..runtime.request import Request, as_number, check_common, check_inputs, request, several, standstill
 from ..runtime.specialise import plain_form
 from ..runtime.wide_margins import all_have_wide_margins
+from ..support.computed import computed_once
+from ..support.forks import IMPORTS
+from ..support.interrupts import import_whole
 from ..support.shown import shown as as_shown
 from .repair import limit_of, repair_for
 
@@ -86,7 +87,7 @@ class Function:
         self.units |= {name: INPUTS[name].unit for name in inputs}
         self._ufunc, self._kept = ufunc_of(self._bound, len(inputs), self._kinds, ", ".join(names))
 
-    @cached_property
+    @computed_once
     def _failures(self) -> list[BaseException]:
         return []
 
@@ -160,7 +161,7 @@ class Function:
 
         return {name: {parameter: slope(name, parameter) for parameter in self.inputs} for name in self.names}
 
-    @cached_property
+    @computed_once
     def _slopes(self) -> "Function":
         """The function of the values and of their derivatives, those that are not 0 everywhere."""
         state = "omega" in self.inputs or self.fixed.get("omega") is not None
@@ -175,7 +176,7 @@ class Function:
                     raise ValueError(f"jacobian: the derivative of {name} by {parameter} is not derived")
         return Function(tuple(wanted), False, self.inputs, self.fixed)
 
-    @cached_property
+    @computed_once
     def _point(self) -> Any:
         return point_caller(self._bound, len(self.inputs), self._kinds)
 
@@ -185,10 +186,10 @@ class Function:
         address: int = self._point.address
         return address
 
-    @cached_property
+    @computed_once
     def scalar(self) -> Any:
         """The function of numbers, callable from numba's code: a number for a name, a tuple for a list."""
-        import_module("numba")
+        import_whole("numba")
         return scalar_of(self.address, self.inputs, len(self.names), self._one, self)
 
     def __reduce__(self) -> Any:
@@ -250,7 +251,8 @@ def _apart(argument: Any, outs: Sequence[Any]) -> Any:
 
 def _number(name: str, value: Any) -> Any:
     """Convert an argument that NumPy's ufunc refused to numbers; an error names it if that fails."""
-    from .arrays import as_array
+    with IMPORTS:
+        from .arrays import as_array
 
     return value if hasattr(value, "dims") else as_array(name, value, (), (name,))
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ..mechanism.inputs import Inputs
 from ..runtime.request import request, several, with_named_inputs
+from ..support.forks import IMPORTS
 from .filled import filled_grid
 from .loaded import filled_under_loads
 from .outer import outer_of, require_inputs
@@ -84,16 +85,18 @@ def grid(
         dx.grid(["a_C"], theta=th, ec=ecs, AB=.125, BC=bcs, omega0=157.08).a_C.max("theta")
     """
     if reduce is not None:
-        from .joint import joint_grid, joint_part
-        from .reduce import reduced_grid
-        from .reductions import names_reduced, reductions_of
+        with IMPORTS:
+            from .joint import joint_grid, joint_part
+            from .reduce import reduced_grid
+            from .reductions import names_reduced, reductions_of
 
         names = ((names,) if isinstance(names, str) else several(names)) + names_reduced(reduce)
     outer = outer_of(names, inputs, branch, threads, always=out is None)
     if chunks is not None:
         if out is not None:
             raise TypeError("chunks= and out=: give one of them")
-        from .lazy import lazy_grid
+        with IMPORTS:
+            from .lazy import lazy_grid
 
         return lazy_grid(outer, chunks, branch, accuracy, threads, reduce)
     wanted, axes, dimensions = outer.names, outer.axes, outer.dimensions
@@ -120,7 +123,8 @@ def grid(
         return reduced_grid(asked, axes, dimensions, reductions.alone, branch, threads, whole)
     if out is not None:
         return filled(wanted, dimensions, out)
-    from .labels import labelled, with_loads
+    with IMPORTS:
+        from .labels import labelled, with_loads
 
     arrays: dict[str, tuple[Sequence[str], Array]] = {}
     for some, along in outer.groups():

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..compiler.languages.numba.reductions import KINDS
 from ..mechanism.unit_system import SI, Conversion, UnitSystem
+from ..mechanism.units import registry
+from ..support.forks import IMPORTS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,14 +36,14 @@ def in_units(
         lazy = array.chunks is not None  # a sweep's, which may be larger than memory
         values = array.data / float(conversion.si) if lazy else conversion.shown(array.values)
         if given is not None and key in given:
-            import numpy as np
+            with IMPORTS:
+                import numpy as np
 
             values = np.asarray(given[key], dtype=np.float64)
         attributes = {**array.attrs, "units": conversion.unit}
         if as_quantity and key in dataset.data_vars and conversion.unit != "1":
-            import numpy as np
-
-            from ..mechanism.units import registry
+            with IMPORTS:
+                import numpy as np
 
             values = registry().Quantity(values if lazy else np.asarray(values), conversion.unit)
             del attributes["units"]

@@ -12,7 +12,8 @@ from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.status import PointStatus
 from ..support.extras import explained
-from ..support.interrupts import import_whole
+from ..support.forks import IMPORTS
+from ..support.interrupts import finished, import_whole
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,8 +44,9 @@ def input_attributes(name: str) -> dict[str, str]:
 @cache
 def source() -> str:
     """The source of a dataset: version of desaxe and digest of its derivation."""
-    from ..mechanism.program import digest
-    from ..support.version import version
+    with IMPORTS:
+        from ..mechanism.program import digest
+        from ..support.version import version
 
     return f"desaxe {version()}, derivation {digest()[:16]}"
 
@@ -78,6 +80,21 @@ def provenance(
     }
 
 
+@cache
+def import_xarray(what: str = "a labelled result") -> None:
+    """Import xarray, and all that it imports itself when it makes its first Dataset."""
+    with explained(what):
+        import_whole("xarray")
+    finished(_make_a_dataset)
+
+
+def _make_a_dataset() -> None:
+    with IMPORTS:
+        import xarray
+
+        xarray.Dataset({"x": ("x", np.zeros(1))})
+
+
 def labelled(
     values: Mapping[str, tuple[Sequence[str], NDArray[Any]]],
     inputs: Mapping[str, NDArray[Any]],
@@ -86,9 +103,9 @@ def labelled(
     accuracy: str | float = "standard",
 ) -> "xr.Dataset":
     """A Dataset of values by name (dimensions, array); a 1-d input is a dimension, a number is not."""
-    with explained("a labelled result"):
-        import_whole("xarray")
-    import xarray
+    import_xarray()
+    with IMPORTS:
+        import xarray
 
     variables = {name: (dims, array, attributes(name, state)) for name, (dims, array) in values.items()}
     for name, (_, _, told) in variables.items():

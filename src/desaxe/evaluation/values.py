@@ -12,6 +12,7 @@ from ..mechanism.own import changes, forget_on_change
 from ..runtime.accuracy import accuracy_of
 from ..runtime.point import Point, point_of
 from ..runtime.request import Request, as_number, check_common, is_steady, request, several, standstill
+from ..support.forks import IMPORTS
 from ..support.interrupts import import_whole
 from .extremes import LEAST, MOST, can_rescale, in_si, is_extreme, rescaled
 
@@ -85,7 +86,8 @@ _ARRAY: list[type] = [object]  # NumPy's type of array, when it is known
 def _evaluate_arrays() -> Callable[..., dict[str, Any]]:
     """`arrays.evaluate_arrays`, imported when the first array comes."""
     _ARRAY[0] = import_whole("numpy").ndarray
-    from .arrays import evaluate_arrays
+    with IMPORTS:
+        from .arrays import evaluate_arrays
 
     return evaluate_arrays
 
@@ -102,10 +104,12 @@ def _of_arrays(
         if type(value) is str:
             given = {**given, name: as_number(name, value, inputs, asked.shown)}
         elif hasattr(value, "__dask_graph__"):
-            from .dask_blocks import is_lazy
+            with IMPORTS:
+                from .dask_blocks import is_lazy
 
             if is_lazy(value):
-                from .lazy_evaluate import evaluate_lazily
+                with IMPORTS:
+                    from .lazy_evaluate import evaluate_lazily
 
                 return evaluate_lazily(asked, given, threads, out)
     return evaluate_arrays(asked, given, threads, out)

@@ -11,6 +11,7 @@ from hashlib import sha256
 from math import ceil, floor, inf, isfinite, nextafter, pi
 from typing import Any
 
+from ..support.forks import IMPORTS
 from .table import Table
 
 TURN = 2.0 * pi
@@ -174,7 +175,8 @@ class OverY(Load):
             return self.outward.both(Y)
         if isinstance(Y, float) and isinstance(way, float):
             return (self.inward if way < 0.0 else self.outward).both(Y)
-        import numpy as np
+        with IMPORTS:
+            import numpy as np
 
         inward = np.less(way, 0.0)
         pairs = zip(self.inward.both(np.asarray(Y)), self.outward.both(np.asarray(Y)), strict=True)
@@ -215,7 +217,8 @@ def called(function: Callable[[Any], Any], theta: Any, what: str) -> Any:
     """Call a user's function with a number or an array; angle by angle if it takes no arrays."""
     if isinstance(theta, float):
         return _one(function, theta, what)
-    import numpy as np
+    with IMPORTS:
+        import numpy as np
 
     theta = np.asarray(theta, float)
     try:

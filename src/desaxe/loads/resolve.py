@@ -20,6 +20,7 @@ from ..mechanism.catalogue import law_name, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import parts, sensitivity
 from ..mechanism.program import program_of
+from ..support.forks import IMPORTS
 from .load import FunctionOverTheta, Load, OverTheta, OverY
 
 VARIABLE = ("F_X", "F_Y")  # inputs that may vary with the motion
@@ -186,7 +187,8 @@ def way_of(given: Mapping[str, Any]) -> Any:
         return 1.0 if speed is None else speed
     if isinstance(speed, float) and isinstance(alpha, float):
         return alpha
-    import numpy as np
+    with IMPORTS:
+        import numpy as np
 
     return speed if alpha is None else np.where(np.equal(speed, 0.0), alpha, speed)
 
@@ -208,7 +210,8 @@ def _over_position(load: Load, motion: Mapping[str, Any], way: Any) -> tuple[Any
     if isinstance(Y, float) and isinstance(way, float):
         ahead = slope or bend
         return load.both(float(Y), float(ahead if way >= 0.0 else -ahead))
-    import numpy as np
+    with IMPORTS:
+        import numpy as np
 
     ahead = np.where(np.equal(slope, 0.0), bend, slope)
     return load.both(Y, np.where(np.less(way, 0.0), -ahead, ahead))
@@ -218,6 +221,7 @@ def _finite_or_zero(value: Any) -> Any:
     """The load with NaN replaced by 0: a point without motion has NaN and a status of its own."""
     if isinstance(value, float):
         return value if value - value == 0.0 else 0.0
-    import numpy as np
+    with IMPORTS:
+        import numpy as np
 
     return np.nan_to_num(value, nan=0.0, posinf=0.0, neginf=0.0)

@@ -7,9 +7,12 @@ to the right holds, value and derivative alike.
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from math import floor, nan
 from typing import Any
+
+from ..support.computed import computed_once
+from ..support.extras import needed
+from ..support.forks import IMPORTS
 
 Row = tuple[float, float, float, float]
 
@@ -58,7 +61,8 @@ class Table:
         return polynomial(self.rows[piece], x - self.origin(piece))
 
     def _arrays(self, x: Any) -> tuple[Any, Any]:
-        import numpy as np
+        with IMPORTS:
+            import numpy as np
 
         knots, rows = self._numpy
         x = np.asarray(x, float)
@@ -72,9 +76,10 @@ class Table:
             value, slope = polynomial(rows[:, piece], distance)
         return value, slope
 
-    @cached_property
+    @computed_once
     def _numpy(self) -> tuple[Any, Any]:
-        import numpy as np
+        with IMPORTS:
+            import numpy as np
 
         return np.array(self.knots), np.array(self.rows).T
 
@@ -87,12 +92,12 @@ class Table:
         """The value at each knot, that to the right at a jump."""
         return tuple(row[0] for row in self.rows[1:])
 
-    @cached_property
+    @computed_once
     def kinks(self) -> tuple[float, ...]:
         """The knots at which the value jumps or the derivative does."""
         return tuple(x for x, jump, kink in self._changes() if jump or kink)
 
-    @cached_property
+    @computed_once
     def jumps(self) -> tuple[float, ...]:
         """The knots at which the value jumps."""
         return tuple(x for x, jump, _ in self._changes() if jump)
@@ -191,8 +196,6 @@ def _tridiagonal(
 
 def _slopes(x: Sequence[float], y: Sequence[float]) -> list[float]:
     """The slopes at the knots of the cubic spline without a period ("not-a-knot")."""
-    from ..support.extras import needed
-
     with needed('a load of kind="cubic" over Y', "simulate"):
         from scipy.interpolate import CubicSpline
     found: list[float] = CubicSpline(x, y)(x, 1).tolist()

@@ -9,6 +9,7 @@ from typing import Any
 from warnings import warn
 
 from ..mechanism.slips import LARGEST, UnitWarning
+from ..mechanism.units import in_unit, registry
 from ..support.files import as_path, read_bytes
 from ..support.quantity_text import spelled
 from ..support.shown import shown
@@ -250,8 +251,6 @@ def _numbers(what: str, given: Any, units: tuple[str, ...]) -> tuple[list[float]
     if said in units:
         return _finite(what, given.values.tolist()), said
     if said is not None:
-        from ..mechanism.units import registry
-
         given = registry().Quantity(given.values, said)
     if hasattr(given, "magnitude"):
         unit, found = _first_that_fits(what, given, units)
@@ -280,8 +279,6 @@ def _is_plain(text: str) -> bool:
 
 def _first_that_fits(what: str, value: Any, units: tuple[str, ...]) -> tuple[str, Any]:
     """The first compatible unit, and the magnitude of a quantity in it."""
-    from ..mechanism.units import in_unit
-
     for unit in units[:-1]:
         try:
             return unit, in_unit(what, value, unit)

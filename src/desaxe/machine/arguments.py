@@ -6,6 +6,7 @@ from typing import Any
 
 from ..mechanism.inputs import INPUTS
 from ..mechanism.unit_system import OTHERS, UnitSystem
+from ..support.forks import IMPORTS
 from ..support.quantity_text import PLUS_MINUS, with_unit_of
 from .results import conversion_of
 
@@ -24,7 +25,8 @@ def in_si(system: UnitSystem, name: str, value: Any) -> Any:
     if not system or value is None:
         return value
     if name == "data" and not isinstance(value, (str, PathLike)):
-        from ..design.fit.data import columns_of
+        with IMPORTS:
+            from ..design.fit.data import columns_of
 
         value = columns_of(value)
     if name in BY_KEY and isinstance(value, Mapping):

@@ -4,10 +4,12 @@ from collections.abc import Iterator, Mapping
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
+from ..evaluation.arrays import as_array
 from ..mechanism.inputs import INPUTS, is_good
 from ..mechanism.slips import warn_of_slips
 from ..mechanism.unit_system import UnitSystem
 from ..runtime.request import MachineSpeed, as_number, check_common, check_inputs
+from ..support.forks import IMPORTS
 from .arguments import in_si
 from .methods import METHODS, Method
 from .plots import Plots
@@ -137,7 +139,8 @@ class Machine(Mapping[str, Any]):
 
         Arguments are those of `scene`.
         """
-        from ..scenes.explain.explain import explain
+        with IMPORTS:
+            from ..scenes.explain.explain import explain
 
         return explain(self.scene(outputs, **more))
 
@@ -156,7 +159,8 @@ class Machine(Mapping[str, Any]):
 
         path, to, libm, check, overwrite as there, others as in `scene`. The code takes and gives SI units.
         """
-        from ..scenes.export.compile import compile
+        with IMPORTS:
+            from ..scenes.export.compile import compile
 
         return compile(self.scene(outputs, **more), path, to, libm=libm, check=check, overwrite=overwrite)
 
@@ -242,8 +246,6 @@ def _checked(name: str, value: Any) -> Any:
     number = as_number(name, value, (name,), ("Machine",))
     if number is not None:
         return MachineSpeed(number) if name in SPEEDS else number
-    from ..evaluation.arrays import as_array
-
     array = as_array(name, value, (name,), ("Machine",))
     if array.ndim != 1:
         raise ValueError(

@@ -5,11 +5,11 @@ A function of this table is a method of the same name. To add one, add its name.
 
 from collections.abc import Callable, Mapping
 from functools import wraps
-from importlib import import_module
 from inspect import Parameter, Signature, signature
 from typing import Any, NamedTuple
 
 from ..mechanism.slips import warn_of_slips
+from ..support.forks import IMPORTS, imported
 from .arguments import in_si
 from .results import Shown, shown
 
@@ -61,7 +61,7 @@ class Method:
 
 def import_function(name: str) -> Callable[..., Any]:
     """The public function of this name."""
-    function: Callable[..., Any] = getattr(import_module(METHODS[name]), name)
+    function: Callable[..., Any] = getattr(imported(METHODS[name]), name)
     return function
 
 
@@ -145,7 +145,8 @@ def call(
         return found
     show = Shown(system, as_quantity)
     if name == "function":
-        from .function import FunctionInUnits
+        with IMPORTS:
+            from .function import FunctionInUnits
 
         return FunctionInUnits(found, show)
     result = shown(name, found, {**machine.in_units(), **named}, show)

@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from math import pi
 from typing import Any
 
+import numpy as np
+
 from .. import plot
 from ..plot.mechanism import label_lengths
 from .arguments import in_si
@@ -90,6 +92,4 @@ class Plots:
 
 
 def _turn() -> Any:
-    import numpy as np
-
     return np.linspace(0.0, 2.0 * pi, ANGLES)

@@ -8,6 +8,7 @@ from collections import ChainMap
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
+from ..support.forks import IMPORTS
 from ..support.shown import shown
 from ..support.text_table import table
 from .names import PARAMETERS, joined, parts, sensitivity
@@ -96,7 +97,8 @@ def law_name(name: str) -> str:
 
 
 def _unknown(name: str, state: bool) -> str:
-    from .spelling import meant
+    with IMPORTS:
+        from .spelling import meant
 
     if len(name) > 100:
         return f"unknown quantity {shown(name)} (desaxe.quantities() lists them all)"

@@ -5,13 +5,12 @@ puts it into the Program). Whoever remembers answers by name forgets them when a
 (`forget_on_change`), or has the definitions in the key of the memory.
 """
 
-from _thread import RLock
 from collections.abc import Iterable, Mapping, MutableMapping
 from functools import cache
-from importlib import import_module
 from typing import Any, NamedTuple
 
 from ..compiler.text import ProgramText
+from ..support.forks import IMPORTS, ForkSafeLock, imported
 from .inputs import INPUTS
 from .names import CENTRES, LOADS, PARAMETERS, joined, parts, sensitivity
 
@@ -35,7 +34,7 @@ class Definition(NamedTuple):
         return ProgramText(self.text).inputs
 
 
-_LOCK = RLock()
+_LOCK = ForkSafeLock()
 _DEFINITIONS: dict[str, Definition] = {}
 _MEMORIES: list[MutableMapping[Any, Any]] = []
 _ROWS: dict[str, Row] = {}
@@ -108,7 +107,7 @@ def leaves(names: Iterable[str], known: Mapping[str, Definition]) -> tuple[str, 
 @cache
 def derived_names() -> dict[str, Row]:
     """The quantities and sensitivities of the derivation."""
-    names: dict[str, Row] = import_module("desaxe.generated.index").NAMES
+    names: dict[str, Row] = imported("desaxe.generated.index").NAMES
     return names
 
 
@@ -132,7 +131,8 @@ def rows_of(definition: Definition, known: Mapping[str, Definition]) -> dict[str
 
 def derivative_row(name: str, unit: str, parameters: tuple[str, ...]) -> Row:
     """Unit and meaning of a derivative of a quantity with a unit."""
-    from .dimensions import unit_of, unit_text
+    with IMPORTS:
+        from .dimensions import unit_of, unit_text
 
     *before, last = parameters
     return unit_text(unit_of(unit).over(*parameters)), f"derivative of {joined(name, before)} by {last}", ""

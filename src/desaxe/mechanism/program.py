@@ -13,6 +13,7 @@ from ..compiler.passes.bind import assume, overlay
 from ..compiler.passes.slicing import keep_outputs
 from ..compiler.program import Program
 from ..compiler.text import ProgramText
+from ..support.forks import imported
 from .names import parts
 from .own import Definition, used_by
 from .own_lines import lines_needed, with_own_lines
@@ -73,7 +74,5 @@ def whole_program() -> Program:
 @cache
 def digest() -> str:
     """The digest of the derivation and compiler that wrote generated/."""
-    from importlib import import_module
-
-    value: str = import_module("desaxe.generated").DIGEST
+    value: str = imported("desaxe.generated").DIGEST
     return value

@@ -6,6 +6,7 @@ A row says name, unit and limit: one of `INPUTS`, or a row of the caller's own f
 from math import inf
 from typing import Any
 
+from ..support.forks import IMPORTS
 from ..support.shown import shown
 from .inputs import Input
 
@@ -13,7 +14,8 @@ from .inputs import Input
 def number_of(row: Input, value: Any) -> float | None:
     """The number in the row's unit; None for an array or anything else, ValueError beyond its limit."""
     if isinstance(value, str) or hasattr(value, "magnitude"):
-        from .units import in_unit
+        with IMPORTS:
+            from .units import in_unit
 
         value = in_unit(row.name, value, row.unit)
     if isinstance(value, bool) or not (isinstance(value, (int, float)) or is_numpy_number(value)):

@@ -2,6 +2,8 @@
 
 from collections.abc import Iterable
 
+from ..support.forks import IMPORTS
+
 # What people call inputs and quantities -> their names here; the first that there is, is meant.
 WORDS = {
     **dict.fromkeys(("eccentricity", "offset", "excentricity", "ecc", "e"), ("ec",)),
@@ -42,7 +44,8 @@ def meant(word: str, allowed: Iterable[str], most: int = 1) -> list[str]:
 
     Upper and lower case, which people mix up, count as the same.
     """
-    from difflib import get_close_matches
+    with IMPORTS:
+        from difflib import get_close_matches
 
     by_case: dict[str, list[str]] = {}
     for name in allowed:

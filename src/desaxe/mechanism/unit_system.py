@@ -11,10 +11,11 @@ import re
 from collections.abc import Mapping
 from decimal import Decimal, localcontext
 from fractions import Fraction
-from functools import cached_property
 from math import isfinite
 from typing import Any, NamedTuple
 
+from ..support.computed import computed_once
+from ..support.forks import IMPORTS
 from ..support.quantity_text import spelled
 from ..support.shown import shown
 from .catalogue import quantity
@@ -161,7 +162,7 @@ class UnitSystem:
         """The conversion of a derivative by an input."""
         return (self.of(name) if isinstance(name, str) else name).per([self.of(by)])
 
-    @cached_property
+    @computed_once
     def _own(self) -> dict[str, Conversion]:
         """The conversions of quantities with units of their own."""
         return {
@@ -170,7 +171,7 @@ class UnitSystem:
             if name not in DIMENSIONS
         }
 
-    @cached_property
+    @computed_once
     def _known(self) -> dict[str, Conversion]:
         """The conversions by SI unit."""
         found = {}
@@ -253,7 +254,8 @@ def _scaled(value: Any, factor: Fraction) -> Any:
     """A number times an exact factor, rounded once; an array in extended precision where supported."""
     if isinstance(value, (int, float)):
         return float(Fraction(value) * factor) if isfinite(value) else float(value)
-    import numpy as np
+    with IMPORTS:
+        import numpy as np
 
     wide = np.asarray(value, dtype=np.longdouble)
     if factor.numerator == 1:

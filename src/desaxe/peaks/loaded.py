@@ -107,8 +107,10 @@ def with_nodes(groups: Groups, nodes: Array) -> Groups:
     order, starts, shared, node_starts = groups
     grids = []
     for g in range(starts.size - 1):
-        common = shared[node_starts[g] : node_starts[g + 1]]
-        grids += [np.unique(np.append(common, nodes[row])) for row in order[starts[g] : starts[g + 1]]]
+        common = shared[node_starts[g] : node_starts[g + 1]].tolist()
+        grids += [
+            np.array(sorted({*common, *nodes[row].tolist()})) for row in order[starts[g] : starts[g + 1]]
+        ]
     if all(np.array_equal(grid, grids[0]) for grid in grids):
         return Groups(order, np.array([0, order.size]), grids[0], np.array([0, grids[0].size]))
     ends = np.cumsum([0, *(grid.size for grid in grids)])

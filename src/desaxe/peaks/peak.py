@@ -22,6 +22,7 @@ from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..runtime.request import as_number, check_common, check_inputs
 from ..support.answer import answering
+from ..support.forks import IMPORTS
 from ..support.shown import shown as shown_value
 from .designs import KINDS, Plan, peaks_of_designs, plan_of, search_of
 from .nodes import Array
@@ -92,10 +93,12 @@ def peak(
     if "omega0" in plan.needs and omega0 is None:
         given["omega0"] = 0.0 if "omega0" not in plan.parameters else None  # which only the status uses
     if any(hasattr(given.get(n), "__dask_graph__") for n in plan.needs):
-        from ..evaluation.dask_blocks import is_lazy
+        with IMPORTS:
+            from ..evaluation.dask_blocks import is_lazy
 
         if any(is_lazy(given.get(n)) for n in plan.needs):
-            from .lazy import lazy_peak
+            with IMPORTS:
+                from .lazy import lazy_peak
 
             return lazy_peak(name, kind, plan, given, branch, ends, threads, varying)
     arrays = {n: as_array(n, given.get(n), plan.needs, (name,)) for n in plan.needs if n not in varying}

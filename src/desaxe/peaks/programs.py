@@ -19,6 +19,7 @@ from ..mechanism.constants import constants, double_constants
 from ..mechanism.names import sensitivity
 from ..mechanism.program import Variant
 from ..runtime.specialise import specialise
+from ..support.forks import IMPORTS
 
 WITHOUT_COURSE = ("status", "margin")  # these have no course over theta, and no peak
 
@@ -66,7 +67,8 @@ def programs_of(search: Search, written_out: bool) -> Programs:
 
     finish = (value, slope, *gradient)
     if search.extended:
-        from ..compiler.passes.double_double import double_double
+        with IMPORTS:
+            from ..compiler.passes.double_double import double_double
 
         last = double_double(keep_outputs(whole, finish), double_constants())
     else:

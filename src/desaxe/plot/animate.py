@@ -7,6 +7,7 @@ import numpy as np
 from ..mechanism.names import LENGTHS
 from ..mechanism.unit_system import UnitSystem
 from ..support.extras import needed
+from ..support.forks import IMPORTS
 from .curves import curves
 from .mechanism import label_lengths, mechanism
 from .shared import ORANGE, input_in_si, shown
@@ -76,7 +77,8 @@ def _axes(design: dict[str, float], both: bool, ax: Any) -> tuple[Any, Any]:
         if both and not rest:
             raise ValueError("ax: expected two Axes, for the mechanism and for the curve")
         return left, rest[0] if rest else None
-    from matplotlib.figure import Figure
+    with IMPORTS:
+        from matplotlib.figure import Figure
 
     narrow = 2.0 * (design["AB"] + abs(design["ec"])) / (2.0 * design["AB"] + design["BC"])
     width = max(2.6, 1.2 + TALL * min(narrow, 1.0))

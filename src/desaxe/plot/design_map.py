@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ..mechanism.names import LENGTHS
 from ..support.extras import needed
+from ..support.forks import IMPORTS
 from .shared import choose, finish_axis, fixed_inputs, label_of, shown
 
 if TYPE_CHECKING:
@@ -87,7 +88,8 @@ def _infeasible(dataset: "xr.Dataset", array: "xr.DataArray", x: str, y: str) ->
 
 def _levels(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], str]:
     """Round levels over the range of the values, or of most where the rest grows without bound."""
-    from matplotlib.ticker import MaxNLocator
+    with IMPORTS:
+        from matplotlib.ticker import MaxNLocator
 
     known = values[np.isfinite(values)]
     if not known.size:
@@ -118,7 +120,8 @@ def _widened(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _label(axes: Any, lines: Any, across: Any, up: Any) -> None:
     """Label every second contour that is long enough, where there is space."""
-    from matplotlib.patheffects import withStroke
+    with IMPORTS:
+        from matplotlib.patheffects import withStroke
 
     size = np.array([np.ptp(across) or 1.0, np.ptp(up) or 1.0])
     taken: list[NDArray[np.float64]] = []
@@ -135,7 +138,8 @@ def _label(axes: Any, lines: Any, across: Any, up: Any) -> None:
 
 
 def _hatch(axes: Any, across: Any, up: Any, edge: NDArray[np.float64]) -> None:
-    from matplotlib.patches import Patch
+    with IMPORTS:
+        from matplotlib.patches import Patch
 
     if not (edge > 0.0).any():
         return

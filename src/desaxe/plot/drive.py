@@ -4,6 +4,7 @@ from math import degrees, isfinite, pi
 from typing import TYPE_CHECKING, Any
 
 from ..support.extras import needed
+from ..support.forks import IMPORTS
 from .shared import BLUE, ORANGE, raised
 
 if TYPE_CHECKING:
@@ -95,7 +96,8 @@ def _degrees(result: Any, name: str) -> Any:
 
 
 def _finish(ax: "Axes", theta: Any) -> None:
-    from matplotlib.ticker import MultipleLocator
+    with IMPORTS:
+        from matplotlib.ticker import MultipleLocator
 
     ax.set_xlim(*(360.0 * round(end / 360.0) for end in (theta.min(), theta.max())))
     ax.xaxis.set_major_locator(MultipleLocator(45.0))

@@ -13,6 +13,7 @@ from ..mechanism.read import read
 from ..mechanism.unit_system import Conversion
 from ..runtime.request import check_common, with_known_inputs
 from ..support.extras import needed
+from ..support.forks import IMPORTS
 from .shared import BLUE, ORANGE
 
 if TYPE_CHECKING:
@@ -117,7 +118,8 @@ def _box(lengths: dict[str, float], reach: Any) -> tuple[float, float, float, fl
 
 def _frame(ax: "Axes", lengths: dict[str, float], reach: Any, box: tuple[float, ...]) -> None:
     """Draw the fixed parts: the crank's circle, its bearing, the guide, the eccentricity, the axes."""
-    from matplotlib.patches import Polygon
+    with IMPORTS:
+        from matplotlib.patches import Polygon
 
     ec, AB = lengths["ec"], lengths["AB"]
     ax.plot(AB * np.sin(ANGLES), AB * np.cos(ANGLES), ":", color="0.6", linewidth=1.0)
@@ -143,7 +145,8 @@ def _frame(ax: "Axes", lengths: dict[str, float], reach: Any, box: tuple[float, 
 
 def _moving(ax: "Axes", AB: float) -> tuple[Any, ...]:
     """Crank and rod, slider, pins, the angle's arc, the names of the joints, the note."""
-    from matplotlib.patches import Rectangle
+    with IMPORTS:
+        from matplotlib.patches import Rectangle
 
     thick: dict[str, Any] = {"linewidth": 5.0, "solid_capstyle": "round"}
     links = tuple(ax.plot([], [], color=colour, zorder=3, **thick)[0] for colour in (ORANGE, BLUE))

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..support.extras import needed
+from ..support.forks import IMPORTS
 from .shared import chosen, drawn, fixed_inputs, input_in_si, label_of, worth_showing
 
 if TYPE_CHECKING:
@@ -66,7 +67,8 @@ def _magnitude(parts: "list[xr.DataArray]") -> "xr.DataArray":
 
 def _finish(axes: Any, array: "xr.DataArray", lines: "list[Line2D]") -> None:
     """Up is where the slider is; the radial axis ends where nothing is left to see."""
-    from matplotlib.ticker import MaxNLocator
+    with IMPORTS:
+        from matplotlib.ticker import MaxNLocator
 
     axes.set_theta_zero_location("N")
     axes.set_theta_direction(-1)

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ..support.files import replacing
+from ..support.forks import IMPORTS
 
 
 def save(figure: Any, path: str | PathLike[str], dpi: float | None = None) -> Path:
@@ -39,8 +40,9 @@ def _figure_of(shown: Any) -> Any:
 
 
 def _animation(animation: Any, path: Path, dpi: float) -> None:
-    from matplotlib import rc_context
-    from matplotlib.animation import PillowWriter
+    with IMPORTS:
+        from matplotlib import rc_context
+        from matplotlib.animation import PillowWriter
 
     if path.suffix == ".gif":
         animation.save(path, writer=PillowWriter(fps=1000.0 / animation._interval), dpi=dpi)

@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanism.names import parts
+from ..mechanism.units import in_si, unlabelled
+from ..support.forks import IMPORTS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -115,8 +117,6 @@ def shown(array: "xr.DataArray") -> NDArray[np.float64]:
 
 def input_in_si(array: "xr.DataArray") -> NDArray[np.float64]:
     """The values of a labelled input in its SI unit, whatever it is labelled in."""
-    from ..mechanism.units import in_si, unlabelled
-
     held = unlabelled(str(array.name), array)
     return np.asarray(in_si(str(array.name), held) if hasattr(held, "magnitude") else held, dtype=np.float64)
 
@@ -184,7 +184,8 @@ def finish_axis(axis: Any, input_: "xr.DataArray") -> None:
         limits = float(values.min()), float(values.max())
         (axis.axes.set_ylim if vertical else axis.axes.set_xlim)(*limits)
     if unit_of(input_) == "[deg]" and np.ptp(values) >= 180.0:
-        from matplotlib.ticker import MaxNLocator
+        with IMPORTS:
+            from matplotlib.ticker import MaxNLocator
 
         axis.set_major_locator(MaxNLocator(9, steps=[1, 3, 4.5, 6, 9, 10]))
 
@@ -203,7 +204,8 @@ def label_of(array: "xr.DataArray") -> str:
 
 def colours(count: int) -> list[Any]:
     """Evenly spaced colours of viridis without its palest end, distinct for the colour-blind and in print."""
-    from matplotlib import colormaps
+    with IMPORTS:
+        from matplotlib import colormaps
 
     return [colormaps["viridis"](0.9 * k / max(1, count - 1)) for k in range(count)]
 
@@ -215,8 +217,9 @@ def _explain(ax: "Axes", family: "xr.DataArray", lines: "list[Line2D]", beside: 
         place = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0)} if beside else {"loc": "best"}
         ax.legend(title=title, frameon=False, **place)
         return
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import ListedColormap, Normalize
+    with IMPORTS:
+        from matplotlib.cm import ScalarMappable
+        from matplotlib.colors import ListedColormap, Normalize
 
     values = shown(family)
     scale = Normalize(float(values.min()), float(values.max()))

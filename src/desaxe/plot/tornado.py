@@ -7,6 +7,7 @@ from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
 from ..mechanism.unit_system import UnitSystem
+from ..mechanism.units import in_si
 from ..support.extras import needed
 from .shared import BLUE, ORANGE, label_of, raised
 
@@ -107,8 +108,6 @@ def _number(parameter: str, change: Any, system: UnitSystem) -> float:
     if parameter not in INPUTS:
         raise TypeError(f"changes: no input {parameter!r}")
     if not isinstance(change, (int, float)):
-        from ..mechanism.units import in_si
-
         change = system.of(parameter).shown(float(in_si(parameter, change)))
     return float(change)
 

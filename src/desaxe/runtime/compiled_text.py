@@ -2,11 +2,10 @@
 
 from collections.abc import Mapping
 from functools import cache
-from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
-from ..support.forks import wait_first
+from ..support.forks import IMPORTS, imported
 from .machine_code import DOUBLE, ENTRY, NO_MEMORY, WHOLE, Code, Loaded, outside
 
 NAME = "desaxe_native"  # of the module of a text
@@ -92,13 +91,13 @@ def compile_text(text: str, title: str, scope: Mapping[str, Any]) -> Code | Load
 
     `scope` has names that the text uses and does not define, such as a user's own function.
     """
-    wait_first()
-    import llvmlite.binding as llvm
+    with IMPORTS:
+        import llvmlite.binding as llvm
 
     compiler, registry, sigutils, types = (
-        import_module(f"numba.core.{name}") for name in ("compiler", "registry", "sigutils", "types")
+        imported(f"numba.core.{name}") for name in ("compiler", "registry", "sigutils", "types")
     )
-    lock = import_module("numba.core.compiler_lock").global_compiler_lock
+    lock = imported("numba.core.compiler_lock").global_compiler_lock
     _load_arrays()
     namespace = {"__name__": NAME, **scope}
     with lock:
@@ -135,7 +134,7 @@ def compile_text(text: str, title: str, scope: Mapping[str, Any]) -> Code | Load
 @cache
 def _load_arrays() -> None:
     """Import numba's arrays without SciPy's BLAS, which numba imports to see whether it is there."""
-    linalg: Any = import_module("numba.np.linalg")
+    linalg: Any = imported("numba.np.linalg")
     imports_it = linalg.ensure_blas
 
     def ensure_blas() -> None:
@@ -144,7 +143,7 @@ def _load_arrays() -> None:
 
     linalg.ensure_blas = ensure_blas
     try:
-        import_module("numba.np.arraymath")
+        imported("numba.np.arraymath")
     finally:
         linalg.ensure_blas = imports_it
 
@@ -156,20 +155,20 @@ class _Parts:
     """
 
     def __init__(self, target: Any) -> None:
-        codegen = import_module("numba.core.codegen")
+        codegen = imported("numba.core.codegen")
         library = type("Part", (codegen.CPUCodeLibrary,), _PART)
         own = {"_library_class": library, "set_env": lambda self, name, env: None}
         made = codegen.JITCPUCodegen.__new__(type("PartCodegen", (codegen.JITCPUCodegen,), own))
         vars(made).update(vars(target.target_context.codegen()))
         self.options, self.typing_context = target.options, target.typing_context
         self.target_context = target.target_context.subtarget(_internal_codegen=made)
-        compiler = import_module("numba.core.compiler")
+        compiler = imported("numba.core.compiler")
         self.pipeline = type("PartCompiler", (compiler.CompilerBase,), {"define_pipelines": _pipelines})
 
 
 def _pipelines(compiler: Any) -> list[Any]:
     """numba's passes but for those that look for what no text of ours has."""
-    builder = import_module("numba.core.compiler").DefaultPassBuilder
+    builder = imported("numba.core.compiler").DefaultPassBuilder
     every = builder.define_nopython_pipeline(compiler.state)
     every.passes = [one for one in every.passes if one[0].__name__ not in UNUSED]
     every.finalize()
@@ -261,7 +260,8 @@ def _quoted(name: str) -> str:
 
 def _alone(library: Any, entry: Any) -> bytes | None:
     """The machine code of a library and an entry; None if it calls functions that we cannot provide."""
-    import llvmlite.binding as llvm
+    with IMPORTS:
+        import llvmlite.binding as llvm
 
     module = library._final_module.clone()
     module.link_in(entry, preserve=True)

@@ -17,7 +17,7 @@ from ..mechanism.constants import constants, double_constants
 from ..mechanism.inputs import LEAST, SAFE
 from ..mechanism.names import LENGTHS, LOADS
 from ..mechanism.program import Variant
-from ..support.forks import ForkSafeLock
+from ..support.forks import IMPORTS, ForkSafeLock
 from ..support.recent import Recent
 from .accuracy import check_angle
 from .modules import Native, is_kept, native
@@ -76,7 +76,8 @@ def key_of(
     axis = tuple(sorted(axis_of.items()))
     form = wanted.form
     if wanted.accuracy != "extended" and _pays_to_ask(columns, axis_of):
-        from .wide_margins import all_have_wide_margins
+        with IMPORTS:
+            from .wide_margins import all_have_wide_margins
 
         lengths = (columns.get(name, scalars.get(name)) for name in LENGTHS)
         if plain_form(wanted.names, form, fixed) is not None and all_have_wide_margins(form, *lengths):
@@ -95,7 +96,8 @@ def _exceed(angles: Any, limit: float) -> bool:
     """True if a finite magnitude exceeds the limit."""
     if isinstance(angles, float):
         return limit < abs(angles)
-    import numpy as np
+    with IMPORTS:
+        import numpy as np
 
     # Where their squares add up to less, none is. No test is quicker, and this one starts no threads.
     if np.einsum("i,i->", angles, angles) < 0.5 * limit * limit:

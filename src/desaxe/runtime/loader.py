@@ -15,6 +15,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Protocol
 
+from ..support.forks import IMPORTS, ForkSafeLock
+
 KNOWN = ("0.50.",)  # versions of llvmlite with these prototypes
 _FILES = {"darwin": "libllvmlite.dylib", "win32": "llvmlite.dll"}
 _TEXT, _PLACE, _WHOLE = ctypes.c_char_p, ctypes.c_void_p, ctypes.c_int
@@ -59,6 +61,9 @@ class Loader(Protocol):
         ...
 
 
+LLVM = ForkSafeLock()  # for calls of LLVM, which has a lock of its own, where no other lock of ours is held
+
+
 @cache
 def loader() -> Loader:
     """The quicker way that is open."""
@@ -76,7 +81,8 @@ class _Direct:
     """llvmlite's library, by its C functions."""
 
     def __init__(self) -> None:
-        import llvmlite
+        with IMPORTS:
+            import llvmlite
 
         if not llvmlite.__version__.startswith(KNOWN):
             raise ImportError(f"llvmlite {llvmlite.__version__}: its prototypes are not known here")
@@ -133,14 +139,16 @@ class _Binding:
 
     def host(self) -> str:
         """The processor's name and its features."""
-        import llvmlite.binding as llvm
+        with IMPORTS:
+            import llvmlite.binding as llvm
 
         features = ",".join(sorted(llvm.get_host_cpu_features().flatten().split(",")))
         return f"{llvm.get_host_cpu_name()}, {features}"
 
     def load(self, code: bytes, entry: str, outside: Mapping[str, int]) -> tuple[int, Any]:
         """Load machine code with the addresses of outside functions; see `Loader.load`."""
-        import llvmlite.binding as llvm
+        with IMPORTS:
+            import llvmlite.binding as llvm
 
         for name, place in outside.items():
             llvm.add_symbol(name, place)

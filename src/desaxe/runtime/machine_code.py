@@ -17,7 +17,8 @@ from contextlib import suppress
 from functools import cache
 from typing import Any, NamedTuple
 
-from .loader import loader
+from ..support.forks import IMPORTS
+from .loader import LLVM, loader
 
 ENTRY = "desaxe_entry"
 NO_MEMORY = -1
@@ -49,9 +50,11 @@ class Loaded(NamedTuple):
 @cache
 def machine() -> str:
     """A text that identifies the LLVM version and the processor, on which machine code depends."""
-    import llvmlite
+    with IMPORTS:
+        import llvmlite
 
-    return f"llvmlite {llvmlite.__version__}, {loader().host()}"
+    with LLVM:
+        return f"llvmlite {llvmlite.__version__}, {loader().host()}"
 
 
 @cache

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ..support import private
-from ..support.forks import ForkSafeLock
+from ..support.forks import IMPORTS, ForkSafeLock
 from ..support.interrupts import finished
 from . import cache as _cache
 from .machine_code import DOUBLE, NO_MEMORY, Code, Loaded, load, machine
@@ -89,7 +89,8 @@ def native_here(text: str, scope: Mapping[str, Any]) -> Native:
 
 
 def _compiled(text: str, title: str, scope: Mapping[str, Any]) -> Code | Loaded:
-    from .compiled_text import compile_text
+    with IMPORTS:
+        from .compiled_text import compile_text
 
     return compile_text(text, title, scope)
 

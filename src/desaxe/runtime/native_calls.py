@@ -3,10 +3,11 @@
 import ctypes
 from collections.abc import Callable, Sequence
 from functools import cache
-from importlib import import_module
 from typing import Any, NamedTuple
 
+from ..support.forks import IMPORTS, imported
 from .any_stride import Bound
+from .loader import LLVM
 
 DOUBLE, BYTE = 12, 1  # NumPy's numbers of these types
 NO_IDENTITY = -1
@@ -16,9 +17,9 @@ NO_IDENTITY = -1
 def _new_ufunc() -> Callable[..., Any]:
     """NumPy's `PyUFunc_FromFuncAndData`."""
     try:
-        core = import_module("numpy._core._multiarray_umath")
+        core = imported("numpy._core._multiarray_umath")
     except ModuleNotFoundError:  # NumPy 1
-        core = import_module("numpy.core._multiarray_umath")
+        core = imported("numpy.core._multiarray_umath")
     take = ctypes.pythonapi.PyCapsule_GetPointer
     take.restype, take.argtypes = ctypes.c_void_p, (ctypes.py_object, ctypes.c_char_p)
     table = take(core._UFUNC_API, None)
@@ -30,7 +31,7 @@ def _new_ufunc() -> Callable[..., Any]:
 
 def most_arguments() -> int:
     """The largest number of inputs and outputs of a ufunc."""
-    return 32 if import_module("numpy").__version__.startswith("1.") else 64
+    return 32 if imported("numpy").__version__.startswith("1.") else 64
 
 
 def ufunc_of(bound: Bound, inputs: int, whole: Sequence[bool], name: str) -> tuple[Any, Any]:
@@ -51,7 +52,8 @@ def ufunc_of(bound: Bound, inputs: int, whole: Sequence[bool], name: str) -> tup
 
 def _wide(bound: Bound, whole: Sequence[bool]) -> Callable[..., Any]:
     """A Python function with the ufunc's behaviour, for more arguments than a ufunc can have."""
-    import numpy as np
+    with IMPORTS:
+        import numpy as np
 
     loop = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 4)(bound.loop)
     kinds = [np.int8 if kind else np.float64 for kind in whole]
@@ -86,7 +88,8 @@ def point_caller(bound: Bound, inputs: int, whole: Sequence[bool]) -> PointCalle
 
     A status is told as a double.
     """
-    import llvmlite.binding as llvm
+    with IMPORTS:
+        import llvmlite.binding as llvm
 
     count = inputs + len(whole)
     rows = [
@@ -122,17 +125,18 @@ def point_caller(bound: Bound, inputs: int, whole: Sequence[bool]) -> PointCalle
         "  call void %loop(ptr %args, ptr %size, ptr %steps, ptr %data)",
     ]
     body = "\n".join([*rows, *call, *after, "  ret i64 0"])
-    module = llvm.parse_assembly(f"define i64 @point(ptr %in, ptr %out) {{\n{body}\n}}")
-    target = llvm.Target.from_default_triple().create_target_machine()
-    engine = llvm.create_mcjit_compiler(module, target)
-    engine.finalize_object()
-    return PointCaller(engine.get_function_address("point"), (engine, bound))
+    with LLVM:
+        module = llvm.parse_assembly(f"define i64 @point(ptr %in, ptr %out) {{\n{body}\n}}")
+        target = llvm.Target.from_default_triple().create_target_machine()
+        engine = llvm.create_mcjit_compiler(module, target)
+        engine.finalize_object()
+        return PointCaller(engine.get_function_address("point"), (engine, bound))
 
 
 def scalar_of(address: int, inputs: Sequence[str], outputs: int, one: bool, owner: Any) -> Any:
     """A function of numbers that numba can call: the C function at an address, whose `owner` is kept."""
-    numba = import_module("numba")
-    types, ir, cgutils = numba.types, import_module("llvmlite.ir"), import_module("numba.core.cgutils")
+    numba = imported("numba")
+    types, ir, cgutils = numba.types, imported("llvmlite.ir"), imported("numba.core.cgutils")
     double, whole = ir.DoubleType(), ir.IntType(64)
 
     def point(typingctx: Any, values: Any) -> Any:
@@ -151,7 +155,7 @@ def scalar_of(address: int, inputs: Sequence[str], outputs: int, one: bool, owne
 
     doubles = "".join(f"float({name}), " for name in inputs)
     text = f"def scalar({', '.join(inputs)}):\n    return point(({doubles})){'[0]' if one else ''}\n"
-    scope: dict[str, Any] = {"point": import_module("numba.extending").intrinsic(point)}
+    scope: dict[str, Any] = {"point": imported("numba.extending").intrinsic(point)}
     exec(compile(text, "<desaxe scalar>", "exec"), scope)
     found = numba.njit(error_model="numpy")(scope["scalar"])
     found.owner = owner

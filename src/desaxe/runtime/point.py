@@ -9,6 +9,7 @@ from ..compiler.languages.python import compile_python
 from ..mechanism.constants import double_constants
 from ..mechanism.own_lines import not_extended
 from ..mechanism.program import Variant
+from ..support.forks import IMPORTS
 from .accuracy import check_angle
 from .specialise import plain_form, specialise
 
@@ -34,7 +35,8 @@ def point_of(
     program = specialise(names, form, fixed, accuracy)
     if accuracy != "extended":
         return Point(_by_margin(names, form, fixed), program.inputs)
-    from ..compiler.passes.double_double import double_double
+    with IMPORTS:
+        from ..compiler.passes.double_double import double_double
 
     program = double_double(program, double_constants())
     function = compile_python(program)

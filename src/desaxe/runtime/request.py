@@ -11,6 +11,7 @@ from ..mechanism.own import Definition, used_by
 from ..mechanism.own_lines import not_extended
 from ..mechanism.program import Variant, program_of
 from ..mechanism.read import is_numpy_number, number_of
+from ..support.forks import IMPORTS
 from ..support.shown import shown
 from .accuracy import accuracy_of
 from .specialise import specialise
@@ -109,7 +110,8 @@ def check_inputs(caller: str, given: Iterable[str], allowed: Sequence[str]) -> N
 
 
 def _unknown_input(caller: str, name: str, allowed: Sequence[str]) -> TypeError:
-    from ..mechanism.spelling import did_you_mean
+    with IMPORTS:
+        from ..mechanism.spelling import did_you_mean
 
     asked = did_you_mean(name, allowed)
     there = f"{'There' if asked else 'there'} are {', '.join(allowed)}"
@@ -128,7 +130,8 @@ def with_known_inputs(function: Callable[P, T]) -> Callable[P, T]:
         try:
             return function(*args, **inputs)
         except TypeError:
-            from inspect import signature
+            with IMPORTS:
+                from inspect import signature
 
             known = tuple(signature(function).parameters)
             others = [name for name in inputs if name not in known]
@@ -147,7 +150,8 @@ def with_known_inputs(function: Callable[P, T]) -> Callable[P, T]:
 
 def with_named_inputs(function: Callable[P, T]) -> Callable[P, T]:
     """Decorate a function to have every input in its signature; `**inputs` keeps the caller's order."""
-    from inspect import Parameter, signature
+    with IMPORTS:
+        from inspect import Parameter, signature
 
     given = signature(function)
     own = [p for p in given.parameters.values() if p.kind is not Parameter.VAR_KEYWORD]

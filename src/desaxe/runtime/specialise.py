@@ -7,6 +7,7 @@ from ..compiler.passes.slicing import keep_outputs
 from ..compiler.program import Line, Program, names_in, renamed
 from ..mechanism.own import used_by
 from ..mechanism.program import Variant, program_of
+from ..support.forks import IMPORTS
 
 # What an output may lose when inputs are fixed -> the line that is 0 where there is such a thing, else NaN.
 KEPT = {"D": "no_effect_on_rod", "omega2_law": "not_stalled"}
@@ -60,7 +61,8 @@ def plain_form(names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, fl
 def _with_extended_forms(program: Program, accuracy: str) -> Program:
     if accuracy != "extended":
         return program
-    from ..compiler.passes.double_double import with_extended_only_forms
+    with IMPORTS:
+        from ..compiler.passes.double_double import with_extended_only_forms
 
     return with_extended_only_forms(program)
 

@@ -10,7 +10,7 @@ from itertools import pairwise
 from threading import Event
 from typing import TYPE_CHECKING, Any
 
-from ..support.forks import in_child
+from ..support.forks import IMPORTS, in_child
 from .kernels import KernelKey, kernel_for
 
 if TYPE_CHECKING:
@@ -39,7 +39,8 @@ def pool(threads: int) -> "ThreadPoolExecutor":
     """The pool of this number of threads, created on first use."""
     found = _POOLS.get(threads)
     if found is None:
-        from concurrent.futures import ThreadPoolExecutor  # logging comes with it
+        with IMPORTS:
+            from concurrent.futures import ThreadPoolExecutor  # logging comes with it
 
         found = _POOLS.setdefault(threads, ThreadPoolExecutor(threads, thread_name_prefix="desaxe"))
     return found
@@ -68,7 +69,8 @@ def run_in_blocks(
         part = {name: v[start:stop] if name in outer else v for name, v in values.items()}
         places = [out[start:stop] for out in outs]
         if kernel.run(part, places):
-            from .near_limit import decide
+            with IMPORTS:
+                from .near_limit import decide
 
             counted.append(start)
             decide(key, part, places)
@@ -131,7 +133,8 @@ def run_together(works: Sequence[Callable[[], None]], stopped: Event) -> None:
     that no thread has begun when the first returns finds nothing to do, and is not waited for: the threads
     may be busy with another caller's work.
     """
-    from concurrent.futures import wait
+    with IMPORTS:
+        from concurrent.futures import wait
 
     first, *others = works
     begun = [pool(len(others)).submit(copy_context().run, work) for work in others]

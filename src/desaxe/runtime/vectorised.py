@@ -17,6 +17,7 @@ from ..compiler.program import Program
 from ..mechanism.constants import double_constants
 from ..mechanism.inputs import LEAST
 from ..mechanism.own_lines import not_extended
+from ..support.forks import IMPORTS
 from .kernels import REACH, SPARE, KernelKey, counting, has_near_limit, plain_of, seen_inputs
 from .specialise import specialise
 
@@ -106,7 +107,8 @@ def _forms(key: KernelKey) -> _Forms:
     own = dict(key.axis_of)
     varying = [name for name in inputs if name in own]
     if key.accuracy == "extended":
-        from ..compiler.passes.double_double import double_double
+        with IMPORTS:
+            from ..compiler.passes.double_double import double_double
 
         guarded = guard_inputs(program, varying, LEAST, {"theta": double_constants().limit})
         return _Forms(inputs, _function(double_double(guarded, double_constants()), inputs), None, None)

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.grid import grid
-from ..evaluation.labels import with_loads
+from ..evaluation.labels import import_xarray, with_loads
 from ..loads.load import Load
+from ..support.forks import IMPORTS
 from ..support.progress import Steps
 from .content import Content
 from .peaks import provenance
@@ -58,7 +59,9 @@ def values_of_grid(content: Content, blocks: list[tuple[int, int]], steps: Steps
 
 def _longer(part: "xr.Dataset", first: str, values: NDArray[np.float64]) -> "xr.Dataset":
     """An empty dataset like a block of it, with all values along its first axis."""
-    import xarray
+    import_xarray()
+    with IMPORTS:
+        import xarray
 
     sizes = {**part.sizes, first: values.size}
     empty = {

@@ -9,7 +9,6 @@ import csv
 import os
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from importlib import import_module
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,6 +17,7 @@ import numpy as np
 
 from ..runtime.written import remember, require_ours
 from ..support.files import check_target, kind_of, require_space, staging, swap_in
+from ..support.forks import IMPORTS, imported
 
 _NETCDF_EXTRA = 65_536  # bytes for what HDF5 writes besides the numbers of a group
 
@@ -96,11 +96,12 @@ def _netcdf(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Da
 def _zarr(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:
     for group, part in _parts(values, groups):
         part.to_zarr(path, mode="a" if path.exists() else "w", group=group, consolidated=False)
-    from ..sweeps.store import CONSOLIDATED
+    with IMPORTS:
+        from ..sweeps.store import CONSOLIDATED
 
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message=CONSOLIDATED)
-        import_module("zarr").consolidate_metadata(path)  # what xarray looks for when it opens the store
+        imported("zarr").consolidate_metadata(path)  # what xarray looks for when it opens the store
 
 
 def _csv(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:

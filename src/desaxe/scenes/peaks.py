@@ -9,13 +9,14 @@ from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
 from ..evaluation.in_units import in_units
-from ..evaluation.labels import CONVENTIONS, input_attributes, loads_text, source
+from ..evaluation.labels import CONVENTIONS, import_xarray, input_attributes, loads_text, source
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
 from ..mechanism.status import PeakStatus
 from ..mechanism.unit_system import UnitSystem
 from ..peaks.peak import peak
+from ..support.forks import IMPORTS
 from ..support.progress import Steps
 from .content import Claim, Content, Peak
 from .values import Value
@@ -131,7 +132,9 @@ def _increase(value: Any, base: float) -> Any:
 
 
 def _labelled(one: Peak, content: Content, arrays: Mapping[str, NDArray[Any]]) -> "xr.Dataset":
-    import xarray
+    import_xarray()
+    with IMPORTS:
+        import xarray
 
     state = "omega" in one.axes or "omega" in one.fixed
     slopes = [name for name in arrays if name.startswith("value_wrt_")]

@@ -7,13 +7,15 @@ from ..evaluation.grid import grid
 from ..evaluation.in_units import in_units
 from ..mechanism.unit_system import UnitSystem
 from ..runtime.written import replacing_ours
+from ..support.forks import IMPORTS
 from .blocks import arrays_of, grid_options
 from .content import Content, Picture
 
 
 def draw(picture: Picture, content: Content, shown_in: UnitSystem, overwrite: bool) -> Path:
     """Draw the curves of a picture, in the units shown, into its file; return its path."""
-    from ..plot import curves, save
+    with IMPORTS:
+        from ..plot import curves, save
 
     # With the names of the outputs the kernel of the grid serves here too, where all inputs are the same.
     shared = picture.quantity in content.outputs and set(picture.inputs) == set(content.inputs)

@@ -3,6 +3,7 @@
 from decimal import ROUND_HALF_EVEN, Context, Decimal
 from typing import NamedTuple
 
+from ..support.forks import IMPORTS
 from ..support.quantity_text import spelled, split_quantity
 from .schema import SceneError, shown
 
@@ -70,7 +71,8 @@ def _factor(complaint: str, unit: str, si: str) -> float:
     """The factor from the SI unit to a unit, also in the spelling m/s2 for m/s^2."""
     if spelled(unit).replace(" ", "") == si or unit == "%":
         return 1.0
-    from ..mechanism.units import registry
+    with IMPORTS:
+        from ..mechanism.units import registry
 
     units = registry()
     try:

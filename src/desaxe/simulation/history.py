@@ -71,7 +71,7 @@ def _histories(run: Run | Motion, t: Array, without_alpha: bool = False) -> tupl
     """Angle, speed and acceleration at many instants."""
     theta, omega, alpha = (np.full(t.shape, nan) for _ in range(3))
     which = np.searchsorted([piece.stop for piece in run.pieces[:-1]], t)
-    for number in np.unique(which):
+    for number in sorted(set(which.tolist())):
         piece = run.pieces[number]
         rows = np.flatnonzero(which == number)
         for row, (q, v, _) in zip(rows.tolist(), piece.state(t[rows]).T.tolist(), strict=True):

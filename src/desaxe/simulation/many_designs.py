@@ -18,7 +18,7 @@ from ..mechanism.names import CENTRES, LENGTHS, LOADS
 from ..mechanism.units import in_unit
 from ..runtime.threads import run_parts
 from ..support.deadline import Deadline
-from ..support.forks import ForkSafeLock, wait_first
+from ..support.forks import IMPORTS, ForkSafeLock
 from ..support.interrupts import finished, stopped_early
 from ..support.shown import shown
 from . import tableau
@@ -125,7 +125,6 @@ def _compiled(torque: Callable[..., Any]) -> Any:
     """The torque's function, compiled; TypeError where numba cannot."""
 
     def made() -> Any:
-        wait_first()
         with _LOCK:
             return _compile(torque)
 
@@ -133,10 +132,11 @@ def _compiled(torque: Callable[..., Any]) -> Any:
 
 
 def _compile(torque: Callable[..., Any]) -> Any:
-    from numba import float64, njit
-    from numba.core.dispatcher import Dispatcher
-    from numba.core.errors import NumbaError
-    from numba.core.types import Float, Integer
+    with IMPORTS:
+        from numba import float64, njit
+        from numba.core.dispatcher import Dispatcher
+        from numba.core.errors import NumbaError
+        from numba.core.types import Float, Integer
 
     plain = getattr(torque, "py_func", torque)
     check_signature("torque", plain)

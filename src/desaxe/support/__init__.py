@@ -15,6 +15,7 @@ checks         options of calls, checked
 deadline       a time limit
 text_table     tables as text, in even columns
 answer         results: dicts with a readable repr
+computed       properties that are computed once
 recent         a cache of the most recently used values
 shown          a value in a message, shortened
 toml           untrusted TOML files, read with limits on size and depth

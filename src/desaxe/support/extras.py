@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from .forks import IMPORTS, wait_first
+from .forks import IMPORTS
 from .interrupts import put_off
 
 EXTRAS = {
@@ -39,7 +39,6 @@ def needed(what: str, extra: str | None = None) -> Iterator[None]:
     The extra is the one that has the dependency, or the one named here. The block imports, and nothing else:
     interrupts and forks wait for its end, since a package that is imported halfway cannot be imported again.
     """
-    wait_first()
     with put_off(), IMPORTS, explained(what, extra):
         yield
 

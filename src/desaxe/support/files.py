@@ -17,6 +17,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from .forks import IMPORTS
 from .locks import try_lock
 from .shown import shown
 
@@ -236,7 +237,8 @@ def _swap_by_renaming(staged: Path, target: Path) -> None:
 
 def exchange(one: Path, other: Path) -> bool:
     """Swap two names in one step (Linux: renameat2, macOS: renamex_np); False where that cannot be done."""
-    import ctypes
+    with IMPORTS:
+        import ctypes
 
     try:
         library = ctypes.CDLL(None, use_errno=True)

@@ -5,13 +5,16 @@ child, and a pool waits for threads that it does not have.
 """
 
 import os
+import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from importlib import import_module
 from threading import RLock, local
-from types import TracebackType
+from types import ModuleType, TracebackType
+from typing import Any
 
-WAIT = 20.0  # seconds that a fork waits for a compilation of another thread
+WAIT = 60.0  # seconds that a fork waits for a compilation of another thread
 
 
 class ForkSafeLock:
@@ -54,51 +57,60 @@ class ForkSafeLock:
 
 
 _LOCKS: list[ForkSafeLock] = []
-_HELD = local()  # of the forking thread: for each registration, the locks that it has acquired
-IMPORTS = ForkSafeLock()  # held while a package is imported: half of one cannot be imported again
-_AFTER_LOGGING: list[bool] = []
+_HELD = local()  # of the forking thread: the locks that it has acquired
+
+# Held by every import inside a function. A module that another thread has imported halfway cannot be imported
+# in a child at all: Python's own lock of it stays locked there.
+IMPORTS = ForkSafeLock()
+
+
+def imported(name: str) -> ModuleType:
+    """Import a module by its name."""
+    with IMPORTS:
+        return import_module(name)
 
 
 def _before() -> None:
     """Acquire the locks, those that are taken first in a call before those taken inside it."""
     end = time.monotonic() + WAIT
-    stack = _HELD.__dict__.setdefault("stack", [])
-    stack.append([lock for lock in reversed(_LOCKS) if lock.acquire_until(end)])
+    with _without_logging():
+        _HELD.locks = [lock for lock in reversed(_LOCKS) if lock.acquire_until(end)]
+
+
+@contextmanager
+def _without_logging() -> Iterator[None]:
+    """Let go of the lock of logging, which its own preparation for a fork may have acquired before ours.
+
+    Imports and compilations, for which we wait, need it.
+    """
+    lock: Any = getattr(sys.modules.get("logging"), "_lock", None)
+    count = 0
+    while lock is not None and lock._is_owned():
+        lock.release()
+        count += 1
+    try:
+        yield
+    finally:
+        for _ in range(count):
+            lock.acquire()
 
 
 def _after_in_parent() -> None:
     # Registered while the fork was under way, it runs after it without having run before it.
-    if _HELD.__dict__.get("stack"):
-        for lock in _HELD.stack.pop():
-            lock.release()
+    for lock in _HELD.__dict__.pop("locks", ()):
+        lock.release()
 
 
 def _after_in_child() -> None:
-    held = _HELD.__dict__.get("stack") or [[]]
-    missed = [lock for lock in _LOCKS if lock not in held[-1]]
+    held = _HELD.__dict__.get("locks", ())
+    missed = [lock for lock in _LOCKS if lock not in held]
     _after_in_parent()
     for lock in missed:
         lock.renew()
 
 
-def wait_first() -> None:
-    """Let forks wait for our locks before they take those of logging.
-
-    What is registered last runs first before a fork. Registered before logging is imported, a fork would
-    hold its lock while it waits for an import or a compilation, which need that lock.
-    """
-    if not _AFTER_LOGGING:
-        import_module("logging")
-        _AFTER_LOGGING.append(True)
-        _register()
-
-
-def _register() -> None:
-    if hasattr(os, "register_at_fork"):
-        os.register_at_fork(before=_before, after_in_parent=_after_in_parent, after_in_child=_after_in_child)
-
-
-_register()
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(before=_before, after_in_parent=_after_in_parent, after_in_child=_after_in_child)
 
 
 def in_child(action: Callable[[], object]) -> None:

@@ -12,12 +12,11 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import copy_context
-from importlib import import_module
 from types import ModuleType
 from typing import Generic, TypeVar
 
 from .deadline import Deadline
-from .forks import IMPORTS
+from .forks import IMPORTS, imported
 
 T = TypeVar("T")
 
@@ -52,13 +51,8 @@ def put_off() -> Iterator[None]:
 def import_whole(name: str) -> ModuleType:
     """Import a module to its end, even if the caller is interrupted meanwhile."""
     if name in sys.modules:
-        return import_module(name)
-
-    def work() -> ModuleType:
-        with IMPORTS:
-            return import_module(name)
-
-    return finished(work)
+        return imported(name)
+    return finished(lambda: imported(name))
 
 
 def finished(work: Callable[[], T]) -> T:

@@ -7,6 +7,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+if sys.platform == "win32":
+    import msvcrt
+else:
+    import fcntl
+
 WAIT = 60.0  # seconds for a lock that is held for milliseconds
 _FIRST_PAUSE, _LONGEST_PAUSE = 0.002, 0.1
 
@@ -56,12 +61,8 @@ def try_lock(descriptor: int) -> bool | None:
     """Try to lock a descriptor: True if locked, False if another process has it, None without support."""
     try:
         if sys.platform == "win32":
-            import msvcrt
-
             msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
         else:
-            import fcntl
-
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except (BlockingIOError, PermissionError):
         return False
@@ -74,10 +75,6 @@ def release(descriptor: int) -> None:
     """Release a lock explicitly: closing is not enough if a forked child has a copy of the descriptor."""
     with suppress(OSError):
         if sys.platform == "win32":
-            import msvcrt
-
             msvcrt.locking(descriptor, msvcrt.LK_UNLCK, 1)
         else:
-            import fcntl
-
             fcntl.flock(descriptor, fcntl.LOCK_UN)

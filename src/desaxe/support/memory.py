@@ -6,6 +6,8 @@ from contextlib import suppress
 from math import inf
 from pathlib import Path
 
+from .forks import IMPORTS
+
 ALWAYS = 100_000_000  # bytes that are not checked
 _CGROUP = Path("/sys/fs/cgroup")
 
@@ -51,7 +53,8 @@ def _of_process() -> float:
     if sys.platform == "win32":
         return inf
     with suppress(OSError, ValueError, IndexError):
-        import resource
+        with IMPORTS:
+            import resource
 
         most = resource.getrlimit(resource.RLIMIT_AS)[0]
         if most != resource.RLIM_INFINITY:

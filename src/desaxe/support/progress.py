@@ -6,6 +6,8 @@ from contextlib import contextmanager
 from threading import Event, Thread
 from typing import Any
 
+from .forks import IMPORTS
+
 # Called before each step: steps done, steps in all, what comes next.
 Progress = Callable[[int, int, str], None]
 
@@ -34,7 +36,8 @@ def progress_bar(delay: float = DELAY) -> Iterator[Progress | None]:
     None where stderr is not a terminal or tqdm is not installed.
     """
     try:
-        from tqdm import tqdm
+        with IMPORTS:
+            from tqdm import tqdm
     except ModuleNotFoundError:
         tqdm = None
     if tqdm is None or not sys.stderr.isatty():

@@ -13,6 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..support.forks import IMPORTS
+
 Array = NDArray[Any]
 NAME = "search.state"  # gone when the store is finished
 PACE = 1.0  # seconds between two states
@@ -53,7 +55,8 @@ class Kept:
     def close(self) -> None:
         """Write the state, if there is a new one and a folder."""
         if self.path is not None and self.best is not None and self.changed:
-            from .store import write_durably
+            with IMPORTS:
+                from .store import write_durably
 
             file = io.BytesIO()
             arrays: dict[str, Any] = {"done": self.done, **self.best._asdict()}

@@ -8,12 +8,15 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from ..evaluation.labels import import_xarray
 from ..support.files import remove_strays as remove_folders
 from ..support.files import require_writable
+from ..support.forks import IMPORTS
 from .best import Search
 from .layout import size_text
 from .prepared import Sweep
 from .request import IDENTITY, differences
+from .store import INCOMPLETE, STATE, attributes, create, held, remove_strays
 
 CHUNKS = "chunks"  # the attribute with the layout
 
@@ -26,8 +29,6 @@ def kept_at(root: Path, told: Mapping[str, str], overwrite: bool) -> dict[str, A
 
     FileExistsError for what may not be replaced, other OSErrors where nothing can be written.
     """
-    from .store import attributes
-
     there = attributes(root)
     if there is None:
         if os.path.lexists(root) and (not root.is_dir() or any(root.iterdir())):
@@ -55,8 +56,6 @@ def require_place(sweep: Sweep, root: Path, overwrite: bool, memory: int | None)
 
 def placed(sweep: Sweep, root: Path, overwrite: bool, memory: int | None) -> Sweep:
     """Create the store, or check that the existing one is of this sweep; return the sweep with its chunks."""
-    from .store import INCOMPLETE, STATE, create
-
     kept = require_place(sweep, root, overwrite, memory)
     if kept is not None:
         return kept
@@ -68,12 +67,12 @@ def placed(sweep: Sweep, root: Path, overwrite: bool, memory: int | None) -> Swe
 
 def placed_search(search: Search, root: Path, overwrite: bool) -> Search:
     """Create a store for the best designs, or check the existing one; return the search with its chunks."""
-    from .store import INCOMPLETE, STATE, create
-
     told = {**search.identity, CHUNKS: json.dumps(search.layout.chunk)}
     there = kept_at(root, told, overwrite)
     if there is None:
-        import xarray
+        import_xarray()
+        with IMPORTS:
+            import xarray
 
         with free_for(root) as replace:
             create(root, xarray.Dataset(attrs={**told, STATE: INCOMPLETE}), {}, replace)
@@ -83,8 +82,6 @@ def placed_search(search: Search, root: Path, overwrite: bool) -> Search:
 
 def clear(root: Path) -> None:
     """Remove what killed writers left, in a store and beside it."""
-    from .store import remove_strays
-
     remove_strays(root)
     remove_folders(root.parent)
 
@@ -92,8 +89,6 @@ def clear(root: Path) -> None:
 @contextmanager
 def free_for(root: Path) -> Iterator[bool]:
     """Make room for a new store: an empty folder leaves, another store is held; yields if there is one."""
-    from .store import attributes, held
-
     if attributes(root) is None:
         if root.is_dir():
             root.rmdir()

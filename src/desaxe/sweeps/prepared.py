@@ -15,6 +15,7 @@ from ..evaluation.reductions import Reductions, names_reduced, reductions_of
 from ..mechanism.names import LENGTHS
 from ..runtime.accuracy import accuracy_of
 from ..runtime.request import several
+from ..support.forks import IMPORTS
 from .layout import Layout, layout_of
 from .peaks import PeakPart, peak_parts, peak_requests
 from .request import identity
@@ -120,6 +121,7 @@ def _template(
 
 
 def _lazy(template: "xr.Dataset", dims: Sequence[str], dtype: Any, told: Mapping[str, Any]) -> Any:
-    import dask.array as da
+    with IMPORTS:
+        import dask.array as da
 
     return dims, da.empty([template.sizes[name] for name in dims], dtype=dtype, chunks=-1), dict(told)

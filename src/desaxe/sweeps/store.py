@@ -20,11 +20,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..support.extras import needed
+from ..evaluation.labels import import_xarray
+from ..support.extras import explained
 from ..support.files import exchange, staging
+from ..support.forks import IMPORTS
+from ..support.interrupts import put_off
 from ..support.locks import locked
 
-with needed("a sweep"):
+with put_off(), explained("a sweep"):
     import zarr
     from zarr.codecs import Crc32cCodec, ZstdCodec
     from zarr.core.buffer import Buffer
@@ -201,7 +204,9 @@ def sync_folders(root: Path) -> None:
 
 def open_store(root: Path) -> "xr.Dataset":
     """The Dataset of a store, its variables as lazy Dask arrays."""
-    import xarray
+    import_xarray()
+    with IMPORTS:
+        import xarray
 
     found: xr.Dataset = xarray.open_zarr(root)
     return found

@@ -24,6 +24,17 @@ from .layout import Layout, bytes_of
 from .meter import Meter, Watch
 from .place import CHUNKS, clear, free_at, placed, placed_search, require_room
 from .prepared import Sweep, prepared
+from .store import (
+    COMPLETE,
+    STATE,
+    attributes,
+    held,
+    open_store,
+    remove_strays,
+    set_state,
+    sync_folders,
+    write_whole,
+)
 from .tasks import Output, Task, compute, is_absent, run, values_for
 
 if TYPE_CHECKING:
@@ -44,8 +55,6 @@ class Way(NamedTuple):
 
 def stored_sweep(sweep: Sweep, store: str | PathLike[str], overwrite: bool, way: Way) -> "xr.Dataset":
     """Run a sweep into a store, or resume one that was stopped; return the opened Dataset."""
-    from .store import COMPLETE, held, open_store, remove_strays, set_state, sync_folders
-
     root = Path(os.path.abspath(store))
     sweep = placed(sweep, root, overwrite, way.memory)
     with held(root):
@@ -142,8 +151,6 @@ def best_sweep(
     """Run a search for the best designs, or resume the one whose store it is; the Dataset."""
     if store is None:
         return _searched(search, count, way, None)
-    from .store import COMPLETE, STATE, attributes, held, open_store, write_whole
-
     root = Path(os.path.abspath(store))
     search = placed_search(search, root, overwrite)
     with held(root):

@@ -16,16 +16,19 @@ A new language is a file or folder here and its column of the operation table; `
 
 from typing import TYPE_CHECKING
 
+from ...support.forks import IMPORTS
+
 if TYPE_CHECKING:
     from .protocol import Language
 
 
 def languages() -> "tuple[Language, ...]":
     """All but numba, imported when they are asked for: a kernel needs none of them."""
-    from .c import C
-    from .es_module import JavaScript
-    from .jax import Jax
-    from .octave import Octave
+    with IMPORTS:
+        from .c import C
+        from .es_module import JavaScript
+        from .jax import Jax
+        from .octave import Octave
 
     return C(), Jax(), Octave(), JavaScript()
 

@@ -6,6 +6,7 @@ theirs: `grad`, `jacfwd`, `hessian`, `vmap` and `jit` see exact derivatives in t
 """
 
 import keyword
+import re
 
 from ..operations import HELPERS as SHARED
 from ..program import Program
@@ -186,8 +187,6 @@ def _imports(code: str) -> list[str]:
 
 
 def _words(code: str) -> set[str]:
-    import re
-
     without_strings = re.sub(r'""".*?"""', "", code, flags=re.DOTALL)
     return set(re.findall(r"\w+", re.sub(r"#.*", "", without_strings)))
 

@@ -5,12 +5,13 @@ be edges of panels. Gauss's rule is then exact to rounding, and so are running i
 """
 
 from collections.abc import Callable
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
+
+from ...support.computed import computed_once
 
 Array = NDArray[np.float64]
 
@@ -35,12 +36,12 @@ class Panels:
     def __init__(self, start: Array, stop: Array, values: dict[str, Array]) -> None:
         self.start, self.stop, self.values = start, stop, values
 
-    @cached_property
+    @computed_once
     def theta(self) -> Array:
         """The nodes."""
         return nodes_of(self.start, self.stop)
 
-    @cached_property
+    @computed_once
     def weight(self) -> Array:
         """The quadrature weight of each node."""
         return 0.5 * (self.stop - self.start)[:, None] * WEIGHT
@@ -103,7 +104,7 @@ class Panels:
 
     def split(self, places: list[float]) -> "Panels":
         """These functions on panels with additional edges."""
-        edges = np.unique([*self.edges, *places])
+        edges = np.array(sorted({*self.edges, *places}))
         start, stop = edges[:-1], edges[1:]
         wide = stop - start > 1e-15 * np.maximum(np.abs(start), 1.0)
         start, stop = start[wide], stop[wide]
@@ -134,7 +135,7 @@ def resolved(functions: Callable[[Array], dict[str, Array]], breaks: list[float]
 
     `functions(theta)` gives values by name for a flat array of angles. Breaks are in order.
     """
-    edges = np.unique(breaks)
+    edges = np.array(sorted(set(breaks)))
     counts = np.maximum(1, np.ceil(np.diff(edges) / WIDEST)).astype(int)
     pieces = [np.linspace(a, b, n + 1) for a, b, n in zip(edges[:-1], edges[1:], counts, strict=True)]
     start, stop = (np.concatenate([piece[part] for piece in pieces]) for part in (np.s_[:-1], np.s_[1:]))

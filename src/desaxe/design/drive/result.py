@@ -8,6 +8,7 @@ from ...mechanism.status import DriveStatus
 from ...mechanism.unit_system import SI, Conversion, UnitSystem
 from ...mechanism.units import registry
 from ...support.answer import Answer
+from ...support.forks import IMPORTS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -111,7 +112,8 @@ class Drive(Answer):
 
     def plot(self, ax: Any = None) -> Any:
         """Torque, power and speed over the turn; see `desaxe.plot.drive`."""
-        from ...plot import drive
+        with IMPORTS:
+            from ...plot import drive
 
         return drive(self, ax=ax)
 

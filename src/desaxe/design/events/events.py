@@ -9,6 +9,7 @@ from ...mechanism.closed.functions import closed_form
 from ...mechanism.names import LENGTHS
 from ...runtime.request import as_number, check_common, with_known_inputs
 from ...support.answer import answering
+from ...support.forks import IMPORTS
 from ...support.roots import root
 from .found import VELOCITIES, Found, stroke_ends
 
@@ -58,7 +59,8 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
     given = {"ec": ec, "AB": AB, "BC": BC, "omega0": 1.0 if omega0 is None else omega0}
     numbers = {name: as_number(name, value, tuple(given), ("events",)) for name, value in given.items()}
     if None in numbers.values():
-        from .arrays import events_of_arrays
+        with IMPORTS:
+            from .arrays import events_of_arrays
 
         return events_of_arrays(given, int(branch), omega0 is not None)
     e, crank, rod, omega = (float(value or 0.0) for value in numbers.values())

@@ -7,6 +7,7 @@ from ...mechanism.closed.functions import closed_form
 from ...mechanism.closed.limits import CHANGE_POINT_ULPS, LIMITS, in_intervals
 from ...runtime.request import as_number, with_known_inputs
 from ...support.answer import answering
+from ...support.forks import IMPORTS
 
 
 @answering
@@ -58,8 +59,9 @@ def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
 
 
 def _of_arrays(given: dict[str, Any]) -> dict[str, Any]:
-    from ...evaluation.arrays import as_array, broadcast_shape
-    from .arrays import of_arrays
+    with IMPORTS:
+        from ...evaluation.arrays import as_array, broadcast_shape
+        from .arrays import of_arrays
 
     arrays = {name: as_array(name, value, tuple(given), ("feasibility",)) for name, value in given.items()}
     broadcast_shape(arrays)

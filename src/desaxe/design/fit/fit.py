@@ -10,6 +10,7 @@ from ...mechanism.inputs import INPUTS, TINY, Input
 from ...mechanism.read import read
 from ...mechanism.spelling import did_you_mean
 from ...runtime.request import check_common, check_inputs
+from ...support.forks import IMPORTS
 from ...support.shown import shown
 from .data import Data, read_data
 from .model import Model
@@ -156,7 +157,8 @@ def _result(model: Model, found: Any, loss: str, absolute: bool) -> Fit:
 
 
 def _student(freedom: int) -> float:
-    from scipy.special import stdtrit
+    with IMPORTS:
+        from scipy.special import stdtrit
 
     return float(stdtrit(freedom, 0.975)) if freedom else np.inf
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ...evaluation.evaluate import evaluate
 from ...mechanism.catalogue import quantity
+from ...mechanism.inputs import INPUTS
 from ...mechanism.names import sensitivity
 from ...runtime.request import request
 from .data import Data
@@ -131,6 +132,4 @@ class Model:
 
 
 def _inputs(names: Sequence[str]) -> set[str]:
-    from ...mechanism.inputs import INPUTS
-
     return set(names) & set(INPUTS)

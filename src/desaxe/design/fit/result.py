@@ -7,6 +7,7 @@ import numpy as np
 from ...mechanism.catalogue import quantity
 from ...mechanism.status import FitStatus
 from ...mechanism.unit_system import SI, Conversion, UnitSystem
+from ...mechanism.units import registry
 from ...support.extras import needed
 from ...support.text_table import table
 from .model import Model
@@ -29,8 +30,6 @@ class Fit(dict[str, Any]):
         """The result in other units; with `as_quantity` value, std_error and interval as pint quantities."""
         shown = Fit(self._found, self._model, units)
         if as_quantity:
-            from ...mechanism.units import registry
-
             for key in ("value", "std_error", "interval"):
                 rows = {n: (part, _unit_of(n, self._model, units).unit) for n, part in shown[key].items()}
                 shown[key] = {n: registry().Quantity(part, unit) for n, (part, unit) in rows.items()}

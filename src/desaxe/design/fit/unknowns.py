@@ -9,6 +9,7 @@ import numpy as np
 from ...mechanism.inputs import INPUTS, LEAST
 from ...mechanism.read import read
 from ...mechanism.spelling import did_you_mean
+from ...support.forks import IMPORTS
 from ...support.shown import shown
 from .data import Data
 
@@ -86,9 +87,11 @@ def starts_of(unknowns: Sequence[Unknown], count: int, seed: int) -> np.ndarray[
     free = [k for k, u in enumerate(unknowns) if u.ranged or u.name == OFFSET]
     if not free or count == 1:
         return first[None]
-    from scipy.stats import qmc
+    with IMPORTS:
+        from scipy.stats import qmc
 
-    drawn = qmc.Sobol(len(free), seed=seed).random(1 << (count - 1).bit_length())[: count - 1]
+        sequence = qmc.Sobol(len(free), seed=seed)  # whose table is a resource
+    drawn = sequence.random(1 << (count - 1).bit_length())[: count - 1]
     points = np.tile(first, (count, 1))
     for column, k in enumerate(free):
         low, high = (-pi, pi) if unknowns[k].name == OFFSET else (unknowns[k].low, unknowns[k].high)

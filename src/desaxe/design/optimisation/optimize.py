@@ -7,10 +7,11 @@ from ...runtime.request import check_common
 from ...support.answer import answering
 from ...support.checks import whole_number
 from ...support.deadline import Deadline
-from ...support.extras import needed
+from ...support.extras import explained
+from ...support.interrupts import put_off
 from .objectives import goals_of, limits_of, space_of
 
-with needed("optimize", "design"):
+with put_off(), explained("optimize", "design"):
     from .one_objective import solved
     from .pareto import front
 

@@ -9,6 +9,7 @@ At an optimum sum w_i grad piece_i = sum lambda_j grad limit_j with w, lambda >=
 """
 
 from collections.abc import Sequence
+from inspect import signature
 from itertools import product
 from typing import Any, NamedTuple
 
@@ -16,6 +17,7 @@ import numpy as np
 from scipy.optimize import minimize, nnls, root
 from scipy.stats import qmc
 
+from ...support.forks import IMPORTS
 from .problem import EQUAL, LOWER, Array, Functions, Limit, Piece, Space
 
 SCAN = 7  # 2^7 designs are looked at first
@@ -56,9 +58,9 @@ class Search:
     def scan(self) -> None:
         """Evaluate designs spread over the space; set the scale of every function from them."""
         n = len(self.space.names)
-        spread = (
-            qmc.Sobol(n, rng=self.seed) if "rng" in _parameters(qmc.Sobol) else qmc.Sobol(n, seed=self.seed)
-        )
+        seed = {"rng" if "rng" in _parameters(qmc.Sobol) else "seed": self.seed}
+        with IMPORTS:  # for the table of the sequence, a resource
+            spread = qmc.Sobol(n, **seed)
         corners = np.array(list(product((0.0, 1.0), repeat=min(n, 6))))
         corners = np.hstack([corners, np.full((len(corners), n - corners.shape[1]), 0.5)])
         self.places = np.vstack([spread.random_base2(SCAN), corners, np.full((1, n), 0.5)])
@@ -252,6 +254,4 @@ class Search:
 
 
 def _parameters(function: Any) -> Any:
-    from inspect import signature
-
     return signature(function).parameters

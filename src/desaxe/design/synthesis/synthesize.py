@@ -24,6 +24,7 @@ from ...mechanism.read import read
 from ...runtime.request import as_number, with_known_inputs
 from ...support.answer import answering
 from ...support.deadline import Deadline
+from ...support.forks import IMPORTS
 from ...support.roots import root
 from ...support.shown import shown
 from .family import Answer, Family
@@ -100,7 +101,8 @@ def synthesize(
         return _result(third, value, slow_stroke, Answer([], *2 * (float("nan"),), why))
     family = Family(H, pi * (ratio - 1.0) / (ratio + 1.0))
     if third == "peak_a_C":
-        from .peak import of_peak
+        with IMPORTS:
+            from .peak import of_peak
 
         speed = as_number("omega0", omega0, ("stroke", "time_ratio", third, "omega0"), ("synthesize",))
         answer = of_peak(family, value, float(speed or 0.0), deadline)

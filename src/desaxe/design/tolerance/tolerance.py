@@ -17,6 +17,7 @@ from ...runtime.request import check_common, check_inputs
 from ...support.answer import answering
 from ...support.checks import whole_number
 from ...support.extras import needed
+from ...support.forks import IMPORTS, imported
 from ...support.shown import shown
 from ..measures import UNITS, Measure, checked, measured
 from .uncertain import DISTRIBUTIONS, Array, Inexact, read
@@ -261,6 +262,7 @@ def _monte_carlo(every: Array) -> dict[str, Any]:
     if known.size < 2:
         nothing = dict.fromkeys(("mean", "std", "mean_error", "std_error", "least", "largest"), np.nan)
         return {**nothing, "percentiles": {}, "samples": count, "infeasible": lost}
+    imported("numpy.ma")  # by `percentile`
     std = float(known.std(ddof=1))
     fourth = float(np.mean((known - known.mean()) ** 4))
     return {
@@ -283,7 +285,8 @@ def _sobol(function: Function, rough: Sequence[Inexact], count: int, seed: int) 
         from SALib.sample import sobol as sample
     names = [row.name for row in rough]
     problem = {"num_vars": len(names), "names": names, "bounds": [[0.0, 1.0]] * len(names)}
-    shares = sample.sample(problem, count, calc_second_order=False, seed=seed)
+    with IMPORTS:  # for the table of a sequence
+        shares = sample.sample(problem, count, calc_second_order=False, seed=seed)
     shares = np.clip(shares, 1e-12, 1.0 - 1e-12)
     values = function.values({row.name: row.at(shares[:, i]) for i, row in enumerate(rough)})
     if not np.isfinite(values).all():
@@ -334,7 +337,8 @@ def _enclosed(name: str, ranges: Mapping[str, Any], branch: int) -> dict[str, An
     if any(map(callable, ranges.values())):  # a load that varies with the motion
         return None
     try:
-        from ...enclosure.enclose import enclose
+        with IMPORTS:
+            from ...enclosure.enclose import enclose
     except ModuleNotFoundError:  # the extra `rigorous`
         return None
     found = enclose(name, branch=branch, boxes=BOXES, **ranges)

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from ...mechanism.inputs import INPUTS
 from ...mechanism.ranges import Between, RangeWarning, middle_of
 from ...mechanism.read import read as read_number
+from ...mechanism.units import in_si
+from ...support.extras import needed
 from ...support.quantity_text import PLUS_MINUS, with_unit_of
 
 Array = NDArray[np.float64]
@@ -34,8 +36,6 @@ class Inexact(NamedTuple):
         if self.kind == "uniform":
             return self.mean + (2.0 * share - 1.0) * float(self.tolerance or 0.0)
         if self.kind == "normal":
-            from ...support.extras import needed
-
             with needed("tolerance", "design"):
                 from scipy.special import ndtri
             return np.asarray(self.mean + self.std * ndtri(share))
@@ -101,8 +101,6 @@ def _with_tolerance(name: str, value: Sequence[Any]) -> tuple[float, float]:
     if isinstance(second, str) and second.strip().endswith("%"):
         return nominal, _percent(name, second) * abs(nominal)
     if isinstance(second, str) or hasattr(second, "magnitude"):
-        from ...mechanism.units import in_si
-
         return nominal, float(in_si(name, second))
     try:
         return nominal, float(second)

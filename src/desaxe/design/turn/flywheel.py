@@ -14,6 +14,7 @@ from math import inf, isinf, pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.fft import irfft, rfft
 
 from ...peaks.peak import peak
 from ...support.answer import answering
@@ -158,11 +159,11 @@ def _extremes(turn: Turn, torque: Array, over: EqualSteps | InPanels) -> list[tu
 
 def _integral(torque: Array) -> Array:
     """The integral over theta of the deviation from the mean, with mean 0."""
-    c = np.fft.rfft(torque)
+    c = rfft(torque)
     c[0] = 0.0
     c[1:] /= 1j * np.arange(1, len(c))
     c[-1] = 0.0
-    return np.fft.irfft(c, torque.size)
+    return irfft(c, torque.size)
 
 
 class Machine(NamedTuple):

@@ -5,11 +5,11 @@ jumps, which a table over the angle or the stroke has, in panels between them.
 """
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property
 from math import fsum, pi
 from typing import Any
 
 import numpy as np
+from numpy.fft import rfft
 from numpy.typing import NDArray
 
 from ...evaluation.evaluate import evaluate
@@ -21,6 +21,7 @@ from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LENGTHS
 from ...mechanism.read import read
 from ...runtime.request import as_number, check_common, check_inputs, is_steady
+from ...support.computed import computed_once
 from ..drive.panels import Panels, resolved
 
 Array = NDArray[np.float64]
@@ -77,7 +78,7 @@ class Turn:
             breaks = sorted({*breaks, *smooth.roots(smooth.values["N_C"])})
         return resolved(functions, breaks)
 
-    @cached_property
+    @computed_once
     def kinks(self) -> list[float]:
         """The angles at which pieces of a load meet."""
         end = 2.0 * pi * self.turns
@@ -106,7 +107,7 @@ class Turn:
         points = max(LEAST, 1 << (2 * least - 1).bit_length())
         before: dict[str, NDArray[np.complex128]] = {}
         while True:
-            now = {n: np.fft.rfft(v) / v.size for n, v in self.values(names, points).items()}
+            now = {n: rfft(v) / v.size for n, v in self.values(names, points).items()}
             half = points // 4
             errors = [float(np.abs(now[n][:half] - before[n][:half]).max()) for n in before]
             size = max(float(np.abs(c).max()) for c in now.values())

@@ -1,7 +1,7 @@
 """Closed forms as functions: of numbers in plain Python, of arrays in NumPy."""
 
 from collections.abc import Callable
-from functools import cache, cached_property
+from functools import cache
 from typing import Any
 
 from ...compiler.passes.differentiate import with_derivatives
@@ -9,6 +9,8 @@ from ...compiler.passes.pipeline import optimise
 from ...compiler.passes.slicing import keep_outputs
 from ...compiler.program import Program
 from ...compiler.text import read_function
+from ...support.computed import computed_once
+from ...support.forks import IMPORTS
 
 
 class ClosedForm:
@@ -18,19 +20,21 @@ class ClosedForm:
         program = read_function(text)
         self.program = optimise(keep_outputs(program, outputs or program.outputs), fixed)[0]
 
-    @cached_property
+    @computed_once
     def point(self) -> Callable[..., tuple[Any, ...]]:
         """The outputs from numbers: a square root below 0 is NaN, a number over 0 infinite."""
-        from ...compiler.languages.python import compile_python
+        with IMPORTS:
+            from ...compiler.languages.python import compile_python
 
         return compile_python(self.program)
 
-    @cached_property
+    @computed_once
     def arrays(self) -> Callable[..., tuple[Any, ...]]:
         """The outputs from arrays that broadcast, by NumPy."""
-        import numpy as np
+        with IMPORTS:
+            import numpy as np
 
-        from ...compiler.languages.arrays import compile_arrays
+            from ...compiler.languages.arrays import compile_arrays
 
         return np.errstate(all="ignore")(compile_arrays(self.program, np))
 

@@ -22,6 +22,7 @@ from ...runtime.modules import path_of
 from ...runtime.specialise import specialise
 from ...runtime.threads import LEAST_BLOCK, available
 from ...runtime.tiers import BREAK_EVEN, COMPILED, forced_tier, tier_ahead
+from ...support.forks import IMPORTS
 from ..content import Content
 from ..kernel import GridKernel, grid_kernel
 from ..scene import Scene
@@ -65,7 +66,8 @@ class Plan:
         return json.dumps(self.data, indent=2)
 
     def __str__(self) -> str:
-        from .report import plan_text
+        with IMPORTS:
+            from .report import plan_text
 
         return plan_text(self.data)
 

@@ -11,6 +11,7 @@ from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LOADS
 from ...mechanism.unit_system import UnitSystem
 from ...runtime.request import as_number, check_common, check_inputs
+from ...support.forks import IMPORTS
 from .content import Content, Value, content
 from .write import require_page, write_page
 
@@ -87,7 +88,8 @@ def content_of(
 
 def _of_scene(source: Any, names: Iterable[str] | None) -> Content:
     """The content of a scene: its outputs, and the quantities of its peaks and pictures."""
-    from ..scene import Scene, scene
+    with IMPORTS:
+        from ..scene import Scene, scene
 
     known = source if isinstance(source, Scene) else scene(source)
     inside = known.content

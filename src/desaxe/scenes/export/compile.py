@@ -31,6 +31,7 @@ from ...runtime.kernels import KernelKey, kernel_of
 from ...runtime.specialise import specialise
 from ...runtime.written import replacing_ours, require_ours
 from ...support.files import as_path, check_target, require_writable
+from ...support.version import version
 from ..content import Content
 from ..kernel import GridKernel, grid_kernel
 from ..scene import Scene
@@ -363,8 +364,6 @@ def _docstring(
     scene: Scene, name: str, key: KernelKey, shown: tuple[str, ...], inputs: tuple[str, ...], operations: int
 ) -> str:
     """The module's docstring: its source, its contents, its units."""
-    from ...support.version import version
-
     source = Path(scene.name).name
     command = f"desaxe compile {source} -o {name}" if source else f'desaxe.compile(scene, "{name}")'
     peak_lines = peak_texts(scene.content).lines

@@ -15,6 +15,7 @@ from ...mechanism.names import LENGTHS, ORDER, STATUSES, sensitivity
 from ...mechanism.program import digest
 from ...runtime.request import Request, request
 from ...runtime.specialise import plain_form, specialise
+from ...support.version import version
 from ..content import Content
 from ..scene import Scene
 from ..schema import SceneError
@@ -76,8 +77,6 @@ def left_out(content: Content, reduction: bool = True) -> list[str]:
 
 def heading(scene: Scene, command: str) -> tuple[str, ...]:
     """The head comment of a module: its contents, and the command that made it."""
-    from ...support.version import version
-
     said = hashlib.sha256(repr(scene.content).encode()).hexdigest()[:16]
     return (
         f"{scene.title or 'An offset slider-crank'}: {', '.join(scene.content.outputs)}.",

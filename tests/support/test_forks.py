@@ -1,0 +1,52 @@
+"""Forks while another thread is at work: the child is usable, and the fork does not wait in vain."""
+
+import subprocess
+import sys
+import time
+
+import pytest
+
+FORK = """
+import os, threading, time
+{work}
+began = threading.Event()
+def work():
+{body}
+threading.Thread(target=work).start()
+began.wait()
+number = os.fork()
+if not number:
+{child}
+    os._exit(0)
+raise SystemExit(os.waitstatus_to_exitcode(os.waitpid(number, 0)[1]))
+"""
+CASES = {
+    "who imports needs logging, whose lock a fork acquires before ours": (
+        "from desaxe.support.forks import IMPORTS\nimport logging",
+        "    with IMPORTS:\n        began.set()\n        time.sleep(0.5)\n        logging.getLogger('a')",
+        "    with IMPORTS:\n        logging.getLogger('b')",
+    ),
+    "a property is being computed": (
+        "from desaxe.support.computed import computed_once\n"
+        "class Thing:\n    @computed_once\n    def slow(self):\n        began.set()\n        time.sleep(0.5)",
+        "    Thing().slow",
+        "    Thing().slow",
+    ),
+    "definitions are being replaced": (
+        "from desaxe.mechanism import own\n"
+        "class Slow(dict):\n    def values(self):\n        began.set()\n        time.sleep(0.5)\n"
+        "        return super().values()",
+        "    own.replace_all(Slow())",
+        "    own.replace_all({})",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_child_of_a_process_at_work(case):
+    work, body, child = CASES[case]
+    begun = time.monotonic()
+    subprocess.run(
+        [sys.executable, "-c", FORK.format(work=work, body=body, child=child)], check=True, timeout=60
+    )
+    assert time.monotonic() - begun < 15.0
