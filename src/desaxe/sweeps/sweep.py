@@ -15,6 +15,7 @@ from ..evaluation.chunks import blocks_of, slices_of
 from ..runtime.threads import available
 from ..support.extras import needed
 from ..support.files import as_path
+from . import store as zarr_store
 from .best import Search, best_designs, search_for
 from .cluster import Crew, cluster, require_workers, run_all
 from .cluster import threads as thread_crew
@@ -33,7 +34,6 @@ from .store import (
     remove_strays,
     set_state,
     sync_folders,
-    write_whole,
 )
 from .tasks import Output, Task, compute, is_absent, run, values_for
 
@@ -159,7 +159,7 @@ def best_sweep(
         if there.get(STATE) != COMPLETE:
             found = _searched(search, count, way, root)
             try:
-                write_whole(root, found.assign_attrs({CHUNKS: there[CHUNKS]}))
+                zarr_store.write_whole(root, found.assign_attrs({CHUNKS: there[CHUNKS]}))
             except OSError as error:
                 raise NotStoredError(root, error, found) from error
     return open_store(root)
