@@ -9,8 +9,8 @@ from desaxe.compiler.passes.slicing import drop_unused
 from desaxe.compiler.passes.trigonometry import Trigonometry
 from desaxe.compiler.passes.value_numbering import value_numbering
 from desaxe.compiler.program import Program, renamed, validate
-from desaxe.mechanism.closed.dead_centres import NAMES, SENSITIVITIES
-from desaxe.mechanism.names import CENTRES, LOADS, PARAMETERS, parts, sensitivity
+from desaxe.mechanism.closed.dead_centres import SENSITIVITIES
+from desaxe.mechanism.names import CENTRES, LOADS, PARAMETERS, WHOLE, parts, sensitivity
 
 from .closed import whole_design
 from .dynamics import FORCES, LUMPS, centres_sheet
@@ -56,7 +56,7 @@ def public_names() -> tuple[str, ...]:
     """All public names: those of the sheet, and those of a whole design behind the facts."""
     facts = len(QUANTITIES) + len(FACTS)
     names = sheet_names()
-    return (*names[:facts], *NAMES, *names[facts:], *SENSITIVITIES)
+    return (*names[:facts], *WHOLE, *names[facts:], *SENSITIVITIES)
 
 
 def parameters_of(quantity: str) -> tuple[str, ...]:

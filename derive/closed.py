@@ -15,9 +15,9 @@ from desaxe.compiler.interpret import run_in_doubles
 from desaxe.compiler.operations import OPERATIONS
 from desaxe.compiler.program import Note, Program
 from desaxe.compiler.text import read_function
-from desaxe.mechanism.closed.dead_centres import DEAD_CENTRES, NAMES
+from desaxe.mechanism.closed.dead_centres import DEAD_CENTRES
 from desaxe.mechanism.dimensions import unit_of, unit_text
-from desaxe.mechanism.names import LENGTHS, parts, sensitivity
+from desaxe.mechanism.names import LENGTHS, WHOLE, parts, sensitivity
 
 ec, AB, BC = (sp.Symbol(name, real=True) for name in LENGTHS)
 # Designs of each sector: of a turning crank, |ec| < AB and |ec| > AB; of a crank longer than the rod.
@@ -28,7 +28,7 @@ def whole_design() -> Program:
     """The Program of the dead centres; its derivatives have notes, too."""
     program = prove(read_function(DEAD_CENTRES))
     notes = dict(program.notes)
-    for name, length in product(NAMES, LENGTHS):
+    for name, length in product(WHOLE, LENGTHS):
         unit = unit_text(unit_of(notes[name].unit).over(length))
         notes[sensitivity(name, length)] = Note(unit, f"derivative of {name} by {length}")
     return program._replace(notes=notes)
@@ -40,7 +40,7 @@ def prove(program: Program) -> Program:
         sector = _Sector(program, {"ec": side * offset, "AB": crank, "BC": rod, "branch": branch})
         wrong = [
             sensitivity(name, p.name)
-            for name, p in product(NAMES, (ec, AB, BC))
+            for name, p in product(WHOLE, (ec, AB, BC))
             if sector.numbers[name] == sector.numbers[name]
             and not sector.vanishes(sector.slope(sector[name], p) - sector[sensitivity(name, p.name)])
         ]

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from desaxe.mechanism.names import LOADS, PARAMETERS, parts
+from desaxe.mechanism.names import LOADS, PARAMETERS, WHOLE, parts
 
 from . import bodies
 from .dynamics import FORCES, LUMPS, mu
@@ -25,6 +25,10 @@ LATEX_NAMES = {
     "alpha_BC": r"\alpha_{BC}", "theta": r"\theta", "ec": "e_c", "omega0": r"\omega_0", "alpha": r"\alpha",
     "AB": r"\overline{AB}", "BC": r"\overline{BC}",
     "transmission_angle": r"\gamma", "mu": r"\mu", "pressure_angle": r"|\varphi|", "branch": r"\sigma",
+    "theta_outer": r"\theta_o", "theta_inner": r"\theta_i", "Y_outer": "Y_o", "Y_inner": "Y_i", "stroke": "H",
+    "time_ratio": "Q", "advance_angle": r"\theta_{adv}", "return_angle": r"\theta_{ret}",
+    "max_pressure_angle": r"|\varphi|_{max}", "min_pressure_angle": r"|\varphi|_{min}",
+    "min_transmission_angle": r"\gamma_{min}", "max_transmission_angle": r"\gamma_{max}",
 }  # fmt: skip
 
 
@@ -102,6 +106,8 @@ def closed_form(base: str) -> sp.Expr:
     """The textbook form of a quantity, by time derivatives of the solved loop."""
     if base in FORCES:
         return _force(base)
+    if base in WHOLE:
+        return _whole(base)
     across = solved()[u]
     height = sp.sqrt(BC**2 - across**2)
     position = solved()[slider].subs(S, height)
@@ -131,6 +137,28 @@ def closed_form(base: str) -> sp.Expr:
     if found is None:
         raise LookupError(f"{base} has no closed form here yet")
     return sp.simplify(found) if base in ("V_B", "a_B") else found
+
+
+def _whole(base: str) -> sp.Expr:
+    """A quantity of a whole design, from the triangle A B C in line; the rod at its steepest and flattest."""
+    outer, inner = sp.asin(ec / (AB + BC)), sp.asin(ec / (BC - AB))
+    far, near = (sp.sqrt(reach**2 - ec**2) for reach in (AB + BC, BC - AB))
+    beta = inner - outer
+    steep, flat = (sp.asin(lean / BC) for lean in (AB + sp.Abs(ec), sp.Max(sp.Abs(ec) - AB, 0)))
+    return {
+        "Y_outer": branch * far,
+        "Y_inner": branch * near * sp.Piecewise((-1, BC < AB), (1, True)),
+        "theta_outer": sp.Piecewise((sp.pi, branch < 0), (0, True)) - branch * outer,
+        "theta_inner": sp.Piecewise((0, branch < 0), (sp.pi, True)) - branch * inner,
+        "stroke": far - near,
+        "advance_angle": sp.pi + branch * beta,
+        "return_angle": sp.pi - branch * beta,
+        "time_ratio": (sp.pi + sp.Abs(beta)) / (sp.pi - sp.Abs(beta)),
+        "max_pressure_angle": steep,
+        "min_transmission_angle": sp.pi / 2 - steep,
+        "min_pressure_angle": flat,
+        "max_transmission_angle": sp.pi / 2 - flat,
+    }[base]
 
 
 def _force(base: str) -> sp.Expr:

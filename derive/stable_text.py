@@ -109,7 +109,8 @@ def stable_form(name: str) -> StableForm:
 
 def _exact(program: Program) -> Program:
     """The program over the real numbers."""
-    lines = [Line(x.name, "copy", (0.0,)) if x.op in ZERO else x for x in program.lines]
+    fixed = {**dict.fromkeys(ZERO, 0.0), "power_of_two": 1.0}  # on the last no value depends
+    lines = [Line(x.name, "copy", (fixed[x.op],)) if x.op in fixed else x for x in program.lines]
     return drop_unused(fold_constants(drop_unused(program._replace(lines=tuple(lines)))))
 
 

@@ -11,9 +11,8 @@ from desaxe.derive.build import INPUTS, public_names
 from desaxe.derive.dynamics import FORCES
 from desaxe.derive.quantities import FACTS, KINEMATICS, SECOND_ORDER
 from desaxe.generated.index import NAMES
-from desaxe.mechanism.closed.dead_centres import NAMES as WHOLE
 from desaxe.mechanism.closed.dead_centres import SENSITIVITIES
-from desaxe.mechanism.names import LOADS, PARAMETERS
+from desaxe.mechanism.names import LOADS, PARAMETERS, WHOLE
 from desaxe.oracle.force_truth import force_names
 from desaxe.oracle.truth import all_names
 from tests.compiler.programs import LINKS, POINT

@@ -148,8 +148,8 @@ def margin_parts(
     """The part of the margin, if all lengths are given and none of them is reduced."""
     if not all(name in outer.axes and name not in reduced for name in LENGTHS):
         return ()
-    names, along = outer.groups()[1]
-    return (_part(request(names, outer.given, branch, accuracy), outer.axes, along, block),)
+    wanted = request(["margin"], outer.given, branch, accuracy)
+    return (_part(wanted, outer.axes, outer.lengths, block),)
 
 
 def _part(wanted: Request, axes: Mapping[str, Array], along: Sequence[str], block: Mapping[str, int]) -> Part:

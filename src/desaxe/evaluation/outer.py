@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..loads.load import Load
+from ..mechanism.catalogue import of_design
 from ..mechanism.inputs import INPUTS
-from ..mechanism.names import LENGTHS
+from ..mechanism.names import LENGTHS, STATUS
 from ..runtime.request import Request, check_common, check_inputs, several, standstill
 from .arrays import as_array
 from .loaded import split_axes
@@ -46,8 +47,16 @@ class Outer(NamedTuple):
 
     def groups(self) -> list[tuple[list[str], list[str]]]:
         """The names that have all dimensions, and those that have the lengths' alone, with them."""
-        lengths = [name for name in self.dimensions if name in LENGTHS]
-        return [([n for n in self.shown if n != "margin"], self.dimensions), (["margin"], lengths)]
+        whole = [name for name in self.shown if of_design(name)]
+        others = [name for name in self.shown if name not in whole]
+        if others == [STATUS] and "theta" not in self.axes:  # that of the design
+            return [(list(self.shown), self.lengths)]
+        return [(others, self.dimensions), (whole, self.lengths)]
+
+    @property
+    def lengths(self) -> list[str]:
+        """The dimensions that are lengths."""
+        return [name for name in self.dimensions if name in LENGTHS]
 
 
 def outer_of(

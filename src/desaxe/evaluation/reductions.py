@@ -12,6 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from ..compiler.languages.numba.reductions import EXTREMES, KINDS
+from ..mechanism.catalogue import of_design
 from ..mechanism.spelling import did_you_mean
 from ..runtime.request import as_number
 from ..support.shown import shown
@@ -265,6 +266,9 @@ def _check_names(found: Reductions, names: Sequence[str]) -> None:
     if "status" in names:
         raise ValueError(f"reduce: {NO_STATUS}")
     measured = {one.name for one in found.at}
+    still = [name for name in names if of_design(name)]
+    if still and "theta" in found.axes:
+        raise ValueError(f"reduce: {still[0]} is of the whole design: it has no course over theta")
     idle = [name for name in names if not found.chains(name) and name not in measured]
     if idle:
         raise ValueError(f"reduce: nothing is taken of {idle[0]}; allowed: {ALLOWED}")

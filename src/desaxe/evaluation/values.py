@@ -8,10 +8,20 @@ from functools import cache
 from typing import Any
 
 from ..mechanism.inputs import is_good
+from ..mechanism.names import LENGTHS, STROKES, sensitivity
 from ..mechanism.own import changes, forget_on_change
 from ..runtime.accuracy import accuracy_of
 from ..runtime.point import Point, point_of
-from ..runtime.request import Request, as_number, check_common, is_steady, request, several, standstill
+from ..runtime.request import (
+    Request,
+    as_number,
+    check_common,
+    is_steady,
+    request,
+    several,
+    standstill,
+    turned,
+)
 from ..support.forks import IMPORTS
 from ..support.interrupts import import_whole
 from .extremes import LEAST, MOST, can_rescale, in_si, is_extreme, rescaled
@@ -32,7 +42,10 @@ def values(
         check_common(given, branch, threads)
     if type(accuracy) is not str:
         accuracy = accuracy_of(accuracy)
-    key = wanted, tuple(given), omega is not None, is_steady(given.get("alpha")), branch, accuracy
+    key: tuple[Any, ...] = wanted, tuple(given), omega is not None, is_steady(given.get("alpha")), branch
+    key = *key, accuracy, given.get("theta") is None
+    if not TURNED.isdisjoint(wanted):
+        key = *key, turned(wanted, given)
     if not speed_given and omega is None and "status" in wanted:
         given["omega0"] = standstill(wanted, given)
     known = _KNOWN.get(key)
@@ -74,6 +87,7 @@ def _extreme(asked: Request, point: Point, numbers: Sequence[float]) -> Sequence
     return [float(a) if type(b) is float else b for a, b in zip(found, answer, strict=True)]
 
 
+TURNED = frozenset((*STROKES, *(sensitivity(name, p) for name in STROKES for p in LENGTHS)))
 MOST_KNOWN = 1024  # requests that are remembered
 _KNOWN: dict[tuple[Any, ...], tuple[Request, Point]] = {}
 forget_on_change(_KNOWN)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from ..support.forks import IMPORTS
 from ..support.shown import shown
 from ..support.text_table import table
-from .names import PARAMETERS, joined, parts, sensitivity
+from .names import LENGTHS, PARAMETERS, WHOLE, joined, parts, sensitivity
 from .own import Row, definitions, derived_names, leaves, rows
 
 
@@ -81,6 +81,14 @@ def quantity(name: str, state: bool = False) -> Quantity:
     if state:
         _refuse_law(parts(name)[0])
     return Quantity(name, *_names()[law_name(name) if state else name])
+
+
+def of_design(name: str) -> bool:
+    """True for what the lengths alone tell of a whole design: the margin, the stroke, what is made of these."""
+    base = parts(name)[0]
+    if base in definitions():
+        return all(leaf in LENGTHS or of_design(leaf) for leaf in leaves((base,), definitions()))
+    return base == "margin" or base in WHOLE
 
 
 def _refuse_law(name: str) -> None:

@@ -12,11 +12,19 @@ PARAMETERS = ("theta", "ec", "AB", "BC", "omega0", "alpha")
 LOADS = (
     "m_crank", "m_rod", "m_slider", "I_crank", "I_rod", "r_crank", "r_rod", "F_X", "F_Y", "g_X", "g_Y", "mu",
 )  # fmt: skip
-# A status: that of the motion, and that of a request for forces, which is shown by the same name.
-STATUS, FORCE_STATUS = STATUSES = ("status", "force_status")
+# A status: that of the motion, that of a request for forces, that of a design; shown by the same name.
+STATUS, FORCE_STATUS, TURN_STATUS = STATUSES = ("status", "force_status", "turn_status")
+# Quantities of a whole design, of its lengths alone: no theta, no speed.
+WHOLE = (
+    "stroke", "time_ratio", "advance_angle", "return_angle", "Y_outer", "Y_inner", "theta_outer",
+    "theta_inner", "max_pressure_angle", "min_transmission_angle", "min_pressure_angle",
+    "max_transmission_angle",
+)  # fmt: skip
+STROKES = ("advance_angle", "return_angle")  # they change places where the crank turns backwards
 # What the library requests beside the names of a user: no quantity of his own is called so.
 INTERNAL = (
     FORCE_STATUS,
+    TURN_STATUS,
     "wide_margins",
     "undecided",
     "less_rounded",

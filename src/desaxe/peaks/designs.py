@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from ..compiler.passes.guard import BAD_INPUT
 from ..loads.load import Load
-from ..mechanism.catalogue import has, quantity
+from ..mechanism.catalogue import has, of_design, quantity
 from ..mechanism.constants import constants
-from ..mechanism.names import LENGTHS, sensitivity
+from ..mechanism.names import LENGTHS, STATUS, sensitivity
 from ..mechanism.own import changes, forget_on_change
 from ..mechanism.own_lines import has_kinks
 from ..runtime.accuracy import accuracy_of
@@ -24,7 +24,7 @@ from . import special
 from .compiled import LONGEST_PART, Groups, kernel_for, run
 from .loaded import kinks_of, moved_with_kinks, run_under_loads, with_nodes, with_slopes
 from .nodes import Array, classes, shared_nodes
-from .programs import WITHOUT_COURSE, Search, needs_own
+from .programs import Search, needs_own
 from .special import Designs
 
 KINDS = ("absmax", "max", "min")
@@ -84,7 +84,7 @@ def plan_of(name: str, given: dict[str, Any], branch: int, accuracy: Any) -> Pla
 
 
 def _new_plan(name: str, given: dict[str, Any], branch: int, accuracy: Any) -> Plan:
-    if name in WITHOUT_COURSE:
+    if name == STATUS or of_design(name):
         raise ValueError(f"{name} has no peak over theta")
     state = given["omega"] is not None
     quantity(name, state)

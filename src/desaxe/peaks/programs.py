@@ -21,8 +21,6 @@ from ..mechanism.program import Variant
 from ..runtime.specialise import specialise
 from ..support.forks import IMPORTS
 
-WITHOUT_COURSE = ("status", "margin")  # these have no course over theta, and no peak
-
 
 class Search(NamedTuple):
     """The key of a compiled search."""

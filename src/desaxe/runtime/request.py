@@ -4,9 +4,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache, wraps
 from typing import Any, NamedTuple, ParamSpec, TypeVar
 
-from ..mechanism.catalogue import law_name, quantity
+from ..mechanism.catalogue import law_name, of_design, quantity
 from ..mechanism.inputs import INPUTS
-from ..mechanism.names import CENTRES, FORCE_STATUS, LENGTHS, LOADS, STATUS, parts
+from ..mechanism.names import CENTRES, FORCE_STATUS, LENGTHS, LOADS, STATUS, STROKES, TURN_STATUS, parts
 from ..mechanism.own import Definition, used_by
 from ..mechanism.own_lines import not_extended
 from ..mechanism.program import Variant, program_of
@@ -64,6 +64,10 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
         quantity(name, state)
     shown = tuple(names)
     own = tuple(law_name(name) if state else name for name in shown)
+    others = [name for name in own if name != STATUS]
+    if others != list(own) and given.get("theta") is None and all(map(of_design, others)):
+        own = tuple(TURN_STATUS if name == STATUS else name for name in own)
+    own = turned(own, given)
     inputs = program_of(own).inputs
     if STATUS in own and ("mu" in inputs or given.get("mu") is not None):
         own = tuple(FORCE_STATUS if name == STATUS else name for name in own)
@@ -80,6 +84,32 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
         check_extended(defined)
     variant = Variant(state, default_centres, own=defined)
     return Request(shown, own, variant, (("branch", float(branch)), *zeros), kept)
+
+
+def turned(names: tuple[str, ...], given: Mapping[str, Any]) -> tuple[str, ...]:
+    """The names for the crank's way of turning: backwards, advance and return change places."""
+    if not any(parts(name)[0] in STROKES for name in names) or not turns_backwards(given):
+        return names
+    advance, back = STROKES
+    swapped = {advance: back, back: advance}
+    bases = ((parts(name)[0], name) for name in names)
+    return tuple(name.replace(base, swapped.get(base, base), 1) for base, name in bases)
+
+
+def turns_backwards(given: Mapping[str, Any]) -> bool:
+    """True if the speed given is negative; ValueError for speeds of both signs."""
+    speed = given.get("omega0") if given.get("omega") is None else given["omega"]
+    if speed is None or callable(speed):
+        return False
+    number = as_number("omega0", speed, ("omega0",), STROKES)
+    if number is not None:
+        return number < 0.0
+    backwards = set((speed < 0.0).ravel().tolist() if hasattr(speed, "ravel") else [v < 0.0 for v in speed])
+    if len(backwards) > 1:
+        raise ValueError(
+            f"{' and '.join(STROKES)} change places where omega0 changes its sign: give one sign"
+        )
+    return backwards == {True}
 
 
 def check_extended(own: tuple[Definition, ...]) -> None:
@@ -174,7 +204,7 @@ def several(names: Any) -> tuple[str, ...]:
 
 def standstill(names: Iterable[str], given: Mapping[str, Any]) -> float | None:
     """The default speed: 0 if only `status` would use it, else None."""
-    others = tuple(name for name in names if name not in ("status", "margin"))
+    others = tuple(name for name in names if name != STATUS and not of_design(name))
     return None if others and "omega0" in request(others, given, 1, "standard").inputs else 0.0
 
 

@@ -5,10 +5,9 @@ from math import pi
 from typing import Any
 
 from ..loads.load import Load, OverTheta
-from ..mechanism.catalogue import quantity
+from ..mechanism.catalogue import of_design, quantity
 from ..mechanism.inputs import INPUTS
-from ..mechanism.names import CENTRES, LENGTHS, sensitivity
-from ..peaks.programs import WITHOUT_COURSE
+from ..mechanism.names import CENTRES, LENGTHS, STATUS, sensitivity
 from . import schema
 from .content import Check, Claim, Peak, Picture
 from .needs import OPTIONAL, needs_of, require, require_for_grid, require_known, single, with_others
@@ -100,7 +99,7 @@ def _sensitivities(key: str, table: schema.PeakTable, needed: Iterable[str]) -> 
 
 def _slope(key: str, name: str, state: bool) -> str:
     """The derivative of a quantity by theta, whose inputs a peak needs; the quantity itself without one."""
-    if name in WITHOUT_COURSE:
+    if name == STATUS or of_design(name):
         raise SceneError(f"{key} = {shown(name)}: it has no peak over theta")
     slope = sensitivity(name, "theta")
     try:

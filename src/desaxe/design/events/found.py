@@ -3,8 +3,8 @@
 from math import pi
 from typing import Any
 
-from ...mechanism.closed.dead_centres import NAMES, PLACES, SENSITIVITIES
-from ...mechanism.names import LENGTHS, sensitivity
+from ...mechanism.closed.dead_centres import PLACES, SENSITIVITIES
+from ...mechanism.names import LENGTHS, WHOLE, sensitivity
 
 VELOCITIES = {"V_outward": 1, "V_inward": -1}  # name -> direction along the stroke
 
@@ -13,11 +13,11 @@ class Found:
     """Values, their gradient, the angles of the extremes of the rod, and the status."""
 
     def __init__(self, outputs: tuple[Any, ...]) -> None:
-        by_name = dict(zip((*NAMES, *SENSITIVITIES, *PLACES), outputs, strict=False))
+        by_name = dict(zip((*WHOLE, *SENSITIVITIES, *PLACES), outputs, strict=False))
         self.status = outputs[-1]
-        self.values = {name: by_name[name] for name in NAMES}
+        self.values = {name: by_name[name] for name in WHOLE}
         self.places = {name: by_name[name] for name in PLACES}
-        self.gradient = {name: {p: by_name[sensitivity(name, p)] for p in LENGTHS} for name in NAMES}
+        self.gradient = {name: {p: by_name[sensitivity(name, p)] for p in LENGTHS} for name in WHOLE}
 
 
 def stroke_ends(values: dict[str, Any], side: int, branch: int) -> tuple[Any, Any]:

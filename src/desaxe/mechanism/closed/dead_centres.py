@@ -18,15 +18,10 @@ of the values, and puts all lines into the Program of the derivation.
 
 from math import pi
 
-from ..names import LENGTHS, sensitivity
+from ..names import LENGTHS, TURN_STATUS, WHOLE, sensitivity
 
-NAMES = (
-    "stroke", "time_ratio", "advance_angle", "return_angle", "Y_outer", "Y_inner", "theta_outer",
-    "theta_inner", "max_pressure_angle", "min_transmission_angle", "min_pressure_angle",
-    "max_transmission_angle",
-)  # fmt: skip
 PLACES = ("theta_max_pressure_angle", "theta_min_pressure_angle")
-SENSITIVITIES = tuple(sensitivity(name, length) for name in NAMES for length in LENGTHS)
+SENSITIVITIES = tuple(sensitivity(name, length) for name in WHOLE for length in LENGTHS)
 DEAD_CENTRES = f'''def dead_centres(ec, AB, BC, branch):
     """Quantities of a whole design; with branch -1 the mechanism is mirrored across X."""
     longer_link = BC if AB < BC else AB
@@ -120,7 +115,8 @@ DEAD_CENTRES = f'''def dead_centres(ec, AB, BC, branch):
     room_flat = room_outer if crank < away else rod
     most_height = sqrt(room_flat * (rod + reach_in))
     min_pressure_angle = atan2(reach_in, most_height)  # rad | smallest pressure angle
-    flatter = 1.0 / most_height / unit_length if 0.0 < reach_in else (0.0 if can_turn else nan)
+    is_out = can_turn and crank < away
+    flatter = 1.0 / most_height / unit_length if is_out else (0.0 if can_turn else nan)
     min_pressure_angle_wrt_ec = offset_side * flatter
     min_pressure_angle_wrt_AB = -flatter
     min_pressure_angle_wrt_BC = -(reach_in / rod) * flatter
@@ -134,5 +130,5 @@ DEAD_CENTRES = f'''def dead_centres(ec, AB, BC, branch):
     flat_angle = across if away <= crank else -steep_angle
     theta_min_pressure_angle = flat_angle if can_turn else nan  # rad | where it is flattest
     turn_status = 2 if room_turn == 0.0 else (0 if can_turn else 1)  # 1 | of the design
-    return {", ".join((*NAMES, *SENSITIVITIES, *PLACES, "turn_status"))}
+    return {", ".join((*WHOLE, *SENSITIVITIES, *PLACES, TURN_STATUS))}
 '''

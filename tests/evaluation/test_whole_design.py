@@ -1,0 +1,100 @@
+"""Quantities of a whole design: in every call, over the lengths alone, as `events` has them."""
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from desaxe.mechanism.names import LENGTHS, WHOLE
+
+DESIGN = {"ec": 0.02, "AB": 0.04, "BC": 0.064}
+ECS = np.array([-0.02, 0.0, 0.01, 0.024, 0.03, 0.2])
+LONG = {"AB": 0.04, "BC": 0.064}
+NAMES = [*WHOLE, *(f"{name}_wrt_{p}" for name in WHOLE for p in LENGTHS)]
+
+
+def expected(name, found):
+    base, _, p = name.partition("_wrt_")
+    return found["gradient"][base][p] if p else found[name]
+
+
+@pytest.mark.parametrize("branch", [1, -1])
+@pytest.mark.parametrize("omega0", [None, 3.0, -3.0])
+def test_they_are_those_of_events(branch, omega0):
+    one = dx.events(branch=branch, omega0=omega0, **DESIGN)
+    found = dx.evaluate(NAMES, branch=branch, omega0=omega0, **DESIGN)
+    assert dict(found) == {name: expected(name, one) for name in NAMES}
+    many = dx.events(branch=branch, omega0=omega0, ec=ECS, **LONG)
+    arrays = dx.evaluate([*NAMES, "status"], branch=branch, omega0=omega0, ec=ECS, **LONG)
+    for name in NAMES:
+        np.testing.assert_allclose(arrays[name], expected(name, many), rtol=1e-14, err_msg=name)
+    np.testing.assert_array_equal(arrays["status"], many["status"])
+
+
+def test_without_theta_the_status_is_that_of_the_design():
+    assert dx.evaluate(["stroke", "status"], ec=0.03, **LONG)["status"] == 1
+    assert dx.evaluate(["stroke", "status"], theta=0.0, ec=0.03, **LONG)["status"] == 0
+    assert np.isnan(dx.evaluate("stroke", theta=0.0, ec=0.03, **LONG))
+    assert dx.evaluate(["stroke", "status"], ec=[0.0, np.nan], **LONG)["status"].tolist() == [0, 4]
+
+
+def test_they_need_neither_theta_nor_speed_and_have_the_dimensions_of_the_lengths():
+    theta = np.linspace(0.0, 6.0, 5)
+    alone = dx.grid(["stroke", "time_ratio"], ec=ECS, **LONG)
+    assert alone.stroke.dims == alone.status.dims == ("ec",)
+    both = dx.grid(["stroke", "Y"], theta=theta, ec=ECS, AB=[0.03, 0.04], BC=0.064)
+    assert set(both.stroke.dims) == {"ec", "AB"}
+    assert set(both.Y.dims) == set(both.status.dims) == {"theta", "ec", "AB"}
+    lazy = dx.grid(["stroke", "Y"], theta=theta, ec=ECS, AB=[0.03, 0.04], BC=0.064, chunks=2)
+    np.testing.assert_array_equal(lazy.stroke.transpose(*both.stroke.dims), both.stroke)
+
+
+@pytest.mark.parametrize("name", ["stroke", "theta_outer_wrt_AB", "margin"])
+def test_over_theta_they_have_no_peak_and_no_reduction(name):
+    with pytest.raises(ValueError, match=f"{name}"):
+        dx.peak(name, omega0=1.0, **DESIGN)
+    with pytest.raises(ValueError, match=f"{name}"):
+        dx.grid([name], theta=[0.0, 1.0], ec=ECS, reduce={"theta": "max"}, **LONG)
+
+
+def test_a_derivative_by_theta_is_unknown():
+    for name in ("stroke_wrt_theta", "time_ratio_wrt_omega0", "Y_outer_wrt_alpha"):
+        with pytest.raises(ValueError, match="unknown"):
+            dx.evaluate(name, **DESIGN)
+        assert name not in dx.quantities()
+
+
+def test_speeds_of_both_signs_are_refused_where_the_strokes_change_places():
+    with pytest.raises(ValueError, match="sign"):
+        dx.evaluate("return_angle", omega0=np.array([1.0, -1.0]), **DESIGN)
+
+
+def test_what_is_made_of_them_is_of_the_whole_design_too():
+    dx.define("slenderness", "stroke/BC", unit="1")
+    try:
+        assert dx.evaluate("slenderness", **DESIGN) == dx.evaluate("stroke", **DESIGN) / 0.064
+        assert dx.grid(["slenderness"], ec=ECS, **LONG).slenderness.dims == ("ec",)
+        with pytest.raises(ValueError, match="slenderness"):
+            dx.peak("slenderness", omega0=1.0, **DESIGN)
+    finally:
+        dx.undefine("slenderness")
+
+
+def test_enclosures_hold_what_is_in_them():
+    for name in ("stroke", "time_ratio", "theta_outer", "max_pressure_angle"):
+        found = dx.enclose(name, ec=(-0.01, 0.02), AB=(0.03, 0.04), BC=0.08)
+        inside = [
+            dx.evaluate(name, ec=ec, AB=AB, BC=0.08)
+            for ec in np.linspace(-0.01, 0.02, 7)
+            for AB in np.linspace(0.03, 0.04, 5)
+        ]
+        assert found["lower"] <= min(inside) + 1e-15  # these are rounded
+        assert max(inside) - 1e-15 <= found["upper"]
+
+
+@pytest.mark.parametrize("name", ["stroke", "time_ratio", "Y_inner", "max_pressure_angle", "theta_inner"])
+def test_the_equation_has_the_value(name):
+    for each in (name, f"{name}_wrt_AB"):
+        for form in ("textbook", "stable"):
+            expression = dx.equation(each, form).expression
+            values = {s: {**DESIGN, "branch": 1}[s.name] for s in expression.free_symbols}
+            assert float(expression.subs(values)) == pytest.approx(dx.evaluate(each, **DESIGN), rel=1e-9)
