@@ -84,7 +84,7 @@ def quantity(name: str, state: bool = False) -> Quantity:
 
 
 def of_design(name: str) -> bool:
-    """True for what the lengths alone tell of a whole design: the margin, the stroke, what is made of these."""
+    """True for what the lengths alone tell of a design: the margin, the stroke, what is made of these."""
     base = parts(name)[0]
     if base in definitions():
         return all(leaf in LENGTHS or of_design(leaf) for leaf in leaves((base,), definitions()))
