@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 
 import desaxe as dx
+from tests.compiler.languages.tools import STRICT, imported, octave, run, tool
 
 TITLES = {
     "ends of strings and comments": '"; alert(1) // */ \'\'\' """ ` \\ %} ]]> -- #endif ?>',
+    "comments": "/* a /*/ b */* c \\* d *\\ e",
     "markup": "</script><script>alert(1)</script><img src=x onerror=alert(1)>&lt;",
     "lines": "a\nsystem('touch pwned')\n#include \"/etc/passwd\"\rimport os\u2028alert(1)\u2029x",
     "formulas": "=cmd|' /C calc'!A0",
@@ -29,7 +31,7 @@ def scene_of(title, **more):
     return dx.scene(
         {
             "title": title,
-            "outputs": ["a_C"],
+            "outputs": ["a_C", "zz"],
             "mechanism": {"ec": [0.0, 0.01], "AB": 0.125, "BC": 0.35},
             "motion": {"omega0": 157.08, "theta": {"start": 0, "stop": 6.0, "num": 5}},
             "quantities": {"zz": {"expression": "2*a_C", "unit": "m/s^2", "meaning": "twice"}},
@@ -81,10 +83,23 @@ def test_source_in_every_language(title, plain, tmp_path):
             assert comments_alone(text, pattern) == comments_alone(other, pattern), path
     assert {path.name for path in tmp_path.iterdir()} == {"hostile"}
     if shutil.which("gcc"):
-        subprocess.run(["gcc", "-fsyntax-only", *map(str, tmp_path.glob("hostile/k_c/*.c"))], check=True)
+        source = str(tmp_path / "hostile" / "k_c" / "k_c.c")
+        subprocess.run(["gcc", *STRICT, "-fsyntax-only", source], check=True)
     if shutil.which("node"):
         (script,) = tmp_path.glob("hostile/k_js/*.js")
         subprocess.run(["node", "--check", str(script)], check=True)
+
+
+def test_the_meaning_of_a_quantity_stays_in_its_comment(tmp_path):
+    meaning = "work /* per // turn # ' ` % {"
+    own = {"turned": {"expression": "a_C * sin(phi)", "meaning": meaning}}
+    for language, name in LANGUAGES.items():
+        dx.compile(scene_of("x", outputs=["turned"], quantities=own), tmp_path / name, to=language)
+    run(tool("gcc"), *STRICT, "-fsyntax-only", tmp_path / "k_c" / "k_c.c")
+    run(tool("node"), "--check", tmp_path / "k_js" / "k_js.js")
+    (x,) = octave(tmp_path / "k_octave" / "k_octave.m", [np.array([1.0]), np.array([0.01])], 1)
+    assert x[0] == pytest.approx(imported(tmp_path / "k.py").point(1.0, 0.01)[0], rel=1e-13)
+    dx.undefine("turned")
 
 
 def without_docstrings(text):

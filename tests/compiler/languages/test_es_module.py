@@ -1,9 +1,12 @@
 """The module around the emitted JavaScript, whose operations `test_emit_javascript` holds."""
 
+import re
+
 from desaxe.compiler.languages.es_module import JavaScript
+from desaxe.compiler.program import Line, Program
 from tests.compiler.coverage_set import NAMES, POINTS, coverage
 from tests.compiler.languages.modules import module, wrong_names
-from tests.compiler.languages.tools import es_module
+from tests.compiler.languages.tools import es_module, node, run
 
 
 def test_the_coverage_set_against_exact(tmp_path):
@@ -15,3 +18,27 @@ def test_the_coverage_set_against_exact(tmp_path):
     for place, (point, answers) in enumerate(zip(POINTS, ones, strict=True)):
         assert not wrong_names(answers, point), point
         assert answers == {name: together[name][place] for name in NAMES}
+
+
+GIVEN = ['"1"', "true", "null", "[1]", "{}", "new String('1')", "1n", "Symbol('x')"]
+REFUSED = """
+import {{ evaluate, twice }} from "./made.mjs";
+const said = (call) => {{ try {{ return String(call()); }} catch (error) {{ return String(error); }} }};
+for (const given of [{given}]) {{
+  console.log(said(() => twice(given)));
+  console.log(said(() => evaluate({{ x: Array.isArray(given) ? [given] : given }})));
+  console.log(said(() => evaluate({{ x: [1, given] }})));
+}}
+console.log(said(() => evaluate({{ x: new Int8Array([4]) }}).twice[0] + evaluate({{ x: [] }}).twice.length));
+"""
+
+
+def test_what_is_no_number_is_refused_by_name(tmp_path):
+    """JavaScript reads text, null and arrays of one number as numbers where it multiplies."""
+    program = Program(("x",), (Line("twice", "mul", ("x", 2.0)),), ("twice",), {})
+    (tmp_path / "made.mjs").write_text(JavaScript().files(module(program))["made.js"], encoding="utf-8")
+    (tmp_path / "main.mjs").write_text(REFUSED.format(given=", ".join(GIVEN)), encoding="utf-8")
+    *refused, taken = run(node(), "main.mjs", cwd=tmp_path).splitlines()
+    assert len(refused) == 3 * len(GIVEN)
+    assert all(re.fullmatch(r"TypeError: x = .*: expected numbers in SI units", line) for line in refused)
+    assert taken == "8"

@@ -1,12 +1,13 @@
 """The octave column: each operation, each way to nest two, over arrays that broadcast."""
 
 import numpy as np
+import pytest
 
 from desaxe.compiler.languages.octave import Octave
 from desaxe.compiler.program import Line, Program
 from tests.compiler.coverage_set import NAMES, POINTS, coverage
 from tests.compiler.languages.modules import module, wrong_names
-from tests.compiler.languages.tools import octave
+from tests.compiler.languages.tools import octave, run, tool
 
 
 def made(program, folder):
@@ -29,3 +30,11 @@ def test_zeros_have_a_sign_and_nothing_is_complex(tmp_path):
     signed, rooted = octave(made(program, tmp_path), columns, 2)
     np.testing.assert_array_equal(signed[[0, 1, 2, 4]], [2.0, -2.0, -2.0, 2.0])
     np.testing.assert_array_equal(rooted, [0.0, 0.0, np.nan, np.nan, 2.0])
+
+
+@pytest.mark.parametrize("given", ["'a'", '"1"', "{1}", "1i", "struct()"])
+def test_what_is_no_number_is_refused_by_name(given, tmp_path):
+    file = made(Program(("x",), (Line("twice", "add", ("x", "x")),), ("twice",), {}), tmp_path)
+    code = f'try; made({given}); catch error; printf("%s", error.message); end; made(int8(4)); made(true);'
+    said = run(tool("octave-cli"), "--norc", "--quiet", "--eval", code, cwd=file.parent)
+    assert said.startswith("x: expected real numbers in SI units")

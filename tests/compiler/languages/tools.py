@@ -115,13 +115,18 @@ console.log(JSON.stringify(calls.map(([name, ...given]) => plain(module[name](..
 """
 
 
+def node():
+    """The path of a JavaScript engine, which playwright brings."""
+    return compute_driver_executable()[0]
+
+
 def es_module(file, calls):
     """The answers of a module's functions, each called as (name, *arguments), by node."""
     folder = file.parent
     (folder / f"{file.stem}.mjs").write_text(file.read_text(encoding="utf-8"), encoding="utf-8")
     (folder / "calls.json").write_text(json.dumps(calls), encoding="utf-8")
     (folder / "main.mjs").write_text(NODE.format(name=file.stem), encoding="utf-8")
-    found = json.loads(run(compute_driver_executable()[0], "main.mjs", cwd=folder))
+    found = json.loads(run(node(), "main.mjs", cwd=folder))
     return [_numbers(each) for each in found]
 
 

@@ -52,6 +52,40 @@ def test_the_promise_is_kept(build, sources):
     np.testing.assert_array_equal(np.array(ones).T, found)
 
 
+def test_the_header_says_which_results_have_values(tmp_path):
+    """Friction and a bad force leave the motion alone, a stall the position; `evaluate` is the same."""
+    names, given = ["Y", "V_C", "T_in"], {"theta": 0.6, "omega0": 10.0, "alpha": 1.0, "F_Y": 5.0, "mu": 0.1}
+    lengths = {"ec": 0.1, "AB": 0.2, "BC": 0.35}
+    content = {
+        "outputs": names,
+        "mechanism": lengths,
+        "masses": {"m_slider": 1.0},
+        "motion": {"theta": [0, 1], "omega0": [1, 2], "alpha": [0, 1]},
+        "loads": {"F_Y": [0, 1], "mu": [0, 1]},
+    }
+    place = dx.compile(content, tmp_path / "press", to="c") / "press.c"
+    said = " ".join((tmp_path / "press" / "press.h").read_text().replace(" * ", " ").split())
+    assert "A result that has no value is NaN, and the status says why; a result that does not depend" in said
+    assert "4 bad input, 5 friction jams: no balance of forces, 6 friction: two balances of forces" in said
+    loaded, seen = library(place), {}
+    rng = np.random.default_rng(5)
+    for mu, theta, kind in zip(
+        rng.uniform(0, 6, 300), rng.uniform(0, 6, 300), rng.integers(0, 4, 300), strict=True
+    ):
+        bad = [{"F_Y": math.inf}, {"alpha": -1e3}, {}, {}][kind]
+        row = {**given, "theta": theta, "mu": mu, **bad}
+        columns = {name: [value, given[name]] for name, value in row.items()}
+        found = dx.evaluate([*names, "status"], **columns, **lengths, m_slider=1.0)
+        order = ("theta", "omega0", "alpha", "F_Y", "mu")
+        status, values = point_values(loaded, "press", [row[name] for name in order], 3)
+        assert status == found["status"][0]
+        np.testing.assert_allclose(values, [found[name][0] for name in names], rtol=1e-12)
+        seen.setdefault(status, set()).add(tuple(np.isfinite(values).tolist()))
+    assert seen.pop(0) == {(True, True, True)}
+    assert seen.pop(3) == {(True, False, False)}
+    assert seen == {status: {(True, True, False)} for status in (4, 5, 6)}
+
+
 def test_status(sources):
     _, files = sources
     loaded, bare = library(files[True]), library(files[False], libm=False)

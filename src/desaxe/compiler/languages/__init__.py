@@ -1,7 +1,8 @@
 """Languages: each writes the same Module in its own way, behind one Protocol.
 
 protocol    what is written (`Module`), and what a language must have (`Language`)
-shared      assignments as statements, names that a language keeps for itself, comments
+shared      assignments as statements, comments
+words       names that a language, or what it writes, keeps for itself
 c/          C99: a header and a source, no allocation, no global state
 jax         Python over jax.numpy, with derivatives by name
 octave      one vectorised function for GNU Octave and MATLAB

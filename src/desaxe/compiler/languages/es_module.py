@@ -3,27 +3,27 @@
 from ..text import with_short_temporaries
 from .javascript import HEADER, emit_javascript
 from .protocol import Module, Symbol
-from .shared import one_line, refuse_taken, with_safe_names
+from .shared import one_line, safe_name, with_safe_names
+from .words import words_of
 
-KEYWORDS = frozenset(
-    (
-        "arguments", "await", "break", "case", "catch", "class", "const", "continue", "debugger", "default",
-        "delete", "do", "else", "enum", "eval", "export", "extends", "false", "finally", "for", "function",
-        "if", "implements", "import", "in", "instanceof", "interface", "let", "new", "null", "package",
-        "private", "protected", "public", "return", "static", "super", "switch", "this", "throw", "true",
-        "try", "typeof", "undefined", "var", "void", "while", "with", "yield", "values", "INPUTS", "OUTPUTS",
-        "UNITS",
-    )
-)  # fmt: skip
-EXPORTS = ("evaluate", "INPUTS", "OUTPUTS", "UNITS")
+WORDS = words_of("javascript").lines
 EVALUATE = """\
+/** A number as it is; text, which would be read as one, and anything else is refused. */
+function number(name, value) {
+  if (typeof value === "number") return value;
+  const shown = typeof value === "string" ? JSON.stringify(value) : String(value);
+  throw new TypeError(`${name} = ${shown}: expected numbers in SI units`);
+}
+
 /** All outputs by name; numbers, or arrays of one length (a number goes with every element). */
 export function evaluate(inputs) {
+  const isArray = (value) => Array.isArray(value) || (ArrayBuffer.isView(value) && "length" in value);
   for (const name of INPUTS) {
     if (inputs[name] === undefined) throw new TypeError(`${name} is missing (needed: ${INPUTS})`);
+    if (!isArray(inputs[name])) number(name, inputs[name]);
   }
   const given = INPUTS.map((name) => inputs[name]);
-  const lengths = given.filter((value) => typeof value !== "number").map((value) => value.length);
+  const lengths = given.filter(isArray).map((value) => value.length);
   if (!lengths.length) {
     const found = values(...given);
     return Object.fromEntries(OUTPUTS.map((name, place) => [name, found[place]]));
@@ -31,7 +31,8 @@ export function evaluate(inputs) {
   if (lengths.some((length) => length !== lengths[0])) throw new RangeError("arrays must have one length");
   const arrays = OUTPUTS.map(() => new Float64Array(lengths[0]));
   for (let k = 0; k < lengths[0]; k++) {
-    values(...given.map((value) => (typeof value === "number" ? value : value[k]))).forEach((one, place) => {
+    const point = given.map((value, place) => (isArray(value) ? number(INPUTS[place], value[k]) : value));
+    values(...point).forEach((one, place) => {
       arrays[place][k] = one;
     });
   }
@@ -56,16 +57,16 @@ class JavaScript:
 
 def _source(module: Module) -> str:
     program = module.forms.stable
-    inputs = [_safe(symbol.name) for symbol in module.inputs]
+    inputs = [safe_name(symbol.name, WORDS) for symbol in module.inputs]
+    checked = [f'number("{symbol.name}", {own})' for symbol, own in zip(module.inputs, inputs, strict=True)]
     program = program._replace(inputs=tuple(symbol.name for symbol in module.inputs))
     # An output may be an input, or stand twice: it is returned as it is called here.
-    program = with_safe_names(with_short_temporaries(program), KEYWORDS)
+    program = with_safe_names(with_short_temporaries(program), WORDS)
     program = program._replace(outputs=program.outputs[: len(module.outputs)])
     units = ", ".join(f'{s.name}: "{s.unit}"' for s in _once((*module.inputs, *module.outputs)))
-    refuse_taken((symbol.name for symbol in module.outputs), EXPORTS)
     functions = [
-        f"/** {_about(symbol)} */\nfunction output_{place}({', '.join(inputs)}) {{\n"
-        f"  return values({', '.join(inputs)})[{place}];\n}}\n"
+        f"/** {_about(symbol)} */\nexport function {symbol.name}({', '.join(inputs)}) {{\n"
+        f"  return values({', '.join(checked)})[{place}];\n}}\n"
         for place, symbol in enumerate(module.outputs)
     ]
     return "\n".join(
@@ -78,17 +79,16 @@ def _source(module: Module) -> str:
             "",
             emit_javascript(program, "values"),
             *functions,
-            _exports(module),
             EVALUATE,
         ]
     )
 
 
 def _types(module: Module) -> str:
-    given = ", ".join(f"{_safe(symbol.name)}: number" for symbol in module.inputs)
+    given = ", ".join(f"{safe_name(symbol.name, WORDS)}: number" for symbol in module.inputs)
     functions = [
-        f"/** {_about(symbol)} */\ndeclare function output_{place}({given}): number;"
-        for place, symbol in enumerate(module.outputs)
+        f"/** {_about(symbol)} */\nexport function {symbol.name}({given}): number;"
+        for symbol in module.outputs
     ]
     return "\n".join(
         [
@@ -108,22 +108,12 @@ def _types(module: Module) -> str:
             "export const UNITS: Readonly<Record<string, string>>;",
             "",
             *functions,
-            _exports(module),
+            "",
             "export function evaluate(inputs: Inputs<number>): Outputs<number>;",
             "export function evaluate(inputs: Inputs): Outputs<Float64Array>;",
             "",
         ]
     )
-
-
-def _exports(module: Module) -> str:
-    """The outputs under their names, which inside of the module hide nothing: Math, Infinity, a keyword."""
-    names = ", ".join(f"output_{place} as {symbol.name}" for place, symbol in enumerate(module.outputs))
-    return f"export {{ {names} }};\n"
-
-
-def _safe(name: str) -> str:
-    return f"{name}_" if name in KEYWORDS else name
 
 
 def _once(symbols: tuple[Symbol, ...]) -> list[Symbol]:

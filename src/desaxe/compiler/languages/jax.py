@@ -5,23 +5,14 @@ each function has a rule for its tangent, made of the functions of the derivativ
 theirs: `grad`, `jacfwd`, `hessian`, `vmap` and `jit` see exact derivatives in the stable form.
 """
 
-import keyword
 import re
 
 from ..operations import HELPERS as SHARED
 from ..program import Program
 from ..text import INDENT, with_short_temporaries
 from .protocol import Module, Symbol
-from .shared import (
-    called,
-    one_line,
-    refuse_taken,
-    statements,
-    taken_in_python,
-    types_of,
-    with_helpers,
-    with_safe_names,
-)
+from .shared import called, one_line, statements, types_of, with_helpers, with_safe_names
+from .words import words_of
 
 NUMPY = (
     "copysign",
@@ -117,7 +108,7 @@ def floats(*inputs):
     return [array.astype(kind) for array in arrays]
 '''
 EVALUATE = '''def evaluate(*, {inputs}):
-    """All OUTPUTS, by name. A point that has no value is NaN."""
+    """All OUTPUTS, by name. What has no value is NaN."""
     inputs = floats({inputs})
     return {{name: FUNCTIONS[name](*inputs) for name in OUTPUTS}}
 '''
@@ -145,11 +136,9 @@ def _text(module: Module) -> str:
     body = "\n\n".join([RULES, *functions, _tables(module), *public, evaluate])
     helpers = with_helpers("\n".join(functions), HELPERS)
     code = "\n\n".join([*helpers, body])
-    found = "\n".join([_docstring(module), "", *_imports(code), "", "", code.rstrip("\n"), ""]).replace(
+    return "\n".join([_docstring(module), "", *_imports(code), "", "", code.rstrip("\n"), ""]).replace(
         "\n\n\n\n", "\n\n\n"
     )
-    refuse_taken((symbol.name for symbol in module.outputs), taken_in_python(found))
-    return found
 
 
 def _docstring(module: Module) -> str:
@@ -160,6 +149,7 @@ def _docstring(module: Module) -> str:
     ]
     lines = [
         *module.head,
+        "",
         'It needs jax, and nothing of desaxe. Float64 wants jax.config.update("jax_enable_x64", True);',
         "float32 arrays are computed in float32.",
         "",
@@ -193,7 +183,7 @@ def _words(code: str) -> set[str]:
 
 def _function(name: str, program: Program, inputs: list[str]) -> str:
     """`_name(*inputs)`: the values, without derivatives."""
-    program = with_safe_names(with_short_temporaries(program), {*keyword.kwlist, *NUMPY, *OWN, *RENAMED})
+    program = with_safe_names(with_short_temporaries(program), words_of("jax").lines)
     whole = types_of(program).get(program.outputs[0]) == "i64"
     rows = [
         f"{line} = {right}" + (f"  # {note}" if note else "")

@@ -7,18 +7,20 @@ become complex: the root of a negative number is NaN.
 from ..program import Program
 from ..text import with_short_temporaries
 from .protocol import Module
-from .shared import one_line, statements, with_helpers, with_safe_names
+from .shared import one_line, safe_name, statements, with_helpers, with_safe_names
+from .words import words_of
 
 WORDS = {"nan": "NaN", "inf": "Inf", "True": "true", "False": "false"}
-KEYWORDS = frozenset(
-    (
-        "break", "case", "catch", "classdef", "continue", "do", "else", "elseif", "end", "for", "function",
-        "global", "if", "otherwise", "parfor", "persistent", "return", "spmd", "switch", "try", "until",
-        "unwind_protect", "while", "select", "root", "logarithm", "power_of", "shape", "true",
-        "false", "abs", "ones", "size", "double",
-    )
-)  # fmt: skip
+RESERVED = words_of("octave").lines
 HELPERS = {
+    "numbers": """function x = numbers(name, x)
+  % The numbers of an input in doubles; text, which would be read as its codes, is refused.
+  if ~(isnumeric(x) || islogical(x)) || ~isreal(x)
+    error('%s: expected real numbers in SI units', name);
+  end
+  x = double(x);
+end
+""",
     "select": """function x = select(c, a, b)
   % a where c holds, else b.
   whole = ones(size(c)) .* ones(size(a)) .* ones(size(b));
@@ -124,7 +126,7 @@ class Octave:
 
 
 def _text(module: Module) -> str:
-    inputs = [_safe(symbol.name) for symbol in module.inputs]
+    inputs = [safe_name(symbol.name, RESERVED) for symbol in module.inputs]
     program = with_short_temporaries(module.forms.stable)
     program = program._replace(outputs=program.outputs[: len(module.outputs)])
     outputs = [symbol.name for symbol in module.outputs]
@@ -135,10 +137,6 @@ def _text(module: Module) -> str:
     ]
     main = "\n".join([head, *body, "end", ""])
     return "\n".join([main, *with_helpers(main, HELPERS)])
-
-
-def _safe(name: str) -> str:
-    return f"{name}_" if name in KEYWORDS else name
 
 
 def _help(module: Module) -> list[str]:
@@ -162,11 +160,11 @@ def _same_shape(inputs: list[str]) -> list[str]:
     if not inputs:
         return ["shape = 1;"]
     shape = " .* ".join(f"ones(size({name}))" for name in inputs)
-    return [f"shape = {shape};", *(f"{name} = double({name}) .* shape;" for name in inputs)]
+    return [f"shape = {shape};", *(f"{name} = numbers('{name}', {name}) .* shape;" for name in inputs)]
 
 
 def _body(program: Program) -> list[str]:
-    program = with_safe_names(program, KEYWORDS)
+    program = with_safe_names(program, RESERVED)
     return [
         f"{name} = {right};" + (f"  % {note}" if note else "")
         for name, right, note in statements(program, "octave", WORDS)
@@ -175,6 +173,6 @@ def _body(program: Program) -> list[str]:
 
 def _results(program: Program, outputs: list[str]) -> list[str]:
     return [
-        f"out_{name} = double({_safe(own)}) .* shape;"
+        f"out_{name} = double({safe_name(own, RESERVED)}) .* shape;"
         for name, own in zip(outputs, program.outputs, strict=True)
     ]

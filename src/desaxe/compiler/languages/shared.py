@@ -21,10 +21,15 @@ def statements(program: Program, column: str, words: Mapping[str, str]) -> list[
     return found
 
 
+def safe_name(name: str, reserved: Collection[str]) -> str:
+    """A name with an underscore if the language keeps it for itself."""
+    return f"{name}_" if name in reserved else name
+
+
 def with_safe_names(program: Program, reserved: Collection[str]) -> Program:
     """The program with an underscore after each name that the language keeps for itself."""
     names = [*program.inputs, *(line.name for line in program.lines)]
-    safe = {name: f"{name}_" for name in names if name in reserved}
+    safe = {name: safe_name(name, reserved) for name in names if name in reserved}
     if not safe:
         return program
     program = renamed(program, safe)
@@ -36,16 +41,17 @@ def with_safe_names(program: Program, reserved: Collection[str]) -> Program:
 
 
 def refuse_taken(outputs: Iterable[str], taken: Collection[str]) -> None:
-    """ValueError for an output that would hide what else a module calls so."""
-    for name in outputs:
-        if name in taken:
-            raise ValueError(
-                f"outputs: {name!r} is a name of the module itself; give the quantity another name"
-            )
+    """ValueError for outputs that are words of a language, or would hide what else a module calls so."""
+    found = ", ".join(repr(name) for name in outputs if name in taken)
+    if found:
+        raise ValueError(
+            f"outputs: {found}: a word of the module's language, or a name that the module itself has; "
+            "give the quantity another name"
+        )
 
 
 def taken_in_python(text: str) -> set[str]:
-    """What a Python module imports, assigns or defines twice, and the built-in functions that it uses."""
+    """The names that a Python module imports, assigns or defines twice, and the built-in ones in use."""
     tree = ast.parse(text)
     nodes = [*ast.walk(tree)]
     used = {node.id for node in nodes if isinstance(node, ast.Name)} & set(dir(builtins))
@@ -81,5 +87,6 @@ def with_helpers(text: str, helpers: Mapping[str, str]) -> list[str]:
 
 def one_line(text: str) -> str:
     """A text that can stand in a comment of any language."""
-    plain = " ".join(text.split()).replace("\\", "/").replace("*/", "* /").replace("??", "? ?")
+    plain = " ".join(text.split()).replace("\\", "/").replace("??", "? ?")
+    plain = plain.replace("/*", "/ *").replace("*/", "* /")
     return plain.replace('"""', "'''")

@@ -4,7 +4,7 @@ import ast
 import hashlib
 import keyword
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from os import PathLike
 from pathlib import Path
 from textwrap import wrap
@@ -16,6 +16,7 @@ from ...compiler.languages import language_of
 from ...compiler.languages.numba.module import emit_numba
 from ...compiler.languages.numba.reductions import emit_reduced
 from ...compiler.languages.shared import refuse_taken, taken_in_python
+from ...compiler.languages.words import words_of
 from ...compiler.operations import HELPERS, NUMBA_HELPERS
 from ...compiler.passes.double_double import double_double
 from ...compiler.passes.guard import guard_inputs
@@ -51,7 +52,7 @@ from .first_call import COMPILED, LAZY, LAZY_REDUCED
 from .loaded import calls_text, renames, require_tables, table_text
 from .merge import import_lines, merged, renamed
 from .peaks import left_out_of_module, peak_texts
-from .portable import Order, left_out, module_of, require_outputs
+from .portable import WITHOUT_VALUE, Order, left_out, module_of, require_outputs
 from .scalars import scalars_source
 
 WIDTH = 96
@@ -115,6 +116,7 @@ def texts_of(scene: Scene, place: Path, to: str = "numba", libm: bool = True) ->
     """The files of a scene in a language, with their texts; nothing is written."""
     if to == "numba":
         _require_importable(place)
+        refuse_taken(scene.content.outputs, words_of(to).outputs)
         return {place: module_text(scene, place.name)}
     language = language_of(to)
     if not libm and not language.own_functions:
@@ -125,7 +127,8 @@ def texts_of(scene: Scene, place: Path, to: str = "numba", libm: bool = True) ->
         )
     is_file = place.suffix == language.suffix
     name = place.stem if is_file else place.name
-    require_name(name, place)
+    require_name(name, place, words_of(to).modules)
+    refuse_taken(scene.content.outputs, words_of(to).outputs)
     folder = place.parent if is_file else place
     source = Path(scene.name).name
     said = f"desaxe compile {source} --to {to} -o {place.name}" + " --no-libm" * (not libm)
@@ -147,21 +150,25 @@ def differing(texts: Mapping[Path, str]) -> list[Path]:
     return [f for f, text in texts.items() if not f.is_file() or f.read_bytes() != text.encode()]
 
 
-def require_name(name: str, place: Path) -> None:
-    """ValueError for a module name that is not valid in every language."""
-    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or keyword.iskeyword(name):
+def require_name(name: str, place: Path, words: Container[str]) -> None:
+    """ValueError for a module name that is not valid in every language, or a word of this one."""
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or _is_word(name, words):
         word = re.sub(r"\W", "_", name, flags=re.ASCII)
-        good = word if re.match(r"[A-Za-z]", word) and not keyword.iskeyword(word) else f"press_{word}"
+        good = word if re.match(r"[A-Za-z]", word) and not _is_word(word, words) else f"press_{word}"
         raise ValueError(f"{place}: {name!r} cannot be the name of a module, but {good!r}, for example")
 
 
 def _require_importable(place: Path) -> None:
     """ValueError for a file name that Python cannot import."""
-    name = place.stem
-    if place.suffix != ".py" or not name.isidentifier() or keyword.iskeyword(name):
+    name, words = place.stem, words_of("numba").modules
+    if place.suffix != ".py" or not name.isidentifier() or _is_word(name, words):
         word = re.sub(r"\W", "_", name)
-        good = word if word.isidentifier() and not keyword.iskeyword(word) else f"kernels_{word}"
+        good = word if word.isidentifier() and not _is_word(word, words) else f"kernels_{word}"
         raise ValueError(f"{place}: Python cannot import a module of this name, but {good}.py, for example")
+
+
+def _is_word(name: str, words: Container[str]) -> bool:
+    return keyword.iskeyword(name) or name in words
 
 
 def module_text(scene: Scene, name: str = "my_kernels.py") -> str:
@@ -387,6 +394,8 @@ def _docstring(
         "",
         f"Accuracy {key.accuracy}; SI units and radians. Y points along the slider axis towards the slider,",
         "theta turns from +Y towards +X.",
+        "",
+        *WITHOUT_VALUE,
         "",
     ]
     lost = lost_of(scene.content, "numba")

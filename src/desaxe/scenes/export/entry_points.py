@@ -105,8 +105,8 @@ def evaluate_function(
     told = [
         *described(inputs, state),
         "",
-        "Numbers or arrays that broadcast together; a dict of floats or arrays comes back. A point that "
-        "has no value is NaN" + (", and `status` tells why." if "status" in shown else "."),
+        "Numbers or arrays that broadcast together; a dict of floats or arrays comes back. What has "
+        "no value is NaN" + (", and `status` tells why." if "status" in shown else "."),
         "`threads`: how many share the work, all cores without; the answer is the same.",
     ]
     if not whole:

@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Iterable, Mapping
+from textwrap import wrap
 from typing import Any, NamedTuple
 
 from ...compiler.languages.protocol import Forms, Module, Symbol
@@ -13,6 +14,7 @@ from ...mechanism.constants import constants, double_constants
 from ...mechanism.inputs import INPUTS, LEAST
 from ...mechanism.names import LENGTHS, ORDER, STATUSES, sensitivity
 from ...mechanism.program import digest
+from ...mechanism.status import PointStatus
 from ...runtime.request import Request, request
 from ...runtime.specialise import plain_form, specialise
 from ...support.version import version
@@ -22,6 +24,15 @@ from ..schema import SceneError
 from .solvers import solvers
 
 Fixed = tuple[tuple[str, float], ...]
+
+
+# In the head of every module: what a status means, and which results it leaves alone.
+_REASONS = ", ".join(f"{one.value} {one.words}" for one in PointStatus)
+WITHOUT_VALUE = (
+    "A result that has no value is NaN, and the status says why; a result that does not depend on it keeps",
+    "its value: positions where the motion stalls, the motion where forces are bad or have no balance.",
+    *wrap(f"Status: {_REASONS}.", 96),
+)
 
 
 class Order(NamedTuple):
@@ -103,7 +114,7 @@ def _facts(
     lines += [f"Folded in: {', '.join(numbers)}."] if numbers else []
     lost = left_out(content)
     lines += [f"Not in here (`desaxe run` has it): {', '.join(lost)}."] if lost else []
-    return ("", *lines)
+    return ("", *lines, "", *WITHOUT_VALUE)
 
 
 def _reach(asked: Request) -> float:

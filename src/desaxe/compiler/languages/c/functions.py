@@ -9,17 +9,11 @@ from typing import NamedTuple
 
 from ...program import Program, renamed
 from ...text import with_short_temporaries
-from ..shared import statements, types_of, with_safe_names
+from ..shared import one_line, safe_name, statements, types_of, with_safe_names
+from ..words import words_of
 
 WORDS = {"nan": "NAN", "inf": "INFINITY", "True": "1", "False": "0"}
-KEYWORDS = frozenset(
-    (
-        "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum",
-        "extern", "float", "for", "goto", "if", "inline", "int", "long", "register", "restrict", "return",
-        "short", "signed", "sizeof", "static", "struct", "switch", "typedef", "union", "unsigned", "void",
-        "volatile", "while", "out", "NAN", "INFINITY",
-    )
-)  # fmt: skip
+RESERVED = words_of("c").lines
 
 
 class Lifted(NamedTuple):
@@ -66,8 +60,8 @@ def static_function(
 
     Without a status nothing is returned.
     """
-    program = with_safe_names(program, KEYWORDS)
-    arguments = [_safe(argument) for argument in arguments]
+    program = with_safe_names(program, RESERVED)
+    arguments = [safe_name(argument, RESERVED) for argument in arguments]
     filled = program.outputs[:results]
     parameters = ", ".join([*(f"double {a}" for a in arguments), *(["double out[]"] * bool(filled))])
     used = {a for line in program.lines for a in line.args if isinstance(a, str)} | set(program.outputs)
@@ -80,15 +74,11 @@ def static_function(
     return "\n".join([*opening, head, *(f"  {line}" for line in lines), "}"]) + "\n"
 
 
-def _safe(name: str) -> str:
-    return f"{name}_" if name in KEYWORDS else name
-
-
 def _body(program: Program) -> list[str]:
     program = with_short_temporaries(program)
     types = types_of(program)
     rows = []
     for name, right, note in statements(program, "c", WORDS):
         kind = "double" if types.get(name, "f64") == "f64" else "int"
-        rows.append(f"const {kind} {name} = {right};" + (f" /* {note} */" if note else ""))
+        rows.append(f"const {kind} {name} = {right};" + (f" /* {one_line(note)} */" if note else ""))
     return rows

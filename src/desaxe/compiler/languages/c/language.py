@@ -39,10 +39,6 @@ def _header(module: Module) -> str:
     listed = [
         *_table("in", module.inputs),
         *_table("out", module.outputs),
-        "",
-        "  A status is 0 where there are values, else results are NaN:",
-        "  1 cannot be assembled here, 2 change point, 3 stalled, 4 bad input, 5 friction jams,",
-        "  6 friction: two balances of forces.",
     ]
     functions = [
         "/* One point; returns its status. */",

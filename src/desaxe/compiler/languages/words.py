@@ -1,0 +1,110 @@
+"""Words that no name in a written file can be, a table for each language: its own, and those in use.
+
+Where a language has a function for each output, one of such a name would take the place of what the file
+calls; a file of such a name, that of a module, header or function that it needs. Both are refused by name.
+"""
+
+import keyword
+import sys
+from typing import NamedTuple
+
+
+class Words(NamedTuple):
+    """What a line of a program is not called (it gets an underscore), nor an output, nor a module."""
+
+    lines: frozenset[str] = frozenset()
+    outputs: frozenset[str] = frozenset()
+    modules: frozenset[str] = frozenset()
+
+
+def words_of(language: str) -> Words:
+    """The table of a language."""
+    return _TABLES[language]
+
+
+_C = Words(
+    lines=frozenset((
+        "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum",
+        "extern", "float", "for", "goto", "if", "inline", "int", "long", "register", "restrict", "return",
+        "short", "signed", "sizeof", "static", "struct", "switch", "typedef", "union", "unsigned", "void",
+        "volatile", "while", "out", "NAN", "INFINITY",
+    )),
+    # Headers of the standard library, in whose way `name.h` may stand. Outputs are only texts and comments.
+    modules=frozenset((
+        "assert", "complex", "ctype", "errno", "fenv", "float", "inttypes", "iso646", "limits", "locale",
+        "math", "setjmp", "signal", "stdarg", "stdbool", "stddef", "stdint", "stdio", "stdlib", "string",
+        "tgmath", "time", "wchar", "wctype",
+    )),
+)  # fmt: skip
+
+_JAVASCRIPT = frozenset((
+    # reserved, in modules too
+    "arguments", "await", "break", "case", "catch", "class", "const", "continue", "debugger", "default",
+    "delete", "do", "else", "enum", "eval", "export", "extends", "false", "finally", "for", "function",
+    "if", "implements", "import", "in", "instanceof", "interface", "let", "new", "null", "package",
+    "private", "protected", "public", "return", "static", "super", "switch", "this", "throw", "true", "try",
+    "typeof", "var", "void", "while", "with", "yield",
+    "then",  # import() takes a module that exports it for a promise
+    # used
+    "Array", "ArrayBuffer", "Float64Array", "Infinity", "Math", "NaN", "Object", "RangeError", "TypeError",
+    "undefined",
+    # defined
+    "False", "INPUTS", "OUTPUTS", "True", "UNITS", "evaluate", "inf", "nan", "number", "values",
+))  # fmt: skip
+
+_OCTAVE = frozenset((
+    # reserved, here and in MATLAB
+    "arguments", "break", "case", "catch", "classdef", "continue", "do", "else", "elseif", "end",
+    "end_try_catch", "end_unwind_protect", "endarguments", "endclassdef", "endenumeration", "endevents",
+    "endfor", "endfunction", "endif", "endmethods", "endparfor", "endproperties", "endspmd", "endswitch",
+    "endwhile", "enumeration", "events", "for", "function", "global", "if", "methods", "otherwise", "parfor",
+    "persistent", "properties", "return", "spmd", "switch", "try", "until", "unwind_protect",
+    "unwind_protect_cleanup", "while",
+    # called
+    "Inf", "NaN", "abs", "atan2", "cos", "double", "error", "exp", "false", "fix", "floor", "hypot",
+    "islogical", "isnumeric", "isreal", "log", "mod", "ones", "sin", "size", "sqrt", "true",
+    # defined
+    "copysign", "extended_only", "logarithm", "mul_add", "numbers", "power_of", "root", "rotated_cos",
+    "rotated_sin", "rounding", "select", "shape", "two_product_error", "two_sum_error",
+))  # fmt: skip
+
+_JAX = frozenset((
+    *keyword.kwlist,
+    # built in
+    "NotImplementedError", "enumerate", "float", "isinstance",
+    # imported
+    "SymbolicZero", "asarray", "atan2", "copysign", "cos", "custom_jvp", "exp", "fabs", "finfo", "float32",
+    "floating", "floor", "hypot", "inf", "int8", "issubdtype", "log", "logical_and", "logical_not",
+    "logical_or", "nan", "pow", "result_type", "sin", "sqrt", "stop_gradient", "where", "zeros_like",
+    # defined
+    "DERIVATIVES", "FUNCTIONS", "INPUTS", "NEEDS", "OUTPUTS", "UNITS", "evaluate", "floats",
+    "with_derivatives",
+))  # fmt: skip
+
+# What else a module defines for itself depends on the scene: its text is looked at.
+_NUMBA = frozenset((
+    *keyword.kwlist,
+    # built in
+    "ImportError", "OverflowError", "RuntimeError", "TypeError", "ValueError", "abs", "dict", "enumerate",
+    "float", "int", "len", "list", "max", "min", "range", "set", "str", "sum", "tuple", "type", "zip",
+    # imported
+    "Lock", "ThreadPoolExecutor", "append", "arange", "array", "asarray", "ascontiguousarray", "atan2",
+    "broadcast_arrays", "broadcast_to", "cgutils", "codegen", "copysign", "cos", "cpu_count", "empty", "exp",
+    "fabs", "float64", "floor", "frexp", "full", "inf", "int64", "int8", "intrinsic", "isfinite", "linspace",
+    "log", "nan", "njit", "pi", "pow", "prod", "sched_getaffinity", "searchsorted", "sin", "sqrt", "types",
+    "uint64", "unique", "where", "zeros",
+    # defined
+    "AXES", "COMPILED", "FIXED", "INPUTS", "LOCK", "OUTPUTS", "PARTS", "PEAKS", "chosen", "compiled",
+    "doubles", "evaluate", "in_blocks", "point", "reduced", "run", "scalar", "spaced", "with_axes",
+))  # fmt: skip
+
+# What a module imports, and what that imports in turn.
+_PYTHON_MODULES = frozenset((*sys.stdlib_module_names, "jax", "jaxlib", "llvmlite", "numba", "numpy"))
+
+_TABLES = {
+    "c": _C,
+    "jax": Words(_JAX, _JAX, _PYTHON_MODULES),
+    "javascript": Words(_JAVASCRIPT, _JAVASCRIPT),
+    "numba": Words(outputs=_NUMBA, modules=_PYTHON_MODULES),
+    "octave": Words(_OCTAVE, modules=_OCTAVE),
+}
