@@ -3,10 +3,12 @@
 Compiled kernels of a test run live in a folder of their own, shared by its workers, gone at its end.
 
 By default random tests draw few cases and tests marked `thorough` are left out; `--thorough` runs just
-those two kinds, with many cases: `.ci/run` does both.
+those two kinds, with many cases: `.ci/run` does both. Files, and the tests of each, run as they stand;
+`--shuffle=any` draws their order: no test may need another one, or what another one left behind.
 """
 
 import os
+import random
 import shutil
 import tempfile
 
@@ -24,9 +26,14 @@ tiers.NUMPY_PAYS = 0  # tests are about kernels; that NumPy comes first has test
 
 def pytest_addoption(parser):
     parser.addoption("--thorough", action="store_true", help="run tests marked thorough or sampled, in full")
+    text = "draw the order of files, and of the tests in each; SEED is a number, or `any`, which is printed"
+    parser.addoption("--shuffle", metavar="SEED", help=text)
 
 
 def pytest_configure(config):
+    config.seed = _seed(config)
+    if config.seed is not None:
+        config.option.loadscopereorder = False  # xdist's own order: the largest file first
     if config.getoption("--thorough"):
         os.environ[THOROUGH] = "1"
     if not hasattr(config, "workerinput"):
@@ -38,8 +45,40 @@ def pytest_unconfigure(config):
         shutil.rmtree(config.kernel_folder, ignore_errors=True)
 
 
+def _seed(config):
+    """The seed of the order, the same in all workers; None for files and tests as they stand."""
+    if hasattr(config, "workerinput"):
+        return config.workerinput["seed"]
+    given = config.option.shuffle
+    return random.SystemRandom().randrange(1_000_000) if given == "any" else given and int(given)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_configure_node(node):
+    node.workerinput["seed"] = node.config.seed
+
+
+def pytest_report_header(config):
+    return None if config.seed is None else f"order: random, again by --shuffle={config.seed}"
+
+
+@pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config, items):
-    """Keep what belongs to this kind of run."""
+    """Keep what belongs to this kind of run, in its order."""
+    _select(config, items)
+    if config.seed is not None:
+        files = {}
+        for item in items:
+            files.setdefault(item.path, []).append(item)
+        draw = random.Random(config.seed)
+        groups = list(files.values())
+        draw.shuffle(groups)
+        for group in groups:
+            draw.shuffle(group)
+        items[:] = [item for group in groups for item in group]
+
+
+def _select(config, items):
 
     def belongs(item):
         thorough = item.get_closest_marker("thorough") is not None

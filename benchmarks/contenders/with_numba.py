@@ -14,7 +14,7 @@ from . import Run
 
 def prepare(work: Work, inputs: Inputs, out: Sequence[Array] | None, threads: int) -> Run:
     """The outermost loop is shared by threads."""
-    numba.set_num_threads(threads)
+    numba.set_num_threads(min(threads, numba.config.NUMBA_NUM_THREADS))  # no more than cores
     peak = work.kind == "peak"
     points = swept(inputs, theta_first=False) if peak else inputs
     point = numba.njit(error_model="numpy")(lambdified(work.names, points, "math"))

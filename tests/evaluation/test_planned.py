@@ -12,7 +12,11 @@ NAMES = ["V_C", "a_C", "status"]
 
 @pytest.fixture
 def both(monkeypatch):
-    """The results of a call by its plan and by the general path, and a flag: there was a plan."""
+    """The results of a call by its plan and by the general path, and a flag: there was a plan.
+
+    Plans are made anew: one that refused a test's points takes no other test's either.
+    """
+    monkeypatch.setattr(planned, "_CALLS", {})
 
     def run(names, **inputs):
         taken = []

@@ -38,6 +38,7 @@ MATHEMATICS = {name: getattr(mp, name) for name in ("sin", "cos", "tan", "asin",
 ARGUMENTS = ("...", "theta", "theta, AB", "theta, ec, AB, BC")
 FORMULA = re.compile(r"[AB]-eq\w+|A-listing-(?!name|order)\w+|C-link\d-(x|y|moment)")
 SAMPLES = 3
+DIGITS = 2 * ne.DIGITS  # whoever asks first: values stay in caches
 
 
 def value(node, v):
@@ -65,6 +66,7 @@ def value(node, v):
 
 
 @cache
+@mp.workdps(DIGITS)
 def names_a(number):
     """Paper A's names at a random design; vectors as complex numbers x + y j in the paper's axes."""
     motion = DESIGNS[number]
@@ -123,6 +125,7 @@ def small_c(v):
 
 
 @cache
+@mp.workdps(DIGITS)
 def names_b(number):
     """Paper B's names at a random design with random masses, at constant speed; i and j are 1 and 1j."""
     motion, masses = LOADED[number]
@@ -208,6 +211,7 @@ def printed_b(v, key):
 
 
 @cache
+@mp.workdps(DIGITS)
 def names_c(number):
     """Paper C's symbols in a random state, its unknowns solved from the free bodies."""
     return symbols(WEIGHTLESS[number]) | {"IG4": mpf(2), "alpha4": mpf(0)}
@@ -250,7 +254,7 @@ def names_of(key, number):
 
 def misses(key, text, printed):
     """The error of an entry's formula as text, with found and expected values; empty if it is right."""
-    with mp.workdps(2 * ne.DIGITS):
+    with mp.workdps(DIGITS):
         for number in range(SAMPLES):
             v, expected = names_of(key, number)
             try:
