@@ -1,6 +1,6 @@
 """`feasibility`: can the mechanism be assembled, can it turn, at which crank angles."""
 
-from math import ulp
+from math import fsum, ulp
 from typing import Any
 
 from ...mechanism.closed.functions import closed_form
@@ -42,7 +42,8 @@ def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
     if None in lengths.values():
         return _of_arrays(given)
     ec, AB, BC = lengths.values()
-    *angles, status, margin, link_margin = closed_form(LIMITS).point(ec, AB, BC)
+    *angles, status, _, link_margin = closed_form(LIMITS).point(ec, AB, BC)
+    margin = fsum((BC, -AB, -abs(ec)))  # rounded once, ties too
     intervals = in_intervals(angles)
     near = abs(margin) <= CHANGE_POINT_ULPS * ulp(BC)
     kind = "change point" if near else "crank" if margin > 0.0 else "rocker" if intervals else "none"
