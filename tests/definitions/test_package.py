@@ -1,6 +1,7 @@
 """`desaxe derive --quantities`: a package of its own, in a process that has neither desaxe nor SymPy."""
 
 import json
+import re
 import subprocess
 import sys
 
@@ -50,7 +51,8 @@ state = {k: v for k, v in point.items() if k != "omega0"} | {"omega": 150.0}
 found.append(own_kernels.evaluate("shoe_wrt_omega", **state))
 few = own_kernels.evaluate("shoe", **point | {"theta": [1.0, 2.0], "AB": [-1.0, 0.125]})
 found.append(few.tolist())
-for wrong in ({"theta": 1.0}, {"thet": 1.0}, point | {"BC": -1.0}, point | {"omega": 1.0}):
+text = ({"theta": "1"}, {"AB": ["0.125", "0.13"]}, {"m_slider": b"1"}, {"ec": np.array(1j)})
+for wrong in ({"theta": 1.0}, {"thet": 1.0}, *(point | one for one in ({"BC": -1.0}, {"omega": 1.0}, *text))):
     try:
         own_kernels.evaluate("shoe", **wrong)
     except (TypeError, ValueError) as error:
@@ -94,6 +96,9 @@ def test_it_answers_as_the_library_does(folder):
         True
     ] * 3
     assert "not both" in errors[3]
+    names = ["theta", "AB", "m_slider", "ec"]
+    for name, said in zip(names, errors[4:], strict=True):
+        assert re.fullmatch(rf"{name} = .*: expected numbers in SI units, not text", said)
 
 
 def test_check_sees_every_change(folder, capsys):
@@ -106,6 +111,27 @@ def test_check_sees_every_change(folder, capsys):
     assert "+" in capsys.readouterr().out
     place.write_text(text, encoding="utf-8")
     assert derive(order) == 0
+
+
+def test_an_edited_file_is_replaced_with_overwrite_alone(tmp_path, capsys, monkeypatch):
+    """Of a package from another machine, too; a file that is left over goes if nobody edited it."""
+    (tmp_path / "mine.toml").write_text(TEXT, encoding="utf-8")
+    order = ["--quantities", str(tmp_path / "mine.toml"), "-o", str(tmp_path / "own")]
+    assert derive(order) == 0
+    monkeypatch.setattr("desaxe.runtime.cache.folder", lambda: type("", (), {"path": tmp_path / "empty"}))
+    place = tmp_path / "own" / "arm_0_law.py"
+    first = place.read_bytes()
+    place.write_bytes(first.replace(b"0.001", b"0.002"))
+    (tmp_path / "mine.toml").write_text(TEXT.replace("1 mm", "2 mm"), encoding="utf-8")
+    assert derive(order) == 2
+    assert "arm_0_law.py: this is not, or no longer, what desaxe wrote" in capsys.readouterr().err
+    assert derive([*order, "--overwrite"]) == 0
+    assert b"0.002" in place.read_bytes()
+    (tmp_path / "mine.toml").write_text(TEXT.partition("[quantities.arm]")[0], encoding="utf-8")
+    assert derive(order) == 0
+    assert not place.exists()
+    for name in ("numpy", "class", "random"):
+        assert derive([*order[:3], str(tmp_path / name)]) == 2
 
 
 @pytest.mark.parametrize("text", ["", "x = [", '[quantities.x]\nexpression = "V_D"', "quantities = 3"])

@@ -1,6 +1,7 @@
 """Output files of a run: checked first, never over a foreign file, never at the cost of the report."""
 
 import os
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -214,6 +215,38 @@ def test_the_same_rule_for_pages_and_sources(tmp_path, capsys):
         make(scene, name, overwrite=True)
         Path(name).write_text(Path(name).read_text() + "\n")  # a checkout may change ends of lines
         make(scene, name)
+
+
+@pytest.mark.parametrize(
+    ("make", "name", "file"),
+    [
+        (dx.compile, "kernels.py", "kernels.py"),
+        (dx.explore, "page.html", "page.html"),
+        (partial(dx.compile, to="c"), "press", "press/press.h"),
+        (partial(dx.compile, to="c"), "press", "press/press.c"),
+        (partial(dx.compile, to="octave"), "press.m", "press.m"),
+        (partial(dx.compile, to="jax"), "press_jax.py", "press_jax.py"),
+        (partial(dx.compile, to="javascript"), "press.js", "press.d.ts"),
+    ],
+    ids=lambda given: given if isinstance(given, str) else "",
+)
+def test_what_was_generated_and_edited_is_left_alone(make, name, file, monkeypatch, tmp_path):
+    """Also where another machine wrote it, which no record says here; checkouts may change ends of lines."""
+    scene = dx.scene({**SMALL, "peak": []})
+    make(scene, name)
+    first = Path(file).read_bytes()
+    monkeypatch.setattr("desaxe.runtime.cache.folder", lambda: type("", (), {"path": tmp_path / "empty"}))
+    Path(file).write_bytes(first.replace(b"\n", b"\r\n"))
+    make(scene, name)
+    assert Path(file).read_bytes() == first
+    for place in (len(first) // 50, len(first) // 2, len(first) - 3):
+        edited = first[:place] + b"0" + first[place:]
+        Path(file).write_bytes(edited)
+        with pytest.raises(FileExistsError, match="no longer, what desaxe wrote; overwrite=True"):
+            make(scene, name)
+        assert Path(file).read_bytes() == edited
+    make(scene, name, overwrite=True)
+    assert Path(file).read_bytes() == first
 
 
 def test_what_is_remembered_is_bounded(monkeypatch, tmp_path):

@@ -54,9 +54,10 @@ def _own(words: list[str]) -> int:
     parser.add_argument("--quantities", type=Path, required=True, help="a TOML file with [quantities.NAME]")
     parser.add_argument("-o", "--output", type=Path, required=True, help="the folder of the package")
     parser.add_argument("--check", action="store_true", help="compare, exit 1 on a difference")
+    parser.add_argument("--overwrite", action="store_true", help="replace files that were edited")
     options = parser.parse_args(words)
     try:
-        found = write_package(options.quantities, options.output, options.check)
+        found = write_package(options.quantities, options.output, options.check, options.overwrite)
     except (ValueError, TypeError, OSError) as error:
         print(f"desaxe derive: {error}", file=sys.stderr)
         return 2

@@ -2,11 +2,12 @@
 
 The SHA-256 of whatever is written is remembered as the name of an empty file in the cache folder's `written`.
 So no file carries a mark, copies and renamed files are known too, and what somebody edited is theirs. Text
-that is generated, and may come from another machine, says itself by which command it was made.
+that is generated, and may come from another machine, has its own checksum in its head.
 """
 
 import hashlib
 import os
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -16,7 +17,8 @@ from . import cache
 
 FOLDER = "written"
 MOST = 20_000  # files that are remembered; the oldest tenth is forgotten beyond
-HEAD = 4096  # bytes at the start of a text in which its command stands
+UNSEALED = "checksum 0000000000000000"  # the place for it in a text that is generated
+_SEAL = re.compile(rb"\bchecksum [0-9a-f]{16}\b")
 
 
 def digest_of(path: Path) -> str:
@@ -47,22 +49,33 @@ def _trim(folder: Path) -> None:
             path.unlink(missing_ok=True)
 
 
-def is_ours(path: Path, mark: bytes = b"") -> bool:
-    """True if desaxe wrote the file at a path; `mark` is a text in the head of files that say so themselves.
+def sealed(text: str) -> str:
+    """A text with its checksum at the place for it."""
+    return text.replace(UNSEALED, _checksum(text.encode()), 1)
 
-    An empty file is as good as none.
-    """
-    if path.is_file():
-        with open(path, "rb") as file:
-            head = file.read(HEAD)
-        if not head or (mark and mark in head):
-            return True
+
+def _checksum(content: bytes) -> str:
+    """The checksum of a text as it was generated, whatever the ends of its lines."""
+    plain = _SEAL.sub(UNSEALED.encode(), content, count=1)
+    lines = b"\n".join(line.rstrip() for line in plain.splitlines())
+    return f"checksum {hashlib.sha256(lines.rstrip()).hexdigest()[:16]}"
+
+
+def _is_sealed(content: bytes) -> bool:
+    found = _SEAL.search(content)
+    return found is not None and found[0].decode() == _checksum(content)
+
+
+def is_ours(path: Path) -> bool:
+    """True if desaxe wrote the file at a path, as it is; an empty file is as good as none."""
+    if path.is_file() and ((content := path.read_bytes()) == b"" or _is_sealed(content)):
+        return True
     return (cache.folder().path / FOLDER / digest_of(path)).exists()
 
 
-def require_ours(path: Path, overwrite: bool, mark: bytes = b"") -> None:
+def require_ours(path: Path, overwrite: bool) -> None:
     """FileExistsError where something is at a path that desaxe did not write, unless it may be replaced."""
-    if overwrite or not os.path.lexists(path) or (path.exists() and is_ours(path, mark)):
+    if overwrite or not os.path.lexists(path) or (path.exists() and is_ours(path)):
         return
     raise FileExistsError(
         f"{path}: this is not, or no longer, what desaxe wrote; overwrite=True (--overwrite) replaces it"
@@ -70,14 +83,14 @@ def require_ours(path: Path, overwrite: bool, mark: bytes = b"") -> None:
 
 
 @contextmanager
-def replacing_ours(target: Path, overwrite: bool = False, mark: bytes = b"") -> Iterator[Path]:
+def replacing_ours(target: Path, overwrite: bool = False) -> Iterator[Path]:
     """Yield a path to write, which takes the place of `target` as `support.files.replacing` does.
 
     Raises FileExistsError for what is not ours, also where it appeared meanwhile.
     """
     check_target(target)
-    require_ours(target, overwrite, mark)
+    require_ours(target, overwrite)
     with replacing(target) as staged:
         yield staged
-        require_ours(target, overwrite, mark)
+        require_ours(target, overwrite)
         remember(staged)

@@ -12,7 +12,7 @@ from ...mechanism.inputs import INPUTS
 from ...mechanism.names import parts
 from ...mechanism.status import PointStatus
 from ...mechanism.unit_system import DIMENSIONS, UnitSystem
-from ...runtime.written import replacing_ours, require_ours
+from ...runtime.written import UNSEALED, replacing_ours, require_ours, sealed
 from ...support.extras import needed
 from ...support.files import check_target, require_writable
 from .content import Content, left_out_text
@@ -20,20 +20,19 @@ from .content import Content, left_out_text
 # In the order in which they build on each other.
 SCRIPTS = ("numbers", "designs", "words", "mechanism", "charts", "controls", "files", "main")
 _COMMENT = re.compile(r"^\s*//.*\n", re.MULTILINE)  # of a line of its own: the page has none to read
-MARK = b'content="desaxe explore"'  # in the head of every page
 _PLACE = re.compile(r"@@(\w+)@@")
 
 
 def require_page(path: Path, overwrite: bool) -> None:
     """OSError where no page can be written, or where something else than a page is."""
     check_target(path)
-    require_ours(path, overwrite, MARK)
+    require_ours(path, overwrite)
     require_writable(path)
 
 
 def write_page(content: Content, path: Path, overwrite: bool = False) -> Path:
     """Write the page; its path."""
-    with replacing_ours(path, overwrite, MARK) as staged:
+    with replacing_ours(path, overwrite) as staged:
         staged.write_text(page(content), encoding="utf-8")
     return path
 
@@ -43,6 +42,7 @@ def page(content: Content) -> str:
     with needed("desaxe explore"):
         from plotly.offline import get_plotlyjs
     parts_of_page = {
+        "checksum": UNSEALED,
         "title": escape(content.title),
         "style": _asset("style.css"),
         "plotly": get_plotlyjs(),
@@ -50,7 +50,7 @@ def page(content: Content) -> str:
         "program": _program(content),
         "scripts": _COMMENT.sub("", "\n".join(_asset(f"{name}.js") for name in SCRIPTS)),
     }
-    return _PLACE.sub(lambda found: parts_of_page[found[1]], _asset("page.html"))
+    return sealed(_PLACE.sub(lambda found: parts_of_page[found[1]], _asset("page.html")))
 
 
 def _asset(name: str) -> str:
