@@ -28,14 +28,15 @@ from tests.effort import cases
 from tests.evaluation.test_force_values import bodies, points
 from tests.points import draw
 
-TURN = (0.0, 2 * math.pi)
+between = dx.between
+TURN = dx.between(0.0, 2 * math.pi)
 SIZES = {"ec": 0.05, "AB": 0.125, "BC": 0.35, "omega0": 157.0}
 LOADED = SIZES | {"m_slider": 2.0, "m_rod": 1.0, "I_rod": 0.01, "g_Y": -9.81}
 TOLERANCES = {
-    "ec": (0.0499, 0.0501),
-    "AB": (0.1249, 0.1251),
-    "BC": (0.3499, 0.3501),
-    "omega0": (156.0, 158.0),
+    "ec": between(0.0499, 0.0501),
+    "AB": between(0.1249, 0.1251),
+    "BC": between(0.3499, 0.3501),
+    "omega0": between(156.0, 158.0),
 }
 
 
@@ -68,7 +69,7 @@ def widened(rng, point, names, width):
     box = dict(point)
     for name in names:
         middle, half = point[name], 0.5 * width * abs(point[name])
-        box[name] = (middle - half * rng.random(), middle + half * rng.random())
+        box[name] = between(middle - half * rng.random(), middle + half * rng.random())
     return box
 
 
@@ -150,7 +151,7 @@ def test_every_point_of_a_box_is_inside(kind, seed, exponent, forces):
 @pytest.mark.parametrize("name", ["Y", "a_C", "j_C", "a_C_wrt_ec", "a_C_wrt_ec_AB", "phi_wrt_theta"])
 def test_boxes_one_ulp_wide(name):
     for point in draw("generic", 6):
-        box = {p: (x, math.nextafter(x, math.inf)) if p in LAW[:5] else x for p, x in point.items()}
+        box = {p: between(x, math.nextafter(x, math.inf)) if p in LAW[:5] else x for p, x in point.items()}
         found = dx.enclose(name, **box)
         assert found["tight"]
         assert found["status"] == 0
@@ -166,13 +167,17 @@ def test_boxes_one_ulp_wide(name):
 @pytest.mark.parametrize(
     "box",
     [
-        {"theta": (math.pi / 2 - 0.1, math.pi / 2 + 0.1)},
-        {"theta": (-math.pi / 2 - 1e-9, -math.pi / 2 + 1e-8), "ec": (0.049, 0.051)},
-        {"theta": (-0.02, 0.01), "ec": (-0.01, 0.02)},
-        {"theta": (math.pi - 0.1, math.pi + 0.2), "ec": (-1e-3, 1e-3), "AB": (0.12, 0.13)},
-        {"theta": (0.5, 0.55), "BC": (0.34, 0.36)},
-        {"theta": (100.0, 100.3), "ec": (0.0, 0.01)},
-        {"theta": (1e6, 1e6 + 0.1)},
+        {"theta": between(math.pi / 2 - 0.1, math.pi / 2 + 0.1)},
+        {"theta": between(-math.pi / 2 - 1e-9, -math.pi / 2 + 1e-8), "ec": between(0.049, 0.051)},
+        {"theta": between(-0.02, 0.01), "ec": between(-0.01, 0.02)},
+        {
+            "theta": between(math.pi - 0.1, math.pi + 0.2),
+            "ec": between(-1e-3, 1e-3),
+            "AB": between(0.12, 0.13),
+        },
+        {"theta": between(0.5, 0.55), "BC": between(0.34, 0.36)},
+        {"theta": between(100.0, 100.3), "ec": between(0.0, 0.01)},
+        {"theta": between(1e6, 1e6 + 0.1)},
     ],
 )
 @pytest.mark.parametrize("name", ["phi", "Y", "s", "a_C", "a_C_wrt_ec", "pressure_angle"])
@@ -192,13 +197,13 @@ def test_where_the_program_changes_its_form(name, box):
 
 
 def test_a_monotone_range_is_that_of_its_ends():
-    box = SIZES | {"theta": 1.0, "AB": (0.12, 0.13), "omega0": (150.0, 160.0)}
+    box = SIZES | {"theta": 1.0, "AB": between(0.12, 0.13), "omega0": between(150.0, 160.0)}
     found = dx.enclose("V_B", **box)
     assert found["lower"] == pytest.approx(0.12 * 150.0, rel=1e-15)
     assert found["upper"] == pytest.approx(0.13 * 160.0, rel=1e-15)
     assert found["lower"] <= 0.12 * 150.0
     assert found["upper"] >= 0.13 * 160.0
-    tolerance = dx.enclose("a_C", theta=(1.0, 1.001), **TOLERANCES)
+    tolerance = dx.enclose("a_C", theta=between(1.0, 1.001), **TOLERANCES)
     values = [
         dx.evaluate("a_C", theta=t, ec=e, AB=a, BC=b, omega0=w)
         for t, e, a, b, w in itertools.product((1.0, 1.001), *TOLERANCES.values())
@@ -210,7 +215,7 @@ def test_a_monotone_range_is_that_of_its_ends():
 
 def test_a_range_with_a_sign_change_inside():
     """|ec| has its smallest value 0 inside, which is the largest margin."""
-    found = dx.enclose("margin", ec=(-0.02, 0.01), AB=0.125, BC=(0.34, 0.35))
+    found = dx.enclose("margin", ec=between(-0.02, 0.01), AB=0.125, BC=between(0.34, 0.35))
     assert found["lower"] == pytest.approx(0.34 - 0.125 - 0.02)
     assert found["upper"] == pytest.approx(0.35 - 0.125, rel=1e-6)
     assert found["upper"] >= 0.225
@@ -234,7 +239,7 @@ def test_a_turn_with_tolerances_against_the_peaks_of_its_corners():
 
 
 def test_friction_and_a_torque_over_a_turn_against_many_points():
-    box = LOADED | {"theta": TURN, "m_rod": (1.0, 1.1), "mu": (0.1, 0.11)}
+    box = LOADED | {"theta": TURN, "m_rod": between(1.0, 1.1), "mu": between(0.1, 0.11)}
     theta, rod, mu = np.meshgrid(np.linspace(*TURN, 401), [1.0, 1.1], [0.1, 0.11])
     for name in ("T_in", "N_C", "F_friction"):
         found = dx.enclose(name, **box)
@@ -248,7 +253,7 @@ def test_friction_and_a_torque_over_a_turn_against_many_points():
 
 def test_a_jump_belongs_to_the_range():
     """The law turns backwards for negative omega0: V_C jumps at 0, where alpha alone moves the crank."""
-    found = dx.enclose("V_C", theta=1.0, ec=0.02, AB=0.125, BC=0.35, omega0=(-3.0, 3.0), alpha=2.0)
+    found = dx.enclose("V_C", theta=1.0, ec=0.02, AB=0.125, BC=0.35, omega0=between(-3.0, 3.0), alpha=2.0)
     at = {"theta": 1.0, "ec": 0.02, "AB": 0.125, "BC": 0.35, "alpha": 2.0}
     for speed in (-3.0, -1e-300, 0.0, 3.0):
         assert holds(found, truth("V_C", omega0=speed, **at))
@@ -265,7 +270,7 @@ ROCKER = {"ec": 0.3, "AB": 0.125, "BC": 0.35, "omega0": 10.0}
 
 
 def test_nowhere_feasible():
-    found = dx.enclose("a_C", theta=(1.4, 1.6), **ROCKER)
+    found = dx.enclose("a_C", theta=between(1.4, 1.6), **ROCKER)
     assert found["status"] == 1
     assert all(map(math.isnan, (found["lower"], found["upper"], *found["inner"])))
 
@@ -290,30 +295,30 @@ def test_partly_feasible():
 
 def test_the_change_point():
     """A box that touches it, one a little short of it, and one beyond."""
-    design = {"theta": (1.5, 1.6), "AB": 0.125, "BC": 0.375, "omega0": 10.0}
-    touching = dx.enclose("a_C", ec=(0.24, 0.25), **design)
+    design = {"theta": between(1.5, 1.6), "AB": 0.125, "BC": 0.375, "omega0": 10.0}
+    touching = dx.enclose("a_C", ec=between(0.24, 0.25), **design)
     assert touching["status"] == 2
     assert touching["upper"] == math.inf
-    phi = dx.enclose("phi", ec=(0.24, 0.25), **design)
+    phi = dx.enclose("phi", ec=between(0.24, 0.25), **design)
     assert phi["status"] == 2
     assert phi["tight"]
     assert phi["upper"] == pytest.approx(math.pi / 2, abs=1e-6)
     assert phi["upper"] >= math.pi / 2
-    near = dx.enclose("a_C", ec=(0.24, 0.25 - 2.0**-30), **design)
+    near = dx.enclose("a_C", ec=between(0.24, 0.25 - 2.0**-30), **design)
     assert near["status"] == 0
     assert near["tight"]
     assert excess(near) <= 2.1e-6
-    assert dx.enclose("delta", ec=(-0.26, -0.25), **design | {"theta": -1.5})["status"] == 2
-    beyond = dx.enclose("a_C", ec=(0.255, 0.26), **design | {"theta": (1.56, 1.58)})
+    assert dx.enclose("delta", ec=between(-0.26, -0.25), **design | {"theta": -1.5})["status"] == 2
+    beyond = dx.enclose("a_C", ec=between(0.255, 0.26), **design | {"theta": between(1.56, 1.58)})
     assert beyond["status"] == 1
 
 
 def test_a_crank_that_stalls():
-    at = {"ec": 0.02, "AB": 0.125, "BC": 0.35, "theta": (0.1, 2.0)}
-    assert dx.enclose("V_C", **at, omega0=(0.0, 1.0), alpha=(-2.0, -1.0))["status"] == 2
-    assert dx.enclose("V_C", **at, omega0=0.0, alpha=(-2.0, -1.0))["status"] == 1
+    at = {"ec": 0.02, "AB": 0.125, "BC": 0.35, "theta": between(0.1, 2.0)}
+    assert dx.enclose("V_C", **at, omega0=between(0.0, 1.0), alpha=between(-2.0, -1.0))["status"] == 2
+    assert dx.enclose("V_C", **at, omega0=0.0, alpha=between(-2.0, -1.0))["status"] == 1
     assert dx.enclose("Y", **at)["status"] == 0
-    partly = dx.enclose("V_C", **at, omega0=(1.0, 2.0), alpha=-1.0, rtol=1e-3)
+    partly = dx.enclose("V_C", **at, omega0=between(1.0, 2.0), alpha=-1.0, rtol=1e-3)
     values = dx.evaluate("V_C", **at | {"theta": np.linspace(1.0, 2.0, 101)[:, None]},
                          omega0=np.linspace(1.0, 2.0, 101), alpha=-1.0)  # fmt: skip
     assert partly["status"] == 2
@@ -323,25 +328,27 @@ def test_a_crank_that_stalls():
 
 def test_friction_that_may_jam():
     box = {"theta": 0.2, "ec": 0.3, "AB": 0.125, "BC": 0.35, "omega": 1.0, "F_X": 1.0}
-    assert dx.enclose("N_C", **box, mu=(0.0, 4.0))["status"] == 2
-    assert dx.enclose("N_C", **box, mu=(0.0, 0.1))["status"] == 0
+    assert dx.enclose("N_C", **box, mu=between(0.0, 4.0))["status"] == 2
+    assert dx.enclose("N_C", **box, mu=between(0.0, 0.1))["status"] == 0
     assert dx.enclose("F_shaking_X", **box)["status"] == 0
 
 
 def test_many_turns_are_as_one():
     """Unless the law counts them."""
     one = dx.enclose("a_C", theta=TURN, **SIZES)
-    many = dx.enclose("a_C", theta=(-1e9, 1e12), **SIZES)
+    many = dx.enclose("a_C", theta=between(-1e9, 1e12), **SIZES)
     assert many["tight"]
     assert many["boxes"] < 2 * one["boxes"]
     assert (many["lower"], many["upper"]) == pytest.approx((one["lower"], one["upper"]), rel=3e-6)
-    faster = dx.enclose("a_C", theta=(0.0, 12.0), **SIZES, alpha=100.0)
+    faster = dx.enclose("a_C", theta=between(0.0, 12.0), **SIZES, alpha=100.0)
     assert faster["tight"]
     assert faster["lower"] < 1.05 * one["lower"]
 
 
 def test_a_derivative_by_a_speed_that_may_vanish():
-    found = dx.enclose("V_C_wrt_omega0", theta=(1.0, 1.01), ec=0.05, AB=0.125, BC=0.35, omega0=(-3.0, 3.0))
+    found = dx.enclose(
+        "V_C_wrt_omega0", theta=between(1.0, 1.01), ec=0.05, AB=0.125, BC=0.35, omega0=between(-3.0, 3.0)
+    )
     slopes = [dx.evaluate("Y_wrt_theta", theta=t, ec=0.05, AB=0.125, BC=0.35) for t in (1.0, 1.01)]
     assert [found["upper"], found["lower"]] == pytest.approx(slopes, rel=1e-14)
 
@@ -413,26 +420,27 @@ def test_derivatives_line_by_line_are_the_derived_ones(name):
 
 def test_inputs_with_units_and_of_other_kinds():
     machine = {"AB": "125 mm", "BC": "0.35 m", "omega0": "1500 rpm"}
-    found = dx.enclose("a_C", theta="60 deg", ec=("9.9 mm", "10.1 mm"), **machine)
+    found = dx.enclose("a_C", theta="60 deg", ec=between("9.9 mm", "10.1 mm"), **machine)
     numbers = dx.enclose(
-        "a_C", theta=math.pi / 3, ec=[0.0099, 0.0101], AB=0.125, BC=0.35, omega0=50 * math.pi
+        "a_C", theta=math.pi / 3, ec=between(0.0099, 0.0101), AB=0.125, BC=0.35, omega0=50 * math.pi
     )
     assert found["lower"] == pytest.approx(numbers["lower"], rel=1e-14)
-    assert dx.enclose("Y", theta=1, ec=np.array([0.0, 0.01]), AB=(0.125, 0.125), BC=0.35)["status"] == 0
+    assert dx.enclose("Y", theta=1, ec=between(0.0, 0.01), AB=between(0.125, 0.125), BC=0.35)["status"] == 0
 
 
 @pytest.mark.parametrize(
     ("error", "words", "wrong"),
     [
-        (ValueError, "lower one first", {"ec": (0.2, 0.1)}),
+        (ValueError, "lower one first", {"ec": between(0.2, 0.1)}),
         (ValueError, "number or a pair", {"ec": (0.1, 0.15, 0.2)}),
-        (ValueError, "length >= 0", {"AB": (-0.1, 0.1)}),
-        (ValueError, "finite", {"theta": (0.0, math.inf)}),
+        (ValueError, "number or a pair", {"ec": np.array([0.1, 0.15])}),
+        (ValueError, "length >= 0", {"AB": between(-0.1, 0.1)}),
+        (ValueError, "finite", {"theta": between(0.0, math.inf)}),
         (TypeError, "BC is missing", {"BC": None}),
         (TypeError, "no input 'mass'", {"mass": 1.0}),
         (ValueError, "not both", {"omega": 1.0}),
-        (ValueError, r'such as \("9.9 mm", "10.1 mm"\); a value and its tol', {"ec": "10 mm +- 0.1 mm"}),
-        (ValueError, "the lower one first; a value and its tolerance are dx", {"ec": ("10 mm", "0.1 mm")}),
+        (ValueError, r"dx\.between\(low, high\) or dx\.plus_minus", {"ec": "10 mm +- 0.1 mm"}),
+        (ValueError, "lower one first", {"ec": between("10 mm", "0.1 mm")}),
         (TypeError, r"enclose\(\) has no input 'rod'; did you mean BC\?", {"rod": 1.0}),
         (ValueError, "rtol", {"rtol": 0.0}),
         (ValueError, "boxes", {"boxes": 0}),

@@ -111,7 +111,7 @@ def test_a_four_stroke_load_repeats_after_two_turns():
 @pytest.mark.thorough
 def test_tolerance_and_optimum_follow_the_load():
     machine = {"theta": 4.0, "omega0": 50.0, "m_slider": 0.8, "ec": 0.01, "F_Y": STROKE}
-    lengths = {"AB": (0.04, 1e-5), "BC": (0.064, 1e-5)}
+    lengths = {"AB": dx.plus_minus(0.04, 1e-5), "BC": dx.plus_minus(0.064, 1e-5)}
     found = dx.tolerance("T_in", samples=2000, sobol=0, **lengths, **machine)
     for name in lengths:
         right = dx.evaluate(f"T_in_wrt_{name}", AB=0.04, BC=0.064, **machine)

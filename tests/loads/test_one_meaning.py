@@ -134,7 +134,9 @@ def test_a_motion_under_the_torque_of_constant_speed_keeps_that_speed(kind):
 @pytest.mark.parametrize("kind", some(kind for kind in LOADS if kind != "function"))
 def test_tolerances_scenes_and_modules(kind, tmp_path):
     load = LOADS[kind][0]
-    found = dx.tolerance("T_in", samples=16, sobol=0, theta=2.5, ec=(EC, 1e-6), F_Y=load, **MACHINE)
+    found = dx.tolerance(
+        "T_in", samples=16, sobol=0, theta=2.5, ec=dx.plus_minus(EC, 1e-6), F_Y=load, **MACHINE
+    )
     slope = (torque(kind, 2.5, EC + 1e-7) - torque(kind, 2.5, EC - 1e-7)) / 2e-7
     assert found["gradient"]["ec"] == pytest.approx(slope, rel=1e-6)
     scene = dx.scene({

@@ -52,7 +52,7 @@ def test_reductions_best_designs_and_peaks_follow_the_load():
     np.testing.assert_allclose(found.peak_absmax_T_in_wrt_ec, peaks["gradient"]["ec"], rtol=1e-9, atol=1e-8)
     lazy = dx.peak("T_in", ec=da.from_array(EC[:, None], chunks=2), F_Y=LOADS["stroke"], **MACHINE)
     np.testing.assert_allclose(lazy["value"], peaks["value"], rtol=1e-12)
-    best = dx.sweep("T_in", best=2, by=("absmax", "T_in"), **inputs)
+    best = dx.sweep("T_in", best=2, by=("absmax", "T_in"), order="largest", **inputs)
     assert best.T_in_absmax.values == pytest.approx(np.sort(found.T_in_absmax.values.ravel())[::-1][:2])
     spread = dx.sweep("T_in", reduce={("theta", "ec"): "p95"}, chunks={"BC": 1}, **inputs)
     np.testing.assert_allclose(spread.T_in_p95, whole.quantile(0.95, ["theta", "ec"]), rtol=1e-12)

@@ -25,7 +25,7 @@ CALLS = {
     "optimize": {"maximize": "time_ratio", "over": {"ec": (0.0, 0.1)}, "keep": {"margin": (0.02, None)}},
     "design_map": {"names": "stroke", "ec": [0.0, 0.02]},
     "tolerance": {"name": "stroke", "AB": (0.05, 0.0001), "samples": 100, "sobol": 0},
-    "enclose": {"name": "Y", "theta": (1.0, 1.01)},
+    "enclose": {"name": "Y", "theta": dx.between(1.0, 1.01)},
     "harmonics": {"name": "F_shaking_Y", "orders": 2},
     "counterweight": {"radius": 0.03},
     "flywheel": {"fluctuation": 0.02},

@@ -116,13 +116,13 @@ def test_limits_tolerances_and_ranges():
     assert best["value"] == pytest.approx(1e3 * plain["value"], rel=1e-12)
     assert best["multipliers"]["margin"] == pytest.approx(plain["multipliers"]["margin"], rel=1e-6)
     box, wanted = (
-        PRESS.enclose("Y", theta=60, ec=(9.9, 10.1)),
-        dx.enclose("Y", **{**SI, "theta": "60 deg", "ec": ("9.9 mm", "10.1 mm")}),
+        PRESS.enclose("Y", theta=60, ec=dx.between(9.9, 10.1)),
+        dx.enclose("Y", **{**SI, "theta": "60 deg", "ec": dx.between("9.9 mm", "10.1 mm")}),
     )
     assert box["lower"] == pytest.approx(1e3 * wanted["lower"], rel=1e-14)
     assert box["inner"][1] == pytest.approx(1e3 * wanted["inner"][1], rel=1e-14)
-    spread = PRESS.tolerance("stroke", ec=(10, 0.1), samples=100, sobol=0)
-    plain = dx.tolerance("stroke", **{**SI, "ec": (0.01, 0.0001)}, samples=100, sobol=0)
+    spread = PRESS.tolerance("stroke", ec=dx.plus_minus(10, 0.1), samples=100, sobol=0)
+    plain = dx.tolerance("stroke", **{**SI, "ec": dx.plus_minus(0.01, 0.0001)}, samples=100, sobol=0)
     for part in ("first_order", "monte_carlo"):
         assert spread[part]["std"] == pytest.approx(1e3 * plain[part]["std"], rel=1e-12)
     assert spread["monte_carlo"]["percentiles"][50.0] == pytest.approx(
@@ -407,10 +407,9 @@ def test_words_of_results_in_units():
 
 
 def test_best_designs_are_in_units():
-    found = PRESS.sweep("a_C", theta=[0, 90, 180], ec=[0, 10, 20], best=1, by="a_C")
-    wanted = dx.sweep(
-        "a_C", **{**SI, "theta": [0.0, math.pi / 2, math.pi], "ec": [0.0, 0.01, 0.02]}, best=1, by="a_C"
-    )
+    found = PRESS.sweep("a_C", theta=[0, 90, 180], ec=[0, 10, 20], best=1, by="a_C", order="largest")
+    given = {**SI, "theta": [0.0, math.pi / 2, math.pi], "ec": [0.0, 0.01, 0.02]}
+    wanted = dx.sweep("a_C", **given, best=1, by="a_C", order="largest")
     assert found.ec.values == pytest.approx(1e3 * wanted.ec.values)
     assert found.ec.units == "mm"
 
@@ -420,7 +419,8 @@ def test_a_text_without_a_unit_is_in_that_of_the_machine():
     assert dict(written) == dict(PRESS)
     assert written.evaluate("Y", theta="60") == PRESS.evaluate("Y", theta=60)
     assert PRESS.replace(AB="51")["AB"] == 0.051
-    pairs = [PRESS.tolerance("stroke", ec=ec)["first_order"]["std"] for ec in ("12 +- 0.1", (12, 0.1))]
+    given = ("12 +- 0.1", dx.plus_minus(12, 0.1))
+    pairs = [PRESS.tolerance("stroke", ec=ec)["first_order"]["std"] for ec in given]
     assert pairs[0] == pairs[1]
     lengths = {"ec": "10", "AB": "50", "BC": ["200", 210]}
     scene = {"outputs": ["Y"], "mechanism": lengths, "motion": {"theta": "60"}, "units": "mm, deg, rpm"}

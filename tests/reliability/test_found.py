@@ -16,7 +16,7 @@ LENGTHS = {"ec": 0.01, "AB": 0.125, "BC": 0.35}
 MACHINE = {**LENGTHS, "omega0": 157.08}
 HUGE = 10**400
 SIMULATED = {**LENGTHS, "I_crank": 0.01, "torque": 1.0, "t_end": 0.01}
-TOLERANCES = {"ec": (0.02, 1e-4), "AB": 0.04, "BC": 0.064}
+TOLERANCES = {"ec": dx.plus_minus(0.02, 1e-4), "AB": 0.04, "BC": 0.064}
 TH = np.linspace(0.1, 6.0, 9)
 SAMPLES = {"theta": TH, "Y": dx.evaluate("Y", theta=TH, **LENGTHS)}
 FUNCTION_INPUTS = {"inputs": ("theta",), **MACHINE}

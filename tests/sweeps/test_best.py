@@ -1,5 +1,8 @@
 """The best designs of a grid, without the grid."""
 
+import shutil
+from pathlib import Path
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -8,6 +11,7 @@ import desaxe as dx
 from desaxe.sweeps import best
 from desaxe.sweeps.kept import NAME, Found, Kept
 from desaxe.sweeps.sweep import NotStoredError
+from tests.effort import cases
 from tests.ways import take_way
 
 INPUTS = {
@@ -30,10 +34,13 @@ def grid():
     return dx.grid(NAMES, **INPUTS)
 
 
-@pytest.mark.parametrize(("by", "sign"), [("a_C", 1.0), (("min", "a_C"), -1.0), (("absmax", "a_C"), None)])
-def test_they_are_those_of_the_whole_grid(grid, monkeypatch, by, sign):
+@pytest.mark.parametrize(
+    ("by", "order", "sign"),
+    [("a_C", "largest", 1.0), (("min", "a_C"), None, -1.0), (("absmax", "a_C"), "largest", None)],
+)
+def test_they_are_those_of_the_whole_grid(grid, monkeypatch, by, order, sign):
     monkeypatch.setattr("desaxe.sweeps.layout.REDUCED", (400, 400))  # several chunks
-    best = dx.sweep("V_C", best=7, by=by, **INPUTS)
+    best = dx.sweep("V_C", best=7, by=by, order=order, **INPUTS)
     kind = by[0] if isinstance(by, tuple) else "max"
     compared = abs(grid["a_C"]) if sign is None else sign * grid["a_C"]
     every = compared.max("theta").values.reshape(-1)
@@ -52,6 +59,88 @@ def test_they_are_those_of_the_whole_grid(grid, monkeypatch, by, sign):
     assert best["a_C_" + kind].attrs["units"] == "m/s^2"
 
 
+TAKEN = {
+    "max": np.nanmax, "min": np.nanmin, "absmax": lambda rows, axis: np.nanmax(abs(rows), axis=axis),
+    "mean": np.nanmean, "rms": lambda rows, axis: np.sqrt(np.nanmean(rows**2, axis=axis)), "std": np.nanstd,
+    "median": np.nanmedian,
+}  # fmt: skip
+
+
+@pytest.mark.sampled
+def test_either_end_of_every_kind_is_that_of_the_grid(monkeypatch):
+    """Random designs, all of which turn, by NumPy's own reductions."""
+    monkeypatch.setattr("desaxe.sweeps.layout.REDUCED", (400, 400))
+    rng = np.random.default_rng(264)
+    for _ in range(cases(1, 40)):
+        inputs = {
+            **INPUTS,
+            "ec": np.sort(rng.uniform(-0.02, 0.02, 5)),
+            "BC": np.sort(rng.uniform(0.3, 0.6, 4)),
+        }
+        rows = dx.grid("a_C", **inputs)["a_C"].transpose("ec", "BC", "theta").values.reshape(20, -1)
+        for kind, taken in TAKEN.items():
+            every = np.sort(taken(rows, axis=-1))
+            for order, wanted in (("smallest", every), ("largest", every[::-1])):
+                found = dx.sweep("a_C", best=6, by=(kind, "a_C"), order=order, **inputs)[f"a_C_{kind}"].values
+                np.testing.assert_allclose(found, wanted[:6], rtol=1e-9)
+
+
+@pytest.mark.parametrize("order", ["smallest", "largest"])
+def test_either_end_of_a_magnitude_at_points(grid, order):
+    inputs = {**INPUTS, "theta": INPUTS["theta"][7]}
+    best = dx.sweep("a_C", best=4, by=("absmax", "a_C"), order=order, **inputs)
+    sizes = abs(grid["a_C"].isel(theta=7).values.reshape(-1))
+    wanted = np.sort(sizes[~np.isnan(sizes)])
+    np.testing.assert_array_equal(abs(best["a_C"]), wanted[:4] if order == "smallest" else wanted[:-5:-1])
+
+
+ASKED = [
+    ({"by": "a_C"}, None),
+    ({"by": ("max", "a_C")}, None),
+    ({"by": ("absmax", "a_C")}, None),
+    ({"by": ("rms", "a_C")}, None),
+    ({"by": ("std", "a_C")}, None),
+    ({"by": "a_C_rms", "reduce": {"theta": ["rms", "min"]}}, None),
+    ({"by": "a_C", "reduce": {"theta": "min"}}, None),
+    ({"by": ("min", "a_C")}, "smallest"),
+    ({"by": ("mean", "a_C")}, "largest"),
+    ({"by": "a_C_mean", "reduce": {"theta": ["rms", "mean"]}}, "largest"),
+]
+
+
+@pytest.mark.parametrize(("options", "default"), ASKED)
+def test_which_end_is_the_best_must_be_said(options, default):
+    """But where the kind says it; a scene's `[results] order` says it, too."""
+    if default is None:
+        with pytest.raises(ValueError, match='give order="smallest" or order="largest"'):
+            dx.sweep("a_C", best=3, **options, **INPUTS)
+        return
+    found = dx.sweep("a_C", best=3, **options, **INPUTS)
+    assert found.equals(dx.sweep("a_C", best=3, **options, order=default, **INPUTS))
+    assert not found.equals(dx.sweep("a_C", best=3, **options, order=other(default), **INPUTS))
+
+
+def other(order):
+    return "largest" if order == "smallest" else "smallest"
+
+
+@pytest.mark.parametrize("order", ["smallest", "largest"])
+def test_a_scene_says_which_end_is_the_best(order):
+    scene = {
+        "outputs": ["a_C"],
+        "results": {"order": order},
+        "mechanism": {"ec": [0.0, 0.01, 0.02], "AB": 0.125, "BC": [0.3, 0.35]},
+        "motion": {"theta": {"start": 0, "stop": "360 deg", "num": 61}, "omega0": 150},
+    }
+    found = dx.sweep(scene, best=2, by=("absmax", "a_C"))
+    inputs = dx.scene(scene).inputs
+    assert found.equals(dx.sweep("a_C", best=2, by=("absmax", "a_C"), order=order, **inputs))
+    stated = dx.sweep(scene, best=2, by=("absmax", "a_C"), order=other(order))
+    assert stated.equals(dx.sweep("a_C", best=2, by=("absmax", "a_C"), order=other(order), **inputs))
+    with pytest.raises(ValueError, match=r'results\.order = "best": it must be "smallest" or "largest"'):
+        dx.scene({**scene, "results": {"order": "best"}})
+
+
 @pytest.mark.thorough
 def test_by_a_reduction(grid):
     best = dx.sweep("V_C", best=3, by="V_C_mean", reduce={"theta": ["max", "mean"]}, **INPUTS)
@@ -62,16 +151,16 @@ def test_by_a_reduction(grid):
 def test_points_are_designs_where_theta_is_a_number(grid, tmp_path):
     inputs = {**INPUTS, "theta": INPUTS["theta"][7]}
     root = tmp_path / "best.zarr"
-    best = dx.sweep(["V_C", "a_C"], best=4, by="V_C", store=root, **inputs)
+    best = dx.sweep(["V_C", "a_C"], best=4, by="V_C", order="largest", store=root, **inputs)
     flat = grid["V_C"].isel(theta=7).values.reshape(-1)
     np.testing.assert_array_equal(best["V_C"], np.sort(flat[~np.isnan(flat)])[::-1][:4])
     assert xr.open_zarr(root).identical(best)
     assert best.attrs["state"] == "complete"
     before = {path: path.stat().st_mtime_ns for path in root.rglob("*")}
-    assert dx.sweep(["V_C", "a_C"], best=4, by="V_C", store=root, **inputs).identical(best)
+    assert dx.sweep(["V_C", "a_C"], best=4, by="V_C", order="largest", store=root, **inputs).identical(best)
     assert {path: path.stat().st_mtime_ns for path in root.rglob("*")} == before
     with pytest.raises(FileExistsError, match="best is 4 there and 5 here"):
-        dx.sweep(["V_C", "a_C"], best=5, by="V_C", store=root, **inputs)
+        dx.sweep(["V_C", "a_C"], best=5, by="V_C", order="largest", store=root, **inputs)
 
 
 def files(root):
@@ -82,7 +171,7 @@ def test_a_search_that_was_stopped_goes_on(tmp_path, monkeypatch):
     """The chunks that are done are not computed again, and the store has the same bytes."""
     monkeypatch.setattr("desaxe.sweeps.layout.REDUCED", (400, 400))
     whole, stopped = tmp_path / "whole.zarr", tmp_path / "stopped.zarr"
-    dx.sweep(NAMES, best=5, by="a_C", store=whole, threads=1, **INPUTS)
+    dx.sweep(NAMES, best=5, by="a_C", order="largest", store=whole, threads=1, **INPUTS)
     block, begun = best._best_of_block, []
 
     def stop(task):
@@ -93,14 +182,38 @@ def test_a_search_that_was_stopped_goes_on(tmp_path, monkeypatch):
 
     monkeypatch.setattr(best, "_best_of_block", stop)
     with pytest.raises(KeyboardInterrupt):
-        dx.sweep(NAMES, best=5, by="a_C", store=stopped, threads=1, **INPUTS)
+        dx.sweep(NAMES, best=5, by="a_C", order="largest", store=stopped, threads=1, **INPUTS)
     assert xr.open_zarr(stopped).attrs["state"] == "incomplete"
     first, begun[:] = begun[:2], range(5, 50)  # others may have been done at that moment
-    dx.sweep(NAMES, best=5, by="a_C", store=stopped, threads=1, **INPUTS)
+    dx.sweep(NAMES, best=5, by="a_C", order="largest", store=stopped, threads=1, **INPUTS)
     assert begun[45:]
     assert not set(first) & set(begun[45:])
     assert files(stopped) == files(whole)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["stopped.zarr", "whole.zarr"]
+
+
+def test_a_finished_store_that_was_disturbed(tmp_path):
+    """What is lost or damaged is made again, to the same bytes; changed metadata are refused by name."""
+    whole, root = tmp_path / "whole.zarr", tmp_path / "again.zarr"
+    how = {"best": 5, "by": ("absmax", "a_C"), "order": "smallest", **INPUTS}
+    dx.sweep(NAMES, store=whole, **how).close()
+    before = files(whole)
+    for place, data in before.items():
+        disturbed = [None, b""] + ([] if place.name == "zarr.json" else [data[:-1] + b"x"])
+        for other_data in disturbed if place != Path("zarr.json") else ():
+            shutil.copytree(whole, root)
+            (root / place).unlink() if other_data is None else (root / place).write_bytes(other_data)
+            dx.sweep(NAMES, store=root, **how).close()
+            assert files(root) == before, (place, other_data)
+            shutil.rmtree(root)
+    for place in ("zarr.json", "a_C_absmax/zarr.json"):
+        shutil.copytree(whole, root)
+        (root / place).write_bytes((root / place).read_bytes().replace(b'"m/s^2"', b'"mm/s^2"'))
+        with pytest.raises(FileExistsError, match=r"again\.zarr: changed since .*a_C_absmax/zarr\.json"):
+            dx.sweep(NAMES, store=root, **how)
+        dx.sweep(NAMES, store=root, overwrite=True, **how).close()
+        assert files(root) == before
+        shutil.rmtree(root)
 
 
 def test_a_damaged_state_is_not_used(tmp_path):
@@ -121,12 +234,12 @@ def test_what_cannot_be_stored_is_not_lost(tmp_path, monkeypatch):
 
     monkeypatch.setattr("desaxe.sweeps.store.write_whole", full)
     with pytest.raises(NotStoredError, match=r"best\.zarr: not written: No space") as raised:
-        dx.sweep(NAMES, best=2, by="a_C", store=tmp_path / "best.zarr", **INPUTS)
+        dx.sweep(NAMES, best=2, by="a_C", order="largest", store=tmp_path / "best.zarr", **INPUTS)
     assert raised.value.result.sizes["rank"] == 2
 
 
 def test_fewer_designs_than_asked_for():
-    best = dx.sweep("a_C", best=9, by="a_C", **{**INPUTS, "ec": [0.0, 0.9], "BC": 0.35})
+    best = dx.sweep("a_C", best=9, by="a_C", order="largest", **{**INPUTS, "ec": [0.0, 0.9], "BC": 0.35})
     assert best.sizes["rank"] == 1
     assert best["ec"].values.tolist() == [0.0]
     assert float(best["feasible"]) == 0.5
@@ -138,11 +251,14 @@ def test_fewer_designs_than_asked_for():
         ({"best": 0, "by": "a_C"}, ValueError, "best = 0: a whole number, at least 1"),
         ({"best": 3}, TypeError, "best= and by= belong together"),
         ({"best": 3, "by": "a_D"}, ValueError, "a_D"),
-        ({"best": 3, "by": ("rms", "a_C")}, ValueError, "'rms'.*allowed: max"),
+        ({"best": 3, "by": ("rms", "a_C"), "theta": 1.0}, ValueError, "'rms'.*allowed: max"),
+        ({"best": 3, "by": ("mode", "a_C")}, ValueError, "by: 'mode'.*allowed: max"),
+        ({"best": 3, "by": "a_C", "order": "up"}, ValueError, "order = 'up': it is \"smallest\" or"),
+        ({"order": "smallest"}, TypeError, "order= belongs to best= and by="),
         ({"best": 3, "by": 7}, TypeError, "by = 7: the name of a quantity"),
         ({}, TypeError, "store= is missing"),
     ],
 )
 def test_bad_requests_are_refused(options, error, words):
     with pytest.raises(error, match=words):
-        dx.sweep("a_C", **INPUTS, **options)
+        dx.sweep("a_C", **{**INPUTS, **options})

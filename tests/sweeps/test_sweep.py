@@ -1,7 +1,10 @@
 """`sweep`: a grid in a Zarr store, gone on with after a stop, with the same bytes."""
 
 import hashlib
+import json
 import os
+import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -12,9 +15,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import xarray as xr
+import zarr
 
 import desaxe as dx
 from desaxe.support.locks import locked
+from tests.effort import cases
 from tests.ways import take_way
 
 THETA = np.linspace(0.0, 2.0 * np.pi, 40)
@@ -80,6 +85,99 @@ def test_what_is_absent_or_damaged_is_made_again(whole, tmp_path):
     (root / "a_C" / "c" / "0" / "0" / "0.77.partial").write_bytes(b"left behind")
     dx.sweep(NAMES, store=root, **INPUTS)
     assert files(root) == files(whole)
+
+
+DISTURBED = {
+    "deleted": lambda data, rng: None,
+    "cut off": lambda data, rng: data[: int(rng.integers(len(data)))],
+    "a bit flipped": lambda data, rng: flipped(data, int(rng.integers(8 * len(data)))),
+}
+
+
+def flipped(data, bit):
+    changed = bytearray(data)
+    changed[bit // 8] ^= 1 << bit % 8
+    return bytes(changed)
+
+
+@pytest.mark.sampled
+@pytest.mark.parametrize("how", DISTURBED)
+def test_any_file_disturbed_is_made_again_or_refused(how, whole, tmp_path):
+    """Every file of a store, coordinates and metadata too: the same bytes again, or a refusal by name."""
+    rng = np.random.default_rng(26)
+    for trial in range(cases(1, 20)):
+        for place, digest in files(whole).items():
+            root = tmp_path / f"{trial}.zarr"
+            shutil.copytree(whole, root)
+            data = DISTURBED[how]((root / place).read_bytes(), rng)
+            (root / place).unlink() if data is None else (root / place).write_bytes(data)
+            if refused(root):
+                assert files(root).get(place) != digest
+            else:
+                assert files(root) == files(whole), place
+            shutil.rmtree(root)
+
+
+def refused(root):
+    """True if the sweep refuses its store by name."""
+    try:
+        dx.sweep(NAMES, store=root, **INPUTS).close()
+    except FileExistsError as error:
+        return str(root) in str(error)
+    return False
+
+
+CHANGES = {
+    "a type": ("a_C", {"data_type": "float32"}, '.data_type is "float32" there and "float64" here'),
+    "a unit": ("V_C", {"attributes": {"units": "mm/s"}}, '.attributes.units is "mm/s" there and "m/s" here'),
+    "a factor": ("Y", {"attributes": {"scale_factor": 2.0}}, ".attributes.scale_factor is 2.0 there"),
+    "a shape": ("margin", {"shape": [3, 3]}, ".shape is"),
+    "a coordinate": ("theta", {"attributes": {"units": "deg"}}, '.attributes.units is "deg" there'),
+}
+
+
+@pytest.mark.parametrize("change", CHANGES)
+@pytest.mark.parametrize("copy", ["the array's", "the group's"])
+def test_changed_metadata_are_refused_by_name(change, copy, tmp_path):
+    """Those of an array, and their copy in the group, which is what xarray reads."""
+    name, other, words = CHANGES[change]
+    root = tmp_path / "changed.zarr"
+    dx.sweep(["Y", *NAMES], store=root, chunks=CHUNKS, **INPUTS).close()
+    before = files(root)
+    path = root / name / "zarr.json" if copy == "the array's" else root / "zarr.json"
+    metadata = json.loads(path.read_text())
+    array = metadata if copy == "the array's" else metadata["consolidated_metadata"]["metadata"][name]
+    for key, value in other.items():
+        array[key] = {**array[key], **value} if isinstance(value, dict) else value
+    path.write_text(json.dumps(metadata))
+    changed = files(root)
+    with pytest.raises(
+        FileExistsError, match=re.escape(f"{root}: changed since a sweep wrote it: {name}{words}")
+    ):
+        dx.sweep(["Y", *NAMES], store=root, **INPUTS)
+    assert files(root) == changed
+    dx.sweep(["Y", *NAMES], store=root, chunks=CHUNKS, overwrite=True, **INPUTS)
+    assert files(root) == before
+
+
+def test_changed_coordinates_are_refused_by_name(whole, tmp_path):
+    root = tmp_path / "changed.zarr"
+    shutil.copytree(whole, root)
+    zarr.open_array(str(root), path="BC", mode="r+")[0] = 0.2
+    with pytest.raises(FileExistsError, match=r"changed since a sweep wrote it: BC\.sha256 is"):
+        dx.sweep(NAMES, store=root, **INPUTS)
+
+
+def test_what_others_add_to_a_store_is_left(whole, tmp_path):
+    root = tmp_path / "more.zarr"
+    shutil.copytree(whole, root)
+    group = zarr.open_group(str(root), mode="r+")
+    group.attrs["comment"] = "for the review"
+    group.create_array("mine", data=np.arange(3.0))
+    (root / "theta" / "c" / "0").unlink()
+    dx.sweep(NAMES, store=root, **INPUTS)
+    assert zarr.open_group(str(root), mode="r").attrs["comment"] == "for the review"
+    assert (root / "theta" / "c" / "0").read_bytes() == (whole / "theta" / "c" / "0").read_bytes()
 
 
 def test_chunks_without_a_value_are_written(tmp_path):

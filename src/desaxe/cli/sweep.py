@@ -24,7 +24,7 @@ cluster, which see the same folder:
 examples:
   desaxe sweep my_press.toml -o press.zarr --memory "500 MB"
   desaxe sweep my_press.toml -o press.zarr --chunks theta=1000 --workers 2
-  desaxe sweep my_press.toml --best 10 --by a_C"""
+  desaxe sweep my_press.toml --best 10 --by absmax:a_C --order smallest"""
 
 
 def add_sweep(commands: Any) -> None:
@@ -42,6 +42,7 @@ def add_sweep(commands: Any) -> None:
     parser.add_argument("--netcdf", metavar="FILE", help="write it as NetCDF too, if it fits into memory")
     parser.add_argument("--best", metavar="K", type=int, help="the best K designs instead of the grid")
     parser.add_argument("--by", metavar="NAME", help="criterion of --best: a_C, or absmax:a_C")
+    parser.add_argument("--order", choices=("smallest", "largest"), help="which end of --by is the best")
     where = parser.add_mutually_exclusive_group()
     where.add_argument("--workers", metavar="N", type=int, help="processes on this machine")
     where.add_argument("--scheduler", metavar="ADDRESS", help="address of a Dask scheduler")
@@ -90,6 +91,7 @@ def _swept(content: Any, options: argparse.Namespace) -> Any:
             client=client,
             best=options.best,
             by=_by(options.by),
+            order=options.order,
         )
 
 

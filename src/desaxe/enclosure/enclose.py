@@ -12,7 +12,6 @@ from heapq import heappop, heappush
 from itertools import islice, product
 from math import inf, isfinite, nan, nextafter, pi
 from typing import Any, NamedTuple
-from warnings import warn
 
 from flint import arb, ctx
 
@@ -22,13 +21,14 @@ from ..loads.resolve import without_loads
 from ..mechanism.catalogue import has, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
-from ..mechanism.ranges import Between, PlusMinus, RangeWarning, ends_of
+from ..mechanism.ranges import Between, PlusMinus, ends_of, refuse_bare_pair
 from ..runtime.request import Request, as_number, check_common, check_inputs, request
 from ..runtime.specialise import specialise
 from ..support.answer import answering
 from ..support.checks import real_number, whole_number
 from ..support.deadline import Deadline
 from ..support.quantity_text import PLUS_MINUS
+from ..support.shown import shown
 from .balls import BITS, PARTLY, Enclosure, Interval, ball, enclosures
 
 Box = tuple[Interval, ...]  # of the inputs that vary
@@ -41,9 +41,7 @@ ENOUGH = 64  # bits of it
 TURN = (0.0, nextafter(2 * pi, inf))  # not less than one
 LAST_BIT = 2.0**-52
 SMALLEST = 2.0**-1073
-LITTLE = 0.1  # of a negative end: an upper end so small is probably a tolerance
-TOLERANCE = "a value and its tolerance are dx.plus_minus(value, tolerance)"
-ENDS = f'expected a number or a pair (low, high), such as ("9.9 mm", "10.1 mm"); {TOLERANCE}'
+ENDS = "expected a number or a pair, dx.between(low, high) or dx.plus_minus(value, tolerance)"
 
 
 @answering
@@ -65,10 +63,10 @@ def enclose(
 ) -> dict[str, Any]:
     """The range of a quantity or sensitivity over a box of inputs, guaranteed.
 
-    Each input is a number (exact), `dx.between(low, high)`, the same as a bare pair, or
-    `dx.plus_minus(value, tolerance)`, in SI units or texts with units, as in `evaluate`, masses and loads
-    among them: `enclose("a_C", theta=1.0, ec=dx.plus_minus("10 mm", "0.1 mm"), ...)`. Every combination of
-    values within the ranges counts.
+    Each input is a number (exact), `dx.between(low, high)` or `dx.plus_minus(value, tolerance)`, in SI units
+    or texts with units, as in `evaluate`, masses and loads among them:
+    `enclose("a_C", theta=1.0, ec=dx.plus_minus("10 mm", "0.1 mm"), ...)`. Every combination of values within
+    the ranges counts.
 
     rtol     how much wider than the true range the result may be at each end, relative to the range
     boxes    the limit of boxes at each end; the result is guaranteed even then, only wider
@@ -98,7 +96,7 @@ def enclose(
     deadline = Deadline("enclose", timeout)
     given = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
     check_common(given, branch)
-    without_loads("enclose", loads, "the range of its values, {name} = (low, high)")
+    without_loads("enclose", loads, "the range of its values, {name} = (low, high) as dx.between(low, high)")
     given.update(loads)
     function = _function(name, given, branch)
     with ctx.workprec(BITS):
@@ -177,27 +175,17 @@ def _interval(name: str, value: Any, wanted: str) -> Interval:
     """The interval of an input: a number, pair or range as two doubles."""
     if isinstance(value, PlusMinus):
         value = Between(*ends_of(name, value))
+    refuse_bare_pair(name, value)
+    if isinstance(value, (tuple, list)) and not isinstance(value, Between):
+        raise ValueError(f"{name} = {shown(value)}: {ENDS}")
     if isinstance(value, str) and PLUS_MINUS.search(value):
         raise ValueError(f"{name} = {value!r}: {ENDS}")
-    number = None if isinstance(value, (tuple, list)) else as_number(name, value, (name,), (wanted,))
-    if number is not None:
-        return number, number
-    try:
-        first, last = value
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} = {value!r}: {ENDS}") from None
-    low, high = (as_number(name, end, (name,), (wanted,)) for end in (first, last))
-    if low is None or high is None or low > high:
-        raise ValueError(
-            f"{name} = ({first}, {last}): expected two numbers, the lower one first; {TOLERANCE}"
-        )
-    if not isinstance(value, Between) and name != "theta" and 0.0 < high <= LITTLE * -low:
-        warn(
-            f"enclose: {name} = {value!r} means all values from {first} to {last}: say so by "
-            f"dx.between({first!r}, {last!r}); {TOLERANCE}",
-            RangeWarning,
-            stacklevel=4,
-        )
+    ends = value if isinstance(value, Between) else (value, value)
+    low, high = (as_number(name, end, (name,), (wanted,)) for end in ends)
+    if low is None or high is None:
+        raise ValueError(f"{name} = {shown(value)}: {ENDS}")
+    if low > high:
+        raise ValueError(f"{name} = {value!r}: expected two numbers, the lower one first")
     return low, high
 
 

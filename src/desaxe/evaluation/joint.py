@@ -17,7 +17,7 @@ from .fold import Field, field_of, folded
 from .labels import attributes, input_attributes, labelled, provenance, with_loads
 from .outer import Outer
 from .reduce import reduced
-from .reductions import Reduction, Reductions, chain_name, extremes_at_end
+from .reductions import Reduction, Reductions, chain_name, extremes_at_end, method_of
 from .sources import Plain, Source, source_of
 
 if TYPE_CHECKING:
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[Any]
 POINTS = 2**22  # of a grid that are in memory at once, where what is left of it allows that
-METHODS = {**KINDS, "std": "standard_deviation", "median": "median"}  # as CF's `cell_methods` say them
 
 
 class JointPart(NamedTuple):
@@ -200,7 +199,7 @@ def joint_attributes(part: JointPart, state: bool) -> dict[str, dict[str, Any]]:
     for name in part.names:
         own = attributes(name, state)
         for chain in part.reductions.chains(name):
-            told = " ".join(f"{''.join(f'{axis}: ' for axis in axes)}{_method(kind)}" for axes, kind in chain)
+            told = " ".join(": ".join((*axes, method_of(kind))) for axes, kind in chain)
             variable = chain_name(name, chain)
             found[variable] = {**own, "cell_methods": told}
             for axis in extremes_at_end(chain):
@@ -219,7 +218,3 @@ def joint_attributes(part: JointPart, state: bool) -> dict[str, dict[str, Any]]:
     for function in part.reductions.functions:
         found[function.name] = {"long_name": f"{function.name} of the design"}
     return {name: found.get(name, {"long_name": name}) for name in part.outputs}
-
-
-def _method(kind: str) -> str:
-    return METHODS.get(kind) or f"percentile_{kind[1:]}"

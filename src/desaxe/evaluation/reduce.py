@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiler.languages.numba.reductions import EXTREMES, KINDS, outputs_of
+from ..compiler.languages.numba.reductions import EXTREMES, outputs_of
 from ..runtime.kernels import KernelKey, kernel_for, key_of
 from ..runtime.request import Request
 from ..runtime.threads import in_blocks
 from ..runtime.tiers import COMPILED, tier_of
 from .fold import average, place
 from .labels import attributes, input_attributes, labelled, provenance
-from .reductions import Reduction
+from .reductions import Reduction, method_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -136,7 +136,7 @@ def reduced_attributes(
     for name in names:
         own = attributes(name, state)
         for kind in reduction.kinds:
-            found[f"{name}_{kind}"] = {**own, "cell_methods": f"{reduction.axis}: {KINDS[kind]}"}
+            found[f"{name}_{kind}"] = {**own, "cell_methods": f"{reduction.axis}: {method_of(kind)}"}
             if kind in EXTREMES:
                 what = f"{axis['long_name']} of the {kind} of {name}"
                 found[f"{name}_{kind}_{reduction.axis}"] = {"units": axis["units"], "long_name": what}

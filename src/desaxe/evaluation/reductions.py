@@ -20,12 +20,13 @@ from .own_measure import OwnMeasure
 
 NO_STATUS = "a status has no largest or mean: leave it out; each name has a count of skipped points"
 OTHERS = ("std", "median")  # kinds that no kernel computes on the way, beside percentiles
+METHODS = {**KINDS, "std": "standard_deviation", "median": "median"}  # as CF's `cell_methods` say them
 ALLOWED = f"{', '.join((*KINDS, *OTHERS))}, and percentiles such as p95"
 EXAMPLE = '{"theta": "absmax"}'
 
 
 class Reduction(NamedTuple):
-    """Kinds of every name along one axis: what a kernel computes without storing the grid."""
+    """Kinds of every name along one axis."""
 
     axis: str
     kinds: tuple[str, ...]
@@ -75,11 +76,16 @@ class Reductions(NamedTuple):
         return tuple(dict.fromkeys(kind for kinds in each for kind in kinds))
 
     @property
-    def alone(self) -> Reduction | None:
-        """The request as kinds along one axis that a kernel computes; None where it is more than that."""
+    def along(self) -> Reduction | None:
+        """The request as kinds along one axis; None where it is more than that."""
         step = self.steps[0]
         more = self.at or self.functions or step.single or len(self.steps) > 1 or len(step.axes) > 1
-        return None if more or set(step.kinds) - set(KINDS) else Reduction(step.axes[0], step.kinds)
+        return None if more else Reduction(step.axes[0], step.kinds)
+
+    @property
+    def alone(self) -> Reduction | None:
+        """The same where a kernel computes all of these kinds."""
+        return None if set(self.kinds) - set(KINDS) else self.along
 
     def plain(self) -> dict[str, list[Any]]:
         """The request in plain lists, which tell it from another."""
@@ -185,6 +191,11 @@ def kind_of(kind: Any) -> str:
     raise ValueError(
         f"reduce: {shown(kind)}: {did_you_mean(str(kind)[:40], (*KINDS, *OTHERS))}allowed: {ALLOWED}"
     )
+
+
+def method_of(kind: str) -> str:
+    """A kind as CF's `cell_methods` say it."""
+    return METHODS.get(kind) or f"percentile_{kind[1:]}"
 
 
 def percent_of(kind: str) -> float:

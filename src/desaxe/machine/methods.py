@@ -8,6 +8,7 @@ from functools import wraps
 from inspect import Parameter, Signature, signature
 from typing import Any, NamedTuple
 
+from ..mechanism.ranges import refuse_bare_pair
 from ..mechanism.slips import warn_of_slips
 from ..support.forks import IMPORTS, imported
 from .arguments import in_si
@@ -116,6 +117,7 @@ def _signature(own: Signature, name: str) -> Signature:
 
 
 FILLED = ("ec", "AB", "BC")
+OF_RANGES = ("enclose", "tolerance")  # in which a pair must say what it means, in the caller's units
 
 
 def call(
@@ -135,6 +137,9 @@ def call(
     if twice:
         raise TypeError(f"{name}() got two values of {twice[0]}")
     system = machine.units
+    if name in OF_RANGES:
+        for key, value in inputs.items():
+            refuse_bare_pair(key, value)
     named = {**dict(zip(positional, args, strict=False)), **inputs}
     warn_of_slips(named, system, stacklevel=4)
     given = {key: in_si(system, key, value) for key, value in named.items()}

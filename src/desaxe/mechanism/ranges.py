@@ -1,7 +1,7 @@
 """Inputs that are not one number: a value with its tolerance, or the two ends of a range.
 
-A bare pair means the ends in `enclose` and value and tolerance in `tolerance`. `plus_minus` and `between`
-mean the same everywhere. Numbers and texts are added exactly as they are written and rounded once, so that
+A bare pair could mean either: `enclose` and `tolerance` refuse it. `plus_minus` and `between` mean the same
+everywhere. Numbers and texts are added exactly as they are written and rounded once, so that
 plus_minus("10 mm", "0.1 mm") has the ends of between("9.9 mm", "10.1 mm").
 """
 
@@ -12,10 +12,6 @@ from ..support.quantity_text import with_unit_of
 from ..support.shown import shown
 from .inputs import INPUTS
 from .units import exact, in_si, rounded
-
-
-class RangeWarning(UserWarning):
-    """The warning that a bare pair is probably meant the other way."""
 
 
 class PlusMinus(NamedTuple):
@@ -63,6 +59,16 @@ def between(low: Any, high: Any) -> Between:
         between('9.9 mm', '10.1 mm')
     """
     return Between(low, high)
+
+
+def refuse_bare_pair(name: str, value: Any) -> None:
+    """ValueError for two values that do not say whether they are value and tolerance or both ends."""
+    if type(value) in (tuple, list) and len(value) == 2:
+        first, second = value
+        raise ValueError(
+            f"{name} = {shown(value)}: a pair must say what it means: dx.plus_minus({first!r}, {second!r}) "
+            f"is a value and its tolerance, dx.between({first!r}, {second!r}) both ends of a range"
+        )
 
 
 def ends_of(name: str, given: PlusMinus) -> tuple[float, float]:

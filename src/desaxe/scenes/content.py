@@ -77,6 +77,7 @@ class Content(NamedTuple):
     chunks: Any = None
     memory: int | None = None
     definitions: tuple[Definition, ...] = ()
+    order: str | None = None
 
     @property
     def fused(self) -> Reduction | None:

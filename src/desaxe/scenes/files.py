@@ -97,7 +97,7 @@ def _zarr(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Data
     for group, part in _parts(values, groups):
         part.to_zarr(path, mode="a" if path.exists() else "w", group=group, consolidated=False)
     with IMPORTS:
-        from ..sweeps.store import CONSOLIDATED
+        from ..sweeps.skeleton import CONSOLIDATED
 
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message=CONSOLIDATED)

@@ -86,6 +86,7 @@ def read(data: Mapping[str, Any], folder: Path | None = None) -> Content:
         file.title, outputs, _accuracy(file.accuracy), branch, inputs,
         tuple(checks), tuple(peaks), tuple(pictures), file.results.data,
         _reduction(file, outputs, inputs), file.threads, units, *_storage(file, outputs, inputs), own,
+        file.results.order,
     )  # fmt: skip
 
 

@@ -77,6 +77,7 @@ def sweep_content(
     overwrite: bool = False,
     client: Any = None,
     by: Any = None,
+    order: str | None = None,
 ) -> "xr.Dataset":
     """Run the sweep of a scene; options that are not given come from the scene."""
     wanted = arguments_of(content)
@@ -97,4 +98,5 @@ def sweep_content(
         overwrite=overwrite,
         client=client,
         by=by,
+        order=content.order if order is None and best is not None else order,
     )

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiler.languages.numba.reductions import KINDS as REDUCTIONS
 from ..evaluation.blocks import grid_parts
 from ..evaluation.chunks import blocks_of, slices_of
 from ..evaluation.evaluate import evaluate
@@ -17,11 +16,13 @@ from ..evaluation.labels import input_attributes, labelled, with_loads
 from ..evaluation.lazy import AnyPart, parts_of_reduced
 from ..evaluation.outer import Outer, outer_of
 from ..evaluation.reduce import reduced_attributes
-from ..evaluation.reductions import Reduction, reductions_of
+from ..evaluation.reductions import ALLOWED, Reduction, kind_of, reductions_of
+from ..mechanism.catalogue import has
 from ..mechanism.spelling import did_you_mean
 from ..runtime.accuracy import accuracy_of
 from ..runtime.compiled_only import compiled_only
 from ..runtime.request import several
+from ..support.shown import shown
 from .cluster import Crew, run_all
 from .kept import Found, Kept
 from .layout import Layout, layout_of
@@ -33,7 +34,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Array = NDArray[Any]
-KINDS = ("max", "min", "absmax")
+EXTREMES = ("max", "min", "absmax")
+ORDERS = ("smallest", "largest")
+# Kinds of which one end is the better one by itself, or was never the other: their default.
+DEFAULTS = {"min": "smallest", "mean": "largest", "median": "largest"}
 
 
 class Ranking(NamedTuple):
@@ -41,14 +45,19 @@ class Ranking(NamedTuple):
 
     name      the quantity
     kind      max, min or absmax, or a mean: what is taken of it
+    order     which end is the best: "smallest" or "largest"
     variable  the variable of a block that is compared
-    smallest  whether the smallest is the best
     """
 
     name: str
     kind: str
+    order: str
     variable: str
-    smallest: bool
+
+    def rank(self, values: Array) -> Array:
+        """The place of values of a block in the ranking: the smallest comes first."""
+        compared = np.abs(values) if self.variable == self.name and self.kind == "absmax" else values
+        return compared if self.order == "smallest" else -compared
 
 
 class Search(NamedTuple):
@@ -76,6 +85,7 @@ class BestTask(NamedTuple):
     number: int
     part: AnyPart
     ranking: Ranking
+    axis: str | None
     best: int
     values: dict[str, Array]
     starts: tuple[int, ...]
@@ -86,13 +96,22 @@ class BestTask(NamedTuple):
     digest: str
 
 
-def ranking_of(name: str, kind: str | None, reduction: Reduction | None) -> Ranking:
+def ranking_of(name: str, kind: str | None, order: Any, reduction: Reduction | None) -> Ranking:
     """The ranking by a name and a kind; the first allowed kind by default."""
-    known = KINDS if reduction is None else reduction.kinds
-    kind = known[0] if kind is None else kind
-    if kind not in known:
+    known = EXTREMES if reduction is None else reduction.kinds
+    if kind is not None and kind not in known:
         raise ValueError(f"by: {kind!r}: {did_you_mean(kind, known)}allowed: {', '.join(known)}")
-    return Ranking(name, kind, name if reduction is None else f"{name}_{kind}", kind == "min")
+    end = DEFAULTS.get(str(kind)) if order is None else order
+    if end is None:
+        of = f"{kind!r} of {name}" if kind else repr(name)
+        raise ValueError(
+            f'by: {of}: which end is the best? give order="smallest" or order="largest" '
+            f"({', '.join(DEFAULTS)} have a default; allowed: {ALLOWED})"
+        )
+    if end not in ORDERS:
+        raise ValueError(f'order = {shown(order)}: it is "smallest" or "largest"')
+    kind = known[0] if kind is None else kind
+    return Ranking(name, kind, end, name if reduction is None else f"{name}_{kind}")
 
 
 def _named(by: Any, reduce: Any) -> tuple[str, str | None]:
@@ -101,9 +120,14 @@ def _named(by: Any, reduce: Any) -> tuple[str, str | None]:
     if not isinstance(name, str) or not (kind is None or isinstance(kind, str)):
         raise TypeError(f'by = {by!r}: the name of a quantity, or a pair such as ("absmax", "a_C")')
     stem, _, last = name.rpartition("_")
-    if kind is None and reduce is not None and last in REDUCTIONS:
-        return stem, last
-    return name, kind
+    if kind is None and (reduce is None or has(name)):
+        return name, None
+    try:
+        return (stem, kind_of(last)) if kind is None else (name, kind_of(kind))
+    except ValueError as error:
+        if kind is None:
+            return name, None
+        raise ValueError(str(error).replace("reduce", "by", 1)) from None
 
 
 def search_for(
@@ -116,20 +140,19 @@ def search_for(
     threads: int | None,
     memory: int | None,
     count: int,
+    order: str | None = None,
 ) -> Search:
     """The search for `count` designs, checked; over an axis theta a design is ranked by its extreme."""
     name, kind = _named(by, reduce)
     wanted = dict.fromkeys(((names,) if isinstance(names, str) else several(names)) + (name,))
     outer = outer_of(tuple(wanted), inputs, branch, threads, always=False)
     if reduce is None and "theta" in outer.dimensions:
-        reduce = {"theta": kind if kind in KINDS else KINDS[0]}
+        reduce = {"theta": kind or EXTREMES[0]}
     asked = None if reduce is None else reductions_of(reduce, outer.dimensions, outer.names)
-    reduction = None if asked is None else asked.alone
+    reduction = None if asked is None else asked.along
     if asked is not None and reduction is None:
-        raise ValueError(
-            f"reduce: designs are ranked by one axis and {', '.join(REDUCTIONS)}; rank a reduced sweep itself"
-        )
-    ranking = ranking_of(name, kind, reduction)
+        raise ValueError("reduce: designs are ranked by kinds along one axis; rank a reduced sweep itself")
+    ranking = ranking_of(name, kind, order, reduction)
     alone = outer._replace(names=(ranking.name,))
     sizes = {name: outer.axes[name].size for name in outer.dimensions}
     length = None if reduction is None else sizes.pop(reduction.axis)
@@ -141,7 +164,7 @@ def search_for(
         part = parts_of_reduced(alone, branch, accuracy, asked, layout.chunk)[0]
     others = tuple(name for name in outer.names if name != ranking.name)
     own = [repr(part.own)] if part.own else []
-    told = identity(outer, branch, accuracy_of(accuracy), asked, (), own, (count, *ranking[:2]))
+    told = identity(outer, branch, accuracy_of(accuracy), asked, (), own, (count, *ranking[:3]))
     return Search(outer, others, ranking, reduction, part, layout, branch, accuracy, told)
 
 
@@ -153,10 +176,9 @@ def best_of_block(task: BestTask) -> tuple[int, Found]:
 
 def _best_of_block(task: BestTask) -> Found:
     arrays = task.part.compute(task.values, task.threads)
-    name, kind, variable, smallest = task.ranking
+    name, variable = task.ranking.name, task.ranking.variable
     values = arrays[variable]
-    compared = np.abs(values) if task.part.reduction is None and kind == "absmax" else values
-    rank = (compared if smallest else -compared).reshape(-1)
+    rank = task.ranking.rank(values).reshape(-1)
     order = np.argsort(rank, kind="stable")[: task.best]  # NaN comes last
     order = order[~np.isnan(rank[order])]
     local = np.unravel_index(order, values.shape) if values.ndim else ()
@@ -165,13 +187,12 @@ def _best_of_block(task: BestTask) -> Found:
         whole = tuple(index + start for index, start in zip(local, task.starts, strict=True))
         places = np.ravel_multi_index(whole, task.shape).astype(np.int64)
     flat = {n: a.reshape(-1)[order] for n, a in arrays.items()}
-    reduction = task.part.reduction
     angles = np.full(order.size, np.nan)
-    if reduction is None:
+    if task.axis is None:
         return Found(places, flat[variable], angles, angles, int((~np.isnan(rank)).sum()), task.points)
     skipped = arrays[f"{name}_skipped"]
-    feasible = int(skipped.size * task.values[reduction.axis].size - skipped.sum())
-    angles = flat.get(f"{variable}_{reduction.axis}", angles)
+    feasible = int(skipped.size * task.values[task.axis].size - skipped.sum())
+    angles = flat.get(f"{variable}_{task.axis}", angles)
     return Found(places, flat[variable], angles, flat[f"{name}_skipped"], feasible, task.points)
 
 
@@ -202,16 +223,14 @@ def _tasks(search: Search, count: int, inner: int, done: Array) -> Iterator[Best
         values = {n: axes[n][regions[n]] if n in regions else axes[n] for n in search.part.axes}
         points = scale * prod(part.stop - part.start for part in regions.values())
         starts = tuple(part.start for part in regions.values())
-        yield BestTask(
-            number, search.part, search.ranking, count, values, starts, shape, points, inner, *versions()
-        )
+        about = search.part, search.ranking, None if search.reduction is None else search.reduction.axis
+        yield BestTask(number, *about, count, values, starts, shape, points, inner, *versions())
 
 
 def _merged(one: Found, other: Found, count: int, ranking: Ranking) -> Found:
     """The best of two; of equal ones the earlier in the grid, whichever chunk was done first."""
     places, values, theta, skipped = (np.concatenate([a, b]) for a, b in zip(one[:4], other[:4], strict=True))
-    compared = np.abs(values) if ranking.kind == "absmax" else values
-    order = np.lexsort((places, compared if ranking.smallest else -compared))[:count]
+    order = np.lexsort((places, ranking.rank(values)))[:count]
     feasible, points = one.feasible + other.feasible, one.points + other.points
     return Found(places[order], values[order], theta[order], skipped[order], feasible, points)
 

@@ -3,10 +3,10 @@
 import json
 import os
 import shutil
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..evaluation.labels import import_xarray
 from ..support.files import remove_strays as remove_folders
@@ -16,9 +16,14 @@ from .best import Search
 from .layout import size_text
 from .prepared import Sweep
 from .request import IDENTITY, differences
-from .store import INCOMPLETE, STATE, attributes, create, held, remove_strays
+from .skeleton import INCOMPLETE, STATE, Compared, as_signed, compared, skeleton_of
+from .store import attributes, create, held, put, remove_strays
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 CHUNKS = "chunks"  # the attribute with the layout
+SEVERAL = 3  # differences that are named
 
 
 def kept_at(root: Path, told: Mapping[str, str], overwrite: bool) -> dict[str, Any] | None:
@@ -47,21 +52,45 @@ def kept_at(root: Path, told: Mapping[str, str], overwrite: bool) -> dict[str, A
 def require_place(sweep: Sweep, root: Path, overwrite: bool, memory: int | None) -> Sweep | None:
     """The sweep with the chunks of the store to go on with; None where a store is to be made."""
     there = kept_at(root, {**sweep.identity, CHUNKS: json.dumps(sweep.layout.chunk)}, overwrite)
-    if there is None:
+    kept = None if there is None else sweep._replace(layout=sweep.layout.cut(there[CHUNKS]))
+    changed = [] if kept is None else _compared(kept, root).changed
+    _refuse_changed(root, changed, overwrite)
+    if kept is None or changed:
         sweep.layout.require_memory(memory)
         require_room(sweep, root, sweep.bytes)
         return None
-    return sweep._replace(layout=sweep.layout.cut(there[CHUNKS]))
+    return kept
+
+
+def _refuse_changed(root: Path, changed: Sequence[str], overwrite: bool) -> None:
+    """FileExistsError for a store that says something else than its sweep."""
+    if changed and not overwrite:
+        several = "; ".join(changed[:SEVERAL]) + ("; ..." if len(changed) > SEVERAL else "")
+        raise FileExistsError(
+            f"{root}: changed since a sweep wrote it: {several}. overwrite=True replaces it"
+        )
+
+
+def _compared(sweep: Sweep, root: Path) -> Compared:
+    return compared(root, _labelled(sweep), sweep.layout.chunk)
+
+
+def _labelled(sweep: Sweep) -> "xr.Dataset":
+    """The template with all attributes of its store."""
+    told = {**sweep.identity, CHUNKS: json.dumps(sweep.layout.chunk), STATE: INCOMPLETE}
+    return sweep.template.assign_attrs(told)
 
 
 def placed(sweep: Sweep, root: Path, overwrite: bool, memory: int | None) -> Sweep:
     """Create the store, or check that the existing one is of this sweep; return the sweep with its chunks."""
     kept = require_place(sweep, root, overwrite, memory)
     if kept is not None:
+        lost = _compared(kept, root).lost
+        with held(root) if lost else nullcontext():
+            put(root, lost)
         return kept
-    told = {**sweep.template.attrs, **sweep.identity, CHUNKS: json.dumps(sweep.layout.chunk)}
     with free_for(root) as replace:
-        create(root, sweep.template.assign_attrs({**told, STATE: INCOMPLETE}), sweep.layout.chunk, replace)
+        create(root, skeleton_of(_labelled(sweep), sweep.layout.chunk), replace)
     return sweep
 
 
@@ -69,13 +98,16 @@ def placed_search(search: Search, root: Path, overwrite: bool) -> Search:
     """Create a store for the best designs, or check the existing one; return the search with its chunks."""
     told = {**search.identity, CHUNKS: json.dumps(search.layout.chunk)}
     there = kept_at(root, told, overwrite)
-    if there is None:
+    changed = [] if there is None else as_signed(root)[1]
+    _refuse_changed(root, changed, overwrite)
+    if there is None or changed:
         import_xarray()
         with IMPORTS:
             import xarray
 
+        empty = xarray.Dataset(attrs={**told, STATE: INCOMPLETE})
         with free_for(root) as replace:
-            create(root, xarray.Dataset(attrs={**told, STATE: INCOMPLETE}), {}, replace)
+            create(root, skeleton_of(empty, {}), replace)
         return search
     return search._replace(layout=search.layout.cut(there[CHUNKS]))
 

@@ -24,12 +24,12 @@ def identity(
     reduction: Reductions | None,
     peaks: Sequence[PeakRequest],
     own: Sequence[str],
-    best: tuple[int, str, str] | None = None,
+    best: tuple[int, str, str, str] | None = None,
 ) -> dict[str, str]:
     """The attributes that a store of this sweep has: no time, path or host is among them.
 
     `own` tells the definitions of quantities that are not the library's, `best` how many designs are
-    searched, by which quantity and kind.
+    searched, by which quantity and kind, and which end is the best.
     """
     request = {
         "names": list(outer.names),
@@ -42,7 +42,7 @@ def identity(
         | {name: {"load": repr(load), "sha256": load.identity} for name, load in outer.loads.items()},
     }
     if best is not None:
-        request["best"], request["by"] = best[0], list(best[1:])
+        request["best"], request["by"], request["order"] = best[0], list(best[1:3]), best[3]
     own = text_of(outer.names)
     if own:
         request["quantities"] = json.loads(own)

@@ -11,7 +11,6 @@ import os
 import shutil
 import sys
 import uuid
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -26,10 +25,10 @@ from ..support.files import exchange, staging
 from ..support.forks import IMPORTS
 from ..support.interrupts import put_off
 from ..support.locks import locked
+from .skeleton import COMPLETE, METADATA, STATE, signed, skeleton_of, with_state
 
 with put_off(), explained("a sweep"):
     import zarr
-    from zarr.codecs import Crc32cCodec, ZstdCodec
     from zarr.core.buffer import Buffer
     from zarr.storage import LocalStore
 
@@ -38,11 +37,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[Any]
 PARTIAL = ".partial"
-LEVEL = 1  # of zstd: doubles hardly shrink, and this is the fastest
-METADATA = "zarr.json"
-STATE = "state"  # an attribute: whether the store is complete
-INCOMPLETE, COMPLETE = "incomplete", "complete"
-CONSOLIDATED = "Consolidated metadata is currently not part"  # of the format, a warning says
 
 
 class DurableStore(LocalStore):
@@ -88,30 +82,14 @@ def sync(folder: Path) -> None:
 # ---- the skeleton --------------------------------------------------------------------------------
 
 
-def create(root: Path, template: "xr.Dataset", chunk: Mapping[str, int], replace: bool) -> None:
-    """Create a store without the chunks of its lazy variables; `replace` an existing one.
+def create(root: Path, files: Mapping[str, bytes], replace: bool) -> None:
+    """Create a store of these files; `replace` an existing one.
 
     FileExistsError where there is one and it may not be replaced.
     """
-    compressors = [ZstdCodec(level=LEVEL), Crc32cCodec()]
-    encoding = {
-        str(name): {
-            "chunks": tuple(
-                chunk[str(dim)] if name not in template.coords else max(1, template.sizes[dim])
-                for dim in variable.dims
-            ),
-            "compressors": compressors,
-        }
-        for name, variable in template.variables.items()
-    }
     with staging(root.parent) as folder:
         staged = folder / root.name
-        with warnings.catch_warnings():
-            warnings.filterwarnings("ignore", message=CONSOLIDATED)
-            template.to_zarr(
-                DurableStore(staged), mode="w-", compute=False, encoding=encoding, zarr_format=3,
-                consolidated=True, safe_chunks=False,
-            )  # fmt: skip
+        put(staged, files)
         sync_folders(staged)
         if not replace:
             if root.exists():
@@ -123,10 +101,16 @@ def create(root: Path, template: "xr.Dataset", chunk: Mapping[str, int], replace
         sync(root.parent)
 
 
+def put(root: Path, files: Mapping[str, bytes]) -> None:
+    """Write files of a store by their places."""
+    for place, data in files.items():
+        write_durably(root / place, data)
+
+
 def write_whole(root: Path, dataset: "xr.Dataset") -> None:
     """Replace a store by a Dataset in memory, as one that is complete."""
     sizes = {str(name): max(1, size) for name, size in dataset.sizes.items()}
-    create(root, dataset.assign_attrs({STATE: COMPLETE}), sizes, True)
+    create(root, signed(skeleton_of(dataset.assign_attrs({STATE: COMPLETE}), sizes)), True)
 
 
 def attributes(root: Path) -> dict[str, Any] | None:
@@ -141,10 +125,9 @@ def attributes(root: Path) -> dict[str, Any] | None:
 def set_state(root: Path, state: str) -> None:
     """Write the state (complete or not) into the store's attributes, if it differs."""
     path = root / METADATA
-    metadata = json.loads(path.read_text(encoding="utf-8"))
-    if metadata["attributes"].get(STATE) != state:
-        metadata["attributes"][STATE] = state
-        write_durably(path, json.dumps(metadata, indent=2).encode())
+    metadata = path.read_bytes()
+    if json.loads(metadata)["attributes"].get(STATE) != state:
+        write_durably(path, with_state(metadata, state))
         sync(root)
 
 

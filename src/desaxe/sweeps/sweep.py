@@ -25,16 +25,8 @@ from .layout import Layout, bytes_of
 from .meter import Meter, Watch
 from .place import CHUNKS, clear, free_at, placed, placed_search, require_room
 from .prepared import Sweep, prepared
-from .store import (
-    COMPLETE,
-    STATE,
-    attributes,
-    held,
-    open_store,
-    remove_strays,
-    set_state,
-    sync_folders,
-)
+from .skeleton import COMPLETE, STATE, as_signed
+from .store import attributes, held, open_store, remove_strays, set_state, sync_folders
 from .tasks import Output, Task, compute, is_absent, run, values_for
 
 if TYPE_CHECKING:
@@ -156,7 +148,7 @@ def best_sweep(
     with held(root):
         clear(root)
         there = attributes(root) or {}
-        if there.get(STATE) != COMPLETE:
+        if there.get(STATE) != COMPLETE or not as_signed(root)[0]:
             found = _searched(search, count, way, root)
             try:
                 zarr_store.write_whole(root, found.assign_attrs({CHUNKS: there[CHUNKS]}))
@@ -203,6 +195,7 @@ def run_sweep(
     peaks: Any,
     best: int | None,
     by: Any,
+    order: str | None,
     watch: Watch | None,
     tell: Tell | None,
 ) -> "xr.Dataset":
@@ -216,8 +209,10 @@ def run_sweep(
         count = _count(best, by)
         if peaks:
             raise TypeError("best= and peaks=: give one of them")
-        search = search_for(names, inputs, by, reduce, branch, accuracy, threads, room, count)
+        search = search_for(names, inputs, by, reduce, branch, accuracy, threads, room, count, order)
         return best_sweep(search, count, store, overwrite, way)
+    if order is not None:
+        raise TypeError("order= belongs to best= and by=: which end of what they are ranked by is the best")
     store = store if store is None else as_path("store", store)
     if store is None and reduce is None and (names or not peaks):
         raise TypeError('sweep: store= is missing: where the grid goes, such as "press.zarr"')

@@ -1,5 +1,6 @@
 """The scatter of a quantity whose inputs have tolerances.
 
 tolerance  the public call
+function   a quantity as a function of its inputs, with slopes; whether it is smooth
 uncertain  inputs with a tolerance or a distribution
 """

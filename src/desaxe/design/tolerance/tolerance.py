@@ -3,95 +3,35 @@
 from collections.abc import Mapping, Sequence
 from itertools import product
 from math import sqrt
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from ...evaluation.evaluate import evaluate
 from ...evaluation.loaded import loads_of
 from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LENGTHS, sensitivity
 from ...mechanism.ranges import Between
+from ...mechanism.status import ToleranceStatus
 from ...runtime.request import check_common, check_inputs
 from ...support.answer import answering
 from ...support.checks import whole_number
 from ...support.extras import needed
 from ...support.forks import IMPORTS, imported
 from ...support.shown import shown
-from ..measures import UNITS, Measure, checked, measured
+from ..measures import UNITS, checked
+from .function import Beside, Function, derived
 from .uncertain import DISTRIBUTIONS, Array, Inexact, read
 
 BLOCK = 65536  # samples at a time
 STEP = (
     1e-3  # of a standard deviation or so: differences of exact gradients, where these are not derived again
 )
-KINK = 0.1  # of the first-order change: slopes that jump by more have no derivative
 PERCENTS = (0.135, 2.5, 50.0, 97.5, 99.865)
 BOXES = 2000  # of an enclosure
 MOST_CORNERED = 10  # inputs
 MOST_SAMPLES, MOST_BASE = 10**8, 2**20
 MANY, SOME = 100_000, 10_000  # samples of a quantity at a point, and of a peak
-
-
-class Function(NamedTuple):
-    """A quantity at a crank angle, or of a whole design, as a function of the varying inputs."""
-
-    measure: Measure
-    at_point: bool
-    fixed: Mapping[str, Any]
-    varying: tuple[str, ...]
-    branch: int
-
-    def values(self, columns: Mapping[str, Any]) -> Array:
-        """The values over samples; NaN where undefined."""
-        if self.at_point:
-            found = evaluate(str(self.measure), branch=self.branch, **self.fixed, **columns)
-        else:
-            found = measured([self.measure], {**self.fixed, **columns}, self.branch)[self.measure].value
-        return np.asarray(found, float)
-
-    def slopes(self, columns: Mapping[str, Any]) -> Array:
-        """The exact first derivatives over samples, one column for each input that varies."""
-        if self.at_point:
-            names = [sensitivity(str(self.measure), p) for p in self.varying]
-            found = evaluate(names, branch=self.branch, **self.fixed, **columns)
-            return np.stack([np.asarray(found[name]) for name in names], -1)
-        gradient = measured([self.measure], {**self.fixed, **columns}, self.branch)[self.measure].gradient
-        size = len(next(iter(columns.values())))
-        return np.stack([np.broadcast_to(gradient.get(p, 0.0), (size,)) for p in self.varying], -1)
-
-    def bends(self, centre: Mapping[str, Any], steps: Array) -> tuple[Array, bool]:
-        """The second derivatives at a point (NaN where undefined), and a flag: all are exact."""
-        n = len(self.varying)
-        pairs = [(i, j) for i in range(n) for j in range(i, n)]
-        bends = np.empty((n, n))
-        names = [sensitivity(str(self.measure), self.varying[i], self.varying[j]) for i, j in pairs]
-        if self.at_point and _derived(names, self.state):
-            found = evaluate(names, branch=self.branch, **self.fixed, **centre)
-            for (i, j), name in zip(pairs, names, strict=True):
-                bends[i, j] = bends[j, i] = found[name]
-            return bends, True
-        near, change = self._differences(centre, steps)
-        far, _ = self._differences(centre, 2.0 * steps)
-        # Across a kink a difference over twice the steps is half as large.
-        if (np.abs(near - far) * np.outer(steps, steps) > KINK * change).any():
-            near[:] = np.nan
-        return near, False
-
-    def _differences(self, centre: Mapping[str, Any], steps: Array) -> tuple[Array, float]:
-        """Second derivatives by differences of the exact first ones, and the largest change over a step."""
-        n = len(self.varying)
-        moves = np.vstack([np.diag(steps), -np.diag(steps)])
-        middle = np.array([centre[p] for p in self.varying])
-        slopes = self.slopes({p: middle[i] + moves[:, i] for i, p in enumerate(self.varying)})
-        bends = (slopes[:n] - slopes[n:]) / (2.0 * steps)[:, None]
-        return 0.5 * (bends + bends.T), float(np.abs(slopes * steps).max())
-
-    @property
-    def state(self) -> bool:
-        """True if the motion is a given state (omega)."""
-        return "omega" in self.fixed or "omega" in self.varying
 
 
 @answering
@@ -110,10 +50,9 @@ def tolerance(
 
     name          a quantity at a crank angle, as for `evaluate` ("a_C", with theta=), or one of a whole
                   design: "stroke", "time_ratio", ..., or a peak such as ("absmax", "a_C")
-    inputs        each a number (exact); `dx.plus_minus(value, tolerance)`, the same as a bare pair (value,
-                  tolerance) and a text "10 mm +- 0.1 mm" or "10 mm +- 1 %"; `dx.between(low, high)`; or a
-                  distribution of scipy.stats, frozen. (A bare pair in `enclose` is (low, high).)
-                  F_X and F_Y may vary with the motion
+    inputs        each a number (exact); `dx.plus_minus(value, tolerance)`, the same as a text
+                  "10 mm +- 0.1 mm" or "10 mm +- 1 %"; `dx.between(low, high)`; or a distribution of
+                  scipy.stats, frozen. F_X and F_Y may vary with the motion
     distribution  within a tolerance: "normal", the tolerance being that many `sigmas`, or "uniform"
     samples       of the Monte Carlo, by default 100000, or 10000 of a peak
     sobol         base samples of the Sobol indices, a power of two; 0 leaves them out
@@ -141,12 +80,14 @@ def tolerance(
                    first indices, the largest difference
     status         0 ok; 1 no value at the means; 2 some samples have none, and then no Sobol indices; 3 a
                    kink at the means, such as that of |ec| at ec = 0: derivatives say little, and of
-                   second order nothing
+                   second order nothing; 4 the value jumps next to the means, 5 it has no derivative there
+                   (a peak at a limit angle): trust the samples alone
 
     Inputs vary independently. Sobol indices need the extra `design`. Raises as `evaluate` does.
 
         >>> import desaxe as dx
-        >>> found = dx.tolerance("stroke", ec=(0.02, 1e-4), AB=(0.04, 5e-5), BC=0.064, sobol=0)
+        >>> ec, AB = dx.plus_minus(0.02, 1e-4), dx.plus_minus(0.04, 5e-5)
+        >>> found = dx.tolerance("stroke", ec=ec, AB=AB, BC=0.064, sobol=0)
         >>> list(found["contributions"]), round(1e6 * found["first_order"]["std"], 1)
         (['AB', 'ec'], 64.3)
     """
@@ -158,13 +99,16 @@ def tolerance(
     rough = [value for value in given.values() if isinstance(value, Inexact)]
     if not rough:
         missing = "".join(f"; {name} is missing" for name in LENGTHS if name not in given)
-        raise ValueError(f"tolerance: every input is exact; give one as (value, tolerance){missing}")
+        raise ValueError(
+            f"tolerance: every input is exact; give one as dx.plus_minus(value, tolerance){missing}"
+        )
     function = _function(name, given, branch)
     centre = {row.name: row.mean for row in rough}
     value = float(np.reshape(function.values({n: np.array([x]) for n, x in centre.items()}), -1)[0])
     slopes = function.slopes({n: np.array([x]) for n, x in centre.items()})[0]
-    bends, exact = function.bends(centre, STEP * np.array([row.std for row in rough]))
-    kink = bool(np.isnan(bends).any()) and not np.isnan(value)
+    steps = STEP * np.array([row.std for row in rough])
+    beside = function.beside(centre, steps)
+    bends, exact = function.bends(centre, beside)
     first, second, shares = _propagated(value, slopes, bends, rough)
     found = _sampled(function, rough, samples or (MANY if function.at_point else SOME), seed)
     drawn = _monte_carlo(found)
@@ -180,8 +124,15 @@ def tolerance(
         "sobol": indices,
         "worst_case": _covered(_worst_case(function, value, slopes, rough), found, covered),
         "agreement": _agreement(first, second, drawn, shares, indices),
-        "status": 1 if np.isnan(value) else 2 if drawn["infeasible"] else 3 if kink else 0,
+        "status": int(_status(value, drawn["infeasible"], beside, bends)),
     }
+
+
+def _status(value: float, lost: float, beside: Beside, bends: Array) -> ToleranceStatus:
+    """What is to be known of the answer; see `tolerance`."""
+    if np.isnan(value):
+        return ToleranceStatus.NO_VALUE
+    return ToleranceStatus.SOME_WITHOUT if lost else beside.status(bends)
 
 
 def _check(distribution: str, sigmas: Any, samples: Any, sobol: Any, seed: Any) -> None:
@@ -215,18 +166,9 @@ def _function(name: Any, given: Mapping[str, Any], branch: int) -> Function:
     if name == "margin":
         return Function("margin", False, fixed, varying, branch)
     names = [sensitivity(name, p) for p in varying]
-    if not _derived(names, "omega" in given):
+    if not derived(names, "omega" in given):
         raise ValueError(f"tolerance of {name}: its derivatives are not derived")
     return Function(name, True, fixed, varying, branch)
-
-
-def _derived(names: Sequence[str], state: bool) -> bool:
-    try:
-        for name in names:
-            quantity(name, state)
-    except ValueError:
-        return False
-    return True
 
 
 def _propagated(value: float, slopes: Array, bends: Array, rough: Sequence[Inexact]) -> tuple[Any, Any, Any]:

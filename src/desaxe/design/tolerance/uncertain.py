@@ -1,15 +1,13 @@
 """Inputs that are not known exactly: a value and its tolerance, or a distribution."""
 
-from collections.abc import Sequence
 from math import inf, sqrt
 from typing import Any, NamedTuple
-from warnings import warn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...mechanism.inputs import INPUTS
-from ...mechanism.ranges import Between, RangeWarning, middle_of
+from ...mechanism.ranges import Between, PlusMinus, middle_of, refuse_bare_pair
 from ...mechanism.read import read as read_number
 from ...mechanism.units import in_si
 from ...support.extras import needed
@@ -17,7 +15,7 @@ from ...support.quantity_text import PLUS_MINUS, with_unit_of
 
 Array = NDArray[np.float64]
 DISTRIBUTIONS = ("normal", "uniform")
-LARGE = 0.5  # of the value: a tolerance so large is probably the other end of a range
+EXPECTED = "a number, a value and tolerance (dx.plus_minus), a range (dx.between), or a distribution"
 
 
 class Inexact(NamedTuple):
@@ -67,35 +65,30 @@ def read(name: str, value: Any, distribution: str, sigmas: float) -> float | Ine
 
 
 def _pair(name: str, value: Any) -> tuple[float, float] | None:
-    """Value and tolerance of a pair, range or text such as "10 mm +- 0.1 mm"; None for an exact input."""
-    bare = type(value) in (tuple, list)
+    """Value and tolerance of a range, or of a text such as "10 mm +- 0.1 mm"; None for an exact input."""
     if isinstance(value, str):
-        parts = PLUS_MINUS.split(value)
+        parts = [part.strip() for part in PLUS_MINUS.split(value)]
         if len(parts) == 1:
             return None
-        value = tuple(part.strip() for part in parts)
-    if not isinstance(value, (tuple, list)):
-        return None
+        if len(parts) > 2:
+            raise ValueError(f'{name} = {value!r}: expected one value and its tolerance, "10 mm +- 0.1 mm"')
+        value = PlusMinus(*parts)
     if isinstance(value, Between):
         middle, half = middle_of(name, value)
         return _number(name, middle), half
-    if len(value) != 2:
-        raise ValueError(f"{name} = {value!r}: expected a pair (value, tolerance)")
-    nominal, tolerance = _with_tolerance(name, value)
-    if bare and nominal and LARGE * abs(nominal) <= tolerance < inf:
-        low, high = value
-        warn(
-            f"tolerance: {name} = {value!r} means {low} +- {high}: say so by "
-            f"dx.plus_minus({low!r}, {high!r}); a range from {low} to {high} is "
-            f"dx.between({low!r}, {high!r})",
-            RangeWarning,
-            stacklevel=5,
+    if isinstance(value, PlusMinus):
+        return _with_tolerance(name, value)
+    refuse_bare_pair(name, value)
+    if isinstance(value, (tuple, list)):
+        raise ValueError(
+            f"{name} = {value!r}: expected a pair (value, tolerance), dx.plus_minus(value, tolerance), or a "
+            "range, dx.between(low, high)"
         )
-    return nominal, tolerance
+    return None
 
 
-def _with_tolerance(name: str, value: Sequence[Any]) -> tuple[float, float]:
-    """The two numbers of a pair (value, tolerance)."""
+def _with_tolerance(name: str, value: PlusMinus) -> tuple[float, float]:
+    """The two numbers of a value and its tolerance."""
     nominal = _number(name, value[0])
     second: Any = with_unit_of(*value)
     if isinstance(second, str) and second.strip().endswith("%"):
@@ -116,4 +109,4 @@ def _percent(name: str, text: str) -> float:
 
 
 def _number(name: str, value: Any) -> float:
-    return read_number(INPUTS[name], value, "tolerance", "a number, a value and tolerance, or a distribution")
+    return read_number(INPUTS[name], value, "tolerance", EXPECTED)

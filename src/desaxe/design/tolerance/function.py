@@ -1,0 +1,113 @@
+"""A quantity as a function of the inputs that vary: values, exact slopes, second derivatives, smoothness."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...evaluation.evaluate import evaluate
+from ...mechanism.catalogue import quantity
+from ...mechanism.names import sensitivity
+from ...mechanism.status import ToleranceStatus
+from ..measures import Measure, measured
+from .uncertain import Array
+
+KINK = 0.1  # of the first-order change: slopes that jump by more have no derivative
+ROUNDING = 1e-11  # of a value
+
+
+class Function(NamedTuple):
+    """A quantity at a crank angle, or of a whole design, as a function of the varying inputs."""
+
+    measure: Measure
+    at_point: bool
+    fixed: Mapping[str, Any]
+    varying: tuple[str, ...]
+    branch: int
+
+    def values(self, columns: Mapping[str, Any]) -> Array:
+        """The values over samples; NaN where undefined."""
+        if self.at_point:
+            found = evaluate(str(self.measure), branch=self.branch, **self.fixed, **columns)
+        else:
+            found = measured([self.measure], {**self.fixed, **columns}, self.branch)[self.measure].value
+        return np.asarray(found, float)
+
+    def slopes(self, columns: Mapping[str, Any]) -> Array:
+        """The exact first derivatives over samples, one column for each input that varies."""
+        if self.at_point:
+            names = [sensitivity(str(self.measure), p) for p in self.varying]
+            found = evaluate(names, branch=self.branch, **self.fixed, **columns)
+            return np.stack([np.asarray(found[name]) for name in names], -1)
+        gradient = measured([self.measure], {**self.fixed, **columns}, self.branch)[self.measure].gradient
+        size = len(next(iter(columns.values())))
+        return np.stack([np.broadcast_to(gradient.get(p, 0.0), (size,)) for p in self.varying], -1)
+
+    def bends(self, centre: Mapping[str, Any], beside: "Beside") -> tuple[Array, bool]:
+        """The second derivatives at a point (NaN where undefined), and a flag: all are exact."""
+        n = len(self.varying)
+        pairs = [(i, j) for i in range(n) for j in range(i, n)]
+        names = [sensitivity(str(self.measure), self.varying[i], self.varying[j]) for i, j in pairs]
+        if not (self.at_point and derived(names, self.state)):
+            return beside.bends(), False
+        bends = np.empty((n, n))
+        found = evaluate(names, branch=self.branch, **self.fixed, **centre)
+        for (i, j), name in zip(pairs, names, strict=True):
+            bends[i, j] = bends[j, i] = found[name]
+        return bends, True
+
+    def beside(self, centre: Mapping[str, Any], steps: Array) -> "Beside":
+        """Values and slopes up to two steps beside a point, along each input."""
+        n = len(self.varying)
+        moves = (np.eye(n)[:, None, :] * steps * np.arange(-2.0, 3.0)[:, None]).reshape(-1, n)
+        columns = {p: centre[p] + moves[:, i] for i, p in enumerate(self.varying)}
+        return Beside(steps, self.values(columns).reshape(n, 5), self.slopes(columns).reshape(n, 5, n))
+
+    @property
+    def state(self) -> bool:
+        """True if the motion is a given state (omega)."""
+        return "omega" in self.fixed or "omega" in self.varying
+
+
+class Beside(NamedTuple):
+    """A function at -2, -1, 0, 1 and 2 steps along each of its inputs: values, and slopes by all of them."""
+
+    steps: Array
+    values: Array
+    slopes: Array
+
+    def bends(self) -> Array:
+        """Second derivatives by differences of the exact first ones; NaN across a kink."""
+        near, far = (
+            (self.slopes[:, 2 + k] - self.slopes[:, 2 - k]) / (2.0 * k * self.steps)[:, None] for k in (1, 2)
+        )
+        near, far = 0.5 * (near + near.T), 0.5 * (far + far.T)
+        change = float(np.abs(self.slopes * self.steps).max())
+        # Across a kink a difference over twice the steps is half as large.
+        if (np.abs(near - far) * np.outer(self.steps, self.steps) > KINK * change).any():
+            near[:] = np.nan
+        return near
+
+    def status(self, bends: Array) -> ToleranceStatus:
+        """Whether the function is smooth here, and why not.
+
+        Where it has slopes its value changes as they say, across a kink too; if not, it jumps.
+        """
+        if not (np.isfinite(self.values).all() and np.isfinite(self.slopes).all()):
+            return ToleranceStatus.NO_DERIVATIVE
+        along = np.einsum("iki->ik", self.slopes) * self.steps[:, None]
+        missed = np.abs(np.diff(self.values) - 0.5 * (along[:, 1:] + along[:, :-1]))
+        allowed = np.abs(np.diff(along)) + KINK * np.abs(along).max(axis=1, keepdims=True)
+        if (missed > allowed + ROUNDING * np.abs(self.values).max()).any():
+            return ToleranceStatus.JUMP
+        return ToleranceStatus.KINK if np.isnan(bends).any() else ToleranceStatus.OK
+
+
+def derived(names: Sequence[str], state: bool) -> bool:
+    """True if all of these sensitivities are derived."""
+    try:
+        for name in names:
+            quantity(name, state)
+    except ValueError:
+        return False
+    return True
