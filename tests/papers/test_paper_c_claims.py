@@ -10,6 +10,7 @@ import pytest
 from mpmath import mp, mpf
 
 import desaxe as dx
+from desaxe.errata.ledger import entries
 from tests.papers import newton_euler_c as ne
 from tests.papers import paper_c as C
 from tests.papers.motion_c import drive, inertia
@@ -324,6 +325,26 @@ def test_weights_are_left_out():
     assert float(alone) == pytest.approx(1595, abs=0.5)
     assert float(both) == pytest.approx(214, abs=0.5)
     assert float(1000 * ne.solve(report(g_X=-9.81))["T12"]) == pytest.approx(float(both), rel=1e-12)
+    # By hand: for a small turn the pin rises by r, both centres by half of it, and the slider, on y = -e,
+    # moves along x by -r tan(phi), where sin(phi) = e / BC.
+    lifted = 1000 * (weights[0] + weights[1]) * C.CRANK / 2
+    pushed = -1000 * C.FORCE * C.CRANK * C.ECCENTRICITY / np.sqrt(C.ROD**2 - C.ECCENTRICITY**2)
+    torques = [held_by_the_printed_matrix([sign * weight for weight in weights]) for sign in (1, 0, -1)]
+    assert torques == pytest.approx([pushed + lifted, pushed, pushed - lifted], rel=1e-12)
+    assert [round(torque) for torque in torques] == [214, -1381, -2976]
+    (entry,) = [entry for entry in entries("C") if entry.id == "C-weights"]
+    assert "+m2*g, +m3*g and +m4*g to the right-hand side" in entry.corrected
+
+
+def held_by_the_printed_matrix(weights):
+    """T12 in N mm at 0 deg, at rest, with these terms on the right of the rows along Y."""
+    pin = np.array([C.CRANK, 0.0])
+    slider = np.array([C.CRANK + np.sqrt(C.ROD**2 - C.ECCENTRICITY**2), -C.ECCENTRICITY])
+    crank, rod = pin / 2, (pin + slider) / 2
+    arms = {"R12": -crank, "R32": pin - crank, "R23": pin - rod, "R43": slider - rod}
+    parts = {f"{arm}{axis}": place[k] for arm, place in arms.items() for k, axis in enumerate("xy")}
+    right = [0, weights[0], 0, 0, weights[1], 0, C.FORCE, weights[2]]
+    return 1000 * np.linalg.solve(np.array(C.printed_matrix(parts), float), right)[-1]
 
 
 def test_captions_do_not_tell_figures_apart():
