@@ -81,7 +81,7 @@ def test_what_is_made_of_them_is_of_the_whole_design_too():
 
 def test_enclosures_hold_what_is_in_them():
     for name in ("stroke", "time_ratio", "theta_outer", "max_pressure_angle"):
-        found = dx.enclose(name, ec=(-0.01, 0.02), AB=(0.03, 0.04), BC=0.08)
+        found = dx.enclose(name, ec=dx.between(-0.01, 0.02), AB=dx.between(0.03, 0.04), BC=0.08)
         inside = [
             dx.evaluate(name, ec=ec, AB=AB, BC=0.08)
             for ec in np.linspace(-0.01, 0.02, 7)

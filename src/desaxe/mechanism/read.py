@@ -23,7 +23,7 @@ def number_of(row: Input, value: Any) -> float | None:
     try:
         number = float(value)
     except OverflowError:
-        number = inf
+        raise ValueError(f"{row.name} = {shown(value)}: it must be {row.limit}, at most 1.8e308") from None
     if not (-inf < number < inf and (row.least is None or row.least <= number)):
         raise ValueError(f"{row.name} = {shown(value)}: it must be {row.limit}")
     return number

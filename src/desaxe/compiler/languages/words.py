@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 
 class Words(NamedTuple):
-    """What a line of a program is not called (it gets an underscore), nor an output, nor a module."""
+    """Words that no line of a program is called (it gets an underscore), nor an output, nor a module."""
 
     lines: frozenset[str] = frozenset()
     outputs: frozenset[str] = frozenset()
