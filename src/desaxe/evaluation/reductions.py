@@ -84,7 +84,7 @@ class Reductions(NamedTuple):
 
     @property
     def alone(self) -> Reduction | None:
-        """The same where a kernel computes all of these kinds."""
+        """The request as kinds along one axis that a kernel computes; None where it is more than that."""
         return None if set(self.kinds) - set(KINDS) else self.along
 
     def plain(self) -> dict[str, list[Any]]:

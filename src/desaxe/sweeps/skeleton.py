@@ -75,7 +75,7 @@ def signed(files: Mapping[str, bytes]) -> dict[str, bytes]:
 
 
 def as_signed(root: Path) -> tuple[bool, list[str]]:
-    """Whether a signed store has all its files, and which of its metadata say something else by now."""
+    """True if a signed store has all its files, and the metadata that have changed since."""
     group = _facts((root / METADATA).read_bytes()) or {}
     whole, changed = True, []
     for place, digest in json.loads(group.get(f"attributes.{FILES}", "{}")).items():
@@ -101,7 +101,7 @@ def as_json(metadata: Mapping[str, Any]) -> bytes:
 
 
 def compared(root: Path, template: "xr.Dataset", chunk: Mapping[str, int]) -> Compared:
-    """How a store differs from the skeleton of a template."""
+    """The differences of a store from the skeleton of a template."""
     found = Compared({}, [])
     for place, data in skeleton_of(template, chunk).items():
         there, name = _bytes(root / place), place.rpartition("/")[0].partition("/")[0]
@@ -120,7 +120,7 @@ def compared(root: Path, template: "xr.Dataset", chunk: Mapping[str, int]) -> Co
 
 
 def _facts(metadata: bytes | None) -> dict[str, Any] | None:
-    """What the metadata of a group or an array say, whichever version wrote them; None for anything else."""
+    """The facts in the metadata of a group or an array, of any version; None for anything else."""
     try:
         found = json.loads(metadata or b"")
         if found["node_type"] == "array":
@@ -150,7 +150,7 @@ def _digest(data: bytes) -> str:
 
 
 def _differences(where: str, there: Any, here: Any) -> list[str]:
-    """How facts differ, one by one; what else a group has is somebody's own."""
+    """The differences of facts, one by one; a group may have more than these."""
     if not (isinstance(there, Mapping) and isinstance(here, Mapping)):
         return [f"{where} is {json.dumps(there, default=str)} there and {json.dumps(here, default=str)} here"]
     keys = dict.fromkeys((*here, *(there if where else ())))

@@ -89,7 +89,7 @@ class Beside(NamedTuple):
         return near
 
     def status(self, bends: Array) -> ToleranceStatus:
-        """Whether the function is smooth here, and why not.
+        """The status of the function here: smooth, or the reason why it is not.
 
         Where it has slopes its value changes as they say, across a kink too; if not, it jumps.
         """

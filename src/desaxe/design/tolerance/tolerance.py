@@ -129,7 +129,7 @@ def tolerance(
 
 
 def _status(value: float, lost: float, beside: Beside, bends: Array) -> ToleranceStatus:
-    """What is to be known of the answer; see `tolerance`."""
+    """The status of an answer; see `tolerance`."""
     if np.isnan(value):
         return ToleranceStatus.NO_VALUE
     return ToleranceStatus.SOME_WITHOUT if lost else beside.status(bends)
