@@ -11,7 +11,7 @@ import pytest
 
 import desaxe as dx
 from desaxe.cli import command, doctor, main
-from desaxe.errata.ledger import markdown
+from desaxe.errata.page import markdown
 from desaxe.mechanism.inputs import INPUTS
 
 COMPACTOR = str(Path(__file__).parents[2] / "examples" / "compactor.toml")

@@ -462,12 +462,12 @@ def printed_eq51(advance: Any, back: Any) -> Any:
 
 
 def printed_eq52(q: Case) -> Any:
-    """a_is as printed, m/s2 (Eq. 52): this is d2x/dt2 to first order in k/c, for e = 0."""
+    """a_is, m/s2 (Eq. 52): d2x/dt2 to first order in k/c, for e = 0."""
     return -q.k * q.omega**2 * (q.cos + q.k / q.c * q.m.cos(2 * q.theta))
 
 
-def corrected_eq52(q: Case) -> Any:
-    """The first-order a_s = -d2x/dt2, m/s2 (Eq. 52 corrected)."""
+def reversed_eq52(q: Case) -> Any:
+    """The first-order a_s = d2s/dt2, m/s2: Eq. 52 reversed."""
     return q.k * q.omega**2 * (q.cos + q.k / q.c * q.m.cos(2 * q.theta))
 
 

@@ -222,20 +222,27 @@ def changed(**lines: str) -> str:
 
 
 ROW_3 = "-R12y R12x -R32y -R32x 0 0 0 1;"
-CORRECTED_ROW_3 = "-R12y R12x -R32y R32x 0 0 0 1;"
+CORRECTED_ROW_3 = "-R12y R12x -R32y +R32x 0 0 0 1;"
+
+
+RIGHT = {
+    "R12x": "-r*cosd(theta)/2",
+    "R12y": "-r*sind(theta)/2",
+    "R23x": "-l*cosd(11.1599368)/2",
+    "R43x": "-R23x",
+    "R43y": "-R23y",
+    "Fpx": "-50",
+}
 
 
 def corrected_listing(**lines: str) -> str:
-    """The listing with arms and signs put right, and inertias about z of the links it describes."""
-    right = {
-        "R12x": "-r*cosd(theta)/2",
-        "R12y": "-r*sind(theta)/2",
-        "R23x": "-l*cosd(11.1599368)/2",
-        "R43x": "-R23x",
-        "R43y": "-R23y",
-        "Fpx": "-50",
-    }
-    return changed(**(right | lines)).replace(ROW_3, CORRECTED_ROW_3)
+    """The listing with arms and signs put right."""
+    return changed(**(RIGHT | lines)).replace(ROW_3, CORRECTED_ROW_3)
+
+
+def line(name: str) -> str:
+    """The line of the listing that assigns a name, as printed."""
+    return re.search(rf"^{name} ?= ?.*;$", LISTING, re.MULTILINE).group()
 
 
 HELD = {"alpha2": "0", "alpha3": "0", "aG2y": "0", "aG3x": "0", "aG3y": "0", "aG4x": "0"}
@@ -298,6 +305,8 @@ HEADINGS = (
     ("3.2.2", "Doubled Constant Torque"),
     ("3.1", "Constant Driving Torque"),
 )
+
+BLUE = "(Here, blue indicates plot for 500 N mm)"
 
 FIGURES = {  # number: (in the table of figures, under the figure)
     1: ("Static Force Analysis at 0deg", "Static Force Analysis at 0deg"),

@@ -5,8 +5,10 @@ import json
 import pytest
 
 from desaxe.cli import main
-from desaxe.errata.ledger import FINE, conventions, entries, table, title
+from desaxe.errata.equations import FINE
+from desaxe.errata.ledger import conventions, documents, entries, harm, title
 from desaxe.errata.search import matching
+from desaxe.errata.terminal import table
 
 
 def shown(capsys, *words):
@@ -34,7 +36,7 @@ def test_words_find_entries(words, ids):
 
 
 def test_an_equation_is_told_with_its_paper(capsys):
-    out = shown(capsys, "eq20", "--document", "B")
+    out = shown(capsys, "eq20", "--paper", "B")
     flat = " ".join(out.split())
     assert title("B") in flat
     assert all(" ".join(note.split()) in flat for note in conventions("B"))
@@ -74,14 +76,34 @@ def test_terminal_width(capsys, monkeypatch):
 def test_wrong_equations_in_a_line_each(capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "400")
     out = shown(capsys, "--equations")
-    assert sum(line.startswith("  Eq. ") for line in out.splitlines()) == 19
+    assert sum(line.startswith("  Eq. ") for line in out.splitlines()) == 18
     assert "Paper A: of 25 numbered equations 1 wrong." in out
-    assert "Paper B: of 58 numbered equations 18 wrong." in out
+    assert "Paper B: of 58 numbered equations 17 wrong." in out
     assert "Paper C numbers no equation." in out
     assert r"\sqrt" in shown(capsys, "--equations", "--latex")
 
 
-def test_everything_without_a_choice(capsys):
+def test_the_harm_without_a_choice(capsys):
     out = shown(capsys)
+    assert len(out.splitlines()) <= 60
+    flat = " ".join(out.split())
+    for letter in documents():
+        assert title(letter) in flat
+        assert all(row.what in flat and row.cost in flat for row in harm(letter))
+    assert "{-}AB*omega(theta)*sin(theta) {-} BC*omega_BC" in flat
+    assert "-R12y R12x -R32y {+}R32x 0 0 0 1;" in flat
+    assert all(word in flat for word in ("B-eq17", "--paper", "--all", "--equations"))
+
+
+def test_everything(capsys):
+    out = shown(capsys, "--all")
     assert all(entry.id in out for entry in entries())
     assert out.rstrip().endswith(" ".join(table(entries()).rsplit("\n", 1)[-1].split()))
+
+
+def test_a_paper_begins_with_its_harm(capsys):
+    out = shown(capsys, "--paper", "b")
+    assert out.index(harm("B")[0].what) < out.index("B-eq1 ")
+    assert all(entry.id in out for entry in entries("B"))
+    assert title("A") not in " ".join(out.split())
+    assert harm("B")[0].what not in shown(capsys, "--paper", "B", "--wrong")

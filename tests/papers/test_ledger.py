@@ -1,90 +1,118 @@
-"""The ledger of errata: complete, consistent, and every verdict with a proof."""
+"""The ledgers of errata: complete, tied to their proofs, frozen, filtered."""
 
-import ast
 import re
 from collections import Counter
-from functools import cache
-from pathlib import Path
 
 import pytest
+from mpmath import mp
 
 from desaxe.errata import ledger as _errata
-from desaxe.errata.ledger import VERDICTS, Entry, entries, table
+from desaxe.errata.ledger import VERDICTS, Entry, documents, entries, harm, sheets
+from desaxe.errata.terminal import first_lines, table
+from tests.effort import cases
+from tests.papers import mutate
+from tests.papers import paper_c as C
+from tests.papers.digits import DIGITS
+from tests.papers.entry_checks import harm_complaints, raw_entries
+from tests.papers.frozen import frozen, row_of
+from tests.papers.proofs import FOLDER, all_proofs
+from tests.papers.test_paper_a_listing import LISTING
 
-ROOT = Path(__file__).resolve().parents[2]
-LISTING = [entry for entry in entries("A") if entry.where == "Listing, Sec. II.D"]
-PARTS = ["alpha_BC1", "alpha_BC2", "alpha_BC3", "alpha_BC4", "a_C1", "a_C2", "a_C3", "a_C4"]
-LINES = ["omega", "delta", "phi", "Y", "V_B", "a_B", "omega_BC", "V_C", "alpha_BC", "a_C", *PARTS]
-FIG_8 = {1: ["omega"], 2: ["V_B", "a_B", "V_Bmag", "a_Bmag", "X"], 3: ["omega_BC", "V_C", "alpha_BC", "a_C"]}
-
-
-def defined_name(line):
-    """The name a line of the listing defines, exactly as printed."""
-    return line.printed.split("(")[0]
-
-
-def used_names(line):
-    """The functions a line of the listing calls, with the paper's small c read as C."""
-    right = line.printed.split(":=")[1].replace("a_c", "a_C")
-    return set(re.findall(r"([A-Za-z_0-9]+)\(", right)) - {"sin", "cos", "asin", "acos", "sqrt"}
+TWICE = {2: "ab", 5: "ab", 37: "ab", 42: "ab", 46: "ab"}  # equations of paper B with two labels
+LABELS = [f"{number}{letter}" for number in range(1, 54) for letter in TWICE.get(number, [""])]
+LISTING_A = [name.replace("a_c", "a_C") for name in LISTING]
 
 
-def needs(name):
-    """Every function of the listing that a function needs, itself left out."""
-    lines = {defined_name(line).replace("a_c", "a_C"): line for line in LISTING}
-    direct = used_names(lines[name])
-    return direct.union(*(needs(other) for other in direct))
+def ids(pattern, document=None):
+    """Counts of the parts of ids that match a pattern."""
+    return Counter(found.group(1) for e in entries(document) if (found := re.fullmatch(pattern, e.id)))
 
 
-@cache
-def functions_in(path):
-    """The test functions of a file, each with the texts that may stand in its parameter list."""
-    tree = ast.parse((ROOT / path).read_text("utf-8"))
-    texts = {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant)}
-    names = {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
-    parametrised = {
-        node.name
-        for node in tree.body
-        if isinstance(node, ast.FunctionDef)
-        and any("parametrize" in ast.unparse(d) for d in node.decorator_list)
+# --- complete -------------------------------------------------------------------------------------
+
+
+def test_every_equation_and_line_once():
+    assert ids(r"A-eq(\w+)") == {f"{number}": 1 for number in range(1, 26)}
+    assert ids(r"B-eq(\w+)") == dict.fromkeys(LABELS, 1)
+    assert len(LABELS) == 58
+    assert ids(r"A-listing-(?!name|order)(\w+)") == dict.fromkeys(LISTING_A, 1)
+    assert ids(r"C-(link\d-(?:x|y|moment))") == {
+        f"link{n}-{p}": 1 for n in (2, 3, 4) for p in ("x", "y", "moment")
     }
-    return names, parametrised, texts
+    assert ids(r"C-matrix-row(\d)") == ids(r"C-listing-A-row(\d)") == {f"{n}": 1 for n in range(1, 9)}
+    assigned = {"r": "lengths", "l": "lengths"}
+    assert {assigned.get(name, name) for name in C.scalars()} <= set(ids(r"C-listing-(\w+)"))
+    assert set(C.VALUES) <= set(ids(r"C-value-(\w+)"))
 
 
-def test_every_equation_once():
-    equations = [entry.id for entry in entries("A") if re.fullmatch(r"A-eq\d+", entry.id)]
-    assert Counter(equations) == {f"A-eq{number}": 1 for number in range(1, 26)}
+def test_equations_stand_where_they_say():
+    for entry in entries():
+        if number := re.fullmatch(r"[AB]-eq(\w+)", entry.id):
+            assert re.match(rf"Eq\. {number.group(1)}\b", entry.where)
 
 
-def test_every_line_of_the_listing_once():
-    ids = Counter(entry.id for entry in LISTING)
-    assert ids == {f"A-listing-{name}": 1 for name in LINES}
-
-
-def test_ids_are_unique_and_carry_their_document():
-    ids = [entry.id for entry in entries()]
-    assert len(ids) == len(set(ids))
-    assert all(entry.id.startswith(entry.document + "-") for entry in entries())
-
-
-@pytest.mark.parametrize("entry", entries(), ids=lambda entry: entry.id)
-def test_entry_is_complete(entry):
+@pytest.mark.parametrize("key", raw_entries())
+def test_entry_is_complete(key):
+    raw = raw_entries()[key]
+    entry = next(entry for entry in entries() if entry.id == key)
     assert all(isinstance(field, str) and field.isascii() for field in entry)
+    assert not re.search(r"[{}]", "".join(entry)), "a mark that is none"
     assert entry.verdict in VERDICTS
-    assert bool(entry.corrected) == (entry.verdict not in ("correct", "given"))
+    assert entry.id.startswith(entry.document + "-")
     assert all(getattr(entry, field) for field in ("where", "printed", "evidence"))
-    assert entry.corrected != entry.printed
+    assert entry.corrected != entry.printed == raw["printed"]
 
 
-@pytest.mark.parametrize("entry", entries(), ids=lambda entry: entry.id)
-def test_proof_exists(entry):
-    path, name, parameter = re.fullmatch(
-        r"(tests/papers/\w+\.py)::(test_\w+)(?:\[(\w+)\])?", entry.test
-    ).groups()
-    names, parametrised, texts = functions_in(path)
-    assert name in names
-    assert (parameter is not None) == (name in parametrised)
-    assert parameter is None or parameter in texts
+# --- tied -----------------------------------------------------------------------------------------
+
+
+def test_every_entry_has_a_proof_and_every_proof_its_entry():
+    assert list(Counter(all_proofs().keys() ^ raw_entries().keys())) == []
+    assert len(raw_entries()) == len(entries())
+
+
+def test_proofs_know_nothing_of_the_ledger():
+    """No proof can take what the ledger says that a paper prints for the paper."""
+    for path in FOLDER.glob("test_paper_*.py"):
+        assert "errata" not in path.read_text("utf-8"), path.name
+
+
+@pytest.mark.parametrize("key", raw_entries())
+def test_entry_is_as_frozen(key):
+    """`python -m tests.papers.frozen` freezes a change that is meant."""
+    assert row_of(raw_entries()[key]) == frozen()[key]
+
+
+def test_nothing_is_lost():
+    assert set(frozen()) == set(raw_entries())
+
+
+def test_proof_of_each_line_of_the_harm():
+    all_proofs()
+    for letter in documents():
+        assert 1 < len(harm(letter)) <= 12
+        for row in sheets()[letter]["harm"]:
+            used = row["entries"] + row["write"]
+            assert all(key in raw_entries() for key in used)
+            with mp.workdps(DIGITS):
+                assert harm_complaints(row) == []
+
+
+@pytest.mark.sampled
+def test_changes_are_noticed():
+    """Changes of some entries are noticed, nearly all of them by the proofs alone; words only by hashes."""
+    seed, entries_tried = 34, cases(25, 361)
+    by_proofs = ["sign", "number", "verdict", "corrected", "evidence", "test"]
+    counts, missed = mutate.survivors(seed, 12 * entries_tried, False, False, by_proofs, entries_tried)
+    assert all(seen >= 0.97 * made > 0 for made, seen in counts.values()), missed
+    counts, missed = mutate.survivors(
+        seed + 1, 4 * entries_tried, True, True, list(mutate.KINDS), entries_tried
+    )
+    assert missed == []
+    assert min(made for made, _ in counts.values()) > 0
+
+
+# --- read -----------------------------------------------------------------------------------------
 
 
 def test_filters():
@@ -124,38 +152,12 @@ def test_table_counts_verdicts():
     assert table(iter(rows)) == table(rows)
 
 
+@pytest.mark.parametrize("width", [80, 100, 120])
+def test_first_lines_are_few(width):
+    lines = first_lines(documents(), width).splitlines()
+    assert len(lines) <= 60
+    assert all(len(line) <= width for line in lines)
+
+
 def test_ledgers_are_read_once():
     assert _errata._ledgers() is _errata._ledgers()
-
-
-def test_listing_defines_a_name_that_is_not_called():
-    defined = {defined_name(line) for line in LISTING}
-    calls = {
-        entry.printed.split("(")[0] for entry in entries("A") if entry.id in ("A-example-a_C", "A-case2-a_C")
-    }
-    assert calls == {"a_C"}
-    assert "a_c" in defined
-    assert "a_C" not in defined
-    assert "V_C" in defined
-
-
-def test_listing_is_not_in_order():
-    names = [defined_name(line).replace("a_c", "a_C") for line in LISTING]
-    forward = [name for n, name in enumerate(names) if used_names(LISTING[n]) & set(names[n:])]
-    assert forward == ["alpha_BC", "a_C"]
-
-
-def test_fig8_lists_functions_that_are_never_defined():
-    defined = {defined_name(line).replace("a_c", "a_C") for line in LISTING}
-    listed = {name for step in FIG_8.values() for name in step}
-    assert listed - defined == {"V_Bmag", "a_Bmag", "X"}
-    assert defined - listed == {"delta", "phi", "Y", *PARTS}
-
-
-def test_fig8_steps_use_only_earlier_ones():
-    step = {name: number for number, names in FIG_8.items() for name in names}
-    defined = [name for name in step if name not in ("V_Bmag", "a_Bmag", "X")]
-    assert needs("V_B") == needs("a_B") == {"omega"}
-    assert all(step[other] <= step[name] for name in defined for other in needs(name) & set(step))
-    assert needs("V_C") & set(FIG_8[1])
-    assert not needs("V_B") & set(FIG_8[3])

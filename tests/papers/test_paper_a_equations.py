@@ -6,12 +6,11 @@ import math
 import pytest
 from mpmath import mp, mpf
 
-from tests.papers import loop
+from tests.papers import free_bodies, loop
 from tests.papers import paper_a as A
 from tests.papers.designs import (
     CASE,
     DESIGNS,
-    SHEET,
     SPEED,
     agrees,
     close,
@@ -23,6 +22,9 @@ from tests.papers.designs import (
     scale_of,
     three_digits,
 )
+from tests.papers.proofs import proves
+
+RESULTS = [-20.2, -7740.0, -994.0]  # V_C, alpha_BC and a_C of the test cases, as printed
 
 # --- numbered equations ---------------------------------------------------------------------------
 
@@ -42,6 +44,7 @@ def carried(motion, order):
     return rates(centre), rates(carried_pin)
 
 
+@proves("A-eq1", "correct")
 def test_eq1():
     for motion in DESIGNS:
         with mp.workdps(loop.DIGITS):
@@ -54,12 +57,14 @@ def test_eq1():
         assert at_rest == pytest.approx((package("V_B_X", motion), package("V_B_Y", motion)), rel=1e-12)
 
 
+@proves("A-eq2", "correct")
 def test_eq2():
     agrees(
         lambda p: A.printed_eq2(p.theta, p.AB, p.omega, p.m), lambda q, p: paper_frame(q, "V_B"), "velocity"
     )
 
 
+@proves("A-eq3", "correct")
 def test_eq3():
     for motion in DESIGNS:
         with mp.workdps(loop.DIGITS):
@@ -77,6 +82,7 @@ def test_eq3():
         )
 
 
+@proves("A-eq4", "correct", cites="2")
 def test_eq4():
     agrees(
         lambda p: A.printed_eq4(p.theta, p.AB, p.omega, p.alpha, p.m),
@@ -85,15 +91,18 @@ def test_eq4():
     )
 
 
+@proves("A-eq5", "correct")
 def test_eq5():
     agrees(lambda p: A.printed_eq5(*p.design, p.m), lambda q, p: q("delta"), "angle")
     agrees(lambda p: p.m.pi / 2 - A.printed_eq5(*p.design, p.m), lambda q, p: q("phi"), "angle")
 
 
+@proves("A-eq6", "correct")
 def test_eq6():
     agrees(lambda p: A.printed_eq6(*p.design, p.m), lambda q, p: q("phi"), "angle")
 
 
+@proves("A-eq7", "correct")
 def test_eq7():
     agrees(lambda p: A.printed_eq7(*p.design, p.m), lambda q, p: q("Y"), "length")
     for motion in DESIGNS:
@@ -103,6 +112,7 @@ def test_eq7():
             assert close(rod, p.BC, 0, 30)
 
 
+@proves("A-eq8", "correct")
 def test_eq8():
     def velocity(p):
         omega_BC = A.printed_eq10(*p.design, p.omega, p.m)
@@ -112,6 +122,7 @@ def test_eq8():
     agrees(velocity, lambda q, p: (q("V_B_X"), q("V_B_Y")), "velocity")
 
 
+@proves("A-eq9", "correct", cites="2")
 def test_eq9():
     agrees(
         lambda p: A.printed_eq2(p.theta, p.AB, p.omega, p.m),
@@ -120,14 +131,20 @@ def test_eq9():
     )
 
 
+@proves("A-eq10", "correct")
 def test_eq10():
     agrees(lambda p: A.printed_eq10(*p.design, p.omega, p.m), lambda q, p: q("omega_BC"), "rate")
+    motion = DESIGNS[0]
+    turn = loop.rate(lambda t: free_bodies.turn_of_rod(motion, t), 1)
+    return {"turn": turn, "names": {"omega_BC": loop.truth("omega_BC", motion)}}
 
 
+@proves("A-eq11", "correct")
 def test_eq11():
     agrees(lambda p: A.printed_eq11(*p.design, p.omega, p.m), lambda q, p: q("V_C"), "velocity")
 
 
+@proves("A-eq12", "correct", cites="2")
 def test_eq12():
     def acceleration(p):
         omega_BC = A.printed_eq10(*p.design, p.omega, p.m)
@@ -140,6 +157,7 @@ def test_eq12():
     agrees(acceleration, lambda q, p: (q("a_B_X"), q("a_B_Y")), "acceleration")
 
 
+@proves("A-eq13", "correct", cites="19")
 def test_eq13():
     agrees(
         lambda p: A.printed_eq4(p.theta, p.AB, p.omega, p.alpha, p.m),
@@ -148,6 +166,7 @@ def test_eq13():
     )
 
 
+@proves("A-eq14", "correct")
 def test_eq14():
     agrees(lambda p: A.printed_eq14(*p.design, p.omega, p.alpha, p.m), lambda q, p: q("alpha_BC"), "rate2")
 
@@ -157,6 +176,7 @@ def alpha_part(q, p, axis):
     return q(f"V_B_{axis}") * p.alpha / p.omega
 
 
+@proves("A-eq15", "correct")
 def test_eq15():
     agrees(
         lambda p: A.printed_eq15(p.theta, p.AB, p.omega, p.m),
@@ -165,6 +185,7 @@ def test_eq15():
     )
 
 
+@proves("A-eq16", "correct")
 def test_eq16():
     agrees(
         lambda p: A.printed_eq16(p.theta, p.AB, p.alpha, p.m),
@@ -173,6 +194,7 @@ def test_eq16():
     )
 
 
+@proves("A-eq17", "correct")
 def test_eq17():
     agrees(
         lambda p: A.printed_eq17(*p.design, p.omega, p.m),
@@ -181,10 +203,12 @@ def test_eq17():
     )
 
 
+@proves("A-eq18", "correct")
 def test_eq18():
     agrees(lambda p: A.printed_eq18(*p.design, p.m), lambda q, p: q("Y") - p.pin_height, "length")
 
 
+@proves("A-eq19", "sign", cites="22 23 13 2 19 22 23")
 def test_eq19():
     agrees(
         lambda p: A.corrected_eq19(*p.design, p.omega, p.alpha, p.m), lambda q, p: q("a_C"), "acceleration"
@@ -195,14 +219,28 @@ def test_eq19():
         "acceleration",
     )
     differs(lambda p: A.printed_eq19(*p.design, p.omega, p.alpha), "a_C")
-    point = float_point(CASE)
-    assert A.printed_eq19(*point.design, point.omega, 0.0) == pytest.approx(-2090.66, abs=0.01)
     for motion in DESIGNS:
         one, two, three, four = A.a_C_parts(*float_point(motion)[:6])
         with_eqs_22_and_23_turned = one + two - (-three) - (-four)
         assert close(with_eqs_22_and_23_turned, package("a_C", motion), scale_of("acceleration", motion), 12)
+    run, tried = signs_that_were_run()
+    assert run == [((-1, -1), (1, -1), (1, 1, 1))]
+    p = exact_point(CASE)
+    all_plus = A.corrected_eq19(*p.design, p.omega, 0, mp)
+    values = {"choices": mpf(tried), "three": list(map(mpf, RESULTS)), "plain": mpf(RESULTS[2])}
+    return case_as_printed() | values | {"all_plus": all_plus}
 
 
+def case_as_printed():
+    """a_C of test case 2 by Eq. 19 and by the listing as printed, which agree, m/s2."""
+    sheet = A.Worksheet(mpf(SPEED), 0, mp)
+    p = exact_point(CASE)
+    by_equation, by_listing = A.printed_eq19(*p.design, p.omega, 0, mp), sheet.a_C(*CASE[:4])
+    assert close(by_equation, by_listing, 1, 30)
+    return {"as_printed": by_listing}
+
+
+@proves("A-eq20", "correct")
 def test_eq20():
     agrees(
         lambda p: A.printed_eq20(p.theta, p.AB, p.omega, p.m),
@@ -211,6 +249,7 @@ def test_eq20():
     )
 
 
+@proves("A-eq21", "correct")
 def test_eq21():
     agrees(
         lambda p: A.printed_eq21(p.theta, p.AB, p.alpha, p.m),
@@ -219,6 +258,7 @@ def test_eq21():
     )
 
 
+@proves("A-eq22", "correct", cites="13 19")
 def test_eq22():
     agrees(
         lambda p: A.printed_eq22(*p.design, p.omega, p.alpha, p.m),
@@ -227,6 +267,7 @@ def test_eq22():
     )
 
 
+@proves("A-eq23", "correct", cites="13 19")
 def test_eq23():
     agrees(
         lambda p: A.printed_eq23(*p.design, p.omega, p.m),
@@ -235,12 +276,14 @@ def test_eq23():
     )
 
 
+@proves("A-eq24", "correct", cites="A-claim-sensitivity-functions")
 def test_eq24():
     agrees(lambda p: A.printed_eq24(*p.design, p.sheet), lambda q, p: q("V_C"), "velocity")
     faster = A.Worksheet(2 * SPEED, 0.0)
     assert A.printed_eq24(*CASE[:4], faster) == pytest.approx(2 * package("V_C", CASE), rel=1e-12)
 
 
+@proves("A-eq25", "correct", cites="24 A-claim-sensitivity-functions")
 def test_eq25():
     agrees(lambda p: A.printed_eq25(*p.design, p.sheet), lambda q, p: q("a_C"), "acceleration")
     faster, accelerating = A.Worksheet(2 * SPEED, 0.0), A.Worksheet(SPEED, 1000.0)
@@ -250,71 +293,18 @@ def test_eq25():
     )
 
 
-# --- the listing ----------------------------------------------------------------------------------
-
-LINES = {
-    "omega": (lambda q, p: q("omega"), "rate"),
-    "delta": (lambda q, p: q("delta"), "angle"),
-    "phi": (lambda q, p: q("phi"), "angle"),
-    "Y": (lambda q, p: q("Y"), "length"),
-    "omega_BC": (lambda q, p: q("omega_BC"), "rate"),
-    "alpha_BC": (lambda q, p: q("alpha_BC"), "rate2"),
-    "alpha_BC1": (lambda q, p: q("a_B_X") - alpha_part(q, p, "X"), "acceleration"),
-    "alpha_BC2": (lambda q, p: alpha_part(q, p, "X"), "acceleration"),
-    "alpha_BC3": (lambda q, p: -(q("omega_BC") ** 2) * p.side, "acceleration"),
-    "alpha_BC4": (lambda q, p: q("Y") - p.pin_height, "length"),
-    "a_C1": (lambda q, p: q("a_B_Y") - alpha_part(q, p, "Y"), "acceleration"),
-    "a_C2": (lambda q, p: alpha_part(q, p, "Y"), "acceleration"),
-    "a_C3": (lambda q, p: -q("alpha_BC") * p.side, "acceleration"),
-    "a_C4": (lambda q, p: -(q("omega_BC") ** 2) * (q("Y") - p.pin_height), "acceleration"),
-}
-
-
-@pytest.mark.parametrize("name", LINES)
-def test_listing_line(name):
-    expected, kind = LINES[name]
-    arguments = 1 if name == "omega" else 4
-    agrees(lambda p: getattr(p.sheet, name)(*p.design[:arguments]), expected, kind)
-
-
-def test_listing_V_B():
-    agrees(lambda p: p.sheet.V_B(p.theta, p.AB), lambda q, p: paper_frame(q, "V_B"), "velocity")
-
-
-def test_listing_a_B():
-    agrees(lambda p: p.sheet.a_B(p.theta, p.AB), lambda q, p: paper_frame(q, "a_B"), "acceleration")
-
-
-def test_listing_V_C():
-    agrees(lambda p: p.sheet.corrected_V_C(*p.design), lambda q, p: q("V_C"), "velocity")
-    agrees(lambda p: p.sheet.V_C(*p.design), lambda q, p: -q("V_C"), "velocity")
-    differs(lambda p: p.sheet.V_C(*p.design), "V_C")
-    assert three_digits(SHEET.V_C(*CASE[:4])) == 20.2
-    choices = list(itertools.product((1, -1), repeat=2))
-    printing = [
-        signs for signs in choices if three_digits(A.V_C_of_signs(signs, *float_point(CASE)[:5])) == -20.2
-    ]
-    assert printing == [(-1, -1)]
-
-
-def test_listing_a_C():
-    agrees(lambda p: p.sheet.corrected_a_C(*p.design), lambda q, p: q("a_C"), "acceleration")
-    agrees(lambda p: p.sheet.a_C(*p.design), lambda q, p: 2 * q("a_B_Y") - q("a_C"), "acceleration")
-    differs(lambda p: p.sheet.a_C(*p.design), "a_C")
-    assert SHEET.a_C(*CASE[:4]) == pytest.approx(-2090.66, abs=0.01)
-
-
-def test_one_choice_of_signs_was_run():
-    """All signs of the terms that are there at alpha = 0: 4 choices in V_C, 4 in alpha_BC, 8 in a_C."""
+def signs_that_were_run():
+    """Signs of the terms present without alpha that print the three results, and the number tried."""
     theta, ec, AB, BC, omega = float_point(CASE)[:5]
     phi = A.printed_eq6(theta, ec, AB, BC)
     centripetal = BC * A.printed_eq10(theta, ec, AB, BC, omega) ** 2 * math.cos(phi)
+    choices = list(itertools.product(*(itertools.product((1, -1), repeat=n) for n in (2, 2, 3))))
     run = []
-    for v, b, c in itertools.product(*(itertools.product((1, -1), repeat=n) for n in (2, 2, 3))):
+    for v, b, c in choices:
         V_C = A.V_C_of_signs(v, theta, ec, AB, BC, omega)
         alpha_BC = A.alpha_BC_of_signs((b[0], 1, b[1]), theta, ec, AB, BC, omega, 0.0)
         parts = -AB * omega**2 * math.cos(theta), -BC * alpha_BC * math.sin(phi), -centripetal
         a_C = sum(sign * part for sign, part in zip(c, parts, strict=True))
-        if [three_digits(x) for x in (V_C, alpha_BC, a_C)] == [-20.2, -7740.0, -994.0]:
+        if [three_digits(x) for x in (V_C, alpha_BC, a_C)] == RESULTS:
             run.append((v, b, c))
-    assert run == [((-1, -1), (1, -1), (1, 1, 1))]
+    return run, len(choices)

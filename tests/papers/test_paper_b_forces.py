@@ -1,39 +1,29 @@
-"""Paper B: equivalent masses, forces and torques, Eqs. 31 to 48, and the existing model, Eqs. 52 and 53."""
+"""Paper B: equivalent masses, forces and torques, Eqs. 31 to 48."""
 
-import itertools
-import math
-
-import pytest
 from mpmath import mp, mpf
 
+from tests.papers import curves_b as curves
 from tests.papers import free_bodies, loop
 from tests.papers import paper_b as B
-from tests.papers.designs import close, float_point
+from tests.papers.designs import close
 from tests.papers.designs_b import (
-    EXTREMES,
     LOADED,
-    OFFSETS,
-    STEADY,
-    TABLE_1,
-    TABLE_1_BODIES,
-    TABLE_2,
     balanced,
-    case,
     equivalent,
     exact_case,
     exact_masses,
     excess,
     force_scale,
     lumped,
-    off,
-    table_1,
     unbalanced,
 )
 from tests.papers.free_bodies import Bodies
+from tests.papers.proofs import proves
 
 # --- equivalent masses ----------------------------------------------------------------------------
 
 
+@proves("B-eq31", "correct", cites="32 33")
 def test_eq31():
     for motion, masses in LOADED:
         with mp.workdps(loop.DIGITS):
@@ -47,6 +37,7 @@ def rod_bodies(masses):
     return Bodies(m_rod=masses.m_c, r_rod=masses.c_2)
 
 
+@proves("B-eq32", "correct", cites="3")
 def test_eq32():
     """Moments about point 3: the rod's mass at its centre and m_2c at the pin weigh the same."""
     for motion, masses in LOADED:
@@ -57,6 +48,8 @@ def test_eq32():
             assert close(B.printed_eq32(q, w) * q.c, true, 0, 30)
 
 
+@proves("B-text-moment-point-3", "typo", says="3", cites="3 32 2 33 3 33 2")
+@proves("B-eq33", "correct", cites="2 3 32")
 def test_eq33():
     """Moments about point 2; with Eq. 32 the two masses keep the rod's centre of mass."""
     for motion, masses in LOADED:
@@ -80,6 +73,7 @@ def rod_as_two_masses(motion, masses):
     return free_bodies.solve(motion, moved)
 
 
+@proves("B-eq34", "correct")
 def test_eq34():
     """The push that m_3 needs along the axis is that of the slider and of the rod's share together."""
     for motion, masses in LOADED:
@@ -91,6 +85,7 @@ def test_eq34():
             assert close(push, B.printed_eq34(q, w) * loop.truth("a_C", motion), abs(push), 30)
 
 
+@proves("B-eq35", "correct")
 def test_eq35():
     """m_2k at the pin shakes the frame as the crank's mass does at its centre."""
     for motion, masses in LOADED:
@@ -114,6 +109,7 @@ def total_inertia(motion, masses):
     return sum(m * a[1] for m, a in parts), sum(m * a[0] for m, a in parts)
 
 
+@proves("B-eq36", "correct")
 def test_eq36():
     """With m_2 and m_3 the model has the true bodies' total of mass times acceleration."""
     for motion, masses in LOADED:
@@ -134,6 +130,8 @@ def rest_of_mass(q, masses):
     return w.m_k * (1 - w.k_1 / q.k) + B.printed_eq33(q, w)
 
 
+@proves("B-text-forces-a_c", "wrong claim", cites="37 48 B-claim-equivalent-masses")
+@proves("B-claim-equivalent-masses", "correct", cites="31 36 1")
 def test_lumped_rod_turns_too_heavily():
     """Two masses at the pins keep mass and centre but not the moment of inertia, and the torque shows it."""
     for motion, masses in LOADED:
@@ -160,19 +158,27 @@ def test_lumped_rod_turns_too_heavily():
             share = B.printed_eq33(q, w) * loop.truth("a_C", motion)
             assert close(moved["F_A_Y"], true["F_A_Y"], scale / q.k, 30)
             assert close(moved["F_C_Y"] - true["F_C_Y"], share, scale / q.k, 30)
+    letters = dict(zip(("m_k", "m_c", "m_s", "k_1", "c_2"), w, strict=True))
+    names = letters | {"c_3": q.c - w.c_2, "I": inertia, "alpha_BC": loop.truth("alpha_BC", motion)}
+    names |= {name: loop.truth(name, motion) for name in ("omega_BC", "omega")}
+    return rod_of_table_1() | {"excess": two - inertia, "difference": difference, "names": names}
 
 
-def test_rod_of_table_1():
-    """A uniform rod of 0.5 kg and 64 mm: 170.7 kg mm2 about its middle; as two masses 512, thrice as much."""
-    mass, length = TABLE_1["M_c"], TABLE_1["c"]
-    uniform = float(mp.quad(lambda z: mass / length * z**2, [-length / 2, length / 2]))
-    assert uniform == pytest.approx(mass * length**2 / 12, rel=1e-12) == pytest.approx(170.67e-6, rel=1e-4)
-    assert mass * (length / 2) ** 2 == pytest.approx(512e-6, rel=1e-12)
+def rod_of_table_1():
+    """Inertia of the uniform rod, kg mm2, and the torque's peaks with two masses and with it."""
+    mass, length = mpf("0.5"), mpf(64)
+    uniform = mp.quad(lambda z: mass / length * z**2, [-length / 2, length / 2])
+    assert close(mass * (length / 2) ** 2, 3 * uniform, 0, 30)
+    two, rod = (
+        [max(pair) for pair in curves.torques(reading).values()] for reading in (curves.right, curves.uniform)
+    )
+    return {"rod": uniform, "offsets": list(map(mpf, curves.OFFSETS)), "two": two, "uniform": rod}
 
 
 # --- forces ---------------------------------------------------------------------------------------
 
 
+@proves("B-eq37a", "correct", cites="37b B-text-inertia-direction")
 def test_eq37a():
     for motion, masses in LOADED:
         with mp.workdps(loop.DIGITS):
@@ -182,6 +188,7 @@ def test_eq37a():
             assert close(B.printed_eq37a(q, m_2), mp.hypot(*B.printed_eq37b(q, m_2)), 0, 30)
 
 
+@proves("B-eq37b", "correct", cites="B-text-inertia-direction")
 def test_eq37b():
     for motion, masses in LOADED:
         with mp.workdps(loop.DIGITS):
@@ -191,6 +198,7 @@ def test_eq37b():
             assert all(close(g, w, force_scale(motion, m_2, 0), 30) for g, w in zip(got, want, strict=True))
 
 
+@proves("B-text-inertia-direction", "wrong claim")
 def test_text_inertia_force_points_outwards():
     """What points to the centre is the force on the mass; its inertia pulls outwards, at the frame."""
     for motion, masses in LOADED:
@@ -207,12 +215,14 @@ def test_text_inertia_force_points_outwards():
             assert sum(a * b for a, b in zip(shaking, place, strict=True)) > 0
 
 
+@proves("B-eq38", "wrong claim", cites="46b")
 def test_eq38():
     balanced(B.corrected_eq38, lambda f, q: f["F_A_Y"])
     unbalanced(lambda q, m_2, m_3: B.printed_eq38(q, m_2), lambda f, q: f["F_A_Y"])
     balanced(lambda q, m_2, m_3: B.printed_eq38(q, m_2), lambda f, q: f["F_A_Y"] - f["F_B_Y"])
 
 
+@proves("B-eq39", "wrong claim")
 def test_eq39():
     balanced(B.corrected_eq39, lambda f, q: f["F_A_X"])
     unbalanced(lambda q, m_2, m_3: B.printed_eq39(q, m_2), lambda f, q: f["F_A_X"])
@@ -235,6 +245,7 @@ def force_on_rotating_mass(f, q):
     return q.m.hypot(f["F_A_X"] - f["F_B_X"], f["F_A_Y"] - f["F_B_Y"])
 
 
+@proves("B-eq40", "wrong claim")
 def test_eq40():
     balanced(
         lambda q, m_2, m_3: B.printed_eq40(q, m_2) / q.m.tan(B.printed_eq22(q) + q.theta),
@@ -251,6 +262,7 @@ def test_eq40():
             assert close(radial * mp.tan(B.printed_eq22(q) + q.theta), B.corrected_eq40(q, F_c), abs(F_c), 30)
 
 
+@proves("B-eq41", "wrong claim")
 def test_eq41():
     balanced(
         lambda q, m_2, m_3: B.printed_eq41(q, m_2) * q.m.cos(B.printed_eq22(q) + q.theta),
@@ -274,6 +286,7 @@ def test_eq41_is_endless_where_crank_and_rod_cross():
             assert abs(B.printed_eq40(q, m_2)) > mpf(10) ** 20 * abs(B.corrected_eq41(q, m_3))
 
 
+@proves("B-eq42a", "correct", cites="9 14 37 46")
 def test_eq42a():
     for motion, masses in LOADED:
         with mp.workdps(loop.DIGITS):
@@ -290,6 +303,7 @@ def slips_of_eq42b(q, m_3):
     return m_3 * (lost - 2 * B.a_s_terms(q, 1, 3)[2])
 
 
+@proves("B-eq42b", "sign and missing factor", cites="42a 20")
 def test_eq42b():
     balanced(lambda q, m_2, m_3: slips_of_eq42b(q, m_3) - B.printed_eq42b(q, m_3), lambda f, q: f["F_C_Y"])
     balanced(lambda q, m_2, m_3: B.corrected_eq42b(q, m_3), lambda f, q: f["F_C_Y"])
@@ -307,6 +321,7 @@ def test_eq42b():
             )
 
 
+@proves("B-eq43", "correct", cites="41")
 def test_eq43():
     balanced(
         lambda q, m_2, m_3: B.printed_eq43(B.corrected_eq41(q, m_3), B.printed_eq22(q), q.m),
@@ -314,6 +329,7 @@ def test_eq43():
     )
 
 
+@proves("B-eq44", "correct")
 def test_eq44():
     balanced(
         lambda q, m_2, m_3: B.printed_eq44(B.corrected_eq41(q, m_3), B.printed_eq22(q), q.m),
@@ -325,6 +341,7 @@ def test_eq44():
     )
 
 
+@proves("B-eq45", "wrong claim")
 def test_eq45():
     """The inertia force IS the rod's push: adding them counts one force twice, or gives nothing."""
 
@@ -338,6 +355,7 @@ def test_eq45():
     unbalanced(lambda q, m_2, m_3: printed(q, 1, m_3), lambda f, q: f["F_C_Y"])
 
 
+@proves("B-eq46a", "correct", cites="20 B-text-inertia-direction")
 def test_eq46a():
     """All outer forces of the mechanism: the frame's on the crank and the guide's on the slider."""
     balanced(
@@ -352,6 +370,7 @@ def test_eq46a():
             assert all(close(g, w, force_scale(motion, m_2, m_3), 30) for g, w in zip(got, want, strict=True))
 
 
+@proves("B-eq46b", "correct", cites="46a B-text-inertia-direction")
 def test_eq46b():
     balanced(lambda q, m_2, m_3: B.printed_eq46b(q, m_2, m_3, B.corrected_eq20(q)), lambda f, q: f["F_A_Y"])
     unbalanced(
@@ -362,6 +381,8 @@ def test_eq46b():
 # --- torques --------------------------------------------------------------------------------------
 
 
+@proves("B-text-torque", "wrong claim", cites="47")
+@proves("B-eq47", "wrong claim")
 def test_eq47():
     """The rotating mass alone needs no torque at constant speed: its force is radial."""
     for motion, masses in LOADED:
@@ -386,6 +407,7 @@ def printed_torque(q, m_2, m_3):
     return B.printed_eq48(q, B.printed_eq46b(q, m_2, m_3, B.corrected_eq20(q)))
 
 
+@proves("B-eq48", "wrong claim")
 def test_eq48():
     balanced(lambda q, m_2, m_3: B.corrected_eq48(q, B.corrected_eq42a(q, m_3)), inertia_torque, arm=True)
     balanced(lambda q, m_2, m_3: B.drive_torque(q, m_3), lambda f, q: f["T_in"], arm=True)
@@ -414,117 +436,3 @@ def test_eq48_is_virtual_work():
                 scale,
                 30,
             )
-
-
-# --- the existing model ---------------------------------------------------------------------------
-
-
-def with_long_rod(function, ratio, theta="0.9"):
-    """A function of a case for a crank of 1 and a rod of 1/ratio without an offset."""
-    return function(B.Case(mpf(theta), mpf(0), mpf(1), 1 / mpf(ratio), mpf(1), mp))
-
-
-def test_eq52():
-    """To first order in k/c this is d2x/dt2; the paper's a_s is d2s/dt2, its opposite."""
-    with mp.workdps(loop.DIGITS):
-        for ratio in ("1e-5", "1e-7"):
-            exact = with_long_rod(B.corrected_eq20, ratio)
-            assert abs(with_long_rod(B.corrected_eq52, ratio) - exact) < 2 * mpf(ratio) ** 3
-            assert abs(with_long_rod(B.printed_eq52, ratio) + exact) < 2 * mpf(ratio) ** 3
-            assert abs(with_long_rod(B.printed_eq52, ratio) - exact) > 1
-    centric = [motion._replace(ec=0.0) for motion in STEADY]
-    off(lambda p: B.printed_eq52(case(p)), lambda q, p: -q("a_C"), centric)
-    for motion in centric:
-        q = case(float_point(motion))
-        error = B.corrected_eq52(q) + float(loop.truth("a_C", motion))
-        assert abs(error) < 1.5 * (q.k / q.c) ** 3 * q.k * q.omega**2
-
-
-def test_eq53():
-    """To first order in k/c this is the inertia torque: the drive's torque reversed."""
-    with mp.workdps(loop.DIGITS):
-        for ratio, theta in itertools.product(("1e-5", "1e-7"), ("0.9", "2.0", "4.0")):
-            exact = -with_long_rod(lambda q: B.drive_torque(q, 1), ratio, theta)
-            printed = with_long_rod(lambda q: B.printed_eq53(q, 1), ratio, theta)
-            assert abs(printed - exact) < 2 * mpf(ratio) ** 2
-            without = mp.sin(2 * mpf(theta)) / 2
-            assert abs(printed + without) > mpf(ratio) / 10  # the terms with k/c do count
-            doubled = printed + mpf(ratio) * mp.sin(mpf(theta)) / 4
-            assert abs(doubled - exact) > mpf(ratio) / 10  # nor would another coefficient of sin(theta) do
-
-
-def worst(approximate, exact):
-    """Greatest error over a turn relative to the greatest exact value."""
-    angles = [2 * math.pi * n / 3600 for n in range(3600)]
-    size = max(abs(exact(angle)) for angle in angles)
-    return max(abs(approximate(angle) - exact(angle)) for angle in angles) / size
-
-
-def existing_errors(design):
-    """The worst relative errors of Eqs. 52 and 53 (sign of a_s) for a design."""
-
-    def at(theta):
-        return design._replace(theta=theta)
-
-    acceleration = worst(lambda t: B.corrected_eq52(at(t)), lambda t: B.corrected_eq20(at(t)))
-    torque = worst(lambda t: B.printed_eq53(at(t), 1.0), lambda t: -B.drive_torque(at(t), 1.0))
-    return acceleration, torque
-
-
-def test_existing_model_of_table_1():
-    """Short rod, c/k = 1.6: 11 and 24 % off without an offset, and useless with one."""
-    errors = {
-        e: existing_errors(B.Case(0.0, e, TABLE_1["k"], TABLE_1["c"], TABLE_1["omega"])) for e in OFFSETS
-    }
-    assert errors[0.0] == pytest.approx((0.10809, 0.23690), abs=5e-5)
-    assert errors[0.010] == pytest.approx((0.38000, 0.59249), abs=5e-5)
-    assert errors[0.020] == pytest.approx((0.76499, 0.83014), abs=5e-5)
-
-
-def test_existing_model_of_table_2():
-    """Long rod, c/k = 4, no offset: 0.7 % of the acceleration and 3.1 % of the torque."""
-    errors = existing_errors(B.Case(0.0, 0.0, TABLE_2["k"], TABLE_2["c"], TABLE_2["omega"]))
-    assert errors == pytest.approx((0.0065591, 0.030597), abs=5e-6)
-
-
-def test_existing_model_has_the_dead_centres_right():
-    """Without an offset Eq. 52 is exact at the dead centres, so all models share the values there."""
-    with mp.workdps(loop.DIGITS):
-        for theta in (mpf(0), mp.pi):
-            q = B.Case(theta, mpf(0), mpf("0.0381"), mpf("0.1524"), mpf("20.994"), mp)
-            assert close(B.corrected_eq52(q), B.corrected_eq20(q), 1, 30)
-
-
-# --- reference numbers ----------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("rod", ["two masses", "uniform rod"])
-def test_extremes_of_the_torque(rod):
-    """The values are those of the power and level; no angle of a sweep of the free bodies beats them."""
-    for e in OFFSETS:
-        highest_at, highest, lowest_at, lowest = EXTREMES[rod, e]
-        bodies = TABLE_1_BODIES[rod]
-        for angle, value in ((highest_at, highest), (lowest_at, lowest)):
-            motion = table_1(angle, e)
-            power = free_bodies.drive_power(motion, bodies) / motion.omega0
-            assert close(power, value, 0, 12)
-            assert close(free_bodies.solve(motion, bodies)["T_in"], value, 0, 12)
-            beside = [
-                free_bodies.solve(table_1(angle + h, e), bodies)["T_in"] for h in (-mpf("1e-5"), mpf("1e-5"))
-            ]
-            assert abs(beside[1] - beside[0]) < 1e-9 * abs(value)
-        sweep = [free_bodies.solve(table_1(math.radians(5 * n), e), bodies)["T_in"] for n in range(72)]
-        assert max(sweep) <= highest < max(sweep) + 0.02 * highest
-        assert min(sweep) >= lowest > min(sweep) + 0.02 * lowest
-
-
-def test_lumping_of_table_1_in_the_torque():
-    """Lumping hides 2.8 % of the peak torque without an offset and adds 1.8 % at 20 mm."""
-    ratio = {
-        e: max(map(abs, EXTREMES["two masses", e][1::2])) / max(map(abs, EXTREMES["uniform rod", e][1::2]))
-        for e in OFFSETS
-    }
-    assert ratio == pytest.approx({0.0: 0.97190, 0.010: 1.00562, 0.020: 1.01767}, abs=5e-6)
-    for e in OFFSETS:
-        q = B.Case(EXTREMES["two masses", e][0], e, TABLE_1["k"], TABLE_1["c"], TABLE_1["omega"])
-        assert B.drive_torque(q, 1.05) == pytest.approx(EXTREMES["two masses", e][1], rel=1e-12)

@@ -3,15 +3,17 @@
 import pytest
 from mpmath import mp, mpf
 
-import desaxe as dx
+from tests.papers import curves_b as curves
 from tests.papers import loop
 from tests.papers import paper_b as B
 from tests.papers.designs import agrees, close, exact_point, float_point, package, scale_of
 from tests.papers.designs_b import STEADY, by_theta, case, exact_case, off, other_rate, same_rate
+from tests.papers.proofs import proves
 
 # --- the crank ------------------------------------------------------------------------------------
 
 
+@proves("B-eq1", "correct")
 def test_eq1():
     for motion in STEADY:
         with mp.workdps(loop.DIGITS):
@@ -21,6 +23,7 @@ def test_eq1():
             assert close(B.printed_eq1(mpf(motion.omega0), t), mpf(motion.theta), 0, 30)
 
 
+@proves("B-eq2a", "correct", cites="1")
 def test_eq2a():
     for motion in STEADY:
         turning = loop.rate(lambda t, at=motion: loop.crank_angle(at, t), 1)
@@ -33,6 +36,7 @@ def pin_speed(q, p):
     return p.m.sqrt(q("V_B_X") ** 2 + q("V_B_Y") ** 2)
 
 
+@proves("B-eq2b", "typo")
 def test_eq2b():
     agrees(lambda p: B.printed_eq2b(p.omega, p.AB), pin_speed, "velocity", STEADY)
     agrees(lambda p: B.corrected_eq2b_middle(p.AB, p.omega), pin_speed, "velocity", STEADY)
@@ -46,6 +50,8 @@ def test_eq2b():
         assert doubled == pytest.approx(2 * speed, rel=1e-12)
 
 
+@proves("B-text-liner", "typo", cites="3")
+@proves("B-eq3", "correct")
 def test_eq3():
     agrees(
         lambda p: B.printed_eq3(p.omega, p.AB),
@@ -53,21 +59,28 @@ def test_eq3():
         "acceleration",
         STEADY,
     )
+    for motion in STEADY:  # the speed does not change: only its direction does, which makes a_k
+        assert close(
+            loop.partial("V_B_X", "theta", motion) * motion.omega0, loop.truth("a_B_X", motion), 1, 20
+        )
 
 
 # --- position -------------------------------------------------------------------------------------
 
 
+@proves("B-eq4", "correct")
 def test_eq4():
     agrees(lambda p: B.printed_eq4(case(p), B.printed_eq22(case(p))), lambda q, p: q("Y"), "length", STEADY)
 
 
+@proves("B-eq5a", "correct")
 def test_eq5a():
     for motion in STEADY:
         with mp.workdps(loop.DIGITS):
             assert close(B.printed_eq5a(exact_case(motion)), loop.pin(motion)[0], motion.AB, 30)
 
 
+@proves("B-eq5b", "correct")
 def test_eq5b():
     for motion in STEADY:
         with mp.workdps(loop.DIGITS):
@@ -77,14 +90,17 @@ def test_eq5b():
         assert close(h, loop.pin(motion)[0], scale_of("length", motion), 12)
 
 
+@proves("B-eq6", "correct", cites="5a 5b")
 def test_eq6():
     agrees(lambda p: B.printed_eq6(case(p)), lambda q, p: p.m.sin(q("phi")), "angle", STEADY)
 
 
+@proves("B-eq7", "correct")
 def test_eq7():
     agrees(lambda p: B.printed_eq7(case(p)), lambda q, p: p.m.cos(q("phi")), "angle", STEADY)
 
 
+@proves("B-eq8", "correct")
 def test_eq8():
     agrees(lambda p: B.printed_eq8(case(p)), lambda q, p: q("Y"), "length", STEADY)
 
@@ -94,6 +110,7 @@ def paper_s(q, p):
     return B.printed_eq9(case(p), q("Y"))
 
 
+@proves("B-eq9", "correct", cites="1")
 def test_eq9():
     """The package measures s from the outer dead centre, the paper from k + c: they differ by a constant."""
 
@@ -110,8 +127,13 @@ def test_eq9():
             least = paper_s(lambda name, at=outer: loop.truth(name, at), p)
             assert close(least, from_dead_centre(p), p.AB, 30)
             assert least > 0
+    q = curves.case_1(mpf(0))
+    least = q.k + q.c - loop.truth("Y", curves.motion_of(q._replace(theta=curves.dead_centres()[0])))
+    names = {"k": q.k, "c": q.c, "e": q.e, "s": least}
+    return {"least": least, "mm": 1000 * least, "names": names}
 
 
+@proves("B-eq10", "sign", cites="9 12")
 def test_eq10():
     agrees(lambda p: B.corrected_eq10(case(p)), paper_s, "length", STEADY)
     off(lambda p: B.printed_eq10(case(p)), paper_s)
@@ -140,10 +162,12 @@ def chained(name, rate, sign, kind):
         assert close(got, sign * loop.truth(rate, motion), scale, 12)
 
 
+@proves("B-eq11", "correct")
 def test_eq11():
     chained("Y", "V_C", -1, "velocity")
 
 
+@proves("B-eq12", "correct", cites="9 10")
 def test_eq12():
     same_rate(B.printed_eq12, B.corrected_eq10, "length")
     agrees(
@@ -151,19 +175,23 @@ def test_eq12():
     )  # the chain rule backwards
 
 
+@proves("B-eq13", "correct")
 def test_eq13():
     agrees(lambda p: B.printed_eq13(case(p)), lambda q, p: -q("V_C"), "velocity", STEADY)
 
 
+@proves("B-eq14", "correct")
 def test_eq14():
     chained("V_C", "a_C", -1, "acceleration")
 
 
+@proves("B-eq15", "correct", cites="13")
 def test_eq15():
     agrees(lambda p: sum(B.printed_eq15(case(p))), lambda q, p: -q("V_C"), "velocity", STEADY)
     agrees(lambda p: B.printed_eq15(case(p))[0], lambda q, p: -q("V_B_Y"), "velocity", STEADY)
 
 
+@proves("B-eq16", "correct", cites="15")
 def test_eq16():
     agrees(lambda p: B.printed_eq16(*B.printed_eq15(case(p))), lambda q, p: -q("V_C"), "velocity", STEADY)
     for motion in STEADY:
@@ -174,12 +202,14 @@ def test_eq16():
             assert close(B.printed_eq16(*rates), want, scale_of("velocity", motion), 30)
 
 
+@proves("B-eq17", "sign")
 def test_eq17():
     same_rate(B.corrected_eq17, lambda q: B.printed_eq15(q)[0], "velocity")
     other_rate(B.printed_eq17, lambda q: B.printed_eq15(q)[0])
     agrees(lambda p: B.printed_eq17(case(p)), lambda q, p: q("a_B_Y") / p.omega, "velocity", STEADY)
 
 
+@proves("B-eq18", "sign and exponent")
 def test_eq18():
     same_rate(B.corrected_eq18, lambda q: B.printed_eq15(q)[1], "velocity")
     other_rate(B.printed_eq18, lambda q: B.printed_eq15(q)[1])
@@ -205,6 +235,7 @@ def test_dimensions_of_eq18_and_eq20():
             assert printed(in_other_units(q, 1000)) != pytest.approx(1000 * printed(q), rel=1e-3)
 
 
+@proves("B-eq19", "correct")
 def test_eq19():
     agrees(
         lambda p: B.printed_eq19(case(p), B.corrected_eq17(case(p)), B.corrected_eq18(case(p))),
@@ -214,6 +245,7 @@ def test_eq19():
     )
 
 
+@proves("B-eq20", "sign and exponent", cites="17 19 9 14 1")
 def test_eq20():
     def mended(p):
         """The printed form with its last two terms multiplied by the bracket, all reversed."""
@@ -230,11 +262,15 @@ def test_eq20():
         assembled = B.printed_eq19(q, B.printed_eq17(q), B.printed_eq18(q))
         third = q.omega**2 * q.k**2 * q.cos**2 * q.side**2 / q.root(5)
         assert assembled == pytest.approx(B.printed_eq20(q), rel=1e-9, abs=1e-9 * third)
+    in_mm = curves.places(lambda q: B.printed_eq20(curves.in_millimetres(q)) / 1000)[0]
+    true, printed = (curves.places(f)[0] for f in (B.corrected_eq20, B.printed_eq20))
+    return {"metres": printed, "mm": in_mm, "true": true}
 
 
 # --- the rod --------------------------------------------------------------------------------------
 
 
+@proves("B-eq21", "correct", cites="6")
 def test_eq21():
     agrees(
         lambda p: B.printed_eq21(case(p))[0] + B.printed_eq21(case(p))[1] * p.m.sin(p.theta),
@@ -244,14 +280,17 @@ def test_eq21():
     )
 
 
+@proves("B-eq22", "correct")
 def test_eq22():
     agrees(lambda p: B.printed_eq22(case(p)), lambda q, p: q("phi"), "angle", STEADY)
 
 
+@proves("B-eq23", "correct")
 def test_eq23():
     chained("phi", "omega_BC", 1, "rate")
 
 
+@proves("B-eq24", "correct", cites="6")
 def test_eq24():
     agrees(
         lambda p: B.printed_eq24(case(p)),
@@ -261,6 +300,7 @@ def test_eq24():
     )
 
 
+@proves("B-eq25", "correct", cites="24")
 def test_eq25():
     agrees(
         lambda p: B.printed_eq25(case(p), B.printed_eq22(case(p))),
@@ -270,20 +310,24 @@ def test_eq25():
     )
 
 
+@proves("B-eq26", "correct")
 def test_eq26():
     agrees(
         lambda p: B.printed_eq26(case(p), B.printed_eq22(case(p))), lambda q, p: q("omega_BC"), "rate", STEADY
     )
 
 
+@proves("B-eq27", "correct")
 def test_eq27():
     agrees(lambda p: B.printed_eq27(case(p)), lambda q, p: q("omega_BC"), "rate", STEADY)
 
 
+@proves("B-eq28", "correct")
 def test_eq28():
     chained("omega_BC", "alpha_BC", 1, "rate2")
 
 
+@proves("B-eq29", "sign", cites="27")
 def test_eq29():
     same_rate(B.corrected_eq29, B.printed_eq27, "rate")
     other_rate(B.printed_eq29, B.printed_eq27)
@@ -292,6 +336,7 @@ def test_eq29():
     )  # the first fraction twice, less the printed form: its second sign reversed
 
 
+@proves("B-eq30", "sign", cites="29")
 def test_eq30():
     agrees(lambda p: B.corrected_eq30(case(p)), lambda q, p: q("alpha_BC"), "rate2", STEADY)
     off(lambda p: B.printed_eq30(case(p)), lambda q, p: q("alpha_BC"))
@@ -301,105 +346,3 @@ def test_eq30():
         "rate2",
         STEADY,
     )
-
-
-# --- what the text of Sec. 2 says -----------------------------------------------------------------
-
-
-def test_text_crank_has_no_offset():
-    for motion in STEADY:
-        other = motion._replace(ec=-motion.ec / 3)
-        for name in ("V_B_X", "V_B_Y", "a_B_X", "a_B_Y"):
-            assert package(name, other) == package(name, motion)
-            assert loop.truth(name, other) == loop.truth(name, motion)
-        for name in ("Y", "V_C", "a_C", "phi", "omega_BC", "alpha_BC"):
-            assert loop.truth(name, other) != pytest.approx(float(loop.truth(name, motion)), rel=1e-6)
-
-
-def test_text_x_is_not_the_distance():
-    for motion in STEADY:
-        with mp.workdps(loop.DIGITS):
-            distance = mp.hypot(*loop.slider(motion))
-            q = exact_case(motion)
-            assert close(mp.sqrt(B.printed_eq8(q) ** 2 + q.e**2), distance, 0, 30)
-            assert distance - B.printed_eq8(q) > mpf("1e-7") * distance
-
-
-def test_text_alpha_is_not_from_eq4():
-    """Eq. 4 gives cos(alpha) only, the same for either side of the axis; Eq. 6 tells the side."""
-    for motion in STEADY:
-        q = exact_case(motion)
-        with mp.workdps(loop.DIGITS):
-            alpha = B.printed_eq22(q)
-            assert B.printed_eq4(q, alpha) == B.printed_eq4(q, -alpha)
-            assert abs(mp.sin(alpha) - mp.sin(-alpha)) > mpf("1e-3") * abs(mp.sin(alpha))
-            assert close(mp.sin(alpha), B.printed_eq6(q), 1, 30)
-
-
-def test_text_eq27_follows_from_eq7():
-    """Eq. 26 with the cosine of Eq. 7 is Eq. 27; with the sine of Eq. 5b it is not."""
-    for motion in STEADY:
-        q = exact_case(motion)
-        with mp.workdps(loop.DIGITS):
-            top = q.omega * B.printed_eq24(q)
-            assert close(top / B.printed_eq7(q), B.printed_eq27(q), abs(q.omega), 30)
-            by_5b = top / ((B.printed_eq5a(q) + q.e) / q.c)
-            assert abs(by_5b - B.printed_eq27(q)) > mpf("1e-3") * abs(B.printed_eq27(q))
-
-
-def test_text_rod_velocity_is_a_turning():
-    """v_c and a_c keep their value when all lengths are scaled: rad/s and rad/s2, not m/s and m/s2."""
-    for motion in STEADY:
-        large = motion._replace(AB=10 * motion.AB, BC=10 * motion.BC, ec=10 * motion.ec)
-        for name in ("omega_BC", "alpha_BC"):
-            assert package(name, large) == pytest.approx(package(name, motion), rel=1e-9)
-            assert close(loop.truth(name, large), loop.truth(name, motion), 0, 12)
-        assert B.printed_eq27(case(float_point(large))) == pytest.approx(
-            package("omega_BC", motion), rel=1e-9
-        )
-
-
-def test_text_differentiating_eq9_not_the_stroke():
-    """The stroke is one number for a design; what is differentiated is the position s."""
-    for motion in STEADY:
-        q = exact_case(motion)
-        with mp.workdps(loop.DIGITS):
-            assert by_theta(lambda r: B.corrected_eq49(r.e, r.k, r.c, mp), q) == 0
-            assert close(by_theta(B.corrected_eq10, q), B.printed_eq12(q), q.k, 30)
-            assert abs(B.printed_eq12(q)) > mpf("1e-6") * q.k
-
-
-def test_same_x_as_paper_a():
-    """Eqs. 6 to 8 with the offset in them stand in paper A, received in 2012."""
-    from tests.papers import paper_a as A
-
-    for motion in STEADY:
-        with mp.workdps(loop.DIGITS):
-            p = exact_point(motion)
-            assert close(A.printed_eq7(*p.design, mp), B.printed_eq8(case(p)), p.AB, 30)
-            assert close(A.printed_eq6(*p.design, mp), B.printed_eq22(case(p)), 1, 30)
-
-
-def test_no_mechanism_where_the_root_is_imaginary():
-    """Eq. 7's bracket is negative exactly where the package reports that nothing can be assembled."""
-    seen = set()
-    for motion in STEADY:
-        for ec in (motion.ec, motion.BC, -motion.BC, 2 * motion.BC):
-            q = case(float_point(motion._replace(ec=ec)))
-            impossible = dx.evaluate(("Y", "status"), **motion._replace(ec=ec)._asdict())["status"] == 1
-            assert impossible == (q.square < 0)
-            seen.add(bool(impossible))
-    assert seen == {True, False}
-
-
-def test_identities_serve_with_an_offset():
-    """The cosine of a sum, the square identity and that of the double angle, with an offset."""
-
-    def short(p):
-        q = case(p)
-        alpha = B.printed_eq22(q)
-        turned = q.m.cos(alpha + q.theta) + q.k / q.c * q.cos**2 / q.m.cos(alpha) ** 2
-        return q.k * q.omega**2 * turned / q.m.cos(alpha)
-
-    agrees(short, lambda q, p: -q("a_C"), "acceleration", STEADY)
-    assert all(motion.ec != 0 for motion in STEADY[:6])

@@ -1,6 +1,7 @@
 """Paper C: the equations of its links, its matrix, and what it says of them."""
 
 import itertools
+import re
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import desaxe as dx
 from tests.papers import newton_euler_c as ne
 from tests.papers import paper_c as C
 from tests.papers.newton_euler_c import State
+from tests.papers.proofs import proves, proves_each
 from tests.papers.states_c import STATES, WEIGHTLESS, at_rest, force_scale, report, symbols
 
 TINY = mpf(10) ** -35
@@ -29,13 +31,7 @@ LINKS = {
 }
 
 
-@pytest.fixture(autouse=True)
-def many_digits():
-    with mp.workdps(2 * ne.DIGITS):
-        yield
-
-
-@pytest.mark.parametrize("link", LINKS)
+@proves_each({f"C-{link.replace('_', '-')}": link for link in LINKS if link != "link4_x"}, "correct")
 def test_link_equation(link):
     equation, needed = LINKS[link]
     for v in SOLVED:
@@ -45,7 +41,12 @@ def test_link_equation(link):
             assert abs(equation(v | {name: -v[name]})) > mpf(10) ** -6 * abs(v[name]) > 0
 
 
+@proves("C-link4-x", "correct")
 def test_link4_friction_term():
+    for v in SOLVED:
+        assert abs(C.link4_x(v)) < TINY * force_scale(v)
+        for name in LINKS["link4_x"][1]:
+            assert abs(C.link4_x(v | {name: -v[name]})) > mpf(10) ** -6 * abs(v[name]) > 0
     for state in WEIGHTLESS:
         for friction in (mpf("0.2"), mpf("-0.2")):
             v = symbols(state, friction)
@@ -53,6 +54,7 @@ def test_link4_friction_term():
             assert abs(C.link4_x(v | {"F14x": -v["F14x"]})) > mpf("0.1") * abs(v["F14y"])
 
 
+@proves("C-link4-moment", "correct")
 def test_link4_moment():
     """Any arms: the printed terms are the moments of F14, of -F43 and of FP."""
     for v in SOLVED:
@@ -72,6 +74,7 @@ def test_link4_moment():
         assert total != 0
 
 
+@proves("C-link4-no-turning", "given", says="alpha4 = 0 and aG4y is also zero")
 def test_link4_does_not_turn():
     """The rates of the raw loop: the slider keeps its axis and is accelerated along it."""
     for state in STATES:
@@ -81,6 +84,9 @@ def test_link4_does_not_turn():
         assert ne.acceleration(ne.slider, state)[0] != 0
 
 
+@proves(
+    "C-link4-third", "correct", says="The third equation for link 4 is essentially 0=0 and is not needed."
+)
 def test_link4_third_equation():
     """0 = 0 where all forces meet in the slider's centre; elsewhere it places the guide's force."""
     for v in SOLVED:
@@ -91,27 +97,58 @@ def test_link4_third_equation():
         assert abs(C.link4_moment(offset | {"R14x": needed})) < TINY * force_scale(v)
 
 
-ROWS = ["row1", "row2", "row3", "row4", "row5", "row6", "row7", "row8"]
+MATRIX = """\
+1 0 1 0 0 0 0 0
+0 1 0 1 0 0 0 0
+-R12y R12x -R32y R32x 0 0 0 1
+0 0 -1 0 1 0 0 0
+0 0 0 -1 0 1 0 0
+0 0 R23y -R23x -R43y R43x 0 0
+0 0 0 0 -1 0 +-mu 0
+0 0 0 0 0 -1 1 0""".splitlines()
+RIGHT_HAND_SIDE = "[m2 aG2x, m2 aG2y, IG2 alpha2, m3 aG3x, m3 aG3y, IG3 alpha3, m4 aG4x - FPx, -FPy]"
+UNKNOWNS = "[F12x F12y F32x F32y F43x F43y F14y T12]"
 
 
-@pytest.mark.parametrize("row", ROWS)
-def test_matrix_row(row):
-    number = ROWS.index(row)
+def entry_of(text, v):
+    """A number or a name of a matrix, with its sign."""
+    name = text.removeprefix("+").lstrip("-")
+    size = v[name] if name in v else mpf(name)
+    return -size if text.startswith("-") else size
+
+
+@proves_each(
+    {f"C-matrix-row{n}": n for n in range(1, 9)},
+    "correct",
+    says={f"C-matrix-row{n}": f"[{MATRIX[n - 1]}]" for n in range(1, 9)},
+    cites={"C-matrix-row7": "C-matrix-friction-sign"},
+)
+def test_matrix_row(number):
     for state, v in list(zip(WEIGHTLESS, SOLVED, strict=True))[:8]:
         for friction in (mpf("0.3"), mpf("-0.3")):
-            mine = ne.matrix(state, friction)
-            for column, printed in enumerate(C.printed_matrix(v, friction)[number]):
-                assert abs(printed - mine[number, column]) < TINY
+            mine, printed = ne.matrix(state, friction), MATRIX[number - 1].split()
+            for column, text in enumerate(printed):
+                assert abs(entry_of(text, v | {"mu": friction}) - mine[number - 1, column]) < TINY
+    assert [entry_of(text, v | {"mu": friction}) for text in printed] == C.printed_matrix(v, friction)[
+        number - 1
+    ]
 
 
+@proves("C-right-hand-side", "correct", says=RIGHT_HAND_SIDE)
 def test_right_hand_side():
     for state, v in zip(WEIGHTLESS, SOLVED, strict=True):
-        mine, printed = ne.right_hand_side(state), C.printed_right_hand_side(v)
+        texts = RIGHT_HAND_SIDE.strip("[]").replace(" - ", " -").split(", ")
+        terms = [[re.split(r" (?!-)", term) for term in re.split(r" (?=-)", text)] for text in texts]
+        printed = [sum(mp.fprod(entry_of(name, v) for name in term) for term in one) for one in terms]
+        mine = ne.right_hand_side(state)
         assert all(abs(p - q) < TINY * (1 + abs(q)) for p, q in zip(printed, mine, strict=True))
+        assert printed == C.printed_right_hand_side(v)
         assert all(q != 0 for q in mine)
 
 
+@proves("C-unknowns", "correct", says=UNKNOWNS)
 def test_order_of_the_unknowns():
+    assert tuple(UNKNOWNS.strip("[]").split()) == C.UNKNOWNS
     for v in SOLVED:
         A, b = C.printed_matrix(v), C.printed_right_hand_side(v)
         x = [v[name] for name in C.UNKNOWNS]
@@ -127,6 +164,7 @@ def test_order_of_the_unknowns():
             assert residual(swapped) > mpf(10) ** -6 * abs(x[i] - x[j])
 
 
+@proves("C-matrix-friction-sign", "omission", says="+-mu", cites="7")
 def test_friction_needs_a_sign():
     """One sign of +-mu opposes sliding, the other drives it; which, depends on the motion and on F14y."""
     right = set()
@@ -138,8 +176,18 @@ def test_friction_needs_a_sign():
         kept = ne.balances(state._replace(mu=0.1))
         assert [found["F14x"] * ne.sliding(state) < 0 for found in kept] == [True]
     assert right == set(itertools.product((1, -1), (1, -1)))
+    state = next(state for state in STATES if ne.solve(state)["F14y"] * ne.sliding(state) < 0)
+    (found,) = ne.balances(state._replace(mu=0.1))
+    v = symbols(state) | {name: found[name] for name in ("F14x", "F14y")}
+    return {"friction": v["F14x"], "names": v | {"mu": mpf(0.1), "sense": mpf(ne.sliding(state))}}
 
 
+@proves(
+    "C-no-friction",
+    "correct",
+    says="we will take FPy = 0 ... the coefficient of friction is also zero",
+    cites="7 8",
+)
 def test_no_vertical_force_no_friction():
     """The case of the listing: FPy = 0 and mu = 0 leave no F14x and a guide force equal to F43y."""
     for state in WEIGHTLESS:
@@ -151,17 +199,24 @@ def test_no_vertical_force_no_friction():
     assert listing["B"][7] == 0
 
 
+@proves(
+    "C-balance",
+    "wrong claim",
+    says="Forces along X and Y directions and Moments along Z direction are balanced i.e.,"
+    " sum Fx = 0, sum Fy = 0, sum Mz = 0",
+)
 def test_balance_of_forces_is_not_zero():
     """Sum F = 0 and sum M = 0 hold at rest only; the equations that follow, and the listing, have m a."""
     held = symbols(at_rest(report()))
     assert held["F12x"] + held["F32x"] == held["F43y"] - held["F32y"] == 0
     listing = C.run_listing()
-    assert listing["B"][[1, 3, 4]] == pytest.approx([4.0984, 1.6508, 8.3689], abs=5e-5)
     for v in SOLVED:
         assert abs(v["F12x"] + v["F32x"]) > 0
         assert abs(v["F12x"] + v["F32x"] - v["m2"] * v["aG2x"]) < TINY * force_scale(v)
+    return {"inertia": [mpf(x) for x in listing["B"][[1, 3, 4]].tolist()]}
 
 
+@proves("C-assumption-frame", "given", says="1", cites="1")
 def test_frame_bears_the_links():
     """F12 and F14, with the load, are all the force there is on the three links: mass times acceleration."""
     for v in SOLVED:
@@ -171,6 +226,7 @@ def test_frame_bears_the_links():
             assert abs(total - moved) < TINY * force_scale(v)
 
 
+@proves("C-inverse", "correct", says="Solving the equations in the form Ax = b, and computing x = A^-1 b")
 def test_inverse_solves_the_system():
     """With right arms the matrix has an inverse wherever the rod is not across the slider axis."""
     for state, v in zip(WEIGHTLESS, SOLVED, strict=True):
@@ -180,16 +236,22 @@ def test_inverse_solves_the_system():
         assert all(abs(x[n] - v[name]) < mpf(10) ** -30 * scale for n, name in enumerate(C.UNKNOWNS))
         reach = abs(v["R43x"] - v["R23x"])  # the determinant, by expansion: the rod's reach along the axis
         assert abs(abs(mp.det(ne.matrix(state))) - reach) < mpf(10) ** -30
+    return {"reach": mp.det(ne.matrix(state)), "names": v}
 
 
+@proves(
+    "C-inverse-of-the-listing", "wrong claim", says="computing x = A^-1 b [for the matrix A of the listing]"
+)
 def test_inverse_of_the_listing_does_not_exist():
-    A = C.run_listing()["A"]
-    assert np.linalg.matrix_rank(A) == 7
-    exact = mp.matrix(A.tolist())
-    assert mp.det(exact) == 0
-    assert np.linalg.matrix_rank(C.run_listing(C.corrected_listing())["A"]) == 8
+    A, right = (C.run_listing(listing)["A"] for listing in (C.LISTING, C.corrected_listing()))
+    rank = int(np.linalg.matrix_rank(A))
+    assert rank < np.linalg.matrix_rank(right) == 8
+    condition = mpf(float(np.linalg.cond(right)))
+    found = {"rank": [mp.det(mp.matrix(A.tolist())), mpf(rank)], "condition": condition}
+    return found | {"names": symbols(report())}
 
 
+@proves("C-anticlockwise", "correct")
 def test_anticlockwise_is_positive():
     """A positive torque alone starts the crank towards growing theta, anticlockwise in these axes."""
     for state in STATES:

@@ -9,13 +9,15 @@ from .parser import add_command
 
 _ERRATA = """\
 examples:
-  desaxe errata                       the wrong equations in a line each, then every entry
-  desaxe errata eq20                  equation 20 of every paper; B-eq20 that of paper B
-  desaxe errata stroke --document B   entries of paper B that speak of the stroke
-  desaxe errata --wrong --document A  what is wrong in one paper
-  desaxe errata --verdict sign        those with a wrong sign
-  desaxe errata --equations           only the wrong numbered equations, a line each
-  desaxe errata --markdown            the selected entries as a page in Markdown"""
+  desaxe errata                    what whoever uses the papers must know
+  desaxe errata B-eq17             an entry; eq20 is equation 20 of every paper
+  desaxe errata --paper B          the worst of a paper, then all of its entries
+  desaxe errata --all              every entry
+  desaxe errata stroke --paper B   entries of paper B that speak of the stroke
+  desaxe errata --wrong --paper A  what is wrong in one paper
+  desaxe errata --verdict sign     those with a wrong sign
+  desaxe errata --equations        only the wrong numbered equations, a line each
+  desaxe errata --markdown         the selected entries as a page in Markdown"""
 
 
 def add_errata(commands: Any) -> None:
@@ -26,7 +28,10 @@ def add_errata(commands: Any) -> None:
     parser.add_argument(
         "words", metavar="WORD", nargs="*", help="an id, an equation (eq20), or words to find"
     )
-    parser.add_argument("--document", metavar="LETTER", type=str.upper, help="the paper: A, B or C")
+    parser.add_argument(
+        "--paper", "--document", dest="document", metavar="LETTER", type=str.upper, help="A, B or C"
+    )
+    parser.add_argument("--all", action="store_true", help="every entry")
     parser.add_argument(
         "--verdict", metavar="WORD", help="one verdict, such as correct, sign, typo, wrong claim"
     )
@@ -39,21 +44,25 @@ def add_errata(commands: Any) -> None:
 
 
 def _errata(options: argparse.Namespace) -> int:
-    from ..errata import ledger
+    from ..errata import ledger, page, terminal
     from ..errata.search import matching
 
     found = matching(ledger.entries(options.document, options.verdict, options.wrong), options.words)
-    chosen = bool(options.document or options.verdict or options.wrong or options.words)
+    picked = bool(options.verdict or options.wrong or options.words)
+    chosen = picked or bool(options.document)
     width = shutil.get_terminal_size((100, 24)).columns
     if options.markdown:
-        print(ledger.markdown(found if chosen else None))
+        print(page.markdown(found if chosen else None))
     elif options.json:
         print(json.dumps([ledger.record(entry) for entry in found], indent=2))
     elif options.equations:
-        print(ledger.equations(found, width, options.latex))
+        print(terminal.equations(found, width, options.latex))
+    elif not chosen and not options.all:
+        print(terminal.first_lines(ledger.documents(), width))
     else:
-        first = [] if chosen else [ledger.equations(found, width, options.latex)]
+        letters = [] if picked else [options.document] if options.document else ledger.documents()
+        worst = [terminal.worst(letter, width) for letter in letters]
         tex = options.latex or bool(options.words)
-        shown = [*first, ledger.headings(found, width), ledger.table(found, width, tex)]
+        shown = [*worst, terminal.headings(found, width), terminal.table(found, width, tex)]
         print("\n\n".join(filter(None, shown)))
     return 0

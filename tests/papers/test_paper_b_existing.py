@@ -1,0 +1,121 @@
+"""Paper B: the existing model, Eqs. 52 and 53, and the reference values of the torque."""
+
+import itertools
+import math
+
+import pytest
+from mpmath import mp, mpf
+
+from tests.papers import curves_b as curves
+from tests.papers import free_bodies, loop
+from tests.papers import paper_b as B
+from tests.papers.designs import close, float_point
+from tests.papers.designs_b import (
+    EXTREMES,
+    OFFSETS,
+    STEADY,
+    TABLE_1,
+    TABLE_1_BODIES,
+    case,
+    off,
+    table_1,
+)
+from tests.papers.extremes import greatest
+from tests.papers.proofs import proves
+
+
+def with_long_rod(function, ratio, theta="0.9"):
+    """A function of a case for a crank of 1 and a rod of 1/ratio without an offset."""
+    return function(B.Case(mpf(theta), mpf(0), mpf(1), 1 / mpf(ratio), mpf(1), mp))
+
+
+@proves("B-claim-compared", "wrong claim", says="52 53 17 18", cites="52 9 14 17 20")
+@proves("B-eq52", "correct", cites="9 14 B-claim-compared 1 2")
+def test_eq52():
+    """To first order in k/c this is d2x/dt2; the paper's a_s is d2s/dt2, its opposite."""
+    with mp.workdps(loop.DIGITS):
+        for ratio in ("1e-5", "1e-7"):
+            exact = with_long_rod(B.corrected_eq20, ratio)
+            assert abs(with_long_rod(B.reversed_eq52, ratio) - exact) < 2 * mpf(ratio) ** 3
+            assert abs(with_long_rod(B.printed_eq52, ratio) + exact) < 2 * mpf(ratio) ** 3
+            assert abs(with_long_rod(B.printed_eq52, ratio) - exact) > 1
+    centric = [motion._replace(ec=0.0) for motion in STEADY]
+    off(lambda p: B.printed_eq52(case(p)), lambda q, p: -q("a_C"), centric)
+    for motion in centric:
+        q = case(float_point(motion))
+        error = B.reversed_eq52(q) + float(loop.truth("a_C", motion))
+        assert abs(error) < 1.5 * (q.k / q.c) ** 3 * q.k * q.omega**2
+    return model_errors(B.reversed_eq52, B.corrected_eq20)
+
+
+@proves("B-eq53", "correct", cites="1 2")
+def test_eq53():
+    """To first order in k/c this is the inertia torque: the drive's torque reversed."""
+    with mp.workdps(loop.DIGITS):
+        for ratio, theta in itertools.product(("1e-5", "1e-7"), ("0.9", "2.0", "4.0")):
+            exact = -with_long_rod(lambda q: B.drive_torque(q, 1), ratio, theta)
+            printed = with_long_rod(lambda q: B.printed_eq53(q, 1), ratio, theta)
+            assert abs(printed - exact) < 2 * mpf(ratio) ** 2
+            without = mp.sin(2 * mpf(theta)) / 2
+            assert abs(printed + without) > mpf(ratio) / 10  # the terms with k/c do count
+            doubled = printed + mpf(ratio) * mp.sin(mpf(theta)) / 4
+            assert abs(doubled - exact) > mpf(ratio) / 10  # nor would another coefficient of sin(theta) do
+    return model_errors(lambda q: B.printed_eq53(q, 1), lambda q: -B.drive_torque(q, 1))
+
+
+def existing_errors(case, approximate, exact):
+    """The worst error of the existing model over a turn, %, of the greatest exact size, for a design."""
+    size = greatest(lambda t: abs(exact(case(t))))[0]
+    return 100 * greatest(lambda t: abs(approximate(case(t)) - exact(case(t))))[0] / size
+
+
+def model_errors(approximate, exact):
+    """The worst errors for Table 1 by offset, and for Table 2, %."""
+    short = [existing_errors(lambda t, e=e: curves.case_1(t, e), approximate, exact) for e in curves.OFFSETS]
+    return {
+        "short": [short[0], *(x for pair in zip(short[1:], (mpf(10), mpf(20)), strict=True) for x in pair)],
+        "long": existing_errors(curves.case_2, approximate, exact),
+    }
+
+
+def test_existing_model_has_the_dead_centres_right():
+    """Without an offset Eq. 52 is exact at the dead centres, so all models share the values there."""
+    with mp.workdps(loop.DIGITS):
+        for theta in (mpf(0), mp.pi):
+            q = B.Case(theta, mpf(0), mpf("0.0381"), mpf("0.1524"), mpf("20.994"), mp)
+            assert close(B.reversed_eq52(q), B.corrected_eq20(q), 1, 30)
+
+
+# --- reference numbers ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rod", ["two masses", "uniform rod"])
+def test_extremes_of_the_torque(rod):
+    """The values are those of the power and level; no angle of a sweep of the free bodies beats them."""
+    for e in OFFSETS:
+        highest_at, highest, lowest_at, lowest = EXTREMES[rod, e]
+        bodies = TABLE_1_BODIES[rod]
+        for angle, value in ((highest_at, highest), (lowest_at, lowest)):
+            motion = table_1(angle, e)
+            power = free_bodies.drive_power(motion, bodies) / motion.omega0
+            assert close(power, value, 0, 12)
+            assert close(free_bodies.solve(motion, bodies)["T_in"], value, 0, 12)
+            beside = [
+                free_bodies.solve(table_1(angle + h, e), bodies)["T_in"] for h in (-mpf("1e-5"), mpf("1e-5"))
+            ]
+            assert abs(beside[1] - beside[0]) < 1e-9 * abs(value)
+        sweep = [free_bodies.solve(table_1(math.radians(5 * n), e), bodies)["T_in"] for n in range(72)]
+        assert max(sweep) <= highest < max(sweep) + 0.02 * highest
+        assert min(sweep) >= lowest > min(sweep) + 0.02 * lowest
+
+
+def test_lumping_of_table_1_in_the_torque():
+    """Lumping hides 2.8 % of the peak torque without an offset and adds 1.8 % at 20 mm."""
+    ratio = {
+        e: max(map(abs, EXTREMES["two masses", e][1::2])) / max(map(abs, EXTREMES["uniform rod", e][1::2]))
+        for e in OFFSETS
+    }
+    assert ratio == pytest.approx({0.0: 0.97190, 0.010: 1.00562, 0.020: 1.01767}, abs=5e-6)
+    for e in OFFSETS:
+        q = B.Case(EXTREMES["two masses", e][0], e, TABLE_1["k"], TABLE_1["c"], TABLE_1["omega"])
+        assert B.drive_torque(q, 1.05) == pytest.approx(EXTREMES["two masses", e][1], rel=1e-12)
