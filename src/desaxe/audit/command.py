@@ -6,6 +6,7 @@ from pathlib import Path
 from ..runtime.written import replacing_ours, require_ours
 from ..support.files import check_target, require_writable
 from ..support.progress import progress_bar
+from ..support.shown import printable
 from .report import PICTURE, by_family, overview, report, share_of, ulp_of
 from .run import FULL, QUICK, Audit, audit
 
@@ -25,7 +26,7 @@ def command(quick: bool, folder: str | None, overwrite: bool = False) -> int:
     print(text(found), flush=True)
     if folder is not None:
         for path in write(found, Path(folder), overwrite):
-            print(f"wrote {path}")
+            print(f"wrote {printable(path)}")
     return 0
 
 

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from ..support.extras import explained
-from .parser import add_command
+from ..support.shown import printable
+from .parser import Parser, add_command
 
 _DERIVE = """\
 The same command as `python -m derive` from the repository root.
@@ -50,7 +51,7 @@ def _own(words: list[str]) -> int:
     """Write, or check, the package of a file's own quantities: no SymPy is needed."""
     from ..scenes.export.package import write_package
 
-    parser = argparse.ArgumentParser(prog="desaxe derive", description="a package of quantities of your own")
+    parser = Parser(prog="desaxe derive", description="a package of quantities of your own")
     parser.add_argument("--quantities", type=Path, required=True, help="a TOML file with [quantities.NAME]")
     parser.add_argument("-o", "--output", type=Path, required=True, help="the folder of the package")
     parser.add_argument("--check", action="store_true", help="compare, exit 1 on a difference")
@@ -59,14 +60,14 @@ def _own(words: list[str]) -> int:
     try:
         found = write_package(options.quantities, options.output, options.check, options.overwrite)
     except (ValueError, TypeError, OSError) as error:
-        print(f"desaxe derive: {error}", file=sys.stderr)
+        print(f"desaxe derive: {printable(error)}", file=sys.stderr)
         return 2
-    remedy = f"run desaxe derive --quantities {options.quantities} -o {options.output}"
+    remedy = f"run desaxe derive --quantities {printable(options.quantities)} -o {printable(options.output)}"
     if options.check:
-        sys.stdout.write("".join(found))
-        print(f"{options.output.name}/ is {'stale: ' + remedy if found else 'fresh'}")
+        print("".join(f"{printable(line)}\n" for line in "".join(found).splitlines()), end="")
+        print(f"{printable(options.output.name)}/ is {'stale: ' + remedy if found else 'fresh'}")
         return 1 if found else 0
-    print(f"wrote {options.output}")
+    print(f"wrote {printable(options.output)}")
     return 0
 
 

@@ -15,6 +15,7 @@ from typing import Any
 
 from ..support.extras import MissingExtraError, explained
 from ..support.interrupts import is_at_work
+from ..support.shown import printable
 from .cache import add_cache
 from .checks import add_audit, add_derive, add_doctor, derive
 from .errata import add_errata
@@ -115,7 +116,7 @@ def warnings_in_a_line() -> Iterator[None]:
 
     def told(message: Any, category: Any, *place: Any, **more: Any) -> str:
         own = category.__module__.startswith("desaxe.")
-        return f"desaxe: {message}\n" if own else usual(message, category, *place, **more)
+        return f"desaxe: {printable(message)}\n" if own else usual(message, category, *place, **more)
 
     warnings.formatwarning = told
     try:
@@ -125,10 +126,10 @@ def warnings_in_a_line() -> Iterator[None]:
 
 
 def _one_line(error: Exception) -> str:
-    if isinstance(error, OSError) and error.strerror:
-        return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
     text = " ".join(str(error).split())
-    text = text if text.isprintable() else repr(text)[1:-1]  # what steers a terminal
+    if isinstance(error, OSError) and error.strerror:
+        text = f"{error.filename}: {error.strerror}" if error.filename else error.strerror
+    text = printable(text)
     return text if len(text) <= LONGEST else f"{text[: LONGEST // 2]} ... {text[-LONGEST // 2 :]}"
 
 

@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from ..support.shown import printable
 from .parser import add_command
 from .words import UsageError
 
@@ -85,7 +86,7 @@ def _check_scene(options: argparse.Namespace) -> int:
     from ..scenes.scene import scene
 
     found = scene(options.scene)
-    print(f"{options.scene}: fine" + (f", {', '.join(found.outputs)}" if found.outputs else ""))
+    print(f"{printable(options.scene)}: fine" + (f", {', '.join(found.outputs)}" if found.outputs else ""))
     return 0
 
 
@@ -187,7 +188,7 @@ def _explore(options: argparse.Namespace) -> int:
     place = Path(options.file)
     require_page(place, options.overwrite)
     found = content_of(options.scene, options.names.split(",") if options.names else None)
-    print(write_page(found, place, options.overwrite))
+    print(printable(write_page(found, place, options.overwrite)))
     left = left_out_text(found)
     if left:
         print(f"desaxe: not shown on the page: {left}", file=sys.stderr)

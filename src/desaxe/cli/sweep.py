@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ..support.extras import needed
+from ..support.shown import printable
 from .parser import add_command
 from .words import UsageError
 
@@ -70,7 +71,7 @@ def _sweep(options: argparse.Namespace) -> int:
     place = options.store or (wanted.content.store if options.best is None else None)
     if place is not None:
         shape = " x ".join(f"{name} ({size})" for name, size in found.sizes.items())
-        print(f"{place}: {', '.join(map(str, found.data_vars))} over {shape or 'one point'}")
+        print(f"{printable(place)}: {', '.join(map(str, found.data_vars))} over {shape or 'one point'}")
     if options.netcdf is not None:
         _write_netcdf(found, options.netcdf, options.overwrite)
     return 0
@@ -141,7 +142,7 @@ def _require_netcdf(place: str, overwrite: bool) -> None:
     from ..support.files import require_writable
 
     if not place.endswith(".nc"):
-        raise UsageError(f"--netcdf {place}: its name must end in .nc")
+        raise UsageError(f"--netcdf {printable(place)}: its name must end in .nc")
     check_place(Path(place), overwrite)
     require_writable(Path(place))
 
@@ -155,8 +156,8 @@ def _write_netcdf(found: Any, place: str, overwrite: bool) -> None:
     free = free_memory()
     if free is not None and found.nbytes > free // 2:
         raise MemoryError(
-            f"--netcdf {place}: {size_text(found.nbytes)} do not fit into the free memory "
+            f"--netcdf {printable(place)}: {size_text(found.nbytes)} do not fit into the free memory "
             f"({size_text(free)}); the Zarr store is complete"
         )
     write(Path(place), found.load(), {}, overwrite)
-    print(f"{place}: the same as NetCDF")
+    print(f"{printable(place)}: the same as NetCDF")

@@ -12,7 +12,7 @@ from ..mechanism.slips import LARGEST, UnitWarning
 from ..mechanism.units import in_unit, registry
 from ..support.files import as_path, read_bytes
 from ..support.quantity_text import spelled
-from ..support.shown import shown
+from ..support.shown import printable, shown
 from .load import TURN, FunctionOverTheta, Load, LoadWarning, OverY, TableOverTheta
 from .table import KINDS, held, periodic
 
@@ -104,7 +104,7 @@ class _OverTheta:
         try:
             return _table_over_theta(x, y, unit, kind, _period(period))
         except ValueError as error:
-            raise ValueError(f"{path}: {error}") from None
+            raise ValueError(f"{printable(path)}: {error}") from None
 
     def __repr__(self) -> str:
         return "desaxe.over_theta(angles, values, kind='cubic', period=2 pi)"
@@ -162,7 +162,7 @@ class _OverY:
         try:
             return _table_over_Y(x, forth, back, unit, kind)
         except ValueError as error:
-            raise ValueError(f"{path}: {error}") from None
+            raise ValueError(f"{printable(path)}: {error}") from None
 
     def __repr__(self) -> str:
         return "desaxe.over_Y(positions, outward, inward=None)"
@@ -313,7 +313,7 @@ def _column_unit(
         found = UNIT_OF_HEADING.search(cell)
         unit = spelled(found[1].strip()) if found else given
         if given is not None and unit is not None and unit != spelled(given):
-            raise ValueError(f"{path}: {name} = {given!r}, but its heading is {cell!r}")
+            raise ValueError(f"{printable(path)}: {name} = {given!r}, but its heading is {cell!r}")
         given = unit
     return given
 
@@ -326,7 +326,7 @@ def _rows(path: str | PathLike[str], least: int) -> tuple[list[str], list[list[s
     try:
         text = read_bytes(as_path("path", path), MOST_BYTES).decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise ValueError(f"{path}: not a text in UTF-8") from None
+        raise ValueError(f"{printable(path)}: not a text in UTF-8") from None
     except ValueError as error:
         raise ValueError(f"{shown(path)}: {error}") from None
     rows: list[list[str]] = []
@@ -339,11 +339,13 @@ def _rows(path: str | PathLike[str], least: int) -> tuple[list[str], list[list[s
         if len(cells) >= least and all(map(_is_plain, cells[:least])):
             rows.append([cell for cell in cells if cell])
         elif rows or heading:
-            raise ValueError(f"{path}, line {number}: expected {least} or more numbers, such as 90, -400")
+            raise ValueError(
+                f"{printable(path)}, line {number}: expected {least} or more numbers, such as 90, -400"
+            )
         else:
             heading = cells
     if not rows:
-        raise ValueError(f"{path}: no line has {least} numbers")
+        raise ValueError(f"{printable(path)}: no line has {least} numbers")
     return heading, rows
 
 

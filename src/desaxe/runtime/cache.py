@@ -22,6 +22,7 @@ from typing import NamedTuple
 
 from ..support import locks, private
 from ..support.files import PREFIX
+from ..support.shown import printable
 
 VARIABLE = "DESAXE_CACHE_DIR"
 LIMIT_VARIABLE = "DESAXE_CACHE_MB"
@@ -50,7 +51,7 @@ def folder() -> Folder:
             _prepare(path)
             return Folder(path, True)
         except OSError as error:
-            why = str(error) if error.strerror is None else f"{path}: {error.strerror}"
+            why = str(error) if error.strerror is None else f"{printable(path)}: {error.strerror}"
     return _temporary(why)
 
 
@@ -78,7 +79,7 @@ def _prepare(path: Path) -> None:
     try:
         private.make_folder(path)
     except FileExistsError:
-        raise private.UntrustedError(f"{path}: it is not a folder") from None
+        raise private.UntrustedError(f"{printable(path)}: it is not a folder") from None
     about = path.lstat()
     mine = sys.platform != "win32" and about.st_uid == os.geteuid() and stat.S_ISDIR(about.st_mode)
     if mine and about.st_mode & 0o077 and all(OURS.fullmatch(name) for name in os.listdir(path)):

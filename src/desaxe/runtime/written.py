@@ -13,6 +13,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..support.files import check_target, replacing
+from ..support.shown import printable
 from . import cache
 
 FOLDER = "written"
@@ -78,7 +79,8 @@ def require_ours(path: Path, overwrite: bool) -> None:
     if overwrite or not os.path.lexists(path) or (path.exists() and is_ours(path)):
         return
     raise FileExistsError(
-        f"{path}: this is not, or no longer, what desaxe wrote; overwrite=True (--overwrite) replaces it"
+        f"{printable(path)}: this is not, or no longer, what desaxe wrote; "
+        "overwrite=True (--overwrite) replaces it"
     )
 
 

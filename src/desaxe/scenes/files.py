@@ -18,6 +18,7 @@ import numpy as np
 from ..runtime.written import remember, require_ours
 from ..support.files import check_target, kind_of, require_space, staging, swap_in
 from ..support.forks import IMPORTS, imported
+from ..support.shown import printable
 
 _NETCDF_EXTRA = 65_536  # bytes for what HDF5 writes besides the numbers of a group
 
@@ -44,7 +45,7 @@ def write(
         try:
             _WRITERS[path.suffix](folder / path.name, values, groups)
         except (OSError, RuntimeError) as error:  # HDF5 has both for a full disk
-            raise OSError(f"{path}: not written: {error}") from error
+            raise OSError(f"{printable(path)}: not written: {error}") from error
         staged = sorted(folder.iterdir())
         for file in staged:
             check_place(path.parent / file.name, overwrite)
@@ -66,9 +67,9 @@ def check_place(path: Path, overwrite: bool = False) -> None:
     if path.suffix != ".zarr" or not os.path.lexists(path):
         check_target(path)
     elif kind_of(path) != "a folder" or path.is_symlink():
-        raise ValueError(f"{path}: this is no Zarr store, and would be replaced")
+        raise ValueError(f"{printable(path)}: this is no Zarr store, and would be replaced")
     elif any(path.iterdir()) and not any((path / name).exists() for name in _STORE):
-        raise ValueError(f"{path}: this folder holds no Zarr store, and would be replaced")
+        raise ValueError(f"{printable(path)}: this folder holds no Zarr store, and would be replaced")
     require_ours(path, overwrite)
 
 

@@ -9,6 +9,7 @@ from ..evaluation.evaluate import evaluate
 from ..evaluation.in_units import in_units
 from ..mechanism.unit_system import UnitSystem
 from ..support.progress import Progress, Steps
+from ..support.shown import printable
 from .blocks import blocks_of, values_of_grid
 from .content import Check, Content, Peak, Picture
 from .files import write
@@ -115,7 +116,7 @@ def _failure(name: str, error: BaseException) -> str:
     path, why = str(Path(name)), str(error) or type(error).__name__
     if isinstance(error, OSError) and error.strerror:
         why = error.strerror
-    return why if why.startswith(path) else f"{path}: not written: {why}"
+    return why if why.startswith(path) else f"{printable(path)}: not written: {why}"
 
 
 def _peaks(one: Peak, content: Content, steps: Steps) -> PeakResult:

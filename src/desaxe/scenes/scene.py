@@ -10,6 +10,7 @@ from ..definitions.tables import in_force, redefine
 from ..mechanism.own import definitions
 from ..mechanism.unit_system import SI, UnitSystem
 from ..support.progress import Progress
+from ..support.shown import printable
 from .content import Content
 from .peaks import PeakResult
 from .read import plain_data, read
@@ -131,10 +132,10 @@ def scene(source: str | PathLike[str] | Mapping[str, Any]) -> Scene:
 
         dx.scene("examples/compactor.toml").run()
     """
-    name = "" if isinstance(source, Mapping) else str(source)
+    name = "" if isinstance(source, Mapping) else printable(source)
     try:
         data = plain_data(source)
-        content = read(data, Path(name).parent if name else None)
+        content = read(data, None if isinstance(source, Mapping) else Path(source).parent)
         return Scene(content, name, content.units or units_written(data))
     except SceneError as error:
         raise SceneError(f"{name or 'scene'}: {error}") from None

@@ -19,7 +19,7 @@ from typing import Any
 
 from .forks import IMPORTS
 from .locks import try_lock
-from .shown import shown
+from .shown import printable, shown
 
 PREFIX = ".desaxe-"
 _REPLACED = (
@@ -87,7 +87,7 @@ def check_target(target: Path) -> None:
     """Refuse a target that is no regular file, or not writable."""
     kind = kind_of(target)
     if kind:
-        raise ValueError(f"{target}: this is {kind}; a file can only take the place of a file")
+        raise ValueError(f"{printable(target)}: this is {kind}; a file can only take the place of a file")
     if target.is_file() and not os.access(target, os.W_OK):
         raise PermissionError(13, "Permission denied", str(target))
 

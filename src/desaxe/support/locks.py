@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from .shown import printable
+
 if sys.platform == "win32":
     import msvcrt
 else:
@@ -52,7 +54,9 @@ def _acquire(descriptor: int, path: Path, wait: float, message: str) -> bool:
         if held is not False:
             return held is True
         if time.monotonic() >= end:
-            raise TimeoutError(message or f"{path}: another process has held its lock for {wait:g} s")
+            raise TimeoutError(
+                message or f"{printable(path)}: another process has held its lock for {wait:g} s"
+            )
         time.sleep(pause)
         pause = min(2.0 * pause, _LONGEST_PAUSE)
 

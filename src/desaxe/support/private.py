@@ -10,6 +10,8 @@ import stat
 import sys
 from pathlib import Path
 
+from .shown import printable
+
 FOLDER_MODE = 0o700
 _OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
 
@@ -38,7 +40,7 @@ def read_bytes(path: Path) -> bytes:
         about = os.fstat(file.fileno())
         why = distrust(about) if stat.S_ISREG(about.st_mode) else "it is not a regular file"
         if why:
-            raise UntrustedError(f"{path}: {why}")
+            raise UntrustedError(f"{printable(path)}: {why}")
         return file.read()
 
 
@@ -52,9 +54,9 @@ def check_folder(path: Path) -> None:
     """UntrustedError unless a path is a trusted folder, and no link to one."""
     about = path.lstat()
     if stat.S_ISLNK(about.st_mode):
-        raise UntrustedError(f"{path}: it is a link")
+        raise UntrustedError(f"{printable(path)}: it is a link")
     if not stat.S_ISDIR(about.st_mode):
-        raise UntrustedError(f"{path}: it is not a folder")
+        raise UntrustedError(f"{printable(path)}: it is not a folder")
     why = distrust(about)
     if why:
-        raise UntrustedError(f"{path}: {why}")
+        raise UntrustedError(f"{printable(path)}: {why}")

@@ -1,8 +1,14 @@
-"""A value in a message, shortened."""
+"""A value in a message, shortened; a path or another text without what steers a terminal."""
 
 from typing import Any
 
 LONGEST = 80
+
+
+def printable(value: Any) -> str:
+    """A text, or a path, in which control characters and others that no screen shows are spelled out."""
+    text = str(value)
+    return text if text.isprintable() else repr(text)[1:-1]
 
 
 def shown(value: Any) -> str:
@@ -13,7 +19,7 @@ def shown(value: Any) -> str:
         text = repr(value[: 2 * LONGEST] + value[-LONGEST:]) if _is_long(value) else repr(value)
     except Exception:  # of a class that is not ours
         text = f"a value of type {type(value).__name__}"
-    text = " ".join(text.split())
+    text = printable(" ".join(text.split()))
     half = LONGEST // 2
     return text if len(text) <= LONGEST else f"{text[:half]} ... {text[-half:]}"
 

@@ -12,6 +12,7 @@ from ..evaluation.labels import import_xarray
 from ..support.files import remove_strays as remove_folders
 from ..support.files import require_writable
 from ..support.forks import IMPORTS
+from ..support.shown import printable
 from .best import Search
 from .layout import size_text
 from .prepared import Sweep
@@ -37,14 +38,14 @@ def kept_at(root: Path, told: Mapping[str, str], overwrite: bool) -> dict[str, A
     there = attributes(root)
     if there is None:
         if os.path.lexists(root) and (not root.is_dir() or any(root.iterdir())):
-            raise FileExistsError(f"{root}: this is no Zarr store; it is left as it is")
+            raise FileExistsError(f"{printable(root)}: this is no Zarr store; it is left as it is")
         require_writable(root)
         return None
     ours = set(IDENTITY) <= set(there)
     found = differences(there, told) if ours else ["no sweep wrote it"]
     if found and not overwrite:
         raise FileExistsError(
-            f"{root}: a store of another sweep: {'; '.join(found)}. overwrite=True replaces it"
+            f"{printable(root)}: a store of another sweep: {'; '.join(found)}. overwrite=True replaces it"
         )
     return None if found or (overwrite and there.get(CHUNKS) != told[CHUNKS]) else there
 
@@ -67,7 +68,7 @@ def _refuse_changed(root: Path, changed: Sequence[str], overwrite: bool) -> None
     if changed and not overwrite:
         several = "; ".join(changed[:SEVERAL]) + ("; ..." if len(changed) > SEVERAL else "")
         raise FileExistsError(
-            f"{root}: changed since a sweep wrote it: {several}. overwrite=True replaces it"
+            f"{printable(root)}: changed since a sweep wrote it: {several}. overwrite=True replaces it"
         )
 
 

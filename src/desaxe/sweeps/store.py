@@ -25,6 +25,7 @@ from ..support.files import exchange, staging
 from ..support.forks import IMPORTS
 from ..support.interrupts import put_off
 from ..support.locks import locked
+from ..support.shown import printable
 from .skeleton import COMPLETE, METADATA, STATE, signed, skeleton_of, with_state
 
 with put_off(), explained("a sweep"):
@@ -93,7 +94,7 @@ def create(root: Path, files: Mapping[str, bytes], replace: bool) -> None:
         sync_folders(staged)
         if not replace:
             if root.exists():
-                raise FileExistsError(f"{root}: it is there already")
+                raise FileExistsError(f"{printable(root)}: it is there already")
             os.rename(staged, root)
         elif not exchange(staged, root):
             shutil.rmtree(root)
@@ -138,7 +139,7 @@ def held(root: Path) -> Iterator[None]:
         with locked(root, wait=0.0):
             yield
     except TimeoutError:
-        raise BlockingIOError(f"{root}: another sweep is writing this store") from None
+        raise BlockingIOError(f"{printable(root)}: another sweep is writing this store") from None
 
 
 # ---- chunks --------------------------------------------------------------------------------------

@@ -15,6 +15,7 @@ from ..evaluation.chunks import blocks_of, slices_of
 from ..runtime.threads import available
 from ..support.extras import needed
 from ..support.files import as_path
+from ..support.shown import printable
 from . import store as zarr_store
 from .best import Search, best_designs, search_for
 from .cluster import Crew, cluster, require_workers, run_all
@@ -167,7 +168,7 @@ class NotStoredError(OSError):
     """The best designs were found and could not be stored; `result` has them."""
 
     def __init__(self, root: Path, error: OSError, result: "xr.Dataset") -> None:
-        super().__init__(f"{root}: not written: {error.strerror or error}")
+        super().__init__(f"{printable(root)}: not written: {error.strerror or error}")
         self.result = result
 
 

@@ -16,7 +16,7 @@ from ...mechanism.units import in_unit, registry
 from ...support.extras import MissingExtraError
 from ...support.files import read_bytes
 from ...support.quantity_text import spelled
-from ...support.shown import shown
+from ...support.shown import printable, shown
 
 Array = NDArray[np.float64]
 MOST_BYTES = 100_000_000  # of a file
@@ -104,7 +104,7 @@ def read_csv(path: Path) -> dict[str, Array]:
     rows = [row for row in csv.reader(text.splitlines(), delimiter=separator) if any(c.strip() for c in row)]
     start = next((k for k, row in enumerate(rows) if _names(row) & set(COURSE)), None)
     if start is None:
-        raise ValueError(f"{path}: no heading with theta or t, such as `theta [deg], a_C [m/s2]`")
+        raise ValueError(f"{printable(path)}: no heading with theta or t, such as `theta [deg], a_C [m/s2]`")
     found: dict[str, Array] = {}
     for place, heading in enumerate(rows[start]):
         match = _HEADING.fullmatch(heading)
@@ -148,4 +148,4 @@ def _number(path: Path, row: list[str], place: int, separator: str) -> float:
     try:
         return float(text.replace(",", ".") if separator == ";" else text)
     except ValueError:
-        raise ValueError(f"{path}: {text!r} is not a number") from None
+        raise ValueError(f"{printable(path)}: {text!r} is not a number") from None

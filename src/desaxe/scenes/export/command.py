@@ -4,6 +4,7 @@ import difflib
 import sys
 from pathlib import Path
 
+from ...support.shown import printable
 from ..scene import scene as scene_of
 from .compile import compile, lost_of, texts_of
 
@@ -16,7 +17,7 @@ def run_compile(source: str, place: str, to: str, libm: bool, check: bool, overw
         return _compare(texts, source, place)
     compile(scene, place, to, libm=libm, overwrite=overwrite)
     for file, text in texts.items():
-        print(f"{file}: {len(text.splitlines())} lines")
+        print(f"{printable(file)}: {len(text.splitlines())} lines")
     lost = lost_of(scene.content, to)
     if lost:
         print(f"not compiled (`desaxe run` has it): {', '.join(lost)}", file=sys.stderr)
@@ -29,10 +30,14 @@ def _compare(texts: dict[Path, str], source: str, place: str) -> int:
         there = file.read_bytes().decode(errors="replace") if file.is_file() else ""
         if there != text or not file.is_file():
             stale += 1
-            lines = there.splitlines(True), text.splitlines(True)
-            sys.stdout.writelines(difflib.unified_diff(*lines, f"{file} (there)", f"{file} (from the scene)"))
+            lines = there.splitlines(), text.splitlines()
+            names = f"{file} (there)", f"{file} (from the scene)"
+            print(*map(printable, difflib.unified_diff(*lines, *names, lineterm="")), sep="\n")
     if stale:
-        print(f"{place} is not what {source} gives: write it again without --check", file=sys.stderr)
+        print(
+            f"{printable(place)} is not what {printable(source)} gives: write it again without --check",
+            file=sys.stderr,
+        )
         return 1
-    print(f"{place}: fresh")
+    print(f"{printable(place)}: fresh")
     return 0

@@ -32,6 +32,7 @@ from ...runtime.kernels import KernelKey, kernel_of
 from ...runtime.specialise import specialise
 from ...runtime.written import UNSEALED, replacing_ours, require_ours, sealed
 from ...support.files import as_path, check_target, require_writable
+from ...support.shown import printable
 from ...support.version import version
 from ..content import Content
 from ..kernel import GridKernel, grid_kernel
@@ -100,7 +101,7 @@ def compile(
         stale = differing(texts)
         if stale:
             names = ", ".join(file.name for file in stale)
-            raise ValueError(f"{place}: not what the scene gives ({names}); write it again")
+            raise ValueError(f"{printable(place)}: not what the scene gives ({names}); write it again")
         return place
     for file in texts:
         check_target(file)
@@ -155,7 +156,9 @@ def require_name(name: str, place: Path, words: Container[str]) -> None:
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or _is_word(name, words):
         word = re.sub(r"\W", "_", name, flags=re.ASCII)
         good = word if re.match(r"[A-Za-z]", word) and not _is_word(word, words) else f"press_{word}"
-        raise ValueError(f"{place}: {name!r} cannot be the name of a module, but {good!r}, for example")
+        raise ValueError(
+            f"{printable(place)}: {name!r} cannot be the name of a module, but {good!r}, for example"
+        )
 
 
 def _require_importable(place: Path) -> None:
@@ -164,7 +167,9 @@ def _require_importable(place: Path) -> None:
     if place.suffix != ".py" or not name.isidentifier() or _is_word(name, words):
         word = re.sub(r"\W", "_", name)
         good = word if word.isidentifier() and not _is_word(word, words) else f"kernels_{word}"
-        raise ValueError(f"{place}: Python cannot import a module of this name, but {good}.py, for example")
+        raise ValueError(
+            f"{printable(place)}: Python cannot import a module of this name, but {good}.py, for example"
+        )
 
 
 def _is_word(name: str, words: Container[str]) -> bool:
