@@ -25,5 +25,7 @@ sources        requests that compute the values of a block of a grid
 fold           reductions over several axes of arrays in memory
 joint          reductions over several axes, of single names, of further kinds
 own_measure    a user's function of a design as a measure
+arcs           arcs of crank angles on which one piece of a load holds
+sides          on which side of a jump of a load samples are
 extremes       inputs near the ends of the double range, rescaled
 """

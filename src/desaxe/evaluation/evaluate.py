@@ -1,6 +1,6 @@
 """`evaluate`: numbers in, a float out; arrays in, arrays out."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from ..mechanism.inputs import INPUTS
@@ -80,6 +80,7 @@ def evaluate(
     if unknown:
         check_inputs("evaluate", unknown, (*INPUTS, "branch", "accuracy", "threads", "out", "quality"))
     given = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
+    values_of: Callable[..., Any] = values
     if not (
         m_crank is None
         and m_rod is None
@@ -98,16 +99,16 @@ def evaluate(
         given.update((name, load) for name, load in zip(LOADS, loads, strict=True) if load is not None)
         if any(map(callable, loads)):
             with IMPORTS:
-                from .loaded import evaluate_loaded, refuse_quality
+                from .loaded import evaluate_loaded as values_of
+                from .loaded import refuse_quality
 
             refuse_quality(quality, given)
-            return evaluate_loaded(names, given, branch, accuracy, threads, out)
     if quality:
         with IMPORTS:
             from .quality import evaluate_quality
 
         return evaluate_quality(names, given, branch, accuracy, threads, out)
-    found = values(names, given, branch, accuracy, threads, out)
+    found = values_of(names, given, branch, accuracy, threads, out)
     if type(found) is dict:
         found = Answer(found)
         found.inputs = {name: value for name, value in given.items() if value is not None}

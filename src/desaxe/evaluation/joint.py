@@ -14,11 +14,12 @@ from ..mechanism.own import Definition
 from ..runtime.compiled_only import compiled_only
 from .chunks import blocks_of, chunk_lengths, slices_of
 from .fold import Field, field_of, folded
-from .labels import attributes, input_attributes, labelled, provenance, with_loads
+from .labels import attributes, input_attributes, labelled, provenance, side_attributes, with_loads
 from .outer import Outer
 from .reduce import reduced
-from .reductions import Reduction, Reductions, chain_name, extremes_at_end, method_of
-from .sources import Plain, Source, source_of
+from .reductions import Chain, Reduction, Reductions, chain_name, extremes_at_end, method_of
+from .sides import sides_of
+from .sources import Loaded, Plain, Source, source_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -65,28 +66,55 @@ class JointPart(NamedTuple):
     @property
     def outputs(self) -> dict[str, np.dtype[Any]]:
         """The outputs by name, and their types."""
-        counts = {f"{name}_skipped" for name in self.names}
-        return {name: np.dtype(np.int64 if name in counts else np.float64) for name in self._variables()}
-
-    def _variables(self) -> list[str]:
-        found = []
+        found: dict[str, type] = {}
         for name in self.names:
             for chain in self.reductions.chains(name):
                 own = chain_name(name, chain)
-                found += [own, *(f"{own}_{axis}" for axis in extremes_at_end(chain))]
-            found.append(f"{name}_skipped")
-        found += [one.variable for one in self.reductions.at]
+                found |= dict.fromkeys(
+                    (own, *(f"{own}_{axis}" for axis in extremes_at_end(chain))), np.float64
+                )
+                found |= {f"{own}_side": np.int8} if self._has_side(chain) else {}
+            found[f"{name}_skipped"] = np.int64
+        found |= {one.variable: np.float64 for one in self.reductions.at}
         for function, slopes in zip(self.reductions.functions, self.slopes, strict=True):
-            found += [function.name, *(f"{function.name}_wrt_{p}" for p in slopes)]
-        return found
+            found |= dict.fromkeys((function.name, *(f"{function.name}_wrt_{p}" for p in slopes)), np.float64)
+        return {name: np.dtype(kind) for name, kind in found.items()}
+
+    def _has_side(self, chain: Chain) -> bool:
+        """Whether the result of a chain is a sample over theta under loads that may jump."""
+        return isinstance(self.source, Loaded) and "theta" in extremes_at_end(chain)
 
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
         """The outputs of a block by name, from the values along each of its `axes`."""
         with compiled_only():
-            return self.taken(values, threads)
+            found = self._taken(values, threads)
+        return found | self._sides(found, values)
 
     def taken(self, values: Mapping[str, Array], threads: int | None) -> dict[str, Array]:
         """The outputs of a block; other than in `compute`, few points may be computed in plain Python."""
+        found = self._taken(values, threads)
+        return found | self._sides(found, values)
+
+    def _sides(self, found: Mapping[str, Array], values: Mapping[str, Array]) -> dict[str, Array]:
+        """The sides of jumps on which extremes over theta are; 0 where other inputs were averaged."""
+        sides = {}
+        for name in self.names:
+            for chain in self.reductions.chains(name):
+                if not self._has_side(chain):
+                    continue
+                assert isinstance(self.source, Loaded)
+                own = chain_name(name, chain)
+                shape = found[own].shape
+                grids = np.meshgrid(*(values[axis] for axis in self.dims), indexing="ij")
+                points = dict(zip(self.dims, grids, strict=True))
+                points |= {axis: found[f"{own}_{axis}"] for axis in extremes_at_end(chain)}
+                flat = {axis: np.ascontiguousarray(column).reshape(-1) for axis, column in points.items()}
+                known = set(self.axes) <= set(flat)
+                side = sides_of(name, self.source, flat) if known else np.zeros(shape, np.int8)
+                sides[f"{own}_side"] = side.reshape(shape)
+        return sides
+
+    def _taken(self, values: Mapping[str, Array], threads: int | None) -> dict[str, Array]:
         found: dict[str, Array] = {}
         if self.source is not None:
             found |= self._kinds(self.source, values, threads)
@@ -206,6 +234,7 @@ def joint_attributes(part: JointPart, state: bool) -> dict[str, dict[str, Any]]:
                 about = input_attributes(axis)
                 words = f"{about['long_name']} of the {variable.removeprefix(f'{name}_')} of {name}"
                 found[f"{variable}_{axis}"] = {"units": about["units"], "long_name": words}
+            found[f"{variable}_side"] = side_attributes()
         along = ", ".join(part.reductions.axes)
         found[f"{name}_skipped"] = {
             "units": "1",

@@ -36,6 +36,13 @@ def attributes(name: str, state: bool = False) -> dict[str, Any]:
     return found
 
 
+def side_attributes() -> dict[str, Any]:
+    """CF attributes of the side of a jump that an extremum is on."""
+    words = "side of a jump from which the value is the limit, by theta"
+    flags = np.array([-1, 0, 1], np.int8)
+    return {"long_name": words, "flag_values": flags, "flag_meanings": "smaller no_jump larger"}
+
+
 def input_attributes(name: str) -> dict[str, str]:
     """CF attributes of an input."""
     return {"units": INPUTS[name].unit, "long_name": INPUTS[name].meaning}
@@ -128,7 +135,28 @@ def with_loads(dataset: "xr.Dataset", loads: Mapping[str, Any]) -> "xr.Dataset":
         theta = dataset["theta"]
         columns = {n: (theta.dims, load(theta.values), input_attributes(n)) for n, load in over_theta.items()}
         dataset = dataset.assign_coords(columns)
-    return dataset.assign_attrs(loads=loads_text(loads))
+    found = dataset.assign_attrs(loads=loads_text(loads))
+    found.encoding = {**found.encoding, KNOWN: KnownLoads(loads)}
+    return found
+
+
+KNOWN = "loads"  # the key in a Dataset's `encoding`, which no file gets
+
+
+class KnownLoads(dict[str, Any]):
+    """The loads themselves, for as long as a Dataset stays in this process."""
+
+    def __reduce__(self) -> tuple[type[dict[str, Any]], tuple[()]]:
+        return dict, ()
+
+    def __deepcopy__(self, memo: Any) -> "KnownLoads":
+        return self
+
+
+def known_loads(dataset: "xr.Dataset") -> Mapping[str, Any]:
+    """The loads that vary with the motion, if the Dataset still knows them."""
+    found: Mapping[str, Any] = dataset.encoding.get(KNOWN, {})
+    return found
 
 
 def loads_text(loads: Mapping[str, Any]) -> str:

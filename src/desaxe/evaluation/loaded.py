@@ -1,12 +1,15 @@
 """Values under loads that vary with the motion: first the loads at each point, then the Program."""
 
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..loads.load import TURN, FunctionOverTheta, Load
+from ..loads.function import FunctionOverTheta
+from ..loads.load import TURN, Load
+from ..loads.pieces import Place
 from ..loads.resolve import VARIABLE, Forces, Plan, plan_of, split, way_of, without_loads
 from ..loads.tabulated import over_theta
 from ..mechanism.names import LENGTHS
@@ -48,18 +51,26 @@ def plan_for(names: Sequence[str], given: Mapping[str, Any]) -> tuple[dict[str, 
     return numbers, plan_of(names, loads, "omega" in numbers, "mu" in numbers)
 
 
-def forces_at(plan: Plan, numbers: Mapping[str, Any], branch: int, accuracy: str | float) -> Forces:
-    """The loads of a plan at the crank angles, lengths and speed among `numbers`."""
+def forces_at(
+    plan: Plan,
+    numbers: Mapping[str, Any],
+    branch: int,
+    accuracy: str | float,
+    held: Mapping[str, Any] = MappingProxyType({}),
+) -> Forces:
+    """The loads of a plan at the crank angles, lengths and speed among `numbers`; some on pieces held."""
     what = f"theta, over which {' and '.join(plan.loads)} varies" if "theta" not in numbers else ""
     if what:
         raise TypeError(f"{', '.join(plan.shown)}: {what}, is missing")
     theta = numeric("theta", numbers["theta"], plan.shown)
     motion: Mapping[str, Any] = {}
+    lengths: Sequence[Any] = ()
     if plan.motion:
-        place = {**dict.fromkeys(MOTION), **{n: numbers.get(n) for n in LENGTHS}, "theta": theta}
-        motion = values(list(plan.motion), place, branch, accuracy if accuracy == "extended" else "standard")
+        given = {**dict.fromkeys(MOTION), **{n: numbers.get(n) for n in LENGTHS}, "theta": theta}
+        motion = values(list(plan.motion), given, branch, accuracy if accuracy == "extended" else "standard")
+        lengths = [numeric(n, numbers[n], plan.shown) for n in LENGTHS]
     speeds = {n: numeric(n, numbers[n], plan.shown) for n in ("omega0", "omega", "alpha") if n in numbers}
-    return plan.forces(theta, motion, way_of(speeds))
+    return plan.forces(Place(theta, lengths, way_of(speeds), branch), motion, held)
 
 
 def refuse_quality(quality: bool, given: Mapping[str, Any]) -> None:

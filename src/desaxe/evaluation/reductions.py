@@ -18,6 +18,7 @@ from ..runtime.request import as_number
 from ..support.shown import shown
 from .own_measure import OwnMeasure
 
+Chain = Sequence[tuple[tuple[str, ...], str]]  # axes and what is taken of them, one after the other
 NO_STATUS = "a status has no largest or mean: leave it out; each name has a count of skipped points"
 OTHERS = ("std", "median")  # kinds that no kernel computes on the way, beside percentiles
 METHODS = {**KINDS, "std": "standard_deviation", "median": "median"}  # as CF's `cell_methods` say them
@@ -113,12 +114,12 @@ def _extended(
     return [*chain, (axes, kind)]
 
 
-def chain_name(name: str, chain: Sequence[tuple[tuple[str, ...], str]]) -> str:
+def chain_name(name: str, chain: Chain) -> str:
     """`a_C_max`, or of several steps `a_C_max_mean`."""
     return "_".join([name, *(kind for _, kind in chain)])
 
 
-def extremes_at_end(chain: Sequence[tuple[tuple[str, ...], str]]) -> tuple[str, ...]:
+def extremes_at_end(chain: Chain) -> tuple[str, ...]:
     """The axes along which the result of a chain has a place: those since its last average."""
     found: tuple[str, ...] = ()
     for axes, kind in chain:

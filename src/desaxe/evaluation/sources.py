@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..loads.load import Load
+from ..loads.pieces import Place
 from ..loads.resolve import Plan, plan_of, way_of
 from ..mechanism.names import LENGTHS
 from ..runtime.request import Request, request
@@ -51,6 +52,7 @@ class Loaded(NamedTuple):
     wanted: Request
     motion: Request | None
     numbers: Numbers
+    branch: int
 
     @property
     def accuracy(self) -> str:
@@ -66,10 +68,22 @@ class Loaded(NamedTuple):
         for place, name in enumerate(dims):
             own = [-1 if k == place else 1 for k in range(len(dims))]
             given[name] = np.ascontiguousarray(columns[name], np.float64).reshape(own)
+        return self._over(given, shape, threads)
+
+    def at(self, points: Mapping[str, Array]) -> dict[str, Array]:
+        """The values at points, whose inputs are columns of one length."""
+        return self._over({**dict(self.numbers), **points}, points["theta"].shape, 1)
+
+    def _over(
+        self, given: Mapping[str, Any], shape: tuple[int, ...], threads: int | None
+    ) -> dict[str, Array]:
+        """The values at inputs that broadcast to a shape."""
         if not all(shape):
             return {name: np.empty(shape, dtype_of(name)) for name in self.plan.shown}
         motion = {} if self.motion is None else _values(self.motion, given, shape, threads)
-        forces = self.plan.forces(np.asarray(given["theta"]), motion, way_of(given))
+        lengths = [given.get(name) for name in LENGTHS]
+        place = Place(np.asarray(given["theta"]), lengths, way_of(given), self.branch)
+        forces = self.plan.forces(place, motion)
         found = _values(self.wanted, {**given, **forces.values}, shape, threads)
         return {
             name: np.array(np.broadcast_to(total, shape))
@@ -108,7 +122,7 @@ def source_of(
         motion = request(plan.motion, lengths, branch, kept)
         require_inputs(motion, axes)
     require_inputs(wanted, {*axes, *plan.loads})
-    return Loaded(plan, wanted, motion, numbers)
+    return Loaded(plan, wanted, motion, numbers, int(branch))
 
 
 def _values(

@@ -1,8 +1,11 @@
 """Loads over the crank angle or the slider's position: tables, files and functions.
 
-load       the loads: over theta or Y, from a table or a function
+load       the loads: over theta or Y, from a table
+function   a user's function of theta as a load
 table      tables as piecewise cubics
 tabulated  `over_theta`, `over_Y`: loads from lists, files and functions
+pieces     which piece of a load over Y holds at an angle
+exact      where the slider is, exactly
 angles     crank angles of slider positions and dead centres
 resolve    loads as numbers at each point, and total derivatives
 """

@@ -1,15 +1,21 @@
 """Crank angles of slider positions and of dead centres: the nodes of a load over Y."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from math import gcd
+from fractions import Fraction
+from math import gcd, nan
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..mechanism.closed.dead_centres import DEAD_CENTRES
+from ..mechanism.closed.functions import closed_form
+from ..mechanism.closed.limits import ANGLES, LIMITS
 from .load import TURN, Load, OverTheta, OverY, TableOverTheta
 
 Array = NDArray[np.float64]
+FLAT = 2.0**-6  # of AB + BC: what is left of a side where the triangle is flat
+STEEP = 0.9  # the sine of an angle that loses digits
 
 
 def passages(Y: Sequence[float], lengths: Sequence[Array], branch: int) -> Array:
@@ -18,19 +24,31 @@ def passages(Y: Sequence[float], lengths: Sequence[Array], branch: int) -> Array
     lengths  ec, AB, BC, a value for each design
 
     The triangle A B C has the sides AB, BC and L = |AC|; tan(beta/2) of its angle at A keeps its digits where
-    the triangle is flat.
+    the triangle is flat, which is decided exactly: a position is reached, or it is not.
     """
     ec, AB, BC = (np.asarray(side, float)[:, None] for side in lengths)
     position = np.asarray(Y, float)[None, :]
     with np.errstate(invalid="ignore", divide="ignore"):
         L = np.hypot(ec, position)
-        above = (BC - (L - AB)) * (BC + (L - AB))
-        below = ((L + AB) - BC) * ((L + AB) + BC)
-        beta = 2.0 * np.arctan2(np.sqrt(above), np.sqrt(below))
+        outer, inner, other = BC - (L - AB), (L + AB) - BC, BC + (L - AB)
+        flat = np.abs([outer, inner, other]).min(axis=0) < FLAT * (AB + BC)
+        for at in map(tuple, np.argwhere(flat)):
+            sides = [float(side[at[0], 0]) for side in (ec, AB, BC)]
+            outer[at], inner[at], other[at] = _spare(sides, float(position[0, at[1]]), float(L[at]))
+        beta = 2.0 * np.arctan2(np.sqrt(outer * other), np.sqrt(inner * ((L + AB) + BC)))
         found = [np.arctan2(-ec, position) + side * beta for side in (-1.0, 1.0)]
         return np.concatenate(
             [np.where((position - AB * np.cos(t)) * branch >= 0.0, t, np.nan) for t in found], axis=1
         )
+
+
+def _spare(lengths: Sequence[float], Y: float, L: float) -> tuple[float, float, float]:
+    """AB + BC - L, L + AB - BC and L + BC - AB of a flat triangle, from exact differences of squares."""
+    ec, AB, BC = map(Fraction, lengths)
+    square = ec**2 + Fraction(Y) ** 2
+    outer, long = float((AB + BC) ** 2 - square) / (float(AB + BC) + L), L + abs(float(BC - AB))
+    inner = float(square - (BC - AB) ** 2) / long if long else nan
+    return (outer, inner, long) if BC >= AB else (outer, long, inner)
 
 
 def dead_centres(lengths: Sequence[Array]) -> Array:
@@ -39,7 +57,20 @@ def dead_centres(lengths: Sequence[Array]) -> Array:
     with np.errstate(invalid="ignore", divide="ignore"):
         sines = np.stack([-ec / (AB + BC), ec / (BC - AB)], axis=-1)
         first = np.arcsin(sines)
+    steep = np.abs(sines) > STEEP
+    if steep.any():
+        (outer,) = closed_form(DEAD_CENTRES, ("theta_outer",), branch=1.0).arrays(*lengths)
+        (inner,) = closed_form(DEAD_CENTRES, ("theta_inner",), branch=-1.0).arrays(*lengths)
+        first = np.where(steep, np.stack([outer, inner], axis=-1), first)
     return np.concatenate([first, np.pi - first], axis=-1)
+
+
+def limit_angles(lengths: Sequence[Array]) -> Array:
+    """The angles [rad] between which designs can be assembled, NaN in empty places; none if all turn."""
+    ec, AB, BC = lengths
+    if (BC - AB - np.abs(ec) > FLAT * FLAT * BC).all():
+        return np.empty((ec.size, 0))
+    return np.stack(np.broadcast_arrays(*closed_form(LIMITS, ANGLES).arrays(ec, AB, BC)), axis=-1)
 
 
 def repeated(angles: Array, low: float, high: float) -> Array:

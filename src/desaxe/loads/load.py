@@ -5,17 +5,16 @@ way the slider goes. It stands wherever F_X or F_Y does, compares by its content
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from hashlib import sha256
-from math import ceil, floor, inf, isfinite, nextafter, pi
+from math import ceil, floor, inf, nan, nextafter, pi
 from typing import Any
 
 from ..support.forks import IMPORTS
-from .table import Table
+from .table import Table, polynomial
 
 TURN = 2.0 * pi
-SAMPLES = 1024  # of a function, by which it is distinguished from others
 
 
 class LoadWarning(UserWarning):
@@ -117,45 +116,8 @@ class TableOverTheta(OverTheta):
 
 
 @dataclass(frozen=True)
-class FunctionOverTheta(OverTheta):
-    """A user's function of the crank angle, which is called with the angle as it is."""
-
-    function: Callable[[Any], Any]
-    derivative: Callable[[Any], Any] | None = None
-    angles: tuple[float, ...] = ()  # nodes
-    every: float = TURN  # the angle after which the nodes repeat
-
-    @property
-    def period(self) -> float:
-        """The angle after which the nodes repeat [rad]."""
-        return self.every
-
-    @property
-    def has_slope(self) -> bool:
-        """True where the derivative was given."""
-        return self.derivative is not None
-
-    def both(self, theta: Any) -> tuple[Any, Any]:
-        """The load and, where it is known, its derivative."""
-        slope = None if self.derivative is None else called(self.derivative, theta, "the load's derivative")
-        return called(self.function, theta, "the load"), slope
-
-    def nodes(self, low: float, high: float, smooth: bool) -> list[float]:
-        """The nodes in a range."""
-        return sorted(a for a in self._repeated(self.angles, low, high) if low <= a <= high)
-
-    def _content(self) -> str:
-        angles = [self.every * k / SAMPLES for k in range(SAMPLES)]
-        return f"{[self(angle) for angle in angles]} {self.angles} {self.every}"
-
-    def __repr__(self) -> str:
-        name = getattr(self.function, "__name__", type(self.function).__name__)
-        return f"<load over theta: the function {name}>"
-
-
-@dataclass(frozen=True)
 class OverY(Load):
-    """A load over the slider's position, one table for each way it goes."""
+    """A load over the slider's position, one table for each way it goes, both over the same positions."""
 
     outward: Table  # where Y increases with time
     inward: Table | None
@@ -171,17 +133,75 @@ class OverY(Load):
 
     def both(self, Y: Any, way: Any) -> tuple[Any, Any]:
         """The load and its derivative by Y."""
-        if self.inward is None:
-            return self.outward.both(Y)
+        return self.held(Y, self.piece(Y, way))
+
+    def piece(self, Y: Any, way: Any) -> Any:
+        """The number of the piece that holds: those of the way inward follow those outward."""
         if isinstance(Y, float) and isinstance(way, float):
-            return (self.inward if way < 0.0 else self.outward).both(Y)
+            found = self.outward.piece(Y)
+            return found + len(self.outward.rows) if self.inward is not None and way < 0.0 else found
         with IMPORTS:
             import numpy as np
 
-        inward = np.less(way, 0.0)
-        pairs = zip(self.inward.both(np.asarray(Y)), self.outward.both(np.asarray(Y)), strict=True)
-        value, slope = (np.where(inward, back, forth) for back, forth in pairs)
+        found = np.searchsorted(self._arrays[0][1:-1], Y, side="right")
+        if self.inward is None:
+            return found
+        return found + np.where(np.less(way, 0.0), len(self.outward.rows), 0)
+
+    def held(self, Y: Any, piece: Any) -> tuple[Any, Any]:
+        """The load and its derivative by Y on a piece, beyond its ends too; NaN at a non-finite position."""
+        if isinstance(Y, float) and isinstance(piece, int):
+            table, number = self.outward, piece
+            if self.inward is not None and piece >= len(table.rows):
+                table, number = self.inward, piece - len(table.rows)
+            return polynomial(table.rows[number], Y - table.origin(number)) if Y - Y == 0.0 else (nan, nan)
+        with IMPORTS:
+            import numpy as np
+
+        _, origins, rows = self._arrays
+        with np.errstate(invalid="ignore"):
+            distance = np.where(np.isfinite(Y), Y - origins[piece], np.nan)
+            value, slope = polynomial(rows[:, piece], distance)
         return value, slope
+
+    def edges(self, Y: Any) -> Any:
+        """The ends of the pieces of one way, the first and last infinite, as positions are: one or many."""
+        return self._edges if isinstance(Y, float) else self._arrays[0]
+
+    @cached_property
+    def _edges(self) -> tuple[float, ...]:
+        return -inf, *self.outward.knots, inf
+
+    @cached_property
+    def _arrays(self) -> tuple[Any, Any, Any]:
+        """The ends of the pieces of one way, and the origin and the coefficients of every piece."""
+        with IMPORTS:
+            import numpy as np
+
+        ways = [self.outward] if self.inward is None else [self.outward, self.inward]
+        edges = np.array(self._edges)
+        origins = np.concatenate([edges[1:2], edges[1:-1]])
+        return edges, np.tile(origins, len(ways)), np.array([row for table in ways for row in table.rows]).T
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The state without the arrays, which are rebuilt when needed."""
+        return {name: value for name, value in self.__dict__.items() if name != "_arrays"}
+
+    @cached_property
+    def largest(self) -> float:
+        """The largest magnitude at a knot."""
+        ways = (self.outward, self.outward if self.inward is None else self.inward)
+        return max(abs(row[0]) for table in ways for row in table.rows)
+
+    @cached_property
+    def turns(self) -> bool:
+        """True where another table holds for the way inward: at a dead centre the load may jump."""
+        return self.inward is not None and self.inward != self.outward
+
+    @cached_property
+    def jumping(self) -> bool:
+        """True where the load jumps anywhere."""
+        return self.turns or bool(self.jumps)
 
     @property
     def jumps(self) -> list[float]:
@@ -211,47 +231,3 @@ def _described(table: Table, kind: str, unit: str | None) -> str:
     values = table.values
     told = f"{len(table.knots)} points, {kind}, {min(values):g} to {max(values):g}"
     return f"{told} {unit}" if unit else told
-
-
-def called(function: Callable[[Any], Any], theta: Any, what: str) -> Any:
-    """Call a user's function with a number or an array; angle by angle if it takes no arrays."""
-    if isinstance(theta, float):
-        return _one(function, theta, what)
-    with IMPORTS:
-        import numpy as np
-
-    theta = np.asarray(theta, float)
-    try:
-        found = np.asarray(function(theta))
-    except Exception:  # math.sin, or a condition: it takes numbers only; what it says of a number counts
-        found = np.array([_one(function, x, what) for x in theta.reshape(-1).tolist()]).reshape(theta.shape)
-    if found.dtype.kind not in "fiub" or found.shape not in ((), theta.shape):
-        raise ValueError(
-            f"{what}: a function of {theta.size} angles gave the shape {found.shape} of {found.dtype}; "
-            f"expected numbers of the shape {theta.shape}"
-        )
-    found = np.broadcast_to(found.astype(float), theta.shape)
-    bad = np.isfinite(theta) & ~np.isfinite(found)
-    if bad.any():
-        raise ValueError(
-            f"{what}: the function gave {found[bad].flat[0]} at theta = {theta[bad].flat[0]:g}: it must be "
-            "finite"
-        )
-    return found
-
-
-def _one(function: Callable[[Any], Any], theta: float, what: str) -> float:
-    try:
-        found = function(theta)
-    except Exception as error:
-        kind = type(error).__name__
-        raise ValueError(f"{what}: the function failed at theta = {theta:g}: {kind}: {error}") from error
-    try:
-        number = float(found)
-    except (TypeError, ValueError):
-        raise TypeError(
-            f"{what}: the function gave {found!r} at theta = {theta:g}: expected a number"
-        ) from None
-    if isfinite(theta) and not isfinite(number):
-        raise ValueError(f"{what}: the function gave {number} at theta = {theta:g}: it must be finite")
-    return number

@@ -7,13 +7,14 @@ q by a parameter p that the load F depends on is the Program's own, at a fixed l
 
     numbers, loads = split(inputs)             # what varies with the motion, apart
     plan = plan_of(names, loads, state, mu)    # what to evaluate for these names, and over which motion
-    forces = plan.forces(theta, motion, way)   # F_X and F_Y at these angles, and their derivatives
+    forces = plan.forces(place, motion)        # F_X and F_Y at these angles, and their derivatives
     plan.totals(values, forces)                # names -> values, with total derivatives
 """
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from inspect import signature
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ..mechanism.catalogue import law_name, quantity
@@ -21,10 +22,11 @@ from ..mechanism.inputs import INPUTS
 from ..mechanism.names import parts, sensitivity
 from ..mechanism.program import program_of
 from ..support.forks import IMPORTS
-from .load import FunctionOverTheta, Load, OverTheta, OverY
+from .function import FunctionOverTheta
+from .load import Load, OverTheta, OverY
+from .pieces import POSITION, Place, pieces_at
 
 VARIABLE = ("F_X", "F_Y")  # inputs that may vary with the motion
-POSITION = ("Y", "Y_wrt_theta", "Y_wrt_theta_theta")  # which load over Y holds: the position, and the way
 
 
 def as_load(name: str, value: Any) -> Load:
@@ -97,20 +99,24 @@ class Plan(NamedTuple):
     loads: Mapping[str, Load]  # those that matter
     motion: tuple[str, ...]  # names of the motion, at a fixed load, which the loads and derivatives need
 
-    def forces(self, theta: Any, motion: Mapping[str, Any], way: Any) -> Forces:
-        """The loads at crank angles with this motion.
+    def forces(
+        self, place: Place, motion: Mapping[str, Any], held: Mapping[str, Any] = MappingProxyType({})
+    ) -> Forces:
+        """The loads at these places with this motion.
 
-        way   negative where the crank turns backwards
+        held   numbers of the pieces of loads over Y that hold, where they are known
         """
         values: dict[str, Any] = {}
         slopes: dict[tuple[str, str], Any] = {}
         wanted = {(t.force, t.parameter) for terms in self.terms.values() for t in terms}
         for name, load in self.loads.items():
             if isinstance(load, OverTheta):
-                value, slope = _named(name, load, theta)
+                value, slope = _named(name, load, place.theta)
                 known = {"theta": slope}
             else:
-                value, by_position = _over_position(load, motion, way)
+                assert isinstance(load, OverY)
+                piece = held[name] if name in held else pieces_at(load, place, motion)
+                value, by_position = load.held(motion["Y"], piece)
                 known = {p: by_position * motion[f"Y_wrt_{p}"] for n, p in wanted if n == name}
             values[name] = _finite_or_zero(value)
             slopes.update({(n, p): known[p] for n, p in wanted if n == name})
@@ -201,20 +207,6 @@ def _named(name: str, load: OverTheta, theta: Any) -> tuple[Any, Any]:
         if isinstance(load, FunctionOverTheta) and str(error).startswith("the "):
             raise type(error)(f"{name}: {str(error).removeprefix('the load: ')}") from error.__cause__
         raise
-
-
-def _over_position(load: Load, motion: Mapping[str, Any], way: Any) -> tuple[Any, Any]:
-    """A load over Y and its derivative by Y; at a dead centre for the direction that follows."""
-    assert isinstance(load, OverY)
-    Y, slope, bend = (motion[name] for name in POSITION)
-    if isinstance(Y, float) and isinstance(way, float):
-        ahead = slope or bend
-        return load.both(float(Y), float(ahead if way >= 0.0 else -ahead))
-    with IMPORTS:
-        import numpy as np
-
-    ahead = np.where(np.equal(slope, 0.0), bend, slope)
-    return load.both(Y, np.where(np.less(way, 0.0), -ahead, ahead))
 
 
 def _finite_or_zero(value: Any) -> Any:

@@ -13,7 +13,8 @@ from ..mechanism.units import in_unit, registry
 from ..support.files import as_path, read_bytes
 from ..support.quantity_text import spelled
 from ..support.shown import printable, shown
-from .load import TURN, FunctionOverTheta, Load, LoadWarning, OverY, TableOverTheta
+from .function import FunctionOverTheta
+from .load import TURN, Load, LoadWarning, OverY, TableOverTheta
 from .table import KINDS, held, periodic
 
 CLOSED = 1e-6  # of a period: a last angle so near to its end repeats the first one

@@ -19,8 +19,8 @@ OWN = (
     "monte_carlo", "worst_case", "X", "Y", "second", "peak",
 )  # fmt: skip
 PLAIN = (
-    "contributions", "sobol", "agreement", "status", "message", "boxes", "points", "samples", "order", "kind",
-    "active", "residual", "scale",
+    "contributions", "sobol", "agreement", "side", "status", "message", "boxes", "points", "samples", "order",
+    "kind", "active", "residual", "scale",
 )  # fmt: skip
 
 

@@ -22,7 +22,10 @@ from ..runtime.threads import run_parts
 from ..runtime.wide_margins import all_have_wide_margins, have_wide_margins
 from . import special
 from .compiled import LONGEST_PART, Groups, kernel_for, run
-from .loaded import kinks_of, moved_with_kinks, run_under_loads, with_nodes, with_slopes
+from .course import course_of
+from .differences import with_slopes
+from .jumps import at_jumps
+from .loaded import Values, with_nodes
 from .nodes import Array, classes, shared_nodes
 from .programs import Search, needs_own
 from .special import Designs
@@ -128,7 +131,7 @@ def peaks_of_designs(
 ) -> dict[str, Any]:
     """Value, angle, gradient and status of flat designs; `varying` are their loads that vary with theta."""
     kinks = "mu" in plan.parameters or has_kinks(plan.wanted.form.own)
-    loads = with_slopes(varying) if varying else {}
+    loads = with_slopes(varying, *ends) if varying else {}
     checked = _checked(Designs(columns, branch, ends, kinks, loads, plan.wanted.accuracy))
     size = checked.designs.size
     usual = search if loads else _in_form(search, checked)
@@ -164,10 +167,9 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
     status = np.zeros(designs.size, np.int8)
     number = KINDS.index(kind)
     rows = np.flatnonzero(~own_nodes)
-    kinks, own = kinks_of(designs) if designs.loads else (None, np.empty((designs.size, 0)))
-    if rows.size and designs.loads:
-        groups = with_nodes(_classed(designs, rows), own)
-        run_under_loads(name, search, designs, groups, number, theta, out)
+    loaded = Values(name, search, designs, course_of(designs)) if designs.loads else None
+    if rows.size and loaded is not None:
+        loaded.run(with_nodes(_classed(designs, rows), loaded.course.nodes), number, theta, out)
     elif rows.size:
         run(usual, columns, _classed(designs, rows), number, theta, out, threads)
     if bad.any():
@@ -177,24 +179,27 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
         part = rows[start : start + special.BLOCK]
         some = designs.part(part)
         nodes, limits = special.own_nodes(some)
-        nodes = np.sort(np.concatenate([nodes, own[part]], axis=1), axis=1)
+        if loaded is not None:
+            nodes = np.sort(np.concatenate([nodes, loaded.course.nodes[part]], axis=1), axis=1)
         edges = np.arange(part.size + 1)
         groups = Groups(part, edges, nodes.reshape(-1), edges * nodes.shape[1])
-        if designs.loads:
-            run_under_loads(name, search, designs, groups, number, theta, out)
+        if loaded is not None:
+            loaded.run(groups, number, theta, out)
         else:
             run(search, columns, groups, number, theta, out, threads)
         found = special.Found(out[0, part], theta[part], out[1, part], status[part])
-        at = kinks.angles[part] if kinks is not None else None
-        usable = special.complete(name, kind, some, nodes, limits, found, at)
+        marks = () if loaded is None else (loaded.course.kinks, loaded.course.jumps)
+        at = (mark.angles[part] for mark in marks)
+        usable = special.complete(name, kind, some, nodes, limits, found, *at)
         out[0, part], theta[part], status[part] = found.value, found.theta, found.status
         out[2:, part] = np.where(usable, out[2:, part], np.nan)
     theta[np.isnan(out[0])] = np.nan
-    if kinks is not None:
-        moved_with_kinks(number, designs, kinks, theta, out, search.parameters)
+    side = np.zeros(designs.size, np.int8)
+    if loaded is not None:
+        side = at_jumps(loaded, number, np.isin(status, special.USABLE) & np.isfinite(out[0]), theta, out)
     value = np.abs(out[0]) if kind == "absmax" else out[0]
     gradient = dict(zip(search.parameters, out[2:], strict=True))
-    return {"value": value, "theta": theta, "gradient": gradient, "status": status}
+    return {"value": value, "theta": theta, "side": side, "gradient": gradient, "status": status}
 
 
 def _in_form(search: Search, checked: Checked) -> Search:

@@ -43,8 +43,10 @@ class PeakBlock(NamedTuple):
     @property
     def outputs(self) -> dict[str, np.dtype[Any]]:
         """The names of the outputs, `gradient_<parameter>` among them, and their dtypes."""
-        names = ("value", "theta", *(f"{GRADIENT}{name}" for name in self.search.parameters))
-        return {**dict.fromkeys(names, np.dtype(np.float64)), "status": np.dtype(np.int8)}
+        gradient = (f"{GRADIENT}{name}" for name in self.search.parameters)
+        kinds = {**dict.fromkeys(("value", "theta"), np.float64), "side": np.int8}
+        kinds |= {**dict.fromkeys(gradient, np.float64), "status": np.int8}
+        return {name: np.dtype(kind) for name, kind in kinds.items()}
 
     def compute(self, *blocks: Array) -> dict[str, Array]:
         """The outputs in the shape to which the blocks broadcast."""
@@ -52,8 +54,10 @@ class PeakBlock(NamedTuple):
         shape = broadcast_shape(arrays)
         flat = {name: np.broadcast_to(array, shape).reshape(-1) for name, array in arrays.items()}
         fine = np.logical_and.reduce([are_good(name, column) for name, column in flat.items()])
-        outs = {n: np.full(fine.size, np.nan, dtype) for n, dtype in self.outputs.items() if n != "status"}
-        outs["status"] = np.full(fine.size, BAD_INPUT, np.int8)
+        outs = {
+            name: np.full(fine.size, {"side": 0, "status": BAD_INPUT}.get(name, np.nan), dtype)
+            for name, dtype in self.outputs.items()
+        }
         rows = np.flatnonzero(fine)
         if rows.size:
             found = self._found({name: column[rows] for name, column in flat.items()}, rows.size)
@@ -123,4 +127,5 @@ def lazy_peak(
     token = tokenize(repr(block), what, *(array.name for array in arrays.values()))
     found = outputs_of_blocks(block.compute, arguments, along, block.outputs, token)
     gradient = {n: found.pop(f"{GRADIENT}{n}") for n in block.search.parameters}
-    return {"value": found["value"], "theta": found["theta"], "gradient": gradient, "status": found["status"]}
+    first = {name: found.pop(name) for name in ("value", "theta", "side")}
+    return {**first, "gradient": gradient, "status": found["status"]}

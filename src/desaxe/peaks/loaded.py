@@ -1,105 +1,26 @@
 """Peaks under loads that vary with the motion: the same search, with values and slopes under these loads.
 
 The text of `search` runs in plain Python; what it calls evaluates many angles of many designs at once, with
-total derivatives. Where a load has a kink or a jump there is a node, and next to a jump one on either side:
-both one-sided limits take part. A kink of a load over Y moves with the design: the gradient of an extreme
-value that is reached there is that at a fixed angle, and the slope over theta times the kink's derivative.
+total derivatives. Between jumps the piece of a load over Y is held, so that next to one a value is the limit
+from its side; there are nodes on both.
 """
 
-from collections.abc import Callable, Mapping
-from dataclasses import replace
-from math import inf, nextafter
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.evaluate import evaluate
-from ..evaluation.loaded import forces_at, plan_for
-from ..loads.angles import dead_centres, passages, repeated
-from ..loads.load import FunctionOverTheta, Load, OverTheta, OverY
-from ..mechanism.names import LENGTHS, parts, sensitivity
+from ..evaluation.loaded import MOTION, forces_at, plan_for
+from ..evaluation.values import values
+from ..loads.resolve import Forces, Plan
+from ..mechanism.names import parts, sensitivity
 from .compiled import Groups, plain_finish, search_with
+from .course import Course
 from .nodes import Array
 from .programs import Search, needs_own, programs_of
-from .special import AT_KINK, Designs
+from .special import Designs
 
-NEXT = 2.0 ** -np.array([49.0, 46.0, 43.0])  # rad: nodes on either side of a jump whose angle is rounded
-STEP = 2.0**-6  # rad, of a difference
-# Of a derivative from eight neighbours: (distance in steps, weight), exact for polynomials of degree 8.
-STENCIL = ((1, 4 / 5), (2, -1 / 5), (3, 4 / 105), (4, -1 / 280))
-
-
-def with_slopes(loads: Mapping[str, Load]) -> dict[str, Load]:
-    """The loads, with the derivative of a user's function by differences where it was not given.
-
-    They only lead the search: what it finds is a value of the function itself.
-    """
-    return {
-        name: replace(load, derivative=_Differences(load).at)
-        if isinstance(load, FunctionOverTheta) and not load.has_slope
-        else load
-        for name, load in loads.items()
-    }
-
-
-class _Differences(NamedTuple):
-    """The derivative of a load by differences."""
-
-    load: FunctionOverTheta
-
-    def at(self, theta: Any) -> Any:
-        """Load and derivative at a number or an array."""
-        theta = np.asarray(theta, float)
-        total = np.zeros(theta.shape)
-        for steps, weight in STENCIL:
-            ahead, behind = (self.load(theta + side * steps * STEP) for side in (1.0, -1.0))
-            total += weight * (ahead - behind)
-        return total / STEP
-
-
-class Kinks(NamedTuple):
-    """Angles at which a load has a kink, a row for each design, padded with NaN.
-
-    fixed    whether the angle stays where it is when the lengths change
-    turning  whether it is a dead centre
-    """
-
-    angles: Array
-    fixed: NDArray[np.bool_]
-    turning: NDArray[np.bool_]
-
-
-def kinks_of(designs: Designs) -> tuple[Kinks, Array]:
-    """The kinks of the loads in the range, and all nodes that they need: angles for each design."""
-    low, high = designs.theta
-    size = designs.size
-    nodes, parts = [np.full((size, 1), low)], []
-    for load in designs.loads.values():
-        if isinstance(load, OverTheta):
-            kinks = load.nodes(low, high, smooth=False)
-            beside = [nextafter(angle, -inf) for angle in kinks if angle > low]
-            every = np.array([*load.nodes(low, high, smooth=True), *beside])
-            nodes.append(np.broadcast_to(every, (size, every.size)))
-            parts.append((np.broadcast_to(np.array(kinks), (size, len(kinks))), True, False))
-        elif isinstance(load, OverY):
-            lengths = [designs.columns[name] for name in LENGTHS]
-            at = repeated(passages(load.positions(smooth=True), lengths, designs.branch), low, high)
-            ends = repeated(dead_centres(lengths), low, high)
-            steep = ends if load.inward is not None else ends[:, :0]
-            if load.jumps:
-                jumps = passages(load.jumps, lengths, designs.branch)
-                steep = np.concatenate([steep, repeated(jumps, low, high)], axis=1)
-            near = [steep + side * gap for gap in NEXT for side in (-1.0, 1.0)]
-            nodes += [at, steep, *near]
-            bent = repeated(passages(load.positions(smooth=False), lengths, designs.branch), low, high)
-            parts += [(bent, False, False), (ends, False, True)]
-    angles = np.concatenate([np.empty((size, 0)), *(part for part, _, _ in parts)], axis=1)
-    fixed, turning = (
-        np.concatenate([np.empty(0, bool), *(np.full(p[0].shape[1], p[k]) for p in parts)]) for k in (1, 2)
-    )
-    every = np.concatenate(nodes, axis=1)
-    return Kinks(angles, fixed, turning), np.where(np.isnan(every), low, np.clip(every, low, high))
+Rows = NDArray[np.intp]
 
 
 def with_nodes(groups: Groups, nodes: Array) -> Groups:
@@ -117,98 +38,88 @@ def with_nodes(groups: Groups, nodes: Array) -> Groups:
     return Groups(order, np.arange(order.size + 1), np.concatenate(grids), ends)
 
 
-def run_under_loads(
-    name: str, search: Search, designs: Designs, groups: Groups, kind: int, theta: Array, out: Array
-) -> None:
-    """Search groups of designs; `theta` and the rows of `out` are filled at these designs."""
-    order, starts, nodes, node_starts = groups
-    table = np.stack(list(designs.columns.values()))
-    values = _Values(name, search, designs)
-    run = search_with(values.sweep, values.points, values.finish)
-    run(table, order, starts, nodes, node_starts, kind, theta, out)
+class Values:
+    """A quantity, its slope over theta and its gradient, for designs under loads.
 
-
-def moved_with_kinks(
-    kind: int, designs: Designs, kinks: Kinks, theta: Array, out: Array, p: tuple[str, ...]
-) -> None:
-    """Complete gradients of extrema at kinks that move with the lengths; p are the gradient's parameters.
-
-    A kink stays at a position, Y(theta, p) = Y_k, or at a dead centre, Y_wrt_theta = 0.
+    Its methods are the functions that a search calls (`peaks.stubs`); the search's only input is the design's
+    number.
     """
-    gaps = np.abs(kinks.angles - theta[:, None])
-    gaps[:, kinks.fixed] = np.nan
-    for turning in (False, True):
-        rows = np.flatnonzero((gaps[:, kinks.turning == turning] <= AT_KINK).any(axis=1))
-        if not rows.size:
-            continue
-        name = "Y_wrt_theta" if turning else "Y"
-        names = [sensitivity(name, q) for q in ("theta", *LENGTHS)]
-        found = designs.part(rows)._replace(loads={}).values(tuple(names), np.arange(rows.size), theta[rows])
-        for length, by in zip(LENGTHS, names[1:], strict=True):
-            if length in p:
-                moved = -out[1, rows] * found[by] / found[names[0]]
-                sign = np.where(out[0, rows] < 0.0, -1.0, 1.0) if kind == 0 else 1.0
-                out[2 + p.index(length), rows] += sign * moved
 
-
-class _Values:
-    """The functions that a search calls, for designs under loads: see `_peaks.stand_ins`."""
-
-    def __init__(self, name: str, search: Search, designs: Designs) -> None:
-        self.designs = designs
+    def __init__(self, name: str, search: Search, designs: Designs, course: Course) -> None:
+        self.designs, self.course, self.search = designs, course, search
         self.curve = [name, sensitivity(name, "theta")]
         self.all = [*self.curve, *(sensitivity(name, p) for p in search.parameters)]
-        own = needs_own(search.name, ("theta", *search.parameters))
-        self.plain = _plain(name, search) if own else None
+        self.bad = np.isnan(np.array(list(designs.columns.values()))).any(axis=0)
+        self.derived = not needs_own(search.name, ("theta", *search.parameters))
+        self.plans: dict[int, Plan] = {}
 
-    def _at(self, names: list[str], theta: Array, block: Array) -> list[Any]:
-        bad = np.isnan(theta) | np.isnan(block).any(axis=0)  # 1 is a value that any input can have
-        block, theta = (np.where(bad, 1.0, array) for array in (block, theta))
-        inputs: dict[str, Any] = dict(zip(self.designs.columns, block, strict=True))
-        inputs |= {**self.designs.loads, "theta": theta}
-        how: dict[str, Any] = {"branch": self.designs.branch, "accuracy": self.designs.accuracy}
-        if self.plain is not None:
-            rows = self.plain(inputs, how)[: len(names)]
-        else:
-            found = evaluate(list(dict.fromkeys(names)), **inputs, **how)
-            rows = [found[name] for name in names]
-        return [np.where(bad, np.nan, row) for row in rows]
+    def run(self, groups: Groups, kind: int, theta: Array, out: Array) -> None:
+        """Search groups of designs; `theta` and the rows of `out` are filled at these designs."""
+        order, starts, nodes, node_starts = groups
+        numbers = np.arange(float(self.designs.size))[None]
+        search = search_with(self.sweep, self.points, self.finish)
+        search(numbers, order, starts, nodes, node_starts, kind, theta, out)
+
+    def at(self, count: int, rows: Rows, theta: Array, pieces: dict[str, Rows] | None = None) -> list[Array]:
+        """Value, slope and gradient, the first `count` of them, at an angle of each of some designs.
+
+        pieces   of the loads that jump, without those that hold at these angles
+        """
+        bad = np.isnan(theta) | self.bad[rows]
+        theta = np.where(bad, 1.0, theta)  # a value that any input can have
+        held = self.course.pieces(rows, theta) if pieces is None else pieces
+        if pieces is None and self.designs.rubs:
+            theta = self.course.aside(rows, theta)
+        inputs: dict[str, Any] = {"alpha": 0.0, "theta": theta}
+        for name, column in self.designs.columns.items():
+            inputs[name] = np.where(bad, 1.0, column[rows])
+        found = self._of_plan(count, inputs, held) if self.derived else self._of_search(inputs, held)
+        return [np.where(bad, np.nan, row) for row in found[:count]]
+
+    def _of_plan(self, count: int, inputs: dict[str, Any], held: dict[str, Rows]) -> list[Array]:
+        names = list(dict.fromkeys(self.all[:count]))
+        given = {**dict.fromkeys(MOTION), **inputs}
+        plan, forces = self._forces(names, inputs, held)
+        branch, accuracy = self.designs.branch, self.designs.accuracy
+        found = plan.totals(values(list(plan.names), {**given, **forces.values}, branch, accuracy), forces)
+        return [found[name] for name in self.all[:count]]
+
+    def _of_search(self, inputs: dict[str, Any], held: dict[str, Rows]) -> list[Array]:
+        """By the search's Program: of a name whose own derivatives are not derived."""
+        base = parts(self.curve[0])[0]
+        names = [base, *(sensitivity(base, p) for p in ("theta", *self.search.parameters))]
+        _, forces = self._forces(names, inputs, held)
+        columns = {**inputs, **forces.values}
+        out = np.empty((len(self.all), inputs["theta"].size))
+        rows = programs_of(self.search, False).inputs
+        plain_finish(self.search)(out.shape[1], inputs["theta"], np.stack([columns[n] for n in rows]), out)
+        fixed = out.copy()
+        for (force, parameter), slope in forces.slopes.items():
+            place = 1 if parameter == "theta" else 2 + self.search.parameters.index(parameter)
+            out[place] += fixed[2 + self.search.parameters.index(force)] * slope
+        return list(out)
+
+    def _forces(self, names: list[str], inputs: dict[str, Any], held: dict[str, Rows]) -> tuple[Plan, Forces]:
+        if len(names) not in self.plans:
+            self.plans[len(names)] = plan_for(names, {**inputs, **self.designs.loads})[1]
+        plan = self.plans[len(names)]
+        return plan, forces_at(plan, inputs, self.designs.branch, self.designs.accuracy, held)
 
     def sweep(self, count: int, nodes: Array, block: Array, work: Array, value: Array, slope: Array) -> None:
         """Value and slope at every node, for `count` designs."""
-        theta = np.repeat(nodes, count)
-        columns = np.tile(block[:, :count], (1, nodes.size))
-        for out, found in zip((value, slope), self._at(self.curve, theta, columns), strict=True):
+        rows = np.tile(block[0, :count].astype(np.intp), nodes.size)
+        for out, found in zip((value, slope), self.at(2, rows, np.repeat(nodes, count)), strict=True):
             out[: nodes.size, :count] = found.reshape(nodes.size, count)
 
     def points(self, rows: int, count: int, theta: Array, block: Array, value: Array, slope: Array) -> None:
         """Value and slope, each at its own angle."""
         if count:
-            here, columns = theta[:rows, :count].reshape(-1), np.tile(block[:, :count], (1, rows))
-            for out, found in zip((value, slope), self._at(self.curve, here, columns), strict=True):
+            here, own = theta[:rows, :count].reshape(-1), np.tile(block[0, :count].astype(np.intp), rows)
+            for out, found in zip((value, slope), self.at(2, own, here), strict=True):
                 out[:rows, :count] = found.reshape(rows, count)
 
     def finish(self, count: int, theta: Array, block: Array, out: Array) -> None:
         """Value, slope and gradient."""
-        for row, found in zip(out, self._at(self.all, theta[:count], block[:, :count]), strict=True):
-            row[:count] = found
-
-
-def _plain(name: str, search: Search) -> Callable[..., list[Array]]:
-    """Value, slope and gradient of a name whose own derivatives are not derived, by the search's Program."""
-    base, own = parts(name)[0], ("theta", *search.parameters)
-    finish, rows = plain_finish(search), programs_of(search, False).inputs
-
-    def at(inputs: Mapping[str, Any], how: Mapping[str, Any]) -> list[Array]:
-        numbers, plan = plan_for([base, *(sensitivity(base, p) for p in own)], inputs)
-        forces = forces_at(plan, numbers, how["branch"], how["accuracy"])
-        columns = {**numbers, **forces.values}
-        out = np.empty((2 + len(search.parameters), numbers["theta"].size))
-        finish(out.shape[1], numbers["theta"], np.stack([columns[row] for row in rows]), out)
-        fixed = out.copy()
-        for (force, parameter), slope in forces.slopes.items():
-            place = 1 if parameter == "theta" else 2 + search.parameters.index(parameter)
-            out[place] += fixed[2 + search.parameters.index(force)] * slope
-        return list(out)
-
-    return at
+        found = self.at(len(self.all), block[0, :count].astype(np.intp), theta[:count])
+        for row, values_ in zip(out, found, strict=True):
+            row[:count] = values_

@@ -56,16 +56,20 @@ def peak(
     theta   range of crank angles [rad]; its ends count. By default a turn, or the period of a longer load
     threads the number that share the work, by default all that pay; the result is the same
     others  as in `evaluate`, masses and loads among them. F_X and F_Y may vary with the motion; at a jump
-            both one-sided limits count, and `gradient` by such a force is that by a constant added to it
+            both one-sided limits count, at an end of the range that from within and the value itself.
+            `gradient` by such a force is that by a constant added to it
 
     Returns a dict, floats for one design and arrays for many:
 
     value     the extreme value; a magnitude for "absmax". inf where it grows without bound at a
               limit angle of a mechanism that cannot turn fully
-    theta     the crank angle where it is reached
+    theta     the crank angle where it is reached; next to a jump the nearest double on that side
+    side      of a load's jump (int8): -1 where the value is the limit from smaller theta, 1 from larger
+              theta, 0 where nothing jumps
     gradient  dict parameter -> exact derivative of the value (ec, AB, BC, omega0 or omega, alpha, as
-              far as the quantity depends on them); NaN where the value is not finite or is reached
-              at a limit angle, or where friction turns round or begins to jam
+              far as the quantity depends on them), at a kink or jump with its own motion; NaN where the
+              value is not finite or is reached at a limit angle, or where friction turns round or
+              begins to jam
     status    0 ok, 1 cannot be assembled anywhere in the range, 2 reached at a limit angle or change
               point, or at an angle at which the friction turns round, 3 stalled in all of the range,
               4 bad input; 5 friction jams at some of the angles (no forces balance), 6 two sets of
@@ -172,4 +176,5 @@ def _shaped(found: dict[str, Any], shape: tuple[int, ...]) -> dict[str, Any]:
 
     gradient = {name: shaped(slope) for name, slope in found.pop("gradient").items()}
     parts = {name: shaped(array) for name, array in found.items()}
-    return {"value": parts["value"], "theta": parts["theta"], "gradient": gradient, "status": parts["status"]}
+    first = {name: parts.pop(name) for name in ("value", "theta", "side")}
+    return {**first, "gradient": gradient, "status": parts["status"]}

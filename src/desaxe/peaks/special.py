@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
 from ..loads.load import Load
+from ..loads.pieces import Place
+from ..loads.resolve import way_of
 from ..mechanism.closed.limits import theta_intervals
 from ..mechanism.names import LENGTHS
 from .nodes import Array
@@ -23,6 +25,7 @@ BLOCK = 1024  # designs at a time
 AT_KINK = 2.0**-40  # rad: an extremum so near to a kink is at the kink
 SMOOTH = 1e-6  # of the median slope: what is left of the slope at the top of a smooth peak is less
 JAMS, TWO_BALANCES = 5, 6  # the status where friction leaves no balance of forces, or two
+USABLE = (0, JAMS, TWO_BALANCES)  # with one of these an extremum may have a gradient
 MARGIN_ROUNDING = 2.0**-50  # of BC: more than BC - AB - |ec| may lose to rounding
 WHOLE_TURN = [(0.0, 2.0 * np.pi)]  # the feasible angles of a design that turns fully
 FARTHER = 2.0**-20  # rad from a limit angle: unbounded quantities have grown from there on, in a wide arc
@@ -47,6 +50,11 @@ class Designs(NamedTuple):
     def part(self, rows: Any) -> "Designs":
         """The designs of these rows."""
         return self._replace(columns={name: column[rows] for name, column in self.columns.items()})
+
+    def place(self, row: int) -> Place:
+        """What tells a design's slider its place, at the angle 0."""
+        design = {name: float(column[row]) for name, column in self.columns.items()}
+        return Place(0.0, [design[name] for name in LENGTHS], way_of(design), self.branch)
 
     def values(self, names: tuple[str, ...], rows: NDArray[np.intp], theta: Array) -> dict[str, Any]:
         """Values of names by their name, for the designs `rows` at one angle each."""
@@ -157,16 +165,18 @@ def complete(
     ends: list[tuple[int, float]],
     found: Found,
     kinks: Array | None = None,
+    jumps: Array | None = None,
 ) -> NDArray[np.bool_]:
     """Add limit angles, ends of the force balance and status to the results; return which have a gradient.
 
     value   signed, also for "absmax"
     kinks   for each design angles at which a load has a kink: there the slope does not vanish
+    jumps   and those at which one jumps: there a balance of forces may end without anything growing
     """
     rows = np.arange(designs.size)
     swept = designs.values((name, "status"), np.repeat(rows, nodes.shape[1]), nodes.reshape(-1))
     value, status = (swept[n].reshape(nodes.shape) for n in (name, "status"))
-    jams, turns = _at_force_limits(name, kind, designs, nodes, swept, found)
+    jams, turns = _at_force_limits(name, kind, designs, nodes, swept, found, jumps)
     found.status[:] = _status(status)
     _mark_limits(kind, found, value, nodes, ends)
     at_kink = kinks is not None and (np.abs(kinks - found.theta[:, None]) <= AT_KINK).any(axis=1)
@@ -174,9 +184,7 @@ def complete(
     found.value[jams] = np.copysign(np.inf, found.value[jams])
     # Without a value at any angle but a change point, which is all that a stalling crank reaches, too.
     found.status[(turns | np.isnan(found.value)) & (found.status == 0)] = 2
-    usable: NDArray[np.bool_] = (
-        np.isin(found.status, (0, JAMS, TWO_BALANCES)) & ~turns & np.isfinite(found.value)
-    )
+    usable: NDArray[np.bool_] = np.isin(found.status, USABLE) & ~turns & np.isfinite(found.value)
     return usable
 
 
@@ -187,7 +195,13 @@ def score(kind: str, value: Array) -> Array:
 
 
 def _at_force_limits(
-    name: str, kind: str, designs: Designs, nodes: Array, swept: dict[str, Any], found: Found
+    name: str,
+    kind: str,
+    designs: Designs,
+    nodes: Array,
+    swept: dict[str, Any],
+    found: Found,
+    jumps: Array | None,
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Let the last angles with exactly one force balance take part in the search.
 
@@ -209,8 +223,10 @@ def _at_force_limits(
         balanced = at["status"] == 0
         inside, beyond = np.where(balanced, middle, inside), np.where(balanced, beyond, middle)
         values, codes = np.where(balanced, at[name], values), np.where(balanced, codes, at["status"])
+    if jumps is not None:
+        values = np.where((np.abs(jumps[rows] - inside[:, None]) <= AT_KINK).any(axis=1), np.nan, values)
     for row, theta, value, code in zip(rows, inside, values, codes, strict=True):
-        if score(kind, value) >= score(kind, found.value[row]):
+        if value == value and score(kind, value) >= score(kind, found.value[row]):
             found.value[row], found.theta[row] = value, theta
             jams[row], turns[row] = code == JAMS, True
     return jams, turns

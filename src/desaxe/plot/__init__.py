@@ -10,6 +10,7 @@ drive       drive torque over a turn, and the speed with its flywheel
 animate     the same as it turns, beside a quantity's curve
 save        a figure or animation to a file
 shared      what all of them share: values, labels, colours, legends
+jumps       nodes on each side of the jumps of loads
 from_dict   a dict of arrays as a Dataset
 
 Each draws on `ax=`, or on a new Figure, and returns what it drew.

@@ -42,9 +42,9 @@ def animate(
     label_lengths(left, UnitSystem.read({"ec": dataset["ec"].attrs.get("units", "m")}).of("ec"))
     moving: Any = None
     if name is not None:
-        (line,) = curves(dataset, name, ax=right)
+        curves(dataset, name, ax=right)
         (moving,) = right.plot([], [], "o", color=ORANGE, markersize=8, zorder=5)
-        across, up = shown(dataset["theta"]), np.asarray(line.get_ydata(), dtype=np.float64)
+        across, up = shown(dataset["theta"]), np.asarray(dataset[name].values, dtype=np.float64)
 
     def at(place: int) -> list[Any]:
         artists: list[Any] = sketch.turn(theta[place])

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..support.extras import needed
 from .from_dict import as_dataset
+from .jumps import with_jumps
 from .shared import chosen, drawn, finish_axis, fixed_inputs, label_of, mark_gaps, shown, worth_showing
 
 if TYPE_CHECKING:
@@ -36,16 +37,16 @@ def curves(
              the inputs that are numbers
     inputs   of a dict of arrays that does not know its own: theta=angles, ...
 
-    Labels and units come from the dataset. Points that are infeasible, or at which friction jams, are
-    gaps: hatched where no curve has a value, else marked at the foot in the colour of theirs. A
-    curve may grow without bound towards its gaps, so the vertical axis is that of the curves without, or of
-    most values where each has gaps. Raises ValueError for a name or dimension that the dataset does not
-    have, or that is left over.
+    Labels and units come from the dataset. Where a load jumps each side gets a node, besides the samples.
+    Points that are infeasible, or at which friction jams, are gaps: hatched where no curve has a value, else
+    marked at the foot in the colour of theirs. A curve may grow without bound towards its gaps, so the
+    vertical axis is that of the curves without, or of most values where each has gaps. Raises ValueError for
+    a name or dimension that the dataset does not have, or that is left over.
     """
     with needed("plot.curves"):
         from matplotlib.figure import Figure
     dataset = as_dataset(dataset, over, inputs)
-    array = chosen(dataset, name, over, family)
+    array = with_jumps(dataset, chosen(dataset, name, over, family), over)
     own = ax is None
     ax = Figure(figsize=SIZE, layout="constrained").add_subplot() if ax is None else ax
     lines = draw(ax, array, over, beside=own)

@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..evaluation.labels import labelled
+from ..evaluation.labels import labelled, with_loads
+from ..loads.resolve import split
 from ..mechanism.inputs import INPUTS
 from ..mechanism.units import in_si
 
@@ -25,7 +26,7 @@ def as_dataset(found: Any, over: str, inputs: Mapping[str, Any]) -> "xr.Dataset"
             raise TypeError(f"a Dataset has its inputs: leave {', '.join(inputs)} out")
         dataset: xr.Dataset = found
         return dataset
-    given = {**getattr(found, "inputs", {}), **inputs}
+    given, loads = split({**getattr(found, "inputs", {}), **inputs})
     shape = np.broadcast_shapes(*(np.shape(array) for array in found.values()))
     arrays = {name: _numbers(name, value) for name, value in given.items() if value is not None}
     if over not in arrays:
@@ -46,7 +47,7 @@ def as_dataset(found: Any, over: str, inputs: Mapping[str, Any]) -> "xr.Dataset"
     named = [dims.get(axis, f"axis_{axis}") for axis in range(len(shape))]
     values = {name: (named, np.broadcast_to(np.asarray(array), shape)) for name, array in found.items()}
     known = {name: np.asarray(value) for name, value in coordinates.items()}
-    return labelled(values, known, int(given.get("branch", 1)), "omega" in arrays)
+    return with_loads(labelled(values, known, int(given.get("branch", 1)), "omega" in arrays), loads)
 
 
 def _numbers(name: str, value: Any) -> Any:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 from ..support.extras import needed
 from .curves import draw
 from .from_dict import as_dataset
+from .jumps import with_jumps
 from .shared import chosen, fixed_inputs, meaning_of, unit_of
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ def panels(
     dataset = as_dataset(dataset, over, inputs)
     if names is None:
         names = [str(n) for n, a in dataset.data_vars.items() if over in a.dims and n not in ALWAYS]
-    arrays = [chosen(dataset, name, over, family) for name in names]
+    arrays = [with_jumps(dataset, chosen(dataset, name, over, family), over) for name in names]
     if not arrays:
         raise ValueError(f"nothing in this dataset varies with {over!r}")
     if ax is None:

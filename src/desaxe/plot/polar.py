@@ -6,6 +6,7 @@ import numpy as np
 
 from ..support.extras import needed
 from ..support.forks import IMPORTS
+from .jumps import with_jumps
 from .shared import chosen, drawn, fixed_inputs, input_in_si, label_of, worth_showing
 
 if TYPE_CHECKING:
@@ -37,11 +38,11 @@ def polar(
     """
     with needed("plot.polar"):
         from matplotlib.figure import Figure
-    array = (
-        chosen(dataset, name, "theta", family)
-        if isinstance(name, str)
-        else _magnitude([chosen(dataset, part, "theta", family) for part in name])
-    )
+    parts = [
+        with_jumps(dataset, chosen(dataset, part, "theta", family), "theta")
+        for part in ((name,) if isinstance(name, str) else name)
+    ]
+    array = parts[0] if isinstance(name, str) else _magnitude(parts)
     beside = ax is None
     axes: Any = Figure(figsize=SIZE, layout="constrained").add_subplot(projection="polar") if beside else ax
     if axes.name != "polar":

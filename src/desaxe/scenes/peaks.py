@@ -9,7 +9,14 @@ from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
 from ..evaluation.in_units import in_units
-from ..evaluation.labels import CONVENTIONS, import_xarray, input_attributes, loads_text, source
+from ..evaluation.labels import (
+    CONVENTIONS,
+    import_xarray,
+    input_attributes,
+    loads_text,
+    side_attributes,
+    source,
+)
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
@@ -41,7 +48,7 @@ class ClaimResult(NamedTuple):
 class PeakResult(NamedTuple):
     """The peaks of all designs, labelled, and the checked claims about them.
 
-    `dataset` has over the designs' dimensions: `value`, `theta`, `status`, `value_wrt_<parameter>`
+    `dataset` has over the designs' dimensions: `value`, `theta`, `side`, `status`, `value_wrt_<parameter>`
     and, where there is a baseline, `increase` over it in percent. `mirrored` tells the designs with
     ec = 0 that reach the peak at -theta as well, where the derivatives by what points to the side
     (ec, F_X, g_X) have the other sign.
@@ -141,6 +148,7 @@ def _labelled(one: Peak, content: Content, arrays: Mapping[str, NDArray[Any]]) -
     attributes = {
         "value": _peak_attributes(one, state),
         "theta": {"units": "rad", "long_name": "crank angle of the peak"},
+        "side": side_attributes(),
         "status": {"long_name": STATUS},
         "increase": {"units": "percent", "long_name": "increase over the baseline"},
         **{name: _slope_attributes(one, name.removeprefix("value_wrt_"), state) for name in slopes},

@@ -127,15 +127,17 @@ def _peak_rows(found: PeakResult, units: UnitSystem) -> list[list[str]]:
     ]
     slopes = [name for name in one.sensitivities if f"value_wrt_{name}" in dataset]
     base = [f"over {_design(one.at_baseline, units)}"] if "increase" in dataset else []
-    rows = [[*one.axes, symbol, "at theta", *base, *(f"d/d({name})" for name in slopes)]]
+    side = ["side"] * bool(dataset["side"].values.any())
+    rows = [[*one.axes, symbol, "at theta", *side, *base, *(f"d/d({name})" for name in slopes)]]
     angle = units.of("theta").unit
     heads = [*(dataset[name].units for name in one.axes), dataset["value"].units]
-    heads += ["deg" if angle == "rad" else angle, *("" for _ in base)]
+    heads += ["deg" if angle == "rad" else angle, *("" for _ in (*side, *base))]
     rows.append([*heads, *(dataset[f"value_wrt_{name}"].units for name in slopes)])
     scale = degrees(1.0) if angle == "rad" else 1.0
     for index in _thinned(list(np.ndindex(dataset["value"].shape))):
         row = [number(dataset[name].values[i]) for name, i in zip(one.axes, index, strict=True)]
         row += [number(dataset["value"].values[index]), f"{scale * dataset['theta'].values[index]:.3f}"]
+        row += [f"{dataset['side'].values[index]:+d}".replace("+0", "0")] if side else []
         row += [_percent(float(dataset["increase"].values[index]))] if base else []
         row += [_slope(found, name, index) for name in slopes]
         rows.append(row)
@@ -162,6 +164,7 @@ def _thinned(indices: list[tuple[int, ...]]) -> list[tuple[int, ...]]:
     return [indices[round(k * (len(indices) - 1) / (ROWS - 1))] for k in range(ROWS)]
 
 
+SIDE = "  side: of a jump of a load, from which this is the limit: -1 smaller theta, +1 larger theta"
 STATUS_WORDS = {int(status): status.words for status in PeakStatus if status}
 
 
@@ -177,6 +180,8 @@ def _remarks(found: PeakResult) -> list[str]:
         lines.append(
             "  +-: at ec = 0 the peak is at theta and at -theta; such a slope is + at one and - at the other"
         )
+    if found.dataset["side"].values.any():
+        lines.append(SIDE)
     if status.size > ROWS:
         lines.append(f"  {ROWS} of {status.size} designs are shown")
     return lines

@@ -11,7 +11,8 @@ from math import copysign, inf, nextafter, pi
 import numpy as np
 
 from ..loads.angles import dead_centres, passages
-from ..loads.load import FunctionOverTheta, Load, OverTheta, OverY, TableOverTheta
+from ..loads.function import FunctionOverTheta
+from ..loads.load import Load, OverTheta, OverY, TableOverTheta
 from ..loads.table import polynomial
 
 TURN = 2.0 * pi

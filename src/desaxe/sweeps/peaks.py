@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.labels import attributes as attributes_of
+from ..evaluation.labels import side_attributes
 from ..evaluation.outer import Outer
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
@@ -69,6 +70,7 @@ class PeakPart(NamedTuple):
         found: dict[str, dict[str, Any]] = {
             "value": {**own, "long_name": f"{WORDS[kind]} over theta of {own['long_name']}"},
             "theta": {"units": "rad", "long_name": "crank angle of the peak"},
+            "side": side_attributes(),
             "status": {"long_name": STATUS},
         }
         for p in self.block.search.parameters:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ...peaks.peak import peak
 from ...support.shown import shown
 from .cycle import JAMS, Design, NoCycleError, torque_over
 from .flywheel import flywheel_for
@@ -15,6 +16,7 @@ from .result import FIGURES, Drive
 CREEP = 1e-100  # rad/s: friction acts, inertia does not; a torque below it is none
 STALLED = 3
 LEAST_FLUCTUATION = 1e-9
+SAME = 1e-9  # of an extreme value
 DIFFERENTIATED = tuple(name for name in FIGURES if not name.startswith("theta_"))
 
 
@@ -42,8 +44,9 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
                               against; at `theta_start` [rad]. Infinite where friction jams
     period, fluctuation       time of a turn [s]; as given
     gradient                  dict name -> dict input -> exact derivative, of all but the angles, by each
-                              input that is a number and matters; of the flywheel by `fluctuation` too.
-                              NaN where the extreme is at a kink
+                              input that is a number and matters; of the flywheel by `fluctuation` too. At
+                              a jump or kink of a load it is that of the limit, which moves along; NaN at
+                              a kink that friction makes
     status                    0 ok; 1 the crank cannot turn fully; 2 at a change point (derivatives by the
                               lengths are NaN); 3 stalls within the turn; 5 friction jams, 6 two sets of
                               forces balance. All is NaN but for 0 and 2
@@ -138,23 +141,41 @@ def _over_a_turn(
             slopes[figure][name] = value
     power_by = {n: way * (s * speed + torque * speed_by.get(n, 0.0)) for n, s in by.items()}
     power = way * torque * speed
-    found["torque_peak"], place = _peak(turn, torque, by, slopes["torque_peak"])
-    found["power_peak"], _ = _peak(turn, power, power_by, slopes["power_peak"])
+    found["torque_peak"], place = _peak(design, "T_in", turn, torque, by, slopes["torque_peak"])
+    found["power_peak"], _ = _peak(design, "power_in", turn, power, power_by, slopes["power_peak"])
     found["theta_peak"] = _in_turn(place, alpha)
-    course |= {"theta": turn.theta.ravel(), "T_in": torque.ravel(), "power_in": power.ravel()}
+    course["theta"], course["T_in"] = turn.curve(torque)
+    course["power_in"] = turn.curve(power)[1]
 
 
 def _peak(
-    turn: Panels, values: Array, by: dict[str, Array], gradient: dict[str, float]
+    design: Design,
+    name: str,
+    turn: Panels,
+    values: Array,
+    by: dict[str, Array],
+    gradient: dict[str, float],
 ) -> tuple[float, float]:
     """The largest magnitude and its angle; the derivatives there."""
     value, place, inside = max(
         (turn.extreme(values, sign) for sign in (1.0, -1.0)), key=lambda one: abs(one[0])
     )
-    for name, slope in by.items():
+    if not inside:
+        gradient |= _at_edge(design, name, "absmax", abs(value))
+        return abs(value), place
+    for parameter, slope in by.items():
         sign = copysign(1.0, value) if value else nan
-        gradient[name] = sign * float(turn.at(np.array([place]), slope)[0]) if inside else nan
+        gradient[parameter] = sign * float(turn.at(np.array([place]), slope)[0])
     return abs(value), place
+
+
+def _at_edge(design: Design, name: str, kind: str, value: float, **other: Any) -> dict[str, float]:
+    """The derivatives of an extreme value that is reached between panels, at a jump or kink that may move."""
+    inputs = {n: x for n, x in {**design.numbers, **design.loads, **other}.items() if x is not None}
+    low, high = sorted((0.0, 2.0 * pi * design.direction))
+    found = peak(name, kind=kind, theta=(low, high), branch=design.branch, **inputs)
+    same = abs(found["value"] - value) <= SAME * abs(value)
+    return {p: found["gradient"].get(p, nan) if same else nan for p in design.parameters}
 
 
 def _flywheel(
@@ -192,8 +213,11 @@ def _starting(
         value, place, inside = turn.extreme(way * turn.values["T_in"], 1.0)
         if value > best:
             best, found["theta_start"] = value, _in_turn(place, 0.0)
-            here = {n: float(turn.at(np.array([place]), turn.values[f"T_in_wrt_{n}"])[0]) for n in names}
-            gradient |= {n: way * slope if inside else nan for n, slope in here.items()}
+            if inside:
+                here = {n: float(turn.at(np.array([place]), turn.values[f"T_in_wrt_{n}"])[0]) for n in names}
+            else:
+                here = _at_edge(design, "T_in", "max" if way > 0.0 else "min", way * value, **creep)
+            gradient |= {n: way * here[n] for n in names}
     found["starting_torque"] = best if abs(best) > CREEP else 0.0
     slopes["starting_torque"] = gradient
 

@@ -62,6 +62,12 @@ class Panels:
         result: Array = half * (values @ RUNNING.T) + np.concatenate([[0.0], whole[:-1]])[:, None]
         return result
 
+    def curve(self, values: Array) -> tuple[Array, Array]:
+        """Angles and values for a curve: of both ends of each panel too, so of each side of a jump."""
+        ends = values @ TO_COEFFICIENTS.T @ legendre.legvander(np.array([-1.0, 1.0]), NODES - 1).T
+        theta = np.concatenate([self.start[:, None], self.theta, self.stop[:, None]], axis=1)
+        return theta.ravel(), np.concatenate([ends[:, :1], values, ends[:, 1:]], axis=1).ravel()
+
     def at(self, theta: Array, values: Array) -> Array:
         """Values at any angles within the range."""
         panel = np.clip(np.searchsorted(self.stop, theta), 0, self.stop.size - 1)

@@ -1,0 +1,55 @@
+"""On which side of a jump of a load samples are, from their values and those at the doubles next to them."""
+
+from collections.abc import Mapping
+from math import inf, nextafter, pi
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..loads.angles import dead_centres, passages
+from ..loads.load import Load, OverTheta, OverY
+from ..loads.table import SAME
+from ..mechanism.names import LENGTHS
+from .sources import Loaded
+
+Array = NDArray[Any]
+NEAR = 1e-11  # of 1 + theta: more than what is rounded of the angle of a jump
+
+
+def sides_of(name: str, source: Loaded, points: Mapping[str, Array]) -> NDArray[np.int8]:
+    """-1 for a sample that is the last one before a jump, 1 for the first one after it, else 0."""
+    size = points["theta"].size
+    points = {**{n: np.full(size, value) for n, value in source.numbers}, **points}
+    side = np.zeros(size, np.int8)
+    near = np.logical_or.reduce([_near(load, points, source.branch) for load in source.plan.loads.values()])
+    rows = np.flatnonzero(near)
+    if rows.size:
+        some = {n: column[rows] for n, column in points.items()}
+        beside = [np.nextafter(some["theta"], end) for end in (-inf, inf)]
+        before, here, after = (
+            source.at({**some, "theta": theta})[name] for theta in (beside[0], some["theta"], beside[1])
+        )
+        side[rows] = 1 * _differ(here, before) - 1 * _differ(here, after)
+    return side
+
+
+def _differ(one: Array, other: Array) -> NDArray[np.bool_]:
+    apart: NDArray[np.bool_] = ~(np.abs(one - other) <= SAME * np.maximum(np.abs(one), np.abs(other)))
+    return apart
+
+
+def _near(load: Load, points: Mapping[str, Array], branch: int) -> NDArray[np.bool_]:
+    """Whether samples are within rounding of a jump of a load."""
+    theta = points["theta"]
+    if isinstance(load, OverTheta):
+        low, high = np.nanmin(theta, initial=0.0), np.nanmax(theta, initial=0.0)
+        nodes = np.array(load.nodes(float(low), nextafter(float(high), inf), smooth=False))
+        return np.isin(theta, nodes) | np.isin(np.nextafter(theta, inf), nodes)
+    assert isinstance(load, OverY)
+    lengths = [points[n] for n in LENGTHS]
+    angles = [passages(load.jumps, lengths, branch), *([dead_centres(lengths)] if load.turns else [])]
+    away = theta[:, None] - np.concatenate(angles, axis=1)
+    away -= 2.0 * pi * np.round(away / (2.0 * pi))
+    near: NDArray[np.bool_] = (np.abs(away) <= NEAR * (1.0 + np.abs(theta[:, None]))).any(axis=1)
+    return near

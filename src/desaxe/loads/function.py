@@ -1,0 +1,109 @@
+"""A user's function of the crank angle as a load."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any
+
+from ..support.forks import IMPORTS
+from .load import TURN, OverTheta
+from .table import SAME
+
+SAMPLES = 1024  # of a function, by which it is distinguished from others
+ROUNDED = 8  # last bits of an angle: so far from its node a user's function may jump
+BESIDE = 1e-9  # rad: more than these are
+
+
+@dataclass(frozen=True)
+class FunctionOverTheta(OverTheta):
+    """A user's function of the crank angle, which is called with the angle as it is."""
+
+    function: Callable[[Any], Any]
+    derivative: Callable[[Any], Any] | None = None
+    angles: tuple[float, ...] = ()  # nodes
+    every: float = TURN  # the angle after which the nodes repeat
+
+    @property
+    def period(self) -> float:
+        """The angle after which the nodes repeat [rad]."""
+        return self.every
+
+    @property
+    def has_slope(self) -> bool:
+        """True where the derivative was given."""
+        return self.derivative is not None
+
+    def both(self, theta: Any) -> tuple[Any, Any]:
+        """The load and, where it is known, its derivative."""
+        slope = None if self.derivative is None else called(self.derivative, theta, "the load's derivative")
+        return called(self.function, theta, "the load"), slope
+
+    def nodes(self, low: float, high: float, smooth: bool) -> list[float]:
+        """The nodes in a range, one at a jump moved by what is rounded to the first angle after it."""
+        near = [a for a in self._repeated(self.angles, low, high) if low - BESIDE <= a <= high + BESIDE]
+        return [a for a in self._after_jumps(sorted(near)) if low <= a <= high] if near else []
+
+    def _after_jumps(self, angles: list[float]) -> list[float]:
+        with IMPORTS:
+            import numpy as np
+
+        nodes = np.array(angles)[:, None]
+        near = nodes + np.spacing(np.abs(nodes)) * np.arange(-ROUNDED, ROUNDED + 1)
+        values = called(self.function, near, "the load")
+        change = np.abs(np.diff(values, axis=1))
+        at = np.arange(len(angles)), change.argmax(axis=1)
+        jumps = change[at] > SAME * np.abs(values).max(axis=1)
+        found: list[float] = np.where(jumps, near[:, 1:][at], nodes[:, 0]).tolist()
+        return found
+
+    def _content(self) -> str:
+        angles = [self.every * k / SAMPLES for k in range(SAMPLES)]
+        return f"{[self(angle) for angle in angles]} {self.angles} {self.every}"
+
+    def __repr__(self) -> str:
+        name = getattr(self.function, "__name__", type(self.function).__name__)
+        return f"<load over theta: the function {name}>"
+
+
+def called(function: Callable[[Any], Any], theta: Any, what: str) -> Any:
+    """Call a user's function with a number or an array; angle by angle if it takes no arrays."""
+    if isinstance(theta, float):
+        return _one(function, theta, what)
+    with IMPORTS:
+        import numpy as np
+
+    theta = np.asarray(theta, float)
+    try:
+        found = np.asarray(function(theta))
+    except Exception:  # math.sin, or a condition: it takes numbers only; what it says of a number counts
+        found = np.array([_one(function, x, what) for x in theta.reshape(-1).tolist()]).reshape(theta.shape)
+    if found.dtype.kind not in "fiub" or found.shape not in ((), theta.shape):
+        raise ValueError(
+            f"{what}: a function of {theta.size} angles gave the shape {found.shape} of {found.dtype}; "
+            f"expected numbers of the shape {theta.shape}"
+        )
+    found = np.broadcast_to(found.astype(float), theta.shape)
+    bad = np.isfinite(theta) & ~np.isfinite(found)
+    if bad.any():
+        raise ValueError(
+            f"{what}: the function gave {found[bad].flat[0]} at theta = {theta[bad].flat[0]:g}: it must be "
+            "finite"
+        )
+    return found
+
+
+def _one(function: Callable[[Any], Any], theta: float, what: str) -> float:
+    try:
+        found = function(theta)
+    except Exception as error:
+        kind = type(error).__name__
+        raise ValueError(f"{what}: the function failed at theta = {theta:g}: {kind}: {error}") from error
+    try:
+        number = float(found)
+    except (TypeError, ValueError):
+        raise TypeError(
+            f"{what}: the function gave {found!r} at theta = {theta:g}: expected a number"
+        ) from None
+    if isfinite(theta) and not isfinite(number):
+        raise ValueError(f"{what}: the function gave {number} at theta = {theta:g}: it must be finite")
+    return number

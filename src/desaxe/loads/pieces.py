@@ -1,0 +1,62 @@
+"""Which piece of a load over Y holds at a crank angle: exactly, where rounding leaves a jump open."""
+
+from bisect import bisect_right
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from ..support.forks import IMPORTS
+from .exact import Slider
+from .load import OverY
+
+POSITION = ("Y", "Y_wrt_theta", "Y_wrt_theta_theta")  # which piece holds: the position, and the way
+NEAR = 2.0**-44  # of AB + BC: next to a jump, as far as a rounded position tells
+FLAT = 2.0**-36  # of AB: next to a dead centre, as far as a rounded slope tells
+
+
+class Place(NamedTuple):
+    """What tells where the slider is at an angle, and how it goes: numbers, or arrays that broadcast."""
+
+    theta: Any
+    lengths: Sequence[Any]  # ec, AB, BC
+    way: Any  # negative where the crank turns backwards
+    branch: int
+
+
+def pieces_at(load: OverY, place: Place, motion: Mapping[str, Any]) -> Any:
+    """The number of the piece at each point, from its motion: the values of `POSITION`."""
+    Y, slope, bend = (motion[name] for name in POSITION)
+    if isinstance(Y, float) and isinstance(place.way, float):
+        ahead = slope or bend  # at a dead centre the way that follows
+        found = load.piece(float(Y), float(ahead if place.way >= 0.0 else -ahead))
+        return piece_at(load, place) if load.jumping and _is_open(load, place, Y, slope, found) else found
+    with IMPORTS:
+        import numpy as np
+
+    ahead = np.where(np.equal(slope, 0.0), bend, slope)
+    found = load.piece(Y, np.where(np.less(place.way, 0.0), -ahead, ahead))
+    still = load.jumping and _is_open(load, place, Y, slope, found)
+    if np.any(still):
+        found, still, theta, way, *lengths = np.broadcast_arrays(
+            found, still, place.theta, place.way, *place.lengths
+        )
+        found = found.copy()
+        for at in zip(*np.nonzero(still), strict=True):
+            sides = tuple(float(length[at]) for length in lengths)
+            found[at] = piece_at(load, Place(float(theta[at]), sides, float(way[at]), place.branch))
+    return found
+
+
+def _is_open(load: OverY, place: Place, Y: Any, slope: Any, piece: Any) -> Any:
+    """Whether rounding may have decided on the piece."""
+    _, AB, BC = place.lengths
+    number, edges, room = piece % len(load.outward.rows), load.edges(Y), NEAR * (AB + BC)
+    found = (Y - edges[number] <= room) | (edges[number + 1] - Y <= room)
+    return found | (abs(slope) <= FLAT * AB) if load.turns else found
+
+
+def piece_at(load: OverY, place: Place) -> int:
+    """The number of the piece at one point, exactly."""
+    slider = Slider(place.theta, place.lengths, place.branch)
+    inward = load.inward is not None and slider.way * (1 if place.way >= 0.0 else -1) < 0
+    table = load.inward if inward and load.inward is not None else load.outward
+    return bisect_right(table.knots, slider) + (len(load.outward.rows) if inward else 0)

@@ -1,0 +1,143 @@
+"""The loads of designs over the crank angle: their kinks and jumps, and the nodes that a search needs."""
+
+from collections.abc import Mapping
+from math import inf
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..evaluation.arcs import Arcs, arcs_of
+from ..loads.angles import dead_centres, passages, repeated
+from ..loads.load import Load, OverTheta, OverY
+from ..mechanism.names import LENGTHS
+from .nodes import Array
+from .special import Designs
+
+FIXED, CROSSING, TURNING = 0, 1, 2  # what keeps a kink where it is: the angle, a position, a dead centre
+BESIDE = 16.0  # last bits of an angle: so near to a jump is next to it
+ROUNDED = 64.0  # last bits of an angle: so near to a dead centre rounding may take the other side's friction
+
+
+class Marks(NamedTuple):
+    """Angles of each design, NaN in empty places, and what keeps each of them."""
+
+    angles: Array
+    kinds: NDArray[np.int8]
+
+    def of(self, kind: int) -> Array:
+        """The angles of a kind."""
+        return self.angles[:, self.kinds == kind]
+
+
+class Course(NamedTuple):
+    """The loads of designs over a range of angles.
+
+    nodes  where a search looks, besides the nodes of every design
+    kinks  where a load is not smooth; every dead centre under a load over Y
+    jumps  the first angle after each jump
+    arcs   those of the loads over Y that jump
+    """
+
+    nodes: Array
+    kinks: Marks
+    jumps: Marks
+    arcs: Mapping[str, Arcs]
+
+    def pieces(self, rows: NDArray[np.intp], theta: Array) -> dict[str, NDArray[np.intp]]:
+        """The pieces to hold at angles of the designs `rows`."""
+        return {name: arcs.at(rows, theta) for name, arcs in self.arcs.items()}
+
+    def aside(self, rows: NDArray[np.intp], theta: Array) -> Array:
+        """The angles of the designs `rows`, moved off jumps at dead centres, where friction jumps too."""
+        for turn in self.jumps.of(TURNING)[rows].T:
+            room = ROUNDED * np.spacing(1.0 + np.abs(theta))
+            near = np.abs(theta - turn) < room
+            theta = np.where(near, turn + np.where(theta >= turn, room, -room), theta)
+        return theta
+
+
+def course_of(designs: Designs) -> Course:
+    """The loads of designs over their range of angles."""
+    low, high = designs.theta
+    arcs = _arcs(designs)
+    parts = [
+        _over_Y(load, arcs.get(name), designs) if isinstance(load, OverY) else _over_theta(load, designs)
+        for name, load in designs.loads.items()
+    ]
+    nodes = np.concatenate([np.full((designs.size, 1), low), *(part.nodes for part in parts)], axis=1)
+    nodes = np.where(np.isfinite(nodes), np.clip(nodes, low, high), low)
+    kinks, jumps = (_marks([mark for part in parts for mark in part[k]], designs.size) for k in (1, 2))
+    return Course(nodes, kinks, jumps, arcs)
+
+
+class _Part(NamedTuple):
+    """What a load adds to a course: nodes; kinks and jumps, angles of each with what keeps them."""
+
+    nodes: Array
+    kinks: list[tuple[Array, int]]
+    jumps: list[tuple[Array, int]]
+
+
+def _over_theta(load: Load, designs: Designs) -> _Part:
+    low, high = designs.theta
+    assert isinstance(load, OverTheta)
+    own = _jumps_over_theta(load, low, high)
+    every = np.concatenate([load.nodes(low, high, smooth=True), own, np.nextafter(own, -inf)])
+    marks = [(np.broadcast_to(own, (designs.size, own.size)), FIXED)]
+    return _Part(np.broadcast_to(every, (designs.size, every.size)), marks, marks)
+
+
+def _jumps_over_theta(load: OverTheta, low: float, high: float) -> Array:
+    """The first angle after each kink or jump of a load over theta."""
+    room = BESIDE * float(np.spacing(max(abs(low), abs(high))))
+    return np.array(load.nodes(low - room, high + room, smooth=False))
+
+
+def _over_Y(load: OverY, arcs: Arcs | None, designs: Designs) -> _Part:
+    lengths = [designs.columns[n] for n in LENGTHS]
+    smooth, bent = (passages(load.positions(s), lengths, designs.branch) for s in (True, False))
+    own, turning = (repeated(angles, *designs.theta) for angles in (bent, dead_centres(lengths)))
+    kinks = [(own, CROSSING), (turning, TURNING)]
+    if arcs is None:
+        return _Part(repeated(smooth, *designs.theta), kinks, [])
+    before = np.where(arcs.leaps, np.nextafter(arcs.starts, -inf), np.nan)
+    jumps = [(np.where(arcs.turns, arcs.starts, np.nan), TURNING)]
+    jumps += [(np.where(arcs.leaps & ~arcs.turns, arcs.starts, np.nan), CROSSING)]
+    return _Part(np.append(arcs.starts, before, axis=1), kinks, jumps)
+
+
+def _arcs(designs: Designs) -> dict[str, Arcs]:
+    """The arcs of the loads over Y that jump; of designs with NaN among their inputs those of others."""
+    clean = {name: np.where(np.isnan(column), 1.0, column) for name, column in designs.columns.items()}
+    arcs = {
+        name: arcs_of(load, clean, designs.branch, *designs.theta)
+        for name, load in designs.loads.items()
+        if isinstance(load, OverY) and load.jumping
+    }
+    if len(designs.loads) > 1:
+        _part_jumps(designs._replace(columns=clean), arcs)
+    return arcs
+
+
+def _part_jumps(designs: Designs, arcs: dict[str, Arcs]) -> None:
+    """Let arcs begin exactly where another load jumps at the same angle, as far as rounding tells."""
+    for name, own in arcs.items():
+        others = [np.full((designs.size, 1), np.nan)]
+        others += [np.where(arcs[n].leaps, arcs[n].starts, np.nan) for n in arcs if n != name]
+        for load in designs.loads.values():
+            if isinstance(load, OverTheta):
+                angles = _jumps_over_theta(load, *designs.theta)
+                others.append(np.broadcast_to(angles, (designs.size, angles.size)))
+        angles = np.concatenate(others, axis=1)[:, None, :]
+        apart = np.abs(np.where(own.leaps, own.starts, np.nan)[:, :, None] - angles)
+        for row, number in np.argwhere((apart <= BESIDE * np.spacing(np.abs(angles))).any(axis=2)).tolist():
+            own.starts[row, number] = own.first_angle(designs.place(row), row, number)
+
+
+def _marks(parts: list[tuple[Array, int]], size: int) -> Marks:
+    """Angles and what keeps them, from parts; without places that are empty in every design."""
+    angles = np.concatenate([np.empty((size, 0)), *(part for part, _ in parts)], axis=1)
+    kinds = np.concatenate([np.empty(0, np.int8), *(np.full(a.shape[1], kind, np.int8) for a, kind in parts)])
+    used = ~np.isnan(angles).all(axis=0)
+    return Marks(angles[:, used], kinds[used])

@@ -1,0 +1,128 @@
+"""Extrema next to a jump or at a kink of a load: their side, the nearest double, the whole gradient.
+
+A kink of a load over Y moves with the design: the gradient of an extreme value that is reached there is that
+at a fixed angle, and the slope over theta times the kink's derivative.
+"""
+
+from math import inf, nextafter
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..mechanism.names import LENGTHS, sensitivity
+from .course import BESIDE, CROSSING, ROUNDED, TURNING
+from .loaded import Rows, Values
+from .nodes import Array
+from .special import AT_KINK
+
+EQUAL = 2.0**-40  # of a value: limits that differ by less are equal
+APART = 1e-9  # of a value: what friction of the other side changes is more
+KEPT = {CROSSING: "Y", TURNING: "Y_wrt_theta"}  # what keeps its value at a kink that moves with the lengths
+
+
+class Jump(NamedTuple):
+    """A jump next to an extremum: the first angle after it, the extremum's side, what keeps its place."""
+
+    start: float
+    side: int
+    kind: int
+
+
+def at_jumps(
+    values: Values, kind: int, usable: NDArray[np.bool_], theta: Array, out: Array
+) -> NDArray[np.int8]:
+    """The side of each extremum: -1 or 1 where it is a limit at a jump, else 0.
+
+    Completes in place: of an extremum at a jump its angle, the nearest double, with value and gradient there;
+    of others at a kink the gradient.
+
+    kind    0 for the largest magnitude
+    out     rows: signed value, slope, gradient (of the magnitude for kind 0)
+    """
+    side = np.zeros(theta.size, np.int8)
+    jumps = _jumps(values, np.where(usable, theta, np.nan))
+    rows = np.array(sorted(jumps), np.intp)
+    if rows.size:
+        found = [jumps[row] for row in rows]
+        side[rows] = [jump.side for jump in found]
+        pieces = values.course.pieces(rows, theta[rows])
+        nearest = [_nearest(values, row, jump) for row, jump in zip(rows.tolist(), found, strict=True)]
+        theta[rows] = np.clip(nearest, *values.designs.theta)
+        turning = np.array([jump.kind == TURNING for jump in found])
+        if values.designs.rubs and turning.any():
+            some = {name: own[turning] for name, own in pieces.items()}
+            theta[rows[turning]] = _certain(
+                values, rows[turning], theta[rows[turning]], side[rows[turning]], some
+            )
+        new = np.array(values.at(len(out), rows, theta[rows], pieces))
+        out[:2, rows] = new[:2]
+        out[2:, rows] = np.where((kind == 0) & (new[0] < 0.0), -new[2:], new[2:])
+        for what in KEPT:
+            _move(values, kind, what, rows[np.array([jump.kind == what for jump in found])], theta, out)
+    angles, kinds = values.course.kinks
+    for what in KEPT:
+        near = (np.abs(angles[:, kinds == what] - theta[:, None]) <= AT_KINK).any(axis=1) & (side == 0)
+        _move(values, kind, what, np.flatnonzero(near), theta, out)
+    return side
+
+
+def _jumps(values: Values, theta: Array) -> dict[int, Jump]:
+    """The jumps next to extrema, by the number of the design; an angle between two is next to neither."""
+    angles, kinds = values.course.jumps
+    with np.errstate(invalid="ignore"):
+        room = BESIDE * np.spacing(np.maximum(np.abs(theta[:, None]), np.abs(angles)))
+        if values.designs.rubs:  # there `Course.aside` makes more angles equal
+            room[:, kinds == TURNING] = 1.5 * ROUNDED * np.spacing(1.0 + np.abs(theta[:, None]))
+        rows, places = np.nonzero(np.abs(theta[:, None] - angles) <= room)
+    if not rows.size:
+        return {}
+    starts = angles[rows, places]
+    before, after = (np.array(values.at(2, rows, t)) for t in (np.nextafter(starts, -inf), starts))
+    value, slope = np.maximum(np.abs(before), np.abs(after))
+    apart = ~(np.abs(before - after)[0] <= EQUAL * value + slope * ROUNDED * np.spacing(1.0 + np.abs(starts)))
+    found: dict[int, dict[int, Jump]] = {}
+    for row, place, start in zip(rows[apart].tolist(), places[apart], starts[apart].tolist(), strict=True):
+        jump = Jump(start, -1 if theta[row] < start else 1, int(kinds[place]))
+        found.setdefault(row, {})[jump.side] = jump
+    return {row: next(iter(own.values())) for row, own in found.items() if len(own) == 1}
+
+
+def _nearest(values: Values, row: int, jump: Jump) -> float:
+    """The double that is nearest to a jump on a side."""
+    starts = [
+        arcs.first_angle(values.designs.place(row), row, number)
+        for name, arcs in values.course.arcs.items()
+        for number in np.flatnonzero((arcs.starts[row] == jump.start) & arcs.leaps[row]).tolist()
+    ]
+    if jump.side > 0:
+        return max(starts, default=jump.start)
+    return nextafter(min(starts, default=jump.start), -inf)
+
+
+def _certain(values: Values, rows: Rows, theta: Array, side: Array, pieces: dict[str, Rows]) -> Array:
+    """The nearest angles to dead centres from which on rounding takes the friction of their own side."""
+    steps = np.arange(ROUNDED + 1.0) * np.spacing(np.abs(theta) + 1.0)[:, None]
+    angles = theta[:, None] + side[:, None] * steps
+    designs, name = values.designs.part(rows), values.curve[0]
+    numbers = np.repeat(np.arange(rows.size), angles.shape[1])
+    found = designs.values((name,), numbers, angles.reshape(-1))[name].reshape(angles.shape)
+    wrong = ~(np.abs(found - found[:, -1:]) <= APART * np.abs(found[:, -1:]))
+    count = np.where(wrong.any(axis=1), angles.shape[1] - wrong[:, ::-1].argmax(axis=1), 0)
+    found = angles[np.arange(rows.size), np.minimum(count, angles.shape[1] - 1)]
+    return np.asarray(found)
+
+
+def _move(values: Values, kind: int, what: int, rows: Rows, theta: Array, out: Array) -> None:
+    """Complete gradients of extrema at kinks, where a quantity of the motion keeps its value."""
+    parameters = values.search.parameters
+    if not rows.size:
+        return
+    names = [sensitivity(KEPT[what], q) for q in ("theta", *LENGTHS)]
+    designs = values.designs.part(rows)._replace(loads={})
+    found = designs.values(tuple(names), np.arange(rows.size), theta[rows])
+    sign = np.where(out[0, rows] < 0.0, -1.0, 1.0) if kind == 0 else 1.0
+    for length, by in zip(LENGTHS, names[1:], strict=True):
+        if length in parameters:
+            with np.errstate(all="ignore"):
+                out[2 + parameters.index(length), rows] -= sign * out[1, rows] * found[by] / found[names[0]]
