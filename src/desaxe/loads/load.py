@@ -6,11 +6,11 @@ way the slider goes. It stands wherever F_X or F_Y does, compares by its content
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from functools import cached_property
 from hashlib import sha256
 from math import ceil, floor, inf, nan, nextafter, pi
 from typing import Any
 
+from ..support.computed import computed_once
 from ..support.forks import IMPORTS
 from .table import Table, polynomial
 
@@ -168,11 +168,11 @@ class OverY(Load):
         """The ends of the pieces of one way, the first and last infinite, as positions are: one or many."""
         return self._edges if isinstance(Y, float) else self._arrays[0]
 
-    @cached_property
+    @computed_once
     def _edges(self) -> tuple[float, ...]:
         return -inf, *self.outward.knots, inf
 
-    @cached_property
+    @computed_once
     def _arrays(self) -> tuple[Any, Any, Any]:
         """The ends of the pieces of one way, and the origin and the coefficients of every piece."""
         with IMPORTS:
@@ -187,18 +187,18 @@ class OverY(Load):
         """The state without the arrays, which are rebuilt when needed."""
         return {name: value for name, value in self.__dict__.items() if name != "_arrays"}
 
-    @cached_property
+    @computed_once
     def largest(self) -> float:
         """The largest magnitude at a knot."""
         ways = (self.outward, self.outward if self.inward is None else self.inward)
         return max(abs(row[0]) for table in ways for row in table.rows)
 
-    @cached_property
+    @computed_once
     def turns(self) -> bool:
         """True where another table holds for the way inward: at a dead centre the load may jump."""
         return self.inward is not None and self.inward != self.outward
 
-    @cached_property
+    @computed_once
     def jumping(self) -> bool:
         """True where the load jumps anywhere."""
         return self.turns or bool(self.jumps)
