@@ -427,3 +427,17 @@ def test_a_text_without_a_unit_is_in_that_of_the_machine():
     dataset = dx.scene(scene).run().dataset
     assert (float(dataset.AB), dataset.BC.values.tolist()) == (50.0, [200.0, 210.0])
     assert float(dataset.theta) == pytest.approx(60.0, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("units", "problem"),
+    [
+        ("mm, deg, rpm, " * 1000, "3000 units are too many, at most 100"),
+        ("m" * 20_000, "is not a known unit"),
+        ({"length": "m*" * 10_000 + "m"}, "a unit of 20001 characters, at most 100"),
+    ],
+)
+def test_endless_units_are_refused(units, problem):
+    with pytest.raises(ValueError, match=problem) as caught:
+        dx.Machine(ec=15, AB=75, BC=300, omega0=60, units=units)
+    assert len(str(caught.value)) < 300

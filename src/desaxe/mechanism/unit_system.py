@@ -39,6 +39,7 @@ DIMENSIONS = {
     "power": "W",
     "inertia": "kg*m^2",
 }
+MOST = 100  # units of one text or table
 PER_SECOND = {"m/s": "/s", "m/s^2": "/s^2", "m/s^3": "/s^3"}
 # Units of inputs and results that are no quantities of the catalogue.
 OTHERS = {
@@ -113,6 +114,8 @@ class UnitSystem:
             return units
         if units is None or isinstance(units, str):
             named = [unit.strip() for unit in (units or "").split(",") if unit.strip()]
+            if len(named) > MOST:
+                raise ValueError(f"units: {len(named)} units are too many, at most {MOST}")
             rows = [(_dimension_of(unit), unit) for unit in named]
         elif isinstance(units, Mapping):
             rows = [(_key(name), unit) for name, unit in units.items()]
@@ -233,7 +236,7 @@ def _dimension_of(unit: str) -> str:
         except ValueError as error:
             if "unknown unit" in str(error) or "it must be a number" in str(error):
                 raise ValueError(
-                    f'units: {unit!r} is not a known unit; expected units such as "mm, deg, rpm"'
+                    f'units: {shown(unit)} is not a known unit; expected units such as "mm, deg, rpm"'
                 ) from None
         else:
             fitting.append(name)

@@ -17,6 +17,7 @@ from ..support.quantity_text import quantity_text, split_quantity
 from ..support.shown import shown
 from .inputs import INPUTS
 
+LONGEST_UNIT = 100  # characters
 _LONGEST = 1000  # characters of a number: all digits of any double
 _BEYOND = "it must be a number that a double holds, from 4.9e-324 to 1.8e308"
 EXAMPLES = {
@@ -119,6 +120,8 @@ def exact(name: str, text: str, unit: str) -> Fraction:
         _check_size(number)
         if not own:
             return Fraction(number)
+        if len(own) > LONGEST_UNIT:
+            raise ValueError(f"a unit of {len(own)} characters, at most {LONGEST_UNIT}")
         quantity = _exact_registry().Quantity(Fraction(number), quantity_text(f"1 {own}")[2:])
     except MissingExtraError:
         raise

@@ -24,7 +24,8 @@ class Spread(NamedTuple):
 
 def spread_of(jacobian: Array, sizes: Array, names: Sequence[str], variance: float) -> Spread:
     """The spread of estimates whose residuals have this variance; infinite along open directions."""
-    _, singular, rows = np.linalg.svd(jacobian * sizes, full_matrices=True)
+    few = len(jacobian) < len(names)  # samples: then open directions are among the further rows
+    _, singular, rows = np.linalg.svd(jacobian * sizes, full_matrices=few)
     singular = np.concatenate([singular, np.zeros(len(names) - singular.size)])
     is_open = singular <= OPEN * max(singular[0], np.finfo(float).tiny)
     known = rows[~is_open]
