@@ -241,7 +241,7 @@ def _dimension_of(unit: str) -> str:
         else:
             fitting.append(name)
     if not fitting:
-        raise ValueError(f"units: {unit!r} is none of {', '.join(DIMENSIONS)}")
+        raise ValueError(f"units: {shown(unit)} is none of {', '.join(DIMENSIONS)}")
     product = re.search(r"[^\W\d_][ *.·][^\W\d_]", unit) is not None
     return fitting[-1] if len(fitting) > 1 and not product else fitting[0]
 
