@@ -15,6 +15,7 @@ starts       cold starts
 report       docs/benchmarks.md and README's table
 picture      the pictures of that page
 startup      first calls and second processes; `python -m benchmarks.startup` alone
+steps        `python -m benchmarks.steps`: the worst error of many motions beside the usual one
 motions      `python -m benchmarks.motions`: simulations
 scale        `python -m benchmarks.scale`: sweeps
 """

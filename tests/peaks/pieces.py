@@ -107,7 +107,7 @@ def dead_centres(design, low, high):
 
 
 def crossing(x, closure, a, b):
-    """Where Y passes x between angles without a dead centre between them; None where it does not."""
+    """The angle at which Y passes x between angles without a dead centre between them; None where it does not."""
     at_a, at_b = (closure(t)[0] - x for t in (a, b))
     if min(abs(at_a), abs(at_b)) < TINY or (at_a > 0) == (at_b > 0):
         return None
@@ -208,7 +208,7 @@ def tops(name, kind, design, branch, loads, theta):
 
 
 def sides(name, design, branch, top, room):
-    """The sides of jumps of a quantity that an extremum may be told to be on."""
+    """The sides of jumps of a quantity that an extremum may be reported on."""
     own = dx.evaluate(name, theta=top.theta, branch=branch, **design, **top.arc.forces)
     found = set()
     ends = zip((1, -1), top.ends, top.arc.marks, (top.arc.before, top.arc.after), strict=True)

@@ -89,7 +89,7 @@ class Draw:
 
 
 def rounding(draw, every):
-    """What a few last bits of the angle, and of the values, change."""
+    """The change from a few ulp of the angle, and of the values."""
     try:
         names = f"{draw.name}_wrt_theta"
         with np.errstate(invalid="ignore"):

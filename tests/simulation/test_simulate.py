@@ -509,7 +509,8 @@ def test_without_scipy_one_line_says_what_to_install():
     assert last.endswith("simulate: method=Radau needs scipy: python -m pip install 'desaxe[simulate]'")
 
 
-def test_the_steps_and_their_inside_are_those_of_scipy():
+def test_a_step_and_its_inside_are_those_of_scipy():
+    """From the same start with the same length; without the guard, the length suggested next as well."""
     from scipy.integrate import DOP853
 
     from desaxe.simulation.stepper import Dop853
@@ -520,11 +521,14 @@ def test_the_steps_and_their_inside_are_those_of_scipy():
     # Tolerances far above rounding: with tighter ones the order of a sum changes the digits of a step.
     y, how = np.array([2.0, 0.0, 0.0]), {"rtol": np.array([1e-5, 1e-4, 1e-3]), "atol": np.full(3, 1e-5)}
     same = {"rtol": 1e-8, "atol": 1e-8}
-    ours = Dop853(rate, 0.0, y, 9.0, max_step=np.inf, first_step=None, **how)
+    ours = Dop853(rate, 0.0, y, 9.0, size=np.full(3, 1e30), max_step=np.inf, first_step=None, **how)
     theirs = DOP853(rate, 0.0, y, 9.0, **how)
     while theirs.status == "running":
+        theirs.h_abs = ours.h
         assert ours.step() is None
         assert theirs.step() is None
+        np.testing.assert_allclose(ours.wished, theirs.h_abs, **same)
+        assert ours.h <= ours.wished
         np.testing.assert_allclose(ours.t, theirs.t, **same)
         np.testing.assert_allclose(ours.y, theirs.y, **same)
         t = np.linspace(theirs.t_old, theirs.t, 5)

@@ -81,7 +81,7 @@ class JointPart(NamedTuple):
         return {name: np.dtype(kind) for name, kind in found.items()}
 
     def _has_side(self, chain: Chain) -> bool:
-        """Whether the result of a chain is a sample over theta under loads that may jump."""
+        """True if the result of a chain is a sample over theta under loads that may jump."""
         return isinstance(self.source, Loaded) and "theta" in extremes_at_end(chain)
 
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:

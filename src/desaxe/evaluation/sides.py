@@ -40,7 +40,7 @@ def _differ(one: Array, other: Array) -> NDArray[np.bool_]:
 
 
 def _near(load: Load, points: Mapping[str, Array], branch: int) -> NDArray[np.bool_]:
-    """Whether samples are within rounding of a jump of a load."""
+    """Mask of the samples that are within rounding of a jump of a load."""
     theta = points["theta"]
     if isinstance(load, OverTheta):
         low, high = np.nanmin(theta, initial=0.0), np.nanmax(theta, initial=0.0)

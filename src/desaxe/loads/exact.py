@@ -1,4 +1,4 @@
-"""Where the slider is, exactly: on which side of a jump a crank angle is, for the doubles as they are.
+"""The slider's place, exactly: on which side of a jump a crank angle is, for the doubles as they are.
 
 Next to a jump the last bit of Y decides which piece of a table holds, at a dead centre that of its slope.
 Here are as many bits as that takes, in integers: some 30 us, for what rounding leaves open.

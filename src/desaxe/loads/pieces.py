@@ -1,4 +1,4 @@
-"""Which piece of a load over Y holds at a crank angle: exactly, where rounding leaves a jump open."""
+"""The piece of a load over Y that holds at a crank angle: exactly, where rounding leaves a jump open."""
 
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
@@ -14,7 +14,7 @@ FLAT = 2.0**-36  # of AB: next to a dead centre, as far as a rounded slope tells
 
 
 class Place(NamedTuple):
-    """What tells where the slider is at an angle, and how it goes: numbers, or arrays that broadcast."""
+    """The slider's place at an angle, and its direction: numbers, or arrays that broadcast."""
 
     theta: Any
     lengths: Sequence[Any]  # ec, AB, BC
@@ -47,7 +47,7 @@ def pieces_at(load: OverY, place: Place, motion: Mapping[str, Any]) -> Any:
 
 
 def _is_open(load: OverY, place: Place, Y: Any, slope: Any, piece: Any) -> Any:
-    """Whether rounding may have decided on the piece."""
+    """True where rounding may have decided on the piece."""
     _, AB, BC = place.lengths
     number, edges, room = piece % len(load.outward.rows), load.edges(Y), NEAR * (AB + BC)
     found = (Y - edges[number] <= room) | (edges[number + 1] - Y <= room)

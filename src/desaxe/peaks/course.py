@@ -72,7 +72,7 @@ def course_of(designs: Designs) -> Course:
 
 
 class _Part(NamedTuple):
-    """What a load adds to a course: nodes; kinks and jumps, angles of each with what keeps them."""
+    """The additions of a load to a course: nodes; kinks and jumps, angles of each with what keeps them."""
 
     nodes: Array
     kinks: list[tuple[Array, int]]

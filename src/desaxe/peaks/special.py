@@ -52,7 +52,7 @@ class Designs(NamedTuple):
         return self._replace(columns={name: column[rows] for name, column in self.columns.items()})
 
     def place(self, row: int) -> Place:
-        """What tells a design's slider its place, at the angle 0."""
+        """Marks that tell a design's slider its place, at the angle 0."""
         design = {name: float(column[row]) for name, column in self.columns.items()}
         return Place(0.0, [design[name] for name in LENGTHS], way_of(design), self.branch)
 

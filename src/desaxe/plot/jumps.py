@@ -68,7 +68,7 @@ def _jumps(
 
 
 def _factor(from_unit: str, to_unit: str) -> float:
-    """What a number in one unit is multiplied by to be one in another."""
+    """The factor from numbers in one unit to numbers in another."""
     if from_unit == to_unit:
         return 1.0
     return float(registry().Quantity(1.0, from_unit).to(to_unit).magnitude)

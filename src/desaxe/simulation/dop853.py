@@ -79,17 +79,22 @@ def trial(t: float, y: Any, h: float, p: Any, setup: Any, tables: Any, K: Any, n
     rates(t + h, new, p, setup, K[12])
 
 
-def error_of(h: float, y: Any, new: Any, rtol: Any, atol: Any, tables: Any, K: Any) -> float:
-    """The error of a step relative to the tolerance."""
-    fifth, third = 0.0, 0.0
+def error_of(h: float, y: Any, new: Any, rtol: Any, atol: Any, size: Any, tables: Any, K: Any) -> float:
+    """The error of a step relative to the tolerance: see `Dop853._error`."""
+    fifth, third, cubic, tightest = 0.0, 0.0, 0.0, inf
     for i in range(3):
-        scale = atol[i] + max(abs(y[i]), abs(new[i])) * rtol[i]
+        largest = max(abs(y[i]), abs(new[i]))
+        scale = atol[i] + largest * rtol[i]
+        whole = size[i] + (largest if i > 0 else 0.0)
+        rate = combined(K, tables[3], int64(13), i)
         fifth += square(combined(K, tables[4], int64(13), i) / scale)
-        third += square(combined(K, tables[3], int64(13), i) / scale)
+        third += square(rate / scale)
+        cubic += square(h * rate / whole)
+        tightest = min(tightest, scale / whole)
     if fifth == 0.0 and third == 0.0:
         return 0.0
     error: float = abs(h) * fifth / sqrt((fifth + 0.01 * third) * 3.0)
-    return error
+    return max(error, 0.1 * cubic / tightest)
 
 
 def first_step(t_end: float, y: Any, p: Any, setup: Any, rtol: Any, atol: Any, K: Any, new: Any) -> float:
@@ -182,8 +187,8 @@ def energy_of(y: Any, p: Any, setup: Any) -> float:
     return float(0.5 * y[1] * y[1]) + potential(theta, side * setup[0], p)
 
 
-def start(p: Any, setup: Any, rtol: float, t_end: float, y: Any, atol: Any) -> bool:
-    """The state at the start and the tolerances; whether there is an inertia to move."""
+def start(p: Any, setup: Any, rtol: float, t_end: float, y: Any, atol: Any, size: Any) -> bool:
+    """The state at the start, the tolerances and sizes; whether there is an inertia to move."""
     inertia, weight, _ = still(setup[6], setup[0], p)
     if not (0.0 < inertia < inf):
         return False
@@ -203,9 +208,8 @@ def start(p: Any, setup: Any, rtol: float, t_end: float, y: Any, atol: Any) -> b
             energy = max(energy, here)
     if energy == 0.0:
         energy = inertia / square(t_end)
-    atol[0] = 1e-3 * rtol
-    atol[1] = 0.01 * rtol * sqrt(energy)
-    atol[2] = 0.01 * rtol * energy
+    size[0], size[1], size[2] = 1.0, sqrt(energy), energy
+    atol[0], atol[1], atol[2] = 1e-3 * rtol, 0.01 * rtol * size[1], 0.01 * rtol * size[2]
     return True
 
 
@@ -226,10 +230,10 @@ def follow(
     how: relative tolerance, t_end, longest step, most steps.
     """
     rtol, t_end, longest = how[0], how[1], how[2]
-    y, new, atol, relative = empty(3), empty(3), empty(3), empty(3)
+    y, new, atol, relative, size = empty(3), empty(3), empty(3), empty(3), empty(3)
     relative[0], relative[1], relative[2] = 3e-14, rtol, rtol
     theta[:], omega[:], alpha[:] = nan, nan, nan
-    if not start(p, setup, rtol, t_end, y, atol):
+    if not start(p, setup, rtol, t_end, y, atol, size):
         return 6, nan, nan, nan
     first, last = (-pi / 2, pi / 2) if setup[3] > 0.0 else (setup[1], setup[2])
     t, row, count = 0.0, int64(0), len(times)
@@ -239,7 +243,7 @@ def follow(
     rates(0.0, y, p, setup, K[0])
     h = first_step(t_end, y, p, setup, relative, atol, K, new)
     initial, residual, turned, largest = energy_of(y, p, setup), 0.0, 0.0, 0.5 * y[1] * y[1]
-    status, rejected, steps, tries = -1, False, 0, 0
+    status, rejected, steps, tries, wished = -1, False, 0, 0, inf
     least, most = inf, still(setup[6], setup[0], p)[0]
     while status < 0:
         smallest = 10.0 * (nextafter(t, inf) - t)
@@ -255,7 +259,7 @@ def follow(
         t_new = min(t + h, t_end)
         h = t_new - t
         trial(t, y, h, p, setup, tables, K, new)
-        error = error_of(h, y, new, relative, atol, tables, K)
+        error = error_of(h, y, new, relative, atol, size, tables, K)
         beyond = new[0] >= last or new[0] <= first
         smooth = setup[3] > 0.0
         # At a limit angle the error is that of S, which has lost its digits: a short step over it may pass.
@@ -291,7 +295,8 @@ def follow(
         if off == off and status != 2:  # at a limit angle Y has half its digits
             residual = max(residual, off)
         growth = min(10.0, 0.9 * error**-0.125) if error > 0.0 else 10.0
-        h *= min(1.0, growth) if rejected else growth
+        wish = h * (min(1.0, growth) if rejected else growth)
+        h, wished = min(wish, wished), wish
         rejected = False
         t = end
         for i in range(3):

@@ -41,11 +41,12 @@ CHATTER = 20  # standstills in a row, all within a millionth of the time
 
 
 class Tolerance(NamedTuple):
-    """The control of the integration: method, tolerances, limits of steps."""
+    """The control of the integration: method, tolerances, sizes of (q, v, W), limits of steps."""
 
     method: str
     rtol: float
     atol: Array
+    size: Array
     max_step: float
     max_steps: int
 
@@ -231,7 +232,7 @@ class Run:
         # An angle counts absolutely, however many turns it has made; implicit methods take one rtol only.
         several = np.array([3e-14, how.rtol, how.rtol])
         if how.method == "DOP853":
-            return Dop853(law.rate, t, y, t_bound, several, how.atol, how.max_step, first)
+            return Dop853(law.rate, t, y, t_bound, several, how.atol, how.size, how.max_step, first)
         with needed(f"simulate: method={how.method}", "simulate"):
             from scipy import integrate
         rtol = how.rtol if how.method in ("Radau", "BDF") else several

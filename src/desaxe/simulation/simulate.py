@@ -144,13 +144,9 @@ def simulate(
     drive = drive_of(torque, given["F_X"], given["F_Y"], deadline)
     values = design_values(given)
     model = model_of(values, int(branch), start[0], drive)
-    tolerance = Tolerance(
-        read_method(method),
-        rtol,
-        _atol(atol, rtol, model, *start, end),
-        longest,
-        max_steps,
-    )
+    energy = energy_scale(model, *start, end)
+    size = np.array([1.0, sqrt(energy), energy])
+    tolerance = Tolerance(read_method(method), rtol, _atol(atol, rtol, size), size, longest, max_steps)
     v = start[1] * sqrt(model.inertia(start[0]))
     run = Run(model, np.array([model.coordinate.q(start[0]), v, 0.0]), end, angles, tolerance, deadline)
     with np.errstate(all="ignore"):  # values beyond every double end the motion with a status
@@ -167,7 +163,7 @@ def _check_many(method: str, atol: Any, until: Any) -> None:
             raise ValueError(f"{name}= is for one design at a time: many run by DOP853 to t_end")
 
 
-def _atol(atol: Any, rtol: float, model: Model, theta: float, omega: float, t_end: float) -> Any:
+def _atol(atol: Any, rtol: float, size: Any) -> Any:
     """Absolute tolerances for (q, v, W)."""
     if atol is not None:
         several = atol if isinstance(atol, (list, tuple, np.ndarray)) else [atol]
@@ -177,8 +173,7 @@ def _atol(atol: Any, rtol: float, model: Model, theta: float, omega: float, t_en
         if number.size not in (1, 3):
             raise ValueError(f"atol: one number or three (angle, v, work), got {number.size}")
         return np.broadcast_to(number, 3)
-    energy = energy_scale(model, theta, omega, t_end)
-    return 0.01 * rtol * np.array([0.1, sqrt(energy), energy])
+    return rtol * size * (1e-3, 0.01, 0.01)
 
 
 def energy_scale(model: Model, theta: float, omega: float, t_end: float) -> float:

@@ -1,0 +1,38 @@
+"""No bad step is accepted, where one error estimate vanishes by accident."""
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from benchmarks.steps import designs
+from tests.effort import cases
+from tests.motions import true_end
+
+ISSUE = {
+    "AB": 0.11988839743156843, "BC": 0.32893073102304915, "ec": 0.0061792077930540226, "m_crank": 0.5,
+    "m_rod": 0.8, "m_slider": 0.9734310771225674, "I_crank": 6e-4, "I_rod": 7e-3, "r_crank": 0.04,
+    "r_rod": 0.11, "F_X": 7.0, "F_Y": -50.0, "g_X": 3.0, "g_Y": -9.81,
+}  # fmt: skip
+START = {"torque": 1.5, "theta0": 0.3, "omega_start": 20.0}
+
+
+@pytest.mark.parametrize("many", [False, True])
+def test_a_step_where_one_estimate_vanishes(many):
+    """The error of order 5 passes through 0 in a step of .9 rad: 5.2e-3 rad off at the end."""
+    theta, omega = true_end(ISSUE, *START.values(), 1.0, 800)
+    design = {**ISSUE, "m_slider": np.array([ISSUE["m_slider"]])} if many else ISSUE
+    for rtol in (3e-6, 1e-6, 3e-7):
+        found = dx.simulate(t_end=1.0, rtol=rtol, times=[1.0], **START, **design)
+        assert abs(found["theta"].item() - theta) < rtol
+        assert abs(found["omega"].item() - omega) < 100.0 * rtol
+
+
+@pytest.mark.sampled
+def test_one_design_takes_the_steps_of_many():
+    drawn = designs(cases(4, 40), seed=3)
+    many = dx.simulate(t_end=1.0, rtol=1e-6, times=[1.0], **drawn)
+    for row in range(len(drawn["AB"])):
+        one = {name: float(np.broadcast_to(v, drawn["AB"].shape)[row]) for name, v in drawn.items()}
+        alone = dx.simulate(t_end=1.0, rtol=1e-6, times=[1.0], **one)
+        assert many["theta"][row, 0] == pytest.approx(alone["theta"][0], rel=1e-9)
+        assert many["omega"][row, 0] == pytest.approx(alone["omega"][0], rel=1e-8)
