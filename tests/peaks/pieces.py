@@ -107,7 +107,7 @@ def dead_centres(design, low, high):
 
 
 def crossing(x, closure, a, b):
-    """The angle at which Y passes x between angles without a dead centre between them; None where it does not."""
+    """The angle at which Y passes x between angles without a dead centre between; None if there is none."""
     at_a, at_b = (closure(t)[0] - x for t in (a, b))
     if min(abs(at_a), abs(at_b)) < TINY or (at_a > 0) == (at_b > 0):
         return None

@@ -88,7 +88,7 @@ def arcs_of(load: OverY, columns: Mapping[str, Array], branch: int, low: float, 
 
 
 def _starts(load: OverY, lengths: list[Array], branch: int, low: float, high: float) -> Array:
-    """Angles at which arcs begin: at knots, at dead centres if the way matters, where the rod reaches, at ends."""
+    """Angles at which arcs begin: knots, dead centres if the way matters, limits of the rod, ends."""
     angles = [passages(load.positions(smooth=True), lengths, branch), limit_angles(lengths)]
     angles += [dead_centres(lengths)] if load.turns else []
     between = repeated(np.concatenate(angles, axis=1), low, high)
