@@ -52,7 +52,7 @@ def test_the_command(tmp_path, capsys):
         == 0
     )
     shown = capsys.readouterr().out
-    assert "250 points, 10 variables" in shown.splitlines()[0]
+    assert "250 points, 11 variables" in shown.splitlines()[0]
     assert "free" in shown.splitlines()[0]
     assert (tmp_path / "one.nc").is_file()
     assert main(["sweep", "press.toml", "--best", "2", "--by", "absmax:V_C", "--order", "largest"]) == 0
