@@ -3,6 +3,7 @@
 load       the loads: over theta or Y, from a table
 function   a user's function of theta as a load
 table      tables as piecewise cubics
+columns    numbers with or without units, from lists, arrays and files
 tabulated  `over_theta`, `over_Y`: loads from lists, files and functions
 pieces     which piece of a load over Y holds at an angle
 exact      where the slider is, exactly

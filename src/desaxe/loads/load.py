@@ -5,7 +5,7 @@ way the slider goes. It stands wherever F_X or F_Y does, compares by its content
 """
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from hashlib import sha256
 from math import ceil, floor, inf, nan, nextafter, pi
 from typing import Any
@@ -22,11 +22,16 @@ class LoadWarning(UserWarning):
 
 
 class Load(ABC):
-    """Base class of loads; `unit` is that of the values, None for plain SI numbers."""
+    """Base class of loads; `unit` is that of the values, None for plain SI numbers.
+
+    plain   what of it was given as plain numbers, which a machine in other units could mean otherwise:
+            "theta", "Y" and "value"
+    """
 
     over = "theta"
     parameters: tuple[str, ...] = ("theta",)  # that the load depends on
     unit: str | None = None
+    plain: tuple[str, ...] = ()
 
     @property
     def has_slope(self) -> bool:
@@ -83,6 +88,7 @@ class TableOverTheta(OverTheta):
     table: Table
     kind: str
     unit: str | None = None
+    plain: tuple[str, ...] = field(default=(), compare=False)
 
     @property
     def period(self) -> float:
@@ -123,6 +129,7 @@ class OverY(Load):
     inward: Table | None
     kind: str
     unit: str | None = None
+    plain: tuple[str, ...] = field(default=(), compare=False)
 
     over = "Y"
     parameters = ("theta", "ec", "AB", "BC")

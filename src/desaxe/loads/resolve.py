@@ -12,6 +12,7 @@ q by a parameter p that the load F depends on is the Program's own, at a fixed l
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from inspect import signature
 from types import MappingProxyType
@@ -21,6 +22,7 @@ from ..mechanism.catalogue import law_name, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import parts, sensitivity
 from ..mechanism.program import program_of
+from ..mechanism.unit_system import UnitSystem
 from ..support.forks import IMPORTS
 from .function import FunctionOverTheta
 from .load import Load, OverTheta, OverY
@@ -42,6 +44,25 @@ def as_load(name: str, value: Any) -> Load:
             f"alone; this function takes {signature(value)}"
         )
     return FunctionOverTheta(value)
+
+
+def settled(name: str, load: Any, units: UnitSystem) -> Any:
+    """A load as it enters a machine or a scene, in which it is in SI units from then on.
+
+    ValueError where its plain numbers, which are SI units, would be taken for those of the machine.
+    """
+    if not isinstance(load, Load) or not load.plain:
+        return load
+    there = [units.of(name if place == "value" else place) for place in load.plain]
+    other = [conversion.unit for conversion in there if conversion.si != 1]
+    if other:
+        call, texts = f"over_{load.over}", ", ".join(f'"... {unit}"' for unit in other)
+        raise ValueError(
+            f"{name}: plain numbers of desaxe.{call} are in SI units, but those given here are in "
+            f"{', '.join(other)}: give machine.{call}(...), which takes the units of the machine (or a table "
+            f"in the scene), or desaxe.{call}(...) of texts with units, {texts}"
+        )
+    return replace(load, plain=())  # type: ignore[type-var]
 
 
 def takes(function: Callable[..., Any], count: int) -> bool:

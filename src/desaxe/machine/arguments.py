@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from os import PathLike
 from typing import Any
 
+from ..loads.resolve import settled
 from ..mechanism.inputs import INPUTS
 from ..mechanism.unit_system import OTHERS, UnitSystem
 from ..support.forks import IMPORTS
@@ -48,7 +49,9 @@ def converted(system: UnitSystem, name: str, value: Any) -> Any:
     if isinstance(value, (tuple, list)):
         parts = [converted(system, name, part) for part in value]
         return type(value)(*parts) if hasattr(value, "_fields") else type(value)(parts)
-    if callable(value) or "units" in getattr(value, "attrs", {}):
+    if callable(value):
+        return settled(name, value, system)
+    if "units" in getattr(value, "attrs", {}):
         return value
     plain = isinstance(value, (int, float)) or hasattr(value, "dtype")
     conversion = conversion_of(system, name) if plain else None

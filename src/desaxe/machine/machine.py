@@ -5,9 +5,11 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 from ..evaluation.arrays import as_array
+from ..loads.resolve import settled
+from ..loads.tabulated import MakeOverTheta, MakeOverY
 from ..mechanism.inputs import INPUTS, is_good
 from ..mechanism.slips import warn_of_slips
-from ..mechanism.unit_system import UnitSystem
+from ..mechanism.unit_system import SI, UnitSystem
 from ..runtime.request import MachineSpeed, as_number, check_common, check_inputs
 from ..support.forks import IMPORTS
 from .arguments import in_si
@@ -116,6 +118,16 @@ class Machine(Mapping[str, Any]):
             else:
                 found[name] = self.units.of(name).shown(value)
         return found
+
+    @property
+    def over_theta(self) -> MakeOverTheta:
+        """`desaxe.over_theta`, and its `read`, with plain numbers in the units of the machine."""
+        return MakeOverTheta(self.units)
+
+    @property
+    def over_Y(self) -> MakeOverY:
+        """`desaxe.over_Y`, and its `read`, with plain numbers in the units of the machine."""
+        return MakeOverY(self.units)
 
     @property
     def plot(self) -> Plots:
@@ -242,7 +254,7 @@ def _checked_inputs(si: Mapping[str, Any]) -> dict[str, Any]:
 def _checked(name: str, value: Any) -> Any:
     """An input in SI units: a float, a frozen array, or a load as it is."""
     if name in LOADS and callable(value):
-        return value
+        return settled(name, value, SI)
     number = as_number(name, value, (name,), ("Machine",))
     if number is not None:
         return MachineSpeed(number) if name in SPEEDS else number

@@ -86,6 +86,8 @@ def _from_points(over: str, points: Sequence[Any], given: dict[str, Any]) -> Loa
     if any(isinstance(point, tuple) for point in points):
         raise ValueError(f"points with their values and {first} = [...] beside them: give one of them")
     given |= {name: _with_unit(given[name], units[1]) for name in COLUMNS[over] if name in given}
+    if "period" in given:
+        (given["period"],) = _with_unit([given["period"]], units[0])
     make = over_theta if over == "over_theta" else over_Y
     made: Load = make(_with_unit(points, units[0]), **given)
     return made

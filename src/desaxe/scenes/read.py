@@ -4,12 +4,13 @@ import warnings
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from ..definitions.tables import read_definitions, redefine
 from ..evaluation.chunks import chunk_lengths
 from ..evaluation.reductions import NO_STATUS, Reductions, names_reduced, reductions_of
 from ..loads.load import Load
+from ..loads.resolve import settled
 from ..mechanism.inputs import INPUTS
 from ..mechanism.own import Definition
 from ..mechanism.slips import UnitWarning
@@ -61,7 +62,7 @@ def read(data: Mapping[str, Any], folder: Path | None = None) -> Content:
     data = with_units(data, units)
     file = schema.decoded(without_objects(data))
     own = _defined(data.get("quantities", {}))
-    inputs = _inputs(data, file, folder)
+    inputs = _inputs(data, file, folder, units)
     branch = file.mechanism.branch
     if "omega" in inputs and "omega0" in inputs:
         raise SceneError(
@@ -180,7 +181,9 @@ def _require_names(file: schema.SceneFile) -> None:
             raise SceneError(f"picture #{index}.file = {shown(picture.file)}: must end in one of {allowed}")
 
 
-def _inputs(data: Mapping[str, Any], file: schema.SceneFile, folder: Path | None) -> dict[str, Value]:
+def _inputs(
+    data: Mapping[str, Any], file: schema.SceneFile, folder: Path | None, units: UnitSystem
+) -> dict[str, Value]:
     """The inputs of the sections in the order in which they stand in the file."""
     order = [(section, name) for section in data if section in SECTIONS for name in data[section]]
     found: dict[str, Value] = {}
@@ -189,9 +192,17 @@ def _inputs(data: Mapping[str, Any], file: schema.SceneFile, folder: Path | None
         if name not in INPUTS:
             continue
         if isinstance(data[section][name], Load):
-            found[name] = data[section][name]
+            found[name] = _settled(key, name, data[section][name], units)
         elif isinstance(written, schema.Varying):
-            found[name] = varying(key, name, written, folder)
+            found[name] = _settled(key, name, varying(key, name, written, folder), units)
         else:
             found[name] = values_of(key, name, written)
     return found
+
+
+def _settled(key: str, name: str, load: Value, units: UnitSystem) -> Value:
+    """A load whose numbers mean what they do in the scene; SceneError where they could be others."""
+    try:
+        return cast(Value, settled(name, load, units))
+    except ValueError as error:
+        raise SceneError(f"{key}: {error}") from None
