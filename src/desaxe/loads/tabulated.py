@@ -216,7 +216,7 @@ def _in_units_of(units: UnitSystem, function: Any, derivative: Any) -> tuple[Any
 
 
 def _unit(units: UnitSystem | None, name: str) -> Conversion | None:
-    """The unit of plain numbers of a name; None where nobody says it."""
+    """The unit of plain numbers of a name; None where none is given."""
     return None if units is None else units.of(name)
 
 
