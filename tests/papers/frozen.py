@@ -5,6 +5,7 @@ meant.
 """
 
 import hashlib
+from functools import cache
 from pathlib import Path
 
 from tests.papers.entry_checks import raw_entries
@@ -23,6 +24,7 @@ def digest(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:10]
 
 
+@cache
 def frozen() -> dict[str, tuple[str, str, str]]:
     """The table as written: id -> verdict and the two hashes."""
     rows = (line.split("\t") for line in TABLE.read_text("utf-8").splitlines())
