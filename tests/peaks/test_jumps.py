@@ -380,7 +380,11 @@ def test_curves_reach_the_peak():
     smooth = dx.grid("T_in", theta=theta, BC=0.3, **PRESS)
     assert len(dx.plot.curves(smooth, "T_in")[0].get_xdata()) == 361
     own = {"ec": "15 mm", "AB": "75 mm", "BC": "300 mm", "omega0": "60 rpm", "m_slider": "120 kg", "mu": 0.08}
-    machine = dx.Machine(**own, **LOAD, units="mm, N*mm, deg, rpm")
+    positions = [1e3 * Y for Y in POSITIONS]
+    force = dx.Machine(**own, units="mm, N*mm, deg, rpm").over_Y(
+        positions, kind="step", outward=[0.0, -80e3, -80e3], inward=[0.0] * 3
+    )
+    machine = dx.Machine(**own, F_Y=force, units="mm, N*mm, deg, rpm")
     assert np.abs(machine.plot("T_in")[0].get_ydata()).max() == pytest.approx(1e3 * press_peak(0.3))
     course = dx.drive(**PRESS, **LOAD, BC=0.3).course
     assert np.abs(course["T_in"]).max() == pytest.approx(press_peak(0.3))

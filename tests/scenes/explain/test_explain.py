@@ -239,7 +239,7 @@ Time of a run, in a new process
     )
 
 
-def test_the_sum_holds_all_that_runs(tmp_path, monkeypatch):
+def test_the_sum_holds_all_that_runs(tmp_path, monkeypatch, cold):
     monkeypatch.chdir(tmp_path)
     scene = {
         "outputs": ["V_C", "a_C"],
