@@ -14,7 +14,9 @@ import tempfile
 
 import pytest
 
-from desaxe.runtime import tiers
+from desaxe.runtime import cache as _cache
+from desaxe.runtime import kernels, tiers
+from desaxe.support.recent import Recent
 from tests.effort import VARIABLE as THOROUGH
 from tests.ways import take_way
 
@@ -99,10 +101,11 @@ def nothing_asked_for():
 
 
 @pytest.fixture
-def cold(monkeypatch):
-    """A process that has no kernel, in memory or on disk."""
-    monkeypatch.setattr(tiers, "is_ready", lambda key: False)
-    monkeypatch.setattr(tiers, "is_on_disk", lambda key: False)
+def cold(monkeypatch, tmp_path_factory):
+    """A process that has no kernel, in memory or on disk, whatever other tests compiled."""
+    empty = _cache.Folder(tmp_path_factory.mktemp("cold"), lasting=True)
+    monkeypatch.setattr(_cache, "folder", lambda: empty)
+    monkeypatch.setattr(kernels, "_LOADED", Recent(kernels.MOST_LOADED))
     monkeypatch.delenv(tiers.VARIABLE, raising=False)
 
 
