@@ -91,6 +91,54 @@ def test_files(tmp_path):
         dx.over_theta.read(tmp_path / "nowhere.csv")
 
 
+ODD = ["1_0", "\u0661", "\uff11", "1,5", "0x1", "1e", "1__0", "\u00b2"]
+
+
+@pytest.mark.parametrize("odd", ODD)
+def test_what_python_alone_reads_as_a_number_is_refused(odd, tmp_path):
+    """In every column, with and without a unit, and in lists."""
+    path = tmp_path / "press.csv"
+    for row in (f"{odd};-400;3", f"90;{odd};3", f"90;-400;{odd}"):
+        path.write_text(f"0;1;2\n{row}\n120;2;4\n", encoding="utf-8")
+        for units in ({"Y": "mm"}, {"Y": "mm", "value": "kN"}):
+            with pytest.raises((ValueError, TypeError), match="number"):
+                dx.over_Y.read(path, **units)
+        if not row.endswith(odd):  # it has two columns
+            with pytest.raises(ValueError, match=r"press\.csv, line 2: expected 2 or more numbers"):
+                dx.over_theta.read(path, theta="deg")
+    with pytest.raises((ValueError, TypeError)):
+        dx.over_theta([0.0, odd, 3.0], [1.0, 2.0, 3.0], kind="linear")
+    with pytest.raises((ValueError, TypeError)):
+        dx.over_Y([0.1, 0.2, 0.3], ["1", odd, "3"])
+
+
+@pytest.mark.parametrize(
+    "columns",
+    [
+        b"012",
+        bytearray(b"012"),
+        memoryview(b"012"),
+        {0.0, 1.0, 2.0},
+        "012",
+        frozenset((0.0, 1.0, 2.0)),
+        {0.0: 1, 1.0: 2, 2.0: 3},
+        [b"0", b"1", b"2"],
+    ],
+)
+def test_what_has_no_order_or_no_numbers_is_no_column(columns):
+    good = [0.0, 1.0, 2.0]
+    for make in (
+        lambda: dx.over_theta(columns, good, kind="linear"),
+        lambda: dx.over_theta(good, columns, kind="linear"),
+        lambda: dx.over_theta(abs, nodes=columns),
+        lambda: dx.over_Y(columns, good),
+        lambda: dx.over_Y(good, columns),
+        lambda: dx.over_Y(good, good, columns),
+    ):
+        with pytest.raises(TypeError, match="number"):
+            make()
+
+
 def test_a_heading_gives_the_units_of_a_file(tmp_path):
     file = tmp_path / "press.csv"
     file.write_text("Y [mm], F_Y [kN]\n225, 0\n250, -0.1\n475, -2\n", encoding="utf-8")

@@ -1,5 +1,6 @@
 """Machines: methods equal functions, `**machine` works everywhere, frozen, shown, written and read."""
 
+import copy
 import inspect
 import pickle
 
@@ -125,6 +126,27 @@ def test_it_is_a_frozen_mapping():
         PRESS["ec"] = 1.0
     with pytest.raises(AttributeError):
         del PRESS.units
+
+
+@pytest.mark.parametrize("again", [copy.copy, copy.deepcopy, lambda m: pickle.loads(pickle.dumps(m))])
+def test_its_arrays_stay_as_they_are(again):
+    """Nothing changes the hash of a machine, where it comes from another process neither."""
+    first = dx.Machine(ec=[0.0, 0.01], AB=0.1, BC=0.3, omega0=np.array([1.0, 2.0]))
+    found = again(first.replace(m_slider=[1.0, 2.0]))
+    for machine in (
+        first,
+        found,
+        again(found),
+        found.replace(AB=0.11),
+        dx.Machine(found),
+        dx.Machine(dict(found)),
+    ):
+        before = hash(machine)
+        for name in ("ec", "omega0"):
+            with pytest.raises(ValueError, match="read-only"):
+                machine[name][0] = 5.0
+        assert hash(machine) == before
+        assert machine == again(machine)
 
 
 def test_replace():

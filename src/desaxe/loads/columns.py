@@ -1,7 +1,7 @@
 """Columns of numbers with or without units, from lists, arrays, quantities and files."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence, Set
 from fractions import Fraction
 from math import inf, isfinite
 from os import PathLike
@@ -10,9 +10,10 @@ from typing import Any, NamedTuple
 from ..mechanism.unit_system import Conversion
 from ..mechanism.units import in_unit, registry
 from ..support.files import as_path, read_bytes
-from ..support.quantity_text import spelled
+from ..support.quantity_text import plain_number, spelled
 from ..support.shown import printable, shown
 
+UNORDERED = (str, bytes, bytearray, memoryview, Set, Mapping)  # or no numbers, though they can be iterated
 MOST_BYTES = 100_000_000  # of a file
 UNIT_OF_HEADING = re.compile(r"\[([^\]]*)\]")
 
@@ -35,7 +36,7 @@ def column_of(what: str, given: Any, units: tuple[str, ...], own: Conversion | N
     if hasattr(given, "magnitude"):
         unit, found = _first_that_fits(what, given, units)
         return Column(_finite(what, found.tolist()), unit)
-    if isinstance(given, str) or not hasattr(given, "__iter__"):
+    if isinstance(given, UNORDERED) or not hasattr(given, "__iter__"):
         raise TypeError(f"{what} = {shown(given)}: expected a list or array of numbers")
     if getattr(given, "ndim", 1) != 1:
         raise ValueError(f"{what}: expected a 1-d array, got the shape {given.shape}")
@@ -57,17 +58,9 @@ def column_of(what: str, given: Any, units: tuple[str, ...], own: Conversion | N
 
 def _with_unit(what: str, value: Any, units: tuple[str, ...]) -> tuple[str | None, Any]:
     """A value and its unit; None for a plain number."""
-    if hasattr(value, "magnitude") or (isinstance(value, str) and not _is_plain(value)):
+    if hasattr(value, "magnitude") or (isinstance(value, str) and plain_number(value) is None):
         return _first_that_fits(what, value, units)
     return None, value
-
-
-def _is_plain(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 def _first_that_fits(what: str, value: Any, units: tuple[str, ...]) -> tuple[str, Any]:
@@ -84,11 +77,13 @@ def _finite(what: str, values: list[Any]) -> list[float]:
     found = []
     for value in values:
         try:
-            number = float(value)
+            number = plain_number(value) if isinstance(value, str) else float(value)
         except OverflowError:
             number = inf
         except (TypeError, ValueError):
-            raise TypeError(f"{what}: {shown(value)} is not a number") from None
+            number = None
+        if number is None or isinstance(value, (bytes, bytearray)):
+            raise TypeError(f"{what}: {shown(value)} is not a number")
         if isinstance(value, bool) or not isfinite(number):
             raise ValueError(f"{what}: {shown(value)}; every one must be a finite number")
         found.append(number)
@@ -129,7 +124,7 @@ def rows_of(path: str | PathLike[str], least: int) -> tuple[list[str], list[list
             continue
         mark = next((mark for mark in (";", "\t", ",") if mark in line), None)
         cells = [cell.strip() for cell in line.split(mark)]
-        if len(cells) >= least and all(map(_is_plain, cells[:least])):
+        if len(cells) >= least and all(plain_number(cell) is not None for cell in cells[:least]):
             rows.append([cell for cell in cells if cell])
         elif rows or heading:
             raise ValueError(
@@ -154,6 +149,5 @@ def column_of_file(
     cells = [row[index] for row in rows]
     if unit in units:
         return Column(_finite(what, cells), unit)
-    return column_of(
-        what, cells if unit is None else [f"{float(cell)!r} {unit}" for cell in cells], units, own
-    )
+    numbers = cells if unit is None else [f"{number!r} {unit}" for number in _finite(what, cells)]
+    return column_of(what, numbers, units, own)

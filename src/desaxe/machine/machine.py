@@ -82,7 +82,13 @@ class Machine(Mapping[str, Any]):
         self._set(_checked_inputs(si), system, named)
 
     def _set(self, inputs: dict[str, Any], units: UnitSystem, given: Mapping[str, Any]) -> None:
-        """Fill a new machine: checked inputs in SI units, units, numbers as they were given."""
+        """Fill a new machine: checked inputs in SI units, units, numbers as they were given.
+
+        Arrays are its own, also those out of a pickle, which may be written to.
+        """
+        for value in inputs.values():
+            if hasattr(value, "setflags"):
+                value.setflags(write=False)
         object.__setattr__(self, "_inputs", inputs)
         object.__setattr__(self, "units", units)
         object.__setattr__(self, "_given", {key: v for key, v in given.items() if key in inputs})
@@ -266,6 +272,4 @@ def _checked(name: str, value: Any) -> Any:
     bad = next((v for v in array.tolist() if not is_good(name, v)), None)
     if bad is not None or not array.size:
         raise ValueError(f"{name} = {bad!r}: it must be {INPUTS[name].limit}")
-    array = array.copy()
-    array.flags.writeable = False
-    return array
+    return array.copy()

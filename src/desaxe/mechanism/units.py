@@ -13,7 +13,7 @@ from typing import Any
 
 from ..support.extras import MissingExtraError, explained
 from ..support.interrupts import import_whole
-from ..support.quantity_text import quantity_text, split_quantity
+from ..support.quantity_text import plain_number, quantity_text, split_quantity
 from ..support.shown import shown
 from .inputs import INPUTS
 
@@ -75,7 +75,7 @@ def in_unit(name: str, value: Any, unit: str) -> Any:
 
 
 def _of_text(name: str, text: str, unit: str) -> float:
-    plain = _plain_number(text)
+    plain = plain_number(text)
     return rounded(name, text, exact(name, text, unit)) if plain is None else plain
 
 
@@ -153,12 +153,3 @@ def _wanted(unit: str) -> str:
         return "it must be a plain number, such as 0.1"
     example = EXAMPLES.get(unit)
     return f"it must be a quantity in {unit}" + (f", such as {example}" if example else "")
-
-
-def _plain_number(text: str) -> float | None:
-    if "_" in text or not text.isascii():  # Python reads 1_0 as 10
-        return None
-    try:
-        return float(text)
-    except ValueError:
-        return None

@@ -42,3 +42,13 @@ def quantity_text(text: str) -> str:
     """A number with its unit as the unit library reads it; ValueError where it is anything else."""
     number, unit = split_quantity(text)
     return f"{number} {spelled(unit)}".rstrip()
+
+
+def plain_number(text: str) -> float | None:
+    """The number that a text is; None for anything else, and for what Python alone reads as one: 1_0, ١."""
+    if "_" in text or not text.isascii():
+        return None
+    try:
+        return float(text)
+    except ValueError:
+        return None

@@ -183,3 +183,31 @@ def test_complaints(data, options, error, told):
             BC=0.35,
             omega0=150.0,
         )
+
+
+REST = {"ec": 0.01, "BC": 0.35, "omega0": 1.0}
+
+
+@pytest.mark.parametrize("seed", ["x", -1, 2**32, 1.5, None, True, [1]])
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda seed: fitted({"theta": THETA, "a_C": CLEAN}, seed=seed),
+        lambda seed: dx.tolerance("a_C", theta=1.0, **MACHINE, omega0="150 +- 1", seed=seed),
+        lambda seed: dx.optimize(minimize=("absmax", "a_C"), over={"AB": (0.1, 0.12)}, **REST, seed=seed),
+    ],
+    ids=["fit", "tolerance", "optimize"],
+)  # fmt: skip
+def test_a_seed_is_a_whole_number(call, seed):
+    with pytest.raises(ValueError, match=r"seed = .*: a whole number, at least 0 and at most 4294967295"):
+        call(seed)
+
+
+@pytest.mark.parametrize("odd", ["1_0", "\u0661\u0662", "\uff11"])
+def test_what_python_alone_reads_as_a_number_is_no_sample(odd, tmp_path):
+    (tmp_path / "data.csv").write_text(f"theta [deg], a_C\n1,2\n2,{odd}\n", encoding="utf-8")
+    with pytest.raises(ValueError, match=r"data\.csv: .* is not a number"):
+        fitted(tmp_path / "data.csv")
+    for column in (["1", odd, "3"], [b"1", b"2", b"3"], np.array([1.0, odd, 3.0], dtype=object)):
+        with pytest.raises(TypeError, match="data: a_C: expected real numbers"):
+            fitted({"theta": [1.0, 2.0, 3.0], "a_C": column})

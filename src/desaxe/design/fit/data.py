@@ -15,7 +15,7 @@ from ...mechanism.inputs import INPUTS
 from ...mechanism.units import in_unit, registry
 from ...support.extras import MissingExtraError
 from ...support.files import read_bytes
-from ...support.quantity_text import spelled
+from ...support.quantity_text import plain_number, spelled
 from ...support.shown import printable, shown
 
 Array = NDArray[np.float64]
@@ -81,7 +81,10 @@ def _column(name: str, values: Any, unit: str) -> Array:
     if hasattr(values, "magnitude"):
         values = in_unit(name, values, unit)
     try:
-        column = np.asarray(values, dtype=np.float64)
+        given = np.asarray(values)
+        if given.dtype.kind in "SUO":
+            _require_plain(given.ravel().tolist())
+        column = given.astype(np.float64)
     except (TypeError, ValueError, OverflowError):
         raise TypeError(f"data: {name}: expected real numbers") from None
     if np.iscomplexobj(values) or column.ndim != 1:
@@ -89,6 +92,13 @@ def _column(name: str, values: Any, unit: str) -> Array:
     if np.isinf(column).any():
         raise ValueError(f"data: {name}: an infinite sample; a missing one is NaN")
     return column
+
+
+def _require_plain(samples: Iterable[Any]) -> None:
+    """TypeError for a text that is no plain number."""
+    for one in samples:
+        if isinstance(one, bytes) or (isinstance(one, str) and plain_number(one) is None):
+            raise TypeError(f"{shown(one)} is not a number")
 
 
 def read_csv(path: Path) -> dict[str, Array]:
@@ -145,7 +155,7 @@ def _number(path: Path, row: list[str], place: int, separator: str) -> float:
     text = row[place].strip() if place < len(row) else ""
     if not text or text.lower() in ("nan", "na", "-", "--"):
         return float("nan")
-    try:
-        return float(text.replace(",", ".") if separator == ";" else text)
-    except ValueError:
-        raise ValueError(f"{printable(path)}: {text!r} is not a number") from None
+    number = plain_number(text.replace(",", ".") if separator == ";" else text)
+    if number is None:
+        raise ValueError(f"{printable(path)}: {text!r} is not a number")
+    return number

@@ -10,6 +10,7 @@ from ...mechanism.inputs import INPUTS, TINY, Input
 from ...mechanism.read import read
 from ...mechanism.spelling import did_you_mean
 from ...runtime.request import check_common, check_inputs
+from ...support.checks import whole_number
 from ...support.forks import IMPORTS
 from ...support.shown import shown
 from .data import Data, read_data
@@ -72,6 +73,7 @@ def fit(
     check_common(state, branch)
     if not isinstance(loss, str) or loss not in LOSSES:
         raise ValueError(f"loss = {shown(loss)}: {did_you_mean(loss, LOSSES)}there are {', '.join(LOSSES)}")
+    whole_number("seed", seed, 0, 2**32 - 1)
     read = read_data(data, "omega" in state)
     unknowns = unknowns_of(over, nuisance, read, fixed)
     if read.size < len(unknowns):
