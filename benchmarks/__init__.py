@@ -12,7 +12,7 @@ load         bytes and operations of a work at each point
 measure      a whole run as plain data
 growth       time over the number of points
 starts       cold starts
-report       docs/benchmarks.md and README's table
+report       docs/benchmarks.md and the table of docs/measured.md
 picture      the pictures of that page
 startup      first calls and second processes; `python -m benchmarks.startup` alone
 steps        `python -m benchmarks.steps`: the worst error of many motions beside the usual one

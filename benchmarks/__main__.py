@@ -12,9 +12,8 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).parents[1]
 RESULTS = Path(__file__).parent / "results" / "measured.json"
-README = ROOT / "README.md"
 DOCS = ROOT / "docs"
-PAGE = DOCS / "benchmarks.md"
+PAGE, MEASURED = DOCS / "benchmarks.md", DOCS / "measured.md"
 STARTS = "starts"  # no race: processes of desaxe alone
 DESCRIPTION = """\
 desaxe beside NumPy, numba, numexpr, JAX, CasADi, heyoka and C at the same works, on one core and on all:
@@ -25,7 +24,7 @@ EPILOG = """\
 examples:
   python -m benchmarks --quick                 a look at everyone, in a minute
   python -m benchmarks --only point --only grid
-  python -m benchmarks --write                 the committed figures afresh: results, page, pictures, README
+  python -m benchmarks --write                 the committed figures afresh: results, pages, pictures
   python -m benchmarks --only tenth --write    this work alone, into the stored run
 """
 
@@ -64,9 +63,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--list", action="store_true", help="the works and the contenders, and who is not installed"
     )
-    parser.add_argument(
-        "--write", action="store_true", help="write results, page, pictures and README's table"
-    )
+    parser.add_argument("--write", action="store_true", help="write results, pages and pictures")
     parser.add_argument(
         "--again", action="store_true", help="write them from the stored results, measure nothing"
     )
@@ -129,17 +126,17 @@ def _into_stored(data: "Data") -> "Data":
 
 
 def _write(data: "Data") -> None:
-    """The page, its pictures, README's table."""
+    """The page, its pictures, the short table."""
     from desaxe.plot.save import save
 
     from .picture import errors_over_time, time_over_points
     from .report import GROWTH_PICTURE, PICTURE, page, with_table
 
     PAGE.write_text(page(data), encoding="utf-8")
-    README.write_text(with_table(README.read_text(encoding="utf-8"), data), encoding="utf-8")
+    MEASURED.write_text(with_table(MEASURED.read_text(encoding="utf-8"), data), encoding="utf-8")
     save(errors_over_time(data), DOCS / PICTURE, dpi=130)
     save(time_over_points(data), DOCS / GROWTH_PICTURE, dpi=130)
-    for path in (PAGE, README, DOCS / PICTURE, DOCS / GROWTH_PICTURE):
+    for path in (PAGE, MEASURED, DOCS / PICTURE, DOCS / GROWTH_PICTURE):
         print(f"wrote {path.relative_to(ROOT)}")
 
 

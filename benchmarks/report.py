@@ -1,4 +1,4 @@
-"""The results of a run as the page docs/benchmarks.md and as README's table; times are ratios, always."""
+"""The results of a run as the page docs/benchmarks.md and the table of docs/measured.md; times are ratios."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -15,7 +15,7 @@ PICTURE, GROWTH_PICTURE = "benchmarks.png", "benchmarks-points.png"
 COMMAND = "python -m benchmarks --write"
 BEGIN = f"<!-- written by `{COMMAND}`: begin -->"
 END = "<!-- end -->"
-SHOWN = {  # in README: the work and its column
+SHOWN = {  # in the short table: the work and its column
     "point": "`V_C, a_C`",
     "first": "+ 8 sensitivities",
     "grid": "grid, labelled",
@@ -65,8 +65,8 @@ def page(data: Data) -> str:
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
-def readme_table(data: Data) -> str:
-    """The table between the markers in README."""
+def short_table(data: Data) -> str:
+    """The table between the markers of docs/measured.md."""
     head = ["time as a multiple of `standard`'s", *SHOWN.values(), "error: generic", "next to a change point"]
     rows = []
     for name in [*data["who"], LIMITS]:
@@ -78,13 +78,13 @@ def readme_table(data: Data) -> str:
     return table(head, rows)
 
 
-def with_table(readme: str, data: Data) -> str:
-    """README with the table of this data."""
-    before, begin, rest = readme.partition(BEGIN)
+def with_table(text: str, data: Data) -> str:
+    """The page with the table of this data."""
+    before, begin, rest = text.partition(BEGIN)
     _, end, after = rest.partition(END)
     if not begin or not end:
-        raise ValueError(f"README.md has no {BEGIN} ... {END}")
-    return f"{before}{BEGIN}\n\n{readme_table(data)}\n\n{END}{after}"
+        raise ValueError(f"the page has no {BEGIN} ... {END}")
+    return f"{before}{BEGIN}\n\n{short_table(data)}\n\n{END}{after}"
 
 
 def terminal(data: Data) -> str:

@@ -22,10 +22,9 @@ WRITERS = {writer.__name__: writer for writer in (*formulas.WRITERS, *reference.
 
 
 def on_config(config, **_):
-    """List the notebooks in the navigation."""
-    config.nav.append(
-        {"Notebooks": [{notebooks.title(page): path} for path, page in notebooks.pages().items()]}
-    )
+    """List the notebooks in the navigation, after the first steps."""
+    listed = {"Notebooks": [{notebooks.title(page): path} for path, page in notebooks.pages().items()]}
+    next(door["Learn"] for door in config.nav if "Learn" in door).append(listed)
     return config
 
 

@@ -1,4 +1,4 @@
-"""README has the table of the stored data, a page tells everything, a race runs and says who refused."""
+"""A page has the table of the stored data, a page tells everything, a race runs and says who refused."""
 
 import json
 import math
@@ -7,12 +7,12 @@ import sys
 
 import pytest
 
-from benchmarks.__main__ import PAGE, README, RESULTS
+from benchmarks.__main__ import MEASURED, PAGE, RESULTS
 from benchmarks.contenders import BY_NAME, CONTENDERS, STANDARD
 from benchmarks.measure import Effort, measure
 from benchmarks.picture import errors_over_time, time_over_points
 from benchmarks.race import Found, race, racers
-from benchmarks.report import BEGIN, END, digits, page, ratio, readme_table, terminal, with_table
+from benchmarks.report import BEGIN, END, digits, page, ratio, short_table, terminal, with_table
 from benchmarks.work import BY_KEY, WORKS
 
 
@@ -21,9 +21,9 @@ def stored():
     return json.loads(RESULTS.read_text(encoding="utf-8"))
 
 
-def test_readme_has_the_table_of_the_stored_data(stored):
-    readme = README.read_text(encoding="utf-8")
-    assert with_table(readme, stored) == readme, "python -m benchmarks --again"
+def test_the_short_table_is_that_of_the_stored_data(stored):
+    text = MEASURED.read_text(encoding="utf-8")
+    assert with_table(text, stored) == text, "python -m benchmarks --again"
 
 
 def test_the_page_is_that_of_the_stored_data(stored):
@@ -38,14 +38,14 @@ def test_the_stored_run_has_every_work_and_contender(stored):
 
 
 def test_the_table_has_ratios_of_the_data(stored):
-    row = next(line for line in readme_table(stored).splitlines() if "NumPy" in line)
+    row = next(line for line in short_table(stored).splitlines() if "NumPy" in line)
     raced = stored["one core"]["point"]
     assert digits(raced["NumPy lambdify"]["seconds"] / raced[STANDARD]["seconds"]) in row
     assert ratio(raced, STANDARD) == 1.0
     assert math.isnan(ratio(raced, "nobody"))
 
 
-def test_a_readme_without_markers_is_refused(stored):
+def test_a_page_without_markers_is_refused(stored):
     with pytest.raises(ValueError, match="begin"):
         with_table("no table here", stored)
     written = with_table(f"before\n{BEGIN}\nold\n{END}\nafter\n", stored)

@@ -204,7 +204,7 @@ def test_the_torque_in_extended(family):
 
 @pytest.mark.parametrize(
     ("asked", "kept"),
-    [("fast", "standard"), (1e-3, "standard"), (1e-9, "standard"), (1e-15, "extended"), (1, "standard")]
+    [(1e-3, "standard"), (1e-9, "standard"), (1e-15, "extended"), (1, "standard")]
     + [(name, name) for name in ACCURACIES],
 )
 def test_the_cheapest_that_keeps_an_error(asked, kept):
@@ -223,8 +223,16 @@ def test_status_and_nan_are_those_of_standard():
     other = dx.evaluate(["a_C", "status"], accuracy="extended", **columns)
     assert np.array_equal(other["status"], standard["status"])
     assert np.array_equal(np.isnan(other["a_C"]), np.isnan(standard["a_C"]))
-    other = dx.evaluate(["a_C", "status"], accuracy="fast", **columns)
-    assert all(np.array_equal(other[name], standard[name], equal_nan=True) for name in standard)
+
+
+@pytest.mark.parametrize("theta", [1.0, np.linspace(0, 7, 300)])
+def test_fast_is_deprecated(theta):
+    """The warning names the new spelling and the line of the call."""
+    design = {"theta": theta, "ec": 0.3, "AB": 0.125, "BC": 0.5, "omega0": 10.0}
+    with pytest.warns(DeprecationWarning, match="accuracy='standard'") as told:
+        found = dx.evaluate("a_C", accuracy="fast", **design)
+    assert {warning.filename for warning in told} == {__file__}
+    assert np.array_equal(found, dx.evaluate("a_C", **design))
 
 
 def test_an_angle_that_extended_cannot_reduce_is_told():

@@ -64,7 +64,7 @@ def evaluate(
              nothing moves or starts there is none: give a tiny omega0 for the torque that sets it going
     accuracy "standard": within 8 ulp x (1 + the sum of condition numbers), next to singular points too;
              "extended": within 2 ulp, in pairs of doubles, 3 to 16 times the time; or the error that you can
-             bear, such as 1e-14, for the cheaper of the two that keeps it; "fast" is "standard"
+             bear, such as 1e-14, for the cheaper of the two that keeps it
     threads  for arrays: how many threads share the work, all that pay without
     out      for arrays: the array to fill, or a dict name -> array; those that share memory are filled one
              after the other

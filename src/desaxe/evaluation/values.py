@@ -40,7 +40,7 @@ def values(
     omega, speed_given = given.get("omega"), given.get("omega0") is not None
     if threads is not None or (omega is not None and speed_given) or type(branch) is not int:
         check_common(given, branch, threads)
-    if type(accuracy) is not str:
+    if type(accuracy) is not str or accuracy != "standard":
         accuracy = accuracy_of(accuracy)
     key: tuple[Any, ...] = wanted, tuple(given), omega is not None, is_steady(given.get("alpha")), branch
     key = *key, accuracy, given.get("theta") is None

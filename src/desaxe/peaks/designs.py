@@ -72,7 +72,7 @@ forget_on_change(_PLANS)
 def plan_of(name: str, given: dict[str, Any], branch: int, accuracy: Any) -> Plan:
     """The plan of a request, which depends on its names only."""
     shown = frozenset(n for n, value in given.items() if value is not None)
-    if type(accuracy) is not str:
+    if type(accuracy) is not str or accuracy != "standard":
         accuracy = accuracy_of(accuracy)
     key = name, shown, is_steady(given["alpha"]), branch, accuracy
     plan = _PLANS.get(key)

@@ -1,13 +1,14 @@
 """The accuracies by name, and the cheapest one that keeps a given error.
 
 The error of a value is relative, and in proportion to 1 + the sum of its condition numbers: what the
-last digits of the inputs change anyway is not counted against it. `fast` is another name of `standard`:
-kernels in float32 took 0.8 to 1.0 of its time, as arrays of doubles have to be read and written all the same.
+last digits of the inputs change anyway is not counted against it. `fast` is deprecated, another name of
+`standard`: kernels in float32 took 0.8 to 1.0 of its time, as arrays of doubles are read and written all the same.
 """
 
 from typing import Any
 
 from ..mechanism.constants import double_constants
+from ..support.deprecation import deprecated
 from ..support.shown import shown
 
 ACCURACIES = ("standard", "extended")
@@ -18,10 +19,13 @@ BOUNDS = {"standard": 8 * 2.0**-52, "extended": 2 * 2.0**-52}
 
 def accuracy_of(asked: Any) -> str:
     """The accuracy of this name, or the cheapest one that keeps a given error everywhere."""
-    if isinstance(asked, str) and asked in (*ACCURACIES, *ALIASES):
-        return ALIASES.get(asked, asked)
+    if isinstance(asked, str) and asked in ALIASES:
+        deprecated(f"accuracy={asked!r}", f"accuracy={ALIASES[asked]!r} is what it does")
+        return ALIASES[asked]
+    if isinstance(asked, str) and asked in ACCURACIES:
+        return asked
     if not isinstance(asked, (int, float)) or isinstance(asked, bool):
-        known = ", ".join((*ALIASES, *ACCURACIES))
+        known = ", ".join(ACCURACIES)
         raise ValueError(f"accuracy = {shown(asked)}: it is one of {known}, or an error such as 1e-9")
     kept = next((name for name, bound in BOUNDS.items() if bound <= asked), "")
     if not kept:

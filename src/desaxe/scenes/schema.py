@@ -44,9 +44,7 @@ Units = Annotated[
     str | dict[str, str],
     Meta(description='units such as "mm, deg, rpm", or a table such as { length = "mm", angle = "deg" }'),
 ]
-Accuracy = Annotated[
-    str | float, Meta(description='"standard", "extended", or an error such as 1e-9; "fast" is "standard"')
-]
+Accuracy = Annotated[str | float, Meta(description='"standard", "extended", or an error such as 1e-9')]
 Angles = Annotated[tuple[Number, Number], Meta(description='two angles such as ["0 deg", "360 deg"]')]
 
 

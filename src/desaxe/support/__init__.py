@@ -7,6 +7,7 @@ roots          one root of a function
 progress       how far long work is, and a bar on the terminal
 quantity_text  a number with its unit as text
 version        the version of this installation
+deprecation    what is kept for one version, with a warning
 private        files and folders that only this user can have written
 forks          locks and threads that a forked process must not inherit
 interrupts     work that Ctrl-C must not cut in half
