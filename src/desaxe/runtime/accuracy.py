@@ -2,7 +2,7 @@
 
 The error of a value is relative, and in proportion to 1 + the sum of its condition numbers: what the
 last digits of the inputs change anyway is not counted against it. `fast` is deprecated, another name of
-`standard`: kernels in float32 took 0.8 to 1.0 of its time, as arrays of doubles are read and written all the same.
+`standard`: kernels in float32 took 0.8 to 1.0 of its time, for arrays are read and written as doubles.
 """
 
 from typing import Any
