@@ -25,7 +25,7 @@ INPUTS = (*PARAMETERS, *LOADS, "branch")
 # a need of its quantity is still NaN where that is not there.
 KEEPS = {"D": "no_effect_on_rod", "omega2": "not_stalled", "N_C": "one_balance"}
 # Computed for the library, but nothing that one asks for by name.
-INTERNAL = ("force_status", *KEEPS.values())
+INTERNAL = ("force_status", "turning", *KEEPS.values())
 
 
 class Derivation(NamedTuple):

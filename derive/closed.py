@@ -36,17 +36,22 @@ def whole_design() -> Program:
 
 def prove(program: Program) -> Program:
     """The program; ValueError if a value breaks the geometry or a derivative is not that of its value."""
-    for (offset, crank, rod), side, branch in product(DESIGNS, (1, -1), (1, -1)):
-        sector = _Sector(program, {"ec": side * offset, "AB": crank, "BC": rod, "branch": branch})
+    for (offset, crank, rod), side, branch, turning in product(DESIGNS, (1, -1), (1, -1), (1, -1)):
+        design = {"ec": side * offset, "AB": crank, "BC": rod, "branch": branch, "turning": turning}
+        sector = _Sector(program, design)
         wrong = [
             sensitivity(name, p.name)
             for name, p in product(WHOLE, (ec, AB, BC))
             if sector.numbers[name] == sector.numbers[name]
             and not sector.vanishes(sector.slope(sector[name], p) - sector[sensitivity(name, p.name)])
         ]
-        wrong += [name for name, identity in _geometry(sector, branch) if not sector.vanishes(identity)]
+        wrong += [
+            name for name, identity in _geometry(sector, branch, turning) if not sector.vanishes(identity)
+        ]
         if wrong:
-            raise ValueError(f"not proved for ec {side:+}, branch {branch:+}: {', '.join(wrong)}")
+            raise ValueError(
+                f"not proved for ec {side:+}, branch {branch:+}, turning {turning:+}: {', '.join(wrong)}"
+            )
     return program
 
 
@@ -59,7 +64,7 @@ def _constant(value: float) -> sp.Expr:
     return sp.nsimplify(value, [sp.pi]) if value == value else sp.nan
 
 
-def _geometry(sector: "_Sector", branch: int) -> list[tuple[str, sp.Expr]]:
+def _geometry(sector: "_Sector", branch: int, turning: int) -> list[tuple[str, sp.Expr]]:
     """Expressions that are 0: A, B, C in line at the dead centres, the sines of the rod at its extremes."""
     found = []
     for which, reach in (("outer", AB + BC), ("inner", AB - BC)):  # from A to C, along the crank
@@ -76,7 +81,7 @@ def _geometry(sector: "_Sector", branch: int) -> list[tuple[str, sp.Expr]]:
     (so, co), (si, ci) = (sector.sine_and_cosine(f"theta_{which}") for which in ("outer", "inner"))
     y, x = sector.angles[beta]  # beta is pi less the angle from the outer to the inner dead centre
     found += [("beta", branch * (si * co - ci * so) * x + (ci * co + si * so) * y)]
-    found += [("advance_angle", sector["advance_angle"] - sp.pi - branch * beta)]
+    found += [("advance_angle", sector["advance_angle"] - sp.pi - branch * turning * beta)]
     found += [("return_angle", sector["advance_angle"] + sector["return_angle"] - 2 * sp.pi)]
     side = 1 if sector.numbers["offset"] > 0 else -1
     longer = sp.pi + side * beta
@@ -96,7 +101,8 @@ class _Sector:
 
     def __init__(self, program: Program, design: dict[str, int]) -> None:
         self.numbers = run_in_doubles(program, design)
-        self.symbols: dict[str, Any] = {"ec": ec, "AB": AB, "BC": BC, "branch": sp.Integer(design["branch"])}
+        self.symbols: dict[str, Any] = {"ec": ec, "AB": AB, "BC": BC}
+        self.symbols |= {name: sp.Integer(design[name]) for name in ("branch", "turning")}
         self.roots: dict[sp.Symbol, sp.Expr] = {}
         self.angles: dict[sp.Symbol, tuple[sp.Expr, sp.Expr]] = {}
         self.slopes: dict[sp.Symbol, sp.Expr] = {}  # of beta

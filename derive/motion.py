@@ -55,6 +55,7 @@ def define_law(sheet: Sheet) -> None:
         differentiate=LAW,
     )
     sheet.define("turn", select(le(0, omega0), 1, -1), unit=NONE, meaning="way of turning", rigid=True)
+    _define_turning(sheet, omega0)
     sheet.define(
         "omega",
         select(constant_speed, omega0, turn * sp.sqrt(omega2)),
@@ -141,6 +142,14 @@ def _omega_second_rates() -> dict[tuple[str, ...], sp.Expr]:
     return found
 
 
+def _define_turning(sheet: Sheet, speed: sp.Symbol) -> None:
+    """The way of turning that the strokes of a whole design hang on: the sign of the speed given."""
+    backwards = select(lt(speed, 0), -1, nan)
+    sheet.define(
+        "turning", select(le(0, speed), 1, backwards), unit=NONE, meaning="way of turning", rigid=True
+    )
+
+
 def state_sheet() -> Sheet:
     """The equations of a given state (omega, alpha), which replace those of the law.
 
@@ -150,6 +159,7 @@ def state_sheet() -> Sheet:
     sheet.define("omega2", omega**2, unit=UNITS["omega2"], meaning="square of the crank's speed")
     sheet.define("stalled", lt(omega2, 0), unit=NONE, meaning="never: a given speed is real")
     sheet.define("turn", select(le(0, omega), 1, -1), unit=NONE, meaning="way of turning")
+    _define_turning(sheet, omega)
     sheet.define("not_stalled", 0)
     sheet.define("inv_omega", 0)  # where alpha does not change omega
     sheet.define("near_start", lt(1, 0))  # never: a state does not depend on how it came about

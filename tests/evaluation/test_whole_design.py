@@ -63,9 +63,41 @@ def test_a_derivative_by_theta_is_unknown():
         assert name not in dx.quantities()
 
 
-def test_speeds_of_both_signs_are_refused_where_the_strokes_change_places():
-    with pytest.raises(ValueError, match="sign"):
-        dx.evaluate("return_angle", omega0=np.array([1.0, -1.0]), **DESIGN)
+def test_strokes_hang_on_the_sign_of_each_speed():
+    speeds = np.array([1.0, -1.0, 2.0, np.nan])
+    strokes = ["advance_angle", "return_angle", "advance_angle_wrt_BC"]
+    known = dx.events(omega0=speeds, **DESIGN)
+    found = dx.evaluate(strokes, omega0=speeds, **DESIGN)
+    for name in strokes:
+        np.testing.assert_array_equal(found[name], expected(name, known))
+    both = dx.grid(["advance_angle", "stroke"], ec=ECS, omega0=speeds, **LONG)
+    assert both.advance_angle.dims == ("ec", "omega0")
+    assert both.stroke.dims == ("ec",)
+    many = dx.events(ec=ECS[:, None], omega0=speeds, **LONG)
+    np.testing.assert_allclose(both.advance_angle, many["advance_angle"], rtol=1e-14)
+    state = dx.evaluate("return_angle", omega=-3.0, **DESIGN)
+    assert state == dx.evaluate("advance_angle", **DESIGN)
+    one = dx.grid(["advance_angle"], ec=ECS, omega0=-speeds[:1:2], **LONG)
+    assert one.advance_angle.dims == ("ec",)
+    assert one.advance_angle[0] == dx.evaluate("return_angle", ec=ECS[0], **LONG)
+
+
+def test_what_is_made_of_a_stroke_hangs_on_the_sign_too():
+    dx.define("share", "advance_angle/6", unit="rad")
+    try:
+        speeds = np.array([2.0, -2.0])
+        strokes = dx.evaluate("advance_angle", omega0=speeds, **DESIGN)
+        np.testing.assert_allclose(dx.evaluate("share", omega0=speeds, **DESIGN), strokes / 6, rtol=1e-15)
+        assert dx.evaluate("share", omega0=-2.0, **DESIGN) == strokes[1] / 6
+    finally:
+        dx.undefine("share")
+
+
+def test_a_grid_has_its_axes_in_the_order_given_whatever_name_comes_first():
+    for first in ("stroke", "margin", "V_C"):
+        for chunks in (None, 2):
+            found = dx.grid([first, "V_C"], theta=[0.0, 1.0], ec=ECS, omega0=1.0, chunks=chunks, **LONG)
+            assert list(found.sizes) == ["theta", "ec"]
 
 
 def test_what_is_made_of_them_is_of_the_whole_design_too():

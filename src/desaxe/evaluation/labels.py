@@ -123,6 +123,9 @@ def labelled(
     }
     names = [name for name in values if name not in ("status", "margin")]
     about = provenance(names, inputs, branch, accuracy)
+    first = next(iter(values.values()), ((), None))[0]
+    if len(first) < max((len(dims) for dims, _ in values.values()), default=0):  # the axes in their own order
+        return xarray.Dataset(None, coordinates, about).assign(variables)
     return xarray.Dataset(variables, coordinates, about)
 
 

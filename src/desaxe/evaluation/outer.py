@@ -12,6 +12,7 @@ from ..loads.load import Load
 from ..mechanism.catalogue import of_design
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS, STATUS
+from ..mechanism.program import program_of
 from ..runtime.request import Request, check_common, check_inputs, several, standstill
 from .arrays import as_array
 from .loaded import split_axes
@@ -46,12 +47,28 @@ class Outer(NamedTuple):
         return tuple(dict.fromkeys((*self.names, *ALWAYS)))
 
     def groups(self) -> list[tuple[list[str], list[str]]]:
-        """The names that have all dimensions, and those that have the lengths' alone, with them."""
+        """The names that have all dimensions, and those that have the lengths' alone, with them.
+
+        Strokes hang on the sign of the speed: where that changes, they have the speed's dimension too.
+        """
         whole = [name for name in self.shown if of_design(name)]
+        both = [name for name in whole if "omega0" in program_of((name,)).inputs] if self._reverses else []
+        rest = [name for name in whole if name not in both]
         others = [name for name in self.shown if name not in whole]
         if others == [STATUS] and "theta" not in self.axes:  # that of the design
-            return [(list(self.shown), self.lengths)]
-        return [(others, self.dimensions), (whole, self.lengths)]
+            others, rest = [], [STATUS, *rest]
+        found = [(others, self.dimensions), (rest, self.lengths), (both, [*self.lengths, *self._reverses])]
+        return [(names, along) for names, along in found if names]
+
+    @property
+    def _reverses(self) -> list[str]:
+        """The axis of speeds of which some are negative, but not all."""
+        axes = {name: self.axes[name] for name in ("omega0", "omega") if name in self.dimensions}
+        return [
+            name
+            for name, speeds in axes.items()
+            if not (all(speeds >= 0.0) or all(speeds < 0.0)) or not speeds.size
+        ]
 
     @property
     def lengths(self) -> list[str]:

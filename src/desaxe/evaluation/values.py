@@ -8,20 +8,10 @@ from functools import cache
 from typing import Any
 
 from ..mechanism.inputs import is_good
-from ..mechanism.names import LENGTHS, STROKES, sensitivity
 from ..mechanism.own import changes, forget_on_change
 from ..runtime.accuracy import accuracy_of
 from ..runtime.point import Point, point_of
-from ..runtime.request import (
-    Request,
-    as_number,
-    check_common,
-    is_steady,
-    request,
-    several,
-    standstill,
-    turned,
-)
+from ..runtime.request import Request, as_number, check_common, is_steady, request, several, standstill
 from ..support.forks import IMPORTS
 from ..support.interrupts import import_whole
 from .extremes import LEAST, MOST, can_rescale, in_si, is_extreme, rescaled
@@ -43,9 +33,7 @@ def values(
     if type(accuracy) is not str or accuracy != "standard":
         accuracy = accuracy_of(accuracy)
     key: tuple[Any, ...] = wanted, tuple(given), omega is not None, is_steady(given.get("alpha")), branch
-    key = *key, accuracy, given.get("theta") is None
-    if not TURNED.isdisjoint(wanted):
-        key = *key, turned(wanted, given)
+    key = *key, accuracy, given.get("theta") is None, speed_given
     if not speed_given and omega is None and "status" in wanted:
         given["omega0"] = standstill(wanted, given)
     known = _KNOWN.get(key)
@@ -87,7 +75,6 @@ def _extreme(asked: Request, point: Point, numbers: Sequence[float]) -> Sequence
     return [float(a) if type(b) is float else b for a, b in zip(found, answer, strict=True)]
 
 
-TURNED = frozenset((*STROKES, *(sensitivity(name, p) for name in STROKES for p in LENGTHS)))
 MOST_KNOWN = 1024  # requests that are remembered
 _KNOWN: dict[tuple[Any, ...], tuple[Request, Point]] = {}
 forget_on_change(_KNOWN)

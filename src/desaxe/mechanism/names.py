@@ -20,7 +20,6 @@ WHOLE = (
     "theta_inner", "max_pressure_angle", "min_transmission_angle", "min_pressure_angle",
     "max_transmission_angle",
 )  # fmt: skip
-STROKES = ("advance_angle", "return_angle")  # they change places where the crank turns backwards
 # What the library requests beside the names of a user: no quantity of his own is called so.
 INTERNAL = (
     FORCE_STATUS,

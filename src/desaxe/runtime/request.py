@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from ..mechanism.catalogue import law_name, of_design, quantity
 from ..mechanism.inputs import INPUTS
-from ..mechanism.names import CENTRES, FORCE_STATUS, LENGTHS, LOADS, STATUS, STROKES, TURN_STATUS, parts
+from ..mechanism.names import CENTRES, FORCE_STATUS, LENGTHS, LOADS, STATUS, STATUSES, TURN_STATUS, parts
 from ..mechanism.own import Definition, used_by
 from ..mechanism.own_lines import not_extended
 from ..mechanism.program import Variant, program_of
@@ -67,7 +67,6 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
     others = [name for name in own if name != STATUS]
     if others != list(own) and given.get("theta") is None and all(map(of_design, others)):
         own = tuple(TURN_STATUS if name == STATUS else name for name in own)
-    own = turned(own, given)
     inputs = program_of(own).inputs
     if STATUS in own and ("mu" in inputs or given.get("mu") is not None):
         own = tuple(FORCE_STATUS if name == STATUS else name for name in own)
@@ -76,6 +75,8 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
     zeros = [(name, 0.0) for name in absent if name not in CENTRES]
     if "alpha" in inputs and is_steady(given.get("alpha")):
         zeros.append(("alpha", 0.0))
+    if "omega0" in inputs and not state and given.get("omega0") is None and _needs_no_speed(own):
+        zeros.append(("omega0", 0.0))
     defined = used_by(own)
     default_centres = tuple(
         name for name in CENTRES if given.get(name) is None and _moves(name, own, defined)
@@ -86,30 +87,10 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
     return Request(shown, own, variant, (("branch", float(branch)), *zeros), kept)
 
 
-def turned(names: tuple[str, ...], given: Mapping[str, Any]) -> tuple[str, ...]:
-    """The names for the crank's way of turning: backwards, advance and return change places."""
-    if not any(parts(name)[0] in STROKES for name in names) or not turns_backwards(given):
-        return names
-    advance, back = STROKES
-    swapped = {advance: back, back: advance}
-    bases = ((parts(name)[0], name) for name in names)
-    return tuple(name.replace(base, swapped.get(base, base), 1) for base, name in bases)
-
-
-def turns_backwards(given: Mapping[str, Any]) -> bool:
-    """True if the speed given is negative; ValueError for speeds of both signs."""
-    speed = given.get("omega0") if given.get("omega") is None else given["omega"]
-    if speed is None or callable(speed):
-        return False
-    number = as_number("omega0", speed, ("omega0",), STROKES)
-    if number is not None:
-        return number < 0.0
-    backwards = set((speed < 0.0).ravel().tolist() if hasattr(speed, "ravel") else [v < 0.0 for v in speed])
-    if len(backwards) > 1:
-        raise ValueError(
-            f"{' and '.join(STROKES)} change places where omega0 changes its sign: give one sign"
-        )
-    return backwards == {True}
+def _needs_no_speed(names: Iterable[str]) -> bool:
+    """True if none but quantities of the whole design hang on the speed: on its sign, forwards by default."""
+    moving = tuple(name for name in names if name not in STATUSES and not of_design(name))
+    return "omega0" not in program_of(moving).inputs
 
 
 def check_extended(own: tuple[Definition, ...]) -> None:

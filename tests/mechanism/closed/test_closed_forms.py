@@ -24,7 +24,7 @@ KINKED = ("max_pressure_angle", "min_transmission_angle", "time_ratio")  # at ec
 
 
 def dead_centres(branch):
-    return closed_form(DEAD_CENTRES, branch=float(branch))
+    return closed_form(DEAD_CENTRES, branch=float(branch), turning=1.0)
 
 
 @pytest.mark.sampled

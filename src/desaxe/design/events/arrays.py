@@ -14,7 +14,6 @@ from ..feasibility.arrays import only_good
 from .found import VELOCITIES, Found, stroke_ends
 
 Array = NDArray[np.float64]
-STROKES = ("advance_angle", "return_angle")
 HALVINGS = 55  # of a turn: down to the last bits
 
 
@@ -25,22 +24,14 @@ def events_of_arrays(
     inputs = {n: as_array(n, value, tuple(given), ("events",)) for n, value in given.items()}
     shape = broadcast_shape(inputs)
     ec, AB, BC, omega = (np.broadcast_to(a, shape) for a in inputs.values())
-    ec, AB, BC, omega = (np.broadcast_to(a, shape) for a in inputs.values())
     bad, lengths = only_good(ec, AB, BC)
     bad |= ~np.isfinite(omega)
     ec, AB, BC, omega = (np.where(bad, np.nan, a) for a in (*lengths, omega))
-    outputs = closed_form(DEAD_CENTRES, branch=float(branch)).arrays(ec, AB, BC)
+    turning = np.where(omega < 0.0, -1.0, 1.0)
+    outputs = closed_form(DEAD_CENTRES, branch=float(branch)).arrays(ec, AB, BC, turning)
     found = Found(tuple(np.array(np.broadcast_to(output, shape)) for output in outputs))
-    backwards = omega < 0.0
-    _swap(found.values, backwards)
-    for p in LENGTHS:
-        slopes = {name: found.gradient[name][p] for name in STROKES}
-        _swap(slopes, backwards)
-        for name in STROKES:
-            found.gradient[name][p] = slopes[name]
     status = np.where(bad, 4, found.status).astype(np.int8)
-    turn = branch * np.where(backwards, -1, 1)
-    slow = np.where(bad, 0, turn * np.sign(np.nan_to_num(ec))).astype(np.int8)
+    slow = np.where(bad, 0, branch * turning * np.sign(np.nan_to_num(ec))).astype(np.int8)
     result: dict[str, Any] = {**found.values, "slow_stroke": slow, **found.places}
     gradient = found.gradient
     turns = (status == 0) | (status == 2)
@@ -50,13 +41,6 @@ def events_of_arrays(
         result |= {name: value, f"theta_{name}": theta}
         gradient[name] = slopes if with_speed else {p: slopes[p] for p in LENGTHS}
     return {**result, "gradient": gradient, "status": status}
-
-
-def _swap(values: dict[str, Any], backwards: NDArray[np.bool_]) -> None:
-    """Advance and return change places where the crank turns backwards."""
-    advance, back = (values[name] for name in STROKES)
-    turned = np.where(backwards, back, advance), np.where(backwards, advance, back)
-    values |= zip(STROKES, turned, strict=True)
 
 
 def _velocities(

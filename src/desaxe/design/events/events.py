@@ -64,14 +64,10 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
 
         return events_of_arrays(given, int(branch), omega0 is not None)
     e, crank, rod, omega = (float(value or 0.0) for value in numbers.values())
-    found = Found(closed_form(DEAD_CENTRES, branch=float(branch)).point(e, crank, rod))
-    turn = int(branch) * (-1 if omega < 0.0 else 1)
-    result = {**found.values, "slow_stroke": turn * ((e > 0.0) - (e < 0.0)), **found.places}
-    gradient = found.gradient
-    if omega < 0.0:
-        for each in (result, gradient):
-            each["advance_angle"], each["return_angle"] = each["return_angle"], each["advance_angle"]
     lengths, forward = {"ec": e, "AB": crank, "BC": rod}, -1 if omega < 0.0 else 1
+    found = Found(closed_form(DEAD_CENTRES, branch=float(branch)).point(e, crank, rod, float(forward)))
+    slow = int(branch) * forward * ((e > 0.0) - (e < 0.0))
+    result, gradient = {**found.values, "slow_stroke": slow, **found.places}, found.gradient
     parameters = (*LENGTHS, "omega0") if omega0 is not None else LENGTHS
     for name, direction in VELOCITIES.items():
         value, theta, slopes = nan, nan, dict.fromkeys(parameters, nan)

@@ -22,8 +22,8 @@ from ..names import LENGTHS, TURN_STATUS, WHOLE, sensitivity
 
 PLACES = ("theta_max_pressure_angle", "theta_min_pressure_angle")
 SENSITIVITIES = tuple(sensitivity(name, length) for name in WHOLE for length in LENGTHS)
-DEAD_CENTRES = f'''def dead_centres(ec, AB, BC, branch):
-    """Quantities of a whole design; with branch -1 the mechanism is mirrored across X."""
+DEAD_CENTRES = f'''def dead_centres(ec, AB, BC, branch, turning):
+    """Quantities of a whole design; branch -1 mirrors it across X, turning -1 turns it backwards."""
     longer_link = BC if AB < BC else AB
     longest = fabs(ec) if longer_link < fabs(ec) else longer_link
     unit_length = power_of_two(longest)  # m | a power of two near the longest length
@@ -86,14 +86,15 @@ DEAD_CENTRES = f'''def dead_centres(ec, AB, BC, branch):
     squares = in_line * in_line + inner_turning * inner_turning
     all_sides = rod_over * inner_turning * in_line * outer_height * along
     beta_wrt_BC = -links * offset * squares / all_sides / unit_length
-    advance_angle = {pi!r} + branch * beta  # rad | crank angle of the stroke outward
-    advance_angle_wrt_ec = branch * beta_wrt_ec
-    advance_angle_wrt_AB = branch * beta_wrt_AB
-    advance_angle_wrt_BC = branch * beta_wrt_BC
-    return_angle = {pi!r} - branch * beta  # rad | crank angle of the stroke inward
-    return_angle_wrt_ec = -branch * beta_wrt_ec
-    return_angle_wrt_AB = -branch * beta_wrt_AB
-    return_angle_wrt_BC = -branch * beta_wrt_BC
+    outward = branch * turning
+    advance_angle = {pi!r} + outward * beta  # rad | crank angle of the stroke outward
+    advance_angle_wrt_ec = outward * beta_wrt_ec
+    advance_angle_wrt_AB = outward * beta_wrt_AB
+    advance_angle_wrt_BC = outward * beta_wrt_BC
+    return_angle = {pi!r} - outward * beta  # rad | crank angle of the stroke inward
+    return_angle_wrt_ec = -outward * beta_wrt_ec
+    return_angle_wrt_AB = -outward * beta_wrt_AB
+    return_angle_wrt_BC = -outward * beta_wrt_BC
     shorter_angle = {pi!r} - fabs(beta)
     time_ratio = 1.0 + 2.0 * fabs(beta) / shorter_angle  # 1 | slower over faster stroke in time | B (51)
     ratio_by_beta = offset_side * ({2 * pi!r} / (shorter_angle * shorter_angle))
