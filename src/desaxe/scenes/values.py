@@ -1,6 +1,7 @@
 """The values of inputs as they are written in a scene, in SI units."""
 
 from collections.abc import Iterable, Mapping
+from decimal import Decimal
 from fractions import Fraction
 from math import isfinite
 
@@ -9,16 +10,9 @@ from ..mechanism.inputs import INPUTS, is_good
 from ..mechanism.units import exact, in_si
 from . import schema
 from .schema import SceneError, shown
+from .spread import MOST, spread
 
 Value = float | tuple[float, ...] | Load
-MOST = 100_000_000  # values of one range
-
-
-class Spread(tuple[float, ...]):
-    """The values of a range, and its ends as they are written."""
-
-    start: Fraction
-    stop: Fraction
 
 
 def values_of(key: str, name: str, written: float | str | tuple[float | str, ...] | schema.Range) -> Value:
@@ -56,12 +50,16 @@ def _spread(key: str, name: str, written: schema.Range) -> tuple[float, ...]:
     start, stop = _exactly(name, written.start), _exactly(name, written.stop)
     if (written.num is None) == (written.step is None):
         raise SceneError(f"{key}: a range has start, stop, and either num (how many) or step (how far apart)")
-    last = written.num - 1 if written.num is not None else _steps(key, name, written, stop - start)
-    if last >= MOST:
-        raise SceneError(f"{key}: {last + 1} values are too many, at most {MOST}")
-    values = Spread((*(float(start + (stop - start) * k / last) for k in range(last)), float(stop)))
-    values.start, values.stop = start, stop
-    return values
+    steps = written.num - 1 if written.num is not None else _steps(key, name, written, stop - start)
+    _require_few(key, steps)
+    return spread(start, stop, steps)
+
+
+def _require_few(key: str, steps: int | Fraction) -> None:
+    count = int(abs(steps)) + 1
+    if count > MOST:
+        number = str(count) if count < 10**18 else f"{Decimal(count):.2e}"
+        raise SceneError(f"{key}: {number} values are too many, at most {MOST}")
 
 
 def _exactly(name: str, written: float | str) -> Fraction:
@@ -76,10 +74,9 @@ def _steps(key: str, name: str, written: schema.Range, length: Fraction) -> int:
     elif not isfinite(written.step or 0.0):
         raise SceneError(f"{key}.step = {shown(written.step)}: it must be a finite number")
     step = _exactly(name, written.step or 0.0)
-    if step and abs(length) > MOST * abs(step):
-        raise SceneError(f"{key}.step = {shown(written.step)}: more than {MOST} values are too many")
+    _require_few(key, length / step if step else 0)
     count = float(length / step) if step else 0.0
-    if not (isfinite(count) and count > 0.5 and abs(count - round(count)) < 1e-6):
+    if not (count > 0.5 and abs(count - round(count)) < 1e-6):
         raise SceneError(
             f"{key}.step = {shown(written.step)}: it must lead from start to stop in a whole number of steps"
         )

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..spread import in_parts
+
 SPACED = '''def spaced(first, rest, step, num):
     """num values from first + rest on, correctly rounded; step is in parts, whose products are exact."""
     k = arange(num, dtype=float64)
@@ -19,7 +21,6 @@ SPACED = '''def spaced(first, rest, step, num):
     more = (first - (value - of_total)) + (total - of_total)
     return value + (more + (lost + (k * step[2] + rest)))
 '''
-_DIGITS = 26  # of each of the first two parts: times a whole number below 2^27 they are exact
 
 
 def axes_text(axes: Mapping[str, Sequence[float]]) -> str:
@@ -86,31 +87,10 @@ def rule_of(values: Sequence[float]) -> str:
     start, stop = getattr(values, "start", None), getattr(values, "stop", None)
     if start is None or stop is None:
         start, stop = Fraction(values[0]), Fraction(values[-1])
-    first, rest, step = _in_parts(start, (stop - start) / (len(values) - 1))
+    first, rest, step = in_parts(start, (stop - start) / (len(values) - 1))
     if not np.array_equal(array, _spaced(first, rest, step, len(values))):
         return ""
     return f"spaced({first!r}, {rest!r}, {step!r}, {len(values)})"
-
-
-def _in_parts(start: Fraction, step: Fraction) -> tuple[float, float, tuple[float, float, float]]:
-    """The first value and what rounding takes from it; the step as three doubles."""
-    first = float(start)
-    wide = _short(step)
-    narrow = _short(step - Fraction(wide))
-    return (
-        first,
-        float(start - Fraction(first)),
-        (wide, narrow, float(step - Fraction(wide) - Fraction(narrow))),
-    )
-
-
-def _short(value: Fraction) -> float:
-    """The value with few digits."""
-    if not value:
-        return 0.0
-    exponent = np.frexp(float(value))[1]
-    scale = Fraction(2) ** int(_DIGITS - exponent)
-    return float(Fraction(int(value * scale)) / scale)
 
 
 def _spaced(first: float, rest: float, step: tuple[float, float, float], num: int) -> NDArray[np.float64]:
