@@ -12,7 +12,12 @@ import numpy as np
 import pytest
 from playwright._impl._driver import compute_driver_executable
 
-STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror")
+WARNINGS = (
+    "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Wdouble-promotion", "-Wfloat-conversion",
+    "-Werror",
+)  # fmt: skip
+STRICT = ("-std=c99", *WARNINGS)
+CPLUSPLUS = ("-x", "c++", "-std=c++17", *WARNINGS)
 POINTER = ctypes.POINTER(ctypes.c_double)
 
 

@@ -28,6 +28,13 @@ _C = Words(
         "extern", "float", "for", "goto", "if", "inline", "int", "long", "register", "restrict", "return",
         "short", "signed", "sizeof", "static", "struct", "switch", "typedef", "union", "unsigned", "void",
         "volatile", "while", "out", "NAN", "INFINITY",
+        # of C++, which compiles the files, too
+        "alignas", "alignof", "and", "and_eq", "asm", "bitand", "bitor", "bool", "catch", "char16_t",
+        "char32_t", "class", "compl", "const_cast", "constexpr", "decltype", "delete", "dynamic_cast",
+        "explicit", "export", "false", "friend", "mutable", "namespace", "new", "noexcept", "not", "not_eq",
+        "nullptr", "operator", "or", "or_eq", "private", "protected", "public", "reinterpret_cast",
+        "static_assert", "static_cast", "template", "this", "thread_local", "throw", "true", "try", "typeid",
+        "typename", "using", "virtual", "wchar_t", "xor", "xor_eq",
     )),
     # Headers of the standard library, in whose way `name.h` may stand. Outputs are only texts and comments.
     modules=frozenset((

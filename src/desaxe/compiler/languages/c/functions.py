@@ -12,7 +12,8 @@ from ...text import with_short_temporaries
 from ..shared import one_line, safe_name, statements, types_of, with_safe_names
 from ..words import words_of
 
-WORDS = {"nan": "NAN", "inf": "INFINITY", "True": "1", "False": "0"}
+# NAN and INFINITY are floats: a cast says that they are meant as doubles.
+WORDS = {"nan": "(double)NAN", "inf": "(double)INFINITY", "True": "1", "False": "0"}
 RESERVED = words_of("c").lines
 
 
@@ -68,7 +69,9 @@ def static_function(
     lines = [f"(void){a};" for a in arguments if a not in used]
     lines += _body(program)
     lines += [f"out[{index}] = {output};" for index, output in enumerate(filled)]
-    lines += [] if status is None else [f"return {program.outputs[status]};"]
+    if status is not None:  # twice the digits have it as a number
+        cast = "(int)" * (types_of(program)[program.outputs[status]] == "f64")
+        lines.append(f"return {cast}{program.outputs[status]};")
     head = f"static inline {'void' if status is None else 'int'} {name}({parameters or 'void'}) {{"
     opening = [f"/* {comment} */"] if comment else []
     return "\n".join([*opening, head, *(f"  {line}" for line in lines), "}"]) + "\n"

@@ -21,6 +21,13 @@ PRAGMAS = """\
 #endif
 """
 
+# C++ compiles the file, too, but for this word.
+CPLUSPLUS = """\
+#if defined(__cplusplus)
+#define restrict __restrict
+#endif
+"""
+
 HELPERS = {
     "two_sum_error": """/* What rounding took from a + b, exactly (Knuth). */
 static inline double two_sum_error(double a, double b) {

@@ -8,7 +8,7 @@ from ...program import Line, Program
 from ..protocol import Module, Solver, Symbol
 from ..shared import called, one_line, with_helpers
 from .functions import Lifted, lifted, static_function
-from .helpers import FREESTANDING, FREESTANDING_ATAN2, FREESTANDING_HYPOT, HELPERS, PRAGMAS
+from .helpers import CPLUSPLUS, FREESTANDING, FREESTANDING_ATAN2, FREESTANDING_HYPOT, HELPERS, PRAGMAS
 
 STRIP = 128  # points of an array whose sines are computed ahead, on the stack
 
@@ -168,6 +168,7 @@ class _Source:
                 f'#include "{name}.h"',
                 *(["#include <stdint.h>"] if self.freestanding else ["#include <math.h>"]),
                 "",
+                CPLUSPLUS,
                 PRAGMAS,
                 *self._helpers(functions),
                 functions,
@@ -313,7 +314,7 @@ class _Source:
             "  double turn[2], slope[2];",
             "  sin_cos(theta[k], turn);",
             f"  {name}_slopes({', '.join([*arguments, 'slope'])});",
-            "  const double along = status == 2 ? NAN : slope[0];",
+            "  const double along = status == 2 ? (double)NAN : slope[0];",
             "  omega[k] = V_C / along;",
             "  alpha[k] = (a_C - omega[k] * omega[k] * slope[1]) / along;",
             "}",

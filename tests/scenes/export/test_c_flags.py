@@ -1,0 +1,56 @@
+"""Every C file that scenes give is clean under the flags of embedded projects, as C99 and as C++17."""
+
+import pytest
+
+import desaxe as dx
+from tests.compiler.languages.tools import CPLUSPLUS, STRICT, run, tool
+from tests.scenes.export import test_c, test_words
+from tests.scenes.export.stress import scene
+from tests.scenes.test_examples import EXAMPLES
+
+WORDS = [
+    "namespace",
+    "new",
+    "this",
+    "gamma",
+    "y1",
+    "index",
+    "stable",
+    "status_of",
+]  # of C++, of libm, of the file
+
+
+def contents():
+    """Name -> scene: the examples, the shapes that the tests of C and of words have, all inputs open."""
+    found = {path.stem: path for path in EXAMPLES.glob("*.toml")} | test_c.SCENES
+    shapes = {name: {"quantities": {}, **more} for name, more in test_words.SCENES.items()}
+    found |= {name: test_words.scene(**more) for name, more in shapes.items() if "over" not in name}
+    found |= {f"open {branch}": scene(branch) for branch in (1, -1)}
+    return found | {"words": test_words.scene(["a_C", *WORDS])}
+
+
+@pytest.fixture(scope="module")
+def sources(tmp_path_factory):
+    """Each scene's source, with libm and, where it has one, without."""
+    folder, files = tmp_path_factory.mktemp("flags"), []
+    for number, (name, content) in enumerate(contents().items()):
+        for libm in (True, False):
+            if libm or name != "functions":  # exp, log, pow
+                files.append(folder / f"{number}_{libm}" / "press" / "press.c")
+                dx.compile(content, files[-1].parent, to="c", libm=libm)
+    return files
+
+
+COMPILERS = (
+    ("gcc", STRICT),
+    ("clang", STRICT),
+    ("g++", CPLUSPLUS),
+    pytest.param(("clang++", CPLUSPLUS), marks=pytest.mark.thorough),
+)
+
+
+@pytest.mark.parametrize("build", COMPILERS, ids=lambda build: build[0])
+def test_no_warning(build, sources):
+    compiler, flags = build
+    assert len(sources) > 30
+    run(tool(compiler), *flags, "-fsyntax-only", *sources)
