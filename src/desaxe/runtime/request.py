@@ -124,6 +124,9 @@ def _unknown_input(caller: str, name: str, allowed: Sequence[str]) -> TypeError:
     with IMPORTS:
         from ..mechanism.spelling import did_you_mean
 
+    if name == "as_quantity":
+        way = f"a machine's {caller} has it, as in dx.Machine(**inputs).{caller}(..., as_quantity=True)"
+        return TypeError(f"{caller}() has no as_quantity=: {way}")
     asked = did_you_mean(name, allowed)
     there = f"{'There' if asked else 'there'} are {', '.join(allowed)}"
     return TypeError(f"{caller}() has no input {name!r}; {asked}{there}")
