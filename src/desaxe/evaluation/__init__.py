@@ -17,6 +17,7 @@ planned        repeated calls of one shape: a cache of checked calls
 loaded         values under loads that vary with the motion
 repair         points that a kernel leaves undecided, recomputed
 lazy_evaluate  `evaluate` of Dask arrays
+labelled       `evaluate` of labelled arrays
 dask_blocks    a function of many outputs over the chunks of Dask arrays
 in_units       labelled results in other units
 filled         the values of a grid from one loop nest

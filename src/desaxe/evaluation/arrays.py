@@ -37,7 +37,7 @@ def evaluate_arrays(
         if ready is not None:
             return ready
     inputs = wanted.inputs
-    _refuse_other_labels({name: given.get(name) for name in inputs})
+    refuse_other_labels({name: given.get(name) for name in inputs})
     arrays = {name: as_array(name, given.get(name), inputs, wanted.shown) for name in inputs}
     shape = broadcast_shape(arrays)
     places = outputs_for(wanted.shown, shape, out)
@@ -49,8 +49,8 @@ def evaluate_arrays(
     return copied_back(places, buffers, out is None)
 
 
-def _refuse_other_labels(given: Mapping[str, Any]) -> None:
-    """ValueError for labelled arrays of different dimensions or rows: `evaluate` broadcasts by position."""
+def refuse_other_labels(given: Mapping[str, Any]) -> None:
+    """ValueError for labelled arrays of different dimensions or rows, where arrays broadcast by position."""
     labels = {name: value.dims for name, value in given.items() if hasattr(value, "dims") and value.dims}
     if len(set(labels.values())) > 1:
         told = ", ".join(f"{name} {dims}" for name, dims in labels.items())

@@ -71,6 +71,7 @@ def evaluate(
     quality  True: for each name, in place of the value, an object with `value`, `conditions` (input ->
              |input/value d value/d input|), `error_bound` (of the rounding) and `digits`
 
+    Labelled arrays (xarray) broadcast by the names of their dimensions, and labelled arrays come back.
     Inputs that the names do not need may be left out; masses and loads are 0 without. A number may
     carry its unit: "10 mm", or a pint quantity. An infeasible point gives NaN; ask for `status` to learn
     why: 0 ok, 1 cannot be assembled here, 2 at a change point, 3 stalled, 4 bad input (an array's element

@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 from ..mechanism.inputs import Inputs
 from ..runtime.request import request, several, with_named_inputs
 from ..support.forks import IMPORTS
+from .evaluate import evaluate
 from .filled import filled_grid
+from .labelled import grid_by_index, has_named_index
 from .loaded import filled_under_loads
 from .outer import outer_of, require_inputs
 
@@ -82,8 +84,15 @@ def grid(
     gives lazy Dask arrays, each chunk computed by compiled kernels when it is needed, with the same
     digits whatever the chunks. Needs the extra `scale`.
 
+    A pandas Series whose index has a name varies along that index: Series of one index belong together.
+
         dx.grid(["a_C"], theta=th, ec=ecs, AB=.125, BC=bcs, omega0=157.08).a_C.max("theta")
     """
+    if any(map(has_named_index, inputs.values())):
+        _refuse_with_series(reduce=reduce, chunks=chunks, out=out)
+        wanted = (names,) if isinstance(names, str) else several(names)
+        each = partial(evaluate, branch=branch, accuracy=accuracy, threads=threads)
+        return grid_by_index(each, wanted, inputs, branch, accuracy)
     if reduce is not None:
         with IMPORTS:
             from .joint import joint_grid, joint_part
@@ -132,3 +141,12 @@ def grid(
     state = given.get("omega") is not None
     dataset = labelled({n: arrays[n] for n in outer.shown}, outer.coordinates, branch, state, accuracy)
     return with_loads(dataset, outer.loads)
+
+
+def _refuse_with_series(**options: Any) -> None:
+    """TypeError for an option that goes along the dimensions of inputs, beside Series along an index."""
+    for name, value in options.items():
+        if value is not None:
+            raise TypeError(
+                f"{name}= is for plain arrays, not for Series with a named index: pass .to_numpy()"
+            )

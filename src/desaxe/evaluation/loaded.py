@@ -15,6 +15,7 @@ from ..loads.tabulated import over_theta
 from ..mechanism.names import LENGTHS
 from ..runtime.request import as_number, check_common, several
 from .arrays import as_array, outputs_for
+from .labelled import evaluate_labelled, is_labelled
 from .values import values
 
 Array = NDArray[Any]
@@ -33,6 +34,14 @@ def evaluate_loaded(
     """`evaluate` where F_X or F_Y varies with the motion; derivatives are total ones."""
     wanted = (names,) if isinstance(names, str) else several(names)
     check_common(given, branch, threads)
+    if out is None and any(map(is_labelled, given.values())):
+
+        def run(plain: dict[str, Any]) -> dict[str, Any]:
+            found: dict[str, Any] = evaluate_loaded(wanted, plain, branch, accuracy, threads, None)
+            return found
+
+        labelled = evaluate_labelled(run, wanted, given)
+        return labelled[names] if isinstance(names, str) else labelled
     numbers, plan = plan_for(wanted, given)
     given = {**dict.fromkeys(MOTION), **numbers}
     if not plan.loads:

@@ -16,7 +16,7 @@ from ..mechanism.catalogue import quantity
 from ..mechanism.names import LENGTHS, parts, sensitivity
 from ..runtime.accuracy import BOUNDS, accuracy_of
 from ..runtime.request import check_common, request, several
-from .arrays import as_array, broadcast_shape
+from .arrays import as_array, broadcast_shape, refuse_other_labels
 from .values import values
 
 Array = NDArray[np.float64]
@@ -67,6 +67,7 @@ def evaluate_quality(
 
 def _quality(name: str, given: Mapping[str, Any], rest: Mapping[str, Any]) -> Quality:
     needs = request((name,), given, rest["branch"], "standard").inputs
+    refuse_other_labels({p: given.get(p) for p in needs})
     slopes = _slope_names(name, needs, given.get("omega") is not None)
     gap = ["margin"] if name != "margin" and set(LENGTHS) <= set(needs) else []
     found = values([name, *slopes.values(), *gap], dict(given), rest["branch"], threads=rest["threads"])

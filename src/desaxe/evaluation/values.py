@@ -104,6 +104,14 @@ def _of_arrays(
             continue
         if type(value) is str:
             given = {**given, name: as_number(name, value, inputs, asked.shown)}
+        elif out is None and bool(getattr(value, "dims", None)):
+            with IMPORTS:
+                from .labelled import evaluate_labelled
+
+            def run(plain: dict[str, Any]) -> dict[str, Any]:
+                return _of_arrays(asked, inputs, plain, threads, None)
+
+            return evaluate_labelled(run, asked.shown, {name: given.get(name) for name in inputs})
         elif hasattr(value, "__dask_graph__"):
             with IMPORTS:
                 from .dask_blocks import is_lazy

@@ -55,6 +55,13 @@ def converted(system: UnitSystem, name: str, value: Any) -> Any:
         return value
     plain = isinstance(value, (int, float)) or hasattr(value, "dtype")
     conversion = conversion_of(system, name) if plain else None
+    if conversion is not None and hasattr(value, "dims"):
+        with IMPORTS:
+            import xarray
+
+        return xarray.apply_ufunc(conversion.to_si, value, dask="parallelized", output_dtypes=[float])
+    if conversion is not None and hasattr(value, "iloc"):  # a pandas Series keeps its index
+        return type(value)(conversion.to_si(value.to_numpy()), index=value.index, name=value.name)
     return value if conversion is None else conversion.to_si(value)
 
 

@@ -41,6 +41,8 @@ class Shown(NamedTuple):
         """A value of a quantity: a number, an array, or a Quality."""
         if name == "status":
             return value
+        if hasattr(value, "dims"):
+            return in_units(value.to_dataset(name=name), self.system, as_quantity=self.as_quantity)[name]
         conversion = self.system.of(name)
         if hasattr(value, "error_bound"):
             bound = self.number(value.error_bound, conversion)

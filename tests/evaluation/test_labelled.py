@@ -1,0 +1,106 @@
+"""Labelled inputs: DataArrays broadcast by their dimensions, Series by the name of their index."""
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+
+pd, xr = pytest.importorskip("pandas"), pytest.importorskip("xarray")
+
+MACHINE = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
+ANGLES, ECS = np.linspace(0.0, 6.0, 5), np.array([0.0, 0.1, 0.2])
+THETA = xr.DataArray(ANGLES, dims="theta", coords={"theta": ANGLES})
+EC = xr.DataArray(ECS, dims="design", coords={"design": list("abc"), "maker": ("design", [1, 2, 3])})
+LOADED = {"m_slider": 2.0, "mu": 0.05}
+
+
+@pytest.mark.parametrize(
+    ("names", "inputs"),
+    [
+        (["a_C", "status"], {}),
+        (["T_in", "T_in_wrt_ec"], {**LOADED, "F_Y": -50.0}),
+        (["T_in", "T_in_wrt_ec"], {**LOADED, "F_Y": dx.over_theta([0.0, 2.0, 4.0], [0.0, -500.0, 0.0])}),
+        (
+            ["T_in"],
+            {**LOADED, "F_Y": dx.over_Y([0.2, 0.3, 0.4], outward=[0.0, -9.0, -9.0], inward=[0.0] * 3)},
+        ),
+        (["T_in"], {**LOADED, "F_Y": np.sin}),
+    ],
+)
+def test_dimensions_broadcast_by_name(names, inputs):
+    found = dx.evaluate(names, theta=THETA, ec=EC, **MACHINE, **inputs)
+    expected = dx.evaluate(names, theta=ANGLES[:, None], ec=ECS, **MACHINE, **inputs)
+    turned = dx.evaluate(names, theta=ANGLES, ec=ECS[:, None], **MACHINE, **inputs)
+    for name in names:
+        assert found[name].dims == ("theta", "design")
+        assert found[name].dtype == expected[name].dtype
+        np.testing.assert_allclose(found[name], expected[name], rtol=1e-12)
+        np.testing.assert_allclose(found[name], turned[name].T, rtol=1e-12)
+        assert found[name].maker.values.tolist() == [1, 2, 3]
+    quantity = names[0]
+    assert found[quantity].attrs["units"] == dx.quantities()[quantity].unit
+    one = dx.evaluate(quantity, theta=THETA, ec=EC, **MACHINE, **inputs)
+    assert one.identical(found[quantity])
+
+
+def test_a_design_alone_has_its_dimension():
+    found = dx.evaluate("stroke", ec=EC, AB=0.125, BC=0.35)
+    assert found.dims == ("design",)
+    assert found.sel(design="b").item() == dx.events(ec=0.1, AB=0.125, BC=0.35)["stroke"]
+
+
+def test_units_of_attributes_and_of_a_machine():
+    """An attribute `units` counts; without one the units of the machine do, and answers are in them."""
+    millimetres = (1e3 * EC).assign_attrs(units="mm")
+    found = dx.evaluate("V_C", theta=THETA, ec=millimetres, **MACHINE)
+    np.testing.assert_allclose(found, dx.evaluate("V_C", theta=THETA, ec=EC, **MACHINE), rtol=1e-14)
+    machine = dx.Machine(ec=0, AB=125, BC=350, omega0="157.08 rad/s", units="mm, deg, rpm")
+    for given in (millimetres, 1e3 * EC):
+        shown = machine.evaluate(["V_C", "status"], theta=np.rad2deg(THETA), ec=given)
+        np.testing.assert_allclose(shown["V_C"], 1e3 * found, rtol=1e-12)
+        assert shown["V_C"].attrs["units"] == "mm/s"
+        assert shown["status"].dims == ("theta", "design")
+
+
+def test_dask_stays_lazy():
+    pytest.importorskip("dask.array")
+    found = dx.evaluate("a_C", theta=THETA.chunk(2), ec=EC, **MACHINE)
+    assert found.chunks is not None
+    np.testing.assert_allclose(found, dx.evaluate("a_C", theta=THETA, ec=EC, **MACHINE), rtol=1e-12)
+
+
+def test_what_does_not_fit_is_refused():
+    with pytest.raises(ValueError, match="theta"):
+        dx.evaluate("a_C", theta=THETA, ec=0.0 * THETA[1:], **MACHINE)
+    with pytest.raises(ValueError, match=r"BC: an array without labels beside"):
+        dx.evaluate("a_C", theta=THETA, ec=EC, AB=0.125, BC=[0.3, 0.35, 0.4], omega0=1.0)
+    with pytest.raises(ValueError, match="labelled arrays of different dimensions"):
+        dx.evaluate("a_C", theta=THETA, ec=EC, quality=True, **MACHINE)
+
+
+@pytest.mark.parametrize("load", [None, np.sin, dx.over_theta([0.0, 2.0, 4.0], [0.0, -500.0, 0.0])])
+def test_series_of_one_index_vary_together_in_a_grid(load):
+    designs = pd.Index(["first", "second"], name="design")
+    ec, AB = pd.Series([0.0, 0.1], designs), pd.Series([0.12, 0.1], designs)
+    inputs = {"theta": ANGLES, "BC": [0.35, 0.4], "omega0": 10.0, "m_slider": 2.0}
+    inputs |= {} if load is None else {"F_Y": load}
+    found = dx.grid(["T_in", "a_C"], ec=ec, AB=AB, **inputs)
+    assert dict(found.sizes) == {"theta": 5, "BC": 2, "design": 2}
+    assert found.ec.dims == found.AB.dims == ("design",)
+    for name in ("first", "second"):
+        alone = dx.grid(["T_in", "a_C"], ec=ec[name], AB=AB[name], **inputs)
+        for variable in ("T_in", "a_C", "status", "margin"):
+            here = found[variable].sel(design=name)
+            np.testing.assert_allclose(here.transpose(*alone[variable].dims), alone[variable], rtol=1e-12)
+            assert found[variable].attrs.get("units") == alone[variable].attrs.get("units")
+    machine = dx.Machine(AB=1, BC=350, omega0="10 rad/s", m_slider=2, units="mm")
+    of_machine = machine.grid("a_C", theta=ANGLES, ec=1e3 * ec, AB=1e3 * AB, BC=[350, 400])
+    np.testing.assert_allclose(of_machine.a_C.transpose(*found.a_C.dims), 1e3 * found.a_C, rtol=1e-12)
+    assert of_machine.ec.values.tolist() == [0.0, 100.0]
+    with pytest.raises(TypeError, match="reduce= is for plain arrays"):
+        dx.grid("a_C", ec=ec, reduce={"theta": "max"}, AB=0.1, **inputs)
+
+
+def test_a_series_without_a_name_of_its_index_is_an_axis():
+    found = dx.grid("a_C", theta=ANGLES, ec=pd.Series(ECS), **MACHINE)
+    assert found.a_C.dims == ("theta", "ec")
