@@ -75,7 +75,7 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
     zeros = [(name, 0.0) for name in absent if name not in CENTRES]
     if "alpha" in inputs and is_steady(given.get("alpha")):
         zeros.append(("alpha", 0.0))
-    if "omega0" in inputs and not state and given.get("omega0") is None and _needs_no_speed(own):
+    if "omega0" in inputs and not state and given.get("omega0") is None and needs_no_speed(own):
         zeros.append(("omega0", 0.0))
     defined = used_by(own)
     default_centres = tuple(
@@ -87,7 +87,7 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
     return Request(shown, own, variant, (("branch", float(branch)), *zeros), kept)
 
 
-def _needs_no_speed(names: Iterable[str]) -> bool:
+def needs_no_speed(names: Iterable[str]) -> bool:
     """True if none but quantities of the whole design hang on the speed: on its sign, forwards by default."""
     moving = tuple(name for name in names if name not in STATUSES and not of_design(name))
     return "omega0" not in program_of(moving).inputs

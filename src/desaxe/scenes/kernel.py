@@ -1,6 +1,6 @@
 """The kernel that a scene's grid runs: for `explain` and `compile`, which run nothing."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import prod
 from typing import Any, NamedTuple
 
@@ -9,9 +9,25 @@ import numpy as np
 from ..evaluation.outer import join_axes
 from ..loads.load import Load, OverY
 from ..loads.resolve import plan_of, split
+from ..mechanism.catalogue import of_design
+from ..mechanism.names import LENGTHS, STATUS
 from ..runtime.kernels import KernelKey, key_of
 from ..runtime.request import Request, request
 from .content import Content
+
+
+def own_axes(content: Content, names: Iterable[str]) -> dict[str, list[str]]:
+    """The axes of each quantity of a whole design: lengths, and a speed whose sign it uses."""
+    axes = [name for name, value in content.inputs.items() if isinstance(value, tuple)]
+    found = {}
+    for name in names:
+        if of_design(name):
+            used = {
+                *LENGTHS,
+                *request((name,), dict(content.inputs), content.branch, content.accuracy).inputs,
+            }
+            found[name] = [axis for axis in axes if axis in used]
+    return found
 
 
 class GridKernel(NamedTuple):
@@ -28,15 +44,22 @@ class GridKernel(NamedTuple):
         return prod(self.sizes)
 
 
-def grid_kernel(content: Content, joined: bool = False) -> GridKernel:
+def grid_kernel(content: Content, joined: bool = False, apart: bool = True) -> GridKernel:
     """The kernel of the outputs (and, where they are stored, of the status).
 
-    `joined`: with short last axes as one, the way that a grid runs.
+    `joined`: with short last axes as one, the way that a grid runs. Quantities of a whole design have a
+    kernel of their own, but where they are not `apart`.
     """
     dimensions = [name for name, value in content.inputs.items() if isinstance(value, tuple)]
     names = list(content.outputs)
     if content.reduction is None:
-        names = list(dict.fromkeys([*(name for name in names if name != "margin"), "status"]))
+        names = list(dict.fromkeys([*names, STATUS]))
+        moving = [name for name in names if not of_design(name)]
+        if moving == [STATUS] and "theta" not in content.inputs:
+            own = {axis for axes in own_axes(content, names).values() for axis in axes}
+            dimensions = [name for name in dimensions if name in own]
+        elif apart:
+            names = moving
     fused = content.fused
     if fused is not None:
         dimensions = [*(name for name in dimensions if name != fused.axis), fused.axis]

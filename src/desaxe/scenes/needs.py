@@ -3,9 +3,10 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from ..mechanism.catalogue import law_name, quantity
+from ..mechanism.catalogue import law_name, of_design, quantity
 from ..mechanism.names import FORCE_STATUS, LENGTHS, LOADS, STATUS
 from ..mechanism.program import Variant, program_of
+from ..runtime.request import needs_no_speed
 from . import schema
 from .schema import SceneError, shown
 from .values import Value
@@ -28,12 +29,13 @@ def require_known(key: str, name: str, state: bool) -> None:
 
 
 def needs_of(names: Iterable[str], inputs: Mapping[str, Any]) -> tuple[str, ...]:
-    """The inputs that quantities can use, under the law or for a given state."""
+    """The inputs that quantities can use, under the law or for a given state; a speed where they need one."""
     state = "omega" in inputs
     law = tuple(law_name(name) if state else name for name in names)
     if "mu" in inputs:  # then the status includes that of friction
         law = tuple(FORCE_STATUS if name == STATUS else name for name in law)
-    return tuple(name for name in program_of(law, Variant(state)).inputs if name != "branch")
+    left = {"branch", *({"omega0"} - set(inputs) if needs_no_speed(law) else ())}
+    return tuple(name for name in program_of(law, Variant(state)).inputs if name not in left)
 
 
 def require(key: str, needs: Iterable[str], what: str, inputs: Mapping[str, Any]) -> list[str]:
@@ -47,8 +49,9 @@ def require(key: str, needs: Iterable[str], what: str, inputs: Mapping[str, Any]
 
 def require_for_grid(key: str, names: tuple[str, ...], inputs: Mapping[str, Any]) -> list[str]:
     """The needed inputs of a grid, which has `status` and `margin` too; they need no speed."""
-    always = [name for name in needs_of(("status", "margin"), inputs) if name in ("theta", *LENGTHS)]
-    needs = dict.fromkeys([*needs_of(names, inputs), *always])
+    still = "theta" not in inputs and all(name == STATUS or of_design(name) for name in names)
+    used = needs_of([name for name in names if not (still and name == STATUS)], inputs)
+    needs = dict.fromkeys([*used, *LENGTHS, *(() if still else ("theta",))])
     return require(key, needs, ", ".join(names), inputs)
 
 

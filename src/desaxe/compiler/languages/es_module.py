@@ -57,18 +57,12 @@ class JavaScript:
 
 def _source(module: Module) -> str:
     program = module.forms.stable
-    inputs = [safe_name(symbol.name, WORDS) for symbol in module.inputs]
-    checked = [f'number("{symbol.name}", {own})' for symbol, own in zip(module.inputs, inputs, strict=True)]
     program = program._replace(inputs=tuple(symbol.name for symbol in module.inputs))
     # An output may be an input, or stand twice: it is returned as it is called here.
     program = with_safe_names(with_short_temporaries(program), WORDS)
     program = program._replace(outputs=program.outputs[: len(module.outputs)])
     units = ", ".join(f'{s.name}: "{s.unit}"' for s in _once((*module.inputs, *module.outputs)))
-    functions = [
-        f"/** {_about(symbol)} */\nexport function {symbol.name}({', '.join(inputs)}) {{\n"
-        f"  return values({', '.join(checked)})[{place}];\n}}\n"
-        for place, symbol in enumerate(module.outputs)
-    ]
+    functions = [_function(module, symbol, place) for place, symbol in enumerate(module.outputs)]
     return "\n".join(
         [
             _comment(module),
@@ -84,12 +78,21 @@ def _source(module: Module) -> str:
     )
 
 
+def _function(module: Module, symbol: Symbol, place: int) -> str:
+    """The function of one output; an argument that it does not take is NaN."""
+    taken = module.taken(symbol.name)
+    given = ", ".join(safe_name(name, WORDS) for name in taken)
+    names = [one.name for one in module.inputs]
+    checked = [f'number("{n}", {safe_name(n, WORDS)})' if n in taken else "NaN" for n in names]
+    head = f"/** {_about(symbol)} */\nexport function {symbol.name}({given}) {{"
+    return f"{head}\n  return values({', '.join(checked)})[{place}];\n}}\n"
+
+
 def _types(module: Module) -> str:
-    given = ", ".join(f"{safe_name(symbol.name, WORDS)}: number" for symbol in module.inputs)
-    functions = [
-        f"/** {_about(symbol)} */\nexport function {symbol.name}({given}): number;"
-        for symbol in module.outputs
-    ]
+    functions = []
+    for symbol in module.outputs:
+        given = ", ".join(f"{safe_name(name, WORDS)}: number" for name in module.taken(symbol.name))
+        functions.append(f"/** {_about(symbol)} */\nexport function {symbol.name}({given}): number;")
     return "\n".join(
         [
             _comment(module),

@@ -131,7 +131,7 @@ class Jax:
 def _text(module: Module) -> str:
     inputs = [symbol.name for symbol in module.inputs]
     functions = [_function(name, program, inputs) for name, program in module.values.items()]
-    public = [_public(symbol, inputs) for symbol in module.outputs]
+    public = [_public(symbol, inputs, module.taken(symbol.name)) for symbol in module.outputs]
     evaluate = EVALUATE.format(inputs=", ".join(inputs)).replace("(*, )", "()")
     body = "\n\n".join([RULES, *functions, _tables(module), *public, evaluate])
     helpers = with_helpers("\n".join(functions), HELPERS)
@@ -196,14 +196,14 @@ def _function(name: str, program: Program, inputs: list[str]) -> str:
     )
 
 
-def _public(symbol: Symbol, inputs: list[str]) -> str:
-    given = ", ".join(inputs)
+def _public(symbol: Symbol, inputs: list[str], taken: list[str]) -> str:
+    given = ", ".join(name if name in taken else "nan" for name in inputs)
     meaning = f"{symbol.meaning or symbol.name} [{symbol.unit}]" + (
         f", {symbol.source}" if symbol.source else ""
     )
     return "\n".join(
         [
-            f"def {symbol.name}({given}):",
+            f"def {symbol.name}({', '.join(taken)}):",
             f'{INDENT}"""{one_line(meaning[0].upper() + meaning[1:])}."""',
             f'{INDENT}return FUNCTIONS["{symbol.name}"](*floats({given}))',
             "",

@@ -4,7 +4,7 @@ A `Module` says all that the emitters may know: names and units of arguments and
 constants. It knows no mechanism. A language turns it into the texts of one or more files.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple, Protocol
 
 from ..passes.trigonometry import Trigonometry
@@ -55,6 +55,7 @@ class Module(NamedTuple):
     derivatives  name of a result or derivative -> argument -> the name of its derivative
     values       Programs of all names that stand in `derivatives`, under their names
     solvers      further functions by name, for languages that take them
+    arguments    name of a result -> the arguments of its own function, where these are not all
     constants    of the written-out sine and cosine; beyond their limit they are wrong
     """
 
@@ -67,6 +68,12 @@ class Module(NamedTuple):
     derivatives: Mapping[str, Mapping[str, str]] = {}
     values: Mapping[str, Program] = {}
     solvers: Mapping[str, Solver] = {}
+    arguments: Mapping[str, Sequence[str]] = {}
+
+    def taken(self, name: str) -> list[str]:
+        """The arguments of a result's own function, in order."""
+        own = self.arguments.get(name)
+        return [symbol.name for symbol in self.inputs if own is None or symbol.name in own]
 
 
 class Language(Protocol):

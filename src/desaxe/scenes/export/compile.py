@@ -4,7 +4,7 @@ import ast
 import hashlib
 import keyword
 import re
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from textwrap import wrap
@@ -35,7 +35,7 @@ from ...support.files import as_path, check_target, require_writable
 from ...support.shown import printable
 from ...support.version import version
 from ..content import Content
-from ..kernel import GridKernel, grid_kernel
+from ..kernel import GridKernel, grid_kernel, own_axes
 from ..scene import Scene
 from ..scene import scene as scene_of
 from ..schema import SceneError
@@ -186,7 +186,7 @@ def module_text(scene: Scene, name: str = "my_kernels.py") -> str:
         raise SceneError(
             f"{scene.name or 'scene'}: a module under a load that varies stores its grid: no [reduce]"
         )
-    found = grid_kernel(content)
+    found = grid_kernel(content, apart=False)
     anywhere = found.key.form._replace(wide_margins=False)  # the module takes other designs, too
     key = _all_fixed(found.key._replace(form=anywhere), found, numbers, loads)
     order = content.inputs if loads else found.axes
@@ -201,7 +201,7 @@ def module_text(scene: Scene, name: str = "my_kernels.py") -> str:
     grid = None
     if program.inputs:
         grid = _kernels(key, program.inputs, sources)
-    sources.append(_scalars(key, shown, program.inputs))
+    sources.append(_scalars(key, shown, program.inputs, own_axes(content, shown)))
     peaks = peak_texts(content)
     sources += peaks.searches
     compiles = bool(program.inputs or peaks.searches)
@@ -214,7 +214,7 @@ def module_text(scene: Scene, name: str = "my_kernels.py") -> str:
     if grid is None:
         calls.append('def run():\n    """The values; every input is fixed."""\n    return evaluate()')
     elif content.fused is None:
-        calls.append(run_function(shown, list(axes), grid.inputs, state))
+        calls.append(run_function(shown, list(axes), grid.inputs, own_axes(content, shown)))
     else:
         calls.append(run_reduced_function(shown, key.reduce, found.axes, grid.inputs, grid.outputs))
     calls += peaks.functions
@@ -235,7 +235,7 @@ IMPORTS = {
     "math": {"prod"},
     "numpy": {
         "append", "arange", "array", "asarray", "ascontiguousarray", "broadcast_arrays", "empty", "float64",
-        "int8", "isfinite", "linspace", "nan", "broadcast_to", "floor", "pi", "searchsorted",
+        "fmax", "int8", "isfinite", "linspace", "nan", "broadcast_to", "floor", "pi", "searchsorted",
         "unique", "where",
     },
     "os": {"cpu_count"},
@@ -254,7 +254,7 @@ def _called(imports: Mapping[str, set[str]], body: str) -> dict[str, set[str]]:
 
 def _asked(content: Content) -> list[str]:
     """The outputs, as a grid has them."""
-    return list(dict.fromkeys([*(name for name in content.outputs if name != "margin"), "status"]))
+    return list(dict.fromkeys([*content.outputs, "status"]))
 
 
 def _module_under_loads(
@@ -305,12 +305,15 @@ def _in_order(program: Program) -> Program:
     return program._replace(inputs=tuple(sorted(program.inputs, key=ORDER.index)))
 
 
-def _scalars(key: KernelKey, shown: tuple[str, ...], inputs: tuple[str, ...]) -> str:
-    """The functions of one output each."""
-    programs = []
-    for name, own in zip(shown, key.names, strict=True):
-        programs.append((name, _guarded(key, (own,))))
-    return scalars_source(programs, inputs, key.form.state)
+def _scalars(
+    key: KernelKey, shown: tuple[str, ...], inputs: tuple[str, ...], own: Mapping[str, Sequence[str]]
+) -> str:
+    """The functions of one output each; those of a whole design take its own inputs alone."""
+    functions = []
+    for name, law in zip(shown, key.names, strict=True):
+        taken = tuple(n for n in inputs if n in own.get(name, inputs))
+        functions.append((name, _guarded(key, (law,)), taken))
+    return scalars_source(functions, key.form.state)
 
 
 def _guarded(key: KernelKey, names: tuple[str, ...]) -> Program:
@@ -382,6 +385,8 @@ def _docstring(
     loads = [load.identity for load in scene.content.inputs.values() if isinstance(load, Load)]
     said = hashlib.sha256(repr((scene.content, *loads) if loads else scene.content).encode())
     state = key.form.state
+    own = own_axes(scene.content, shown).get(shown[0])
+    first = f"{shown[0]}({'*INPUTS' if own is None else ', '.join(n for n in inputs if n in own)})"
     lines = [
         f"{scene.title or 'An offset slider-crank'}: {', '.join(shown)}.",
         "",
@@ -395,7 +400,7 @@ def _docstring(
         "    evaluate(...)   numbers or arrays that broadcast",
         "    run()           the scene's own grid; run(theta=...) with other axes",
         *(f"    {line}" for line in peak_lines),
-        *([] if loads else [f"    {shown[0]}(*INPUTS)   one output as a number, from @njit functions, too"]),
+        *([] if loads else [f"    {first}   one output as a number, from @njit functions, too"]),
         "",
         f"Accuracy {key.accuracy}; SI units and radians. Y points along the slider axis towards the slider,",
         "theta turns from +Y towards +X.",

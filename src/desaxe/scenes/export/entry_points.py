@@ -150,11 +150,24 @@ def evaluate_function(
 
 
 def run_function(
-    names: Sequence[str], axes: Sequence[str], inputs: Mapping[str, int | None], state: bool
+    names: Sequence[str],
+    axes: Sequence[str],
+    inputs: Mapping[str, int | None],
+    own_axes: Mapping[str, Sequence[str]],
 ) -> str:
-    """`run()`: the outputs over the outer product of the scene's axes, or of others in their place."""
+    """`run()`: the outputs over the outer product of the scene's axes, or of others in their place.
+
+    `own_axes` are those of quantities of a whole design, which have no others.
+    """
+    others = {n: tuple(k for k, a in enumerate(axes) if a not in own) for n, own in own_axes.items()}
+    left = [
+        f'    out["{name}"] = fmax.reduce(out["{name}"], axis={places}, initial=nan)  # the same everywhere'
+        for name, places in others.items()
+        if places
+    ]
     told = [
         "A dict of arrays, one dimension per axis: " + " x ".join(axes) + ".",
+        *(f"{name} has {' x '.join(own_axes[name]) or 'none'} alone." for name in others if others[name]),
         "An axis that is given takes the place of the scene's.",
     ]
     first = [
@@ -175,6 +188,7 @@ def run_function(
             f"        {kernel}({', '.join([*first, '*(a[start:stop] for a in out.values())'])})",
             "",
             "    in_blocks(block, shape[0], prod(shape), threads)",
+            *left,
             "    return out",
             "",
         ]

@@ -20,6 +20,7 @@ from ...runtime.specialise import plain_form, specialise
 from ...runtime.written import UNSEALED
 from ...support.version import version
 from ..content import Content
+from ..kernel import own_axes
 from ..scene import Scene
 from ..schema import SceneError
 from .solvers import solvers
@@ -65,9 +66,9 @@ def module_of(scene: Scene, order: Order) -> Module:
     outputs = tuple(Symbol(*quantity(name, state)) for name in content.outputs)
     derivatives, values = _derivatives(content, arguments) if order.second_order else ({}, {})
     head = (*heading(scene, order.command), *_facts(content, asked, fixed, arguments, order))
-    return Module(
-        order.name, head, inputs, outputs, forms, constants(), derivatives, values, solvers(dict(fixed))
-    )
+    own = own_axes(content, content.outputs)
+    told = (derivatives, values, solvers(dict(fixed)), own)
+    return Module(order.name, head, inputs, outputs, forms, constants(), *told)
 
 
 def require_outputs(scene: Scene) -> None:

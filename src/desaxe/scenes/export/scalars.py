@@ -18,11 +18,11 @@ SCALAR = '''def scalar(function):
 '''
 
 
-def scalars_source(programs: Sequence[tuple[str, Program]], inputs: Sequence[str], state: bool) -> str:
+def scalars_source(scalars: Sequence[tuple[str, Program, Sequence[str]]], state: bool) -> str:
     """The source of the functions, each a guarded Program of one output, and of what they call."""
-    ops = {line.op for _, program in programs for line in program.lines}
+    ops = {line.op for _, program, _ in scalars for line in program.lines}
     helpers = helper_sources(ops)
-    functions = [_function(name, program, inputs, state) for name, program in programs]
+    functions = [_function(name, program, inputs, state) for name, program, inputs in scalars]
     text = "\n".join([*helpers, *functions])
     called = [name for name in MATH_NAMES if calls_of(text, name)]
     from_numpy = sorted({"floor", "inf", "nan"} & set(called))
