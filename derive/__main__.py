@@ -33,6 +33,8 @@ def main(arguments: list[str] | None = None) -> int:
 
     started = time.perf_counter()
     print("deriving from the loop closure ...", file=sys.stderr, flush=True)
+    from desaxe.support.shown import in_brief
+
     from .build import build
     from .report import report
     from .write import differences, render, write
@@ -47,8 +49,8 @@ def main(arguments: list[str] | None = None) -> int:
         return 0
     if options.check:
         found = differences(files, folder)
-        sys.stdout.write("".join(found))
         print(f"{folder.name}/ is {'stale: run ' + REMEDY if found else 'fresh'}")
+        sys.stdout.write(in_brief(found))
         return 1 if found else 0
     changed = write(files, folder)
     print(f"wrote {', '.join(changed)}" if changed else f"{folder.name}/ was fresh: nothing written")

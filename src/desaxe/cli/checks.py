@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..support.extras import explained
-from ..support.shown import printable
+from ..support.shown import in_brief, printable
 from .parser import Parser, add_command
 
 _DERIVE = """\
@@ -64,8 +64,8 @@ def _own(words: list[str]) -> int:
         return 2
     remedy = f"run desaxe derive --quantities {printable(options.quantities)} -o {printable(options.output)}"
     if options.check:
-        print("".join(f"{printable(line)}\n" for line in "".join(found).splitlines()), end="")
         print(f"{printable(options.output.name)}/ is {'stale: ' + remedy if found else 'fresh'}")
+        print("".join(f"{printable(line)}\n" for line in in_brief(found).splitlines()), end="")
         return 1 if found else 0
     print(f"wrote {printable(options.output)}")
     return 0

@@ -15,8 +15,8 @@ from ..support.extras import EXTRAS
 
 RUNTIME = ("numpy", "numba", "llvmlite")
 OPTIONAL = (
-    "sympy", "mpmath", "xarray", "h5netcdf", "h5py", "zarr", "matplotlib", "pint", "msgspec", "tqdm", "scipy",
-    "SALib", "plotly", "python-flint",
+    "sympy", "mpmath", "xarray", "h5netcdf", "h5py", "zarr", "dask", "distributed", "matplotlib", "pint",
+    "msgspec", "tqdm", "scipy", "SALib", "plotly", "python-flint",
 )  # fmt: skip
 FEATURES = ("sse2", "sse4.2", "avx", "avx2", "fma", "avx512f", "neon", "sve")  # as LLVM calls them
 NAMES = ("V_C", "a_C")

@@ -111,6 +111,7 @@ def _plain(found: Any) -> dict[str, Any]:
         "names",
         "unidentified",
         "at_bound",
+        "chi_square",
         "status",
         "message",
     )

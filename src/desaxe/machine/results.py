@@ -123,6 +123,8 @@ def shown(name: str, found: Any, call: Mapping[str, Any], show: Shown) -> Any:
     own = {"feasibility": "margin", "counterweight": "F_X"}.get(name) or call.get("name")
     measure = own[-1] if isinstance(own, (tuple, list)) else own
     conversion = None if measure is None else conversion_of(system, measure)
+    if name == "tolerance" and conversion is not None:
+        found.unit = "" if show.as_quantity else conversion.unit
     return show.mapping(found, conversion) if isinstance(found, Mapping) else found
 
 

@@ -26,3 +26,11 @@ def shown(value: Any) -> str:
 
 def _is_long(value: Any) -> bool:
     return isinstance(value, (str, bytes, list, tuple)) and len(value) > 3 * LONGEST
+
+
+def in_brief(found: list[str], most: int = 30) -> str:
+    """The first lines of some differences, as text, and how many lines are left out."""
+    lines = "".join(found).splitlines(True)
+    rest = len(lines) - most
+    more = f"... and {rest} more lines in {len(found)} files\n" if rest > 0 else ""
+    return "".join(lines[:most]) + more

@@ -1,6 +1,8 @@
 """Fits of synthetic measurements: what is recovered, how surely, and what the data leave open."""
 
+import math
 import pickle
+import re
 
 import mpmath
 import numpy as np
@@ -50,6 +52,22 @@ def test_a_robust_loss_shrugs_off_outliers(loss):
         off = [(found["value"][n] - TRUE[n]) / found["std_error"][n] for n in found["names"]]
         assert max(map(abs, off)) < 3.5
     assert abs(fitted(data)["value"]["a_C_bias"] - 4.0) > 50.0
+
+
+def test_residuals_far_beyond_sigma_are_told():
+    """By chi-square where all count; of a robust loss by the scatter of most of them."""
+    data = measured(6)
+    good = fitted(data)
+    assert 0.8 < good["chi_square"] < 1.25
+    assert good["message"] == fitted(data, loss="huber")["message"] == "converged"
+    assert math.isnan(fitted(data, sigma=None)["chi_square"])
+    spoiled = {**data, "a_C": data["a_C"].copy()}
+    spoiled["a_C"][::20] += 2000.0
+    assert re.search("chi-square is .* try loss='huber'", repr(fitted(spoiled)))
+    assert "sigma" not in fitted(spoiled, loss="huber")["message"]
+    small = {"a_C": 0.1 * NOISE}
+    assert "chi-square" in fitted(data, sigma=small)["message"]
+    assert "outliers apart" in fitted(data, sigma=small, loss="huber")["message"]
 
 
 def test_what_the_data_leave_open_is_named():

@@ -1,6 +1,7 @@
 """Scatter by derivatives, Monte Carlo, Sobol's indices and enclosures, against each other and known cases."""
 
 import math
+import pickle
 import re
 import subprocess
 import sys
@@ -25,6 +26,23 @@ POINT = {
 @pytest.fixture(scope="module")
 def point():
     return dx.tolerance("a_C", **POINT)
+
+
+def test_it_prints_three_lines_and_the_rest_on_request(point):
+    nominal, spread, causes = repr(point).splitlines()
+    assert nominal == f"a_C is {point['value']:.6g} m/s^2 with every input at its mean"
+    assert f"{point['monte_carlo']['std']:.4g} m/s^2" in spread
+    first, share = next(iter(point["contributions"].items()))
+    assert causes.startswith(f"driven by {first} {100 * share:.0f} %")
+    assert all(key in point.report() for key in point)
+    assert repr(pickle.loads(pickle.dumps(point))) == repr(point)
+    peak = dx.tolerance(("absmax", "a_C"), ec="10 mm ± 1 mm", AB=0.1, BC=0.3, omega0=10.0, sobol=0, samples=9)
+    assert repr(peak).startswith("absmax of a_C is 1")
+    machine = dx.Machine(ec=100, AB=125, BC=350, omega0=157.08, units="mm")
+    shown = machine.tolerance("a_C", theta=1.0, AB="125 mm ± 0.1 mm", sobol=0, samples=99)
+    assert " mm/s^2 with" in repr(shown)
+    blocked = dx.tolerance("stroke", ec="10 mm ± 0.1 mm", AB=0.3, BC=0.1, sobol=0, samples=99)
+    assert "nan m with every input at its mean; status 1: no value at the means" in repr(blocked)
 
 
 def test_the_ways_agree(point):

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS, TINY, Input
@@ -20,8 +21,10 @@ from .solve import solve
 from .spread import LOSSES, inflation, spread_of
 from .unknowns import unknowns_of
 
+Array = NDArray[np.float64]
 NORMAL = 1.959963984540054  # two-sided 95 % of the normal distribution
 MAD = 1.4826  # standard deviations in a median absolute deviation, of the normal distribution
+UNLIKELY = 1e-6  # a chi-square that chance exceeds less often is told
 EDGE = 1e-9  # of an unknown's size: a bound that is met
 
 
@@ -56,11 +59,15 @@ def fit(
     names              the unknowns, in the order of `covariance` and `correlation`
     residuals          dict quantity -> measured - fitted at every sample, NaN where missing
     jacobian           dict quantity -> dict unknown -> derivative of the fitted value at every sample, exact
-    unidentified       directions that the data do not fix: dicts name -> relative weight; std_error is
-                       infinite for the unknowns in them
+    unidentified       directions that the data do not fix: dicts name -> weight, a change relative to the
+                       unknown's own value (or range, where that is about 0), the largest weight being 1; so
+                       {AB: 1, BC: 1} leaves AB/BC known alone. std_error is infinite for the unknowns in them
     at_bound           dict name -> "low" or "high" for unknowns that end at a bound
     evaluations        of the model, all starts together
-    status, message    0 converged, 1 stopped at the limit of evaluations, 2 a combination left open
+    chi_square         sum of the squares of residual/sigma over the degrees of freedom, where sigma is given:
+                       about 1 if the model holds
+    status, message    0 converged, 1 stopped at the limit of evaluations, 2 a combination left open;
+                       `message` says too where residuals are far beyond sigma
 
     SciPy's trust region reflective least squares with the exact Jacobian; a step to a design that cannot be
     assembled at every sample is shortened. Raises ValueError for data that are empty or fewer than the
@@ -134,6 +141,7 @@ def _result(model: Model, found: Any, loss: str, absolute: bool) -> Fit:
     quantile = NORMAL if absolute else _student(freedom)
     values, slopes = model.quantities(found.x)
     status = OPEN if spread.unidentified else STOPPED if found.status == 0 else DONE
+    total = float(residuals @ residuals) if absolute else np.nan
     by_name = dict(zip(model.names, found.x.tolist(), strict=True))
     return Fit(
         {
@@ -151,11 +159,32 @@ def _result(model: Model, found: Any, loss: str, absolute: bool) -> Fit:
             "unidentified": spread.unidentified,
             "at_bound": _at_bound(model, found.x),
             "evaluations": found.evaluations,
+            "chi_square": total / freedom if freedom else np.nan,
             "status": status,
-            "message": WORDS[status],
+            "message": WORDS[status] + (_far_beyond(residuals, freedom, loss) if absolute else ""),
         },
         model,
     )
+
+
+def _far_beyond(residuals: Array, freedom: int, loss: str) -> str:
+    """What to say where the residuals are too large for sigma; nothing where chance may explain them.
+
+    A robust loss lets outliers be: there half of the residuals count.
+    """
+    with IMPORTS:
+        from scipy.special import chdtrc
+
+    if loss != "linear":
+        scatter = MAD * float(np.median(np.abs(residuals)))
+        if scatter <= 1.0 + 6.0 / np.sqrt(residuals.size):
+            return ""
+        return f"; residuals are far beyond sigma: their own scatter is {scatter:.3g} sigma, outliers apart"
+    total = float(residuals @ residuals)
+    if not freedom or not chdtrc(freedom, total) < UNLIKELY:
+        return ""
+    told = f"residuals are far beyond sigma: chi-square is {total:.3g}, {freedom} are expected"
+    return f"; {told}: sigma too small, an unknown missing (nuisance=), or outliers: try loss='huber'"
 
 
 def _student(freedom: int) -> float:

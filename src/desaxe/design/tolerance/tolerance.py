@@ -14,13 +14,13 @@ from ...mechanism.names import LENGTHS, sensitivity
 from ...mechanism.ranges import Between
 from ...mechanism.status import ToleranceStatus
 from ...runtime.request import check_common, check_inputs
-from ...support.answer import answering
 from ...support.checks import whole_number
 from ...support.extras import needed
 from ...support.forks import IMPORTS, imported
 from ...support.shown import shown
 from ..measures import UNITS, checked
 from .function import Beside, Function, derived
+from .result import Tolerance
 from .uncertain import DISTRIBUTIONS, Array, Inexact, read
 
 BLOCK = 65536  # samples at a time
@@ -34,7 +34,6 @@ MOST_SAMPLES, MOST_BASE = 10**8, 2**20
 MANY, SOME = 100_000, 10_000  # samples of a quantity at a point, and of a peak
 
 
-@answering
 def tolerance(
     name: Any,
     *,
@@ -45,7 +44,7 @@ def tolerance(
     sobol: int = 1024,
     seed: int = 0,
     **inputs: Any,
-) -> dict[str, Any]:
+) -> Tolerance:
     """The scatter of a quantity whose inputs have tolerances or distributions.
 
     name          a quantity at a crank angle, as for `evaluate` ("a_C", with theta=), or one of a whole
@@ -57,7 +56,7 @@ def tolerance(
     samples       of the Monte Carlo, by default 100000, or 10000 of a peak
     sobol         base samples of the Sobol indices, a power of two; 0 leaves them out
 
-    Returns a dict:
+    Returns a dict that prints three lines: the value, its spread, what drives it; `report()` has all:
 
     value          with every input at its mean
     gradient       dict of the exact derivatives by what varies
@@ -114,7 +113,7 @@ def tolerance(
     drawn = _monte_carlo(found)
     covered = float(sigmas) if distribution == "normal" else None
     indices = _sobol(function, rough, sobol, seed) if sobol else None
-    return {
+    answer = {
         "value": value,
         "gradient": {row.name: float(s) for row, s in zip(rough, slopes, strict=True)},
         "first_order": first,
@@ -126,6 +125,14 @@ def tolerance(
         "agreement": _agreement(first, second, drawn, shares, indices),
         "status": int(_status(value, drawn["infeasible"], beside, bends)),
     }
+    return Tolerance(answer, *_title(name, "omega" in given))
+
+
+def _title(name: Any, state: bool) -> tuple[str, str]:
+    """The name of a quantity or measure, and its unit."""
+    if isinstance(name, (tuple, list)):
+        return " of ".join(map(str, name)), quantity(str(name[-1]), state).unit
+    return str(name), UNITS[name] if name in UNITS else quantity(name, state).unit
 
 
 def _status(value: float, lost: float, beside: Beside, bends: Array) -> ToleranceStatus:

@@ -1,0 +1,53 @@
+"""The result of `tolerance`: a dict that shows itself in three lines, and the rest on request."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from ...mechanism.status import ToleranceStatus
+from ...support.answer import Answer
+
+WORDS = {int(status): status.words for status in ToleranceStatus if status}
+SHOWN = 4  # inputs in the line of what drives the scatter
+LEAST = 0.005  # of the variance: a smaller share is not listed
+
+
+class Tolerance(Answer):
+    """What `tolerance` returns; see there for its keys. `report()` shows all of them.
+
+    `name` is that of the quantity or measure, `unit` the unit of its values.
+    """
+
+    def __init__(self, found: Mapping[str, Any], name: str, unit: str) -> None:
+        super().__init__(found)
+        self.name, self.unit = name, unit
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (dict(self), self.name, self.unit)
+
+    def __repr__(self) -> str:
+        drawn, first = self["monte_carlo"], self["first_order"]
+        unit = "" if self.unit in ("", "1") else f" {self.unit}"
+        ends = list(drawn["percentiles"].values())
+        spread = f"{self.name} scatters by a standard deviation of {drawn['std']:.4g}{unit}"
+        spread += f" ({first['std']:.4g} by derivatives)"
+        if ends:
+            spread += f", 95 % lie in {ends[1]:.6g} ... {ends[3]:.6g}"
+        told = f"; status {self['status']}: {WORDS[self['status']]}" if self["status"] else ""
+        return "\n".join(
+            [
+                f"{self.name} is {self['value']:.6g}{unit} with every input at its mean{told}",
+                spread,
+                self._causes(),
+            ]
+        )
+
+    def _causes(self) -> str:
+        shares = {name: share for name, share in self["contributions"].items() if share >= LEAST}
+        listed = [f"{name} {100 * share:.0f} %" for name, share in list(shares.items())[:SHOWN]]
+        rest = len(self["contributions"]) - len(listed)
+        more = f" and {rest} more" if rest and listed else ""
+        return f"driven by {', '.join(listed) or 'nothing to first order'}{more}; report() has everything"
+
+    def report(self) -> str:
+        """Every key of the result, a line each."""
+        return super().__repr__()
