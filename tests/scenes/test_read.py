@@ -80,7 +80,7 @@ MISTAKES = {
     "no rod": ("mechanism.BC", 0, ["mechanism.BC = 0", "a finite length > 0"]),
     "not finite": ("motion.omega0", math.inf, ["motion.omega0 = inf", "a finite number"]),
     "no such branch": ("mechanism.branch", 2, ["mechanism.branch = 2", "1 (the papers) or -1"]),
-    "no such accuracy": ("accuracy", "best", ['accuracy = "best"', "one of fast, standard, extended"]),
+    "no such accuracy": ("accuracy", "best", ['accuracy = "best"', "one of standard, extended"]),
     "accuracy out of reach": ("accuracy", 1e-20, ["accuracy = 1e-20: the smallest error is"]),
     "accuracy that is no error": (
         "accuracy",

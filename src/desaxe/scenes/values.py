@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
-from math import isfinite
+from math import floor, isfinite
 
 from ..loads.load import Load
 from ..mechanism.inputs import INPUTS, is_good
@@ -56,7 +56,7 @@ def _spread(key: str, name: str, written: schema.Range) -> tuple[float, ...]:
 
 
 def _require_few(key: str, steps: int | Fraction) -> None:
-    count = int(abs(steps)) + 1
+    count = floor(abs(Fraction(steps))) + 1
     if count > MOST:
         number = str(count) if count < 10**18 else f"{Decimal(count):.2e}"
         raise SceneError(f"{key}: {number} values are too many, at most {MOST}")
