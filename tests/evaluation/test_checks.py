@@ -157,7 +157,7 @@ REFUSED = [
         "V_C",
         {"accuracy": "perfect"},
         ValueError,
-        "accuracy = 'perfect': it is one of fast, standard, extended",
+        "accuracy = 'perfect': it is one of standard, extended",
     ),
     ("V_C", {"omega": 3.0}, ValueError, r"give omega0= \(the law\) or omega= \(a state\), not both"),
     ("V_C", {"threads": 0}, ValueError, "threads = 0: a whole number, at least 1"),
