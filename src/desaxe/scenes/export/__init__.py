@@ -4,6 +4,7 @@ compile       `desaxe.compile`: a scene to files; the text of the Python module
 command       `desaxe compile`
 portable      a scene as the `Module` that every language writes
 solvers       crank angles for a slider position, limit angles
+motion        the crank's acceleration under a torque
 entry_points  the functions that people call in the Python module
 scalars       a function for each output, for @njit functions
 peaks         the scene's peaks in the Python module

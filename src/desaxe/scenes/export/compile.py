@@ -77,7 +77,8 @@ def compile(
                 other axes, too, and for each output a function to call from an @njit of your own; for each
                 [[peak]] of designs that turn fully, without friction, a function such as `peak_absmax_a_C()`
     c           C99: FOLDER/name.h and name.c, where `name` is the folder's: `int name_point(in, out)`,
-                `void name_array(n, in, out)`, `name_inverse`, `name_limits`
+                `void name_array(n, in, out)`, `name_inverse`, `name_limits`; where masses are given
+                `name_alpha` and `name_step`, the motion under a torque in steps of order 4
     octave      name.m for GNU Octave and MATLAB: `[a_C, V_C] = name(theta, ec)`
     jax         a module with a function for each output and `evaluate(**inputs)`; its derivatives are the
                 derived ones

@@ -9,6 +9,7 @@ from ..protocol import Module, Solver, Symbol
 from ..shared import called, one_line, with_helpers
 from .functions import Lifted, lifted, static_function
 from .helpers import CPLUSPLUS, FREESTANDING, FREESTANDING_ATAN2, FREESTANDING_HYPOT, HELPERS, PRAGMAS
+from .steps import HEADER, step_texts
 
 STRIP = 128  # points of an array whose sines are computed ahead, on the stack
 
@@ -50,6 +51,8 @@ def _header(module: Module) -> str:
     for solver, given in module.solvers.items():
         functions += ["", *SOLVER_TEXTS[solver].format(name=name).splitlines()]
         functions.append(f"{_signature(name, solver, given)};")
+    if module.motion is not None:
+        functions += ["", *HEADER.format(name=name).rstrip().splitlines()]
     tables = [
         "/* Names and SI units, in order; NULL at the end. */",
         *(f"extern const char *const {name}_{table}[];" for table in _tables(module)),
@@ -156,8 +159,9 @@ class _Source:
 
     def text(self) -> str:
         """The text of the whole file."""
-        functions = "\n".join([*self._forms(), self._point(), self._array(), *self._solvers()])
-        name = self.module.name
+        name, motion = self.module.name, self.module.motion
+        steps = [] if motion is None else step_texts(name, motion, self.names)
+        functions = "\n".join([*self._forms(), self._point(), self._array(), *self._solvers(), *steps])
         tables = [
             f"const char *const {name}_{table}[] = {{{', '.join([*map(_quoted, texts), 'NULL'])}}};"
             for table, texts in _tables(self.module).items()

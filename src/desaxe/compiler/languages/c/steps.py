@@ -1,0 +1,161 @@
+"""`name_step` and `name_alpha`: the motion under a torque, for a controller or hardware in the loop.
+
+A step is one of the classical method of Runge and Kutta, of order 4. With friction, the way in which the
+crank turns is held during a step: where it comes to rest, the step is cut, and what is left starts from rest.
+"""
+
+from collections.abc import Sequence
+
+from ...program import Program
+from .functions import lifted, static_function
+
+HEADER = """\
+/* The crank's angular acceleration under a torque on it, positive like theta. Of in[], laid out as for
+   {name}_point, lengths, masses, loads and friction are read. Returns the status; NaN where it is not 0. */
+int {name}_alpha(double torque, double theta, double omega, const double in[], double *alpha);
+
+/* One step of h >= 0 seconds, of fixed length and order 4, the torque held: theta and omega become those at
+   its end. Returns the status; where it is not 0, both stay as they are. */
+int {name}_step(double h, double torque, double *theta, double *omega, const double in[]);
+"""
+
+AT = """\
+/* The acceleration, out[0], while the crank turns one way; returns its status. */
+static int motion_at(double torque, double theta, double omega, double way, const double in[],
+                     double out[]) {{
+{lines}
+}}
+"""
+
+SMOOTH = """\
+int {name}_alpha(double torque, double theta, double omega, const double in[], double *alpha) {{
+  const int status = motion_at(torque, theta, omega, 0.0, in, alpha);
+  *alpha = status == 0 ? *alpha : (double)NAN;
+  return status;
+}}
+"""
+
+RUBBING = """\
+/* The way in which the crank turns or starts from rest, 0 where friction holds it; returns a status. */
+static int way_of(double torque, double theta, double omega, const double in[], double *way) {{
+  double ahead[1], back[1];
+  *way = omega > 0.0 ? 1.0 : -1.0;
+  if (!(omega == 0.0)) {{
+    return 0;
+  }}
+  const int status = motion_at(torque, theta, omega, 1.0, in, ahead);
+  const int other = motion_at(torque, theta, omega, -1.0, in, back);
+  const int starts = status == 0 && ahead[0] > 0.0, returns = other == 0 && back[0] < 0.0;
+  *way = starts ? 1.0 : (returns ? -1.0 : 0.0);
+  return starts && returns ? 6 : (status < 5 ? status : 0);
+}}
+
+int {name}_alpha(double torque, double theta, double omega, const double in[], double *alpha) {{
+  double way;
+  int status = way_of(torque, theta, omega, in, &way);
+  *alpha = 0.0;
+  if (status == 0 && !(way == 0.0)) {{
+    status = motion_at(torque, theta, omega, way, in, alpha);
+  }}
+  *alpha = status == 0 ? *alpha : (double)NAN;
+  return status;
+}}
+"""
+
+RUNGE_KUTTA = """\
+/* The state after a step, the way of turning held; returns the status. */
+static int runge_kutta(double h, double torque, double way, double *theta, double *omega,
+                       const double in[]) {{
+  const double parts[4] = {{0.0, 0.5, 0.5, 1.0}};
+  double speed[4], slope[4];
+  for (int k = 0; k < 4; k++) {{
+    const double part = h * parts[k];
+    const double angle = *theta + (k > 0 ? part * speed[k - 1] : 0.0);
+    speed[k] = *omega + (k > 0 ? part * slope[k - 1] : 0.0);
+    const int status = motion_at(torque, angle, speed[k], way, in, &slope[k]);
+    if (status != 0) {{
+      return status;
+    }}
+  }}
+  *theta += h / 6.0 * (speed[0] + 2.0 * (speed[1] + speed[2]) + speed[3]);
+  *omega += h / 6.0 * (slope[0] + 2.0 * (slope[1] + slope[2]) + slope[3]);
+  return fabs(*theta) < (double)INFINITY && fabs(*omega) < (double)INFINITY ? 0 : 4;
+}}
+"""
+
+SMOOTH_STEP = """\
+int {name}_step(double h, double torque, double *theta, double *omega, const double in[]) {{
+  double angle = *theta, speed = *omega;
+  const int status = h >= 0.0 ? runge_kutta(h, torque, 0.0, &angle, &speed, in) : 4;
+  if (status == 0) {{
+    *theta = angle;
+    *omega = speed;
+  }}
+  return status;
+}}
+"""
+
+RUBBING_STEP = """\
+int {name}_step(double h, double torque, double *theta, double *omega, const double in[]) {{
+  double angle = *theta, speed = *omega, left = h;
+  for (int turns = 0; turns < 3; turns++) {{
+    double way, end = angle, last = speed;
+    int status = h >= 0.0 ? way_of(torque, angle, speed, in, &way) : 4;
+    if (status == 0 && way == 0.0) {{
+      break;
+    }}
+    status = status == 0 ? runge_kutta(left, torque, way, &end, &last, in) : status;
+    double low = 0.0, high = left, at_low = speed, at_high = last, part = left;
+    /* Where the speed changes its sign, by the Illinois rule. */
+    for (int k = 0; status == 0 && at_high * way < 0.0 && k < 20 && high - low > 1e-15 * h; k++) {{
+      part = low + (high - low) * (at_low / (at_low - at_high));
+      end = angle;
+      last = speed;
+      status = runge_kutta(part, torque, way, &end, &last, in);
+      if (last * way > 0.0) {{
+        low = part;
+        at_low = last;
+        at_high *= 0.5;
+      }} else {{
+        high = part;
+        at_high = last;
+        at_low *= 0.5;
+      }}
+    }}
+    if (status != 0) {{
+      return status;
+    }}
+    angle = end;
+    left -= part;
+    speed = left > 0.0 ? 0.0 : last;
+    if (!(left > 0.0)) {{
+      break;
+    }}
+  }}
+  *theta = angle;
+  *omega = speed;
+  return 0;
+}}
+"""
+
+
+def step_texts(name: str, motion: Program, names: Sequence[str]) -> list[str]:
+    """The functions of `HEADER`; `names` are the arguments of a point, in the order of in[]."""
+    form = lifted(motion)
+    words = {"torque": "torque", "theta": "theta", "omega": "omega", "way": "way"}
+    words |= {part: f"turn[{k}]" for pair in form.turns.values() for k, part in enumerate(pair)}
+    given = [words.get(n) or f"in[{names.index(n)}]" for n in form.program.inputs]
+    lines = ["double turn[2];", "sin_cos(theta, turn);"] if form.turns else []
+    lines += [
+        f"(void){n};" for n in (*words, "in") if n in ("theta", "omega", "way", "in") and not _used(n, given)
+    ]
+    lines.append(f"return motion({', '.join([*given, 'out'])});")
+    rubs = "way" in motion.inputs
+    texts = [AT, RUBBING if rubs else SMOOTH, RUNGE_KUTTA, RUBBING_STEP if rubs else SMOOTH_STEP]
+    body = "\n".join(f"  {line}" for line in lines)
+    made = [text.format(name=name, lines=body) for text in texts]
+    return [static_function("motion", form.program, form.program.inputs, 1, 1), *made]
+
+
+def _used(name: str, given: Sequence[str]) -> bool:
+    return any(each == name or each.startswith(f"{name}[") for each in given)

@@ -1,0 +1,70 @@
+"""The crank's acceleration under a torque as a Program, for a controller or a simulation in another language.
+
+torque = M alpha + h + c |N|: h is the drive torque at constant speed without friction, c |N| what the guide
+takes (`simulation/friction.py`). The way in which the crank turns, or is about to turn, is an input of its
+own: at rest there is an answer for each way.
+"""
+
+from collections.abc import Mapping
+
+from ...compiler.passes.guard import guard_inputs
+from ...compiler.passes.pipeline import optimise
+from ...compiler.program import Line, Program, renamed
+from ...compiler.text import read_function
+from ...mechanism.inputs import LEAST
+from ...mechanism.names import CENTRES, LENGTHS, LOADS, STATUS
+from ...runtime.specialise import specialise
+from ...simulation.friction import JAMS_AT
+from ...simulation.model import form_of
+
+MASSES = ("m_crank", "m_rod", "m_slider", "I_crank", "I_rod")
+FREE = """def motion(M_eff, T_in, torque):
+    acceleration = (torque - T_in) / M_eff
+    return acceleration
+"""
+RUBBING = f"""def motion(M_eff, T_in, torque, Y_wrt_theta, N_C, N_C_wrt_alpha, lean, mu, way):
+    alpha_free = (torque - T_in) / M_eff
+    normal_free = N_C + N_C_wrt_alpha * alpha_free
+    arm = mu * (fabs(Y_wrt_theta) * way)
+    wedge = lean * (mu * copysign(1.0, Y_wrt_theta) * way) - arm * (N_C_wrt_alpha / M_eff)
+    share = wedge * copysign(1.0, normal_free)
+    acceleration = alpha_free - arm * (fabs(normal_free) / (1.0 - share)) / M_eff
+    jams = {JAMS_AT!r} <= share
+    two = share < -1.0
+    return acceleration, jams, two
+"""
+SMOOTH, CONTACT = ("M_eff", "T_in"), ("Y_wrt_theta", "N_C", "N_C_wrt_alpha", "lean")
+
+
+def has_masses(given: Mapping[str, object]) -> bool:
+    """True where something has a mass, so that a torque has an effect."""
+    return any(given.get(name, 0.0) != 0.0 for name in MASSES)
+
+
+def motion(given: Mapping[str, object], branch: int) -> Program:
+    """The acceleration and its status, from theta, omega, torque, what is not a number, and `way` (-1, 1).
+
+    Without friction, mu = 0, there is no `way`.
+    """
+    values = {
+        name: given.get(name, 0.0) for name in (*LENGTHS, *LOADS) if name in given or name not in CENTRES
+    }
+    numbers = {name: value for name, value in values.items() if isinstance(value, float)}
+    rubs = numbers.get("mu") != 0.0
+    fixed = {**numbers, "branch": float(branch), "alpha": 0.0, "mu": 0.0}
+    base = specialise((*SMOOTH, STATUS, *(CONTACT if rubs else ())), form_of(values), tuple(fixed.items()))
+    law = read_function(RUBBING if rubs else FREE)
+    parts = dict(zip((*SMOOTH, STATUS, *CONTACT), base.outputs, strict=False))
+    law = renamed(law, parts | {line.name: f"_{line.name}" for line in law.lines})
+    inputs = [*base.inputs, *(name for name in law.inputs if name not in (*base.inputs, *parts))]
+    status = [Line("told", "copy", (parts[STATUS],), "i64")]
+    if rubs:
+        status = [
+            Line("_balances", "select", ("_two", 6, parts[STATUS]), "i64"),
+            Line("told", "select", ("_jams", 5, "_balances"), "i64"),
+        ]
+    lines, outputs = (*base.lines, *law.lines, *status), ("_acceleration", "told")
+    whole = Program(tuple(inputs), lines, outputs, base.notes)
+    held = {"mu": numbers["mu"]} if rubs and "mu" in numbers else {}
+    program = optimise(whole, held)[0]
+    return guard_inputs(program, [name for name in program.inputs if name != "way"], LEAST, {})
