@@ -9,6 +9,7 @@ import numpy as np
 from .. import plot
 from ..plot.mechanism import label_lengths
 from .arguments import in_si
+from .tornado import tornado
 
 ANGLES = 721  # of a turn
 
@@ -59,14 +60,24 @@ class Plots:
         return plot.animate(dataset, name, frames=frames, seconds=seconds, ax=ax)
 
     def tornado(
-        self, name: str, changes: Mapping[str, Any], *, kind: str = "absmax", ax: Any = None, **inputs: Any
+        self,
+        name: str,
+        changes: Mapping[str, Any] | None = None,
+        *,
+        kind: str = "absmax",
+        ax: Any = None,
+        **inputs: Any,
     ) -> Any:
         """Draw what changes of the inputs do to a peak over the crank angle: see `desaxe.plot.tornado`.
 
-        changes  dict input -> half its range, in the units of the machine
+        name     a quantity; of one that has no course over the crank angle, such as "stroke", its value
+        changes  dict input -> half its range, in the units of the machine; by default 1 % of each, of ec 1 %
+                 of AB, and the tolerances of `inputs` instead where they have some
+        kind     of the peak: "absmax", "max" or "min"
+        inputs   others than the machine's; with a tolerance, such as ec="10 mm +- 0.1 mm" or
+                 `dx.plus_minus(10, 0.1)`, they are changes; theta=60 for the value at an angle
         """
-        peak = self._machine.peak(name, kind=kind, **inputs)
-        return plot.tornado(peak, changes, name=name, units=self._machine.units, ax=ax)
+        return tornado(self._machine, name, changes, kind, ax, inputs)
 
     def design_map(
         self, name: Any, *, x: str | None = None, y: str | None = None, ax: Any = None, **inputs: Any

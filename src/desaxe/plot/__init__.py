@@ -9,11 +9,13 @@ mechanism   crank, rod and slider to scale at a crank angle
 drive       drive torque over a turn, and the speed with its flywheel
 animate     the same as it turns, beside a quantity's curve
 save        a figure or animation to a file
+picture     what each of them returns: figure, axes, artists
 shared      what all of them share: values, labels, colours, legends
+titles      the inputs that matter, for a title
 jumps       nodes on each side of the jumps of loads
 from_dict   a dict of arrays as a Dataset
 
-Each draws on `ax=`, or on a new Figure, and returns what it drew.
+Each draws on `ax=`, or on a new Figure, and returns a `Picture(figure, axes, artists)`.
 """
 
 from .animate import animate as animate
@@ -22,8 +24,20 @@ from .design_map import design_map as design_map
 from .drive import drive as drive
 from .mechanism import mechanism as mechanism
 from .panels import panels as panels
+from .picture import Picture as Picture
 from .polar import polar as polar
 from .save import save as save
 from .tornado import tornado as tornado
 
-__all__ = ["animate", "curves", "design_map", "drive", "mechanism", "panels", "polar", "save", "tornado"]
+__all__ = [
+    "Picture",
+    "animate",
+    "curves",
+    "design_map",
+    "drive",
+    "mechanism",
+    "panels",
+    "polar",
+    "save",
+    "tornado",
+]

@@ -10,19 +10,19 @@ from ..support.extras import needed
 from ..support.forks import IMPORTS
 from .curves import curves
 from .mechanism import label_lengths, mechanism
+from .picture import Picture
 from .shared import ORANGE, input_in_si, shown
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.animation import FuncAnimation
 
 TALL, WIDE = 4.6, 5.0  # inches: height of all, width of the curve's part
 
 
 def animate(
     dataset: "xr.Dataset", name: str | None = None, *, frames: int = 60, seconds: float = 3.0, ax: Any = None
-) -> "FuncAnimation":
-    """The mechanism of a dataset as it turns, and where it is on a quantity's curve; a FuncAnimation.
+) -> Picture:
+    """The mechanism of a dataset as it turns, and where it is on a quantity's curve; a Picture, animated.
 
     dataset  the result of `desaxe.grid` over theta alone, with ec, AB and BC
     name     the quantity whose curve is drawn beside it; without one there is only the mechanism
@@ -30,8 +30,8 @@ def animate(
     ax       where to draw: an Axes for the mechanism, and a second one in a pair for the curve; by default
              those of a new Figure
 
-    `save(animation, "press.gif")` or `"press.html"` writes it; in a notebook show
-    `IPython.display.HTML(animation.to_jshtml())`. Raises ValueError where the dataset lacks what is needed.
+    `picture.save("press.gif")` or `"press.html"` writes it; in a notebook show
+    `IPython.display.HTML(picture.to_jshtml())`. Raises ValueError where the dataset lacks what is needed.
     """
     with needed("plot.animate"):
         from matplotlib.animation import FuncAnimation
@@ -56,7 +56,9 @@ def animate(
     whole = theta.size > 1 and abs(theta[-1] - theta[0] - 2.0 * np.pi) < 1e-9  # its last angle is its first
     places = np.linspace(0, theta.size - 1, min(frames, theta.size) + whole).round().astype(int)
     every = places[:-1] if whole and places.size > 1 else places
-    return FuncAnimation(left.figure, at, [int(k) for k in every], interval=1000.0 * seconds / every.size)
+    frames_of = [int(k) for k in every]
+    movie = FuncAnimation(left.figure, at, frames_of, interval=1000.0 * seconds / every.size)
+    return Picture([left, right] if moving is not None else left, at(0), movie)
 
 
 def _design(dataset: "xr.Dataset") -> dict[str, float]:

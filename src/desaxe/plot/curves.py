@@ -8,7 +8,9 @@ import numpy as np
 from ..support.extras import needed
 from .from_dict import as_dataset
 from .jumps import with_jumps
-from .shared import chosen, drawn, finish_axis, fixed_inputs, label_of, mark_gaps, shown, worth_showing
+from .picture import Picture
+from .shared import chosen, drawn, finish_axis, label_of, mark_gaps, room_at_jumps, shown, worth_showing
+from .titles import title_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,15 +28,15 @@ def curves(
     family: str | None = None,
     ax: "Axes | None" = None,
     **inputs: Any,
-) -> "list[Line2D]":
-    """Draw a quantity over one input, one curve for each value of another; returns the lines.
+) -> Picture:
+    """Draw a quantity over one input, one curve for each value of another; a Picture of the lines.
 
     dataset  the result of `desaxe.grid` or of a scene; or the dict that `desaxe.evaluate` gives
     name     the quantity
     over     the dimension along the horizontal axis; angles are shown in degrees
     family   the dimension that tells the curves apart; by default the other one, if there is one
-    ax       where to draw: a matplotlib Axes; by default a new Figure (`lines[0].figure`), whose title tells
-             the inputs that are numbers
+    ax       where to draw: a matplotlib Axes; by default a new Figure, whose title tells the inputs that
+             matter
     inputs   of a dict of arrays that does not know its own: theta=angles, ...
 
     Labels and units come from the dataset. Where a load jumps each side gets a node, besides the samples.
@@ -51,14 +53,15 @@ def curves(
     ax = Figure(figsize=SIZE, layout="constrained").add_subplot() if ax is None else ax
     lines = draw(ax, array, over, beside=own)
     if own:
-        ax.set_title(fixed_inputs(array), loc="left", fontsize="medium")
-    return lines
+        ax.set_title(title_of(dataset, [name]), loc="left", fontsize="medium")
+    return Picture(ax, lines)
 
 
 def draw(ax: "Axes", array: "xr.DataArray", over: str, beside: bool | None) -> "list[Line2D]":
     """The curves of (family, over) or (over), with labels, ticks and limits."""
     lines = drawn(ax, shown(array[over]), array, beside)
     finish_axis(ax.xaxis, array[over])
+    room_at_jumps(ax, shown(array[over]), array.values)
     ax.set_ylabel(label_of(array))
     mark_gaps(ax, lines)
     limits = worth_showing([np.asarray(line.get_ydata(), dtype=np.float64) for line in lines])

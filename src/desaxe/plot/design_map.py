@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 from ..mechanism.names import LENGTHS
 from ..support.extras import needed
 from ..support.forks import IMPORTS
-from .shared import choose, finish_axis, fixed_inputs, label_of, shown
+from .picture import Picture
+from .shared import choose, finish_axis, label_of, shown
+from .titles import title_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,13 +27,13 @@ GEOMETRIC = (0, 1, 2)  # what the lengths alone decide
 
 def design_map(
     dataset: "xr.Dataset", name: str, *, x: str | None = None, y: str | None = None, ax: "Axes | None" = None
-) -> Any:
-    """Draw a quantity over two inputs as filled contours; returns matplotlib's ContourSet.
+) -> Picture:
+    """Draw a quantity over two inputs as filled contours; a Picture of matplotlib's ContourSet.
 
     dataset  the result of `desaxe.design_map` or `desaxe.grid`, with `status` or `margin`
     name     the quantity
     x, y     the dimensions along the axes; by default the first and the other one; angles in degrees
-    ax       where to draw: a matplotlib Axes; by default those of a new Figure (`.axes.figure`)
+    ax       where to draw: a matplotlib Axes; by default those of a new Figure
 
     Infeasible points are hatched; the edge is exact where the lengths decide, else halfway between points.
     A quantity that grows without bound towards the edge is shown up to most of its values. Raises
@@ -54,8 +56,8 @@ def design_map(
     finish_axis(axes.xaxis, array[x])
     finish_axis(axes.yaxis, array[y])
     if own:
-        axes.set_title(fixed_inputs(array), loc="left", fontsize="medium")
-    return drawn
+        axes.set_title(title_of(dataset, [name]), loc="left", fontsize="medium")
+    return Picture(axes, [drawn], drawn)
 
 
 def _plane(dataset: "xr.Dataset", name: str, x: str | None, y: str | None) -> tuple["xr.DataArray", str, str]:

@@ -1,11 +1,14 @@
 """Drive diagrams: torque and power over a turn, and the speed that a flywheel leaves."""
 
+import textwrap
 from math import degrees, isfinite, pi
 from typing import TYPE_CHECKING, Any
 
 from ..support.extras import needed
 from ..support.forks import IMPORTS
+from .picture import Picture
 from .shared import BLUE, ORANGE, raised
+from .titles import WIDTH as TITLE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -15,15 +18,15 @@ SIZE = (8.0, 5.6)  # inches
 MINUTE = 9.549296585513721  # rpm in a rad/s
 
 
-def drive(result: Any, *, ax: "Axes | None" = None) -> "dict[str, Line2D]":
+def drive(result: Any, *, ax: "Axes | None" = None) -> Picture:
     """Draw the drive torque over a turn with its mean and peak, and the speed with the flywheel.
 
     result  of `desaxe.drive`
     ax      where to draw the torque alone: a matplotlib Axes; by default a new Figure with the torque above
-            and the speed below (`lines["T_in"].figure`)
+            and the speed below
 
-    Returns the lines by name: T_in, mean, peak, and speed where there is a flywheel. Raises ValueError for a
-    result without a cycle, whose `status` says why.
+    Returns a Picture of the lines by name: T_in, mean, peak, and speed where there is a flywheel. Raises
+    ValueError for a result without a cycle, whose `status` says why.
     """
     with needed("plot.drive"):
         from matplotlib.figure import Figure
@@ -42,7 +45,7 @@ def drive(result: Any, *, ax: "Axes | None" = None) -> "dict[str, Line2D]":
     for one in axes:
         _finish(one, _degrees(result, "theta"))
     axes[-1].set_xlabel("crank angle, theta [deg]")
-    return lines
+    return Picture(axes if len(axes) > 1 else axes[0], lines)
 
 
 def _torque(ax: "Axes", result: Any) -> "dict[str, Line2D]":
@@ -59,6 +62,7 @@ def _torque(ax: "Axes", result: Any) -> "dict[str, Line2D]":
                 ha="right" if left else "left", fontsize="small")  # fmt: skip
     ax.set_ylabel(f"torque of the drive, T_in [{result.unit('T_in')}]")
     ax.set_title(
+        f"{textwrap.fill(result.design().replace('*', ' '), TITLE)}\n"
         f"mean {result['torque_mean']:.4g} {result.unit('torque_mean')}, rms {result['torque_rms']:.4g} "
         f"{result.unit('torque_rms')}, mean power {result['power_mean']:.4g} {result.unit('power_mean')}",
         loc="left", fontsize="medium",

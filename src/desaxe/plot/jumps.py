@@ -41,6 +41,7 @@ def with_jumps(dataset: "xr.Dataset", array: "xr.DataArray", over: str) -> "xr.D
     wide: dict[str, Any] = {n: v[:, None] if v.ndim else v for n, v in given.items()}
     found = evaluate(name, theta=angles, branch=branch, **wide, **loads)
     found = np.broadcast_to(found, (*array.shape[:-1], angles.size)) * _factor(quantity(name).unit, unit)
+    angles = np.clip(angles, samples.min(), samples.max())
     theta = np.append(array["theta"].values, angles * _factor("rad", str(array["theta"].attrs["units"])))
     order = np.argsort(theta, kind="stable")
     values = np.concatenate([array.values, found], axis=-1)[..., order]
@@ -52,7 +53,7 @@ def with_jumps(dataset: "xr.Dataset", array: "xr.DataArray", over: str) -> "xr.D
 def _jumps(
     loads: Mapping[str, Load], given: Mapping[str, Array], branch: int, low: float, high: float
 ) -> Array:
-    """Angles before and after every jump of one of the designs, ascending."""
+    """Angles before and after every jump of one of the designs, ascending, those at the ends included."""
     found = [np.empty(0)]
     columns = dict(zip(given, np.broadcast_arrays(*(np.atleast_1d(v) for v in given.values())), strict=True))
     for load in loads.values():
@@ -64,7 +65,7 @@ def _jumps(
             starts = arcs.starts[arcs.leaps]
             found += [starts - BESIDE, starts + BESIDE]
     angles = np.unique(np.concatenate(found))
-    return angles[(angles >= low) & (angles <= high)]
+    return angles[(angles >= low - 2.0 * BESIDE) & (angles <= high + 2.0 * BESIDE)]
 
 
 def _factor(from_unit: str, to_unit: str) -> float:

@@ -14,6 +14,7 @@ from ..mechanism.unit_system import Conversion
 from ..runtime.request import check_common, with_known_inputs
 from ..support.extras import needed
 from ..support.forks import IMPORTS
+from .picture import Picture
 from .shared import BLUE, ORANGE
 
 if TYPE_CHECKING:
@@ -76,13 +77,13 @@ class Sketch:
 
 
 @with_known_inputs
-def mechanism(*, theta: Any, ec: Any, AB: Any, BC: Any, branch: int = 1, ax: "Axes | None" = None) -> Sketch:
-    """Draw the mechanism to scale at a crank angle; returns a Sketch, which `turn(theta)` moves.
+def mechanism(*, theta: Any, ec: Any, AB: Any, BC: Any, branch: int = 1, ax: "Axes | None" = None) -> Picture:
+    """Draw the mechanism to scale at a crank angle; a Picture, which `turn(theta)` moves.
 
     theta       crank angle [rad], or a text such as "60 deg"
     ec, AB, BC  lengths [m], or texts such as "125 mm"
     branch      +1 or -1
-    ax          where to draw: a matplotlib Axes; by default a new Figure (`sketch.axes.figure`)
+    ax          where to draw: a matplotlib Axes; by default a new Figure
 
     X to the right, Y up, along the slider's axis, as in the frame of README. The dotted circle is the
     crank pin's, the guide is as long as the stroke. Where it cannot be assembled there is only the crank.
@@ -100,8 +101,7 @@ def mechanism(*, theta: Any, ec: Any, AB: Any, BC: Any, branch: int = 1, ax: "Ax
     _frame(ax, lengths, reach, box)
     links, slider, pins, arc, names, note = _moving(ax, lengths["AB"])
     sketch = Sketch(ax, links, slider, pins, arc, names, note, lengths, int(branch))
-    sketch.turn(theta)
-    return sketch
+    return Picture(ax, sketch.turn(theta), sketch)
 
 
 def _number(name: str, value: Any) -> float:

@@ -7,11 +7,12 @@ from ..support.extras import needed
 from .curves import draw
 from .from_dict import as_dataset
 from .jumps import with_jumps
-from .shared import chosen, fixed_inputs, meaning_of, unit_of
+from .picture import Picture
+from .shared import chosen, meaning_of, unit_of
+from .titles import title_of
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.lines import Line2D
 
 WIDTH, HEIGHT = 8.0, 1.9  # inches: of all, of a panel
 ALWAYS = ("status", "margin")
@@ -25,14 +26,14 @@ def panels(
     family: str | None = None,
     ax: Any = None,
     **inputs: Any,
-) -> "dict[str, list[Line2D]]":
-    """Draw several quantities over one input, one above the other; returns the lines by name.
+) -> Picture:
+    """Draw several quantities over one input, one above the other; a Picture of the lines by name.
 
     dataset  the result of `desaxe.grid` or of a scene; or the dict that `desaxe.evaluate` gives
     names    the quantities, from top to bottom; by default all that vary with `over`
     over     the dimension along the horizontal axis; angles are shown in degrees
     family   the dimension that tells the curves apart; by default the other one, if there is one
-    ax       where to draw: a matplotlib Axes for each name; by default those of a new Figure
+    ax       where to draw: a matplotlib Axes for each name, in a list; by default those of a new Figure
     inputs   of a dict of arrays that does not know its own: theta=angles, ...
 
     Labels, gaps and complaints are those of `curves`.
@@ -48,9 +49,13 @@ def panels(
     if ax is None:
         figure = Figure(figsize=(WIDTH, 0.8 + HEIGHT * len(arrays)), layout="constrained")
         axes = list(figure.subplots(len(arrays), sharex=True, squeeze=False)[:, 0])
-        figure.suptitle(fixed_inputs(arrays[0]), x=0.01, ha="left", fontsize="medium")
+        figure.suptitle(title_of(dataset, names), x=0.01, ha="left", fontsize="medium")
     else:
-        axes = list(ax)
+        axes = list(ax) if hasattr(ax, "__len__") else [ax]
+        if len(axes) != len(arrays):
+            raise ValueError(
+                f"ax: expected {len(arrays)} Axes, one for each of {', '.join(names)}; got {len(axes)}"
+            )
     drawn = {}
     for place, (array, axis) in enumerate(zip(arrays, axes, strict=True)):
         lines = draw(axis, array, over, beside=True if place == 0 else None)
@@ -61,4 +66,4 @@ def panels(
         drawn[str(array.name)] = lines
     if ax is None:
         figure.align_ylabels(axes)
-    return drawn
+    return Picture(axes, drawn)

@@ -7,7 +7,9 @@ import numpy as np
 from ..support.extras import needed
 from ..support.forks import IMPORTS
 from .jumps import with_jumps
-from .shared import chosen, drawn, fixed_inputs, input_in_si, label_of, worth_showing
+from .picture import Picture
+from .shared import chosen, drawn, input_in_si, label_of, worth_showing
+from .titles import title_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -24,13 +26,13 @@ def polar(
     *,
     family: str | None = None,
     ax: "Axes | None" = None,
-) -> "list[Line2D]":
-    """Draw a quantity over the crank angle in polar coordinates; returns the lines.
+) -> Picture:
+    """Draw a quantity over the crank angle in polar coordinates; a Picture of the lines.
 
     dataset  the result of `desaxe.grid` or of a scene, with the dimension theta
     name     the quantity, such as "T_in"; or two, such as ("F_B_X", "F_B_Y"), whose magnitude is drawn
     family   the dimension that tells the curves apart; by default the other one, if there is one
-    ax       where to draw: polar Axes; by default those of a new Figure (`lines[0].figure`)
+    ax       where to draw: polar Axes; by default those of a new Figure
 
     theta is where the crank is: 0 is up, along the slider axis, and it turns towards the right. A
     quantity of either sign is 0 on the dark circle, positive outside of it and negative inside.
@@ -38,10 +40,8 @@ def polar(
     """
     with needed("plot.polar"):
         from matplotlib.figure import Figure
-    parts = [
-        with_jumps(dataset, chosen(dataset, part, "theta", family), "theta")
-        for part in ((name,) if isinstance(name, str) else name)
-    ]
+    names = [name] if isinstance(name, str) else list(name)
+    parts = [with_jumps(dataset, chosen(dataset, part, "theta", family), "theta") for part in names]
     array = parts[0] if isinstance(name, str) else _magnitude(parts)
     beside = ax is None
     axes: Any = Figure(figsize=SIZE, layout="constrained").add_subplot(projection="polar") if beside else ax
@@ -50,8 +50,8 @@ def polar(
     lines = drawn(axes, input_in_si(array["theta"]), array, beside)
     _finish(axes, array, lines)
     if beside:
-        axes.set_title(fixed_inputs(array, TITLE), loc="left", fontsize="medium", pad=12)
-    return lines
+        axes.set_title(title_of(dataset, names, TITLE), loc="left", fontsize="medium", pad=12)
+    return Picture(axes, lines)
 
 
 def _magnitude(parts: "list[xr.DataArray]") -> "xr.DataArray":

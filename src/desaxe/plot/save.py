@@ -9,42 +9,45 @@ from ..support.files import replacing
 from ..support.forks import IMPORTS
 
 
-def save(figure: Any, path: str | PathLike[str], dpi: float | None = None) -> Path:
+def save(figure: Any, path: str | PathLike[str], dpi: float | None = None, **options: Any) -> Path:
     """Write a figure or animation to a file, in the format of its suffix; missing folders are created.
 
     figure  a matplotlib Figure or what a function of `desaxe.plot` returns (.png, .svg, .pdf), or an
             animation (.gif, .html)
     dpi     dots per inch; by default 150, and 80 of an animation
+    options  of matplotlib's `savefig`, such as `transparent=True`; an animation's `save`, such as `writer`
 
     A file appears whole or not at all. Returns its path.
     """
     target = Path(path)
     with replacing(target) as staged:
         if hasattr(figure, "to_jshtml"):
-            _animation(figure, staged, dpi or 80.0)
+            _animation(figure, staged, dpi or 80.0, options)
         else:
-            _figure_of(figure).savefig(staged, dpi=dpi or 150.0)
+            _figure_of(figure).savefig(staged, dpi=dpi or 150.0, **options)
     return target
 
 
 def _figure_of(shown: Any) -> Any:
-    """The figure of axes, of the first of several axes, or of a sketch; TypeError for anything else."""
+    """The figure of a picture, of axes, or of the first of several; TypeError for anything else."""
     first = shown
-    while isinstance(first, Mapping) or (isinstance(first, Sequence) and not hasattr(first, "axes")):
+    while isinstance(first, (Mapping, Sequence)):
         first = next(iter(first.values() if isinstance(first, Mapping) else first), None)
     if not hasattr(first, "savefig"):
-        first = getattr(getattr(first, "axes", first), "figure", None)
+        first = getattr(first, "figure", None)
     if not hasattr(first, "savefig"):
         raise TypeError(f"save: {type(shown).__name__}: expected a figure, or what desaxe.plot returns")
     return first
 
 
-def _animation(animation: Any, path: Path, dpi: float) -> None:
+def _animation(animation: Any, path: Path, dpi: float, options: Mapping[str, Any]) -> None:
     with IMPORTS:
         from matplotlib import rc_context
         from matplotlib.animation import PillowWriter
 
-    if path.suffix == ".gif":
+    if options:
+        animation.save(path, dpi=dpi, **options)
+    elif path.suffix == ".gif":
         animation.save(path, writer=PillowWriter(fps=1000.0 / animation._interval), dpi=dpi)
     elif path.suffix == ".html":
         with rc_context({"savefig.dpi": dpi, "animation.embed_limit": 200.0}):

@@ -22,7 +22,8 @@ BLUE, ORANGE = "#0072B2", "#D55E00"  # of Okabe and Ito, distinct for the colour
 MOST_IN_LEGEND = 10  # curves; more get a colour bar
 BOUNDED = 3.0  # of the range of curves without gaps: others that stay within that are shown whole
 WIDE = 58  # letters of a label in one line
-TITLE = 80  # and of a title
+ROOM, NEAR = 0.02, 0.01  # of an axis: beside a jump that is as near to its end
+LEAST = 1e-6  # of the largest step between samples: a jump
 
 
 def chosen(dataset: "xr.Dataset", name: str, over: str, family: str | None) -> "xr.DataArray":
@@ -164,17 +165,6 @@ def meaning_of(array: "xr.DataArray") -> str:
     return f"{peak} of the {rest}" if colon else told.partition(",")[0].partition(":")[0]
 
 
-def fixed_inputs(array: "xr.DataArray", width: int = TITLE) -> str:
-    """The inputs that are numbers, for a title."""
-    told = []
-    for name, value in array.coords.items():
-        if value.ndim == 0 and "units" in value.attrs:
-            in_degrees = value.attrs["units"] == "rad"
-            unit = "[deg]" if in_degrees else raised(str(value.attrs["units"]))
-            told.append(f"{name} = {float(shown(value)):.6g} {unit[1:-1]}".rstrip().replace(" ", "\u00a0"))
-    return textwrap.fill(", ".join(told), width)
-
-
 def finish_axis(axis: Any, input_: "xr.DataArray") -> None:
     """Label, limits and ticks of an axis along an input; angles in degrees that divide a turn."""
     values = shown(input_)
@@ -188,6 +178,24 @@ def finish_axis(axis: Any, input_: "xr.DataArray") -> None:
             from matplotlib.ticker import MaxNLocator
 
         axis.set_major_locator(MaxNLocator(9, steps=[1, 3, 4.5, 6, 9, 10]))
+
+
+def room_at_jumps(ax: "Axes", places: NDArray[np.float64], curves: NDArray[np.float64]) -> None:
+    """Widen the axis where a curve jumps at an end of it: the frame would hide the jump.
+
+    places  of the samples along the axis, ascending: two in one place are the sides of a jump
+    curves  the values there, of one curve or several
+    """
+    if places.size < 2:
+        return
+    with np.errstate(invalid="ignore"):
+        wide, rise = float(np.ptp(places)), np.abs(np.diff(np.atleast_2d(curves)))
+    leaps = (rise > LEAST * np.nanmax(rise, initial=0.0)).any(axis=0)
+    jumps = places[1:][leaps & (np.diff(places) <= 1e-9 * wide)]
+    low, high = ax.get_xlim()
+    left = ROOM * wide * bool((jumps <= places[:1] + NEAR * wide).any())
+    right = ROOM * wide * bool((jumps >= places[-1:] - NEAR * wide).any())
+    ax.set_xlim(low - left, high + right)
 
 
 def label_of(array: "xr.DataArray") -> str:

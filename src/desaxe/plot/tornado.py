@@ -1,6 +1,7 @@
 """Tornado diagrams: what a change of each input does to a quantity, the largest on top."""
 
 from collections.abc import Mapping
+from math import degrees
 from typing import TYPE_CHECKING, Any
 
 from ..mechanism.catalogue import quantity
@@ -9,11 +10,13 @@ from ..mechanism.names import sensitivity
 from ..mechanism.unit_system import UnitSystem
 from ..mechanism.units import in_si
 from ..support.extras import needed
+from ..support.shown import shown
+from .picture import Picture
 from .shared import BLUE, ORANGE, label_of, raised
+from .titles import title_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.container import BarContainer
 
 WIDTH, HEIGHT = 7.6, 0.42  # inches: of all, of a bar
 
@@ -24,9 +27,10 @@ def tornado(
     *,
     name: str = "",
     units: str | Mapping[str, str] | UnitSystem | None = None,
+    title: str | None = None,
     ax: "Axes | None" = None,
-) -> "list[BarContainer]":
-    """Draw what a change of each input does to a quantity, by its exact sensitivities; returns the bars.
+) -> Picture:
+    """Draw what a change of each input does to a quantity, by its exact sensitivities; a Picture of the bars.
 
     result   a dict with `value` and `gradient`, as `desaxe.peak` and `desaxe.tolerance` give for one design;
              or a Dataset of `desaxe.grid` at one point, with the quantity and its sensitivities
@@ -35,13 +39,16 @@ def tornado(
     name     the quantity: of a Dataset it is needed, of a dict it makes the label
     units    the units of a dict's numbers, as a machine gives them ("mm, deg, rpm"); SI units without. A
              Dataset knows its own
-    ax       where to draw: a matplotlib Axes; by default a new Figure (`bars[0][0].figure`)
+    title    what it is headed with; by default the value, where it is reached, and of a Dataset its inputs
+    ax       where to draw: a matplotlib Axes; by default a new Figure
 
     To first order: each bar ends at value -+ slope times change, orange where the input is larger, blue where
     it is smaller. Raises ValueError for a change of an input whose slope the result does not have.
     """
     with needed("plot.tornado"):
         from matplotlib.figure import Figure
+    if not isinstance(changes, Mapping):
+        raise TypeError(f"changes = {shown(changes)}: expected a dict input -> half its range")
     system = _units_of(result, changes) if hasattr(result, "data_vars") else UnitSystem.read(units)
     value, slopes, label = _value_and_slopes(result, changes, name, system)
     steps = {p: abs(_number(p, change, system)) for p, change in changes.items()}
@@ -58,12 +65,16 @@ def tornado(
     ax.set_yticks(rows, [f"{p} ± {_text(p, changes[p], system)}" for p in order])
     ax.axvline(value, color="0.2", linewidth=1.0)
     ax.set_xlabel(label)
+    ax.locator_params(axis="x", nbins=6)
     ax.grid(True, axis="x", color="0.9", linewidth=0.8)
     ax.set_axisbelow(True)
     ax.legend(frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     for side in ("top", "right", "left"):
         ax.spines[side].set_visible(False)
-    return bars
+    ax.set_title(
+        _title(result, name, value, system) if title is None else title, loc="left", fontsize="medium"
+    )
+    return Picture(ax, bars)
 
 
 def _units_of(dataset: Any, changes: Mapping[str, Any]) -> UnitSystem:
@@ -91,6 +102,30 @@ def _value_and_slopes(
     return _scalar(value), {p: _scalar(gradient[p]) for p in changes}, label
 
 
+def _title(result: Any, name: str, value: float, system: UnitSystem) -> str:
+    """The value, the angle at which it is reached, and the inputs of a Dataset."""
+    if hasattr(result, "data_vars"):
+        unit = raised(str(result[name].attrs.get("units", "")))[1:-1]
+        return f"{name} = {value:.6g} {unit}".rstrip() + f"\n{title_of(result, [name])}"
+    return value_text(result, name, system)
+
+
+def value_text(result: Mapping[str, Any], name: str, system: UnitSystem) -> str:
+    """The value of a dict with its unit, and the angle at which it is reached."""
+    unit = raised(system.of(name).unit)[1:-1] if name else ""
+    told = f"{name or 'value'} = {_scalar(result['value']):.6g} {unit}".rstrip()
+    if "theta" not in result:
+        return told
+    theta = degrees(
+        float(
+            in_si("theta", result["theta"])
+            if isinstance(result["theta"], str)
+            else system.of("theta").to_si(result["theta"])
+        )
+    )
+    return f"{told} at theta = {theta:.4g} deg"
+
+
 def _scalar(value: Any) -> float:
     try:
         return float(value)
@@ -107,6 +142,14 @@ def _label(name: str, system: UnitSystem) -> str:
 def _number(parameter: str, change: Any, system: UnitSystem) -> float:
     if parameter not in INPUTS:
         raise TypeError(f"changes: no input {parameter!r}")
+    if (
+        not isinstance(change, (int, float))
+        and not isinstance(change, str)
+        and not hasattr(change, "magnitude")
+    ):
+        raise TypeError(
+            f"changes: {parameter} = {shown(change)}: half its range is a number or a text with a unit"
+        )
     if not isinstance(change, (int, float)):
         change = system.of(parameter).shown(float(in_si(parameter, change)))
     return float(change)

@@ -1,6 +1,7 @@
 """The content of a page; no browser is needed."""
 
 import json
+import math
 import re
 
 import pytest
@@ -43,6 +44,25 @@ def test_a_scene_brings_its_designs_and_its_names(tmp_path):
     assert [design["ec"] for design in page["designs"]] == [0.0, 0.08, 0.15, 0.23]
     assert page["shown"][:2] == ["V_C", "a_C"]
     assert page["title"].startswith("Paper A")
+
+
+def test_it_opens_on_forces_where_loads_are_given(tmp_path):
+    def shown(**more):
+        return content_of(dx.explore(path=tmp_path / "a.html", **{**SIZES, **more}))["shown"][:2]
+
+    assert shown() == ["a_C", "a_C_wrt_ec"]
+    assert shown(F_Y=-100.0) == shown(m_slider=1.0) == ["T_in", "N_C"]
+    scene = {"outputs": ["V_C", "F_A_X"], "mechanism": {"ec": 0, "AB": 0.1, "BC": 0.3}, "loads": {"F_Y": -1}}
+    scene["motion"] = {"omega0": 1, "theta": {"start": 0, "stop": "355 deg", "step": "5 deg"}}
+    page = content_of(dx.explore(scene, tmp_path / "a.html"))
+    assert page["shown"][:2] == ["F_A_X", "V_C"]
+    assert page["theta"] == [0.0, 2.0 * math.pi]  # a turn without its last angle is a turn
+    scene["outputs"] = ["V_C", "a_C"]
+    assert content_of(dx.explore(scene, tmp_path / "a.html"))["shown"][:2] == ["T_in", "N_C"]
+    scene["motion"]["theta"]["stop"] = "300 deg"
+    assert content_of(dx.explore(scene, tmp_path / "a.html"))["theta"][1] == pytest.approx(
+        300 * math.pi / 180
+    )
 
 
 def test_up_to_five_values_are_all_compared(tmp_path):

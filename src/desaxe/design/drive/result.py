@@ -60,14 +60,15 @@ class Drive(Answer):
 
     def report(self) -> str:
         """The figures as text for a data sheet; angles in radians are shown in degrees."""
-        lines = ["Drive over one turn", f"  {self._design()}"]
+        lines = ["Drive over one turn", f"  {self.design()}"]
         if self["status"]:
             lines.append(f"  status {self['status']}: {STATUS[self['status']]}")
         if not isnan(self["torque_mean"]):
             lines += [f"  {label:17} {value}" for label, value in self._rows()]
         return "\n".join(lines)
 
-    def _design(self) -> str:
+    def design(self) -> str:
+        """The inputs with their units, in a line."""
         told = []
         for name, value in self.inputs.items():
             if callable(value):

@@ -11,9 +11,10 @@ from typing import Any, NamedTuple
 from ...compiler.languages.javascript import emit_javascript
 from ...loads.load import Load, TableOverTheta
 from ...loads.resolve import plan_of, split
-from ...mechanism.catalogue import Quantity, quantities, quantity
+from ...mechanism.catalogue import Quantity, law_name, quantities, quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import CENTRES, LOADS, PARAMETERS, joined, parts
+from ...mechanism.program import program_of
 from ...mechanism.unit_system import SI, UnitSystem
 from ...runtime.request import Request, request
 from ...runtime.specialise import specialise
@@ -83,9 +84,9 @@ def content(
     for name in ("ec", "AB", "BC", "omega" if "omega" in given else "omega0"):
         if name not in given:
             raise TypeError(f"explore: {name} is missing (needed: ec, AB, BC, and omega0 or omega)")
-    wanted = [*shown, *((*KINEMATICS, *(FORCES * _loaded(given))) if names is None else names)]
+    wanted = [*shown, *((*KINEMATICS, *(FORCES * is_loaded(given))) if names is None else names)]
     groups = _grouped(wanted, given)
-    if _loaded(given):
+    if is_loaded(given):
         groups |= {} if names is not None else {name: [name] for name in VALUES if name not in groups}
         given = {**given, **{name: 0.0 for name in CHANGED if name not in given}}
     functions = tuple(_function(base, own, given, branch, loads) for base, own in groups.items())
@@ -122,9 +123,16 @@ def _left_out(name: str, value: Value, designs: Iterable[Mapping[str, float]]) -
     return tuple(dict.fromkeys(v for v in value if v not in there))
 
 
-def _loaded(given: Mapping[str, Value]) -> bool:
+def is_loaded(given: Mapping[str, Any]) -> bool:
     """True if a mass or a force is among the inputs."""
     return any(name in given for name in LOADS)
+
+
+def forces_first(names: Iterable[str], state: bool) -> list[str]:
+    """These names, first those that masses and loads have an effect on; FORCES where there are none."""
+    lawful = {name: law_name(name) if state else name for name in names}
+    forces = [n for n, law in lawful.items() if any(p in LOADS for p in program_of((law,)).inputs)]
+    return list(dict.fromkeys([*(forces or FORCES), *lawful]))
 
 
 def _grouped(wanted: Iterable[str], given: Mapping[str, Value]) -> dict[str, list[str]]:
@@ -171,9 +179,14 @@ def _request(names: tuple[str, ...], given: Mapping[str, Value], branch: int) ->
 
 
 def _angles(given: Mapping[str, Value]) -> tuple[float, float]:
-    """The range of the crank angle: that of the scene, else one turn."""
+    """The range of the crank angle: that of the scene, else one turn; one without its last angle is whole."""
     theta = given.get("theta")
-    return (min(theta), max(theta)) if isinstance(theta, tuple) and len(theta) > 1 else (0.0, 2.0 * pi)
+    if not isinstance(theta, tuple) or len(set(theta)) < 2:
+        return (0.0, 2.0 * pi)
+    low, high = min(theta), max(theta)
+    missing = low + 2.0 * pi - high
+    step = (high - low) / (len(theta) - 1)
+    return (low, low + 2.0 * pi) if 0.0 < missing <= 1.001 * step else (low, high)
 
 
 def _designs(given: Mapping[str, Value]) -> tuple[dict[str, float], ...]:

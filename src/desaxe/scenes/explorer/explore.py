@@ -12,7 +12,7 @@ from ...mechanism.names import LOADS
 from ...mechanism.unit_system import UnitSystem
 from ...runtime.request import as_number, check_common, check_inputs
 from ...support.forks import IMPORTS
-from .content import Content, Value, content
+from .content import FORCES, Content, Value, content, forces_first, is_loaded
 from .write import require_page, write_page
 
 TITLE = "Offset slider-crank"
@@ -76,7 +76,8 @@ def content_of(
         check_inputs("explore", inputs, tuple(INPUTS))
         numbers, loads = loads_of(inputs)
         values = {n: _value(n, v) for n, v in numbers.items()}
-        return content(title, branch, {**values, **loads}, START, names)
+        given = {**values, **loads}
+        return content(title, branch, given, FORCES if is_loaded(given) else START, names)
     if inputs:
         page = isinstance(source, (str, PathLike)) and Path(source).suffix != ".toml"
         beside = (
@@ -98,6 +99,8 @@ def _of_scene(source: Any, names: Iterable[str] | None) -> Content:
     title = inside.title or TITLE
     shown = [name for name in asked if name not in ("status", "margin")]
     inputs: dict[str, Any] = dict(inside.inputs)
+    if is_loaded(inputs):
+        shown = forces_first(shown, "omega" in inputs)
     found = content(title, inside.branch, inputs, shown or START, names)
     return found._replace(units=inside.units, fields=known.shown_in)
 

@@ -95,7 +95,7 @@ function layoutOf(name, range, look, designs) {
     showlegend: designs > 1,
     legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom", traceorder: "reversed" },
     xaxis: {
-      ...axis, range: [from, to + 1e-6], title: { text: "crank angle θ [°]", standoff: 6 }, zeroline: false,
+      ...axis, range: [from, Number(to.toFixed(9))], title: { text: "crank angle θ [°]", standoff: 6 }, zeroline: false,
       tickmode: to - from >= 180 && to - from <= 721 ? "linear" : "auto", dtick: to - from > 361 ? 90 : 45,
       unifiedhovertitle: { text: "θ = %{x:.4~f}°" },
     },

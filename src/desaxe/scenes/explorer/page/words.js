@@ -91,6 +91,7 @@ function showFigures(curves) {
     });
     rows.push([`peak-${name}`, `peak of ${symbol(name)}`, cells]);
   });
+  document.getElementById("look").classList.toggle("many", state.designs.length > 3);
   const look = palette(), swatch = (k) => `<span class="swatch" style="background:${look.curves[k % look.curves.length]}"></span>`;
   const head = labelsOf(state.designs).map((label, k) => `<th scope="col">${swatch(k)}${label}</th>`).join("");
   const line = ([key, title, cells]) =>
