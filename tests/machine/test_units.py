@@ -156,6 +156,33 @@ def test_motions():
         assert one.theta == pytest.approx(math.degrees(other.theta), rel=1e-9)
 
 
+def test_a_motion_starts_at_the_speed_of_the_machine():
+    how = {"torque": 50.0, "t_end": 0.02, "I_crank": 0.5}
+    for machine in (PRESS, dx.Machine(PRESS, units="mm, deg, rad/s"), dx.Machine(SI)):
+        speed = machine.in_units()["omega0"]
+        found = machine.simulate(**how)
+        assert found["omega"][0] == pytest.approx(speed, rel=1e-12)
+        assert found["theta"][0] == 0.0
+        np.testing.assert_array_equal(found["omega"], machine.simulate(omega_start=speed, **how)["omega"])
+        assert machine.simulate(omega_start=0.0, **how)["omega"][0] == 0.0
+    state = dx.Machine({k: v for k, v in SI.items() if k != "omega0"}, omega=7.0)
+    assert state.simulate(**how)["omega"][0] == pytest.approx(7.0, rel=1e-12)
+    assert dx.simulate(**how, **state)["omega"][0] == pytest.approx(7.0, rel=1e-12)
+    assert dx.simulate(omega_start=1.0, **how, **state)["omega"][0] == pytest.approx(1.0, rel=1e-12)
+    several = PRESS.simulate(ec=[0.0, 10.0], mu=0.0, times=[0.0], **how)
+    np.testing.assert_allclose(several["omega"], PRESS.in_units()["omega0"], rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("given", "meant"), [("theta", "theta0"), ("omega", "omega_start"), ("omega0", "omega_start")]
+)
+def test_other_names_of_the_start_are_refused_with_the_right_one(given, meant):
+    bodies = {k: v for k, v in SI.items() if k != "omega0"}
+    for simulate, inputs in ((PRESS.simulate, {}), (dx.simulate, bodies)):
+        with pytest.raises(TypeError, match=f"has no input '{given}'; did you mean {meant}\\?"):
+            simulate(torque=50.0, t_end=0.02, I_crank=0.5, **{given: 1.0}, **inputs)
+
+
 def test_labelled_results_carry_their_units():
     found = PRESS.grid(["a_C", "a_C_wrt_ec"], theta=[0, 60, 90], ec=[0, 10])
     assert found.theta.values.tolist() == [0.0, 60.0, 90.0]

@@ -211,7 +211,7 @@ def test_the_text_runs_uncompiled():
     times, how = np.array([0.0, 0.3, 2.0]), np.array([1e-10, 2.0, math.inf, 1000.0])
     tables = [getattr(DOP853, name) for name in ("A", "B", "C", "E3", "E5", "D", "A_EXTRA", "C_EXTRA")]
     theta, omega, alpha = (np.empty((1, 3)) for _ in range(3))
-    status, numbers = np.full(1, -1, np.int8), np.empty((1, 3))
+    status, numbers = np.full(1, -1, np.int8), np.empty((1, 4))
     compiled.designs(np.empty((1, 0)), setup, times, how, *tables, theta, omega, alpha, status, numbers)
     np.testing.assert_allclose(theta[0], 0.5 + times + 1.5 * times**2, rtol=1e-13)
     np.testing.assert_allclose(omega[0], 1.0 + 3.0 * times, rtol=1e-13)

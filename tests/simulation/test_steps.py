@@ -1,5 +1,7 @@
 """No bad step is accepted, where one error estimate vanishes by accident."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -36,3 +38,38 @@ def test_one_design_takes_the_steps_of_many():
         alone = dx.simulate(t_end=1.0, rtol=1e-6, times=[1.0], **one)
         assert many["theta"][row, 0] == pytest.approx(alone["theta"][0], rel=1e-9)
         assert many["omega"][row, 0] == pytest.approx(alone["omega"][0], rel=1e-8)
+
+
+def fast(t, theta, omega):
+    return 40.0 * np.sin(300.0 * theta)
+
+
+def test_an_unusual_energy_residual_ends_the_message():
+    told = dx.simulate(t_end=1.0, rtol=1e-6, atol=1.0, **START, **ISSUE)
+    assert told["energy_residual"] > 1e-3
+    assert re.fullmatch(
+        r"reached t_end = 1 s; energy_residual 0\.0\d+: repeat with rtol = 1e-08", told["message"]
+    )
+    assert told["status"] == 0
+    many = dx.simulate(
+        t_end=0.2, rtol=1e-3, **START | {"torque": fast}, **ISSUE | {"m_slider": [1.0, 2.0, np.nan]}
+    )
+    assert many["status"].tolist() == [0, 0, 6]
+    worst = f"{np.nanmax(many['energy_residual']):.2g}"
+    ends = f"; energy_residual {worst} at most, in 2 of 3 designs: repeat with rtol = 1e-05"
+    assert many["message"].endswith(ends)
+    load = dx.over_theta([0, 1, 2], [1.0, 2.0, 1.0], "linear")
+    each = dx.simulate(
+        t_end=0.2, rtol=1e-3, **START | {"torque": fast}, **ISSUE | {"F_Y": load, "ec": [0.0, 0.01]}
+    )
+    assert each["message"].endswith("in 2 of 2 designs: repeat with rtol = 1e-05")
+
+
+def test_a_usual_energy_residual_is_not_told():
+    light = {"AB": 0.05, "BC": 0.2, "ec": 0.0, "m_slider": 1e5, "g_Y": -9.81, "m_crank": 1.0}
+    drawn = designs(8, seed=4)
+    for rtol in (1e-4, 1e-8, 1e-13):
+        assert "energy" not in dx.simulate(t_end=1.0, rtol=rtol, times=[1.0], **drawn)["message"]
+    swings = dx.simulate(t_end=0.1, theta0=np.pi - 1e-6, rtol=1e-13, torque=0.0, **light)
+    assert swings["energy_residual"] > 1e-6
+    assert "energy" not in swings["message"]  # nearly at rest: rounding of m g Y, not of what moves

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from ..mechanism.ranges import refuse_bare_pair
 from ..mechanism.slips import warn_of_slips
+from ..runtime.request import MachineSpeed
 from ..support.forks import IMPORTS, imported
 from .arguments import in_si
 from .results import Shown, shown
@@ -167,9 +168,14 @@ def filled(machine: Mapping[str, Any], name: str, takes: Takes, given: Mapping[s
     found = {
         key: value
         for key, value in machine.items()
-        if key not in left and (takes.anything or key in takes.names)
+        if key not in left and (takes.anything or key in takes.names or _starts(name, value))
     }
     return found | _wishes(machine, given) if name == "synthesize" else found
+
+
+def _starts(name: str, value: Any) -> bool:
+    """True for a speed of a machine where a motion starts: `simulate` has another name for it."""
+    return name == "simulate" and isinstance(value, MachineSpeed)
 
 
 def _wishes(machine: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:

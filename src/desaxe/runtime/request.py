@@ -136,7 +136,7 @@ def with_known_inputs(function: Callable[P, T]) -> Callable[P, T]:
     """Decorate a function to refuse unknown inputs as `check_inputs` does.
 
     Masses and loads that have no effect on it are let through, and so are the speeds of a machine:
-    `**machine` works everywhere.
+    `**machine` works everywhere. A motion starts at the speed of the machine unless `omega_start` is given.
     """
 
     @wraps(function)
@@ -157,6 +157,9 @@ def with_known_inputs(function: Callable[P, T]) -> Callable[P, T]:
         if strange:
             raise _unknown_input(function.__name__, strange[0], known)
         own: Any = {name: value for name, value in inputs.items() if name in known}
+        speed = inputs.get("omega0", inputs.get("omega"))
+        if speed is not None and "omega_start" in known:
+            own.setdefault("omega_start", speed)
         return function(*args, **own)
 
     return checked

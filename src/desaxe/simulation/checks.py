@@ -24,6 +24,7 @@ from .model import Drive, Load, Model
 
 METHODS = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
 OWN = {"t", "theta", "omega", "alpha", "status"}  # keys of the result that no name may take
+LEAST_RTOL = 3e-14
 SMALL = 1e-4  # rad: so near to a dead centre without inertia no motion is followed
 
 
@@ -206,6 +207,6 @@ def read_method(method: str) -> str:
 def read_rtol(rtol: Any) -> float:
     """The relative tolerance."""
     number = scalar("rtol", rtol, "1", 0.0, "a number from 3e-14 to 0.1")
-    if not 3e-14 <= number <= 0.1:
+    if not LEAST_RTOL <= number <= 0.1:
         raise ValueError(f"rtol = {shown(rtol)}: it must be a number from 3e-14 to 0.1")
     return number

@@ -225,7 +225,7 @@ def follow(
     K: Any,
     F: Any,
 ) -> Any:
-    """The motion of one design; its status, end, energy residual and work.
+    """The motion of one design; its status, end, energy residual, work, and the residual that rounding makes.
 
     how: relative tolerance, t_end, longest step, most steps.
     """
@@ -234,7 +234,7 @@ def follow(
     relative[0], relative[1], relative[2] = 3e-14, rtol, rtol
     theta[:], omega[:], alpha[:] = nan, nan, nan
     if not start(p, setup, rtol, t_end, y, atol, size):
-        return 6, nan, nan, nan
+        return 6, nan, nan, nan, nan
     first, last = (-pi / 2, pi / 2) if setup[3] > 0.0 else (setup[1], setup[2])
     t, row, count = 0.0, int64(0), len(times)
     while row < count and times[row] <= 0.0:
@@ -243,6 +243,7 @@ def follow(
     rates(0.0, y, p, setup, K[0])
     h = first_step(t_end, y, p, setup, relative, atol, K, new)
     initial, residual, turned, largest = energy_of(y, p, setup), 0.0, 0.0, 0.5 * y[1] * y[1]
+    heaviest = abs(initial)
     status, rejected, steps, tries, wished = -1, False, 0, 0, inf
     least, most = inf, still(setup[6], setup[0], p)[0]
     while status < 0:
@@ -291,7 +292,9 @@ def follow(
         turned += abs(new[2] - y[2])
         kinetic = 0.5 * new[1] * new[1]
         largest = max(largest, kinetic)
-        off = abs(energy_of(new, p, setup) - new[2] - initial)
+        energy = energy_of(new, p, setup)
+        heaviest = max(heaviest, abs(energy))
+        off = abs(energy - new[2] - initial)
         if off == off and status != 2:  # at a limit angle Y has half its digits
             residual = max(residual, off)
         growth = min(10.0, 0.9 * error**-0.125) if error > 0.0 else 10.0
@@ -306,7 +309,10 @@ def follow(
         if status < 0 and t >= t_end:
             status = 0
     scale = max(turned, largest)
-    return status, t, residual / scale if scale > 0.0 else 0.0, y[2]
+    if not scale > 0.0:
+        return status, t, 0.0, y[2], inf
+    rounded = 2e-17 * steps * (1.0 + heaviest / scale)  # `residual.ROUNDED`
+    return status, t, residual / scale, y[2], rounded
 
 
 def designs(
@@ -328,11 +334,11 @@ def designs(
     status: Any,
     numbers: Any,
 ) -> None:
-    """Every design: histories, status, and end, energy residual and work as numbers."""
+    """Every design: histories, status, and end, energy residual, work and rounding as numbers."""
     K, F = empty((16, 3)), empty((7, 3))
     tables = (A, B, C, E3, E5, D, A_more, C_more)
     for n in range(len(setup)):
         if status[n] < 0:
             told = follow(p[n], setup[n], times, how, tables, theta[n], omega[n], alpha[n], K, F)
             status[n] = told[0]
-            numbers[n, 0], numbers[n, 1], numbers[n, 2] = told[1], told[2], told[3]
+            numbers[n, 0], numbers[n, 1], numbers[n, 2], numbers[n, 3] = told[1], told[2], told[3], told[4]

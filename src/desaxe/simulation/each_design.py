@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..evaluation.arrays import as_array, broadcast_shape
 from ..mechanism.names import CENTRES, LENGTHS, LOADS
 from .many_designs import SAMPLES, STARTS, column, message, starting
+from .residual import TELLS, told_of
 from .result import NO_START, Simulation
 
 Array = NDArray[np.float64]
@@ -23,6 +24,7 @@ def simulate_each(
     names: Sequence[str],
     times: Any,
     end: float,
+    rtol: float,
 ) -> Simulation:
     """The motions in the shape of the designs, as `simulate_many` gives them.
 
@@ -46,6 +48,7 @@ def simulate_each(
     status = starting({**still, **flat}, branch)
     histories = {name: np.full((size, t.size), np.nan) for name in ("theta", "omega", "alpha", *names)}
     numbers = {name: np.full(size, np.nan) for name in ("t_last", "energy_residual", "work")}
+    rounded = np.full(size, np.inf)  # or 0 where the residual of a design is told
     for row in np.flatnonzero(status != NO_START):
         design = {name: values[row].item() for name, values in flat.items()} | varying
         inputs = {name: design.get(name) for name in given}
@@ -54,10 +57,11 @@ def simulate_each(
         for name, history in histories.items():
             history[row, :count] = found[name]
         status[row] = found["status"]
+        rounded[row] = 0.0 if TELLS in found["message"] else np.inf
         ends = {**found, "t_last": found["solution"].run.t}
         for name, column_of in numbers.items():
             column_of[row] = ends[name]
     result = Simulation(t=t, **{name: h.reshape(*shape, t.size) for name, h in histories.items()})
     result["status"] = status.reshape(shape)
-    result["message"] = message(status)
+    result["message"] = message(status) + told_of(numbers["energy_residual"], rounded, rtol)
     return Simulation(result, **{name: values.reshape(shape) for name, values in numbers.items()})

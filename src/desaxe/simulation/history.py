@@ -1,8 +1,7 @@
 """From the pieces of a motion to its histories: angle, speed, acceleration, quantities, energy."""
 
-from collections.abc import Callable, Mapping, Sequence
-from itertools import pairwise
-from math import copysign, inf, isfinite, nan
+from collections.abc import Mapping, Sequence
+from math import copysign, nan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,10 +9,11 @@ from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
 from .equations import state_of
-from .events import Q, V, W
+from .events import Q, W
 from .held import Held
 from .model import Model
 from .one_design import Piece, Run
+from .residual import energy_residual, told_of
 from .result import FAILED, LIMIT, REST, Event, Simulation
 
 Array = NDArray[np.float64]
@@ -31,7 +31,9 @@ def result_of(run: Run, names: Sequence[str], times: Any, given: Mapping[str, An
     result["events"] = run.events
     result["status"], result["message"] = run.status, run.message
     accepted = run.accepted[:-1] if run.status == LIMIT else run.accepted  # there Y has half its digits
-    result["energy_residual"] = energy_residual(run.model, accepted)
+    residual, rounded = energy_residual(run.model, accepted)
+    result["energy_residual"] = residual
+    result["message"] += told_of(residual, rounded, run.tolerance.rtol, run.tolerance.method)
     result["work"] = float(run.y[W])
     result["solution"] = Solution(run)
     return result
@@ -109,29 +111,3 @@ def _along(load: Any, t: Array, theta: Array, omega: Array) -> Any:
         return load
     now = zip(t.tolist(), theta.tolist(), omega.tolist(), strict=True)
     return np.array([load(*instant) for instant in now])
-
-
-def energy_residual(model: Model, accepted: Sequence[tuple[float, Array]]) -> float:
-    """The energy error relative to the total work or the largest kinetic energy.
-
-    max |kinetic + potential - W - initial| over the accepted steps, with the energies of the generated
-    quantities at theta and omega.
-    """
-    kinetic_of = _energies(model)
-    rows = [(*kinetic_of(float(y[Q]), float(y[V])), float(y[W])) for _, y in accepted]
-    rows = [row for row in rows if isfinite(sum(row))]
-    if not rows:  # energies beyond every double
-        return inf
-    first = sum(rows[0][:2])
-    residual = max(abs(kinetic + potential - work - first) for kinetic, potential, work in rows)
-    turned = sum(abs(b[2] - a[2]) for a, b in pairwise(rows))
-    scale = max(turned, *(row[0] for row in rows), 0.0)
-    return residual / scale if scale else 0.0
-
-
-def _energies(model: Model) -> Callable[[float, float], tuple[float, float]]:
-    def energies(q: float, v: float) -> tuple[float, float]:
-        theta, omega, branch = state_of(model, q, v)
-        return model.kinetic_and_potential(theta, branch, omega)
-
-    return energies

@@ -26,6 +26,7 @@ from .checks import check_signature, grows
 from .compiled import Family, kernel_of
 from .coordinate import TURN, arc_around, inside
 from .model import fixed_zeros, form_of
+from .residual import told_of
 from .result import DONE, NO_START, WORDS, Simulation
 
 Array = NDArray[np.float64]
@@ -72,14 +73,14 @@ def simulate_many(
     setup, status = _setup(flat, branch)
     rows = np.stack([flat[name] for name in family.inputs], axis=1)
     histories = [np.empty((status.size, t.size)) for _ in range(3)]
-    numbers = np.full((status.size, 3), np.nan)
+    numbers = np.full((status.size, 4), np.nan)
     outs = (*histories, status, numbers)
     for history in histories:
         history[status == NO_START] = np.nan
     _run(
         kernel_of(family, torque), rows, setup, (t, np.array(how, dtype=np.float64)), outs, threads, deadline
     )
-    return _result(arrays, shape, t, outs, names, branch)
+    return _result(arrays, shape, t, outs, names, branch, how[0])
 
 
 def given_centres(given: Mapping[str, Any]) -> dict[str, Any]:
@@ -231,6 +232,7 @@ def _result(
     outs: Sequence[Any],
     names: Sequence[str],
     branch: int,
+    rtol: float,
 ) -> Simulation:
     """The result in the shape of the designs."""
     *histories, status, numbers = outs
@@ -242,7 +244,7 @@ def _result(
         }
         result |= evaluate(list(names), theta=theta, omega=omega, alpha=alpha, branch=branch, **inputs)
     result["status"] = status.reshape(shape)
-    result["message"] = message(status)
+    result["message"] = message(status) + told_of(numbers[:, 1], numbers[:, 3], rtol)
     end, residual, work = (numbers[:, k].reshape(shape) for k in range(3))
     return Simulation(result, t_last=end, energy_residual=residual, work=work)
 

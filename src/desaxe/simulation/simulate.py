@@ -72,7 +72,7 @@ def simulate(
     torque       on the crank [N m], positive like theta: a number, a function (t, theta, omega) or of theta
                  alone, or `over_theta`
     t_end        how long to follow the motion [s]
-    theta0, omega_start   crank angle [rad] and speed [rad/s] at t = 0
+    theta0, omega_start   crank angle [rad] and speed [rad/s] at t = 0; the speed of a Machine is its own
     AB, BC, ec, branch, masses, centres of mass, gravity, mu   as in `evaluate`
     F_X, F_Y     external force on the slider [N]: the same, or `over_Y`; the integration starts again at
                  the kinks and jumps of tables, and at the nodes of a function
@@ -97,7 +97,8 @@ def simulate(
     status, message  0 reached t_end or an angle, 1 at rest for good, 2 at a limit angle, 3 friction jams,
                      4 integration failed, 5 the effective inertia vanishes at a dead centre
     energy_residual  |kinetic + potential - work - initial| at most, relative to all work done or the largest
-                     kinetic energy
+                     kinetic energy; above 100 times what is usual at this rtol, `message` ends with it and
+                     the rtol to repeat with
     work             of torque, loads and friction, gravity not included [J]
     solution         function t -> dict of theta and omega, anywhere up to the end
 
@@ -137,7 +138,7 @@ def simulate(
                     timeout=deadline.left(),
                 )  # fmt: skip
 
-            return simulate_each(one, given, starts, int(branch), wanted, instants, end)
+            return simulate_each(one, given, starts, int(branch), wanted, instants, end, rtol)
         how = (rtol, end, longest, max_steps)
         return simulate_many(given, starts, int(branch), wanted, instants, how, threads, deadline)
     start = scalar("theta0", theta0, "rad"), scalar("omega_start", omega_start, "rad/s")
