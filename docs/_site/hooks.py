@@ -1,15 +1,16 @@
 """Hooks of MkDocs: generated parts of pages, and equations.
 
 A line `<!-- desaxe: WRITER ARGUMENTS -->` is replaced by the text that the function of that name returns: one
-of `formulas` (equations, lines of the Program) or `reference` (functions, scene files, quantities). Inline
-LaTeX in GitHub's notation, a code span between dollar signs, becomes MathML, which needs no script. Each
-notebook becomes a page.
+of `formulas` (equations, lines of the Program), `loads` or `reference` (functions, scene files, quantities).
+Inline LaTeX in GitHub's notation, a code span between dollar signs, becomes MathML, which needs no script.
+Each notebook becomes a page.
 """
 
 import re
 from html import unescape
 
 import formulas
+import loads
 import reference
 from latex2mathml.converter import convert
 from mkdocs.structure.files import File
@@ -18,7 +19,7 @@ import notebooks
 
 MARK = re.compile(r"^<!-- desaxe: (\w+) ?(.*?) -->$", re.M)
 MATHS = re.compile(r"\$<code>(.+?)</code>\$", re.S)
-WRITERS = {writer.__name__: writer for writer in (*formulas.WRITERS, *reference.WRITERS)}
+WRITERS = {writer.__name__: writer for writer in (*formulas.WRITERS, *loads.WRITERS, *reference.WRITERS)}
 
 
 def on_config(config, **_):

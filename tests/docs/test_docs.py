@@ -1,11 +1,13 @@
 """The documentation: every block of code runs, what it shows is true, the site builds without a warning."""
 
 import ast
+import inspect
 import os
 import re
 import shlex
 import subprocess
 import sys
+from importlib import import_module
 from importlib.metadata import metadata
 from pathlib import Path
 
@@ -142,3 +144,24 @@ def broken_links(site):
         local = [link for link in links if not re.match(r"[a-z]+:|//|/", link)]
         broken += [(page.parent.name, link) for link in local if not (page.parent / link).exists()]
     return broken
+
+
+def test_every_call_with_loads_is_in_their_table(monkeypatch):
+    """Every public call that has loads among its inputs, but those that ask for the geometry alone."""
+    monkeypatch.syspath_prepend(ROOT / "docs" / "_site")
+    loads = import_module("loads")
+    told = {call.partition("(")[0] for call in loads.CALLS}
+    with_inputs = set()
+    for name in set(dx.__all__) - {"Machine", "define", "plot", "LoadWarning", "UnitWarning"}:
+        known = inspect.signature(getattr(dx, name)).parameters
+        kinds = {parameter.kind for parameter in known.values()}
+        if "F_Y" in known or inspect.Parameter.VAR_KEYWORD in kinds:
+            with_inputs.add(name)
+    assert with_inputs - told == {"design_map", "flywheel"}  # of the geometry; another name of `drive`
+
+
+@pytest.mark.parametrize(("call", "kinds"), [("evaluate", 4), ("peak", 4), ("function", 1)])
+def test_the_table_of_loads_says_what_happens(call, kinds, tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(ROOT / "docs" / "_site")
+    loads = import_module("loads")
+    assert sum(loads.takes(call, load, tmp_path) for load in loads.KINDS.values()) == kinds
