@@ -15,10 +15,10 @@ from pathlib import Path
 import sympy
 
 from desaxe import compiler
+from desaxe.compiler.builder import module_text, with_sources
 from desaxe.compiler.cost import cost_of
 from desaxe.compiler.languages.numba.module import emit_numba_with_front
 from desaxe.compiler.lowering import Limits, guarded_for_loops, nest
-from desaxe.compiler.operations import HELPERS, MATH_NAMES
 from desaxe.compiler.passes.double_angles import DoubleTrigonometry
 from desaxe.compiler.passes.pipeline import optimise
 from desaxe.compiler.passes.slicing import keep_outputs
@@ -136,11 +136,9 @@ _require_one_set()
 
 def _program(program: Program, name: str, what: str, digest: str) -> str:
     text = write_function(program, name, what.partition("\n")[0])
-    called = [word for word in MATH_NAMES if f"{word}(" in text or f" {word}" in text.replace("# ", "#")]
-    helper = "".join(f"\n\n{source}" for name, source in HELPERS.items() if f"{name}(" in text)
-    imports = f"from math import {', '.join(called)}\n" if called else ""
-    banner = _banner(what, digest, f"{cost_of(program).operations} operations")
-    return f'"""{banner}"""\n\n{imports}{helper}\n\n{text}'
+    return module_text(
+        _banner(what, digest, f"{cost_of(program).operations} operations"), with_sources([text])
+    )
 
 
 def _index(derivation: Derivation, digest: str) -> str:

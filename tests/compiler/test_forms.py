@@ -77,6 +77,24 @@ def test_tables_and_blocks_go_together(place):
     assert np.array_equal(out.T, rotated_sin)
 
 
+def test_an_output_may_come_from_a_table_whole():
+    """It lacks an axis between its own: the stable loop has nothing to compute, and passes it on."""
+    product = Line("p", "mul", ("x", "y"))
+    sine, cosine = (Program(("x", "y"), (product, Line("out", op, ("p",))), ("out",), {}) for op in FORMS)
+    kernel = parted(tabulate(in_two_forms(sine, cosine, TEST), {"x": 0, "y": 2}, 3), 1)
+    assert has_two_forms(kernel)
+    assert kernel.tables[0].kernel.outputs == ("out", "out_close")
+    scope = {}
+    exec(emit_numba(kernel, "two forms"), scope)
+    x, y, out = np.linspace(-3, 3, 4), np.linspace(-2, 2, 700), np.empty((4, 5, 700))
+    scope["kernel"](x, y, out)
+    p = x[:, None, None] * y
+    np.testing.assert_allclose(out, np.where(np.abs(y) < 1, np.sin(p), np.cos(p)) + 0 * out, rtol=1e-14)
+
+
+FORMS = ("sin", "cos")
+
+
 def test_a_test_that_is_not_known_is_not_passed():
     _, run = kernel_for({"x": 0, "y": 0}, 1)
     out, echo = np.zeros(3), np.zeros(3)

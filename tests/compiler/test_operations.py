@@ -14,7 +14,8 @@ import pytest
 from desaxe.compiler.interpret import ieee
 from desaxe.compiler.kernel import hoist
 from desaxe.compiler.languages.numba.module import emit_numba
-from desaxe.compiler.operations import HELPERS, MATH_NAMES, OPERATIONS, result_type
+from desaxe.compiler.languages.python import SCOPE
+from desaxe.compiler.operations import OPERATIONS, result_type
 from desaxe.compiler.program import Line, Program
 from desaxe.oracle.truth import ulp_error
 from tests.compiler.programs import same_bits
@@ -83,9 +84,7 @@ def test_ieee_answers_are_those_of_numpy(op):
 
 @cache
 def python_spelling(op):
-    scope = {name: getattr(math, name) for name in MATH_NAMES}
-    for helper in HELPERS.values():
-        exec(helper, scope)
+    scope = dict(SCOPE)
     letters = "abc"[: OPERATIONS[op].arity]
     return eval(f"lambda {', '.join(letters)}: {OPERATIONS[op].python.format(*letters)}", scope)
 

@@ -3,6 +3,8 @@
     operations  the operation table: meaning, spellings, cost, one row each
     program     Program, a list of single assignments, and its canonical form
     text        a Program as readable Python, and back, parsing only what is needed
+    helpers     functions that spellings call, in plain Python
+    builder     modules as text: parts, what they call from real files, imports
     interpret   a Program run exactly (mpmath) or in IEEE doubles
     cost        operations, depth, throughput
     passes      Program -> Program, one module each

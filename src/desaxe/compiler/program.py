@@ -14,10 +14,11 @@ A constant is a Python float (f64), int (i64) or bool.
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from .operations import HELPERS, MATH_NAMES, OPERATIONS, result_type
+from . import helpers
+from .operations import MATH_NAMES, OPERATIONS, result_type
 
 Argument = str | float | int | bool
-RESERVED = frozenset((*HELPERS, *MATH_NAMES))
+RESERVED = frozenset((*vars(helpers), *MATH_NAMES))
 
 
 class Note(NamedTuple):

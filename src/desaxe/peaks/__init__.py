@@ -7,7 +7,6 @@ search       the search of one design, in loops that numba compiles
 special      special designs: limit angles, stall, friction
 compiled     the module of a search
 by_arrays    the functions of a quantity in NumPy, for a search that is new
-stubs        stand-ins for the functions of a quantity
 designs      the search over all designs of a request
 loaded       the search under loads that vary with the motion
 course       these loads over the angle: kinks, jumps, nodes

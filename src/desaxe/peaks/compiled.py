@@ -4,87 +4,57 @@ Its machine code is kept on disk, like that of every kernel. The same text runs 
 with its functions in NumPy, for the first designs, so that nobody waits for a compiler.
 """
 
-import math
 from collections import Counter
-from collections.abc import Callable, Mapping
-from functools import cache, lru_cache
+from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
-from types import CodeType
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compiler.builder import module_text, rebound
 from ..compiler.languages.numba import peaks
-from ..compiler.languages.numba.module import helper_sources
-from ..compiler.operations import HELPERS, MATH_NAMES
+from ..compiler.languages.numba.module import numba_parts
+from ..compiler.languages.python import SCOPE
 from ..runtime.modules import is_kept, native
 from ..runtime.threads import run_parts
 from ..runtime.tiers import INTERPRETED, NUMPY, forced_tier
 from ..support.forks import ForkSafeLock
 from ..support.recent import Recent
+from . import search as loops
 from .by_arrays import functions_of
 from .nodes import Array
 from .programs import Programs, Search, programs_of
 
 Kernel = Callable[..., object]
 
-LINE = "# ---- compiled"
+SEARCH = Path(loops.__file__)
 MOST_LOADED = 64  # searches in memory
 LEAST_PART = 1_024  # designs of a thread
 LONGEST_PART = 8_192  # designs: less than half a second
 BREAK_EVEN = 16_384  # designs by NumPy, a second or so of them: beyond, compiling pays
-_NJIT = '@njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)\n'
-_HEADER = '''"""desaxe search: extreme values of {name} over theta."""
-
-from math import atan2, copysign, cos, exp, fabs, inf, log, nan, pow, sin, sqrt
-
-from numba import njit, types
-from numba.extending import intrinsic
-from numpy import empty, floor, int64, uint64
-
-WORK = {work}
-'''
 SIGNATURE = """ints, row, rows = types.int64[::1], types.float64[::1], types.float64[:, ::1]
 signature = types.void(rows, ints, ints, row, ints, types.int64, row, rows)
-function = search
+function = search.py_func
 """
 
 
 @lru_cache(maxsize=1024)
 def source_of(search: Search) -> str:
     """The text of the compiled module."""
-    programs = programs_of(search, True)
-    loops, work = _loops(programs, "numba")
-    *helpers, last = _functions()
-    called = {line.op for program in (programs.curve, programs.finish) for line in program.lines}
-    parts = [
-        _HEADER.format(name=search.name, work=max(work, 1)),
-        *helper_sources(called),
-        *(_NJIT + loop for loop in loops),
-        *(helper if helper.startswith("BLOCK") else _NJIT + helper for helper in helpers),
-        last,
-        SIGNATURE,
-    ]
-    return "\n\n".join(parts)
+    docstring = f"desaxe search: extreme values of {search.name} over theta."
+    parts = [*texts_of(programs_of(search, True), "numba"), SIGNATURE]
+    return module_text(docstring, numba_parts(parts, SEARCH))
 
 
-def _loops(programs: Programs, column: str) -> tuple[list[str], int]:
+def texts_of(programs: Programs, column: str) -> list[str]:
+    """`sweep`, `points` and `finish`, and the rows that `sweep` keeps."""
     rows = peaks.Rows(programs.inputs, column, "theta")
     sweep, work = peaks.sweep_function(programs.curve, rows)
     points = peaks.points_function(programs.curve, rows)
-    return [sweep, points, peaks.finish_function(programs.finish, rows)], work
-
-
-@cache
-def _functions() -> list[str]:
-    """The constants and functions of `search`, without types, which numba finds by itself."""
-    source = Path(__file__).with_name("search.py").read_text(encoding="utf-8")
-    first, *others = source.partition(LINE)[2].partition("\n")[2].strip().split("\ndef ")
-    bare = [first.strip() + "\n", *(f"def {other.strip()}\n" for other in others)]
-    for kind in (" -> Any", ": Any", ": int", ": float", " -> None", " -> int", " -> float"):
-        bare = [part.replace(kind, "") for part in bare]
-    return bare
+    finish = peaks.finish_function(programs.finish, rows)
+    return [f"WORK = {max(work, 1)}\n", sweep, points, finish]
 
 
 class Groups(NamedTuple):
@@ -151,11 +121,7 @@ def _on_disk(search: Search) -> bool:
 @lru_cache(maxsize=1024)
 def _plain(search: Search) -> Kernel:
     """The search as plain Python, design by design."""
-    loops, work = _loops(programs_of(search, False), "python")
-    scope = _scope(max(work, 1))
-    source = "\n\n".join([*HELPERS.values(), *loops, *_functions()])
-    exec(compile(source, f"<desaxe search {search.name}>", "exec"), scope)
-    return _quiet(scope["search"])
+    return _search_with(_scope(search, texts_of(programs_of(search, False), "python")))
 
 
 @lru_cache(maxsize=1024)
@@ -167,29 +133,23 @@ def _by_arrays(search: Search) -> Kernel:
 @lru_cache(maxsize=1024)
 def plain_finish(search: Search) -> Kernel:
     """`finish(count, theta, block, out)` in plain Python: value, slope and gradient at a fixed load."""
-    programs = programs_of(search, False)
-    function = peaks.finish_function(programs.finish, peaks.Rows(programs.inputs, "python", "theta"))
-    scope = _scope(1)
-    exec(compile("\n\n".join([*HELPERS.values(), function]), "<desaxe finish>", "exec"), scope)
-    return _quiet(scope["finish"])
+    return _quiet(_scope(search, texts_of(programs_of(search, False), "python"))["finish"])
 
 
 def search_with(sweep: Kernel, points: Kernel, finish: Kernel) -> Kernel:
-    """The search in plain Python with other functions in place of the stubs."""
-    scope = _scope(1) | {"sweep": sweep, "points": points, "finish": finish}
-    exec(_code(), scope)
-    return _quiet(scope["search"])
+    """The search in plain Python with functions that are not compiled."""
+    return _search_with({"WORK": 1, "sweep": sweep, "points": points, "finish": finish})
 
 
-@cache
-def _code() -> CodeType:
-    return compile("\n\n".join(_functions()), "<desaxe search>", "exec")
+def _search_with(scope: Mapping[str, Any]) -> Kernel:
+    return _quiet(rebound(loops, {**scope, "uint64": int})["search"])
 
 
-def _scope(work: int) -> dict[str, Any]:
-    """The names that the text of the search imports, for plain Python."""
-    numpy = {"floor": np.floor, "empty": np.empty, "int64": np.int64}
-    return {name: getattr(math, name) for name in MATH_NAMES} | numpy | {"uint64": int, "WORK": work}
+def _scope(search: Search, functions: Sequence[str]) -> dict[str, Any]:
+    """Functions in plain Python, by name."""
+    scope: dict[str, Any] = dict(SCOPE)
+    exec(compile("\n".join(functions), f"<desaxe search {search.name}>", "exec"), scope)
+    return scope
 
 
 def _quiet(kernel: Kernel) -> Kernel:

@@ -41,8 +41,8 @@ def with_nodes(groups: Groups, nodes: Array) -> Groups:
 class Values:
     """A quantity, its slope over theta and its gradient, for designs under loads.
 
-    Its methods are the functions that a search calls (`peaks.stubs`); the search's only input is the design's
-    number.
+    Its methods are the functions that a search calls (declared in `search`), whose only input is the
+    design's number.
     """
 
     def __init__(self, name: str, search: Search, designs: Designs, course: Course) -> None:

@@ -1,7 +1,7 @@
-"""The search for the extreme value of each design, in plain loops: numba compiles the text below the line.
+"""The search for the extreme value of each design, in plain loops, whose text numba compiles (`compiled`).
 
-It stands in a module behind the functions `sweep`, `points` and `finish`, which are written from the
-Program of the quantity at hand (`module`). Designs of one group share their nodes; they go through in
+It stands in a module with the functions `sweep`, `points` and `finish`, which are written from the
+Program of the quantity at hand. Designs of one group share their nodes; they go through in
 blocks whose arrays stay in the cache, and every loop over a block is one that vectorises:
 
 sweep     value and slope at the nodes
@@ -22,14 +22,27 @@ kind      0 the largest magnitude, 1 the largest, 2 the smallest value
 out       rows: value, derivative by theta, gradient (of the magnitude for kind 0)
 """
 
+from __future__ import annotations
+
 from math import fabs, inf, nan
-from typing import Any
+from typing import TYPE_CHECKING
 
 from numpy import empty, int64, uint64
 
-from .stubs import WORK, finish, points, sweep
+if TYPE_CHECKING:
+    from typing import Any
 
-# ---- compiled ------------------------------------------------------------------------------------
+    WORK = 1  # rows of what `sweep` keeps of each design
+
+    def sweep(count: Any, nodes: Any, block: Any, work: Any, value: Any, slope: Any) -> None:
+        """The quantity and its derivative by theta at every node, for `count` designs."""
+
+    def points(rows: Any, count: Any, theta: Any, block: Any, value: Any, slope: Any) -> None:
+        """The quantity and its derivative by theta, each at its own angle."""
+
+    def finish(count: Any, theta: Any, block: Any, out: Any) -> None:
+        """The quantity, its derivative by theta and its gradient."""
+
 
 BLOCK = 128  # designs
 TIE = 1e-14  # values that differ by less are equal

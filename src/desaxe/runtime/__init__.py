@@ -18,6 +18,7 @@ threads        blocks of an array shared by threads
 tiers          plain Python, NumPy or compiled code for a request
 vectorised     Programs in NumPy, for the first call of a request
 any_stride     a kernel over arrays of any stride: the inner loop of a ufunc
+strided_loop   that loop, whose text numba compiles
 native_calls   a kernel as a ufunc, a C function, a function for numba
 compiled_only  a block in which compiled code is required
 """

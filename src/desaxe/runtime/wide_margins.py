@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compiler.builder import function_text
 from ..compiler.languages.python import compile_python
 from ..compiler.program import Program
-from ..compiler.text import INDENT, write_lines
+from ..compiler.text import write_lines
 from ..mechanism.names import LENGTHS
 from ..mechanism.program import Variant
 from .specialise import specialise
@@ -52,8 +53,8 @@ def of_numbers(form: Variant) -> Callable[..., Any]:
 @lru_cache(maxsize=1024)
 def _of_arrays(form: Variant) -> Callable[..., Any]:
     """The test as a function of arrays: numba's spelling is NumPy's, too."""
-    lines = [INDENT + line for line in write_lines(_test(form), "numba")]
-    source = "\n".join([f"def test({', '.join(LENGTHS)}):", *lines, f"{INDENT}return wide_margins"])
+    lines = [*write_lines(_test(form), "numba"), "return wide_margins"]
+    source = function_text("test", LENGTHS, lines)
     scope: dict[str, Any] = {"fabs": np.fabs, "inf": np.inf}
     exec(compile(source, "<desaxe wide margins>", "exec"), scope)
     test: Callable[..., Any] = scope["test"]

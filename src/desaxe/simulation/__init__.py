@@ -16,6 +16,5 @@ tableau       the coefficients of both
 compiled      the module of a family of designs
 history       histories of angle, speed, quantities and energy
 result        the result and its statuses
-stubs         stand-ins for the functions of a design
 held          loads as functions of time, smooth between their kinks
 """

@@ -5,31 +5,21 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..compiler.languages.numba.module import helper_sources
+from ..compiler.builder import function_text, module_text
+from ..compiler.languages.numba.module import NJIT, numba_parts
 from ..compiler.program import Program
-from ..compiler.text import INDENT, with_short_temporaries, write_lines
+from ..compiler.text import with_short_temporaries, write_lines
 from ..mechanism.program import Variant
 from ..runtime.modules import Native, native, native_here
 from ..runtime.specialise import specialise
 from .model import MOVING, STILL, UNLOADED
 
-LINE = "# ---- compiled"
-_HEADER = '''"""{what}"""
-
-from math import asin, atan2, copysign, cos, fabs, inf, nan, pi, sin, sqrt
-
-from numba import njit, types
-from numba.extending import intrinsic
-from numpy import empty, floor, int64, nextafter
-'''
-_NUMBER = "def torque(t, theta, omega, number):\n    return number\n"
-_FUNCTION = "def torque(t, theta, omega, number):\n    return given_torque(t, theta, omega)\n"
-_NJIT = '@njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)\n'
+DOP853 = Path(__file__).with_name("dop853.py")
 _SIGNATURE = """rows, row = types.float64[:, ::1], types.float64[::1]
 signature = types.void(
     rows, rows, row, row, rows, row, row, row, row, rows, rows, row, rows, rows, rows, types.int8[::1], rows
 )
-function = designs
+function = designs.py_func
 """
 
 
@@ -65,32 +55,23 @@ class Family(NamedTuple):
 def source_of(family: Family, given_torque: bool) -> str:
     """The text of the module."""
     inputs = {name: f"p[{at}]" for at, name in enumerate(family.inputs)}
+    torque = "given_torque(t, theta, omega)" if given_torque else "number"
     parts = [
-        _HEADER.format(what=f"desaxe: the motion of many designs; p has {', '.join(inputs)}."),
-        *helper_sources({line.op for program in family.programs.values() for line in program.lines}),
         *(_function(name, program, inputs) for name, program in family.programs.items()),
-        _NJIT + (_FUNCTION if given_torque else _NUMBER),
-        _integrator(),
+        NJIT + function_text("torque", ("t", "theta", "omega", "number"), [f"return {torque}"]),
         _SIGNATURE,
     ]
-    return "\n\n".join(parts)
+    docstring = f"desaxe: the motion of many designs; p has {', '.join(inputs)}."
+    return module_text(docstring, numba_parts(parts, DOP853))
 
 
 def _function(name: str, program: Program, places: Mapping[str, str]) -> str:
     """A program as a jitted function of angle, branch and the row of a design."""
     rows = [f"{i} = {places[i]}" for i in program.inputs if i in places]
     rows += write_lines(with_short_temporaries(program), "numba")
-    rows.append(f"return {', '.join(program.outputs)}")
-    return "\n".join([f"{_NJIT}def {name}(theta, branch, p):", *(INDENT + row for row in rows)]) + "\n"
-
-
-def _integrator() -> str:
-    """The text of `dop853` for numba: every function jitted, the last one with its signature."""
-    text = Path(__file__).with_name("dop853.py").read_text(encoding="utf-8")
-    functions = text.partition(LINE)[2].partition("\n")[2].strip().split("\ndef ")
-    *helpers, last = [function.removeprefix("def ") for function in functions]
-    bare = [f"{_NJIT}def {function.strip()}\n" for function in helpers]
-    return "\n\n".join([*bare, f"def {last.strip()}\n"]).replace(": Any", "").replace(") -> Any:", "):")
+    return NJIT + function_text(
+        name, ("theta", "branch", "p"), [*rows, f"return {', '.join(program.outputs)}"]
+    )
 
 
 @lru_cache(maxsize=32)

@@ -1,7 +1,7 @@
-"""DOP853 for one design after the other, in plain loops: the text below the line is compiled by numba.
+"""DOP853 for one design after the other, in plain loops, whose text numba compiles (`compiled`).
 
-It stands in a module behind the functions `still`, `moving`, `potential` and `torque` that are written from
-the Program for the designs at hand (`module`). The method is that of Hairer, Norsett and Wanner, "Solving
+It stands in a module with the functions `still`, `moving`, `potential` and `torque` that are written from
+the Program for the designs at hand. The method is that of Hairer, Norsett and Wanner, "Solving
 Ordinary Differential Equations I", section II, with the step control, the error norm and the dense output
 of `stepper`: one design takes the steps that `simulate` takes for it alone. A constant that is passed on is
 an int64, for numba compiles a function anew for each literal.
@@ -11,14 +11,27 @@ setup   a row per design: branch, limit angles, half of the arc (see `chart`), t
 tables  A, B, C, E3, E5, D and the rows of A and C for the dense output
 """
 
+from __future__ import annotations
+
 from math import asin, copysign, cos, inf, nan, pi, sin, sqrt
-from typing import Any
+from typing import TYPE_CHECKING
 
 from numpy import empty, int64, nextafter
 
-from .stubs import moving, potential, still, torque
+if TYPE_CHECKING:
+    from typing import Any
 
-# ---- compiled ------------------------------------------------------------------------------------
+    def still(theta: float, branch: float, p: Any) -> tuple[float, float, float]:
+        """M_eff [kg m^2], the torque of gravity [N m] and Y' [m]."""
+
+    def moving(theta: float, branch: float, p: Any) -> tuple[float, float, float, float]:
+        """M_eff, its derivative by theta, the torque of gravity and Y'."""
+
+    def potential(theta: float, branch: float, p: Any) -> float:
+        """The potential energy [J]."""
+
+    def torque(t: float, theta: float, omega: float, number: float) -> float:
+        """The torque [N m]."""
 
 
 def place(q: float, setup: Any) -> Any:

@@ -9,7 +9,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from desaxe.compiler.languages.python import compile_python, emit_python
-from desaxe.compiler.operations import HELPERS
 from desaxe.compiler.program import Line, Program
 from tests.compiler.coverage_set import NAMES, POINTS, coverage
 from tests.compiler.programs import (
@@ -79,17 +78,20 @@ def test_an_input_can_be_an_output():
 
 
 def test_nothing_but_math_is_imported():
-    tree = ast.parse(emit_python(committed("a_C")))
+    tree = ast.parse(emit_python(committed("a_C"), "A point."))
     imports = [node for node in ast.walk(tree) if isinstance(node, (ast.Import, ast.ImportFrom))]
     assert [node.module for node in imports] == ["math"]
 
 
 def test_golden():
     lines = (Line("u", "add", ("x", "y")), Line("v", "div", ("u", ("y"))))
-    text = emit_python(Program(("x", "y"), lines, ("v", "u"), {}), "ratio")
-    assert text.endswith("\n\ndef ratio(x, y):\n    u = x + y\n    v = divide(u, y)\n    return (v, u,)\n")
+    text = emit_python(Program(("x", "y"), lines, ("v", "u"), {}), "A ratio.")
+    assert text.endswith("\n\ndef point(x, y):\n    u = x + y\n    v = divide(u, y)\n    return (v, u,)\n")
 
 
-def test_the_helpers_stand_in_it():
-    text = emit_python(coverage())
-    assert all(f"def {name}(" in text for name in HELPERS)
+def test_the_helpers_that_it_calls_stand_in_it():
+    text = emit_python(coverage(), "The coverage set.")
+    scope = {}
+    exec(text, scope)
+    point = dict(zip("xyz", (0.5, 0.25, 2.0), strict=True))
+    assert scope["point"](**point) == compile_python(coverage())(**point)

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.scenes.export.compile import module_text
+from desaxe.scenes.export.numba_module import text_of
 from desaxe.scenes.schema import SceneError
 from desaxe.support.locks import locked
 from tests.example_scenes import COMPACTOR, SMALL
@@ -54,7 +54,11 @@ SCENES = {
     "far": {**STATE, "motion": {"theta": [1e9, 2e9], "omega": 3}},
 }  # fmt: skip
 
-ALLOWED = {"concurrent.futures", "math", "os", "threading", "numba", "numba.core", "numba.extending", "numpy"}
+SEARCHED = {**SMALL, "peak": [{"quantity": "a_C", "kind": kind} for kind in ("absmax", "max")]}
+ALLOWED = {
+    "__future__", "concurrent.futures", "math", "os", "threading", "typing", "numba", "numba.core",
+    "numba.extending", "numpy",
+}  # fmt: skip
 # Runs in a process of its own, where importing desaxe fails; prints every value as hex.
 ALONE = """
 import importlib, json, sys
@@ -232,11 +236,11 @@ def test_what_is_left_out_is_told(tmp_path, capsys):
     assert main(["compile", str(COMPACTOR), "--to", "c", "-o", str(tmp_path / "press")]) == 0
     assert "not compiled (`desaxe run` has it): [[peak]] a_C, [[peak]] V_C" in capsys.readouterr().err
     rubbing = {**FORCES, "peak": [{"quantity": "T_in"}, {"quantity": "a_C"}]}
-    text = module_text(dx.scene(rubbing))
+    text = text_of(dx.scene(rubbing))
     assert "Not in here (`desaxe run` has it): [[peak]] T_in." in text
     assert "def peak_absmax_T_in" not in text
     stuck = {**GRID, "peak": [{"quantity": "V_C", "over": {"ec": [0, 0.24], "BC": [0.35]}}]}
-    assert "Not in here (`desaxe run` has it): [[peak]] V_C." in module_text(dx.scene(stuck))
+    assert "Not in here (`desaxe run` has it): [[peak]] V_C." in text_of(dx.scene(stuck))
     place = tmp_path / "compactor_kernels.py"
     assert main(["compile", str(COMPACTOR), "-o", str(place)]) == 0
     assert "not compiled" not in capsys.readouterr().err
@@ -300,7 +304,7 @@ def test_only_numpy_and_numba_are_imported(tmp_path):
 
 
 def test_ruff_finds_nothing_undefined_or_unused(tmp_path):
-    for name, scene in SCENES.items():
+    for name, scene in {**SCENES, "searched": SEARCHED}.items():
         dx.compile(scene, tmp_path / f"{name}.py")
     command = [sys.executable, "-m", "ruff", "check", "--isolated", "--select", "F", str(tmp_path)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -377,7 +381,7 @@ def operations_in(point):
 
 @pytest.mark.parametrize("name", ["grid", "state", "forces", "extended", "one_axis", "far"])
 def test_the_count_of_operations_is_that_of_the_text(name):
-    text = module_text(dx.scene(SCENES[name]))
+    text = text_of(dx.scene(SCENES[name]))
     told = re.search(r"A `point` takes (\d+) operations, in a form that is right for any design", text)
     functions = [node for node in ast.parse(text).body if isinstance(node, ast.FunctionDef)]
     (point,) = (node for node in functions if node.name == "point")

@@ -24,20 +24,20 @@ if TYPE_CHECKING:
 
 
 def languages() -> "tuple[Language, ...]":
-    """All but numba, imported when they are asked for: a kernel needs none of them."""
+    """All languages, imported when they are asked for: a kernel needs none of them."""
     with IMPORTS:
         from .c import C
         from .es_module import JavaScript
         from .jax import Jax
+        from .numba.language import Numba
         from .octave import Octave
 
-    return C(), Jax(), Octave(), JavaScript()
+    return Numba(), C(), Jax(), Octave(), JavaScript()
 
 
 def language_of(name: str) -> "Language":
     """The language of this name; ValueError with those that there are."""
-    found = next((language for language in languages() if language.name == name), None)
-    if found is None:
-        known = ", ".join(["numba", *(language.name for language in languages())])
-        raise ValueError(f"to = {name!r}: it is one of {known}")
-    return found
+    known = {language.name: language for language in languages()}
+    if name not in known:
+        raise ValueError(f"to = {name!r}: it is one of {', '.join(known)}")
+    return known[name]

@@ -49,6 +49,7 @@ class JavaScript:
     second_order = False
     own_functions = False
     extended = True
+    loops = None
 
     def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
         """`name.js` and `name.d.ts`."""

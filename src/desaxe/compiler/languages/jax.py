@@ -7,7 +7,8 @@ theirs: `grad`, `jacfwd`, `hessian`, `vmap` and `jit` see exact derivatives in t
 
 import re
 
-from ..operations import HELPERS as SHARED
+from ..builder import HELPERS as SHARED
+from ..builder import functions_of
 from ..program import Program
 from ..text import INDENT, with_short_temporaries
 from .protocol import Module, Symbol
@@ -34,7 +35,7 @@ RENAMED = {"atan2": "arctan2", "fabs": "abs", "pow": "power"}  # readable text -
 OWN = ("asarray", "custom_jvp", "finfo", "float32", "result_type", "stop_gradient", "zeros_like", "int8")
 WORDS = {"nan": "nan", "inf": "inf", "True": "True", "False": "False"}
 HELPERS = {
-    "two_sum_error": SHARED["two_sum_error"],
+    "two_sum_error": functions_of(SHARED)["two_sum_error"],
     "two_product_error": '''def two_product_error(a, b):
     """What rounding took from a * b, exactly (Dekker)."""
     product = a * b
@@ -122,6 +123,7 @@ class Jax:
     second_order = True
     own_functions = False
     extended = False  # products may be fused with sums
+    loops = None
 
     def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
         """`name.py`."""

@@ -119,6 +119,7 @@ class Octave:
     second_order = False
     own_functions = False
     extended = True
+    loops = None
 
     def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
         """`name.m`."""

@@ -4,9 +4,10 @@ A `Module` says all that the emitters may know: names and units of arguments and
 constants. It knows no mechanism. A language turns it into the texts of one or more files.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple, Protocol
 
+from ..kernel import Kernel
 from ..passes.trigonometry import Trigonometry
 from ..program import Program
 
@@ -87,6 +88,11 @@ class Language(Protocol):
     second_order: bool  # whether `derivatives` and `values` are wanted
     own_functions: bool  # whether the language can do without a library of elementary functions
     extended: bool  # whether sums and products are rounded as they stand, which twice the digits want
+
+    @property
+    def loops(self) -> Callable[[Kernel, str], str] | None:
+        """The function that writes a loop nest as a module; None where the language takes none."""
+        ...
 
     def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
         """File name -> text. `freestanding`: without a library of elementary functions."""

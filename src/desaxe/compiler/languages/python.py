@@ -1,26 +1,33 @@
 """A Program as plain Python over `math`: one point, microseconds, nothing compiled."""
 
+import math
 from collections.abc import Callable
 from typing import Any
 
-from ..operations import HELPERS, MATH_NAMES
+from .. import helpers
+from ..builder import function_text, module_text, with_sources
+from ..operations import MATH_NAMES
 from ..program import Program
-from ..text import INDENT, with_short_temporaries, write_lines
+from ..text import with_short_temporaries, write_lines
 
-_HEADER = f"from math import {', '.join(MATH_NAMES)}\n\n\n" + "\n\n".join(HELPERS.values())
+SCOPE = {name: getattr(math, name) for name in MATH_NAMES} | vars(helpers)  # what spellings call
 
 
-def emit_python(program: Program, name: str = "point") -> str:
-    """The source of `name(*inputs)`, which returns a tuple of the outputs and never raises."""
+def emit_python(program: Program, docstring: str) -> str:
+    """The source of a module with `point(*inputs)`, which returns a tuple of the outputs and never raises."""
+    return module_text(docstring, with_sources([point_text(program)]))
+
+
+def point_text(program: Program, name: str = "point") -> str:
+    """The function itself."""
     returned = "".join(f"{output}, " for output in program.outputs)
     body = [*write_lines(with_short_temporaries(program), "python"), f"return ({returned.strip()})"]
-    signature = f"def {name}({', '.join(program.inputs)}):"
-    return "\n".join([_HEADER, "", signature, *(INDENT + line for line in body)]) + "\n"
+    return function_text(name, program.inputs, body)
 
 
 def compile_python(program: Program) -> Callable[..., tuple[Any, ...]]:
-    """The function itself."""
-    scope: dict[str, Any] = {}
-    exec(compile(emit_python(program), "<desaxe point>", "exec"), scope)
+    """The function, ready to be called."""
+    scope = dict(SCOPE)
+    exec(compile(point_text(program), "<desaxe point>", "exec"), scope)
     function: Callable[..., tuple[Any, ...]] = scope["point"]
     return function

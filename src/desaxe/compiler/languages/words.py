@@ -95,7 +95,8 @@ _NUMBA = frozenset((
     "ImportError", "OverflowError", "RuntimeError", "TypeError", "ValueError", "abs", "dict", "enumerate",
     "float", "int", "len", "list", "max", "min", "range", "set", "str", "sum", "tuple", "type", "zip",
     # imported
-    "Lock", "ThreadPoolExecutor", "append", "arange", "array", "asarray", "ascontiguousarray", "atan2",
+    "Any", "Lock", "ThreadPoolExecutor", "annotations",
+    "append", "arange", "array", "asarray", "ascontiguousarray", "atan2",
     "broadcast_arrays", "broadcast_to", "cgutils", "codegen", "copysign", "cos", "cpu_count", "empty", "exp",
     "fabs", "float64", "floor", "frexp", "full", "inf", "int64", "int8", "intrinsic", "isfinite", "linspace",
     "log", "nan", "njit", "pi", "pow", "prod", "sched_getaffinity", "searchsorted", "sin", "sqrt", "types",

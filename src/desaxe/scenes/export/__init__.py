@@ -1,16 +1,15 @@
 """`compile`: a scene as source code of its own, in one of several languages.
 
-compile       `desaxe.compile`: a scene to files; the text of the Python module
+compile       `desaxe.compile`: a scene to files
 command       `desaxe compile`
 portable      a scene as the `Module` that every language writes
+numba_module  the text of the Python module
 solvers       crank angles for a slider position, limit angles
 motion        the crank's acceleration under a torque
 entry_points  the functions that people call in the Python module
-scalars       a function for each output, for @njit functions
 peaks         the scene's peaks in the Python module
 axes          the scene's lists and ranges
 first_call    how its loops are compiled
-merge         several generated Python modules as one
 loaded        loads over theta in a Python module
 package       `desaxe derive --quantities`: a package of a user's own quantities
 """

@@ -1,11 +1,9 @@
 """The public functions of a compiled module as text: `point`, `evaluate`, `run`."""
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from textwrap import wrap
 
 from ...compiler.languages.numba.reductions import KINDS, outputs_of
-from ...compiler.operations import HELPERS, MATH_NAMES
 from ...compiler.program import Program
 from ...compiler.text import with_short_temporaries, write_lines
 from ...mechanism.catalogue import quantity
@@ -71,12 +69,7 @@ def point_function(program: Program, shown: Sequence[str], state: bool) -> str:
         f"    return ({returned},)",
         "",
     ]
-    text = "\n".join(lines)
-    used = _helpers(text)
-    words = "\n".join([*used, text])
-    names = [name for name in MATH_NAMES if calls_of(words, name)]
-    imports = [f"from math import {', '.join(names)}"] if names else []
-    return "\n\n".join(['"""Points."""', *imports, *used, text])
+    return "\n".join(lines)
 
 
 def _doubles(inputs: Iterable[str]) -> str:
@@ -86,15 +79,6 @@ def _doubles(inputs: Iterable[str]) -> str:
 def indented(lines: Iterable[str]) -> list[str]:
     """The lines one level in."""
     return [f"    {line}" if line else "" for line in lines]
-
-
-def calls_of(text: str, name: str) -> bool:
-    """True where a text has the name."""
-    return re.search(rf"\b{name}\b", text) is not None
-
-
-def _helpers(text: str) -> list[str]:
-    return [source for name, source in HELPERS.items() if f"{name}(" in text]
 
 
 def evaluate_function(

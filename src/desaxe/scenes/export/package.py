@@ -14,12 +14,12 @@ from keyword import iskeyword
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ...compiler.builder import module_text, with_sources
 from ...compiler.languages.numba.module import emit_numba
 from ...compiler.languages.python import emit_python
 from ...compiler.languages.shared import one_line
 from ...compiler.languages.words import words_of
 from ...compiler.lowering import Limits, guarded_for_loops, nest
-from ...compiler.operations import HELPERS, MATH_NAMES
 from ...compiler.program import Program, renamed
 from ...compiler.text import write_function
 from ...definitions.tables import read_definitions, tables_of
@@ -108,7 +108,7 @@ def package_texts(source: Path, name: str) -> dict[str, str]:
     for part in listing:
         program, shown = _part_program(part, made)
         texts[f"{part.file}.py"] = _kernel(banner, part, program)
-        texts[f"{part.file}_point.py"] = f'"""{banner}"""\n\n{emit_python(program)}'
+        texts[f"{part.file}_point.py"] = emit_python(program, banner)
         where[part.file] = {
             "names": shown, "inputs": program.inputs, "needs": _needs(part, made), "state": part.state,
         }  # fmt: skip
@@ -189,16 +189,7 @@ def _program(banner: str, names: tuple[str, ...], made: Sequence[Definition]) ->
         outputs=names, notes={shown.get(name, name): note for name, note in program.notes.items()}
     )
     body = write_function(plain, "law", "Every quantity and sensitivity, under paper A's law of motion.")
-    called = [word for word in MATH_NAMES if word in body] + [
-        word
-        for helper, text in HELPERS.items()
-        if f"{helper}(" in body
-        for word in MATH_NAMES
-        if word in text
-    ]
-    helpers = "".join(f"\n\n{text}" for helper, text in HELPERS.items() if f"{helper}(" in body)
-    imports = f"from math import {', '.join(dict.fromkeys(sorted(called)))}\n" if called else ""
-    return f'"""The frozen program.\n\n{banner}\n"""\n\n{imports}{helpers}\n\n{body}'
+    return module_text(f"The frozen program.\n\n{banner}\n", with_sources([body]))
 
 
 def _literal(where: dict[str, dict[str, Any]]) -> str:

@@ -6,34 +6,32 @@ own (friction, a load that varies, designs that stall or cannot turn fully) are 
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from textwrap import wrap
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...compiler.builder import Parts, functions_of, renamed
+from ...compiler.languages.numba.module import CALLABLE, numba_parts, signature
 from ...evaluation.arrays import as_array
 from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LENGTHS
 from ...mechanism.own_lines import has_kinks
 from ...peaks import special
-from ...peaks.compiled import SIGNATURE, source_of
+from ...peaks.compiled import SEARCH, texts_of
 from ...peaks.designs import KINDS, Plan, plan_of, search_of
 from ...peaks.nodes import FINEST, graded
 from ...peaks.programs import Search, programs_of
 from ..content import Content, Peak
 from ..peaks import WORDS, columns_of, group_names
 from .axes import rule_of
-from .merge import renamed
+from .portable import left_out
 
 ROWS = "types.float64[:, ::1]"
 INDICES = "types.int64[::1]"
-OWN = ("sweep", "points", "finish", "search", "WORK", "signature")  # of each search
-SHARED = (
-    "score", "gather", "bound", "candidates", "interior", "brackets", "quartic", "quartic_slope", "begin",
-    "newton", "choose",
-)  # fmt: skip
+OWN = ("sweep", "points", "finish", "search", "WORK")  # of each search
 NODES = '''# Distances of nodes from a quarter turn: denser towards it, for narrow peaks at a change point.
 DISTANCES = array([
 {rows}
@@ -99,9 +97,9 @@ class Found(NamedTuple):
 
 
 class PeakTexts(NamedTuple):
-    """The searches, as modules to be merged; the functions, as text; their names and meanings."""
+    """The searches; the functions, as text; their names and meanings."""
 
-    searches: list[str]
+    searches: list[Parts]
     functions: list[str]
     lines: list[str]
 
@@ -147,7 +145,7 @@ def peak_texts(content: Content) -> PeakTexts:
     searches: dict[Search, str] = {}
     for one in found:
         searches.setdefault(one.search, f"search{len(searches)}")
-    sources = [_search_text(search, prefix) for search, prefix in searches.items()]
+    sources = [_search_parts(search, prefix) for search, prefix in searches.items()]
     rows = [row for one in found for row in _table_rows(one, searches[one.search])]
     functions = [_nodes_text(), EXTREMUM, "\n".join(["PEAKS = {", *rows, "}"])] if found else []
     state = "omega" in content.inputs
@@ -156,14 +154,16 @@ def peak_texts(content: Content) -> PeakTexts:
     return PeakTexts(sources, functions, lines)
 
 
-def _search_text(search: Search, prefix: str) -> str:
-    """The module of a search under names of its own."""
-    source = source_of(search).replace(SIGNATURE, "")
-    words = {name: prefix if name == "search" else f"{prefix}_{name}" for name in OWN}
-    text = renamed(source, words)
-    text = renamed(text, {name: f"search_{name}" for name in SHARED}, called=True)
+def _search_parts(search: Search, prefix: str) -> Parts:
+    """A search under names of its own; what it shares with others is called so."""
+    functions = functions_of(SEARCH)
     kinds = (ROWS, INDICES, INDICES, "types.float64[::1]", INDICES, "types.int64", "types.float64[::1]", ROWS)
-    return f"{text}\n\n{prefix}_signature = types.void(\n    {', '.join(kinds)}\n)\n"
+    own = [*texts_of(programs_of(search, True), "numba"), functions["search"]]
+    words = {name: prefix if name == "search" else f"{prefix}_{name}" for name in OWN}
+    parts = [renamed(text, words) for text in own] + [signature(f"{prefix}_signature", "void", kinds)]
+    shared = {name: f"search_{name}" for name in functions}
+    found = numba_parts(parts, SEARCH, jit=CALLABLE)
+    return found._replace(texts=tuple(renamed(text, shared, called=True) for text in found.texts))
 
 
 def _nodes_text() -> str:
@@ -231,9 +231,10 @@ def _function(one: Found, state: bool) -> str:
     )
 
 
-def left_out_of_module(content: Content, lost: Sequence[str]) -> list[str]:
-    """Drop the peaks that the Python module has from the list of what other languages leave out."""
+def left_out_of_module(content: Content) -> list[str]:
+    """The parts of a scene that the Python module leaves out: of peaks those that need nodes of their own."""
     here = {one.name for one in carried(content)}
     named: Mapping[str, Peak] = dict(zip(group_names(content.peaks), content.peaks, strict=True))
     gone = {f"[[peak]] {one.quantity}" for name, one in named.items() if name not in here}
+    lost = left_out(content, reduction=False)
     return [words for words in lost if not words.startswith("[[peak]]") or words in gone]

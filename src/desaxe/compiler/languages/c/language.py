@@ -22,6 +22,7 @@ class C:
     second_order = False
     own_functions = True
     extended = True
+    loops = None
 
     def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
         """`name.h` and `name.c`."""

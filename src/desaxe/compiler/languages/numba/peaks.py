@@ -2,10 +2,12 @@
 
 from collections.abc import Sequence
 
+from ...builder import function_text
 from ...cost import cost_of
 from ...passes.slicing import drop_unused, keep_outputs
 from ...program import Line, Program, names_in
 from ...text import INDENT, with_short_temporaries, write_lines
+from .module import NJIT
 
 READ = 2.0  # what reading a value costs, in additions
 
@@ -15,9 +17,10 @@ class Rows:
 
     def __init__(self, inputs: Sequence[str], column: str, searched: str) -> None:
         self.inputs, self.column, self.searched = tuple(inputs), column, searched
-        self.compiled = column == "numba"
-        self.range = "range(uint64({}))" if self.compiled else "range({})"
-        self.read = "{}" if self.compiled else "float({})"
+        compiled = column == "numba"
+        self.jit = NJIT if compiled else ""
+        self.range = "range(uint64({}))" if compiled else "range({})"
+        self.read = "{}" if compiled else "float({})"
 
     def views(self, program: Program, source: str = "block") -> list[str]:
         """A name for the row of each input."""
@@ -30,6 +33,10 @@ class Rows:
     def lines(self, program: Program) -> list[str]:
         """The assignments."""
         return write_lines(program, self.column)
+
+    def function(self, name: str, parameters: str, body: Sequence[str]) -> str:
+        """The text of a function."""
+        return self.jit + function_text(name, [parameters], body)
 
     def _own(self, program: Program) -> list[str]:
         return [n for n in program.inputs if n in self.inputs]
@@ -61,7 +68,7 @@ def sweep_function(program: Program, rows: Rows) -> tuple[str, int]:
     every += rows.lines(inner)
     every += [f"value_row[i] = {program.outputs[0]}", f"slope_row[i] = {program.outputs[1]}"]
     body += ["for j in range(nodes.size):", *_in([*node, *_in(every)])]
-    return _function("sweep(count, nodes, block, work, value, slope)", body), len(numbered)
+    return rows.function("sweep", "count, nodes, block, work, value, slope", body), len(numbered)
 
 
 def points_function(program: Program, rows: Rows) -> str:
@@ -77,7 +84,7 @@ def points_function(program: Program, rows: Rows) -> str:
     body = [*rows.views(program), "for j in range(rows):"]
     body += _in(["theta_row = thetas[j]", *(f"{n}_row = {n}[j]" for n in names)])
     body += _in([f"for i in {rows.range.format('count')}:", *_in(loop)])
-    return _function("points(rows, count, thetas, block, value, slope)", body)
+    return rows.function("points", "rows, count, thetas, block, value, slope", body)
 
 
 def finish_function(program: Program, rows: Rows) -> str:
@@ -88,7 +95,7 @@ def finish_function(program: Program, rows: Rows) -> str:
     loop += [f"out_{k}[i] = {name}" for k, name in places]
     body = [*rows.views(program), *(f"out_{k} = out[{k}]" for k, _ in places)]
     body += [f"for i in {rows.range.format('count')}:", *_in(loop)]
-    return _function("finish(count, thetas, block, out)", body)
+    return rows.function("finish", "count, thetas, block, out", body)
 
 
 def _split(program: Program, fast: str) -> tuple[Program, Program]:
@@ -120,7 +127,3 @@ def _independent(program: Program, inputs: set[str]) -> list[Line]:
 
 def _in(lines: Sequence[str]) -> list[str]:
     return [INDENT + line for line in lines]
-
-
-def _function(head: str, body: Sequence[str]) -> str:
-    return "\n".join([f"def {head}:", *_in(body)]) + "\n"

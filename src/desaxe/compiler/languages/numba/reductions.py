@@ -7,11 +7,11 @@ reduced by one thread in one order, so that the answer does not depend on how ma
 """
 
 from collections.abc import Mapping, Sequence
-from textwrap import wrap
 
+from ...builder import function_text, module_text
 from ...kernel import Kernel
-from ...text import INDENT, WIDTH
-from .module import emit_numba
+from ...text import INDENT
+from .module import loops_parts, numba_parts, signature
 
 # Kind -> what it is called in CF's `cell_methods`.
 KINDS = {
@@ -22,141 +22,33 @@ KINDS = {
     "rms": "root_mean_square",
 }
 EXTREMES = ("max", "min", "absmax")  # these have a place
-_ROTATED = {"max": "x", "min": "-x", "absmax": "abs(x)"}  # the largest of these is wanted
 
 SCRATCH = 32_768  # doubles: a quarter of a megabyte, for the second-level cache
 LONGEST = 2_048  # doubles of a row that are computed at a time
 
 
-def _largest(kind: str) -> str:
-    # Sixteen lanes, each with a largest number of its own, are vectors; one largest number is a chain.
-    return f'''@njit(error_model="numpy")
-def take_{kind}(row, start, value, place):
-    """Go on with a row: the largest {_ROTATED[kind]} so far and its place, the first of equals; no NaN."""
-    values = full(16, -inf)
-    places = full(16, -1)
-    whole = row.size - row.size % 16
-    for first in range(0, whole, 16):
-        for lane in range(16):
-            x = row[first + lane]
-            x = {_ROTATED[kind]}
-            better = (x > values[lane]) | ((places[lane] < 0) & (x == x))
-            values[lane] = x if better else values[lane]
-            places[lane] = first if better else places[lane]
-    best, at = -inf, -1
-    for lane in range(16):
-        x, here = values[lane], places[lane] + lane
-        if places[lane] >= 0 and (at < 0 or x > best or (x == best and here < at)):
-            best, at = x, here
-    for here in range(whole, row.size):
-        x = row[here]
-        x = {_ROTATED[kind]}
-        if x > best or (at < 0 and x == x):
-            best, at = x, here
-    if at >= 0 and (place < 0 or best > value):
-        return best, start + at
-    return value, place
-'''
-
-
-_COUNT = '''@njit(error_model="numpy")
-def count(row):
-    """How many are not NaN."""
-    found = 0
-    for here in range(row.size):
-        found += row[here] == row[here]
-    return found
-'''
-
-_SUM = '''@njit(error_model="numpy")
-def take_sum(row, factor, power, total, rest):
-    """Go on with the sum of (factor x)^power in sixteen lanes, with what rounding takes kept; no NaN."""
-    sums, rests = zeros(16), zeros(16)
-    whole = row.size - row.size % 16
-    for first in range(0, whole, 16):
-        for lane in range(16):
-            x = factor * row[first + lane]
-            x = x * x if power == 2 else x
-            x = x if x == x else 0.0
-            longer = sums[lane] + x
-            of_x = longer - sums[lane]
-            rests[lane] += (sums[lane] - (longer - of_x)) + (x - of_x)
-            sums[lane] = longer
-    for place in range(16 + row.size - whole):
-        x = factor * row[whole + place - 16] if place >= 16 else sums[place]
-        x = x * x if power == 2 and place >= 16 else x
-        x = x if x == x else 0.0
-        longer = total + x
-        of_x = longer - total
-        rest += (total - (longer - of_x)) + (x - of_x)
-        rest += rests[place] if place < 16 else 0.0
-        total = longer
-    return total, rest
-
-
-@njit(error_model="numpy")
-def whole_sum(total, rest):
-    """A sum and what rounding took from it; an infinity has no rest."""
-    return total + rest if rest == rest else total
-'''
-
-_MEAN = '''@njit(error_model="numpy")
-def take_mean(row, start, total, rest):
-    """Go on with the sum for a mean."""
-    return take_sum(row, 1.0, 1, total, rest)
-'''
-
-_SQUARES = '''@njit(error_model="numpy")
-def factor_for(row, factor):
-    """A power of two that brings the squares of a row into range; the one so far, if it does."""
-    largest = 0.0
-    for here in range(row.size):
-        x = abs(row[here])
-        largest = x if largest < x < inf else largest
-    if largest == 0.0 or (factor > 0.0 and largest * factor < 2.0**300):
-        return factor
-    return 2.0 ** max(min(-frexp(largest)[1], 1000), -1000)
-'''
-
-_HELPERS = {
-    "max": (_largest("max"),),
-    "min": (_largest("min"),),
-    "absmax": (_largest("absmax"),),
-    "mean": (_SUM, _MEAN),
-    "rms": (_SUM, _SQUARES),
-}
-
-
-_INNER = (
-    'kernel = njit(signature, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)(loops)\n'
-)
 # The tails of the inner loops and of the whole, for a text that the runtime compiles.
-TO_COMPILE = (_INNER, "function, signature = reduced_loops, reduced_signature\n")
+TO_COMPILE = (
+    'kernel = njit(signature, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)(loops)\n',
+    "function, signature = reduced_loops, reduced_signature\n",
+)
 
 
-def emit_reduced(
-    kernel: Kernel,
-    kinds: Sequence[str],
-    docstring: str,
-    tails: tuple[str, str] = TO_COMPILE,
-) -> str:
-    """The source of a module whose `reduced(*inputs, length, *outputs)` reduces the innermost axis.
+def emit_reduced(kernel: Kernel, kinds: Sequence[str], docstring: str) -> str:
+    """The source of a module whose `reduced_loops` reduces the innermost axis, for the runtime to compile."""
+    return module_text(docstring, numba_parts(reduced_parts(kernel, kinds)))
+
+
+def reduced_parts(kernel: Kernel, kinds: Sequence[str], tails: tuple[str, str] = TO_COMPILE) -> list[str]:
+    """`reduced_loops(*inputs, length, *outputs)`, which reduces the innermost axis, and what it calls.
 
     Precondition: two axes or more; every output is f64. `length` is that of the reduced axis. The
     outputs, over the other axes: for each output of the kernel and each kind the reduced value and,
     of an extreme, its place (int64, -1 where there is none); then how many values counted. `tails`
     say what becomes of the inner `loops` and of `reduced_loops`: by default the runtime compiles them.
     """
-    helpers = dict.fromkeys([_COUNT, *(text for kind in kinds for text in _HELPERS[kind])])
-    imports = "from math import frexp, inf, nan, sqrt\n\nfrom numpy import empty, full, int64, zeros"
-    return "\n\n".join(
-        [
-            emit_numba(kernel, docstring, tails[0]).rstrip() + "\n",
-            f"# Reductions of the innermost axis.\n{imports}\n",
-            *helpers,
-            _driver(kernel, kinds, tails[1]),
-        ]
-    )
+    inner, outer = tails
+    return [*loops_parts(kernel), inner, *_reduced_loops(kernel, kinds), outer]
 
 
 def outputs_of(names: Sequence[str], kinds: Sequence[str]) -> list[tuple[str, str]]:
@@ -170,24 +62,16 @@ def outputs_of(names: Sequence[str], kinds: Sequence[str]) -> list[tuple[str, st
     return found
 
 
-def _driver(kernel: Kernel, kinds: Sequence[str], tail: str) -> str:
+def _reduced_loops(kernel: Kernel, kinds: Sequence[str]) -> list[str]:
+    """The function of the reductions, and its signature."""
     parameters = [name if axis is None else f"{name}_axis" for name, axis in kernel.inputs.items()]
-    types = ["types.float64" if axis is None else "axis" for axis in kernel.inputs.values()] + ["types.int64"]
+    types = ["types.float64" if axis is None else "AXIS" for axis in kernel.inputs.values()] + ["types.int64"]
     outs = outputs_of(kernel.outputs, kinds)
     shape = ", ".join([":"] * (kernel.axes - 2) + ["::1"])
     types += [f"types.{kind}[{shape}]" for _, kind in outs]
-    return "\n".join(
-        [
-            "def reduced_loops(",
-            *(f"{INDENT}{name}," for name in [*parameters, "length", *(f"out_{name}" for name, _ in outs)]),
-            "):",
-            *(f"{INDENT}{line}" for line in _blocks(kernel, kinds, f"out_{outs[0][0]}")),
-            "\n\nreduced_signature = types.void(",
-            *(INDENT + row for row in wrap(", ".join(types), WIDTH)),
-            ")",
-            tail,
-        ]
-    )
+    given = [*parameters, "length", *(f"out_{name}" for name, _ in outs)]
+    loops = function_text("reduced_loops", given, _blocks(kernel, kinds, f"out_{outs[0][0]}"))
+    return [loops, signature("reduced_signature", "void", types)]
 
 
 def _blocks(kernel: Kernel, kinds: Sequence[str], measure: str) -> list[str]:
@@ -262,7 +146,7 @@ def _cut(name: str, axis: int | None, last: int) -> str:
 
 def _row(name: str, kinds: Sequence[str]) -> list[str]:
     """The lines that fold one part of a row into its reduction."""
-    lines = [f"row = scratch_{name}[r * n : r * n + n]", f"count_{name}[r] += count(row)"]
+    lines = [f"row = scratch_{name}[r * n : r * n + n]", f"count_{name}[r] += count_valid(row)"]
     for kind in kinds:
         if kind == "rms":
             lines += [

@@ -12,16 +12,15 @@ plain loop is two, as the stable one always is (see `stages`). None of that chan
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from ...builder import function_text
 from ...kernel import Kernel, StableBranch, level_program, stable_branch_programs
 from ...program import Program, names_in
 from ...stages import Stages, staged
 from ...text import INDENT, write_lines
-from .rooms import ROOMS
 
 BIGGEST = 512  # points of a block: their inputs and outputs stay in the first-level cache
 STACK = 32_768  # numbers that all rooms together may take
 LANES = 8  # points that the stable loops take at a time
-WIDE = "WIDE"  # the constant of a module: whether the processor has vectors of 512 bits
 APART = 72  # numbers between rooms: at a multiple of 4096 bytes a store holds up loads from other rooms
 
 
@@ -40,9 +39,9 @@ class _Stable(NamedTuple):
 
 
 def _stable_of(kernel: Kernel) -> _Stable:
-    program = stable_branch_programs(kernel)[1]
     outputs = [*_branch(kernel).outputs, *filter(None, [_branch(kernel).undecided])]
-    stages = staged(program._replace(outputs=tuple(dict.fromkeys(outputs))))
+    program = stable_branch_programs(kernel)[1]._replace(outputs=tuple(dict.fromkeys(outputs)))
+    stages = staged(program)
     points = tuple(_inner(kernel))
     own = {line.name for line in program.lines}.union(points)
     used = dict.fromkeys([name for line in program.lines for name in names_in(line.args)] + outputs)
@@ -62,12 +61,6 @@ def block_of(kernel: Kernel) -> int:
     return max(16, min(BIGGEST, (STACK // rooms - APART) // 16 * 16))
 
 
-def rooms(kernel: Kernel) -> str:
-    """The source of the buffer functions that a kernel in two forms calls."""
-    block = block_of(kernel)
-    return ROOMS.replace("SIZE", str(block + APART)).replace("BLOCK", str(block))
-
-
 def has_two_forms(kernel: Kernel) -> bool:
     """True if the test varies along the innermost axis."""
     return kernel.close is not None and bool(kernel.close.test_lines)
@@ -77,7 +70,8 @@ def scratch(kernel: Kernel) -> list[str]:
     """Allocate the flags of a block, and its rooms."""
     if not has_two_forms(kernel):
         return []
-    return ["close = flags()", *(f"{name} = room()" for name in _rooms(kernel))]
+    block = block_of(kernel)
+    return [f"close = flags({block})", *(f"{name} = room({block + APART})" for name in _rooms(kernel))]
 
 
 def _rooms(kernel: Kernel) -> list[str]:
@@ -115,8 +109,7 @@ def stable_function(kernel: Kernel) -> str:
     body = [*_used(reads, stable.second), *write_lines(stable.second, "numba"), *writes, *tally]
     rows += [*(["tally = 0"] if tally else []), *_by_eight(body)]
     rows += ["return tally"] if tally else []
-    head = ["def stable(", *(f"{INDENT}{name}," for name in ("count", *_parameters(kernel))), "):"]
-    return "\n".join(['@njit(error_model="numpy")', *head, *(INDENT + row for row in rows)]) + "\n"
+    return function_text("stable", ("count", *_parameters(kernel)), rows)
 
 
 def _used(reads: list[str], program: Program) -> list[str]:
@@ -234,7 +227,7 @@ def _plain_loops(
     tally = f"count += uint64(0) if {_branch(kernel).test} else uint64(1)"
     loops = _under(points, [*read, *test, *first, flag, tally], 0)
     loops += _under(points, [*_used(read, stages.second), *_used(kept, stages.second), *second], 0)
-    return [f"if {WIDE}:", *(INDENT + row for row in one), "else:", *(INDENT + row for row in loops)]
+    return ["if WIDE:", *(INDENT + row for row in one), "else:", *(INDENT + row for row in loops)]
 
 
 def _plain_stages(kernel: Kernel) -> Stages | None:

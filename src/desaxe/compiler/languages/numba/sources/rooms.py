@@ -1,25 +1,29 @@
-"""Rooms and flags of a block of points: the functions that a module of a kernel in two forms defines.
+"""Rooms and flags of a block of points, for a kernel in two forms.
 
-SIZE stands for the numbers of a room, BLOCK for the points of a block.
+Rooms are on the stack: the compiler knows that nothing else points there, and nothing has to be allocated.
 """
 
-# Rooms on the stack: the compiler knows that nothing else points there, and nothing has to be allocated.
-ROOMS = """@intrinsic
-def room(typingctx):
-    \"\"\"Room for the numbers of one block, on the stack.\"\"\"
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+
+@intrinsic(prefer_literal=True)
+def room(typingctx, size):
+    """Room for `size` numbers, on the stack."""
 
     def code(context, builder, signature, args):
         kind = context.get_value_type(types.float64)
-        place = builder.alloca(kind, size=context.get_constant(types.int64, SIZE))
+        place = builder.alloca(kind, size=context.get_constant(types.int64, size.literal_value))
         place.align = 64
         return place
 
-    return types.CPointer(types.float64)(), code
+    return types.CPointer(types.float64)(size), code
 
 
 @intrinsic
 def put(typingctx, room, place, value):
-    \"\"\"Keep a value at a place of a room.\"\"\"
+    """Keep a value at a place of a room."""
 
     def code(context, builder, signature, args):
         room, place, value = args
@@ -31,7 +35,7 @@ def put(typingctx, room, place, value):
 
 @intrinsic
 def get(typingctx, room, place):
-    \"\"\"The value at a place of a room.\"\"\"
+    """The value at a place of a room."""
 
     def code(context, builder, signature, args):
         return builder.load(builder.gep(args[0], [args[1]]))
@@ -39,22 +43,22 @@ def get(typingctx, room, place):
     return types.float64(room, types.uint64), code
 
 
-@intrinsic
-def flags(typingctx):
-    \"\"\"Room for a word for each point of a block: -1 where it is flagged, else 0.\"\"\"
+@intrinsic(prefer_literal=True)
+def flags(typingctx, size):
+    """Room for a word for each point of a block: -1 where it is flagged, else 0."""
 
     def code(context, builder, signature, args):
         kind = context.get_value_type(types.int64)
-        place = builder.alloca(kind, size=context.get_constant(types.int64, BLOCK))
+        place = builder.alloca(kind, size=context.get_constant(types.int64, size.literal_value))
         place.align = 64
         return place
 
-    return types.CPointer(types.int64)(), code
+    return types.CPointer(types.int64)(size), code
 
 
 @intrinsic
 def put_flag(typingctx, flags, place, flag):
-    \"\"\"Flag a point of a block, or not.\"\"\"
+    """Flag a point of a block, or not."""
 
     def code(context, builder, signature, args):
         flags, place, flag = args
@@ -67,7 +71,7 @@ def put_flag(typingctx, flags, place, flag):
 
 @intrinsic
 def eight_flags(typingctx, flags, eight):
-    \"\"\"The flags of eight points in a row, a bit each.\"\"\"
+    """The flags of eight points in a row, a bit each."""
 
     def code(context, builder, signature, args):
         kind = cgutils.ir.VectorType(context.get_value_type(types.int64), 8)
@@ -80,7 +84,7 @@ def eight_flags(typingctx, flags, eight):
 
 @intrinsic
 def is_flagged(typingctx, flags, place):
-    \"\"\"The flag of a point of a block.\"\"\"
+    """The flag of a point of a block."""
 
     def code(context, builder, signature, args):
         word = builder.load(builder.gep(args[0], [args[1]]))
@@ -91,7 +95,7 @@ def is_flagged(typingctx, flags, place):
 
 @intrinsic
 def count_flags(typingctx, eight):
-    \"\"\"How many of eight flags are set.\"\"\"
+    """The number of flags that are set, of eight."""
 
     def code(context, builder, signature, args):
         return builder.ctpop(args[0])
@@ -101,7 +105,7 @@ def count_flags(typingctx, eight):
 
 @intrinsic
 def put_places(typingctx, room, count, flags, first):
-    \"\"\"Keep the places of the points of eight that are flagged; what follows is not for use.\"\"\"
+    """Keep the places of the points of eight that are flagged; what follows is not for use."""
 
     def code(context, builder, signature, args):
         room, count, flags, first = args
@@ -125,7 +129,7 @@ def put_places(typingctx, room, count, flags, first):
 
 @intrinsic
 def place_at(typingctx, room, k):
-    \"\"\"A place that is kept.\"\"\"
+    """A place that is kept."""
 
     def code(context, builder, signature, args):
         words = builder.bitcast(args[0], context.get_value_type(types.uint64).as_pointer())
@@ -136,7 +140,7 @@ def place_at(typingctx, room, k):
 
 @intrinsic
 def from_element(typingctx, array, place):
-    \"\"\"The elements of an array from one of them on, counted in memory, as a room.\"\"\"
+    """The elements of an array from one of them on, counted in memory, as a room."""
 
     def code(context, builder, signature, args):
         own = context.make_array(signature.args[0])(context, builder, args[0])
@@ -147,7 +151,7 @@ def from_element(typingctx, array, place):
 
 @intrinsic
 def clear_flags(typingctx, flags, eight):
-    \"\"\"Clear the flags of eight points in a row.\"\"\"
+    """Clear the flags of eight points in a row."""
 
     def code(context, builder, signature, args):
         kind = cgutils.ir.VectorType(context.get_value_type(types.int64), 8)
@@ -156,4 +160,3 @@ def clear_flags(typingctx, flags, eight):
         return context.get_dummy_value()
 
     return types.none(flags, types.uint64), code
-"""

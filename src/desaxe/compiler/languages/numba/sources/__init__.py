@@ -1,0 +1,6 @@
+"""Functions whose text goes into modules of numba; nothing here is imported.
+
+spellings   functions that numba spells in its own way
+rooms       buffers and flags of a block of points
+reductions  reductions of a row
+"""

@@ -1,0 +1,296 @@
+"""A scene as a module of numba: one point in plain Python, arrays, the scene's grid and peaks."""
+
+import hashlib
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from textwrap import wrap
+from typing import Any, NamedTuple
+
+from ...compiler.builder import HELPERS, MATH, Parts, functions_of, module_text, renamed, with_sources
+from ...compiler.cost import cost_of
+from ...compiler.languages.numba.language import scalar_parts
+from ...compiler.languages.numba.module import CALLABLE, loops_parts, numba_parts
+from ...compiler.languages.numba.reductions import reduced_parts
+from ...compiler.languages.protocol import Symbol
+from ...compiler.languages.shared import refuse_taken, taken_in_python
+from ...compiler.operations import OPERATIONS
+from ...compiler.passes.double_double import double_double
+from ...compiler.passes.guard import guard_inputs
+from ...compiler.program import Program
+from ...loads.load import Load
+from ...loads.resolve import Plan, plan_of, split
+from ...mechanism.catalogue import quantity
+from ...mechanism.constants import constants, double_constants
+from ...mechanism.inputs import INPUTS, LEAST
+from ...mechanism.names import ORDER
+from ...mechanism.program import digest
+from ...runtime.kernels import KernelKey, kernel_of
+from ...runtime.specialise import specialise
+from ...runtime.written import UNSEALED
+from ...support.version import version
+from ..content import Content
+from ..kernel import GridKernel, grid_kernel, own_axes
+from ..scene import Scene
+from ..schema import SceneError
+from .axes import SPACED, WITH_AXES, axes_text, chosen_text
+from .entry_points import (
+    AFFINITY,
+    DOUBLES,
+    THREADS,
+    evaluate_function,
+    point_function,
+    run_function,
+    run_reduced_function,
+)
+from .first_call import COMPILED, LAZY, LAZY_REDUCED
+from .loaded import calls_text, renames, require_tables, table_text
+from .peaks import left_out_of_module, peak_texts
+from .portable import WITHOUT_VALUE, require_outputs
+
+WIDTH = 96
+
+
+def text_of(scene: Scene, name: str = "my_kernels.py") -> str:
+    """The text of the module of a scene."""
+    content = scene.content
+    require_outputs(scene)
+    numbers, loads = split(content.inputs)
+    require_tables(scene.name or "scene", loads)
+    if loads and content.reduction is not None:
+        raise SceneError(
+            f"{scene.name or 'scene'}: a module under a load that varies stores its grid: no [reduce]"
+        )
+    found = grid_kernel(content, apart=False)
+    anywhere = found.key.form._replace(wide_margins=False)  # the module takes other designs, too
+    key = _all_fixed(found.key._replace(form=anywhere), found, numbers, loads)
+    order = content.inputs if loads else found.axes
+    axes = {n: value for n in order if isinstance(value := content.inputs.get(n), tuple)}
+    state = found.request.form.state
+    shown = found.request.shown
+    program = _in_order(_guarded(key, key.names))
+    plan = plan_of(_asked(content), loads, "omega" in numbers, "mu" in numbers) if loads else None
+    if plan is not None and plan.loads:
+        return _module_under_loads(scene, name, plan, key, program, axes)
+    kernels = _kernels(key, program.inputs) if program.inputs else Kernels([], {}, ())
+    peaks = peak_texts(content)
+    groups = [
+        with_sources([point_function(program, shown, state)]),
+        *map(
+            _compiled,
+            [*kernels.parts, _scalars(key, shown, program.inputs, own_axes(content, shown)), *peaks.searches],
+        ),
+    ]
+    compiles = bool(program.inputs or peaks.searches)
+    limit = None if key.far else _limit(key)
+    calls = [THREADS] if compiles else []
+    calls += [WITH_AXES] if axes or peaks.functions else []
+    calls.append(evaluate_function(program, shown, state, limit, bool(program.inputs)))
+    calls += [axes_text(axes), chosen_text(axes, limit)] if axes else []
+    if not program.inputs:
+        calls.append('def run():\n    """The values; every input is fixed."""\n    return evaluate()')
+    elif content.fused is None:
+        calls.append(run_function(shown, list(axes), kernels.inputs, own_axes(content, shown)))
+    else:
+        calls.append(run_reduced_function(shown, key.reduce, found.axes, kernels.inputs, kernels.outputs))
+    calls += peaks.functions
+    if "spaced(" in "".join(peaks.functions) and not any("def spaced" in call for call in calls):
+        calls.insert(0, SPACED)
+    tables = [*([AFFINITY, DOUBLES, COMPILED] if compiles else [])]
+    tables += [f"INPUTS = {program.inputs!r}", _outputs(shown), _fixed(key)]
+    head = _docstring(scene, name, key, shown, program.inputs, cost_of(program).operations)
+    text = module_text(head, _front(tables), *groups, _front(calls))
+    refuse_taken(shown, taken_in_python(text))
+    return text
+
+
+# Where the names come from that stand in the functions that people call.
+_NUMPY = (
+    "append", "arange", "array", "asarray", "ascontiguousarray", "broadcast_arrays", "broadcast_to", "empty",
+    "float64", "floor", "fmax", "int8", "isfinite", "linspace", "searchsorted", "unique", "where",
+)  # fmt: skip
+IMPORTS = {
+    **MATH, **dict.fromkeys(_NUMPY, "numpy"), "ThreadPoolExecutor": "concurrent.futures", "prod": "math",
+    "pi": "math", "cpu_count": "os", "Lock": "threading", "njit": "numba", "types": "numba",
+}  # fmt: skip
+
+
+def _front(parts: Sequence[str]) -> Parts:
+    """Parts that call nothing of real files."""
+    return with_sources(parts, (), imports=IMPORTS)
+
+
+def _asked(content: Content) -> list[str]:
+    """The outputs, as a grid has them."""
+    return list(dict.fromkeys([*content.outputs, "status"]))
+
+
+def _module_under_loads(
+    scene: Scene,
+    name: str,
+    plan: Plan,
+    key: KernelKey,
+    program: Program,
+    axes: Mapping[str, tuple[float, ...]],
+) -> str:
+    """The text of the module of a scene whose loads are tables."""
+    state, inputs = key.form.state, program.inputs
+    own = renames()
+    parts = tuple(dict.fromkeys((*plan.names, *plan.motion)))
+    single = key._replace(axis_of=tuple((n, 0) for n in sorted(inputs)), axes=1, reduce=())
+    point = renamed(point_function(program, parts, state), {"point": own["point"]}, called=True)
+    groups = [with_sources([point]), *map(_compiled, _kernels(single, inputs).parts)]
+    limit = None if key.far else _limit(key)
+    inner = renamed(evaluate_function(program, parts, state, limit, True), own)
+    fixed = scene.content.inputs.get("theta")
+    fixed_theta = float(fixed) if isinstance(fixed, float) else None
+    tables = [AFFINITY, DOUBLES, COMPILED, f"INPUTS = {tuple(n for n in inputs if n not in plan.loads)!r}"]
+    tables += [renamed(_outputs(parts), own), _outputs(plan.shown), _fixed(key)]
+    tables += [table_text(n, load, "N") for n, load in plan.loads.items()]
+    calls = [THREADS, inner, *([axes_text(axes), WITH_AXES, chosen_text(axes, limit)] if axes else [])]
+    calls.append(calls_text(plan, inputs, list(axes), fixed_theta, dict(key.fixed)))
+    shown_inputs = tuple(n for n in inputs if n not in plan.loads)
+    head = _docstring(scene, name, key, plan.shown, shown_inputs, cost_of(program).operations)
+    return module_text(head, _front(tables), *groups, _front(calls))
+
+
+def _all_fixed(
+    key: KernelKey, found: GridKernel, inputs: Mapping[str, Any], loads: Iterable[str]
+) -> KernelKey:
+    """The key with every number of the scene folded in; loads that vary with the motion stay inputs."""
+    left = {*(n for n, value in inputs.items() if isinstance(value, tuple)), *loads}
+    numbers = {n: inputs.get(n, 0.0) for n in found.request.inputs if n not in left}
+    fixed = dict(key.fixed) | {n: float(value) for n, value in numbers.items()}
+    return key._replace(fixed=tuple(fixed.items()))
+
+
+def _in_order(program: Program) -> Program:
+    """The program with its inputs in the order in which they stand in names."""
+    return program._replace(inputs=tuple(sorted(program.inputs, key=ORDER.index)))
+
+
+def _scalars(
+    key: KernelKey, shown: tuple[str, ...], inputs: tuple[str, ...], own: Mapping[str, Sequence[str]]
+) -> Parts:
+    """The functions of one output each; those of a whole design take its own inputs alone."""
+    scalars = []
+    for name, law in zip(shown, key.names, strict=True):
+        row = quantity(name, key.form.state)
+        taken = [n for n in inputs if n in own.get(name, inputs)]
+        scalars.append((Symbol(name, row.unit, row.meaning), _guarded(key, (law,)), taken))
+    return numba_parts(scalar_parts(scalars), jit=CALLABLE)
+
+
+def _guarded(key: KernelKey, names: tuple[str, ...]) -> Program:
+    """The program of names of a point, which says what of its inputs is bad, as the array kernels do."""
+    program = specialise(names, key.form, key.fixed, key.accuracy)
+    if key.accuracy != "extended":
+        return guard_inputs(program, program.inputs, LEAST, {})
+    far = {"theta": _limit(key)}
+    return double_double(guard_inputs(program, program.inputs, LEAST, far), double_constants())
+
+
+class Kernels(NamedTuple):
+    """The array kernel and the grid kernel, one where they are the same; what the latter takes and gives."""
+
+    parts: list[Parts]
+    inputs: Mapping[str, int | None]
+    outputs: tuple[str, ...]
+
+
+def _kernels(key: KernelKey, inputs: tuple[str, ...]) -> Kernels:
+    """The kernels of a scene; the array kernel takes the inputs in the order in which they stand in names."""
+    kernel = kernel_of(key._replace(axis_of=tuple((n, 0) for n in sorted(inputs)), axes=1, reduce=()))
+    kernel = kernel._replace(inputs={name: kernel.inputs[name] for name in inputs})
+    parts = [_named("point", [*loops_parts(kernel), LAZY])]
+    if key.axes > 1:
+        kernel = kernel_of(key)
+        reduced = key.reduce and reduced_parts(kernel, key.reduce, LAZY_REDUCED)
+        parts.append(_named("grid", reduced or [*loops_parts(kernel), LAZY]))
+    return Kernels(parts, kernel.inputs, kernel.outputs)
+
+
+def _named(prefix: str, parts: Sequence[str]) -> Parts:
+    """The parts of a kernel under names that another kernel does not have."""
+    names = {name: f"{prefix}_{name}" for name in ("loops", "kernel", "stable", "signature")}
+    return numba_parts([renamed(part, names) for part in parts], jit=CALLABLE)
+
+
+def _compiled(parts: Parts) -> Parts:
+    """Parts of kernels whose helpers have names that differ from those of the plain point."""
+    spelled = {row.numba.partition("(")[0] for row in OPERATIONS.values()}
+    names = {name: f"compiled_{name}" for name in functions_of(HELPERS) if name in spelled}
+    return parts._replace(texts=tuple(renamed(text, names) for text in parts.texts))
+
+
+def _limit(key: KernelKey) -> float:
+    """The largest angle that the written-out sine and cosine reduce exactly."""
+    return double_constants().limit if key.accuracy == "extended" else constants().limit
+
+
+def _outputs(shown: tuple[str, ...]) -> str:
+    rows = [f'    "{name}": {"int8" if name == "status" else "float64"},' for name in shown]
+    return "\n".join(["OUTPUTS = {", *rows, "}"])
+
+
+def _fixed(key: KernelKey) -> str:
+    rows = [f'    "{name}": {value!r},' for name, value in key.fixed]
+    return "\n".join(
+        ["# Folded into the code below: changing them here changes nothing.", "FIXED = {", *rows, "}"]
+    )
+
+
+def _docstring(
+    scene: Scene, name: str, key: KernelKey, shown: tuple[str, ...], inputs: tuple[str, ...], operations: int
+) -> str:
+    """The module's docstring: its source, its contents, its units."""
+    source = Path(scene.name).name
+    command = f"desaxe compile {source} -o {name}" if source else f'desaxe.compile(scene, "{name}")'
+    peak_lines = peak_texts(scene.content).lines
+    loads = [load.identity for load in scene.content.inputs.values() if isinstance(load, Load)]
+    said = hashlib.sha256(repr((scene.content, *loads) if loads else scene.content).encode())
+    state = key.form.state
+    own = own_axes(scene.content, shown).get(shown[0])
+    first = f"{shown[0]}({'*INPUTS' if own is None else ', '.join(n for n in inputs if n in own)})"
+    lines = [
+        f"{scene.title or 'An offset slider-crank'}: {', '.join(shown)}.",
+        "",
+        f"Generated by `{command}`; write it again instead of editing it.",
+        f"desaxe {version()}, derivation {digest()[:16]}, scene {said.hexdigest()[:16]}, {UNSEALED}.",
+        f"A `point` takes {operations} operations, in a form that is right for any design: a sine is one,",
+        "the scene's numbers are folded in.",
+        "It needs NumPy and numba, and nothing of desaxe.",
+        "",
+        "    point(...)      one point in plain Python",
+        "    evaluate(...)   numbers or arrays that broadcast",
+        "    run()           the scene's own grid; run(theta=...) with other axes",
+        *(f"    {line}" for line in peak_lines),
+        *([] if loads else [f"    {first}   one output as a number, from @njit functions, too"]),
+        "",
+        f"Accuracy {key.accuracy}; SI units and radians. Y points along the slider axis towards the slider,",
+        "theta turns from +Y towards +X.",
+        "",
+        *WITHOUT_VALUE,
+        "",
+    ]
+    lost = left_out_of_module(scene.content)
+    lines += [f"Not in here (`desaxe run` has it): {', '.join(lost)}.", ""] if lost else []
+    rows = [("inputs", n, INPUTS[n].unit, INPUTS[n].meaning) for n in inputs]
+    rows += [("outputs", n, quantity(n, state).unit, quantity(n, state).meaning) for n in shown]
+    rows += [("fixed", n, "", _fixed_as(n, value)) for n, value in key.fixed if n in INPUTS and value != 0.0]
+    zeros = [n for n, value in key.fixed if n in INPUTS and value == 0.0]
+    rows += [("fixed", ", ".join(zeros), "", "0")] if zeros else []
+    before = ""
+    for group, word, unit, meaning in rows:
+        told = f"{word} [{unit}]" if unit and unit != "1" else word
+        text = f"{told}: {meaning}" if group != "fixed" else f"{word} = {meaning}"
+        cells = wrap(text, WIDTH - 12)
+        lines.append(f"  {group if group != before else '':8} {cells[0]}")
+        lines += [f"  {'':10}{cell}" for cell in cells[1:]]
+        before = group
+    lines += ["", "SPDX-License-Identifier: MIT"]
+    return "\n".join([*lines, ""]).replace("\\", "/").replace('"""', "'''")
+
+
+def _fixed_as(name: str, value: float) -> str:
+    unit = INPUTS[name].unit
+    return f"{value!r} {unit}" if unit != "1" else repr(value)
