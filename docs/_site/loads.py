@@ -67,12 +67,13 @@ def _machine(load):
     return dx.Machine(**DESIGN, F_Y=load)
 
 
-def takes(call, load, room):
+def takes(call, load):
     """True if a call takes a load; a refusal is a TypeError or ValueError."""
-    try:
-        CALLS[call](load, room)
-    except (TypeError, ValueError):
-        return False
+    with tempfile.TemporaryDirectory() as room:
+        try:
+            CALLS[call](load, Path(room))
+        except (TypeError, ValueError):
+            return False
     return True
 
 
@@ -80,8 +81,7 @@ def loads():
     """The table of calls and kinds of loads."""
     rows = []
     for call in CALLS:
-        with tempfile.TemporaryDirectory() as room:
-            each = ["yes" if takes(call, load, Path(room)) else "" for load in KINDS.values()]
+        each = ["yes" if takes(call, load) else "" for load in KINDS.values()]
         rows.append(f"| `{call}` | {' | '.join(each)} |")
     return "\n".join([f"| call | {' | '.join(KINDS)} |", "|---|" + "---|" * len(KINDS), *rows])
 

@@ -161,7 +161,7 @@ def test_every_call_with_loads_is_in_their_table(monkeypatch):
 
 
 @pytest.mark.parametrize(("call", "kinds"), [("evaluate", 4), ("peak", 4), ("function", 1)])
-def test_the_table_of_loads_says_what_happens(call, kinds, tmp_path, monkeypatch):
+def test_the_table_of_loads_says_what_happens(call, kinds, monkeypatch):
     monkeypatch.syspath_prepend(ROOT / "docs" / "_site")
     loads = import_module("loads")
-    assert sum(loads.takes(call, load, tmp_path) for load in loads.KINDS.values()) == kinds
+    assert sum(loads.takes(call, load) for load in loads.KINDS.values()) == kinds

@@ -11,6 +11,8 @@ signs: Y points along the slider axis towards the slider, theta turns from +Y to
        V_C and a_C are positive along +Y (away from the crank), the slider axis is at X = -ec;
        forces are positive along +X and +Y, torques like theta."""
 
+SEE = "see docs/choose.md: which call for which question"
+
 
 class Parser(argparse.ArgumentParser):
     """A parser that reports an error in one line."""
@@ -42,7 +44,7 @@ def add_command(
         name,
         help=what,
         description=f"{what[0].upper()}{what[1:]}.",
-        epilog=more,
+        epilog=f"{more.rstrip()}\n\n{SEE}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.set_defaults(run=run)

@@ -32,6 +32,8 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
     `evaluate` does, and for an input of more than one dimension.
 
         dx.design_map(["stroke", ("absmax", "a_C")], ec=ecs, BC=rods, AB=.125, omega0=157.08).stroke.plot()
+
+    See docs/choose.md: which call for which question.
     """
     check_common({}, branch)
     known = tuple(name for name in INPUTS if name != "theta")

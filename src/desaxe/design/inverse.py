@@ -52,6 +52,8 @@ def inverse(
              crank's rates are not determined by the slider's, 4 bad input
 
     A closed form, `mechanism/closed/inverse.py`. Raises as `evaluate` does.
+
+    See docs/choose.md: which call for which question.
     """
     check_common({}, branch)
     if a_C is not None and V_C is None:

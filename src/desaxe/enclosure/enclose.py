@@ -85,6 +85,8 @@ def enclose(
     boxes          how many boxes were looked at
 
     Needs the extra `rigorous`. Raises ValueError for an unknown name, or `status`, or a bad value.
+
+    See docs/choose.md: which call for which question.
     """
     check_inputs("enclose", loads, (*INPUTS, "branch", "rtol", "boxes", "timeout"))
     quantity(name, omega is not None)

@@ -77,6 +77,8 @@ def evaluate(
     why: 0 ok, 1 cannot be assembled here, 2 at a change point, 3 stalled, 4 bad input (an array's element
     only), and, for forces or with mu, 5 friction jams (no forces balance) or 6 two sets of
     forces balance. Raises ValueError for an unknown name or a bad value, TypeError for a missing input.
+
+    See docs/choose.md: which call for which question.
     """
     if unknown:
         check_inputs("evaluate", unknown, (*INPUTS, "branch", "accuracy", "threads", "out", "quality"))

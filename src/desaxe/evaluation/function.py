@@ -50,6 +50,8 @@ def function(
     Compiled when it is made (or loaded, if that was done before). It always runs the same kernel: a point has
     the same digits in an array of any shape and order, in every process of a machine. A bad or infeasible
     point is NaN without a warning; ask for `status` to learn why. Raises as `evaluate` does when it is made.
+
+    See docs/choose.md: which call for which question.
     """
     check_inputs("function", fixed, INPUTS_OF_FUNCTION)
     shown = (names,) if isinstance(names, str) else several(names)

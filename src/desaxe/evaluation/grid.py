@@ -87,6 +87,8 @@ def grid(
     A pandas Series whose index has a name varies along that index: Series of one index belong together.
 
         dx.grid(["a_C"], theta=th, ec=ecs, AB=.125, BC=bcs, omega0=157.08).a_C.max("theta")
+
+    See docs/choose.md: which call for which question.
     """
     if any(map(has_named_index, inputs.values())):
         _refuse_with_series(reduce=reduce, chunks=chunks, out=out)

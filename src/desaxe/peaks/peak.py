@@ -81,6 +81,8 @@ def peak(
 
     Warns (LoadWarning) of a long array for F_X or F_Y and no other array: those are designs, not angles.
     Raises ValueError for an unknown quantity or kind.
+
+    See docs/choose.md: which call for which question.
     """
     if not isinstance(name, str):
         raise TypeError(f"peak: expected one name, such as 'a_C', got {shown_value(name)}")

@@ -131,6 +131,8 @@ def scene(source: str | PathLike[str] | Mapping[str, Any]) -> Scene:
     `scene`, and `units` where a value carries a unit.
 
         dx.scene("examples/compactor.toml").run()
+
+    See docs/choose.md: which call for which question.
     """
     name = "" if isinstance(source, Mapping) else printable(source)
     try:

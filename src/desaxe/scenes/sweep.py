@@ -72,6 +72,8 @@ def sweep(
 
         dx.sweep("press.toml", store="press.zarr", memory="500 MB")
         dx.sweep(["V_C", "a_C"], store="press.zarr", theta=th, ec=ecs, BC=bcs, AB=.125, omega0=157.08)
+
+    See docs/choose.md: which call for which question.
     """
     options: dict[str, Any] = {
         "store": store, "memory": memory, "overwrite": overwrite, "client": client, "best": best, "by": by,

@@ -111,6 +111,8 @@ def simulate(
 
     Equation: M_eff alpha + M_eff' omega^2/2 = torque - static torque - friction (paper C, section 3).
     Raises ValueError where no motion can start (no mechanism there, no inertia) and for a bad value.
+
+    See docs/choose.md: which call for which question.
     """
     given = {
         "AB": AB, "BC": BC, "ec": ec, "m_crank": m_crank, "m_rod": m_rod, "m_slider": m_slider,

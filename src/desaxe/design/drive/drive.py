@@ -55,6 +55,8 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
     on panels that are halved until the torque and its derivatives are resolved. Raises ValueError for a bad
     input and for a crank at rest, TypeError for a missing input or an array.
 
+    See docs/choose.md: which call for which question.
+
         >>> import desaxe as dx
         >>> found = dx.drive(ec=0.01, AB=0.05, BC=0.2, omega0=30.0, m_slider=2.0, F_Y=-500.0, mu=0.1)
         >>> [round(found[name], 3) for name in ("torque_mean", "torque_peak", "flywheel_inertia")]

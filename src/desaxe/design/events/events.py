@@ -50,6 +50,8 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
     are refined between the dead centres by the exact acceleration. Source: paper B, Secs. 2 and
     4.2.1, Eq. 51, where advance is the stroke outward. Raises as `evaluate` does.
 
+    See docs/choose.md: which call for which question.
+
         >>> import desaxe as dx
         >>> found = dx.events(ec=0.020, AB=0.040, BC=0.064)
         >>> round(found["stroke"], 5), round(found["time_ratio"], 4), found["slow_stroke"]

@@ -32,6 +32,8 @@ def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
 
     Raises ValueError for a bad value. Source: paper A (6), where |u| <= BC.
 
+    See docs/choose.md: which call for which question.
+
         >>> import desaxe as dx
         >>> found = dx.feasibility(ec=0.125, AB=0.125, BC=0.375)
         >>> found["kind"], found["can_turn"], found["margin"]

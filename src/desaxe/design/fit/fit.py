@@ -72,6 +72,8 @@ def fit(
     SciPy's trust region reflective least squares with the exact Jacobian; a step to a design that cannot be
     assembled at every sample is shortened. Raises ValueError for data that are empty or fewer than the
     unknowns, and where no start can be assembled; TypeError for a missing input. Needs the extra `design`.
+
+    See docs/choose.md: which call for which question.
     """
     check_inputs("fit", fixed, tuple(INPUTS))
     if "theta" in fixed:

@@ -67,6 +67,8 @@ def optimize(
     optimality conditions. Largest magnitudes are split into both signs, so that a kink between them does no
     harm. Needs the extra `design`. Raises ValueError for an unknown name or limits that cross.
 
+    See docs/choose.md: which call for which question.
+
         >>> import desaxe as dx
         >>> machine = dict(AB=0.125, BC=0.350, omega0=157.08)
         >>> keep = {"margin": (0.005, None)}

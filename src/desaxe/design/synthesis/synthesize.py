@@ -77,6 +77,8 @@ def synthesize(
     Closed forms in plain Python (see this module's docstring); the peak acceleration is refined. Raises
     ValueError for an impossible requirement, TypeError unless exactly one third requirement is given.
 
+    See docs/choose.md: which call for which question.
+
         >>> import desaxe as dx
         >>> found = dx.synthesize(stroke=0.0888, time_ratio=1.67, BC=0.064)
         >>> [round(1e3 * found["solutions"][0][name], 2) for name in ("ec", "AB", "BC")]

@@ -84,6 +84,8 @@ def tolerance(
 
     Inputs vary independently. Sobol indices need the extra `design`. Raises as `evaluate` does.
 
+    See docs/choose.md: which call for which question.
+
         >>> import desaxe as dx
         >>> ec, AB = dx.plus_minus(0.02, 1e-4), dx.plus_minus(0.04, 5e-5)
         >>> found = dx.tolerance("stroke", ec=ec, AB=AB, BC=0.064, sobol=0)

@@ -52,6 +52,8 @@ def counterweight(
 
     Raises as `harmonics` does, and ValueError for a crank at rest.
 
+    See docs/choose.md: which call for which question.
+
         >>> import desaxe as dx
         >>> found = dx.counterweight(ec=0, AB=0.05, BC=0.2, omega0=100.0, m_slider=0.4)
         >>> round(found["product"], 6), round(found["balanced"], 6)      # half of m_slider AB

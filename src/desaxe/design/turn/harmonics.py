@@ -39,6 +39,8 @@ def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> 
     in panels between its kinks and jumps. Raises ValueError where the crank
     cannot turn fully or a value is missing.
 
+    See docs/choose.md: which call for which question.
+
         >>> import desaxe as dx
         >>> found = dx.harmonics("a_C", ec=0, AB=0.1, BC=0.4, omega0=10.0)
         >>> [round(float(c), 4) for c in found["cos"][:3]]

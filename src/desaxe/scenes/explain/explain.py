@@ -79,6 +79,8 @@ def explain(scene: Scene | str | PathLike[str] | Mapping[str, Any]) -> Plan:
         dx.explain(scene)["operations"]["per_point"]
 
     Raises as `scene` does.
+
+    See docs/choose.md: which call for which question.
     """
     content = (scene if isinstance(scene, Scene) else scene_of(scene)).content
     data: dict[str, Any] = {

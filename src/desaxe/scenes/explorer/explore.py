@@ -55,6 +55,8 @@ def explore(
 
         dx.explore("examples/compactor.toml", "explorer.html")
         dx.explore(ec=["0 mm", "150 mm"], AB="125 mm", BC="350 mm", omega0="1500 rpm")
+
+    See docs/choose.md: which call for which question.
     """
     place = Path(path)
     require_page(place, overwrite)

@@ -58,6 +58,8 @@ def compile(
 
         dx.compile("examples/compactor.toml", "my_kernels.py")
         dx.compile("examples/compactor.toml", "press", to="c")
+
+    See docs/choose.md: which call for which question.
     """
     place = as_path("path", path)
     texts = texts_of(scene if isinstance(scene, Scene) else scene_of(scene), place, to, libm)
