@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import desaxe as dx
@@ -348,6 +349,21 @@ def test_broken_pipe():
     with os.fdopen(write, "w") as closed:
         done = subprocess.run(code, stdout=closed, stderr=subprocess.PIPE, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_closed_output(tmp_path):
+    """What is written to files is there, what cannot be shown is an error in a line."""
+    (tmp_path / "a.toml").write_text(
+        'outputs = ["Y"]\n[mechanism]\nec = 0\nAB = 1\nBC = 3\n[motion]\ntheta = [0, 1]\n'
+        '[results]\ndata = "a.npz"\n'
+    )
+    point = ["point", "a_C", "theta=1", "ec=0", "AB=1", "BC=3", "omega0=1"]
+    for words in (point, ["run", "a.toml"]):
+        code = ["sh", "-c", 'exec "$@" >&-', "sh", sys.executable, "-m", "desaxe.cli", *words]
+        done = subprocess.run(code, stderr=subprocess.PIPE, text=True, check=False, cwd=tmp_path)
+        assert (done.returncode, done.stderr) == (2, "desaxe: error: standard output: it is closed\n")
+    with np.load(tmp_path / "a.npz") as values:
+        assert values["Y"].tolist() == dx.evaluate("Y", theta=[0.0, 1.0], ec=0.0, AB=1.0, BC=3.0).tolist()
 
 
 def test_missing_extra():

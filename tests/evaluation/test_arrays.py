@@ -253,6 +253,16 @@ BAD_OUTS = [
 ]
 
 
+def test_an_out_for_no_name_is_refused():
+    theta, _ = columns(3)
+    for out in (3, np.empty(3), []):
+        with pytest.raises(ValueError, match="no name is given, so there is nothing to fill"):
+            dx.grid([], theta=theta, ec=0.0, AB=1.0, BC=3.0, out=out)
+        with pytest.raises(TypeError, match="out= is for arrays"):
+            dx.evaluate([], theta=theta, ec=0.0, AB=1.0, BC=3.0, out=out)
+    assert dx.grid([], theta=theta, ec=0.0, AB=1.0, BC=3.0, out={}) == {}
+
+
 @pytest.mark.parametrize(("names", "out", "error", "complaint"), BAD_OUTS)
 def test_an_out_that_does_not_fit_is_refused(names, out, error, complaint):
     theta, ec = columns(3)

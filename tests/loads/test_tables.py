@@ -112,6 +112,18 @@ def test_what_python_alone_reads_as_a_number_is_refused(odd, tmp_path):
         dx.over_Y([0.1, 0.2, 0.3], ["1", odd, "3"])
 
 
+def test_points_that_are_too_close_are_named():
+    for close in (1e-300, 5e-324):
+        with pytest.raises(ValueError, match=rf"over_theta: 0.0 and {close} are too close"):
+            dx.over_theta([0.0, close, 2.0, 4.0], [1.0, 2.0, 3.0, 4.0])
+    for load in (dx.over_theta, dx.over_Y):
+        with pytest.raises(ValueError, match=r"over_\w+: 0.0 and 5e-324 are too close"):
+            load([0.0, 5e-324, 2.0, 4.0], [1.0, 2.0, 3.0, 4.0], kind="linear")
+        with pytest.raises(ValueError, match=r"over_\w+: 1.0 and 2.0 are too close"):
+            load([0.0, 1.0, 2.0, 4.0], [1.0, 1.7e308, -1.7e308, 1.0], kind="linear")
+        assert load([0.0, 1e-300, 2.0, 4.0], [1.0, 2.0, 3.0, 4.0], kind="linear")(1e-300) == 2.0
+
+
 @pytest.mark.parametrize(
     "columns",
     [

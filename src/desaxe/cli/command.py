@@ -5,6 +5,7 @@ with exit code 2.
 """
 
 import argparse
+import errno
 import os
 import signal
 import sys
@@ -55,8 +56,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code: 0 done, 1 a check failed, 2 an error in the input."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     _heed_termination()
+    _occupy_descriptors()
     try:
         code = _run(words)
+        if sys.stdout is None:
+            raise OSError(errno.EBADF, "it is closed", "standard output")
         sys.stdout.flush()
         return code
     except SystemExit as done:  # --help and --version
@@ -75,6 +79,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
 
 
+def _occupy_descriptors() -> None:
+    """Open the standard streams that whoever started us closed, lest a file take their place."""
+    while (descriptor := os.open(os.devnull, os.O_RDWR)) <= 2:
+        pass
+    os.close(descriptor)
+
+
 def _heed_termination() -> None:
     """Turn SIGTERM, which would end the process at once, into an exception of the main thread."""
 
@@ -89,7 +100,8 @@ def _heed_termination() -> None:
 def _leave(code: int) -> int:
     """Return the exit code, or end the process if a compiler is still running: Python would wait for it."""
     if is_at_work():
-        sys.stdout.flush()
+        if sys.stdout is not None:
+            sys.stdout.flush()
         os._exit(code)
     return code
 

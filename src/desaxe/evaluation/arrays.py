@@ -119,6 +119,8 @@ def outputs_for(names: Sequence[str], shape: tuple[int, ...], out: Any) -> dict[
         size = sum(dtype_of(name).itemsize for name in names) * prod(shape)
         require(size, f"a result of the shape {tuple(shape)} and {len(names)} names")
         return {name: np.empty(shape, dtype_of(name)) for name in names}
+    if not names and not isinstance(out, Mapping):
+        raise ValueError(f"out = {shown(out)}: no name is given, so there is nothing to fill")
     places = dict(out) if isinstance(out, Mapping) else {names[0]: out}
     if set(places) != set(names):
         wanted = "a dict with the keys " + ", ".join(names) if len(names) > 1 else f"an array for {names[0]}"

@@ -2,7 +2,9 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from functools import partial
+from itertools import chain, pairwise
+from math import isfinite
 from os import PathLike
 from typing import Any
 from warnings import warn
@@ -13,7 +15,7 @@ from ..support.shown import printable, shown
 from .columns import Column, column_of, column_of_file, rows_of, unit_of_column
 from .function import FunctionOverTheta
 from .load import TURN, Load, LoadWarning, OverY, TableOverTheta
-from .table import KINDS, held, periodic
+from .table import KINDS, Table, held, periodic
 
 CLOSED = 1e-6  # of a period: a last angle so near to its end repeats the first one
 WIDE = 4.0  # times the usual distance between points
@@ -251,7 +253,23 @@ def _table_over_theta(angles: Column, values: Column, kind: str, turn: Column) -
         x, y = x[:-1], y[:-1]
     _warn_of_gap(x, kind, period)
     plain = ("theta",) * (angles.plain or turn.plain) + ("value",) * values.plain
-    return TableOverTheta(periodic(x, y, kind, period), kind, values.unit, plain)
+    table = _finite(name, x, y, partial(periodic, x, y, kind, period))
+    return TableOverTheta(table, kind, values.unit, plain)
+
+
+def _finite(name: str, x: Sequence[float], y: Sequence[float], make: Callable[[], Table]) -> Table:
+    """A table; ValueError where slopes between its points are too steep for doubles."""
+    try:
+        table = make()
+    except ArithmeticError:
+        table = None
+    if table is None or not all(map(isfinite, chain.from_iterable(table.rows))):
+        spans = pairwise(zip(x, y, strict=True))
+        _, a, b = max((abs((right - left) / (b - a)), a, b) for (a, left), (b, right) in spans)
+        raise ValueError(
+            f"{name}: {a!r} and {b!r} are too close for the values there: slopes must be below 1.8e308"
+        )
+    return table
 
 
 def _warn_of_gap(x: list[float], kind: str, period: float) -> None:
@@ -273,7 +291,8 @@ def _table_over_Y(positions: Column, ways: Sequence[Column], kind: str) -> Load:
         x, columns = x[::-1], [column[::-1] for column in columns]
     if not all(a < b for a, b in pairwise(x)):
         raise ValueError(f"over_Y: the positions must ascend or descend, {_falls(x)}")
-    outward, inward, *_ = *(held(x, column, kind) for column in columns), None
+    tables = [_finite("over_Y", x, column, partial(held, x, column, kind)) for column in columns]
+    outward, inward, *_ = *tables, None
     unit = next((way.unit for way in ways if way.unit is not None), None)
     plain = ("Y",) * positions.plain + ("value",) * any(way.plain for way in ways)
     return OverY(outward, inward, kind, unit, plain)

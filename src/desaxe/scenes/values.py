@@ -74,7 +74,7 @@ def _steps(key: str, name: str, written: schema.Range, length: Fraction) -> int:
     elif not isfinite(written.step or 0.0):
         raise SceneError(f"{key}.step = {shown(written.step)}: it must be a finite number")
     step = _exactly(name, written.step or 0.0)
-    _require_few(key, length / step if step else 0)
+    _require_few(key, length / step if step else Fraction(0))
     count = float(length / step) if step else 0.0
     if not (count > 0.5 and abs(count - round(count)) < 1e-6):
         raise SceneError(

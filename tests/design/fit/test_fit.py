@@ -3,6 +3,8 @@
 import math
 import pickle
 import re
+import random
+import traceback
 
 import mpmath
 import numpy as np
@@ -201,6 +203,55 @@ def test_complaints(data, options, error, told):
             BC=0.35,
             omega0=150.0,
         )
+
+
+@pytest.mark.parametrize(
+    ("data", "options", "told"),
+    [
+        (CLEAN, {"over": {"ec": (-1e300, 1e300)}}, "over: ec = .*1e[+]100"),
+        (CLEAN, {"over": {"ec": 1e300}}, "over: ec = .*1e[+]100"),
+        (CLEAN, {"over": {"AB": (1e-300, 1e-299)}}, "over: AB = .*1e-100"),
+        (CLEAN, {"sigma": {"a_C": 1e-300}}, "sigma: a_C = 1e-300: samples"),
+        (CLEAN, {"sigma": {"a_C": 1e300}}, "sigma: a_C = 1e[+]300: samples"),
+        (CLEAN * 1e200, {}, "data: a_C: a sample beyond 1e[+]100"),
+    ],
+)
+def test_numbers_out_of_range_are_named(data, options, told):
+    with pytest.raises(ValueError, match=told):
+        dx.fit(
+            {"theta": THETA, "a_C": data}, **{"over": OVER, "sigma": {"a_C": NOISE}, **options}, omega0=150.0
+        )
+
+
+@pytest.mark.sampled
+@pytest.mark.parametrize("number", range(cases(20, 1000)))
+def test_numbers_of_any_size(number):
+    """A fit or an error of ours that names what is out of range; no warning, no error of SciPy."""
+    source = random.Random(number)
+    sizes = [0.0, 5e-324, 1e-300, 1e-101, 1e-90, 1e-3, 0.1, 0.125, 0.2, 50.0, 1e90, 1e101, 1e200, 1.7e308]
+    size = lambda: source.choice([-1, 1]) * source.choice(sizes)  # noqa: E731
+    inputs = {"ec": 0.01, "AB": 0.12, "BC": 0.35, "omega0": 150.0, "m_slider": 1.0}
+    q, name = source.choice(["V_C", "a_C", "T_in"]), source.choice(["ec", "AB", "BC", "omega0"])
+    data = {"theta": THETA, q: dx.evaluate(q, theta=THETA, **inputs)}
+    if source.random() < 0.4:
+        data[q][source.randrange(data[q].size)] = size()
+    del inputs[name]
+    try:
+        found = dx.fit(
+            data,
+            over={name: source.choice([size(), tuple(sorted((size(), size()))), (0.1, 0.2), 0.12])},
+            sigma=source.choice([None, {q: abs(size())}]),
+            nuisance=source.choice([(), f"{q}_bias", f"{q}_scale"]),
+            loss=source.choice(["linear", "soft_l1", "huber", "cauchy", "arctan"]),
+            **inputs,
+        )
+    except ValueError as refused:
+        error = refused
+    else:
+        assert found.report()
+        return
+    assert "/desaxe/" in traceback.extract_tb(error.__traceback__)[-1].filename, error
+    assert any(word in str(error) for word in ("over", "sigma", "data", "fit:", name, q)), error
 
 
 REST = {"ec": 0.01, "BC": 0.35, "omega0": 1.0}

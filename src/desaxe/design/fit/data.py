@@ -19,6 +19,7 @@ from ...support.quantity_text import plain_number, spelled
 from ...support.shown import printable, shown
 
 Array = NDArray[np.float64]
+MOST = 1e100  # of samples and unknowns: squares of residuals and derivatives must not overflow, nor vanish
 MOST_BYTES = 100_000_000  # of a file
 COURSE = {"theta": "rad", "t": "s"}  # what samples are taken over, and its unit
 _HEADING = re.compile(r"\s*([^\[\]()]+?)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?\s*")
@@ -91,6 +92,8 @@ def _column(name: str, values: Any, unit: str) -> Array:
         raise TypeError(f"data: {name}: expected a row of real numbers, got the shape {column.shape}")
     if np.isinf(column).any():
         raise ValueError(f"data: {name}: an infinite sample; a missing one is NaN")
+    if (np.abs(column) > MOST).any():
+        raise ValueError(f"data: {name}: a sample beyond {MOST:g} in magnitude")
     return column
 
 

@@ -14,7 +14,7 @@ from ...runtime.request import check_common, check_inputs
 from ...support.checks import whole_number
 from ...support.forks import IMPORTS
 from ...support.shown import shown
-from .data import Data, read_data
+from .data import MOST, Array, Data, read_data
 from .model import Model
 from .result import DONE, OPEN, STOPPED, WORDS, Fit
 from .solve import solve
@@ -107,12 +107,19 @@ def _sigmas(sigma: Mapping[str, Any] | None, data: Data) -> dict[str, float]:
         return {}
     if not isinstance(sigma, Mapping) or set(sigma) != set(data.measured):
         raise ValueError(f"sigma = {shown(sigma)}: expected a dict with {', '.join(data.measured)}")
-    return {name: _sigma(name, value) for name, value in sigma.items()}
+    return {name: _sigma(name, value, data.measured[name]) for name, value in sigma.items()}
 
 
-def _sigma(name: str, value: Any) -> float:
+def _sigma(name: str, value: Any, samples: Array) -> float:
     row = Input(name, quantity(name).unit, "standard deviation", TINY, "a finite number > 0")
-    return read(row, value, "sigma", row.limit)
+    found = read(row, value, "sigma", row.limit)
+    size = float(np.max(np.abs(samples), initial=0.0, where=np.isfinite(samples))) or 1.0
+    if not size / MOST <= found <= size * MOST:
+        raise ValueError(
+            f"sigma: {name} = {shown(value)}: samples of up to {size:.3g} have one between "
+            f"{size / MOST:.3g} and {size * MOST:.3g}"
+        )
+    return found
 
 
 def _set_sigma(model: Model, loss: str, seed: int) -> None:
@@ -126,6 +133,7 @@ def _set_sigma(model: Model, loss: str, seed: int) -> None:
         model.sigma[name] = max(scatter, floor, np.finfo(float).tiny)
 
 
+@np.errstate(all="ignore")  # what is not fixed by the data is infinite or NaN
 def _result(model: Model, found: Any, loss: str, absolute: bool) -> Fit:
     residuals, jacobian = model.residuals(found.x), model.jacobian(found.x)
     sizes = np.array(
@@ -137,8 +145,7 @@ def _result(model: Model, found: Any, loss: str, absolute: bool) -> Fit:
         variance = float(residuals @ residuals) / freedom if freedom else np.inf
     spread = spread_of(jacobian, sizes, model.names, variance)
     error = np.sqrt(np.diag(spread.covariance))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        correlation = spread.covariance / np.outer(error, error)
+    correlation = spread.covariance / np.outer(error, error)
     np.fill_diagonal(correlation, 1.0)
     quantile = NORMAL if absolute else _student(freedom)
     values, slopes = model.quantities(found.x)

@@ -77,7 +77,8 @@ class Fit(dict[str, Any]):
             weights = ", ".join(f"{weight:+.3g} {name}" for name, weight in direction.items())
             lines.append(f"  left open (relative changes): {weights}")
         for q, rest in self["residuals"].items():
-            rms, samples = np.sqrt(np.nanmean(rest**2)), np.isfinite(rest).sum()
+            with np.errstate(over="ignore"):
+                rms, samples = np.sqrt(np.nanmean(rest**2)), np.isfinite(rest).sum()
             lines.append(f"  residuals of {self._title(q)}: rms {rms:.4g} in {samples} samples")
         return "\n".join(lines)
 

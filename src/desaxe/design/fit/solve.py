@@ -22,8 +22,6 @@ def solve(model: Model, loss: str, seed: int, absolute: bool = False) -> Any:
 
     Where sigma is known and the given start leads to residuals of that size, no other start is tried.
     """
-    with needed("fit", "design"):
-        from scipy.optimize import least_squares
     options: dict[str, Any] = {
         "bounds": ([u.low for u in model.unknowns], [u.high for u in model.unknowns]),
         "x_scale": [u.scale for u in model.unknowns],
@@ -34,17 +32,27 @@ def solve(model: Model, loss: str, seed: int, absolute: bool = False) -> Any:
     }
     points = starts_of(model.unknowns, STARTS, seed)
     runs = []
-    if np.isfinite(model.residuals(points[0])).all():
-        runs.append(least_squares(model.residuals, points[0], **options))
-        if len(points) == 1 or (absolute and _is_good(runs[0].fun)):
+    if np.isfinite(_cost(model.residuals(points[0]), loss)):
+        runs += _run(model, points[0], options)
+        if runs and (len(points) == 1 or (absolute and _is_good(runs[0].fun))):
             return _best(runs)
     costs = np.array([_cost(model.residuals(point), loss) for point in points[1:]])
     order = np.argsort(costs, kind="stable")[:RUNS]
-    runs += [least_squares(model.residuals, points[1 + k], **options) for k in order if np.isfinite(costs[k])]
+    runs += [run for k in order if np.isfinite(costs[k]) for run in _run(model, points[1 + k], options)]
     if not runs:
         where = ", ".join(f"{name} = {value:g}" for name, value in zip(model.names, points[0], strict=True))
         raise ValueError(f"fit: the mechanism cannot be assembled at every sample at the start: {where}")
     return _best(runs)
+
+
+def _run(model: Model, start: Array, options: dict[str, Any]) -> list[Any]:
+    """SciPy's result from a start; none where it meets derivatives beyond every double."""
+    with needed("fit", "design"):
+        from scipy.optimize import least_squares
+    try:
+        return [least_squares(model.residuals, start, **options)]
+    except (ValueError, np.linalg.LinAlgError):
+        return []
 
 
 def _best(runs: list[Any]) -> Any:

@@ -11,7 +11,7 @@ from ...mechanism.read import read
 from ...mechanism.spelling import did_you_mean
 from ...support.forks import IMPORTS
 from ...support.shown import shown
-from .data import Data
+from .data import MOST, Data
 
 OFFSET = "theta_offset"
 
@@ -57,14 +57,23 @@ def _parameter(name: str, value: Any, fixed: Mapping[str, Any]) -> Unknown:
         low, high = (_number(name, end) for end in value)
         if not max(low, least) < high:
             raise ValueError(f"over: {name} = {shown(value)}: low must be below high")
+        _require_moderate(name, value, max(abs(low), abs(high)))
         start, low = 0.5 * (low + high), max(low, least)
         return Unknown(name, start, low, high, max(abs(low), abs(high)), ranged=True)
     start = _number(name, value)
+    _require_moderate(name, value, abs(start))
     return Unknown(name, start, least, inf, abs(start) or 1.0)
 
 
 def _number(name: str, value: Any) -> float:
     return read(INPUTS[name], value, "over", "a number or (low, high)")
+
+
+def _require_moderate(name: str, value: Any, size: float) -> None:
+    if size and not 1.0 / MOST <= size <= MOST:
+        raise ValueError(
+            f"over: {name} = {shown(value)}: between {1.0 / MOST:g} and {MOST:g} in magnitude, or 0"
+        )
 
 
 def _nuisance(name: str, data: Data) -> Unknown:
