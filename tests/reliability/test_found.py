@@ -3,13 +3,16 @@
 import datetime
 import os
 from math import inf, isnan, nan
+from pathlib import Path
 
 import mpmath
 import numpy as np
 import pytest
 
 import desaxe as dx
+from desaxe.cli import main
 from desaxe.oracle.truth import truth_all
+from desaxe.runtime.written import is_ours
 from desaxe.support.toml import DEEPEST, read_toml
 
 LENGTHS = {"ec": 0.01, "AB": 0.125, "BC": 0.35}
@@ -119,6 +122,29 @@ def test_a_pipe_is_no_scene(tmp_path):
     os.mkfifo(tmp_path / "a.toml")
     with pytest.raises(ValueError, match="this is a pipe"):
         dx.scene(tmp_path / "a.toml")
+
+
+def test_a_pipe_is_neither_replaced_nor_read(tmp_path, capsys, monkeypatch):
+    """Each of these waited for whoever would write into the pipe."""
+    monkeypatch.chdir(tmp_path)
+    scene = {"outputs": ["Y"], "mechanism": LENGTHS, "motion": {"theta": [0.0, 1.0]}}
+    Path("a.toml").write_text("outputs = ['Y']\n[mechanism]\nec = 0\nAB = 1\nBC = 3\n[motion]\ntheta = 1\n")
+    Path("a.csv").write_text("theta, Y\n1,3.4\n2,2.4\n")
+    for name in ("a.png", "a.c", "a.html", "b.csv"):
+        os.mkfifo(name)
+    for overwrite in ([], ["--overwrite"]):
+        assert main(["fit", "a.toml", "a.csv", "--over", "AB", "--picture", "a.png", *overwrite]) == 2
+        assert "a.png: this is a pipe" in capsys.readouterr().err
+    for call in (
+        lambda: dx.compile(scene, "a.c", to="c"),
+        lambda: dx.explore(scene, "a.html", overwrite=True),
+        lambda: dx.over_theta.read("b.csv"),
+        lambda: dx.over_Y.read("b.csv"),
+        lambda: dx.fit("b.csv", over={"AB": 0.1}, BC=0.3, ec=0.0),
+    ):
+        with pytest.raises(ValueError, match="this is a pipe"):
+            call()
+    assert not is_ours(Path("a.png"))
 
 
 @pytest.mark.parametrize(

@@ -3,8 +3,7 @@
 from importlib import import_module
 from pathlib import Path
 
-from ..runtime.written import replacing_ours, require_ours
-from ..support.files import check_target, require_writable
+from ..runtime.written import replacing_ours, require_place
 from ..support.progress import progress_bar
 from ..support.shown import printable
 from .report import PICTURE, by_family, overview, report, share_of, ulp_of
@@ -18,9 +17,7 @@ def command(quick: bool, folder: str | None, overwrite: bool = False) -> int:
     if folder is not None:  # fail at once, not after minutes
         import_module("matplotlib.figure")
         for name in (PAGE, PICTURE):
-            check_target(Path(folder) / name)
-            require_ours(Path(folder) / name, overwrite)
-            require_writable(Path(folder) / name)
+            require_place(Path(folder) / name, overwrite)
     with progress_bar() as watch:
         found = audit(QUICK if quick else FULL, watch)
     print(text(found), flush=True)

@@ -54,13 +54,11 @@ def add_fit(commands: Any) -> None:
 
 def _fit(options: argparse.Namespace) -> int:
     from ..design.fit.fit import fit
-    from ..runtime.written import replacing_ours, require_ours
+    from ..runtime.written import replacing_ours, require_place
     from ..scenes.scene import scene
-    from ..support.files import require_writable
 
     if options.picture:
-        require_ours(Path(options.picture), options.overwrite)
-        require_writable(Path(options.picture))
+        require_place(Path(options.picture), options.overwrite)
     whole = scene(options.scene)
     known = whole.content
     numbers: dict[str, Any] = {

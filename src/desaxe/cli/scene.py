@@ -181,12 +181,13 @@ def add_explore(commands: Any) -> None:
 
 
 def _explore(options: argparse.Namespace) -> int:
+    from ..runtime.written import require_place
     from ..scenes.explorer.content import left_out_text
     from ..scenes.explorer.explore import content_of
-    from ..scenes.explorer.write import require_page, write_page
+    from ..scenes.explorer.write import write_page
 
     place = Path(options.file)
-    require_page(place, options.overwrite)
+    require_place(place, options.overwrite)
     found = content_of(options.scene, options.names.split(",") if options.names else None)
     print(printable(write_page(found, place, options.overwrite)))
     left = left_out_text(found)

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from ..support.files import check_target, replacing
+from ..support.files import check_target, kind_of, replacing, require_writable
 from ..support.shown import printable
 from . import cache
 
@@ -69,6 +69,8 @@ def _is_sealed(content: bytes) -> bool:
 
 def is_ours(path: Path) -> bool:
     """True if desaxe wrote the file at a path, as it is; an empty file is as good as none."""
+    if kind_of(path) not in ("", "a folder"):  # a pipe has no end
+        return False
     if path.is_file() and ((content := path.read_bytes()) == b"" or _is_sealed(content)):
         return True
     return (cache.folder().path / FOLDER / digest_of(path)).exists()
@@ -82,6 +84,13 @@ def require_ours(path: Path, overwrite: bool) -> None:
         f"{printable(path)}: this is not, or no longer, what desaxe wrote; "
         "overwrite=True (--overwrite) replaces it"
     )
+
+
+def require_place(path: Path, overwrite: bool) -> None:
+    """An error where `replacing_ours` would have one: a way to fail before anything is computed."""
+    check_target(path)
+    require_ours(path, overwrite)
+    require_writable(path)
 
 
 @contextmanager

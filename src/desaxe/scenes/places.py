@@ -7,9 +7,9 @@ from os import PathLike
 from os.path import abspath
 from pathlib import Path
 
-from ..runtime.written import require_ours
+from ..runtime.written import require_place
 from ..support.extras import needed
-from ..support.files import check_target, require_writable
+from ..support.files import require_writable
 from ..sweeps.layout import size_text
 from .content import Content
 from .files import check_place, files_of, requirements_of
@@ -46,9 +46,7 @@ def require_places(content: Content, overwrite: bool) -> None:
     for number, picture in enumerate(content.pictures, 1):
         file = Path(picture.file)
         _claim(places, f"picture #{number}.file", file)
-        check_target(file)
-        require_ours(file, overwrite)
-        require_writable(file)
+        require_place(file, overwrite)
     if content.store is not None:
         _claim(places, "results.store", content.store)
         require_store(content, overwrite)

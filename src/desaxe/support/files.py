@@ -76,11 +76,17 @@ def read_bytes(path: str | os.PathLike[str], most: int) -> bytes:
     kind = kind_of(as_path("path", path))
     if kind:
         raise ValueError(f"this is {kind}, no file to read")
-    with open(path, "rb") as file:
+    with open(path, "rb", opener=_without_waiting) as file:
         data = file.read(most + 1)
+    if data is None:  # as of a kernel's log, which says that it is a file
+        raise ValueError("nothing can be read from it now")
     if len(data) > most:
         raise ValueError(f"a file of more than {most // 1_000_000} MB")
     return data
+
+
+def _without_waiting(path: str, flags: int) -> int:
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
 def check_target(target: Path) -> None:

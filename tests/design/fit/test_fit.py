@@ -2,8 +2,8 @@
 
 import math
 import pickle
-import re
 import random
+import re
 import traceback
 
 import mpmath

@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS, TINY, Input
@@ -21,7 +20,6 @@ from .solve import solve
 from .spread import LOSSES, inflation, spread_of
 from .unknowns import unknowns_of
 
-Array = NDArray[np.float64]
 NORMAL = 1.959963984540054  # two-sided 95 % of the normal distribution
 MAD = 1.4826  # standard deviations in a median absolute deviation, of the normal distribution
 UNLIKELY = 1e-6  # a chi-square that chance exceeds less often is told

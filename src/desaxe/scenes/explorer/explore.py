@@ -11,9 +11,10 @@ from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LOADS
 from ...mechanism.unit_system import UnitSystem
 from ...runtime.request import as_number, check_common, check_inputs
+from ...runtime.written import require_place
 from ...support.forks import IMPORTS
 from .content import FORCES, Content, Value, content, forces_first, is_loaded
-from .write import require_page, write_page
+from .write import write_page
 
 TITLE = "Offset slider-crank"
 START = ("a_C", "a_C_wrt_ec")  # what the two charts show first where a scene names nothing
@@ -59,7 +60,7 @@ def explore(
     See docs/choose.md: which call for which question.
     """
     place = Path(path)
-    require_page(place, overwrite)
+    require_place(place, overwrite)
     own = UnitSystem.read(units)
     found = content_of(source, names, branch, title, inputs)
     return write_page(found._replace(units=own) if own else found, place, overwrite)

@@ -12,22 +12,14 @@ from ...mechanism.inputs import INPUTS
 from ...mechanism.names import parts
 from ...mechanism.status import PointStatus
 from ...mechanism.unit_system import DIMENSIONS, UnitSystem
-from ...runtime.written import UNSEALED, replacing_ours, require_ours, sealed
+from ...runtime.written import UNSEALED, replacing_ours, sealed
 from ...support.extras import needed
-from ...support.files import check_target, require_writable
 from .content import Content, left_out_text
 
 # In the order in which they build on each other.
 SCRIPTS = ("numbers", "designs", "words", "mechanism", "charts", "controls", "files", "main")
 _COMMENT = re.compile(r"^\s*//.*\n", re.MULTILINE)  # of a line of its own: the page has none to read
 _PLACE = re.compile(r"@@(\w+)@@")
-
-
-def require_page(path: Path, overwrite: bool) -> None:
-    """OSError where no page can be written, or where something else than a page is."""
-    check_target(path)
-    require_ours(path, overwrite)
-    require_writable(path)
 
 
 def write_page(content: Content, path: Path, overwrite: bool = False) -> Path:

@@ -10,8 +10,8 @@ from typing import Any
 from ...compiler.languages import language_of, languages
 from ...compiler.languages.shared import refuse_taken
 from ...compiler.languages.words import words_of
-from ...runtime.written import replacing_ours, require_ours, sealed
-from ...support.files import as_path, check_target, require_writable
+from ...runtime.written import replacing_ours, require_place, sealed
+from ...support.files import as_path
 from ...support.shown import printable
 from ..content import Content
 from ..scene import Scene
@@ -70,9 +70,7 @@ def compile(
             raise ValueError(f"{printable(place)}: not what the scene gives ({names}); write it again")
         return place
     for file in texts:
-        check_target(file)
-        require_ours(file, overwrite)
-        require_writable(file)
+        require_place(file, overwrite)
     for file, text in texts.items():
         with replacing_ours(file, overwrite) as staged:
             staged.write_bytes(text.encode())
