@@ -143,7 +143,7 @@ def _omega_second_rates() -> dict[tuple[str, ...], sp.Expr]:
 
 
 def _define_turning(sheet: Sheet, speed: sp.Symbol) -> None:
-    """The way of turning that the strokes of a whole design hang on: the sign of the speed given."""
+    """The way of turning that the strokes of a whole design depend on: the sign of the speed given."""
     backwards = select(lt(speed, 0), -1, nan)
     sheet.define(
         "turning", select(le(0, speed), 1, backwards), unit=NONE, meaning="way of turning", rigid=True

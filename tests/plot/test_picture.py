@@ -1,4 +1,4 @@
-"""What each plot returns; titles, room at jumps, and the tornado that a machine draws by itself."""
+"""The result of each plot; titles, room at jumps, and the tornado that a machine draws by itself."""
 
 import numpy as np
 import pytest

@@ -6,6 +6,7 @@ arguments  what a call is given, in SI units
 function   a prepared callable in those units
 results    what a call gives, in the units of the machine, or as pint quantities
 plots      `machine.plot("a_C")` and the pictures of `desaxe.plot`
+tornado    the changes and title of the tornado of a machine
 scenes     a machine from a scene, and a scene from a machine
 load_tables  loads that vary with the motion in such a scene
 summary    how a machine shows itself: drawing, lengths, speed, masses, loads, stroke

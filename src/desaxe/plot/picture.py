@@ -12,7 +12,7 @@ OWN = ("figure", "axes", "artists", "_drawn")
 
 
 class Picture:
-    """What a function of `desaxe.plot` drew.
+    """A drawing of a function of `desaxe.plot`.
 
     figure   the matplotlib Figure
     axes     the Axes that were drawn on; a list of them where there are several quantities
@@ -55,7 +55,7 @@ class Picture:
         object.__setattr__(self if own else self._drawn, name, value)
 
     def _repr_png_(self) -> bytes:
-        """What a notebook shows."""
+        """The picture in a notebook."""
         image = BytesIO()
         self.figure.savefig(image, format="png", dpi=100.0)
         return image.getvalue()

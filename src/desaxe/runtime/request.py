@@ -88,7 +88,7 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
 
 
 def needs_no_speed(names: Iterable[str]) -> bool:
-    """True if none but quantities of the whole design hang on the speed: on its sign, forwards by default."""
+    """True if quantities of the whole design alone depend on the speed: on its sign, forwards by default."""
     moving = tuple(name for name in names if name not in STATUSES and not of_design(name))
     return "omega0" not in program_of(moving).inputs
 

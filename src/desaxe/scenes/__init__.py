@@ -4,7 +4,7 @@ scene        `desaxe.scene`: Scene and SceneResult
 schema       the keys of a scene file, their types and what they mean
 json_schema  the schema for editors
 values       numbers with units, lists and ranges as SI numbers
-spread       evenly spaced values
+spread       evenly spaced values of a range, each rounded once
 printed      values as a paper prints them, compared digit by digit
 content      what a scene says, checked and in SI units
 read         a file or mapping as Content

@@ -15,6 +15,7 @@ dop853        the same for many designs, which numba compiles
 tableau       the coefficients of both
 compiled      the module of a family of designs
 history       histories of angle, speed, quantities and energy
+residual      the energy residual, and a message where it is unusual
 result        the result and its statuses
 held          loads as functions of time, smooth between their kinks
 """

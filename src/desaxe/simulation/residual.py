@@ -1,4 +1,4 @@
-"""The energy residual of a motion, and when it is told: a step control that was deceived shows in it."""
+"""The energy residual of a motion, and a message where it is unusual: step control was deceived then."""
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise

@@ -175,7 +175,7 @@ def _result(model: Model, found: Any, loss: str, absolute: bool) -> Fit:
 
 
 def _far_beyond(residuals: Array, freedom: int, loss: str) -> str:
-    """What to say where the residuals are too large for sigma; nothing where chance may explain them.
+    """Words where the residuals are too large for sigma; none where chance may explain them.
 
     A robust loss lets outliers be: there half of the residuals count.
     """

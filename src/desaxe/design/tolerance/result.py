@@ -12,7 +12,7 @@ LEAST = 0.005  # of the variance: a smaller share is not listed
 
 
 class Tolerance(Answer):
-    """What `tolerance` returns; see there for its keys. `report()` shows all of them.
+    """The result of `tolerance`; see there for its keys. `report()` shows all of them.
 
     `name` is that of the quantity or measure, `unit` the unit of its values.
     """
