@@ -9,7 +9,8 @@ import pytest
 
 import desaxe as dx
 from desaxe.cli.checks import derive
-from desaxe.definitions.tables import in_force, read_definitions
+from desaxe.definitions.tables import read_definitions
+from desaxe.mechanism.own import using
 
 TABLES = {
     "shoe": {"expression": "f * abs(N_C * V_C)", "unit": "W", "constants": {"f": 0.08}},
@@ -79,7 +80,7 @@ def test_it_answers_as_the_library_does(folder):
     )
     assert not done.stderr
     values, alone, arrays, by_omega, few, *errors = json.loads(done.stdout)
-    with in_force(read_definitions(TABLES)):
+    with using(read_definitions(TABLES)):
         for name, wanted in dx.evaluate(NAMES, **POINT).items():
             assert values[name] == pytest.approx(wanted, rel=1e-12), name
         assert alone == pytest.approx(values["arm"], rel=1e-14)

@@ -163,6 +163,7 @@ def arcs(design, branch, loads, theta):
         else:
             found.append(Arc(first[0], last[0], (first[1], last[1]), forces, {}, {}))
     found += _touches(design, loads, closure, way)
+    found = [arc for arc in found if doubles(arc, (-inf, inf))]  # what a double of it has before and after
     found.sort(key=lambda arc: (arc.low, arc.high))
     found = [
         arc._replace(before=found[max(k - 1, 0)].forces, after=found[min(k + 1, len(found) - 1)].forces)

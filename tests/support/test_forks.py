@@ -34,10 +34,9 @@ CASES = {
     ),
     "definitions are being replaced": (
         "from desaxe.mechanism import own\n"
-        "class Slow(dict):\n    def values(self):\n        began.set()\n        time.sleep(0.5)\n"
-        "        return super().values()",
-        "    own.replace_all(Slow())",
-        "    own.replace_all({})",
+        "def slow(known):\n    began.set()\n    time.sleep(0.5)\n    return known",
+        "    own.change(slow)",
+        "    own.change(dict)",
     ),
 }
 

@@ -8,7 +8,7 @@ from ..compiler.program import RESERVED, Note
 from ..mechanism.dimensions import unit_of
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import INTERNAL, parts
-from ..mechanism.own import Definition, definitions, derived_names, replace_all, rows, rows_of
+from ..mechanism.own import Definition, change, derived_names, register, rows_of
 from ..mechanism.spelling import did_you_mean
 from ..support.shown import shown
 from .dimensions import NONE, Checker, Dimension, dimension_of, unit_from
@@ -53,22 +53,24 @@ def define(name: str, expression: str, unit: str | None = None, meaning: str = "
     the first. Returns the name. Raises ValueError or TypeError that points at the place for a name that is
     taken, an unknown name, a dimension that does not fit, or anything that is no expression.
     """
-    made = made_definition(Entry(name, expression, unit, meaning, constants), definitions())
-    replace_all(with_definitions(definitions(), [made]))
+    entry = Entry(name, expression, unit, meaning, constants)
+    change(lambda known: with_definitions(known, [made_definition(entry, known)]))
     return name
 
 
 def undefine(name: str) -> None:
     """Remove a user-defined quantity; ValueError if there is none of this name or another one uses it."""
-    known = definitions()
+    change(lambda known: _without(name, known))
+
+
+def _without(name: str, known: Mapping[str, Definition]) -> dict[str, Definition]:
     if name not in known:
         own = f"; there are {', '.join(known)}" if known else ""
         raise ValueError(f"{name!r} is not a defined quantity{own}")
     users = [other.name for other in known.values() if name in (parts(used)[0] for used in other.uses)]
     if users:
         raise ValueError(f"{name} is used by {', '.join(users)}: undefine that first")
-    del known[name]
-    replace_all(known)
+    return {key: own for key, own in known.items() if key != name}
 
 
 class Entry(NamedTuple):
@@ -79,23 +81,6 @@ class Entry(NamedTuple):
     unit: str | None
     meaning: str
     constants: Mapping[str, Any]
-
-
-def install(made: Iterable[Definition]) -> None:
-    """Register definitions from a file or another process.
-
-    ValueError where one of them has the name of another definition: nothing is replaced silently.
-    """
-    known = definitions()
-    new = [definition for definition in made if known.get(definition.name) != definition]
-    for definition in new:
-        if definition.name in known:
-            raise ValueError(
-                f"{definition.name} is defined already, as {known[definition.name].expression!r}; "
-                f"here it is {definition.expression!r}: undefine it first"
-            )
-    if new:
-        replace_all(with_definitions(known, new))
 
 
 def with_definitions(known: Mapping[str, Definition], new: Iterable[Definition]) -> dict[str, Definition]:
@@ -190,7 +175,7 @@ def _checked_text(name: str, what: str, text: Any, longest: int) -> str:
 def _constant(owner: str, name: str, value: Any) -> tuple[float, Dimension]:
     if not (name.isascii() and name.isidentifier()) or len(name) > LONGEST_NAME:
         raise ValueError(f"{owner}: {name[:LONGEST_NAME]!r} is not a valid name of a constant")
-    if name in derived_names() or name in INPUTS or name in ARITY or name == "pi" or name in rows():
+    if name in derived_names() or name in INPUTS or name in ARITY or name == "pi" or name in register().rows:
         raise ValueError(f"{owner}: constant {name!r} has the name of a quantity, an input or a function")
     try:
         number, unit = constant_value(name, value)

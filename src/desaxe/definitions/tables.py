@@ -9,11 +9,10 @@ constants = { f = 0.08 }
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping
 from typing import Any
 
-from ..mechanism.own import Definition, definitions, replace_all, used_by
+from ..mechanism.own import Definition, change, register, used_by
 from .define import Entry, made_definition, with_definitions
 
 KEYS = ("expression", "unit", "meaning", "constants")
@@ -22,7 +21,7 @@ KEYS = ("expression", "unit", "meaning", "constants")
 def read_definitions(tables: Mapping[str, Any]) -> tuple[Definition, ...]:
     """Read the definitions of `[quantities]`, in any order; ValueError names the wrong one."""
     waiting = {name: _entry(name, table) for name, table in tables.items()}
-    known = {name: old for name, old in definitions().items() if name not in waiting}
+    known = {name: old for name, old in register().definitions.items() if name not in waiting}
     made: dict[str, Definition] = {}
     while waiting:
         # The definitions that use no other pending one; a circle leaves none, and the first reports it.
@@ -72,19 +71,5 @@ def text_of(names: Iterable[str]) -> str:
 
 def redefine(made: Iterable[Definition]) -> None:
     """Register definitions, replacing others of the same names."""
-    known = definitions()
-    new = [own for own in made if known.get(own.name) != own]
-    if new:
-        replace_all(with_definitions(known, new))
-
-
-@contextmanager
-def in_force(made: Iterable[Definition]) -> Iterator[None]:
-    """Register definitions for the duration of a block, shadowing others of the same names."""
-    before = definitions()
-    redefine(made)
-    try:
-        yield
-    finally:
-        if definitions() != before:
-            replace_all(before)
+    made = tuple(made)
+    change(lambda known: with_definitions(known, [own for own in made if known.get(own.name) != own]))

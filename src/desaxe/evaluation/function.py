@@ -10,13 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..definitions.define import install
 from ..loads.resolve import without_loads
 from ..mechanism.catalogue import has, law_name, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS, sensitivity
-from ..mechanism.own import Definition, used_by
-from ..mechanism.program import program_of
+from ..mechanism.own import Definition, Register, register, register_with, used_by
+from ..mechanism.program import Variant, program_of
 from ..runtime.any_stride import Bound, bind
 from ..runtime.kernels import STRUCTURAL_ZEROS, KernelKey, kernel_for
 from ..runtime.native_calls import point_caller, scalar_of, ufunc_of
@@ -79,13 +78,20 @@ class Function:
               inputs and outputs stand in the order of `inputs` and `names`; it lives as long as this object
     """
 
-    def __init__(self, names: tuple[str, ...], one: bool, inputs: tuple[str, ...], fixed: Mapping[str, Any]):
+    def __init__(
+        self,
+        names: tuple[str, ...],
+        one: bool,
+        inputs: tuple[str, ...],
+        fixed: Mapping[str, Any],
+        known: Register | None = None,
+    ) -> None:
         self.names, self.inputs, self.fixed = names, inputs, dict(fixed)
         self._one = one
-        self._own = used_by(law_name(name) for name in names)
-        self._bound, self._kinds = _compiled(names, inputs, self.fixed, self._failures)
+        self._known = known or register()  # as it was made: later definitions change nothing
+        self._bound, self._kinds = _compiled(names, inputs, self.fixed, self._known, self._failures)
         state = "omega" in inputs or fixed.get("omega") is not None
-        self.units = {name: quantity(name, state).unit for name in names}
+        self.units = {name: quantity(name, state, self._known).unit for name in names}
         self.units |= {name: INPUTS[name].unit for name in inputs}
         self._ufunc, self._kept = ufunc_of(self._bound, len(inputs), self._kinds, ", ".join(names))
 
@@ -169,14 +175,14 @@ class Function:
         state = "omega" in self.inputs or self.fixed.get("omega") is not None
         wanted = dict.fromkeys(self.names)
         for name in self.names:
-            needed = _needed(name, state)
+            needed = _needed(name, state, self._known)
             for parameter in self.inputs:
                 slope = sensitivity(name, parameter)
-                if has(slope, state):
+                if has(slope, state, self._known):
                     wanted[slope] = None
                 elif parameter in needed and name != "margin":
                     raise ValueError(f"jacobian: the derivative of {name} by {parameter} is not derived")
-        return Function(tuple(wanted), False, self.inputs, self.fixed)
+        return Function(tuple(wanted), False, self.inputs, self.fixed, self._known)
 
     @computed_once
     def _point(self) -> Any:
@@ -196,7 +202,8 @@ class Function:
 
     def __reduce__(self) -> Any:
         names = self.names[0] if self._one else list(self.names)
-        return _again, (names, self.inputs, self.fixed, self._own)
+        own = used_by((law_name(name) for name in self.names), self._known)
+        return _again, (names, self.inputs, self.fixed, own)
 
     def __repr__(self) -> str:
         fixed = "".join(f", {name}={value!r}" for name, value in self.fixed.items())
@@ -207,14 +214,17 @@ class Function:
 def _again(
     names: str | list[str], inputs: tuple[str, ...], fixed: dict[str, Any], own: tuple[Definition, ...] = ()
 ) -> Function:
-    install(own)
-    return function(names, inputs, **fixed)
+    one = isinstance(names, str)
+    return Function(
+        (names,) if isinstance(names, str) else tuple(names), one, inputs, fixed, register_with(own)
+    )
 
 
-def _needed(name: str, state: bool) -> tuple[str, ...]:
+def _needed(name: str, state: bool, known: Register) -> tuple[str, ...]:
     """The inputs that a name depends on."""
-    law = program_of((law_name(name) if state else name,)).inputs
-    return tuple("omega" if state and given == "omega0" else given for given in law)
+    law = (law_name(name) if state else name,)
+    inputs = program_of(law, Variant(own=used_by(law, known))).inputs
+    return tuple("omega" if state and given == "omega0" else given for given in inputs)
 
 
 def _constant_like(values: Any, constant: Any) -> Any:
@@ -263,7 +273,11 @@ def _number(name: str, value: Any) -> Any:
 
 
 def _compiled(
-    names: tuple[str, ...], inputs: tuple[str, ...], fixed: Mapping[str, Any], failures: list[BaseException]
+    names: tuple[str, ...],
+    inputs: tuple[str, ...],
+    fixed: Mapping[str, Any],
+    known: Register,
+    failures: list[BaseException],
 ) -> tuple[Bound, tuple[bool, ...]]:
     """The kernel as a ufunc's inner loop; for each output a flag: it is a status."""
     branch, accuracy = fixed.get("branch", 1), fixed.get("accuracy", "standard")
@@ -271,9 +285,9 @@ def _compiled(
     given.setdefault("alpha", None if "alpha" in inputs else 0.0)
     given |= dict.fromkeys(inputs, np.empty(1))
     if given.get("omega0") is None and given.get("omega") is None:
-        given["omega0"] = standstill(names, given)
+        given["omega0"] = standstill(names, given, known)
     check_common(given, branch)
-    wanted = request(names, given, branch, accuracy)
+    wanted = request(names, given, branch, accuracy, known)
     numbers = {n: _fixed_number(n, given, wanted) for n in wanted.inputs if n not in inputs}
     key = _key(wanted, numbers, inputs)
     kernel = kernel_for(key)

@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any
 
 from ..mechanism.inputs import is_good
-from ..mechanism.own import changes, forget_on_change
+from ..mechanism.own import register
 from ..runtime.accuracy import accuracy_of
 from ..runtime.point import Point, point_of
 from ..runtime.request import Request, as_number, check_common, is_steady, request, several, standstill
@@ -33,18 +33,16 @@ def values(
     if type(accuracy) is not str or accuracy != "standard":
         accuracy = accuracy_of(accuracy)
     key: tuple[Any, ...] = wanted, tuple(given), omega is not None, is_steady(given.get("alpha")), branch
-    key = *key, accuracy, given.get("theta") is None, speed_given
+    now = register()
+    key = *key, accuracy, given.get("theta") is None, speed_given, now
     if not speed_given and omega is None and "status" in wanted:
-        given["omega0"] = standstill(wanted, given)
+        given["omega0"] = standstill(wanted, given, now)
     known = _KNOWN.get(key)
     if known is None:
         if len(_KNOWN) > MOST_KNOWN:
             _KNOWN.clear()
-        before = changes()
-        asked = request(wanted, given, branch, accuracy)
-        known = asked, point_of(asked.names, asked.form, asked.fixed, asked.accuracy)
-        if changes() == before:  # no name has got another meaning meanwhile
-            _KNOWN[key] = known
+        asked = request(wanted, given, branch, accuracy, now)
+        _KNOWN[key] = known = asked, point_of(asked.names, asked.form, asked.fixed, asked.accuracy)
     asked, point = known
     numbers, extreme = [], False
     for name in point.inputs:
@@ -77,7 +75,6 @@ def _extreme(asked: Request, point: Point, numbers: Sequence[float]) -> Sequence
 
 MOST_KNOWN = 1024  # requests that are remembered
 _KNOWN: dict[tuple[Any, ...], tuple[Request, Point]] = {}
-forget_on_change(_KNOWN)
 
 
 _ARRAY: list[type] = [object]  # NumPy's type of array, when it is known

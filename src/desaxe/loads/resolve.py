@@ -13,7 +13,7 @@ q by a parameter p that the load F depends on is the Program's own, at a fixed l
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import cache
+from functools import lru_cache
 from inspect import signature
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -21,7 +21,8 @@ from typing import Any, NamedTuple
 from ..mechanism.catalogue import law_name, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import parts, sensitivity
-from ..mechanism.program import program_of
+from ..mechanism.own import Definition, Register, register, used_by
+from ..mechanism.program import Variant, program_of
 from ..mechanism.unit_system import UnitSystem
 from ..support.forks import IMPORTS
 from .function import FunctionOverTheta
@@ -154,20 +155,25 @@ class Plan(NamedTuple):
         return result
 
 
-def plan_of(names: Sequence[str], loads: Mapping[str, Load], state: bool, mu: bool) -> Plan:
+def plan_of(
+    names: Sequence[str], loads: Mapping[str, Load], state: bool, mu: bool, known: Register | None = None
+) -> Plan:
     """The plan for names; ValueError for one that needs what is not known of a load.
 
     state   whether omega is given instead of omega0
     mu      whether friction is: then the status depends on the loads
+    known   the definitions that names have
     """
+    known = known or register()
     terms: dict[str, tuple[Term, ...]] = {}
     used: dict[str, Load] = {}
     for name in names:
-        quantity(name, state)
+        quantity(name, state, known)
         for force, load in loads.items():
-            if _depends(law_name(name) if state else name, force, mu):
+            law = law_name(name) if state else name
+            if _depends(law, force, mu, used_by((law,), known)):
                 used[force] = load
-                terms[name] = (*terms.get(name, ()), *_terms(name, force, load, state))
+                terms[name] = (*terms.get(name, ()), *_terms(name, force, load, state, known))
     more = [term.slope for group in terms.values() for term in group]
     over_Y = {t.parameter for group in terms.values() for t in group if isinstance(used[t.force], OverY)}
     motion = POSITION if any(isinstance(load, OverY) for load in used.values()) else ()
@@ -175,14 +181,14 @@ def plan_of(names: Sequence[str], loads: Mapping[str, Load], state: bool, mu: bo
     return Plan(tuple(names), tuple(dict.fromkeys((*names, *more))), terms, used, motion)
 
 
-@cache
-def _depends(name: str, force: str, mu: bool) -> bool:
+@lru_cache(maxsize=1024)
+def _depends(name: str, force: str, mu: bool, own: tuple[Definition, ...]) -> bool:
     if name == "status":
         return mu
-    return force in program_of((name,)).inputs
+    return force in program_of((name,), Variant(own=own)).inputs
 
 
-def _terms(name: str, force: str, load: Load, state: bool) -> tuple[Term, ...]:
+def _terms(name: str, force: str, load: Load, state: bool, known: Register) -> tuple[Term, ...]:
     """The terms of a derivative that come through a load's dependence on the parameters."""
     base, parameters = parts(name)
     through = [p for p in parameters if p in load.parameters]
@@ -197,7 +203,7 @@ def _terms(name: str, force: str, load: Load, state: bool) -> tuple[Term, ...]:
     others.remove(through[0])
     slope = sensitivity(base, *others, force)
     try:
-        quantity(slope, state)
+        quantity(slope, state, known)
     except ValueError:
         slope = ""
     if len(through) > 1 or not slope:

@@ -8,6 +8,7 @@ from ..evaluation.arrays import as_array
 from ..loads.resolve import settled
 from ..loads.tabulated import MakeOverTheta, MakeOverY
 from ..mechanism.inputs import INPUTS, is_good
+from ..mechanism.own import Definition
 from ..mechanism.slips import warn_of_slips
 from ..mechanism.unit_system import SI, UnitSystem
 from ..runtime.request import MachineSpeed, as_number, check_common, check_inputs
@@ -53,9 +54,10 @@ class Machine(Mapping[str, Any]):
 
         def __getattr__(self, name: str) -> Any: ...
 
-    __slots__ = ("_given", "_inputs", "units")
+    __slots__ = ("_given", "_inputs", "definitions", "units")
     _given: dict[str, Any]
     _inputs: dict[str, Any]
+    definitions: tuple[Definition, ...]  # the own quantities of the scene that it was read from
     units: UnitSystem
 
     def __init__(
@@ -69,20 +71,27 @@ class Machine(Mapping[str, Any]):
         if source is not None and not isinstance(source, Mapping):
             raise TypeError(f"Machine: expected a mapping, got {source!r}; Machine.read takes a path")
         given = dict(source or {})
+        made: tuple[Definition, ...] = ()
         if is_scene(given):
-            given, own = inputs_of_scene(given)
+            given, own, made = inputs_of_scene(given)
             units = own if units is None else units
         elif isinstance(source, Machine):
-            units = source.units if units is None else units
+            units, made = source.units if units is None else units, source.definitions
         system = UnitSystem.read(units)
         plain = {} if isinstance(source, Machine) or (source and is_scene(source)) else given
         named = {**plain, **inputs}
         si = {**given, **{key: in_si(system, key, value) for key, value in named.items()}}
         warn_of_slips(named, system)
-        self._set(_checked_inputs(si), system, named)
+        self._set(_checked_inputs(si), system, named, made)
 
-    def _set(self, inputs: dict[str, Any], units: UnitSystem, given: Mapping[str, Any]) -> None:
-        """Fill a new machine: checked inputs in SI units, units, numbers as they were given.
+    def _set(
+        self,
+        inputs: dict[str, Any],
+        units: UnitSystem,
+        given: Mapping[str, Any],
+        made: tuple[Definition, ...] = (),
+    ) -> None:
+        """Fill a new machine: checked inputs in SI units, units, numbers as they were given, own quantities.
 
         Arrays are its own, also those out of a pickle, which may be written to.
         """
@@ -91,13 +100,14 @@ class Machine(Mapping[str, Any]):
                 value.setflags(write=False)
         object.__setattr__(self, "_inputs", inputs)
         object.__setattr__(self, "units", units)
+        object.__setattr__(self, "definitions", made)
         object.__setattr__(self, "_given", {key: v for key, v in given.items() if key in inputs})
 
     @classmethod
     def read(cls, path: str | PathLike[str], *, units: str | Mapping[str, str] | None = None) -> "Machine":
         """The machine of a scene file, with its units (extra `scene`); its crank angles are left out."""
-        inputs, own = inputs_of_scene(path)
-        return _restored(_checked_inputs(inputs), own if units is None else UnitSystem.read(units), {})
+        inputs, own, made = inputs_of_scene(path)
+        return _restored(_checked_inputs(inputs), own if units is None else UnitSystem.read(units), {}, made)
 
     def replace(self, **inputs: Any) -> "Machine":
         """The machine with other inputs; None takes one away. `units=` changes the units alone."""
@@ -110,7 +120,7 @@ class Machine(Mapping[str, Any]):
         warn_of_slips(inputs, system)
         new = {key: in_si(system, key, value) for key, value in inputs.items() if value is not None}
         given = {**self.in_units(), **inputs} if system == self.units else inputs
-        return _restored(_checked_inputs({**kept, **new}), system, given)
+        return _restored(_checked_inputs({**kept, **new}), system, given, self.definitions)
 
     def in_units(self) -> dict[str, Any]:
         """The inputs in the units of the machine: numbers as they were given."""
@@ -209,7 +219,8 @@ class Machine(Mapping[str, Any]):
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Machine):
             return NotImplemented
-        return self._key() == other._key() and self.units == other.units
+        same = self._key() == other._key() and self.units == other.units
+        return same and self.definitions == other.definitions
 
     def __hash__(self) -> int:
         return hash((self._key(), self.units))
@@ -221,7 +232,7 @@ class Machine(Mapping[str, Any]):
         )
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restored, (self._inputs, self.units, self._given)
+        return _restored, (self._inputs, self.units, self._given, self.definitions)
 
     def __repr__(self) -> str:
         return text_of(self)
@@ -237,10 +248,15 @@ for _name in METHODS:
     setattr(Machine, _name, Method(_name))
 
 
-def _restored(inputs: dict[str, Any], units: UnitSystem, given: Mapping[str, Any]) -> Machine:
+def _restored(
+    inputs: dict[str, Any],
+    units: UnitSystem,
+    given: Mapping[str, Any],
+    made: tuple[Definition, ...] = (),
+) -> Machine:
     """A machine of checked inputs, such as one out of a pickle."""
     machine = Machine.__new__(Machine)
-    machine._set(inputs, units, given)
+    machine._set(inputs, units, given, made)
     return machine
 
 

@@ -8,6 +8,7 @@ from functools import wraps
 from inspect import Parameter, Signature, signature
 from typing import Any, NamedTuple
 
+from ..mechanism.own import using
 from ..mechanism.ranges import refuse_bare_pair
 from ..mechanism.slips import warn_of_slips
 from ..runtime.request import MachineSpeed
@@ -74,7 +75,10 @@ def method_of(function: Callable[..., Any], name: str) -> Callable[..., Any]:
 
     @wraps(function)
     def method(self: Any, *args: Any, as_quantity: bool = False, **inputs: Any) -> Any:
-        return call(self, name, function, takes, args, inputs, as_quantity)
+        if not self.definitions:
+            return call(self, name, function, takes, args, inputs, as_quantity)
+        with using(self.definitions):
+            return call(self, name, function, takes, args, inputs, as_quantity)
 
     method.__qualname__ = f"Machine.{name}"
     method.__doc__ = f"{INTRODUCTION.format(name=name)}\n{UNITS}\n    {function.__doc__}"

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from .. import plot
+from ..mechanism.own import using
 from ..plot.mechanism import label_lengths
 from .arguments import in_si
 from .tornado import tornado
@@ -34,9 +35,10 @@ class Plots:
         inputs  theta= for other angles than a turn; of a list of another input each value has its curve
         """
         dataset = self._over_theta(names, inputs)
-        if isinstance(names, str):
-            return plot.curves(dataset, names, family=family, ax=ax)
-        return plot.panels(dataset, list(names), family=family, ax=ax)
+        with using(self._machine.definitions):
+            if isinstance(names, str):
+                return plot.curves(dataset, names, family=family, ax=ax)
+            return plot.panels(dataset, list(names), family=family, ax=ax)
 
     def polar(
         self, name: str | tuple[str, str], *, family: str | None = None, ax: Any = None, **inputs: Any

@@ -6,9 +6,11 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from ..definitions.tables import tables_of
 from ..loads.resolve import split
 from ..mechanism.inputs import INPUTS
-from ..mechanism.unit_system import SI, UnitSystem
+from ..mechanism.own import Definition
+from ..mechanism.unit_system import UnitSystem
 from ..mechanism.units import exact
 from ..scenes.needs import SECTIONS
 from ..scenes.scene import scene
@@ -24,8 +26,10 @@ def is_scene(source: Mapping[str, Any]) -> bool:
     return any(isinstance(source.get(section), Mapping) for section in SECTIONS)
 
 
-def inputs_of_scene(source: str | PathLike[str] | Mapping[str, Any]) -> tuple[dict[str, Any], UnitSystem]:
-    """The inputs of a scene in SI units, without crank angles, and its units."""
+def inputs_of_scene(
+    source: str | PathLike[str] | Mapping[str, Any],
+) -> tuple[dict[str, Any], UnitSystem, tuple[Definition, ...]]:
+    """The inputs of a scene in SI units, without crank angles, its units and its own quantities."""
     found = scene(source)
     inputs: dict[str, Any] = {
         name: list(value) if isinstance(value, tuple) else value
@@ -34,7 +38,7 @@ def inputs_of_scene(source: str | PathLike[str] | Mapping[str, Any]) -> tuple[di
     }
     if found.content.branch == -1:
         inputs["branch"] = -1
-    return inputs, getattr(found.content, "units", SI)
+    return inputs, found.content.units, found.content.definitions
 
 
 def scene_of(machine: Mapping[str, Any], outputs: Any, more: Mapping[str, Any]) -> Any:
@@ -83,7 +87,8 @@ def _data(machine: Any, outputs: Any, more: Mapping[str, Any], loads: Mapping[st
             values = {"theta": theta, **values}
         if values:
             data[section] = values
-    return {**data, **other}
+    own = {**tables_of(machine.definitions), **other.pop("quantities", {})}
+    return {**data, **({"quantities": own} if own else {}), **other}
 
 
 def _written(machine: Any, name: str) -> Any:

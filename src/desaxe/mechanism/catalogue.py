@@ -12,7 +12,7 @@ from ..support.forks import IMPORTS
 from ..support.shown import shown
 from ..support.text_table import table
 from .names import LENGTHS, PARAMETERS, WHOLE, joined, parts, sensitivity
-from .own import Row, definitions, derived_names, leaves, rows
+from .own import Register, Row, derived_names, leaves, register
 
 
 class Quantity(NamedTuple):
@@ -56,10 +56,10 @@ class Catalogue(Mapping[str, Quantity]):
         return "\n".join(table([("name", "unit", "meaning", "source"), *(row[:4] for row in self.values())]))
 
 
-def _names() -> Mapping[str, Row]:
+def _names(known: Register | None = None) -> Mapping[str, Row]:
     """The rows of all names; those of a user's own quantities follow."""
-    own = rows()
-    return ChainMap(own, derived_names()) if own else derived_names()
+    own = (known or register()).rows
+    return ChainMap(dict(own), derived_names()) if own else derived_names()
 
 
 def quantities() -> Catalogue:
@@ -67,33 +67,37 @@ def quantities() -> Catalogue:
     return Catalogue()
 
 
-def has(name: str, state: bool = False) -> bool:
+def has(name: str, state: bool = False, known: Register | None = None) -> bool:
     """True if a name exists, under the law or, with `state`, under a given state."""
-    return (law_name(name) if state else name) in _names() and not (state and "omega0" in name)
+    law = law_name(name) if state else name
+    there = law in derived_names() or law in (known or register()).rows
+    return there and not (state and "omega0" in name)
 
 
-def quantity(name: str, state: bool = False) -> Quantity:
+def quantity(name: str, state: bool = False, known: Register | None = None) -> Quantity:
     """The record of a name; UnknownQuantityError with the nearest names if there is none."""
     if not isinstance(name, str):
         raise TypeError(f"the name of a quantity is a str, got {shown(name)}")
-    if not has(name, state):
-        raise UnknownQuantityError(_unknown(name, state))
+    known = known or register()
+    if not has(name, state, known):
+        raise UnknownQuantityError(_unknown(name, state, known))
     if state:
-        _refuse_law(parts(name)[0])
-    return Quantity(name, *_names()[law_name(name) if state else name])
+        _refuse_law(parts(name)[0], known)
+    law = law_name(name) if state else name
+    return Quantity(name, *(known.rows.get(law) or derived_names()[law]))
 
 
-def of_design(name: str) -> bool:
+def of_design(name: str, known: Register | None = None) -> bool:
     """True for what the lengths alone tell of a design: the margin, the stroke, what is made of these."""
-    base = parts(name)[0]
-    if base in definitions():
-        return all(leaf in LENGTHS or of_design(leaf) for leaf in leaves((base,), definitions()))
+    base, known = parts(name)[0], known or register()
+    if base in known.definitions:
+        return all(leaf in LENGTHS or of_design(leaf, known) for leaf in leaves((base,), known.definitions))
     return base == "margin" or base in WHOLE
 
 
-def _refuse_law(name: str) -> None:
+def _refuse_law(name: str, known: Register) -> None:
     """ValueError for a user's quantity that uses omega0: it has no meaning for a given state."""
-    of_law = [leaf for leaf in leaves((name,), definitions()) if "omega0" in leaf]
+    of_law = [leaf for leaf in leaves((name,), known.definitions) if "omega0" in leaf]
     if of_law:
         raise ValueError(f"{name!r} is made of {of_law[0]}, which has no meaning for a given state omega=")
 
@@ -104,34 +108,33 @@ def law_name(name: str) -> str:
     return joined(base, ("omega0" if p == "omega" else p for p in parameters))
 
 
-def _unknown(name: str, state: bool) -> str:
+def _unknown(name: str, state: bool, own: Register) -> str:
     with IMPORTS:
         from .spelling import meant
 
+    names = _names(own)
     if len(name) > 100:
         return f"unknown quantity {shown(name)} (desaxe.quantities() lists them all)"
-    if not state and law_name(name) in _names():
+    if not state and law_name(name) in names:
         return f"{name!r} needs a state: give omega= instead of omega0="
-    if state and name in _names():
+    if state and name in names:
         return (
             f"{name!r} has no meaning for a given state omega=: ask for {name.replace('omega0', 'omega')!r}"
         )
     base, parameters = parts(law_name(name))
-    if set(parameters) <= set(PARAMETERS) and base in _names():
+    if set(parameters) <= set(PARAMETERS) and base in names:
         ordered = sensitivity(base, *parameters)
-        if ordered in _names():
+        if ordered in names:
             return f"{name!r}: the parameters of a sensitivity stand in one order, {ordered!r}"
         if len(parameters) > 1:
             return f"{name!r}: this derivative is not derived (second order: Y, V_C, a_C, omega_BC, alpha_BC)"
     if "," in name or len(name.split()) > 1:
         return f"unknown quantity {name!r}: several names are a list, such as ['V_C', 'a_C']"
     near = (
-        meant(name, _names(), 3)
-        or [
-            known
-            for known, (_, meaning, _) in _names().items()
-            if f" {name.lower()}" in f" {meaning.lower()}"
-        ][:3]
+        meant(name, names, 3)
+        or [known for known, (_, meaning, _) in names.items() if f" {name.lower()}" in f" {meaning.lower()}"][
+            :3
+        ]
     )
     hint = f"; did you mean {', '.join(near)}?" if near else ""
     return f"unknown quantity {name!r}{hint} (desaxe.quantities() lists them all)"

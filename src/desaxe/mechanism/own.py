@@ -1,13 +1,19 @@
 """User-defined quantities: the register, and their rows of the catalogue.
 
 A definition carries its value as a text like generated/program.py, in the names of the catalogue (`own_lines`
-puts it into the Program). Whoever remembers answers by name forgets them when a name gets another meaning
-(`forget_on_change`), or has the definitions in the key of the memory.
+puts it into the Program). The register of a process is an immutable mapping that `define` replaces by another
+in one step: a reader has the one or the other, never half of both. It is no thread's own, so that the threads
+of a pool and of a Dask worker see it. A call for a scene or a machine with definitions of its own has a
+register of these and the process's (`using`), which its requests and tasks bring along to other threads.
+Whoever remembers answers by name has the register in the key.
 """
 
-from collections.abc import Iterable, Mapping, MutableMapping
-from functools import cache
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import cache, lru_cache
+from types import MappingProxyType
+from typing import NamedTuple
 
 from ..compiler.text import ProgramText
 from ..support.forks import IMPORTS, ForkSafeLock, imported
@@ -34,53 +40,67 @@ class Definition(NamedTuple):
         return ProgramText(self.text).inputs
 
 
+class Register:
+    """All definitions at one moment, with their rows of the catalogue. It never changes."""
+
+    __slots__ = ("definitions", "rows")
+
+    def __init__(self, definitions: Mapping[str, Definition]) -> None:
+        self.definitions: Mapping[str, Definition] = MappingProxyType(dict(definitions))
+        rows = (row for own in definitions.values() for row in rows_of(own, definitions).items())
+        self.rows: Mapping[str, Row] = MappingProxyType(dict(rows))
+
+
 _LOCK = ForkSafeLock()
-_DEFINITIONS: dict[str, Definition] = {}
-_MEMORIES: list[MutableMapping[Any, Any]] = []
-_ROWS: dict[str, Row] = {}
-_CHANGES = [0]
+_NOW: list[Register] = []  # the one of this process, which all of its threads see
+_CALL: ContextVar[Register | None] = ContextVar("definitions of a call", default=None)
 
 
-def forget_on_change(memory: MutableMapping[Any, Any]) -> None:
-    """Register a cache keyed by names, to be emptied whenever a definition changes."""
-    _MEMORIES.append(memory)
+def register() -> Register:
+    """The definitions of this call: a request takes them once, and memories have them in their keys."""
+    return _CALL.get() or _NOW[0]
 
 
-def changes() -> int:
-    """A counter of changed definitions: a cache compares it before and after a slow computation."""
-    return _CHANGES[0]
+@contextmanager
+def using(own: tuple[Definition, ...]) -> Iterator[None]:
+    """Calls within the block know these definitions as well, before others of the same names."""
+    before = _CALL.set(register_with(own) if own else _CALL.get())
+    try:
+        yield
+    finally:
+        _CALL.reset(before)
+
+
+def change(changed: Callable[[Mapping[str, Definition]], Mapping[str, Definition]]) -> None:
+    """Replace the definitions by others that are made of them, in one step for every reader."""
+    with _LOCK:
+        before = _NOW[0].definitions
+        after = changed(before)
+        if after != before:
+            _NOW[0] = Register(after)
+
+
+@lru_cache(maxsize=64)
+def _with(known: Register, own: tuple[Definition, ...]) -> Register:
+    return Register({**known.definitions, **{definition.name: definition for definition in own}})
+
+
+def register_with(own: tuple[Definition, ...]) -> Register:
+    """The definitions of this call and those that a request brings along, which come first."""
+    now = register()
+    differ = any(now.definitions.get(definition.name) != definition for definition in own)
+    return _with(now, own) if differ else now
 
 
 def definitions() -> dict[str, Definition]:
     """The definitions by name, in the order in which they were made."""
-    return dict(_DEFINITIONS)
+    return dict(register().definitions)
 
 
-def rows() -> dict[str, Row]:
-    """Unit, meaning and expression of every user-defined quantity and its sensitivities."""
-    return _ROWS
-
-
-def replace_all(new: Mapping[str, Definition]) -> None:
-    """Replace all definitions; caches that depend on them are emptied."""
-    with _LOCK:
-        found: dict[str, Row] = {}
-        for definition in new.values():
-            found |= rows_of(definition, new)
-        _DEFINITIONS.clear()
-        _DEFINITIONS.update(new)
-        _ROWS.clear()
-        _ROWS.update(found)
-        _CHANGES[0] += 1
-        for memory in _MEMORIES:
-            memory.clear()
-
-
-def used_by(names: Iterable[str]) -> tuple[Definition, ...]:
+def used_by(names: Iterable[str], known: Register | None = None) -> tuple[Definition, ...]:
     """The definitions that names need, each behind those that it uses."""
-    if not _DEFINITIONS:
-        return ()
-    return closure((parts(name)[0] for name in names), _DEFINITIONS)
+    definitions = (known or register()).definitions
+    return closure((parts(name)[0] for name in names), definitions) if definitions else ()
 
 
 def closure(names: Iterable[str], known: Mapping[str, Definition]) -> tuple[Definition, ...]:
@@ -152,3 +172,6 @@ def _has_second(leaf: str, first: str, second: str) -> bool:
     if not (depends(leaf, first) and depends(leaf, second)):
         return True
     return leaf != "margin" and sensitivity(leaf, first, second) in derived_names()
+
+
+_NOW.append(Register({}))

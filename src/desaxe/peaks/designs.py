@@ -11,7 +11,7 @@ from ..loads.load import Load
 from ..mechanism.catalogue import has, of_design, quantity
 from ..mechanism.constants import constants
 from ..mechanism.names import LENGTHS, STATUS, sensitivity
-from ..mechanism.own import changes, forget_on_change
+from ..mechanism.own import Register, register
 from ..mechanism.own_lines import has_kinks
 from ..runtime.accuracy import accuracy_of
 from ..runtime.interpreted import are_good
@@ -66,7 +66,6 @@ class Plan(NamedTuple):
 
 MOST_PLANS = 1024
 _PLANS: dict[Any, Plan] = {}
-forget_on_change(_PLANS)
 
 
 def plan_of(name: str, given: dict[str, Any], branch: int, accuracy: Any) -> Plan:
@@ -74,32 +73,30 @@ def plan_of(name: str, given: dict[str, Any], branch: int, accuracy: Any) -> Pla
     shown = frozenset(n for n, value in given.items() if value is not None)
     if type(accuracy) is not str or accuracy != "standard":
         accuracy = accuracy_of(accuracy)
-    key = name, shown, is_steady(given["alpha"]), branch, accuracy
+    now = register()
+    key = name, shown, is_steady(given["alpha"]), branch, accuracy, now
     plan = _PLANS.get(key)
     if plan is None:
         if len(_PLANS) > MOST_PLANS:
             _PLANS.clear()
-        before = changes()
-        plan = _new_plan(name, dict(given), branch, accuracy)
-        if changes() == before:  # no name has got another meaning meanwhile
-            _PLANS[key] = plan
+        plan = _PLANS[key] = _new_plan(name, dict(given), branch, accuracy, now)
     return plan
 
 
-def _new_plan(name: str, given: dict[str, Any], branch: int, accuracy: Any) -> Plan:
-    if name == STATUS or of_design(name):
+def _new_plan(name: str, given: dict[str, Any], branch: int, accuracy: Any, known: Register) -> Plan:
+    if name == STATUS or of_design(name, known):
         raise ValueError(f"{name} has no peak over theta")
     state = given["omega"] is not None
-    quantity(name, state)
+    quantity(name, state, known)
     slope = sensitivity(name, "theta")
-    names = (name, slope) if has(slope, state) else (name,)
-    wanted = request(names, given, branch, accuracy)
+    names = (name, slope) if has(slope, state, known) else (name,)
+    wanted = request(names, given, branch, accuracy, known)
     parameters = tuple(n for n in wanted.inputs if n != "theta")
     if "omega0" not in parameters and given["omega0"] is None and not state:
         given["omega0"] = 0.0
     if "mu" not in parameters:
         given["mu"] = None  # what friction does matters to forces only
-    told = request((*names, "status"), given, branch, accuracy).inputs
+    told = request((*names, "status"), given, branch, accuracy, known).inputs
     needs = (*parameters, *(n for n in told if n not in (*parameters, "theta")))
     return Plan(wanted, parameters, needs)
 

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiler.passes.guard import BAD_INPUT
-from ..definitions.tables import redefine
 from ..evaluation.arrays import as_array, broadcast_shape
 from ..evaluation.dask_blocks import as_dask, is_lazy, numbered, outputs_of_blocks
 from ..loads.load import Load
+from ..mechanism.own import using
 from ..runtime.compiled_only import compiled_only
 from ..runtime.interpreted import are_good
 from ..runtime.request import as_number
@@ -69,9 +69,7 @@ class PeakBlock(NamedTuple):
         """The outputs of two or more designs without invalid inputs: a single one takes another code path."""
         columns = {name: np.resize(column, max(size, 2)) for name, column in flat.items()}
         columns |= {name: np.full(max(size, 2), value) for name, value in self.scalars}
-        if self.loads:  # evaluated by name: a worker that has just begun knows no own quantities
-            redefine(self.search.form.own)
-        with compiled_only():
+        with using(self.search.form.own), compiled_only():
             found = peaks_of_designs(
                 self.plan, self.kind, self.search, columns, self.branch, self.ends, self.threads,
                 dict(self.loads),

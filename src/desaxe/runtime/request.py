@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, ParamSpec, TypeVar
 from ..mechanism.catalogue import law_name, of_design, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import CENTRES, FORCE_STATUS, LENGTHS, LOADS, STATUS, STATUSES, TURN_STATUS, parts
-from ..mechanism.own import Definition, used_by
+from ..mechanism.own import Definition, Register, register, used_by
 from ..mechanism.own_lines import not_extended
 from ..mechanism.program import Variant, program_of
 from ..mechanism.read import is_numpy_number, number_of
@@ -55,29 +55,40 @@ def check_common(given: Mapping[str, Any], branch: Any, threads: int | None = No
         raise ValueError(f"threads = {shown(threads)}: a whole number, at least 1")
 
 
-def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accuracy: Any) -> Request:
-    """Check a request. Absent inputs whose default has no effect are fixed and folded away."""
+def request(
+    names: Iterable[str],
+    given: Mapping[str, Any],
+    branch: Any,
+    accuracy: Any,
+    known: Register | None = None,
+) -> Request:
+    """Check a request. Absent inputs whose default has no effect are fixed and folded away.
+
+    known   the definitions that names have; those of this process at this moment without
+    """
     check_common(given, branch)
+    known = known or register()
     state = given.get("omega") is not None
     kept = accuracy_of(accuracy)
     for name in names:
-        quantity(name, state)
+        quantity(name, state, known)
     shown = tuple(names)
     own = tuple(law_name(name) if state else name for name in shown)
     others = [name for name in own if name != STATUS]
-    if others != list(own) and given.get("theta") is None and all(map(of_design, others)):
+    if others != list(own) and given.get("theta") is None and all(of_design(n, known) for n in others):
         own = tuple(TURN_STATUS if name == STATUS else name for name in own)
-    inputs = program_of(own).inputs
+    defined = used_by(own, known)
+    law = Variant(own=defined)
+    inputs = program_of(own, law).inputs
     if STATUS in own and ("mu" in inputs or given.get("mu") is not None):
         own = tuple(FORCE_STATUS if name == STATUS else name for name in own)
-        inputs = program_of(own).inputs
+        inputs = program_of(own, law).inputs
     absent = [name for name in inputs if name in LOADS and given.get(name) is None]
     zeros = [(name, 0.0) for name in absent if name not in CENTRES]
     if "alpha" in inputs and is_steady(given.get("alpha")):
         zeros.append(("alpha", 0.0))
-    if "omega0" in inputs and not state and given.get("omega0") is None and needs_no_speed(own):
+    if "omega0" in inputs and not state and given.get("omega0") is None and needs_no_speed(own, known):
         zeros.append(("omega0", 0.0))
-    defined = used_by(own)
     default_centres = tuple(
         name for name in CENTRES if given.get(name) is None and _moves(name, own, defined)
     )
@@ -87,10 +98,10 @@ def request(names: Iterable[str], given: Mapping[str, Any], branch: Any, accurac
     return Request(shown, own, variant, (("branch", float(branch)), *zeros), kept)
 
 
-def needs_no_speed(names: Iterable[str]) -> bool:
+def needs_no_speed(names: Iterable[str], known: Register | None = None) -> bool:
     """True if quantities of the whole design alone depend on the speed: on its sign, forwards by default."""
-    moving = tuple(name for name in names if name not in STATUSES and not of_design(name))
-    return "omega0" not in program_of(moving).inputs
+    moving = tuple(name for name in names if name not in STATUSES and not of_design(name, known))
+    return "omega0" not in program_of(moving, Variant(own=used_by(moving, known))).inputs
 
 
 def check_extended(own: tuple[Definition, ...]) -> None:
@@ -189,10 +200,11 @@ def several(names: Any) -> tuple[str, ...]:
         ) from None
 
 
-def standstill(names: Iterable[str], given: Mapping[str, Any]) -> float | None:
+def standstill(names: Iterable[str], given: Mapping[str, Any], known: Register | None = None) -> float | None:
     """The default speed: 0 if only `status` would use it, else None."""
-    others = tuple(name for name in names if name != STATUS and not of_design(name))
-    return None if others and "omega0" in request(others, given, 1, "standard").inputs else 0.0
+    known = known or register()
+    others = tuple(name for name in names if name != STATUS and not of_design(name, known))
+    return None if others and "omega0" in request(others, given, 1, "standard", known).inputs else 0.0
 
 
 def as_number(name: str, value: Any, inputs: Sequence[str], names: Sequence[str]) -> float | None:

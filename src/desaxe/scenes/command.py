@@ -1,6 +1,6 @@
 """`desaxe run`: the report as soon as everything is computed, then the files."""
 
-from ..definitions.tables import in_force
+from ..mechanism.own import using
 from ..support.progress import progress_bar
 from .report import files_report, report
 from .run import compute, steps_of, write_files
@@ -12,7 +12,7 @@ def run_scene(source: str, overwrite: bool) -> int:
     scene = scene_of(source)
     content = scene.content
     steps = steps_of(content, None)
-    with in_force(content.definitions):
+    with using(content.definitions):
         with progress_bar() as steps.watch:
             found = compute(content, steps, overwrite)
         text = report(content, found._replace(failures=()), scene.shown_in)

@@ -12,7 +12,7 @@ from ..evaluation.reductions import NO_STATUS, Reductions, names_reduced, reduct
 from ..loads.load import Load
 from ..loads.resolve import settled
 from ..mechanism.inputs import INPUTS
-from ..mechanism.own import Definition
+from ..mechanism.own import Definition, using
 from ..mechanism.slips import UnitWarning
 from ..mechanism.unit_system import UnitSystem
 from ..runtime.accuracy import accuracy_of
@@ -62,6 +62,17 @@ def read(data: Mapping[str, Any], folder: Path | None = None) -> Content:
     data = with_units(data, units)
     file = schema.decoded(without_objects(data))
     own = _defined(data.get("quantities", {}))
+    with using(own):
+        return _content(data, file, folder, units, own)
+
+
+def _content(
+    data: Mapping[str, Any],
+    file: schema.SceneFile,
+    folder: Path | None,
+    units: UnitSystem,
+    own: tuple[Definition, ...],
+) -> Content:
     inputs = _inputs(data, file, folder, units)
     branch = file.mechanism.branch
     if "omega" in inputs and "omega0" in inputs:

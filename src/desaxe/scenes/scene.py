@@ -6,8 +6,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..definitions.tables import in_force, redefine
-from ..mechanism.own import definitions
+from ..mechanism.own import change, using
 from ..mechanism.unit_system import SI, UnitSystem
 from ..support.progress import Progress
 from ..support.shown import printable
@@ -105,7 +104,7 @@ class Scene:
         cannot be written; NotWrittenError, which has the result, where writing failed after all.
         """
         steps = steps_of(self.content, progress)
-        with in_force(self.content.definitions):
+        with using(self.content.definitions):
             found = compute(self.content, steps, overwrite)
             found = write_files(self.content, found, steps, self.shown_in, overwrite)
         result = SceneResult(
@@ -117,8 +116,8 @@ class Scene:
 
 
 def _arrived(content: Content, name: str, shown_in: UnitSystem = SI) -> Scene:
-    known = definitions()
-    redefine(own for own in content.definitions if own.name not in known)
+    own = {definition.name: definition for definition in content.definitions}
+    change(lambda known: {**known, **{name: own[name] for name in own.keys() - known.keys()}})
     return Scene(content, name, shown_in)
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
+from ..mechanism.own import using
 from ..sweeps.meter import Watch
 from ..sweeps.sweep import run_sweep
 from .scene import Scene
@@ -84,7 +85,8 @@ def sweep(
         if inputs or reduce is not None or peaks:
             raise TypeError("sweep: a scene has its own inputs, [reduce] and [[peak]]; give none beside it")
         there = names if isinstance(names, Scene) else scene_of(names)
-        return sweep_content(there.content, chunks=chunks, threads=threads, **options)
+        with using(there.content.definitions):
+            return sweep_content(there.content, chunks=chunks, threads=threads, **options)
     return run_sweep(
         names, inputs, chunks=chunks, branch=branch, accuracy=accuracy, threads=threads, reduce=reduce,
         peaks=peaks, **options,

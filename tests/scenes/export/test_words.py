@@ -66,7 +66,7 @@ def nothing_defined():
     """Scenes leave their quantities behind."""
     before = own.definitions()
     yield
-    own.replace_all(before)
+    own.change(lambda _: before)
 
 
 def names(words):

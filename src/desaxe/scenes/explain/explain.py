@@ -16,6 +16,7 @@ from ...mechanism.catalogue import quantity
 from ...mechanism.constants import double_constants
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import STATUSES
+from ...mechanism.own import using
 from ...mechanism.program import digest
 from ...runtime.kernels import KernelKey, is_ready, kernel_of, source_of
 from ...runtime.modules import path_of
@@ -83,6 +84,11 @@ def explain(scene: Scene | str | PathLike[str] | Mapping[str, Any]) -> Plan:
     See docs/choose.md: which call for which question.
     """
     content = (scene if isinstance(scene, Scene) else scene_of(scene)).content
+    with using(content.definitions):
+        return _plan_of(content)
+
+
+def _plan_of(content: Content) -> Plan:
     data: dict[str, Any] = {
         "title": content.title,
         "outputs": [_output(name, content) for name in content.outputs],

@@ -14,6 +14,7 @@ from ...loads.resolve import plan_of, split
 from ...mechanism.catalogue import Quantity, law_name, quantities, quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import CENTRES, LOADS, PARAMETERS, joined, parts
+from ...mechanism.own import Definition, using
 from ...mechanism.program import program_of
 from ...mechanism.unit_system import SI, UnitSystem
 from ...runtime.request import Request, request
@@ -62,12 +63,14 @@ class Content(NamedTuple):
     loads: Mapping[str, TableOverTheta] = MappingProxyType({})
     units: UnitSystem = SI
     fields: UnitSystem = SI
+    definitions: tuple[Definition, ...] = ()  # of the scene
 
     @property
     def quantities(self) -> list[Quantity]:
         """The records of all quantities of the page."""
         state = "omega" in self.designs[0]
-        return [quantity(name, state) for function in self.functions for name in function.names]
+        with using(self.definitions):
+            return [quantity(name, state) for function in self.functions for name in function.names]
 
 
 def content(

@@ -9,6 +9,7 @@ from typing import Any
 from ...evaluation.loaded import loads_of
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LOADS
+from ...mechanism.own import using
 from ...mechanism.unit_system import UnitSystem
 from ...runtime.request import as_number, check_common, check_inputs
 from ...runtime.written import require_place
@@ -102,10 +103,11 @@ def _of_scene(source: Any, names: Iterable[str] | None) -> Content:
     title = inside.title or TITLE
     shown = [name for name in asked if name not in ("status", "margin")]
     inputs: dict[str, Any] = dict(inside.inputs)
-    if is_loaded(inputs):
-        shown = forces_first(shown, "omega" in inputs)
-    found = content(title, inside.branch, inputs, shown or START, names)
-    return found._replace(units=inside.units, fields=known.shown_in)
+    with using(inside.definitions):
+        if is_loaded(inputs):
+            shown = forces_first(shown, "omega" in inputs)
+        found = content(title, inside.branch, inputs, shown or START, names)
+    return found._replace(units=inside.units, fields=known.shown_in, definitions=inside.definitions)
 
 
 def _value(name: str, given: Any) -> Value:

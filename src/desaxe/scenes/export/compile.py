@@ -10,6 +10,7 @@ from typing import Any
 from ...compiler.languages import language_of, languages
 from ...compiler.languages.shared import refuse_taken
 from ...compiler.languages.words import words_of
+from ...mechanism.own import using
 from ...runtime.written import replacing_ours, require_place, sealed
 from ...support.files import as_path
 from ...support.shown import printable
@@ -79,6 +80,11 @@ def compile(
 
 def texts_of(scene: Scene, place: Path, to: str = "numba", libm: bool = True) -> dict[Path, str]:
     """The files of a scene in a language, with their texts; nothing is written."""
+    with using(scene.content.definitions):
+        return _texts_of(scene, place, to, libm)
+
+
+def _texts_of(scene: Scene, place: Path, to: str, libm: bool) -> dict[Path, str]:
     language = language_of(to)
     if not libm and not language.own_functions:
         own = _listed(one.name for one in languages() if one.own_functions)
