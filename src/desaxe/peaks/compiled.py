@@ -1,10 +1,9 @@
 """The module of a search: its loops from the Programs, and the text of `search` behind them.
 
 Its machine code is kept on disk, like that of every kernel. The same text runs in plain Python,
-with its functions in NumPy, for the first designs, so that nobody waits for a compiler.
+and by NumPy, many designs at once, so that nobody waits for a compiler.
 """
 
-from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
@@ -23,17 +22,20 @@ from ..runtime.tiers import INTERPRETED, NUMPY, forced_tier
 from ..support.forks import ForkSafeLock
 from ..support.recent import Recent
 from . import search as loops
-from .by_arrays import functions_of
+from .by_arrays import functions_of, whole_blocks
 from .nodes import Array
 from .programs import Programs, Search, programs_of
 
-Kernel = Callable[..., object]
+Function = Callable[..., object]
 
 SEARCH = Path(loops.__file__)
+FUNCTIONS = ("sweep", "points", "finish")  # that a search calls, made of its Programs
+BLOCK = 1_024  # designs at once in NumPy: the cost of each operation is shared by so many
 MOST_LOADED = 64  # searches in memory
 LEAST_PART = 1_024  # designs of a thread
 LONGEST_PART = 8_192  # designs: less than half a second
-BREAK_EVEN = 16_384  # designs by NumPy, a second or so of them: beyond, compiling pays
+BREAK_EVEN = 262_144  # designs of a call that take longer by NumPy than compiling does
+FEW = 8  # designs that are searched one after the other
 SIGNATURE = """ints, row, rows = types.int64[::1], types.float64[::1], types.float64[:, ::1]
 signature = types.void(rows, ints, ints, row, ints, types.int64, row, rows)
 function = search.py_func
@@ -66,48 +68,57 @@ class Groups(NamedTuple):
     node_starts: NDArray[np.intp]
 
 
+class Kernel(NamedTuple):
+    """The function of a search; `coarse` if each group of designs costs more than their nodes."""
+
+    function: Function
+    coarse: bool = False
+
+
 def run(
     search: Search,
     columns: Mapping[str, Array],
-    groups: Groups,
+    count: int,
+    grouped: Callable[[bool], Groups],
     kind: int,
     theta: Array,
     out: Array,
     threads: int | None,
 ) -> None:
-    """Search groups of designs on some threads; `theta` and the rows of `out` are filled at these designs."""
-    order, starts, nodes, node_starts = groups
+    """Search `count` designs on some threads; `theta` and the rows of `out` are filled at these designs.
+
+    grouped   their groups; few ones, if it is given True
+    """
     inputs = programs_of(search, False).inputs
     table = np.empty((len(inputs), theta.size))
     for row, name in zip(table, inputs, strict=True):
         row[:] = columns[name]
-    kernel = kernel_for(search, order.size)
+    kernel = kernel_for(search, count)
+    order, starts, nodes, node_starts = grouped(kernel.coarse)
 
     def part(first: int, last: int) -> None:
-        kernel(table, order, np.clip(starts, first, last), nodes, node_starts, kind, theta, out)
+        kernel.function(table, order, np.clip(starts, first, last), nodes, node_starts, kind, theta, out)
 
     run_parts(part, order.size, threads, LEAST_PART, LONGEST_PART)
 
 
 _LOADED: Recent[Search, Kernel] = Recent(MOST_LOADED)
-_ASKED: Counter[Search] = Counter()
 _LOCK = ForkSafeLock()
 
 
 def kernel_for(search: Search, designs: int) -> Kernel:
-    """The search, compiled if that pays for this number of further designs."""
+    """The search, compiled if this number of designs would take longer than compiling."""
     found = _LOADED.get(search)
     if found is not None:
         return found
-    _ASKED[search] += designs
     forced = forced_tier()
-    early = forced is None and _ASKED[search] < BREAK_EVEN and not _on_disk(search)
+    early = forced is None and designs < BREAK_EVEN and not _on_disk(search)
     if forced == INTERPRETED:
         return _plain(search)
     if early or forced == NUMPY:
-        return _by_arrays(search)
+        return _by_arrays(search) if designs > FEW else _by_loops(search)
     with _LOCK:
-        found = _LOADED.get(search) or native("search", source_of(search))
+        found = _LOADED.get(search) or Kernel(native("search", source_of(search)))
         _LOADED[search] = found
     return found
 
@@ -121,27 +132,35 @@ def _on_disk(search: Search) -> bool:
 @lru_cache(maxsize=1024)
 def _plain(search: Search) -> Kernel:
     """The search as plain Python, design by design."""
-    return _search_with(_scope(search, texts_of(programs_of(search, False), "python")))
+    return Kernel(_search_with(_scope(search, texts_of(programs_of(search, False), "python"))))
 
 
 @lru_cache(maxsize=1024)
 def _by_arrays(search: Search) -> Kernel:
-    """The search with its functions in NumPy: no request waits for a compiler when it is first made."""
-    return search_with(*functions_of(programs_of(search, False)))
+    """The search in NumPy, many designs at once: no call waits for a compiler."""
+    functions = dict(zip(FUNCTIONS, functions_of(programs_of(search, False)), strict=True))
+    scope = whole_blocks(SEARCH, {"WORK": 1, "BLOCK": BLOCK, **functions})
+    return Kernel(_quiet(scope["search"]), coarse=True)
 
 
 @lru_cache(maxsize=1024)
-def plain_finish(search: Search) -> Kernel:
+def _by_loops(search: Search) -> Kernel:
+    """The search of a few designs: what it calls by NumPy, over many nodes; its own loops as they stand."""
+    return Kernel(search_with(*functions_of(programs_of(search, False))))
+
+
+@lru_cache(maxsize=1024)
+def plain_finish(search: Search) -> Function:
     """`finish(count, theta, block, out)` in plain Python: value, slope and gradient at a fixed load."""
     return _quiet(_scope(search, texts_of(programs_of(search, False), "python"))["finish"])
 
 
-def search_with(sweep: Kernel, points: Kernel, finish: Kernel) -> Kernel:
+def search_with(sweep: Function, points: Function, finish: Function) -> Function:
     """The search in plain Python with functions that are not compiled."""
     return _search_with({"WORK": 1, "sweep": sweep, "points": points, "finish": finish})
 
 
-def _search_with(scope: Mapping[str, Any]) -> Kernel:
+def _search_with(scope: Mapping[str, Any]) -> Function:
     return _quiet(rebound(loops, {**scope, "uint64": int})["search"])
 
 
@@ -152,7 +171,7 @@ def _scope(search: Search, functions: Sequence[str]) -> dict[str, Any]:
     return scope
 
 
-def _quiet(kernel: Kernel) -> Kernel:
+def _quiet(kernel: Function) -> Function:
     def quiet(*arguments: Any) -> None:
         with np.errstate(all="ignore"):
             kernel(*arguments)

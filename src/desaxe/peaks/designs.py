@@ -1,6 +1,7 @@
 """Peaks of flat designs: the plan of a request, and the search over all designs."""
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,7 +27,7 @@ from .course import course_of
 from .differences import with_slopes
 from .jumps import at_jumps
 from .loaded import Values, with_nodes
-from .nodes import Array, classes, shared_nodes
+from .nodes import Array, classes, coarser, shared_nodes
 from .programs import Search, needs_own
 from .special import Designs
 
@@ -168,7 +169,7 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
     if rows.size and loaded is not None:
         loaded.run(with_nodes(_classed(designs, rows), loaded.course.nodes), number, theta, out)
     elif rows.size:
-        run(usual, columns, _classed(designs, rows), number, theta, out, threads)
+        run(usual, columns, rows.size, partial(_classed, designs, rows), number, theta, out, threads)
     if bad.any():
         out[:, bad], status[bad] = np.nan, BAD_INPUT
     rows = np.flatnonzero((own_nodes | np.isnan(out[0]) if rows.size else own_nodes) & ~bad)
@@ -183,7 +184,7 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
         if loaded is not None:
             loaded.run(groups, number, theta, out)
         else:
-            run(search, columns, groups, number, theta, out, threads)
+            run(search, columns, part.size, partial(_unchanged, groups), number, theta, out, threads)
         found = special.Found(out[0, part], theta[part], out[1, part], status[part])
         marks = () if loaded is None else (loaded.course.kinks, loaded.course.jumps)
         at = (mark.angles[part] for mark in marks)
@@ -197,6 +198,12 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
     value = np.abs(out[0]) if kind == "absmax" else out[0]
     gradient = dict(zip(search.parameters, out[2:], strict=True))
     return {"value": value, "theta": theta, "side": side, "gradient": gradient, "status": status}
+
+
+def _unchanged(groups: Groups, coarse: bool) -> Groups:
+    """The groups of designs with nodes of their own."""
+    del coarse
+    return groups
 
 
 def _in_form(search: Search, checked: Checked) -> Search:
@@ -236,10 +243,12 @@ def _checked(designs: Designs) -> Checked:
     return Checked(designs, bad, special.are_special(designs))
 
 
-def _classed(designs: Designs, rows: NDArray[np.intp]) -> Groups:
-    """The designs by their classes, which share nodes."""
+def _classed(designs: Designs, rows: NDArray[np.intp], coarse: bool = False) -> Groups:
+    """The designs by their classes, which share nodes; `coarse`: by few of them."""
     lengths = [_at(designs.columns[n], rows) for n in LENGTHS if n in designs.columns]
     numbers = np.zeros(rows.size, np.int16) if len(lengths) < 3 else classes(*lengths)
+    if coarse:
+        numbers = coarser(numbers)
     if rows.size == 1 or (numbers == numbers[0]).all():
         nodes = shared_nodes(int(numbers[0]), *designs.theta)
         return Groups(rows, np.array([0, rows.size]), nodes, np.array([0, nodes.size]))

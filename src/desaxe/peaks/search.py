@@ -254,6 +254,17 @@ def choose(
             theta[i], taken[i] = roots[THETA, c], 1
 
 
+def told(kind: int, count: Any, chosen: Any, here: Any, found: Any, theta: Any, out: Any) -> None:
+    """The angles and what was found there, for the designs chosen; of |value| for kind 0."""
+    for i in range(count):
+        theta[chosen[i]] = here[i]
+    for r in range(out.shape[0]):
+        row, target = found[r], out[r]
+        for i in range(count):
+            turned = kind == 0 and r > 1 and found[0, i] < 0.0
+            target[chosen[i]] = -row[i] if turned else row[i]
+
+
 def search(
     columns: Any, order: Any, starts: Any, nodes: Any, node_starts: Any, kind: int, theta: Any, out: Any
 ) -> None:
@@ -299,10 +310,4 @@ def search(
                 step += 1
             choose(kind, ready, roots, whose, values[0], best, here, taken)
             finish(count, here, block, found)
-            for i in range(count):
-                theta[order[start + i]] = here[i]
-            for r in range(results):
-                row, target = found[r], out[r]
-                for i in range(count):
-                    turned = kind == 0 and r > 1 and found[0, i] < 0.0
-                    target[order[start + i]] = -row[i] if turned else row[i]
+            told(kind, count, order[start:stop], here, found, theta, out)

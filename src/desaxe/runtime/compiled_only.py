@@ -1,4 +1,7 @@
-"""Chunked work runs compiled code from the first point on, so that results do not depend on the chunks."""
+"""Work in chunks runs compiled code from the first point on, so that results do not depend on the chunks.
+
+Work that asks for a function a few times, and then for others, runs in NumPy: compiling would not pay.
+"""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -20,3 +23,21 @@ def compiled_only() -> Iterator[None]:
 def is_required() -> bool:
     """True inside a `compiled_only` block."""
     return _REQUIRED.get()
+
+
+_UNCOMPILED: ContextVar[bool] = ContextVar("uncompiled", default=False)
+
+
+@contextmanager
+def uncompiled() -> Iterator[None]:
+    """Evaluate arrays by NumPy in a block, until there have been so many that compiling pays."""
+    token = _UNCOMPILED.set(True)
+    try:
+        yield
+    finally:
+        _UNCOMPILED.reset(token)
+
+
+def is_uncompiled() -> bool:
+    """True inside an `uncompiled` block."""
+    return _UNCOMPILED.get()

@@ -8,7 +8,7 @@ $DESAXE_TIER forces one.
 import os
 from collections import Counter
 
-from .compiled_only import is_required
+from .compiled_only import is_required, is_uncompiled
 from .kernels import KernelKey, is_on_disk, is_ready
 
 VARIABLE = "DESAXE_TIER"
@@ -17,6 +17,7 @@ INTERPRETED, NUMPY, COMPILED = TIERS = ("interpreted", "numpy", "compiled")
 BREAK_EVEN = 2_000
 # A new request of more points than BREAK_EVEN is answered by NumPy once, if it has no more than these.
 NUMPY_PAYS = 250_000
+LATE = 16_000_000  # points by NumPy, some seconds of them, where it is asked for first (`uncompiled`)
 _ASKED: Counter[KernelKey] = Counter()
 
 
@@ -46,6 +47,8 @@ def tier_ahead(key: KernelKey, size: int, numpy_pays: bool = False) -> str:
     if is_ready(key):
         return COMPILED
     points = _ASKED[key] + size
+    if is_uncompiled() and points < LATE:
+        return NUMPY
     if points < BREAK_EVEN:
         return INTERPRETED
     once = numpy_pays and points == size <= NUMPY_PAYS

@@ -1,7 +1,10 @@
-"""A root of a function of one variable, in plain Python."""
+"""Roots of a function of one variable: one in plain Python, many at once in NumPy."""
 
 from collections.abc import Callable
 from math import copysign, ulp
+from typing import Any
+
+from .forks import IMPORTS
 
 STEPS = 200
 
@@ -37,3 +40,37 @@ def _fraction(a: float, b: float, c: float, fa: float, fb: float, fc: float) -> 
     if not (phi * phi < xi and (1.0 - phi) * (1.0 - phi) < 1.0 - xi):
         return 0.5
     return fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+
+
+def roots(function: Callable[[Any], Any], a: Any, b: Any, fa: Any, fb: Any) -> Any:
+    """The sign change of a function between each a and b, to a few ulp, as `root` has it.
+
+    fa, fb   the function there; where their signs are the same, any number is returned
+    """
+    with IMPORTS:
+        import numpy as np
+
+    c, fc = a, fa
+    fraction: Any = 0.5
+    with np.errstate(all="ignore"):
+        for _ in range(STEPS):
+            x = a + fraction * (b - a)
+            fx = function(x)
+            same = np.signbit(fx) == np.signbit(fa)
+            c, b, fc, fb = (
+                np.where(same, a, b),
+                np.where(same, b, a),
+                np.where(same, fa, fb),
+                np.where(same, fb, fa),
+            )
+            a, fa = x, fx
+            best = np.where(np.abs(fa) < np.abs(fb), a, b)
+            least = 2.0 * np.spacing(np.abs(best)) / np.abs(b - a)
+            open_ = (least < 1.0) & (fa != 0.0) & (fb != 0.0)
+            if not open_.any():
+                break
+            xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
+            curved = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+            safe = (phi * phi < xi) & ((1.0 - phi) * (1.0 - phi) < 1.0 - xi)
+            fraction = np.where(open_, np.clip(np.where(safe, curved, 0.5), least, 1.0 - least), 0.0)
+    return best

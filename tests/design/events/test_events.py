@@ -9,6 +9,7 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 import desaxe as dx
+from desaxe.runtime import kernels
 
 DESIGNS = [
     (0.02, 0.04, 0.064), (-0.02, 0.04, 0.064), (0.0, 0.125, 0.35), (1e-9, 0.125, 0.35),
@@ -273,3 +274,23 @@ def test_arrays_agree_with_numbers_and_keep_bad_ones_apart():
 def test_bad_arguments(arguments, error, words):
     with pytest.raises(error, match=words):
         dx.events(**{"ec": 0.0, "AB": 0.1, "BC": 0.3, **arguments})
+
+
+def test_the_first_arrays_wait_for_no_compiler(cold, monkeypatch):
+    """Nor do further ones; the root is where the acceleration changes its sign."""
+
+    def refuse(kind, text):
+        raise AssertionError(f"a {kind} is compiled")
+
+    monkeypatch.setattr(kernels, "native", refuse)
+    ec = np.linspace(-0.0239, 0.0239, 701)
+    lengths = {"ec": ec, "AB": 0.04, "BC": 0.064}
+    for omega0 in (2.0, -3.0, 2.0):
+        found = dx.events(omega0=omega0, **lengths)
+    monkeypatch.setenv("DESAXE_TIER", "numpy")
+    for stroke in ("V_outward", "V_inward"):
+        theta = found[f"theta_{stroke}"] + np.array([[-1e-9], [1e-9]])
+        before, after = np.sign(dx.evaluate("a_C", theta=theta, omega0=1.0, **lengths))
+        assert (before == -after).all()
+    one = dx.events(ec=float(ec[17]), AB=0.04, BC=0.064, omega0=2.0)
+    assert found["V_outward"][17] == pytest.approx(one["V_outward"], rel=1e-14)

@@ -1,4 +1,4 @@
-"""`events` for arrays of designs: closed forms in NumPy, velocities by bisection."""
+"""`events` for arrays of designs: closed forms in NumPy; velocities where the acceleration vanishes."""
 
 from typing import Any
 
@@ -10,11 +10,12 @@ from ...evaluation.evaluate import evaluate
 from ...mechanism.closed.dead_centres import DEAD_CENTRES
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.names import LENGTHS
+from ...runtime.compiled_only import uncompiled
+from ...support.roots import roots
 from ..feasibility.arrays import only_good
 from .found import VELOCITIES, Found, stroke_ends
 
 Array = NDArray[np.float64]
-HALVINGS = 55  # of a turn: down to the last bits
 
 
 def events_of_arrays(
@@ -35,42 +36,50 @@ def events_of_arrays(
     result: dict[str, Any] = {**found.values, "slow_stroke": slow, **found.places}
     gradient = found.gradient
     turns = (status == 0) | (status == 2)
-    for name, direction in VELOCITIES.items() if with_velocities else ():
-        inputs_here = (ec, AB, BC, omega)
-        value, theta, slopes = _velocities(found.values, direction * branch, branch, turns, inputs_here)
-        result |= {name: value, f"theta_{name}": theta}
-        gradient[name] = slopes if with_speed else {p: slopes[p] for p in LENGTHS}
+    if with_velocities:
+        for name, found_there in _velocities(found.values, branch, turns, (ec, AB, BC, omega)).items():
+            value, theta, slopes = found_there
+            result |= {name: value, f"theta_{name}": theta}
+            gradient[name] = slopes if with_speed else {p: slopes[p] for p in LENGTHS}
     return {**result, "gradient": gradient, "status": status}
 
 
 def _velocities(
-    values: dict[str, Any], side: int, branch: int, turns: NDArray[np.bool_], inputs: tuple[Array, ...]
-) -> tuple[Array, Array, dict[str, Array]]:
-    """The largest |V_C| while the slider moves to this side of Y: values, crank angles, derivatives."""
-    *lengths, omega = (a[turns] for a in inputs)
+    values: dict[str, Any], branch: int, turns: NDArray[np.bool_], inputs: tuple[Array, ...]
+) -> dict[str, tuple[Array, Array, dict[str, Array]]]:
+    """The largest |V_C| while the slider moves outward and inward: values, crank angles, derivatives."""
+    *lengths, omega = (np.tile(a[turns], 2) for a in inputs)  # the designs outward, then inward
     here: dict[str, Any] = {**dict(zip(LENGTHS, lengths, strict=True)), "branch": branch}
-    value, theta = np.full(turns.shape, np.nan), np.full(turns.shape, np.nan)
-    slopes = {p: np.full(turns.shape, np.nan) for p in (*LENGTHS, "omega0")}
-    if not omega.size:
-        return value, theta, slopes
-    forth, back = (stroke_ends(values, way, branch) for way in (side, -side))
-    ahead = omega >= 0.0
-    a, b = (
-        np.where(ahead, np.broadcast_to(f, turns.shape)[turns], np.broadcast_to(g, turns.shape)[turns])
-        for f, g in zip(forth, back, strict=True)
-    )
-    first = evaluate("a_C", theta=a, omega0=1.0, **here)
-    last = evaluate("a_C", theta=b, omega0=1.0, **here)
-    fastest = evaluate("V_C", theta=np.stack([a, b]), omega0=1.0, **here)
-    end = np.where(np.abs(fastest[0]) >= np.abs(fastest[1]), a, b)  # no crank, or fastest at a change point
-    for _ in range(HALVINGS):
-        middle = 0.5 * (a + b)
-        same = np.sign(evaluate("a_C", theta=middle, omega0=1.0, **here)) == np.sign(first)
-        a, b = np.where(same, middle, a), np.where(same, b, middle)
-    angle = np.where(np.sign(first) * np.sign(last) < 0.0, a, end)
-    names = ["V_C", *(f"V_C_wrt_{p}" for p in slopes)]
-    found = evaluate(names, theta=angle, omega0=omega, **here)
-    value[turns], theta[turns] = side * found["V_C"], np.where(angle < -np.pi / 2, angle + 2 * np.pi, angle)
-    for p, slope in slopes.items():
-        slope[turns] = side * found[f"V_C_wrt_{p}"]
-    return value, theta, slopes
+    names = ["V_C", *(f"V_C_wrt_{p}" for p in (*LENGTHS, "omega0"))]
+    side = np.repeat([direction * branch for direction in VELOCITIES.values()], omega.size // 2)
+    ends = [np.stack(stroke_ends(values, way, branch))[:, turns] for way in (1, -1)]
+    growing = np.where((side > 0) == (omega >= 0.0), *(np.tile(end, 2) for end in ends))
+    with uncompiled():
+        theta = _fastest(growing[0], growing[1], here) if omega.size else omega
+        found = (
+            evaluate(names, theta=theta, omega0=omega, **here) if omega.size else dict.fromkeys(names, omega)
+        )
+    told = {name: side * found[name] for name in names} | {
+        "theta": np.where(theta < -np.pi / 2, theta + 2 * np.pi, theta)
+    }
+    rows = {}
+    for place, name in enumerate(VELOCITIES):
+        spread = {each: np.full(turns.shape, np.nan) for each in told}
+        for each, column in told.items():
+            spread[each][turns] = column.reshape(2, -1)[place]
+        slopes = {p: spread[f"V_C_wrt_{p}"] for p in (*LENGTHS, "omega0")}
+        rows[name] = spread["V_C"], spread["theta"], slopes
+    return rows
+
+
+def _fastest(a: Array, b: Array, here: dict[str, Any]) -> Array:
+    """The crank angles between a and b at which |V_C| is largest: where the acceleration vanishes."""
+
+    def at(theta: Array) -> Array:
+        found: Array = evaluate("a_C", theta=theta, omega0=1.0, **here)
+        return found
+
+    ends = evaluate(["V_C", "a_C"], theta=np.stack([a, b]), omega0=1.0, **here)
+    (one, other), (first, last) = np.abs(ends["V_C"]), ends["a_C"]
+    end = np.where(one >= other, a, b)  # no crank, or fastest at a change point
+    return np.where(np.sign(first) * np.sign(last) < 0.0, roots(at, a, b, first, last), end)
