@@ -67,6 +67,7 @@ PUBLIC = {
     "flywheel": "desaxe.design.turn.flywheel",
     "drive": "desaxe.design.drive.drive",
     "explore": "desaxe.scenes.explorer.explore",
+    "to_excel": "desaxe.machine.excel",
     "Machine": "desaxe.machine.machine",
     "UnitWarning": "desaxe.mechanism.slips",
     "fit": "desaxe.design.fit.fit",
@@ -122,6 +123,7 @@ __all__ = [
     "simulate",
     "sweep",
     "synthesize",
+    "to_excel",
     "tolerance",
     "undefine",
 ]

@@ -6,6 +6,7 @@ from pathlib import Path
 from random import Random
 
 import numpy as np
+import openpyxl
 import xarray as xr
 
 from desaxe.derive.write import write
@@ -94,6 +95,10 @@ def value_of(path: Path) -> float:
     elif path.suffix == ".npz":
         with np.load(path) as arrays:
             found = xr.Dataset({name: ("x", arrays[name]) for name in arrays.files})
+    elif path.suffix == ".xlsx":
+        head, *rows = openpyxl.load_workbook(path, read_only=True)["values"].values
+        table = dict(zip(head, np.array(rows, dtype=float).T, strict=True))
+        found = xr.Dataset({name.partition(" ")[0]: ("x", column) for name, column in table.items()})
     else:
         rows = np.genfromtxt(path, delimiter=",", names=True)
         found = xr.Dataset({name.partition("_")[0]: ("x", rows[name]) for name in rows.dtype.names})
@@ -102,7 +107,7 @@ def value_of(path: Path) -> float:
 
 
 def killed_while_writing_results(folder: Path, random: Random) -> Verdict:
-    place = folder / f"values{random.choice(['.zarr', '.zarr', '.nc', '.csv', '.npz'])}"
+    place = folder / f"values{random.choice(['.zarr', '.zarr', '.nc', '.csv', '.xlsx', '.npz'])}"
     results.write(place, dataset(1.0), {})
     number = child(for_ever(lambda value: results.write(place, dataset(value), {}), 2.0, 1.0))
     killed_after(number, random.uniform(0.0, 0.2))
@@ -131,7 +136,7 @@ def limited(place: Path, size: int) -> None:
 
 
 def no_room_for_results(folder: Path, random: Random) -> Verdict:
-    place = folder / f"values{random.choice(['.zarr', '.nc', '.csv', '.npz'])}"
+    place = folder / f"values{random.choice(['.zarr', '.nc', '.csv', '.xlsx', '.npz'])}"
     results.write(place, dataset(1.0), {})
     limit = 16 if place.suffix == ".zarr" else random.randrange(16, 4000)  # chunks are compressed
     code = ended(child(lambda: limited(place, limit)), 30.0)

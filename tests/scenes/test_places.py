@@ -54,7 +54,7 @@ def nothing_is_computed(monkeypatch):
     monkeypatch.setattr("desaxe.scenes.run.values_of_grid", fail)
 
 
-@pytest.mark.parametrize("data", ["a.nc", "a.zarr", "a.csv", "a.npz"])
+@pytest.mark.parametrize("data", ["a.nc", "a.zarr", "a.csv", "a.xlsx", "a.npz"])
 def test_its_own_file_is_replaced(data, capsys):
     assert main(["run", scene_file(data)]) == 0
     assert main(["run", scene_file(data)]) == 0

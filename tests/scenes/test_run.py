@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import openpyxl
 import pytest
 import xarray
 
@@ -431,7 +432,7 @@ def test_a_status_cannot_be_reduced():
 def test_data_in_every_format(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     scene = {**SMALL, "peak": [{"quantity": "a_C"}]}
-    for name in ("a.nc", "a.zarr", "a.csv", "a.npz"):
+    for name in ("a.nc", "a.zarr", "a.csv", "a.xlsx", "a.npz"):
         for _ in range(2):  # an earlier file is replaced
             result = dx.scene({**scene, "results": {"data": name}}).run()
         assert result.files[0] == Path(name)
@@ -453,6 +454,12 @@ def test_data_in_every_format(tmp_path, monkeypatch):
     assert (
         (tmp_path / "a_peak_absmax_a_C.csv").read_text(encoding="utf-8").startswith("ec [m],value [m/s^2],")
     )
+    book = openpyxl.load_workbook(tmp_path / "a.xlsx")
+    assert book.sheetnames == ["values", "peak_absmax_a_C", "about"]
+    head, *rows = book["values"].values
+    assert list(head) == lines[0].split(",")
+    np.testing.assert_allclose(np.array(rows)[:, 3], dataset.a_C.values.reshape(-1), rtol=1e-15)
+    assert next(book["peak_absmax_a_C"].values)[:2] == ("ec [m]", "value [m/s^2]")
     assert not list(tmp_path.glob(".desaxe-*"))
 
 

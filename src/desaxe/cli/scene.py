@@ -27,7 +27,8 @@ A scene is a TOML file. It is data only: nothing in it is executed. Its keys:
                   theta = [from, to], baseline = { ec = 0 }, sensitivities = ["ec", "m_rod"], title
   [[peak.claim]]  at = { ec = "150 mm" }, increase = "33 %", source
   [[picture]]     file, quantity, over = "theta", family = { ec = [0, "50 mm"] }, at, title
-  [results]       data = "out/values.nc" (NetCDF; the peaks are groups in it), .zarr, .csv or .npz;
+  [results]       data = "out/values.nc" (NetCDF; the peaks are groups in it), .zarr, .csv,
+                  .xlsx (Excel) or .npz;
                   or store = "press.zarr" with chunks = { theta = 1000 }, memory = "200 MB";
                   order = "smallest" or "largest": the best of `desaxe sweep --best`
 

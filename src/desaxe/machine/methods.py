@@ -12,6 +12,7 @@ from ..mechanism.own import using
 from ..mechanism.ranges import refuse_bare_pair
 from ..mechanism.slips import warn_of_slips
 from ..runtime.request import MachineSpeed
+from ..support.answer import Answer
 from ..support.forks import IMPORTS, imported
 from .arguments import in_si
 from .results import Shown, shown
@@ -160,6 +161,10 @@ def call(
 
         return FunctionInUnits(found, show)
     result = shown(name, found, {**machine.in_units(), **named}, show)
+    if type(result) is dict:
+        result = Answer(result)
+    if isinstance(result, Answer) and result.units is None:
+        result.units = system
     return _delivered(result, given.get("out"))
 
 

@@ -1,4 +1,4 @@
-"""Labelled results as files: NetCDF, Zarr, CSV for spreadsheets, npz for NumPy.
+"""Labelled results as files: NetCDF, Zarr, CSV and Excel for spreadsheets, npz for NumPy.
 
 A file, or a Zarr store, appears whole or not at all: it is written beside its place, then swapped in. The
 tables of a CSV are several files, each of them whole. What desaxe did not write is left as it is, unless it
@@ -9,7 +9,6 @@ import csv
 import os
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +18,8 @@ from ..runtime.written import remember, require_ours
 from ..support.files import check_target, kind_of, require_space, staging, swap_in
 from ..support.forks import IMPORTS, imported
 from ..support.shown import printable
+from .tables import table_of
+from .workbook import sheets_of, write_workbook
 
 _NETCDF_EXTRA = 65_536  # bytes for what HDF5 writes besides the numbers of a group
 
@@ -33,6 +34,7 @@ def requirements_of(data: str) -> dict[str, str]:
     return {
         ".nc": {"results.data": "h5netcdf", "the file of results.data": "h5py"},
         ".zarr": {"results.data": "zarr"},
+        ".xlsx": {"results.data": "xlsxwriter"},
     }.get(Path(data).suffix, {})
 
 
@@ -110,30 +112,12 @@ def _csv(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Datas
     parts = [*([] if values is None else [values]), *groups.values()]
     for place, part in zip(files_of(path, values is not None, groups), parts, strict=True):
         with open(place, "w", encoding="utf-8", newline="") as file:
-            csv.writer(file).writerows(_table(part))
+            csv.writer(file).writerows(table_of(part))
 
 
-def _table(dataset: "xr.Dataset") -> Iterator[list[Any]]:
-    columns = [dataset[name] for name in (*dataset.dims, *dataset.data_vars)]
-    yield [_heading(column) for column in columns]
-    order = tuple(dataset.dims)
-    wide = dict(dataset.sizes)
-    full = [
-        np.broadcast_to(
-            c.transpose(*(d for d in order if d in c.dims)).values.reshape(
-                [wide[d] if d in c.dims else 1 for d in order]
-            ),
-            [wide[d] for d in order],
-        )
-        for c in columns
-    ]
-    for index in product(*(range(wide[d]) for d in order)):
-        yield [array[index].item() for array in full]
-
-
-def _heading(column: "xr.DataArray") -> str:
-    unit = column.attrs.get("units", "")
-    return f"{column.name} [{unit}]" if unit not in ("", "1") else str(column.name)
+def _xlsx(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:
+    """A sheet for each part, and one on what they are about."""
+    write_workbook(path, sheets_of(values, groups))
 
 
 def _npz(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:
@@ -150,4 +134,10 @@ _STORE = (
     ".zattrs",
     ".zmetadata",
 )  # at the top of a Zarr store
-_WRITERS: "dict[str, Writer]" = {".nc": _netcdf, ".zarr": _zarr, ".csv": _csv, ".npz": _npz}
+_WRITERS: "dict[str, Writer]" = {
+    ".nc": _netcdf,
+    ".zarr": _zarr,
+    ".csv": _csv,
+    ".xlsx": _xlsx,
+    ".npz": _npz,
+}

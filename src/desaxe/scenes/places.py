@@ -16,8 +16,9 @@ from .files import check_place, files_of, requirements_of
 from .peaks import group_names
 from .schema import SceneError
 from .stored import require_store
+from .workbook import require_room
 
-LEAST = {".nc": 8, ".npz": 8, ".csv": 4}  # bytes that a number takes in a file, at least
+LEAST = {".nc": 8, ".npz": 8, ".csv": 4, ".xlsx": 1}  # bytes that a number takes in a file, at least
 
 
 def require_modules(content: Content) -> None:
@@ -71,6 +72,8 @@ def _require_room(content: Content, path: Path) -> None:
     if not content.outputs or content.reduction is not None:
         return
     points = prod(len(value) for value in content.inputs.values() if isinstance(value, tuple))
+    if path.suffix == ".xlsx":
+        require_room("results.data", points)
     size = LEAST.get(path.suffix, 0) * points * len(content.outputs)
     free = shutil.disk_usage(next(one for one in path.absolute().parents if one.exists())).free
     if size > free:

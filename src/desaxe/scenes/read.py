@@ -28,7 +28,7 @@ from .units import slips_of, units_of, with_units
 from .values import Value, values_of
 
 PICTURES = (".png", ".svg", ".pdf")
-DATA = (".nc", ".zarr", ".csv", ".npz")
+DATA = (".nc", ".zarr", ".csv", ".xlsx", ".npz")
 
 
 def plain_data(source: str | PathLike[str] | Mapping[str, Any]) -> dict[str, Any]:

@@ -208,7 +208,7 @@ class PictureTable(Section, frozen=True):
 
 
 class Results(Section, frozen=True):
-    """`[results]`: where the labelled values go: .nc (NetCDF), .zarr, .csv or .npz (NumPy).
+    """`[results]`: where the labelled values go: .nc (NetCDF), .zarr, .csv, .xlsx or .npz (NumPy).
 
     With `store`, a folder such as "press.zarr", they are swept into it chunk by chunk and need not fit
     into memory. `order` is which end is the best where the best designs are swept for.

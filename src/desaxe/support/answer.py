@@ -15,10 +15,14 @@ WIDE = 96  # letters of a line
 class Answer(dict[str, Any]):
     """A dict whose repr has a line for each name and numbers in six digits.
 
-    `inputs`, of `evaluate`: what it was asked for with, by name.
+    inputs  of `evaluate`: what it was asked for with, by name
+    about   of `peak` and others of one quantity: its name
+    units   of an answer of a machine: the unit system of its numbers; SI units without
     """
 
     inputs: Mapping[str, Any] = MappingProxyType({})
+    about: Any = None
+    units: Any = None
 
     def __repr__(self) -> str:
         return "\n".join(_lines(self)) or "{}"
@@ -26,11 +30,17 @@ class Answer(dict[str, Any]):
 
 def answering(function: Callable[P, T]) -> Callable[P, T]:
     """Decorate a function to return its dict as an Answer."""
+    of_one = function.__code__.co_varnames[:1] == ("name",)
 
     @wraps(function)
     def answered(*args: P.args, **inputs: P.kwargs) -> T:
         found = function(*args, **inputs)
-        return cast(T, Answer(cast(dict[str, Any], found))) if type(found) is dict else found
+        if type(found) is not dict:
+            return found
+        answer = Answer(cast(dict[str, Any], found))
+        if of_one:
+            answer.about = args[0] if args else inputs.get("name")
+        return cast(T, answer)
 
     return answered
 

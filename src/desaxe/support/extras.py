@@ -19,6 +19,7 @@ EXTRAS = {
     "msgspec": "scene",
     "tqdm": "scene",
     "plotly": "explore",
+    "xlsxwriter": "excel",
     "scipy": "simulate",
     "SALib": "design",
     "flint": "rigorous",
