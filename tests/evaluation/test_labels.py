@@ -48,6 +48,15 @@ def test_the_dataset_says_where_it_comes_from(grid):
     assert plane.attrs["scene"] == "stroke over ec; AB = 0.125 m, BC = 0.35 m"
 
 
+def test_a_machine_says_it_in_its_units():
+    press = dx.Machine(AB=125, BC=350, ec=-7.5, omega0=1500, m_slider=2, mu=0.1, units="mm, deg, rpm")
+    dataset = press.grid(["a_C", "T_in"], theta=[0, 30, 90])
+    fixed = "ec = -7.5 mm, AB = 125.0 mm, BC = 350.0 mm, omega0 = 1500.0 rpm, m_slider = 2.0 kg, mu = 0.1"
+    what, _, numbers = dataset.attrs["scene"].partition("; ")
+    assert what == "a_C, T_in over theta"
+    assert sorted(numbers.split(", ")) == sorted(fixed.split(", "))
+
+
 def test_a_dataset_can_be_asked_for_again_by_what_it_says(grid):
     """Coordinates and attributes are all that `grid` was told."""
     names = [name for name in grid.data_vars if name not in ("status", "margin")]

@@ -5,6 +5,8 @@ import json
 from math import isfinite
 from typing import Any
 
+from ..mechanism.inputs import INPUTS
+from ..mechanism.names import LOADS
 from ..support.text_table import table
 from .parser import SIGNS, add_command
 from .words import names_and_inputs
@@ -19,14 +21,9 @@ inputs (SI units and radians, or any unit written behind the number):
   omega    speed at this instant, instead of omega0
   branch   1 (default) or -1: on which side of the crank pin the slider is
 
-masses and loads, for forces, torques and energies (0 by default):
-  m_crank, m_rod, m_slider  masses                      m_rod=0.5kg
-  I_crank, I_rod            about the centre of mass    I_rod="80.6 kg mm2"
-  r_crank, r_rod            centre of mass, from A towards B and from B towards C;
-                            half of AB and of BC by default
-  F_X, F_Y                  force on the slider         F_Y=-50N
-  g_X, g_Y                  gravity                     g_X=-9.81m/s2
-  mu                        friction of the guide       mu=0.1
+masses and loads, for forces, torques and energies; 0 by default, but r_crank = AB/2, r_rod = BC/2:
+{"".join(f"  {name:8} {INPUTS[name].meaning}" + chr(10) for name in LOADS)}
+  m_rod=0.5kg  I_rod="80.6 kg mm2"  F_Y=-50N  g_X=-9.81m/s2  mu=0.1
 
 Where a value is NaN the status says why: 1 cannot be assembled here, 2 change point, 3 stalled,
 5 friction jams (no balance of forces), 6 friction has two balances of forces.

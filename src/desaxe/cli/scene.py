@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from ..mechanism.inputs import names_in
 from ..support.shown import printable
 from .parser import add_command
 from .words import UsageError
@@ -19,8 +20,8 @@ A scene is a TOML file. It is data only: nothing in it is executed. Its keys:
                   over this axis, without storing the grid
   [mechanism]     AB, BC, ec, branch
   [motion]        theta, omega0 or omega, alpha
-  [masses]        m_crank, m_rod, m_slider, I_crank, I_rod, r_crank, r_rod
-  [loads]         F_X, F_Y, g_X, g_Y, mu
+  [masses]        MASSES
+  [loads]         LOADS
                   each a number (SI), "125 mm", a list, or { start = , stop = , num = or step = }
   [[check]]       printed = { a_C = "-994 m/s2" }, at = { theta = "60 deg" }, source, title, digits
   [[peak]]        quantity, kind (absmax, max or min), over = { ec = [0, "50 mm"] },
@@ -40,7 +41,9 @@ anything is computed. Pictures and values need the extras `plot` and `labelled`.
 examples:
   desaxe run examples/compactor.toml
   desaxe run examples/feeder.toml
-  desaxe run my_press.toml > report.txt"""
+  desaxe run my_press.toml > report.txt""".replace("MASSES", ", ".join(names_in("masses"))).replace(
+    "LOADS", ", ".join(names_in("loads"))
+)
 
 
 def add_run(commands: Any) -> None:

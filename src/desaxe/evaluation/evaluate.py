@@ -84,20 +84,8 @@ def evaluate(
         check_inputs("evaluate", unknown, (*INPUTS, "branch", "accuracy", "threads", "out", "quality"))
     given = {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": omega0, "alpha": alpha, "omega": omega}
     values_of: Callable[..., Any] = values
-    if not (
-        m_crank is None
-        and m_rod is None
-        and m_slider is None
-        and I_crank is None
-        and I_rod is None
-        and r_crank is None
-        and r_rod is None
-        and F_X is None
-        and F_Y is None
-        and g_X is None
-        and g_Y is None
-        and mu is None
-    ):
+    absent = m_crank is m_rod is m_slider is I_crank is I_rod is r_crank is r_rod is None
+    if not (absent and F_X is F_Y is g_X is g_Y is mu is None):
         loads = (m_crank, m_rod, m_slider, I_crank, I_rod, r_crank, r_rod, F_X, F_Y, g_X, g_Y, mu)
         given.update((name, load) for name, load in zip(LOADS, loads, strict=True) if load is not None)
         if any(map(callable, loads)):

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from ..compiler.languages.numba.reductions import KINDS
+from ..mechanism.inputs import INPUTS
 from ..mechanism.unit_system import SI, Conversion, UnitSystem
 from ..mechanism.units import registry
 from ..support.forks import IMPORTS
@@ -49,7 +50,24 @@ def in_units(
             del attributes["units"]
         changed = {key: (array.dims, values, attributes)}
         result = result.assign_coords(changed) if key in dataset.coords else result.assign(changed)
+    if "scene" in dataset.attrs:
+        result.attrs["scene"] = _scene_of(dataset, result)
     return result
+
+
+def _scene_of(before: "xr.Dataset", after: "xr.Dataset") -> str:
+    """The attribute `scene` with the numbers of the inputs in their units."""
+    with IMPORTS:
+        from .labels import said
+
+    fixed = [name for name, array in before.coords.items() if name in INPUTS and not array.ndim]
+    old, new = (
+        [said(str(name), found[name], found[name].attrs.get("units", "1")) for name in fixed]
+        for found in (before, after)
+    )
+    told = dict(zip(old, new, strict=True))
+    what, mark, numbers = str(before.attrs["scene"]).partition("; ")
+    return what + mark + ", ".join(told.get(part, part) for part in numbers.split(", "))
 
 
 def conversion_of_variable(units: UnitSystem, name: str, unit: str) -> Conversion:

@@ -58,6 +58,11 @@ def source() -> str:
     return f"desaxe {version()}, derivation {digest()[:16]}"
 
 
+def said(name: str, number: Any, unit: str) -> str:
+    """An input of a dataset that is a number, as its attribute `scene` has it."""
+    return f"{name} = {number.item()!r} {unit}".removesuffix(" 1")
+
+
 def provenance(
     names: Iterable[str],
     inputs: Mapping[str, NDArray[Any]],
@@ -68,11 +73,7 @@ def provenance(
 ) -> dict[str, Any]:
     """Attributes of a dataset: the request, and the version that computed it; `of`: names behind `names`."""
     axes = [name for name, array in inputs.items() if array.ndim]
-    fixed = [
-        f"{name} = {array.item()!r} {INPUTS[name].unit}".removesuffix(" 1")
-        for name, array in inputs.items()
-        if not array.ndim
-    ]
+    fixed = [said(name, array, INPUTS[name].unit) for name, array in inputs.items() if not array.ndim]
     names = tuple(names)
     own = text_of((*names, *of))
     scene = ", ".join(names) + (f" over {', '.join(axes)}" if axes else "")

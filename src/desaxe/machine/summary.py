@@ -8,18 +8,12 @@ from typing import Any, NamedTuple
 from ..design.events.events import events
 from ..design.feasibility.feasibility import feasibility
 from ..evaluation.evaluate import evaluate
+from ..mechanism.inputs import INPUTS
+from ..mechanism.names import LOADS
 from ..support.text_table import table
 
-NAMES = {
-    "AB": "crank", "BC": "connecting rod", "ec": "eccentricity", "omega0": "speed",
-    "omega": "speed at this instant", "alpha": "acceleration of the crank",
-    "m_crank": "mass of the crank", "m_rod": "mass of the rod", "m_slider": "mass of the slider",
-    "I_crank": "inertia of the crank", "I_rod": "inertia of the rod",
-    "r_crank": "crank's centre of mass", "r_rod": "rod's centre of mass",
-    "F_X": "force on the slider along X", "F_Y": "force on the slider along Y", "g_X": "gravity along X",
-    "g_Y": "gravity along Y", "mu": "friction of the guide",
-    "branch": "side of the slider",
-}  # fmt: skip
+_ORDER = ("AB", "BC", "ec", "omega0", "omega", "alpha", *LOADS)
+NAMES = {name: INPUTS[name].brief for name in _ORDER} | {"branch": "side of the slider"}
 ROWS, COLUMNS = 11, 21  # of the drawing in text
 WIDEST = 28  # letters of a value that the column is made for
 ANGLE = pi / 3  # at which it is drawn

@@ -12,6 +12,8 @@ class Input(NamedTuple):
     meaning: str
     least: float | None = None
     limit: str = "a finite number"
+    brief: str = ""  # its meaning where there is little room
+    section: str = ""  # of a scene, in which it stands
 
 
 class Inputs(TypedDict, total=False):
@@ -41,32 +43,75 @@ class Inputs(TypedDict, total=False):
 TINY = 5e-324  # the least number that is more than nothing: a rod of 0 is no rod
 _INERTIA = "a finite moment of inertia >= 0"
 
+_MASS = "a finite mass >= 0"
+
+
+def _in(section: str, *rows: Input) -> dict[str, Input]:
+    return {row.name: row._replace(section=section) for row in rows}
+
+
+# In the order in which their names stand; `tests/mechanism/test_inputs.py` has the other places of an input.
 INPUTS = {
-    row.name: row
-    for row in (
-        Input("theta", "rad", "crank angle, from the slider axis"),
-        Input("ec", "m", "eccentricity: the slider axis is at X = -ec"),
-        Input("AB", "m", "crank length", 0.0, "a finite length >= 0"),
-        Input("BC", "m", "length of the connecting rod", TINY, "a finite length > 0"),
-        Input("omega0", "rad/s", "angular speed of the crank at theta = 0"),
-        Input("alpha", "rad/s^2", "angular acceleration of the crank, constant"),
-        Input("omega", "rad/s", "angular speed of the crank at this instant, instead of omega0"),
-        Input("m_crank", "kg", "mass of the crank", 0.0, "a finite mass >= 0"),
-        Input("m_rod", "kg", "mass of the connecting rod", 0.0, "a finite mass >= 0"),
-        Input("m_slider", "kg", "mass of the slider", 0.0, "a finite mass >= 0"),
-        Input("I_crank", "kg*m^2", "moment of inertia of the crank about its centre of mass", 0.0, _INERTIA),
-        Input("I_rod", "kg*m^2", "moment of inertia of the rod about its centre of mass", 0.0, _INERTIA),
-        Input("r_crank", "m", "from the crank centre towards the crank pin: the crank's centre of mass"),
-        Input("r_rod", "m", "from the crank pin towards the slider: the rod's centre of mass"),
-        Input("F_X", "N", "external force on the slider along X"),
-        Input("F_Y", "N", "external force on the slider along Y"),
-        Input("g_X", "m/s^2", "gravity along X"),
-        Input("g_Y", "m/s^2", "gravity along Y"),
-        Input("mu", "1", "Coulomb friction coefficient of the slider's guide", 0.0, "a finite number >= 0"),
-    )
-}
+    **_in("motion", Input("theta", "rad", "crank angle, from the slider axis", brief="crank angle")),
+    **_in(
+        "mechanism",
+        Input("ec", "m", "eccentricity: the slider axis is at X = -ec", brief="eccentricity"),
+        Input("AB", "m", "crank length", 0.0, "a finite length >= 0", "crank"),
+        Input("BC", "m", "length of the connecting rod", TINY, "a finite length > 0", "connecting rod"),
+    ),
+    **_in(
+        "motion",
+        Input("omega0", "rad/s", "angular speed of the crank at theta = 0", brief="speed"),
+        Input(
+            "alpha", "rad/s^2", "angular acceleration of the crank, constant",
+            brief="acceleration of the crank",
+        ),
+        Input(
+            "omega", "rad/s", "angular speed of the crank at this instant, instead of omega0",
+            brief="speed at this instant",
+        ),
+    ),
+    **_in(
+        "masses",
+        Input("m_crank", "kg", "mass of the crank", 0.0, _MASS, "mass of the crank"),
+        Input("m_rod", "kg", "mass of the connecting rod", 0.0, _MASS, "mass of the rod"),
+        Input("m_slider", "kg", "mass of the slider", 0.0, _MASS, "mass of the slider"),
+        Input(
+            "I_crank", "kg*m^2", "moment of inertia of the crank about its centre of mass", 0.0, _INERTIA,
+            "inertia of the crank",
+        ),
+        Input(
+            "I_rod", "kg*m^2", "moment of inertia of the rod about its centre of mass", 0.0, _INERTIA,
+            "inertia of the rod",
+        ),
+        Input(
+            "r_crank", "m", "from the crank centre towards the crank pin: the crank's centre of mass",
+            brief="crank's centre of mass",
+        ),
+        Input(
+            "r_rod", "m", "from the crank pin towards the slider: the rod's centre of mass",
+            brief="rod's centre of mass",
+        ),
+    ),
+    **_in(
+        "loads",
+        Input("F_X", "N", "external force on the slider along X", brief="force on the slider along X"),
+        Input("F_Y", "N", "external force on the slider along Y", brief="force on the slider along Y"),
+        Input("g_X", "m/s^2", "gravity along X", brief="gravity along X"),
+        Input("g_Y", "m/s^2", "gravity along Y", brief="gravity along Y"),
+        Input(
+            "mu", "1", "Coulomb friction coefficient of the slider's guide", 0.0, "a finite number >= 0",
+            "friction of the guide",
+        ),
+    ),
+}  # fmt: skip
 SAFE = 1e-100, 1e100  # magnitudes between which nothing overflows, nor underflows to a wrong value
 LEAST = {name: row.least for name, row in INPUTS.items() if row.least is not None}
+
+
+def names_in(*sections: str) -> tuple[str, ...]:
+    """The inputs of some sections of a scene, in their order."""
+    return tuple(row.name for row in INPUTS.values() if row.section in sections)
 
 
 def is_good(name: str, value: float) -> bool:

@@ -6,12 +6,13 @@ taken apart and put together here and nowhere else.
 
 from collections.abc import Iterable
 
+from .inputs import INPUTS, names_in
+
 # Geometry and motion; then the bodies and what acts on them, which only forces and energies need.
 LENGTHS = ("ec", "AB", "BC")
 PARAMETERS = ("theta", "ec", "AB", "BC", "omega0", "alpha")
-LOADS = (
-    "m_crank", "m_rod", "m_slider", "I_crank", "I_rod", "r_crank", "r_rod", "F_X", "F_Y", "g_X", "g_Y", "mu",
-)  # fmt: skip
+LOADS = names_in("masses", "loads")
+MASSES = tuple(name for name in LOADS if INPUTS[name].unit in ("kg", "kg*m^2"))
 # A status: that of the motion, that of a request for forces, that of a design; shown by the same name.
 STATUS, FORCE_STATUS, TURN_STATUS = STATUSES = ("status", "force_status", "turn_status")
 # Quantities of a whole design, of its lengths alone: no theta, no speed.

@@ -12,7 +12,7 @@ from ..loads.resolve import as_load, takes
 from ..mechanism.catalogue import quantity
 from ..mechanism.closed.limits import theta_intervals
 from ..mechanism.inputs import INPUTS, Input
-from ..mechanism.names import CENTRES, LENGTHS, LOADS
+from ..mechanism.names import CENTRES, LENGTHS, LOADS, MASSES
 from ..mechanism.read import read
 from ..runtime.request import several
 from ..support.checks import real_number
@@ -158,7 +158,7 @@ def _check_inertia(model: Model, theta0: float) -> None:
     gaps = {which: _gap(theta0, angle) for which, angle in model.vanishing().items()}
     near = [which for which, gap in gaps.items() if gap <= SMALL]
     if near or inertia <= 0.0:
-        moves = any(model.values[name] for name in ("m_crank", "m_rod", "m_slider", "I_crank", "I_rod"))
+        moves = any(model.values[name] for name in MASSES)
         where = f" (the {near[0]} dead centre)" if near and moves else ""
         raise ValueError(
             f"M_eff = {inertia:g} kg m^2 at theta0 = {theta0:g}{where}: nothing moves without inertia; "

@@ -215,7 +215,7 @@ Skipped
 Operations at each point after each pass
   pass         operations   saved
   derivation         2683           every line of the derivation
-  slice                89    2589   only the lines that the requested names need
+  slice                89    2594   only the lines that the requested names need
   fold                 62      27   fixed inputs folded in; terms with a factor 0 vanish
   plain                23      39   every design has wide margins: shorter forms
 
@@ -262,3 +262,27 @@ def test_the_sum_holds_all_that_runs(tmp_path, monkeypatch, cold):
     assert 14e6 * 17 <= stored["sweep"]["disk"] <= 14.1e6 * 17
     assert "21 of 100 ec x 7001 theta, written to v.zarr" in str(stored)
     assert not list(tmp_path.iterdir())
+
+
+def test_a_plan_in_the_units_of_its_scene():
+    """Those that it names: a text's own unit says nothing of the rest."""
+    named = {
+        "units": "mm, deg, rpm",
+        "outputs": ["a_C", "V_C_wrt_ec"],
+        "mechanism": {"AB": 125, "BC": 350, "ec": [0, 12.5, 20]},
+        "motion": {"theta": {"start": 0, "stop": 360, "num": 5}, "omega0": 1500},
+    }
+    plan = dx.explain(named)
+    assert [(one["name"], one["unit"]) for one in plan["outputs"]] == [
+        ("a_C", "mm/s^2"), ("V_C_wrt_ec", "1/s"),
+    ]  # fmt: skip
+    rows = {one["name"]: one for one in plan["inputs"]}
+    assert rows["ec"] == {"name": "ec", "unit": "mm", "values": 3, "from": 0.0, "to": 20.0}
+    assert rows["omega0"] == {"name": "omega0", "unit": "rpm", "value": 1500.0}
+    text = str(plan)
+    assert "ec (3: 0 to 20 mm), theta (5: 0 to 360 deg)" in text
+    assert "AB = 125 mm, BC = 350 mm, omega0 = 1500 rpm" in text
+    bare = {key: value for key, value in named.items() if key != "units"}
+    bare["mechanism"] = {"AB": "125 mm", "BC": "350 mm", "ec": 0}
+    bare["motion"] = {"theta": "60 deg", "omega0": "1500 rpm"}
+    assert {one["unit"] for one in dx.explain(bare)["inputs"]} == {"m", "rad", "rad/s"}

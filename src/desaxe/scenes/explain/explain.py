@@ -14,10 +14,10 @@ from ...compiler.passes.double_double import double_double
 from ...loads.load import Load
 from ...mechanism.catalogue import quantity
 from ...mechanism.constants import double_constants
-from ...mechanism.inputs import INPUTS
 from ...mechanism.names import STATUSES
 from ...mechanism.own import using
 from ...mechanism.program import digest
+from ...mechanism.unit_system import UnitSystem
 from ...runtime.kernels import KernelKey, is_ready, kernel_of, source_of
 from ...runtime.modules import path_of
 from ...runtime.specialise import specialise
@@ -49,7 +49,8 @@ class Plan:
     point after every pass), `skipped, loops, operations` (at each point, in all loops together), `run`
     (how: in plain Python or compiled, and what is cached), `time, memory, also` (peaks, pictures, ...),
     `results`, `sweep` (of a store: its chunks, memory, disk), `total` (seconds of a first run and of later
-    ones, part by part). `operations` and `loops` are None where no outputs are asked for.
+    ones, part by part). `operations` and `loops` are None where no outputs are asked for. Inputs and outputs
+    are in the units that the scene names, and in SI units without.
     """
 
     data: Mapping[str, Any]
@@ -97,7 +98,7 @@ def _plan_of(content: Content) -> Plan:
         "motion": _motion(content),
         "branch": content.branch,
         "derivation": digest()[:16],
-        "inputs": [_input(name, value) for name, value in content.inputs.items()],
+        "inputs": [_input(name, value, content.units) for name, value in content.inputs.items()],
     }
     data |= _grid(content) if content.outputs else dict.fromkeys(("points", "loops", "operations", "run"))
     stored = _sweep(content)
@@ -146,7 +147,7 @@ def _cells(content: Content) -> int:
 
 def _output(name: str, content: Content) -> dict[str, str]:
     row = quantity(name, "omega" in content.inputs)
-    return {"name": name, "unit": row.unit, "meaning": row.meaning}
+    return {"name": name, "unit": content.units.of(name).unit, "meaning": row.meaning}
 
 
 def _motion(content: Content) -> str:
@@ -158,13 +159,14 @@ def _motion(content: Content) -> str:
     return "constant speed omega0" if steady else "paper A's law: omega^2 = omega0^2 + 2 alpha theta"
 
 
-def _input(name: str, value: Value) -> dict[str, Any]:
-    row: dict[str, Any] = {"name": name, "unit": INPUTS[name].unit}
+def _input(name: str, value: Value, units: UnitSystem) -> dict[str, Any]:
+    own = units.of(name)
+    row: dict[str, Any] = {"name": name, "unit": own.unit}
     if isinstance(value, tuple):
-        return {**row, "values": len(value), "from": value[0], "to": value[-1]}
+        return {**row, "values": len(value), "from": own.shown(value[0]), "to": own.shown(value[-1])}
     if isinstance(value, Load):
         return {**row, "load": repr(value)}
-    return {**row, "value": value}
+    return {**row, "value": own.shown(value)}
 
 
 def _grid(content: Content) -> dict[str, Any]:

@@ -74,6 +74,7 @@ def _data(content: Content) -> dict[str, Any]:
                 "meaning": row.meaning,
                 "least": row.least,
                 "limit": row.limit,
+                "section": row.section,
                 "given": name in content.given,
             }
             for name in content.designs[0]

@@ -12,12 +12,11 @@ from ...compiler.passes.pipeline import optimise
 from ...compiler.program import Line, Program, renamed
 from ...compiler.text import read_function
 from ...mechanism.inputs import LEAST
-from ...mechanism.names import CENTRES, LENGTHS, LOADS, STATUS
+from ...mechanism.names import CENTRES, LENGTHS, LOADS, MASSES, STATUS
 from ...runtime.specialise import specialise
 from ...simulation.friction import JAMS_AT
 from ...simulation.model import form_of
 
-MASSES = ("m_crank", "m_rod", "m_slider", "I_crank", "I_rod")
 FREE = """def motion(M_eff, T_in, torque):
     acceleration = (torque - T_in) / M_eff
     return acceleration

@@ -8,12 +8,7 @@ function offer(name, type, data) {
   if (link.href.startsWith("blob:")) setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
-const SECTIONS = [
-  ["mechanism", ["ec", "AB", "BC"]],
-  ["motion", ["omega0", "omega", "alpha"]],
-  ["masses", ["m_crank", "m_rod", "m_slider", "I_crank", "I_rod", "r_crank", "r_rod"]],
-  ["loads", ["F_X", "F_Y", "g_X", "g_Y", "mu"]],
-];
+const SECTIONS = ["mechanism", "motion", "masses", "loads"];
 
 // A value with the unit that is chosen, where that stands for the same double; else in SI units.
 function written(name, value) {
@@ -41,8 +36,9 @@ function sceneText() {
   const lines = [`# Written by the explorer page of desaxe${told}: desaxe run scene.toml`, ""];
   lines.push(`title = ${JSON.stringify(CONTENT.title)}`, `outputs = ${JSON.stringify([...new Set(shown)])}`);
   if (own.length) lines.push("", "[units]", ...own);
-  for (const [section, names] of SECTIONS) {
-    const given = names.filter((name) => name in CONTENT.inputs && (CONTENT.inputs[name].given || kept.some((d) => d[name] !== 0)));
+  for (const section of SECTIONS) {
+    const names = Object.keys(CONTENT.inputs).filter((name) => CONTENT.inputs[name].section === section);
+    const given = names.filter((name) => CONTENT.inputs[name].given || kept.some((d) => d[name] !== 0));
     if (!given.length) continue;
     lines.push("", `[${section}]`, ...given.map((name) => `${name} = ${valueOf(name)}${own.length ? "" : ` # ${CONTENT.inputs[name].unit}`}`));
     if (section === "mechanism") lines.push(`branch = ${CONTENT.branch}`);
