@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import desaxe as dx
 
@@ -73,3 +74,14 @@ def test_shapes():
 def test_bad_arguments(arguments, error, words):
     with pytest.raises(error, match=words):
         dx.inverse(**{"Y": 0.3, **LENGTHS, **arguments})
+
+
+def test_units_of_arrays():
+    """A labelled array says its unit, and so may each text of a list."""
+    lengths = {"ec": 0.01, "AB": 0.05, "BC": 0.2}
+    wanted = dx.inverse(Y=[0.19, 0.21], V_C=[1.0, -2.0], **lengths)
+    labelled = xr.DataArray([190.0, 210.0], dims="k", attrs={"units": "mm"})
+    for given in (labelled, ["190 mm", "0.21 m"]):
+        found = dx.inverse(Y=given, V_C=["1 m/s", "-200 cm/s"], **lengths)
+        for name, values in wanted.items():
+            np.testing.assert_allclose(found[name], values, rtol=1e-12)

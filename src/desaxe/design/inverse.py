@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.arrays import as_array, broadcast_shape
+from ..evaluation.arrays import as_array, broadcast_shape, number_or_array
 from ..evaluation.evaluate import evaluate
 from ..mechanism.closed.functions import closed_form
 from ..mechanism.closed.inverse import INVERSE
@@ -14,8 +14,6 @@ from ..mechanism.names import LENGTHS
 from ..mechanism.status import InverseStatus
 from ..runtime.request import check_common, with_known_inputs
 from ..support.answer import answering
-from ..support.forks import IMPORTS
-from ..support.shown import shown
 
 Array = NDArray[np.float64]
 DEAD_CENTRE = InverseStatus.DEAD_CENTRE
@@ -80,20 +78,7 @@ def _input(name: str, value: Any) -> Array:
         raise TypeError(f"inverse: {name} is missing (needed: Y, ec, AB, BC)")
     if name in INPUTS:
         return as_array(name, value, ("Y", "ec", "AB", "BC"), ("inverse",))
-    if isinstance(value, str) or hasattr(value, "magnitude"):
-        with IMPORTS:
-            from ..mechanism.units import in_unit
-
-        value = in_unit(name, value, SLIDER_INPUTS[name].unit)
-    try:
-        array = np.asarray(value)
-    except (ValueError, TypeError, OverflowError):  # rows of different lengths
-        raise TypeError(f"{name} = {shown(value)}: expected a number or an array of numbers") from None
-    if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name} = {shown(value)}: expected real numbers, got {array.dtype}")
-    if not array.ndim and not np.isfinite(array):
-        raise ValueError(f"{name} = {shown(value)}: it must be a finite number")
-    return array.astype(np.float64, copy=False)
+    return number_or_array(SLIDER_INPUTS[name], value)
 
 
 def _angles(

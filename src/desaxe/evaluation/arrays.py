@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanism.inputs import INPUTS, is_good
+from ..mechanism.inputs import INPUTS, Input, is_good
 from ..runtime.interpreted import are_good, fill_by_points
 from ..runtime.kernels import key_of, tells_unsafe
 from ..runtime.point import point_of
@@ -69,16 +69,22 @@ def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str])
     number = None if type(value) is np.ndarray else as_number(name, value, inputs, names)
     if number is not None:
         return np.array(number)
+    return _not_wholly_bad(name, array_of(INPUTS[name], value))
+
+
+def array_of(row: Input, value: Any) -> Array:
+    """Real numbers in the unit of a row as a float64 array: plain, labelled, with units, as texts."""
+    name = row.name
     if hasattr(value, "dims"):
         with IMPORTS:
             from ..mechanism.units import unlabelled
 
-        value = unlabelled(name, value)
-    if hasattr(value, "magnitude"):
+        value = unlabelled(name, value, row.unit)
+    if isinstance(value, str) or hasattr(value, "magnitude"):
         with IMPORTS:
-            from ..mechanism.units import in_si
+            from ..mechanism.units import in_unit
 
-        value = in_si(name, value)
+        value = in_unit(name, value, row.unit)
     if hasattr(value, "mask") and np.ma.is_masked(value):  # who has one has imported them
         raise TypeError(f"{name}: a masked array; fill it first, for example with .filled(np.nan)")
     try:
@@ -87,13 +93,22 @@ def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str])
         raise TypeError(f"{name} = {shown(value)}: expected a number or an array of numbers") from None
     if array.dtype.kind == "U":
         with IMPORTS:
-            from ..mechanism.units import in_si
+            from ..mechanism.units import in_unit
 
-        array = np.array([in_si(name, text) for text in array.reshape(-1).tolist()]).reshape(array.shape)
+        texts = array.reshape(-1).tolist()
+        array = np.array([in_unit(name, text, row.unit) for text in texts]).reshape(array.shape)
     if array.dtype.kind not in "fiu":
         kind = f"an array of {array.dtype}" if array.ndim else f"a {type(value).__name__}"
         raise TypeError(f"{name}: expected real numbers, got {kind}: {shown(value)}")
-    return _not_wholly_bad(name, array.astype(FLOAT, copy=False))
+    return array.astype(FLOAT, copy=False)
+
+
+def number_or_array(row: Input, value: Any) -> Array:
+    """As `array_of`; ValueError for a number that is not finite."""
+    array = array_of(row, value)
+    if not array.ndim and not np.isfinite(array):
+        raise ValueError(f"{row.name} = {shown(value)}: it must be {row.limit}")
+    return array
 
 
 def _not_wholly_bad(name: str, array: Array) -> Array:

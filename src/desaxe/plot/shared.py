@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..evaluation.arrays import array_of
+from ..mechanism.inputs import INPUTS
 from ..mechanism.names import parts
-from ..mechanism.units import in_si, unlabelled
 from ..support.forks import IMPORTS
 
 if TYPE_CHECKING:
@@ -118,8 +119,7 @@ def shown(array: "xr.DataArray") -> NDArray[np.float64]:
 
 def input_in_si(array: "xr.DataArray") -> NDArray[np.float64]:
     """The values of a labelled input in its SI unit, whatever it is labelled in."""
-    held = unlabelled(str(array.name), array)
-    return np.asarray(in_si(str(array.name), held) if hasattr(held, "magnitude") else held, dtype=np.float64)
+    return array_of(INPUTS[str(array.name)], array)
 
 
 def worth_showing(curves: Sequence[NDArray[np.float64]]) -> tuple[float, float] | None:

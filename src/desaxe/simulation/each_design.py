@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.arrays import as_array, broadcast_shape
+from ..evaluation.arrays import as_array, broadcast_shape, number_or_array
 from ..mechanism.names import CENTRES, LENGTHS, LOADS
-from .many_designs import SAMPLES, STARTS, column, message, starting
+from .many_designs import SAMPLES, STARTS, message, starting
 from .residual import TELLS, told_of
 from .result import NO_START, Simulation
 
@@ -36,7 +36,7 @@ def simulate_each(
         for n in (*LENGTHS, *LOADS)
         if n not in varying and ((value := given.get(n)) is not None or n not in CENTRES)
     }
-    arrays |= {n: column(n, value, STARTS[n]) for n, value in starts.items() if n not in varying}
+    arrays |= {n: number_or_array(STARTS[n], value) for n, value in starts.items() if n not in varying}
     empty = next((name for name, array in arrays.items() if not array.size), None)
     if empty is not None:
         raise ValueError(f"{empty}: an empty array; expected at least one design")

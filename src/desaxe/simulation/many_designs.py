@@ -9,18 +9,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.arrays import as_array, broadcast_shape
+from ..evaluation.arrays import as_array, broadcast_shape, number_or_array
 from ..evaluation.evaluate import evaluate
 from ..loads.resolve import takes
 from ..mechanism.closed.limits import theta_intervals
-from ..mechanism.inputs import LEAST
+from ..mechanism.inputs import LEAST, Input
 from ..mechanism.names import CENTRES, LENGTHS, LOADS
-from ..mechanism.units import in_unit
 from ..runtime.threads import run_parts
 from ..support.deadline import Deadline
 from ..support.forks import IMPORTS, ForkSafeLock
 from ..support.interrupts import finished, stopped_early
-from ..support.shown import shown
 from . import tableau
 from .checks import check_signature, grows
 from .compiled import Family, kernel_of
@@ -33,7 +31,8 @@ Array = NDArray[np.float64]
 SAMPLES = 101  # instants of the histories by default
 LONGEST_PART = 16  # designs in one native call, that threads share the work evenly
 MOST_STEPS = 3  # its place in `how`
-STARTS = {"theta0": "rad", "omega_start": "rad/s", "torque": "N*m"}
+_UNITS = {"theta0": "rad", "omega_start": "rad/s", "torque": "N*m"}
+STARTS = {name: Input(name, unit, "") for name, unit in _UNITS.items()}
 _LOCK = ForkSafeLock()
 
 
@@ -59,7 +58,8 @@ def simulate_many(
 ) -> Simulation:
     """The motions; how: relative tolerance, t_end, longest step, most steps."""
     arrays = _arrays(given) | {
-        name: column(name, 0.0 if callable(value) else value, STARTS[name]) for name, value in starts.items()
+        name: number_or_array(STARTS[name], 0.0 if callable(value) else value)
+        for name, value in starts.items()
     }
     empty = next((name for name, array in arrays.items() if not array.size), None)
     if empty is not None:
@@ -101,24 +101,6 @@ def _arrays(given: Mapping[str, Any]) -> dict[str, Array]:
     if np.any(arrays.pop("mu") != 0.0):
         raise ValueError("mu: friction has kinks, followed for one design at a time; for many it must be 0")
     return arrays
-
-
-def column(name: str, value: Any, unit: str) -> Array:
-    """Starts and torques as an array of finite or bad numbers."""
-    number = in_unit(name, value, unit) if isinstance(value, str) or hasattr(value, "magnitude") else value
-    try:
-        array = np.asarray(number)
-    except (ValueError, TypeError, OverflowError):  # rows of different lengths
-        raise TypeError(f"{name} = {shown(value)}: expected a number or an array of numbers") from None
-    if array.dtype.kind == "U":
-        texts = array.reshape(-1).tolist()
-        array = np.array([in_unit(name, text, unit) for text in texts]).reshape(array.shape)
-    if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name}: expected real numbers, got an array of {array.dtype}: {shown(value)}")
-    array = array.astype(np.float64)
-    if not array.ndim and not np.isfinite(array):
-        raise ValueError(f"{name} = {shown(value)}: it must be a finite number")
-    return array
 
 
 @lru_cache(maxsize=32)
