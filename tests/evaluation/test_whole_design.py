@@ -130,3 +130,34 @@ def test_the_equation_has_the_value(name):
             expression = dx.equation(each, form).expression
             values = {s: {**DESIGN, "branch": 1}[s.name] for s in expression.free_symbols}
             assert float(expression.subs(values)) == pytest.approx(dx.evaluate(each, **DESIGN), rel=1e-9)
+
+
+@pytest.fixture
+def slenderness():
+    """A quantity of a whole design of a user's own."""
+    dx.define("slenderness", "stroke/BC", unit="1")
+    yield "slenderness"
+    dx.undefine("slenderness")
+
+
+def test_what_is_made_of_them_is_ranked_mapped_optimised_and_toleranced(slenderness):
+    axes = {"ec": np.linspace(0.0, 0.02, 5), "AB": np.linspace(0.02, 0.04, 3)}
+    wanted = dx.evaluate("stroke", ec=axes["ec"][:, None], AB=axes["AB"], BC=0.064) / 0.064
+    best = dx.sweep([], best=2, by=slenderness, order="largest", BC=0.064, **axes)
+    assert best[slenderness].values == pytest.approx(np.sort(wanted.ravel())[::-1][:2], rel=1e-14)
+    chart = dx.design_map([slenderness], derivatives=True, BC=0.064, **axes)
+    np.testing.assert_allclose(chart[slenderness], wanted, rtol=1e-14)
+    slope = dx.evaluate("stroke_wrt_AB", ec=axes["ec"][:, None], AB=axes["AB"], BC=0.064) / 0.064
+    np.testing.assert_allclose(chart[f"{slenderness}_wrt_AB"], slope, rtol=1e-13)
+    over = {"ec": (0.0, 0.02), "AB": (0.02, 0.04)}
+    found = dx.optimize(over=over, BC=0.064, maximize=slenderness, keep={"time_ratio": (None, 1.2)})
+    assert found["status"] == 0
+    assert found["value"] == pytest.approx(dx.evaluate(slenderness, ec=found["ec"], AB=found["AB"], BC=0.064))
+    assert dx.events(ec=found["ec"], AB=found["AB"], BC=0.064)["time_ratio"] == pytest.approx(1.2)
+    spread = dx.tolerance(slenderness, ec=0.01, AB=dx.plus_minus(0.04, 0.001), BC=0.064, sobol=0)
+    assert spread["gradient"]["AB"] == pytest.approx(dx.evaluate(f"{slenderness}_wrt_AB", ec=0.01, **LONG))
+
+
+def test_a_derivative_is_no_objective():
+    with pytest.raises(ValueError, match="did you mean 'stroke'"):
+        dx.optimize(over={"ec": (0.0, 0.02)}, AB=0.04, BC=0.064, maximize="stroke_wrt_AB")

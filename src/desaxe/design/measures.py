@@ -1,8 +1,9 @@
 """Quantities of a whole design by name, for many designs at once: value and exact derivatives.
 
-A measure is the margin, a name of `events`, a peak or an average over the crank angle as (kind, quantity), or
-a quantity at one angle: "margin", "stroke", ("absmax", "a_C"), ("rms", "T_in"), ("at", "60 deg", "Y"). It may
-also be a function of a design (a dict) that gives its value and a dict of its derivatives.
+A measure is a quantity of the whole design, the largest speed of a stroke, a peak or an average over the
+crank angle as (kind, quantity), or a quantity at one angle: "margin", "stroke", ("absmax", "a_C"),
+("rms", "T_in"), ("at", "60 deg", "Y"). It may also be a function of a design (a dict) that gives its value
+and a dict of its derivatives.
 """
 
 from collections.abc import Iterable, Mapping
@@ -11,29 +12,23 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..evaluation.evaluate import evaluate
 from ..evaluation.own_measure import OwnMeasure
-from ..mechanism.catalogue import quantities, quantity
+from ..mechanism.catalogue import has, of_design, quantities, quantity
 from ..mechanism.closed.limits import margin_of
-from ..mechanism.names import LENGTHS
+from ..mechanism.names import LENGTHS, WHOLE, parts, sensitivity
 from ..mechanism.spelling import meant
 from ..peaks.designs import KINDS
 from ..peaks.peak import peak
+from ..runtime.compiled_only import uncompiled
 from ..support.shown import shown
 from .averages import AVERAGES, angle_of, at_angle, average
 from .events.arrays import events_of_arrays
+from .events.found import VELOCITIES
 
 Array = NDArray[np.float64]
 Measure = str | tuple[Any, ...] | OwnMeasure
-
-UNITS = {
-    "margin": "m",
-    **dict.fromkeys(("Y_outer", "Y_inner", "stroke"), "m"),
-    **dict.fromkeys(("theta_outer", "theta_inner", "advance_angle", "return_angle"), "rad"),
-    "time_ratio": "1",
-    **dict.fromkeys(("max_pressure_angle", "min_transmission_angle"), "rad"),
-    **dict.fromkeys(("min_pressure_angle", "max_transmission_angle"), "rad"),
-    **dict.fromkeys(("V_outward", "V_inward"), "m/s"),
-}
+NAMED = ("margin", *WHOLE, *VELOCITIES)
 
 
 class Measured(NamedTuple):
@@ -41,6 +36,13 @@ class Measured(NamedTuple):
 
     value: Array
     gradient: Mapping[str, Array]
+
+
+def is_named(measure: Any) -> bool:
+    """True for the name of a measure: a quantity of the whole design, no derivative, or a velocity."""
+    if not isinstance(measure, str) or not (measure in VELOCITIES or has(measure)):
+        return False
+    return measure in VELOCITIES or (of_design(measure) and not parts(measure)[1])
 
 
 def checked(measure: Any) -> Measure:
@@ -57,14 +59,14 @@ def checked(measure: Any) -> Measure:
         angle_of(measure[1])
         quantity(measure[2])
         return "at", measure[1], str(measure[2])
-    if isinstance(measure, str) and measure in UNITS:
-        return measure
+    if is_named(measure):
+        return str(measure)
     hint = ""
     if isinstance(measure, (tuple, list)) and len(measure) == 2 and isinstance(measure[0], str):
         near = meant(measure[0], KINDS)
         hint = f"did you mean {(near[0], measure[1])!r}? " if near else ""
     elif isinstance(measure, str):
-        near = meant(measure, UNITS)
+        near = meant(measure, NAMED)
         peaks = [] if near else meant(measure, quantities())
         hint = (
             f"did you mean {near[0]!r}? "
@@ -73,7 +75,7 @@ def checked(measure: Any) -> Measure:
             if peaks
             else ""
         )
-    there = f"{'There' if hint else 'there'} are {', '.join(UNITS)}"
+    there = f"{'There' if hint else 'there'} are {', '.join(NAMED)}"
     raise ValueError(
         f"{shown(measure)} is not a quantity of a design; {hint}{there} and the peaks, "
         f'such as ("absmax", "a_C"), of the kinds {", ".join((*KINDS, *AVERAGES))}, '
@@ -85,7 +87,11 @@ def unit_of(measure: Measure) -> str:
     """The unit of a measure."""
     if isinstance(measure, OwnMeasure):
         return "1"
-    return UNITS[measure] if isinstance(measure, str) else quantity(measure[-1]).unit
+    return (
+        "m/s"
+        if measure in VELOCITIES
+        else quantity(measure if isinstance(measure, str) else measure[-1]).unit
+    )
 
 
 def text_of(measure: Measure) -> str:
@@ -106,7 +112,8 @@ def measured(
         if measure == "margin":
             found[measure] = _margin(*(np.asarray(designs[n], float) for n in LENGTHS))
         elif isinstance(measure, str):
-            found[measure] = Measured(told[measure], told["gradient"][measure])
+            own = None if measure in told else _own(measure, designs, branch)
+            found[measure] = own or Measured(told[measure], told["gradient"][measure])
         elif isinstance(measure, OwnMeasure):
             found[measure] = Measured(*measure(designs))
         elif measure[0] == "at":
@@ -121,6 +128,16 @@ def measured(
     return found
 
 
+def _own(name: str, designs: Mapping[str, Any], branch: int) -> Measured:
+    """A quantity of a user's own."""
+    speed = {"omega0": designs["omega0"]} if designs.get("omega0") is not None else {}
+    slopes = {p: sensitivity(name, p) for p in LENGTHS}
+    with uncompiled():
+        given = {n: designs[n] for n in LENGTHS}
+        found = evaluate([name, *slopes.values()], branch=branch, **given, **speed)
+    return Measured(np.asarray(found[name]), {p: np.asarray(found[slope]) for p, slope in slopes.items()})
+
+
 def _margin(ec: Array, AB: Array, BC: Array) -> Measured:
     value = margin_of(ec, AB, BC)
     one = np.ones_like(value)
@@ -128,9 +145,9 @@ def _margin(ec: Array, AB: Array, BC: Array) -> Measured:
 
 
 def _events(wanted: list[Measure], designs: Mapping[str, Any], branch: int) -> dict[str, Any]:
-    names = [name for name in wanted if isinstance(name, str) and name != "margin"]
+    names = [name for name in wanted if name in WHOLE or name in VELOCITIES]
     if not names:
         return {}
     speed = designs.get("omega0")
     given = {**{n: designs[n] for n in LENGTHS}, "omega0": 1.0 if speed is None else speed}
-    return events_of_arrays(given, branch, speed is not None, any(n.startswith("V_") for n in names))
+    return events_of_arrays(given, branch, speed is not None, any(n in VELOCITIES for n in names))

@@ -6,6 +6,7 @@ from typing import Any
 
 from ..loads.resolve import settled
 from ..mechanism.inputs import INPUTS
+from ..mechanism.names import WHOLE
 from ..mechanism.unit_system import OTHERS, UnitSystem
 from ..support.forks import IMPORTS
 from ..support.quantity_text import PLUS_MINUS, with_unit_of
@@ -18,7 +19,7 @@ POSITIONS = {"Y", "V_C", "a_C"}
 
 def has_unit(name: str) -> bool:
     """True where an argument of this name is a quantity with a unit."""
-    return name in INPUTS or name in OTHERS or name in POSITIONS
+    return name in INPUTS or name in OTHERS or name in POSITIONS or name in WHOLE
 
 
 def in_si(system: UnitSystem, name: str, value: Any) -> Any:

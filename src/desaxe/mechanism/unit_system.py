@@ -43,16 +43,8 @@ MOST = 100  # units of one text or table
 PER_SECOND = {"m/s": "/s", "m/s^2": "/s^2", "m/s^3": "/s^3"}
 # Units of inputs and results that are no quantities of the catalogue.
 OTHERS = {
-    **dict.fromkeys(("Y_outer", "Y_inner", "stroke", "margin"), "m"),
     **dict.fromkeys(("V_outward", "V_inward"), "m/s"),
-    **dict.fromkeys(
-        (
-            "theta0", "theta_outer", "theta_inner", "advance_angle", "return_angle", "max_pressure_angle",
-            "min_pressure_angle", "max_transmission_angle", "min_transmission_angle", "until", "phase",
-            "angle", "theta_intervals",
-        ),
-        "rad",
-    ),
+    **dict.fromkeys(("theta0", "until", "phase", "angle", "theta_intervals"), "rad"),
     "omega_start": "rad/s",
     **dict.fromkeys(("t", "t_end", "t_last", "times", "max_step", "period"), "s"),
     **dict.fromkeys(

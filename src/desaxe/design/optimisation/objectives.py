@@ -12,7 +12,7 @@ from ...mechanism.read import read
 from ...runtime.request import check_inputs
 from ...support.deadline import Deadline
 from ...support.shown import shown
-from ..measures import UNITS, Measure, checked, text_of, unit_of
+from ..measures import Measure, checked, is_named, text_of, unit_of
 from .kinks import sides_of
 from .problem import EQUAL, LOWER, UPPER, Limit, Piece, Space
 
@@ -39,7 +39,7 @@ def _several(wanted: Any) -> list[Any]:
     if wanted is None:
         return []
     many = isinstance(wanted, tuple) and (
-        len(wanted) not in (2, 3) or not isinstance(wanted[0], str) or wanted[0] in UNITS
+        len(wanted) not in (2, 3) or not isinstance(wanted[0], str) or is_named(wanted[0])
     )
     return list(wanted) if many or isinstance(wanted, list) else [wanted]
 

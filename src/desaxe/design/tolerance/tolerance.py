@@ -18,7 +18,7 @@ from ...support.checks import whole_number
 from ...support.extras import needed
 from ...support.forks import IMPORTS, imported
 from ...support.shown import shown
-from ..measures import UNITS, checked
+from ..measures import checked, is_named, unit_of
 from .function import Beside, Function, derived
 from .result import Tolerance
 from .uncertain import DISTRIBUTIONS, Array, Inexact, read
@@ -134,7 +134,7 @@ def _title(name: Any, state: bool) -> tuple[str, str]:
     """The name of a quantity or measure, and its unit."""
     if isinstance(name, (tuple, list)):
         return " of ".join(map(str, name)), quantity(str(name[-1]), state).unit
-    return str(name), UNITS[name] if name in UNITS else quantity(name, state).unit
+    return str(name), unit_of(name) if is_named(name) else quantity(name, state).unit
 
 
 def _status(value: float, lost: float, beside: Beside, bends: Array) -> ToleranceStatus:
@@ -162,7 +162,7 @@ def _check(distribution: str, sigmas: Any, samples: Any, sobol: Any, seed: Any) 
 
 
 def _function(name: Any, given: Mapping[str, Any], branch: int) -> Function:
-    design = isinstance(name, (tuple, list)) or (name in UNITS and name != "margin")
+    design = isinstance(name, (tuple, list)) or (is_named(name) and name != "margin")
     fixed = {n: v for n, v in given.items() if not isinstance(v, Inexact)}
     varying = tuple(n for n in given if n not in fixed)
     if design and "theta" in given:
