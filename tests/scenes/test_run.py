@@ -5,6 +5,7 @@ import io
 import math
 import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -210,6 +211,34 @@ def test_progress_bar(monkeypatch):
     monkeypatch.setattr(sys, "stderr", io.StringIO())
     with progress_bar(delay=0.0) as progress:
         assert progress is None
+
+
+@pytest.mark.parametrize(
+    ("place", "call", "shown"),
+    [
+        (
+            "desaxe.support.deadline",
+            lambda: dx.optimize(maximize="time_ratio", over={"ec": (0.0, 0.1)}, AB=0.1, BC=0.3),
+            "optimize, 1 evaluations",
+        ),
+        (
+            "desaxe.design.tolerance.tolerance",
+            lambda: dx.tolerance("stroke", ec="10 mm ± 1 mm", AB=0.1, BC=0.3, sobol=0),
+            "10000 samples",
+        ),
+    ],
+)
+def test_long_works_show_progress(monkeypatch, place, call, shown):
+    told, expected = [], repr(call())
+
+    @contextmanager
+    def bar(**options):
+        yield lambda done, total, what: told.append((done, total, what))
+
+    monkeypatch.setattr(f"{place}.progress_bar", bar)
+    assert repr(call()) == expected
+    assert shown in {what for _, _, what in told}
+    assert all(0 <= done < total for done, total, _ in told)
 
 
 @pytest.mark.parametrize("text", ["29.5 rad/s", "-20.2 m/s", "-7740 rad/s2", "-994 m/s2"])

@@ -1,20 +1,29 @@
 """A time limit for work that may not end by itself."""
 
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from math import inf
 from typing import Any
 
 from .checks import time_limit
+from .progress import Progress, progress_bar
 
 LONGEST = 1e9  # seconds: beyond it there is no limit
 
 
 class Deadline:
-    """Counts from when it is made; `check` raises TimeoutError when the time is over."""
+    """Counts from when it is made; `check` raises TimeoutError when the time is over.
+
+    On a terminal `shown` has a bar for the block: the time that is gone, and how much was done.
+    """
 
     def __init__(self, what: str, timeout: Any) -> None:
         self.what, self.seconds = what, time_limit(timeout)
-        self._end = inf if self.seconds is None else time.monotonic() + self.seconds
+        self._start = time.monotonic()
+        self._end = inf if self.seconds is None else self._start + self.seconds
+        self._checks = 0
+        self._watch: Progress | None = None
 
     @property
     def over(self) -> bool:
@@ -23,8 +32,22 @@ class Deadline:
 
     def check(self) -> None:
         """Raise TimeoutError when the time is over."""
+        if self._watch is not None:
+            self._checks += 1
+            gone = int(time.monotonic() - self._start)
+            self._watch(gone, int(self.seconds or gone + 1), f"{self.what}, {self._checks} evaluations")
         if self.over:
             raise self.error()
+
+    @contextmanager
+    def shown(self) -> Iterator[None]:
+        """Show a bar on the terminal while the block runs."""
+        with progress_bar(unit="s at most") as watch:
+            self._watch = watch
+            try:
+                yield
+            finally:
+                self._watch = None
 
     def lift(self) -> None:
         """Remove the limit."""

@@ -13,7 +13,7 @@ Progress = Callable[[int, int, str], None]
 
 DELAY = 1.0  # seconds without a bar
 PACE = 0.2  # seconds between two looks
-FORMAT = "{n_fmt} of {total_fmt} steps |{bar}| {desc}"
+FORMAT = "{n_fmt} of {total_fmt} {unit} |{bar}| {desc}"
 
 
 class Steps:
@@ -30,22 +30,23 @@ class Steps:
 
 
 @contextmanager
-def progress_bar(delay: float = DELAY) -> Iterator[Progress | None]:
+def progress_bar(delay: float = DELAY, unit: str = "steps") -> Iterator[Progress | None]:
     """A bar on stderr that appears after `delay` seconds and leaves no trace.
 
     None where stderr is not a terminal or tqdm is not installed.
     """
+    if not sys.stderr.isatty():
+        yield None
+        return
     try:
         with IMPORTS:
             from tqdm import tqdm
     except ModuleNotFoundError:
-        tqdm = None
-    if tqdm is None or not sys.stderr.isatty():
         yield None
         return
     state: list[tuple[int, int, str]] = [(0, 1, "")]
     over = Event()
-    thread = Thread(target=_show, args=(tqdm, state, over, delay), daemon=True)
+    thread = Thread(target=_show, args=(tqdm, state, over, delay, unit), daemon=True)
     thread.start()
     try:
         yield lambda done, total, what: state.__setitem__(0, (done, total, what))
@@ -54,11 +55,12 @@ def progress_bar(delay: float = DELAY) -> Iterator[Progress | None]:
         thread.join()
 
 
-def _show(tqdm: Any, state: list[tuple[int, int, str]], over: Event, delay: float) -> None:
+def _show(tqdm: Any, state: list[tuple[int, int, str]], over: Event, delay: float, unit: str) -> None:
     """Draw the current state until the run ends; in its own thread, since one step can take long."""
     if over.wait(delay):
         return
-    with tqdm(total=state[0][1], bar_format=FORMAT, leave=False, file=sys.stderr, dynamic_ncols=True) as bar:
+    form = FORMAT.replace("{unit}", unit)
+    with tqdm(total=state[0][1], bar_format=form, leave=False, file=sys.stderr, dynamic_ncols=True) as bar:
         while not over.wait(PACE):
             bar.n, bar.total, what = state[0]
             bar.set_description_str(what, refresh=True)

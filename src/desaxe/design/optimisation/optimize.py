@@ -84,6 +84,7 @@ def optimize(
     goals = goals_of(maximize, minimize)
     space = space_of(over, fixed, branch, deadline)
     limits = limits_of({} if keep is None else keep)
-    if len(goals) > 1:
-        return front(goals, space, limits, starts, seed, points)
-    return solved(goals[0], space, limits, starts, seed)
+    with deadline.shown():
+        if len(goals) > 1:
+            return front(goals, space, limits, starts, seed, points)
+        return solved(goals[0], space, limits, starts, seed)

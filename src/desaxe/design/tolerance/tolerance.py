@@ -17,6 +17,7 @@ from ...runtime.request import check_common, check_inputs
 from ...support.checks import whole_number
 from ...support.extras import needed
 from ...support.forks import IMPORTS, imported
+from ...support.progress import Steps, progress_bar
 from ...support.shown import shown
 from ..measures import checked, is_named, unit_of
 from .function import Beside, Function, derived
@@ -104,6 +105,24 @@ def tolerance(
             f"tolerance: every input is exact; give one as dx.plus_minus(value, tolerance){missing}"
         )
     function = _function(name, given, branch)
+    count = samples or (MANY if function.at_point else SOME)
+    covered = float(sigmas) if distribution == "normal" else None
+    with progress_bar() as watch:
+        return _answer(name, function, rough, Steps(3 + bool(sobol), watch), count, sobol, seed, covered)
+
+
+def _answer(
+    name: Any,
+    function: Function,
+    rough: Sequence[Inexact],
+    progress: Steps,
+    count: int,
+    sobol: int,
+    seed: int,
+    covered: float | None,
+) -> Tolerance:
+    """The answer of `tolerance` for inputs that were read; `covered`: the sigmas of a tolerance."""
+    progress.next("derivatives")
     centre = {row.name: row.mean for row in rough}
     value = float(np.reshape(function.values({n: np.array([x]) for n, x in centre.items()}), -1)[0])
     slopes = function.slopes({n: np.array([x]) for n, x in centre.items()})[0]
@@ -111,10 +130,13 @@ def tolerance(
     beside = function.beside(centre, steps)
     bends, exact = function.bends(centre, beside)
     first, second, shares = _propagated(value, slopes, bends, rough)
-    found = _sampled(function, rough, samples or (MANY if function.at_point else SOME), seed)
+    progress.next(f"{count} samples")
+    found = _sampled(function, rough, count, seed)
     drawn = _monte_carlo(found)
-    covered = float(sigmas) if distribution == "normal" else None
+    if sobol:
+        progress.next(f"Sobol indices from {sobol * (len(rough) + 2)} samples")
     indices = _sobol(function, rough, sobol, seed) if sobol else None
+    progress.next("worst case")
     answer = {
         "value": value,
         "gradient": {row.name: float(s) for row, s in zip(rough, slopes, strict=True)},
@@ -127,7 +149,7 @@ def tolerance(
         "agreement": _agreement(first, second, drawn, shares, indices),
         "status": int(_status(value, drawn["infeasible"], beside, bends)),
     }
-    return Tolerance(answer, *_title(name, "omega" in given))
+    return Tolerance(answer, *_title(name, "omega" in (*function.fixed, *function.varying)))
 
 
 def _title(name: Any, state: bool) -> tuple[str, str]:
