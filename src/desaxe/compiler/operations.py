@@ -45,15 +45,15 @@ class Operation(NamedTuple):
         return len(self.signature) - 1
 
 
+_FIELDS = Operation._fields
+COLUMNS = _FIELDS[_FIELDS.index("python") : _FIELDS.index("cost")]  # of languages
+
+
 def _row(
     name: str, signature: str, text: str, precedence: int, cost: float, exact: Callable[..., Any], **more: Any
 ) -> tuple[str, Operation]:
-    python = more.pop("python", text)
-    numba = more.pop("numba", text)
-    javascript, c, jax, octave = (more.pop(column, text) for column in ("javascript", "c", "jax", "octave"))
-    return name, Operation(
-        name, signature, text, precedence, python, numba, javascript, c, jax, octave, cost, exact, **more
-    )
+    more = dict.fromkeys(COLUMNS, text) | more
+    return name, Operation(name, signature, text, precedence, cost=cost, exact=exact, **more)
 
 
 def _power_of_two(mp: Any, a: Any) -> Any:

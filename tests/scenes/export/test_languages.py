@@ -1,11 +1,15 @@
 """Languages other than C at points where formulas lose their digits, and what each has of its own."""
 
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import desaxe as dx
+from desaxe.cli.scene import _COMPILE as COMMAND
+from desaxe.compiler.languages import languages
 from desaxe.oracle.truth import truth
 from tests.compiler.languages.tools import es_module, imported, jax_in_doubles, octave
 from tests.scenes.export.stress import INPUTS, NAMES, broken, columns, rows, scene
@@ -123,6 +127,14 @@ def test_whole_numbers_and_bad_values(module):
     assert float(module.Y(theta=0, **good)) == pytest.approx(dx.evaluate("Y", theta=0.0, **good))
     for change in ({"theta": math.inf}, {"BC": -1.0}, {"AB": math.nan}):
         assert math.isnan(float(module.Y(**{"theta": 1.0, **good, **change})))
+
+
+@pytest.mark.parametrize("language", [language.name for language in languages()])
+def test_people_are_told_of_every_language(language):
+    page = Path(__file__).resolve().parents[3] / "docs" / "languages.md"
+    assert f"| `{language}`" in page.read_text(encoding="utf-8")
+    for text in (dx.compile.__doc__, COMMAND):
+        assert re.search(rf"^ +{language} +\S", text, re.MULTILINE), text
 
 
 # ---- files ----------------------------------------------------------------------------------------
