@@ -104,7 +104,7 @@ def array_of(row: Input, value: Any) -> Array:
 
 
 def number_or_array(row: Input, value: Any) -> Array:
-    """As `array_of`; ValueError for a number that is not finite."""
+    """The array of `array_of`; ValueError for a number that is not finite."""
     array = array_of(row, value)
     if not array.ndim and not np.isfinite(array):
         raise ValueError(f"{row.name} = {shown(value)}: it must be {row.limit}")

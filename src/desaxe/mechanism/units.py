@@ -92,17 +92,17 @@ def _factor(own: str, unit: str) -> Fraction | None:
         return None
 
 
-def unlabelled(name: str, array: Any, wanted: str) -> Any:
-    """The values of a labelled array; a pint quantity if its attribute `units` is not the unit wanted."""
-    unit = array.attrs.get("units", wanted)
-    if unit == wanted or hasattr(array.data, "magnitude"):
+def unlabelled(name: str, array: Any, expected: str) -> Any:
+    """The values of a labelled array; a pint quantity if its attribute `units` is not the expected unit."""
+    unit = array.attrs.get("units", expected)
+    if unit == expected or hasattr(array.data, "magnitude"):
         return array.data
     try:
         return registry().Quantity(array.values, unit)
     except MissingExtraError:
         raise
     except Exception:
-        raise ValueError(f"{name} in {unit!r}: unknown unit; {_wanted(wanted)}") from None
+        raise ValueError(f"{name} in {unit!r}: unknown unit; {_wanted(expected)}") from None
 
 
 def rounded(name: str, text: str, value: Fraction) -> float:
