@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
+from ..loads.angles import dead_centres, repeated
 from ..loads.load import Load
 from ..loads.pieces import Place
 from ..loads.resolve import way_of
@@ -136,13 +137,8 @@ def _dead_centres(designs: Designs) -> list[list[float]]:
     low, high = designs.theta
     if not all(name in designs.columns for name in LENGTHS):
         return [[] for _ in range(designs.size)]
-    ec, AB, BC = (designs.columns[n] for n in LENGTHS)
-    with np.errstate(all="ignore"):
-        sines = np.stack([-ec / (AB + BC), ec / (BC - AB)])
-        angles = np.concatenate([np.arcsin(sines), np.pi - np.arcsin(sines)])
-    turns = 2.0 * np.pi * np.arange(np.floor(low / (2.0 * np.pi)) - 1, np.ceil(high / (2.0 * np.pi)) + 1)
-    every = (angles[:, None, :] + turns[None, :, None]).reshape(-1, ec.size)
-    return [[float(a) for a in column if low <= a <= high] for column in every.T]
+    angles = repeated(dead_centres([designs.columns[n] for n in LENGTHS]), low, high)
+    return [row[np.isfinite(row)].tolist() for row in angles]
 
 
 # ---- what the extrema mean ------------------------------------------------------------------------

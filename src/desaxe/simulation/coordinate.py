@@ -7,10 +7,11 @@ theta = middle + half sin(q), that is a smooth passage through q = pi/2: dtheta/
 1/sqrt(M_eff) does, and beyond it the branch is the other one.
 """
 
-from math import asin, copysign, cos, fsum, inf, nextafter, pi, sin, sqrt
+from math import asin, copysign, cos, inf, nextafter, pi, sin, sqrt
 from typing import NamedTuple
 
-from ..mechanism.closed.limits import theta_intervals
+from ..mechanism.closed.functions import closed_form
+from ..mechanism.closed.limits import LIMITS, theta_intervals
 
 TURN = 2.0 * pi
 EDGE = 1e-13  # rad: a bounded motion goes on, for the integrator, with what holds just before the limit
@@ -72,7 +73,7 @@ def arc_around(theta: float, ec: float, AB: float, BC: float) -> tuple[float, fl
 
 def _between_change_points(ec: float, AB: float, BC: float) -> list[tuple[float, float]]:
     """The arcs between the quarters at which S vanishes; none where it turns fully."""
-    upper, lower = fsum((BC, -AB, -ec)) == 0.0, fsum((BC, -AB, ec)) == 0.0
+    upper, lower = (m == 0.0 for m in closed_form(LIMITS, ("upper", "lower")).point(ec, AB, BC))
     if upper and lower:
         return [(-pi / 2, pi / 2), (pi / 2, 1.5 * pi)]
     if upper or lower:

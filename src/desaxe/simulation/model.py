@@ -1,9 +1,11 @@
 """A design as plain functions of its state, cut from the generated Program."""
 
 from collections.abc import Callable, Mapping, Sequence
-from math import asin, inf, isnan, pi
+from math import isnan
 from typing import Any, NamedTuple
 
+from ..mechanism.closed.dead_centres import DEAD_CENTRES
+from ..mechanism.closed.functions import closed_form
 from ..mechanism.names import CENTRES, LENGTHS
 from ..mechanism.program import Variant
 from ..runtime.kernels import STRUCTURAL_ZEROS
@@ -79,17 +81,12 @@ class Model:
         return kinetic, potential
 
     def dead_centres(self) -> dict[str, float]:
-        """The crank angles at which the slider turns round, by name: rod and crank in line.
-
-        Stretched, (AB + BC) sin(theta) = -ec; folded, (BC - AB) sin(theta) = ec.
-        """
-        ec, AB, BC = (self.values[name] for name in ("ec", "AB", "BC"))
-        if AB == 0.0:
-            return {}
-        sines = {"outer": -ec / (AB + BC), "inner": ec / (BC - AB) if BC != AB else inf}
-        ahead = {"outer": self.sign > 0.0, "inner": self.sign < 0.0}
-        found = {which: sine for which, sine in sines.items() if abs(sine) <= 1.0}
-        return {which: asin(s) if ahead[which] else pi - asin(s) for which, s in found.items()}
+        """The crank angles at which the slider turns round, by name: rod and crank in line."""
+        ec, AB, BC = self.lengths
+        angles = closed_form(DEAD_CENTRES, ("theta_outer", "theta_inner"), branch=self.sign).point(ec, AB, BC)
+        there = {"outer": AB > 0.0, "inner": AB > 0.0 and AB != BC}
+        found = zip(there, angles, strict=True)
+        return {which: angle for which, angle in found if there[which] and not isnan(angle)}
 
     def vanishing(self) -> dict[str, float]:
         """The dead centres at which no inertia is left, because nothing that turns with the crank has any."""
