@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from benchmarks.steps import designs
+from benchmarks.steps import designs, spread
 from tests.effort import cases
 from tests.motions import true_end
 
@@ -27,6 +27,15 @@ def test_a_step_where_one_estimate_vanishes(many):
         found = dx.simulate(t_end=1.0, rtol=rtol, times=[1.0], **START, **design)
         assert abs(found["theta"].item() - theta) < rtol
         assert abs(found["omega"].item() - omega) < 100.0 * rtol
+
+
+@pytest.mark.sampled
+@pytest.mark.parametrize("power", [4, 5, 6, 8, 10])
+def test_the_worst_error_beside_the_usual_one(power):
+    """With one estimate alone some are thousands of times worse."""
+    found = spread(designs(cases(400, 10_000), seed=11), 10.0**-power)
+    assert found["theta"].ratio <= 100.0
+    assert found["omega"].ratio <= 100.0
 
 
 @pytest.mark.sampled
