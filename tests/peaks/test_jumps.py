@@ -217,6 +217,14 @@ def test_nothing_jumps_without_a_jump():
     assert type(dx.peak("T_in", **LOAD, **PRESS, BC=0.3)["side"]) is int
 
 
+def test_between_two_jumps_a_few_angles_apart():
+    """The extremum is on an arc of three doubles: its angle is one of them."""
+    draw = Draw(7313969)
+    found = dx.peak(draw.name, kind=draw.kind, theta=draw.theta, **draw.given)
+    check(draw, found)
+    assert draw.top[0].ends[0] <= found["theta"] <= draw.top[0].ends[1]
+
+
 def test_at_a_dead_centre_that_is_reached_in_one_double_alone():
     design = {"ec": 0.0, "AB": 0.25, "BC": 0.75, "omega0": 1.0, "m_slider": 1.0}
     for x, force in ((1.0, -500.0), (nextafter(1.0, 2.0), 0.0)):  # at 0 the slider is at 1.0 exactly

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..loads.function import FunctionOverTheta
-from ..loads.load import TURN, Load
+from ..loads.load import TURN, Load, OverY
 from ..loads.pieces import Place
 from ..loads.resolve import VARIABLE, Forces, Plan, plan_of, split, way_of, without_loads
 from ..loads.tabulated import over_theta
@@ -77,7 +77,10 @@ def forces_at(
     if plan.motion:
         given = {**dict.fromkeys(MOTION), **{n: numbers.get(n) for n in LENGTHS}, "theta": theta}
         motion = values(list(plan.motion), given, branch, accuracy if accuracy == "extended" else "standard")
-        lengths = [numeric(n, numbers[n], plan.shown) for n in LENGTHS]
+        for name, load in plan.loads.items():
+            if name not in held and isinstance(load, OverY) and load.jumping:
+                own = ((n, numbers[n]) for n in LENGTHS)
+                lengths = [x if type(x) is float else numeric(n, x, plan.shown) for n, x in own]
     speeds = {n: numeric(n, numbers[n], plan.shown) for n in ("omega0", "omega", "alpha") if n in numbers}
     return plan.forces(Place(theta, lengths, way_of(speeds), branch), motion, held)
 

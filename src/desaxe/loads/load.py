@@ -140,6 +140,8 @@ class OverY(Load):
 
     def both(self, Y: Any, way: Any) -> tuple[Any, Any]:
         """The load and its derivative by Y."""
+        if isinstance(Y, float) and isinstance(way, float):
+            return (self.inward if self.inward is not None and way < 0.0 else self.outward).both(Y)
         return self.held(Y, self.piece(Y, way))
 
     def piece(self, Y: Any, way: Any) -> Any:

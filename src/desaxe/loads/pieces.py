@@ -22,19 +22,28 @@ class Place(NamedTuple):
     branch: int
 
 
-def pieces_at(load: OverY, place: Place, motion: Mapping[str, Any]) -> Any:
-    """The number of the piece at each point, from its motion: the values of `POSITION`."""
-    Y, slope, bend = (motion[name] for name in POSITION)
-    if isinstance(Y, float) and isinstance(place.way, float):
-        ahead = slope or bend  # at a dead centre the way that follows
-        found = load.piece(float(Y), float(ahead if place.way >= 0.0 else -ahead))
-        return piece_at(load, place) if load.jumping and _is_open(load, place, Y, slope, found) else found
+def ahead(motion: Mapping[str, Any], way: Any) -> Any:
+    """Negative where the slider goes inward; at a dead centre where it will."""
+    _, slope, bend = (motion[name] for name in POSITION)
+    if isinstance(slope, float) and isinstance(way, float):
+        forward = slope or bend
+        return float(forward if way >= 0.0 else -forward)
     with IMPORTS:
         import numpy as np
 
-    ahead = np.where(np.equal(slope, 0.0), bend, slope)
-    found = load.piece(Y, np.where(np.less(place.way, 0.0), -ahead, ahead))
+    forward = np.where(np.equal(slope, 0.0), bend, slope)
+    return np.where(np.less(way, 0.0), -forward, forward)
+
+
+def pieces_at(load: OverY, place: Place, motion: Mapping[str, Any]) -> Any:
+    """The number of the piece at each point, from its motion: the values of `POSITION`."""
+    Y, slope, found = motion["Y"], motion["Y_wrt_theta"], load.piece(motion["Y"], ahead(motion, place.way))
     still = load.jumping and _is_open(load, place, Y, slope, found)
+    if isinstance(found, int):
+        return piece_at(load, place) if still else found
+    with IMPORTS:
+        import numpy as np
+
     if np.any(still):
         found, still, theta, way, *lengths = np.broadcast_arrays(
             found, still, place.theta, place.way, *place.lengths

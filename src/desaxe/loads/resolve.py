@@ -27,7 +27,7 @@ from ..mechanism.unit_system import UnitSystem
 from ..support.forks import IMPORTS
 from .function import FunctionOverTheta
 from .load import Load, OverTheta, OverY
-from .pieces import POSITION, Place, pieces_at
+from .pieces import POSITION, Place, ahead, pieces_at
 
 VARIABLE = ("F_X", "F_Y")  # inputs that may vary with the motion
 
@@ -137,8 +137,12 @@ class Plan(NamedTuple):
                 known = {"theta": slope}
             else:
                 assert isinstance(load, OverY)
-                piece = held[name] if name in held else pieces_at(load, place, motion)
-                value, by_position = load.held(motion["Y"], piece)
+                if name in held:
+                    value, by_position = load.held(motion["Y"], held[name])
+                elif load.jumping:
+                    value, by_position = load.held(motion["Y"], pieces_at(load, place, motion))
+                else:
+                    value, by_position = load.both(motion["Y"], ahead(motion, place.way))
                 known = {p: by_position * motion[f"Y_wrt_{p}"] for n, p in wanted if n == name}
             values[name] = _finite_or_zero(value)
             slopes.update({(n, p): known[p] for n, p in wanted if n == name})

@@ -96,10 +96,11 @@ def _jumps_over_theta(load: OverTheta, low: float, high: float) -> Array:
 
 def _over_Y(load: OverY, arcs: Arcs | None, designs: Designs) -> _Part:
     lengths = [designs.columns[n] for n in LENGTHS]
-    smooth, bent = (passages(load.positions(s), lengths, designs.branch) for s in (True, False))
+    bent = passages(load.positions(smooth=False), lengths, designs.branch)
     own, turning = (repeated(angles, *designs.theta) for angles in (bent, dead_centres(lengths)))
     kinks = [(own, CROSSING), (turning, TURNING)]
     if arcs is None:
+        smooth = passages(load.positions(smooth=True), lengths, designs.branch)
         return _Part(repeated(smooth, *designs.theta), kinks, [])
     before = np.where(arcs.leaps, np.nextafter(arcs.starts, -inf), np.nan)
     jumps = [(np.where(arcs.turns, arcs.starts, np.nan), TURNING)]

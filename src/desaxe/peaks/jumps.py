@@ -68,7 +68,7 @@ def at_jumps(
 
 
 def _jumps(values: Values, theta: Array) -> dict[int, Jump]:
-    """The jumps next to extrema, by the number of the design; an angle between two is next to neither."""
+    """The jumps next to extrema, by the number of the design; of an angle between two the one before it."""
     angles, kinds = values.course.jumps
     with np.errstate(invalid="ignore"):
         room = BESIDE * np.spacing(np.maximum(np.abs(theta[:, None]), np.abs(angles)))
@@ -78,14 +78,15 @@ def _jumps(values: Values, theta: Array) -> dict[int, Jump]:
     if not rows.size:
         return {}
     starts = angles[rows, places]
-    before, after = (np.array(values.at(2, rows, t)) for t in (np.nextafter(starts, -inf), starts))
+    both = values.at(2, np.tile(rows, 2), np.append(np.nextafter(starts, -inf), starts))
+    before, after = np.split(np.array(both), 2, axis=1)
     value, slope = np.maximum(np.abs(before), np.abs(after))
     apart = ~(np.abs(before - after)[0] <= EQUAL * value + slope * ROUNDED * np.spacing(1.0 + np.abs(starts)))
     found: dict[int, dict[int, Jump]] = {}
     for row, place, start in zip(rows[apart].tolist(), places[apart], starts[apart].tolist(), strict=True):
         jump = Jump(start, -1 if theta[row] < start else 1, int(kinds[place]))
         found.setdefault(row, {})[jump.side] = jump
-    return {row: next(iter(own.values())) for row, own in found.items() if len(own) == 1}
+    return {row: own.get(1) or own[-1] for row, own in found.items()}
 
 
 def _nearest(values: Values, row: int, jump: Jump) -> float:

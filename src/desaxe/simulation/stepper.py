@@ -3,7 +3,8 @@
 Step control, error norm and dense output are those of E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
 Differential Equations I, section II, as `dop853` has them for many designs, but for two guards against a
 step whose estimate is small by accident: a second estimate (`_error`), and no step is longer than either of
-the last two suggests; in a long motion a step has a smaller share of the tolerance (`share_of`). `python -m benchmarks.steps` measures what they are worth.
+the last two suggests; in a long motion a step has a smaller share of the tolerance (`share_of`).
+`python -m benchmarks.steps` measures what they are worth.
 """
 
 from collections.abc import Callable
