@@ -1,5 +1,6 @@
 """All kinds of trials."""
 
-from tests.reliability import cache, files, forks, hostile, memory, processes
+from tests.reliability import cache, files, forks, hostile, memory, processes, stores
 
-TRIALS = [*files.TRIALS, *cache.TRIALS, *processes.TRIALS, *forks.TRIALS, *hostile.TRIALS, *memory.TRIALS]
+KINDS = (files, cache, processes, forks, hostile, memory, stores)
+TRIALS = [trial for kind in KINDS for trial in kind.TRIALS]

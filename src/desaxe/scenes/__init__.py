@@ -21,6 +21,7 @@ stored       a scene as a sweep into its store
 sweep        `desaxe.sweep`
 kernel       the kernel of a scene's grid
 files        NetCDF, Zarr, CSV, npz
+quiet_store  a folder of zarr in which the first error ends the writing
 report       the result as text
 explain/     what a scene will do before it does it
 export/      a scene as a module of its own

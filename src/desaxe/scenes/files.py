@@ -97,14 +97,15 @@ def _netcdf(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Da
 
 
 def _zarr(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:
-    for group, part in _parts(values, groups):
-        part.to_zarr(path, mode="a" if path.exists() else "w", group=group, consolidated=False)
     with IMPORTS:
         from ..sweeps.skeleton import CONSOLIDATED
+        from .quiet_store import quiet_store
 
-    with warnings.catch_warnings():
+    with quiet_store(path) as store, warnings.catch_warnings():
+        for group, part in _parts(values, groups):
+            part.to_zarr(store, mode="a" if path.exists() else "w", group=group, consolidated=False)
         warnings.filterwarnings("ignore", message=CONSOLIDATED)
-        imported("zarr").consolidate_metadata(path)  # what xarray looks for when it opens the store
+        imported("zarr").consolidate_metadata(store)  # what xarray looks for when it opens the store
 
 
 def _csv(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:

@@ -40,9 +40,12 @@ class Layout(NamedTuple):
         """The number of chunks in flight that fit into this memory, at least one."""
         return max(1, (memory or DEFAULT_MEMORY) // self.in_flight)
 
-    def cut(self, chunk: str) -> "Layout":
-        """The layout with the chunks of an existing store, from its attribute."""
-        return self._replace(chunk={name: int(length) for name, length in json.loads(chunk).items()})
+    def cut(self, chunk: Any) -> "Layout":
+        """The layout with the chunks of an existing store, from its attribute; ValueError for others."""
+        names = table_of(chunk)
+        if set(names) != set(self.sizes) or not all(type(n) is int and n > 0 for n in names.values()):
+            raise ValueError(f"its chunks are {shown(chunk)}")
+        return self._replace(chunk={name: names[name] for name in self.sizes})
 
     def require_memory(self, memory: int | None) -> None:
         """MemoryError where a chunk takes more memory than is allowed."""
@@ -106,3 +109,12 @@ def size_text(count: float) -> str:
 def shape_text(chunk: Mapping[str, int]) -> str:
     """The shape of a chunk as text."""
     return " x ".join(f"{length} {name}" for name, length in chunk.items()) or "one point"
+
+
+def table_of(value: Any) -> dict[str, Any]:
+    """A table, or the text of one; empty for anything else, as in a damaged store."""
+    try:
+        found = json.loads(value) if isinstance(value, str) else value
+    except (ValueError, RecursionError):
+        return {}
+    return dict(found) if isinstance(found, Mapping) else {}

@@ -53,8 +53,11 @@ def kept_at(root: Path, told: Mapping[str, str], overwrite: bool) -> dict[str, A
 def require_place(sweep: Sweep, root: Path, overwrite: bool, memory: int | None) -> Sweep | None:
     """The sweep with the chunks of the store to go on with; None where a store is to be made."""
     there = kept_at(root, {**sweep.identity, CHUNKS: json.dumps(sweep.layout.chunk)}, overwrite)
-    kept = None if there is None else sweep._replace(layout=sweep.layout.cut(there[CHUNKS]))
-    changed = [] if kept is None else _compared(kept, root).changed
+    try:
+        kept = None if there is None else sweep._replace(layout=sweep.layout.cut(there.get(CHUNKS)))
+        changed = [] if kept is None else _compared(kept, root).changed
+    except ValueError as error:
+        kept, changed = None, [str(error)]
     _refuse_changed(root, changed, overwrite)
     if kept is None or changed:
         sweep.layout.require_memory(memory)
@@ -99,9 +102,13 @@ def placed_search(search: Search, root: Path, overwrite: bool) -> Search:
     """Create a store for the best designs, or check the existing one; return the search with its chunks."""
     told = {**search.identity, CHUNKS: json.dumps(search.layout.chunk)}
     there = kept_at(root, told, overwrite)
-    changed = [] if there is None else as_signed(root)[1]
+    try:
+        kept = None if there is None else search._replace(layout=search.layout.cut(there.get(CHUNKS)))
+        changed = [] if kept is None else as_signed(root)[1]
+    except ValueError as error:
+        kept, changed = None, [str(error)]
     _refuse_changed(root, changed, overwrite)
-    if there is None or changed:
+    if kept is None or changed:
         import_xarray()
         with IMPORTS:
             import xarray
@@ -110,7 +117,7 @@ def placed_search(search: Search, root: Path, overwrite: bool) -> Search:
         with free_for(root) as replace:
             create(root, skeleton_of(empty, {}), replace)
         return search
-    return search._replace(layout=search.layout.cut(there[CHUNKS]))
+    return kept
 
 
 def clear(root: Path) -> None:

@@ -12,6 +12,7 @@ from ..evaluation.outer import Outer
 from ..evaluation.reductions import Reductions
 from ..mechanism.program import digest
 from ..support.version import version as desaxe_version
+from .layout import table_of
 from .peaks import PeakRequest
 
 IDENTITY = ("request", "version", "digest")
@@ -71,12 +72,8 @@ def differences(there: Mapping[str, Any], here: Mapping[str, str]) -> list[str]:
         for name in ("version", "digest")
         if there.get(name) != here[name]
     ]
-    try:
-        old = json.loads(there.get("request", ""))
-    except (TypeError, ValueError):
-        old = {}
-    new = json.loads(here["request"])
-    old_inputs, new_inputs = old.pop("inputs", {}), new.pop("inputs")
+    old, new = table_of(there.get("request")), table_of(here["request"])
+    old_inputs, new_inputs = (table_of(request.pop("inputs", None)) for request in (old, new))
     for part, other in ((old, new), (old_inputs, new_inputs)):
         lines += [
             f"{name} is {_shown(part.get(name))} there and {_shown(other.get(name))} here"
@@ -89,9 +86,10 @@ def differences(there: Mapping[str, Any], here: Mapping[str, str]) -> list[str]:
 def _shown(value: Any) -> str:
     if value is None:
         return "not given"
-    if isinstance(value, Mapping) and "load" in value:
-        return f"{value['load']} (sha256 {value['sha256'][:8]})"
-    if isinstance(value, Mapping) and "sha256" in value:
-        ends = f" from {value['from']!r} to {value['to']!r}" if "from" in value else ""
-        return f"{value['values']} values{ends} (sha256 {value['sha256'][:8]})"
-    return json.dumps(value)
+    if not isinstance(value, Mapping) or "sha256" not in value:
+        return json.dumps(value)
+    digest = f"(sha256 {str(value['sha256'])[:8]})"
+    if "load" in value:
+        return f"{value['load']} {digest}"
+    ends = f" from {value['from']!r} to {value.get('to')!r}" if "from" in value else ""
+    return f"{value.get('values')} values{ends} {digest}"

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..support.extras import explained
 from ..support.interrupts import put_off
+from .layout import table_of
 
 with put_off(), explained("a sweep"):
     import zarr
@@ -69,7 +70,7 @@ def skeleton_of(template: "xr.Dataset", chunk: Mapping[str, int]) -> dict[str, b
 def signed(files: Mapping[str, bytes]) -> dict[str, bytes]:
     """The files of a whole store, with their digests as an attribute."""
     group = json.loads(files[METADATA])
-    told = {place: _digest(data) for place, data in files.items() if place != METADATA}
+    told = {place: _digest(files[place]) for place in sorted(files) if place != METADATA}
     group["attributes"][FILES] = json.dumps(told)
     return {**files, METADATA: as_json(group)}
 
@@ -77,8 +78,9 @@ def signed(files: Mapping[str, bytes]) -> dict[str, bytes]:
 def as_signed(root: Path) -> tuple[bool, list[str]]:
     """True if a signed store has all its files, and the metadata that have changed since."""
     group = _facts((root / METADATA).read_bytes()) or {}
-    whole, changed = True, []
-    for place, digest in json.loads(group.get(f"attributes.{FILES}", "{}")).items():
+    digests = table_of(group.get(f"attributes.{FILES}"))
+    whole, changed = bool(digests), []
+    for place, digest in digests.items():
         data = _bytes(root / place)
         facts = _facts(data) if place.endswith(METADATA) else None
         as_written = data is not None and _digest(data) == digest

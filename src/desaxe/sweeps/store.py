@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[Any]
 PARTIAL = ".partial"
+HELD = "another sweep is writing this store"
 
 
 class DurableStore(LocalStore):
@@ -61,6 +62,8 @@ def write_durably(path: Path, data: bytes) -> None:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
+        with suppress(OSError):
+            path.rmdir()  # an empty folder in its place
         os.replace(partial, path)
     except BaseException as error:
         with suppress(OSError):
@@ -86,20 +89,30 @@ def sync(folder: Path) -> None:
 def create(root: Path, files: Mapping[str, bytes], replace: bool) -> None:
     """Create a store of these files; `replace` an existing one.
 
-    FileExistsError where there is one and it may not be replaced.
+    BlockingIOError where there is one and it may not be replaced.
     """
     with staging(root.parent) as folder:
         staged = folder / root.name
         put(staged, files)
         sync_folders(staged)
         if not replace:
-            if root.exists():
-                raise FileExistsError(f"{printable(root)}: it is there already")
-            os.rename(staged, root)
+            _rename(staged, root)
         elif not exchange(staged, root):
             shutil.rmtree(root)
             os.rename(staged, root)
         sync(root.parent)
+
+
+def _rename(staged: Path, root: Path) -> None:
+    """Put a store where there was none; BlockingIOError where another sweep has put one meanwhile."""
+    try:
+        if os.path.lexists(root):
+            raise FileExistsError(f"{printable(root)}: it is there already")
+        os.rename(staged, root)
+    except OSError:
+        if attributes(root) is None:
+            raise
+        raise BlockingIOError(f"{printable(root)}: {HELD}") from None
 
 
 def put(root: Path, files: Mapping[str, bytes]) -> None:
@@ -117,6 +130,8 @@ def write_whole(root: Path, dataset: "xr.Dataset") -> None:
 def attributes(root: Path) -> dict[str, Any] | None:
     """The attributes of the store in a folder; None where there is no Zarr store."""
     try:
+        if not (root / METADATA).is_file():
+            return None
         found = json.loads((root / METADATA).read_text(encoding="utf-8"))
         return dict(found["attributes"]) if found["node_type"] == "group" else None
     except (OSError, ValueError, KeyError, TypeError):
@@ -139,7 +154,7 @@ def held(root: Path) -> Iterator[None]:
         with locked(root, wait=0.0):
             yield
     except TimeoutError:
-        raise BlockingIOError(f"{printable(root)}: another sweep is writing this store") from None
+        raise BlockingIOError(f"{printable(root)}: {HELD}") from None
 
 
 # ---- chunks --------------------------------------------------------------------------------------
