@@ -129,9 +129,11 @@ is folded in; its lists and ranges are the arguments.
   octave      name.m, for GNU Octave and MATLAB
   jax         a Python module over jax.numpy, with exact derivatives
   javascript  an ES module and its types
+  fmu         NAME.fmu, a Functional Mock-up Unit with its sources (extra fmu)
 
 examples:
   desaxe compile my_press.toml -o my_kernels.py
+  desaxe compile my_press.toml --to fmu -o press.fmu
   desaxe compile my_press.toml --to c -o press
   desaxe compile my_press.toml --to c -o press --check"""
 
@@ -147,6 +149,10 @@ def add_compile(commands: Any) -> None:
         action="store_true",
         help="C without libm: elementary functions of its own, for bare metal",
     )
+    parser.add_argument("--fmi", type=int, choices=(3, 2), default=3, help="version of an FMU (default: 3)")
+    parser.add_argument(
+        "--input", choices=("torque", "omega"), default="torque", help="what drives an FMU (default: torque)"
+    )
     parser.add_argument(
         "--check", action="store_true", help="write nothing; exit 1 and show a diff if files are not fresh"
     )
@@ -157,8 +163,9 @@ def _compile(options: argparse.Namespace) -> int:
     from ..scenes.export.command import run_compile
 
     return run_compile(
-        options.scene, options.place, options.to, not options.no_libm, options.check, options.overwrite
-    )
+        options.scene, options.place, options.to, not options.no_libm, options.check, options.overwrite,
+        options.fmi, options.input,
+    )  # fmt: skip
 
 
 _EXPLORE = """\

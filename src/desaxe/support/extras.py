@@ -20,6 +20,7 @@ EXTRAS = {
     "tqdm": "scene",
     "plotly": "explore",
     "xlsxwriter": "excel",
+    "fmpy": "fmu",
     "scipy": "simulate",
     "SALib": "design",
     "flint": "rigorous",

@@ -3,15 +3,24 @@
 import difflib
 import sys
 from pathlib import Path
+from zipfile import ZipFile
 
 from ...support.shown import printable
+from ..scene import Scene
 from ..scene import scene as scene_of
-from .compile import compile, lost_of, texts_of
+from .compile import compile, lost_of, require_fmu, texts_of
+from .fmu.write import stale_fmu, write_fmu
 
 
-def run_compile(source: str, place: str, to: str, libm: bool, check: bool, overwrite: bool) -> int:
+def run_compile(
+    source: str, place: str, to: str, libm: bool, check: bool, overwrite: bool, fmi: int, drive: str
+) -> int:
     """Write the files, or with `check` compare them; return the exit status."""
     scene = scene_of(source)
+    if to == "fmu":
+        return _run_fmu(scene, source, Path(place), libm, check, overwrite, fmi, drive)
+    if (fmi, drive) != (3, "torque"):
+        raise ValueError("--fmi and --input are for --to fmu")
     texts = texts_of(scene, Path(place), to, libm)
     if check:
         return _compare(texts, source, place)
@@ -21,6 +30,25 @@ def run_compile(source: str, place: str, to: str, libm: bool, check: bool, overw
     lost = lost_of(scene.content, to)
     if lost:
         print(f"not compiled (`desaxe run` has it): {', '.join(lost)}", file=sys.stderr)
+    return 0
+
+
+def _run_fmu(
+    scene: Scene, source: str, place: Path, libm: bool, check: bool, overwrite: bool, fmi: int, drive: str
+) -> int:
+    require_fmu(place, libm)
+    if check:
+        stale = stale_fmu(scene, place, fmi, drive)
+        if stale:
+            told = f"{printable(place)} is not what {printable(source)} gives ({', '.join(stale)})"
+            print(f"{told}: write it again without --check", file=sys.stderr)
+            return 1
+        print(f"{printable(place)}: fresh")
+        return 0
+    write_fmu(scene, place, fmi, drive, overwrite)
+    with ZipFile(place) as archive:
+        names = ", ".join(archive.namelist())
+    print(f"{printable(place)}: FMI {fmi}.0, {names}")
     return 0
 
 

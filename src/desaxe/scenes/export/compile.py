@@ -18,6 +18,7 @@ from ..content import Content
 from ..scene import Scene
 from ..scene import scene as scene_of
 from ..schema import SceneError
+from .fmu.write import stale_fmu, write_fmu
 from .numba_module import text_of
 from .peaks import left_out_of_module
 from .portable import Order, left_out, module_of
@@ -31,6 +32,8 @@ def compile(
     libm: bool = True,
     check: bool = False,
     overwrite: bool = False,
+    fmi: int = 3,
+    input: str = "torque",
 ) -> Path:
     """Write the outputs of a scene as source code of its own, which needs nothing of desaxe.
 
@@ -47,6 +50,8 @@ def compile(
     jax         a module with a function for each output and `evaluate(**inputs)`; its derivatives are the
                 derived ones
     javascript  an ES module and its types
+    fmu         FILE.fmu, a Functional Mock-up Unit (extra `fmu`): model exchange and co-simulation of
+                FMI 3.0, or with `fmi=2` 2.0. A torque moves the crank; `input="omega"`: its speed is given
 
     A path that ends as the language's files do is the file; any other is a folder, whose last part is the
     name. `libm=False` (c) writes elementary functions of its own. The same scene gives the same bytes;
@@ -63,11 +68,16 @@ def compile(
     See docs/choose.md: which call for which question.
     """
     place = as_path("path", path)
-    texts = texts_of(scene if isinstance(scene, Scene) else scene_of(scene), place, to, libm)
+    given = scene if isinstance(scene, Scene) else scene_of(scene)
+    if to == "fmu":
+        require_fmu(place, libm)
+        if not check:
+            return write_fmu(given, place, fmi, input, overwrite)
+    texts = {} if to == "fmu" else texts_of(given, place, to, libm)
     if check:
-        stale = differing(texts)
+        stale = stale_fmu(given, place, fmi, input) if to == "fmu" else differing(texts)
         if stale:
-            names = ", ".join(file.name for file in stale)
+            names = ", ".join(Path(file).name for file in stale)
             raise ValueError(f"{printable(place)}: not what the scene gives ({names}); write it again")
         return place
     for file in texts:
@@ -76,6 +86,15 @@ def compile(
         with replacing_ours(file, overwrite) as staged:
             staged.write_bytes(text.encode())
     return place
+
+
+def require_fmu(place: Path, libm: bool = True) -> None:
+    """ValueError for the place of an FMU that is not NAME.fmu, and for an option that it does not have."""
+    if place.suffix != ".fmu":
+        raise ValueError(f"{printable(place)}: the file of an FMU is called NAME.fmu")
+    if not libm:
+        raise ValueError("libm=False is for c: an FMU is compiled with the C library")
+    require_name(place.stem, place, words_of("c").modules)
 
 
 def texts_of(scene: Scene, place: Path, to: str = "numba", libm: bool = True) -> dict[Path, str]:

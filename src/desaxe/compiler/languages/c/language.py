@@ -60,7 +60,7 @@ def _header(module: Module) -> str:
     ]
     return "\n".join(
         [
-            _comment([*module.head, "", *listed]),
+            comment([*module.head, "", *listed]),
             f"#ifndef {guard}",
             f"#define {guard}",
             "",
@@ -125,7 +125,9 @@ def _table(array: str, symbols: Iterable[Symbol]) -> list[str]:
     ]
 
 
-def _comment(lines: Iterable[str]) -> str:
+def comment(lines: Iterable[str]) -> str:
+    """A comment of these lines."""
+
     def row(line: str) -> str:
         indent = line[: len(line) - len(line.lstrip())]
         return f" * {indent}{one_line(line)}".rstrip()
@@ -164,12 +166,12 @@ class _Source:
         steps = [] if motion is None else step_texts(name, motion, self.names)
         functions = "\n".join([*self._forms(), self._point(), self._array(), *self._solvers(), *steps])
         tables = [
-            f"const char *const {name}_{table}[] = {{{', '.join([*map(_quoted, texts), 'NULL'])}}};"
+            f"const char *const {name}_{table}[] = {{{', '.join([*map(quoted, texts), 'NULL'])}}};"
             for table, texts in _tables(self.module).items()
         ]
         return "\n".join(
             [
-                _comment(self.module.head),
+                comment(self.module.head),
                 f'#include "{name}.h"',
                 *(["#include <stdint.h>"] if self.freestanding else ["#include <math.h>"]),
                 "",
@@ -363,6 +365,11 @@ def _loop(call: str, given: str, results: list[str], indent: int) -> list[str]:
     ]
 
 
+def sine_and_cosine(constants: Trigonometry) -> str:
+    """`sin_cos(x, out)`, with what it calls, by libm beyond the limit."""
+    return f"{_near_sin_cos(constants)}\n{_sin_cos(repr(constants.limit), False)}"
+
+
 def _near_sin_cos(constants: Trigonometry) -> str:
     """`near_sin_cos(x, out)`: sine and cosine, written out."""
     lines = (Line("sine", "sin", ("x",)), Line("cosine", "cos", ("x",)))
@@ -391,5 +398,6 @@ def _sin_cos(limit: str, freestanding: bool) -> str:
     )
 
 
-def _quoted(text: str) -> str:
+def quoted(text: str) -> str:
+    """A text as a C string."""
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'

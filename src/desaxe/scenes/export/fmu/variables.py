@@ -1,0 +1,120 @@
+"""The variables of an FMU: a value reference is a place in this table, and in the array of the C source."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from ....mechanism.catalogue import quantity
+from ....mechanism.inputs import INPUTS
+from ....mechanism.names import CENTRES, LENGTHS
+from ...content import Content
+from ...schema import SceneError
+from ..motion import MASSES
+
+FIXED = (*LENGTHS, *MASSES, *CENTRES, "g_X", "g_Y", "mu")  # parameters, in their order
+FORCES = ("F_X", "F_Y")
+NOMINAL = 1e-3  # of both states: below a thousandth an importer counts errors absolutely, as `simulate` does
+
+
+class Variable(NamedTuple):
+    """A variable with its role in the standard's words; `start` is None where it is calculated."""
+
+    name: str
+    unit: str
+    meaning: str
+    causality: str
+    variability: str = "continuous"
+    start: float | None = None
+    derivative: str = ""  # of which variable it is the derivative
+    whole: bool = False  # a whole number
+
+
+class Variables(NamedTuple):
+    """All variables, and the names of those that have a role."""
+
+    rows: tuple[Variable, ...]
+    parameters: tuple[str, ...]
+    inputs: tuple[str, ...]
+    states: tuple[str, ...]
+    outputs: tuple[str, ...]
+    indicators: tuple[str, ...]
+
+    @property
+    def place(self) -> dict[str, int]:
+        """Name -> value reference."""
+        return {row.name: index for index, row in enumerate(self.rows)}
+
+
+def variables(content: Content, drive: str) -> Variables:
+    """The variables of a scene; `drive` is torque or omega."""
+    given, moves = content.inputs, drive == "torque"
+    check_outputs(content.outputs)
+    parameters = [_parameter(n, first(given, n)) for n in FIXED if n not in CENTRES or n in given]
+    parameters.append(
+        Variable("theta0", "rad", "crank angle at the start", "parameter", "fixed", first(given, "theta"))
+    )
+    speed = first(given, "omega" if "omega" in given else "omega0")
+    if moves:
+        parameters.append(
+            Variable("omega_start", "rad/s", "crank speed at the start", "parameter", "fixed", speed)
+        )
+    driven = {
+        "torque": Variable("torque", "N*m", "torque on the crank, positive like theta", "input", start=0.0),
+        "omega": Variable("omega", "rad/s", "angular speed of the crank", "input", start=speed),
+    }[drive]
+    inputs = [driven, *(Variable(n, "N", INPUTS[n].meaning, "input", start=first(given, n)) for n in FORCES)]
+    motion = [Variable("theta", "rad", "crank angle, from the slider axis", _role("theta", content))]
+    if moves:
+        motion.append(Variable("omega", "rad/s", "angular speed of the crank", _role("omega", content)))
+        motion.append(Variable("der(theta)", "rad/s", "rate of theta", "local", derivative="theta"))
+        motion.append(Variable("der(omega)", "rad/s^2", "angular acceleration", "local", derivative="omega"))
+    taken = {row.name for row in (*parameters, *inputs, *motion)}
+    own = next((n for n in content.outputs if n in taken - {"theta", "omega"} or n == "time"), None)
+    if own is not None:
+        raise SceneError(f"outputs: {own!r}: an FMU has a variable of this name; give the quantity another")
+    outputs = [_output(name) for name in dict.fromkeys(content.outputs) if name not in taken]
+    count = 3 if moves else 2
+    zeros = [
+        Variable(f"event_indicator[{k}]", "1", "positive until an event", "local")
+        for k in range(1, count + 1)
+    ]
+    time = Variable("time", "s", "time", "independent")
+    return Variables(
+        (time, *parameters, *inputs, *motion, *outputs, *zeros),
+        tuple(row.name for row in parameters),
+        tuple(row.name for row in inputs),
+        ("theta", "omega") if moves else (),
+        tuple(row.name for row in outputs),
+        tuple(row.name for row in zeros),
+    )
+
+
+def check_outputs(names: tuple[str, ...]) -> None:
+    """SceneError for an output that a given state does not have."""
+    for name in names:
+        try:
+            quantity(name, True)
+        except ValueError as error:
+            raise SceneError(
+                f"outputs: {name!r}: an FMU has a given state, theta and omega: {error}"
+            ) from None
+
+
+def first(given: Mapping[str, Any], name: str) -> float:
+    """A number of the scene, or the first of a list; 0 without."""
+    value = given.get(name, 0.0)
+    return float(value[0] if isinstance(value, tuple) else value)
+
+
+def _parameter(name: str, value: float) -> Variable:
+    return Variable(name, INPUTS[name].unit, INPUTS[name].meaning, "parameter", "fixed", value)
+
+
+def _role(name: str, content: Content) -> str:
+    return "output" if name in content.outputs else "local"
+
+
+def _output(name: str) -> Variable:
+    row = quantity(name, True)
+    if name == "status":
+        return Variable(name, "1", row.meaning, "output", "discrete", whole=True)
+    return Variable(name, row.unit, row.meaning or name, "output")

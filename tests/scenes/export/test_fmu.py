@@ -1,0 +1,344 @@
+"""FMUs: what fmpy says of them, their motion beside `simulate`, partial derivatives, messages, events."""
+
+import itertools
+import math
+import random
+import zipfile
+from concurrent.futures import ThreadPoolExecutor
+
+import mpmath
+import numpy as np
+import pytest
+
+import desaxe as dx
+from desaxe.oracle.force_truth import truth
+from tests.compiler.languages.tools import CPLUSPLUS, STRICT, run, tool
+from tests.effort import cases
+
+fmpy = pytest.importorskip("fmpy")
+
+LENGTHS = {"ec": 0.01, "AB": 0.04, "BC": 0.1}
+MASSES = {"m_slider": 0.4, "m_rod": 0.2, "I_crank": 2e-3}
+LOADS = {"F_Y": -20.0, "g_Y": -9.81}
+OUTPUTS = ("V_C", "a_C", "T_in", "N_C", "kinetic_energy", "a_C_wrt_ec", "N_C_wrt_AB", "status")
+DRIVEN = {"torque": 1.5, "omega": 7.0}
+
+
+def content(branch=1, **more):
+    return {
+        "outputs": list(OUTPUTS),
+        "mechanism": {**LENGTHS, "branch": branch},
+        "motion": {"theta": 0.3, "omega": 5.0},
+        "masses": MASSES,
+        "loads": LOADS,
+        **more,
+    }
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """(fmi, input) -> the FMU of the scene above."""
+    folder = tmp_path_factory.mktemp("fmu")
+
+    def one(fmi, drive):
+        place = folder / f"{drive}{fmi}" / "press.fmu"
+        if not place.exists():
+            place.parent.mkdir()
+            dx.compile(content(), place, to="fmu", fmi=fmi, input=drive)
+        return str(place)
+
+    return one
+
+
+CASES = [(fmi, drive) for fmi in (3, 2) for drive in ("torque", "omega")]
+
+
+class Instance:
+    """An instance of an FMU, in initialisation mode; `self.log` has its messages."""
+
+    def __init__(self, place, kind="ModelExchange", start=None):
+        from fmpy import extract, read_model_description
+        from fmpy.fmi2 import FMU2Model, FMU2Slave
+        from fmpy.fmi3 import FMU3Model, FMU3Slave
+
+        self.about = read_model_description(place)
+        self.fmi = 3 if self.about.fmiVersion.startswith("3") else 2
+        self.refs = {v.name: v.valueReference for v in self.about.modelVariables}
+        self.log = []
+        classes = {3: (FMU3Model, FMU3Slave), 2: (FMU2Model, FMU2Slave)}[self.fmi]
+        self.fmu = classes[kind != "ModelExchange"](
+            guid=self.about.guid or self.about.instantiationToken,
+            unzipDirectory=extract(place),
+            modelIdentifier="press",
+            instanceName="one",
+        )
+        self.kind = kind
+        if self.fmi == 3:
+            from fmpy.fmi3 import fmi3LogMessageCallback
+
+            self.keep = fmi3LogMessageCallback(lambda *a: self.log.append(a[-1].decode()))
+            self.fmu.instantiate(logMessage=self.keep)
+        else:
+            self.fmu.instantiate()
+            self.fmu.setupExperiment(startTime=0.0)
+        self.set(**(start or {}))
+        self.fmu.enterInitializationMode()
+
+    def set(self, **values):
+        places = [self.refs[name] for name in values]
+        (self.fmu.setFloat64 if self.fmi == 3 else self.fmu.setReal)(places, list(values.values()))
+
+    def get(self, *names):
+        places = [self.refs[name] for name in names]
+        return list((self.fmu.getFloat64 if self.fmi == 3 else self.fmu.getReal)(places))
+
+    def slopes(self, of, by):
+        """The partial derivatives: a row for each of the unknowns."""
+        call = self.fmu.getDirectionalDerivative
+        of, by = [self.refs[name] for name in of], [self.refs[name] for name in by]
+        return np.array([call(of, [place], [1.0]) for place in by]).T
+
+    def start(self):
+        self.fmu.exitInitializationMode()
+        if self.kind == "ModelExchange":
+            (self.fmu.updateDiscreteStates if self.fmi == 3 else self.fmu.newDiscreteStates)()
+            self.fmu.enterContinuousTimeMode()
+        return self
+
+    def close(self):
+        self.fmu.freeInstance()
+
+
+@pytest.mark.parametrize(("fmi", "drive"), CASES)
+def test_fmpy_finds_no_problem(fmi, drive, made):
+    """Schema, names, units, roles, structure; the sources are clean under the flags of embedded projects."""
+    from fmpy.validation import validate_fmu
+
+    place = made(fmi, drive)
+    assert validate_fmu(place) == []
+    with zipfile.ZipFile(place) as archive:
+        folder = place.removesuffix("press.fmu")
+        source = archive.extract("sources/press.c", folder)
+    headers = f"{fmpy.__path__[0]}/c-code"
+    for compiler, flags in (("gcc", STRICT), ("clang", STRICT), ("g++", CPLUSPLUS)):
+        run(tool(compiler), *flags, f"-I{headers}", "-fsyntax-only", source)
+
+
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+@pytest.mark.parametrize("fmi", [3, 2])
+def test_the_motion_is_that_of_simulate(fmi, kind, made):
+    names = ["theta", "omega", *OUTPUTS[:5]]
+    found = fmpy.simulate_fmu(
+        made(fmi, "torque"), fmi_type=kind, start_values={"torque": 1.5}, stop_time=0.1, output_interval=0.01,
+        relative_tolerance=1e-10, output=[*names, "status"],
+    )  # fmt: skip
+    times = found["time"]
+    fixed = {**LENGTHS, **MASSES, **LOADS}
+    wanted = dx.simulate(
+        torque=1.5, t_end=0.1, theta0=0.3, omega_start=5.0, times=times, names=OUTPUTS[:5], **fixed
+    )
+    for name in names:
+        scale = np.abs(wanted[name]).max()
+        np.testing.assert_allclose(found[name], wanted[name], rtol=0, atol=1e-8 * scale, err_msg=name)
+    assert (found["status"] == 0).all()
+
+
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+@pytest.mark.parametrize("fmi", [3, 2])
+def test_a_given_speed(fmi, kind, made):
+    """The outputs are those of `evaluate` at the angle that the speed has led to."""
+    found = fmpy.simulate_fmu(
+        made(fmi, "omega"), fmi_type=kind, start_values={"omega": 7.0, "theta0": 1.0}, stop_time=0.5,
+        output_interval=0.05, output=["theta", *OUTPUTS[:5]],
+    )  # fmt: skip
+    theta = 1.0 + 7.0 * found["time"]
+    np.testing.assert_allclose(found["theta"], theta, rtol=1e-12)
+    wanted = dx.evaluate(
+        OUTPUTS[:5], theta=found["theta"], omega=7.0, alpha=0.0, **LENGTHS, **MASSES, **LOADS
+    )
+    for name in OUTPUTS[:5]:
+        np.testing.assert_allclose(found[name], wanted[name], rtol=1e-11, atol=1e-12)
+
+
+# ---- partial derivatives --------------------------------------------------------------------------
+
+ROWS = ("der(omega)", *OUTPUTS[:7])
+AT = {**LENGTHS, "m_crank": 0.0, **MASSES, "I_rod": 0.0, "g_X": 0.0, "g_Y": -9.81, "F_X": 0.0, "F_Y": -20.0}
+
+
+def exact(name, torque, theta, omega, **given):
+    """An output by the raw loop closure and the free bodies: without friction all are affine in alpha."""
+    there = {"theta": theta, "omega": omega, **given}
+
+    def parts(name):
+        still, more = (truth(name, alpha=alpha, **there) for alpha in (0.0, 1.0))
+        return still, more - still
+
+    static, inertia = parts("T_in")
+    alpha = (mpmath.mpf(torque) - static) / inertia
+    if name == "der(omega)":
+        return alpha
+    still, by_alpha = parts(name)
+    return still + alpha * by_alpha
+
+
+def difference(name, by, at):
+    """The derivative from central differences at 60 digits, extrapolated four times."""
+    with mpmath.workdps(60):
+        size = 2.0 ** math.floor(math.log2(max(abs(at[by]), 1e-3)))
+        steps = [2.0**-k * size for k in (9, 10, 11, 12)]
+        ends = [[exact(name, **{**at, by: at[by] + side * h}) for side in (1, -1)] for h in steps]
+        found = [(up - down) / (2 * h) for (up, down), h in zip(ends, steps, strict=True)]
+        for order in range(1, len(steps)):
+            found = [(4**order * b - a) / (4**order - 1) for a, b in itertools.pairwise(found)]
+        return float(found[0])
+
+
+@pytest.mark.parametrize("fmi", [3, 2])
+def test_partial_derivatives(fmi, made):
+    """By states and inputs while time runs, by parameters in initialisation mode."""
+    one = Instance(made(fmi, "torque"), start={"torque": 1.5})
+    at = {"torque": 1.5, "theta": 0.3, "omega": 5.0, **AT}
+    starts = {"theta0": "theta", "omega_start": "omega"}
+    parameters = cases(3, 12)
+    knowns = random.Random(36).sample(
+        ["BC", "AB", "ec", "m_slider", "m_rod", "I_crank", "I_rod", "g_Y", *starts], parameters
+    )
+    check(one.slopes(ROWS, knowns), knowns, at, starts)
+    one.start()
+    check(
+        one.slopes(ROWS, ["theta", "omega", "torque", "F_X", "F_Y"]),
+        ["theta", "omega", "torque", "F_X", "F_Y"],
+        at,
+    )
+    assert one.slopes(["der(theta)"], ["theta", "omega", "torque"]).tolist() == [[0.0, 1.0, 0.0]]
+    one.close()
+
+
+def check(found, knowns, at, starts=None):
+    for row, name in zip(found, ROWS, strict=True):
+        for value, by in zip(row, knowns, strict=True):
+            wanted = difference(name, (starts or {}).get(by, by), at)
+            size = max(1e-3, abs(wanted))
+            assert value == pytest.approx(wanted, rel=1e-12, abs=1e-12 * size), (name, by)
+
+
+# ---- what goes wrong, and what ends ----------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("start", "told"),
+    [
+        ({"AB": -1.0}, "AB = -1: expected a finite length >= 0"),
+        ({"BC": 0.0}, "BC = 0: expected a finite length > 0"),
+        ({"m_rod": np.nan}, "m_rod = nan: expected a finite mass >= 0"),
+        (
+            {"BC": 0.02, "theta0": 1.6},
+            "theta0 = 1.6: with ec = 0.01, AB = 0.04, BC = 0.02 it cannot be assembled",
+        ),
+        ({"m_rod": 0.0, "m_slider": 0.0, "I_crank": 0.0}, "without inertia"),
+    ],
+)
+def test_a_bad_parameter_is_an_error_with_a_message(start, told, made):
+    one = Instance(made(3, "torque"), start=start)
+    with pytest.raises(Exception, match="fmi3ExitInitializationMode"):
+        one.fmu.exitInitializationMode()
+    assert any(told in line for line in one.log), one.log
+    one.close()
+
+
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+@pytest.mark.parametrize("fmi", [3, 2])
+def test_a_limit_angle_ends_the_simulation(fmi, kind, made):
+    """At the instant at which `simulate` meets it."""
+    values = {"BC": 0.045, "ec": 0.02, "theta0": 0.0, "omega_start": 8.0, "torque": 1.0}
+    given = {**MASSES, **LOADS, "AB": 0.04, "BC": 0.045, "ec": 0.02}
+    wanted = dx.simulate(torque=1.0, t_end=1.0, theta0=0.0, omega_start=8.0, **given)
+    assert wanted["status"] == 2
+    found = fmpy.simulate_fmu(
+        made(fmi, "torque"), fmi_type=kind, start_values=values, stop_time=1.0, output_interval=0.01,
+        relative_tolerance=1e-9, output=["theta"], early_return_allowed=True,
+    )  # fmt: skip
+    assert found["time"][-1] == pytest.approx(wanted["t"][-1], abs=1e-4)
+    assert found["theta"][-1] == pytest.approx(wanted["theta"][-1], abs=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+def test_friction_holds_the_crank(kind, made):
+    values = {"mu": 0.3, "F_X": 30.0, "F_Y": 4.0, "theta0": 1.0, "omega_start": 8.0, "torque": 0.0}
+    given = {**LENGTHS, **MASSES, "g_Y": -9.81, "mu": 0.3, "F_X": 30.0, "F_Y": 4.0}
+    wanted = dx.simulate(torque=0.0, t_end=0.5, theta0=1.0, omega_start=8.0, **given)
+    assert wanted["status"] == 1
+    found = fmpy.simulate_fmu(
+        made(3, "torque"), fmi_type=kind, start_values=values, stop_time=0.5, output_interval=0.01,
+        relative_tolerance=1e-9, output=["theta", "omega", "der(omega)"],
+    )  # fmt: skip
+    assert found["omega"][-1] == 0.0
+    assert found["der(omega)"][-1] == 0.0
+    assert found["theta"][-1] == pytest.approx(wanted["theta"][-1], abs=1e-6)
+
+
+def test_states_are_kept_and_set(made):
+    one = Instance(made(3, "torque"), "CoSimulation", {"torque": 1.5}).start()
+    one.fmu.doStep(0.0, 0.01)
+    state = one.fmu.getFMUState()
+    data = one.fmu.serializeFMUState(state)
+    first = [one.get("theta", "omega")]
+    for back in (state, one.fmu.deserializeFMUState(data)):
+        one.fmu.doStep(0.01, 0.02)
+        first.append(one.get("theta", "omega", "T_in"))
+        one.fmu.setFMUState(back)
+    one.fmu.doStep(0.01, 0.02)
+    assert first[1] == first[2] == one.get("theta", "omega", "T_in") != first[0]
+    one.close()
+
+
+def test_instances_in_parallel(made):
+    """Each with parameters of its own: the same as one after the other."""
+    masses = np.linspace(0.1, 2.0, 8)
+
+    def last(mass):
+        one = Instance(made(3, "torque"), "CoSimulation", {"torque": 1.5, "m_slider": mass}).start()
+        for k in range(50):
+            one.fmu.doStep(0.002 * k, 0.002)
+        found = one.get("theta", "omega")
+        one.close()
+        return found
+
+    with ThreadPoolExecutor(4) as pool:
+        together = list(pool.map(last, masses))
+    assert together == [last(mass) for mass in masses]
+
+
+REFUSED = (
+    (
+        {"loads": {"F_Y": {"over_theta": [[0.0, 0], [1.5, -4], [3.0, 4]]}}},
+        {},
+        "loads.F_Y varies with the motion",
+    ),
+    ({"masses": {}}, {}, "nothing moves under a torque without inertia"),
+    ({"accuracy": "extended"}, {}, "an FMU has standard"),
+    (
+        {"outputs": ["V_C_wrt_omega0"], "motion": {"theta": 0.3, "omega0": 5.0}},
+        {},
+        "an FMU has a given state",
+    ),
+    ({}, {"fmi": 1}, "fmi = 1: it is 3 or 2"),
+    ({}, {"input": "speed"}, "input = 'speed': it is torque or omega"),
+)
+
+
+@pytest.mark.parametrize(("more", "options", "told"), REFUSED)
+def test_what_an_fmu_cannot_carry_is_refused_by_name(more, options, told, tmp_path):
+    with pytest.raises(ValueError, match=told):
+        dx.compile(content(**more), tmp_path / "press.fmu", to="fmu", **options)
+    assert not list(tmp_path.iterdir())
+
+
+def test_without_a_compiler_an_fmu_has_its_sources(tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.warns(UserWarning, match="no C compiler found"):
+        place = dx.compile(content(), tmp_path / "press.fmu", to="fmu")
+    with zipfile.ZipFile(place) as archive:
+        names = archive.namelist()
+    assert names == ["modelDescription.xml", "sources/press.c", "sources/buildDescription.xml"]
