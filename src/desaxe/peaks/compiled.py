@@ -108,13 +108,13 @@ _LOCK = ForkSafeLock()
 
 def kernel_for(search: Search, designs: int) -> Kernel:
     """The search, compiled if this number of designs would take longer than compiling."""
-    found = _LOADED.get(search)
-    if found is not None:
-        return found
     forced = forced_tier()
-    early = forced is None and designs < BREAK_EVEN and not _on_disk(search)
     if forced == INTERPRETED:
         return _plain(search)
+    found = None if forced == NUMPY else _LOADED.get(search)
+    if found is not None:
+        return found
+    early = forced is None and designs < BREAK_EVEN and not _on_disk(search)
     if early or forced == NUMPY:
         return _by_arrays(search) if designs > FEW else _by_loops(search)
     with _LOCK:
