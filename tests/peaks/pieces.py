@@ -13,7 +13,7 @@ import mpmath
 
 import desaxe as dx
 
-mpmath.mp.dps = 60
+DIGITS = 60  # with which to call these functions
 TINY = mpmath.mpf(10) ** -52
 WIDER = mpmath.mpf("0.01")  # rad: ends of a range may be next to a jump
 LENGTHS = ("ec", "AB", "BC")

@@ -10,7 +10,7 @@ import pytest
 import desaxe as dx
 from desaxe.loads.exact import Slider
 from tests.effort import cases
-from tests.peaks.pieces import SIGN, Stroke, Turn, closure_of, dead_centres, edges, sides, tops
+from tests.peaks.pieces import DIGITS, SIGN, Stroke, Turn, closure_of, dead_centres, edges, sides, tops
 
 NAMES = ("T_in", "N_C", "F_B_Y", "F_B_X", "F_A_X", "F_C_Y", "power_in", "F_B", "F_shaking_Y")
 KINDS = ("absmax", "max", "min")
@@ -20,6 +20,13 @@ PRESS = {"ec": 0.015, "AB": 0.075, "omega0": 2 * pi, "m_slider": 120, "mu": 0.08
 POSITIONS = (0.2, dx.events(ec=0.015, AB=0.075, BC=0.3)["Y_outer"] - 0.008, 0.38)
 FORCE = {"F_Y": Stroke(POSITIONS, (0.0, -80e3, -80e3), (0.0, 0.0, 0.0))}
 LOAD = {"F_Y": FORCE["F_Y"].load}
+
+
+@pytest.fixture(autouse=True)
+def digits():
+    """The precision is that of this file's tests alone: it is the process's."""
+    with mpmath.workdps(DIGITS):
+        yield
 
 
 def press_peak(BC=0.299999, name="T_in", kind="absmax"):
