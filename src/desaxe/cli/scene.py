@@ -41,15 +41,26 @@ anything is computed. Pictures and values need the extras `plot` and `labelled`.
 examples:
   desaxe run examples/compactor.toml
   desaxe run examples/feeder.toml
-  desaxe run my_press.toml > report.txt""".replace("MASSES", ", ".join(names_in("masses"))).replace(
-    "LOADS", ", ".join(names_in("loads"))
-)
+  desaxe run my_press.toml > report.txt
+  desaxe run my_press.toml --report press.html --tolerance ec=0.1mm""".replace(
+    "MASSES", ", ".join(names_in("masses"))
+).replace("LOADS", ", ".join(names_in("loads")))
 
 
 def add_run(commands: Any) -> None:
     """Add `desaxe run`."""
     parser = add_command(commands, "run", "run a scene: values, peaks, checks, pictures", _RUN, _scene)
     parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
+    parser.add_argument(
+        "--report", metavar="FILE", dest="page", help="write a report to hand on: one page, .html or .md"
+    )
+    parser.add_argument(
+        "--tolerance",
+        metavar="INPUT=HALF",
+        action="append",
+        default=[],
+        help='a tolerance for the report, such as "ec=0.1 mm"; as often as needed',
+    )
     add_overwrite(parser)
 
 
@@ -63,7 +74,14 @@ def add_overwrite(parser: argparse.ArgumentParser) -> None:
 def _scene(options: argparse.Namespace) -> int:
     from ..scenes.command import run_scene
 
-    return run_scene(options.scene, options.overwrite)
+    pairs = [one.partition("=") for one in options.tolerance]
+    for name, equals, half in pairs:
+        if not (name.strip() and equals and half.strip()):
+            raise UsageError(f'--tolerance {printable(name)}: expected INPUT=HALF, such as "ec=0.1 mm"')
+    if pairs and options.page is None:
+        raise UsageError("--tolerance is for the report: give --report FILE")
+    tolerances = {name.strip(): half.strip() for name, _, half in pairs}
+    return run_scene(options.scene, options.overwrite, options.page, tolerances)
 
 
 _SCENE = """\

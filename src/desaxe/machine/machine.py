@@ -192,6 +192,34 @@ class Machine(Mapping[str, Any]):
 
         return compile(self.scene(outputs, **more), path, to, libm=libm, check=check, overwrite=overwrite)
 
+    def report(
+        self,
+        path: str | PathLike[str],
+        outputs: Any = None,
+        *,
+        tolerances: Mapping[str, Any] | None = None,
+        fluctuation: float = 0.03,
+        overwrite: bool = False,
+        **more: Any,
+    ) -> Any:
+        """Write a report to hand on: one page, .html or .md, that needs no network and prints well; its path.
+
+        outputs      names of quantities to draw and to find the peaks of; by default position, velocity,
+                     acceleration, and drive torque and guide force under masses or loads
+        tolerances   dict input -> half its range, in the units of the machine or texts: what they do to the
+                     outputs
+        fluctuation  of the speed, for the flywheel
+        more         as in `scene`: title, theta, peak, picture, check
+
+        It has the inputs, the mechanism to scale, curves, peaks with angle, side and gradient, the drive,
+        what tolerances do, warnings, versions and this call; of an array of designs a few. A file that desaxe
+        did not write is replaced only with `overwrite`. Needs the extras `scene`, `labelled`, `plot`.
+        """
+        with IMPORTS:
+            from .report import write_report
+
+        return write_report(self, path, outputs, tolerances or {}, fluctuation, overwrite, more)
+
     def to_scene(self, path: str | PathLike[str], outputs: Any = OUTPUTS, **more: Any) -> Any:
         """Write the scene of this machine as a TOML file for `Machine.read` and `desaxe run`; its path.
 

@@ -14,19 +14,26 @@ from .content import Content, Picture
 
 def draw(picture: Picture, content: Content, shown_in: UnitSystem, overwrite: bool) -> Path:
     """Draw the curves of a picture, in the units shown, into its file; return its path."""
+    axes, path = drawn(picture, content, shown_in), Path(picture.file)
     with IMPORTS:
-        from ..plot import curves, save
+        from ..plot import save
+    with replacing_ours(path, overwrite) as staged:
+        save(axes.figure, staged)
+    return path
+
+
+def drawn(picture: Picture, content: Content, shown_in: UnitSystem) -> Any:
+    """The curves of a picture, in the units shown; returns the Axes."""
+    with IMPORTS:
+        from ..plot import curves
 
     # With the names of the outputs the kernel of the grid serves here too, where all inputs are the same.
     shared = picture.quantity in content.outputs and set(picture.inputs) == set(content.inputs)
     names = content.outputs if shared else (picture.quantity,)
     values: Any = grid(names, **grid_options(content), **arrays_of(picture.inputs))
     dataset = in_units(values, shown_in)
-    axes: Any = curves(dataset, picture.quantity, over=picture.over, family=picture.family)[0].axes
+    axes: Any = curves(dataset, picture.quantity, over=picture.over, family=picture.family).axes
     title = picture.title or content.title
     if title:
         axes.set_title(" ".join(title.split()), loc="left", parse_math=False)  # text, no TeX
-    path = Path(picture.file)
-    with replacing_ours(path, overwrite) as staged:
-        save(axes.figure, staged)
-    return path
+    return axes

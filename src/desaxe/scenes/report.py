@@ -27,8 +27,8 @@ def report(content: Content, result: Run, units: UnitSystem) -> str:
     if not content.units:  # the data of peaks are in SI units then
         peaks = tuple(found._replace(dataset=peaks_in_units(found, units)) for found in peaks)
     parts = [content.title] if content.title else []
-    parts += [_checks(result.checks)] if result.checks else []
-    parts += [_feasibility(result.feasibility, units)] if result.feasibility else []
+    parts += [checks_report(result.checks)] if result.checks else []
+    parts += [feasibility_report(result.feasibility, units)] if result.feasibility else []
     parts += [_peak(found, units) for found in peaks]
     parts += [_values(content, result)] if result.dataset is not None else []
     parts += [files_report(content, result)] if result.files or result.failures else []
@@ -48,7 +48,7 @@ def number(value: float) -> str:
 # ---- printed values ------------------------------------------------------------------------------
 
 
-def _checks(results: tuple[CheckResult, ...]) -> str:
+def checks_report(results: tuple[CheckResult, ...]) -> str:
     """Printed values next to the computed ones, a block for each source."""
     sources = list(dict.fromkeys(result.check.source for result in results))
     blocks = [
@@ -73,7 +73,7 @@ def _block(source: str, results: list[CheckResult]) -> str:
 # ---- feasibility ---------------------------------------------------------------------------------
 
 
-def _feasibility(found: FeasibilityResult, units: UnitSystem) -> str:
+def feasibility_report(found: FeasibilityResult, units: UnitSystem) -> str:
     """The section on feasibility: the limit of ec, and the designs that cannot turn."""
     lines = ["Feasibility"]
     if found.limit is not None:
@@ -116,7 +116,7 @@ def _peak(found: PeakResult, units: UnitSystem) -> str:
     title = one.title or f"{WORDS[one.kind].capitalize()} of {one.quantity}, {known.meaning}"
     lines = [f"{title} (theta from {low} to {high} deg)"]
     lines += table(_peak_rows(found, units), "r")
-    lines += _remarks(found)
+    lines += remarks(found)
     return "\n".join(lines + [_claim(one, claim, units) for claim in found.claims])
 
 
@@ -168,7 +168,7 @@ SIDE = "  side: of a jump of a load, from which this is the limit: -1 smaller th
 STATUS_WORDS = {int(status): status.words for status in PeakStatus if status}
 
 
-def _remarks(found: PeakResult) -> list[str]:
+def remarks(found: PeakResult) -> list[str]:
     """Footnotes on designs without an ordinary peak and on rows left out."""
     status = found.dataset["status"].values
     lines = [

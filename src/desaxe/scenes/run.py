@@ -72,7 +72,7 @@ def compute(content: Content, steps: Steps, overwrite: bool) -> Run:
         try:
             dataset = sweep_content(content, watch=_no_watch, overwrite=overwrite)
         except FAILURES as error:
-            failures = (_failure(content.store, error),)
+            failures = (failure(content.store, error),)
     elif content.outputs:
         dataset = in_units(values_of_grid(content, blocks_of(content), steps), content.units)
     peaks = tuple(_peaks(one, content, steps) for one in _shown_peaks(content))
@@ -87,7 +87,7 @@ def write_files(content: Content, found: Run, steps: Steps, shown_in: UnitSystem
         try:
             files += job()
         except FAILURES as error:
-            failures.append(_failure(name, error))
+            failures.append(failure(name, error))
     steps.next("")
     return found._replace(files=tuple(files), failures=tuple(failures))
 
@@ -111,7 +111,7 @@ def _drawn(picture: Picture, content: Content, shown_in: UnitSystem, overwrite: 
     return [draw(picture, content, shown_in, overwrite)]
 
 
-def _failure(name: str, error: BaseException) -> str:
+def failure(name: str, error: BaseException) -> str:
     """Why a file was not written, beginning with its name."""
     path, why = str(Path(name)), str(error) or type(error).__name__
     if isinstance(error, OSError) and error.strerror:

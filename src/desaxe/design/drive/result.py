@@ -64,7 +64,7 @@ class Drive(Answer):
         if self["status"]:
             lines.append(f"  status {self['status']}: {STATUS[self['status']]}")
         if not isnan(self["torque_mean"]):
-            lines += [f"  {label:17} {value}" for label, value in self._rows()]
+            lines += [f"  {label:17} {value}" for label, value in self.rows()]
         return "\n".join(lines)
 
     def design(self) -> str:
@@ -82,7 +82,9 @@ class Drive(Answer):
         """The unit of a figure or of an array of `course`, as a label has it."""
         return _conversion(self.units, name).unit.replace("*", " ")
 
-    def _rows(self) -> list[tuple[str, str]]:
+    def rows(self) -> list[tuple[str, str]]:
+        """The figures as text, each with its name."""
+
         def figure(name: str, angle: str | None = None) -> str:
             where = "" if angle is None or isnan(self[angle]) else f" at {self._angle(angle)}"
             return "-" if isnan(self[name]) else f"{self[name]:.6g} {self.unit(name)}{where}"

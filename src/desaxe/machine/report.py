@@ -1,0 +1,75 @@
+"""`Machine.report`: everything about a machine as one page to hand on."""
+
+import warnings
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from ..mechanism.names import LOADS
+from ..mechanism.own import using
+from ..mechanism.slips import warn_of_slips
+from ..scenes.document.content import Asked, document_of, require_drawing
+from ..scenes.document.spread import read_tolerances
+from ..scenes.document.write import require_document, write_document
+from ..scenes.run import compute
+from ..support.files import as_path
+from ..support.progress import Steps
+
+MOTION, FORCES, STANDING = ("Y", "V_C", "a_C"), ("T_in", "N_C"), ("Y", "phi")
+
+
+def write_report(
+    machine: Any,
+    path: str | PathLike[str],
+    outputs: Any,
+    tolerances: Mapping[str, Any],
+    fluctuation: float,
+    overwrite: bool,
+    more: Mapping[str, Any],
+) -> Path:
+    """Compute the scene of a machine and write its document; the path."""
+    if "results" in more:
+        raise TypeError("report: no results are written but the page: leave results out")
+    place = as_path("path", path)
+    require_drawing()
+    require_document(place, overwrite)
+    names = _usual(machine) if outputs is None else outputs
+    with warnings.catch_warnings(record=True) as heard:
+        warnings.simplefilter("always")
+        warn_of_slips(machine.in_units(), machine.units)
+        scene = machine.scene(names, **more)
+        content = scene.content
+        halves = read_tolerances(content, scene.shown_in, tolerances)
+        with using(content.definitions):
+            found = compute(content, Steps(0, None), overwrite)
+    told = tuple(str(one.message) for one in heard if one.category.__module__.startswith("desaxe."))
+    asked = Asked(_command(machine, place, outputs, tolerances, more), told, halves, fluctuation)
+    with using(content.definitions):
+        return write_document(document_of(content, found, scene.shown_in, asked), place, overwrite)
+
+
+def _usual(machine: Mapping[str, Any]) -> tuple[str, ...]:
+    """What is asked for where nothing is named: the motion, and forces under masses or loads."""
+    if not ("omega0" in machine or "omega" in machine):
+        return STANDING
+    return (*MOTION, *(FORCES if any(name in machine for name in LOADS) else ()))
+
+
+def _command(
+    machine: Any, path: Path, outputs: Any, tolerances: Mapping[str, Any], more: Mapping[str, Any]
+) -> str:
+    """The call, so that somebody else can make the report again."""
+    given = [f"{name}={_written(value)}" for name, value in machine.in_units().items()]
+    units = [f"units={machine.units!r}"] if machine.units else []
+    told = [] if outputs is None else [f"outputs={outputs!r}"]
+    told += [f"tolerances={dict(tolerances)!r}"] if tolerances else []
+    told += [f"{name}={value!r}" for name, value in more.items()]
+    return (
+        f"machine = desaxe.Machine({', '.join([*given, *units])})\n"
+        f"machine.report({', '.join([repr(str(path)), *told])})"
+    )
+
+
+def _written(value: Any) -> str:
+    return repr(value.tolist()) if hasattr(value, "tolist") else repr(value)
