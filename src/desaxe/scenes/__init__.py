@@ -20,9 +20,12 @@ pictures     families of curves as files
 stored       a scene as a sweep into its store
 sweep        `desaxe.sweep`
 kernel       the kernel of a scene's grid
-files        NetCDF, Zarr, CSV, npz
+files        NetCDF, Zarr, CSV, xlsx, npz
 quiet_store  a folder of zarr in which the first error ends the writing
+tables       a labelled result as rows, units in the headings
+workbook     sheets of an .xlsx file
 report       the result as text
+document/    the result as a page to hand on, HTML or Markdown
 explain/     what a scene will do before it does it
 export/      a scene as a module of its own
 explorer/    a scene as a page for the browser

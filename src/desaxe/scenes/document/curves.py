@@ -66,7 +66,8 @@ def _picture(dataset: "xr.Dataset", dims: tuple[str, ...], names: list[str]) -> 
     from ...plot import panels
 
     over = "theta" if "theta" in dims else dims[0]
-    family, *rest = [dim for dim in dims if dim != over] or [None]
+    others = [dim for dim in dims if dim != over]
+    family, rest = (others[0] if others else None), others[1:]
     part: Any = dataset[[*names]].isel(dict.fromkeys(rest, 0))
     part.encoding = dataset.encoding
     if family is not None:

@@ -42,7 +42,8 @@ def spread(content: Content, units: UnitSystem, tolerances: Mapping[str, float])
     if not tolerances:
         return None
     design = designs_of(content, units)[0]
-    inputs = {n: PlusMinus(v, tolerances[n]) if n in tolerances else v for n, v in design.inputs.items()}
+    inputs: dict[str, Any] = dict(design.inputs)
+    inputs |= {n: PlusMinus(inputs[n], half) for n, half in tolerances.items()}
     given = ", ".join(f"{n} +- {with_unit(units, n, half)}" for n, half in tolerances.items())
     about = f" for {design.words}" if design.words else ""
     blocks: list[Block] = [Text(f"With {given}{about}, each a normal distribution of 3 standard deviations.")]
