@@ -50,7 +50,7 @@ def write_report(
 
 
 def _usual(machine: Mapping[str, Any]) -> tuple[str, ...]:
-    """What is asked for where nothing is named: the motion, and forces under masses or loads."""
+    """The default outputs: the motion, and forces under masses or loads."""
     if not ("omega0" in machine or "omega" in machine):
         return STANDING
     return (*MOTION, *(FORCES if any(name in machine for name in LOADS) else ()))
@@ -59,7 +59,7 @@ def _usual(machine: Mapping[str, Any]) -> tuple[str, ...]:
 def _command(
     machine: Any, path: Path, outputs: Any, tolerances: Mapping[str, Any], more: Mapping[str, Any]
 ) -> str:
-    """The call, so that somebody else can make the report again."""
+    """The call that makes the report again."""
     given = [f"{name}={_written(value)}" for name, value in machine.in_units().items()]
     units = [f"units={machine.units!r}"] if machine.units else []
     told = [] if outputs is None else [f"outputs={outputs!r}"]

@@ -67,7 +67,7 @@ def _printed(text: str) -> OSError | None:
 def _asked(
     scene: Scene, source: str, page: str, overwrite: bool, tolerances: Mapping[str, str], heard: list[Any]
 ) -> Any:
-    """What the document is to tell; ValueError or OSError, before anything is computed, for a bad place."""
+    """The options of the document; ValueError or OSError for a place or tolerance that is bad."""
     with IMPORTS:
         from .document.content import Asked, require_drawing
         from .document.spread import read_tolerances

@@ -67,7 +67,7 @@ def require_room(what: str, points: int) -> None:
 
 
 def _about(parts: "Mapping[str, xr.Dataset]") -> Iterator[list[Any]]:
-    """Where each sheet comes from: the inputs that have one value, and the attributes."""
+    """The origin of each sheet: the inputs that have one value, and the attributes."""
     yield ["sheet", "name", "value", "unit", "meaning"]
     for sheet, part in parts.items():
         for name, one in part.coords.items():

@@ -23,7 +23,7 @@ TITLE = "Offset slider-crank"
 
 
 class Asked(NamedTuple):
-    """What a document is to tell beside its scene: the command, warnings so far, tolerances [SI]."""
+    """The content of a document beside its scene: the command, warnings so far, tolerances [SI]."""
 
     command: str
     warnings: tuple[str, ...] = ()

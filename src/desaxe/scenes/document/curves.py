@@ -32,7 +32,7 @@ def curves(content: Content, dataset: "xr.Dataset | None", units: UnitSystem) ->
 
 
 def statuses(dataset: "xr.Dataset | None") -> list[str]:
-    """What is wrong at how many points, in words."""
+    """The status codes other than ok, in words, with the number of points of each."""
     if dataset is None or "status" not in dataset or dataset["status"].chunks is not None:
         return []
     found = np.asarray(dataset["status"].values)

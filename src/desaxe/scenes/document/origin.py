@@ -11,7 +11,7 @@ PACKAGES = ("numpy", "numba")
 
 
 def warned(words: list[str]) -> Section:
-    """What was warned of, and what has no value."""
+    """The warnings, and the points without a value."""
     return Section("Warnings", [Text(one) for one in dict.fromkeys(words)] or [Text("none")])
 
 

@@ -1,4 +1,4 @@
-"""What a document is made of, whatever it is written as."""
+"""The parts of a document: texts, tables, pictures."""
 
 from collections.abc import Mapping, Sequence
 from io import BytesIO
@@ -121,7 +121,7 @@ def axes_of(inputs: Mapping[str, Value]) -> dict[str, tuple[float, ...]]:
 
 
 def thinned(items: list[Any], most: int = MOST) -> list[Any]:
-    """At most so many items, evenly chosen, with the first and the last."""
+    """At most `most` items, evenly chosen, with the first and the last."""
     if len(items) <= most:
         return items
     return [items[round(k * (len(items) - 1) / (most - 1))] for k in range(most)]

@@ -38,7 +38,7 @@ def read_tolerances(content: Content, units: UnitSystem, given: Mapping[str, Any
 
 
 def spread(content: Content, units: UnitSystem, tolerances: Mapping[str, float]) -> Section | None:
-    """What these tolerances [SI] do to the outputs of the first design; None without any."""
+    """The scatter of the first design's outputs under tolerances [SI]; None without any."""
     if not tolerances:
         return None
     design = designs_of(content, units)[0]

@@ -35,7 +35,7 @@ def write_document(document: Document, path: Path, overwrite: bool = False) -> P
 
 
 def _within(document: Document, left: int) -> Document:
-    """The document with so many bytes of pictures, words in the place of others."""
+    """The document with `left` bytes of pictures, words in the place of others."""
     sections = []
     for section in document.sections:
         blocks: list[Block] = []
