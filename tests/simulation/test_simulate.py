@@ -510,7 +510,7 @@ def test_without_scipy_one_line_says_what_to_install():
 
 
 def test_a_step_and_its_inside_are_those_of_scipy():
-    """From the same start with the same length; without the guard, the length suggested next as well."""
+    """From the same start with the same length; without the guards, the length suggested next as well."""
     from scipy.integrate import DOP853
 
     from desaxe.simulation.stepper import Dop853

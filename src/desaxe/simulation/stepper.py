@@ -80,7 +80,8 @@ class Dop853:
             t = min(self.t + h, self.t_bound)
             h = t - self.t
             y = self._trial(h)
-            error = self._error(h, y) * share_of(abs(y[0] - self.y[0]) / h * self.t_bound)
+            turned = abs(y[0] - self.y[0]) / self.size[0]
+            error = self._error(h, y) * share_of(turned / h * self.t_bound)
             if error < 1.0:
                 growth = min(10.0, 0.9 * error**-0.125) if error > 0.0 else 10.0
                 wish = h * (min(1.0, growth) if rejected else growth)
