@@ -17,6 +17,7 @@ RUNS_TEXT = {
     "src/desaxe/runtime/compiled_text.py",
     "src/desaxe/runtime/native_calls.py",
     "src/desaxe/scenes/export/axes.py",
+    "src/desaxe/peaks/by_arrays.py",
     "src/desaxe/peaks/compiled.py",
     "src/desaxe/cli/doctor.py",
     "src/desaxe/compiler/languages/arrays.py",

@@ -30,7 +30,7 @@ _UNCOMPILED: ContextVar[bool] = ContextVar("uncompiled", default=False)
 
 @contextmanager
 def uncompiled() -> Iterator[None]:
-    """Evaluate arrays by NumPy in a block, until there have been so many that compiling pays."""
+    """Run a block of code with arrays by NumPy, up to as many points as take longer than compiling."""
     token = _UNCOMPILED.set(True)
     try:
         yield
