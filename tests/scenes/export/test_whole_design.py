@@ -35,14 +35,19 @@ def known(branch, number=None):
     return rows, [truths(*row, branch) for row in rows]
 
 
-def confirm(found, branch, way):
-    """Every value keeps the promise; turning backwards, advance and return change places."""
+def confirm(found, branch, way, least=0.0):
+    """Every value keeps the promise; turning backwards, advance and return change places.
+
+    least   smaller ones may be 0, as of XLA, which has no subnormal numbers
+    """
     rows, exact = known(branch)
     for name in NAMES:
         base, *by = name.split("_wrt_")
         own = "_wrt_".join([OTHER.get(base, base) if way < 0 else base, *by])
         for row, value, there in zip(rows, np.asarray(found[name]).tolist(), exact, strict=True):
-            check(own, value, there, row)
+            exact_value = there.get(own, (None,))[0]
+            if not (value == 0.0 and exact_value is not None and abs(exact_value) < least):
+                check(own, value, there, row)
 
 
 def columns(branch):
@@ -89,7 +94,8 @@ def of_javascript(folder, written, given):
 @pytest.mark.parametrize(("branch", "way"), [(1, -1), (-1, 1)])
 @pytest.mark.parametrize("language", [of_numba, of_c, of_c_alone, of_octave, of_jax, of_javascript])
 def test_every_language_keeps_the_promise(language, branch, way, tmp_path):
-    confirm(language(tmp_path, scene(NAMES, way, branch), columns(branch)), branch, way)
+    least = np.finfo(float).tiny if language is of_jax else 0.0
+    confirm(language(tmp_path, scene(NAMES, way, branch), columns(branch)), branch, way, least)
 
 
 @pytest.mark.sampled
