@@ -35,7 +35,7 @@ RENAMED = {"atan2": "arctan2", "fabs": "abs", "pow": "power"}  # readable text -
 OWN = ("asarray", "custom_jvp", "finfo", "float32", "result_type", "stop_gradient", "zeros_like", "int8")
 WORDS = {"nan": "nan", "inf": "inf", "True": "True", "False": "False"}
 HELPERS = {
-    "two_sum_error": functions_of(SHARED)["two_sum_error"],
+    "two_sum_error": functions_of(SHARED)["two_sum_error"] + "\n",
     "two_product_error": '''def two_product_error(a, b):
     """What rounding took from a * b, exactly (Dekker)."""
     product = a * b

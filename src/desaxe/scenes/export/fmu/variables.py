@@ -5,10 +5,9 @@ from typing import Any, NamedTuple
 
 from ....mechanism.catalogue import quantity
 from ....mechanism.inputs import INPUTS
-from ....mechanism.names import CENTRES, LENGTHS
+from ....mechanism.names import CENTRES, LENGTHS, MASSES
 from ...content import Content
 from ...schema import SceneError
-from ..motion import MASSES
 
 FIXED = (*LENGTHS, *MASSES, *CENTRES, "g_X", "g_Y", "mu")  # parameters, in their order
 FORCES = ("F_X", "F_Y")
