@@ -57,8 +57,8 @@ class Module(NamedTuple):
     values       Programs of all names that stand in `derivatives`, under their names
     solvers      further functions by name, for languages that take them
     arguments    name of a result -> the arguments of its own function, where these are not all
-    motion       where masses are given: an acceleration and its status from theta, omega, torque, arguments
-                 and, where friction acts, the way of turning, for languages that take it
+    motion       an acceleration and its status, for languages that take it: of a force, a position, a speed,
+                 arguments, and the sign of the speed, which only friction takes
     constants    of the written-out sine and cosine; beyond their limit they are wrong
     """
 
@@ -72,7 +72,7 @@ class Module(NamedTuple):
     values: Mapping[str, Program] = {}
     solvers: Mapping[str, Solver] = {}
     arguments: Mapping[str, Sequence[str]] = {}
-    motion: Program | None = None
+    motion: Solver | None = None
 
     def taken(self, name: str) -> list[str]:
         """The arguments of a result's own function, in order."""

@@ -5,6 +5,7 @@ command       `desaxe compile`
 portable      a scene as the `Module` that every language writes
 numba_module  the text of the Python module
 solvers       crank angles for a slider position, limit angles
+fmu           a Functional Mock-up Unit
 motion        the crank's acceleration under a torque
 entry_points  the functions that people call in the Python module
 peaks         the scene's peaks in the Python module

@@ -7,6 +7,7 @@ own: at rest there is an answer for each way.
 
 from collections.abc import Mapping
 
+from ...compiler.languages.protocol import Solver, Symbol
 from ...compiler.passes.guard import guard_inputs
 from ...compiler.passes.pipeline import optimise
 from ...compiler.program import Line, Program, renamed
@@ -67,3 +68,15 @@ def motion(given: Mapping[str, object], branch: int) -> Program:
     held = {"mu": numbers["mu"]} if rubs and "mu" in numbers else {}
     program = optimise(whole, held)[0]
     return guard_inputs(program, [name for name in program.inputs if name != "way"], LEAST, {})
+
+
+def motion_solver(given: Mapping[str, object], branch: int) -> Solver:
+    """The same with its own arguments, for a module."""
+    told = (
+        ("N*m", "torque on the crank"),
+        ("rad", "crank angle"),
+        ("rad/s", "speed"),
+        ("1", "sign of the speed"),
+    )
+    own = zip(("torque", "theta", "omega", "way"), told, strict=True)
+    return Solver(tuple(Symbol(name, *each) for name, each in own), motion(given, branch))

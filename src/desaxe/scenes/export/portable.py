@@ -23,7 +23,7 @@ from ..content import Content
 from ..kernel import own_axes
 from ..scene import Scene
 from ..schema import SceneError
-from .motion import has_masses, motion
+from .motion import has_masses, motion_solver
 from .solvers import solvers
 
 Fixed = tuple[tuple[str, float], ...]
@@ -68,7 +68,7 @@ def module_of(scene: Scene, order: Order) -> Module:
     derivatives, values = _derivatives(content, arguments) if order.second_order else ({}, {})
     head = (*heading(scene, order.command), *_facts(content, asked, fixed, arguments, order))
     own = own_axes(content, content.outputs)
-    moves = motion(content.inputs, content.branch) if has_masses(content.inputs) else None
+    moves = motion_solver(content.inputs, content.branch) if has_masses(content.inputs) else None
     told = (derivatives, values, solvers(dict(fixed)), own, moves)
     return Module(order.name, head, inputs, outputs, forms, constants(), *told)
 

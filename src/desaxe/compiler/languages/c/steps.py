@@ -6,7 +6,7 @@ crank turns is held during a step: where it comes to rest, the step is cut, and 
 
 from collections.abc import Sequence
 
-from ...program import Program
+from ..protocol import Solver
 from .functions import lifted, static_function
 
 HEADER = """\
@@ -139,23 +139,19 @@ int {name}_step(double h, double torque, double *theta, double *omega, const dou
 """
 
 
-def step_texts(name: str, motion: Program, names: Sequence[str]) -> list[str]:
+def step_texts(name: str, motion: Solver, names: Sequence[str]) -> list[str]:
     """The functions of `HEADER`; `names` are the arguments of a point, in the order of in[]."""
-    form = lifted(motion)
-    words = {"torque": "torque", "theta": "theta", "omega": "omega", "way": "way"}
-    words |= {part: f"turn[{k}]" for pair in form.turns.values() for k, part in enumerate(pair)}
+    form = lifted(motion.solve)
+    own = [symbol.name for symbol in motion.arguments]  # those of `motion_at`
+    turns = {part: f"turn[{k}]" for pair in form.turns.values() for k, part in enumerate(pair)}
+    words = {**turns, **{name: name for name in own}}
     given = [words.get(n) or f"in[{names.index(n)}]" for n in form.program.inputs]
-    lines = ["double turn[2];", "sin_cos(theta, turn);"] if form.turns else []
-    lines += [
-        f"(void){n};" for n in (*words, "in") if n in ("theta", "omega", "way", "in") and not _used(n, given)
-    ]
+    lines = [f"double turn[2];\n  sin_cos({angle}, turn);" for angle in form.turns]
+    used = {*given, *form.turns} | ({"in"} if any(each.startswith("in[") for each in given) else set())
+    lines += [f"(void){n};" for n in (*own, "in") if n not in used]
     lines.append(f"return motion({', '.join([*given, 'out'])});")
-    rubs = "way" in motion.inputs
+    rubs = own[-1] in motion.solve.inputs
     texts = [AT, RUBBING if rubs else SMOOTH, RUNGE_KUTTA, RUBBING_STEP if rubs else SMOOTH_STEP]
     body = "\n".join(f"  {line}" for line in lines)
     made = [text.format(name=name, lines=body) for text in texts]
     return [static_function("motion", form.program, form.program.inputs, 1, 1), *made]
-
-
-def _used(name: str, given: Sequence[str]) -> bool:
-    return any(each == name or each.startswith(f"{name}[") for each in given)

@@ -12,7 +12,7 @@ Dependencies = Mapping[str, tuple[str, ...]]  # of each unknown, by name
 
 
 def dependencies(table: Variables, made: Programs) -> dict[str, tuple[str, ...]]:
-    """What outputs and derivatives depend on: inputs, states, parameters, and time where a speed is given."""
+    """The knowns of outputs and derivatives: inputs, states, parameters, and time where a speed is given."""
     order = [*table.parameters, *table.inputs, *table.states]
     moves = bool(table.states)
     by_row: dict[str, set[str]] = {}
@@ -33,7 +33,7 @@ def dependencies(table: Variables, made: Programs) -> dict[str, tuple[str, ...]]
 
 
 def initial(name: str, table: Variables, known: Dependencies) -> tuple[str, ...]:
-    """What an unknown depends on in initialisation mode: the states are those of their parameters."""
+    """The knowns of an unknown in initialisation mode: the states are those of their parameters."""
     if table.states and name in table.states:
         return ({"theta": "theta0", "omega": "omega_start"}[name],)
     start = {"theta": "theta0", "omega": "omega_start"} if table.states else {}
@@ -97,7 +97,7 @@ def description3(name: str, head: dict[str, str], table: Variables, made: Progra
 
 
 def build_description(name: str) -> str:
-    """How to build an FMU of FMI 3.0 from its source."""
+    """The text that tells an importer how to build an FMU of FMI 3.0."""
     root = ElementTree.Element("fmiBuildDescription", fmiVersion="3.0")
     how = ElementTree.SubElement(root, "BuildConfiguration", modelIdentifier=name)
     files = ElementTree.SubElement(how, "SourceFileSet", language="C99")
