@@ -14,6 +14,7 @@ import tempfile
 
 import pytest
 
+from desaxe.mechanism import own
 from desaxe.runtime import cache as _cache
 from desaxe.runtime import kernels, tiers
 from desaxe.support.recent import Recent
@@ -95,9 +96,11 @@ def _select(config, items):
 
 
 @pytest.fixture(autouse=True)
-def nothing_asked_for():
-    """Forget what earlier tests asked for, so that two calls of a test take the same tier."""
+def nothing_left_behind():
+    """Forget what earlier tests asked for, so that two calls of a test take the same tier, and defined."""
     tiers._ASKED.clear()
+    yield
+    own.change(lambda _: {})
 
 
 @pytest.fixture

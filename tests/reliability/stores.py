@@ -146,7 +146,7 @@ def damaged_store(folder: Path, random: Random) -> Verdict:
 
 
 def two_sweeps(folder: Path, random: Random) -> Verdict:
-    """Of two sweeps into one place each is done, or says that another is writing; one is done."""
+    """Two sweeps into one place: each is done, or says that another is writing; one is done."""
     kind, root = random.choice(list(KINDS)), folder / "press.zarr"
     whole(kind)
     if random.random() < 0.3:

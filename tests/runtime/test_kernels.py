@@ -44,11 +44,12 @@ def test_points_asked_for_again_and_again_are_compiled(monkeypatch):
         assert len(asked) == calls
 
 
-def test_labelled_arrays_of_other_dimensions_are_refused():
+def test_labelled_arrays_of_other_dimensions_are_refused_where_arrays_are_filled():
+    """A place to fill has no labels by which to broadcast."""
     theta, ec = xarray.DataArray([0.1, 0.2], dims="t"), xarray.DataArray([0.0, 0.01], dims="e")
     with pytest.raises(ValueError, match=r"theta \('t',\), ec \('e',\); use grid"):
-        dx.evaluate("V_C", **POINT | {"theta": theta, "ec": ec})
-    assert dx.evaluate("V_C", **POINT | {"theta": theta}).shape == (2,)
+        dx.evaluate("V_C", **POINT | {"theta": theta, "ec": ec}, out=np.empty((2, 2)))
+    assert dx.evaluate("V_C", **POINT | {"theta": theta}, out=np.empty(2)).shape == (2,)
 
 
 def test_a_masked_array_is_refused():

@@ -1,4 +1,4 @@
-"""Stores whose attributes are damaged are refused in a line; a second writer is told of the first."""
+"""Stores whose attributes are damaged are refused in a line; a second writer learns of the first."""
 
 import json
 import os

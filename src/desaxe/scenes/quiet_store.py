@@ -29,7 +29,7 @@ class QuietStore(LocalStore):
         self.lock = Lock()
 
     def with_read_only(self, read_only: bool = False) -> Any:
-        """The same folder, to read alone or to write as well."""
+        """A store in this folder, to read alone or to write as well."""
         other = super().with_read_only(read_only)
         other.errors, other.closed, other.lock = self.errors, self.closed, self.lock
         return other

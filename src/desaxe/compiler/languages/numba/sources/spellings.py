@@ -26,7 +26,7 @@ def mul_add(typingctx, a, b, c):
     return types.float64(types.float64, types.float64, types.float64), code
 
 
-def turned(quarter):
+def _turned(quarter):
     """The sine of an angle and a whole number of quarter turns, and `quarter` more: an intrinsic."""
 
     @intrinsic
@@ -49,7 +49,7 @@ def turned(quarter):
     return rotated
 
 
-rotated_sin, rotated_cos = turned(0), turned(1)
+rotated_sin, rotated_cos = _turned(0), _turned(1)
 
 
 @intrinsic
