@@ -342,3 +342,74 @@ def test_without_a_compiler_an_fmu_has_its_sources(tmp_path, monkeypatch):
     with zipfile.ZipFile(place) as archive:
         names = archive.namelist()
     assert names == ["modelDescription.xml", "sources/press.c", "sources/buildDescription.xml"]
+
+
+DRIVER = """
+#include "press.c"
+static double drawn(unsigned long *seed) {
+  *seed = *seed * 6364136223846793005UL + 1442695040888963407UL;
+  return (double)(*seed >> 11) / 9007199254740992.0;
+}
+int main(void) {
+  unsigned long seed = 36;
+  int good = 0;
+  for (int k = 0; k < 1000; k++) {
+    const int steps = k % 2;
+    fmi3Instance one = steps
+        ? fmi3InstantiateCoSimulation("a", TOKEN, "", 0, 0, 0, 0, NULL, 0, NULL, NULL, NULL)
+        : fmi3InstantiateModelExchange("a", TOKEN, "", 0, 0, NULL, NULL);
+    fmi3ValueReference places[N_VALUES];
+    double values[N_VALUES], seeds[N_VALUES], found[N_VALUES], z[N_EVENTS], states[2];
+    fmi3Boolean a, b, c;
+    for (unsigned j = 0; j < N_VALUES; j++) {
+      places[j] = j;
+      values[j] = START[j] * 3.0 * drawn(&seed) + (drawn(&seed) < 0.1 ? drawn(&seed) - 0.5 : 0.0);
+      values[j] = drawn(&seed) < 0.01 ? (double)NAN : values[j];
+      seeds[j] = drawn(&seed);
+    }
+    fmi3SetFloat64(one, &places[1], N_PARAMETERS + N_INPUTS, &values[1], N_PARAMETERS + N_INPUTS);
+    fmi3EnterInitializationMode(one, 0, 0.0, 0.0, 0, 0.0);
+    fmi3GetFloat64(one, places, N_VALUES, found, N_VALUES);
+    fmi3GetDirectionalDerivative(one, places, N_VALUES, &places[1], N_PARAMETERS + N_INPUTS, seeds,
+                                 N_PARAMETERS + N_INPUTS, found, N_VALUES);
+    if (fmi3ExitInitializationMode(one) == fmi3OK) {
+      good++;
+      for (int step = 0; steps && step < 5; step++) {
+        double reached;
+        if (fmi3DoStep(one, 0.01 * step, 0.01, 0, &a, &b, &c, &reached) != fmi3OK || b) {
+          break;
+        }
+      }
+      if (!steps) {
+        fmi3EnterContinuousTimeMode(one);
+        fmi3GetContinuousStates(one, states, 2);
+        fmi3GetContinuousStateDerivatives(one, states, 2);
+        fmi3GetEventIndicators(one, z, N_EVENTS);
+      }
+      fmi3GetFloat64(one, places, N_VALUES, found, N_VALUES);
+      const fmi3ValueReference knowns[] = {THETA, OMEGA, FIRST_INPUT};
+      fmi3GetDirectionalDerivative(one, places, N_VALUES, knowns, 3, seeds, 3, found, N_VALUES);
+      fmi3FMUState state = NULL;
+      fmi3GetFMUState(one, &state);
+      fmi3SetFMUState(one, state);
+      fmi3FreeFMUState(one, &state);
+    }
+    fmi3Reset(one);
+    fmi3FreeInstance(one);
+  }
+  printf("%d", good);
+  return 0;
+}
+"""
+
+
+@pytest.mark.sampled
+def test_sanitizers_find_nothing_in_a_thousand_random_presses(made, tmp_path):
+    """Parameters of which some are bad: what can start moves, what cannot is refused."""
+    with zipfile.ZipFile(made(3, "torque")) as archive:
+        (tmp_path / "press.c").write_bytes(archive.read("sources/press.c"))
+    (tmp_path / "main.c").write_text(DRIVER, encoding="utf-8")
+    checks = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g", "-O1")
+    headers = f"-I{fmpy.__path__[0]}/c-code"
+    run(tool("gcc"), "-std=c99", *checks, headers, tmp_path / "main.c", "-o", tmp_path / "main", "-lm")
+    assert 200 < int(run(tmp_path / "main")) < 1000

@@ -71,7 +71,7 @@ def motion(given: Mapping[str, object], branch: int) -> Program:
 
 
 def motion_solver(given: Mapping[str, object], branch: int) -> Solver:
-    """The same with its own arguments, for a module."""
+    """The acceleration as a function of its own arguments and those of a module."""
     told = (
         ("N*m", "torque on the crank"),
         ("rad", "crank angle"),
