@@ -4,6 +4,8 @@ import random
 
 import pytest
 
+import desaxe as dx
+from tests.reliability.hostile import calls
 from tests.reliability.rig import RIGHT
 from tests.reliability.trials import TRIALS
 
@@ -17,3 +19,9 @@ def test_a_few_seeds(trial, tmp_path):
         folder.mkdir()
         verdict = trial.run(folder, random.Random(seed))
         assert verdict.outcome == RIGHT, (seed, verdict)
+
+
+def test_every_public_call_has_a_row():
+    """What is public enters the trials of bad values on the day it is added."""
+    public = {name for name in dx.__all__ if callable(getattr(dx, name)) and not name.endswith("Warning")}
+    assert public - {call.split()[0] for call in calls()} == set()

@@ -64,9 +64,9 @@ def undefine(name: str) -> None:
 
 
 def _without(name: str, known: Mapping[str, Definition]) -> dict[str, Definition]:
-    if name not in known:
+    if not isinstance(name, str) or name not in known:
         own = f"; there are {', '.join(known)}" if known else ""
-        raise ValueError(f"{name!r} is not a defined quantity{own}")
+        raise ValueError(f"name = {shown(name)} is not a defined quantity{own}")
     users = [other.name for other in known.values() if name in (parts(used)[0] for used in other.uses)]
     if users:
         raise ValueError(f"{name} is used by {', '.join(users)}: undefine that first")

@@ -133,7 +133,7 @@ def scene(source: str | PathLike[str] | Mapping[str, Any]) -> Scene:
 
     See docs/choose.md: which call for which question.
     """
-    name = "" if isinstance(source, Mapping) else printable(source)
+    name = printable(source) if isinstance(source, (str, PathLike)) else ""
     try:
         data = plain_data(source)
         content = read(data, None if isinstance(source, Mapping) else Path(source).parent)

@@ -91,7 +91,7 @@ def bytes_of(memory: Any) -> int | None:
     elif isinstance(memory, bool) or not isinstance(memory, (int, float)):
         raise TypeError(f'memory = {memory!r}: a number of bytes, or text such as "200 MB"')
     else:
-        number = float(min(memory, 2**63))
+        number = float(max(min(memory, 2**63), -1))
     if not 1.0 <= number < 2.0**63:
         raise ValueError(f"memory = {shown(memory)}: at least one byte, less than 2^63")
     return int(number)

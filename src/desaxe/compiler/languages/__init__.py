@@ -18,6 +18,7 @@ A new language is a file or folder here and its column of the operation table; `
 from typing import TYPE_CHECKING
 
 from ...support.forks import IMPORTS
+from ...support.shown import shown
 
 if TYPE_CHECKING:
     from .protocol import Language
@@ -38,6 +39,6 @@ def languages() -> "tuple[Language, ...]":
 def language_of(name: str) -> "Language":
     """The language of this name; ValueError with those that there are."""
     known = {language.name: language for language in languages()}
-    if name not in known:
-        raise ValueError(f"to = {name!r}: it is one of {', '.join(known)}")
+    if not isinstance(name, str) or name not in known:
+        raise ValueError(f"to = {shown(name)}: it is one of {', '.join(known)}")
     return known[name]
