@@ -258,6 +258,7 @@ def judged(call: str, name: str, value: Any) -> Verdict:
             "of_a_fuzz",
             "no value",
             "quantity",
+            "path",
         }
         named = any(word in str(error) for word in words) or isinstance(error, (MemoryError, TimeoutError))
         return (
