@@ -96,7 +96,9 @@ def value_of(path: Path) -> float:
         with np.load(path) as arrays:
             found = xr.Dataset({name: ("x", arrays[name]) for name in arrays.files})
     elif path.suffix == ".xlsx":
-        head, *rows = openpyxl.load_workbook(path, read_only=True)["values"].values
+        book = openpyxl.load_workbook(path)
+        head, *rows = book["values"].values
+        book.close()
         table = dict(zip(head, np.array(rows, dtype=float).T, strict=True))
         found = xr.Dataset({name.partition(" ")[0]: ("x", column) for name, column in table.items()})
     else:

@@ -8,6 +8,7 @@ from ...evaluation.in_units import in_units
 from ...mechanism.names import STATUSES
 from ...mechanism.status import PointStatus
 from ...mechanism.unit_system import UnitSystem
+from ...support.forks import IMPORTS
 from ..content import Content
 from ..pictures import drawn
 from .parts import Block, Section, Table, Text, cell, image_of, thinned
@@ -62,8 +63,9 @@ def _of_outputs(dataset: "xr.Dataset") -> list[Block]:
 
 def _picture(dataset: "xr.Dataset", dims: tuple[str, ...], names: list[str]) -> list[Block]:
     """Quantities over theta, a few curves of each; of further axes the first value."""
-    from ...plot import curves as draw_curves
-    from ...plot import panels
+    with IMPORTS:
+        from ...plot import curves as draw_curves
+        from ...plot import panels
 
     over = "theta" if "theta" in dims else dims[0]
     others = [dim for dim in dims if dim != over]

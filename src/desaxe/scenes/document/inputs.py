@@ -11,6 +11,7 @@ from ...loads.load import Load, OverY, TableOverTheta
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LENGTHS
 from ...mechanism.unit_system import UnitSystem
+from ...support.forks import IMPORTS
 from ..content import Content
 from ..values import Value
 from .parts import Block, Section, Table, cell, designs_of, image_of, in_unit, unit_of, with_unit
@@ -79,8 +80,9 @@ def mechanism(content: Content, units: UnitSystem) -> Section | None:
     """The first design to scale, and the geometry of each; None without the lengths."""
     if any(name not in content.inputs for name in LENGTHS):
         return None
-    from ...plot.mechanism import label_lengths
-    from ...plot.mechanism import mechanism as draw
+    with IMPORTS:
+        from ...plot.mechanism import label_lengths
+        from ...plot.mechanism import mechanism as draw
 
     designs = designs_of(content, units)
     lengths = {name: designs[0].inputs[name] for name in LENGTHS}
