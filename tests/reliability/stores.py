@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 import traceback
 from functools import cache
 from pathlib import Path
@@ -35,10 +36,13 @@ def sweep(kind: str, root: Path, **more: object) -> xr.Dataset:
     return dx.sweep(store=root, **KINDS[kind], **INPUTS, **more).load(scheduler="synchronous")
 
 
+_FOLDER = tempfile.TemporaryDirectory(prefix="desaxe-stores-")  # of this process
+
+
 @cache
 def whole(kind: str) -> Path:
     """A store of an undisturbed sweep."""
-    root = Path(os.environ["DESAXE_CACHE_DIR"]) / "stores" / f"{kind}.zarr"
+    root = Path(_FOLDER.name) / f"{kind}.zarr"
     sweep(kind, root)
     return root
 
