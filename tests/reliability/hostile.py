@@ -1,24 +1,28 @@
-"""Trials of input: absurd values for every argument of every public call.
+"""Trials of input: absurd values for every argument of every public call, and for every key of a scene.
 
 A call may answer, or refuse with a ValueError or TypeError that names the input; MemoryError and TimeoutError
 are refusals, too. Anything else, a warning included, is a crash, and ten seconds without an end are a hang.
 """
 
+import copy
 import datetime
 import signal
 import tempfile
 import traceback
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache, partial
 from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple
 
+import msgspec.inspect
 import numpy as np
 
 import desaxe as dx
+from desaxe.compiler.languages import languages
+from desaxe.scenes import schema
 from tests.reliability.rig import CRASHED, GOOD, HUNG, Trial, Verdict
 
 SECONDS = 20
@@ -167,10 +171,8 @@ def calls() -> dict[str, Call]:
         ),
         "between": Call(dx.between, (), {"low": 0.0, "high": 1.0}),
         "plus_minus": Call(dx.plus_minus, (), {"value": 1.0, "tolerance": 0.1}),
-        "equation": Call(dx.equation, (), {"name": "a_C"}),
-        "flywheel": Call(
-            partial(dx.flywheel, fluctuation=0.02), (), {"m_slider": 1.0, "F_Y": 10.0, **MACHINE}
-        ),
+        "equation": Call(dx.equation, (), {"name": "a_C"}, ("form",)),
+        "flywheel": Call(dx.flywheel, (), {"fluctuation": 0.02, "m_slider": 1.0, "F_Y": 10.0, **MACHINE}),
         "design_map": Call(
             dx.design_map, (), {"ec": [0.0, 0.01], "AB": 0.125, "BC": 0.35}, ("names", "branch")
         ),
@@ -182,8 +184,13 @@ def calls() -> dict[str, Call]:
         ),
         "scene": Call(dx.scene, (), {"source": SCENE}),
         "explain": Call(dx.explain, (), {"scene": SCENE}),
-        "compile": Call(written(dx.compile), (SCENE,), {"to": "numba"}),
-        "explore": Call(written(dx.explore), (SCENE,), {}, ("branch", "title", "units")),
+        **{
+            f"compile to {to}": Call(
+                written(dx.compile), (SCENE,), {"to": to}, ("libm", "check", "overwrite")
+            )
+            for to in (*(language.name for language in languages()), "fmu")
+        },
+        "explore": Call(written(dx.explore), (SCENE,), {}, ("branch", "title", "units", "names")),
         "to_excel": Call(written(dx.to_excel), (SAMPLES,), {}, ("units",)),
         "quantities": Call(dx.quantities, (), {}),
         "undefine": Call(dx.undefine, (), {"name": "of_no_fuzz"}),
@@ -232,27 +239,88 @@ def within(seconds: int) -> Iterator[None]:
         signal.signal(signal.SIGALRM, before)
 
 
+# What a table of a scene needs besides the key that is exchanged.
+TABLES: dict[str, Any] = {
+    "check": {"printed": {"a_C": "-994 m/s2"}},
+    "claim": {"at": {"ec": 0.01}, "increase": "3 %"},
+    "peak": {"quantity": "a_C"},
+    "picture": {"file": "a.png", "quantity": "a_C"},
+    "quantities": {"expression": "2*a_C"},
+}
+
+
+def scene_keys() -> list[tuple[str, ...]]:
+    """Every key that a scene file can have, from the types that check it: a new one is here the same day."""
+
+    def tables(kind: Any) -> Iterator[Any]:
+        """The tables among the types of a key, in lists and unions too."""
+        if isinstance(kind, msgspec.inspect.StructType):
+            yield kind
+        for inside in ("type", "item_type", "value_type"):
+            if hasattr(kind, inside):
+                yield from tables(getattr(kind, inside))
+        for one in getattr(kind, "types", ()):
+            yield from tables(one)
+
+    def keys(table: Any, path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
+        for field in table.fields:
+            yield (*path, field.name)
+            for inner in tables(field.type):
+                yield from keys(inner, (*path, field.name))
+
+    (whole,) = tables(msgspec.inspect.type_info(schema.SceneFile))
+    return list(keys(whole, ()))
+
+
+def scene_with(path: tuple[str, ...], value: Any) -> dict[str, Any]:
+    """A scene in which one key has this value."""
+    scene = copy.deepcopy(SCENE)
+    place = scene
+    for name in path[:-1]:
+        table = place.get(name)
+        if not isinstance(table, dict):  # a number where a table may stand, too
+            table = place[name] = copy.deepcopy(TABLES.get(name, {}))
+        if name == "quantities":
+            table = place[name] = {"own": table}
+            table = table["own"]
+        elif name in TABLES:
+            place[name] = (table,)
+        place = table
+    place[path[-1]] = value
+    return scene
+
+
+def a_bad_key(folder: Path, random: Random) -> Verdict:
+    path, value = random.choice(scene_keys()), random.choice(VALUES)
+    words = (*path, *TABLES.get(path[0], ()), *SCENE, *SCENE["mechanism"], *SCENE["motion"])
+    return verdict_of(f"scene {'.'.join(path)}", partial(dx.scene, scene_with(path, value)), value, words)
+
+
 def judged(call: str, name: str, value: Any) -> Verdict:
     function, arguments, inputs, _ = calls()[call]
+    run = partial(function, *arguments, **{**inputs, name: value})
+    return verdict_of(f"{call}: {name}", run, value, (name, call.split()[0], *inputs))
+
+
+def verdict_of(what: str, run: Callable[[], Any], value: Any, names: Sequence[str]) -> Verdict:
+    """The verdict on a call with this value; a refusal has one of these names in its message."""
     try:
-        told = f"{call}: {name} = {value!r:.60}"
+        told = f"{what} = {value!r:.60}"
     except ValueError:
-        told = f"{call}: {name} = a huge number"
+        told = f"{what} = a huge number"
     try:
         with within(SECONDS), warnings.catch_warnings():
             warnings.simplefilter("error")
             for kind in (dx.UnitWarning, dx.LoadWarning):  # which say what they are about
                 warnings.simplefilter("ignore", kind)
-            function(*arguments, **{**inputs, name: value})
+            run()
     except _Late:
         return Verdict(HUNG, told)
     except (ValueError, TypeError, MemoryError, TimeoutError) as error:
         last = traceback.extract_tb(error.__traceback__)[-1]
         ours = "/desaxe/" in last.filename or "/derive/" in last.filename
         words = {
-            name,
-            call.split()[0],
-            *inputs,
+            *names,
             "M_eff",
             "not a quantity",
             "of_a_fuzz",
@@ -279,4 +347,7 @@ def a_bad_value(folder: Path, random: Random) -> Verdict:
     return judged(call, name, random.choice(VALUES))
 
 
-TRIALS = [Trial("a bad value for an input of a public call", a_bad_value, 25, 2000)]
+TRIALS = [
+    Trial("a bad value for an input of a public call", a_bad_value, 25, 2000),
+    Trial("a bad value for a key of a scene", a_bad_key, 25, 2000),
+]

@@ -1,13 +1,19 @@
 """The short form of `python -m tests.reliability`: a few seeds of every kind of trial."""
 
+import json
 import random
+from pathlib import Path
 
 import pytest
 
 import desaxe as dx
-from tests.reliability.hostile import calls
+from desaxe.compiler.languages import languages
+from tests.reliability.hostile import calls, scene_keys
 from tests.reliability.rig import RIGHT
 from tests.reliability.trials import TRIALS
+
+ROOT = Path(__file__).resolve().parents[2]
+RANGES = {"start", "stop", "num", "step"}
 
 
 # Whoever used JAX in this process is warned at each fork; the children do not use it.
@@ -25,3 +31,10 @@ def test_every_public_call_has_a_row():
     """What is public enters the trials of bad values on the day it is added."""
     public = {name for name in dx.__all__ if callable(getattr(dx, name)) and not name.endswith("Warning")}
     assert public - {call.split()[0] for call in calls()} == set()
+
+
+def test_every_language_and_every_key_of_a_scene_is_tried():
+    assert {f"compile to {language.name}" for language in languages()} <= set(calls())
+    schema = json.loads((ROOT / "docs" / "scene.schema.json").read_text(encoding="utf-8"))
+    names = {key for table in schema["$defs"].values() for key in table.get("properties", ())}
+    assert names - {key for path in scene_keys() for key in path} - RANGES == set()

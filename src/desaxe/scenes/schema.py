@@ -254,12 +254,16 @@ class SceneFile(Section, frozen=True):
     units: Units = {}
 
 
+# A range is taken for a mapping, and some whole numbers are too long to be written in a message.
+_INVALID = (msgspec.ValidationError, AttributeError, ValueError)
+
+
 def decoded(data: Mapping[str, Any]) -> SceneFile:
     """The scene that plain data stands for; SceneError names the first key that is wrong."""
     _refuse_control_characters(data, "")
     try:
         return msgspec.convert(data, SceneFile)
-    except msgspec.ValidationError as error:
+    except _INVALID as error:
         raise SceneError(_complaint(data, SceneFile, "") or str(error)) from None
 
 
@@ -316,7 +320,7 @@ def _complaint(value: Any, kind: Any, key: str) -> str | None:
 def _fits(value: Any, kind: Any) -> bool:
     try:
         msgspec.convert(value, kind)
-    except msgspec.ValidationError:
+    except _INVALID:
         return False
     return True
 

@@ -13,6 +13,13 @@ def whole_number(name: str, value: Any, least: int, most: int) -> int:
     return int(value)
 
 
+def yes_or_no(**options: Any) -> None:
+    """TypeError for an option that is neither True nor False."""
+    for name, value in options.items():
+        if not isinstance(value, bool):
+            raise TypeError(f"{name} = {shown(value)}: it is True or False")
+
+
 def real_number(name: str, value: Any) -> float:
     """A real number as a float, which may be inf or NaN; no text, no boolean, no array."""
     kind = getattr(getattr(value, "dtype", None), "kind", "f")

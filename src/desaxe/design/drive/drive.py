@@ -62,13 +62,7 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
         >>> [round(found[name], 3) for name in ("torque_mean", "torque_peak", "flywheel_inertia")]
         [0.323, 26.468, 1.845]
     """
-    if isinstance(fluctuation, bool) or not (
-        isinstance(fluctuation, (int, float)) and LEAST_FLUCTUATION <= fluctuation < 2.0
-    ):
-        raise ValueError(
-            f"fluctuation = {shown(fluctuation)}: a number above 0, at least {LEAST_FLUCTUATION:g}, "
-            "and below 2, where the crank stops"
-        )
+    check_fluctuation(fluctuation)
     design = Design("drive", inputs, branch)
     status = _status(design)
     found: dict[str, Any] = dict.fromkeys(FIGURES, nan)
@@ -89,6 +83,17 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
             gradient.update(dict.fromkeys(lost, nan))
     about = {"fluctuation": float(fluctuation), "gradient": slopes, "status": status}
     return Drive({**found, **about}, {**design.numbers, **design.loads}, design.branch, course)
+
+
+def check_fluctuation(fluctuation: Any) -> None:
+    """ValueError for a fluctuation of speed that no flywheel keeps."""
+    if isinstance(fluctuation, bool) or not (
+        isinstance(fluctuation, (int, float)) and LEAST_FLUCTUATION <= fluctuation < 2.0
+    ):
+        raise ValueError(
+            f"fluctuation = {shown(fluctuation)}: a number above 0, at least {LEAST_FLUCTUATION:g}, "
+            "and below 2, where the crank stops"
+        )
 
 
 def _status(design: Design) -> int:

@@ -19,6 +19,7 @@ from numpy.fft import irfft, rfft
 from ...peaks.peak import peak
 from ...support.answer import answering
 from ...support.roots import root
+from ..drive.drive import check_fluctuation
 from ..drive.panels import Panels
 from .turn import AT_REST, Array, Turn, extreme
 
@@ -57,10 +58,7 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
         >>> round(found["inertia"], 5), round(found["inertia_first_order"], 5)
         (0.02604, 0.02657)
     """
-    if not (isinstance(fluctuation, (int, float)) and 0.0 < fluctuation < 2.0):
-        raise ValueError(
-            f"fluctuation = {fluctuation!r}: a number above 0 and below 2, where the crank stops"
-        )
+    check_fluctuation(fluctuation)
     turn = Turn("flywheel", inputs, branch, MOST_TURNS)
     speed = turn.numbers.get("omega0")
     if not speed:

@@ -11,7 +11,7 @@ from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LOADS
 from ...mechanism.own import using
 from ...mechanism.unit_system import UnitSystem
-from ...runtime.request import as_number, check_common, check_inputs
+from ...runtime.request import as_number, check_common, check_inputs, several
 from ...runtime.written import require_place
 from ...support.forks import IMPORTS
 from .content import FORCES, Content, Value, content, forces_first, is_loaded
@@ -75,6 +75,7 @@ def content_of(
     inputs: Mapping[str, Any] = MappingProxyType({}),
 ) -> Content:
     """The content of the page that `explore` writes for these arguments."""
+    names = None if names is None else (names,) if isinstance(names, str) else several(names)
     if source is None:
         check_common(inputs, branch)
         check_inputs("explore", inputs, tuple(INPUTS))

@@ -12,6 +12,7 @@ from ...compiler.languages.shared import refuse_taken
 from ...compiler.languages.words import words_of
 from ...mechanism.own import using
 from ...runtime.written import replacing_ours, require_place, sealed
+from ...support.checks import yes_or_no
 from ...support.files import as_path
 from ...support.shown import printable
 from ..content import Content
@@ -68,6 +69,7 @@ def compile(
     See docs/choose.md: which call for which question.
     """
     place = as_path("path", path)
+    yes_or_no(libm=libm, check=check, overwrite=overwrite)
     given = scene if isinstance(scene, Scene) else scene_of(scene)
     if to == "fmu":
         require_fmu(place, libm)
