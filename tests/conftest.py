@@ -38,7 +38,7 @@ def pytest_configure(config):
     if config.seed is not None:
         config.option.loadscopereorder = False  # xdist's own order: the largest file first
     if config.getoption("--thorough"):
-        os.environ[THOROUGH] = "1"
+        os.environ.setdefault(THOROUGH, "1")
     if not hasattr(config, "workerinput"):
         config.kernel_folder = os.environ[VARIABLE] = tempfile.mkdtemp(prefix="desaxe-tests-")
 

@@ -31,7 +31,7 @@ def scene(names, way=1, branch=1, **axes):
 def known(branch, number=None):
     """Random designs and border ones, with what is known of each."""
     rng = random.Random(f"whole design {branch}")
-    rows = [design(rng)[:3] for _ in range(number or cases(60, 50_000))]
+    rows = [design(rng)[:3] for _ in range(number or cases(60, 1_000, 50_000))]
     return rows, [truths(*row, branch) for row in rows]
 
 
