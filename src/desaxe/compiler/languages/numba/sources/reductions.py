@@ -19,37 +19,27 @@ def count_valid(row: Any) -> int:
     return found
 
 
-def itself(x: float) -> float:
-    """The number."""
-    return x
-
-
-def negative(x: float) -> float:
-    """The number, negated."""
-    return -x
-
-
-def magnitude(x: float) -> float:
-    """The number without its sign."""
-    return abs(x)
-
-
 def take_max(row: Any, start: int, value: float, place: int) -> tuple[float, int]:
     """Go on with a row: the largest number so far and its place."""
-    return take_largest(row, start, value, place, score=itself)
+    return take_largest(row, start, value, place, kind=0)
 
 
 def take_min(row: Any, start: int, value: float, place: int) -> tuple[float, int]:
     """Go on with a row: the smallest number so far, negated, and its place."""
-    return take_largest(row, start, value, place, score=negative)
+    return take_largest(row, start, value, place, kind=1)
 
 
 def take_absmax(row: Any, start: int, value: float, place: int) -> tuple[float, int]:
     """Go on with a row: the largest magnitude so far and its place."""
-    return take_largest(row, start, value, place, score=magnitude)
+    return take_largest(row, start, value, place, kind=2)
 
 
-def take_largest(row: Any, start: int, value: float, place: int, score: Any) -> tuple[float, int]:
+def scored(x: float, kind: int) -> float:
+    """The number that is to be large: x itself, -x or |x|."""
+    return abs(x) if kind == 2 else -x if kind == 1 else x
+
+
+def take_largest(row: Any, start: int, value: float, place: int, kind: int) -> tuple[float, int]:
     """Go on with a row: the largest score so far and its place, the first of equals; no NaN.
 
     Sixteen lanes, each with a largest number of its own, are vectors; one largest number is a chain.
@@ -59,7 +49,7 @@ def take_largest(row: Any, start: int, value: float, place: int, score: Any) -> 
     whole = row.size - row.size % 16
     for first in range(0, whole, 16):
         for lane in range(16):
-            x = score(row[first + lane])
+            x = scored(row[first + lane], kind)
             better = (x > values[lane]) | ((places[lane] < 0) & (x == x))
             values[lane] = x if better else values[lane]
             places[lane] = first if better else places[lane]
@@ -69,7 +59,7 @@ def take_largest(row: Any, start: int, value: float, place: int, score: Any) -> 
         if places[lane] >= 0 and (at < 0 or x > best or (x == best and here < at)):
             best, at = x, here
     for here in range(whole, row.size):
-        x = score(row[here])
+        x = scored(row[here], kind)
         if x > best or (at < 0 and x == x):
             best, at = x, here
     if at >= 0 and (place < 0 or best > value):
