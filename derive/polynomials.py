@@ -7,10 +7,11 @@ committed with the kernels.
     sin(y) = y + y z P(z),   cos(y) = 1 - z/2 + z^2 Q(z),   z = y^2,   |y| <= pi/4
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from mpmath import mp, mpf
 
+from desaxe.compiler.interpret import to_single
 from desaxe.compiler.passes.double_angles import DoubleTrigonometry
 from desaxe.compiler.passes.trigonometry import Trigonometry
 
@@ -18,6 +19,10 @@ TURNS = 20  # bits of the number of quarters; a part of pi/2 has the others of 5
 PARTS = 4  # so that angles next to a multiple of pi/2 keep all their digits
 TERMS = 6
 EXCHANGES = 8
+
+# For single precision: 24 bits, angles up to 201 rad.
+SINGLE_TURNS = 7
+SINGLE_TERMS = 3
 
 # For twice the digits, with a third word: a term needs as many words as it is larger than 2^-130 or so.
 DOUBLE_TURNS = 30
@@ -37,6 +42,17 @@ def trigonometry() -> Trigonometry:
             sine=_rounded(_minimax(_sine_rest, lambda z: mp.sin(mp.sqrt(z)) / (mp.sqrt(z) * z), TERMS)),
             cosine=_rounded(_minimax(_cosine_rest, lambda z: mp.cos(mp.sqrt(z)) / z**2, TERMS)),
         )
+
+
+def single_trigonometry() -> Trigonometry:
+    """The constants for single precision, of which every one is."""
+    with mp.workdps(60):
+        parts = _parts(mp.pi / 2, SINGLE_TURNS, PARTS, 24), _parts(mp.pi / 2, 0, 2, 24)
+        sine = _minimax(_sine_rest, lambda z: mp.sin(mp.sqrt(z)) / (mp.sqrt(z) * z), SINGLE_TERMS)
+        cosine = _minimax(_cosine_rest, lambda z: mp.cos(mp.sqrt(z)) / z**2, SINGLE_TERMS)
+        tables = [tuple(map(to_single, _rounded(row))) for row in (*parts, sine, cosine)]
+        limit = float(mp.floor(2**SINGLE_TURNS * mp.pi / 2))
+        return Trigonometry(limit, to_single(float(2 / mp.pi)), *tables)
 
 
 def double_trigonometry() -> DoubleTrigonometry:
@@ -67,11 +83,11 @@ def _in_words(coefficients: list[mpf]) -> tuple[tuple[float, ...], ...]:
     return tuple(found)
 
 
-def _parts(value: mpf, turns: int, count: int) -> tuple[float, ...]:
-    """Split a value into `count` doubles; all but the last leave `turns` bits free for exact products."""
+def _parts(value: mpf, turns: int, count: int, bits: int = 53) -> tuple[float, ...]:
+    """Split a value into `count` numbers of `bits` bits; all but the last leave `turns` of them free."""
     parts = []
     for _ in range(count - 1):
-        scale = mpf(2) ** (52 - turns - mp.floor(mp.log(value, 2)))
+        scale = mpf(2) ** (bits - 1 - turns - mp.floor(mp.log(value, 2)))
         part = mp.floor(value * scale) / scale
         parts.append(float(part))
         value -= part
@@ -89,7 +105,7 @@ def _cosine_rest(z: mpf) -> mpf:
     return (mp.cos(mp.sqrt(z)) - 1 + z / 2) / z**2
 
 
-def _rounded(coefficients: list[mpf]) -> tuple[float, ...]:
+def _rounded(coefficients: Iterable[mpf]) -> tuple[float, ...]:
     return tuple(float(c) for c in coefficients)
 
 

@@ -167,7 +167,9 @@ def add_compile(commands: Any) -> None:
         action="store_true",
         help="C without libm: elementary functions of its own, for bare metal",
     )
-    parser.add_argument("--float", action="store_true", help="refused: C in single precision is not written")
+    parser.add_argument(
+        "--float", action="store_true", help="C in single precision, for a processor without doubles"
+    )
     parser.add_argument("--fmi", type=int, choices=(3, 2), default=3, help="version of an FMU (default: 3)")
     parser.add_argument(
         "--input", choices=("torque", "omega"), default="torque", help="what drives an FMU (default: torque)"
@@ -181,11 +183,9 @@ def add_compile(commands: Any) -> None:
 def _compile(options: argparse.Namespace) -> int:
     from ..scenes.export.command import run_compile
 
-    if options.float:
-        raise ValueError("--float: C in single precision is not written; without it, values are doubles")
     return run_compile(
         options.scene, options.place, options.to, not options.no_libm, options.check, options.overwrite,
-        options.fmi, options.input,
+        options.fmi, options.input, options.float,
     )  # fmt: skip
 
 

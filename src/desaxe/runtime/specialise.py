@@ -20,7 +20,8 @@ def specialise(
 
     A value that loses what it depended on (V_C by alpha for a given state, the torque of a massless
     rod) is still NaN where the mechanism cannot be assembled, or has stalled. A name of a user's own
-    is the one that the form has, or as it is defined now.
+    is the one that the form has, or as it is defined now. Accuracy: standard, extended, or single, whose
+    fixed inputs are of single precision.
     """
     return _specialise(names, form if form.own else form._replace(own=used_by(names)), fixed, accuracy)
 
@@ -30,7 +31,8 @@ def _specialise(
     names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...], accuracy: str
 ) -> Program:
     program = _with_extended_forms(program_of(names, form), accuracy)
-    result = optimise(program, dict(fixed))[0]
+    single = accuracy == "single"
+    result = optimise(program, dict(fixed), single=single)[0]
     before, after = _needs(program), _needs(result)
     kept = {"D"} if dict(fixed).get("alpha") == 0.0 else set(KEPT)  # a crank at constant speed never stalls
     outputs = program.outputs
@@ -47,14 +49,18 @@ def _specialise(
             value = lines[-1].name
         if lost[name]:
             lines.append(Line(name, "copy", (value,)))
-    return optimise(keep_outputs(wide._replace(lines=tuple(lines)), outputs), dict(fixed))[0]
+    whole = keep_outputs(wide._replace(lines=tuple(lines)), outputs)
+    return optimise(whole, dict(fixed), single=single)[0]
 
 
 @lru_cache(maxsize=1024)
-def plain_form(names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...]) -> Program | None:
+def plain_form(
+    names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...], accuracy: str = "standard"
+) -> Program | None:
     """The program in plain forms, for designs with wide margins; None where it equals the stable program."""
-    plain = specialise(names, form._replace(wide_margins=True), fixed)
-    same = repr(plain.lines) == repr(specialise(names, form, fixed).lines)  # by their text: NaN is NaN there
+    plain = specialise(names, form._replace(wide_margins=True), fixed, accuracy)
+    stable = specialise(names, form, fixed, accuracy)
+    same = repr(plain.lines) == repr(stable.lines)  # by their text: NaN is NaN there
     return None if same else plain
 
 

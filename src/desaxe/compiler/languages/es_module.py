@@ -48,6 +48,7 @@ class JavaScript:
     suffix = ".js"
     second_order = False
     own_functions = False
+    single = False
     extended = True
     loops = None
 

@@ -122,6 +122,7 @@ class Jax:
     suffix = ".py"
     second_order = True
     own_functions = False
+    single = False
     extended = False  # products may be fused with sums
     loops = None
 

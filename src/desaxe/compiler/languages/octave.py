@@ -118,6 +118,7 @@ class Octave:
     suffix = ".m"
     second_order = False
     own_functions = False
+    single = False
     extended = True
     loops = None
 

@@ -60,6 +60,7 @@ class Module(NamedTuple):
     motion       an acceleration and its status, for languages that take it: of a force, a position, a speed,
                  arguments, and the sign of the speed, which only friction takes
     constants    of the written-out sine and cosine; beyond their limit they are wrong
+    single       whether all numbers are of single precision, for languages that have it
     """
 
     name: str
@@ -73,6 +74,7 @@ class Module(NamedTuple):
     solvers: Mapping[str, Solver] = {}
     arguments: Mapping[str, Sequence[str]] = {}
     motion: Solver | None = None
+    single: bool = False
 
     def taken(self, name: str) -> list[str]:
         """The arguments of a result's own function, in order."""
@@ -87,6 +89,7 @@ class Language(Protocol):
     suffix: str  # of the file that is called
     second_order: bool  # whether `derivatives` and `values` are wanted
     own_functions: bool  # whether the language can do without a library of elementary functions
+    single: bool  # whether the language is written in single precision, too
     extended: bool  # whether sums and products are rounded as they stand, which twice the digits want
 
     @property

@@ -1,9 +1,11 @@
 """The passes in their order, with what each of them saved."""
 
 from collections.abc import Callable, Collection, Mapping
+from functools import partial
 from typing import NamedTuple
 
 from ..cost import Cost, cost_of
+from ..interpret import ieee_single
 from ..program import Program
 from .bind import bind_constants
 from .fold import fold_constants
@@ -33,9 +35,15 @@ PASSES = (
 
 
 def optimise(
-    program: Program, fixed: Mapping[str, float] | None = None, without: Collection[str] = ()
+    program: Program,
+    fixed: Mapping[str, float] | None = None,
+    without: Collection[str] = (),
+    single: bool = False,
 ) -> tuple[Program, list[Step]]:
-    """The program with `fixed` inputs bound, after every pass not switched off; the cost after each."""
+    """The program with `fixed` inputs bound, after every pass not switched off; the cost after each.
+
+    `single`: what is fixed is computed in single precision, in which the rest will run.
+    """
     unknown = set(without) - {step.name for step in PASSES}
     if unknown:
         raise ValueError(f"no pass {', '.join(sorted(unknown))}: {', '.join(step.name for step in PASSES)}")
@@ -43,6 +51,7 @@ def optimise(
     program = bind_constants(program, fixed or {})
     for step in PASSES:
         if step.name not in without:
-            program = step.run(program)
+            run = partial(fold_constants, apply=ieee_single) if single and step.name == "fold" else step.run
+            program = run(program)
             steps.append(Step(step.name, cost_of(program)))
     return program, steps

@@ -13,18 +13,27 @@ from .fmu.write import stale_fmu, write_fmu
 
 
 def run_compile(
-    source: str, place: str, to: str, libm: bool, check: bool, overwrite: bool, fmi: int, drive: str
+    source: str,
+    place: str,
+    to: str,
+    libm: bool,
+    check: bool,
+    overwrite: bool,
+    fmi: int,
+    drive: str,
+    single: bool,
 ) -> int:
     """Write the files, or with `check` compare them; return the exit status."""
     scene = scene_of(source)
     if to == "fmu":
-        return _run_fmu(scene, source, Path(place), libm, check, overwrite, fmi, drive)
+        require_fmu(Path(place), libm, single)
+        return _run_fmu(scene, source, Path(place), check, overwrite, fmi, drive)
     if (fmi, drive) != (3, "torque"):
         raise ValueError("--fmi and --input are for --to fmu")
-    texts = texts_of(scene, Path(place), to, libm)
+    texts = texts_of(scene, Path(place), to, libm, single)
     if check:
         return _compare(texts, source, place)
-    compile(scene, place, to, libm=libm, overwrite=overwrite)
+    compile(scene, place, to, libm=libm, overwrite=overwrite, float=single)
     for file, text in texts.items():
         print(f"{printable(file)}: {len(text.splitlines())} lines")
     lost = lost_of(scene.content, to)
@@ -34,9 +43,8 @@ def run_compile(
 
 
 def _run_fmu(
-    scene: Scene, source: str, place: Path, libm: bool, check: bool, overwrite: bool, fmi: int, drive: str
+    scene: Scene, source: str, place: Path, check: bool, overwrite: bool, fmi: int, drive: str
 ) -> int:
-    require_fmu(place, libm)
     if check:
         stale = stale_fmu(scene, place, fmi, drive)
         if stale:

@@ -35,6 +35,7 @@ def compile(
     overwrite: bool = False,
     fmi: int = 3,
     input: str = "torque",
+    float: bool = False,
 ) -> Path:
     """Write the outputs of a scene as source code of its own, which needs nothing of desaxe.
 
@@ -55,7 +56,8 @@ def compile(
                 FMI 3.0, or with `fmi=2` 2.0. A torque moves the crank; `input="omega"`: its speed is given
 
     A path that ends as the language's files do is the file; any other is a folder, whose last part is the
-    name. `libm=False` (c) writes elementary functions of its own. The same scene gives the same bytes;
+    name. `libm=False` (c) writes elementary functions of its own, `float=True` (c) single precision: values
+    of the inputs as rounded to float, |theta| up to 100 rad. The same scene gives the same bytes;
     `check=True` writes nothing and raises ValueError where the files are not what would be written. A file
     that it did not write, or that was edited since, is left as it is, and FileExistsError raised, unless
     `overwrite` is true.
@@ -69,13 +71,13 @@ def compile(
     See docs/choose.md: which call for which question.
     """
     place = as_path("path", path)
-    yes_or_no(libm=libm, check=check, overwrite=overwrite)
+    yes_or_no(libm=libm, check=check, overwrite=overwrite, float=float)
     given = scene if isinstance(scene, Scene) else scene_of(scene)
     if to == "fmu":
-        require_fmu(place, libm)
+        require_fmu(place, libm, float)
         if not check:
             return write_fmu(given, place, fmi, input, overwrite)
-    texts = {} if to == "fmu" else texts_of(given, place, to, libm)
+    texts = {} if to == "fmu" else texts_of(given, place, to, libm, float)
     if check:
         stale = stale_fmu(given, place, fmi, input) if to == "fmu" else differing(texts)
         if stale:
@@ -90,26 +92,35 @@ def compile(
     return place
 
 
-def require_fmu(place: Path, libm: bool = True) -> None:
+def require_fmu(place: Path, libm: bool = True, single: bool = False) -> None:
     """ValueError for the place of an FMU that is not NAME.fmu, and for an option that it does not have."""
     if place.suffix != ".fmu":
         raise ValueError(f"{printable(place)}: the file of an FMU is called NAME.fmu")
     if not libm:
         raise ValueError("libm=False is for c: an FMU is compiled with the C library")
+    if single:
+        raise ValueError("float=True is for c: the numbers of an FMU are doubles")
     require_name(place.stem, place, words_of("c").modules)
 
 
-def texts_of(scene: Scene, place: Path, to: str = "numba", libm: bool = True) -> dict[Path, str]:
+def texts_of(
+    scene: Scene, place: Path, to: str = "numba", libm: bool = True, single: bool = False
+) -> dict[Path, str]:
     """The files of a scene in a language, with their texts; nothing is written."""
     with using(scene.content.definitions):
-        return _texts_of(scene, place, to, libm)
+        return _texts_of(scene, place, to, libm, single)
 
 
-def _texts_of(scene: Scene, place: Path, to: str, libm: bool) -> dict[Path, str]:
+def _texts_of(scene: Scene, place: Path, to: str, libm: bool, single: bool) -> dict[Path, str]:
     language = language_of(to)
     if not libm and not language.own_functions:
         own = _listed(one.name for one in languages() if one.own_functions)
         raise ValueError(f"libm=False is for {own}: {to} has its elementary functions at hand")
+    if single and not language.single:
+        own = _listed(one.name for one in languages() if one.single)
+        raise ValueError(f"float=True is for {own}: {to} is not written in single precision")
+    if scene.content.accuracy == "extended" and single:
+        raise SceneError('accuracy = "extended": single precision has standard alone')
     if scene.content.accuracy == "extended" and not language.extended:
         both = _listed(one.name for one in languages() if one.extended)
         raise SceneError(f'accuracy = "extended": {to} has standard, {both} have both')
@@ -123,10 +134,13 @@ def _texts_of(scene: Scene, place: Path, to: str, libm: bool) -> dict[Path, str]
     require_name(name, place, words.modules)
     folder = place.parent if is_file else place
     source = Path(scene.name).name
-    said = f"desaxe compile {source} --to {to} -o {place.name}" + " --no-libm" * (not libm)
+    said = (
+        f"desaxe compile {source} --to {to} -o {place.name}" + " --no-libm" * (not libm) + " --float" * single
+    )
     if not source:
-        said = f'desaxe.compile(scene, "{place.name}", to="{to}"' + ", libm=False" * (not libm) + ")"
-    module = module_of(scene, Order(to, name, said, language.second_order, not libm))
+        more = ", libm=False" * (not libm) + ", float=True" * single
+        said = f'desaxe.compile(scene, "{place.name}", to="{to}"{more})'
+    module = module_of(scene, Order(to, name, said, language.second_order, not libm, single))
     return {folder / file: sealed(text) for file, text in language.files(module, not libm).items()}
 
 

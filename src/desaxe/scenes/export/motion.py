@@ -41,7 +41,7 @@ def has_masses(given: Mapping[str, object]) -> bool:
     return any(given.get(name, 0.0) != 0.0 for name in MASSES)
 
 
-def motion(given: Mapping[str, object], branch: int) -> Program:
+def motion(given: Mapping[str, object], branch: int, single: bool = False) -> Program:
     """The acceleration and its status, from theta, omega, torque, what is not a number, and `way` (-1, 1).
 
     Without friction, mu = 0, there is no `way`.
@@ -52,7 +52,9 @@ def motion(given: Mapping[str, object], branch: int) -> Program:
     numbers = {name: value for name, value in values.items() if isinstance(value, float)}
     rubs = numbers.get("mu") != 0.0
     fixed = {**numbers, "branch": float(branch), "alpha": 0.0, "mu": 0.0}
-    base = specialise((*SMOOTH, STATUS, *(CONTACT if rubs else ())), form_of(values), tuple(fixed.items()))
+    names = (*SMOOTH, STATUS, *(CONTACT if rubs else ()))
+    accuracy = "single" if single else "standard"
+    base = specialise(names, form_of(values), tuple(fixed.items()), accuracy)
     law = read_function(RUBBING if rubs else FREE)
     parts = dict(zip((*SMOOTH, STATUS, *CONTACT), base.outputs, strict=False))
     law = renamed(law, parts | {line.name: f"_{line.name}" for line in law.lines})
@@ -66,11 +68,11 @@ def motion(given: Mapping[str, object], branch: int) -> Program:
     lines, outputs = (*base.lines, *law.lines, *status), ("_acceleration", "told")
     whole = Program(tuple(inputs), lines, outputs, base.notes)
     held = {"mu": numbers["mu"]} if rubs and "mu" in numbers else {}
-    program = optimise(whole, held)[0]
+    program = optimise(whole, held, single=single)[0]
     return guard_inputs(program, [name for name in program.inputs if name != "way"], LEAST, {})
 
 
-def motion_solver(given: Mapping[str, object], branch: int) -> Solver:
+def motion_solver(given: Mapping[str, object], branch: int, single: bool = False) -> Solver:
     """The acceleration as a function of its own arguments and those of a module."""
     told = (
         ("N*m", "torque on the crank"),
@@ -79,4 +81,4 @@ def motion_solver(given: Mapping[str, object], branch: int) -> Solver:
         ("1", "sign of the speed"),
     )
     own = zip(("torque", "theta", "omega", "way"), told, strict=True)
-    return Solver(tuple(Symbol(name, *each) for name, each in own), motion(given, branch))
+    return Solver(tuple(Symbol(name, *each) for name, each in own), motion(given, branch, single))

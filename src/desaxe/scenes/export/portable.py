@@ -2,15 +2,17 @@
 
 import hashlib
 from collections.abc import Iterable, Mapping
+from math import isinf
 from textwrap import wrap
 from typing import Any, NamedTuple
 
+from ...compiler.interpret import to_single
 from ...compiler.languages.protocol import Forms, Module, Symbol
 from ...compiler.passes.double_double import double_double
 from ...compiler.passes.guard import guard_inputs
 from ...compiler.program import Program
 from ...mechanism.catalogue import law_name, quantities, quantity
-from ...mechanism.constants import constants, double_constants
+from ...mechanism.constants import constants, double_constants, single_constants
 from ...mechanism.inputs import INPUTS, LEAST
 from ...mechanism.names import LENGTHS, ORDER, STATUSES, sensitivity
 from ...mechanism.program import digest
@@ -46,6 +48,7 @@ class Order(NamedTuple):
     command: str
     second_order: bool = False
     freestanding: bool = False
+    single: bool = False
 
 
 def module_of(scene: Scene, order: Order) -> Module:
@@ -59,18 +62,34 @@ def module_of(scene: Scene, order: Order) -> Module:
             "this language cannot: leave it open as a list of values, and give it at each angle"
         )
     asked, fixed = _asked(content, (*content.outputs, "status"))
+    if order.single:
+        fixed = _in_single(scene, fixed)
     results = asked.names[: len(content.outputs)]
     state = asked.form.state
     arguments = [n for n in ORDER if isinstance(content.inputs.get(n), tuple)]
-    forms = _forms(asked, results, fixed, order.freestanding)
+    forms = _forms(asked, results, fixed, order)
     inputs = tuple(Symbol(n, INPUTS[n].unit, INPUTS[n].meaning) for n in arguments)
     outputs = tuple(Symbol(*quantity(name, state)) for name in content.outputs)
     derivatives, values = _derivatives(content, arguments) if order.second_order else ({}, {})
     head = (*heading(scene, order.command), *_facts(content, asked, fixed, arguments, order))
     own = own_axes(content, content.outputs)
-    moves = motion_solver(content.inputs, content.branch) if has_masses(content.inputs) else None
-    told = (derivatives, values, solvers(dict(fixed)), own, moves)
-    return Module(order.name, head, inputs, outputs, forms, constants(), *told)
+    given = content.inputs | {n: value for n, value in fixed if n in content.inputs}
+    moves = motion_solver(given, content.branch, order.single) if has_masses(given) else None
+    told = (derivatives, values, solvers(dict(fixed), order.single), own, moves, order.single)
+    turning = single_constants() if order.single else constants()
+    return Module(order.name, head, inputs, outputs, forms, turning, *told)
+
+
+def _in_single(scene: Scene, fixed: Fixed) -> Fixed:
+    """The fixed inputs in single precision; SceneError for one beyond it."""
+    rounded = {name: to_single(value) for name, value in fixed}
+    for name, value in fixed:
+        if isinf(rounded[name]) or (rounded[name] == 0.0 != value):
+            raise SceneError(
+                f"{scene.name or 'scene'}: {name} = {value!r}: in single precision numbers lie between "
+                "1.4e-45 and 3.4e38"
+            )
+    return tuple(rounded.items())
 
 
 def require_outputs(scene: Scene) -> None:
@@ -113,15 +132,21 @@ def _facts(
         f"theta turns from +Y towards +X. {'A given state' if asked.form.state else 'Constant alpha'}; "
         f"branch {branch:+.0f}.",
     ]
+    if order.single:
+        lines.append("Single precision: inputs are rounded to float, values are those of the rounded inputs.")
     if order.freestanding:
-        lines.append(f"Without libm: |theta| is at most {_reach(asked):.0f} rad, else the status is 4.")
+        lines.append(
+            f"Without libm: |theta| is at most {_reach(asked, order):.0f} rad, else the status is 4."
+        )
     lines += [f"Folded in: {', '.join(numbers)}."] if numbers else []
     lost = left_out(content)
     lines += [f"Not in here (`desaxe run` has it): {', '.join(lost)}."] if lost else []
     return ("", *lines, "", *WITHOUT_VALUE)
 
 
-def _reach(asked: Request) -> float:
+def _reach(asked: Request, order: Order) -> float:
+    if order.single:
+        return single_constants().limit
     return double_constants().limit if asked.accuracy == "extended" else constants().limit
 
 
@@ -136,20 +161,23 @@ def _asked(content: Content, names: Iterable[str]) -> tuple[Request, Fixed]:
     return asked, tuple(fixed.items())
 
 
-def _forms(asked: Request, names: tuple[str, ...], fixed: Fixed, freestanding: bool) -> Forms:
+def _forms(asked: Request, names: tuple[str, ...], fixed: Fixed, order: Order) -> Forms:
     """The Programs of these names and of the status, in the forms that the accuracy has."""
     names = tuple(dict.fromkeys((*names, _status_of(asked))))
     status = names.index(_status_of(asked))
-    largest = {"theta": _reach(asked)} if freestanding or asked.accuracy == "extended" else {}
+    bounded = order.freestanding or asked.accuracy == "extended"
+    largest = {"theta": _reach(asked, order)} if bounded else {}
+    accuracy = "single" if order.single else "standard"
     if asked.accuracy == "extended":
         program = specialise(names, asked.form, fixed, "extended")
         guarded = guard_inputs(program, program.inputs, LEAST, largest)
         return Forms(status, double_double(guarded, double_constants()))
-    stable, plain = specialise(names, asked.form, fixed), plain_form(names, asked.form, fixed)
+    stable = specialise(names, asked.form, fixed, accuracy)
+    plain = plain_form(names, asked.form, fixed, accuracy)
     forms = Forms(status, guard_inputs(stable, stable.inputs, LEAST, largest))
     if plain is None:
         return forms
-    test = specialise(("wide_margins",), asked.form, fixed)
+    test = specialise(("wide_margins",), asked.form, fixed, accuracy)
     # The test implies valid lengths.
     own = [name for name in plain.inputs if name not in LENGTHS]
     guarded = guard_inputs(plain, own, LEAST, largest)

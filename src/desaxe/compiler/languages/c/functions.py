@@ -68,10 +68,12 @@ def static_function(
     used = {a for line in program.lines for a in line.args if isinstance(a, str)} | set(program.outputs)
     lines = [f"(void){a};" for a in arguments if a not in used]
     lines += _body(program)
-    lines += [f"out[{index}] = {output};" for index, output in enumerate(filled)]
+    types = types_of(program)
+    cast = {name: "(double)" * (types[name] != "f64") for name in filled}  # a status
+    lines += [f"out[{index}] = {cast[output]}{output};" for index, output in enumerate(filled)]
     if status is not None:  # twice the digits have it as a number
-        cast = "(int)" * (types_of(program)[program.outputs[status]] == "f64")
-        lines.append(f"return {cast}{program.outputs[status]};")
+        whole = "(int)" * (types[program.outputs[status]] == "f64")
+        lines.append(f"return {whole}{program.outputs[status]};")
     head = f"static inline {'void' if status is None else 'int'} {name}({parameters or 'void'}) {{"
     opening = [f"/* {comment} */"] if comment else []
     return "\n".join([*opening, head, *(f"  {line}" for line in lines), "}"]) + "\n"

@@ -10,7 +10,7 @@ PRAGMAS = """\
 #error "compile without -ffast-math: it drops error terms and the NaN of an infeasible point"
 #endif
 #if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
-#error "doubles must be evaluated as doubles: -mfpmath=sse, for example"
+#error "numbers must be evaluated in their own type: -mfpmath=sse, for example"
 #endif
 #if defined(__clang__)
 #pragma STDC FP_CONTRACT OFF
@@ -58,7 +58,7 @@ static inline double rounding(double a) {
   return 4.440892098500626e-16 * fabs(a);
 }
 """,
-    "power_of_two": """/* The power of two that is not below a size (Rump), from 2^-960 to 2^960. */
+    "power_of_two": """/* The power of two that is not below a size (Rump), within bounds. */
 static inline double power_of_two(double a) {
   const double least = 1.0261342003245941e-289, most = 9.7453140114e+288;
   const double size = a < most ? (least < a ? a : least) : most, wide = 9007199254740992.0 * size;
@@ -116,7 +116,7 @@ static inline double own_copysign(double size, double sign) {
   return from_bits((bits_of(size) & ~SIGN_BIT) | (bits_of(sign) & SIGN_BIT));
 }
 
-/* The largest whole number that is not larger; from 2^52 on, every double is whole. */
+/* The largest whole number that is not larger; without digits behind the point, every number is. */
 static inline double own_floor(double a) {
   if (!(own_fabs(a) < 4503599627370496.0)) {
     return a;

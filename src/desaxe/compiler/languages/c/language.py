@@ -9,6 +9,7 @@ from ..protocol import Module, Solver, Symbol
 from ..shared import called, one_line, with_helpers
 from .functions import Lifted, lifted, static_function
 from .helpers import CPLUSPLUS, FREESTANDING, FREESTANDING_ATAN2, FREESTANDING_HYPOT, HELPERS, PRAGMAS
+from .single import in_single, of_format
 from .steps import HEADER, step_texts
 
 STRIP = 128  # points of an array whose sines are computed ahead, on the stack
@@ -21,15 +22,17 @@ class C:
     suffix = ".c"
     second_order = False
     own_functions = True
+    single = True
     extended = True
     loops = None
 
     def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
         """`name.h` and `name.c`."""
-        return {
+        texts = {
             f"{module.name}.h": _header(module),
             f"{module.name}.c": _Source(module, freestanding).text(),
         }
+        return {file: in_single(text) for file, text in texts.items()} if module.single else texts
 
 
 # ---- the header ----------------------------------------------------------------------------------
@@ -163,7 +166,7 @@ class _Source:
     def text(self) -> str:
         """The text of the whole file."""
         name, motion = self.module.name, self.module.motion
-        steps = [] if motion is None else step_texts(name, motion, self.names)
+        steps = [] if motion is None else self._of_format(step_texts(name, motion, self.names))
         functions = "\n".join([*self._forms(), self._point(), self._array(), *self._solvers(), *steps])
         tables = [
             f"const char *const {name}_{table}[] = {{{', '.join([*map(quoted, texts), 'NULL'])}}};"
@@ -196,7 +199,11 @@ class _Source:
                 raise ValueError(f"c without libm has no {', '.join(missing)}: compile with libm")
             found += [FREESTANDING_HYPOT] if called(functions, ["hypot"]) else []
         found += with_helpers("\n".join([*angles, functions]), HELPERS)
-        return [*found, *angles[:1], *([FREESTANDING_ATAN2] if atan2 else []), *angles[1:]]
+        inverse = self._of_format([FREESTANDING_ATAN2] if atan2 else [])
+        return [*self._of_format(found), *angles[:1], *inverse, *angles[1:]]
+
+    def _of_format(self, texts: list[str]) -> list[str]:
+        return [*map(of_format, texts)] if self.module.single else texts
 
     def _angles(self, functions: str) -> list[str]:
         """Sine and cosine: written out up to the limit, beyond it those of libm where there is one."""

@@ -25,6 +25,7 @@ class Numba:
     suffix = ".py"
     second_order = False
     own_functions = False
+    single = False
     extended = True
     loops = staticmethod(emit_numba)
 
