@@ -13,6 +13,7 @@ KINDS = {
     "number": -50.0,
     "`over_theta`": dx.over_theta([0.0, 2.0, 4.0], [0.0, -50.0, 0.0]),
     "`over_Y`": dx.over_Y([0.15, 0.2, 0.25], [0.0, -50.0, -50.0], [0.0, 0.0, 0.0]),
+    "`over_stroke`": dx.over_stroke([0.0, 0.01, 0.02], [-50.0, -50.0, 0.0], dead_centre="outer"),
     "function of theta": np.sin,
 }
 ROUGH = {**DESIGN, "ec": dx.plus_minus(0.01, 1e-4)}

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from .evaluation.function import function as function
     from .evaluation.grid import grid as grid
     from .loads import LoadWarning as LoadWarning
+    from .loads import over_stroke as over_stroke
     from .loads import over_theta as over_theta
     from .loads import over_Y as over_Y
     from .machine import Machine as Machine
@@ -80,6 +81,7 @@ PUBLIC = {
     "quantities": "desaxe.mechanism.catalogue",
     "over_theta": "desaxe.loads",
     "over_Y": "desaxe.loads",
+    "over_stroke": "desaxe.loads",
     "LoadWarning": "desaxe.loads",
     "define": "desaxe.definitions.define",
     "undefine": "desaxe.definitions.define",
@@ -114,6 +116,7 @@ __all__ = [
     "inverse",
     "optimize",
     "over_Y",
+    "over_stroke",
     "over_theta",
     "peak",
     "plot",

@@ -37,6 +37,29 @@ class Stroke(NamedTuple):
         return values[max(bisect.bisect_right(self.positions, Y) - 1, 0)]
 
 
+class FromCentre(NamedTuple):
+    """A step table over the distance from a dead centre, which is at `zero` on this branch."""
+
+    distances: tuple
+    outward: tuple
+    inward: tuple | None
+    dead_centre: str
+    zero: Any
+
+    @property
+    def load(self):
+        return dx.over_stroke(self.distances, self.outward, self.inward, "step", dead_centre=self.dead_centre)
+
+    @property
+    def positions(self):
+        return [self.zero + side * mpmath.mpf(d) for d in self.distances for side in (1, -1) if d]
+
+    def force(self, theta, closure, way):
+        Y, slope = closure(theta)
+        values = self.inward if self.inward is not None and slope * way < 0 else self.outward
+        return values[max(bisect.bisect_right(self.distances, abs(self.zero - Y)) - 1, 0)]
+
+
 class Turn(NamedTuple):
     """A step table over the crank angle."""
 

@@ -163,6 +163,12 @@ def calls() -> dict[str, Call]:
             ("kind", "period"),
         ),
         "over_Y": Call(dx.over_Y, (), {"positions": [0.1, 0.2], "outward": [1.0, 2.0]}, ("inward", "kind")),
+        "over_stroke": Call(
+            dx.over_stroke,
+            (),
+            {"distances": [0.0, 0.2], "outward": [1.0, 2.0], "dead_centre": "outer"},
+            ("inward", "kind"),
+        ),
         "fit": Call(
             dx.fit,
             (SAMPLES,),

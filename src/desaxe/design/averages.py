@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
-from ..loads.angles import dead_centres, meeting_angles, passages, repeated, turns_of
+from ..loads.angles import crossings, dead_centres, meeting_angles, repeated, turns_of
 from ..loads.load import Load, OverY
 from ..mechanism.catalogue import has
 from ..mechanism.inputs import INPUTS
@@ -45,7 +45,7 @@ def _jumps_that_move(kind: str, name: str, designs: Mapping[str, Any], branch: i
     """The derivative of a mean, or a mean square, by each length that comes from jumps that move.
 
     Jumps of loads over the stroke do. One at the angle t adds (before - after) dt/dp. It stays at a position,
-    Y(t, p) = Y_k, or at a dead centre, Y_wrt_theta = 0.
+    Y(t, p) = Y_k, at a distance from a dead centre, Y(t, p) = Y_dc(p) + d_k, or at one, Y_wrt_theta = 0.
     """
     found: dict[str, Array] = {}
     loads = [load for load in designs.values() if isinstance(load, OverY)]
@@ -55,20 +55,20 @@ def _jumps_that_move(kind: str, name: str, designs: Mapping[str, Any], branch: i
     lengths = {n: np.asarray(designs[n], float) for n in LENGTHS}
     sides = [side.ravel() for side in np.broadcast_arrays(*(np.atleast_1d(v) for v in lengths.values()))]
     shape = np.broadcast_shapes(*(v.shape for v in lengths.values()))
-    positions = [passages(load.jumps, sides, branch) for load in loads]
-    turning = [dead_centres(sides)] if any(load.inward is not None for load in loads) else []
-    for fixed, angles in (("Y", positions), ("Y_wrt_theta", turning)):
-        if not angles:
-            continue
-        places = repeated(np.concatenate(angles, axis=-1), 0.0, end).reshape(*shape, -1)
+    moving = [(load.kept, crossings(load, load.jumps, sides, branch)) for load in loads]
+    if any(load.inward is not None for load in loads):
+        moving.append((("Y_wrt_theta",), dead_centres(sides)))
+    for (fixed, *centre), angles in moving:
+        places = repeated(angles, 0.0, end).reshape(*shape, -1)
         here = np.where(np.isnan(places), 1.0, places)
         before, after = (_along(name, here + side * BESIDE, designs, branch)[0] for side in (-1.0, 1.0))
         jump = before - after if kind == "mean" else before**2 - after**2
-        names = [sensitivity(fixed, p) for p in ("theta", *LENGTHS)]
+        names = [sensitivity(fixed, "theta"), *(sensitivity(n, p) for n in (fixed, *centre) for p in LENGTHS)]
         wide: dict[str, Any] = {n: v[..., None] for n, v in lengths.items()}
         by = evaluate(names, theta=here, branch=branch, **wide)
-        for p, slope in zip(LENGTHS, names[1:], strict=True):
-            terms = np.where(np.isnan(places), 0.0, -jump * by[slope] / by[names[0]])
+        for p in LENGTHS:
+            slope = by[sensitivity(fixed, p)] - sum(by[sensitivity(n, p)] for n in centre)
+            terms = np.where(np.isnan(places), 0.0, -jump * slope / by[names[0]])
             found[p] = found.get(p, 0.0) + terms.sum(axis=-1) / end
     return found
 

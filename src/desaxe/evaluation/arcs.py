@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..loads.angles import dead_centres, limit_angles, passages, repeated
+from ..loads.angles import crossings, dead_centres, limit_angles, repeated
 from ..loads.load import OverY
-from ..loads.pieces import POSITION, Place, piece_at, pieces_at
+from ..loads.pieces import Place, piece_at, pieces_at
 from ..loads.resolve import way_of
 from ..loads.table import SAME
 from ..mechanism.names import LENGTHS
@@ -73,11 +73,11 @@ def arcs_of(load: OverY, columns: Mapping[str, Array], branch: int, low: float, 
     wide = {name: column[:, None] for name, column in columns.items()}
     lengths, way = {name: wide[name] for name in LENGTHS}, way_of(wide)
     theta = np.stack([first, first + 0.5 * (last - first)])
-    motion = values(list(POSITION), {**lengths, "theta": theta}, branch)
+    motion = values(list(load.motion()), {**lengths, "theta": theta}, branch)
     place = Place(theta[1], tuple(lengths.values()), way, branch)
     pieces = pieces_at(load, place, {name: found[1] for name, found in motion.items()})
-    before, Y = np.roll(pieces, 1, axis=1), motion["Y"][0]
-    change = load.held(Y, pieces)[0] - load.held(Y, before)[0]
+    before, along = np.roll(pieces, 1, axis=1), load.along({name: found[0] for name, found in motion.items()})
+    change = load.held(along, pieces)[0] - load.held(along, before)[0]
     leaps, inward = np.abs(change) > SAME * load.largest, len(load.outward.rows)
     turns = leaps & ((pieces < inward) != (before < inward))
     same = pieces == before
@@ -89,7 +89,7 @@ def arcs_of(load: OverY, columns: Mapping[str, Array], branch: int, low: float, 
 
 def _starts(load: OverY, lengths: list[Array], branch: int, low: float, high: float) -> Array:
     """Angles at which arcs begin: knots, dead centres if the way matters, limits of the rod, ends."""
-    angles = [passages(load.positions(smooth=True), lengths, branch), limit_angles(lengths)]
+    angles = [crossings(load, load.positions(smooth=True), lengths, branch), limit_angles(lengths)]
     angles += [dead_centres(lengths)] if load.turns else []
     between = repeated(np.concatenate(angles, axis=1), low, high)
     between = np.where((between > nextafter(low, inf)) & (between < high), between, inf)

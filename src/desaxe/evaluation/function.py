@@ -56,7 +56,7 @@ def function(
     shown = (names,) if isinstance(names, str) else several(names)
     free = (inputs,) if isinstance(inputs, str) else several(inputs)
     check_inputs("function", free, tuple(INPUTS))
-    without_loads("function", fixed, "{name} among inputs= and load(theta) for it in each call")
+    without_loads("function", fixed, "{name} among inputs= and its value, such as load(theta), in each call")
     if not shown:
         raise ValueError("names = (): expected the name of a quantity or a list of names")
     twice = [name for name in free if fixed.get(name) is not None]

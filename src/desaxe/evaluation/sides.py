@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..loads.angles import dead_centres, passages
+from ..loads.angles import crossings, dead_centres
 from ..loads.load import Load, OverTheta, OverY
 from ..loads.table import SAME
 from ..mechanism.names import LENGTHS
@@ -48,7 +48,7 @@ def _near(load: Load, points: Mapping[str, Array], branch: int) -> NDArray[np.bo
         return np.isin(theta, nodes) | np.isin(np.nextafter(theta, inf), nodes)
     assert isinstance(load, OverY)
     lengths = [points[n] for n in LENGTHS]
-    angles = [passages(load.jumps, lengths, branch), *([dead_centres(lengths)] if load.turns else [])]
+    angles = [crossings(load, load.jumps, lengths, branch), *([dead_centres(lengths)] if load.turns else [])]
     away = theta[:, None] - np.concatenate(angles, axis=1)
     away -= 2.0 * pi * np.round(away / (2.0 * pi))
     near: NDArray[np.bool_] = (np.abs(away) <= NEAR * (1.0 + np.abs(theta[:, None]))).any(axis=1)

@@ -4,7 +4,9 @@ load       the loads: over theta or Y, from a table
 function   a user's function of theta as a load
 table      tables as piecewise cubics
 columns    numbers with or without units, from lists, arrays and files
-tabulated  `over_theta`, `over_Y`: loads from lists, files and functions
+made       loads made of columns, checked
+tabulated  `over_theta`, `over_Y`, `over_stroke`: loads from lists, files and functions
+stroke     a load over the distance from a dead centre
 pieces     which piece of a load over Y holds at an angle
 exact      where the slider is, exactly
 angles     crank angles of slider positions and dead centres
@@ -12,6 +14,6 @@ resolve    loads as numbers at each point, and total derivatives
 """
 
 from .load import Load, LoadWarning
-from .tabulated import over_theta, over_Y
+from .tabulated import over_stroke, over_theta, over_Y
 
-__all__ = ["Load", "LoadWarning", "over_Y", "over_theta"]
+__all__ = ["Load", "LoadWarning", "over_Y", "over_stroke", "over_theta"]

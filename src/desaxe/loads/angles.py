@@ -12,29 +12,53 @@ from ..mechanism.closed.dead_centres import DEAD_CENTRES
 from ..mechanism.closed.functions import closed_form
 from ..mechanism.closed.limits import ANGLES, LIMITS
 from .load import TURN, Load, OverTheta, OverY, TableOverTheta
+from .stroke import OverStroke
 
 Array = NDArray[np.float64]
 FLAT = 2.0**-6  # of AB + BC: what is left of a side where the triangle is flat
 STEEP = 0.9  # the sine of an angle that loses digits
 
 
-def passages(Y: Sequence[float], lengths: Sequence[Array], branch: int) -> Array:
+def crossings(load: OverY, places: Sequence[float], lengths: Sequence[Array], branch: int) -> Array:
+    """Both crank angles [rad] at each of the positions of a load's table, or at each of its distances."""
+    if not isinstance(load, OverStroke):
+        return passages(places, lengths, branch)
+    distance = np.array([place for place in places if place > 0.0])
+    _, AB, BC = lengths
+    way = -branch if load.centre == "Y_outer" else branch
+    # Past the inner one a long crank takes the slider both ways.
+    ways = (way, -way) if load.centre == "Y_inner" and (AB > BC).any() else (way,)
+    centre = zero_of(load, lengths, branch)[:, None]
+    return passages(np.concatenate([centre + side * distance for side in ways], axis=1), lengths, branch)
+
+
+def zero_of(load: OverY, lengths: Sequence[Array], branch: int) -> Array:
+    """The position [m] of each design from which a load measures positions; NaN where there is none."""
+    if not load.centre:
+        return np.zeros_like(lengths[0])
+    (found,) = closed_form(DEAD_CENTRES, (load.centre,), branch=float(branch)).arrays(*lengths)
+    return np.broadcast_to(found, lengths[0].shape)
+
+
+def passages(Y: Sequence[float] | Array, lengths: Sequence[Array], branch: int) -> Array:
     """Both crank angles [rad] at each position, NaN where there is none: shape (designs, 2 positions).
 
+    Y        positions, the same for all designs or a row for each
     lengths  ec, AB, BC, a value for each design
 
     The triangle A B C has the sides AB, BC and L = |AC|; tan(beta/2) of its angle at A keeps its digits where
     the triangle is flat, which is decided exactly: a position is reached, or it is not.
     """
     ec, AB, BC = (np.asarray(side, float)[:, None] for side in lengths)
-    position = np.asarray(Y, float)[None, :]
+    position = np.atleast_2d(np.asarray(Y, float))
     with np.errstate(invalid="ignore", divide="ignore"):
         L = np.hypot(ec, position)
         outer, inner, other = BC - (L - AB), (L + AB) - BC, BC + (L - AB)
         flat = np.abs([outer, inner, other]).min(axis=0) < FLAT * (AB + BC)
         for at in map(tuple, np.argwhere(flat)):
             sides = [float(side[at[0], 0]) for side in (ec, AB, BC)]
-            outer[at], inner[at], other[at] = _spare(sides, float(position[0, at[1]]), float(L[at]))
+            here = float(np.broadcast_to(position, L.shape)[at])
+            outer[at], inner[at], other[at] = _spare(sides, here, float(L[at]))
         beta = 2.0 * np.arctan2(np.sqrt(outer * other), np.sqrt(inner * ((L + AB) + BC)))
         found = [np.arctan2(-ec, position) + side * beta for side in (-1.0, 1.0)]
         return np.concatenate(
@@ -98,7 +122,7 @@ def kinks_between(
         if isinstance(load, OverTheta):
             found += load.nodes(low, high, smooth)
         elif isinstance(load, OverY):
-            angles = np.append(passages(load.positions(smooth), sides, branch), dead_centres(sides))
+            angles = np.append(crossings(load, load.positions(smooth), sides, branch), dead_centres(sides))
             every = repeated(angles[None, :], low, high)
             found += every[np.isfinite(every)].tolist()
     return sorted(set(found))
@@ -136,9 +160,8 @@ def meeting_angles(loads: Iterable[Load], high: float, lengths: Sequence[Array],
         if isinstance(load, OverTheta):
             found.append(np.array([load.nodes(0.0, high, smooth=True)]))
         elif isinstance(load, OverY):
-            angles = np.concatenate(
-                [passages(load.positions(smooth=True), lengths, branch), dead_centres(lengths)], axis=-1
-            )
+            own = crossings(load, load.positions(smooth=True), lengths, branch)
+            angles = np.concatenate([own, dead_centres(lengths)], axis=-1)
             found.append(repeated(angles, 0.0, high))
     size = max(part.shape[0] for part in found)
     return np.concatenate([np.broadcast_to(part, (size, part.shape[1])) for part in found], axis=1)

@@ -56,6 +56,24 @@ class Slider:
         return found
 
 
+class FromDeadCentre(Slider):
+    """The slider by its distance from a dead centre: less than a distance nearer to it."""
+
+    def __init__(self, theta: float, lengths: Sequence[float], branch: int, dead_centre: str) -> None:
+        super().__init__(theta, lengths, branch)
+        self.outer = dead_centre == "outer"
+
+    def _state(self, bits: int) -> "_State":
+        Y, slope, error = super()._state(bits)
+        ec, AB, BC = (_integer(length, bits - self._unit) for length in self.lengths)
+        along = BC + AB if self.outer else BC - AB
+        height = isqrt(max(along * along - ec * ec, 0))
+        centre = self.branch * (height if along >= 0 else -height)
+        error += 16 + (8 << bits) // max(height, 1)
+        found = self._states[bits] = _State(abs(centre - Y), slope, error)
+        return found
+
+
 class _State(NamedTuple):
     """Position, a multiple of its slope, and what is rounded of either at most."""
 

@@ -5,6 +5,8 @@ way the slider goes. It stands wherever F_X or F_Y does, compares by its content
 """
 
 from abc import ABC, abstractmethod
+from bisect import bisect_left
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from hashlib import sha256
 from math import ceil, floor, inf, nan, nextafter, pi
@@ -15,6 +17,7 @@ from ..support.forks import IMPORTS
 from .table import Table, polynomial
 
 TURN = 2.0 * pi
+POSITION = ("Y", "Y_wrt_theta", "Y_wrt_theta_theta")  # which piece holds: the position, and the way
 
 
 class LoadWarning(UserWarning):
@@ -133,6 +136,25 @@ class OverY(Load):
 
     over = "Y"
     parameters = ("theta", "ec", "AB", "BC")
+    rises = 1.0  # the way of the slider in which the table is gone through upwards
+    centre = ""  # the dead centre from which positions are measured: the name of its position
+
+    @property
+    def kept(self) -> tuple[str, ...]:
+        """The quantities whose difference keeps its value where the slider is at a position of the table."""
+        return ("Y", self.centre) if self.centre else ("Y",)
+
+    def motion(self, parameters: Iterable[str] = ()) -> tuple[str, ...]:
+        """The names of the motion from which the load and its derivatives by these parameters follow."""
+        return (*POSITION, *(f"Y_wrt_{p}" for p in parameters))
+
+    def along(self, motion: Mapping[str, Any]) -> Any:
+        """The position or distance that the table is over, from the motion."""
+        return motion["Y"]
+
+    def moved(self, parameter: str, motion: Mapping[str, Any]) -> Any:
+        """The derivative of that by a parameter."""
+        return motion[f"Y_wrt_{parameter}"]
 
     def __call__(self, Y: Any, way: Any = 1.0) -> Any:
         """The load at positions [m] of a slider that goes outward, or inward where `way` is negative."""
@@ -140,19 +162,28 @@ class OverY(Load):
 
     def both(self, Y: Any, way: Any) -> tuple[Any, Any]:
         """The load and its derivative by Y."""
-        if isinstance(Y, float) and isinstance(way, float):
+        if isinstance(Y, float) and isinstance(way, float) and not self.outward.jumps_at_points:
             return (self.inward if self.inward is not None and way < 0.0 else self.outward).both(Y)
         return self.held(Y, self.piece(Y, way))
 
     def piece(self, Y: Any, way: Any) -> Any:
-        """The number of the piece that holds: those of the way inward follow those outward."""
+        """The number of the piece that holds: those of the way inward follow those outward.
+
+        At a position given twice that is the one ahead.
+        """
         if isinstance(Y, float) and isinstance(way, float):
-            found = self.outward.piece(Y)
+            back = self.outward.jumps_at_points and way * self.rises < 0.0
+            found = bisect_left(self.outward.knots, Y) if back else self.outward.piece(Y)
             return found + len(self.outward.rows) if self.inward is not None and way < 0.0 else found
         with IMPORTS:
             import numpy as np
 
-        found = np.searchsorted(self._arrays[0][1:-1], Y, side="right")
+        knots = self._arrays[0][1:-1]
+        found = np.searchsorted(knots, Y, side="right")
+        if self.outward.jumps_at_points:
+            found = np.where(
+                np.multiply(way, self.rises) < 0.0, np.searchsorted(knots, Y, side="left"), found
+            )
         if self.inward is None:
             return found
         return found + np.where(np.less(way, 0.0), len(self.outward.rows), 0)

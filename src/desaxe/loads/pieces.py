@@ -5,10 +5,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from ..support.forks import IMPORTS
-from .exact import Slider
-from .load import OverY
+from .exact import FromDeadCentre, Slider
+from .load import POSITION, OverY
+from .stroke import OverStroke
 
-POSITION = ("Y", "Y_wrt_theta", "Y_wrt_theta_theta")  # which piece holds: the position, and the way
 NEAR = 2.0**-44  # of AB + BC: next to a jump, as far as a rounded position tells
 FLAT = 2.0**-36  # of AB: next to a dead centre, as far as a rounded slope tells
 
@@ -36,8 +36,9 @@ def ahead(motion: Mapping[str, Any], way: Any) -> Any:
 
 
 def pieces_at(load: OverY, place: Place, motion: Mapping[str, Any]) -> Any:
-    """The number of the piece at each point, from its motion: the values of `POSITION`."""
-    Y, slope, found = motion["Y"], motion["Y_wrt_theta"], load.piece(motion["Y"], ahead(motion, place.way))
+    """The number of the piece at each point, from its motion: the values of `load.motion()`."""
+    Y, slope = load.along(motion), motion["Y_wrt_theta"]
+    found = load.piece(Y, ahead(motion, place.way))
     still = load.jumping and _is_open(load, place, Y, slope, found)
     if isinstance(found, int):
         return piece_at(load, place) if still else found
@@ -65,7 +66,13 @@ def _is_open(load: OverY, place: Place, Y: Any, slope: Any, piece: Any) -> Any:
 
 def piece_at(load: OverY, place: Place) -> int:
     """The number of the piece at one point, exactly."""
-    slider = Slider(place.theta, place.lengths, place.branch)
+    slider = slider_of(load, place)
     inward = load.inward is not None and slider.way * (1 if place.way >= 0.0 else -1) < 0
     table = load.inward if inward and load.inward is not None else load.outward
     return bisect_right(table.knots, slider) + (len(load.outward.rows) if inward else 0)
+
+
+def slider_of(load: OverY, place: Place) -> Slider:
+    """The slider at an angle, exactly, as the positions of a load measure it."""
+    own = place.theta, place.lengths, place.branch
+    return FromDeadCentre(*own, load.dead_centre) if isinstance(load, OverStroke) else Slider(*own)

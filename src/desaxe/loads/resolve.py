@@ -15,19 +15,21 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from inspect import signature
+from math import nan
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ..mechanism.catalogue import law_name, quantity
 from ..mechanism.inputs import INPUTS
-from ..mechanism.names import parts, sensitivity
+from ..mechanism.names import STATUS, parts, sensitivity
 from ..mechanism.own import Definition, Register, register, used_by
 from ..mechanism.program import Variant, program_of
 from ..mechanism.unit_system import UnitSystem
 from ..support.forks import IMPORTS
 from .function import FunctionOverTheta
 from .load import Load, OverTheta, OverY
-from .pieces import POSITION, Place, ahead, pieces_at
+from .pieces import Place, ahead, pieces_at
+from .stroke import NONE, OverStroke
 
 VARIABLE = ("F_X", "F_Y")  # inputs that may vary with the motion
 
@@ -41,8 +43,8 @@ def as_load(name: str, value: Any) -> Load:
         return value
     if not takes(value, 1):
         raise TypeError(
-            f"{name}: a load is a number, desaxe.over_theta(...), desaxe.over_Y(...) or a function of theta "
-            f"alone; this function takes {signature(value)}"
+            f"{name}: a load is a number, desaxe.over_theta(...), over_Y(...), over_stroke(...) or a "
+            f"function of theta alone; this function takes {signature(value)}"
         )
     return FunctionOverTheta(value)
 
@@ -106,10 +108,14 @@ class Term(NamedTuple):
 
 
 class Forces(NamedTuple):
-    """Loads at some crank angles, and their derivatives by (force, parameter)."""
+    """Loads at some crank angles, and their derivatives by (force, parameter).
+
+    status  by force: not 0 where it has no value, or a derivative has none
+    """
 
     values: dict[str, Any]
     slopes: dict[tuple[str, str], Any]
+    status: dict[str, Any]
 
 
 class Plan(NamedTuple):
@@ -120,6 +126,7 @@ class Plan(NamedTuple):
     terms: Mapping[str, tuple[Term, ...]]
     loads: Mapping[str, Load]  # those that matter
     motion: tuple[str, ...]  # names of the motion, at a fixed load, which the loads and derivatives need
+    forces_of: Mapping[str, tuple[str, ...]]  # those that a name depends on
 
     def forces(
         self, place: Place, motion: Mapping[str, Any], held: Mapping[str, Any] = MappingProxyType({})
@@ -130,6 +137,7 @@ class Plan(NamedTuple):
         """
         values: dict[str, Any] = {}
         slopes: dict[tuple[str, str], Any] = {}
+        status: dict[str, Any] = {}
         wanted = {(t.force, t.parameter) for terms in self.terms.values() for t in terms}
         for name, load in self.loads.items():
             if isinstance(load, OverTheta):
@@ -137,16 +145,19 @@ class Plan(NamedTuple):
                 known = {"theta": slope}
             else:
                 assert isinstance(load, OverY)
+                along = load.along(motion)
                 if name in held:
-                    value, by_position = load.held(motion["Y"], held[name])
+                    value, by_position = load.held(along, held[name])
                 elif load.jumping:
-                    value, by_position = load.held(motion["Y"], pieces_at(load, place, motion))
+                    value, by_position = load.held(along, pieces_at(load, place, motion))
                 else:
-                    value, by_position = load.both(motion["Y"], ahead(motion, place.way))
-                known = {p: by_position * motion[f"Y_wrt_{p}"] for n, p in wanted if n == name}
+                    value, by_position = load.both(along, ahead(motion, place.way))
+                known = {p: by_position * load.moved(p, motion) for n, p in wanted if n == name}
+                if isinstance(load, OverStroke):
+                    status[name] = load.status(motion)
             values[name] = _finite_or_zero(value)
             slopes.update({(n, p): known[p] for n, p in wanted if n == name})
-        return Forces(values, slopes)
+        return Forces(values, slopes, status)
 
     def totals(self, found: Mapping[str, Any], forces: Forces) -> dict[str, Any]:
         """The requested total derivatives, from the values of `names`."""
@@ -155,6 +166,9 @@ class Plan(NamedTuple):
             total = found[name]
             for slope, force, parameter in self.terms.get(name, ()):
                 total = total + found[slope] * forces.slopes[force, parameter]
+            for force in self.forces_of.get(name, ()):
+                if force in forces.status:
+                    total = _with_status(total, forces.status[force], name == STATUS)
             result[name] = total
         return result
 
@@ -171,23 +185,33 @@ def plan_of(
     known = known or register()
     terms: dict[str, tuple[Term, ...]] = {}
     used: dict[str, Load] = {}
+    forces_of: dict[str, tuple[str, ...]] = {}
     for name in names:
         quantity(name, state, known)
         for force, load in loads.items():
             law = law_name(name) if state else name
             if _depends(law, force, mu, used_by((law,), known)):
                 used[force] = load
+                forces_of[name] = (*forces_of.get(name, ()), force)
                 terms[name] = (*terms.get(name, ()), *_terms(name, force, load, state, known))
-    more = [term.slope for group in terms.values() for term in group]
-    over_Y = {t.parameter for group in terms.values() for t in group if isinstance(used[t.force], OverY)}
-    motion = POSITION if any(isinstance(load, OverY) for load in used.values()) else ()
-    motion = tuple(dict.fromkeys((*motion, *(f"Y_wrt_{p}" for p in sorted(over_Y)))))
-    return Plan(tuple(names), tuple(dict.fromkeys((*names, *more))), terms, used, motion)
+    if STATUS in names:
+        of_design = [n for n, load in loads.items() if isinstance(load, OverStroke)]
+        some = [n for n in of_design if n in used or len(names) == 1]
+        forces_of[STATUS] = tuple(dict.fromkeys((*forces_of.get(STATUS, ()), *some)))
+        used |= {n: loads[n] for n in some}
+    every = [term for group in terms.values() for term in group]
+    motion: dict[str, None] = {}
+    for force, load in used.items():
+        if isinstance(load, OverY):
+            motion |= dict.fromkeys(load.motion(sorted({t.parameter for t in every if t.force == force})))
+    more = (term.slope for term in every)
+    wanted = tuple(dict.fromkeys((*names, *more)))
+    return Plan(tuple(names), wanted, terms, used, tuple(motion), forces_of)
 
 
 @lru_cache(maxsize=1024)
 def _depends(name: str, force: str, mu: bool, own: tuple[Definition, ...]) -> bool:
-    if name == "status":
+    if name == STATUS:
         return mu
     return force in program_of((name,), Variant(own=own)).inputs
 
@@ -248,3 +272,17 @@ def _finite_or_zero(value: Any) -> Any:
         import numpy as np
 
     return np.nan_to_num(value, nan=0.0, posinf=0.0, neginf=0.0)
+
+
+def _with_status(value: Any, status: Any, is_status: bool) -> Any:
+    """A value that depends on a load without one is NaN; a status says why, where it said nothing else."""
+    if isinstance(status, int):
+        if is_status:
+            return value or status
+        return nan if status == NONE else value
+    with IMPORTS:
+        import numpy as np
+
+    if is_status:
+        return np.where(np.equal(value, 0), status, value).astype(np.int8)
+    return np.where(np.equal(status, NONE), nan, value)

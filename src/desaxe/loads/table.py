@@ -7,6 +7,7 @@ to the right holds, value and derivative alike.
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import floor, nan
 from typing import Any
 
@@ -93,6 +94,11 @@ class Table:
         return tuple(row[0] for row in self.rows[1:])
 
     @computed_once
+    def jumps_at_points(self) -> bool:
+        """True where a place is given twice: the value there is that of the side ahead."""
+        return any(a == b for a, b in pairwise(self.knots))
+
+    @computed_once
     def kinks(self) -> tuple[float, ...]:
         """The knots at which the value jumps or the derivative does."""
         return tuple(x for x, jump, kink in self._changes() if jump or kink)
@@ -144,6 +150,9 @@ def _rows(
     """The coefficients between neighbours (x, y) and (x, y); for cubics with these slopes at the knots."""
     rows: list[Row] = []
     for i, (a, left, b, right) in enumerate(spans):
+        if a == b:  # a jump: a piece of no width
+            rows.append((left, 0.0, 0.0, 0.0))
+            continue
         width, chord = b - a, (right - left) / (b - a)
         if kind == "step":
             rows.append((left, 0.0, 0.0, 0.0))

@@ -1,10 +1,7 @@
 """`over_theta` and `over_Y`: loads from tables, files and functions."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
-from itertools import chain, pairwise
-from math import isfinite
 from os import PathLike
 from typing import Any
 from warnings import warn
@@ -14,14 +11,11 @@ from ..mechanism.unit_system import Conversion, UnitSystem
 from ..support.shown import printable, shown
 from .columns import Column, column_of, column_of_file, rows_of, unit_of_column
 from .function import FunctionOverTheta
-from .load import TURN, Load, LoadWarning, OverY, TableOverTheta
-from .table import KINDS, Table, held, periodic
+from .load import TURN, Load
+from .made import table_over_stroke, table_over_theta, table_over_Y
 
-CLOSED = 1e-6  # of a period: a last angle so near to its end repeats the first one
-WIDE = 4.0  # times the usual distance between points
 LONGEST_PERIOD = 1e9
 FARTHEST = LARGEST["ec"]  # m: a position beyond is almost surely in another unit
-EQUAL = 1e-9  # of the largest value: what differs by less is the same
 
 
 class MakeOverTheta:
@@ -84,7 +78,7 @@ class MakeOverTheta:
             raise TypeError(f"{name}: values is missing (angles and values, or a function of theta)")
         x = column_of(f"{name}: angles", angles, ("rad",), _unit(self.units, "theta"))
         y = column_of(f"{name}: values", values, ("N", "N*m"), _force(self.units))
-        return _table_over_theta(x, y, kind, turn)
+        return table_over_theta(x, y, kind, turn)
 
     def read(
         self,
@@ -109,7 +103,7 @@ class MakeOverTheta:
         x = column_of_file("theta", rows, 0, theta, ("rad",), _unit(self.units, "theta"))
         y = column_of_file("value", rows, 1, value, ("N", "N*m"), _force(self.units))
         try:
-            return _table_over_theta(x, y, kind, self._period(period))
+            return table_over_theta(x, y, kind, self._period(period))
         except ValueError as error:
             raise ValueError(f"{printable(path)}: {error}") from None
 
@@ -152,18 +146,7 @@ class MakeOverY:
 
     def __call__(self, positions: Any, outward: Any, inward: Any = None, kind: str = "linear") -> Load:
         """A load over the slider's position; see `help(desaxe.over_Y)`."""
-        x = column_of("over_Y: positions", positions, ("m",), _unit(self.units, "Y"))
-        farthest = max(x.values, key=abs, default=0.0)
-        if x.plain and isinstance(positions, (list, tuple)) and abs(farthest) > FARTHEST:
-            warn(
-                f"over_Y: positions up to {farthest:.6g} m, almost surely a slip: write "
-                f'"{farthest:.6g} mm"; plain numbers are metres',
-                UnitWarning,
-                stacklevel=2,
-            )
-        ways = [("outward", outward), *([] if inward is None else [("inward", inward)])]
-        columns = [column_of(f"over_Y: {way}", values, ("N",), _force(self.units)) for way, values in ways]
-        return _table_over_Y(x, columns, kind)
+        return table_over_Y(*_columns("over_Y", "positions", positions, outward, inward, self.units), kind)
 
     def read(
         self, path: str | PathLike[str], Y: str | None = None, value: str | None = None, kind: str = "linear"
@@ -172,14 +155,9 @@ class MakeOverY:
 
         Y, value are the units of the columns; the form of the file is that of `over_theta.read`.
         """
-        heading, rows = rows_of(path, 2)
-        Y = unit_of_column(path, "Y", Y, heading[:1])
-        value = unit_of_column(path, "value", value, heading[1:3])
-        x = column_of_file("Y", rows, 0, Y, ("m",), _unit(self.units, "Y"))
-        ways = (1, 2) if all(len(row) > 2 for row in rows) else (1,)
-        columns = [column_of_file("value", rows, way, value, ("N",), _force(self.units)) for way in ways]
+        columns = _columns_of_file(path, "Y", Y, value, self.units)
         try:
-            return _table_over_Y(x, columns, kind)
+            return table_over_Y(*columns, kind)
         except ValueError as error:
             raise ValueError(f"{printable(path)}: {error}") from None
 
@@ -188,8 +166,96 @@ class MakeOverY:
         return f"desaxe.over_Y(positions, outward, inward=None){units}"
 
 
+class MakeOverStroke:
+    """`over_stroke(distances, outward, inward=None, dead_centre="outer")`: a load over the stroke itself.
+
+    The die of a press is hit a given way before bottom dead centre, whatever the design: the load is over the
+    slider's distance from a dead centre of *this* design on *this* branch, and moves with it.
+
+        die = dx.over_stroke(["0 mm", "8 mm", "8 mm"], [-80e3, -80e3, 0], [0, 0, 0], dead_centre="outer")
+
+    distances    |Y - Y_dead_centre| >= 0 [m], ascending or descending, or texts with units; one given twice
+                 in a linear table is a jump
+    outward      the load where Y increases with time, at each distance
+    inward       where it decreases; as outward without
+    kind         "linear", "step" (a value holds towards larger distances), or "cubic" (extra `simulate`)
+    dead_centre  "outer", the one farthest from the crank, or "inner"
+
+    Forces keep the sign of +Y. Beyond the distances the values at the ends hold. Derivatives by a length
+    include how the dead centre moves: dF/dp = F'(d) sign (dY_dc/dp - Y_wrt_p). Where a design has no such
+    dead centre forces are NaN, with status 1; at a change point, where the inner one moves infinitely fast
+    with the lengths, derivatives by these are, with status 2. `over_stroke.read("press.csv", distance="mm",
+    value="kN", dead_centre="outer")` reads the columns distance, outward and, where there is one, inward.
+
+    `machine.over_stroke` is the same in the units of a machine: its plain distances and forces.
+    """
+
+    def __init__(self, units: UnitSystem | None = None) -> None:
+        self.units = units  # of plain numbers: those of a machine, else SI
+
+    def __call__(
+        self, distances: Any, outward: Any, inward: Any = None, kind: str = "linear", *, dead_centre: str
+    ) -> Load:
+        """A load over the distance from a dead centre; see `help(desaxe.over_stroke)`."""
+        columns = _columns("over_stroke", "distances", distances, outward, inward, self.units)
+        return table_over_stroke(*columns, kind, dead_centre)
+
+    def read(
+        self,
+        path: str | PathLike[str],
+        distance: str | None = None,
+        value: str | None = None,
+        kind: str = "linear",
+        *,
+        dead_centre: str,
+    ) -> Load:
+        """A load over the distance from a dead centre from a text file: distance, outward and perhaps inward.
+
+        distance, value are the units of the columns; the form of the file is that of `over_theta.read`.
+        """
+        columns = _columns_of_file(path, "distance", distance, value, self.units)
+        try:
+            return table_over_stroke(*columns, kind, dead_centre)
+        except ValueError as error:
+            raise ValueError(f"{printable(path)}: {error}") from None
+
+    def __repr__(self) -> str:
+        units = f" in {self.units!r}" if self.units else ""
+        return f"desaxe.over_stroke(distances, outward, inward=None, *, dead_centre){units}"
+
+
 over_theta = MakeOverTheta()
 over_Y = MakeOverY()
+over_stroke = MakeOverStroke()
+
+
+def _columns(
+    name: str, places: str, x: Any, outward: Any, inward: Any, units: UnitSystem | None
+) -> tuple[Column, list[Column]]:
+    """Positions or distances, and the values for each way."""
+    at = column_of(f"{name}: {places}", x, ("m",), _unit(units, "Y"))
+    farthest = max(at.values, key=abs, default=0.0)
+    if at.plain and isinstance(x, (list, tuple)) and abs(farthest) > FARTHEST:
+        warn(
+            f"{name}: {places} up to {farthest:.6g} m, almost surely a slip: write "
+            f'"{farthest:.6g} mm"; plain numbers are metres',
+            UnitWarning,
+            stacklevel=3,
+        )
+    ways = [("outward", outward), *([] if inward is None else [("inward", inward)])]
+    return at, [column_of(f"{name}: {way}", values, ("N",), _force(units)) for way, values in ways]
+
+
+def _columns_of_file(
+    path: str | PathLike[str], places: str, unit: str | None, value: str | None, units: UnitSystem | None
+) -> tuple[Column, list[Column]]:
+    """The columns of a file: positions or distances, outward and, where all lines have it, inward."""
+    heading, rows = rows_of(path, 2)
+    unit = unit_of_column(path, places, unit, heading[:1])
+    value = unit_of_column(path, "value", value, heading[1:3])
+    x = column_of_file(places, rows, 0, unit, ("m",), _unit(units, "Y"))
+    ways = (1, 2) if all(len(row) > 2 for row in rows) else (1,)
+    return x, [column_of_file("value", rows, way, value, ("N",), _force(units)) for way in ways]
 
 
 @dataclass(frozen=True)
@@ -230,84 +296,3 @@ def _force(units: UnitSystem | None) -> Conversion | None:
             f"a load in a machine whose F_X is in {one.unit} and F_Y in {other.unit}: give texts with units"
         )
     return one
-
-
-def _table_over_theta(angles: Column, values: Column, kind: str, turn: Column) -> Load:
-    name = "over_theta"
-    x, y, period = angles.values, values.values, turn.values[0]
-    _check(name, "angles", x, [y], kind)
-    if not all(a < b for a, b in pairwise(x)):
-        raise ValueError(f"{name}: the angles must ascend, {_falls(x)}")
-    span = x[-1] - x[0]
-    if span > (1.0 + CLOSED) * period:
-        raise ValueError(
-            f"{name}: the angles go over {span:g} rad, the period is {period:g} rad; give a longer period= "
-            f'or one period of the table (degrees are texts: "{x[-1]:g} deg")'
-        )
-    if span >= (1.0 - CLOSED) * period:
-        if abs(y[-1] - y[0]) > EQUAL * max(map(abs, y)):
-            raise ValueError(
-                f"{name}: at the end of the period the value is {y[-1]!r}, but {y[0]!r} at its beginning: "
-                "the load must repeat; leave the end point out, or give the period= after which it does"
-            )
-        x, y = x[:-1], y[:-1]
-    _warn_of_gap(x, kind, period)
-    plain = ("theta",) * (angles.plain or turn.plain) + ("value",) * values.plain
-    table = _finite(name, x, y, partial(periodic, x, y, kind, period))
-    return TableOverTheta(table, kind, values.unit, plain)
-
-
-def _finite(name: str, x: Sequence[float], y: Sequence[float], make: Callable[[], Table]) -> Table:
-    """A table; ValueError where slopes between its points are too steep for doubles."""
-    try:
-        table = make()
-    except ArithmeticError:
-        table = None
-    if table is None or not all(map(isfinite, chain.from_iterable(table.rows))):
-        spans = pairwise(zip(x, y, strict=True))
-        _, a, b = max((abs((right - left) / (b - a)), a, b) for (a, left), (b, right) in spans)
-        raise ValueError(
-            f"{name}: {a!r} and {b!r} are too close for the values there: slopes must be below 1.8e308"
-        )
-    return table
-
-
-def _warn_of_gap(x: list[float], kind: str, period: float) -> None:
-    """Warn of a spline with a gap of most of a turn between two points."""
-    gaps = sorted(b - a for a, b in zip(x, [*x[1:], x[0] + period], strict=True))
-    if kind == "cubic" and gaps[-1] > max(period / 4.0, WIDE * gaps[len(gaps) // 2]):
-        warn(
-            f"over_theta: a gap of {gaps[-1]:.3g} rad without a point, which a cubic spline bridges with a "
-            'wide swing; give points there too, or kind="linear" or "step"',
-            LoadWarning,
-            stacklevel=4,
-        )
-
-
-def _table_over_Y(positions: Column, ways: Sequence[Column], kind: str) -> Load:
-    x, columns = positions.values, [way.values for way in ways]
-    _check("over_Y", "positions", x, columns, kind)
-    if x[0] > x[-1]:
-        x, columns = x[::-1], [column[::-1] for column in columns]
-    if not all(a < b for a, b in pairwise(x)):
-        raise ValueError(f"over_Y: the positions must ascend or descend, {_falls(x)}")
-    tables = [_finite("over_Y", x, column, partial(held, x, column, kind)) for column in columns]
-    outward, inward, *_ = *tables, None
-    unit = next((way.unit for way in ways if way.unit is not None), None)
-    plain = ("Y",) * positions.plain + ("value",) * any(way.plain for way in ways)
-    return OverY(outward, inward, kind, unit, plain)
-
-
-def _check(name: str, places: str, x: list[float], columns: Sequence[list[float]], kind: str) -> None:
-    if not isinstance(kind, str) or kind not in KINDS:
-        raise ValueError(f"{name}: kind = {shown(kind)}: it is one of {', '.join(KINDS)}")
-    for column in columns:
-        if len(column) != len(x):
-            raise ValueError(f"{name}: {len(x)} {places} and {len(column)} values; expected as many of both")
-    if len(x) < 2:
-        raise ValueError(f"{name}: {len(x)} of the {places}; expected at least two points")
-
-
-def _falls(x: Sequence[float]) -> str:
-    a, b = next((a, b) for a, b in pairwise(x) if not a < b)
-    return f"but {b:g} follows {a:g}"

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..loads.load import Load, OverY, TableOverTheta
+from ..loads.stroke import OverStroke
 
 INLINE = 24  # points that stand in the scene itself
 
@@ -30,8 +31,11 @@ def load_table(name: str, load: Load, scene: Path, unit: str | None = None) -> L
         ways = [load.outward] if load.inward is None else [load.outward, load.inward]
         columns = [load.outward.knots, *(table.values for table in ways)]
         more = {"kind": load.kind}
-        over, along = "over_Y", {"Y": "m"}
-        heads = ["Y [m]", *(f"{name} {way}" for way in ("outward", "inward")[: len(ways)])]
+        over, along, first = "over_Y", {"Y": "m"}, "Y [m]"
+        if isinstance(load, OverStroke):
+            over, along, first = "over_stroke", {"distance": "m"}, "distance [m]"
+            more["dead_centre"] = load.dead_centre
+        heads = [first, *(f"{name} {way}" for way in ("outward", "inward")[: len(ways)])]
     else:
         raise TypeError(f"{name}: a function is not data, and cannot stand in a scene file; give a table")
     unit = load.unit or unit

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..evaluation.arrays import as_array
 from ..loads.resolve import settled
-from ..loads.tabulated import MakeOverTheta, MakeOverY
+from ..loads.tabulated import MakeOverStroke, MakeOverTheta, MakeOverY
 from ..mechanism.inputs import INPUTS, is_good
 from ..mechanism.own import Definition
 from ..mechanism.slips import warn_of_slips
@@ -144,6 +144,11 @@ class Machine(Mapping[str, Any]):
     def over_Y(self) -> MakeOverY:
         """`desaxe.over_Y`, and its `read`, with plain numbers in the units of the machine."""
         return MakeOverY(self.units)
+
+    @property
+    def over_stroke(self) -> MakeOverStroke:
+        """`desaxe.over_stroke`, and its `read`, with plain numbers in the units of the machine."""
+        return MakeOverStroke(self.units)
 
     @property
     def plot(self) -> Plots:

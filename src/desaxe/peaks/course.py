@@ -8,13 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.arcs import Arcs, arcs_of
-from ..loads.angles import dead_centres, passages, repeated
+from ..loads.angles import crossings, dead_centres, repeated
 from ..loads.load import Load, OverTheta, OverY
 from ..mechanism.names import LENGTHS
 from .nodes import Array
 from .special import Designs
 
-FIXED, CROSSING, TURNING = 0, 1, 2  # what keeps a kink where it is: the angle, a position, a dead centre
+# What keeps a kink where it is: the angle, a position, a dead centre, the distance from one.
+FIXED, CROSSING, TURNING, FROM_OUTER, FROM_INNER = range(5)
+KIND_OF = {"": CROSSING, "Y_outer": FROM_OUTER, "Y_inner": FROM_INNER}
 BESIDE = 16.0  # last bits of an angle: so near to a jump is next to it
 ROUNDED = 64.0  # last bits of an angle: so near to a dead centre rounding may take the other side's friction
 
@@ -96,15 +98,16 @@ def _jumps_over_theta(load: OverTheta, low: float, high: float) -> Array:
 
 def _over_Y(load: OverY, arcs: Arcs | None, designs: Designs) -> _Part:
     lengths = [designs.columns[n] for n in LENGTHS]
-    bent = passages(load.positions(smooth=False), lengths, designs.branch)
+    bent = crossings(load, load.positions(smooth=False), lengths, designs.branch)
+    crossing = KIND_OF[load.centre]
     own, turning = (repeated(angles, *designs.theta) for angles in (bent, dead_centres(lengths)))
-    kinks = [(own, CROSSING), (turning, TURNING)]
+    kinks = [(own, crossing), (turning, TURNING)]
     if arcs is None:
-        smooth = passages(load.positions(smooth=True), lengths, designs.branch)
+        smooth = crossings(load, load.positions(smooth=True), lengths, designs.branch)
         return _Part(repeated(smooth, *designs.theta), kinks, [])
     before = np.where(arcs.leaps, np.nextafter(arcs.starts, -inf), np.nan)
     jumps = [(np.where(arcs.turns, arcs.starts, np.nan), TURNING)]
-    jumps += [(np.where(arcs.leaps & ~arcs.turns, arcs.starts, np.nan), CROSSING)]
+    jumps += [(np.where(arcs.leaps & ~arcs.turns, arcs.starts, np.nan), crossing)]
     return _Part(np.append(arcs.starts, before, axis=1), kinks, jumps)
 
 

@@ -11,14 +11,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanism.names import LENGTHS, sensitivity
-from .course import BESIDE, CROSSING, ROUNDED, TURNING
+from .course import BESIDE, CROSSING, FROM_INNER, FROM_OUTER, ROUNDED, TURNING
 from .loaded import Rows, Values
 from .nodes import Array
 from .special import AT_KINK
 
 EQUAL = 2.0**-40  # of a value: limits that differ by less are equal
 APART = 1e-9  # of a value: what friction of the other side changes is more
-KEPT = {CROSSING: "Y", TURNING: "Y_wrt_theta"}  # what keeps its value at a kink that moves with the lengths
+# What keeps its value at a kink that moves with the lengths: a quantity, or the difference of two.
+KEPT = {
+    CROSSING: ("Y",),
+    TURNING: ("Y_wrt_theta",),
+    FROM_OUTER: ("Y", "Y_outer"),
+    FROM_INNER: ("Y", "Y_inner"),
+}
 
 
 class Jump(NamedTuple):
@@ -119,11 +125,13 @@ def _move(values: Values, kind: int, what: int, rows: Rows, theta: Array, out: A
     parameters = values.search.parameters
     if not rows.size:
         return
-    names = [sensitivity(KEPT[what], q) for q in ("theta", *LENGTHS)]
+    kept, *centre = KEPT[what]
+    names = [sensitivity(kept, "theta"), *(sensitivity(n, q) for n in (kept, *centre) for q in LENGTHS)]
     designs = values.designs.part(rows)._replace(loads={})
     found = designs.values(tuple(names), np.arange(rows.size), theta[rows])
     sign = np.where(out[0, rows] < 0.0, -1.0, 1.0) if kind == 0 else 1.0
-    for length, by in zip(LENGTHS, names[1:], strict=True):
+    for length in LENGTHS:
         if length in parameters:
             with np.errstate(all="ignore"):
-                out[2 + parameters.index(length), rows] -= sign * out[1, rows] * found[by] / found[names[0]]
+                by = found[sensitivity(kept, length)] - sum(found[sensitivity(n, length)] for n in centre)
+                out[2 + parameters.index(length), rows] -= sign * out[1, rows] * by / found[names[0]]

@@ -73,10 +73,14 @@ Column = Annotated[tuple[Number, ...], Meta(description="a list of numbers in SI
 TableKind = Annotated[
     Literal["cubic", "linear", "step"], Meta(description='one of "cubic", "linear", "step"')
 ]
+DeadCentre = Annotated[
+    Literal["outer", "inner"],
+    Meta(description='"outer" or "inner": the dead centre from which over_stroke measures distances'),
+]
 
 
 class Varying(Section, frozen=True):
-    """A range of values, or a load that varies with the motion: over the crank angle, or over Y."""
+    """A range of values, or a load over the motion: over the angle, over Y, or from a dead centre."""
 
     start: Number | None = None
     stop: Number | None = None
@@ -84,6 +88,8 @@ class Varying(Section, frozen=True):
     step: Number | None = None
     over_theta: Table | None = None
     over_Y: Table | None = None
+    over_stroke: Table | None = None
+    dead_centre: DeadCentre | None = None
     values: Column | None = None
     outward: Column | None = None
     inward: Column | None = None
@@ -91,12 +97,13 @@ class Varying(Section, frozen=True):
     period: Number | None = None
     theta: Unit | None = None
     Y: Unit | None = None
+    distance: Unit | None = None
     value: Unit | None = None
 
 
 _FORCE = (
-    f'{_VALUES}, or a load that varies with the motion, such as {{over_theta = "press.csv"}} or '
-    "{over_Y = [[0.05, -100], [0.1, -10]]}"
+    f'{_VALUES}, or a load that varies with the motion, such as {{over_theta = "press.csv"}}, '
+    '{over_Y = [[0.05, -100], [0.1, -10]]} or {over_stroke = [[0, -80e3], [0.008, 0]], dead_centre = "outer"}'
 )
 Force = Annotated[float | str | tuple[Number, ...] | Varying, Meta(description=_FORCE)]
 _INPUT_NAMES = {"propertyNames": {"enum": list(INPUTS)}}

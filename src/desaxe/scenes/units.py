@@ -14,7 +14,9 @@ from ..support.quantity_text import split_quantity, with_unit_of
 
 SECTIONS = ("mechanism", "motion", "masses", "loads")
 ENDS = ("start", "stop", "step")
-TABLES = {"over_theta": "theta", "over_Y": "Y"}  # a load over a place, whose points may stand in the scene
+# A load over a place, whose points may stand in the scene: the key of their unit, and what they are.
+TABLES = {"over_theta": "theta", "over_Y": "Y", "over_stroke": "distance"}
+PLACES = {"distance": "Y"}
 WORDS = ("printed", "quantities", "reduce")  # tables whose texts are no values of inputs
 # What the text of an input says of all quantities of its dimension; a rate does not follow the lengths.
 SHARED = {
@@ -70,7 +72,7 @@ def _table(load: Mapping[str, Any], name: str, along: str, units: UnitSystem) ->
     """The points of a load over theta or Y; a unit that stands beside them holds for all of a column."""
 
     def column(number: Any, index: int) -> Any:
-        its, beside = (along, along) if index == 0 else (name, "value")
+        its, beside = (PLACES.get(along, along), along) if index == 0 else (name, "value")
         return number if load.get(beside) is not None else _written(number, its, units)
 
     def points(key: str, rows: Any) -> Any:

@@ -6,11 +6,11 @@ load is that of the angle and the way of turning.
 """
 
 from collections.abc import Callable
-from math import copysign, inf, nextafter, pi
+from math import copysign, inf, isnan, nextafter, pi
 
 import numpy as np
 
-from ..loads.angles import dead_centres, passages
+from ..loads.angles import crossings, dead_centres, zero_of
 from ..loads.function import FunctionOverTheta
 from ..loads.load import Load, OverTheta, OverY, TableOverTheta
 from ..loads.table import polynomial
@@ -28,6 +28,7 @@ class Held:
     def __init__(self, load: Load) -> None:
         self.load = load
         self.place: Place = lambda theta: (0.0, 0.0)
+        self._zero = 0.0  # the position from which a load over the slider's place measures
         self._piece: Callable[[float], float] | None = None
 
     def __call__(self, t: float, theta: float, omega: float) -> float:
@@ -35,10 +36,19 @@ class Held:
         if self._piece is not None:
             return self._piece(theta)
         if isinstance(self.load, OverY):
-            Y, slope = self.place(theta)
-            return float(self.load(Y, slope if omega >= 0.0 else -slope))
+            _, slope = self.place(theta)
+            return float(self.load(self._along(self.load, theta), slope if omega >= 0.0 else -slope))
         assert isinstance(self.load, OverTheta)
         return float(self.load(theta))
+
+    def stand(self, place: Place, lengths: tuple[float, ...], branch: int) -> None:
+        """Stand in a design; ValueError where it has not the dead centre that a load is measured from."""
+        self.place = place
+        if isinstance(self.load, OverY):
+            self._zero = float(zero_of(self.load, [np.array([length]) for length in lengths], branch)[0])
+            if isnan(self._zero):
+                which = self.load.centre.removeprefix("Y_")
+                raise ValueError(f"{self.load!r}: this design has no {which} dead centre")
 
     @property
     def turns_with_the_slider(self) -> bool:
@@ -59,12 +69,15 @@ class Held:
         """Hold nothing."""
         self._piece = None
 
+    def _along(self, load: OverY, theta: float) -> float:
+        return float(load.along({"Y": self.place(theta)[0], load.centre: self._zero}))
+
     def _piece_over_Y(self, load: OverY, ahead: float, way: float) -> Callable[[float], float]:
-        Y, slope = self.place(ahead)
+        _, slope = self.place(ahead)
         table = load.inward if load.inward is not None and slope * way < 0.0 else load.outward
-        piece = table.piece(Y)
+        piece = table.piece(self._along(load, ahead))
         row, origin = table.rows[piece], table.origin(piece)
-        return lambda theta: float(polynomial(row, self.place(theta)[0] - origin)[0])
+        return lambda theta: float(polynomial(row, self._along(load, theta) - origin)[0])
 
     def kinks(self, lengths: tuple[float, ...], branch: int) -> list[tuple[float, float]]:
         """Angles of one period at which the load has a kink, and that period [rad]."""
@@ -75,7 +88,7 @@ class Held:
             return [(angle, load.period) for angle in load.angles]
         assert isinstance(load, OverY)
         sides = [np.array([length]) for length in lengths]
-        angles = passages(load.positions(smooth=False), sides, branch)[0]
+        angles = crossings(load, load.positions(smooth=False), sides, branch)[0]
         if self.turns_with_the_slider:
             angles = np.append(angles, dead_centres(sides))
         return [(angle, TURN) for angle in angles[np.isfinite(angles)].tolist()]

@@ -60,7 +60,7 @@ class Model:
         self.energies = function(("kinetic_energy", "potential_energy"), ("theta", "branch", "omega"))
         position = function(("Y", "Y_wrt_theta"), ("theta", "branch"))
         for held in drive.held:
-            held.place = lambda theta: position(theta, self.sign)
+            held.stand(lambda theta: position(theta, self.sign), self.lengths, branch)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A pickle has the design but not what drives it, which may be any function."""

@@ -8,6 +8,7 @@ from ...design.events.events import events
 from ...design.feasibility.feasibility import feasibility
 from ...evaluation.evaluate import evaluate
 from ...loads.load import Load, OverY, TableOverTheta
+from ...loads.stroke import OverStroke
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LENGTHS
 from ...mechanism.unit_system import UnitSystem
@@ -59,13 +60,16 @@ def _points(name: str, load: Value, units: UnitSystem) -> Iterator[Block]:
         over, tables = "theta", {name: load.table}
     elif isinstance(load, OverY):
         ways = {"outward": load.outward, "inward": load.inward or load.outward}
-        over, tables = "Y", {f"{name}, {way}": table for way, table in ways.items()}
+        over, tables = load.over, {f"{name}, {way}": table for way, table in ways.items()}
     else:
         return
     first = next(iter(tables.values()))
     if len(first.knots) > POINTS or any(len(t.values) != len(first.knots) for t in tables.values()):
         return
-    heads = [f"{over} [{unit_of(units, over)}]", *(f"{n} [{unit_of(units, name)}]" for n in tables)]
+    head = over
+    if isinstance(load, OverStroke):
+        head, over = f"distance from Y_{load.dead_centre}", "Y"
+    heads = [f"{head} [{unit_of(units, over)}]", *(f"{n} [{unit_of(units, name)}]" for n in tables)]
     columns = [t.values for t in tables.values()]
     yield Table(
         heads,

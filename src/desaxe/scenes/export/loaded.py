@@ -10,6 +10,7 @@ from textwrap import wrap
 
 from ...loads.load import Load, OverTheta, OverY, TableOverTheta
 from ...loads.resolve import Plan
+from ...loads.stroke import OverStroke
 from ...loads.table import Table
 from ..schema import SceneError
 from .axes import arguments_of, taken_from
@@ -51,7 +52,7 @@ OVER_Y = '''def {name}_over_Y(motion, way):
 def require_tables(where: str, loads: Mapping[str, Load]) -> None:
     """SceneError for a load that cannot be written into a module."""
     for name, load in loads.items():
-        if not isinstance(load, (TableOverTheta, OverY)):
+        if not isinstance(load, (TableOverTheta, OverY)) or isinstance(load, OverStroke):
             raise SceneError(
                 f"{where}: loads.{name} = {load!r}: a compiled module holds tables over theta or Y; sample "
                 "the function, desaxe.over_theta(angles, f(angles)), or leave the load open as a list of "

@@ -1,0 +1,82 @@
+"""A load over the slider's distance from a dead centre of its own: it moves with the design."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from math import nan
+from typing import Any
+
+from ..mechanism.names import LENGTHS
+from ..support.forks import IMPORTS
+from .load import POSITION, OverY
+
+DEAD_CENTRES = ("outer", "inner")
+NONE, SINGULAR = 1, 2  # status: there is no such dead centre; it moves infinitely fast with the lengths
+
+
+@dataclass(frozen=True, repr=False)
+class OverStroke(OverY):
+    """A load over d = |Y - Y_dead_centre|, a table for each way of the slider."""
+
+    dead_centre: str = "outer"  # or inner
+
+    over = "stroke"
+
+    @property
+    def rises(self) -> float:  # type: ignore[override]
+        """Inward the distance from the outer dead centre grows, outward that from the inner one."""
+        return -1.0 if self.dead_centre == "outer" else 1.0
+
+    @property
+    def centre(self) -> str:  # type: ignore[override]
+        """The name of the dead centre's position."""
+        return f"Y_{self.dead_centre}"
+
+    def motion(self, parameters: Iterable[str] = ()) -> tuple[str, ...]:
+        """The names of the motion from which the load and its derivatives by these parameters follow."""
+        parameters = tuple(parameters)
+        own = (f"{self.centre}_wrt_{p}" for p in parameters if p in LENGTHS)
+        return (*POSITION, self.centre, *(f"Y_wrt_{p}" for p in parameters), *own)
+
+    def along(self, motion: Mapping[str, Any]) -> Any:
+        """The distance from the dead centre."""
+        return abs(motion[self.centre] - motion["Y"])
+
+    def moved(self, parameter: str, motion: Mapping[str, Any]) -> Any:
+        """The derivative of the distance by a parameter; NaN where the dead centre's is infinite."""
+        change = -motion[f"Y_wrt_{parameter}"]
+        before = motion[self.centre] < motion["Y"]
+        if isinstance(change, float):
+            if parameter in LENGTHS:
+                change += _finite_or_nan(motion[f"{self.centre}_wrt_{parameter}"])
+            return -change if before else change
+        with IMPORTS:
+            import numpy as np
+
+        if parameter in LENGTHS:
+            by_centre = motion[f"{self.centre}_wrt_{parameter}"]
+            change = change + np.where(np.isfinite(by_centre), by_centre, np.nan)
+        return np.where(before, -change, change)
+
+    def status(self, motion: Mapping[str, Any]) -> Any:
+        """1 where there is no such dead centre, 2 where a derivative that is among the motion is infinite."""
+        centre = motion[self.centre]
+        slopes = [motion[n] for n in motion if n.startswith(f"{self.centre}_wrt_")]
+        if isinstance(centre, float):
+            singular = any(slope - slope != 0.0 for slope in slopes)
+            return NONE if centre != centre else SINGULAR if singular else 0
+        with IMPORTS:
+            import numpy as np
+
+        singular = np.logical_or.reduce([~np.isfinite(s) for s in slopes]) if slopes else False
+        return np.where(np.isnan(centre), NONE, np.where(singular, SINGULAR, 0))
+
+    def _content(self) -> str:
+        return f"{self.dead_centre} {super()._content()}"
+
+    def __repr__(self) -> str:
+        place = f"over the distance from the {self.dead_centre} dead centre"
+        return super().__repr__().replace("over Y", place)
+
+
+def _finite_or_nan(x: float) -> float:
+    return x if x - x == 0.0 else nan
