@@ -224,11 +224,28 @@ def tops(name, kind, design, branch, loads, theta):
     found = []
     for arc in arcs(design, branch, loads, theta):
         ends = doubles(arc, theta)
+        if ends is not None and design.get("mu"):
+            ends = _moving(design, branch, ends)
         if ends is not None:
             own = dx.peak(name, kind=kind, branch=branch, theta=ends, **design, **arc.forces)
             found.append(Top(own["value"], own["theta"], own["gradient"], own["status"], arc, ends))
     found = [top for top in found if top.value == top.value]
     return sorted(found, key=lambda top: -SIGN[kind](top.value))
+
+
+def _moving(design, branch, ends):
+    """The ends without the doubles at which V_C rounds to 0: friction has no side there; None for no other."""
+    lengths = {name: design[name] for name in LENGTHS}
+
+    def rests(theta):
+        return dx.evaluate("V_C", theta=theta, branch=branch, omega0=1.0, **lengths) == 0.0
+
+    first, last = ends
+    while first <= last and rests(first):
+        first = nextafter(first, inf)
+    while first <= last and rests(last):
+        last = nextafter(last, -inf)
+    return (first, last) if first <= last else None
 
 
 def sides(name, design, branch, top, room):

@@ -373,6 +373,9 @@ def test_a_machine_brings_its_units(visit, folder):
     units = {"length": "in", "angle": "deg", "a_C": "standard_gravity"}
     press = dx.Machine(ec=1, AB=2, BC=7.3, omega0="300 rpm", m_slider=3, F_Y=-50, units=units)
     page = visit(press.explore(path=folder / "inches.html"))
+    page.select_option("#quantity-0", "a_C")
+    page.select_option("#quantity-1", "a_C")
+    page.select_option("#by-1", "a_C_wrt_ec")
     theta, inputs = page.evaluate("desaxe.state.theta"), design(page)
     assert inputs["BC"] == press["BC"] == 7.3 * 0.0254
     assert page.input_value("#number-BC") == "7.3"

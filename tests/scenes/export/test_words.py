@@ -111,10 +111,10 @@ def spoken(to):
 
 
 def drawn(to, place, few, refused):
-    """Words that are not refused by a table: some, all of them in a thorough run."""
+    """Words that are not refused by a table: some, all of them by DESAXE_THOROUGH=all."""
     found = sorted({*words_of(to).lines, *written(to, place), *spoken(to)} - refused)
     found = [word for word in found if re.fullmatch(r"(?!t\d)[A-Za-z]\w{0,47}", word, re.ASCII)]
-    return random.Random(27).sample(found, min(len(found), cases(few, len(found))))
+    return random.Random(27).sample(found, min(len(found), cases(few, 150, len(found))))
 
 
 def values_in_numba(place, words):

@@ -99,7 +99,7 @@ def text_of(scene: Scene, name: str = "my_kernels.py") -> str:
     tables += [f"INPUTS = {program.inputs!r}", _outputs(shown), _fixed(key)]
     head = _docstring(scene, name, key, shown, program.inputs, cost_of(program).operations)
     text = module_text(head, _front(tables), *groups, _front(calls))
-    refuse_taken(shown, taken_in_python(text))
+    refuse_taken(shown, taken_in_python(text) | {f"compiled_{name}" for name in functions_of(HELPERS)})
     return text
 
 
