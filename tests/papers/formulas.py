@@ -76,6 +76,8 @@ def misses(key, text, printed, names=None, true=None):
                 true is None and max(map(len, got)) < 2 and not expected
             ):
                 return f"{text}: other sides"
+            if any(isinstance(side, (list, tuple)) for sides in (*got, *wanted) for side in sides):
+                return f"{text}: a side that is no number"
             for sides, right in zip(got, wanted, strict=True):
                 size = max(map(abs, (*sides, *right)))
                 if any(abs(a - b) > mpf(10) ** -25 * size for a, b in zip(sides, right, strict=True)):

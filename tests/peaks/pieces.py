@@ -234,7 +234,7 @@ def tops(name, kind, design, branch, loads, theta):
 
 
 def _moving(design, branch, ends):
-    """The ends without the doubles at which V_C rounds to 0: friction has no side there; None for no other."""
+    """The ends without doubles at which V_C rounds to 0, where friction has no side; None for no other."""
     lengths = {name: design[name] for name in LENGTHS}
 
     def rests(theta):
