@@ -56,7 +56,7 @@ def test_one_of_many_names_in_common_ways():
 
 
 def test_names_follow_from_the_request_and_nothing_is_computed(monkeypatch):
-    monkeypatch.setattr("desaxe.evaluation.blocks.Part.compute", None)  # what nobody may call here
+    monkeypatch.setattr("desaxe.evaluation.points.Points.compute", None)  # what nobody may call here
     first, again, other = (dx.grid(NAMES, **INPUTS, chunks={"theta": n}) for n in (20, 20, 30))
     assert first["a_C"].data.name == again["a_C"].data.name != other["a_C"].data.name
     assert first["a_C"].dtype == np.float64

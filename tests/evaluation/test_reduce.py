@@ -7,6 +7,8 @@ import pytest
 
 import desaxe as dx
 from desaxe.compiler.languages.numba.reductions import LONGEST
+from desaxe.evaluation import plan
+from desaxe.evaluation.points import Points
 from desaxe.runtime import kernels as _kernels
 
 MACHINE = {"AB": 0.125, "omega0": 157.08}
@@ -118,10 +120,8 @@ def test_threads_change_nothing():
 
 
 def test_the_grid_is_never_stored(monkeypatch):
-    from desaxe.evaluation import grid as _grid
-
     monkeypatch.setenv("DESAXE_TIER", "compiled")
-    monkeypatch.setattr(_grid, "filled_grid", lambda *_: pytest.fail("the whole grid was computed"))
+    monkeypatch.setattr(Points, "compute", lambda *_: pytest.fail("the whole grid was computed"))
     found = dx.grid("a_C", reduce={"theta": "absmax"}, theta=TURN, ec=[0, 0.1], BC=0.35, **MACHINE)
     assert set(found.data_vars) == {"a_C_absmax", "a_C_absmax_theta", "a_C_skipped"}
 
@@ -240,10 +240,9 @@ def test_measures_of_single_names_and_a_function_of_the_design():
 
 
 def test_a_large_one_is_computed_in_blocks(monkeypatch):
-    from desaxe.evaluation import joint
-
+    monkeypatch.setenv("DESAXE_TIER", "compiled")
     whole = dx.grid("a_C", reduce={("theta", "ec"): ["p95", "max"]}, **FEASIBLE)
-    monkeypatch.setattr(joint, "POINTS", 1)
+    monkeypatch.setattr(plan, "POINTS", 1)
     assert whole.identical(dx.grid("a_C", reduce={("theta", "ec"): ["p95", "max"]}, **FEASIBLE))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.sweeps.prepared import prepared
+from desaxe.sweeps.request import sweep_of
 
 ANGLES, POINTS = np.linspace(0.0, 2 * np.pi, 25), [-400.0, 200.0, -50.0, 20.0]
 MACHINE = {"AB": 0.04, "BC": np.array([0.064, 0.07]), "m_slider": 0.8, "omega0": 50.0}
@@ -70,11 +70,11 @@ def test_where_only_numbers_make_sense_a_load_is_refused_by_name():
 
 @pytest.mark.thorough
 def test_what_travels_to_a_worker_needs_no_definitions_there(tmp_path):
-    """Own quantities under a load: the parts of a sweep in a process that knows neither."""
+    """Own quantities under a load: the steps of a sweep in a process that knows neither."""
     theta, name = ANGLES[1:-1], dx.define("shoe", "0.08 * abs(N_C * V_C)", unit="W")
     inputs = {"theta": theta, "ec": EC, "F_Y": LOADS["linear"], **MACHINE}
     try:
-        made = prepared(name, inputs, "auto", None, 1, "standard", 1, {"theta": "p95"}, name)
+        made = sweep_of(name, inputs, "auto", None, 1, "standard", 1, {"theta": "p95"}, name)
         right = dx.grid(name, reduce={"theta": "p95"}, **inputs).shoe_p95.values
         designs = {"ec": EC[:, None], "F_Y": LOADS["linear"], **MACHINE}
         top = dx.peak(name, theta=(theta[0], theta[-1]), **designs)["value"]
@@ -82,13 +82,14 @@ def test_what_travels_to_a_worker_needs_no_definitions_there(tmp_path):
             dx.sweep(name, reduce={("theta", "ec"): "p95"}, peaks=name, **inputs)
     finally:
         dx.undefine(name)
-    (tmp_path / "parts").write_bytes(pickle.dumps((made.parts, made.outer.axes)))
+    (tmp_path / "parts").write_bytes(pickle.dumps((made.plan.all, made.plan.outer.axes)))
     code = """
 import pickle, sys
-parts, axes = pickle.load(open(sys.argv[1], "rb"))
+from desaxe.evaluation.plan import computed
+steps, axes = pickle.load(open(sys.argv[1], "rb"))
 found = {}
-for part in parts:
-    found |= part.compute({name: axes[name] for name in part.axes})
+for step in steps:
+    found |= computed(step, {name: axes[name] for name in step.axes})
 pickle.dump((found["shoe_p95"], found["peak_absmax_shoe"]), open(sys.argv[2], "wb"))
 """
     files = [str(tmp_path / file) for file in ("parts", "found")]

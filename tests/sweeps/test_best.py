@@ -262,3 +262,12 @@ def test_fewer_designs_than_asked_for():
 def test_bad_requests_are_refused(options, error, words):
     with pytest.raises(error, match=words):
         dx.sweep("a_C", **{**INPUTS, **options})
+
+
+def test_a_quantity_of_the_design_is_ranked_over_all_designs():
+    """The sign of a speed decides the time ratio, not which axes a design has."""
+    axes = {"ec": [0.0, 0.02, 0.04], "omega0": [2.0, -3.0]}
+    whole = dx.grid("advance_angle", AB=0.1, BC=0.3, **axes)
+    found = dx.sweep("Y", best=2, by="advance_angle", order="largest", theta=1.0, AB=0.1, BC=0.3, **axes)
+    assert found.advance_angle.values == pytest.approx(np.sort(whole.advance_angle.values.ravel())[::-1][:2])
+    assert set(found.coords) >= {"ec", "omega0"}

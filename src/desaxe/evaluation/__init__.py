@@ -6,9 +6,10 @@ loops          the loop that each input of a broadcast varies along
 grid           an outer product as a labelled dataset
 outer          its arguments, and axes joined to long loops
 chunks         how a grid is cut
-blocks         parts of a grid, for chunks
-lazy           grids and arrays of Dask
-reduce         the largest, the mean, ... of an axis, without storing the grid
+plan           the steps of a grid, its blocks, its dataset
+points         a step: values of names by one kernel, loads included
+reduced        a step: the largest, the mean, ... along axes, without storing the grid
+lazy           a plan as Dask arrays
 labels         units and CF attributes
 quality        condition numbers and error bounds
 values         values of names from a dict of inputs: the body of `evaluate`
@@ -20,11 +21,8 @@ lazy_evaluate  `evaluate` of Dask arrays
 labelled       `evaluate` of labelled arrays
 dask_blocks    a function of many outputs over the chunks of Dask arrays
 in_units       labelled results in other units
-filled         the values of a grid from one loop nest
 reductions     the argument `reduce=`, checked
-sources        requests that compute the values of a block of a grid
 fold           reductions over several axes of arrays in memory
-joint          reductions over several axes, of single names, of further kinds
 own_measure    a user's function of a design as a measure
 arcs           arcs of crank angles on which one piece of a load holds
 sides          on which side of a jump of a load samples are

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..mechanism.inputs import INPUTS, Input, is_good
 from ..runtime.interpreted import are_good, fill_by_points
-from ..runtime.kernels import key_of, tells_unsafe
+from ..runtime.kernels import KernelKey, key_of, tells_unsafe
 from ..runtime.point import point_of
 from ..runtime.request import Request, as_number
 from ..runtime.threads import run_in_blocks
@@ -185,12 +185,14 @@ def fill(
     outs: Sequence[Array],
     threads: int | None,
     numpy_pays: bool = False,
+    key: KernelKey | None = None,
 ) -> None:
     """Fill contiguous outputs from scalars and the columns along loops.
 
     `numpy_pays`: a new request need not wait for its kernel, whose digits NumPy's may differ from.
+    `key`: the kernel, where these points are a block of more that it was chosen for.
     """
-    safe = _fill(wanted, scalars, loops, outs, threads, numpy_pays)
+    safe = _fill(wanted, scalars, loops, outs, threads, numpy_pays, key)
     extreme = extreme_points(scalars, loops) if not safe and can_rescale(wanted) else None
     if extreme is not None:
         _fill_extreme(wanted, scalars, loops, outs, extreme)
@@ -228,13 +230,16 @@ def _fill(
     outs: Sequence[Array],
     threads: int | None,
     numpy_pays: bool,
+    key: KernelKey | None = None,
 ) -> bool:
     """Compute all points; True if the kernel checks for extreme ones and found none."""
     sizes, columns, axis_of = loops
     asked = wanted, scalars, columns, axis_of, len(sizes)
-    key = key_of(*asked, hopeful=True)
-    hopeful = tells_unsafe(key)
-    key = key if hopeful else key_of(*asked)
+    hopeful = False
+    if key is None:
+        key = key_of(*asked, hopeful=True)
+        hopeful = tells_unsafe(key)
+        key = key if hopeful else key_of(*asked)
     outs = [out.reshape(sizes) for out in outs]
     if not columns:
         point = point_of(key.names, key.form, key.fixed, key.accuracy)

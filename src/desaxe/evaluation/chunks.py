@@ -34,7 +34,7 @@ def chunk_lengths(chunks: Any, sizes: Mapping[str, int], points: int) -> dict[st
     else:
         wanted = dict.fromkeys(sizes, chunks)
     known_lengths = {n: _lengths(n, w, sizes[n]) for n, w in wanted.items() if not _is_auto(w)}
-    room = max(1, points // prod(max(own, default=1) for own in known_lengths.values()))
+    room = max(1, points // prod(max(own, default=1) or 1 for own in known_lengths.values()))
     for name in reversed([name for name in sizes if name not in known_lengths]):
         length = min(max(sizes[name], 1), room)
         known_lengths[name] = _cut(sizes[name], length)

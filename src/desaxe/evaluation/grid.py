@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Any, Unpack, overload
 from numpy.typing import NDArray
 
 from ..mechanism.inputs import Inputs
-from ..runtime.request import request, several, with_named_inputs
+from ..runtime.request import several, with_named_inputs
 from ..support.forks import IMPORTS
 from .evaluate import evaluate
-from .filled import filled_grid
 from .labelled import grid_by_index, has_named_index
-from .loaded import filled_under_loads
-from .outer import outer_of, require_inputs
+from .outer import outer_of
+from .plan import plan_of
+from .points import points_of
+from .reductions import names_reduced, reductions_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -95,54 +96,22 @@ def grid(
         wanted = (names,) if isinstance(names, str) else several(names)
         each = partial(evaluate, branch=branch, accuracy=accuracy, threads=threads)
         return grid_by_index(each, wanted, inputs, branch, accuracy)
+    if out is not None:
+        _refuse_with_out(reduce=reduce, chunks=chunks)
     if reduce is not None:
-        with IMPORTS:
-            from .joint import joint_grid, joint_part
-            from .reduce import reduced_grid
-            from .reductions import names_reduced, reductions_of
-
         names = ((names,) if isinstance(names, str) else several(names)) + names_reduced(reduce)
     outer = outer_of(names, inputs, branch, threads, always=out is None)
-    if chunks is not None:
-        if out is not None:
-            raise TypeError("chunks= and out=: give one of them")
-        with IMPORTS:
-            from .lazy import lazy_grid
-
-        return lazy_grid(outer, chunks, branch, accuracy, threads, reduce)
-    wanted, axes, dimensions = outer.names, outer.axes, outer.dimensions
-    given = {
-        **outer.given,
-        **dict.fromkeys(outer.loads, 0.0),
-    }  # what a request asks of a load is not its value
-    everything: dict[str, Any] = {**axes, **outer.loads}
-
-    def filled(some: Sequence[str], along: Sequence[str], out: Any = None) -> dict[str, Array]:
-        if outer.loads:
-            return filled_under_loads(some, everything, along, (branch, accuracy, threads), out)
-        return filled_grid(request(some, given, branch, accuracy), axes, along, threads, out)
-
-    if reduce is not None:
-        if out is not None:
-            raise TypeError("reduce= and out=: give one of them")
-        reductions = reductions_of(reduce, dimensions, wanted)
-        if outer.loads or reductions.alone is None:
-            return joint_grid(joint_part(outer, branch, accuracy, reductions), outer, branch, threads)
-        asked = request(wanted, given, branch, accuracy)
-        require_inputs(asked, everything)
-        whole = partial(filled, wanted, dimensions)
-        return reduced_grid(asked, axes, dimensions, reductions.alone, branch, threads, whole)
     if out is not None:
-        return filled(wanted, dimensions, out)
+        step = points_of(outer.names, outer, outer.dimensions, branch, accuracy)
+        return step.compute(outer.axes, threads, out)
+    reductions = None if reduce is None else reductions_of(reduce, outer.dimensions, outer.names)
+    plan = plan_of(outer, branch, accuracy, reductions)
+    if chunks is None:
+        return plan.dataset(plan.values(threads))
     with IMPORTS:
-        from .labels import labelled, with_loads
+        from .lazy import lazy_values
 
-    arrays: dict[str, tuple[Sequence[str], Array]] = {}
-    for some, along in outer.groups():
-        arrays.update({name: (along, array) for name, array in filled(some, along).items()})
-    state = given.get("omega") is not None
-    dataset = labelled({n: arrays[n] for n in outer.shown}, outer.coordinates, branch, state, accuracy)
-    return with_loads(dataset, outer.loads)
+    return plan.dataset(lazy_values(plan, chunks, threads))
 
 
 def _refuse_with_series(**options: Any) -> None:
@@ -152,3 +121,10 @@ def _refuse_with_series(**options: Any) -> None:
             raise TypeError(
                 f"{name}= is for plain arrays, not for Series with a named index: pass .to_numpy()"
             )
+
+
+def _refuse_with_out(**options: Any) -> None:
+    """TypeError for an option that makes arrays of its own, beside those of out=."""
+    for name, value in options.items():
+        if value is not None:
+            raise TypeError(f"{name}= and out=: give one of them")

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,13 @@ STATUS_FLAGS = tuple(status.name.lower() for status in PointStatus)
 
 
 CONVENTIONS = "CF-1.11"
+
+
+class Output(NamedTuple):
+    """The type of a variable and its CF attributes."""
+
+    dtype: np.dtype[Any]
+    attributes: dict[str, Any]
 
 
 def attributes(name: str, state: bool = False) -> dict[str, Any]:
@@ -104,18 +111,17 @@ def _make_a_dataset() -> None:
 
 
 def labelled(
-    values: Mapping[str, tuple[Sequence[str], NDArray[Any]]],
+    values: Mapping[str, tuple[Sequence[str], Any, dict[str, Any]]],
     inputs: Mapping[str, NDArray[Any]],
     branch: int,
-    state: bool,
     accuracy: str | float = "standard",
 ) -> "xr.Dataset":
-    """A Dataset of values by name (dimensions, array); a 1-d input is a dimension, a number is not."""
+    """A Dataset of variables by name (dimensions, array, attributes); a 1-d input is a dimension."""
     import_xarray()
     with IMPORTS:
         import xarray
 
-    variables = {name: (dims, array, attributes(name, state)) for name, (dims, array) in values.items()}
+    variables = dict(values)
     for name, (_, _, told) in variables.items():
         if "status" in variables and name not in ("status", "margin"):
             told["ancillary_variables"] = "status"
@@ -124,8 +130,8 @@ def labelled(
     }
     names = [name for name in values if name not in ("status", "margin")]
     about = provenance(names, inputs, branch, accuracy)
-    first = next(iter(values.values()), ((), None))[0]
-    if len(first) < max((len(dims) for dims, _ in values.values()), default=0):  # the axes in their own order
+    ranks = [len(dims) for dims, _, _ in values.values()]
+    if ranks and ranks[0] < max(ranks):  # the axes in their own order
         return xarray.Dataset(None, coordinates, about).assign(variables)
     return xarray.Dataset(variables, coordinates, about)
 

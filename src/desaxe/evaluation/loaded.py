@@ -172,25 +172,6 @@ def _is_along(name: str, value: Any, inputs: Mapping[str, Any]) -> bool:
     return False
 
 
-def filled_under_loads(
-    names: Sequence[str],
-    inputs: Mapping[str, Any],
-    dimensions: Sequence[str],
-    options: tuple[int, str | float, int | None],
-    out: Any,
-) -> dict[str, Array]:
-    """The values over the outer product of the dimensions; `options`: branch, accuracy, threads."""
-    shape = tuple(np.size(inputs[name]) for name in dimensions)
-    given = dict(inputs)
-    for place, name in enumerate(dimensions):
-        given[name] = inputs[name].reshape([-1 if k == place else 1 for k in range(len(shape))])
-    found = evaluate_loaded(list(names), given, *options, None)
-    places = outputs_for(tuple(names), shape, out)
-    for name, array in places.items():
-        np.copyto(array, found[name], casting="same_kind")
-    return places
-
-
 def _put(found: Mapping[str, Any], out: Any) -> dict[str, Any]:
     """The values in the arrays of `out`."""
     if all(isinstance(value, (float, int)) for value in found.values()):

@@ -106,16 +106,6 @@ def _axis(name: str, value: Any, names: Sequence[str]) -> Array:
     return array
 
 
-def join_axes(
-    order: Sequence[str], columns: dict[str, Array], axis_of: dict[str, int], shape: tuple[int, ...]
-) -> tuple[int, ...]:
-    """Join the last axes to one that is long enough to vectorise; the lengths of the axes then.
-
-    Effect: `columns` along the joined axes have a value for each point of them, and `axis_of` follows.
-    """
-    return join_from(first_joined(order, shape), columns, axis_of, shape)
-
-
 def first_joined(order: Sequence[str], shape: Sequence[int]) -> int:
     """The first of the last axes that are joined to one, long enough to vectorise.
 
@@ -131,7 +121,10 @@ def first_joined(order: Sequence[str], shape: Sequence[int]) -> int:
 def join_from(
     first: int, columns: dict[str, Array], axis_of: dict[str, int], shape: tuple[int, ...]
 ) -> tuple[int, ...]:
-    """Join the axes from `first` on, as `join_axes` does."""
+    """Join the axes from `first` on to one; the lengths of the axes then.
+
+    Effect: `columns` along the joined axes have a value for each point of them, and `axis_of` follows.
+    """
     rest = shape[first:]
     for name, axis in axis_of.items() if len(rest) > 1 else ():
         if axis >= first:

@@ -33,7 +33,7 @@ class Reduction(NamedTuple):
     kinds: tuple[str, ...]
 
 
-class Step(NamedTuple):
+class Stage(NamedTuple):
     """Kinds along some axes at once: of every name, and of single names as (kind, name)."""
 
     axes: tuple[str, ...]
@@ -59,29 +59,29 @@ class At(NamedTuple):
 
 
 class Reductions(NamedTuple):
-    """A request of `reduce=`: steps in their order, and where there is one step measures beside it."""
+    """A request of `reduce=`: stages in their order, and where there is one stage measures beside it."""
 
-    steps: tuple[Step, ...]
+    stages: tuple[Stage, ...]
     at: tuple[At, ...] = ()
     functions: tuple[OwnMeasure, ...] = ()
 
     @property
     def axes(self) -> tuple[str, ...]:
         """All reduced axes."""
-        return tuple(axis for step in self.steps for axis in step.axes)
+        return tuple(axis for stage in self.stages for axis in stage.axes)
 
     @property
     def kinds(self) -> tuple[str, ...]:
         """All kinds, in their order."""
-        each = ((*step.kinds, *(kind for kind, _ in step.single)) for step in self.steps)
+        each = ((*stage.kinds, *(kind for kind, _ in stage.single)) for stage in self.stages)
         return tuple(dict.fromkeys(kind for kinds in each for kind in kinds))
 
     @property
     def along(self) -> Reduction | None:
         """The request as kinds along one axis; None where it is more than that."""
-        step = self.steps[0]
-        more = self.at or self.functions or step.single or len(self.steps) > 1 or len(step.axes) > 1
-        return None if more else Reduction(step.axes[0], step.kinds)
+        stage = self.stages[0]
+        more = self.at or self.functions or stage.single or len(self.stages) > 1 or len(stage.axes) > 1
+        return None if more else Reduction(stage.axes[0], stage.kinds)
 
     @property
     def alone(self) -> Reduction | None:
@@ -91,9 +91,9 @@ class Reductions(NamedTuple):
     def plain(self) -> dict[str, list[Any]]:
         """The request in plain lists, which tell it from another."""
         found: dict[str, list[Any]] = {
-            ", ".join(s.axes): [*s.kinds, *map(list, s.single)] for s in self.steps
+            ", ".join(s.axes): [*s.kinds, *map(list, s.single)] for s in self.stages
         }
-        last = ", ".join(self.steps[-1].axes)
+        last = ", ".join(self.stages[-1].axes)
         found[last] += [["at", one.place, one.name] for one in self.at]
         found[last] += [function.name for function in self.functions]
         return found
@@ -101,8 +101,8 @@ class Reductions(NamedTuple):
     def chains(self, name: str) -> list[list[tuple[tuple[str, ...], str]]]:
         """Lists of (axes, kind) that are taken of a name; equal kinds in a row go along all axes at once."""
         chains: list[list[tuple[tuple[str, ...], str]]] = [[]]
-        for step in self.steps:
-            chains = [_extended(chain, step.axes, kind) for chain in chains for kind in step.kinds_of(name)]
+        for stage in self.stages:
+            chains = [_extended(chain, stage.axes, kind) for chain in chains for kind in stage.kinds_of(name)]
         return chains
 
 
@@ -115,7 +115,7 @@ def _extended(
 
 
 def chain_name(name: str, chain: Chain) -> str:
-    """`a_C_max`, or of several steps `a_C_max_mean`."""
+    """`a_C_max`, or of several stages `a_C_max_mean`."""
     return "_".join([name, *(kind for _, kind in chain)])
 
 
@@ -160,7 +160,7 @@ def reductions_of(asked: Any, dimensions: Sequence[str], names: Sequence[str]) -
                 single[kind_of(measure[0]), measure[1]] = None
         if not (kinds or single or at or functions):
             raise ValueError(f"reduce: nothing is taken of {_text(axes)}; allowed: {ALLOWED}")
-        found.append(Step(axes, tuple(kinds), tuple(single)))
+        found.append(Stage(axes, tuple(kinds), tuple(single)))
     result = Reductions(tuple(found), tuple(dict.fromkeys(at)), tuple(functions))
     _check_names(result, names)
     return result

@@ -11,18 +11,19 @@ from ..loads.angles import crossings, dead_centres
 from ..loads.load import Load, OverTheta, OverY
 from ..loads.table import SAME
 from ..mechanism.names import LENGTHS
-from .sources import Loaded
+from .points import Points
 
 Array = NDArray[Any]
 NEAR = 1e-11  # of 1 + theta: more than what is rounded of the angle of a jump
 
 
-def sides_of(name: str, source: Loaded, points: Mapping[str, Array]) -> NDArray[np.int8]:
+def sides_of(name: str, source: Points, points: Mapping[str, Array]) -> NDArray[np.int8]:
     """-1 for a sample that is the last one before a jump, 1 for the first one after it, else 0."""
     size = points["theta"].size
     points = {**{n: np.full(size, value) for n, value in source.numbers}, **points}
     side = np.zeros(size, np.int8)
-    near = np.logical_or.reduce([_near(load, points, source.branch) for load in source.plan.loads.values()])
+    loads = () if source.loads is None else source.loads.loads.values()
+    near = np.logical_or.reduce([_near(load, points, source.branch) for load in loads])
     rows = np.flatnonzero(near)
     if rows.size:
         some = {n: column[rows] for n, column in points.items()}

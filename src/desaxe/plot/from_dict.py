@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..evaluation.labels import labelled, with_loads
+from ..evaluation.labels import attributes, labelled, with_loads
 from ..loads.resolve import split
 from ..mechanism.inputs import INPUTS
 from ..mechanism.units import in_si
@@ -45,9 +45,12 @@ def as_dataset(found: Any, over: str, inputs: Mapping[str, Any]) -> "xr.Dataset"
             dims[axes[0]] = name
             coordinates[name] = array.reshape(-1)
     named = [dims.get(axis, f"axis_{axis}") for axis in range(len(shape))]
-    values = {name: (named, np.broadcast_to(np.asarray(array), shape)) for name, array in found.items()}
+    values = {
+        name: (named, np.broadcast_to(np.asarray(array), shape), attributes(name, "omega" in arrays))
+        for name, array in found.items()
+    }
     known = {name: np.asarray(value) for name, value in coordinates.items()}
-    return with_loads(labelled(values, known, int(given.get("branch", 1)), "omega" in arrays), loads)
+    return with_loads(labelled(values, known, int(given.get("branch", 1))), loads)
 
 
 def _numbers(name: str, value: Any) -> Any:

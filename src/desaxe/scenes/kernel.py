@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..evaluation.outer import join_axes
+from ..evaluation.outer import first_joined, join_from
 from ..loads.load import Load, OverY
 from ..loads.resolve import plan_of, split
 from ..mechanism.catalogue import of_design
@@ -78,7 +78,7 @@ def grid_kernel(content: Content, joined: bool = False, apart: bool = True) -> G
     places = {name: order.index(name) for name in columns}
     sizes = tuple(np.size(given[name]) if name else 1 for name in order)
     if joined and fused is None:
-        sizes = join_axes(order, columns, places, sizes)
+        sizes = join_from(first_joined(order, sizes), columns, places, sizes)
         order = [*order[: len(sizes) - 1], " x ".join(order[len(sizes) - 1 :])]
     key = key_of(asked, scalars, columns, places, len(order))
     if fused is not None:

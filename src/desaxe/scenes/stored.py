@@ -11,7 +11,7 @@ from ..evaluation.reductions import Reductions
 from ..sweeps.meter import Watch
 from ..sweeps.peaks import PeakRequest
 from ..sweeps.place import require_place
-from ..sweeps.prepared import Sweep, prepared
+from ..sweeps.request import Sweep, sweep_of
 from ..sweeps.sweep import Tell, run_sweep
 from .content import Content
 from .schema import SceneError
@@ -52,7 +52,7 @@ def prepared_content(content: Content) -> Sweep:
     """The sweep of a scene into its store; nothing is computed or written."""
     wanted = arguments_of(content)
     chunks = "auto" if content.chunks is None else content.chunks
-    return prepared(
+    return sweep_of(
         wanted.names, wanted.inputs, chunks, content.memory, content.branch, content.accuracy,
         content.threads, wanted.reduce, wanted.peaks,
     )  # fmt: skip

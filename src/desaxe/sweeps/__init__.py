@@ -1,7 +1,6 @@
 """Sweeps larger than memory: written chunk by chunk to a Zarr store, on one machine or a Dask cluster.
 
 sweep     what `desaxe.sweep` does with names and inputs
-prepared  names and inputs, checked and cut into chunks
 place     whether a store may be written at a place, and has room there
 peaks     refined peaks of the designs of a sweep
 estimate  size, time and free disk before it starts

@@ -2,20 +2,16 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
-from math import prod
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.blocks import grid_parts
-from ..evaluation.chunks import blocks_of, slices_of
 from ..evaluation.evaluate import evaluate
-from ..evaluation.labels import attributes as attributes_of
-from ..evaluation.labels import input_attributes, labelled, with_loads
-from ..evaluation.lazy import AnyPart, parts_of_reduced
-from ..evaluation.outer import Outer, outer_of
-from ..evaluation.reduce import reduced_attributes
+from ..evaluation.labels import attributes, input_attributes, labelled, with_loads
+from ..evaluation.outer import outer_of
+from ..evaluation.plan import Plan, Step, computed, plan_of
+from ..evaluation.points import points_of
 from ..evaluation.reductions import ALLOWED, Reduction, kind_of, reductions_of
 from ..mechanism.catalogue import has
 from ..mechanism.spelling import did_you_mean
@@ -61,29 +57,21 @@ class Ranking(NamedTuple):
 
 
 class Search(NamedTuple):
-    """A search for the best designs: the grid of what they are ranked by, and how it is cut."""
+    """A search for the best designs: the plan of what they are ranked by, and how it is cut."""
 
-    outer: Outer
+    plan: Plan
     others: tuple[str, ...]
     ranking: Ranking
     reduction: Reduction | None
-    part: AnyPart
     layout: Layout
-    branch: int
-    accuracy: Any
     identity: dict[str, str]
-
-    @property
-    def points(self) -> int:
-        """Points of the grid."""
-        return prod(self.outer.axes[name].size for name in self.outer.dimensions)
 
 
 class BestTask(NamedTuple):
     """A chunk of a search, as it travels: what to compute, and where it stands in the whole."""
 
     number: int
-    part: AnyPart
+    step: Step
     ranking: Ranking
     axis: str | None
     best: int
@@ -154,18 +142,16 @@ def search_for(
         raise ValueError("reduce: designs are ranked by kinds along one axis; rank a reduced sweep itself")
     ranking = ranking_of(name, kind, order, reduction)
     alone = outer._replace(names=(ranking.name,))
-    sizes = {name: outer.axes[name].size for name in outer.dimensions}
-    length = None if reduction is None else sizes.pop(reduction.axis)
-    layout = layout_of("auto", sizes, 64, length or 1, memory)
-    part: AnyPart
     if asked is None:
-        part = grid_parts(alone, branch, accuracy, layout.chunk)[0]
+        step = points_of([ranking.name], alone, outer.dimensions, branch, accuracy)
+        plan = Plan(alone, branch, accuracy, (step,), tuple(outer.dimensions))
     else:
-        part = parts_of_reduced(alone, branch, accuracy, asked, layout.chunk)[0]
+        plan = plan_of(alone, branch, accuracy, asked)
+    layout = layout_of("auto", plan.sizes, 64, plan.behind, memory)
     others = tuple(name for name in outer.names if name != ranking.name)
-    own = [repr(part.own)] if part.own else []
+    own = [repr(step.own) for step in plan.steps if step.own]
     told = identity(outer, branch, accuracy_of(accuracy), asked, (), own, (count, *ranking[:3]))
-    return Search(outer, others, ranking, reduction, part, layout, branch, accuracy, told)
+    return Search(plan, others, ranking, reduction, layout, told)
 
 
 def best_of_block(task: BestTask) -> tuple[int, Found]:
@@ -175,7 +161,7 @@ def best_of_block(task: BestTask) -> tuple[int, Found]:
 
 
 def _best_of_block(task: BestTask) -> Found:
-    arrays = task.part.compute(task.values, task.threads)
+    arrays = computed(task.step, task.values, task.threads)
     name, variable = task.ranking.name, task.ranking.variable
     values = arrays[variable]
     rank = task.ranking.rank(values).reshape(-1)
@@ -213,18 +199,13 @@ def best_designs(
 
 
 def _tasks(search: Search, count: int, inner: int, done: Array) -> Iterator[BestTask]:
-    layout, shape = search.layout, tuple(search.layout.sizes.values())
-    scale = search.points // max(1, prod(shape))
-    for number, place in enumerate(blocks_of(layout.sizes, layout.chunk)):
-        if done[number]:
-            continue
-        regions = slices_of(place, layout.sizes, layout.chunk)
-        axes = search.outer.axes
-        values = {n: axes[n][regions[n]] if n in regions else axes[n] for n in search.part.axes}
-        points = scale * prod(part.stop - part.start for part in regions.values())
-        starts = tuple(part.start for part in regions.values())
-        about = search.part, search.ranking, None if search.reduction is None else search.reduction.axis
-        yield BestTask(number, *about, count, values, starts, shape, points, inner, *versions())
+    plan, layout = search.plan, search.layout
+    axis, shape = None if search.reduction is None else search.reduction.axis, tuple(layout.sizes.values())
+    for number, block in enumerate(plan.cut(layout.chunk).blocks(layout.chunk)):
+        if not done[number]:
+            starts = tuple(region.start for region in block.regions.values())
+            about = block.parts[0].step, search.ranking, axis, count, block.values, starts, shape
+            yield BestTask(number, *about, plan.points_in(block), inner, *versions())
 
 
 def _merged(one: Found, other: Found, count: int, ranking: Ranking) -> Found:
@@ -237,26 +218,23 @@ def _merged(one: Found, other: Found, count: int, ranking: Ranking) -> Found:
 
 def _labelled(search: Search, kept: Found) -> "xr.Dataset":
     """The designs by rank, with every name at the point where it is attained."""
-    outer, ranking, reduction = search.outer, search.ranking, search.reduction
+    plan, outer, ranking, reduction = search.plan, search.plan.outer, search.ranking, search.reduction
     state = outer.given.get("omega") is not None
     sizes = search.layout.sizes
     index = np.unravel_index(kept.places, tuple(sizes.values())) if sizes else ()
     design = {name: outer.axes[name][i] for name, i in zip(sizes, index, strict=True)}
     attained = {} if reduction is None or np.isnan(kept.theta).all() else {reduction.axis: kept.theta}
     scalars = {name: array for name, array in outer.coordinates.items() if not array.ndim}
-    told = attributes_of(ranking.name, state)
-    if reduction is not None:
-        own = input_attributes(reduction.axis)
-        told = reduced_attributes([ranking.name], reduction, own, state)[ranking.variable]
+    told = plan.steps[0].outputs[ranking.variable].attributes
     variables: dict[str, Any] = {ranking.variable: ("rank", kept.values, told)}
     if kept.places.size and (reduction is None or attained):
         point: dict[str, Any] = {n: a.item() for n, a in scalars.items()}
         point |= {**outer.loads, **design, **attained}
-        options: dict[str, Any] = {"branch": search.branch, "accuracy": search.accuracy}
+        options: dict[str, Any] = {"branch": plan.branch, "accuracy": plan.accuracy}
         for name in search.others:
             with compiled_only():
                 value = np.broadcast_to(evaluate(name, **point, **options), kept.places.shape)
-            variables[name] = ("rank", np.array(value), attributes_of(name, state))
+            variables[name] = ("rank", np.array(value), attributes(name, state))
     for name, values in {**design, **attained}.items():
         variables[name] = ("rank", values, input_attributes(name))
     if reduction is not None:
@@ -264,8 +242,8 @@ def _labelled(search: Search, kept: Found) -> "xr.Dataset":
         words = f"share of the points along {reduction.axis} that have a {ranking.name}"
         variables["feasible_fraction"] = ("rank", share, {"units": "1", "long_name": words})
     total = {"units": "1", "long_name": f"share of all points of the grid that have a {ranking.name}"}
-    variables["feasible"] = ((), kept.feasible / search.points, total)
-    found = labelled({}, scalars, search.branch, state, search.accuracy)
+    variables["feasible"] = ((), kept.feasible / plan.points, total)
+    found = labelled({}, scalars, plan.branch, plan.accuracy)
     ranks = ("rank", np.arange(1, kept.places.size + 1), {"units": "1", "long_name": "the best one is 1"})
     found = found.assign_attrs(search.identity)
     found = found.assign(variables).assign_coords(rank=ranks).set_coords([*design, *attained])

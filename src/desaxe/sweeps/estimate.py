@@ -1,33 +1,28 @@
 """Size, time and free disk of a sweep before it starts; the time from a trial of its kernels."""
 
 import time
-from collections.abc import Mapping, Sequence
 from math import prod
-from typing import Any
 
-from numpy.typing import NDArray
-
-from ..evaluation.lazy import AnyPart
+from ..evaluation.plan import Plan, computed
 from .layout import Layout, shape_text, size_text
-from .peaks import PeakPart
 
 TRIAL = 2**17  # points of a trial
 STORING = 6e-9  # s to compress, check and write a byte, on one core
 CHUNK = 2.5e-3  # s for the file of a chunk of a variable, besides its bytes
 
 
-def seconds_of(parts: Sequence[AnyPart | PeakPart], axes: Mapping[str, NDArray[Any]], stored: int) -> float:
-    """The expected time on one core, from running every part at some of its points; `stored` in bytes."""
-    total = STORING * stored
-    for part in parts:
+def seconds_of(plan: Plan) -> float:
+    """The expected time on one core, from running every step at some of its points."""
+    total, axes = STORING * plan.bytes, plan.outer.axes
+    for step in plan.all:
         values, left = {}, TRIAL
-        for name in reversed(part.axes):
+        for name in reversed(step.axes):
             length = min(axes[name].size, max(1, left))
             values[name], left = axes[name][:length], left // length
-        part.compute(values)  # compiles, or loads
+        computed(step, values)  # compiles, or loads
         start = time.perf_counter()
-        part.compute(values)
-        share = prod(axis.size for axis in values.values()) / prod(axes[name].size for name in part.axes)
+        computed(step, values)
+        share = prod(axis.size for axis in values.values()) / prod(axes[name].size for name in step.axes)
         total += (time.perf_counter() - start) / share
     return total
 

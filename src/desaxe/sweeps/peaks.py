@@ -7,12 +7,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.labels import attributes as attributes_of
-from ..evaluation.labels import side_attributes
+from ..evaluation.labels import Output, attributes, side_attributes
 from ..evaluation.outer import Outer
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
+from ..mechanism.own import Definition
 from ..mechanism.status import PeakStatus
 from ..peaks.designs import KINDS, plan_of
 from ..peaks.lazy import GRADIENT, PeakBlock, peak_block
@@ -30,30 +30,42 @@ class PeakRequest(NamedTuple):
     theta: tuple[float, float]
 
 
-class PeakPart(NamedTuple):
-    """The peak of a quantity over some of the dimensions of a sweep."""
+class PeakStep(NamedTuple):
+    """The peak of a quantity over some of the dimensions of a sweep: a step of its plan.
+
+    Its variables are `peak_absmax_a_C`, `peak_absmax_a_C_theta`, ..., `peak_absmax_a_C_wrt_ec`.
+    """
 
     block: PeakBlock
     dims: tuple[str, ...]
+    state: bool
 
     @property
     def axes(self) -> tuple[str, ...]:
-        """The dimensions whose values the part needs."""
+        """The dimensions whose values the step needs."""
         return self.dims
 
     @property
-    def variables(self) -> dict[str, str]:
-        """Map outputs to variables of the store: `peak_absmax_a_C`, `peak_absmax_a_C_theta`, ..."""
-        stem = f"peak_{self.block.kind}_{self.block.name}"
-        return {
-            output: stem + ("" if output == "value" else f"_{output.replace(GRADIENT, 'wrt_', 1)}")
-            for output in self.block.outputs
-        }
+    def own(self) -> tuple[Definition, ...]:
+        """The definitions that it needs."""
+        return self.block.search.form.own
 
     @property
-    def outputs(self) -> dict[str, np.dtype[Any]]:
-        """The variables of the part and their dtypes."""
-        return {self.variables[output]: dtype for output, dtype in self.block.outputs.items()}
+    def identity(self) -> str:
+        """A text that tells the step from all others."""
+        return " ".join([repr(self), *(load.identity for _, load in self.block.loads)])
+
+    @property
+    def outputs(self) -> dict[str, Output]:
+        """The variables by name: their types and CF attributes."""
+        return {
+            self._variable(output): Output(dtype, self._attributes(output))
+            for output, dtype in self.block.outputs.items()
+        }
+
+    def cut(self, lengths: Mapping[str, int]) -> "PeakStep":
+        """Return the step itself: a search goes design by design."""
+        return self
 
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
         """The variables of a block, from the values along each of its dimensions."""
@@ -61,22 +73,25 @@ class PeakPart(NamedTuple):
         arrays = dict(zip(self.dims, grids, strict=True))
         block = self.block._replace(threads=threads or 1)
         found = block.compute(*(arrays[name] for name in block.names))
-        return {self.variables[output]: array for output, array in found.items()}
+        return {self._variable(output): array for output, array in found.items()}
 
-    def attributes(self, state: bool) -> dict[str, dict[str, Any]]:
-        """CF attributes of its variables."""
+    def _variable(self, output: str) -> str:
+        stem = f"peak_{self.block.kind}_{self.block.name}"
+        return stem + ("" if output == "value" else f"_{output.replace(GRADIENT, 'wrt_', 1)}")
+
+    def _attributes(self, output: str) -> dict[str, Any]:
         name, kind = self.block.name, self.block.kind
-        own = attributes_of(name, state)
-        found: dict[str, dict[str, Any]] = {
-            "value": {**own, "long_name": f"{WORDS[kind]} over theta of {own['long_name']}"},
+        if output == "value":
+            own = attributes(name, self.state)
+            return {**own, "long_name": f"{WORDS[kind]} over theta of {own['long_name']}"}
+        if output.startswith(GRADIENT):
+            p = output.removeprefix(GRADIENT)
+            return {"units": _slope_unit(name, p, self.state), "long_name": f"derivative of the peak by {p}"}
+        return {
             "theta": {"units": "rad", "long_name": "crank angle of the peak"},
             "side": side_attributes(),
             "status": {"long_name": STATUS},
-        }
-        for p in self.block.search.parameters:
-            told = {"units": _slope_unit(name, p, state), "long_name": f"derivative of the peak by {p}"}
-            found[f"{GRADIENT}{p}"] = told
-        return {self.variables[output]: told for output, told in found.items()}
+        }[output]
 
 
 def _slope_unit(name: str, parameter: str, state: bool) -> str:
@@ -110,14 +125,14 @@ def peak_requests(peaks: Any, outer: Outer) -> tuple[PeakRequest, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def peak_parts(
+def peak_steps(
     requests: Sequence[PeakRequest], outer: Outer, branch: int, accuracy: Any
-) -> tuple[PeakPart, ...]:
-    """The parts of a sweep that compute them."""
-    return tuple(_peak_part(one, outer, branch, accuracy) for one in requests)
+) -> tuple[PeakStep, ...]:
+    """The steps of a sweep that compute them."""
+    return tuple(_peak_step(one, outer, branch, accuracy) for one in requests)
 
 
-def _peak_part(one: PeakRequest, outer: Outer, branch: int, accuracy: Any) -> PeakPart:
+def _peak_step(one: PeakRequest, outer: Outer, branch: int, accuracy: Any) -> PeakStep:
     given = {"alpha": 0.0, "omega": None, "omega0": None, **outer.given}
     given.pop("theta", None)
     plan = plan_of(one.name, {**given, **outer.loads}, branch, accuracy)
@@ -128,4 +143,5 @@ def _peak_part(one: PeakRequest, outer: Outer, branch: int, accuracy: Any) -> Pe
             raise TypeError(f"peak of {one.name}: {name} is missing (needed: {', '.join(plan.needs)})")
     dims = tuple(name for name in outer.dimensions if name in needs)
     scalars = {name: float(outer.axes[name].reshape(-1)[0]) for name in needs if name not in dims}
-    return PeakPart(peak_block(one.kind, plan, scalars, dims, branch, one.theta, 1, loads), dims)
+    block = peak_block(one.kind, plan, scalars, dims, branch, one.theta, 1, loads)
+    return PeakStep(block, dims, outer.given.get("omega") is not None)

@@ -15,8 +15,7 @@ from ..support.forks import IMPORTS
 from ..support.shown import printable
 from .best import Search
 from .layout import size_text
-from .prepared import Sweep
-from .request import IDENTITY, differences
+from .request import IDENTITY, Sweep, differences
 from .skeleton import INCOMPLETE, STATE, Compared, as_signed, compared, skeleton_of
 from .store import attributes, create, held, put, remove_strays
 
@@ -61,7 +60,7 @@ def require_place(sweep: Sweep, root: Path, overwrite: bool, memory: int | None)
     _refuse_changed(root, changed, overwrite)
     if kept is None or changed:
         sweep.layout.require_memory(memory)
-        require_room(sweep, root, sweep.bytes)
+        require_room(sweep, root, sweep.plan.bytes)
         return None
     return kept
 
@@ -144,7 +143,7 @@ def require_room(sweep: Sweep, root: Path, needed_bytes: int) -> None:
     if needed_bytes > free:
         raise OSError(
             28,
-            f"the store takes up to {size_text(needed_bytes)} ({sweep.points:,} points, "
+            f"the store takes up to {size_text(needed_bytes)} ({sweep.plan.points:,} points, "
             f"{len(sweep.template.data_vars)} variables), {size_text(free)} are free",
             str(root),
         )

@@ -1,21 +1,93 @@
-"""The identity of a sweep: request, version and digest of the Program, as attributes of its store."""
+"""A sweep that is ready to run: its plan, its chunks, and its identity, as attributes of its store."""
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from numpy.typing import NDArray
 
 from ..definitions.tables import text_of
-from ..evaluation.outer import Outer
-from ..evaluation.reductions import Reductions
+from ..evaluation.outer import Outer, outer_of
+from ..evaluation.plan import Block, Plan, margin_of, plan_of
+from ..evaluation.reductions import Reductions, names_reduced, reductions_of
 from ..mechanism.program import digest
+from ..runtime.accuracy import accuracy_of
+from ..runtime.request import several
 from ..support.version import version as desaxe_version
-from .layout import table_of
-from .peaks import PeakRequest
+from .layout import Layout, layout_of, table_of
+from .peaks import PeakRequest, PeakStep, peak_requests, peak_steps
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 IDENTITY = ("request", "version", "digest")
+
+
+class Sweep(NamedTuple):
+    """A sweep that is ready to run.
+
+    plan      what it computes
+    layout    its dimensions and chunks
+    template  its Dataset with lazy variables, for names, dimensions and attributes
+    identity  the attributes that tell whether a store is of the same sweep
+    """
+
+    plan: Plan
+    layout: Layout
+    template: "xr.Dataset"
+    identity: dict[str, str]
+
+    def blocks(self) -> Iterator[Block]:
+        """The chunks of the sweep, with what is computed in each."""
+        return self.plan.cut(self.layout.chunk).blocks(self.layout.chunk)
+
+
+def sweep_of(
+    names: str | Sequence[str],
+    inputs: Mapping[str, Any],
+    chunks: Any,
+    memory: int | None,
+    branch: int,
+    accuracy: Any,
+    threads: int | None,
+    reduce: Any,
+    peaks: Any,
+) -> Sweep:
+    """The sweep of these arguments, checked; nothing is computed or written."""
+    if reduce is not None:
+        names = ((names,) if isinstance(names, str) else several(names)) + names_reduced(reduce)
+    outer = outer_of(names, inputs, branch, threads, always=reduce is None)
+    for name in outer.dimensions:
+        if not outer.axes[name].size:
+            raise ValueError(f"{name}: a sweep needs at least one value of it")
+    kept = accuracy_of(accuracy)
+    reductions = None if reduce is None else reductions_of(reduce, outer.dimensions, outer.names)
+    requests = peak_requests(peaks, outer)
+    plan = _plan_of(outer, branch, accuracy, reductions, peak_steps(requests, outer, branch, accuracy))
+    sizes, outputs = plan.sizes, ((s, o) for s in plan.all for o in s.outputs.values())
+    stored = sum(output.dtype.itemsize for step, output in outputs if len(step.dims) == len(sizes))
+    layout = layout_of(chunks, sizes, stored, None if reduce is None else plan.behind, memory)
+    told = identity(outer, branch, kept, reductions, requests, [repr(s.own) for s in plan.all if s.own])
+    return Sweep(plan, layout, plan.empty(), told)
+
+
+def _plan_of(
+    outer: Outer, branch: int, accuracy: Any, reductions: Reductions | None, peaks: Sequence[PeakStep]
+) -> Plan:
+    """The plan of a grid with peaks beside it, or of peaks alone; the margin comes always."""
+    lost = [n for step in peaks for n in step.dims if reductions is not None and n in reductions.axes]
+    if lost:
+        raise ValueError(f"peaks: each is of one design, and {lost[0]} is reduced; sweep them by themselves")
+    if not (outer.names or peaks):
+        raise ValueError("sweep: nothing is requested, give names or peaks=")
+    if outer.names:
+        plan = plan_of(outer, branch, accuracy, reductions)
+    else:
+        designs = tuple(name for name in outer.dimensions if name != "theta")
+        plan = Plan(outer, branch, accuracy, (), designs)
+    margin = () if outer.names and reductions is None else margin_of(outer, branch, accuracy, plan.dims)
+    return plan._replace(beside=(*margin, *peaks))
 
 
 def identity(

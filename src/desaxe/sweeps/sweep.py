@@ -4,14 +4,12 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing
 from importlib import import_module
-from math import prod
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..evaluation.chunks import blocks_of, slices_of
 from ..runtime.threads import available
 from ..support.extras import needed
 from ..support.files import as_path
@@ -25,10 +23,10 @@ from .kept import Kept
 from .layout import Layout, bytes_of
 from .meter import Meter, Watch
 from .place import CHUNKS, clear, free_at, placed, placed_search, require_room
-from .prepared import Sweep, prepared
+from .request import Sweep, sweep_of
 from .skeleton import COMPLETE, STATE, as_signed
 from .store import attributes, held, open_store, remove_strays, set_state, sync_folders
-from .tasks import Output, Task, compute, is_absent, run, values_for
+from .tasks import Task, compute, is_absent, run
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -56,7 +54,7 @@ def stored_sweep(sweep: Sweep, store: str | PathLike[str], overwrite: bool, way:
         if absent:
             sweep.layout.require_memory(way.memory)
             require_room(sweep, root, absent)
-        meter = Meter(sweep.points, way.watch)
+        meter = Meter(sweep.plan.points, way.watch)
         with closing(meter), _crew(sweep.layout, way) as crew:
             if absent and way.tell is not None:
                 way.tell(_announcement(sweep, root, crew.size))
@@ -69,9 +67,10 @@ def stored_sweep(sweep: Sweep, store: str | PathLike[str], overwrite: bool, way:
 
 def _announcement(sweep: Sweep, root: Path, cores: int) -> str:
     variables = len(sweep.template.data_vars)
-    seconds = seconds_of(sweep.parts, sweep.outer.axes, sweep.bytes) / cores
+    plan = sweep.plan
+    seconds = seconds_of(plan.cut(sweep.layout.chunk)) / cores
     seconds += CHUNK * sweep.layout.chunks * variables
-    return announcement(sweep.points, variables, sweep.bytes, sweep.layout, seconds, free_at(root))
+    return announcement(plan.points, variables, plan.bytes, sweep.layout, seconds, free_at(root))
 
 
 def _crew(layout: Layout, way: Way) -> AbstractContextManager[Crew]:
@@ -86,24 +85,6 @@ def _inner(crew: Crew, way: Way) -> int:
     return 1 if way.client is not None else max(1, (way.threads or available()) // crew.size)
 
 
-def _outputs(sweep: Sweep, place: tuple[int, ...]) -> tuple[tuple[Output, ...], dict[str, slice]]:
-    """The parts written with a chunk; one of fewer dimensions goes with the first chunk that has it."""
-    layout = sweep.layout
-    regions = slices_of(place, layout.sizes, layout.chunk)
-    places = dict(zip(layout.sizes, place, strict=True))
-    outputs = tuple(
-        Output(
-            part,
-            tuple(part.outputs),
-            tuple(places[name] for name in part.dims),
-            tuple(regions[name] for name in part.dims),
-        )
-        for part in sweep.parts
-        if all(number == 0 for name, number in places.items() if name not in part.dims)
-    )
-    return outputs, regions
-
-
 def _write(sweep: Sweep, root: Path, crew: Crew, meter: Meter, inner: int) -> None:
     """Write every chunk that is not in the store, whole."""
     for done in run_all(crew, run, _tasks(sweep, root, inner), ahead=_ahead(crew)):
@@ -116,20 +97,16 @@ def _ahead(crew: Crew) -> int:
 
 
 def _tasks(sweep: Sweep, root: Path | None, inner: int) -> Iterator[Task]:
-    layout, versions = sweep.layout, (sweep.identity["version"], sweep.identity["digest"])
-    scale = sweep.points // max(1, prod(layout.sizes.values()))
-    for place in blocks_of(layout.sizes, layout.chunk):
-        outputs, regions = _outputs(sweep, place)
-        points = scale * prod(part.stop - part.start for part in regions.values())
-        values = values_for(outputs, sweep.outer.axes, regions)
-        yield Task(str(root), outputs, values, points, inner, *versions)
+    versions = sweep.identity["version"], sweep.identity["digest"]
+    for block in sweep.blocks():
+        yield Task(str(root), block.parts, block.values, sweep.plan.points_in(block), inner, *versions)
 
 
 def unstored_sweep(sweep: Sweep, way: Way) -> "xr.Dataset":
     """Run a sweep whose result fits into memory, a reduced one; its Dataset."""
     arrays = {str(n): np.empty(v.shape, v.dtype) for n, v in sweep.template.data_vars.items()}
     sweep.layout.require_memory(way.memory)
-    with closing(Meter(sweep.points, way.watch)) as meter, _crew(sweep.layout, way) as crew:
+    with closing(Meter(sweep.plan.points, way.watch)) as meter, _crew(sweep.layout, way) as crew:
         tasks = _tasks(sweep, None, _inner(crew, way))
         for done in run_all(crew, compute, tasks, ahead=_ahead(crew)):
             for name, (region, values) in done.variables.items():
@@ -159,7 +136,7 @@ def best_sweep(
 
 
 def _searched(search: Search, count: int, way: Way, root: Path | None) -> "xr.Dataset":
-    with closing(Meter(search.points, way.watch)) as meter, _crew(search.layout, way) as crew:
+    with closing(Meter(search.plan.points, way.watch)) as meter, _crew(search.layout, way) as crew:
         kept = Kept(search.layout.chunks, root)
         return best_designs(search, count, crew, meter, _inner(crew, way), kept)
 
@@ -174,10 +151,8 @@ class NotStoredError(OSError):
 
 def _absent_bytes(sweep: Sweep, root: Path) -> int:
     """Bytes of the chunks that are not in the store, before they are compressed."""
-    layout = sweep.layout
-    places = list(blocks_of(layout.sizes, layout.chunk))
-    absent = sum(is_absent(root, _outputs(sweep, place)[0]) for place in places)
-    return -(-sweep.bytes * absent // len(places))
+    absent = sum(is_absent(root, block.parts) for block in sweep.blocks())
+    return -(-sweep.plan.bytes * absent // sweep.layout.chunks)
 
 
 def run_sweep(
@@ -217,7 +192,7 @@ def run_sweep(
     store = store if store is None else as_path("store", store)
     if store is None and reduce is None and (names or not peaks):
         raise TypeError('sweep: store= is missing: where the grid goes, such as "press.zarr"')
-    made = prepared(names, inputs, chunks, room, branch, accuracy, threads, reduce, peaks)
+    made = sweep_of(names, inputs, chunks, room, branch, accuracy, threads, reduce, peaks)
     if store is None:
         return unstored_sweep(made, way)
     return stored_sweep(made, store, overwrite, way)

@@ -124,7 +124,7 @@ def _sweep(content: Content) -> dict[str, Any] | None:
         "chunks": layout.chunks,
         "chunk": layout.chunk,
         "memory": at_once * layout.in_flight,
-        "disk": made.bytes,
+        "disk": made.plan.bytes,
         "free": shutil.disk_usage(_existing(Path(content.store))).free,
     }
 

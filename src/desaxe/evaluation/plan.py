@@ -1,0 +1,260 @@
+"""The plan of a grid: steps, each of which computes some of its variables in any block of it.
+
+    plan = plan_of(outer, branch, accuracy, reduce)
+    plan.dataset(plan.values(threads))               # `grid`: one block
+    for block in plan.cut(lengths).blocks(lengths):  # chunks of Dask, of a store, of a search
+        for part in block.parts:
+            computed(part.step, block.values, threads)
+
+A step is `Points` (values by one kernel, loads included) or `Reduced` (what is taken of axes); a sweep adds
+peaks. It tells its outputs, their types and attributes, and what it needs; it has no arrays and travels.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import product
+from math import prod
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..mechanism.names import LENGTHS
+from ..mechanism.own import Definition
+from ..runtime.compiled_only import compiled_only
+from ..support.extras import needed
+from .chunks import Slices, chunk_lengths, slices_of
+from .labels import Output, labelled, provenance, with_loads
+from .outer import Outer
+from .points import Points, points_of
+from .reduced import Reduced, reduced_of
+from .reductions import Reductions
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Array = NDArray[Any]
+POINTS = 2**22  # of a grid that are in memory at once to be reduced, where what is left of it allows that
+
+
+class Step(Protocol):
+    """A part of a plan: some variables over the same dimensions."""
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """The dimensions of the outputs, in their order."""
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """The dimensions whose values the step needs; those that are reduced are whole in every block."""
+
+    @property
+    def own(self) -> tuple[Definition, ...]:
+        """The definitions that it needs."""
+
+    @property
+    def outputs(self) -> dict[str, Output]:
+        """The outputs by name: their types and CF attributes."""
+
+    @property
+    def identity(self) -> str:
+        """A text that tells the step from all others."""
+
+    def cut(self, lengths: Mapping[str, int]) -> "Step":
+        """Prepare the step for blocks of these lengths."""
+
+    def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
+        """The outputs of a block by name, from the values along each of its `axes`."""
+
+
+class Part(NamedTuple):
+    """A step in a block: its place among the blocks that it has, and the region of its outputs."""
+
+    step: Step
+    place: tuple[int, ...]
+    region: tuple[slice, ...]
+
+
+class Block(NamedTuple):
+    """A block of a plan: its slice of each dimension, the parts computed in it, the values that they need."""
+
+    regions: Slices
+    parts: tuple[Part, ...]
+    values: dict[str, Array]
+
+
+class Plan(NamedTuple):
+    """The plan of a grid.
+
+    outer       its checked arguments
+    branch      the assembly
+    accuracy    as it was asked for
+    steps       those of its own variables
+    dims        the dimensions of the result
+    reductions  what is taken of the others
+    beside      steps whose variables come beside the grid: peaks, the margin of a reduced one
+    """
+
+    outer: Outer
+    branch: int
+    accuracy: Any
+    steps: tuple[Step, ...]
+    dims: tuple[str, ...]
+    reductions: Reductions | None = None
+    beside: tuple[Step, ...] = ()
+
+    @property
+    def all(self) -> tuple[Step, ...]:
+        """All steps."""
+        return (*self.steps, *self.beside)
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """The length of each dimension of the result."""
+        return {name: self.outer.axes[name].size for name in self.dims}
+
+    @property
+    def points(self) -> int:
+        """Points of the grid, those behind a reduced one included."""
+        return prod(self.outer.axes[name].size for name in self.outer.dimensions)
+
+    def points_in(self, block: Block) -> int:
+        """Points of the grid in a block, those behind a reduced one included."""
+        lengths: list[int] = [region.stop - region.start for region in block.regions.values()]
+        return self.points // max(1, prod(self.sizes.values())) * prod(lengths)
+
+    @property
+    def behind(self) -> int:
+        """Points of the reduced axes behind each point of the result."""
+        axes = () if self.reductions is None else self.reductions.axes
+        return prod(self.outer.axes[name].size for name in axes)
+
+    @property
+    def bytes(self) -> int:
+        """Bytes of all variables."""
+        sizes = self.sizes
+        return sum(
+            output.dtype.itemsize * prod(sizes[name] for name in step.dims)
+            for step in self.all
+            for output in step.outputs.values()
+        )
+
+    def cut(self, lengths: Mapping[str, int]) -> "Plan":
+        """Prepare all steps for blocks of these lengths; dimensions that are not named are whole."""
+        whole = {name: self.outer.axes[name].size for name in self.outer.dimensions}
+        whole |= lengths
+        steps, beside = (tuple(step.cut(whole) for step in some) for some in (self.steps, self.beside))
+        return self._replace(steps=steps, beside=beside)
+
+    def blocks(self, lengths: Mapping[str, int]) -> Iterator[Block]:
+        """All blocks in order; a step of fewer dimensions is a part of the first block that has its place."""
+        sizes, axes = self.sizes, self.outer.axes
+        for place in product(*(range(-(-size // lengths[name])) for name, size in sizes.items())):
+            regions = slices_of(place, sizes, lengths)
+            places = dict(zip(sizes, place, strict=True))
+            parts = tuple(
+                Part(s, tuple(places[n] for n in s.dims), tuple(regions[n] for n in s.dims))
+                for s in self.all
+                if not any(number for name, number in places.items() if name not in s.dims)
+            )
+            needed = dict.fromkeys(name for part in parts for name in part.step.axes)
+            yield Block(regions, parts, {n: axes[n][regions[n]] if n in regions else axes[n] for n in needed})
+
+    def values(
+        self,
+        threads: int | None,
+        lengths: Mapping[str, int] | None = None,
+        before: Callable[[], None] = lambda: None,
+    ) -> dict[str, Array]:
+        """All variables by name, from blocks of these lengths; `before` is called before each."""
+        lengths = self._in_memory() if lengths is None else lengths
+        whole = all(lengths[name] >= size for name, size in self.sizes.items())
+        if whole:
+            before()
+            axes = self.outer.axes
+            return {n: a for step in self.all for n, a in step.compute(axes, threads).items()}
+        return self._by_blocks(threads, lengths, before)
+
+    def _by_blocks(
+        self, threads: int | None, lengths: Mapping[str, int], before: Callable[[], None]
+    ) -> dict[str, Array]:
+        """All variables by name, block by block."""
+        sizes = self.sizes
+        found = {
+            name: np.empty([sizes[n] for n in step.dims], output.dtype)
+            for step in self.all
+            for name, output in step.outputs.items()
+        }
+        for block in self.cut(lengths).blocks(lengths):
+            before()
+            for part in block.parts:
+                for name, array in computed(part.step, block.values, threads).items():
+                    found[name][part.region] = array
+        return found
+
+    def _in_memory(self) -> dict[str, int]:
+        """The lengths of blocks that fit into memory before they are reduced; the whole without that."""
+        stored = any(isinstance(step, Reduced) and not step.fused for step in self.steps)
+        if not stored:
+            return {name: max(1, size) for name, size in self.sizes.items()}
+        return longest(chunk_lengths("auto", self.sizes, max(1, POINTS // max(self.behind, 1))))
+
+    def empty(self) -> "xr.Dataset":
+        """The labelled Dataset with lazy variables, of which none is computed."""
+        with needed("a sweep", "scale"):
+            import dask.array as da
+
+        sizes = self.sizes
+        lazy = {
+            name: da.empty([sizes[n] for n in step.dims], dtype=output.dtype, chunks=-1)
+            for step in self.all
+            for name, output in step.outputs.items()
+        }
+        return self.dataset(lazy)
+
+    def dataset(self, arrays: Mapping[str, Array]) -> "xr.Dataset":
+        """The variables as a labelled Dataset."""
+        outer, branch = self.outer, self.branch
+        kept = {n: array for n, array in outer.coordinates.items() if not array.ndim or n in self.dims}
+        own, beside = (
+            {n: (s.dims, arrays[n], told.attributes) for s in some for n, told in s.outputs.items()}
+            for some in (self.steps, self.beside)
+        )
+        if self.reductions is None:
+            shown = {name: own[name] for name in outer.shown if name in own}
+            found = labelled(shown, kept, branch, self.accuracy)
+        else:
+            found = labelled({}, kept, branch)
+            (step,) = self.steps
+            accuracy = step.of.wanted.accuracy if isinstance(step, Reduced) and step.of else "standard"
+            found.attrs |= provenance(own, kept, branch, accuracy, of=outer.names)
+            found = found.assign(own)
+        found = with_loads(found, outer.loads if self.steps else {})
+        return found.assign(beside) if beside else found
+
+
+def plan_of(outer: Outer, branch: int, accuracy: Any, reductions: Reductions | None = None) -> Plan:
+    """The plan of a grid, or of what is taken of it; it chooses all kernels, and runs nothing."""
+    if reductions is not None:
+        step = reduced_of(outer, branch, accuracy, reductions)
+        return Plan(outer, branch, accuracy, (step,), step.dims, reductions)
+    groups = outer.groups()
+    steps = tuple(points_of(names, outer, along, branch, accuracy) for names, along in groups)
+    return Plan(outer, branch, accuracy, steps, tuple(outer.dimensions))
+
+
+def margin_of(outer: Outer, branch: int, accuracy: Any, dims: Sequence[str]) -> tuple[Points, ...]:
+    """The step of the margin, if all lengths are given and none of them is reduced."""
+    if not all(name in outer.axes and (name in dims or name not in outer.dimensions) for name in LENGTHS):
+        return ()
+    return (points_of(["margin"], outer, outer.lengths, branch, accuracy),)
+
+
+def computed(step: Step, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
+    """The outputs of a step in a block, by compiled code however small the block is."""
+    with compiled_only():
+        return step.compute(values, threads)
+
+
+def longest(lengths: Mapping[str, Sequence[int]]) -> dict[str, int]:
+    """The longest chunk of each dimension."""
+    return {name: max(1, *own) for name, own in lengths.items()}

@@ -1,0 +1,252 @@
+"""Reductions of a grid (largest, mean, ...) along some of its axes: a step of a plan.
+
+Where a kernel knows the first kinds, it reduces one axis on the way, and the grid is never stored; the rest
+is folded in memory. A reduced axis is whole in every block, so that a sum has one order.
+"""
+
+from collections.abc import Mapping, Sequence
+from math import prod
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiler.languages.numba.reductions import EXTREMES, KINDS, outputs_of
+from ..mechanism.catalogue import quantity
+from ..mechanism.own import Definition
+from ..runtime.kernels import KernelKey, kernel_for
+from ..runtime.threads import in_blocks
+from ..runtime.tiers import COMPILED, tier_of
+from .fold import Field, field_of, folded
+from .labels import Output, attributes, input_attributes, side_attributes
+from .outer import Outer
+from .points import Points, points_of
+from .reductions import Chain, Reductions, chain_name, extremes_at_end, method_of
+from .sides import sides_of
+
+Array = NDArray[Any]
+FLOAT = np.dtype(np.float64)
+
+
+class Reduced(NamedTuple):
+    """Reductions of names over the axes that are left.
+
+    names       those of which a kind is taken
+    dims        the axes that are left
+    reductions  what is taken
+    numbers     the inputs that are numbers
+    state       whether omega is given instead of omega0
+    of          the values of `names`; the last of its axes is the one that a kernel reduces
+    key         that kernel, if there is one
+    at          for each `At` the values of its name
+    slopes      the parameters by which functions of a design give derivatives
+    """
+
+    names: tuple[str, ...]
+    dims: tuple[str, ...]
+    reductions: Reductions
+    numbers: tuple[tuple[str, float], ...]
+    state: bool
+    of: Points | None
+    key: KernelKey | None
+    at: tuple[Points, ...]
+    slopes: tuple[tuple[str, ...], ...]
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """The dimensions whose values the step needs."""
+        return (*self.dims, *self.reductions.axes)
+
+    @property
+    def own(self) -> tuple[Definition, ...]:
+        """The definitions that it needs."""
+        return () if self.of is None else self.of.own
+
+    @property
+    def identity(self) -> str:
+        """A text that tells the step from all others, by what its loads are too."""
+        steps = [*([] if self.of is None else [self.of]), *self.at]
+        return " ".join([repr(self), *(step.identity for step in steps)])
+
+    @property
+    def fused(self) -> bool:
+        """True if the kernel leaves nothing to fold."""
+        return self.key is not None and self.reductions.alone is not None
+
+    @property
+    def outputs(self) -> dict[str, Output]:
+        """The outputs by name: their types and CF attributes."""
+        found: dict[str, Output] = {}
+        along = ", ".join(self.reductions.axes)
+        for name in self.names:
+            for chain in self.reductions.chains(name):
+                found |= self._outputs(name, chain)
+            words = f"points along {along} without a {name} (infeasible, stalled, bad)"
+            found[f"{name}_skipped"] = Output(np.dtype(np.int64), {"units": "1", "long_name": words})
+        for one in self.reductions.at:
+            words = f"{quantity(one.name, self.state).meaning} at {self.reductions.axes[0]} = {one.text}"
+            found[one.variable] = Output(FLOAT, {**attributes(one.name, self.state), "long_name": words})
+        for function, slopes in zip(self.reductions.functions, self.slopes, strict=True):
+            found[function.name] = Output(FLOAT, {"long_name": f"{function.name} of the design"})
+            names = [f"{function.name}_wrt_{p}" for p in slopes]
+            found |= {name: Output(FLOAT, {"long_name": name}) for name in names}
+        return found
+
+    def _outputs(self, name: str, chain: Chain) -> dict[str, Output]:
+        """The result of a chain, where it is, and on which side of a jump."""
+        variable = chain_name(name, chain)
+        method = " ".join(": ".join((*axes, method_of(kind))) for axes, kind in chain)
+        found = {variable: Output(FLOAT, {**attributes(name, self.state), "cell_methods": method})}
+        for axis in extremes_at_end(chain):
+            about = input_attributes(axis)
+            words = f"{about['long_name']} of the {variable.removeprefix(f'{name}_')} of {name}"
+            found[f"{variable}_{axis}"] = Output(FLOAT, {"units": about["units"], "long_name": words})
+        if self._has_side(chain):
+            found[f"{variable}_side"] = Output(np.dtype(np.int8), side_attributes())
+        return found
+
+    def _has_side(self, chain: Chain) -> bool:
+        """True if the result of a chain is a sample over theta under loads that may jump."""
+        return self.of is not None and self.of.loads is not None and "theta" in extremes_at_end(chain)
+
+    def cut(self, lengths: Mapping[str, int]) -> "Reduced":
+        """Prepare the step for blocks of these lengths."""
+        of = None if self.of is None else self.of.cut(lengths)
+        at = tuple(one.cut({**lengths, self.reductions.axes[0]: 1}) for one in self.at)
+        return self._replace(of=of, at=at)
+
+    def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
+        """The outputs of a block by name, from the values along each of its `axes`."""
+        found: dict[str, Array] = {}
+        if self.of is not None:
+            found |= self._kinds(self.of, values, threads)
+        for one, points in zip(self.reductions.at, self.at, strict=True):
+            columns = {**values, self.reductions.axes[0]: np.array([one.place])}
+            found[one.variable] = points.compute(columns, threads)[one.name][..., 0]
+        for function, slopes in zip(self.reductions.functions, self.slopes, strict=True):
+            grids = np.meshgrid(*(values[name] for name in self.dims), indexing="ij")
+            shape = tuple(values[name].size for name in self.dims)
+            value, gradient = function({**dict(self.numbers), **dict(zip(self.dims, grids, strict=True))})
+            found[function.name] = np.array(np.broadcast_to(value, shape))
+            for p in slopes:
+                found[f"{function.name}_wrt_{p}"] = np.array(np.broadcast_to(gradient.get(p, 0.0), shape))
+        return found
+
+    def _kinds(self, of: Points, values: Mapping[str, Array], threads: int | None) -> dict[str, Array]:
+        """All kinds of all names, one stage after the other."""
+        found: dict[str, Array] = {}
+        firsts = self._firsts(of, values, threads)
+        total = prod(values[axis].size for axis in self.reductions.axes)
+        for name, chain in ((n, chain) for n in self.names for chain in self.reductions.chains(n)):
+            (axes, kind), *rest = chain
+            first = firsts[name, kind]
+            field = folded(first, [axis for axis in axes if axis in first.dims], kind, values)
+            for axes, kind in rest:
+                field = folded(field.counted_anew(), axes, kind, values)
+            variable = chain_name(name, chain)
+            found[variable] = field.values
+            found |= {f"{variable}_{axis}": field.places[axis] for axis in extremes_at_end(chain)}
+            if self._has_side(chain):
+                found[f"{variable}_side"] = self._side(of, name, variable, field, values)
+            left = tuple(number for number, axis in enumerate(first.dims) if axis not in self.dims)
+            found[f"{name}_skipped"] = total - first.counts.sum(axis=left)
+        return found
+
+    def _firsts(
+        self, of: Points, values: Mapping[str, Array], threads: int | None
+    ) -> dict[tuple[str, str], Field]:
+        """The values by name and kind of the first stage; where a kernel can, reduced along its axis."""
+        stage = self.reductions.stages[0]
+        kinds = tuple(dict.fromkeys(kind for name in self.names for kind in stage.kinds_of(name)))
+        rest, along = of.dims[:-1], of.dims[-1]
+        shape, length = tuple(values[name].size for name in rest), values[along].size
+        compiled = self.key is not None and tier_of(self.key, prod(shape) * length) == COMPILED
+        if self.key is not None and compiled and length and all(shape):
+            return self._fused(self.key, values, threads)
+        fields = {name: field_of(of.dims, array) for name, array in of.compute(values, threads).items()}
+        first = () if self.key is None else (along,)
+        return {(n, kind): folded(fields[n], first, kind, values) for n in self.names for kind in kinds}
+
+    def _fused(
+        self, key: KernelKey, values: Mapping[str, Array], threads: int | None
+    ) -> dict[tuple[str, str], Field]:
+        """The values by name and kind, reduced along the last axis by the kernel."""
+        assert self.of is not None
+        rest, along = self.of.dims[:-1], self.of.dims[-1]
+        shape, axis = tuple(values[name].size for name in rest), values[along]
+        outs = {name: np.empty(shape or (1,), kind) for name, kind in outputs_of(self.names, key.reduce)}
+        inputs = {name: np.ascontiguousarray(values[name]) for name, _ in key.axis_of}
+        fill_reduced(key, {**dict(self.of.numbers), **inputs}, axis.size, list(outs.values()), threads)
+        arrays = {name: out if shape else out.reshape(()) for name, out in outs.items()}
+        places = np.append(axis, np.nan)  # place -1
+        found = {}
+        for name in self.names:
+            for kind in key.reduce:
+                own = f"{name}_{kind}"
+                at = {along: places[arrays[f"{own}_place"]]} if kind in EXTREMES else {}
+                found[name, kind] = Field(rest, arrays[own], arrays[f"{name}_count"], at)
+        return found
+
+    def _side(self, of: Points, name: str, variable: str, field: Field, values: Mapping[str, Array]) -> Array:
+        """The sides of jumps on which extremes over theta are; 0 where other inputs were averaged."""
+        shape = field.values.shape
+        grids = np.meshgrid(*(values[axis] for axis in self.dims), indexing="ij")
+        points = dict(zip(self.dims, grids, strict=True)) | dict(field.places)
+        flat = {axis: np.ascontiguousarray(column).reshape(-1) for axis, column in points.items()}
+        if not set(self.axes) <= set(flat):
+            return np.zeros(shape, np.int8)
+        return sides_of(name, of, flat).reshape(shape)
+
+
+def fill_reduced(
+    key: KernelKey, values: Mapping[str, Any], length: int, outs: Sequence[Array], threads: int | None
+) -> None:
+    """Fill the outputs of `outputs_of` by the kernel of a key, whose innermost axis has this length."""
+    kernel = kernel_for(key)
+    outer = {name for name, axis in kernel.axis_of if axis == 0}
+    names = [name for name, _ in kernel.axis_of]
+
+    def block(start: int, stop: int) -> None:
+        part = [values[n][start:stop] if n in outer else values[n] for n in names]
+        kernel.function(*part, length, *(out[start:stop] for out in outs))
+
+    in_blocks(block, outs[0].shape[0], outs[0].size * length, threads)
+
+
+def reduced_of(outer: Outer, branch: int, accuracy: Any, reductions: Reductions) -> Reduced:
+    """The step of a grid and what is taken of it, checked."""
+    dims = tuple(name for name in outer.dimensions if name not in reductions.axes)
+    names = tuple(name for name in outer.names if reductions.chains(name))
+    numbers = tuple((name, float(array)) for name, array in outer.axes.items() if not array.ndim)
+    state = outer.given.get("omega") is not None
+    of, key = None, None
+    if names:
+        of, key = _values_of(names, dims, outer, branch, accuracy, reductions)
+    at = []
+    for one in reductions.at:
+        there = outer._replace(axes={**outer.axes, reductions.axes[0]: np.array([one.place])})
+        at.append(points_of((one.name,), there, (*dims, reductions.axes[0]), branch, accuracy))
+    first = {**dict(numbers), **{n: outer.axes[n][:1] for n in dims}}
+    slopes = tuple(tuple(function(first)[1]) for function in reductions.functions)
+    return Reduced(names, dims, reductions, numbers, state, of, key, tuple(at), slopes)
+
+
+def _values_of(
+    names: Sequence[str],
+    dims: Sequence[str],
+    outer: Outer,
+    branch: int,
+    accuracy: Any,
+    reductions: Reductions,
+) -> tuple[Points, KernelKey | None]:
+    """The values of names over all axes, and the kernel that reduces one of them on the way."""
+    stage, axes = reductions.stages[0], (*dims, *reductions.axes)
+    kinds = tuple(dict.fromkeys(kind for name in names for kind in stage.kinds_of(name)))
+    along = "theta" if "theta" in stage.axes else max(stage.axes, key=lambda name: outer.axes[name].size)
+    last = *(name for name in axes if name != along), along
+    of = points_of(names, outer, last, branch, accuracy)
+    if of.loads is not None or set(kinds) - set(KINDS):
+        return (of if axes == last else points_of(names, outer, axes, branch, accuracy)), None
+    alone = len(last) == 1  # a kernel has an axis beside the one that it reduces
+    axis_of = tuple((name, last.index(name) + alone) for name, _ in of.key.axis_of)
+    return of, of.key._replace(axis_of=axis_of, axes=len(last) + alone, reduce=kinds)
