@@ -311,11 +311,6 @@ def test_instances_in_parallel(made):
 
 
 REFUSED = (
-    (
-        {"loads": {"F_Y": {"over_theta": [[0.0, 0], [1.5, -4], [3.0, 4]]}}},
-        {},
-        "loads.F_Y varies with the motion",
-    ),
     ({"masses": {}}, {}, "nothing moves under a torque without inertia"),
     ({"accuracy": "extended"}, {}, "an FMU has standard"),
     (

@@ -17,7 +17,8 @@ def dependencies(table: Variables, made: Programs) -> dict[str, tuple[str, ...]]
     moves = bool(table.states)
     by_row: dict[str, set[str]] = {}
     for row, by in made.entries:
-        by_row.setdefault(row, set()).add(by)
+        through = made.loads[by].parameters if by in made.loads else ()
+        by_row.setdefault(row, set()).update((by, *through))
     # The acceleration depends on what T_in does; where friction acts, on the way of turning, too.
     alpha = (by_row.get(TORQUE, set()) | {"torque"}) - {"alpha"} if moves else set()
     found: dict[str, set[str]] = {}

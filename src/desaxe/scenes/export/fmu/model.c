@@ -5,6 +5,7 @@ typedef enum { SETTING, INITIALISING, EVENTS, CONTINUOUS, STEPPING, OVER } Mode;
 typedef struct {
   double v[N_VALUES];   /* every variable at its value reference */
   double first, last;   /* limit angles around theta */
+  Loads loads;
   double way;           /* with friction: the sign of the speed, 0 at rest */
   double base[3];       /* time, angle and speed from which a given speed is followed */
   double h;             /* the last step of the integrator */
@@ -41,38 +42,55 @@ static int alpha_of(const Values *x, const double state[2], double way, double *
   const double first = x->first + EDGE, last = x->last - EDGE;
   v[THETA] = state[0] < first ? first : (state[0] > last ? last : state[0]); /* trial steps go beyond */
   v[OMEGA] = state[1];
+  add_loads(&x->loads, v, NULL);
   const int status = eval_motion(v, way, out);
   *alpha = status == 0 ? out[0] : (double)NAN;
   return status;
 }
 
-/* The way in which the crank turns or starts from rest, 0 where friction holds it. */
-static double way_of(const Values *x) {
+static void hold(Values *x, double way) {
+  const double limits[2] = {x->first, x->last};
+  hold_loads(&x->loads, x->v, limits, way);
+}
+
+/* Whether a crank at rest starts one way. */
+static int starts(Values *x, double way) {
   const double rest[2] = {x->v[THETA], 0.0};
-  double ahead, back;
-  if (!HAS_STATES || !(x->v[MU] > 0.0)) {
-    return 1.0;
+  double alpha;
+  hold(x, way);
+  return alpha_of(x, rest, way, &alpha) == 0 && alpha * way > 0.0;
+}
+
+/* Whether the way of turning matters: under friction, and under a load that the slider's way changes. */
+static int has_way(const Values *x) {
+  return HAS_STATES && (x->v[MU] > 0.0 || TURNING_LOADS > 0);
+}
+
+/* The way in which the crank turns or starts from rest, 0 where it is held there; loads are held for it. */
+static double way_of(Values *x) {
+  const double speed = x->v[OMEGA], way = speed < 0.0 ? -1.0 : 1.0;
+  if (!has_way(x) || fabs(speed) > STANDS) {
+    hold(x, way);
+    return has_way(x) ? way : 1.0;
   }
-  if (fabs(x->v[OMEGA]) > STANDS) {
-    return x->v[OMEGA] > 0.0 ? 1.0 : -1.0;
-  }
-  if (alpha_of(x, rest, 1.0, &ahead) == 0 && ahead > 0.0) {
-    return 1.0;
-  }
-  return alpha_of(x, rest, -1.0, &back) == 0 && back < 0.0 ? -1.0 : 0.0;
+  return starts(x, 1.0) ? 1.0 : (starts(x, -1.0) ? -1.0 : 0.0);
 }
 
 /* Event indicators: distances to the limit angles; the speed, or what holds the crank at rest. */
 static void indicators(const Values *x, const double state[2], double z[N_EVENTS]) {
   z[0] = x->first > -(double)INFINITY ? state[0] - x->first - EDGE : 1.0;
   z[1] = x->last < (double)INFINITY ? x->last - EDGE - state[0] : 1.0;
-  if (N_EVENTS > 2) {
-    z[N_EVENTS - 1] = x->v[MU] > 0.0 ? x->way * state[1] + (x->way == 0.0) : 1.0;
-    if (x->v[MU] > 0.0 && x->way == 0.0) {
+  if (HAS_STATES) {
+    load_indicators(&x->loads, state, &z[3]);
+    z[AT_REST] = has_way(x) ? x->way * state[1] : 1.0;
+    if (has_way(x) && x->way == 0.0) {
       double ahead, back;
-      const double up = alpha_of(x, state, 1.0, &ahead) == 0 ? -ahead : 1.0;
-      const double down = alpha_of(x, state, -1.0, &back) == 0 ? back : 1.0;
-      z[N_EVENTS - 1] = up < down ? up : down;
+      Values trial = *x;
+      hold(&trial, 1.0);
+      const double up = alpha_of(&trial, state, 1.0, &ahead) == 0 ? -ahead : 1.0;
+      hold(&trial, -1.0);
+      const double down = alpha_of(&trial, state, -1.0, &back) == 0 ? back : 1.0;
+      z[AT_REST] = up < down ? up : down;
     }
   }
 }
@@ -90,16 +108,18 @@ static void follow_from_here(Values *x) {
 
 /* Everything that follows from states, inputs and parameters; returns the status. */
 static int update(Values *x) {
-  double alpha = 0.0, out[N_OUTPUTS + 1];
+  double alpha = 0.0, v[N_VALUES], out[N_OUTPUTS + 1];
   int status = 0;
   if (x->mode <= INITIALISING) {
     x->v[THETA] = x->v[THETA0];
     if (HAS_STATES) {
       x->v[OMEGA] = x->v[OMEGA_START];
     }
+    find_kinks(&x->loads, x->v, x->co_simulation);
     x->way = way_of(x);
-  } else if (!HAS_STATES && !x->co_simulation) {
-    x->v[THETA] = followed(x);
+  } else if (!HAS_STATES) {
+    x->v[THETA] = x->co_simulation ? x->v[THETA] : followed(x);
+    x->way = way_of(x);
   }
   if (HAS_STATES && x->way != 0.0) {
     status = alpha_of(x, &x->v[THETA], x->way, &alpha);
@@ -108,7 +128,9 @@ static int update(Values *x) {
     x->v[DER_THETA] = x->v[OMEGA];
     x->v[DER_OMEGA] = alpha;
   }
-  const int other = eval_outputs(x->v, alpha, out);
+  memcpy(v, x->v, sizeof v);
+  add_loads(&x->loads, v, NULL);
+  const int other = eval_outputs(v, alpha, out);
   for (int k = 0; k < N_OUTPUTS; k++) {
     x->v[OUTPUTS[k]] = out[k];
   }
@@ -196,10 +218,10 @@ static void meet_events(Model *m) {
     tell(m, 0, text);
     x->ended = 1;
   }
-  if (HAS_STATES && x->v[MU] > 0.0 && x->way * x->v[OMEGA] <= STANDS) {
+  if (has_way(x) && x->way * x->v[OMEGA] <= STANDS) {
     x->v[OMEGA] = 0.0;
-    x->way = way_of(x);
   }
+  x->way = way_of(x);
   x->known = 0;
 }
 
@@ -218,7 +240,10 @@ static void differentiate(Values *x, double seed[N_VALUES]) {
       seed[THETA] += 0.5 * ((x->base[2] + x->v[OMEGA]) * seed[0] + (x->v[0] - x->base[0]) * seed[OMEGA]);
     }
   }
-  (void)eval_slopes(x->v, HAS_STATES ? x->v[DER_OMEGA] : 0.0, slopes);
+  double v[N_VALUES];
+  memcpy(v, x->v, sizeof v);
+  seed_loads(&x->loads, v, seed);
+  (void)eval_slopes(v, HAS_STATES ? x->v[DER_OMEGA] : 0.0, slopes);
   for (int k = 0; k < N_SLOPES; k++) {
     if (SLOPES[k][1] == ALPHA) {
       by_alpha[SLOPES[k][0]] = slopes[k];
@@ -310,7 +335,7 @@ static int advance(Model *m, double end) {
   char text[160];
   for (int steps = 0; x->v[0] < end && !x->ended; steps++) {
     double f[2], new_y[2], z[N_EVENTS], *y = &x->v[THETA];
-    x->way = way_of(x);
+    x->way = fabs(y[1]) > STANDS ? x->way : way_of(x);
     const int status = rates(x, y, f);
     if (status != 0 || steps > 1000000) {
       snprintf(text, sizeof text, "the integration failed at t = %.9g, theta = %.9g, omega = %.9g: %s", x->v[0], y[0],
@@ -349,7 +374,7 @@ static int advance(Model *m, double end) {
       x->h = whole * (growth < 10.0 ? growth : 10.0);
     }
     y[0] = new_y[0];
-    y[1] = met && N_EVENTS > 2 && x->v[MU] > 0.0 && z[N_EVENTS - 1] <= 0.0 ? 0.0 : new_y[1];
+    y[1] = met && has_way(x) && z[AT_REST] <= 0.0 ? 0.0 : new_y[1];
     x->v[0] = h < left ? x->v[0] + h : end;
     meet_events(m);
   }

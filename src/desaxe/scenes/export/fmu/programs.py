@@ -1,14 +1,16 @@
 """The Programs of an FMU: acceleration, outputs, their partial derivatives, limit angles."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from ....compiler.passes.differentiate import with_derivatives
 from ....compiler.passes.guard import guard_inputs
 from ....compiler.passes.pipeline import optimise
 from ....compiler.program import Line, Program
+from ....loads.load import Load
 from ....mechanism.catalogue import law_name, quantities
 from ....mechanism.closed.functions import closed_form
+from ....mechanism.closed.inverse import INVERSE
 from ....mechanism.closed.limits import ANGLES, LIMITS
 from ....mechanism.inputs import LEAST
 from ....mechanism.names import sensitivity
@@ -16,8 +18,10 @@ from ....runtime.request import Request, request
 from ....runtime.specialise import specialise
 from ...content import Content
 from ..motion import motion
+from .loads import tables
 from .variables import FORCES, Variables
 
+POSITION = ("Y", "Y_wrt_theta", "Y_wrt_ec", "Y_wrt_AB", "Y_wrt_BC")
 TORQUE = "T_in"  # the row whose derivatives say how the acceleration depends on everything
 
 
@@ -30,6 +34,9 @@ class Programs(NamedTuple):
     slopes: Program
     entries: tuple[tuple[str, str], ...]
     limits: Program
+    position: Program  # of the slider, with its derivatives by theta and the lengths
+    inverse: Program  # the crank angles for a slider position
+    loads: Mapping[str, Load]  # those that vary with the motion
 
 
 def programs(content: Content, table: Variables) -> Programs:
@@ -43,6 +50,7 @@ def programs(content: Content, table: Variables) -> Programs:
     outputs = specialise(asked.names, asked.form, asked.fixed)
     rows = dict.fromkeys((*(n for n in table.outputs if n != "status"), *([TORQUE] if moves else [])))
     slopes, entries = _slopes(tuple(rows), knowns, given, content.branch, moves)
+    position = _request(POSITION, {}, content.branch, False)
     return Programs(
         motion(given, content.branch) if moves else None,
         guard_inputs(outputs, [n for n in ("theta", "omega", *FORCES) if n in outputs.inputs], LEAST, {}),
@@ -50,6 +58,9 @@ def programs(content: Content, table: Variables) -> Programs:
         slopes,
         entries,
         closed_form(LIMITS, (*ANGLES, "status")).program,
+        specialise(position.names, position.form, position.fixed),
+        closed_form(INVERSE, ("first", "second"), branch=float(content.branch)).program,
+        tables(content.inputs),
     )
 
 

@@ -12,6 +12,7 @@ from ....mechanism.constants import constants
 from ....mechanism.inputs import INPUTS
 from ....mechanism.status import PointStatus
 from ....simulation.tableau import E3, E5, STAGES, A
+from .loads import loads_text
 from .programs import TORQUE, Programs
 from .variables import NOMINAL, Variables
 
@@ -31,6 +32,7 @@ def source_text(head: Sequence[str], table: Variables, made: Programs, fmi: int,
         sine_and_cosine(constants()),
         *functions,
         "\n".join(_tables(table, made, fmi, token)) + "\n",
+        loads_text(made.loads, table.place),
         *(
             files(__package__).joinpath(name).read_text(encoding="utf-8")
             for name in ("model.c", "interface.c")
@@ -48,6 +50,9 @@ def _functions(table: Variables, made: Programs) -> list[str]:
         *_function("slopes", made.slopes, table.place, len(made.slopes.outputs), None, "double alpha, "),
         *_function("limits", made.limits, table.place, 4, 4, ""),
     ]
+    if made.loads:
+        found += _function("position", made.position, table.place, 5, None, "")
+        found += _function("inverse", made.inverse, table.place, 2, None, "double Y, ")
     if made.motion is not None:
         return [*found, *_function("motion", made.motion, table.place, 1, 1, "double way, ")]
     none = "static int eval_motion(const double v[], double way, double out[]) {\n  (void)v, (void)way;\n"
@@ -86,7 +91,7 @@ def _tables(table: Variables, made: Programs, fmi: int, token: str) -> list[str]
         "OMEGA": place["omega"], "THETA0": place["theta0"], "OMEGA_START": place.get("omega_start", 0),
         "TORQUE": place.get("torque", 0), "DER_THETA": place.get("der(theta)", 0),
         "DER_OMEGA": place.get("der(omega)", 0), "EC": place["ec"], "LENGTH_AB": place["AB"],
-        "LENGTH_BC": place["BC"], "MU": place["mu"], "ALPHA": -1,
+        "LENGTH_BC": place["BC"], "MU": place["mu"], "ALPHA": -1, "AT_REST": 2 * moves,
     }  # fmt: skip
     rows = {name: number for number, name in enumerate(dict.fromkeys((*table.outputs, TORQUE)))}
     sizes["TORQUE_ROW"] = rows[TORQUE]

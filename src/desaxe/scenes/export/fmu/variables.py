@@ -8,6 +8,7 @@ from ....mechanism.inputs import INPUTS
 from ....mechanism.names import CENTRES, LENGTHS, MASSES
 from ...content import Content
 from ...schema import SceneError
+from .loads import tables
 
 FIXED = (*LENGTHS, *MASSES, *CENTRES, "g_X", "g_Y", "mu")  # parameters, in their order
 FORCES = ("F_X", "F_Y")
@@ -60,7 +61,8 @@ def variables(content: Content, drive: str) -> Variables:
         "torque": Variable("torque", "N*m", "torque on the crank, positive like theta", "input", start=0.0),
         "omega": Variable("omega", "rad/s", "angular speed of the crank", "input", start=speed),
     }[drive]
-    inputs = [driven, *(Variable(n, "N", INPUTS[n].meaning, "input", start=first(given, n)) for n in FORCES)]
+    loads = tables(given)
+    inputs = [driven, *(_force(n, loads.get(n), first(given, n)) for n in FORCES)]
     motion = [Variable("theta", "rad", "crank angle, from the slider axis", _role("theta", content))]
     if moves:
         motion.append(Variable("omega", "rad/s", "angular speed of the crank", _role("omega", content)))
@@ -71,7 +73,7 @@ def variables(content: Content, drive: str) -> Variables:
     if own is not None:
         raise SceneError(f"outputs: {own!r}: an FMU has a variable of this name; give the quantity another")
     outputs = [_output(name) for name in dict.fromkeys(content.outputs) if name not in taken]
-    count = 3 if moves else 2
+    count = 3 + 2 * len(loads) if moves else 2
     zeros = [
         Variable(f"event_indicator[{k}]", "1", "positive until an event", "local")
         for k in range(1, count + 1)
@@ -101,7 +103,12 @@ def check_outputs(names: tuple[str, ...]) -> None:
 def first(given: Mapping[str, Any], name: str) -> float:
     """A number of the scene, or the first of a list; 0 without."""
     value = given.get(name, 0.0)
-    return float(value[0] if isinstance(value, tuple) else value)
+    return 0.0 if callable(value) else float(value[0] if isinstance(value, tuple) else value)
+
+
+def _force(name: str, load: Any, start: float) -> Variable:
+    more = "" if load is None else f", added to the table over {load.over} that the FMU holds"
+    return Variable(name, "N", f"{INPUTS[name].meaning}{more}", "input", start=start)
 
 
 def _parameter(name: str, value: float) -> Variable:

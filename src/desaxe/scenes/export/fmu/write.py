@@ -22,6 +22,7 @@ from ...schema import SceneError
 from ..motion import has_masses
 from ..portable import heading, require_outputs
 from .description import build_description, description2, description3
+from .loads import check_loads, tables
 from .programs import programs
 from .source import source_text
 from .variables import variables
@@ -112,12 +113,7 @@ def _check(scene: Scene, fmi: int, drive: str) -> None:
     content = scene.content
     if content.accuracy == "extended":
         raise SceneError(f'{where}: accuracy = "extended": an FMU has standard')
-    varying = [name for name, value in content.inputs.items() if callable(value)]
-    if varying:
-        raise SceneError(
-            f"{where}: loads.{varying[0]} varies with the motion, which an FMU does not hold: leave it "
-            f"out, and give it as the input {varying[0]} at each instant"
-        )
+    check_loads(where, content.outputs, tables(content.inputs))
     if drive == "torque" and not has_masses(content.inputs):
         raise SceneError(
             f"{where}: nothing moves under a torque without inertia: give [masses], or --input omega"
@@ -128,6 +124,7 @@ def _facts(content: Content, drive: str) -> list[str]:
     return [
         "SI units and radians. Y points along the slider axis towards the slider,",
         f"theta turns from +Y towards +X; branch {content.branch:+d}; the input is {drive}.",
+        *(f"{name} is the input and {load!r}." for name, load in tables(content.inputs).items()),
         "A result that has no value is NaN.",
     ]
 

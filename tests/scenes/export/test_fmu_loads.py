@@ -1,0 +1,266 @@
+"""FMUs with tables of loads: their motion beside `simulate`, kinks as events, partial derivatives."""
+
+import ctypes
+import zipfile
+
+import mpmath
+import numpy as np
+import pytest
+from scipy.integrate import DOP853
+from scipy.optimize import brentq
+
+import desaxe as dx
+from desaxe.oracle.force_truth import truth as force_truth
+from desaxe.oracle.truth import truth
+from tests.compiler.languages.tools import CPLUSPLUS, STRICT, run, tool
+from tests.effort import cases
+from tests.scenes.export import test_fmu
+from tests.scenes.export.test_fmu import DRIVER, LENGTHS, MASSES, Instance, content
+
+fmpy = pytest.importorskip("fmpy")
+
+OUTPUTS = ["V_C", "a_C", "T_in", "N_C", "kinetic_energy"]
+TURN = [[0.4, -5], [1.0, -40], [2.0, 10], [4.0, 0]]
+STROKE = [[0.08, 0, 9], [0.1, -60, 20], [0.13, -5, 0]]
+ONE_WAY = [row[:2] for row in STROKE]
+LOADS = {
+    "step": {"over_theta": TURN, "kind": "step"},
+    "linear": {"over_theta": TURN, "kind": "linear"},
+    "cubic": {"over_theta": TURN, "kind": "cubic"},
+    "over Y": {"over_Y": ONE_WAY, "kind": "linear"},
+    "both ways": {"over_Y": STROKE, "kind": "linear"},
+    "steps over Y": {"over_Y": ONE_WAY, "kind": "step"},
+}
+
+
+def load_of(name):
+    """A load of `LOADS` as a call takes it."""
+    given = dict(LOADS[name])
+    kind = given.pop("kind")
+    ((over, rows),) = given.items()
+    x, y, *inward = np.array(rows).T.tolist()
+    if over == "over_theta":
+        return dx.over_theta(x, y, kind=kind)
+    return dx.over_Y(x, y, kind=kind, **({"inward": inward[0]} if inward else {}))
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """Name of a load -> an FMU with it."""
+    folder = tmp_path_factory.mktemp("loads")
+
+    def one(name, **options):
+        place = folder / f"{name} {options}" / "press.fmu"
+        if not place.exists():
+            place.parent.mkdir()
+            scene = content(outputs=[*OUTPUTS, "status"], loads={"g_Y": -9.81, "F_Y": LOADS[name]})
+            dx.compile(scene, place, to="fmu", **options)
+        return str(place)
+
+    return one
+
+
+def moved(name, torque, omega, t_end, **more):
+    return dx.simulate(
+        torque=torque, t_end=t_end, theta0=0.3, omega_start=omega, **LENGTHS, **MASSES, g_Y=-9.81,
+        F_Y=load_of(name), rtol=1e-12, **more,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("name", LOADS)
+@pytest.mark.parametrize(
+    ("torque", "omega"), [(1.5, 5.0), pytest.param(-3.0, 6.0, marks=pytest.mark.thorough)]
+)
+def test_co_simulation_is_exact_across_kinks(name, torque, omega, made):
+    """Over many turns, forwards, and backwards from a start that turns forwards."""
+    found = fmpy.simulate_fmu(
+        made(name), fmi_type="CoSimulation", start_values={"torque": torque, "omega_start": omega},
+        stop_time=0.4, output_interval=0.02, output=["theta", "omega"],
+    )  # fmt: skip
+    wanted = moved(name, torque, omega, 0.4, times=found["time"])
+    assert abs(wanted["theta"][-1]) > 30
+    for each in ("theta", "omega"):
+        scale = np.abs(wanted[each]).max()
+        np.testing.assert_allclose(found[each], wanted[each], rtol=0, atol=1e-8 * scale, err_msg=each)
+
+
+def follow(place, start, t_end):
+    """Model exchange by a method of order 8, events located to the last digit; states, number of events."""
+    one = Instance(place, start=start).start()
+    count = one.about.numberOfEventIndicators if one.fmi == 2 else len(one.about.eventIndicators)
+    buffer, zeros, slopes = ((ctypes.c_double * n)() for n in (2, count, 2))
+    fmu, events, y, t = one.fmu, 0, np.array(one.get("theta", "omega")), 0.0
+
+    def put(t, y):
+        buffer[:] = y
+        fmu.setTime(t)
+        fmu.setContinuousStates(buffer, 2)
+
+    def rates(t, y):
+        put(t, y)
+        fmu.getContinuousStateDerivatives(slopes, 2)
+        return np.array(slopes)
+
+    def indicators(t, y):
+        put(t, y)
+        fmu.getEventIndicators(zeros, count)
+        return np.array(zeros)
+
+    while t < t_end:
+        solver = DOP853(rates, t, y, t_end, rtol=1e-11, atol=1e-13)
+        crossed = []
+        while solver.status == "running" and not crossed:
+            solver.step()
+            crossed = [k for k, z in enumerate(indicators(solver.t, solver.y)) if z < 0.0]
+        t, y = solver.t, solver.y
+        if crossed:
+            path = solver.dense_output()
+            begin = max(solver.t_old, 1e-15)
+            ends = [
+                brentq(lambda t, k=k, path=path: indicators(t, path(t))[k], begin, t, xtol=1e-15)
+                if indicators(begin, path(begin))[k] > 0.0 else begin
+                for k in crossed
+            ]  # fmt: skip
+            t = min(ends) + 1e-14
+            again = DOP853(rates, solver.t_old, path(solver.t_old), t, rtol=1e-12, atol=1e-14)
+            while again.status == "running":
+                again.step()
+            put(t, again.y)
+            events += 1
+            fmu.enterEventMode()
+            fmu.updateDiscreteStates()
+            fmu.enterContinuousTimeMode()
+            y = np.array(one.get("theta", "omega"))
+    put(t, y)
+    found = one.get("theta", "omega", *OUTPUTS)
+    one.close()
+    return dict(zip(("theta", "omega", *OUTPUTS), found, strict=True)), events
+
+
+@pytest.mark.parametrize("name", ["linear", "both ways"])
+def test_kinks_are_events_of_model_exchange(name, made):
+    """To 1e-8 beside `simulate`, over as many kinks as the crank passes."""
+    found, events = follow(made(name), {"torque": 1.5, "omega_start": 5.0}, 0.1)
+    wanted = moved(name, 1.5, 5.0, 0.1, times=[0.1], names=OUTPUTS)
+    for each in ("theta", "omega", *OUTPUTS):
+        assert found[each] == pytest.approx(wanted[each][-1], rel=1e-8), each
+    turns = (found["theta"] - 0.3) / (2 * np.pi)
+    kinks = 4 if name == "linear" else 6 + 2  # on the way out and in; dead centres
+    assert kinks * (turns - 1) < events <= kinks * (turns + 1)
+
+
+def test_model_exchange_without_tables_over_a_long_run(tmp_path):
+    """The model is exact: what an importer's method errs by is its own."""
+    place = dx.compile(content(outputs=OUTPUTS), tmp_path / "press.fmu", to="fmu")
+    found, events = follow(str(place), {"torque": 0.0, "omega_start": 30.0}, 2.0)
+    wanted = dx.simulate(
+        torque=0.0, t_end=2.0, theta0=0.3, omega_start=30.0, times=[2.0], names=OUTPUTS, rtol=1e-12,
+        **LENGTHS, **MASSES, **test_fmu.LOADS,
+    )  # fmt: skip
+    assert events == 0
+    assert found["theta"] > 70
+    for each in ("theta", "omega", *OUTPUTS):
+        assert found[each] == pytest.approx(wanted[each][-1], rel=1e-8), each
+
+
+@pytest.mark.parametrize("name", ["linear", "over Y"])
+def test_a_given_speed_has_the_load_of_the_angle(name, made):
+    found = fmpy.simulate_fmu(
+        made(name, input="omega"), fmi_type="CoSimulation", start_values={"omega": 7.0, "theta0": 0.1},
+        stop_time=2.0, output_interval=0.05, output=["theta", "T_in", "N_C"],
+    )  # fmt: skip
+    given = {**LENGTHS, **MASSES, "g_Y": -9.81, "F_Y": load_of(name)}
+    wanted = dx.evaluate(["T_in", "N_C"], theta=found["theta"], omega=7.0, alpha=0.0, **given)
+    for each in ("T_in", "N_C"):
+        np.testing.assert_allclose(found[each], wanted[each], rtol=1e-10, atol=1e-10)
+
+
+# ---- partial derivatives --------------------------------------------------------------------------
+
+
+def force_at(name, theta, **lengths):
+    """The table's force at an angle, from the slider's true position."""
+    load = load_of(name)
+    if name == "cubic":
+        table = load.table
+        x = mpmath.mpf(theta) + (load.period if theta < table.knots[0] else 0)
+    else:
+        table, x = load.outward, truth("Y", theta=theta, omega=1.0, alpha=0.0, **lengths)
+    piece = table.piece(float(x))
+    s, (a, b, c, d) = x - mpmath.mpf(table.origin(piece)), map(mpmath.mpf, table.rows[piece])
+    return a + s * (b + s * (c + s * d))
+
+
+def exact(name, load, torque, theta, omega, F_Y, **given):
+    """An output by the free bodies, affine in the force and in the acceleration."""
+    force = mpmath.mpf(F_Y) + force_at(load, theta, **{n: given[n] for n in LENGTHS})
+    there = {"theta": theta, "omega": omega, **given}
+
+    def parts(name):
+        still, pushed = (force_truth(name, alpha=0.0, F_Y=F, **there) for F in (0.0, 1.0))
+        turned = force_truth(name, alpha=1.0, F_Y=0.0, **there)
+        return still + force * (pushed - still), turned - still
+
+    static, inertia = parts("T_in")
+    alpha = (mpmath.mpf(torque) - static) / inertia
+    still, by_alpha = parts(name) if name != "der(omega)" else (0, 1)
+    return still + alpha * by_alpha
+
+
+@pytest.mark.parametrize("name", [pytest.param("cubic", marks=pytest.mark.thorough), "over Y"])
+def test_partial_derivatives_go_through_the_table(name, made, monkeypatch):
+    """By angle, speed and force while time runs, by lengths in initialisation mode."""
+    monkeypatch.setattr(test_fmu, "exact", lambda row, **at: exact(row, name, **at))
+    monkeypatch.setattr(test_fmu, "ROWS", ("der(omega)", "T_in", "N_C", "a_C")[: cases(2, 4)])
+    one = Instance(made(name), start={"torque": 1.5, "F_Y": 3.0})
+    at = {"torque": 1.5, "theta": 0.3, "omega": 5.0, **test_fmu.AT, "F_Y": 3.0}
+    test_fmu.check(one.slopes(test_fmu.ROWS, ["AB", "theta0"]), ["AB", "theta0"], at, {"theta0": "theta"})
+    one.start()
+    knowns = ["theta", "omega", "F_Y"]
+    test_fmu.check(one.slopes(test_fmu.ROWS, knowns), knowns, at)
+    one.close()
+
+
+def test_fmpy_finds_no_problem(made):
+    from fmpy.validation import validate_fmu
+
+    place = made("both ways")
+    assert validate_fmu(place) == []
+    with zipfile.ZipFile(place) as archive:
+        source = archive.extract("sources/press.c", place.removesuffix("press.fmu"))
+    headers = f"-I{fmpy.__path__[0]}/c-code"
+    for compiler, flags in (("gcc", STRICT), ("clang", STRICT), ("g++", CPLUSPLUS)):
+        run(tool(compiler), *flags, headers, "-fsyntax-only", source)
+
+
+@pytest.mark.sampled
+def test_sanitizers_find_nothing_in_a_thousand_random_presses(made, tmp_path):
+    with zipfile.ZipFile(made("both ways")) as archive:
+        (tmp_path / "press.c").write_bytes(archive.read("sources/press.c"))
+    (tmp_path / "main.c").write_text(DRIVER, encoding="utf-8")
+    checks = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g", "-O1")
+    headers = f"-I{fmpy.__path__[0]}/c-code"
+    run(tool("gcc"), "-std=c99", *checks, headers, tmp_path / "main.c", "-o", tmp_path / "main", "-lm")
+    assert 100 < int(run(tmp_path / "main")) < 1000
+
+
+def test_a_crank_that_neither_way_of_the_slider_lets_go_stays_at_rest(tmp_path):
+    """A load against either way of the slider is friction: more than the torque can move."""
+    against = {"over_Y": [[0.08, -30, 30], [0.13, -30, 30]]}
+    place = dx.compile(content(outputs=["V_C"], loads={"F_Y": against}), tmp_path / "press.fmu", to="fmu")
+    for kind in ("CoSimulation", "ModelExchange"):
+        found = fmpy.simulate_fmu(
+            str(place), fmi_type=kind, start_values={"omega_start": 0.5, "theta0": 1.0, "torque": 0.0},
+            stop_time=0.2, output_interval=0.01, relative_tolerance=1e-9, output=["theta", "omega"],
+        )  # fmt: skip
+        assert found["omega"][-1] == 0.0
+        assert 1.0 < found["theta"][-1] < 1.1
+
+
+def test_what_an_fmu_does_not_have_is_refused_by_name(tmp_path):
+    loads = {"F_Y": LOADS["linear"]}
+    with pytest.raises(ValueError, match="'T_in_wrt_theta' is a derivative through"):
+        dx.compile(content(outputs=["T_in_wrt_theta"], loads=loads), tmp_path / "press.fmu", to="fmu")
+    stroke = {"F_Y": {"over_stroke": [["0 mm", 0], ["20 mm", -50]], "dead_centre": "outer"}}
+    with pytest.raises(ValueError, match="tables over theta or Y; sample"):
+        dx.compile(content(outputs=["T_in"], loads=stroke), tmp_path / "press.fmu", to="fmu")
