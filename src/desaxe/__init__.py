@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from .definitions.define import undefine as undefine
     from .design.design_map import design_map as design_map
     from .design.drive.drive import drive as drive
+    from .design.drive.flywheel import flywheel as flywheel
     from .design.events.events import events as events
     from .design.feasibility.feasibility import feasibility as feasibility
     from .design.fit.fit import fit as fit
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     from .design.synthesis.synthesize import synthesize as synthesize
     from .design.tolerance.tolerance import tolerance as tolerance
     from .design.turn.counterweight import counterweight as counterweight
-    from .design.turn.flywheel import flywheel as flywheel
     from .design.turn.harmonics import harmonics as harmonics
     from .enclosure.enclose import enclose as enclose
     from .evaluation.evaluate import evaluate as evaluate
@@ -65,7 +65,7 @@ PUBLIC = {
     "tolerance": "desaxe.design.tolerance.tolerance",
     "harmonics": "desaxe.design.turn.harmonics",
     "counterweight": "desaxe.design.turn.counterweight",
-    "flywheel": "desaxe.design.turn.flywheel",
+    "flywheel": "desaxe.design.drive.flywheel",
     "drive": "desaxe.design.drive.drive",
     "explore": "desaxe.scenes.explorer.explore",
     "to_excel": "desaxe.machine.excel",

@@ -13,7 +13,7 @@ MODULES = [
     "tolerance.tolerance",
     "turn.harmonics",
     "turn.counterweight",
-    "turn.flywheel",
+    "drive.drive",
 ]
 
 

@@ -106,8 +106,8 @@ def test_peaks_averages_and_the_calls_over_a_turn(kind):
     rms = np.sqrt(integral(lambda t: torque(kind, t) ** 2, kind) / TURN)
     rel = 1e-5 if kind == "function" else 1e-9  # whose kinks are known to searches, not to sums
     series = dx.harmonics("T_in", orders=1, **one)
-    wheel, motor = dx.flywheel(fluctuation=0.1, **one), dx.drive(fluctuation=0.1, **one)
-    means = {"harmonics": series["mean"], "flywheel": wheel["mean_torque"], "drive": motor["torque_mean"]}
+    motor = dx.drive(fluctuation=0.1, **one)
+    means = {"harmonics": series["mean"], "drive": motor["torque_mean"]}
     for call, value in means.items():
         assert value == pytest.approx(mean, rel=rel, abs=1e-9), call
     assert motor["torque_rms"] == pytest.approx(rms, rel=rel)

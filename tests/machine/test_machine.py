@@ -29,7 +29,6 @@ CALLS = {
     "enclose": {"name": "Y", "theta": dx.between(1.0, 1.01)},
     "harmonics": {"name": "F_shaking_Y", "orders": 2},
     "counterweight": {"radius": 0.03},
-    "flywheel": {"fluctuation": 0.02},
     "drive": {"fluctuation": 0.05},
     "synthesize": {"stroke": 0.1, "time_ratio": 1.1, "BC": 0.3},
 }
@@ -78,6 +77,12 @@ def test_a_machine_can_be_unpacked_everywhere(name):
         getattr(PRESS, name)(**given),
         function(**{**given, **{k: v for k, v in PRESS.items() if k not in given}}),
     )
+
+
+def test_its_deprecated_flywheel_names_the_call_of_the_machine():
+    with pytest.warns(DeprecationWarning, match="flywheel"):
+        found = PRESS.flywheel(fluctuation=0.02)
+    assert found["inertia"] == PRESS.drive(fluctuation=0.02)["flywheel_inertia"]
 
 
 def test_signatures_and_documentation_are_those_of_the_functions():

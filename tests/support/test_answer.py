@@ -14,7 +14,7 @@ CALLS = {
     "feasibility": lambda: dx.feasibility(**SIZES),
     "peak": lambda: dx.peak("a_C", omega0=157.0, **SIZES),
     "evaluate": lambda: dx.evaluate(["V_C", "a_C"], theta=1.0, omega0=157.0, **SIZES),
-    "flywheel": lambda: dx.flywheel(fluctuation=0.02, omega0=100.0, m_slider=0.4, **SIZES),
+    "harmonics": lambda: dx.harmonics("a_C", omega0=100.0, **SIZES),
 }
 
 

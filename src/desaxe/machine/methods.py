@@ -34,7 +34,7 @@ METHODS = {
     "enclose": "desaxe.enclosure.enclose",
     "harmonics": "desaxe.design.turn.harmonics",
     "counterweight": "desaxe.design.turn.counterweight",
-    "flywheel": "desaxe.design.turn.flywheel",
+    "flywheel": "desaxe.design.drive.flywheel",
     "drive": "desaxe.design.drive.drive",
     "fit": "desaxe.design.fit.fit",
     "function": "desaxe.evaluation.function",

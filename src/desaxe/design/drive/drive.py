@@ -1,16 +1,17 @@
 """`drive`: torque, power, work, flywheel and starting torque required over a turn."""
 
-from functools import partial
-from math import copysign, inf, nan, pi, sqrt
+from collections.abc import Mapping
+from math import copysign, inf, nan, sqrt
 from typing import Any
 
 import numpy as np
 
 from ...peaks.peak import peak
+from ...runtime.request import as_number
 from ...support.shown import shown
-from .cycle import JAMS, Design, NoCycleError, torque_over
-from .flywheel import flywheel_for
-from .panels import Array, Panels, resolved
+from ..turn.panels import Array, Panels
+from ..turn.turn import JAMS, NoCycleError, Turn
+from .inertia import flywheel_for
 from .result import FIGURES, Drive
 
 CREEP = 1e-100  # rad/s: friction acts, inertia does not; a torque below it is none
@@ -27,7 +28,7 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
     reverse      True: the starting torque is that for either way of turning
     inputs       of one design with masses and loads, as in `evaluate`. omega0 is the speed of the crank; with
                  alpha it is that at theta = 0, and the turn is the first one. F_X and F_Y may vary
-                 with the motion
+                 with the motion, over one turn or up to four: all figures are then of these
 
     Returns a dict, which prints as a report and has `plot()`. Means are over time:
 
@@ -42,7 +43,7 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
     starting_torque           what it takes to start from the worst standstill [N m], positive in the way of
                               turning: the largest torque over theta that loads, gravity and friction hold
                               against; at `theta_start` [rad]. Infinite where friction jams
-    period, fluctuation       time of a turn [s]; as given
+    period, fluctuation       time of a turn, or of those after which loads repeat [s]; as given
     gradient                  dict name -> dict input -> exact derivative, of all but the angles, by each
                               input that is a number and matters; of the flywheel by `fluctuation` too. At
                               a jump or kink of a load it is that of the limit, which moves along; NaN at
@@ -63,7 +64,7 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
         [0.323, 26.468, 1.845]
     """
     check_fluctuation(fluctuation)
-    design = Design("drive", inputs, branch)
+    design = design_of("drive", inputs, branch)
     status = _status(design)
     found: dict[str, Any] = dict.fromkeys(FIGURES, nan)
     slopes = {name: dict.fromkeys(design.parameters, nan) for name in DIFFERENTIATED}
@@ -85,6 +86,16 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
     return Drive({**found, **about}, {**design.numbers, **design.loads}, design.branch, course)
 
 
+def design_of(caller: str, inputs: Mapping[str, Any], branch: int) -> Turn:
+    """A design whose crank turns."""
+    design = Turn(caller, inputs, branch, accelerates=True)
+    if "omega0" not in design.numbers:
+        as_number("omega0", None, ("ec", "AB", "BC", "omega0"), (caller,))
+    if not design.numbers["omega0"]:
+        raise ValueError(f"{caller}: omega0 = 0 gives no cycle; it must be the speed of the crank")
+    return design
+
+
 def check_fluctuation(fluctuation: Any) -> None:
     """ValueError for a fluctuation of speed that no flywheel keeps."""
     if isinstance(fluctuation, bool) or not (
@@ -96,22 +107,24 @@ def check_fluctuation(fluctuation: Any) -> None:
         )
 
 
-def _status(design: Design) -> int:
+def _status(design: Turn) -> int:
     """The status from geometry and speed alone, without forces."""
     if design.margin < 0.0:
         return 1
-    last = design.numbers["omega0"] ** 2 + 4.0 * pi * design.direction * design.numbers.get("alpha", 0.0)
+    way = 2.0 * design.angle * design.direction
+    last = design.numbers["omega0"] ** 2 + way * design.numbers.get("alpha", 0.0)
     if last <= 0.0:
         return STALLED
     return 2 if design.margin == 0.0 else 0
 
 
 def _over_a_turn(
-    design: Design, found: dict[str, Any], slopes: dict[str, dict[str, float]], course: dict[str, Array]
+    design: Turn, found: dict[str, Any], slopes: dict[str, dict[str, float]], course: dict[str, Array]
 ) -> None:
     """The figures other than flywheel and starting torque, and the arrays of torque and power."""
     names = ["T_in", *(f"T_in_wrt_{name}" for name in design.parameters)]
-    turn = torque_over(design, names)
+    turn = design.panels(names)
+    turn = turn.split(turn.roots(turn.values["T_in"]))
     torque, way = turn.values["T_in"], design.direction
     by = {name: turn.values[f"T_in_wrt_{name}"] for name in design.parameters}
     alpha = design.numbers.get("alpha", 0.0)
@@ -150,13 +163,13 @@ def _over_a_turn(
     power = way * torque * speed
     found["torque_peak"], place = _peak(design, "T_in", turn, torque, by, slopes["torque_peak"])
     found["power_peak"], _ = _peak(design, "power_in", turn, power, power_by, slopes["power_peak"])
-    found["theta_peak"] = _in_turn(place, alpha)
+    found["theta_peak"] = _in_cycle(place, design)
     course["theta"], course["T_in"] = turn.curve(torque)
     course["power_in"] = turn.curve(power)[1]
 
 
 def _peak(
-    design: Design,
+    design: Turn,
     name: str,
     turn: Panels,
     values: Array,
@@ -176,17 +189,16 @@ def _peak(
     return abs(value), place
 
 
-def _at_edge(design: Design, name: str, kind: str, value: float, **other: Any) -> dict[str, float]:
+def _at_edge(design: Turn, name: str, kind: str, value: float, **other: Any) -> dict[str, float]:
     """The derivatives of an extreme value that is reached between panels, at a jump or kink that may move."""
     inputs = {n: x for n, x in {**design.numbers, **design.loads, **other}.items() if x is not None}
-    low, high = sorted((0.0, 2.0 * pi * design.direction))
-    found = peak(name, kind=kind, theta=(low, high), branch=design.branch, **inputs)
+    found = peak(name, kind=kind, theta=design.ends, branch=design.branch, **inputs)
     same = abs(found["value"] - value) <= SAME * abs(value)
     return {p: found["gradient"].get(p, nan) if same else nan for p in design.parameters}
 
 
 def _flywheel(
-    design: Design,
+    design: Turn,
     fluctuation: float,
     found: dict[str, Any],
     slopes: dict[str, dict[str, float]],
@@ -202,7 +214,7 @@ def _flywheel(
 
 
 def _starting(
-    design: Design, reverse: bool, found: dict[str, Any], slopes: dict[str, dict[str, float]]
+    design: Turn, reverse: bool, found: dict[str, Any], slopes: dict[str, dict[str, float]]
 ) -> None:
     """The torque that starts the crank from any standstill, forwards or, in reverse, either way."""
     names = [name for name in design.parameters if name not in ("omega0", "alpha")]
@@ -210,16 +222,15 @@ def _starting(
     best, gradient = -inf, dict.fromkeys(design.parameters, 0.0)
     for way in (design.direction, -design.direction)[: 2 if reverse else 1]:
         creep: dict[str, Any] = {"omega0": way * CREEP, "alpha": None}
-        values = partial(design.values, wanted, **creep)
         try:
-            turn = resolved(values, design.breaks(**creep))
+            turn = design.panels(wanted, **creep)
         except NoCycleError as error:
             found["starting_torque"] = inf if error.status == JAMS else nan
             slopes["starting_torque"] = dict.fromkeys(design.parameters, nan)
             return
         value, place, inside = turn.extreme(way * turn.values["T_in"], 1.0)
         if value > best:
-            best, found["theta_start"] = value, _in_turn(place, 0.0)
+            best, found["theta_start"] = value, place % design.angle
             if inside:
                 here = {n: float(turn.at(np.array([place]), turn.values[f"T_in_wrt_{n}"])[0]) for n in names}
             else:
@@ -229,6 +240,6 @@ def _starting(
     slopes["starting_torque"] = gradient
 
 
-def _in_turn(theta: float, alpha: float) -> float:
-    """An angle shifted into 0 ... 2 pi; unchanged with alpha, where turns differ."""
-    return theta if alpha else theta % (2.0 * pi)
+def _in_cycle(theta: float, design: Turn) -> float:
+    """An angle shifted into the cycle; unchanged with alpha, where turns differ."""
+    return theta if "alpha" in design.numbers else theta % design.angle

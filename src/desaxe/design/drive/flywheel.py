@@ -1,145 +1,65 @@
-"""The flywheel for a required fluctuation of speed under a constant drive torque T, friction included.
+"""`flywheel`: torque ripple and the inertia for a fluctuation of speed; deprecated for `drive`."""
 
-With z = omega^2 over the crank angle, J the flywheel, M the effective inertia and L the torque of loads,
-gravity and friction, (J + M) z/2 = C + W. Here W is the integral of T - L, and T the mean of L. If the speed
-is between (1 - f/2) and (1 + f/2) times its mean Omega, then with b and a half the squares of these
+from typing import Any
 
-    max(W - a M) = a J - C,   min(W - b M) = b J - C,   J = (max(W - a M) - min(W - b M))/(f Omega^2).
-
-Friction depends on z and its slope, so L is corrected until it stays. The derivatives follow from those of
-the torque: with G(theta, z, alpha) + J alpha = T and alpha = z'/2, the change z_p by a parameter p obeys
-
-    z_p' = 2 (T_p - G_z z_p - G_p - J_p alpha)/(G_alpha + J),
-
-a linear equation that is solved for the three constants by which z_p is periodic and has its given values at
-the fastest and the slowest angle.
-"""
-
-from math import nan, pi
-from typing import NamedTuple
-
-import numpy as np
-
-from ...support.roots import root
-from .cycle import Design
-from .panels import Array, Panels, resolved
-
-ROUNDS = 60  # of corrections of the friction
-SETTLED = 1e-12  # of the inertia: what a correction may still change
+from ...peaks.peak import peak
+from ...support.answer import answering
+from ...support.deprecation import deprecated
+from .drive import check_fluctuation, design_of
+from .inertia import flywheel_for
 
 
-class Flywheel(NamedTuple):
-    """Inertia [kg m^2], constant torque [N m], their derivatives by name, and the speed over the turn."""
+@answering
+def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str, Any]:
+    """Torque ripple over a turn, and the flywheel for a required fluctuation of speed.
 
-    inertia: float
-    torque: float
-    gradient: dict[str, float]
-    torque_gradient: dict[str, float]
-    theta: Array
-    omega: Array
+    Deprecated: `drive` has the flywheel, its derivatives and the speed with it.
 
+    fluctuation  (fastest - slowest)/mean speed that is allowed, such as 0.02
+    inputs       of one design with masses and loads, as in `drive`
 
-class State(NamedTuple):
-    """The motion with a flywheel, on panels: `omega`, `alpha`; where it is fastest and slowest."""
+    Returns a dict:
 
-    panels: Panels
-    inertia: float
-    torque: float
-    fastest: float
-    slowest: float
+    mean_torque, max_torque, min_torque   that the drive applies at constant speed [N m], the last two at
+                                          `theta_max_torque` and `theta_min_torque` [rad]
+    ripple                 largest less smallest torque [N m]
+    energy_fluctuation     what a flywheel must store at constant speed [J]
+    inertia                `flywheel_inertia` of `drive` [kg m2]
+    inertia_first_order    energy_fluctuation/(fluctuation omega0^2) [kg m2], the textbook's estimate
+    fluctuation_without    the fluctuation without a flywheel; infinite if the crank would stop, NaN with
+                           friction
+    theta_fastest, theta_slowest   where the crank turns fastest and slowest with it [rad]
 
-    def motion(self, theta: Array) -> dict[str, Array]:
-        """Speed and acceleration at angles."""
-        return {name: self.panels.at(theta, v) for name, v in self.panels.values.items()}
-
-
-def flywheel_for(design: Design, fluctuation: float) -> Flywheel | None:
-    """The smallest flywheel that keeps the required fluctuation of speed; None if none is found."""
-    state = _store(design, fluctuation, None)
-    settled = not design.has_friction
-    for _ in range(0 if settled else ROUNDS):
-        before, state = state, _store(design, fluctuation, state)
-        settled = abs(state.inertia - before.inertia) <= SETTLED * abs(state.inertia)
-        if settled:
-            break
-    if not settled:
-        return None
-    slopes = _gradient(design, fluctuation, state)
-    inertia, torque = ({name: pair[k] for name, pair in slopes.items()} for k in (1, 0))
-    omega = state.panels.values["omega"].ravel()
-    return Flywheel(state.inertia, state.torque, inertia, torque, state.panels.theta.ravel(), omega)
-
-
-def _store(design: Design, fluctuation: float, before: State | None) -> State:
-    """One iteration: the flywheel under the loads and the friction of the previous motion."""
-    names = ["T_in", "M_eff", "M_eff_wrt_theta"]
-    motion = None if before is None else before.motion
-
-    def loads(theta: Array) -> dict[str, Array]:
-        found = design.values(names, theta, omega0=0.0, mu=None)
-        if design.has_friction:
-            rough = design.values(["T_in"], theta, motion)["T_in"]
-            found["T_in"] = found["T_in"] + rough - design.values(["T_in"], theta, motion, mu=None)["T_in"]
-        return found
-
-    panels = resolved(loads, design.breaks(motion, () if before is None else before.panels.edges))
-    load, M, slope = (panels.values[name] for name in names)
-    speed = abs(design.numbers["omega0"])
-    drive = panels.integral(load) / (2.0 * pi)
-    work = panels.running(drive - load)
-
-    def stored(share: float) -> tuple[float, float, float, float]:
-        """The flywheel for a fluctuation, its constant C, the fastest and the slowest angle."""
-        a, b = (0.5 * (speed * (1.0 + side * share / 2.0)) ** 2 for side in (1.0, -1.0))
-        high, fastest, _ = panels.extreme(work - a * M, 1.0)
-        low, slowest, _ = panels.extreme(work - b * M, -1.0)
-        J = (high - low) / (share * speed**2)
-        return J, a * J - high, fastest, slowest
-
-    J, C, fastest, slowest = stored(fluctuation)
-    if J <= 0.0:  # the mechanism itself stores more than is needed
-        J, C = 0.0, stored(root(lambda share: stored(share)[0], 1e-9 * fluctuation, fluctuation))[1]
-    inertia = np.maximum(J + M, 1e-300)
-    z = np.maximum(2.0 * (C + work) / inertia, 0.0) if (J + M).any() else np.full_like(M, speed**2)
-    values = {
-        "omega": design.direction * np.sqrt(z),
-        "alpha": (drive - load - 0.5 * slope * z) / inertia,
+    Raises as `drive` does, and ValueError where the crank cannot turn fully or friction jams.
+    """
+    deprecated("flywheel(...)", "drive(fluctuation=...)")
+    check_fluctuation(fluctuation)
+    design = design_of("flywheel", inputs, branch)
+    if design.margin < 0.0:
+        raise ValueError(
+            f"flywheel: the crank cannot turn fully, margin = {design.margin:g} m is less than 0"
+        )
+    over = design.panels(["T_in"])
+    torque = over.values["T_in"]
+    mean = over.integral(torque) / design.angle
+    stored = over.running(torque - mean)
+    energy = over.extreme(stored, 1.0)[0] - over.extreme(stored, -1.0)[0]
+    given: dict[str, Any] = {**design.numbers, **design.loads, "branch": design.branch, "theta": design.ends}
+    high, low = (peak("T_in", kind=kind, **given) for kind in ("max", "min"))
+    wheel = flywheel_for(design, float(fluctuation))
+    if wheel is None:
+        raise ValueError(f"flywheel: no inertia was found for fluctuation = {fluctuation:g}")
+    return {
+        "mean_torque": mean,
+        "max_torque": high["value"],
+        "min_torque": low["value"],
+        "theta_max_torque": high["theta"] % design.angle,
+        "theta_min_torque": low["theta"] % design.angle,
+        "ripple": high["value"] - low["value"],
+        "energy_fluctuation": energy,
+        "inertia": wheel.inertia,
+        "inertia_first_order": energy / (fluctuation * design.numbers["omega0"] ** 2),
+        "fluctuation_without": wheel.without,
+        "theta_fastest": wheel.fastest % design.angle,
+        "theta_slowest": wheel.slowest % design.angle,
     }
-    return State(Panels(panels.start, panels.stop, values), J, drive, fastest, slowest)
-
-
-def _gradient(design: Design, fluctuation: float, state: State) -> dict[str, tuple[float, float]]:
-    """The derivatives of torque and inertia by parameters and fluctuation; see the head of this file."""
-    own = [name for name in design.parameters if name != "omega0"]
-    if not state.inertia:  # none is needed, and a little more or less of anything changes nothing
-        return dict.fromkeys((*own, "omega0", "fluctuation"), (nan, 0.0))
-    names = ["T_in_wrt_omega", "T_in_wrt_alpha", *(f"T_in_wrt_{name}" for name in own)]
-    panels = state.panels
-    omega, alpha = panels.values["omega"], panels.values["alpha"]
-    flat = {name: v.reshape(omega.shape) for name, v in _torque(design, names, state).items()}
-    mass = flat["T_in_wrt_alpha"] + state.inertia
-    growth = panels.running(flat["T_in_wrt_omega"] / omega / mass)
-    last = panels.integral(flat["T_in_wrt_omega"] / omega / mass)
-
-    def response(forcing: Array) -> tuple[float, float, float]:
-        """z_p from 0 at the start: at the end, at the fastest and at the slowest angle."""
-        forced = np.exp(growth) * 2.0 * forcing / mass
-        inner = np.exp(-growth) * panels.running(forced)
-        fastest, slowest = panels.at(np.array([state.fastest, state.slowest]), inner)
-        return float(np.exp(-last) * panels.integral(forced)), float(fastest), float(slowest)
-
-    free = [1.0 - np.exp(-last), *panels.at(np.array([state.fastest, state.slowest]), np.exp(-growth))]
-    free[0] = -free[0]
-    columns = np.array([free, response(np.ones_like(alpha)), response(-alpha)]).T
-    speed = design.numbers["omega0"]
-    high, low = 1.0 + fluctuation / 2.0, 1.0 - fluctuation / 2.0
-    sides = {name: -np.array(response(-flat[f"T_in_wrt_{name}"])) for name in own}
-    sides["omega0"] = np.array([0.0, 2.0 * speed * high**2, 2.0 * speed * low**2])
-    sides["fluctuation"] = np.array([0.0, speed**2 * high, -(speed**2) * low])
-    found = np.linalg.solve(columns, np.array(list(sides.values())).T)[1:]
-    return {name: (float(T), float(J)) for name, T, J in zip(sides, *found, strict=True)}
-
-
-def _torque(design: Design, names: list[str], state: State) -> dict[str, Array]:
-    """The derivatives of the torque along the motion."""
-    return design.values(names, state.panels.theta.ravel(), state.motion)

@@ -4,11 +4,13 @@ from collections.abc import Mapping
 from math import degrees, isnan
 from typing import TYPE_CHECKING, Any
 
+from ...loads.angles import turns_of
 from ...mechanism.status import DriveStatus
 from ...mechanism.unit_system import SI, Conversion, UnitSystem
 from ...mechanism.units import registry
 from ...support.answer import Answer
 from ...support.forks import IMPORTS
+from ..turn.turn import MOST_TURNS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -60,12 +62,20 @@ class Drive(Answer):
 
     def report(self) -> str:
         """The figures as text for a data sheet; angles in radians are shown in degrees."""
-        lines = ["Drive over one turn", f"  {self.design()}"]
+        lines = [
+            f"Drive over {'one turn' if self.turns == 1 else f'{self.turns} turns'}",
+            f"  {self.design()}",
+        ]
         if self["status"]:
             lines.append(f"  status {self['status']}: {STATUS[self['status']]}")
         if not isnan(self["torque_mean"]):
             lines += [f"  {label:17} {value}" for label, value in self.rows()]
         return "\n".join(lines)
+
+    @property
+    def turns(self) -> int:
+        """After how many turns the loads repeat."""
+        return turns_of("drive", {n: load for n, load in self.inputs.items() if callable(load)}, MOST_TURNS)
 
     def design(self) -> str:
         """The inputs with their units, in a line."""
@@ -89,16 +99,17 @@ class Drive(Answer):
             where = "" if angle is None or isnan(self[angle]) else f" at {self._angle(angle)}"
             return "-" if isnan(self[name]) else f"{self[name]:.6g} {self.unit(name)}{where}"
 
-        turns = 60.0 / _conversion(self.units, "period").to_si(self["period"])
+        cycle = "a turn" if self.turns == 1 else f"in {self.turns} turns"
+        speed = 60.0 * self.turns / _conversion(self.units, "period").to_si(self["period"])
         return [
-            ("speed", f"{turns:.6g} rpm, {figure('period')} a turn"),
+            ("speed", f"{speed:.6g} rpm, {figure('period')} {cycle}"),
             ("torque, mean", figure("torque_mean")),
             ("torque, rms", figure("torque_rms")),
             ("torque, peak", figure("torque_peak", "theta_peak")),
             ("starting torque", figure("starting_torque", "theta_start")),
             ("power, mean", figure("power_mean")),
             ("power, peak", figure("power_peak")),
-            ("work in, out", f"{figure('work_in')}, {figure('work_out')} a turn"),
+            ("work in, out", f"{figure('work_in')}, {figure('work_out')} {cycle}"),
             (
                 "flywheel",
                 f"{figure('flywheel_inertia')} for a fluctuation of {100 * self['fluctuation']:.3g} %",

@@ -1,7 +1,7 @@
-"""Quantities over one whole turn at constant speed.
+"""Quantities over one whole cycle of a design.
 
-turn           samples over a turn
-harmonics      Fourier series
+turn           the design, checked: its quantities at equal steps and in panels
+panels         a turn in panels on which everything is a polynomial: integrals, roots, extremes
+harmonics      Fourier series at constant speed
 counterweight  balancing of the shaking force
-flywheel       torque ripple and flywheel inertia
 """

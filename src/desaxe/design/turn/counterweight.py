@@ -17,7 +17,7 @@ from ...mechanism.inputs import TINY, Input
 from ...mechanism.read import read
 from ...support.answer import answering
 from ...support.shown import shown
-from .turn import Turn, extreme
+from .turn import extreme, one_turn
 
 ALONG = {"both": 0.0, "Y": 1.0, "X": -1.0}
 POINTS = 8192  # among which the largest force is looked for
@@ -61,7 +61,7 @@ def counterweight(
     """
     if not isinstance(along, str) or along not in ALONG:
         raise ValueError(f"along = {shown(along)}: it is one of {', '.join(ALONG)}")
-    turn = Turn("counterweight", inputs, branch)
+    turn = one_turn("counterweight", inputs, branch)
     speed = turn.numbers.get("omega0")
     if not speed:
         raise ValueError("counterweight: omega0 is missing or 0, and a crank at rest shakes nothing")
@@ -70,7 +70,7 @@ def counterweight(
     forward, backward = Y + 1j * X, np.conj(Y) + 1j * np.conj(X)  # of exp(i n theta), of exp(-i n theta)
     weight = -(forward[1] + ALONG[along] * np.conj(backward[1]))
     left = forward[1] + weight
-    forces = turn.values(FORCES, max(POINTS, 2 * (len(X) - 1)))
+    forces = turn.samples(FORCES, max(POINTS, 2 * (len(X) - 1)))
     z = forces["F_shaking_Y"] + 1j * forces["F_shaking_X"]
     turned = z + weight * np.exp(2j * pi * np.arange(z.size) / z.size)
     before = _shaking(forward[1], backward[1], forward[2], backward[2], z)

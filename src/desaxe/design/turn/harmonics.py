@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from ...mechanism.catalogue import quantity
 from ...support.answer import answering
 from ...support.checks import whole_number
-from ..drive.panels import RESOLVED
-from .turn import MOST, Turn
+from .panels import RESOLVED
+from .turn import MOST, Turn, one_turn
 
 WAVES = 4.0  # rad of the highest wave in a panel of 16 nodes: what Gauss's rule integrates to rounding
 
@@ -50,7 +50,7 @@ def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> 
     if name == "status":
         raise ValueError("status is not a real number")
     orders = whole_number("orders", orders, 0, MOST // 16)
-    turn = Turn("harmonics", inputs, branch)
+    turn = one_turn("harmonics", inputs, branch)
     if turn.kinks:
         c, remainder, error, points = _across_kinks(turn, name, orders)
     else:

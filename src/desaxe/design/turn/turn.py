@@ -1,11 +1,11 @@
-"""Quantities over one whole turn at constant speed.
+"""One design over a cycle: the turn, or the turns after which its loads repeat.
 
-At equal steps of the crank angle, by the fast Fourier transform, where they are smooth; across kinks and
-jumps, which a table over the angle or the stroke has, in panels between them.
+Quantities at equal steps of the crank angle, by the fast Fourier transform, where they are smooth; else in
+panels between the angles at which friction and tables of loads have kinks and jumps.
 """
 
-from collections.abc import Mapping, Sequence
-from math import fsum, pi
+from collections.abc import Callable, Mapping, Sequence
+from math import copysign, fsum, pi
 from typing import Any
 
 import numpy as np
@@ -17,84 +17,127 @@ from ...evaluation.extremes import check_range
 from ...evaluation.loaded import loads_of
 from ...loads.angles import kinks_between, turns_of
 from ...loads.resolve import VARIABLE
+from ...mechanism.closed.dead_centres import DEAD_CENTRES
+from ...mechanism.closed.functions import closed_form
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LENGTHS
 from ...mechanism.read import read
-from ...runtime.request import as_number, check_common, check_inputs, is_steady
+from ...runtime.request import as_number, check_common, check_inputs, is_steady, request
 from ...support.computed import computed_once
-from ..drive.panels import Panels, resolved
+from .panels import Array, Panels, resolved
 
-Array = NDArray[np.float64]
 LEAST, MOST = 128, 131072  # steps of a turn
-AT_REST = "_at_rest"
+MOST_TURNS = 4  # after which the loads must repeat; two in a four-stroke engine
 CONVERGED = 1e-14  # of the largest coefficient: what halving the steps may change
+JAMS = 5  # the status where friction leaves no balance of forces
+Motion = Callable[[Array], dict[str, Array]]  # angles -> omega and alpha there
+
+
+class NoCycleError(ValueError):
+    """A quantity is undefined at some angle of the turn; `status` is the reason."""
+
+    def __init__(self, message: str, status: int) -> None:
+        super().__init__(message)
+        self.status = status
 
 
 class Turn:
-    """One design over a turn: its inputs, checked."""
+    """The inputs of one design, checked; its quantities over its cycle."""
 
-    def __init__(self, caller: str, inputs: Mapping[str, Any], branch: int, turns: int = 1) -> None:
-        inputs = {name: value for name, value in inputs.items() if name != "alpha" or not is_steady(value)}
-        known = tuple(name for name in INPUTS if name not in ("theta", "alpha", "omega"))
+    def __init__(
+        self, caller: str, inputs: Mapping[str, Any], branch: int, accelerates: bool = False
+    ) -> None:
+        inputs = {name: v for name, v in inputs.items() if name != "alpha" or not is_steady(v)}
+        known = [n for n in INPUTS if n not in ("theta", "omega") and (accelerates or n != "alpha")]
         check_inputs(caller, inputs, known)
         check_common({}, branch)
-        self.branch = branch
-        given, self.loads = loads_of({n: v for n, v in inputs.items() if v is not None})
+        self.branch = int(branch)
+        given, self.loads = loads_of({name: value for name, value in inputs.items() if value is not None})
+        self.turns = turns_of(caller, self.loads, MOST_TURNS)
         self.numbers = {name: _number(caller, name, value) for name, value in given.items()}
-        self.turns = turns_of(caller, self.loads, turns)
-        for name in ("ec", "AB", "BC"):
+        for name in LENGTHS:
             if name not in self.numbers:
-                as_number(name, None, ("ec", "AB", "BC"), (caller,))
-        lengths = (self.numbers["BC"], -self.numbers["AB"], -abs(self.numbers["ec"]))
-        if fsum(lengths) < 0.0:
-            raise ValueError(
-                f"{caller}: the crank cannot turn fully, margin = {fsum(lengths):g} m is less than 0"
-            )
+                as_number(name, None, LENGTHS, (caller,))
 
-    def values(self, names: Sequence[str], points: int, **other: float) -> dict[str, Array]:
-        """The quantities at `points` equal steps from theta = 0; `other` inputs replace those given."""
-        theta = 2.0 * pi * self.turns * np.arange(points) / points
-        inputs: dict[str, Any] = {**self.numbers, **self.loads, **other}
-        return self._at(names, theta, inputs)
+    @computed_once
+    def parameters(self) -> tuple[str, ...]:
+        """The inputs that are numbers and matter to the torque."""
+        asked = request(("T_in",), {**self.numbers, **self.loads}, self.branch, "standard")
+        return tuple(n for n in asked.inputs if n != "theta" and n not in self.loads)
 
-    def panels(self, names: Sequence[str], at_rest: Sequence[str] = ()) -> Panels:
-        """The quantities in panels between the angles at which a load has a kink.
+    @property
+    def direction(self) -> float:
+        """1 where the crank turns forwards, -1 backwards."""
+        return copysign(1.0, self.numbers.get("omega0", 1.0))
 
-        Those of `at_rest`, at the speed 0, are called `<name>_at_rest`.
-        """
-        inputs: dict[str, Any] = {**self.numbers, **self.loads}
-        end = 2.0 * pi * self.turns
+    @property
+    def angle(self) -> float:
+        """The angle of the cycle [rad], > 0."""
+        return 2.0 * pi * self.turns
 
-        def functions(theta: Array) -> dict[str, Array]:
-            found = self._at(names, theta, inputs)
-            rest = self._at(at_rest, theta, {**inputs, "omega0": 0.0}) if at_rest else {}
-            found |= {f"{name}{AT_REST}": value for name, value in rest.items()}
-            return {name: np.broadcast_to(value, theta.shape) for name, value in found.items()}
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The least and the largest angle of the cycle; it begins at 0, in the way of turning."""
+        return (0.0, self.angle) if self.direction > 0.0 else (-self.angle, 0.0)
 
-        breaks = sorted({0.0, *self.kinks, end})
-        if self.numbers.get("mu"):
-            free = {**inputs, "mu": 0.0}
-            smooth = resolved(lambda theta: self._at(["N_C"], theta, free), breaks)
-            breaks = sorted({*breaks, *smooth.roots(smooth.values["N_C"])})
-        return resolved(functions, breaks)
+    @property
+    def margin(self) -> float:
+        """BC - AB - |ec|, rounded once."""
+        return fsum((self.numbers["BC"], -self.numbers["AB"], -abs(self.numbers["ec"])))
+
+    @property
+    def has_friction(self) -> bool:
+        """True if the guide has friction."""
+        return bool(self.numbers.get("mu"))
+
+    def values(
+        self, names: Sequence[str], theta: Array, motion: Motion | None = None, **other: Any
+    ) -> dict[str, Array]:
+        """Quantities at angles. `motion` returns the state there; `other` replaces inputs of the design."""
+        state = {} if motion is None else {**motion(theta), "omega0": None}
+        inputs = {**self.numbers, **self.loads, **state, **other}
+        present = {name: value for name, value in inputs.items() if value is not None}
+        found = evaluate([*names, "status"], theta=theta, branch=self.branch, **present)
+        status = found.pop("status")
+        bad = ~np.isfinite([found[name] for name in names]).all(0)
+        if bad.any():
+            codes, k = status[bad], int(np.argmax(bad))
+            why = JAMS if JAMS in codes else int(codes[0]) or 4
+            told = f"{', '.join(names)}: no value at theta = {theta[k]:.6g} (status {status[k]})"
+            raise NoCycleError(told, why)
+        return {name: np.broadcast_to(found[name], theta.shape) for name in names}
 
     @computed_once
     def kinks(self) -> list[float]:
         """The angles at which pieces of a load meet."""
-        end = 2.0 * pi * self.turns
         lengths = [self.numbers[name] for name in LENGTHS]
-        return kinks_between(self.loads.values(), 0.0, end, lengths, self.branch, smooth=True)
+        return kinks_between(self.loads.values(), *self.ends, lengths, self.branch, smooth=True)
 
-    def _at(self, names: Sequence[str], theta: Array, inputs: Mapping[str, Any]) -> dict[str, Array]:
-        """The quantities at angles; ValueError where one of them has no value."""
-        found = evaluate([*names, "status"], theta=theta, branch=self.branch, **inputs)
-        bad = ~np.isfinite([found[name] for name in names]).all(axis=0)
-        if bad.any():
-            k = int(np.argmax(bad))
-            raise ValueError(
-                f"{', '.join(names)}: no value at theta = {theta[k]:.6g} (status {found['status'][k]})"
-            )
-        return {name: found[name] for name in names}
+    def breaks(self, motion: Motion | None = None, edges: Sequence[float] = (), **other: Any) -> list[float]:
+        """The ends of the cycle, the angles at which the torque has a kink, and `edges`, in order."""
+        low, high = self.ends
+        places = closed_form(DEAD_CENTRES, ("theta_outer", "theta_inner"), branch=float(self.branch))
+        own = [
+            low + (angle - low) % (2.0 * pi) for angle in places.point(*(self.numbers[n] for n in LENGTHS))
+        ]
+        own = [angle + 2.0 * pi * k for angle in own for k in range(self.turns)]
+        found = sorted({low, *own, *edges, *self.kinks, high})
+        if self.has_friction:
+
+            def normal_force(theta: Array) -> dict[str, Array]:
+                return self.values(["N_C"], theta, motion, **other, mu=None)
+
+            smooth = resolved(normal_force, found)
+            found += smooth.roots(smooth.values["N_C"])
+        return sorted(found)
+
+    def panels(self, names: Sequence[str], **other: Any) -> Panels:
+        """Quantities over the cycle, in panels on which each is a polynomial."""
+        return resolved(lambda theta: self.values(names, theta, **other), self.breaks(**other))
+
+    def samples(self, names: Sequence[str], points: int) -> dict[str, Array]:
+        """The quantities at `points` equal steps of one turn from theta = 0."""
+        return self.values(names, 2.0 * pi * np.arange(points) / points)
 
     def spectrum(
         self, names: Sequence[str], least: int = LEAST
@@ -107,7 +150,7 @@ class Turn:
         points = max(LEAST, 1 << (2 * least - 1).bit_length())
         before: dict[str, NDArray[np.complex128]] = {}
         while True:
-            now = {n: rfft(v) / v.size for n, v in self.values(names, points).items()}
+            now = {n: rfft(v) / v.size for n, v in self.samples(names, points).items()}
             half = points // 4
             errors = [float(np.abs(now[n][:half] - before[n][:half]).max()) for n in before]
             size = max(float(np.abs(c).max()) for c in now.values())
@@ -115,6 +158,15 @@ class Turn:
             if error <= CONVERGED * size or points >= MOST:
                 return now, max(error, float(np.finfo(float).eps) * size)
             before, points = now, 2 * points
+
+
+def one_turn(caller: str, inputs: Mapping[str, Any], branch: int) -> Turn:
+    """A design that turns fully, under loads that repeat after a turn, at constant speed."""
+    turn = Turn(caller, inputs, branch)
+    turns_of(caller, turn.loads, 1)
+    if turn.margin < 0.0:
+        raise ValueError(f"{caller}: the crank cannot turn fully, margin = {turn.margin:g} m is less than 0")
+    return turn
 
 
 def extreme(values: Array, sign: float) -> tuple[float, float]:
@@ -129,4 +181,6 @@ def extreme(values: Array, sign: float) -> tuple[float, float]:
 
 def _number(caller: str, name: str, value: Any) -> float:
     more = " or a function of theta, over_theta or over_Y" if name in VARIABLE else ""
-    return check_range(caller, name, read(INPUTS[name], value, caller, f"a number{more}"))
+    each = f"[desaxe.{caller}({name}=value, ...) for value in values]"
+    one = f"one number{more}, for one design; call it for each of them, as in {each}"
+    return check_range(caller, name, read(INPUTS[name], value, caller, one))

@@ -1,0 +1,165 @@
+"""The flywheel for a required fluctuation of speed under a constant drive torque T, friction included.
+
+With z = omega^2 over the crank angle, J the flywheel, M the effective inertia and L the torque of loads,
+gravity and friction, (J + M) z/2 = C + W. Here W is the integral of T - L, and T the mean of L. If the speed
+is between (1 - f/2) and (1 + f/2) times its mean Omega, then with b and a half the squares of these
+
+    max(W - a M) = a J - C,   min(W - b M) = b J - C,   J = (max(W - a M) - min(W - b M))/(f Omega^2).
+
+Friction depends on z and its slope, so L is corrected until it stays. The derivatives follow from those of
+the torque: with G(theta, z, alpha) + J alpha = T and alpha = z'/2, the change z_p by a parameter p obeys
+
+    z_p' = 2 (T_p - G_z z_p - G_p - J_p alpha)/(G_alpha + J),
+
+a linear equation that is solved for the three constants by which z_p is periodic and has its given values at
+the fastest and the slowest angle.
+"""
+
+from collections.abc import Callable
+from math import inf, nan
+from typing import NamedTuple
+
+import numpy as np
+
+from ...support.roots import root
+from ..turn.panels import Array, Panels, resolved
+from ..turn.turn import Turn
+
+ROUNDS = 60  # of corrections of the friction
+SETTLED = 1e-12  # of the inertia: what a correction may still change
+
+
+class Flywheel(NamedTuple):
+    """Inertia [kg m^2], constant torque [N m], their derivatives by name, and the speed over the turn.
+
+    It is fastest and slowest at these angles; `without` is the fluctuation without it, NaN with friction.
+    """
+
+    inertia: float
+    torque: float
+    gradient: dict[str, float]
+    torque_gradient: dict[str, float]
+    theta: Array
+    omega: Array
+    fastest: float
+    slowest: float
+    without: float
+
+
+class State(NamedTuple):
+    """The motion with a flywheel, on panels: `omega`, `alpha`; where it is fastest and slowest."""
+
+    panels: Panels
+    inertia: float
+    torque: float
+    fastest: float
+    slowest: float
+    without: float
+
+    def motion(self, theta: Array) -> dict[str, Array]:
+        """Speed and acceleration at angles."""
+        return {name: self.panels.at(theta, v) for name, v in self.panels.values.items()}
+
+
+def flywheel_for(design: Turn, fluctuation: float) -> Flywheel | None:
+    """The smallest flywheel that keeps the required fluctuation of speed; None if none is found."""
+    state = _store(design, fluctuation, None)
+    settled = not design.has_friction
+    for _ in range(0 if settled else ROUNDS):
+        before, state = state, _store(design, fluctuation, state)
+        settled = abs(state.inertia - before.inertia) <= SETTLED * abs(state.inertia)
+        if settled:
+            break
+    if not settled:
+        return None
+    slopes = _gradient(design, fluctuation, state)
+    inertia, torque = ({name: pair[k] for name, pair in slopes.items()} for k in (1, 0))
+    omega = state.panels.values["omega"].ravel()
+    places = state.fastest, state.slowest, state.without if not design.has_friction else nan
+    return Flywheel(state.inertia, state.torque, inertia, torque, state.panels.theta.ravel(), omega, *places)
+
+
+def _store(design: Turn, fluctuation: float, before: State | None) -> State:
+    """One iteration: the flywheel under the loads and the friction of the previous motion."""
+    names = ["T_in", "M_eff", "M_eff_wrt_theta"]
+    motion = None if before is None else before.motion
+
+    def loads(theta: Array) -> dict[str, Array]:
+        found = design.values(names, theta, omega0=0.0, mu=None)
+        if design.has_friction:
+            rough = design.values(["T_in"], theta, motion)["T_in"]
+            found["T_in"] = found["T_in"] + rough - design.values(["T_in"], theta, motion, mu=None)["T_in"]
+        return found
+
+    panels = resolved(loads, design.breaks(motion, () if before is None else before.panels.edges))
+    load, M, slope = (panels.values[name] for name in names)
+    speed = abs(design.numbers["omega0"])
+    drive = panels.integral(load) / design.angle
+    work = panels.running(drive - load)
+
+    def stored(share: float) -> tuple[float, float, float, float]:
+        """The flywheel for a fluctuation, its constant C, the fastest and the slowest angle."""
+        a, b = (0.5 * (speed * (1.0 + side * share / 2.0)) ** 2 for side in (1.0, -1.0))
+        high, fastest, _ = panels.extreme(work - a * M, 1.0)
+        low, slowest, _ = panels.extreme(work - b * M, -1.0)
+        J = (high - low) / (share * speed**2)
+        return J, a * J - high, fastest, slowest
+
+    J, C, fastest, slowest = stored(fluctuation)
+    without = _without(lambda share: stored(share)[0], fluctuation, J)
+    if J <= 0.0:  # the mechanism itself stores more than is needed
+        (_, C, fastest, slowest), J = stored(max(without, 1e-9 * fluctuation)), 0.0
+    inertia = np.maximum(J + M, 1e-300)
+    z = np.maximum(2.0 * (C + work) / inertia, 0.0) if (J + M).any() else np.full_like(M, speed**2)
+    values = {
+        "omega": design.direction * np.sqrt(z),
+        "alpha": (drive - load - 0.5 * slope * z) / inertia,
+    }
+    return State(Panels(panels.start, panels.stop, values), J, drive, fastest, slowest, without)
+
+
+def _without(inertia: Callable[[float], float], fluctuation: float, J: float) -> float:
+    """The fluctuation that needs no flywheel; infinite if the crank would stop."""
+    if J == 0.0:
+        return fluctuation if inertia(0.5 * fluctuation) > 0.0 else 0.0
+    low, high = (1e-9 * fluctuation, fluctuation) if J < 0.0 else (fluctuation, 2.0)
+    if inertia(low) <= 0.0:
+        return 0.0
+    return root(inertia, low, high) if inertia(high) < 0.0 else inf
+
+
+def _gradient(design: Turn, fluctuation: float, state: State) -> dict[str, tuple[float, float]]:
+    """The derivatives of torque and inertia by parameters and fluctuation; see the head of this file."""
+    own = [name for name in design.parameters if name != "omega0"]
+    if not state.inertia:  # none is needed, and a little more or less of anything changes nothing
+        return dict.fromkeys((*own, "omega0", "fluctuation"), (nan, 0.0))
+    names = ["T_in_wrt_omega", "T_in_wrt_alpha", *(f"T_in_wrt_{name}" for name in own)]
+    panels = state.panels
+    omega, alpha = panels.values["omega"], panels.values["alpha"]
+    flat = {name: v.reshape(omega.shape) for name, v in _torque(design, names, state).items()}
+    mass = flat["T_in_wrt_alpha"] + state.inertia
+    growth = panels.running(flat["T_in_wrt_omega"] / omega / mass)
+    last = panels.integral(flat["T_in_wrt_omega"] / omega / mass)
+
+    def response(forcing: Array) -> tuple[float, float, float]:
+        """z_p from 0 at the start: at the end, at the fastest and at the slowest angle."""
+        forced = np.exp(growth) * 2.0 * forcing / mass
+        inner = np.exp(-growth) * panels.running(forced)
+        fastest, slowest = panels.at(np.array([state.fastest, state.slowest]), inner)
+        return float(np.exp(-last) * panels.integral(forced)), float(fastest), float(slowest)
+
+    free = [1.0 - np.exp(-last), *panels.at(np.array([state.fastest, state.slowest]), np.exp(-growth))]
+    free[0] = -free[0]
+    columns = np.array([free, response(np.ones_like(alpha)), response(-alpha)]).T
+    speed = design.numbers["omega0"]
+    high, low = 1.0 + fluctuation / 2.0, 1.0 - fluctuation / 2.0
+    sides = {name: -np.array(response(-flat[f"T_in_wrt_{name}"])) for name in own}
+    sides["omega0"] = np.array([0.0, 2.0 * speed * high**2, 2.0 * speed * low**2])
+    sides["fluctuation"] = np.array([0.0, speed**2 * high, -(speed**2) * low])
+    found = np.linalg.solve(columns, np.array(list(sides.values())).T)[1:]
+    return {name: (float(T), float(J)) for name, T, J in zip(sides, *found, strict=True)}
+
+
+def _torque(design: Turn, names: list[str], state: State) -> dict[str, Array]:
+    """The derivatives of the torque along the motion."""
+    return design.values(names, state.panels.theta.ravel(), state.motion)
