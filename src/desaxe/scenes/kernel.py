@@ -6,9 +6,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..evaluation.outer import first_joined, join_from
+from ..evaluation.outer import first_joined, join_from, outer_of
+from ..evaluation.plan import plan_of
+from ..evaluation.points import Points
 from ..loads.load import Load, OverY
-from ..loads.resolve import plan_of, split
+from ..loads.resolve import plan_of as plan_of_loads
+from ..loads.resolve import split
 from ..mechanism.catalogue import of_design
 from ..mechanism.names import LENGTHS, STATUS
 from ..runtime.kernels import KernelKey, key_of
@@ -66,6 +69,8 @@ def grid_kernel(content: Content, joined: bool = False, apart: bool = True) -> G
     given, loads = split(content.inputs)
     if "omega0" not in given and "omega" not in given:
         given["omega0"] = 0.0  # no requested name needs a speed
+    if loads and joined and content.reduction is None:
+        return _of_plan(content)
     if loads:
         return _under_loads(content, given, loads, names, dimensions)
     asked = request(names, given, content.branch, content.accuracy)
@@ -86,6 +91,21 @@ def grid_kernel(content: Content, joined: bool = False, apart: bool = True) -> G
     return GridKernel(asked, tuple(order), sizes, key)
 
 
+def _of_plan(content: Content) -> GridKernel:
+    """The kernel that the grid runs under loads: that of the step which has them."""
+    inputs = {
+        n: np.array(value) if isinstance(value, tuple) else value for n, value in content.inputs.items()
+    }
+    outer = outer_of(content.outputs, inputs, content.branch, None, True)
+    steps = [
+        step for step in plan_of(outer, content.branch, content.accuracy).steps if isinstance(step, Points)
+    ]
+    step = next((step for step in steps if step.loads is not None), steps[0])
+    order, sizes = list(step.dims) or [""], [outer.axes[name].size for name in step.dims] or [1]
+    joined = (*order[: step.first], " x ".join(order[step.first :]))
+    return GridKernel(step.wanted, joined, (*sizes[: step.first], prod(sizes[step.first :])), step.key)
+
+
 def _under_loads(
     content: Content,
     given: Mapping[str, Any],
@@ -97,7 +117,7 @@ def _under_loads(
 
     The kernel computes the slopes by the loads too, which total derivatives need.
     """
-    plan = plan_of(names, loads, "omega" in given, "mu" in given)
+    plan = plan_of_loads(names, loads, "omega" in given, "mu" in given)
     asked = request(
         (*plan.names, *(n for n in plan.motion if n not in plan.names)),
         {**given, **dict.fromkeys(loads, 1.0)},

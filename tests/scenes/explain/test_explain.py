@@ -286,3 +286,26 @@ def test_a_plan_in_the_units_of_its_scene():
     bare["mechanism"] = {"AB": "125 mm", "BC": "350 mm", "ec": 0}
     bare["motion"] = {"theta": "60 deg", "omega0": "1500 rpm"}
     assert {one["unit"] for one in dx.explain(bare)["inputs"]} == {"m", "rad", "rad/s"}
+
+
+UNDER = {
+    "over theta": {"over_theta": [["0 deg", 0], ["90 deg", -2000], ["180 deg", -50]]},
+    "over Y": {"over_Y": [["225 mm", 0, 0], ["475 mm", -2000, -50]]},
+}
+
+
+@pytest.mark.parametrize("load", UNDER)
+def test_under_a_load_the_kernel_is_the_one_that_runs(load, tmp_path, monkeypatch):
+    """Its file is there once the scene has run, and so it is told."""
+    monkeypatch.setenv("DESAXE_CACHE_DIR", str(tmp_path))
+    scene = {
+        "outputs": ["T_in"],
+        "mechanism": {"AB": 0.125, "BC": 0.35, "ec": [0.0, 0.05]},
+        "motion": {"omega0": 157.0, "theta": {"start": 0, "stop": 6, "num": 130_000}},
+        "masses": {"m_slider": 1.0},
+        "loads": {"F_Y": UNDER[load]},
+    }
+    dx.scene(scene).run()
+    run = dx.explain(scene)["run"]
+    assert run["cached"] == "memory"
+    assert run["way"] == "compiled"
