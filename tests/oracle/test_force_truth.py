@@ -339,6 +339,7 @@ def test_branches_are_mirror_images(name):
 @pytest.mark.parametrize("name", FORCES)
 def test_euler_homogeneity(name, point):
     """Other units of mass, length and time multiply a quantity by known powers."""
+    assert name in DEGREES, f"{name} has no degree: add it to DEGREES in {__file__}: mass, length and 1/time"
     at, value = numbers(point), truth(name, **point)
     steps = {p: truth(f"{name}_wrt_{p}", **point) * at[p] for p in PARAMETERS if at[p]}
     for unit in range(3):
@@ -548,7 +549,8 @@ def test_names():
     names = force_names()
     assert len(names) == len(set(names)) == len(FORCES) * 19
     assert not {*FORCES} & {*QUANTITIES}
-    assert {*TOUCHED, *SHAKING} < {*FORCES} == DEGREES.keys()
+    assert {*TOUCHED, *SHAKING} < {*FORCES}
+    assert {*FORCES} == DEGREES.keys(), f"in one alone: {sorted({*FORCES} ^ DEGREES.keys())}: see {__file__}"
     point = POINTS[1]
     assert truth("T_in_wrt_g_Y_m_rod", **point) == truth("T_in_wrt_m_rod_g_Y", **point) != 0
     assert truth("F_A_X_wrt_F_X_r_rod", **point) == truth("F_A_X_wrt_r_rod_F_X", **point) == 0

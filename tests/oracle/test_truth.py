@@ -38,6 +38,16 @@ DEGREES = {
 # What the mirror X -> -X leaves alone: theta, ec, omega0 and alpha change their signs with it.
 EVEN = ("Y", "s", "V_B_Y", "V_B", "a_B_Y", "a_B", "V_C", "a_C", "j_C", "margin")
 EVEN += ("transmission_angle", "pressure_angle")
+MISSING = (
+    "{name} has no degree: add it to DEGREES in {file} as powers of {units}, for example V_C: (1, 1); if the "
+    "mirror X -> -X leaves it alone, to EVEN, too"
+)
+
+
+def degree(name):
+    """The powers of length and of 1/time; the test says what to add where there are none."""
+    assert name in DEGREES, MISSING.format(name=name, file=__file__, units="length and 1/time")
+    return DEGREES[name]
 
 
 @pytest.fixture(autouse=True)
@@ -169,7 +179,7 @@ def test_law_follows_from_state(name):
 @pytest.mark.parametrize("name", QUANTITIES)
 def test_euler_homogeneity(name, point):
     """Scaling all lengths, and scaling time, multiplies a quantity by a known power; its slopes too."""
-    length, frequency = DEGREES[name]
+    length, frequency = degree(name)
     orders = ["_wrt_", *(f"_wrt_{p}_" for p in LAW)] if name in SECOND_ORDER else ["_wrt_"]
     for prefix in orders:
         given = prefix[5:-1]
@@ -191,8 +201,16 @@ def test_mirror(point):
             continue
         sign = 1 if quantity in EVEN else -1
         sign *= math.prod(-1 for p in tail.split("_") if p in ("theta", "ec", "omega0", "alpha"))
-        assert agree(truth(name, **mirrored), sign * truth(name, **point)), name
+        told = f"{name}: {'in' if quantity in EVEN else 'not in'} EVEN of {__file__}: is that right?"
+        assert agree(truth(name, **mirrored), sign * truth(name, **point)), told
     assert agree(truth("delta", **mirrored) + truth("delta", **point), mpmath.pi)
+
+
+def test_a_missing_degree_names_what_to_add():
+    with pytest.raises(
+        AssertionError, match=r"spring_rate has no degree: add it to DEGREES in .*test_truth\.py"
+    ):
+        degree("spring_rate")
 
 
 @pytest.mark.parametrize("branch", [1, -1])
