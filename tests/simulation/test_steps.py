@@ -18,22 +18,21 @@ ISSUE = {
 START = {"torque": 1.5, "theta0": 0.3, "omega_start": 20.0}
 
 
-@pytest.mark.parametrize("many", [False, True])
-def test_a_step_where_one_estimate_vanishes(many):
+def test_a_step_where_one_estimate_vanishes():
     """The error of order 5 passes through 0 in a step of .9 rad: 5.2e-3 rad off at the end."""
     theta, omega = true_end(ISSUE, *START.values(), 1.0, 800)
-    design = {**ISSUE, "m_slider": np.array([ISSUE["m_slider"]])} if many else ISSUE
-    for rtol in (3e-6, 1e-6, 3e-7):
-        found = dx.simulate(t_end=1.0, rtol=rtol, times=[1.0], **START, **design)
-        assert abs(found["theta"].item() - theta) < rtol
-        assert abs(found["omega"].item() - omega) < 100.0 * rtol
+    for design in (ISSUE, {**ISSUE, "m_slider": np.array([ISSUE["m_slider"]])}):
+        for rtol in (3e-6, 1e-6, 3e-7):
+            found = dx.simulate(t_end=1.0, rtol=rtol, times=[1.0], **START, **design)
+            assert abs(found["theta"].item() - theta) < rtol
+            assert abs(found["omega"].item() - omega) < 100.0 * rtol
 
 
 @pytest.mark.sampled
 @pytest.mark.parametrize("power", [4, 5, 6, 8, 10])
 def test_the_worst_error_beside_the_usual_one(power):
     """With one estimate alone some are thousands of times worse."""
-    found = spread(designs(cases(400, 1_000, 10_000), seed=11), 10.0**-power)
+    found = spread(designs(cases(200, 1_000, 10_000), seed=11), 10.0**-power)
     assert found["theta"].ratio <= 100.0
     assert found["omega"].ratio <= 100.0
 

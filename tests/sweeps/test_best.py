@@ -192,15 +192,18 @@ def test_a_search_that_was_stopped_goes_on(tmp_path, monkeypatch):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["stopped.zarr", "whole.zarr"]
 
 
+@pytest.mark.sampled
 def test_a_finished_store_that_was_disturbed(tmp_path):
     """What is lost or damaged is made again, to the same bytes; changed metadata are refused by name."""
     whole, root = tmp_path / "whole.zarr", tmp_path / "again.zarr"
     how = {"best": 5, "by": ("absmax", "a_C"), "order": "smallest", **INPUTS}
     dx.sweep(NAMES, store=whole, **how).close()
     before = files(whole)
-    for place, data in before.items():
+    places = [place for place in before if place != Path("zarr.json")]
+    for place in places[:: cases(3, 1)]:
+        data = before[place]
         disturbed = [None, b""] + ([] if place.name == "zarr.json" else [data[:-1] + b"x"])
-        for other_data in disturbed if place != Path("zarr.json") else ():
+        for other_data in disturbed:
             shutil.copytree(whole, root)
             (root / place).unlink() if other_data is None else (root / place).write_bytes(other_data)
             dx.sweep(NAMES, store=root, **how).close()

@@ -106,7 +106,7 @@ def test_any_file_disturbed_is_made_again_or_refused(how, whole, tmp_path):
     """Every file of a store, coordinates and metadata too: the same bytes again, or a refusal by name."""
     rng = np.random.default_rng(26)
     for trial in range(cases(1, 20)):
-        for place, digest in files(whole).items():
+        for place, digest in list(files(whole).items())[:: cases(3, 1)]:
             root = tmp_path / f"{trial}.zarr"
             shutil.copytree(whole, root)
             data = DISTURBED[how]((root / place).read_bytes(), rng)
