@@ -23,14 +23,6 @@ def test_dimensions_in_the_order_given():
     assert grid["AB"].item() == 0.125
 
 
-def test_every_element_is_that_of_evaluate():
-    grid = dx.grid(["a_C", "a_C_wrt_ec"], theta=THETA, ec=[0.0, 0.1, 0.24], **MACHINE)
-    for name in ("a_C", "a_C_wrt_ec", "status"):
-        ec = np.array([[0.0, 0.1, 0.24]])
-        plain = dx.evaluate(name, theta=THETA[:, None], ec=ec, **MACHINE)
-        np.testing.assert_allclose(grid[name], plain, rtol=1e-14)
-
-
 def test_status_and_margin_come_always():
     grid = dx.grid("a_C", theta=[1.6, 4.0], ec=[0.1, 0.24, np.nan], **MACHINE)
     assert grid["status"].dtype == np.int8

@@ -242,13 +242,9 @@ def test_a_second_sweep_refuses(whole):
         dx.sweep(NAMES, store=whole, **INPUTS)
 
 
-def test_reductions_are_those_of_the_grid(tmp_path):
-    reduce = {"theta": ["absmax", "mean"]}
-    stored = dx.sweep(NAMES, store=tmp_path / "r.zarr", reduce=reduce, chunks={"ec": 2}, **INPUTS)
-    reduced = dx.grid(NAMES, reduce=reduce, **INPUTS)
-    for name in reduced.variables:
-        np.testing.assert_array_equal(stored[name], reduced[name])
-    np.testing.assert_array_equal(stored["margin"], dx.grid(NAMES, **INPUTS)["margin"])
+def test_the_margin_comes_beside_a_reduction():
+    found = dx.sweep(NAMES, reduce={"theta": "mean"}, **INPUTS)
+    np.testing.assert_array_equal(found["margin"], dx.grid(NAMES, **INPUTS)["margin"])
 
 
 def test_a_sweep_of_numbers_alone_is_one_point(tmp_path):

@@ -83,9 +83,11 @@ class Points(NamedTuple):
         first = 0
         if not self._flat:
             first = first_joined(self._order, tuple(lengths[name] for name in self.dims) or (1,))
+        motion = None if self.motion is None else self.motion.cut(lengths)
+        if first == self.first:
+            return self if motion is None else self._replace(motion=motion)
         axis_of = tuple((name, min(self._place(name), first)) for name, _ in self.key.axis_of)
         key = self.key._replace(axis_of=axis_of, axes=first + 1)
-        motion = None if self.motion is None else self.motion.cut(lengths)
         return self._replace(key=key, first=first, motion=motion)
 
     def compute(
@@ -140,10 +142,10 @@ class Points(NamedTuple):
         shape = outs[0].shape
         if not all(shape):
             return
-        varying = [name for name, _ in self.key.axis_of]
+        inputs, varying = self.wanted.inputs, [name for name, _ in self.key.axis_of]
         loads = {} if forces is None else forces.values
         columns = {name: np.ascontiguousarray(values[name]) for name in varying if name not in loads}
-        scalars = {name: value for name, value in self.numbers if name in self.wanted.inputs}
+        scalars = {name: value for name, value in self.numbers if name in inputs}
         whole: dict[str, Array] = {}
         for name, value in loads.items():
             if name not in varying:
@@ -220,16 +222,18 @@ def _keyed(
 ) -> Points:
     """The step of a request, with the kernel that all of the inputs need."""
     loads: Mapping[str, Load] = {} if plan is None else plan.loads
-    needed: Iterable[str] = outer.axes if loads else wanted.inputs
+    inputs = wanted.inputs
+    needed: Iterable[str] = outer.axes if loads else inputs
     alone = [name for name in needed if name not in along and name not in loads]
     numbers = {name: float(outer.axes[name].reshape(-1)[0]) for name in alone if outer.axes[name].size}
-    columns = {name: np.ascontiguousarray(outer.axes[name]) for name in wanted.inputs if name in along}
+    columns = {name: np.ascontiguousarray(outer.axes[name]) for name in inputs if name in along}
     places = {name: along.index(name) for name in columns}
     for name, load in loads.items():
-        if name in wanted.inputs and along and (not isinstance(load, OverTheta) or "theta" in along):
+        if name in inputs and along and (not isinstance(load, OverTheta) or "theta" in along):
             places[name] = along.index("theta") if isinstance(load, OverTheta) else 0
             columns[name] = outer.axes[along[places[name]]]  # of its length
-    scalars = {name: value for name, value in numbers.items() if name in wanted.inputs}
+    scalars = {name: value for name, value in numbers.items() if name in inputs}
     key = key_of(wanted, scalars, columns, places, max(1, len(along)))
-    step = Points(tuple(along), wanted, tuple(numbers.items()), key, 0, int(branch), plan, motion)
+    last = key.axes - 1
+    step = Points(tuple(along), wanted, tuple(numbers.items()), key, last, int(branch), plan, motion)
     return step.cut({name: outer.axes[name].size for name in along})

@@ -69,6 +69,11 @@ class Reduced(NamedTuple):
         return " ".join([repr(self), *(step.identity for step in steps)])
 
     @property
+    def values(self) -> Points:
+        """The step that the main kernel belongs to: the values of the names, or those at a place."""
+        return self.of or self.at[0]
+
+    @property
     def fused(self) -> bool:
         """True if the kernel leaves nothing to fold."""
         return self.key is not None and self.reductions.alone is not None

@@ -13,7 +13,7 @@ requested    [[check]], [[peak]] and [[picture]] as what they ask for
 places       what a run needs and where it writes, looked at before it computes
 run          Content -> values, peaks, checks, then files
 command      `desaxe run`
-blocks       the grid, block by block
+grid         the plan of its grid, run block by block
 peaks        peaks over designs
 turning      which designs turn fully
 pictures     families of curves as files

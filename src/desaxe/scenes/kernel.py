@@ -1,4 +1,4 @@
-"""The kernel that a scene's grid runs: for `explain` and `compile`, which run nothing."""
+"""The kernel that a written module of a scene runs over its grid."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import prod
@@ -6,12 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..evaluation.outer import first_joined, join_from, outer_of
-from ..evaluation.plan import plan_of
-from ..evaluation.points import Points
 from ..loads.load import Load, OverY
-from ..loads.resolve import plan_of as plan_of_loads
-from ..loads.resolve import split
+from ..loads.resolve import plan_of, split
 from ..mechanism.catalogue import of_design
 from ..mechanism.names import LENGTHS, STATUS
 from ..runtime.kernels import KernelKey, key_of
@@ -47,11 +43,10 @@ class GridKernel(NamedTuple):
         return prod(self.sizes)
 
 
-def grid_kernel(content: Content, joined: bool = False, apart: bool = True) -> GridKernel:
+def grid_kernel(content: Content, apart: bool = True) -> GridKernel:
     """The kernel of the outputs (and, where they are stored, of the status).
 
-    `joined`: with short last axes as one, the way that a grid runs. Quantities of a whole design have a
-    kernel of their own, but where they are not `apart`.
+    Quantities of a whole design have a kernel of their own, but where they are not `apart`.
     """
     dimensions = [name for name, value in content.inputs.items() if isinstance(value, tuple)]
     names = list(content.outputs)
@@ -69,8 +64,6 @@ def grid_kernel(content: Content, joined: bool = False, apart: bool = True) -> G
     given, loads = split(content.inputs)
     if "omega0" not in given and "omega" not in given:
         given["omega0"] = 0.0  # no requested name needs a speed
-    if loads and joined and content.reduction is None:
-        return _of_plan(content)
     if loads:
         return _under_loads(content, given, loads, names, dimensions)
     asked = request(names, given, content.branch, content.accuracy)
@@ -82,28 +75,10 @@ def grid_kernel(content: Content, joined: bool = False, apart: bool = True) -> G
     columns = {name: np.array(given[name]) for name in asked.inputs if name in dimensions}
     places = {name: order.index(name) for name in columns}
     sizes = tuple(np.size(given[name]) if name else 1 for name in order)
-    if joined and fused is None:
-        sizes = join_from(first_joined(order, sizes), columns, places, sizes)
-        order = [*order[: len(sizes) - 1], " x ".join(order[len(sizes) - 1 :])]
     key = key_of(asked, scalars, columns, places, len(order))
     if fused is not None:
         key = key._replace(reduce=fused.kinds)
     return GridKernel(asked, tuple(order), sizes, key)
-
-
-def _of_plan(content: Content) -> GridKernel:
-    """The kernel that the grid runs under loads: that of the step which has them."""
-    inputs = {
-        n: np.array(value) if isinstance(value, tuple) else value for n, value in content.inputs.items()
-    }
-    outer = outer_of(content.outputs, inputs, content.branch, None, True)
-    steps = [
-        step for step in plan_of(outer, content.branch, content.accuracy).steps if isinstance(step, Points)
-    ]
-    step = next((step for step in steps if step.loads is not None), steps[0])
-    order, sizes = list(step.dims) or [""], [outer.axes[name].size for name in step.dims] or [1]
-    joined = (*order[: step.first], " x ".join(order[step.first :]))
-    return GridKernel(step.wanted, joined, (*sizes[: step.first], prod(sizes[step.first :])), step.key)
 
 
 def _under_loads(
@@ -117,7 +92,7 @@ def _under_loads(
 
     The kernel computes the slopes by the loads too, which total derivatives need.
     """
-    plan = plan_of_loads(names, loads, "omega" in given, "mu" in given)
+    plan = plan_of(names, loads, "omega" in given, "mu" in given)
     asked = request(
         (*plan.names, *(n for n in plan.motion if n not in plan.names)),
         {**given, **dict.fromkeys(loads, 1.0)},

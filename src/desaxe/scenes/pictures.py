@@ -8,8 +8,8 @@ from ..evaluation.in_units import in_units
 from ..mechanism.unit_system import UnitSystem
 from ..runtime.written import replacing_ours
 from ..support.forks import IMPORTS
-from .blocks import arrays_of, grid_options
 from .content import Content, Picture
+from .grid import arrays_of
 
 
 def draw(picture: Picture, content: Content, shown_in: UnitSystem, overwrite: bool) -> Path:
@@ -30,7 +30,8 @@ def drawn(picture: Picture, content: Content, shown_in: UnitSystem) -> Any:
     # With the names of the outputs the kernel of the grid serves here too, where all inputs are the same.
     shared = picture.quantity in content.outputs and set(picture.inputs) == set(content.inputs)
     names = content.outputs if shared else (picture.quantity,)
-    values: Any = grid(names, **grid_options(content), **arrays_of(picture.inputs))
+    options: dict[str, Any] = {"accuracy": content.accuracy, "threads": content.threads}
+    values: Any = grid(names, branch=content.branch, **options, **arrays_of(picture.inputs))
     dataset = in_units(values, shown_in)
     axes: Any = curves(dataset, picture.quantity, over=picture.over, family=picture.family).axes
     title = picture.title or content.title

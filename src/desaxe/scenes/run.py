@@ -10,9 +10,9 @@ from ..evaluation.in_units import in_units
 from ..mechanism.unit_system import UnitSystem
 from ..support.progress import Progress, Steps
 from ..support.shown import printable
-from .blocks import blocks_of, values_of_grid
 from .content import Check, Content, Peak, Picture
 from .files import write
+from .grid import blocks_of, values_of_grid
 from .peaks import PeakResult, batches, group_names, peaks_in_units, peaks_of
 from .pictures import draw
 from .places import require_modules, require_places
@@ -48,7 +48,7 @@ class Run(NamedTuple):
 def steps_of(content: Content, watch: Progress | None) -> Steps:
     """The steps of a run, none of them done."""
     stored = content.store is not None
-    blocks = len(blocks_of(content)) if content.outputs and not stored else 0
+    blocks = blocks_of(content)[0] if content.outputs and not stored else 0
     peaks = sum(batches(one) for one in _shown_peaks(content))
     files = len(content.pictures) + (content.data is not None)
     return Steps(blocks + stored + peaks + files, watch)
@@ -74,7 +74,7 @@ def compute(content: Content, steps: Steps, overwrite: bool) -> Run:
         except FAILURES as error:
             failures = (failure(content.store, error),)
     elif content.outputs:
-        dataset = in_units(values_of_grid(content, blocks_of(content), steps), content.units)
+        dataset = in_units(values_of_grid(content, steps), content.units)
     peaks = tuple(_peaks(one, content, steps) for one in _shown_peaks(content))
     return Run(dataset, checks, peaks, feasibility_of(content.inputs), (), failures)
 

@@ -5,8 +5,6 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
 from ..evaluation.reductions import Reductions
 from ..sweeps.meter import Watch
 from ..sweeps.peaks import PeakRequest
@@ -14,6 +12,7 @@ from ..sweeps.place import require_place
 from ..sweeps.request import Sweep, sweep_of
 from ..sweeps.sweep import Tell, run_sweep
 from .content import Content
+from .grid import arrays_of
 from .schema import SceneError
 
 if TYPE_CHECKING:
@@ -43,9 +42,8 @@ def arguments_of(content: Content) -> Arguments:
                     f"peak #{number}.over.{name}: a sweep takes peaks of the designs of its grid; "
                     "sweep these in a scene of their own"
                 )
-    arrays = {name: np.array(value) if isinstance(value, tuple) else value for name, value in inputs.items()}
     peaks = tuple(PeakRequest(peak.quantity, peak.kind, peak.theta) for peak in content.peaks)
-    return Arguments(list(content.outputs), arrays, content.reduction, peaks)
+    return Arguments(list(content.outputs), arrays_of(inputs), content.reduction, peaks)
 
 
 def prepared_content(content: Content) -> Sweep:

@@ -6,7 +6,6 @@ next, from 82 additions a point to 1034. `python -m benchmarks.startup` measures
 """
 
 from collections.abc import Sequence
-from math import prod
 
 from .loops import Loop
 
@@ -33,8 +32,3 @@ def plain_time(operations: int, points: int) -> float:
 def compile_time(loops: Sequence[Loop]) -> float:
     """Seconds that the first process waits for a kernel."""
     return COMPILE + COMPILE_LINE * sum(loop.operations for loop in loops)
-
-
-def bytes_of(doubles: int, small: int, shape: Sequence[int]) -> int:
-    """Bytes of a result: arrays of doubles and of int8 over a shape."""
-    return (8 * doubles + small) * prod(shape)

@@ -7,10 +7,13 @@ from dataclasses import dataclass
 from math import prod
 from os import PathLike
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from ...compiler.kernel import Kernel
 from ...compiler.passes.double_double import double_double
+from ...evaluation.plan import Plan as Planned
+from ...evaluation.points import Points
+from ...evaluation.reduced import Reduced
 from ...loads.load import Load
 from ...mechanism.catalogue import quantity
 from ...mechanism.constants import double_constants
@@ -25,7 +28,8 @@ from ...runtime.threads import LEAST_BLOCK, available
 from ...runtime.tiers import BREAK_EVEN, COMPILED, forced_tier, tier_ahead
 from ...support.forks import IMPORTS
 from ..content import Content
-from ..kernel import GridKernel, grid_kernel
+from ..grid import plan_of_grid
+from ..kernel import GridKernel
 from ..scene import Scene
 from ..scene import scene as scene_of
 from ..stored import prepared_content
@@ -100,9 +104,10 @@ def _plan_of(content: Content) -> Plan:
         "derivation": digest()[:16],
         "inputs": [_input(name, value, content.units) for name, value in content.inputs.items()],
     }
-    data |= _grid(content) if content.outputs else dict.fromkeys(("points", "loops", "operations", "run"))
+    plan = plan_of_grid(content) if content.outputs else None
+    data |= dict.fromkeys(("points", "loops", "operations", "run")) if plan is None else _grid(content, plan)
     stored = _sweep(content)
-    costs = costs_of(content, data["run"], _cells(content), stored["disk"] if stored else 0)
+    costs = costs_of(content, data["run"], _cells(plan), stored["disk"] if stored else 0)
     total = {
         "parts": [cost._asdict() for cost in costs],
         "first": sum(cost.first for cost in costs),
@@ -133,16 +138,11 @@ def _existing(path: Path) -> Path:
     return next(parent for parent in path.absolute().parents if parent.exists())
 
 
-def _cells(content: Content) -> int:
-    """Numbers of a table of the results: a row for each point, a column for each axis and name."""
-    lengths = [len(v) for n, v in content.inputs.items() if isinstance(v, tuple)]
-    if not content.outputs:
+def _cells(plan: Planned | None) -> int:
+    """Numbers of a table of the results: a row for each point, a column for each axis and variable."""
+    if plan is None:
         return 0
-    if content.reduction is None:
-        return prod(lengths) * (len(lengths) + len(content.outputs) + 2)
-    taken = content.reduction
-    rows = prod(lengths) // prod(len(cast("tuple[float, ...]", content.inputs[a])) for a in taken.axes)
-    return rows * (len(lengths) - len(taken.axes) + len(content.outputs) * (2 * len(taken.kinds) + 1))
+    return prod(plan.sizes.values()) * (len(plan.sizes) + sum(len(step.outputs) for step in plan.steps))
 
 
 def _output(name: str, content: Content) -> dict[str, str]:
@@ -169,9 +169,9 @@ def _input(name: str, value: Value, units: UnitSystem) -> dict[str, Any]:
     return {**row, "value": own.shown(value)}
 
 
-def _grid(content: Content) -> dict[str, Any]:
+def _grid(content: Content, plan: Planned) -> dict[str, Any]:
     """The grid of the outputs: its passes, its loops, how it runs."""
-    found = grid_kernel(content, joined=True)
+    found = _kernel_of(plan)
     compiled = tier_ahead(found.key, found.points) == COMPILED
     loops = _compiled_loops(found) if compiled else _plain_loops(found)
     straight = sum(loop.operations for loop in loops if not loop.close)
@@ -184,17 +184,29 @@ def _grid(content: Content) -> dict[str, Any]:
         "skipped": [one._asdict() for one in skipped_of(found.key, found.request, content.inputs)],
         "loops": [_loop(loop, found.points) for loop in loops],
         "operations": {"straight": straight, "per_point": total / found.points, "total": total},
-        "reduction": _reduction(content),
+        "reduction": _reduction(plan, found.key),
         "run": _run(content, found, loops, compiled),
-        "memory": _memory(content, found),
+        "memory": _memory(plan, found),
     }
 
 
-def _reduction(content: Content) -> dict[str, Any] | None:
-    taken = content.reduction
+def _kernel_of(plan: Planned) -> GridKernel:
+    """The kernel of a plan, with its loops: axes joined to one have a name together."""
+    (step, *_) = plan.steps
+    assert isinstance(step, (Points, Reduced))
+    of, key = (step.values, step.key or step.values.key) if isinstance(step, Reduced) else (step, step.key)
+    order = [*[""] * (key.axes - of.first - 1 if key.reduce else not of.dims), *of.dims]
+    first = len(order) - 1 if key.reduce else of.first
+    sizes = [plan.outer.axes[name].size if name else 1 for name in order]
+    axes = (*order[:first], " x ".join(order[first:]))
+    return GridKernel(of.wanted, axes, (*sizes[:first], prod(sizes[first:])), key)
+
+
+def _reduction(plan: Planned, key: KernelKey) -> dict[str, Any] | None:
+    taken = plan.reductions
     if taken is None:
         return None
-    return {"axis": ", ".join(taken.axes), "kinds": taken.kinds, "stored": content.fused is None}
+    return {"axis": ", ".join(taken.axes), "kinds": taken.kinds, "stored": not key.reduce}
 
 
 def _compiled_loops(found: GridKernel) -> list[Loop]:
@@ -222,7 +234,7 @@ def _run(content: Content, found: GridKernel, loops: list[Loop], compiled: bool)
     cached, path = _cached(found.key)
     plain = estimate.plain_time(sum(loop.operations for loop in loops), points)
     outs = sum(name not in STATUSES for name in found.key.names)
-    one = estimate.loops_time(loops, 0 if content.fused else points * outs)
+    one = estimate.loops_time(loops, 0 if found.key.reduce else points * outs)
     length = found.sizes[0]
     threads = max(1, min(content.threads or available(), points // LEAST_BLOCK, length))
     first = {"memory": 0.0, "disk": estimate.LOAD}.get(cached, estimate.IMPORT + estimate.compile_time(loops))
@@ -254,22 +266,12 @@ def _cached(key: KernelKey) -> tuple[str, str]:
     return ("disk" if path.exists() else "no"), str(path)
 
 
-def _memory(content: Content, found: GridKernel) -> dict[str, int]:
+def _memory(plan: Planned, found: GridKernel) -> dict[str, int]:
     """Bytes of the result, and of what the grid would have taken where it is reduced."""
-    names = [name for name in found.key.names if name not in STATUSES]
-    small = len(found.key.names) - len(names)
-    whole = estimate.bytes_of(len(names), small, found.sizes)
-    inputs = 8 * sum(found.sizes)
-    if content.reduction is None:
-        return {"result": whole, "grid": whole, "inputs": inputs}
-    each = sum(2 if kind in ("max", "min", "absmax") else 1 for kind in content.reduction.kinds) + 1
-    sizes = zip(found.axes, found.sizes, strict=True)
-    kept = [size for name, size in sizes if name not in content.reduction.axes]
-    return {
-        "result": estimate.bytes_of(each * len(names), 0, kept),
-        "grid": whole,
-        "inputs": inputs,
-    }
+    result = plan._replace(steps=plan.steps[:1]).bytes
+    grid = sum(1 if name in STATUSES else 8 for name in found.key.names) * found.points
+    inputs = 8 * max(1, sum(plan.outer.axes[name].size for name in plan.outer.dimensions))
+    return {"result": result, "grid": result if plan.reductions is None else grid, "inputs": inputs}
 
 
 def _also(content: Content) -> list[dict[str, Any]]:
