@@ -1,6 +1,7 @@
 """Peaks of flat designs: the plan of a request, and the search over all designs."""
 
 from collections.abc import Mapping
+from contextlib import nullcontext
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -21,6 +22,7 @@ from ..runtime.request import Request, is_steady, request
 from ..runtime.specialise import plain_form
 from ..runtime.threads import run_parts
 from ..runtime.wide_margins import all_have_wide_margins, have_wide_margins
+from ..support.progress import Portions, progress_bar
 from . import special
 from .compiled import LONGEST_PART, Groups, kernel_for, run
 from .course import course_of
@@ -32,6 +34,7 @@ from .programs import Search, needs_own
 from .special import Designs
 
 KINDS = ("absmax", "max", "min")
+LARGE = 1_000  # designs that may take long: a bar tells
 # Designs of a thread that does all of the work on them; of fewer, threads share the search alone.
 LEAST_ALL_THROUGH = 16_384
 
@@ -49,12 +52,13 @@ class Checked(NamedTuple):
 
 
 class Work(NamedTuple):
-    """A name, the kind of its extremum, and the searches for special designs and for the usual ones."""
+    """A name, the kind of its extremum, the searches for special designs and the usual ones, progress."""
 
     name: str
     kind: str
     search: Search
     usual: Search
+    told: Portions  # of the designs that are done
 
 
 class Plan(NamedTuple):
@@ -133,7 +137,16 @@ def peaks_of_designs(
     checked = _checked(Designs(columns, branch, ends, kinks, loads, plan.wanted.accuracy))
     size = checked.designs.size
     usual = search if loads else _in_form(search, checked)
-    work = Work(plan.wanted.shown[0], kind, search, usual)
+    name = plan.wanted.shown[0]
+    with progress_bar(unit="designs") if size > LARGE else nullcontext() as watch:
+        work = Work(name, kind, search, usual, Portions(size, f"peaks of {name}", watch))
+        return _all(work, checked, threads)
+
+
+def _all(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
+    """The peaks of all designs; many that are alike, in parts."""
+    size, usual = checked.designs.size, work.usual
+    loads = checked.designs.loads
     if loads or size < 2 * LEAST_ALL_THROUGH or (checked.special & ~checked.bad).any():
         return _peaks(work, checked, threads)
     kernel_for(usual, size)  # one for all parts: their order must not change a digit
@@ -141,6 +154,7 @@ def peaks_of_designs(
 
     def part(first: int, last: int) -> None:
         found[first] = _peaks(work, checked.part(slice(first, last)), 1)
+        work.told.add(last - first)
 
     run_parts(part, size, threads, LEAST_ALL_THROUGH, LONGEST_PART)
     return _joined([found[first] for first in sorted(found)])
@@ -157,7 +171,7 @@ def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:
 
 def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
     """Value, angle, gradient and status of some designs."""
-    name, kind, search, usual = work
+    name, kind, search, usual, told = work
     designs, bad, own_nodes = checked
     columns = designs.columns
     out = np.empty((2 + len(search.parameters), designs.size))
@@ -165,7 +179,7 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
     status = np.zeros(designs.size, np.int8)
     number = KINDS.index(kind)
     rows = np.flatnonzero(~own_nodes)
-    loaded = Values(name, search, designs, course_of(designs)) if designs.loads else None
+    loaded = Values(name, search, designs, course_of(designs), told) if designs.loads else None
     if rows.size and loaded is not None:
         loaded.run(with_nodes(_classed(designs, rows), loaded.course.nodes), number, theta, out)
     elif rows.size:
@@ -185,6 +199,7 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
             loaded.run(groups, number, theta, out)
         else:
             run(search, columns, part.size, partial(_unchanged, groups), number, theta, out, threads)
+            told.add(part.size)
         found = special.Found(out[0, part], theta[part], out[1, part], status[part])
         marks = () if loaded is None else (loaded.course.kinks, loaded.course.jumps)
         at = (mark.angles[part] for mark in marks)

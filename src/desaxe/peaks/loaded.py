@@ -14,6 +14,7 @@ from ..evaluation.loaded import MOTION, forces_at, plan_for
 from ..evaluation.values import values
 from ..loads.resolve import Forces, Plan
 from ..mechanism.names import parts, sensitivity
+from ..support.progress import Portions
 from .compiled import Groups, plain_finish, search_with
 from .course import Course
 from .nodes import Array
@@ -45,8 +46,8 @@ class Values:
     design's number.
     """
 
-    def __init__(self, name: str, search: Search, designs: Designs, course: Course) -> None:
-        self.designs, self.course, self.search = designs, course, search
+    def __init__(self, name: str, search: Search, designs: Designs, course: Course, told: Portions) -> None:
+        self.designs, self.course, self.search, self.told = designs, course, search, told
         self.curve = [name, sensitivity(name, "theta")]
         self.all = [*self.curve, *(sensitivity(name, p) for p in search.parameters)]
         self.bad = np.isnan(np.array(list(designs.columns.values()))).any(axis=0)
@@ -110,6 +111,7 @@ class Values:
         rows = np.tile(block[0, :count].astype(np.intp), nodes.size)
         for out, found in zip((value, slope), self.at(2, rows, np.repeat(nodes, count)), strict=True):
             out[: nodes.size, :count] = found.reshape(nodes.size, count)
+        self.told.add(count)
 
     def points(self, rows: int, count: int, theta: Array, block: Array, value: Array, slope: Array) -> None:
         """Value and slope, each at its own angle."""

@@ -3,7 +3,8 @@
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from threading import Event, Thread
+from threading import Event, Lock, Thread
+from time import monotonic
 from typing import Any
 
 from .forks import IMPORTS
@@ -29,15 +30,45 @@ class Steps:
         self.done += 1
 
 
+class Portions:
+    """Counts what is done of a large number, and tells beforehand and on the way what the rest takes."""
+
+    def __init__(self, total: int, what: str, watch: Progress | None) -> None:
+        self.done, self.total, self.what, self.watch = 0, total, what, watch
+        self.begun = monotonic()
+        if watch is not None:
+            watch(0, total, what)
+
+    def add(self, count: int) -> None:
+        """So many more are done."""
+        if self.watch is None:
+            return
+        self.done = min(self.total, self.done + count)
+        left = (monotonic() - self.begun) * (self.total / max(1, self.done) - 1.0)
+        self.watch(self.done, self.total, f"{self.what}, about {left:.0f} s left")
+
+
+_drawn = Lock()  # held while a bar is: one at a time
+
+
 @contextmanager
 def progress_bar(delay: float = DELAY, unit: str = "steps") -> Iterator[Progress | None]:
     """A bar on stderr that appears after `delay` seconds and leaves no trace.
 
-    None where stderr is not a terminal or tqdm is not installed.
+    None where stderr is not a terminal, tqdm is not installed, or a bar is there already.
     """
-    if not sys.stderr.isatty():
+    if not sys.stderr.isatty() or not _drawn.acquire(blocking=False):
         yield None
         return
+    try:
+        with _bar(delay, unit) as watch:
+            yield watch
+    finally:
+        _drawn.release()
+
+
+@contextmanager
+def _bar(delay: float, unit: str) -> Iterator[Progress | None]:
     try:
         with IMPORTS:
             from tqdm import tqdm

@@ -26,7 +26,7 @@ img { max-width: 100%; height: auto; max-height: 30rem; }
 figcaption { color: #566175; font-size: .9rem; }
 @media print {
   body { max-width: none; padding: 0; font-size: 9.5pt; }
-  h2 { break-after: avoid; }
+  h2, p:has(+ table) { break-after: avoid; }
   figure, tr, pre { break-inside: avoid; }
   thead { display: table-header-group; }
   img { max-height: 110mm; }
