@@ -40,7 +40,7 @@ class Portions:
             watch(0, total, what)
 
     def add(self, count: int) -> None:
-        """So many more are done."""
+        """Count designs, or other parts, that are done now."""
         if self.watch is None:
             return
         self.done = min(self.total, self.done + count)
