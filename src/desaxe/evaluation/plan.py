@@ -11,7 +11,6 @@ peaks. It tells its outputs, their types and attributes, and what it needs; it h
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from itertools import product
 from math import prod
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
@@ -22,7 +21,7 @@ from ..mechanism.names import LENGTHS
 from ..mechanism.own import Definition
 from ..runtime.compiled_only import compiled_only
 from ..support.extras import needed
-from .chunks import Slices, chunk_lengths, slices_of
+from .chunks import Slices, blocks_of, chunk_lengths, slices_of
 from .labels import Output, labelled, provenance, with_loads
 from .outer import Outer
 from .points import Points, points_of
@@ -148,7 +147,7 @@ class Plan(NamedTuple):
     def blocks(self, lengths: Mapping[str, int]) -> Iterator[Block]:
         """All blocks in order; a step of fewer dimensions is a part of the first block that has its place."""
         sizes, axes = self.sizes, self.outer.axes
-        for place in product(*(range(-(-size // lengths[name])) for name, size in sizes.items())):
+        for place in blocks_of(sizes, lengths):
             regions = slices_of(place, sizes, lengths)
             places = dict(zip(sizes, place, strict=True))
             parts = tuple(

@@ -43,21 +43,15 @@ class GridKernel(NamedTuple):
         return prod(self.sizes)
 
 
-def grid_kernel(content: Content, apart: bool = True) -> GridKernel:
-    """The kernel of the outputs (and, where they are stored, of the status).
-
-    Quantities of a whole design have a kernel of their own, but where they are not `apart`.
-    """
+def grid_kernel(content: Content) -> GridKernel:
+    """The kernel of the outputs (and, where they are stored, of the status)."""
     dimensions = [name for name, value in content.inputs.items() if isinstance(value, tuple)]
     names = list(content.outputs)
     if content.reduction is None:
         names = list(dict.fromkeys([*names, STATUS]))
-        moving = [name for name in names if not of_design(name)]
-        if moving == [STATUS] and "theta" not in content.inputs:
+        if [name for name in names if not of_design(name)] == [STATUS] and "theta" not in content.inputs:
             own = {axis for axes in own_axes(content, names).values() for axis in axes}
             dimensions = [name for name in dimensions if name in own]
-        elif apart:
-            names = moving
     fused = content.fused
     if fused is not None:
         dimensions = [*(name for name in dimensions if name != fused.axis), fused.axis]

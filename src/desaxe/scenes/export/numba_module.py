@@ -60,7 +60,7 @@ def text_of(scene: Scene, name: str = "my_kernels.py") -> str:
         raise SceneError(
             f"{scene.name or 'scene'}: a module under a load that varies stores its grid: no [reduce]"
         )
-    found = grid_kernel(content, apart=False)
+    found = grid_kernel(content)
     anywhere = found.key.form._replace(wide_margins=False)  # the module takes other designs, too
     key = _all_fixed(found.key._replace(form=anywhere), found, numbers, loads)
     order = content.inputs if loads else found.axes
