@@ -186,16 +186,21 @@ class Machine(Mapping[str, Any]):
         libm: bool = True,
         check: bool = False,
         overwrite: bool = False,
+        fmi: int = 3,
+        input: str = "torque",
+        float: bool = False,
         **more: Any,
     ) -> Any:
         """`desaxe.compile` of the scene of this machine: source code that needs nothing of desaxe; its path.
 
-        path, to, libm, check, overwrite as there, others as in `scene`. The code takes and gives SI units.
+        path, to, libm, check, overwrite, fmi, input, float as there, others as in `scene`. The code takes and
+        gives SI units.
         """
         with IMPORTS:
             from ..scenes.export.compile import compile
 
-        return compile(self.scene(outputs, **more), path, to, libm=libm, check=check, overwrite=overwrite)
+        options: Any = {"libm": libm, "check": check, "overwrite": overwrite, "fmi": fmi, "input": input}
+        return compile(self.scene(outputs, **more), path, to, float=float, **options)
 
     def report(
         self,

@@ -168,7 +168,9 @@ def test_files_are_named_made_and_checked(to, tmp_path):
 
 
 def test_what_a_language_lacks_is_refused_by_name(tmp_path):
-    with pytest.raises(ValueError, match="to = 'fortran': it is one of numba, c, jax, octave, javascript"):
+    with pytest.raises(
+        ValueError, match="to = 'fortran': it is one of numba, c, jax, octave, javascript, fmu"
+    ):
         dx.compile(scene(), tmp_path / "press", to="fortran")
     with pytest.raises(ValueError, match='accuracy = "extended": jax has standard'):
         dx.compile(scene(accuracy="extended"), tmp_path / "press", to="jax")

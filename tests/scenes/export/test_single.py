@@ -3,6 +3,7 @@
 import ctypes
 import math
 import random
+import zipfile
 from fractions import Fraction
 
 import mpmath
@@ -258,8 +259,8 @@ def test_the_text_is_rewritten_in_code_alone():
 
 REFUSED = (
     ({"accuracy": "extended"}, {}, "single precision has standard alone"),
-    ({}, {"to": "jax"}, "float=True is for c: jax"),
-    ({}, {"to": "numba"}, "float=True is for c: numba"),
+    ({}, {"to": "jax"}, "is for c: jax is not written in single"),
+    ({}, {"to": "numba"}, "is for c: numba is not written in single"),
     ({"motion": {"theta": [0, 1], "omega0": 1, "alpha": 1e39}}, {}, "alpha = 1e[+]39: in single precision"),
     ({"motion": {"theta": [0, 1], "omega0": 1, "alpha": 1e-46}}, {}, "alpha = 1e-46: in single precision"),
     ({}, {"float": 1}, "float"),
@@ -272,3 +273,16 @@ def test_what_has_no_single_precision_is_refused_by_name(more, options, told, tm
     with pytest.raises((ValueError, TypeError), match=told):
         dx.compile(scene(**more), place, **{"to": "c", "float": True} | options)
     assert not list(tmp_path.iterdir())
+
+
+def test_a_machine_compiles_with_all_options(tmp_path):
+    """Single precision, and an FMU that is driven by a speed."""
+    press = dx.Machine(ec=10, AB=40, BC=[100, 120], omega=50, m_slider=0.4, units="mm, deg, rpm")
+    place = press.compile(tmp_path / "press", ["T_in"], to="c", float=True)
+    assert "press_point(const float in[]" in (place / "press.h").read_text(encoding="utf-8")
+    pytest.importorskip("fmpy")
+    made = press.compile(tmp_path / "press.fmu", ["T_in"], to="fmu", fmi=2, input="omega")
+    with zipfile.ZipFile(made) as archive:
+        told = archive.read("modelDescription.xml").decode()
+    assert 'fmiVersion="2.0"' in told
+    assert 'name="torque"' not in told

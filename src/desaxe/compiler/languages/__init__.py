@@ -36,9 +36,9 @@ def languages() -> "tuple[Language, ...]":
     return Numba(), C(), Jax(), Octave(), JavaScript()
 
 
-def language_of(name: str) -> "Language":
-    """The language of this name; ValueError with those that there are."""
+def language_of(name: str, *others: str) -> "Language":
+    """The language of this name; ValueError with those that there are, and `others` that the caller takes."""
     known = {language.name: language for language in languages()}
     if not isinstance(name, str) or name not in known:
-        raise ValueError(f"to = {shown(name)}: it is one of {', '.join(known)}")
+        raise ValueError(f"to = {shown(name)}: it is one of {', '.join((*known, *others))}")
     return known[name]

@@ -17,7 +17,9 @@ LARGEST, BUDGET = 2_000_000, 1_300_000  # bytes of all, and of pictures, of whic
 def require_document(path: Path, overwrite: bool) -> None:
     """ValueError or OSError where no document can be written, or where something else is."""
     if path.suffix.lower() not in FORMS:
-        raise ValueError(f"{printable(path)}: a report is written as {' or '.join(FORMS)}")
+        raise ValueError(
+            f"{printable(path)}: a report is written as {' or '.join(FORMS)}; a browser prints .html to PDF"
+        )
     check_target(path)
     require_ours(path, overwrite)
     require_writable(path)

@@ -99,7 +99,7 @@ def require_fmu(place: Path, libm: bool = True, single: bool = False) -> None:
     if not libm:
         raise ValueError("libm=False is for c: an FMU is compiled with the C library")
     if single:
-        raise ValueError("float=True is for c: the numbers of an FMU are doubles")
+        raise ValueError("float=True (--float) is for c: the numbers of an FMU are doubles")
     require_name(place.stem, place, words_of("c").modules)
 
 
@@ -112,13 +112,13 @@ def texts_of(
 
 
 def _texts_of(scene: Scene, place: Path, to: str, libm: bool, single: bool) -> dict[Path, str]:
-    language = language_of(to)
+    language = language_of(to, "fmu")
     if not libm and not language.own_functions:
         own = _listed(one.name for one in languages() if one.own_functions)
         raise ValueError(f"libm=False is for {own}: {to} has its elementary functions at hand")
     if single and not language.single:
         own = _listed(one.name for one in languages() if one.single)
-        raise ValueError(f"float=True is for {own}: {to} is not written in single precision")
+        raise ValueError(f"float=True (--float) is for {own}: {to} is not written in single precision")
     if scene.content.accuracy == "extended" and single:
         raise SceneError('accuracy = "extended": single precision has standard alone')
     if scene.content.accuracy == "extended" and not language.extended:
