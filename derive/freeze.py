@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import sympy as sp
 
 from desaxe.compiler.operations import OPERATIONS, result_type
-from desaxe.compiler.program import Argument, Line, Program, type_of
+from desaxe.compiler.program import Argument, Line, Program, number, type_of
 
 from .sheet import Sheet
 
@@ -87,7 +87,7 @@ class _Freezer:
         sign, positive = _signed(expression)
         if sign < 0:
             inner = self.argument(positive)
-            return self._append("neg", (inner,)) if isinstance(inner, str) else -inner
+            return self._append("neg", (inner,)) if isinstance(inner, str) else -number(inner)
         above, below = sp.fraction(expression)
         if below != 1:
             return self._append("div", (self.argument(above), self.argument(below)))
@@ -114,7 +114,7 @@ class _Freezer:
         op = expression.func.__name__.lower()
         args = [self.argument(argument) for argument in expression.args]
         if op == "select" and all(_is_status(a, self.types) for a in args[1:]):
-            args[1:] = [a if isinstance(a, str) else int(a) for a in args[1:]]
+            args[1:] = [a if isinstance(a, str) else int(number(a)) for a in args[1:]]
         return self._append(op, tuple(args))
 
 

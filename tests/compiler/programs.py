@@ -24,7 +24,9 @@ WITH_NAN = (*SIMPLE, math.nan, -0.0)
 TYPES = {"f": "f64", "b": "bool"}
 # Where a zero has a sign, or what is near has an answer that is not: no test of exactness draws these.
 # Nor is drawn what wants no over- or underflow, or grows beyond any number when it is nested.
-ANY_OPS = tuple(op for op in OPERATIONS if op not in ("two_product_error", "exp", "log", "pow"))
+# Tables have no content here.
+LOOKUPS = ("lookup_piece", "lookup", "lookup_slope")
+ANY_OPS = tuple(op for op in OPERATIONS if op not in (*LOOKUPS, "two_product_error", "exp", "log", "pow"))
 NO_JUMPS = tuple(op for op in ANY_OPS if op not in ("copysign", "atan2", "floor"))
 
 POINT = {"theta": 1.1, "ec": 0.02, "AB": 0.125, "BC": 0.35, "omega0": 157.0, "alpha": -3.0, "branch": 1.0}

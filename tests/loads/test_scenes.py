@@ -126,7 +126,7 @@ def test_a_compiled_module_holds_the_table(tmp_path):
         with pytest.raises(TypeError, match="theta = '60 deg': expected numbers in SI units, not text"):
             call("60 deg", 0.01)
     announced = re.findall(r"^    (\w+)\(", module.__doc__, re.MULTILINE)
-    assert {"point", "evaluate", "run"} == set(announced)
+    assert {"point", "evaluate", "run", "T_in"} == set(announced)
     assert all(callable(getattr(module, name)) for name in announced)
 
 
@@ -138,7 +138,7 @@ def test_what_no_module_can_hold_is_refused(tmp_path):
     scene = {"outputs": ["F_C_Y"], **inside, "loads": {"F_Y": dx.over_theta(np.sin)}}
     with pytest.raises(SceneError, match=r"loads.F_Y = .* holds tables over theta"):
         dx.compile(scene, tmp_path / "press.py")
-    with pytest.raises(SceneError, match=r"loads.F_Y varies with the motion"):
+    with pytest.raises(SceneError, match=r"loads.F_Y = .* holds tables over theta"):
         dx.compile(scene, tmp_path / "press", to="c")
     with pytest.raises(TypeError, match="a page holds numbers and tables over theta"):
         dx.explore(scene, tmp_path / "press.html")

@@ -5,6 +5,7 @@ another file.
 """
 
 from math import copysign, cos, exp, fabs, floor, inf, log, nan, pow, sin, sqrt
+from typing import Any
 
 
 def two_sum_error(a: float, b: float) -> float:
@@ -60,6 +61,38 @@ def rotated_cos(sine: float, cosine: float, quarters: float) -> float:
     """The cosine of an angle and a whole number of quarter turns, from the angle's sine and cosine."""
     value = sine if quarters % 2.0 == 1.0 else cosine
     return -value if (quarters + 1.0) % 4.0 >= 2.0 else value
+
+
+def lookup_piece(x: float, knots: Any, way: float) -> float:
+    """The number of the piece of a table at x; those of the way back follow. Of NaN it is the first."""
+    low, high = 0, len(knots)
+    while low < high:
+        middle = (low + high) // 2
+        if knots[middle] <= x:
+            low = middle + 1
+        else:
+            high = middle
+    return float(low + (len(knots) + 1 if way < 0.0 else 0))
+
+
+def lookup(x: float, knots: Any, rows: Any, piece: float) -> float:
+    """The value of a piece of a table at x, beyond its ends too."""
+    number = int(piece)
+    at = number % (len(knots) + 1)
+    s = x - float(knots[at - 1 if at > 0 else 0])
+    k = 4 * number
+    a, b, c, d = float(rows[k]), float(rows[k + 1]), float(rows[k + 2]), float(rows[k + 3])
+    return a + s * (b + s * (c + s * d))
+
+
+def lookup_slope(x: float, knots: Any, rows: Any, piece: float) -> float:
+    """The slope of a piece of a table at x, beyond its ends too."""
+    number = int(piece)
+    at = number % (len(knots) + 1)
+    s = x - float(knots[at - 1 if at > 0 else 0])
+    k = 4 * number
+    b, c, d = float(rows[k + 1]), float(rows[k + 2]), float(rows[k + 3])
+    return b + s * (2.0 * c + s * (3.0 * d))
 
 
 def divide(a: float, b: float) -> float:

@@ -10,13 +10,15 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..support.forks import IMPORTS
+from .helpers import lookup, lookup_piece, lookup_slope
 from .operations import OPERATIONS
-from .program import Argument, Program
+from .program import Argument, Program, TableName, tables_in
 
 
 def run_exactly(program: Program, mp: Any, values: Mapping[str, Any]) -> dict[str, Any]:
-    """Every name of the program, from its inputs, over the functions of `mp`."""
+    """Every name of the program, from its inputs and tables, over the functions of `mp`."""
     scope: dict[str, Any] = {name: mp.mpf(values[name]) for name in program.inputs}
+    scope |= {name: values[name] for name in tables_in(program)}
     for line in program.lines:
         args = [_exact_argument(a, scope, mp) for a in line.args]
         scope[line.name] = OPERATIONS[line.op].exact(mp, *args)
@@ -24,16 +26,20 @@ def run_exactly(program: Program, mp: Any, values: Mapping[str, Any]) -> dict[st
 
 
 def _exact_argument(argument: Argument, scope: Mapping[str, Any], mp: Any) -> Any:
-    if isinstance(argument, str):
-        return scope[argument]
+    if isinstance(argument, (str, TableName)):
+        return scope[argument if isinstance(argument, str) else argument.name]
     return mp.mpf(argument) if isinstance(argument, float) else argument
 
 
-def run_in_doubles(program: Program, values: Mapping[str, float]) -> dict[str, Any]:
-    """Every name of the program in double precision; nothing raises, inf and NaN flow."""
+def run_in_doubles(program: Program, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Every name of the program in double precision; nothing raises, inf and NaN flow.
+
+    values   numbers of the inputs; knots and coefficients of tables
+    """
     scope: dict[str, Any] = dict(values)
     for line in program.lines:
-        scope[line.name] = ieee(line.op, *(scope[a] if isinstance(a, str) else a for a in line.args))
+        args = (a.name if isinstance(a, TableName) else a for a in line.args)
+        scope[line.name] = ieee(line.op, *(scope[a] if isinstance(a, str) else a for a in args))
     return scope
 
 
@@ -178,4 +184,7 @@ _IEEE: dict[str, Any] = {
     "not": lambda a: not a,
     "extended_only": lambda a: False,
     "select": lambda c, a, b: a if c else b,
+    "lookup_piece": lambda x, table, way: lookup_piece(x, table[0], way),
+    "lookup": lambda x, table, piece: lookup(x, table[0], table[1], piece),
+    "lookup_slope": lambda x, table, piece: lookup_slope(x, table[0], table[1], piece),
 }

@@ -11,11 +11,16 @@ guards a form of the same value that is of use to `double_digits` alone, which m
 everywhere else it is false.
 `python`, `numba`, `javascript`, `c`, `jax` and `octave` are templates over the argument texts. Plain Python
 raises where IEEE 754 arithmetic answers inf or NaN: its division and square root are guarded in the template.
+A table is a constant that stands for two arrays of the module, or of the kernel's arguments: NAME_x, its
+ascending knots, and NAME_c, four coefficients for each piece, in the distance from its left knot; before the
+first knot and after the last one a piece holds that is measured from that knot. The pieces of the way back
+follow those of the way there. A search is an operation of its own, which a value and its slope share.
 `precedence` is that of the spelling in the readable text form; calls, and what stands in parentheses, bind
 tightest.
 """
 
-from collections.abc import Callable
+from bisect import bisect_right
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 CALL = 100
@@ -25,7 +30,9 @@ class Operation(NamedTuple):
     """One operation: its signature, cost, and spelling in each language."""
 
     name: str
-    signature: str  # argument types then result: f = f64, b = bool, i = i64, T = the same on both sides
+    signature: (
+        str  # argument types then result: f = f64, b = bool, i = i64, t = table, T = the same on both sides
+    )
     text: str  # the readable text form, also valid plain Python
     precedence: int
     python: str  # plain Python with IEEE 754 answers
@@ -56,9 +63,45 @@ def _row(
     return name, Operation(name, signature, text, precedence, cost=cost, exact=exact, **more)
 
 
+def _table_row(
+    name: str, arrays: str, cost: float, exact: Callable[..., Any], octave: str
+) -> tuple[str, Operation]:
+    """A row of a number, a table and a number, which takes these arrays of the table; C its size, too."""
+
+    def spelled(function: str, ends: str) -> str:
+        return f"{function}({', '.join(['{0}', *(f'{{1}}_{end}' for end in ends), '{2}'])})"
+
+    columns = dict.fromkeys(COLUMNS, spelled(name, arrays[1:]))
+    columns |= {"c": spelled(name, f"{arrays[1:]}n"), "octave": spelled(octave, arrays[1:])}
+    return _row(name, "ftff", f"{name}({{0}}, {{1}}, {{2}})", CALL, cost, exact, **columns)
+
+
 def _power_of_two(mp: Any, a: Any) -> Any:
     fraction, power = mp.frexp(a)
     return mp.ldexp(mp.mpf(1), min(max(power - (fraction == 0.5), -960), 960)) if a > 0 else mp.ldexp(1, -960)
+
+
+Content = tuple[Sequence[float], Sequence[float]]  # of a table: knots and coefficients
+
+
+def _piece(mp: Any, x: Any, table: Content, way: Any) -> Any:
+    return mp.mpf(bisect_right(table[0], x) + (len(table[0]) + 1 if way < 0 else 0))
+
+
+def _row_at(x: Any, table: Content, piece: Any) -> tuple[Any, Sequence[float]]:
+    knots, rows = table
+    number = int(piece)
+    return x - knots[max(number % (len(knots) + 1) - 1, 0)], rows[4 * number : 4 * number + 4]
+
+
+def _lookup(mp: Any, x: Any, table: Content, piece: Any) -> Any:
+    s, (a, b, c, d) = _row_at(x, table, piece)
+    return a + s * (b + s * (c + s * d))
+
+
+def _lookup_slope(mp: Any, x: Any, table: Content, piece: Any) -> Any:
+    s, (_, b, c, d) = _row_at(x, table, piece)
+    return b + s * (2 * c + s * (3 * d))
 
 
 OPERATIONS: dict[str, Operation] = dict(
@@ -139,6 +182,9 @@ OPERATIONS: dict[str, Operation] = dict(
             javascript="({0} ? {1} : {2})", c="({0} ? {1} : {2})", jax="where({0}, {1}, {2})",
             octave="select({0}, {1}, {2})",
         ),
+        _table_row("lookup_piece", "_x", 40, _piece, octave="lookup_piece"),
+        _table_row("lookup", "_xc", 12, _lookup, octave="looked_up"),
+        _table_row("lookup_slope", "_xc", 12, _lookup_slope, octave="looked_up_slope"),
     ]
 )  # fmt: skip
 
@@ -204,7 +250,30 @@ MATH_NAMES = (
     "atan2", "copysign", "cos", "exp", "fabs", "floor", "inf", "log", "nan", "pow", "sin", "sqrt",
 )  # fmt: skip
 
-TYPES = {"f": "f64", "b": "bool", "i": "i64"}
+# `helpers` of tables, for modules that have some.
+JAVASCRIPT_TABLES = {
+    "lookup_piece": """function lookup_piece(x, knots, way) {
+  let low = 0, high = knots.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (knots[middle] <= x) low = middle + 1; else high = middle;
+  }
+  return low + (way < 0 ? knots.length + 1 : 0);
+}
+""",
+    "lookup": """function lookup(x, knots, rows, piece) {
+  const at = piece % (knots.length + 1), s = x - knots[at > 0 ? at - 1 : 0], k = 4 * piece;
+  return rows[k] + s * (rows[k + 1] + s * (rows[k + 2] + s * rows[k + 3]));
+}
+""",
+    "lookup_slope": """function lookup_slope(x, knots, rows, piece) {
+  const at = piece % (knots.length + 1), s = x - knots[at > 0 ? at - 1 : 0], k = 4 * piece;
+  return rows[k + 1] + s * (2 * rows[k + 2] + s * (3 * rows[k + 3]));
+}
+""",
+}
+
+TYPES = {"f": "f64", "b": "bool", "i": "i64", "t": "table"}
 
 
 def result_type(operation: Operation, types: tuple[str, ...]) -> str:

@@ -8,7 +8,7 @@ Canonical form, which every pass may assume and must keep (`validate`):
   * every name is assigned once, before it is used, and is no input;
   * every operation is in the table, with its number and types of arguments;
   * every line is reached from an output.
-A constant is a Python float (f64), int (i64) or bool.
+A constant is a Python float (f64), int (i64) or bool; or a TableName, whose content no Program knows.
 """
 
 from collections.abc import Iterable, Mapping
@@ -17,7 +17,17 @@ from typing import NamedTuple
 from . import helpers
 from .operations import MATH_NAMES, OPERATIONS, result_type
 
-Argument = str | float | int | bool
+
+class TableName(NamedTuple):
+    """A table, by its name."""
+
+    name: str
+
+    def __repr__(self) -> str:
+        return self.name
+
+
+Argument = str | float | int | bool | TableName
 RESERVED = frozenset((*vars(helpers), *MATH_NAMES))
 
 
@@ -57,7 +67,16 @@ def type_of(argument: Argument, types: Mapping[str, str]) -> str:
         return types[argument]
     if isinstance(argument, bool):
         return "bool"
+    if isinstance(argument, TableName):
+        return "table"
     return "i64" if isinstance(argument, int) else "f64"
+
+
+def number(argument: Argument) -> float | int:
+    """The constant that an argument is; ProgramError for a name or a table."""
+    if isinstance(argument, (str, TableName)):
+        raise ProgramError(f"{argument} is no number")
+    return argument
 
 
 def names_in(arguments: Iterable[Argument]) -> list[str]:
@@ -102,6 +121,12 @@ def _validate_line(line: Line, types: Mapping[str, str]) -> None:
         raise ProgramError(f"{line.name!r}: {error}") from None
     if result != line.type:
         raise ProgramError(f"{line.name!r} is {line.type}, but {line.op} gives {result}")
+
+
+def tables_in(program: Program) -> list[str]:
+    """The tables that a program looks into, by name, in order."""
+    every = (a.name for line in program.lines for a in line.args if isinstance(a, TableName))
+    return list(dict.fromkeys(every))
 
 
 def reached(program: Program) -> set[str]:

@@ -1,9 +1,10 @@
 """A JavaScript module (ES2015) and its types: `import { evaluate, a_C } from "./name.js"`."""
 
+from ..operations import JAVASCRIPT_TABLES
 from ..text import with_short_temporaries
 from .javascript import HEADER, emit_javascript
 from .protocol import Module, Symbol
-from .shared import one_line, safe_name, with_safe_names
+from .shared import arrays_of, numbers, one_line, safe_name, with_safe_names
 from .words import words_of
 
 WORDS = words_of("javascript").lines
@@ -69,6 +70,8 @@ def _source(module: Module) -> str:
         [
             _comment(module),
             HEADER,
+            *(JAVASCRIPT_TABLES.values() if module.tables else ()),
+            *_content(module),
             f"export const INPUTS = {_list(module.inputs)};",
             f"export const OUTPUTS = {_list(module.outputs)};",
             f"export const UNITS = {{ {units} }};",
@@ -78,6 +81,14 @@ def _source(module: Module) -> str:
             EVALUATE,
         ]
     )
+
+
+def _content(module: Module) -> list[str]:
+    """The tables that are looked into."""
+    found = []
+    for name, column in arrays_of(module.tables).items():
+        found += [f"const {name} = [", *(f"  {row}" for row in numbers(column)), "];"]
+    return found
 
 
 def _function(module: Module, symbol: Symbol, place: int) -> str:

@@ -12,7 +12,16 @@ from ..builder import functions_of
 from ..program import Program
 from ..text import INDENT, with_short_temporaries
 from .protocol import Module, Symbol
-from .shared import called, one_line, statements, types_of, with_helpers, with_safe_names
+from .shared import (
+    arrays_of,
+    called,
+    numbers,
+    one_line,
+    statements,
+    types_of,
+    with_helpers,
+    with_safe_names,
+)
 from .words import words_of
 
 NUMPY = (
@@ -27,6 +36,7 @@ NUMPY = (
     "logical_not",
     "logical_or",
     "nan",
+    "searchsorted",
     "sin",
     "sqrt",
     "where",
@@ -69,6 +79,29 @@ HELPERS = {
     wide = 2.0 ** (kind.nmant + 1) * size
     step = (wide + size) - wide
     return where(0.0 < step, step, size)
+''',
+    "lookup_piece": '''def lookup_piece(x, knots, way):
+    """The number of the piece of a table at x; those of the way back follow."""
+    knots = asarray(knots)
+    back = where(way < 0.0, knots.size + 1, 0)
+    return searchsorted(knots, x, side="right") + back
+''',
+    "lookup": '''def lookup(x, knots, rows, piece):
+    """The value of a piece of a table at x, beyond its ends too."""
+    s, a, b, c, d = row_of(x, knots, rows, piece)
+    return a + s * (b + s * (c + s * d))
+''',
+    "lookup_slope": '''def lookup_slope(x, knots, rows, piece):
+    """The slope of a piece of a table at x, beyond its ends too."""
+    s, _, b, c, d = row_of(x, knots, rows, piece)
+    return b + s * (2.0 * c + s * (3.0 * d))
+''',
+    "row_of": '''def row_of(x, knots, rows, piece):
+    """The distance from the left knot of a piece, and its coefficients."""
+    knots, rows = asarray(knots), asarray(rows)
+    at = piece % (knots.size + 1)
+    distance = x - knots[where(at > 0, at - 1, 0)]
+    return (distance, *(rows[4 * piece + k] for k in range(4)))
 ''',
     "rotated_sin": '''def rotated_sin(sine, cosine, quarters):
     """The sine of an angle and whole quarter turns, from the angle's own."""
@@ -136,7 +169,7 @@ def _text(module: Module) -> str:
     functions = [_function(name, program, inputs) for name, program in module.values.items()]
     public = [_public(symbol, inputs, module.taken(symbol.name)) for symbol in module.outputs]
     evaluate = EVALUATE.format(inputs=", ".join(inputs)).replace("(*, )", "()")
-    body = "\n\n".join([RULES, *functions, _tables(module), *public, evaluate])
+    body = "\n\n".join([*_content(module), RULES, *functions, _tables(module), *public, evaluate])
     helpers = with_helpers("\n".join(functions), HELPERS)
     code = "\n\n".join([*helpers, body])
     return "\n".join([_docstring(module), "", *_imports(code), "", "", code.rstrip("\n"), ""]).replace(
@@ -167,6 +200,15 @@ def _docstring(module: Module) -> str:
     )
 
 
+def _content(module: Module) -> list[str]:
+    """The tables that are looked into; NumPy keeps their digits, whatever jax is told later."""
+    found = []
+    for name, column in arrays_of(module.tables).items():
+        rows = "".join(f"{INDENT}{row}\n" for row in numbers(column))
+        found.append(f"{name} = array([\n{rows}])\n")
+    return found
+
+
 def _imports(code: str) -> list[str]:
     used = {word for word in (*NUMPY, *OWN, "floating", "issubdtype") if f"{word}" in _words(code)}
     numpy = sorted(used - {"custom_jvp", "stop_gradient"})
@@ -176,6 +218,7 @@ def _imports(code: str) -> list[str]:
         "from jax.custom_derivatives import SymbolicZero",
         *(["from jax.lax import stop_gradient"] if "stop_gradient" in used else []),
         f"from jax.numpy import {', '.join(numpy)}",
+        *(["from numpy import array"] if "array" in _words(code) else []),
     ]
 
 

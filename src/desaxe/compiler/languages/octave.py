@@ -7,7 +7,7 @@ become complex: the root of a negative number is NaN.
 from ..program import Program
 from ..text import with_short_temporaries
 from .protocol import Module
-from .shared import one_line, safe_name, statements, with_helpers, with_safe_names
+from .shared import arrays_of, numbers, one_line, safe_name, statements, with_helpers, with_safe_names
 from .words import words_of
 
 WORDS = {"nan": "NaN", "inf": "Inf", "True": "true", "False": "false"}
@@ -96,6 +96,43 @@ end
   x(step > 0) = step(step > 0);
 end
 """,
+    "lookup_piece": """function piece = lookup_piece(x, knots, way)
+  % The number of the piece of a table at x; those of the way back follow. Of NaN it is the first.
+  x = x .* ones(size(way));
+  low = zeros(size(x));
+  high = low + numel(knots);
+  while any(low(:) < high(:))
+    middle = floor((low + high) / 2);
+    at = reshape(knots(min(middle, numel(knots) - 1) + 1), size(x));
+    right = low < high & at <= x;
+    high(~right) = middle(~right);
+    low(right) = middle(right) + 1;
+  end
+  piece = low + (way < 0) .* (numel(knots) + 1);
+end
+""",
+    "looked_up": """function y = looked_up(x, knots, rows, piece)
+  % The value of a piece of a table at x, beyond its ends too.
+  [s, a, b, c, d] = row_of(x, knots, rows, piece);
+  y = a + s .* (b + s .* (c + s .* d));
+end
+""",
+    "looked_up_slope": """function y = looked_up_slope(x, knots, rows, piece)
+  % The slope of a piece of a table at x, beyond its ends too.
+  [s, a, b, c, d] = row_of(x, knots, rows, piece);
+  y = b + s .* (2 * c + s .* (3 * d));
+end
+""",
+    "row_of": """function [s, a, b, c, d] = row_of(x, knots, rows, piece)
+  % The distance from the left knot of a piece, and its coefficients.
+  at = mod(piece, numel(knots) + 1);
+  s = x - reshape(knots(max(at - 1, 0) + 1), size(piece));
+  a = reshape(rows(4 * piece + 1), size(piece));
+  b = reshape(rows(4 * piece + 2), size(piece));
+  c = reshape(rows(4 * piece + 3), size(piece));
+  d = reshape(rows(4 * piece + 4), size(piece));
+end
+""",
     "rotated_sin": """function x = rotated_sin(sine, cosine, quarters)
   % The sine of an angle and whole quarter turns, from the angle's own.
   x = select(mod(quarters, 2) == 1, cosine, sine);
@@ -133,10 +170,8 @@ def _text(module: Module) -> str:
     program = program._replace(outputs=program.outputs[: len(module.outputs)])
     outputs = [symbol.name for symbol in module.outputs]
     head = f"function [{', '.join(f'out_{name}' for name in outputs)}] = {module.name}({', '.join(inputs)})"
-    body = [
-        f"  {row}"
-        for row in [*_help(module), *_same_shape(inputs), *_body(program), *_results(program, outputs)]
-    ]
+    rows = [*_help(module), *_same_shape(inputs), *_content(module), *_body(program)]
+    body = [f"  {row}" for row in [*rows, *_results(program, outputs)]]
     main = "\n".join([head, *body, "end", ""])
     return "\n".join([main, *with_helpers(main, HELPERS)])
 
@@ -155,6 +190,14 @@ def _help(module: Module) -> list[str]:
         "SPDX-License-Identifier: MIT",
     ]
     return [f"% {row}".rstrip() for row in rows]
+
+
+def _content(module: Module) -> list[str]:
+    """The tables that are looked into."""
+    rows = []
+    for name, column in arrays_of(module.tables).items():
+        rows += [f"{name} = [ ...", *(f"  {row} ..." for row in numbers(column)), "];"]
+    return rows
 
 
 def _same_shape(inputs: list[str]) -> list[str]:

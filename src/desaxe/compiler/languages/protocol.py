@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple, Protocol
 
 from ..kernel import Kernel
+from ..operations import Content
 from ..passes.trigonometry import Trigonometry
 from ..program import Program
 
@@ -61,6 +62,7 @@ class Module(NamedTuple):
                  arguments, and the sign of the speed, which only friction takes
     constants    of the written-out sine and cosine; beyond their limit they are wrong
     single       whether all numbers are of single precision, for languages that have it
+    tables       name -> knots and coefficients of a table that Programs look into
     """
 
     name: str
@@ -75,6 +77,7 @@ class Module(NamedTuple):
     arguments: Mapping[str, Sequence[str]] = {}
     motion: Solver | None = None
     single: bool = False
+    tables: Mapping[str, Content] = {}
 
     def taken(self, name: str) -> list[str]:
         """The arguments of a result's own function, in order."""

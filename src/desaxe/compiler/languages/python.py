@@ -7,7 +7,7 @@ from typing import Any
 from .. import helpers
 from ..builder import function_text, module_text, with_sources
 from ..operations import MATH_NAMES
-from ..program import Program
+from ..program import Program, tables_in
 from ..text import with_short_temporaries, write_lines
 
 SCOPE = {name: getattr(math, name) for name in MATH_NAMES} | vars(helpers)  # what spellings call
@@ -19,10 +19,11 @@ def emit_python(program: Program, docstring: str) -> str:
 
 
 def point_text(program: Program, name: str = "point") -> str:
-    """The function itself."""
+    """The function itself; the arrays of its tables, knots and coefficients, are its last arguments."""
     returned = "".join(f"{output}, " for output in program.outputs)
     body = [*write_lines(with_short_temporaries(program), "python"), f"return ({returned.strip()})"]
-    return function_text(name, program.inputs, body)
+    tables = [f"{table}_{end}" for table in tables_in(program) for end in "xc"]
+    return function_text(name, [*program.inputs, *tables], body)
 
 
 def compile_python(program: Program) -> Callable[..., tuple[Any, ...]]:

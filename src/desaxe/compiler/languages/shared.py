@@ -3,8 +3,10 @@
 import ast
 import builtins
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from textwrap import wrap
 
+from ..operations import Content
 from ..program import Program, renamed
 from ..text import with_short_temporaries, write_lines
 
@@ -83,6 +85,20 @@ def with_helpers(text: str, helpers: Mapping[str, str]) -> list[str]:
                 wanted.add(name)
                 stack.append(helpers[name].partition("{")[2] or helpers[name].partition("\n")[2])
     return [source for name, source in helpers.items() if name in wanted]
+
+
+def numbers(values: Iterable[float]) -> list[str]:
+    """Finite numbers as rows of text."""
+    return wrap(", ".join(map(repr, values)), 90)
+
+
+def arrays_of(tables: Mapping[str, Content]) -> dict[str, Sequence[float]]:
+    """The arrays of tables by their names: knots and coefficients."""
+    return {
+        f"{name}_{end}": column
+        for name, table in tables.items()
+        for end, column in zip("xc", table, strict=True)
+    }
 
 
 def one_line(text: str) -> str:

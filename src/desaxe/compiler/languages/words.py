@@ -56,7 +56,8 @@ _JAVASCRIPT = frozenset((
     "Array", "ArrayBuffer", "Float64Array", "Infinity", "Math", "NaN", "Object", "RangeError", "TypeError",
     "undefined",
     # defined
-    "False", "INPUTS", "OUTPUTS", "True", "UNITS", "evaluate", "inf", "nan", "number", "values",
+    "False", "INPUTS", "OUTPUTS", "True", "UNITS", "evaluate", "inf", "lookup", "lookup_piece",
+    "lookup_slope", "nan", "number", "values",
 ))  # fmt: skip
 
 _OCTAVE = frozenset((
@@ -69,10 +70,12 @@ _OCTAVE = frozenset((
     "unwind_protect_cleanup", "while",
     # called
     "Inf", "NaN", "abs", "atan2", "cos", "double", "error", "exp", "false", "fix", "floor", "hypot",
-    "islogical", "isnumeric", "isreal", "log", "mod", "ones", "sin", "size", "sqrt", "true",
+    "islogical", "isnumeric", "isreal", "log", "max", "min", "mod", "numel", "ones", "reshape", "sin", "size",
+    "sqrt", "true", "zeros",
     # defined
-    "copysign", "extended_only", "logarithm", "mul_add", "numbers", "power_of", "root", "rotated_cos",
-    "rotated_sin", "rounding", "select", "shape", "two_product_error", "two_sum_error",
+    "copysign", "extended_only", "logarithm", "looked_up", "looked_up_slope", "lookup_piece", "mul_add",
+    "numbers", "power_of", "root", "rotated_cos", "rotated_sin", "rounding", "row_of", "select", "shape",
+    "two_product_error", "two_sum_error",
 ))  # fmt: skip
 
 _JAX = frozenset((
@@ -80,12 +83,13 @@ _JAX = frozenset((
     # built in
     "NotImplementedError", "enumerate", "float", "isinstance",
     # imported
-    "SymbolicZero", "asarray", "atan2", "copysign", "cos", "custom_jvp", "exp", "fabs", "finfo", "float32",
+    "SymbolicZero", "array", "asarray", "atan2", "copysign", "cos", "custom_jvp", "exp", "fabs", "finfo", "float32",
     "floating", "floor", "hypot", "inf", "int8", "issubdtype", "log", "logical_and", "logical_not",
-    "logical_or", "nan", "pow", "result_type", "sin", "sqrt", "stop_gradient", "where", "zeros_like",
+    "logical_or", "nan", "pow", "result_type", "searchsorted", "sin", "sqrt", "stop_gradient", "where",
+    "zeros_like",
     # defined
-    "DERIVATIVES", "FUNCTIONS", "INPUTS", "NEEDS", "OUTPUTS", "UNITS", "evaluate", "floats",
-    "with_derivatives",
+    "DERIVATIVES", "FUNCTIONS", "INPUTS", "NEEDS", "OUTPUTS", "UNITS", "evaluate", "floats", "lookup",
+    "lookup_piece", "lookup_slope", "row_of", "with_derivatives",
 ))  # fmt: skip
 
 # What else a module defines for itself depends on the scene: its text is looked at.

@@ -6,7 +6,7 @@ keep them, so it is for enclosures alone, where a loss is seen.
 
 from collections.abc import Callable, Mapping
 
-from ..program import Argument, Line, Program
+from ..program import Argument, Line, Program, ProgramError
 from .pipeline import optimise
 
 _PREFIX, _JOINT = "d_", "_by_"
@@ -145,6 +145,14 @@ def _rotated(chain: Chain, line: Line) -> Step:
     return line.op, (*map(chain.slope, line.args[:2]), line.args[2])
 
 
+def _lookup(chain: Chain, line: Line) -> Step:
+    return "mul", (chain.new("lookup_slope", *line.args), chain.slope(line.args[0]))
+
+
+def _no_second_slope(line: Line) -> Step:
+    raise ProgramError(f"{line.name!r}: the slope of the table {line.args[1]!r} has no derivative here")
+
+
 RULES: Mapping[str, Rule] = {
     **dict.fromkeys(("copy", "add", "sub", "neg"), _same),
     "mul": _mul,
@@ -164,6 +172,9 @@ RULES: Mapping[str, Rule] = {
     "two_product_error": lambda chain, line: ("copy", (0.0,)),
     "rounding": lambda chain, line: ("copy", (0.0,)),
     "power_of_two": lambda chain, line: ("copy", (0.0,)),  # no value depends on it
+    "lookup_piece": lambda chain, line: ("copy", (0.0,)),
+    "lookup": _lookup,
+    "lookup_slope": lambda chain, line: _no_second_slope(line),
     "rotated_sin": _rotated,
     "rotated_cos": _rotated,
     # The sign of the second is constant but for jumps; the balls know which it is.

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ..interpret import ieee
-from ..program import Argument, Line, Program
+from ..program import Argument, Line, Program, TableName
 from .slicing import drop_unused
 
 
@@ -43,7 +43,7 @@ def _simplified(line: Line, apply: Callable[..., Any]) -> Line | Argument:
         return line.args[1] if line.args[0] else line.args[2]
     if line.op == "select" and line.args[1] == line.args[2] and isinstance(line.args[1], str):
         return line.args[1]
-    if not any(isinstance(a, str) for a in line.args):
+    if not any(isinstance(a, (str, TableName)) for a in line.args):
         constant: Argument = apply(line.op, *line.args)
         return constant
     rule = _RULES.get(line.op)

@@ -2,7 +2,7 @@
 
 from collections import Counter
 
-from ..program import Argument, Line, Program, names_in
+from ..program import Argument, Line, Program, names_in, number
 from .slicing import drop_unused
 
 
@@ -68,4 +68,4 @@ def _signed(name: str, value: Argument, negative: bool) -> Argument:
     """The value or its negative."""
     if not negative:
         return value
-    return name if isinstance(value, str) else -value
+    return name if isinstance(value, str) else -number(value)

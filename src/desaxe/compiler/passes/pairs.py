@@ -6,7 +6,7 @@ Source of the algorithms: Dekker 1971; Knuth; Joldes, Muller, Popescu 2017.
 
 from collections.abc import Callable, Mapping
 
-from ..program import Argument
+from ..program import Argument, number
 from .double_angles import DoubleTrigonometry, Turned, rotated_sin
 from .expansions import Expansions, Pair
 
@@ -65,7 +65,7 @@ class Pairs(Expansions):
     def div(self, a: Pair, b: Pair) -> Pair:
         """a / b: a quotient of doubles, and what its residual adds to it."""
         if _is_power_of_two(b):
-            return self.mul(a, Pair(1.0 / float(b.high)))
+            return self.mul(a, Pair(1.0 / number(b.high)))
         inverse = self.line("div", 1.0, b.high)
         quotient = self.line("mul", a.high, inverse)
         product = Pair(self.line("mul", quotient, b.high), self.line("two_product_error", quotient, b.high))
@@ -171,4 +171,9 @@ RULES: Mapping[str, Callable[..., Pair]] = {
     ),
     "select": Pairs.select,
     "power_of_two": lambda pairs, a: Pair(pairs.line("power_of_two", a.high)),
+    # A table is of doubles: what it is looked up at is one.
+    **{
+        op: lambda pairs, x, table, piece, op=op: Pair(pairs.line(op, x.high, table.high, piece.high))
+        for op in ("lookup_piece", "lookup", "lookup_slope")
+    },
 }

@@ -14,24 +14,18 @@ from ...compiler.languages.numba.reductions import reduced_parts
 from ...compiler.languages.protocol import Symbol
 from ...compiler.languages.shared import refuse_taken, taken_in_python
 from ...compiler.operations import OPERATIONS
-from ...compiler.passes.double_double import double_double
-from ...compiler.passes.guard import guard_inputs
 from ...compiler.program import Program
 from ...loads.load import Load
-from ...loads.resolve import Plan, plan_of, split
+from ...loads.resolve import split
 from ...mechanism.catalogue import quantity
-from ...mechanism.constants import constants, double_constants
-from ...mechanism.inputs import INPUTS, LEAST
+from ...mechanism.inputs import INPUTS
 from ...mechanism.names import ORDER
 from ...mechanism.program import digest
-from ...runtime.kernels import KernelKey, kernel_of
-from ...runtime.specialise import specialise
+from ...runtime.kernels import KernelKey
 from ...runtime.written import UNSEALED
 from ...support.version import version
-from ..content import Content
 from ..kernel import GridKernel, grid_kernel, own_axes
 from ..scene import Scene
-from ..schema import SceneError
 from .axes import SPACED, WITH_AXES, axes_text, chosen_text
 from .entry_points import (
     AFFINITY,
@@ -43,9 +37,10 @@ from .entry_points import (
     run_reduced_function,
 )
 from .first_call import COMPILED, LAZY, LAZY_REDUCED
-from .loaded import calls_text, renames, require_tables, table_text
+from .loaded import require_tables, table_text
+from .made import Made, OfKey, UnderLoads, axes_of, limit_of
 from .peaks import left_out_of_module, peak_texts
-from .portable import WITHOUT_VALUE, require_outputs
+from .portable import WITHOUT_VALUE, asked_of, require_outputs
 
 WIDTH = 96
 
@@ -56,32 +51,36 @@ def text_of(scene: Scene, name: str = "my_kernels.py") -> str:
     require_outputs(scene)
     numbers, loads = split(content.inputs)
     require_tables(scene.name or "scene", loads)
-    if loads and content.reduction is not None:
-        raise SceneError(
-            f"{scene.name or 'scene'}: a module under a load that varies stores its grid: no [reduce]"
-        )
     found = grid_kernel(content)
     anywhere = found.key.form._replace(wide_margins=False)  # the module takes other designs, too
     key = _all_fixed(found.key._replace(form=anywhere), found, numbers, loads)
-    order = content.inputs if loads else found.axes
+    made: Made = OfKey()
+    order, shown = found.axes, found.request.shown
+    asked = asked_of(content, (*content.outputs, *([] if content.reduction else ["status"])))
+    if asked.loads:
+        made, order, shown = UnderLoads(content, asked), tuple(axes_of(content)), asked.shown
+        places = tuple((n, order.index(n)) for n in sorted(order) if n)
+        kinds = content.fused.kinds if content.fused is not None else ()
+        key = key._replace(names=shown, axis_of=places, axes=len(order), reduce=kinds)
     axes = {n: value for n in order if isinstance(value := content.inputs.get(n), tuple)}
     state = found.request.form.state
-    shown = found.request.shown
-    program = _in_order(_guarded(key, key.names))
-    plan = plan_of(_asked(content), loads, "omega" in numbers, "mu" in numbers) if loads else None
-    if plan is not None and plan.loads:
-        return _module_under_loads(scene, name, plan, key, program, axes)
-    kernels = _kernels(key, program.inputs) if program.inputs else Kernels([], {}, ())
+    program = _in_order(made.guarded(key, key.names))
+    kernels = _kernels(made, key, program.inputs) if program.inputs else Kernels([], {}, ())
     peaks = peak_texts(content)
+    scalars = _scalars(made, key, shown, program.inputs, own_axes(content, shown))
     groups = [
         with_sources([point_function(program, shown, state)]),
         *map(
             _compiled,
-            [*kernels.parts, _scalars(key, shown, program.inputs, own_axes(content, shown)), *peaks.searches],
+            [
+                *kernels.parts,
+                scalars,
+                *peaks.searches,
+            ],
         ),
     ]
     compiles = bool(program.inputs or peaks.searches)
-    limit = None if key.far else _limit(key)
+    limit = None if key.far else limit_of(key)
     calls = [THREADS] if compiles else []
     calls += [WITH_AXES] if axes or peaks.functions else []
     calls.append(evaluate_function(program, shown, state, limit, bool(program.inputs)))
@@ -91,11 +90,12 @@ def text_of(scene: Scene, name: str = "my_kernels.py") -> str:
     elif content.fused is None:
         calls.append(run_function(shown, list(axes), kernels.inputs, own_axes(content, shown)))
     else:
-        calls.append(run_reduced_function(shown, key.reduce, found.axes, kernels.inputs, kernels.outputs))
+        calls.append(run_reduced_function(shown, key.reduce, order, kernels.inputs, kernels.outputs))
     calls += peaks.functions
     if "spaced(" in "".join(peaks.functions) and not any("def spaced" in call for call in calls):
         calls.insert(0, SPACED)
     tables = [*([AFFINITY, DOUBLES, COMPILED] if compiles else [])]
+    tables += [table_text(n, load) for n, load in asked.loads.items()]
     tables += [f"INPUTS = {program.inputs!r}", _outputs(shown), _fixed(key)]
     head = _docstring(scene, name, key, shown, program.inputs, cost_of(program).operations)
     text = module_text(head, _front(tables), *groups, _front(calls))
@@ -119,40 +119,6 @@ def _front(parts: Sequence[str]) -> Parts:
     return with_sources(parts, (), imports=IMPORTS)
 
 
-def _asked(content: Content) -> list[str]:
-    """The outputs, as a grid has them."""
-    return list(dict.fromkeys([*content.outputs, "status"]))
-
-
-def _module_under_loads(
-    scene: Scene,
-    name: str,
-    plan: Plan,
-    key: KernelKey,
-    program: Program,
-    axes: Mapping[str, tuple[float, ...]],
-) -> str:
-    """The text of the module of a scene whose loads are tables."""
-    state, inputs = key.form.state, program.inputs
-    own = renames()
-    parts = tuple(dict.fromkeys((*plan.names, *plan.motion)))
-    single = key._replace(axis_of=tuple((n, 0) for n in sorted(inputs)), axes=1, reduce=())
-    point = renamed(point_function(program, parts, state), {"point": own["point"]}, called=True)
-    groups = [with_sources([point]), *map(_compiled, _kernels(single, inputs).parts)]
-    limit = None if key.far else _limit(key)
-    inner = renamed(evaluate_function(program, parts, state, limit, True), own)
-    fixed = scene.content.inputs.get("theta")
-    fixed_theta = float(fixed) if isinstance(fixed, float) else None
-    tables = [AFFINITY, DOUBLES, COMPILED, f"INPUTS = {tuple(n for n in inputs if n not in plan.loads)!r}"]
-    tables += [renamed(_outputs(parts), own), _outputs(plan.shown), _fixed(key)]
-    tables += [table_text(n, load, "N") for n, load in plan.loads.items()]
-    calls = [THREADS, inner, *([axes_text(axes), WITH_AXES, chosen_text(axes, limit)] if axes else [])]
-    calls.append(calls_text(plan, inputs, list(axes), fixed_theta, dict(key.fixed)))
-    shown_inputs = tuple(n for n in inputs if n not in plan.loads)
-    head = _docstring(scene, name, key, plan.shown, shown_inputs, cost_of(program).operations)
-    return module_text(head, _front(tables), *groups, _front(calls))
-
-
 def _all_fixed(
     key: KernelKey, found: GridKernel, inputs: Mapping[str, Any], loads: Iterable[str]
 ) -> KernelKey:
@@ -169,24 +135,19 @@ def _in_order(program: Program) -> Program:
 
 
 def _scalars(
-    key: KernelKey, shown: tuple[str, ...], inputs: tuple[str, ...], own: Mapping[str, Sequence[str]]
+    made: Made,
+    key: KernelKey,
+    shown: tuple[str, ...],
+    inputs: tuple[str, ...],
+    own: Mapping[str, Sequence[str]],
 ) -> Parts:
     """The functions of one output each; those of a whole design take its own inputs alone."""
     scalars = []
     for name, law in zip(shown, key.names, strict=True):
         row = quantity(name, key.form.state)
         taken = [n for n in inputs if n in own.get(name, inputs)]
-        scalars.append((Symbol(name, row.unit, row.meaning), _guarded(key, (law,)), taken))
+        scalars.append((Symbol(name, row.unit, row.meaning), made.guarded(key, (law,)), taken))
     return numba_parts(scalar_parts(scalars), jit=CALLABLE)
-
-
-def _guarded(key: KernelKey, names: tuple[str, ...]) -> Program:
-    """The program of names of a point, which says what of its inputs is bad, as the array kernels do."""
-    program = specialise(names, key.form, key.fixed, key.accuracy)
-    if key.accuracy != "extended":
-        return guard_inputs(program, program.inputs, LEAST, {})
-    far = {"theta": _limit(key)}
-    return double_double(guard_inputs(program, program.inputs, LEAST, far), double_constants())
 
 
 class Kernels(NamedTuple):
@@ -197,13 +158,13 @@ class Kernels(NamedTuple):
     outputs: tuple[str, ...]
 
 
-def _kernels(key: KernelKey, inputs: tuple[str, ...]) -> Kernels:
+def _kernels(made: Made, key: KernelKey, inputs: tuple[str, ...]) -> Kernels:
     """The kernels of a scene; the array kernel takes the inputs in the order in which they stand in names."""
-    kernel = kernel_of(key._replace(axis_of=tuple((n, 0) for n in sorted(inputs)), axes=1, reduce=()))
+    kernel = made.kernel(key._replace(axis_of=tuple((n, 0) for n in sorted(inputs)), axes=1, reduce=()))
     kernel = kernel._replace(inputs={name: kernel.inputs[name] for name in inputs})
     parts = [_named("point", [*loops_parts(kernel), LAZY])]
     if key.axes > 1:
-        kernel = kernel_of(key)
+        kernel = made.kernel(key)
         reduced = key.reduce and reduced_parts(kernel, key.reduce, LAZY_REDUCED)
         parts.append(_named("grid", reduced or [*loops_parts(kernel), LAZY]))
     return Kernels(parts, kernel.inputs, kernel.outputs)
@@ -220,11 +181,6 @@ def _compiled(parts: Parts) -> Parts:
     spelled = {row.numba.partition("(")[0] for row in OPERATIONS.values()}
     names = {name: f"compiled_{name}" for name in functions_of(HELPERS) if name in spelled}
     return parts._replace(texts=tuple(renamed(text, names) for text in parts.texts))
-
-
-def _limit(key: KernelKey) -> float:
-    """The largest angle that the written-out sine and cosine reduce exactly."""
-    return double_constants().limit if key.accuracy == "extended" else constants().limit
 
 
 def _outputs(shown: tuple[str, ...]) -> str:
@@ -264,7 +220,7 @@ def _docstring(
         "    evaluate(...)   numbers or arrays that broadcast",
         "    run()           the scene's own grid; run(theta=...) with other axes",
         *(f"    {line}" for line in peak_lines),
-        *([] if loads else [f"    {first}   one output as a number, from @njit functions, too"]),
+        f"    {first}   one output as a number, from @njit functions, too",
         "",
         f"Accuracy {key.accuracy}; SI units and radians. Y points along the slider axis towards the slider,",
         "theta turns from +Y towards +X.",

@@ -4,6 +4,7 @@ import hashlib
 from collections.abc import Iterable, Mapping
 from math import isinf
 from textwrap import wrap
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ...compiler.interpret import to_single
@@ -11,10 +12,13 @@ from ...compiler.languages.protocol import Forms, Module, Symbol
 from ...compiler.passes.double_double import double_double
 from ...compiler.passes.guard import guard_inputs
 from ...compiler.program import Program
+from ...loads.load import Load
+from ...loads.resolve import plan_of, split
 from ...mechanism.catalogue import law_name, quantities, quantity
 from ...mechanism.constants import constants, double_constants, single_constants
 from ...mechanism.inputs import INPUTS, LEAST
-from ...mechanism.names import LENGTHS, ORDER, STATUSES, sensitivity
+from ...mechanism.load_lines import Total, Way, with_totals
+from ...mechanism.names import LENGTHS, ORDER, sensitivity
 from ...mechanism.program import digest
 from ...mechanism.status import PointStatus
 from ...runtime.request import Request, request
@@ -25,6 +29,7 @@ from ..content import Content
 from ..kernel import own_axes
 from ..scene import Scene
 from ..schema import SceneError
+from .loaded import lines_of, require_tables, table_of
 from .motion import has_masses, motion_solver
 from .solvers import solvers
 
@@ -51,31 +56,61 @@ class Order(NamedTuple):
     single: bool = False
 
 
+class Asked(NamedTuple):
+    """A request of a scene, its fixed inputs, and its loads that vary with the motion.
+
+    shown   the names whose values are wanted; the request has what their totals are made of, too
+    """
+
+    request: Request
+    fixed: Fixed
+    shown: tuple[str, ...]
+    loads: Mapping[str, Load] = MappingProxyType({})
+    totals: tuple[Total, ...] = ()
+    way: Way = Way(1.0)
+
+    def stable(self, accuracy: str) -> Program:
+        """The Program of the shown names that is right everywhere."""
+        found = self.program(accuracy)
+        assert found is not None
+        return found
+
+    def program(self, accuracy: str, plain: bool = False) -> Program | None:
+        """The Program of the shown names; `plain` in plain forms, None where these are the stable ones."""
+        own = self.request
+        program = (plain_form if plain else specialise)(own.names, own.form, self.fixed, accuracy)
+        if program is None or not self.loads:
+            return program
+        names = dict(zip(own.shown, program.outputs, strict=True))
+        return with_totals(
+            program, names, [lines_of(n, load) for n, load in self.loads.items()], self.totals, self.way
+        )
+
+
 def module_of(scene: Scene, order: Order) -> Module:
     """The module of a scene's outputs; SceneError where it has none."""
     content = scene.content
     require_outputs(scene)
-    varying = [name for name, value in scene.content.inputs.items() if callable(value)]
-    if varying:
-        raise SceneError(
-            f"{scene.name or 'scene'}: loads.{varying[0]} varies with the motion, which a module in "
-            "this language cannot: leave it open as a list of values, and give it at each angle"
-        )
-    asked, fixed = _asked(content, (*content.outputs, "status"))
+    loads = split(content.inputs)[1]
+    require_tables(scene.name or "scene", loads)
+    if loads and order.single:
+        raise SceneError(f"{scene.name or 'scene'}: a load that varies with the motion is in doubles alone")
+    asked = asked_of(content, (*content.outputs, "status"))
     if order.single:
-        fixed = _in_single(scene, fixed)
-    results = asked.names[: len(content.outputs)]
-    state = asked.form.state
+        asked = asked._replace(fixed=_in_single(scene, asked.fixed))
+    fixed, state = asked.fixed, asked.request.form.state
     arguments = [n for n in ORDER if isinstance(content.inputs.get(n), tuple)]
-    forms = _forms(asked, results, fixed, order)
+    forms = _forms(asked, order)
     inputs = tuple(Symbol(n, INPUTS[n].unit, INPUTS[n].meaning) for n in arguments)
     outputs = tuple(Symbol(*quantity(name, state)) for name in content.outputs)
     derivatives, values = _derivatives(content, arguments) if order.second_order else ({}, {})
-    head = (*heading(scene, order.command), *_facts(content, asked, fixed, arguments, order))
+    head = (*heading(scene, order.command), *_facts(content, asked, arguments, order))
     own = own_axes(content, content.outputs)
     given = content.inputs | {n: value for n, value in fixed if n in content.inputs}
-    moves = motion_solver(given, content.branch, order.single) if has_masses(given) else None
-    told = (derivatives, values, solvers(dict(fixed), order.single), own, moves, order.single)
+    steps = has_masses(given) and not loads
+    moves = motion_solver(given, content.branch, order.single) if steps else None
+    tables = {name: table_of(load) for name, load in loads.items()}
+    told = (derivatives, values, solvers(dict(fixed), order.single), own, moves, order.single, tables)
     turning = single_constants() if order.single else constants()
     return Module(order.name, head, inputs, outputs, forms, turning, *told)
 
@@ -120,23 +155,23 @@ def heading(scene: Scene, command: str) -> tuple[str, ...]:
     )
 
 
-def _facts(
-    content: Content, asked: Request, fixed: Fixed, arguments: Iterable[str], order: Order
-) -> tuple[str, ...]:
+def _facts(content: Content, asked: Asked, arguments: Iterable[str], order: Order) -> tuple[str, ...]:
     """Accuracy, frame, what is folded in and what is left out."""
-    numbers = [f"{n} = {value!r} {INPUTS[n].unit}".removesuffix(" 1") for n, value in fixed if n in INPUTS]
-    branch = dict(fixed)["branch"]
+    fixed = {n: value for n, value in asked.fixed if n in INPUTS}
+    numbers = [f"{n} = {value!r} {INPUTS[n].unit}".removesuffix(" 1") for n, value in fixed.items()]
+    numbers += [f"{n}, a {repr(load).strip('<>')}" for n, load in asked.loads.items()]
+    branch = dict(asked.fixed)["branch"]
+    motion = "A given state" if asked.request.form.state else "Constant alpha"
     lines = [
         f"Accuracy {content.accuracy}; SI units and radians. "
         "Y points along the slider axis towards the slider,",
-        f"theta turns from +Y towards +X. {'A given state' if asked.form.state else 'Constant alpha'}; "
-        f"branch {branch:+.0f}.",
+        f"theta turns from +Y towards +X. {motion}; branch {branch:+.0f}.",
     ]
     if order.single:
         lines.append("Single precision: inputs are rounded to float, values are those of the rounded inputs.")
     if order.freestanding:
         lines.append(
-            f"Without libm: |theta| is at most {_reach(asked, order):.0f} rad, else the status is 4."
+            f"Without libm: |theta| is at most {_reach(asked.request, order):.0f} rad, else the status is 4."
         )
     lines += [f"Folded in: {', '.join(numbers)}."] if numbers else []
     lost = left_out(content)
@@ -150,44 +185,55 @@ def _reach(asked: Request, order: Order) -> float:
     return double_constants().limit if asked.accuracy == "extended" else constants().limit
 
 
-def _asked(content: Content, names: Iterable[str]) -> tuple[Request, Fixed]:
-    """The request of a scene, and its fixed inputs; an absent input without effect is 0."""
-    given: dict[str, Any] = dict(content.inputs)
+def asked_of(content: Content, names: Iterable[str]) -> Asked:
+    """The request of a scene for names; an absent input without effect is 0."""
+    shown = tuple(dict.fromkeys(names))
+    given, loads = split(content.inputs)
     if "omega0" not in given and "omega" not in given:
         given["omega0"] = 0.0  # no requested name needs a speed
-    asked = request(list(dict.fromkeys(names)), given, content.branch, content.accuracy)
-    values = {n: given.get(n, 0.0) for n in asked.inputs}
+    plan = plan_of(shown, loads, "omega" in given, "mu" in given)
+    every = tuple(dict.fromkeys((*plan.names, *plan.motion)))
+    asked = request(every, {**given, **dict.fromkeys(loads, 1.0)}, content.branch, content.accuracy)
+    values = {n: given.get(n, 0.0) for n in asked.inputs if n not in plan.loads}
     fixed = dict(asked.fixed) | {n: value for n, value in values.items() if not isinstance(value, tuple)}
-    return asked, tuple(fixed.items())
+    if not plan.loads:
+        return Asked(asked, tuple(fixed.items()), shown)
+    totals = [
+        Total(name, plan.forces_of.get(name, ()), tuple((*term,) for term in plan.terms.get(name, ())))
+        for name in shown
+    ]
+    return Asked(asked, tuple(fixed.items()), shown, plan.loads, tuple(totals), _way(given))
 
 
-def _forms(asked: Request, names: tuple[str, ...], fixed: Fixed, order: Order) -> Forms:
-    """The Programs of these names and of the status, in the forms that the accuracy has."""
-    names = tuple(dict.fromkeys((*names, _status_of(asked))))
-    status = names.index(_status_of(asked))
-    bounded = order.freestanding or asked.accuracy == "extended"
-    largest = {"theta": _reach(asked, order)} if bounded else {}
-    accuracy = "single" if order.single else "standard"
-    if asked.accuracy == "extended":
-        program = specialise(names, asked.form, fixed, "extended")
-        guarded = guard_inputs(program, program.inputs, LEAST, largest)
+def _way(given: Mapping[str, Any]) -> Way:
+    """What says which way the crank turns: numbers as they are, open inputs by their names."""
+    own = {n: n if isinstance(value, tuple) else value for n, value in given.items()}
+    if "omega" in own:
+        return Way(own["omega"], own.get("alpha", 0.0))
+    return Way(own["omega0"])
+
+
+def _forms(asked: Asked, order: Order) -> Forms:
+    """The Programs of the names, the status among them, in the forms that the accuracy has."""
+    kept = asked.request.accuracy
+    status = asked.shown.index("status")
+    bounded = order.freestanding or kept == "extended"
+    largest = {"theta": _reach(asked.request, order)} if bounded else {}
+    accuracy = "single" if order.single else kept
+    stable = asked.stable(accuracy)
+    guarded = guard_inputs(stable, stable.inputs, LEAST, largest)
+    if kept == "extended":
         return Forms(status, double_double(guarded, double_constants()))
-    stable = specialise(names, asked.form, fixed, accuracy)
-    plain = plain_form(names, asked.form, fixed, accuracy)
-    forms = Forms(status, guard_inputs(stable, stable.inputs, LEAST, largest))
+    plain = asked.program(accuracy, plain=True)
     if plain is None:
-        return forms
-    test = specialise(("wide_margins",), asked.form, fixed, accuracy)
+        return Forms(status, guarded)
+    test = specialise(("wide_margins",), asked.request.form, asked.fixed, accuracy)
     # The test implies valid lengths.
     own = [name for name in plain.inputs if name not in LENGTHS]
-    guarded = guard_inputs(plain, own, LEAST, largest)
+    bare = guard_inputs(plain, own, LEAST, largest)
     if test.lines[-1].args == (True,):
-        return Forms(status, guarded)
-    return forms._replace(plain=guarded, test=test) if test.inputs else forms
-
-
-def _status_of(asked: Request) -> str:
-    return next(name for name in asked.names if name in STATUSES)
+        return Forms(status, bare)
+    return Forms(status, guarded, bare, test) if test.inputs else Forms(status, guarded)
 
 
 def _derivatives(
@@ -198,7 +244,13 @@ def _derivatives(
     known = quantities()
 
     def exists(name: str) -> bool:
-        return law_name(name) in known and not (state and "omega0" in name)
+        if law_name(name) not in known or (state and "omega0" in name):
+            return False
+        try:
+            asked_of(content, (name,))
+        except ValueError:  # of second order under a load
+            return False
+        return True
 
     found: dict[str, dict[str, str]] = {}
     stack = list(content.outputs)
@@ -210,7 +262,6 @@ def _derivatives(
             stack += found[name].values()
     values = {}
     for name in found:
-        asked, fixed = _asked(content, (name,))
-        program = specialise(asked.names, asked.form, fixed)
+        program = asked_of(content, (name,)).stable("standard")
         values[name] = guard_inputs(program, program.inputs, LEAST, {})
     return found, values

@@ -29,6 +29,35 @@ CPLUSPLUS = """\
 """
 
 HELPERS = {
+    "lookup_piece": """/* The number of the piece of a table at x; those of the way back follow. */
+static inline double lookup_piece(double x, const double *knots, int64_t n, double way) {
+  int64_t low = 0, high = n;
+  while (low < high) {
+    const int64_t middle = low + (high - low) / 2;
+    if (knots[middle] <= x) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return (double)(low + (way < 0.0 ? n + 1 : 0));
+}
+""",
+    "lookup": """/* The value of a piece of a table at x, beyond its ends too. */
+static inline double lookup(double x, const double *knots, const double *rows, int64_t n, double piece) {
+  const int64_t at = (int64_t)piece % (n + 1);
+  const double s = x - knots[at > 0 ? at - 1 : 0], *row = rows + 4 * (int64_t)piece;
+  return row[0] + s * (row[1] + s * (row[2] + s * row[3]));
+}
+""",
+    "lookup_slope": """/* The slope of a piece of a table at x, beyond its ends too. */
+static inline double lookup_slope(double x, const double *knots, const double *rows, int64_t n,
+                                  double piece) {
+  const int64_t at = (int64_t)piece % (n + 1);
+  const double s = x - knots[at > 0 ? at - 1 : 0], *row = rows + 4 * (int64_t)piece;
+  return row[1] + s * (2.0 * row[2] + s * (3.0 * row[3]));
+}
+""",
     "two_sum_error": """/* What rounding took from a + b, exactly (Knuth). */
 static inline double two_sum_error(double a, double b) {
   const double total = a + b, of_b = total - a;

@@ -6,7 +6,7 @@ from ...passes.trigonometry import Trigonometry, expand_trigonometry
 from ...passes.value_numbering import value_numbering
 from ...program import Line, Program
 from ..protocol import Module, Solver, Symbol
-from ..shared import called, one_line, with_helpers
+from ..shared import arrays_of, called, numbers, one_line, with_helpers
 from .functions import Lifted, lifted, static_function
 from .helpers import CPLUSPLUS, FREESTANDING, FREESTANDING_ATAN2, FREESTANDING_HYPOT, HELPERS, PRAGMAS
 from .single import in_single, of_format
@@ -176,16 +176,26 @@ class _Source:
             [
                 comment(self.module.head),
                 f'#include "{name}.h"',
-                *(["#include <stdint.h>"] if self.freestanding else ["#include <math.h>"]),
+                *([] if self.freestanding else ["#include <math.h>"]),
+                *(["#include <stdint.h>"] if self.freestanding or self.module.tables else []),
                 "",
                 CPLUSPLUS,
                 PRAGMAS,
                 *self._helpers(functions),
+                *self._content(),
                 functions,
                 *tables,
                 "",
             ]
         )
+
+    def _content(self) -> list[str]:
+        """The content of the tables that are looked into."""
+        rows = []
+        for name, column in arrays_of(self.module.tables).items():
+            rows += [f"static const double {name}[] = {{", *(f"  {row}" for row in numbers(column)), "};"]
+        sizes = [f"static const int64_t {n}_n = {len(x)};" for n, (x, _) in self.module.tables.items()]
+        return [*rows, *sizes, *([""] if rows else [])]
 
     # -- what is called --
 

@@ -1,0 +1,207 @@
+"""Loads over the motion as lines of a Program: what they are looked up at, and the totals that they make.
+
+A Program has a force as an input, and partial derivatives by it. Here the force becomes lines, which look up
+a table that is known at run time, and what depends on it becomes total: with the terms of each derivative,
+
+    dq/dp = q_wrt_p + q_wrt_F dF/dp,    dF/dtheta = F'(theta),    dF/dp = F'(Y) Y_wrt_p
+
+or F'(d) sign(Y_dc - Y) (dY_dc/dp - Y_wrt_p) over the distance d from a dead centre.
+"""
+
+from collections.abc import Mapping, Sequence
+from math import nan
+from sys import float_info
+from typing import NamedTuple
+
+from ..compiler.passes.slicing import drop_unused
+from ..compiler.program import Argument, Line, Note, Program, TableName, names_in, validate
+from .inputs import INPUTS
+from .names import LENGTHS, STATUS
+
+
+class LoadLines(NamedTuple):
+    """A load: the force, what its table is over, and the period of one over theta.
+
+    over    "theta", "Y", or the position of a dead centre: "Y_outer" or "Y_inner"
+    first   the first knot of a table over theta
+    """
+
+    force: str
+    over: str
+    period: float = 0.0
+    first: float = 0.0
+
+
+class Total(NamedTuple):
+    """A name, the forces that it depends on, and terms: (the name of a slope, force, parameter)."""
+
+    name: str
+    forces: tuple[str, ...] = ()
+    terms: tuple[tuple[str, str, str], ...] = ()
+
+
+class Way(NamedTuple):
+    """The inputs, or numbers, that say which way the crank turns: a speed, and what starts one at rest."""
+
+    speed: Argument
+    start: Argument = 0.0
+
+
+def with_totals(
+    program: Program, names: Mapping[str, str], loads: Sequence[LoadLines], totals: Sequence[Total], way: Way
+) -> Program:
+    """The program of these totals, whose loads are looked up.
+
+    names   quantities -> the outputs of the program that have them: of the totals, of the slopes in their
+            terms, and of the motion that loads over the slider's place need
+    """
+    writer = _Writer(program, names, way)
+    for load in loads:
+        writer.load(load, {p for total in totals for _, force, p in total.terms if force == load.force})
+    writer.lines += writer.late
+    outputs = tuple(writer.total(total) for total in totals)
+    used = dict.fromkeys(a for line in writer.lines for a in names_in(line.args))
+    made = {line.name for line in writer.lines}
+    more = [name for name in used if name not in made and name not in program.inputs]
+    inputs = (*(name for name in program.inputs if name not in made), *more)
+    whole = program._replace(inputs=inputs, lines=tuple(writer.lines), outputs=outputs, notes=writer.notes)
+    return validate(drop_unused(whole))
+
+
+class _Writer:
+    """Appends lines: those that no load changes, the loads, the others, the totals."""
+
+    def __init__(self, program: Program, names: Mapping[str, str], way: Way) -> None:
+        self.names, self.way = names, way
+        self.notes = dict(program.notes)
+        self.types = {line.name: line.type for line in program.lines}
+        self.status: dict[str, tuple[str, str]] = {}  # of a force over the stroke: none, singular
+        self.slopes: dict[tuple[str, str], Argument] = {}
+        changed = set(INPUTS) & {"F_X", "F_Y"}
+        self.lines: list[Line] = []
+        self.late: list[Line] = []
+        for line in program.lines:
+            depends = not changed.isdisjoint(names_in(line.args))
+            changed |= {line.name} if depends else set()
+            (self.late if depends else self.lines).append(line)
+
+    def new(self, name: str, op: str, *args: Argument, type: str = "f64") -> str:
+        """A line."""
+        self.lines.append(Line(name, op, args, type))
+        return name
+
+    def load(self, load: LoadLines, parameters: set[str]) -> None:
+        """The lines of a force and of its derivatives by these parameters."""
+        force, table = load.force, TableName(load.force)
+        x = self._reduced(load) if load.over == "theta" else self._along(load)
+        way = 1.0 if load.over == "theta" else self._ahead()
+        piece = self.new(f"{force}_piece", "lookup_piece", x, table, way)
+        value = self.new(f"{force}_found", "lookup", x, table, piece)
+        size = self.new(f"{force}_size", "abs", value)
+        finite = self.new(f"{force}_is_finite", "le", size, float_info.max, type="bool")
+        self.new(force, "select", finite, value, 0.0)  # a point without motion has a status of its own
+        self.notes[force] = Note(INPUTS[force].unit, INPUTS[force].meaning)
+        slope = self.new(f"{force}_slope", "lookup_slope", x, table, piece) if parameters else ""
+        for p in sorted(parameters):
+            if load.over == "theta":
+                self.slopes[force, p] = slope
+            else:
+                moved = self._moved(load, p)
+                self.slopes[force, p] = self.new(f"{force}_by_{p}", "mul", slope, moved)
+        if load.over not in ("theta", "Y"):
+            self._mark(load, parameters)
+
+    def _reduced(self, load: LoadLines) -> str:
+        """The crank angle in the first period of a table."""
+        force, first, period = load.force, load.first, load.period
+        away = self.new(f"{force}_away", "sub", "theta", first)
+        turns = self.new(f"{force}_turns", "floor", self.new(f"{force}_ratio", "div", away, period))
+        back = self.new(f"{force}_back", "mul", period, turns)
+        angle = self.new(f"{force}_angle", "sub", "theta", back)
+        early = self.new(f"{force}_is_early", "lt", angle, first, type="bool")
+        late = self.new(f"{force}_is_late", "le", first + period, angle, type="bool")
+        before = self.new(f"{force}_before", "sub", angle, period)
+        after = self.new(f"{force}_after", "add", angle, period)
+        inside = self.new(f"{force}_inside", "select", late, before, angle)
+        return self.new(f"{force}_at", "select", early, after, inside)
+
+    def _along(self, load: LoadLines) -> str:
+        Y = self.names["Y"]
+        if load.over == "Y":
+            return Y
+        away = self.new(f"{load.force}_away", "sub", self.names[load.over], Y)
+        return self.new(f"{load.force}_at", "abs", away)
+
+    def _ahead(self) -> str:
+        """Negative where the slider goes inward; at a dead centre where it will."""
+        if any(line.name == "way_ahead" for line in self.lines):
+            return "way_ahead"
+        slope, bend = self.names["Y_wrt_theta"], self.names["Y_wrt_theta_theta"]
+        rests = self.new("speed_is_0", "eq", self.way.speed, 0.0, type="bool")
+        turning = self.new("way_of_turning", "select", rests, self.way.start, self.way.speed)
+        turns = self.new("slider_turns", "eq", slope, 0.0, type="bool")
+        forward = self.new("way_forward", "select", turns, bend, slope)
+        back = self.new("way_back", "neg", forward)
+        backwards = self.new("turns_backwards", "lt", turning, 0.0, type="bool")
+        return self.new("way_ahead", "select", backwards, back, forward)
+
+    def _moved(self, load: LoadLines, parameter: str) -> Argument:
+        """The derivative of what a table is over by a parameter."""
+        by = self.names[f"Y_wrt_{parameter}"]
+        if load.over == "Y":
+            return by
+        name = f"{load.force}_at_by_{parameter}"
+        if parameter in LENGTHS:
+            centre = self.names[f"{load.over}_wrt_{parameter}"]
+            change = self.new(f"{name}_outside", "sub", centre, by)
+        else:
+            change = self.new(f"{name}_outside", "neg", by)
+        below = self.new(f"{name}_is_inside", "lt", f"{load.force}_away", 0.0, type="bool")
+        return self.new(name, "select", below, self.new(f"{name}_inside", "neg", change), change)
+
+    def _mark(self, load: LoadLines, parameters: set[str]) -> None:
+        """The conditions that there is no such dead centre, and that it moves infinitely fast."""
+        force, centre = load.force, self.names[load.over]
+        there = self.new(f"{force}_is_there", "eq", centre, centre, type="bool")
+        moves: Argument = True
+        for p in sorted(parameters & set(LENGTHS)):
+            size = self.new(f"{force}_rate_{p}", "abs", self.names[f"{load.over}_wrt_{p}"])
+            finite = self.new(f"{force}_moves_{p}", "le", size, float_info.max, type="bool")
+            moves = self.new(f"{force}_moves_to_{p}", "and", moves, finite, type="bool")
+            value = self.slopes[force, p]
+            self.slopes[force, p] = self.new(f"{force}_per_{p}", "select", finite, value, nan)
+        moves = moves if isinstance(moves, str) else self.new(f"{force}_moves", "copy", True, type="bool")
+        self.status[force] = there, moves
+
+    def total(self, total: Total) -> str:
+        """The line of a total."""
+        found = self.names[total.name]
+        for number, (slope, force, parameter) in enumerate(total.terms):
+            term = self.new(
+                f"{total.name}_term_{number}", "mul", self.names[slope], self.slopes[force, parameter]
+            )
+            found = self.new(f"{total.name}_total_{number}", "add", found, term)
+        for force in total.forces:
+            if force in self.status:
+                found = self._with_status(total.name, found, force)
+        return found
+
+    def _with_status(self, name: str, found: str, force: str) -> str:
+        there, moves = self.status[force]
+        if name != STATUS:
+            return self.new(f"{name}_under_{force}", "select", there, found, nan)
+        why = self.new(f"{force}_moves_status", "select", moves, 0, 2, type="i64")
+        own = self.new(f"{force}_status", "select", there, why, 1, type="i64")
+        return self.new(f"{name}_under_{force}", "select", self._is_good(found), own, found, type="i64")
+
+    def _is_good(self, status: Argument) -> Argument:
+        """The condition that a status is 0: what chooses it chooses True for 0 and else False."""
+        if not isinstance(status, str):
+            return status == 0
+        name = f"{status}_is_0"
+        line = next(line for line in self.lines if line.name == status)
+        if not any(line.name == name for line in self.lines):
+            test = line.args[: line.op == "select"]
+            args = (*test, *map(self._is_good, line.args[len(test) :]))
+            self.new(name, line.op, *args, type="bool")
+        return name
