@@ -16,4 +16,5 @@ ranges        `between` and `plus_minus`: inputs with a range or tolerance
 slips         plain numbers that are almost surely in another unit
 own           user-defined quantities: the register
 own_lines     their lines in the Program, with derivatives
+load_lines    loads over the motion as lines of a Program, and total derivatives
 """

@@ -201,7 +201,7 @@ def _docstring(module: Module) -> str:
 
 
 def _content(module: Module) -> list[str]:
-    """The tables that are looked into; NumPy keeps their digits, whatever jax is told later."""
+    """The tables as arrays of NumPy, whose doubles stay doubles."""
     found = []
     for name, column in arrays_of(module.tables).items():
         rows = "".join(f"{INDENT}{row}\n" for row in numbers(column))
@@ -218,7 +218,7 @@ def _imports(code: str) -> list[str]:
         "from jax.custom_derivatives import SymbolicZero",
         *(["from jax.lax import stop_gradient"] if "stop_gradient" in used else []),
         f"from jax.numpy import {', '.join(numpy)}",
-        *(["from numpy import array"] if "array" in _words(code) else []),
+        *(["from numpy import array"] if " = array([" in code else []),
     ]
 
 

@@ -83,8 +83,8 @@ _JAX = frozenset((
     # built in
     "NotImplementedError", "enumerate", "float", "isinstance",
     # imported
-    "SymbolicZero", "array", "asarray", "atan2", "copysign", "cos", "custom_jvp", "exp", "fabs", "finfo", "float32",
-    "floating", "floor", "hypot", "inf", "int8", "issubdtype", "log", "logical_and", "logical_not",
+    "SymbolicZero", "array", "asarray", "atan2", "copysign", "cos", "custom_jvp", "exp", "fabs", "finfo",
+    "float32", "floating", "floor", "hypot", "inf", "int8", "issubdtype", "log", "logical_and", "logical_not",
     "logical_or", "nan", "pow", "result_type", "searchsorted", "sin", "sqrt", "stop_gradient", "where",
     "zeros_like",
     # defined

@@ -11,6 +11,7 @@ entry_points  the functions that people call in the Python module
 peaks         the scene's peaks in the Python module
 axes          the scene's lists and ranges
 first_call    how its loops are compiled
-loaded        loads over theta in a Python module
+made          its Programs and loop nests, with or without loads
+loaded        loads that vary with the motion: their tables
 package       `desaxe derive --quantities`: a package of a user's own quantities
 """

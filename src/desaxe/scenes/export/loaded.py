@@ -31,7 +31,7 @@ def table_of(load: Load) -> Content:
 
 
 def lines_of(name: str, load: Load) -> LoadLines:
-    """What a load is looked up at."""
+    """The lines of a load: the place at which its table is looked up."""
     if isinstance(load, TableOverTheta):
         return LoadLines(name, "theta", load.period, load.table.knots[0])
     assert isinstance(load, OverY)

@@ -32,7 +32,7 @@ class Made(Protocol):
 
 
 class OfKey(NamedTuple):
-    """Of numbers alone: the names of a key are those of the Program."""
+    """The Programs of numbers alone; the names of a key are those of the Program."""
 
     def guarded(self, key: KernelKey, names: tuple[str, ...]) -> Program:
         """The program of names of a point, which says what of its inputs is bad, as array kernels do."""
@@ -44,7 +44,7 @@ class OfKey(NamedTuple):
 
 
 class UnderLoads(NamedTuple):
-    """Under loads: the names of a key are those that a user wrote."""
+    """The Programs under loads; the names of a key are those that a user wrote."""
 
     content: Content
     asked: Asked

@@ -206,7 +206,7 @@ def asked_of(content: Content, names: Iterable[str]) -> Asked:
 
 
 def _way(given: Mapping[str, Any]) -> Way:
-    """What says which way the crank turns: numbers as they are, open inputs by their names."""
+    """The speed that tells the way of turning: numbers as they are, open inputs by their names."""
     own = {n: n if isinstance(value, tuple) else value for n, value in given.items()}
     if "omega" in own:
         return Way(own["omega"], own.get("alpha", 0.0))
