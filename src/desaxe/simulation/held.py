@@ -80,7 +80,11 @@ class Held:
         return lambda theta: float(polynomial(row, self._along(load, theta) - origin)[0])
 
     def kinks(self, lengths: tuple[float, ...], branch: int) -> list[tuple[float, float]]:
-        """Angles of one period at which the load has a kink, and that period [rad]."""
+        """Angles of one period at which another piece is held, and that period [rad].
+
+        Over Y those are all places of the table: a cubic goes no farther than its own piece, however smoothly
+        the next one follows.
+        """
         load = self.load
         if isinstance(load, TableOverTheta):
             return [(angle, load.period) for angle in load.table.kinks]
@@ -88,7 +92,7 @@ class Held:
             return [(angle, load.period) for angle in load.angles]
         assert isinstance(load, OverY)
         sides = [np.array([length]) for length in lengths]
-        angles = crossings(load, load.positions(smooth=False), sides, branch)[0]
+        angles = crossings(load, load.positions(smooth=True), sides, branch)[0]
         if self.turns_with_the_slider:
             angles = np.append(angles, dead_centres(sides))
         return [(angle, TURN) for angle in angles[np.isfinite(angles)].tolist()]
