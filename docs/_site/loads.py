@@ -16,6 +16,7 @@ KINDS = {
     "`over_stroke`": dx.over_stroke([0.0, 0.01, 0.02], [-50.0, -50.0, 0.0], dead_centre="outer"),
     "function of theta": np.sin,
 }
+MOTOR = dx.kloss(20.0, 0.2, 40.0)
 ROUGH = {**DESIGN, "ec": dx.plus_minus(0.01, 1e-4)}
 FREE = {name: value for name, value in DESIGN.items() if name != "ec"}
 MOVED = {name: value for name, value in DESIGN.items() if name != "omega0"}
@@ -42,6 +43,7 @@ CALLS = {
     "peak": lambda load, _: dx.peak("T_in", F_Y=load, **DESIGN),
     "harmonics": lambda load, _: dx.harmonics("T_in", orders=2, F_Y=load, **DESIGN),
     "drive": lambda load, _: dx.drive(F_Y=load, **DESIGN),
+    "steady": lambda load, _: dx.steady(torque=MOTOR, I_crank=1.0, F_Y=load, **DESIGN),
     "simulate": lambda load, _: dx.simulate(torque=1.0, t_end=0.01, F_Y=load, **MOVED),
     "enclose": lambda load, _: dx.enclose("T_in", theta=1.0, F_Y=load, **DESIGN),
     "tolerance": lambda load, _: dx.tolerance("T_in", theta=1.0, sobol=0, samples=9, F_Y=load, **ROUGH),

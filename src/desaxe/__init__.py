@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from .design.fit.fit import fit as fit
     from .design.inverse import inverse as inverse
     from .design.optimisation.optimize import optimize as optimize
+    from .design.steady.steady import steady as steady
     from .design.synthesis.synthesize import synthesize as synthesize
     from .design.tolerance.tolerance import tolerance as tolerance
     from .design.turn.counterweight import counterweight as counterweight
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
     from .loads import over_stroke as over_stroke
     from .loads import over_theta as over_theta
     from .loads import over_Y as over_Y
+    from .loads.motors import kloss as kloss
+    from .loads.motors import over_omega as over_omega
     from .machine import Machine as Machine
     from .mechanism.catalogue import quantities as quantities
     from .mechanism.ranges import between as between
@@ -62,6 +65,7 @@ PUBLIC = {
     "events": "desaxe.design.events.events",
     "optimize": "desaxe.design.optimisation.optimize",
     "synthesize": "desaxe.design.synthesis.synthesize",
+    "steady": "desaxe.design.steady.steady",
     "tolerance": "desaxe.design.tolerance.tolerance",
     "harmonics": "desaxe.design.turn.harmonics",
     "counterweight": "desaxe.design.turn.counterweight",
@@ -79,6 +83,8 @@ PUBLIC = {
     "simulate": "desaxe.simulation.simulate",
     "sweep": "desaxe.scenes.sweep",
     "quantities": "desaxe.mechanism.catalogue",
+    "kloss": "desaxe.loads.motors",
+    "over_omega": "desaxe.loads.motors",
     "over_theta": "desaxe.loads",
     "over_Y": "desaxe.loads",
     "over_stroke": "desaxe.loads",
@@ -114,8 +120,10 @@ __all__ = [
     "grid",
     "harmonics",
     "inverse",
+    "kloss",
     "optimize",
     "over_Y",
+    "over_omega",
     "over_stroke",
     "over_theta",
     "peak",
@@ -124,6 +132,7 @@ __all__ = [
     "quantities",
     "scene",
     "simulate",
+    "steady",
     "sweep",
     "synthesize",
     "to_excel",

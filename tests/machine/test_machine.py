@@ -30,6 +30,7 @@ CALLS = {
     "harmonics": {"name": "F_shaking_Y", "orders": 2},
     "counterweight": {"radius": 0.03},
     "drive": {"fluctuation": 0.05},
+    "steady": {"torque": dx.kloss(40.0, 0.15, 157.08, gear=12), "flywheel_inertia": 2.0},
     "synthesize": {"stroke": 0.1, "time_ratio": 1.1, "BC": 0.3},
 }
 

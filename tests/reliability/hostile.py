@@ -154,6 +154,18 @@ def calls() -> dict[str, Call]:
             {"fluctuation": 0.02, "m_slider": 1.0, "F_Y": 10.0, **MACHINE},
             ("alpha", "mu", "branch", "I_rod"),
         ),
+        "steady": Call(
+            dx.steady,
+            (),
+            {"torque": 5.0, "m_slider": 1.0, "I_crank": 1.0, "mu": 0.1, **MACHINE},
+            ("flywheel_inertia", "fluctuation", "branch", "F_Y", "I_rod"),
+        ),
+        "over_omega": Call(dx.over_omega, (), {"speeds": [0.0, 10.0], "torques": [5.0, 0.0]}, ("kind",)),
+        "kloss": Call(
+            dx.kloss,
+            (),
+            {"breakdown_torque": 10.0, "breakdown_slip": 0.2, "synchronous_speed": 150.0, "gear": 10.0},
+        ),
         "Machine": Call(dx.Machine, (), dict(MACHINE), ("units", "branch", "m_slider", "F_Y", "alpha")),
         "define": Call(defined, (), {"expression": "k*a_C", "k": 2.0}, ("unit", "meaning")),
         "over_theta": Call(

@@ -6,6 +6,7 @@ table      tables as piecewise cubics
 columns    numbers with or without units, from lists, arrays and files
 made       loads made of columns, checked
 tabulated  `over_theta`, `over_Y`, `over_stroke`: loads from lists, files and functions
+motors     a torque over the speed: `over_omega`, `kloss`
 stroke     a load over the distance from a dead centre
 pieces     which piece of a load over Y holds at an angle
 exact      where the slider is, exactly

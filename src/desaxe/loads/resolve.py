@@ -32,6 +32,7 @@ from .pieces import Place, ahead, pieces_at
 from .stroke import NONE, OverStroke
 
 VARIABLE = ("F_X", "F_Y")  # inputs that may vary with the motion
+ROLES = {1: ("omega",), 2: ("theta", "omega"), 3: ("t", "theta", "omega")}  # of a torque's parameters
 
 
 def as_load(name: str, value: Any) -> Load:
@@ -54,18 +55,19 @@ def settled(name: str, load: Any, units: UnitSystem) -> Any:
 
     ValueError where its plain numbers, which are SI units, would be taken for those of the machine.
     """
-    if not isinstance(load, Load) or not load.plain:
+    if not getattr(load, "plain", ()):
         return load
     there = [units.of(name if place == "value" else place) for place in load.plain]
     other = [conversion.unit for conversion in there if conversion.si != 1]
     if other:
-        call, texts = f"over_{load.over}", ", ".join(f'"... {unit}"' for unit in other)
+        call = load.call if hasattr(load, "call") else f"over_{load.over}"
+        texts = ", ".join(f'"... {unit}"' for unit in other)
         raise ValueError(
             f"{name}: plain numbers of desaxe.{call} are in SI units, but those given here are in "
             f"{', '.join(other)}: give machine.{call}(...), which takes the units of the machine (or a table "
             f"in the scene), or desaxe.{call}(...) of texts with units, {texts}"
         )
-    return replace(load, plain=())  # type: ignore[type-var]
+    return replace(load, plain=())
 
 
 def takes(function: Callable[..., Any], count: int) -> bool:
@@ -77,6 +79,27 @@ def takes(function: Callable[..., Any], count: int) -> bool:
     except ValueError:
         return count == getattr(function, "nin", 1)
     return True
+
+
+def names_of(function: Callable[..., Any]) -> tuple[str, ...]:
+    """The parameters of a function; none of a built-in without a signature."""
+    try:
+        return tuple(signature(function).parameters)
+    except ValueError:
+        return ()
+
+
+def roles_of(function: Callable[..., Any]) -> tuple[str, ...] | None:
+    """The roles of a torque's parameters: omega, (theta, omega), (t, theta, omega), or theta by that name."""
+    try:
+        every = signature(function).parameters.values()
+    except ValueError:  # a built-in
+        return ("omega",)
+    places = [p for p in every if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
+    count = max(1, sum(p.default is p.empty for p in places))
+    if count == 1 and places and places[0].name == "theta":
+        return ("theta",)
+    return ROLES.get(count) if takes(function, count) else None
 
 
 def split(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Load]]:

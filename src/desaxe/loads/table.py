@@ -139,7 +139,7 @@ def periodic(x: Sequence[float], y: Sequence[float], kind: str, period: float) -
 
 def held(x: Sequence[float], y: Sequence[float], kind: str) -> Table:
     """The table through (x, y), constant beyond its ends."""
-    slopes = _slopes(x, y) if kind == "cubic" else [0.0] * len(x)
+    slopes = _slopes(x, y) if kind == "cubic" else _monotone_slopes(x, y) if kind == "smooth" else []
     rows = _rows(list(zip(x[:-1], y[:-1], x[1:], y[1:], strict=True)), kind, slopes, False)
     return Table(tuple(x), ((y[0], 0.0, 0.0, 0.0), *rows, (y[-1], 0.0, 0.0, 0.0)))
 
@@ -201,6 +201,32 @@ def _tridiagonal(
     for i in range(len(right) - 2, -1, -1):
         found[i] = (found[i] - above[i] * found[i + 1]) / pivots[i]
     return found
+
+
+def _monotone_slopes(x: Sequence[float], y: Sequence[float]) -> list[float]:
+    """Slopes with which cubics rise and fall only where the values do.
+
+    F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984): a weighted harmonic mean of both chords;
+    at the ends that of the parabola through three points, as far as the cubic stays monotone.
+    """
+    h = [b - a for a, b in pairwise(x)]
+    d = [(b - a) / width for (a, b), width in zip(pairwise(y), h, strict=True)]
+    if len(d) == 1:
+        return [d[0], d[0]]
+    found = [_end_slope(*h[:2], *d[:2])]
+    for (left, right), (before, after) in zip(pairwise(h), pairwise(d), strict=True):
+        first, second = 2.0 * right + left, right + 2.0 * left
+        same = before * after > 0.0
+        found.append((first + second) / (first / before + second / after) if same else 0.0)
+    return [*found, _end_slope(h[-1], h[-2], d[-1], d[-2])]
+
+
+def _end_slope(own: float, other: float, chord: float, beyond: float) -> float:
+    """The slope at an end, next to a chord of width `own`; `beyond` is the next chord."""
+    slope = ((2.0 * own + other) * chord - own * beyond) / (own + other)
+    if slope * chord <= 0.0:
+        return 0.0
+    return slope if chord * beyond > 0.0 or abs(slope) <= 3.0 * abs(chord) else 3.0 * chord
 
 
 def _slopes(x: Sequence[float], y: Sequence[float]) -> list[float]:

@@ -5,6 +5,7 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 from ..evaluation.arrays import as_array
+from ..loads.motors import MakeKloss, MakeOverOmega
 from ..loads.resolve import settled
 from ..loads.tabulated import MakeOverStroke, MakeOverTheta, MakeOverY
 from ..mechanism.inputs import INPUTS, is_good
@@ -149,6 +150,16 @@ class Machine(Mapping[str, Any]):
     def over_stroke(self) -> MakeOverStroke:
         """`desaxe.over_stroke`, and its `read`, with plain numbers in the units of the machine."""
         return MakeOverStroke(self.units)
+
+    @property
+    def over_omega(self) -> MakeOverOmega:
+        """`desaxe.over_omega` with plain numbers in the units of the machine."""
+        return MakeOverOmega(self.units)
+
+    @property
+    def kloss(self) -> MakeKloss:
+        """`desaxe.kloss` with plain numbers in the units of the machine."""
+        return MakeKloss(self.units)
 
     @property
     def plot(self) -> Plots:

@@ -36,6 +36,7 @@ METHODS = {
     "counterweight": "desaxe.design.turn.counterweight",
     "flywheel": "desaxe.design.drive.flywheel",
     "drive": "desaxe.design.drive.drive",
+    "steady": "desaxe.design.steady.steady",
     "fit": "desaxe.design.fit.fit",
     "function": "desaxe.evaluation.function",
     "explore": "desaxe.scenes.explorer.explore",

@@ -144,6 +144,17 @@ class DriveStatus(Status):
     TWO_FORCE_BALANCES = 6, "friction: two sets of forces balance somewhere on the turn"
 
 
+class SteadyStatus(Status):
+    """The status of a steady state: `steady`.
+
+    Decided by `design/steady/result.py`, of an array by `design/steady/steady.py`.
+    """
+
+    OK = 0, "ok"
+    NONE = 1, "no stable steady state; the message says why"
+    BAD_INPUT = 4, "bad input"
+
+
 class FitStatus(Status):
     """The status of a fit: `fit`.
 
@@ -172,5 +183,5 @@ class SimulationStatus(Status):
 
 TABLES = (
     PointStatus, PeakStatus, TurnStatus, InverseStatus, EnclosureStatus, ToleranceStatus, OptimizeStatus,
-    SynthesisStatus, DriveStatus, FitStatus, SimulationStatus,
+    SynthesisStatus, DriveStatus, SteadyStatus, FitStatus, SimulationStatus,
 )  # fmt: skip

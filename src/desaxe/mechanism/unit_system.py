@@ -45,12 +45,12 @@ PER_SECOND = {"m/s": "/s", "m/s^2": "/s^2", "m/s^3": "/s^3"}
 OTHERS = {
     **dict.fromkeys(("V_outward", "V_inward"), "m/s"),
     **dict.fromkeys(("theta0", "until", "phase", "angle", "theta_intervals"), "rad"),
-    "omega_start": "rad/s",
+    **dict.fromkeys(("omega_start", "omega_mean", "synchronous_speed"), "rad/s"),
     **dict.fromkeys(("t", "t_end", "t_last", "times", "max_step", "period"), "s"),
     **dict.fromkeys(
         (
             "torque", "torque_mean", "torque_rms", "torque_peak", "starting_torque", "flywheel_torque",
-            "mean_torque", "max_torque", "min_torque", "ripple",
+            "T_motor", "breakdown_torque", "mean_torque", "max_torque", "min_torque", "ripple",
         ),
         "N*m",
     ),

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from ..loads.load import Load as LoadOverMotion
-from ..loads.resolve import as_load, takes
+from ..loads.motors import Motor
+from ..loads.resolve import as_load, names_of, takes
 from ..mechanism.catalogue import quantity
 from ..mechanism.closed.limits import theta_intervals
 from ..mechanism.inputs import INPUTS, Input
@@ -70,11 +71,26 @@ def check_names(names: Any) -> tuple[str, ...]:
 
 def check_signature(name: str, value: Callable[..., Any]) -> None:
     """A load that varies is a function of (t, theta, omega), or of theta alone."""
-    if not (takes(value, 3) or takes(value, 1)):
+    if not (takes(value, 3) or takes(value, 1) or (name == "torque" and takes(value, 2))):
         raise TypeError(
             f"{name}: expected a function of (t, theta, omega), or of theta alone, "
             f"got one of {signature(value)}"
         )
+
+
+def over_speed(torque: Any) -> Callable[[float, float, float], Any] | None:
+    """A motor, or a function of omega by that name or of (theta, omega), as one of (t, theta, omega)."""
+    if isinstance(torque, Motor):
+        if any(map(np.ndim, torque.numbers.values())):
+            raise TypeError("torque: simulate takes a motor of numbers, not of arrays; give one at a time")
+        return lambda t, theta, omega: torque(omega)
+    if not callable(torque) or isinstance(torque, LoadOverMotion):
+        return None
+    if not takes(torque, 3) and takes(torque, 2):
+        return lambda t, theta, omega: torque(theta, omega)
+    if not takes(torque, 3) and takes(torque, 1) and list(names_of(torque))[:1] == ["omega"]:
+        return lambda t, theta, omega: torque(omega)
+    return None
 
 
 def load(name: str, value: Any, unit: str, deadline: Deadline) -> Load:
@@ -82,6 +98,8 @@ def load(name: str, value: Any, unit: str, deadline: Deadline) -> Load:
     if not callable(value):
         number = scalar(name, value, unit)
         return lambda t, theta, omega: number
+    if name == "torque" and (by_speed := over_speed(value)) is not None:
+        value = by_speed
     check_signature(name, value)
     if isinstance(value, LoadOverMotion) or not takes(value, 3):
         return Held(as_load(name, value))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..evaluation.arrays import as_array, broadcast_shape, number_or_array
 from ..evaluation.evaluate import evaluate
-from ..loads.resolve import takes
+from ..loads.resolve import names_of, takes
 from ..mechanism.closed.limits import theta_intervals
 from ..mechanism.inputs import LEAST, Input
 from ..mechanism.names import CENTRES, LENGTHS, LOADS
@@ -126,8 +126,15 @@ def _compile(torque: Callable[..., Any]) -> Any:
     try:
         fast: Any = torque if isinstance(torque, Dispatcher) else njit(error_model="numpy")(torque)
         if not takes(plain, 3):
-            over_theta = fast
-            fast = njit(error_model="numpy")(lambda t, theta, omega: over_theta(theta))
+            own = fast
+            of_speed = names_of(plain)[:1] == ("omega",)
+            fast = njit(error_model="numpy")(
+                (lambda t, theta, omega: own(theta, omega))
+                if takes(plain, 2)
+                else (lambda t, theta, omega: own(omega))
+                if of_speed
+                else (lambda t, theta, omega: own(theta))
+            )
         fast.compile((float64, float64, float64))
     except (NumbaError, TypeError) as error:
         told = str(error).strip().splitlines()

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..evaluation.loaded import with_labelled
 from ..loads.load import Load as LoadOverMotion
+from ..loads.motors import Motor
 from ..mechanism.inputs import TINY
 from ..runtime.request import check_common, with_known_inputs
 from ..support.checks import whole_number
@@ -69,8 +70,9 @@ def simulate(
 ) -> Simulation:
     """The motion of the crank under a torque.
 
-    torque       on the crank [N m], positive like theta: a number, a function (t, theta, omega) or of theta
-                 alone, or `over_theta`
+    torque       on the crank [N m], positive like theta: a number, a function of (t, theta, omega), of
+                 (theta, omega), of theta alone or of omega by that name, `over_theta`, or a motor,
+                 `over_omega` or `kloss`
     t_end        how long to follow the motion [s]
     theta0, omega_start   crank angle [rad] and speed [rad/s] at t = 0; the speed of a Machine is its own
     AB, BC, ec, branch, masses, centres of mass, gravity, mu   as in `evaluate`
@@ -130,7 +132,7 @@ def simulate(
     starts = {"theta0": theta0, "omega_start": omega_start, "torque": torque}
     if any(map(is_array, (*given.values(), *starts.values()))):
         _check_many(method, atol, until)
-        if any(map(callable, (given["F_X"], given["F_Y"]))) or isinstance(torque, LoadOverMotion):
+        if any(map(callable, (given["F_X"], given["F_Y"]))) or isinstance(torque, (LoadOverMotion, Motor)):
 
             def one(inputs: Mapping[str, Any], begin: Mapping[str, Any], t: Any) -> Simulation:
                 deadline.check()

@@ -1,0 +1,200 @@
+"""Designs in rows: their inputs, and what the equation of motion needs of them at any angle.
+
+The crank goes x = 0 ... period in its way of turning, theta = way x. With the kinetic energy
+E = (M_eff + J) omega^2/2, J the flywheel,
+
+    dE/dx = way (T - L - R),
+
+T the motor's torque, L what loads and gravity hold against it, R the torque of guide friction, which is
+`way |Y'| mu |N|`; the normal force N depends on the acceleration that it changes (simulation/friction.py).
+"""
+
+from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
+from math import pi
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...evaluation.evaluate import evaluate
+from ...loads.angles import dead_centres, meeting_angles
+from ...loads.load import Load
+from ...mechanism.names import LENGTHS
+from ...runtime.compiled_only import uncompiled
+from .source import Source
+
+Array = NDArray[Any]
+CREEP = 1e-100  # rad/s: loads know the way of turning, inertia does not act
+INSIDE = 1e-9  # of a panel: so far from its ends a value belongs to it
+WIDEST = 0.4  # rad
+MANY = 50_000  # points, for which compiling pays
+NOTHING = 1e-12  # of the inertia elsewhere
+
+
+class Designs(NamedTuple):
+    """Rows of designs.
+
+    numbers   inputs of the mechanism: a number for all, or an array with one for each
+    motor     the same of the torque's parameters
+    J, way    of each: the flywheel's inertia, and 1 or -1
+    """
+
+    size: int
+    numbers: Mapping[str, Any]
+    loads: Mapping[str, Load]
+    branch: int
+    source: Source
+    motor: Mapping[str, Any]
+    J: Array
+    way: Array
+    turns: int
+
+    def rows(self, index: Array) -> "Designs":
+        """Some of the designs."""
+
+        def picked(values: Mapping[str, Any]) -> dict[str, Any]:
+            return {n: v[index] if np.ndim(v) else v for n, v in values.items()}
+
+        return self._replace(
+            size=len(index), numbers=picked(self.numbers), motor=picked(self.motor),
+            J=self.J[index], way=self.way[index],
+        )  # fmt: skip
+
+    @property
+    def period(self) -> float:
+        """The angle after which everything repeats [rad]."""
+        return 2.0 * pi * self.turns
+
+    @property
+    def has_friction(self) -> bool:
+        """True where the guide of a design has friction."""
+        return bool(np.any(self.numbers.get("mu", 0.0)))
+
+    def each(self, values: Any, ndim: int) -> Any:
+        """Numbers of designs beside arrays of this many dimensions."""
+        return np.reshape(values, (-1, *[1] * (ndim - 1))) if np.ndim(values) else values
+
+    def theta(self, x: Array) -> Array:
+        """The crank angle."""
+        return np.asarray(self.each(self.way, x.ndim) * x)
+
+    def row(self, ndim: int) -> dict[str, Any]:
+        """The parameters of the torque beside arrays of this many dimensions."""
+        return {name: self.each(value, ndim) for name, value in self.motor.items()}
+
+    def values(self, names: Sequence[str], x: Array, **other: Any) -> dict[str, Array]:
+        """Quantities at angles, by `evaluate`; `other` inputs replace those of the designs."""
+        inputs: dict[str, Any] = {n: self.each(v, x.ndim) for n, v in self.numbers.items()}
+        inputs |= {**self.loads, **other}
+        present = {n: v for n, v in inputs.items() if v is not None}
+        with uncompiled() if x.size < MANY else nullcontext():
+            found = evaluate(list(names), theta=self.theta(x), branch=self.branch, **present)
+        return {name: np.broadcast_to(found[name], x.shape) for name in names}
+
+    def lengths(self) -> list[Array]:
+        """ec, AB and BC of each design."""
+        return [np.broadcast_to(np.asarray(self.numbers[n], float), (self.size,)) for n in LENGTHS]
+
+    def kinks(self, load: Load) -> Array:
+        """The places where a load has a kink or its pieces meet, NaN where a row has fewer."""
+        found = meeting_angles([load], self.period, self.lengths(), self.branch) % self.period
+        found = np.broadcast_to(found, (self.size, found.shape[1]))
+        return np.where(self.way[:, None] < 0.0, self.period - found, found)
+
+    def edges(self) -> Array:
+        """The edges of panels: even ones, kinks of loads, and dead centres under friction."""
+        period = self.period
+        even = np.linspace(0.0, period, int(np.ceil(period / WIDEST)) + 1)
+        loads = [*self.loads.values(), *([self.source.load] if self.source.load is not None else [])]
+        found = [np.tile(even, (self.size, 1)), *map(self.kinks, loads)]
+        if self.has_friction:
+            own = dead_centres(self.lengths()) * self.way[:, None]
+            found += [(own + 2.0 * pi * k) % period for k in range(self.turns)]
+        every = np.concatenate(found, axis=1)
+        return np.sort(np.where(np.isnan(every), 0.0, every), axis=1)
+
+
+def vanishing(designs: Designs) -> Array:
+    """True for designs without any inertia at a dead centre."""
+    x = np.nan_to_num(dead_centres(designs.lengths()))
+    there = designs.values(["M_eff"], x)["M_eff"] + designs.J[:, None]
+    between = designs.values(["M_eff"], x + 1.0)["M_eff"]
+    return np.asarray((there <= NOTHING * between).any(1))
+
+
+class Course(NamedTuple):
+    """The coefficients of the equation at places x: they do not depend on the speed.
+
+    inertia, slope   M_eff + J, and its derivative by theta
+    load             L
+    guide            the normal force at rest, its parts by omega^2 and by alpha, lean and arm
+    """
+
+    theta: Array
+    way: Any
+    inertia: Array
+    slope: Array
+    load: Array
+    guide: tuple[Array, ...] | None
+
+    def part(self, at: tuple[Any, ...]) -> "Course":
+        """The course at some of its places, with another axis of starts."""
+        guide = None if self.guide is None else tuple(v[at][:, None] for v in self.guide)
+        four = (v[at][:, None] for v in (self.theta, self.inertia, self.slope, self.load))
+        theta, inertia, slope, load = four
+        return Course(theta, np.reshape(self.way, (-1, 1)), inertia, slope, load, guide)
+
+
+def course_of(designs: Designs, x: Array) -> Course:
+    """The course of designs at places x: an array with a row for each."""
+    way = designs.each(designs.way, x.ndim)
+    still = {"omega": way * CREEP, "alpha": 0.0}
+    names = ["M_eff", "M_eff_wrt_theta", "T_in"]
+    friction = designs.has_friction
+    if friction:
+        names += ["N_C", "N_C_wrt_alpha", "Y_wrt_theta", "phi"]
+    found = designs.values(names, x, **still, mu=None)
+    guide = None
+    if friction:
+        mu = designs.each(designs.numbers["mu"], x.ndim)
+        free = dict.fromkeys(designs.loads, 0.0)
+        by_square = designs.values(["N_C_wrt_omega"], x, **free, omega=1.0, alpha=0.0, mu=None)
+        travel = found["Y_wrt_theta"]
+        lean = designs.branch * np.tan(found["phi"]) * mu * np.sign(travel) * way
+        arm = mu * np.abs(travel) * way
+        guide = (found["N_C"], 0.5 * by_square["N_C_wrt_omega"], found["N_C_wrt_alpha"], lean, arm)
+    inertia = found["M_eff"] + designs.each(designs.J, x.ndim)
+    return Course(designs.theta(x), way, inertia, found["M_eff_wrt_theta"], found["T_in"], guide)
+
+
+class Rate(NamedTuple):
+    """dE/dx and its derivative by E, the speed, the torque, and under friction the sign of N and its K."""
+
+    f: Array
+    g: Array
+    omega: Array
+    torque: Array
+    normal: Array | None = None
+    wedge: Array | None = None
+
+
+def rate(course: Course, source: Source, row: Mapping[str, Any], E: Array) -> Rate:
+    """The equation at an energy; NaN where that is not positive."""
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        square = 2.0 * E / course.inertia
+        omega = course.way * np.sqrt(square)
+        torque, by_omega = source.both(course.theta, omega, row)
+        push, steep = torque - course.load, by_omega * omega / (2.0 * E)
+        if course.guide is None:
+            return Rate(course.way * push, course.way * steep, omega, torque)
+        still, by_square, by_alpha, lean, arm = course.guide
+        alpha = (push - 0.5 * course.slope * square) / course.inertia
+        alpha_by = (steep - course.slope / course.inertia) / course.inertia
+        normal = still + by_square * square + by_alpha * alpha
+        normal_by = 2.0 * by_square / course.inertia + by_alpha * alpha_by
+        pressed = np.where(normal < 0.0, -1.0, 1.0)
+        wedge = (lean - arm * by_alpha / course.inertia) * pressed
+        rub = arm * pressed / (1.0 - wedge)
+        f, g = push - rub * normal, steep - rub * normal_by
+        return Rate(course.way * f, course.way * g, omega, torque, normal, wedge)

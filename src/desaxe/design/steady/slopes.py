@@ -1,0 +1,119 @@
+"""Derivatives of a periodic motion by every number that makes it.
+
+At an angle the required torque G(theta, omega, alpha; p) + J alpha is the motor's T(theta, omega; p). With
+z = omega^2, alpha = way z'/2, the change y = dz/dp at fixed x obeys the linear equation
+
+    y' = 2 way (T_p - G_p - J_p alpha)/C - way (G_omega - T_omega)/(omega C) y,    C = G_alpha + J,
+
+with y(period) = y(0). Where z' jumps at a place that moves with a length, y jumps by (z'_left - z'_right)
+times what it moves by.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...loads.load import OverY
+from ...mechanism.names import LENGTHS
+from ...runtime.request import request
+from ...support.computed import computed_once
+from .designs import Designs
+from .mesh import Linear
+from .orbit import Orbit
+
+Array = NDArray[Any]
+REFINED = 2  # times that a solution is corrected by what it leaves
+JUMP = 1e-9  # of the largest z': less is none
+NEAR = 1e-9  # rad: an edge is where a load has a kink
+FLAT = 1e-6  # of the crank: Y_wrt_theta at a dead centre
+
+
+def parameters(designs: Designs) -> tuple[str, ...]:
+    """The inputs of the mechanism by which the torque has derivatives."""
+    everything = {**designs.numbers, **designs.loads, "omega": 1.0, "alpha": 1.0}
+    asked = request(("T_in",), everything, designs.branch, "standard")
+    return tuple(n for n in asked.inputs if n not in ("theta", "omega", "alpha") and n in designs.numbers)
+
+
+class Slopes:
+    """The derivatives of omega^2 along orbits, by parameter: at the nodes and at the start."""
+
+    def __init__(self, orbit: Orbit) -> None:
+        self.orbit, self.designs = orbit, orbit.designs
+        self.names = parameters(self.designs)
+        self.z = orbit.rate.omega**2
+        self.alpha = orbit.course.way * self._half_slope()
+        wanted = ["T_in_wrt_omega", "T_in_wrt_alpha", *(f"T_in_wrt_{name}" for name in self.names)]
+        found = self.designs.values(wanted, orbit.mesh.x, omega=orbit.rate.omega, alpha=self.alpha)
+        row, way = self.designs.row(3), orbit.course.way
+        _, by_speed = self.designs.source.both(orbit.course.theta, orbit.rate.omega, row)
+        mass = found["T_in_wrt_alpha"] + self.designs.each(self.designs.J, 3)
+        g = -way * (found["T_in_wrt_omega"] - by_speed) / (orbit.rate.omega * mass)
+        self.linear = Linear(orbit.mesh, g)
+        self.by_speed, self.by_motor = by_speed, self.designs.source.by(orbit.rate.omega, row)
+        pushes = {**self.by_motor, **{name: -found[f"T_in_wrt_{name}"] for name in self.names}}
+        pushes["flywheel_inertia"] = -self.alpha
+        self.forcing = {name: 2.0 * way * push / mass for name, push in pushes.items()}
+
+    def _half_slope(self) -> Array:
+        """Half of dz/dx, from dE/dx."""
+        orbit = self.orbit
+        by_x = orbit.course.way * orbit.course.slope
+        return np.asarray((orbit.rate.f - 0.5 * by_x * self.z) / orbit.course.inertia)
+
+    @computed_once
+    def y(self) -> Array:
+        """dz/dp at the nodes, for all parameters in the order of `forcing`: another axis at the front."""
+        mesh, b, g = self.orbit.mesh, np.stack(list(self.forcing.values())), self.linear.g
+        jumps = np.zeros(b.shape[:-1])
+        for k, name in enumerate(self.forcing):
+            if name in self.jumps:
+                jumps[k] = self.jumps[name]
+        before = (np.cumsum(jumps, axis=-1) - jumps)[..., None]
+        start, y = self.linear.solve(b, np.zeros(b.shape[:2]), jumps)
+        slope = b + g * y
+        for _ in range(REFINED):
+            y = start[..., None, None] + mesh.running(slope) + before
+            more, change = self.linear.solve(b + g * y - slope, mesh.integral(slope) + jumps.sum(-1))
+            start, slope = start + more, b + g * (y + change)
+        return np.asarray(start[..., None, None] + mesh.running(slope) + before)
+
+    @computed_once
+    def jumps(self) -> dict[str, Array]:
+        """For each length, what y jumps by at the end of each panel, where a load over the slider jumps."""
+        moving = [load for load in self.designs.loads.values() if isinstance(load, OverY)]
+        if not moving:
+            return {}
+        mesh = self.orbit.mesh
+        ends = mesh.ends(2.0 * self._half_slope())
+        jump = ends[..., 1] - np.roll(ends[..., 0], -1, axis=1)
+        jump = np.where(np.abs(jump) > JUMP * np.abs(ends).max((1, 2))[:, None], jump, 0.0)
+        if not jump.any():
+            return {}
+        way = self.orbit.course.way[..., 0]
+        found = dict.fromkeys(LENGTHS, np.zeros(jump.shape))
+        for load in moving:
+            for name, shift in moves(self.designs, load, mesh.edges[:, 1:]).items():
+                found[name] = found[name] + jump * way * shift
+        return found
+
+
+def moves(designs: Designs, load: OverY, x: Array) -> dict[str, Array]:
+    """By how much each length moves the angles at which a load over the slider has a kink; 0 elsewhere."""
+    places = designs.kinks(load)
+    gap = np.abs(x[..., None] - places[:, None, :])
+    own = (np.minimum(gap, designs.period - gap) < NEAR).any(-1)
+    bends = [f"Y_wrt_theta_{name}" for name in ("theta", *LENGTHS)]
+    alone = designs._replace(loads={}, numbers={n: designs.numbers[n] for n in LENGTHS})
+    names = tuple(dict.fromkeys((*load.motion(("theta", *LENGTHS)), *bends)))
+    found = alone.values(names, x, omega=1.0, alpha=0.0)
+    along = load.moved("theta", found)
+    flat = np.abs(found["Y_wrt_theta"]) <= FLAT * designs.each(designs.numbers["AB"], 2)
+    result = {}
+    for name in LENGTHS:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            here = -load.moved(name, found) / along
+            there = -found[f"Y_wrt_theta_{name}"] / found["Y_wrt_theta_theta"]
+        result[name] = np.where(own, np.where(flat, there, here), 0.0)
+    return result

@@ -1,0 +1,194 @@
+"""A torque of any kind over angle and speed, for rows of designs: value, slope, and derivatives."""
+
+from collections.abc import Callable, Mapping
+from inspect import signature
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...evaluation.arrays import number_or_array
+from ...loads.load import Load, OverTheta
+from ...loads.motors import Motor
+from ...loads.resolve import as_load, roles_of
+from ...mechanism.inputs import Input
+from ...support.forks import IMPORTS
+from ...support.shown import shown
+
+Array = NDArray[Any]
+# Central differences of order 8 of a user's function over the speed, which has no derivative of its own.
+WEIGHTS = {1: 4.0 / 5.0, 2: -1.0 / 5.0, 3: 4.0 / 105.0, 4: -1.0 / 280.0}
+STEP = 1e-3  # of the speed
+INSTANTS = (0.0, 0.371)  # s: a function of time is not the same at both
+SPEEDS = np.outer([-1.0, 1.0], np.geomspace(1e-2, 1e5, 141))
+
+
+class Source:
+    """The torque of a call.
+
+    numbers   its parameters, by which there are derivatives
+    knots     speeds at which it has a kink
+    varies    whether it depends on the speed
+    way       the way in which it turns the crank, None where it has none of its own
+    """
+
+    numbers: Mapping[str, Any] = {}
+    knots: tuple[float, ...] = ()
+    varies = True
+    load: Load | None = None
+    way: Any = None
+
+    def both(self, theta: Array, omega: Array, row: Mapping[str, Any]) -> tuple[Array, Array]:
+        """The torque and its derivative by the speed."""
+        raise NotImplementedError
+
+    def by(self, omega: Array, row: Mapping[str, Any]) -> dict[str, Array]:
+        """The derivatives by the parameters."""
+        return {}
+
+    def speeds(self, row: Mapping[str, Any]) -> Array:
+        """Speeds among which turns are tried."""
+        return np.ravel(SPEEDS)
+
+
+class Constant(Source):
+    """A number, or one for each design."""
+
+    varies = False
+
+    def __init__(self, value: Any) -> None:
+        self.numbers = {"torque": value}
+
+    def both(self, theta: Array, omega: Array, row: Mapping[str, Any]) -> tuple[Array, Array]:
+        """The number."""
+        return row["torque"] + 0.0 * omega, 0.0 * omega
+
+    def by(self, omega: Array, row: Mapping[str, Any]) -> dict[str, Array]:
+        """One."""
+        return {"torque": np.ones_like(omega)}
+
+
+class OverAngle(Source):
+    """A load over theta."""
+
+    varies = False
+
+    def __init__(self, load: OverTheta) -> None:
+        self.load = self.over = load
+
+    def both(self, theta: Array, omega: Array, row: Mapping[str, Any]) -> tuple[Array, Array]:
+        """The load."""
+        return np.broadcast_to(self.over(theta), omega.shape) + 0.0 * omega, 0.0 * omega
+
+
+class OfMotor(Source):
+    """A motor: a table or Kloss's formula."""
+
+    def __init__(self, motor: Motor) -> None:
+        self.motor, self.numbers, self.knots = motor, motor.numbers, motor.knots
+        most = self.numbers.get("synchronous_speed")
+        if most is None:
+            most = max(self.knots, key=abs)
+        self.way = np.where(np.asarray(most) < 0.0, -1.0, 1.0)
+
+    def both(self, theta: Array, omega: Array, row: Mapping[str, Any]) -> tuple[Array, Array]:
+        """The motor's torque."""
+        return self.motor.both(omega, row)
+
+    def by(self, omega: Array, row: Mapping[str, Any]) -> dict[str, Array]:
+        """The derivatives of the motor's torque."""
+        return self.motor.by(omega, row)
+
+    def speeds(self, row: Mapping[str, Any]) -> Array:
+        """The motor's."""
+        return self.motor.speeds(row)
+
+
+class OfFunction(Source):
+    """A function of omega, (theta, omega) or (t, theta, omega), of which time must not matter."""
+
+    def __init__(self, function: Callable[..., Any], roles: tuple[str, ...]) -> None:
+        self.roles, self.name = roles, getattr(function, "__name__", type(function).__name__)
+        self.function, self.takes_arrays = function, True
+        if hasattr(function, "py_func"):  # compiled by numba: for one point, which may branch
+            with IMPORTS:
+                import numba
+
+            self.function = numba.vectorize(function.py_func)  # type: ignore[no-untyped-call]
+
+    def _value(self, theta: Array, omega: Array, t: float = 0.0) -> Array:
+        places = {"t": np.full_like(omega, t), "theta": np.broadcast_to(theta, omega.shape), "omega": omega}
+        arrays = [places[role] for role in self.roles]
+        found: Any = None
+        if self.takes_arrays:
+            try:
+                found = np.asarray(self.function(*arrays), float)
+            except Exception:
+                self.takes_arrays = False
+        if found is None:
+            columns = (array.reshape(-1).tolist() for array in arrays)
+            found = np.array([self._one(row) for row in zip(*columns, strict=True)]).reshape(omega.shape)
+        if found.shape not in ((), omega.shape):
+            raise ValueError(f"torque: {self.name} of {omega.size} points gave the shape {found.shape}")
+        found = np.broadcast_to(found, omega.shape)
+        bad = ~np.isfinite(found) & np.isfinite(omega)
+        if bad.any():
+            raise ValueError(
+                f"torque: {self.name} gave {found[bad].flat[0]} at omega = {omega[bad].flat[0]:g}: it must "
+                "be a finite number in N*m"
+            )
+        return np.asarray(found)
+
+    def _one(self, row: tuple[float, ...]) -> float:
+        if not np.isfinite(row).all():
+            return float("nan")
+        try:
+            return float(self.function(*row))
+        except (TypeError, ValueError) as error:
+            told = ", ".join(f"{role} = {value:g}" for role, value in zip(self.roles, row, strict=True))
+            raise type(error)(f"torque: {self.name} failed at {told}: {error}") from error
+
+    def both(self, theta: Array, omega: Array, row: Mapping[str, Any]) -> tuple[Array, Array]:
+        """The function's torque; its slope from eight values around the speed."""
+        torque = self._value(theta, omega)
+        h = STEP * np.abs(omega)
+        slope = sum(
+            w * (self._value(theta, omega + k * h) - self._value(theta, omega - k * h))
+            for k, w in WEIGHTS.items()
+        )
+        return torque, np.asarray(slope / h)
+
+    def check_time(self, theta: Array, omega: Array) -> None:
+        """ValueError for a torque that depends on time: it has no steady state."""
+        if "t" in self.roles:
+            one, other = (self._value(theta, omega, t) for t in INSTANTS)
+            if (one != other).any():
+                raise ValueError(
+                    "torque: a function of (t, theta, omega) that changes with t has no steady state; "
+                    "give one of (theta, omega)"
+                )
+
+
+def source_of(torque: Any) -> Source:
+    """The source that `torque=` stands for."""
+    if isinstance(torque, Motor):
+        return OfMotor(torque)
+    if isinstance(torque, Load):
+        load = as_load("torque", torque)
+        if not isinstance(load, OverTheta):
+            raise TypeError(f"torque = {load!r}: a torque over theta or omega is expected")
+        return OverAngle(load)
+    if not callable(torque):
+        return Constant(number_or_array(Input("torque", "N*m", ""), torque))
+    roles = roles_of(torque)
+    if roles is None:
+        raise TypeError(
+            f"torque = {shown(torque)}: expected a number, a motor (desaxe.kloss, desaxe.over_omega), a load "
+            f"over theta, or a function of omega or of (theta, omega); this one takes {signature(torque)}"
+        )
+    if roles == ("theta",):
+        return source_of(as_load("torque", torque))
+    found = OfFunction(torque, roles)
+    theta = np.linspace(0.0, 6.0, 7)
+    found.check_time(theta, theta + 1.0)
+    return found

@@ -1,0 +1,203 @@
+"""Every steady state of designs: brackets, periodic motions on panels that resolve them, figures."""
+
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .designs import Designs, vanishing
+from .figures import Figures, course_at_steps, figures_of
+from .mesh import Linear, Mesh
+from .orbit import HALVINGS, PANELS, Orbit, between_kinks, moved, newton, unresolved
+from .scan import Scan, Turns, scan
+from .slopes import Slopes
+
+Array = NDArray[Any]
+JAMS_AT = 1.0 - 1e-6  # of the wedge K: as in simulation/friction.py
+SAME = 1e-9  # of an energy: two motions are one
+CLOSER = 14  # secant steps to a change of sign, where Newton's method did not settle from a rough one
+REPEATS = 4  # rows of finer panels for these
+
+
+class States(NamedTuple):
+    """Steady states: the design of each, its figures and course; the scan that found them."""
+
+    design: Array
+    E0: Array
+    figures: Figures
+    course: dict[str, Array]
+    jams: Array  # where friction leaves no balance of forces, or two; or nothing has inertia
+    scan: Scan
+
+
+def states_of(designs: Designs, gradient: bool) -> States:
+    """All steady states of designs."""
+    edges = designs.edges()
+    scanned = scan(designs, edges)
+    found = scanned.found()
+    lanes = designs.rows(found.design)
+    first = _from_turns(lanes, edges[found.design], found.E0)
+    solved = _Solved(lanes, gradient)
+    stable = first.linear.log_multiplier < 0.0
+    lost = ~first.good | (stable != found.falls) | ~_first_of_each(found.design, first.E0)
+    kept, again = np.flatnonzero(~lost), np.flatnonzero(lost)
+    solved.settle(kept, edges[found.design][kept], _rows(first, kept))
+    if len(again):
+        fine = _finer(edges[found.design][again])
+        E0 = _closer(lanes.rows(again), fine, found.low[again], found.high[again])
+        solved.settle(again, fine, _from_turns(lanes.rows(again), fine, E0))
+    solved.jams |= vanishing(designs)[found.design]
+    good = np.flatnonzero(solved.good & _first_of_each(found.design, solved.E0))
+    return States(
+        found.design[good],
+        solved.E0[good],
+        Figures(
+            {k: v[good] for k, v in solved.values.items()},
+            {k: {p: v[good] for p, v in by.items()} for k, by in solved.gradient.items()},
+        ),
+        {k: v[good] for k, v in solved.course.items()},
+        solved.jams[good],
+        scanned,
+    )
+
+
+class _Solved:
+    """The results of lanes, filled as their panels resolve them."""
+
+    def __init__(self, lanes: Designs, gradient: bool) -> None:
+        self.lanes, self.with_gradient = lanes, gradient
+        self.good, self.jams = np.zeros(lanes.size, bool), np.zeros(lanes.size, bool)
+        self.E0 = np.full(lanes.size, np.nan)
+        self.values: dict[str, Array] = {}
+        self.course: dict[str, Array] = {}
+        self.gradient: dict[str, dict[str, Array]] = {}
+
+    def settle(self, index: Array, edges: Array, orbit: Orbit) -> None:
+        """Halve the panels of lanes until motion and derivatives are polynomials on each."""
+        for _ in range(HALVINGS):
+            if not len(index):
+                return
+            orbit = between_kinks(orbit, edges)
+            bad = unresolved(orbit) if orbit.mesh.edges.shape[1] < PANELS else np.zeros((len(index), 1), bool)
+            done = np.flatnonzero(~bad.any(1))
+            if len(done):
+                finished, slopes = _rows(orbit, done), None
+                if self.with_gradient:
+                    slopes = Slopes(finished)
+                    bad[done] |= unresolved(finished, tuple(slopes.forcing[name] for name in slopes.names))
+                    if bad[done].any():
+                        done = np.flatnonzero(~bad.any(1))
+                        finished = _rows(orbit, done)
+                        slopes = Slopes(finished)
+                self._take(index[done], finished, slopes)
+            rest = np.flatnonzero(bad.any(1))
+            if not len(rest):
+                return
+            edges = orbit.mesh.refined(bad, edges)[rest]
+            index, orbit = (
+                index[rest],
+                moved(_rows(orbit, rest), orbit.mesh.refined(bad, orbit.mesh.edges)[rest]),
+            )
+
+    def _take(self, index: Array, orbit: Orbit, slopes: Slopes | None) -> None:
+        if not len(index):
+            return
+        figures = figures_of(orbit, slopes)
+        count = self.lanes.size
+        self.good[index], self.E0[index] = orbit.good, orbit.E0
+        if orbit.rate.wedge is not None:
+            self.jams[index] = ((orbit.rate.wedge >= JAMS_AT) | (orbit.rate.wedge < -1.0)).any((1, 2))
+        _put(self.values, index, figures.values, count)
+        _put(self.course, index, course_at_steps(orbit), count)
+        for key, by in figures.gradient.items():
+            _put(self.gradient.setdefault(key, {}), index, by, count)
+
+
+def _put(into: dict[str, Array], index: Array, rows: dict[str, Array], count: int) -> None:
+    for name, values in rows.items():
+        if name not in into:
+            into[name] = np.zeros((count, *values.shape[1:]), values.dtype)
+        into[name][index] = values
+
+
+def _rows(orbit: Orbit, rows: Array) -> Orbit:
+    """Some of the motions."""
+    if len(rows) == len(orbit.E0):
+        return orbit
+
+    def part(fields: Any) -> Any:
+        picked: list[Any] = []
+        for value in fields:
+            if isinstance(value, tuple):
+                picked.append(tuple(v[rows] for v in value))
+            else:
+                picked.append(value[rows] if isinstance(value, np.ndarray) else value)
+        return type(fields)(*picked)
+
+    linear = orbit.linear
+    mesh = Mesh(orbit.mesh.edges[rows])
+    return Orbit(
+        orbit.designs.rows(rows), mesh, orbit.E0[rows], orbit.F[rows], part(orbit.course), part(orbit.rate),
+        Linear(mesh, linear.g[rows]), orbit.good[rows],
+    )  # fmt: skip
+
+
+def _from_turns(lanes: Designs, edges: Array, E0: Array) -> Orbit:
+    """The motion near a rough turn from an energy."""
+    path: list[Array] = [np.zeros((lanes.size, 1))]
+    Turns(lanes, edges).gain(E0[:, None], path)
+    mesh = Mesh(edges)
+    energies = np.concatenate(path, axis=1)
+    width = np.diff(edges)
+    with np.errstate(all="ignore"):
+        slope = np.where(width > 0.0, np.diff(energies) / np.where(width > 0.0, width, 1.0), 0.0)
+    F = np.broadcast_to(np.nan_to_num(slope)[..., None], mesh.x.shape).copy()
+    return newton(lanes, mesh, E0, F)
+
+
+def _finer(edges: Array) -> Array:
+    """Each panel in REPEATS."""
+    share = np.arange(REPEATS) / REPEATS
+    inner = edges[:, :-1, None] + np.diff(edges)[..., None] * share
+    return np.concatenate([inner.reshape(len(edges), -1), edges[:, -1:]], axis=1)
+
+
+def _closer(lanes: Designs, edges: Array, low: Array, high: Array) -> Array:
+    """The energies at which the gain changes its sign in brackets, by Illinois steps."""
+    turns = Turns(lanes, edges)
+
+    def gain(E0: Array) -> Array:
+        return turns.gain(E0[:, None])[:, 0]
+
+    below, above = gain(low), gain(high)
+    for _ in range(CLOSER):
+        with np.errstate(all="ignore"):
+            middle = high - above * (high - low) / (above - below)
+        middle = np.where((middle > low) & (middle < high), middle, 0.5 * (low + high))
+        here = gain(middle)
+        same = np.sign(here) == np.sign(above)
+        low, below = np.where(same, low, middle), np.where(same, 0.5 * below, here)
+        high, above = np.where(same, middle, high), np.where(same, here, 0.5 * above)
+    return np.where(np.abs(below) < np.abs(above), low, high)
+
+
+def _first_of_each(design: Array, E0: Array) -> Array:
+    """False for a motion that another of the same design has led to."""
+    keep = np.ones(len(E0), bool)
+    order = np.lexsort((E0, design))
+    for one, other in pairwise(order.tolist()):
+        if design[one] == design[other] and abs(E0[other] - E0[one]) <= SAME * abs(E0[one]):
+            keep[other] = False
+    return keep
+
+
+def main_of(states: States, count: int) -> Array:
+    """The row of the stable motion at the highest speed of each design; -1 where there is none."""
+    found = np.full(count, -1)
+    values = states.figures.values
+    speed = np.abs(values["omega_mean"]) if values else np.empty(0)
+    for row in np.argsort(speed, kind="stable"):
+        if values["stable"][row] and not states.jams[row]:
+            found[states.design[row]] = row
+    return found

@@ -1,0 +1,83 @@
+"""Why a design has no steady state: the motor is too weak, and where it stalls, or too strong."""
+
+from math import degrees
+
+import numpy as np
+
+from .designs import Designs, vanishing
+from .scan import Scan
+from .states import States
+
+BALANCED = 1e-9  # of the work over a period: what of it counts as none
+
+
+def why_none(designs: Designs, states: States, k: int) -> str:
+    """The message of a design without a stable steady state."""
+    scan = states.scan
+    gains, starts = scan.gains[k], scan.starts[k]
+    if not np.isfinite(scan.turns.course.inertia[k]).all():
+        return "no steady state: the crank cannot turn fully"
+    if vanishing(designs)[k]:
+        return (
+            "no steady state: the effective inertia vanishes at a dead centre; give m_crank, I_crank or "
+            "flywheel_inertia"
+        )
+    own = states.design == k
+    if (own & states.jams).any():
+        return "no steady state: the guide jams, friction leaves no balance of forces"
+    if own.any():
+        speeds = ", ".join(f"{w:.6g}" for w in sorted(states.figures.values["omega_mean"][own], key=abs))
+        return (
+            f"no stable steady state: below the unstable ones (omega_mean = {speeds} rad/s, in others) it "
+            "slows down, above them it runs away"
+        )
+    there = np.isfinite(gains)
+    if not designs.source.varies and not designs.has_friction and there.any():
+        return _of_number(designs, scan, k)
+    if not there.any() or (gains[there] < 0.0).all():
+        return f"no steady state: the motor is too weak, {_stall(designs, scan, k)}"
+    last = np.flatnonzero(there)[-1]
+    return (
+        f"no steady state: the motor is too strong, it runs away: at {_speed(scan, k, starts[last])} "
+        f"a period still gains {gains[last]:.6g} J"
+    )
+
+
+def _speed(scan: Scan, k: int, energy: float) -> str:
+    return f"{np.sqrt(2.0 * energy / scan.turns.mean_inertia[k]):.6g} rad/s"
+
+
+def _stall(designs: Designs, scan: Scan, k: int) -> str:
+    """The angle where the crank stops, in the fastest turn that it does not finish."""
+    gains, starts = scan.gains[k], scan.starts[k]
+    stopped = np.flatnonzero(np.isnan(gains) & (starts > 0.0))
+    if not len(stopped) and np.isnan(gains).all():
+        return "it turns the crank at no speed"
+    if not len(stopped):
+        return f"a period takes {-np.nanmax(gains):.6g} J or more from the crank at any speed"
+    one = designs.rows(np.array([k]))
+    turns = type(scan.turns)(one, scan.turns.edges[[k]])
+    path: list[np.ndarray] = []
+    turns.gain(starts[None, [stopped[-1]]], path)
+    at = int(np.argmax(np.isnan(np.concatenate(path, axis=1)[0])))
+    x = float(0.5 * (scan.turns.edges[k, at] + scan.turns.edges[k, at + 1]))
+    theta = float(designs.way[k]) * x
+    return f"it stalls near theta = {theta:.3g} rad ({degrees(theta):.0f} deg)"
+
+
+def _of_number(designs: Designs, scan: Scan, k: int) -> str:
+    """A torque that does not depend on the speed gains the same at every one."""
+    gain = float(np.nanmedian(scan.gains[k]))
+    course, width = scan.turns.course, scan.turns.width
+    load = float((np.abs(course.load[k]).mean(-1) * width[k]).sum())
+    if abs(gain) <= BALANCED * load:
+        return (
+            "no steady state of its own: the torque balances the loads at every speed; give the motor's "
+            "torque over the speed"
+        )
+    way = "strong, it runs away" if gain > 0.0 else f"weak, {_stall(designs, scan, k)}"
+    return (
+        f"no steady state: the motor is too {way}: a torque that does not depend on the speed must balance "
+        f"the loads in the mean; this one gains {gain:.6g} J in a period at every speed, "
+        f"{gain / designs.period:.6g} N m in the mean"
+    )

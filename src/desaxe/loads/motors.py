@@ -1,0 +1,251 @@
+"""Motors: torques over the speed of the crank, from a table or by Kloss's formula."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import inf
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..mechanism.inputs import TINY, Input
+from ..mechanism.read import number_of
+from ..mechanism.unit_system import UnitSystem
+from ..support.shown import shown
+from .columns import column_of
+from .table import Table, held
+
+Array = NDArray[np.float64]
+KINDS = ("linear", "smooth")
+ROWS = (
+    Input("breakdown_torque", "N*m", "", TINY, "a finite torque > 0"),
+    Input("breakdown_slip", "1", "", TINY, "a finite slip > 0"),
+    Input("synchronous_speed", "rad/s", "", None, "a finite speed, not 0"),
+    Input("gear", "1", "", TINY, "a finite ratio > 0"),
+)
+
+
+class Motor(ABC):
+    """A torque on the crank [N m], positive like theta, over the crank's speed [rad/s].
+
+    knots   speeds at which pieces of a table meet
+    plain   what was given as plain numbers, which a machine in other units could mean otherwise
+    """
+
+    call: ClassVar[str] = "over_omega"  # the call that makes it
+    knots: tuple[float, ...] = ()
+    plain: tuple[str, ...] = ()
+
+    @property
+    def numbers(self) -> Mapping[str, Any]:
+        """The parameters by which its torque has derivatives: numbers, or arrays of designs."""
+        return {}
+
+    @abstractmethod
+    def both(self, omega: Any, row: Mapping[str, Any]) -> tuple[Any, Any]:
+        """The torque and its derivative by the speed, with these values of the parameters."""
+
+    def by(self, omega: Any, row: Mapping[str, Any]) -> dict[str, Any]:
+        """The derivatives of the torque by the parameters."""
+        return {}
+
+    @abstractmethod
+    def speeds(self, row: Mapping[str, Any]) -> Array:
+        """Speeds between which the torque has no turn that matters, the last far beyond all of them."""
+
+    def __call__(self, omega: Any) -> Any:
+        """The torque at a speed: a number or an array."""
+        torque = self.both(np.asarray(omega, float), self.numbers)[0]
+        return float(torque) if np.ndim(torque) == 0 else torque
+
+
+@dataclass(frozen=True)
+class OverOmega(Motor):
+    """A table over the speed, held beyond its ends."""
+
+    table: Table
+    kind: str
+    plain: tuple[str, ...] = field(default=(), compare=False)
+
+    @property
+    def knots(self) -> tuple[float, ...]:  # type: ignore[override]
+        """The speeds of the table."""
+        return self.table.knots
+
+    def both(self, omega: Any, row: Mapping[str, Any]) -> tuple[Any, Any]:
+        """The torque and its derivative by the speed."""
+        value, slope = self.table.both(np.asarray(omega))
+        return value, slope
+
+    def speeds(self, row: Mapping[str, Any]) -> Array:
+        """The speeds of the table and some between them."""
+        first, last = min(self.knots), max(self.knots)
+        most = max(abs(first), abs(last))
+        between = np.interp(np.arange(0.0, len(self.knots) - 0.9, 0.25), range(len(self.knots)), self.knots)
+        return np.concatenate([between, most * np.linspace(-3.0, 3.0, 49)])
+
+    def __repr__(self) -> str:
+        told = f"{len(self.knots)} speeds, {self.kind}, {min(self.table.values):g} to"
+        return f"<motor over omega: {told} {max(self.table.values):g} N*m>"
+
+
+@dataclass(frozen=True)
+class Kloss(Motor):
+    """An induction motor by Kloss's formula, behind a gear."""
+
+    breakdown_torque: Any
+    breakdown_slip: Any
+    synchronous_speed: Any
+    gear: Any = 1.0
+    plain: tuple[str, ...] = field(default=(), compare=False)
+    call: ClassVar[str] = "kloss"
+    SLIPS: ClassVar[Array] = np.geomspace(0.05, 20.0, 10)  # over the breakdown slip
+
+    @property
+    def numbers(self) -> Mapping[str, Any]:
+        """The four parameters."""
+        return {row.name: getattr(self, row.name) for row in ROWS}
+
+    def both(self, omega: Any, row: Mapping[str, Any]) -> tuple[Any, Any]:
+        """The torque and its derivative by the speed."""
+        most, slip, speed, gear = (row[r.name] for r in ROWS)
+        u = (1.0 - gear * omega / speed) / slip
+        top, square = gear * np.copysign(most, speed), u * u
+        torque = top * 2.0 * u / (1.0 + square)
+        return torque, top * _bend(square) * (-gear / (speed * slip))
+
+    def by(self, omega: Any, row: Mapping[str, Any]) -> dict[str, Any]:
+        """The derivatives of the torque by the four parameters."""
+        most, slip, speed, gear = (row[r.name] for r in ROWS)
+        u = (1.0 - gear * omega / speed) / slip
+        top, square = gear * np.copysign(most, speed), u * u
+        torque, bend = top * 2.0 * u / (1.0 + square), top * _bend(square)
+        return {
+            "breakdown_torque": torque / most,
+            "breakdown_slip": -bend * u / slip,
+            "synchronous_speed": bend * gear * omega / (speed * speed * slip),
+            "gear": torque / gear - bend * omega / (speed * slip),
+        }
+
+    def speeds(self, row: Mapping[str, Any]) -> Array:
+        """From standstill beyond the synchronous speed, close together around the breakdown slips."""
+        _, slip, speed, gear = (np.asarray(row[r.name], float)[..., None] for r in ROWS)
+        near = np.concatenate([self.SLIPS, -self.SLIPS])
+        far = np.concatenate([1.0 - np.geomspace(1e-3, 0.1, 4), np.linspace(0.9, -3.0, 32)])
+        slips = np.concatenate([slip * near, slip * 0.0 + far], axis=-1)
+        found: Array = (1.0 - np.clip(slips, -3.0, 1.0)) * speed / gear
+        return found
+
+    def __repr__(self) -> str:
+        told = ", ".join(f"{name} = {shown(value)}" for name, value in self.numbers.items())
+        return f"<induction motor: {told}>"
+
+
+def _bend(square: Any) -> Any:
+    """The derivative of 2 u/(1 + u^2) by u, from u^2."""
+    return 2.0 * (1.0 - square) / (1.0 + square) ** 2
+
+
+class MakeOverOmega:
+    """`over_omega(speeds, torques, kind="linear")`: a motor from a table, wherever a torque is given.
+
+        motor = dx.over_omega(["0 rpm", "600 rpm", "1000 rpm"], [30, 45, 0])
+        dx.steady(torque=motor, ec=0.01, AB=0.04, BC=0.15, m_slider=2, I_crank=0.1)
+
+    speeds   ascending speeds of the crank [rad/s], or texts with units; the torque at the first and last
+             holds beyond them
+    torques  on the crank [N m], positive like theta, or texts with units
+    kind     "linear", or "smooth": a curve without corners, which rises and falls only where the table does
+
+    `machine.over_omega` is the same in the units of a machine. Raises ValueError or TypeError for a table
+    that is no function of the speed.
+    """
+
+    def __init__(self, units: UnitSystem | None = None) -> None:
+        self.units = units
+
+    def __call__(self, speeds: Any, torques: Any, kind: str = "linear") -> Motor:
+        """A motor from a table; see `help(desaxe.over_omega)`."""
+        own = (None, None) if self.units is None else (self.units.of("omega"), self.units.of("torque"))
+        x = column_of("over_omega: speeds", speeds, ("rad/s",), own[0])
+        y = column_of("over_omega: torques", torques, ("N*m",), own[1])
+        if not isinstance(kind, str) or kind not in KINDS:
+            raise ValueError(f"over_omega: kind = {shown(kind)}: it is one of {', '.join(KINDS)}")
+        if len(x.values) != len(y.values):
+            raise ValueError(
+                f"over_omega: {len(x.values)} speeds and {len(y.values)} torques; expected as many of both"
+            )
+        if len(x.values) < 2:
+            raise ValueError(f"over_omega: {len(x.values)} of the speeds; expected at least two points")
+        steps = np.diff(x.values)
+        if not (steps > 0.0).all():
+            at = int(np.argmin(steps))
+            raise ValueError(
+                f"over_omega: the speeds must ascend, but {x.values[at + 1]:g} follows {x.values[at]:g}"
+            )
+        table = held(x.values, y.values, kind)
+        if not np.isfinite(table.rows).all():
+            raise ValueError("over_omega: two speeds are too close for the torques there")
+        return OverOmega(table, kind, ("omega",) * x.plain + ("torque",) * y.plain)
+
+    def __repr__(self) -> str:
+        units = f" in {self.units!r}" if self.units else ""
+        return f"desaxe.over_omega(speeds, torques, kind='linear'){units}"
+
+
+class MakeKloss:
+    """`kloss(breakdown_torque, breakdown_slip, synchronous_speed, gear=1)`: an induction motor.
+
+        motor = dx.kloss("40 N m", 0.15, "1500 rpm", gear=12)
+        dx.steady(torque=motor, ec=0.01, AB=0.04, BC=0.15, m_slider=2, I_crank=0.1)
+
+    breakdown_torque   the motor's largest torque T_b [N m]
+    breakdown_slip     the slip s_b at which it is reached
+    synchronous_speed  of the motor [rad/s]; negative for one that turns backwards
+    gear               turns of the motor for one of the crank: the crank has gear times the motor's torque
+
+    T = 2 T_b s s_b/(s^2 + s_b^2) with the slip s = 1 - gear omega/synchronous_speed. Each is a number, or an
+    array for an array of designs. `machine.kloss` is the same in the units of a machine.
+    """
+
+    def __init__(self, units: UnitSystem | None = None) -> None:
+        self.units = units
+
+    def __call__(
+        self, breakdown_torque: Any, breakdown_slip: Any, synchronous_speed: Any, gear: Any = 1.0
+    ) -> Motor:
+        """An induction motor; see `help(desaxe.kloss)`."""
+        given = (breakdown_torque, breakdown_slip, synchronous_speed, gear)
+        names = {"N*m": "torque", "rad/s": "omega"}
+        plain, values = [], []
+        for row, one in zip(ROWS, given, strict=True):
+            own = self.units.of(names[row.unit]) if self.units is not None and row.unit in names else None
+            value = np.asarray(one) if isinstance(one, (list, tuple)) else one
+            text = isinstance(value, str) or getattr(getattr(value, "dtype", None), "kind", "") == "U"
+            bare = not text and not hasattr(value, "magnitude")
+            values.append(_number(row, own.to_si(value) if own is not None and bare else value))
+            plain += [names[row.unit]] if bare and row.unit in names and own is None else []
+        most, slip, speed, ratio = values
+        return Kloss(most, slip, speed, ratio, tuple(plain))
+
+    def __repr__(self) -> str:
+        units = f" in {self.units!r}" if self.units else ""
+        return f"desaxe.kloss(breakdown_torque, breakdown_slip, synchronous_speed, gear=1){units}"
+
+
+def _number(row: Input, value: Any) -> Any:
+    """A number, or an array of numbers, within the limit of its row."""
+    if isinstance(value, (list, tuple)) or np.ndim(value):
+        each = [_number(row, part) for part in np.asarray(value).reshape(-1).tolist()]
+        return np.reshape(each, np.shape(value))
+    number = number_of(row, value)
+    if number is None:
+        raise TypeError(f"{row.name} = {shown(value)}: kloss expects a number or an array of numbers")
+    if row.least is None and (number == 0.0 or abs(number) == inf):
+        raise ValueError(f"{row.name} = {shown(value)}: it must be {row.limit}")
+    return number
+
+
+over_omega = MakeOverOmega()
+kloss = MakeKloss()

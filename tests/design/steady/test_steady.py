@@ -1,0 +1,357 @@
+"""`steady` against Newton's law of the free bodies, over random machines, motors and loads."""
+
+from math import exp, pi, sqrt
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from desaxe.loads.angles import kinks_between
+from tests.design.steady.free_bodies import FreeBodies, turn
+from tests.effort import cases
+
+PRESS = {"ec": 0.01, "AB": 0.05, "BC": 0.2, "m_slider": 20.0, "I_crank": 2.0, "F_Y": -900.0}
+MOTOR = dx.kloss(40.0, 0.15, 157.08, gear=12)
+KEYS = ("period", "omega_mean", "fluctuation", "power_mean")
+
+
+def machine(rng):
+    """Inputs, some of which are 0."""
+    AB = rng.uniform(0.03, 0.1)
+    BC = AB * rng.uniform(2.2, 5.0)
+    some = rng.integers(0, 2, 5)
+    found = {
+        "ec": rng.uniform(-0.4, 0.4) * (BC - AB) * some[0], "AB": AB, "BC": BC,
+        "m_crank": rng.uniform(0, 5), "m_rod": rng.uniform(0.1, 3), "m_slider": rng.uniform(0.5, 10),
+        "I_crank": rng.uniform(0.01, 1), "I_rod": rng.uniform(0, 0.02), "g_Y": -9.81 * some[1],
+        "g_X": rng.uniform(-9, 9) * some[2], "F_X": rng.uniform(-100, 100) * some[3],
+        "F_Y": rng.uniform(-100, 100), "r_rod": rng.uniform(0, 1) * BC, "r_crank": rng.uniform(-1, 1) * AB,
+    }  # fmt: skip
+    return found | ({"mu": rng.uniform(0.01, 0.3)} if some[4] else {})
+
+
+def with_load(rng, inputs, branch):
+    """A load over position, stroke or two turns, as desaxe and as the free bodies take it."""
+    kind = rng.integers(0, 4)
+    raw = dict(inputs)
+    if kind == 0:
+        return inputs, raw
+    if kind == 3:
+        angles = np.sort(rng.uniform(0.1, 4 * pi - 0.1, 5))
+        values = rng.uniform(-300, 300, 5)
+        inputs = {**inputs, "F_Y": dx.over_theta(angles, values, "linear", period=4 * pi)}
+        raw["F_Y"] = lambda theta, Y, way: np.interp(theta % (4 * pi), angles, values, period=4 * pi)
+        return inputs, raw
+    lengths = {n: inputs[n] for n in ("ec", "AB", "BC")}
+    centres = dx.evaluate(["Y_outer", "Y_inner"], branch=branch, **lengths)
+    low, high = sorted(centres.values())
+    x = np.sort(rng.uniform(low, high, 4))
+    out, back = rng.uniform(-500, 500, (2, 4))
+    if kind == 1:
+        inputs = {**inputs, "F_Y": dx.over_Y(x, out, back)}
+        raw["F_Y"] = lambda theta, Y, way: np.interp(Y, x, out if way >= 0 else back)
+    else:
+        d = x - low
+        inputs = {**inputs, "F_Y": dx.over_stroke(d, out, back, dead_centre="outer")}
+        centre = centres["Y_outer"]
+        raw["F_Y"] = lambda theta, Y, way: np.interp(abs(centre - Y), d, out if way >= 0 else back)
+    return inputs, raw
+
+
+def motor(rng, way):
+    """A motor, and its torque as a function of (theta, omega)."""
+    size, top = rng.uniform(40, 150), rng.uniform(5, 60)
+    kind = rng.integers(0, 4)
+    if kind == 0:
+        gear = rng.uniform(1, 10)
+        found = dx.kloss(size / gear, rng.uniform(0.1, 0.5), way * top * gear, gear)
+        return found, lambda theta, omega: found(omega)
+    if kind == 1:
+        speeds = way * np.linspace(0, top, 5)[:: int(way)]
+        torques = (way * np.array([1.2, 1.4, 1.6, 1.0, 0.0]) * size * rng.uniform(0.8, 1.2, 5))[:: int(way)]
+        found = dx.over_omega(speeds, torques, kind=rng.choice(["linear", "smooth"]))
+        return found, lambda theta, omega: found(omega)
+    if kind == 2:
+        return (lambda omega: way * size * (1.2 - abs(omega) / top)), (
+            lambda theta, omega: way * size * (1.2 - abs(omega) / top)
+        )
+    found = lambda theta, omega: way * size * (1.2 + 0.3 * np.sin(2 * theta) - (omega / top) ** 2)  # noqa: E731
+    return found, found
+
+
+def drawn(seed):
+    """A random machine on its motor: the call, and the free bodies with the motor's torque."""
+    rng = np.random.default_rng(seed)
+    branch, way = int(rng.choice([1, -1])), float(rng.choice([1, -1]))
+    inputs, raw = with_load(rng, machine(rng), branch)
+    torque, plain = motor(rng, way)
+    J = 10 ** rng.uniform(-1.5, 1.5)
+    call = {**inputs, "torque": torque, "flywheel_inertia": J, "branch": branch, "omega0": way}
+    return call, FreeBodies(branch, way, **raw, J=J), plain
+
+
+def edges_of(call, found):
+    """Even edges and the kinks of the load over the period, in the way of turning."""
+    way, period = np.sign(found["theta"][-1]), abs(found["theta"][-1])
+    loads = [call["F_Y"]] if callable(call["F_Y"]) else []
+    lengths = [call[n] for n in ("ec", "AB", "BC")]
+    kinks = kinks_between(loads, 0.0, period, lengths, call["branch"], smooth=True)
+    kinks = [k if way > 0 else k - period for k in kinks]
+    every = np.unique([*turn(round(period / (2 * pi)), way), *kinks])
+    return every[np.append(True, np.diff(every) > 1e-12)][:: int(way)]
+
+
+def motions(found):
+    return [one for one in (found, *found["others"]) if one["status"] == 0]
+
+
+@pytest.mark.sampled
+def test_a_period_later_the_free_bodies_are_where_they_were():
+    seen = 0
+    for seed in range(cases(4, 30, 300)):
+        call, bodies, torque = drawn(seed)
+        found = dx.steady(**call)
+        for one in motions(found):
+            places = np.array([17, 100, 222, 333])
+            theta, omega = one["theta"][places], one["omega"][places]
+            square, period, work, there = bodies.period(
+                torque, one["omega"][0], edges_of(call, one), at=theta
+            )
+            grown = 1e-9 * max(1.0, one["multiplier"])
+            assert square == pytest.approx(one["omega"][0] ** 2, rel=grown), seed
+            assert period == pytest.approx(one["period"], rel=grown), seed
+            assert work == pytest.approx(one["work"], rel=grown, abs=grown * 2 * pi * 40), seed
+            np.testing.assert_allclose(there, omega, rtol=grown, err_msg=str(seed))
+            np.testing.assert_allclose(
+                one["T_motor"][places], np.vectorize(torque)(theta, omega), rtol=1e-11, err_msg=str(seed)
+            )
+            assert one["omega_mean"] == pytest.approx(one["theta"][-1] / period, rel=grown)
+            assert one["power_mean"] == pytest.approx(one["work"] / one["period"], rel=1e-12)
+            seen += 1
+    assert seen >= 2
+
+
+STEPS, WEIGHTS = np.array([-3, -2, -1, 1, 2, 3]), np.array([-1 / 60, 0.15, -0.75, 0.75, -0.15, 1 / 60])
+
+
+@pytest.mark.sampled
+def test_gradients_are_those_of_the_values():
+    """Central differences of order 6, of designs in one array."""
+    seen = 0
+    for seed in range(100, 100 + cases(2, 10, 300)):
+        call, *_ = drawn(seed)
+        found = dx.steady(**call)
+        if found["status"] or found["multiplier"] > 0.99:
+            continue
+        by_period = found["gradient"]["period"]
+        own = getattr(call["torque"], "numbers", {})
+        numbers = {n: v for n, v in call.items() if n in by_period and not callable(v) and v} | dict(own)
+        for name in np.random.default_rng(seed).permutation(list(numbers))[:2]:
+            at = numbers[name]
+            h = 3e-4 * (call["AB"] if name == "ec" else abs(at))
+            moved = {name: at + h * STEPS}
+            torque = dx.kloss(**{**own, **moved}) if name in own else call["torque"]
+            result = dx.steady(**{**call, **({} if name in own else moved), "torque": torque})
+            for key in KEYS:
+                exact = found["gradient"][key][name]
+                slope = WEIGHTS @ result[key] / h
+                scale = abs(exact) + 1e-2 * abs(found[key] / at)
+                assert abs(slope - exact) < 2e-7 * scale, (seed, name, key)
+            seen += 1
+    assert seen
+
+
+def bare(net):
+    """A wheel alone on a motor with this torque of omega: the mechanism has no mass."""
+    return dx.steady(torque=net, ec=0.0, AB=0.05, BC=0.2, I_crank=0.7, flywheel_inertia=0.3)
+
+
+@pytest.mark.parametrize("load", [3.0, 39.9])
+def test_both_speeds_of_an_induction_motor_are_found_with_their_multipliers(load):
+    motor = dx.kloss(40.0, 0.2, 30.0)
+    found = bare(lambda omega: motor(omega) - load)
+    ratio = 40.0 / load
+    slips = [0.2 * (ratio - side * sqrt(ratio**2 - 1)) for side in (1, -1)]
+    speeds = [30.0 * (1 - s) for s in slips]
+    assert found["omega_mean"] == pytest.approx(speeds[0], rel=1e-11 if load < 39.9 else 1e-9)
+    assert found["stable"]
+    steep = [-2 * 40 * 0.2 * (0.04 - s * s) / (0.04 + s * s) ** 2 / 30.0 for s in slips]
+    multipliers = [exp(2 * pi * t / w) for t, w in zip(steep, speeds, strict=True)]
+    assert found["multiplier"] == pytest.approx(multipliers[0], rel=1e-9)
+    if slips[1] < 1.0:
+        (other,) = found["others"]
+        assert other["omega_mean"] == pytest.approx(speeds[1], rel=1e-9)
+        assert other["multiplier"] == pytest.approx(multipliers[1], rel=1e-8)
+        assert not other["stable"]
+    else:
+        assert not found["others"]
+
+
+def test_the_motion_of_simulate_settles_there():
+    press = {**PRESS, "F_Y": dx.over_Y([0.15, 0.2, 0.25], [-4000, -2000, 0], [3000, 0, 0]), "mu": 0.1}
+    found = dx.steady(torque=MOTOR, flywheel_inertia=3.0, **press)
+    heavier = {**press, "I_crank": press["I_crank"] + 3.0}
+    start = {"theta0": 0.0, "omega_start": found["omega"][0]}
+    motion = dx.simulate(
+        torque=MOTOR, t_end=1.2 * found["period"], rtol=1e-12, until=2 * pi, **start, **heavier
+    )
+    assert motion["t"][-1] == pytest.approx(found["period"], rel=1e-9)
+    assert motion["omega"][-1] == pytest.approx(found["omega"][0], rel=1e-9)
+    far = dx.simulate(torque=MOTOR, t_end=5.0, rtol=1e-12, omega_start=5.0, until=2 * pi * 8, **heavier)
+    assert far["omega"][-1] == pytest.approx(found["omega"][0], rel=1e-9)
+
+
+def test_arrays_are_the_designs_one_by_one():
+    lengths = np.linspace(0.04, 0.06, 5)
+    most = np.array([[2.0], [30.0]])
+    many = dx.steady(torque=dx.kloss(most, 0.15, 157.08, gear=12), mu=0.05, **{**PRESS, "AB": lengths})
+    assert many["status"].shape == (2, 5)
+    assert many["omega"].shape == many["theta"].shape == (2, 5, 361)
+    for i, j in np.ndindex(2, 5):
+        motor = dx.kloss(most[i, 0], 0.15, 157.08, gear=12)
+        one = dx.steady(torque=motor, mu=0.05, **{**PRESS, "AB": lengths[j]})
+        assert many["status"][i, j] == one["status"]
+        assert many["message"][i, j] == one["message"]
+        assert len(many["others"][i, j]) == len(one["others"])
+        for key in (*KEYS, "work", "multiplier", "omega"):
+            np.testing.assert_allclose(many[key][i, j], one[key], rtol=1e-10)
+        for key, by in one["gradient"].items():
+            for name, slope in by.items():
+                scale = abs(one[key]) * 1e-9 / max(1e-3, abs(PRESS.get(name, 1.0)))
+                assert many["gradient"][key][name][i, j] == pytest.approx(slope, rel=1e-7, abs=scale)
+
+
+def test_bad_designs_of_an_array_leave_the_others_alone():
+    found = dx.steady(torque=MOTOR, **{**PRESS, "AB": [0.05, np.nan, 0.3]})
+    assert found["status"].tolist() == [0, 4, 1]
+    assert np.isnan(found["period"]).tolist() == [False, True, True]
+    assert "cannot turn" in found["message"][2]
+
+
+@pytest.mark.parametrize(
+    ("torque", "said"),
+    [
+        (dx.kloss(0.1, 0.15, 157.08, gear=12), "too weak, it stalls near theta"),
+        (lambda omega: 50.0 + omega, "too strong, it runs away"),
+        (30.0, "too strong, it runs away: a torque that does not depend on the speed must balance"),
+        (-30.0, "too weak"),
+        (0.0, "balances the loads at every speed"),
+    ],
+)
+def test_without_a_steady_state_the_message_says_why(torque, said):
+    press = {**PRESS, "F_Y": dx.over_Y([0.15, 0.25], [-200, -200], [0, 0])}  # 3.2 N m in the mean
+    found = dx.steady(torque=torque, **(PRESS if torque == 0.0 else press))
+    assert found["status"] == 1
+    assert said in found["message"]
+    assert np.isnan([found[key] for key in KEYS]).all()
+    assert np.isnan(found["omega"]).all()
+
+
+def test_an_unstable_motion_alone_is_no_steady_state():
+    found = dx.steady(torque=lambda omega: 10.0 * (omega - 20.0), flywheel_inertia=5.0, **PRESS)
+    assert found["status"] == 1
+    assert "no stable" in found["message"]
+    (other,) = found["others"]
+    assert other["omega_mean"] == pytest.approx(20.0, rel=1e-3)
+    assert other["multiplier"] > 1.0
+
+
+def test_a_number_finds_a_speed_where_friction_grows_with_it():
+    inputs = {"ec": 0.01, "AB": 0.05, "BC": 0.2, "m_slider": 20.0, "I_crank": 2.0, "mu": 0.2}
+    found = dx.steady(torque=5.0, **inputs)
+    assert found["status"] == 0
+    assert found["work"] == pytest.approx(10.0 * pi, rel=1e-12)
+    mean = dx.drive(omega0=found["omega_mean"], fluctuation=1.0, **inputs)["torque_mean"]
+    assert mean == pytest.approx(5.0, rel=0.05)
+
+
+def test_the_flywheel_for_a_wanted_fluctuation():
+    at = 0.01
+    found = dx.steady(torque=MOTOR, fluctuation=at, **PRESS)
+    assert found["fluctuation"] == pytest.approx(at, rel=1e-12)
+    again = dx.steady(torque=MOTOR, flywheel_inertia=found["flywheel_inertia"], **PRESS)
+    assert again["period"] == pytest.approx(found["period"], rel=1e-12)
+    by = found["gradient"]["flywheel_inertia"]
+    h = 1e-3 * at
+    near = dx.steady(torque=MOTOR, fluctuation=at + h * STEPS, **PRESS)["flywheel_inertia"]
+    assert by["fluctuation"] == pytest.approx(WEIGHTS @ near / h, rel=1e-7)
+    press = {**PRESS, "m_slider": 20.0 + 0.02 * STEPS}
+    near = dx.steady(torque=MOTOR, fluctuation=at, **press)["flywheel_inertia"]
+    assert by["m_slider"] == pytest.approx(WEIGHTS @ near / 0.02, rel=1e-6)
+
+
+def test_a_machine_that_stores_enough_needs_no_flywheel():
+    found = dx.steady(torque=MOTOR, fluctuation=0.5, **PRESS)
+    assert found["flywheel_inertia"] == 0.0
+    assert found["fluctuation"] < 0.5
+
+
+@pytest.mark.parametrize(
+    ("change", "error", "said"),
+    [
+        ({"torque": None}, TypeError, "torque"),
+        ({"torque": "many"}, (TypeError, ValueError), "torque"),
+        ({"torque": lambda a, b, c, d: 1.0}, TypeError, "function of omega"),
+        ({"torque": lambda t, theta, omega: t}, ValueError, "changes with t"),
+        ({"torque": lambda omega: float("nan")}, ValueError, "finite"),
+        ({"flywheel_inertia": -1.0}, ValueError, "flywheel_inertia = -1.0"),
+        ({"fluctuation": 2.0}, ValueError, "fluctuation = 2.0"),
+        ({"alpha": 1.0}, ValueError, "alpha"),
+        ({"AB": None}, TypeError, "AB"),
+        ({"m_slidr": 1.0}, TypeError, "m_slider"),
+        ({"F_Y": dx.over_theta([0, 1, 2], [1, 2, 1], period=5.0)}, ValueError, "turns"),
+    ],
+)
+def test_bad_inputs_are_named(change, error, said):
+    with pytest.raises(error, match=said):
+        dx.steady(**{"torque": MOTOR, **PRESS, **change})
+
+
+def test_no_inertia_at_a_dead_centre_is_said():
+    found = dx.steady(torque=MOTOR, ec=0.0, AB=0.05, BC=0.2, m_slider=1.0)
+    assert found["status"] == 1
+    assert "inertia vanishes" in found["message"]
+
+
+def test_motors_of_a_machine_are_in_its_units():
+    press = dx.Machine(units="mm, rpm", ec=10, AB=50, BC=200, m_slider=20.0, I_crank=2.0)
+    found = press.steady(torque=press.kloss(40.0, 0.15, 1500, gear=12), flywheel_inertia=3.0)
+    plain = dx.steady(torque=dx.kloss("40 N m", 0.15, "1500 rpm", 12), flywheel_inertia=3.0, **press)
+    assert found["omega_mean"] == pytest.approx(plain["omega_mean"] * 30 / pi, rel=1e-12)
+    by, own = (one["gradient"]["omega_mean"]["AB"] for one in (found, plain))
+    assert by == pytest.approx(own * 30 / pi / 1000, rel=1e-9)
+    table = press.over_omega([0, 100, 200], [30, 40, 0], "smooth")
+    assert table(100 * pi / 30) == pytest.approx(40.0, rel=1e-12)
+    with pytest.raises(ValueError, match=r"machine\.kloss"):
+        press.steady(torque=dx.kloss(40.0, 0.15, 157.08, 12))
+
+
+@pytest.mark.parametrize("change", [{}, {"I_crank": [2.0, 3.0]}])
+def test_simulate_takes_motors(change):
+    start = {"t_end": 0.3, "omega_start": 12.0, "rtol": 1e-11, **PRESS, **change}
+    plain = dx.simulate(torque=lambda t, theta, omega: 500.0 - 30.0 * omega, **start)
+    for torque in (
+        dx.over_omega([0.0, 50.0], [500.0, -1000.0]),
+        lambda omega: 500.0 - 30.0 * omega,
+        lambda theta, omega: 500.0 - 30.0 * omega,
+    ):
+        found = dx.simulate(torque=torque, **start)
+        np.testing.assert_allclose(found["omega"], plain["omega"], rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: dx.over_omega([0, 1], [1]), "2 speeds and 1 torques"),
+        (lambda: dx.over_omega([1, 0], [1, 2]), "must ascend"),
+        (lambda: dx.over_omega([0, 1], [1, 2], "cubic"), "kind"),
+        (lambda: dx.over_omega([1], [1]), "at least two"),
+        (lambda: dx.kloss(0, 0.1, 100), "breakdown_torque = 0"),
+        (lambda: dx.kloss(10, 0.1, 0), "synchronous_speed = 0"),
+        (lambda: dx.kloss(10, -0.1, 100), "breakdown_slip"),
+        (lambda: dx.kloss(10, 0.1, 100, gear=float("nan")), "gear"),
+    ],
+)
+def test_a_motor_that_is_none_is_refused_by_name(make, said):
+    with pytest.raises(ValueError, match=said):
+        make()
