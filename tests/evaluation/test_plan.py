@@ -65,6 +65,7 @@ def _plain(value):
         pytest.param("a_C", FAR, None, {"ec": "max", "BC": "mean"}, marks=pytest.mark.thorough),
         ("T_in", FAR, over_theta, None),
         pytest.param("T_in", FAR, over_theta, {"ec": "median"}, marks=pytest.mark.thorough),
+        pytest.param("T_in", FAR, over_theta, {"theta": "max"}, marks=pytest.mark.thorough),
         pytest.param("T_in", FAR, over_Y, None, marks=pytest.mark.thorough),
         pytest.param("T_in", FAR, over_Y, {"ec": ["max", "p95"]}, marks=pytest.mark.thorough),
     ],

@@ -1,7 +1,7 @@
 """On which side of a jump of a load samples are, from their values and those at the doubles next to them."""
 
 from collections.abc import Mapping
-from math import inf, nextafter, pi
+from math import inf, pi
 from typing import Any
 
 import numpy as np
@@ -44,13 +44,23 @@ def _near(load: Load, points: Mapping[str, Array], branch: int) -> NDArray[np.bo
     """Mask of the samples that are within rounding of a jump of a load."""
     theta = points["theta"]
     if isinstance(load, OverTheta):
-        low, high = np.nanmin(theta, initial=0.0), np.nanmax(theta, initial=0.0)
-        nodes = np.array(load.nodes(float(low), nextafter(float(high), inf), smooth=False))
-        return np.isin(theta, nodes) | np.isin(np.nextafter(theta, inf), nodes)
+        return _near_nodes(np.array(load.nodes(0.0, load.period, smooth=False)), load.period, theta)
     assert isinstance(load, OverY)
     lengths = [points[n] for n in LENGTHS]
     angles = [crossings(load, load.jumps, lengths, branch), *([dead_centres(lengths)] if load.turns else [])]
     away = theta[:, None] - np.concatenate(angles, axis=1)
     away -= 2.0 * pi * np.round(away / (2.0 * pi))
     near: NDArray[np.bool_] = (np.abs(away) <= NEAR * (1.0 + np.abs(theta[:, None]))).any(axis=1)
+    return near
+
+
+def _near_nodes(nodes: Array, period: float, theta: Array) -> NDArray[np.bool_]:
+    """Mask of the angles that are within rounding of one of the sorted nodes of a period."""
+    if not nodes.size:
+        return np.zeros(theta.size, np.bool_)
+    nodes = np.concatenate([nodes[-1:] - period, nodes, nodes[:1] + period])
+    rest = theta - period * np.floor(theta / period)
+    after = np.searchsorted(nodes, rest).clip(1, nodes.size - 1)
+    away = np.minimum(np.abs(rest - nodes[after - 1]), np.abs(rest - nodes[after]))
+    near: NDArray[np.bool_] = away <= NEAR * (1.0 + np.abs(theta))
     return near
