@@ -221,7 +221,7 @@ class MakeKloss:
         plain, values = [], []
         for row, one in zip(ROWS, given, strict=True):
             own = self.units.of(names[row.unit]) if self.units is not None and row.unit in names else None
-            value = np.asarray(one) if isinstance(one, (list, tuple)) else one
+            value = _array(row, one) if isinstance(one, (list, tuple)) else one
             text = isinstance(value, str) or getattr(getattr(value, "dtype", None), "kind", "") == "U"
             bare = not text and not hasattr(value, "magnitude")
             values.append(_number(row, own.to_si(value) if own is not None and bare else value))
@@ -232,6 +232,14 @@ class MakeKloss:
     def __repr__(self) -> str:
         units = f" in {self.units!r}" if self.units else ""
         return f"desaxe.kloss(breakdown_torque, breakdown_slip, synchronous_speed, gear=1){units}"
+
+
+def _array(row: Input, value: Any) -> Any:
+    """A list as an array; TypeError for rows of different lengths."""
+    try:
+        return np.asarray(value)
+    except ValueError:
+        raise TypeError(f"{row.name} = {shown(value)}: kloss expects a number or an array") from None
 
 
 def _number(row: Input, value: Any) -> Any:

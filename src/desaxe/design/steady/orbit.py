@@ -22,7 +22,7 @@ RESOLVED = 3e-12  # of the largest value: the last coefficients of a panel
 NOISE, PLATEAU = 1e-9, 0.05  # the same, where they are not smaller than this share of earlier ones
 NARROWEST = 2.0**-40  # rad
 HALVINGS = 40
-PANELS = 4000
+PANELS = 1500
 SHRINK = 0.8  # of the energy: what a step may take
 
 
@@ -100,6 +100,8 @@ def between_kinks(orbit: Orbit, edges: Array) -> Orbit:
     before = np.empty((len(edges), 0))
     for _ in range(ROUNDS):
         now = np.sort(switches(orbit), axis=1)
+        if now.shape[1] > PANELS:
+            break
         if now.shape == before.shape and (np.abs(now - before) <= MOVED).all():
             break
         orbit, before = moved(orbit, np.sort(np.concatenate([edges, now], axis=1), axis=1)), now

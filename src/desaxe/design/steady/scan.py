@@ -120,7 +120,8 @@ def scan(designs: Designs, edges: Array) -> Scan:
     """The gains of all starts that are needed to see every change of sign."""
     turns = Turns(designs, edges)
     speeds = np.maximum(designs.source.speeds(designs.motor) * designs.way[:, None], 0.0)
-    starts = np.sort(0.5 * turns.mean_inertia[:, None] * speeds**2, axis=1)
+    with np.errstate(over="ignore"):
+        starts = np.sort(0.5 * turns.mean_inertia[:, None] * speeds**2, axis=1)
     gains = turns.gain(np.where(starts > 0.0, starts, np.nan))
     for _ in range(ROUNDS):
         score = _scores(starts, gains)

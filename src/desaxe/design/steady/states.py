@@ -79,13 +79,16 @@ class _Solved:
             if not len(index):
                 return
             orbit = between_kinks(orbit, edges)
-            bad = unresolved(orbit) if orbit.mesh.edges.shape[1] < PANELS else np.zeros((len(index), 1), bool)
+            bad = unresolved(orbit) & ~jammed(orbit)[:, None]
+            if orbit.mesh.edges.shape[1] > PANELS:
+                bad[:] = False
             done = np.flatnonzero(~bad.any(1))
             if len(done):
                 finished, slopes = _rows(orbit, done), None
                 if self.with_gradient:
                     slopes = Slopes(finished)
-                    bad[done] |= unresolved(finished, tuple(slopes.forcing[name] for name in slopes.names))
+                    own = unresolved(finished, tuple(slopes.forcing[name] for name in slopes.names))
+                    bad[done] |= own & ~jammed(finished)[:, None] & (own.shape[1] < PANELS)
                     if bad[done].any():
                         done = np.flatnonzero(~bad.any(1))
                         finished = _rows(orbit, done)
@@ -106,12 +109,19 @@ class _Solved:
         figures = figures_of(orbit, slopes)
         count = self.lanes.size
         self.good[index], self.E0[index] = orbit.good, orbit.E0
-        if orbit.rate.wedge is not None:
-            self.jams[index] = ((orbit.rate.wedge >= JAMS_AT) | (orbit.rate.wedge < -1.0)).any((1, 2))
+        self.jams[index] = jammed(orbit)
         _put(self.values, index, figures.values, count)
         _put(self.course, index, course_at_steps(orbit), count)
         for key, by in figures.gradient.items():
             _put(self.gradient.setdefault(key, {}), index, by, count)
+
+
+def jammed(orbit: Orbit) -> Array:
+    """True where friction leaves no balance of forces somewhere on the turn, or two."""
+    wedge = orbit.rate.wedge
+    if wedge is None:
+        return np.zeros(len(orbit.E0), bool)
+    return np.asarray(((wedge >= JAMS_AT) | (wedge < -1.0)).any((1, 2)))
 
 
 def _put(into: dict[str, Array], index: Array, rows: dict[str, Array], count: int) -> None:
