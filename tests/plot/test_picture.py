@@ -11,6 +11,7 @@ SIZES = {"ec": 10, "AB": 50, "BC": 200, "omega0": 300, "m_slider": 4}
 PRESS = dx.Machine(SIZES, units="mm, deg, rpm")
 STEP = PRESS.over_theta([0, 30, 180], [-3000, 0, 0], kind="step")  # jumps at 0 and at 30 deg
 LOADED = PRESS.replace(F_Y=STEP)
+MOTOR = dx.kloss("40 N m", 0.15, "1500 rpm", gear=5)
 NARROW = "\u00a0"
 
 
@@ -26,6 +27,7 @@ DRAWN = {
     "mechanism": lambda plot, ax: plot.mechanism(30, ax=ax),
     "tornado": lambda plot, ax: plot.tornado("T_in", ax=ax),
     "drive": lambda plot, ax: plot.drive(ax=ax),
+    "steady": lambda plot, ax: plot.steady(torque=MOTOR, flywheel_inertia=2.0, ax=ax),
     "animate": lambda plot, ax: plot.animate(frames=2, ax=ax),
 }
 

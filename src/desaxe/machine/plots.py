@@ -97,6 +97,10 @@ class Plots:
         """Draw the drive torque over a turn, and the speed with the flywheel: see `desaxe.plot.drive`."""
         return plot.drive(self._machine.drive(**inputs), ax=ax)
 
+    def steady(self, *, torque: Any, ax: Any = None, **inputs: Any) -> Any:
+        """Draw the steady state over a turn and on the motor's curve: see `desaxe.plot.steady`."""
+        return plot.steady(self._machine.steady(torque=torque, **inputs), ax=ax)
+
     def _over_theta(self, names: str | Sequence[str], inputs: Mapping[str, Any]) -> Any:
         """The quantities over the crank angle, labelled, in the units of the machine."""
         if "theta" in inputs:

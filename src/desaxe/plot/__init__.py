@@ -7,6 +7,7 @@ design_map  a quantity over two inputs, what is infeasible hatched
 tornado     what a change of each input does, by exact sensitivities
 mechanism   crank, rod and slider to scale at a crank angle
 drive       drive torque over a turn, and the speed with its flywheel
+steady      speed and torque of a machine on its motor, and the working loop on its curve
 animate     the same as it turns, beside a quantity's curve
 save        a figure or animation to a file
 picture     what each of them returns: figure, axes, artists
@@ -27,6 +28,7 @@ from .panels import panels as panels
 from .picture import Picture as Picture
 from .polar import polar as polar
 from .save import save as save
+from .steady import steady as steady
 from .tornado import tornado as tornado
 
 __all__ = [
@@ -39,5 +41,6 @@ __all__ = [
     "panels",
     "polar",
     "save",
+    "steady",
     "tornado",
 ]

@@ -6,26 +6,49 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...mechanism.unit_system import SI
 from ...support.answer import Answer
+from ...support.forks import IMPORTS
 from .designs import Designs
 from .figures import KEYS, STEPS
+from .source import source_of
 from .states import States, main_of
 from .why import why_none
 
 Array = NDArray[Any]
 NUMBERS = ("period", "omega_mean", "fluctuation", "power_mean", "work", "multiplier")
+CURVE, POINTS = 1.25, 400  # times the highest speed, of the motor's curve
 COURSE = ("theta", "omega", "T_motor")
 Part = tuple[Array, Designs, States, bool]  # whether the flywheel was looked for
 
 
 class Steady(Answer):
-    """The figures by name.
+    """The figures by name; `plot()`.
 
     `inputs` are those of the design in SI units, `torque` is the motor.
     """
 
     torque: Any = None
     branch: int = 1
+
+    def motor_curve(self) -> tuple[Array, Array] | None:
+        """Speeds and torques of the motor in SI units; None where the angle counts, or of an array."""
+        source = source_of(self.torque)
+        if np.ndim(self["period"]) or not source.varies or not source.of_speed_alone:
+            return None
+        row = {name: float(value) for name, value in source.numbers.items()}
+        system = self.units or SI
+        ends = [system.of("omega").to_si(end) for end in (self["omega"].min(), self["omega"].max())]
+        way = np.sign(ends[1] + ends[0])
+        speed = np.linspace(0.0, way * max(CURVE * abs(end) for end in ends), POINTS)
+        return speed, np.asarray(source.both(np.zeros_like(speed), speed, row)[0])
+
+    def plot(self, ax: Any = None) -> Any:
+        """Speed and torque over a period, and the loop on the motor's curve: see `desaxe.plot.steady`."""
+        with IMPORTS:
+            from ...plot import steady
+
+        return steady(self, ax=ax)
 
 
 def result_of(shape: tuple[int, ...], parts: Sequence[Part], about: Mapping[str, Any]) -> Steady:

@@ -28,13 +28,14 @@ class Source:
 
     numbers   its parameters, by which there are derivatives
     knots     speeds at which it has a kink
-    varies    whether it depends on the speed
+    varies    whether it depends on the speed, of_speed_alone: on nothing else
     way       the way in which it turns the crank, None where it has none of its own
     """
 
     numbers: Mapping[str, Any] = {}
     knots: tuple[float, ...] = ()
     varies = True
+    of_speed_alone = True
     load: Load | None = None
     way: Any = None
 
@@ -108,6 +109,7 @@ class OfFunction(Source):
     """A function of omega, (theta, omega) or (t, theta, omega), of which time must not matter."""
 
     def __init__(self, function: Callable[..., Any], roles: tuple[str, ...]) -> None:
+        self.of_speed_alone = roles == ("omega",)
         self.roles, self.name = roles, getattr(function, "__name__", type(function).__name__)
         self.function, self.takes_arrays = function, True
         if hasattr(function, "py_func"):  # compiled by numba: for one point, which may branch

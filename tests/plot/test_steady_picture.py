@@ -1,0 +1,32 @@
+"""The picture of a steady state: what it draws is the result and the motor, in the units of the machine."""
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+
+PRESS = dx.Machine(units="mm, deg, rpm", ec=10, AB=50, BC=200, m_slider=20, I_crank="2 kg*m^2", F_Y=-900)
+
+
+def test_the_loop_lies_on_the_curve_of_the_motor():
+    motor = PRESS.kloss(40, 0.15, 1500, gear=12)
+    found = PRESS.steady(torque=motor)
+    picture = found.plot()
+    assert len(picture.axes) == 3
+    assert list(picture) == ["omega", "T_motor", "motor", "loop"]
+    np.testing.assert_array_equal(picture["omega"].get_ydata(), found["omega"])
+    np.testing.assert_allclose(picture["omega"].get_xdata(), np.linspace(0, 360, 361), atol=1e-9)
+    speed, torque = picture["loop"].get_xdata(), picture["loop"].get_ydata()
+    np.testing.assert_allclose(torque, motor(speed * np.pi / 30), rtol=1e-9)
+    speed, torque = picture["motor"].get_xdata(), picture["motor"].get_ydata()
+    np.testing.assert_allclose(torque, motor(speed * np.pi / 30), rtol=1e-12)
+    assert speed[0] == 0.0
+    assert speed[-1] > found["omega"].max()
+    assert "rpm" in picture.axes[2].get_xlabel()
+
+
+def test_a_torque_over_the_angle_has_no_curve_and_no_state_no_picture():
+    found = PRESS.steady(torque=lambda theta, omega: 100.0 - 5.0 * omega + np.sin(theta))
+    assert "motor" not in found.plot()
+    with pytest.raises(ValueError, match="no steady state to draw"):
+        PRESS.steady(torque=30.0).plot()
