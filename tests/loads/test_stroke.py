@@ -229,6 +229,16 @@ def test_a_distance_given_twice_is_a_jump_and_the_value_there_is_that_of_the_sid
     assert over_theta(1.0) == 5.0
 
 
+def test_an_angle_given_twice_is_one_jump_in_every_call():
+    twice = dx.over_theta([0.0, 1.0, 1.0, 4.0], [-40.0, -40.0, -90.0, -90.0], kind="linear")
+    bare = {n: STILL[n] for n in ("ec", "AB", "BC", "m_slider")}
+    run = dx.simulate(torque=9.0, t_end=0.4, omega_start=5.0, I_crank=1.0, F_Y=twice, **bare)
+    assert run["energy_residual"] < 1e-11
+    found = dx.peak("F_C_Y", kind="max", theta=(0.5, 1.5), F_Y=twice, ec=0.01, AB=0.04, BC=0.064)
+    assert found["value"] == pytest.approx(90.0)
+    assert twice.nodes(0.5, 1.5, smooth=True) == twice.nodes(0.5, 1.5, smooth=False) == [1.0]
+
+
 def test_drive_simulate_and_averages_are_those_of_the_load_at_this_design():
     for call in (
         lambda F: [dx.drive(F_Y=F, **STILL)[n] for n in ("torque_mean", "torque_rms", "torque_peak")],

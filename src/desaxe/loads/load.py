@@ -106,7 +106,7 @@ class TableOverTheta(OverTheta):
         """The angles at which pieces meet, each rounded up into the piece to its right."""
         angles = self.table.knots if smooth else self.table.kinks
         found = [self._first_right(angle) for angle in self._repeated(angles, low, high)]
-        return sorted(angle for angle in found if low <= angle <= high)
+        return sorted({angle for angle in found if low <= angle <= high})
 
     def _first_right(self, angle: float) -> float:
         """The smallest double that belongs to the piece right of an angle: whole periods are rounded."""

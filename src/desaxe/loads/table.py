@@ -101,12 +101,12 @@ class Table:
     @computed_once
     def kinks(self) -> tuple[float, ...]:
         """The knots at which the value jumps or the derivative does."""
-        return tuple(x for x, jump, kink in self._changes() if jump or kink)
+        return tuple(dict.fromkeys(x for x, jump, kink in self._changes() if jump or kink))
 
     @computed_once
     def jumps(self) -> tuple[float, ...]:
         """The knots at which the value jumps."""
-        return tuple(x for x, jump, _ in self._changes() if jump)
+        return tuple(dict.fromkeys(x for x, jump, _ in self._changes() if jump))
 
     def _changes(self) -> list[tuple[float, bool, bool]]:
         """Each knot with two flags: the value jumps, the derivative jumps."""
