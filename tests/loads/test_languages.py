@@ -14,7 +14,6 @@ LOADS = {
     "cubic over theta": dx.over_theta([0.5, 1.0, 2.0, 4.0], [0.0, -400.0, -50.0, 20.0]),
     "two turns, jumps": dx.over_theta([0.0, 1.0, 1.0, 9.0], [0.0, 5.0, -90.0, 1.0], "linear", 4 * np.pi),
     "over Y, jumps": dx.over_Y(POSITIONS, OUTWARD, INWARD),
-    "over Y, steps": dx.over_Y([0.03, 0.05, 0.09], [-900, -200, -50], kind="step"),
     "over Y, cubic": dx.over_Y([0.02, 0.05, 0.07, 0.1], [-900, -200, -50, -30], kind="cubic"),
     "outer": dx.over_stroke(DISTANCES, CLOSED, OPENED, dead_centre="outer"),
     "inner": dx.over_stroke(DISTANCES, CLOSED, dead_centre="inner"),
@@ -136,12 +135,7 @@ def of_numba(folder, kind):
 
 
 def test_numba_has_the_values_of_evaluate_and_of_a_reduced_grid(tmp_path):
-    of_numba(tmp_path, "over Y, jumps")
-
-
-@pytest.mark.thorough
-def test_numba_has_them_over_the_stroke(tmp_path):
-    of_numba(tmp_path, "inner")
+    of_numba(tmp_path, "outer")
 
 
 def test_extended_is_in_c_too(tmp_path):
