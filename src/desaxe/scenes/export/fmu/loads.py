@@ -6,9 +6,9 @@ from typing import Any
 
 from ....loads.load import Load, OverY, TableOverTheta
 from ....loads.resolve import plan_of
+from ....loads.stroke import OverStroke
 from ....loads.table import Row
 from ...schema import SceneError
-from ..loaded import require_tables
 
 
 def tables(given: Mapping[str, Any]) -> dict[str, Load]:
@@ -18,7 +18,12 @@ def tables(given: Mapping[str, Any]) -> dict[str, Load]:
 
 def check_loads(where: str, outputs: Sequence[str], loads: Mapping[str, Load]) -> None:
     """SceneError for a load that is no table, and for an output that is a derivative through one."""
-    require_tables(where, loads)
+    for name, load in loads.items():
+        if not isinstance(load, (TableOverTheta, OverY)) or isinstance(load, OverStroke):
+            raise SceneError(
+                f"{where}: loads.{name} = {load!r}: an FMU holds tables over theta or Y; give "
+                f"one, sampled, or leave the load out and give it as the input {name} at each instant"
+            )
     if not loads:
         return
     through = plan_of(outputs, loads, True, False).terms
