@@ -42,6 +42,31 @@ def test_point(capsys):
     assert err == ""
 
 
+def test_blanks_around_equals(capsys):
+    main(["point", "a_C", *POINT])
+    main(["point", "a_C", *(word.replace("=", " = ") for word in POINT)])
+    first, second = capsys.readouterr().out.splitlines()
+    assert first == second
+
+
+def test_the_best_designs_are_in_the_units_of_the_scene(tmp_path, capsys):
+    text = """
+units = "mm, deg, rpm"
+outputs = ["V_C"]
+mechanism = { AB = 75, BC = 300, ec = [0, 15, 30] }
+motion = { omega0 = 60, theta = { start = 0, stop = 360, num = 37 } }
+"""
+    (tmp_path / "press.toml").write_text(text, encoding="utf-8")
+    main(["sweep", f"{tmp_path}/press.toml", "--best", "1", "--by", "absmax:V_C", "--order", "smallest"])
+    head, _, row = capsys.readouterr().out.splitlines()
+    assert re.findall(r"(?:AB|omega0|V_C_absmax) \S+", head) == [
+        "AB [mm]",
+        "omega0 [rpm]",
+        "V_C_absmax [mm/s]",
+    ]
+    assert row.split()[1] == "75.0"
+
+
 def test_point_with_several_names(capsys):
     assert main(["point", "V_C,a_C", *POINT, "a_C_wrt_ec"]) == 0
     lines = capsys.readouterr().out.splitlines()

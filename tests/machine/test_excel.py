@@ -53,6 +53,7 @@ def test_answers_in_the_units_of_a_machine(tmp_path):
     assert found["gradient ec"] == (pytest.approx(peak["gradient"]["ec"]), "N*m/mm")
     drive = numbers(dx.to_excel(LOADED.drive(), tmp_path / "b.xlsx"))
     assert drive["torque_peak"][1] == "N*m"
+    assert drive["ec"] == (LOADED.in_units()["ec"], "mm")
     assert drive["gradient torque_rms ec"][1] == "N*m/mm"
     spread = LOADED.tolerance("a_C", theta=60, ec="10 +- 0.1", samples=100, sobol=0)
     found = numbers(dx.to_excel(spread, tmp_path / "c.xlsx"))

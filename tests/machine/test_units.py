@@ -368,6 +368,11 @@ def test_slips_of_calls_scenes_and_commands(capsys):
     machine = dx.Machine(ec=0, AB=0.125, BC=0.35, omega0="1500 rpm")
     with pytest.warns(dx.UnitWarning, match='theta = 60 rad, write theta = "60 deg"'):
         machine.evaluate("a_C", theta=60)
+    small = dx.Machine(ec=0, AB=125, BC=350, units="mm")
+    with pytest.warns(dx.UnitWarning, match='AB = 0.125 mm, write AB = "0.125 m"'):
+        small.tolerance("stroke", AB=dx.plus_minus(0.125, 0.0001))
+    with pytest.warns(dx.UnitWarning, match='"0.125 m"; AB = 0.126 mm'):
+        small.enclose("stroke", AB=dx.between(0.125, 0.126))
     data = {"outputs": ["Y"], "mechanism": {"ec": 0, "AB": 0.125, "BC": 0.35}}
     with pytest.warns(dx.UnitWarning, match='"60 deg"'):
         dx.scene({**data, "motion": {"theta": 60}})

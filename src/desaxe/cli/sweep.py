@@ -67,7 +67,7 @@ def _sweep(options: argparse.Namespace) -> int:
     except VersionError as error:
         raise UsageError(str(error)) from None
     if options.best is not None:
-        print(found.to_dataframe().to_string())
+        print(_best_of(found, wanted.shown_in))
     place = options.store or (wanted.content.store if options.best is None else None)
     if place is not None:
         shape = " x ".join(f"{name} ({size})" for name, size in found.sizes.items())
@@ -75,6 +75,16 @@ def _sweep(options: argparse.Namespace) -> int:
     if options.netcdf is not None:
         _write_netcdf(found, options.netcdf, options.overwrite)
     return 0
+
+
+def _best_of(found: Any, units: Any) -> str:
+    """The best designs as text, in the units of the scene."""
+    from ..evaluation.in_units import in_units
+    from ..scenes.tables import heading
+
+    table = in_units(found, units)
+    headings = {n: heading(str(n), v.attrs.get("units", "1")) for n, v in table.variables.items()}
+    return str(table.to_dataframe().rename(columns=headings).to_string())
 
 
 def _swept(content: Any, options: argparse.Namespace) -> Any:

@@ -18,7 +18,7 @@ def names_and_inputs(words: Sequence[str]) -> tuple[list[str], dict[str, Any]]:
     names: list[str] = []
     inputs: dict[str, Any] = {}
     for before, word in pairwise(["", *words]):
-        key, equals, value = word.partition("=")
+        key, equals, value = (part.strip() for part in word.partition("="))
         if not equals:
             _refuse_parted(before, word)
             names += [name for name in word.split(",") if name]

@@ -56,8 +56,9 @@ def _sheets(data: Any, units: Any) -> Mapping[str, Sheet]:
     about, unit = getattr(data, "about", None), getattr(data, "unit", None)
     own = conversion_of(system, about) if isinstance(about, str) else None
     own = Conversion(unit) if isinstance(unit, str) else own
-    given = list(_rows(getattr(data, "inputs", {}), SI, None))
-    rows = [*given, *_rows(data, system, own)]
+    inputs = getattr(data, "inputs", {})  # in SI units
+    shown_in = {n: value if callable(value) else system.of(n).shown(value) for n, value in inputs.items()}
+    rows = [*_rows(shown_in, system, None), *_rows(data, system, own)]
     columns = [(name, np.asarray(value), unit) for name, value, unit in rows if np.ndim(value)]
     numbers = [[name, value, unit] for name, value, unit in rows if not np.ndim(value)]
     tables: dict[str, Sheet] = {"values": _table(columns)} if columns else {}

@@ -37,8 +37,8 @@ class Between(NamedTuple):
 def plus_minus(value: Any, tolerance: Any) -> PlusMinus:
     """A value and its tolerance, for `enclose` and `tolerance`: value - tolerance .. value + tolerance.
 
-    Each is a number in SI units, or text with a unit; the tolerance may be in percent of the value. A text
-    without a unit beside one that has it is in that unit.
+    Each is a number in SI units, or in those of the machine whose call it is given to, or text with a unit;
+    the tolerance may be in percent of the value. A text without a unit has that of the one beside it.
 
         >>> import desaxe as dx
         >>> rod = {"AB": 0.125, "BC": 0.35, "theta": 1.0}
@@ -52,7 +52,7 @@ def plus_minus(value: Any, tolerance: Any) -> PlusMinus:
 def between(low: Any, high: Any) -> Between:
     """The ends of a range, for `enclose`, `tolerance` (middle and half the width) and `optimize`.
 
-    Each is a number in SI units, or text with a unit.
+    Each is a number in SI units, or in those of the machine whose call it is given to, or text with a unit.
 
         >>> import desaxe as dx
         >>> dx.between("9.9 mm", "10.1 mm")

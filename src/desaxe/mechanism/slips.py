@@ -5,10 +5,11 @@ A warning, never an error, for single numbers that a person has typed: never in 
 
 import sys
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from math import isclose, pi
 from typing import Any
 
+from .ranges import Between, PlusMinus
 from .unit_system import SI, UnitSystem
 
 LENGTHS = ("ec", "AB", "BC", "r_crank", "r_rod")
@@ -41,10 +42,21 @@ class UnitWarning(UserWarning):
 
 def warn_of_slips(written: Mapping[str, Any], units: UnitSystem = SI, stacklevel: int = 3) -> None:
     """Warn once of all plain numbers, by input, that are almost surely slips; `units` are what they mean."""
-    found = [told for name, value in written.items() if (told := slip(name, value, units))]
+    found = [told for name, value in _alone(written) if (told := slip(name, value, units))]
     if found:
         message = f"almost surely a slip: {'; '.join(found)}"
         warnings.warn(message, UnitWarning, stacklevel=stacklevel)
+
+
+def _alone(written: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Each value with its input; of one with a tolerance the value, of a range both ends."""
+    for name, value in written.items():
+        if isinstance(value, PlusMinus):
+            yield name, value.value
+        elif isinstance(value, Between):
+            yield from ((name, end) for end in value)
+        else:
+            yield name, value
 
 
 def slip(name: str, value: Any, units: UnitSystem = SI) -> str:
