@@ -155,7 +155,9 @@ def test_gradients_are_those_of_the_values():
             for key in KEYS:
                 exact = found["gradient"][key][name]
                 slope = WEIGHTS @ result[key] / h
-                scale = abs(exact) + 1e-2 * abs(found[key] / at)
+                power = found["omega_mean"] * np.abs(found["T_motor"]).max()
+                size = power if key == "power_mean" else found[key]
+                scale = abs(exact) + 1e-2 * abs(size / at)
                 assert abs(slope - exact) < 2e-7 * scale, (seed, name, key)
             seen += 1
     assert seen

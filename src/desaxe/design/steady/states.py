@@ -82,7 +82,7 @@ class _Solved:
             bad = unresolved(orbit) & ~jammed(orbit)[:, None]
             if orbit.mesh.edges.shape[1] > PANELS:
                 bad[:] = False
-            done = np.flatnonzero(~bad.any(1))
+            done = np.flatnonzero(~bad.any(1) & orbit.good)
             if len(done):
                 finished, slopes = _rows(orbit, done), None
                 if self.with_gradient:
@@ -90,7 +90,7 @@ class _Solved:
                     own = unresolved(finished, tuple(slopes.forcing[name] for name in slopes.names))
                     bad[done] |= own & ~jammed(finished)[:, None] & (own.shape[1] < PANELS)
                     if bad[done].any():
-                        done = np.flatnonzero(~bad.any(1))
+                        done = np.flatnonzero(~bad.any(1) & orbit.good)
                         finished = _rows(orbit, done)
                         slopes = Slopes(finished)
                 self._take(index[done], finished, slopes)
