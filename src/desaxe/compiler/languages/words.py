@@ -81,7 +81,7 @@ _OCTAVE = frozenset((
 _JAX = frozenset((
     *keyword.kwlist,
     # built in
-    "NotImplementedError", "enumerate", "float", "isinstance",
+    "NotImplementedError", "enumerate", "float", "isinstance", "range",
     # imported
     "SymbolicZero", "array", "asarray", "atan2", "copysign", "cos", "custom_jvp", "exp", "fabs", "finfo",
     "float32", "floating", "floor", "hypot", "inf", "int8", "issubdtype", "log", "logical_and", "logical_not",
@@ -113,10 +113,13 @@ _NUMBA = frozenset((
 # What a module imports, and what that imports in turn.
 _PYTHON_MODULES = frozenset((*sys.stdlib_module_names, "jax", "jaxlib", "llvmlite", "numba", "numpy"))
 
+# The tables of loads that a module holds: places and pieces.
+_OF_LOADS = frozenset(("F_X_c", "F_X_x", "F_Y_c", "F_Y_x"))
+
 _TABLES = {
-    "c": _C,
-    "jax": Words(_JAX, _JAX, _PYTHON_MODULES),
-    "javascript": Words(_JAVASCRIPT, _JAVASCRIPT),
+    "c": _C._replace(lines=_C.lines | _OF_LOADS),
+    "jax": Words(_JAX | _OF_LOADS, _JAX | _OF_LOADS, _PYTHON_MODULES),
+    "javascript": Words(_JAVASCRIPT | _OF_LOADS, _JAVASCRIPT | _OF_LOADS),
     "numba": Words(outputs=_NUMBA, modules=_PYTHON_MODULES),
-    "octave": Words(_OCTAVE, modules=_OCTAVE),
+    "octave": Words(_OCTAVE | _OF_LOADS, modules=_OCTAVE),
 }
