@@ -153,3 +153,19 @@ def test_averages_and_drive_go_over_all_turns_of_a_load():
     machine["F_Y"] = dx.over_theta([0.0, 1.0], [0.0, -10.0], kind="linear", period=5 * TURN)
     with pytest.raises(ValueError, match="F_Y: drive is over at most 4 turns, after which the load must rep"):
         dx.drive(**machine)
+
+
+@pytest.mark.parametrize("mu", [0.0, 0.1])
+def test_a_load_that_opposes_either_way_holds_a_crank_at_rest(mu):
+    """It stops, stays, and breaks away once the torque is that of the load (and of friction)."""
+    ends = dx.events(**{n: BODIES[n] for n in ("ec", "AB", "BC")})
+    load = dx.over_Y([ends["Y_inner"], ends["Y_outer"]], [-30.0, -30.0], inward=[30.0, 30.0])
+    machine = BODIES | {"F_Y": load, "mu": mu, "theta0": 1.0, "omega_start": 0.5}
+    still = dx.simulate(torque=0.0, t_end=1.0, **machine)
+    assert still["omega"][-1] == 0.0
+    assert "at rest from" in still["message"]
+    moved = dx.simulate(torque=lambda t, theta, omega: 5.0 * max(t - 1.0, 0.0), t_end=2.0, **machine)
+    start = next(event for event in moved["events"] if event.kind == "break-away")
+    given = BODIES | {"mu": mu, "F_Y": 30.0, "omega0": 1e-9}
+    needed = dx.evaluate("T_in", theta=start.theta, **given)  # inward, against +30 N
+    assert 5.0 * (start.t - 1.0) == pytest.approx(needed, rel=1e-6)

@@ -11,7 +11,7 @@ with alpha_free the acceleration without friction: one solution, which has the s
 
 from collections.abc import Callable
 from itertools import pairwise
-from math import copysign, inf
+from math import copysign
 from typing import NamedTuple
 
 from .equations import Smooth
@@ -97,10 +97,19 @@ def ways_to_start(model: Model, t: float, theta: float, branch: float) -> list[t
     """The directions in which the crank can start from rest, each with the contact at the guide."""
     found = []
     for way in (1.0, -1.0):
+        hold(model, theta, way)
         here = contact(model, t, theta, branch, 0.0, way, side_ahead(model, theta, branch, way))
         if here.solutions == 1 and here.alpha * way > 0.0:
             found.append((way, here))
+    if found:
+        hold(model, theta, found[0][0])
     return found
+
+
+def hold(model: Model, theta: float, way: float) -> None:
+    """Hold each load to its piece ahead, for this way of turning."""
+    for held in model.drive.held:
+        held.hold(theta, way)
 
 
 def breaks_away(model: Model, theta: float, branch: float, start: float, t_end: float) -> float | None:
@@ -108,11 +117,14 @@ def breaks_away(model: Model, theta: float, branch: float, start: float, t_end: 
 
     Asked at many instants: a push that is over sooner than that is not noticed.
     """
-    ways = [(way, side_ahead(model, theta, branch, way)) for way in (1.0, -1.0)]
+
+    def moves_in(way: float, t: float) -> bool:
+        hold(model, theta, way)
+        here = contact(model, t, theta, branch, 0.0, way, side_ahead(model, theta, branch, way))
+        return here.solutions == 1 and way * here.alpha > 0.0
 
     def moves(t: float) -> bool:
-        here = ((way, contact(model, t, theta, branch, 0.0, way, side)) for way, side in ways)
-        return max(way * c.alpha if c.solutions == 1 else -inf for way, c in here) > 0.0
+        return moves_in(1.0, t) or moves_in(-1.0, t)
 
     instants = [start + (t_end - start) * k / WAITS for k in range(WAITS)] + [t_end]
     for before, after in pairwise(instants):

@@ -28,7 +28,7 @@ from .events import (
     marks_of,
     root,
 )
-from .friction import Contact, Rubbing, breaks_away, contact, side_ahead, ways_to_start
+from .friction import Contact, Rubbing, breaks_away, contact, hold, side_ahead, ways_to_start
 from .model import Model
 from .result import DONE, FAILED, JAMS, LIMIT, REST, Event
 from .stepper import Dop853
@@ -116,7 +116,6 @@ class Run:
 
     def _stretch(self) -> None:
         """Move on to the next kink, or the end."""
-        self._hold()
         law = self._law()
         if law is not None:
             self._follow(law)
@@ -139,23 +138,24 @@ class Run:
         """The current state of the crank."""
         return state_of(self.model, float(self.y[Q]), float(self.y[V]))
 
-    def _hold(self) -> None:
-        """Hold each load to its piece ahead; of two ways to start, the one that the acceleration takes."""
+    def _starts(self) -> bool:
+        """Hold each load to its piece ahead, at rest in the way that starts; False if loads oppose either."""
         theta, omega, _ = self.state
-        if not self.model.drive.held:
-            return
-        ways = (copysign(1.0, omega),) if omega else (1.0, -1.0)
-        for way in ways:
-            for held in self.model.drive.held:
-                held.hold(theta, way)
+        if omega or not self.model.drive.held:
+            hold(self.model, theta, copysign(1.0, omega))
+            return True
+        for way in (1.0, -1.0):
+            hold(self.model, theta, way)
             if way * Smooth(self.model).alpha(self.t, theta, 0.0) >= 0.0:
-                return
+                return True
+        return False
 
     # ---- which law holds ----------------------------------------------------------------------
 
     def _law(self) -> Law | None:
         """The law from here on; None where the motion has been stopped, or waits."""
-        if self.model.mu == 0.0:
+        starts = self._starts()
+        if self.model.mu == 0.0 and starts:
             return Smooth(self.model)
         if self.y[V] == 0.0:
             return self._from_rest()
