@@ -121,4 +121,4 @@ def test_a_source_can_be_imported_as_it_stands(path):
 
 
 def test_helpers_are_plain_python():
-    assert set(source_of(HELPERS).imports.values()) == {"math"}
+    assert set(source_of(HELPERS).imports.values()) == {"math", "typing"}  # the latter for annotations

@@ -14,7 +14,6 @@ CALLS = {
     "feasibility": lambda: dx.feasibility(**SIZES),
     "peak": lambda: dx.peak("a_C", omega0=157.0, **SIZES),
     "evaluate": lambda: dx.evaluate(["V_C", "a_C"], theta=1.0, omega0=157.0, **SIZES),
-    "harmonics": lambda: dx.harmonics("a_C", omega0=100.0, **SIZES),
 }
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..mechanism.inputs import Inputs
 from ..runtime.request import several, with_named_inputs
 from ..support.forks import IMPORTS
+from .arrays import outputs_for
 from .evaluate import evaluate
 from .labelled import grid_by_index, has_named_index
 from .outer import outer_of
@@ -101,6 +102,8 @@ def grid(
     if reduce is not None:
         names = ((names,) if isinstance(names, str) else several(names)) + names_reduced(reduce)
     outer = outer_of(names, inputs, branch, threads, always=out is None)
+    if out is not None and not outer.names:
+        return outputs_for((), (), out)
     if out is not None:
         step = points_of(outer.names, outer, outer.dimensions, branch, accuracy)
         return step.compute(outer.axes, threads, out)

@@ -71,7 +71,7 @@ def check_names(names: Any) -> tuple[str, ...]:
 
 def check_signature(name: str, value: Callable[..., Any]) -> None:
     """A load that varies is a function of (t, theta, omega), or of theta alone."""
-    if not (takes(value, 3) or takes(value, 1) or (name == "torque" and takes(value, 2))):
+    if not (takes(value, 3) or takes(value, 1) or (name == "torque" and _takes_theta_and_omega(value))):
         raise TypeError(
             f"{name}: expected a function of (t, theta, omega), or of theta alone, "
             f"got one of {signature(value)}"
@@ -86,11 +86,16 @@ def over_speed(torque: Any) -> Callable[[float, float, float], Any] | None:
         return lambda t, theta, omega: torque(omega)
     if not callable(torque) or isinstance(torque, LoadOverMotion):
         return None
-    if not takes(torque, 3) and takes(torque, 2):
+    if not takes(torque, 3) and _takes_theta_and_omega(torque):
         return lambda t, theta, omega: torque(theta, omega)
     if not takes(torque, 3) and takes(torque, 1) and list(names_of(torque))[:1] == ["omega"]:
         return lambda t, theta, omega: torque(omega)
     return None
+
+
+def _takes_theta_and_omega(torque: Callable[..., Any]) -> bool:
+    """True for a function of two parameters, of which the first is not the time."""
+    return takes(torque, 2) and names_of(torque)[:1] != ("t",)
 
 
 def load(name: str, value: Any, unit: str, deadline: Deadline) -> Load:
