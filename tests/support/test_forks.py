@@ -49,3 +49,36 @@ def test_a_child_of_a_process_at_work(case):
         [sys.executable, "-c", FORK.format(work=work, body=body, child=child)], check=True, timeout=60
     )
     assert time.monotonic() - begun < 15.0
+
+
+IMPORTED_MEANWHILE = """
+import os, sys, threading, time
+from desaxe.support import forks
+
+holds = threading.Event()
+
+def imports():
+    with forks.IMPORTS:
+        holds.set()
+        time.sleep(0.3)
+        import concurrent.futures.thread
+        import logging
+
+assert not {"logging", "concurrent.futures.thread"} & set(sys.modules)
+threading.Thread(target=imports).start()
+holds.wait()
+child = os.fork()
+import concurrent.futures.thread, logging
+with concurrent.futures.thread._global_shutdown_lock, logging._lock:
+    pass
+if child:
+    print(os.waitpid(child, 0)[1])
+"""
+
+
+def test_a_module_with_a_lock_of_its_own_that_is_imported_while_a_fork_waits():
+    """What it releases after the fork has been acquired, in the parent and in the child."""
+    done = subprocess.run(
+        [sys.executable, "-c", IMPORTED_MEANWHILE], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (done.stdout, done.stderr, done.returncode) == ("0\n", "", 0)

@@ -70,11 +70,25 @@ def imported(name: str) -> ModuleType:
         return import_module(name)
 
 
+# Modules that have a lock acquired before a fork and released after it, and the name of the lock.
+_ALIKE = {"logging": "_lock", "concurrent.futures.thread": "_global_shutdown_lock"}
+
+
 def _before() -> None:
     """Acquire the locks, those that are taken first in a call before those taken inside it."""
     end = time.monotonic() + WAIT
+    known = {name for name in _ALIKE if _is_imported(name)}
     with _without_logging():
         _HELD.locks = [lock for lock in reversed(_LOCKS) if lock.acquire_until(end)]
+    for name, lock in _ALIKE.items():
+        if name not in known and _is_imported(name):  # while we waited: it releases what it has not acquired
+            getattr(sys.modules[name], lock).acquire()
+
+
+def _is_imported(name: str) -> bool:
+    """True for a module that no thread is importing."""
+    module = sys.modules.get(name)
+    return module is not None and not getattr(module.__spec__, "_initializing", False)
 
 
 @contextmanager
