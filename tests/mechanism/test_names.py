@@ -39,6 +39,13 @@ def test_the_catalogue_shows_itself_as_a_table():
     assert next(line for line in lines if line.startswith("a_C ")).split()[1] == "m/s^2"
 
 
+@pytest.mark.parametrize("name", ["F_Y", "ec", "V_outward", "theta_max_pressure_angle"])
+def test_what_is_no_quantity_is_told_where_it_is(name):
+    where = "`events`" if name in dx.events(ec=0.0, AB=1.0, BC=3.0) else "is an input"
+    with pytest.raises(ValueError, match=f"^'{name}' is .*{where.removeprefix('is ')}"):
+        dx.evaluate(name, theta=1.0, ec=0.0, AB=1.0, BC=3.0)
+
+
 def test_a_quantity_by_name():
     assert dx.quantities()["T_in"].unit == "N*m"
     for kind in (KeyError, ValueError):

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from ..support.forks import IMPORTS
 from ..support.shown import shown
 from ..support.text_table import table
-from .names import LENGTHS, PARAMETERS, WHOLE, joined, parts, sensitivity
+from .names import LENGTHS, LOADS, PARAMETERS, WHOLE, joined, parts, sensitivity
 from .own import Register, Row, derived_names, leaves, register
 
 
@@ -22,6 +22,13 @@ class Quantity(NamedTuple):
     unit: str
     meaning: str
     source: str = ""
+
+
+# What `events` has besides the quantities of a whole design.
+OF_EVENTS = frozenset((
+    "V_outward", "V_inward", "theta_V_outward", "theta_V_inward", "slow_stroke", "theta_max_pressure_angle",
+    "theta_min_pressure_angle",
+))  # fmt: skip
 
 
 class UnknownQuantityError(KeyError, ValueError):
@@ -130,6 +137,10 @@ def _unknown(name: str, state: bool, own: Register) -> str:
             return f"{name!r}: this derivative is not derived (second order: Y, V_C, a_C, omega_BC, alpha_BC)"
     if "," in name or len(name.split()) > 1:
         return f"unknown quantity {name!r}: several names are a list, such as ['V_C', 'a_C']"
+    if name in PARAMETERS or name in LOADS:
+        return f"{name!r} is an input, not a quantity: it has the values that are given"
+    if name in OF_EVENTS:
+        return f"{name!r} is one of `events`, which takes arrays, too, and no quantity"
     near = (
         meant(name, names, 3)
         or [known for known, (_, meaning, _) in names.items() if f" {name.lower()}" in f" {meaning.lower()}"][
