@@ -427,3 +427,14 @@ def test_a_bad_design_is_told_alone(name, loads, bad):
     assert np.isnan(found["value"]).tolist() == [False, True, False]
     assert np.isnan(found["gradient"]["ec"]).tolist() == [False, True, False]
     assert found["value"][0] == pytest.approx(dx.peak(name, **good, **loads)["value"], rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", ["absmax", "max"])
+def test_a_rate_that_jumps_at_a_change_point_has_no_gradient(kind):
+    """AB = BC in line: Y = AB (cos theta + |cos theta|), so that V_C jumps from -2 AB omega to 0 across."""
+    found = dx.peak("V_C", kind=kind, ec=0.0, AB=np.array([0.3, 0.3]), BC=np.array([0.3, 0.4]), omega0=2.0)
+    assert found["value"][0] == pytest.approx(1.2, rel=1e-9)
+    assert found["status"].tolist() == [2, 0]
+    assert np.isnan(found["gradient"]["AB"]).tolist() == [True, False]
+    still = dx.peak("Y", ec=0.0, AB=0.3, BC=0.3)
+    assert (still["status"], still["value"], still["gradient"]["AB"]) == (0, 0.6, 1.0)

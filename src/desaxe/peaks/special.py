@@ -25,6 +25,7 @@ GRADED = 2.0 ** -np.arange(1.0, 46.0)  # distances from a quarter or a limit ang
 BLOCK = 1024  # designs at a time
 AT_KINK = 2.0**-40  # rad: an extremum so near to a kink is at the kink
 SMOOTH = 1e-6  # of the median slope: what is left of the slope at the top of a smooth peak is less
+ACROSS = 1e-6  # of the cosine of an angle: as far as a search ends from a jump
 JAMS, TWO_BALANCES = 5, 6  # the status where friction leaves no balance of forces, or two
 USABLE = (0, JAMS, TWO_BALANCES)  # with one of these an extremum may have a gradient
 MARGIN_ROUNDING = 2.0**-50  # of BC: more than BC - AB - |ec| may lose to rounding
@@ -177,11 +178,21 @@ def complete(
     _mark_limits(kind, found, value, nodes, ends)
     at_kink = kinks is not None and (np.abs(kinks - found.theta[:, None]) <= AT_KINK).any(axis=1)
     turns |= _turn(designs, found, nodes, value) & np.logical_not(at_kink)
+    turns |= _at_change_point(designs, found)
     found.value[jams] = np.copysign(np.inf, found.value[jams])
     # Without a value at any angle but a change point, which is all that a stalling crank reaches, too.
     found.status[(turns | np.isnan(found.value)) & (found.status == 0)] = 2
     usable: NDArray[np.bool_] = np.isin(found.status, USABLE) & ~turns & np.isfinite(found.value)
     return usable
+
+
+def _at_change_point(designs: Designs, found: Found) -> NDArray[np.bool_]:
+    """True where a crank as long as its rod, in line, lies across: rates jump there, bounded."""
+    if any(name not in designs.columns for name in LENGTHS):
+        return np.zeros(designs.size, bool)
+    ec, AB, BC = (designs.columns[n] for n in LENGTHS)
+    across: NDArray[np.bool_] = (ec == 0.0) & (AB == BC) & (np.abs(np.cos(found.theta)) < ACROSS)
+    return across
 
 
 def score(kind: str, value: Array) -> Array:
