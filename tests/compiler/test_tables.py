@@ -2,7 +2,6 @@
 
 import itertools
 import math
-import shutil
 import subprocess
 
 import mpmath
@@ -23,7 +22,7 @@ from desaxe.compiler.passes.fold import fold_constants
 from desaxe.compiler.passes.value_numbering import value_numbering
 from desaxe.compiler.program import Line, Program, ProgramError, TableName, tables_in, validate
 from desaxe.mechanism.constants import constants, double_constants
-from tests.compiler.languages.tools import jax_in_doubles
+from tests.compiler.languages.tools import jax_in_doubles, tool
 
 KNOTS = (0.25, 0.5, 1.75, 1.75, 3.0)  # a place given twice is a jump
 ROWS = tuple(np.random.default_rng(3).integers(-8, 9, 4 * 2 * (len(KNOTS) + 1)).astype(float).tolist())
@@ -116,8 +115,6 @@ def module(name):
 
 
 def test_c(tmp_path):
-    if not shutil.which("gcc"):
-        pytest.skip("no gcc")
     for freestanding in (False, True):
         for name, text in C().files(module("looks"), freestanding).items():
             (tmp_path / name).write_text(text)
@@ -139,20 +136,18 @@ def test_c(tmp_path):
             "-fsanitize=undefined",
         ]
         files = ["looks.c", "main.c", "-o", "run", *([] if freestanding else ["-lm"])]
-        subprocess.run(["gcc", *flags, *files], cwd=tmp_path, check=True)
+        subprocess.run([tool("gcc"), *flags, *files], cwd=tmp_path, check=True)
         told = subprocess.run(["./run"], cwd=tmp_path, check=True, capture_output=True, text=True).stdout
         found = [[float.fromhex(word) for word in line.split()] for line in told.splitlines()]
         assert found == [in_doubles(PROGRAM, point) for point in POINTS]
 
 
 def test_octave(tmp_path):
-    if not shutil.which("octave-cli"):
-        pytest.skip("no octave")
     (tmp_path / "looks.m").write_text(Octave().files(module("looks"))["looks.m"])
     x, way = (" ".join(map(repr, column)) for column in zip(*POINTS, strict=True))
     code = f"[p, v, d] = looks([{x}], [{way}]); printf('%.17g %.17g %.17g\\n', [p; v; d]);"
     code += "[p, v, d] = looks(0.3, 1); disp(size(v)); p = looks(NaN, -1); disp(p);"
-    run = ["octave-cli", "--eval", code]
+    run = [tool("octave-cli"), "--eval", code]
     told = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True, check=True).stdout
     *lines, size, odd = told.strip().splitlines()
     found = [list(map(float, line.split())) for line in lines]

@@ -1,5 +1,6 @@
 """A torque of any kind over angle and speed, for rows of designs: value, slope, and derivatives."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from inspect import signature
 from typing import Any
@@ -23,7 +24,7 @@ INSTANTS = (0.0, 0.371)  # s: a function of time is not the same at both
 SPEEDS = np.outer([-1.0, 1.0], np.geomspace(1e-2, 1e5, 141))
 
 
-class Source:
+class Source(ABC):
     """The torque of a call.
 
     numbers   its parameters, by which there are derivatives
@@ -39,9 +40,9 @@ class Source:
     load: Load | None = None
     way: Any = None
 
+    @abstractmethod
     def both(self, theta: Array, omega: Array, row: Mapping[str, Any]) -> tuple[Array, Array]:
         """The torque and its derivative by the speed."""
-        raise NotImplementedError
 
     def by(self, omega: Array, row: Mapping[str, Any]) -> dict[str, Array]:
         """The derivatives by the parameters."""
