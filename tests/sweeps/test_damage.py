@@ -11,6 +11,7 @@ import xarray as xr
 
 import desaxe as dx
 from desaxe.scenes import quiet_store
+from desaxe.sweeps import place, store
 
 INPUTS = {"theta": np.linspace(0.0, 6.0, 20), "ec": [-0.05, 0.0], "AB": 0.2, "BC": 0.5, "omega0": 3.0}
 GRID = {"names": ["V_C", "a_C"], "chunks": {"theta": 8}}
@@ -99,6 +100,35 @@ def test_a_store_that_another_sweep_has_made_meanwhile(stores, kind, tmp_path, m
     monkeypatch.setattr("desaxe.sweeps.store.sync_folders", appears)  # just before it is put in its place
     with pytest.raises(BlockingIOError, match=r"press\.zarr: another sweep is writing this store"):
         sweep(root, kind)
+    assert os.listdir(tmp_path) == [root.name]
+
+
+@pytest.mark.parametrize("kind", ["grid", "best"])
+@pytest.mark.parametrize("empty", [False, True])
+@pytest.mark.parametrize("looks", [1, 2])
+def test_a_store_that_appears_between_two_looks(stores, kind, empty, looks, tmp_path, monkeypatch):
+    """Whenever another sweep puts its store into the place, this one goes on with it or says so."""
+    whole, kind = stores[kind]
+    root = tmp_path / "press.zarr"
+    if empty:
+        root.mkdir()
+    seen = []
+
+    def look(path, real=place.attributes):
+        found = real(path)
+        seen.append(path)
+        if len(seen) == looks:
+            copytree(whole, root, dirs_exist_ok=True)
+        return found
+
+    monkeypatch.setattr(place, "attributes", look)
+    monkeypatch.setattr(store, "attributes", look)
+    try:
+        told = str(sweep(root, kind).identical(sweep(whole, kind)))
+    except BlockingIOError as error:
+        told = str(error)
+    assert len(seen) >= looks
+    assert told in ("True", f"{root}: another sweep is writing this store")
     assert os.listdir(tmp_path) == [root.name]
 
 

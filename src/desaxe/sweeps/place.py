@@ -3,7 +3,7 @@
 import json
 import os
 import shutil
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,7 +17,7 @@ from .best import Search
 from .layout import size_text
 from .request import IDENTITY, Sweep, differences
 from .skeleton import INCOMPLETE, STATE, Compared, as_signed, compared, skeleton_of
-from .store import attributes, create, held, put, remove_strays
+from .store import HELD, attributes, create, held, put, remove_strays
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,6 +37,8 @@ def kept_at(root: Path, told: Mapping[str, str], overwrite: bool) -> dict[str, A
     there = attributes(root)
     if there is None:
         if os.path.lexists(root) and (not root.is_dir() or any(root.iterdir())):
+            if attributes(root) is not None:  # put there by another sweep just now
+                raise BlockingIOError(f"{printable(root)}: {HELD}")
             raise FileExistsError(f"{printable(root)}: this is no Zarr store; it is left as it is")
         require_writable(root)
         return None
@@ -54,7 +56,7 @@ def require_place(sweep: Sweep, root: Path, overwrite: bool, memory: int | None)
     there = kept_at(root, {**sweep.identity, CHUNKS: json.dumps(sweep.layout.chunk)}, overwrite)
     try:
         kept = None if there is None else sweep._replace(layout=sweep.layout.cut(there.get(CHUNKS)))
-        changed = [] if kept is None else _compared(kept, root).changed
+        changed = [] if kept is None else _changes(root, lambda: _compared(kept, root).changed)
     except ValueError as error:
         kept, changed = None, [str(error)]
     _refuse_changed(root, changed, overwrite)
@@ -63,6 +65,14 @@ def require_place(sweep: Sweep, root: Path, overwrite: bool, memory: int | None)
         require_room(sweep, root, sweep.plan.bytes)
         return None
     return kept
+
+
+def _changes(root: Path, changes: Callable[[], list[str]]) -> list[str]:
+    """The changes of a store; BlockingIOError where another sweep is changing it."""
+    if not changes():
+        return []
+    with held(root):
+        return changes()
 
 
 def _refuse_changed(root: Path, changed: Sequence[str], overwrite: bool) -> None:
@@ -103,7 +113,7 @@ def placed_search(search: Search, root: Path, overwrite: bool) -> Search:
     there = kept_at(root, told, overwrite)
     try:
         kept = None if there is None else search._replace(layout=search.layout.cut(there.get(CHUNKS)))
-        changed = [] if kept is None else as_signed(root)[1]
+        changed = [] if kept is None else _changes(root, lambda: as_signed(root)[1])
     except ValueError as error:
         kept, changed = None, [str(error)]
     _refuse_changed(root, changed, overwrite)
@@ -127,10 +137,8 @@ def clear(root: Path) -> None:
 
 @contextmanager
 def free_for(root: Path) -> Iterator[bool]:
-    """Make room for a new store: an empty folder leaves, another store is held; yields if there is one."""
+    """Hold the store in whose place a new one is made; yields if there is one."""
     if attributes(root) is None:
-        if root.is_dir():
-            root.rmdir()
         yield False
         return
     with held(root):

@@ -104,10 +104,10 @@ def create(root: Path, files: Mapping[str, bytes], replace: bool) -> None:
 
 
 def _rename(staged: Path, root: Path) -> None:
-    """Put a store where there was none; BlockingIOError where another sweep has put one meanwhile."""
+    """Put a store where nothing or an empty folder is; BlockingIOError where another sweep has put one."""
     try:
-        if os.path.lexists(root):
-            raise FileExistsError(f"{printable(root)}: it is there already")
+        if sys.platform == "win32" and root.is_dir():  # elsewhere an empty folder is replaced in one step
+            root.rmdir()
         os.rename(staged, root)
     except OSError:
         if attributes(root) is None:
