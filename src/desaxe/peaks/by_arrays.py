@@ -1,7 +1,8 @@
 """The functions of a search by NumPy: a block of designs at once, without a compiler.
 
 Loops that vectorise, `for i in range(uint64(count))`, are turned into operations on whole arrays, line by
-line; those in which one pass hangs on the one before stand here.
+line; those in which one pass hangs on the one before stand here. Nodes are a column that all designs of a
+group share, or a table with a column for each.
 """
 
 import ast
@@ -28,8 +29,8 @@ def functions_of(programs: Programs) -> tuple[Function, Function, Function]:
 
     def sweep(count: int, nodes: Array, block: Array, work: Array, value: Array, slope: Array) -> None:
         """Value and slope at every node, for every design."""
-        here = slice(0, nodes.size), slice(0, count)
-        value[here], slope[here] = curve(nodes[:, None], block[:, None, :count])
+        here = slice(0, len(nodes)), slice(0, count)
+        value[here], slope[here] = curve(nodes.reshape(len(nodes), -1), block[:, None, :count])
 
     def points(rows: int, count: int, theta: Array, block: Array, value: Array, slope: Array) -> None:
         """Value and slope of every design at angles of its own."""
@@ -99,6 +100,16 @@ class _Loops(ast.NodeTransformer):
         return line
 
 
+def inverse(width: Any) -> Any:
+    """1 / width; 0 where nodes coincide."""
+    return np.where(width > 0.0, 1.0 / width, 0.0)
+
+
+def _at(nodes: Array, places: Any, owners: Any) -> Array:
+    """Nodes of designs that share them, or of designs with a column each."""
+    return nodes[places] if nodes.ndim == 1 else nodes[places, owners]
+
+
 def gather(count: int, chosen: Any, columns: Array, block: Array) -> None:
     """The inputs of chosen designs, next to each other."""
     block[:, :count] = columns[:, chosen[:count]]
@@ -106,7 +117,7 @@ def gather(count: int, chosen: Any, columns: Array, block: Array) -> None:
 
 def candidates(count: int, nodes: Array, upper: Array, best: Array, places: Any, owners: Any) -> int:
     """Collect the intervals whose bound exceeds the best node: index and design; return their number."""
-    place, owner = np.nonzero(upper[1 : nodes.size, :count] >= best[:count])
+    place, owner = np.nonzero(upper[1 : len(nodes), :count] >= best[:count])
     places[: place.size], owners[: place.size] = place, owner
     return place.size
 
@@ -120,7 +131,8 @@ def interior(
     even[:count] = ~((a < FLAT * b) | (b < FLAT * a))
     graded = np.where(a < b, [[1 / 512], [1 / 32], [1 / 4]], [[3 / 4], [31 / 32], [511 / 512]])
     parts = np.where(even[:count] == 1, [[0.25], [0.5], [0.75]], graded)
-    theta[:, :count] = nodes[j] + parts * (nodes[j + 1] - nodes[j])
+    low = _at(nodes, j, i)
+    theta[:, :count] = low + parts * (_at(nodes, j + 1, i) - low)
 
 
 def brackets(
@@ -129,7 +141,7 @@ def brackets(
 ) -> int:  # fmt: skip
     """The brackets in which the slope changes sign: a column of `roots` each, rows LOW to FIFTH."""
     j, i = places[:count], owners[:count]
-    angles = np.vstack([nodes[j], thetas[:, :count], nodes[j + 1]])
+    angles = np.vstack([_at(nodes, j, i), thetas[:, :count], _at(nodes, j + 1, i)])
     known = np.vstack([slope[j, i], slopes[:, :count], slope[j + 1, i]])
     before, after = known[:-1], known[1:]
     changes = ((before > 0.0) != (after > 0.0)) & (before == before) & (after == after)
@@ -169,7 +181,7 @@ def told(kind: int, count: int, chosen: Any, here: Array, found: Array, theta: A
         out[2:, chosen] *= np.where(found[0, :count] < 0.0, -1.0, 1.0)
 
 
-SEQUENTIAL = {f.__name__: f for f in (gather, candidates, interior, brackets, choose, told)}
+SEQUENTIAL = {f.__name__: f for f in (inverse, gather, candidates, interior, brackets, choose, told)}
 
 
 def whole_blocks(source: Path, scope: dict[str, Any]) -> dict[str, Any]:

@@ -60,7 +60,10 @@ def texts_of(programs: Programs, column: str) -> list[str]:
 
 
 class Groups(NamedTuple):
-    """Designs in the order of their groups; where each group starts, its nodes, and where those start."""
+    """Designs in the order of their groups; where each group starts, its nodes, and where those start.
+
+    In one group, of BLOCK designs at most, each may have nodes of its own: a column of a table.
+    """
 
     order: NDArray[np.intp]
     starts: NDArray[np.intp]
@@ -97,7 +100,8 @@ def run(
     order, starts, nodes, node_starts = grouped(kernel.coarse)
 
     def part(first: int, last: int) -> None:
-        kernel.function(table, order, np.clip(starts, first, last), nodes, node_starts, kind, theta, out)
+        here = nodes if nodes.ndim == 1 else nodes[:, first:last]
+        kernel.function(table, order, np.clip(starts, first, last), here, node_starts, kind, theta, out)
 
     run_parts(part, order.size, threads, LEAST_PART, LONGEST_PART)
 

@@ -193,12 +193,10 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
         nodes, limits = special.own_nodes(some)
         if loaded is not None:
             nodes = np.sort(np.concatenate([nodes, loaded.course.nodes[part]], axis=1), axis=1)
-        edges = np.arange(part.size + 1)
-        groups = Groups(part, edges, nodes.reshape(-1), edges * nodes.shape[1])
         if loaded is not None:
-            loaded.run(groups, number, theta, out)
+            loaded.run(_each(part, nodes), number, theta, out)
         else:
-            run(search, columns, part.size, partial(_unchanged, groups), number, theta, out, threads)
+            run(search, columns, part.size, partial(_each, part, nodes), number, theta, out, threads)
             told.add(part.size)
         found = special.Found(out[0, part], theta[part], out[1, part], status[part])
         marks = () if loaded is None else (loaded.course.kinks, loaded.course.jumps)
@@ -215,10 +213,12 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
     return {"value": value, "theta": theta, "side": side, "gradient": gradient, "status": status}
 
 
-def _unchanged(groups: Groups, coarse: bool) -> Groups:
-    """The groups of designs with nodes of their own."""
-    del coarse
-    return groups
+def _each(rows: NDArray[np.intp], nodes: Array, together: bool = False) -> Groups:
+    """Designs with nodes of their own, a row each: a group each, or all `together`, nodes in columns."""
+    if together:
+        return Groups(rows, np.array([0, rows.size]), nodes.T, np.array([0, nodes.shape[1]]))
+    edges = np.arange(rows.size + 1)
+    return Groups(rows, edges, nodes.reshape(-1), edges * nodes.shape[1])
 
 
 def _in_form(search: Search, checked: Checked) -> Search:

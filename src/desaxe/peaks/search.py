@@ -69,22 +69,27 @@ def gather(count: Any, chosen: Any, columns: Any, block: Any) -> None:
             target[i] = source[chosen[i]]
 
 
+def inverse(width: float) -> float:
+    """1 / width; 0 where nodes coincide."""
+    return 1.0 / width if width > 0.0 else 0.0
+
+
 def bound(
     kind: int, count: Any, nodes: Any, value: Any, slope: Any, best: Any, theta: Any, upper: Any
 ) -> None:
     """The best node of each design, and the bounds between nodes: NaN where no extremum is."""
     for i in range(uint64(count)):
         best[i], theta[i] = -inf, nan
-    for j in range(nodes.size):
+    for j in range(nodes.shape[0]):
         here, row = nodes[j], value[j]
         for i in range(uint64(count)):
             new = score(kind, row[i])
             better = new > best[i]
             best[i] = new if better else best[i]
             theta[i] = here if better else theta[i]
-    for j in range(1, nodes.size):
+    for j in range(1, nodes.shape[0]):
         width = nodes[j] - nodes[j - 1]
-        per_width = 1.0 / width if width > 0.0 else 0.0
+        per_width = inverse(width)
         value_a, value_b, slope_a, slope_b, row = value[j - 1], value[j], slope[j - 1], slope[j], upper[j]
         for i in range(uint64(count)):
             a, b = slope_a[i], slope_b[i]
