@@ -110,6 +110,7 @@ def test_a_mechanism_that_cannot_turn():
     assert lowest["status"] == 2
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["V_C", "a_C", "j_C"])
 @pytest.mark.parametrize("digits", [2, 17])
 def test_rates_of_a_mechanism_that_cannot_turn_have_no_bound(name, digits):
