@@ -7,6 +7,7 @@ design_map  a quantity over two inputs, what is infeasible hatched
 tornado     what a change of each input does, by exact sensitivities
 mechanism   crank, rod and slider to scale at a crank angle
 drive       drive torque over a turn, and the speed with its flywheel
+motion      histories of the motion that a torque causes, with its events
 steady      speed and torque of a machine on its motor, and the working loop on its curve
 animate     the same as it turns, beside a quantity's curve
 save        a figure or animation to a file
@@ -15,6 +16,7 @@ shared      what all of them share: values, labels, colours, legends
 titles      the inputs that matter, for a title
 jumps       nodes on each side of the jumps of loads
 from_dict   a dict of arrays as a Dataset
+from_motion a motion as a Dataset
 
 Each draws on `ax=`, or on a new Figure, and returns a `Picture(figure, axes, artists)`.
 """
@@ -24,6 +26,7 @@ from .curves import curves as curves
 from .design_map import design_map as design_map
 from .drive import drive as drive
 from .mechanism import mechanism as mechanism
+from .motion import motion as motion
 from .panels import panels as panels
 from .picture import Picture as Picture
 from .polar import polar as polar
@@ -38,6 +41,7 @@ __all__ = [
     "design_map",
     "drive",
     "mechanism",
+    "motion",
     "panels",
     "polar",
     "save",

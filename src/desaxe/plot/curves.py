@@ -31,9 +31,9 @@ def curves(
 ) -> Picture:
     """Draw a quantity over one input, one curve for each value of another; a Picture of the lines.
 
-    dataset  the result of `desaxe.grid` or of a scene; or the dict that `desaxe.evaluate` gives
+    dataset  the result of `desaxe.grid` or of a scene; or what `desaxe.evaluate` or `simulate` gives
     name     the quantity
-    over     the dimension along the horizontal axis; angles are shown in degrees
+    over     the dimension along the horizontal axis; angles are shown in degrees; of a motion t or theta
     family   the dimension that tells the curves apart; by default the other one, if there is one
     ax       where to draw: a matplotlib Axes; by default a new Figure, whose title tells the inputs that
              matter

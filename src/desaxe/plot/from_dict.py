@@ -9,6 +9,7 @@ from ..evaluation.labels import attributes, labelled, with_loads
 from ..loads.resolve import split
 from ..mechanism.inputs import INPUTS
 from ..mechanism.units import in_si
+from .from_motion import dataset_of_motion, is_motion
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 
 def as_dataset(found: Any, over: str, inputs: Mapping[str, Any]) -> "xr.Dataset":
     """The Dataset of a dict of arrays; a Dataset is returned unchanged.
+
+    A motion has its histories, over t or over theta.
 
     `inputs` are those that the arrays were computed with, beside or instead of those that an answer of
     `evaluate` remembers. Each varies along one axis of the arrays. Raises TypeError where the one `over`
@@ -26,6 +29,8 @@ def as_dataset(found: Any, over: str, inputs: Mapping[str, Any]) -> "xr.Dataset"
             raise TypeError(f"a Dataset has its inputs: leave {', '.join(inputs)} out")
         dataset: xr.Dataset = found
         return dataset
+    if is_motion(found):
+        return dataset_of_motion(found, over)
     given, loads = split({**getattr(found, "inputs", {}), **inputs})
     shape = np.broadcast_shapes(*(np.shape(array) for array in found.values()))
     arrays = {name: _numbers(name, value) for name, value in given.items() if value is not None}

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ..evaluation.arrays import as_array, broadcast_shape, number_or_array
 from ..mechanism.names import CENTRES, LENGTHS, LOADS
+from ..support.progress import Portions, progress_bar
 from .many_designs import SAMPLES, STARTS, message, starting
 from .residual import TELLS, told_of
 from .result import NO_START, Simulation
@@ -49,7 +50,8 @@ def simulate_each(
     histories = {name: np.full((size, t.size), np.nan) for name in ("theta", "omega", "alpha", *names)}
     numbers = {name: np.full(size, np.nan) for name in ("t_last", "energy_residual", "work")}
     rounded = np.full(size, np.inf)  # or 0 where the residual of a design is told
-    for row in np.flatnonzero(status != NO_START):
+
+    def follow(row: int) -> None:
         design = {name: values[row].item() for name, values in flat.items()} | varying
         inputs = {name: design.get(name) for name in given}
         found = run(inputs, {name: design[name] for name in starts}, t)
@@ -58,9 +60,15 @@ def simulate_each(
             history[row, :count] = found[name]
         status[row] = found["status"]
         rounded[row] = 0.0 if TELLS in found["message"] else np.inf
-        ends = {**found, "t_last": found["solution"].run.t}
         for name, column_of in numbers.items():
-            column_of[row] = ends[name]
+            column_of[row] = found[name]
+
+    rows = np.flatnonzero(status != NO_START).tolist()
+    with progress_bar(unit="designs") as watch:
+        told = Portions(len(rows), "motions", watch)
+        for row in rows:
+            follow(row)
+            told.add(1)
     result = Simulation(t=t, **{name: h.reshape(*shape, t.size) for name, h in histories.items()})
     result["status"] = status.reshape(shape)
     result["message"] = message(status) + told_of(numbers["energy_residual"], rounded, rtol)

@@ -34,7 +34,7 @@ def result_of(run: Run, names: Sequence[str], times: Any, given: Mapping[str, An
     residual, rounded = energy_residual(run.model, accepted)
     result["energy_residual"] = residual
     result["message"] += told_of(residual, rounded, run.tolerance.rtol, run.tolerance.method)
-    result["work"] = float(run.y[W])
+    result["work"], result["t_last"] = float(run.y[W]), run.t
     result["solution"] = Solution(run)
     return result
 

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from functools import lru_cache
 from math import isfinite
 from typing import Any
@@ -19,6 +20,7 @@ from ..runtime.threads import run_parts
 from ..support.deadline import Deadline
 from ..support.forks import IMPORTS, ForkSafeLock
 from ..support.interrupts import finished, stopped_early
+from ..support.progress import Portions, progress_bar
 from . import tableau
 from .checks import check_signature, grows
 from .compiled import Family, kernel_of
@@ -31,6 +33,7 @@ Array = NDArray[np.float64]
 SAMPLES = 101  # instants of the histories by default
 LONGEST_PART = 16  # designs in one native call, that threads share the work evenly
 MOST_STEPS = 3  # its place in `how`
+LARGE = 1_000  # designs that may take long: a bar tells
 _UNITS = {"theta0": "rad", "omega_start": "rad/s", "torque": "N*m"}
 STARTS = {name: Input(name, unit, "") for name, unit in _UNITS.items()}
 _LOCK = ForkSafeLock()
@@ -200,18 +203,22 @@ def _run(
     step = A[:last, :last].copy(), tableau.B, C[:last], tableau.E3, tableau.E5
     tables = (*step, tableau.D, A[last + 1 :], C[last + 1 :])
 
-    how = shared[1]
-
-    def block(a: int, b: int) -> None:
-        kernel(rows[a:b], setup[a:b], *shared, *tables, *(out[a:b] for out in outs))
+    how, size = shared[1], len(setup)
 
     def stop() -> None:  # the kernel looks at the most steps before each one
         how[MOST_STEPS] = 0.0
 
-    def work() -> None:
-        run_parts(block, len(setup), threads, 1, LONGEST_PART)
+    with progress_bar(unit="designs") if size > LARGE else nullcontext() as watch:
+        told = Portions(size, "motions", watch)
 
-    stopped_early(work, stop, deadline)
+        def block(a: int, b: int) -> None:
+            kernel(rows[a:b], setup[a:b], *shared, *tables, *(out[a:b] for out in outs))
+            told.add(b - a)
+
+        def work() -> None:
+            run_parts(block, size, threads, 1, LONGEST_PART)
+
+        stopped_early(work, stop, deadline)
 
 
 def _result(

@@ -3,6 +3,8 @@
 from typing import Any, NamedTuple
 
 from ..mechanism.status import SimulationStatus
+from ..support.answer import Answer
+from ..support.forks import IMPORTS
 
 DONE, REST, LIMIT, JAMS, FAILED, NO_INERTIA, NO_START = map(int, SimulationStatus)
 WORDS = {int(status): status.words for status in SimulationStatus}
@@ -21,8 +23,8 @@ class Event(NamedTuple):
     which: str = ""
 
 
-class Simulation(dict[str, Any]):
-    """The histories by name, and `events`, `status`, `message`, `energy_residual`, `work`, `solution`."""
+class Simulation(Answer):
+    """The histories by name, `events`, `status`, `message`, `work`, `t_last` and others; `plot()`."""
 
     def __repr__(self) -> str:
         lines = [f"simulation: {self['message']}"]
@@ -35,6 +37,13 @@ class Simulation(dict[str, Any]):
         if len(events) > 12:
             lines.append(f"  ... {len(events) - 12} more events")
         return "\n".join(lines)
+
+    def plot(self, ax: Any = None) -> Any:
+        """The histories over time, one above the other, and the events: see `desaxe.plot.motion`."""
+        with IMPORTS:
+            from ..plot import motion
+
+        return motion(self, ax=ax)
 
 
 def _shown(value: Any) -> str:

@@ -1,0 +1,52 @@
+"""The picture of a motion: its histories over time and its events, in the units of the machine."""
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from desaxe.plot import Picture
+
+DESIGN = {"ec": 0.01, "AB": 0.05, "BC": 0.12, "m_slider": 2.0, "I_crank": 0.01}
+
+
+def swing(t, theta, omega):
+    return 1.5 * np.cos(8.0 * t)
+
+
+def test_the_histories_and_the_events_of_a_motion():
+    found = dx.Machine(DESIGN, units="m, deg, rpm").simulate(torque=swing, t_end=0.6, names=["V_C"])
+    picture = found.plot()
+    assert isinstance(picture, Picture)
+    assert list(picture) == ["theta", "omega", "alpha", "V_C"]
+    for name, (line,) in picture.artists.items():
+        np.testing.assert_array_equal(line.get_xdata(), found["t"])
+        np.testing.assert_array_equal(line.get_ydata(), found[name])
+    kinds = {event.kind for event in found["events"]}
+    assert kinds == {"dead centre", "standstill"}
+    for line in picture.axes[0].lines[1:]:
+        own = [event for event in found["events"] if event.kind == line.get_label()]
+        assert list(line.get_xdata()) == [event.t for event in own]
+        assert list(line.get_ydata()) == [event.theta for event in own]
+    assert "rpm" in picture.axes[1].get_ylabel()
+    assert "deg" in picture.axes[0].get_ylabel()
+
+
+def test_curves_of_a_motion_over_time_and_over_the_angle():
+    found = dx.simulate(torque=swing, t_end=0.6, **DESIGN)
+    (line,) = dx.plot.curves(found, "omega", over="t")
+    np.testing.assert_array_equal(line.get_xdata(), found["t"])
+    (line,) = dx.plot.curves(found, "omega")
+    np.testing.assert_allclose(line.get_xdata(), np.degrees(found["theta"]))
+    with pytest.raises(ValueError, match="over 't' or over 'theta'"):
+        dx.plot.curves(found, "omega", over="ec")
+    with pytest.raises(TypeError, match="draws a result of"):
+        dx.plot.motion({"a_C": np.ones(3)})
+
+
+def test_each_of_many_designs_has_its_curve():
+    found = dx.simulate(torque=1.0, t_end=0.2, **{**DESIGN, "m_slider": [1.0, 2.0, 3.0]})
+    lines = found.plot()["omega"]
+    assert len(lines) == 3
+    np.testing.assert_array_equal(lines[2].get_ydata(), found["omega"][2])
+    with pytest.raises(ValueError, match="over='t'"):
+        dx.plot.curves(found, "omega")

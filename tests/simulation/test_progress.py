@@ -1,0 +1,36 @@
+"""Motions of thousands of designs tell how far they are."""
+
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+
+DESIGN = {"ec": 0.01, "AB": 0.05, "BC": 0.12, "m_slider": np.linspace(1.0, 2.0, 24), "I_crank": 0.01}
+
+
+@pytest.mark.parametrize("kind", ["many", "each"])
+def test_long_simulations_tell_what_is_done(kind, monkeypatch):
+    seen = []
+
+    @contextmanager
+    def recorded(**options):
+        assert options == {"unit": "designs"}
+        yield lambda *told: seen.append(told)
+
+    monkeypatch.setattr(f"desaxe.simulation.{kind}_design{'s' * (kind == 'many')}.progress_bar", recorded)
+    monkeypatch.setattr("desaxe.simulation.many_designs.LARGE", 20)
+    torque = 1.0 if kind == "many" else dx.over_omega([0.0, 50.0], [1.0, 0.0])
+    dx.simulate(torque=torque, t_end=0.01, **DESIGN)
+    done = [told[0] for told in seen]
+    assert seen[0] == (0, 24, "motions")
+    assert len(done) > 2
+    assert done == sorted(done)
+    assert done[-1] == 24
+
+
+def test_one_design_and_many_have_the_time_at_which_they_end():
+    one = dx.simulate(torque=1.0, t_end=1.0, until=1.0, **{**DESIGN, "m_slider": 1.0})
+    assert one["t_last"] == one["t"][-1] == one["events"][-1].t
+    assert dx.simulate(torque=1.0, t_end=0.1, **DESIGN)["t_last"].tolist() == [0.1] * 24
