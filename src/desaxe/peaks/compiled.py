@@ -81,22 +81,23 @@ class Kernel(NamedTuple):
 def run(
     search: Search,
     columns: Mapping[str, Array],
-    count: int,
+    cost: int,
     grouped: Callable[[bool], Groups],
     kind: int,
     theta: Array,
     out: Array,
     threads: int | None,
 ) -> None:
-    """Search `count` designs on some threads; `theta` and the rows of `out` are filled at these designs.
+    """Search designs on some threads; `theta` and the rows of `out` are filled at these designs.
 
+    cost      of all designs of the call: that of one of the usual kind is 1
     grouped   their groups; few ones, if it is given True
     """
     inputs = programs_of(search, False).inputs
     table = np.empty((len(inputs), theta.size))
     for row, name in zip(table, inputs, strict=True):
         row[:] = columns[name]
-    kernel = kernel_for(search, count)
+    kernel = kernel_for(search, cost)
     order, starts, nodes, node_starts = grouped(kernel.coarse)
 
     def part(first: int, last: int) -> None:

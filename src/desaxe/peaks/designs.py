@@ -196,7 +196,8 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
         if loaded is not None:
             loaded.run(_each(part, nodes), number, theta, out)
         else:
-            run(search, columns, part.size, partial(_each, part, nodes), number, theta, out, threads)
+            cost = special.NODES * rows.size
+            run(search, columns, cost, partial(_each, part, nodes), number, theta, out, threads)
             told.add(part.size)
         found = special.Found(out[0, part], theta[part], out[1, part], status[part])
         marks = () if loaded is None else (loaded.course.kinks, loaded.course.jumps)
