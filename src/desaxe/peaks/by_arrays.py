@@ -107,7 +107,8 @@ def inverse(width: Any) -> Any:
 
 def _at(nodes: Array, places: Any, owners: Any) -> Array:
     """Nodes of designs that share them, or of designs with a column each."""
-    return nodes[places] if nodes.ndim == 1 else nodes[places, owners]
+    found: Array = nodes[places] if nodes.ndim == 1 else nodes[places, owners]
+    return found
 
 
 def gather(count: int, chosen: Any, columns: Array, block: Array) -> None:

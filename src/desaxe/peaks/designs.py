@@ -196,7 +196,7 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
         if loaded is not None:
             loaded.run(_each(part, nodes), number, theta, out)
         else:
-            cost = special.NODES * rows.size
+            cost = special.NODES * rows.size if rows.size > 1 else 1  # one alone: its loops as they stand
             run(search, columns, cost, partial(_each, part, nodes), number, theta, out, threads)
             told.add(part.size)
         found = special.Found(out[0, part], theta[part], out[1, part], status[part])

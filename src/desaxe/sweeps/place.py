@@ -5,6 +5,7 @@ import os
 import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -56,7 +57,7 @@ def require_place(sweep: Sweep, root: Path, overwrite: bool, memory: int | None)
     there = kept_at(root, {**sweep.identity, CHUNKS: json.dumps(sweep.layout.chunk)}, overwrite)
     try:
         kept = None if there is None else sweep._replace(layout=sweep.layout.cut(there.get(CHUNKS)))
-        changed = [] if kept is None else _changes(root, lambda: _compared(kept, root).changed)
+        changed = [] if kept is None else _changes(root, partial(_changed, kept, root))
     except ValueError as error:
         kept, changed = None, [str(error)]
     _refuse_changed(root, changed, overwrite)
@@ -82,6 +83,10 @@ def _refuse_changed(root: Path, changed: Sequence[str], overwrite: bool) -> None
         raise FileExistsError(
             f"{printable(root)}: changed since a sweep wrote it: {several}. overwrite=True replaces it"
         )
+
+
+def _changed(sweep: Sweep, root: Path) -> list[str]:
+    return _compared(sweep, root).changed
 
 
 def _compared(sweep: Sweep, root: Path) -> Compared:
