@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from desaxe.compiler.cost import cost_of
-from desaxe.compiler.passes.pipeline import PASSES, optimise
+from desaxe.compiler.passes.pipeline import PASSES, optimise_in_steps
 from desaxe.compiler.passes.slicing import keep_outputs
 from desaxe.compiler.passes.trigonometry import expand_trigonometry
 from desaxe.support.text_table import table
@@ -28,9 +28,9 @@ def report(derivation: Derivation) -> str:
 
 
 def _row(derivation: Derivation, name: str, fixed: Mapping[str, float]) -> list[object]:
-    program, steps = optimise(keep_outputs(derivation.program, (name,)), fixed)
+    program, steps = optimise_in_steps(keep_outputs(derivation.program, (name,)), fixed)
     family = tuple(n for n in derivation.names if n == name or n.startswith(f"{name}_wrt_"))
-    wide, _ = optimise(keep_outputs(derivation.program, family), fixed)
+    wide, _ = optimise_in_steps(keep_outputs(derivation.program, family), fixed)
     written_out = expand_trigonometry(program, derivation.trigonometry)
     counts = [step.cost.operations for step in steps]
     return [name, *counts, cost_of(program).depth, len(written_out.lines), len(wide.lines)]

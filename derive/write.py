@@ -167,7 +167,7 @@ def _trigonometry(derivation: Derivation, digest: str) -> str:
 
 def _group(derivation: Derivation, group: Group, digest: str) -> str:
     program = derivation.program
-    sliced, _ = optimise(_cut(program, group.outputs), dict(group.fixed))
+    sliced = optimise(_cut(program, group.outputs), dict(group.fixed))
     inputs = [name for name in sliced.inputs if name != "branch"]
     limits = Limits(LEAST, {"theta": derivation.trigonometry.limit})
     guarded = guarded_for_loops(sliced, inputs, limits, derivation.trigonometry)

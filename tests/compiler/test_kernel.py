@@ -120,7 +120,7 @@ FIXED = {"branch": 1.0, "omega0": 50.0, "alpha": 0.0}
 
 
 def placed(order):
-    program = optimise(committed("Y", "a_C", "a_C_wrt_BC"), FIXED)[0]
+    program = optimise(committed("Y", "a_C", "a_C_wrt_BC"), FIXED)
     return program, {name: order.index(name) for name in program.inputs}
 
 

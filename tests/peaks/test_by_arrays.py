@@ -5,10 +5,13 @@ import pytest
 
 import desaxe as dx
 from desaxe.peaks import compiled
+from desaxe.peaks import designs as plans
+from desaxe.runtime import cache
 from desaxe.support.recent import Recent
 from tests.effort import cases
 
 BODIES = {"m_slider": 1.0, "m_rod": 0.6, "I_rod": 0.004, "r_rod": 0.03, "g_Y": 9.81}
+ON_DISK = compiled._on_disk
 
 
 @pytest.fixture(autouse=True)
@@ -58,9 +61,26 @@ def test_no_number_of_calls_waits_for_a_compiler():
     np.testing.assert_array_equal(found["value"], first["value"])
 
 
+def test_where_no_search_is_stored_no_text_of_one_is_written(tmp_path, monkeypatch):
+    """The text is what a stored search is looked up by: it takes as long as half of the call."""
+    monkeypatch.setattr(cache, "folder", lambda: cache.Folder(tmp_path, lasting=True))
+    monkeypatch.setattr(compiled, "_on_disk", ON_DISK.__wrapped__)
+    monkeypatch.setattr(compiled, "source_of", lambda search: pytest.fail("a text is written"))
+    assert (dx.peak("V_C", **designs(100, 6, narrowest=0.3))["status"] == 0).all()
+
+
+def test_designs_far_from_any_change_point_are_searched_at_few_angles():
+    given = designs(500, 7, narrowest=1.0)
+    some = np.flatnonzero(given["BC"] - given["AB"] - np.abs(given["ec"]) > 0.5 * given["AB"])
+    plan = plans.Designs(given | {"omega0": np.full(500, 7.0)}, 1, (0.0, 2 * np.pi), False)
+    starts = np.diff(plans._classed(plan, some, coarse=True).node_starts)
+    assert starts.size == 1
+    assert starts.max() < 32
+
+
 def test_a_call_that_takes_longer_than_compiling_compiles():
     with pytest.raises(AssertionError, match="a search is compiled"):
-        dx.peak("a_C", **designs(300_000, 3, narrowest=0.3))
+        dx.peak("a_C", **designs(800_000, 3, narrowest=0.3))
 
 
 def test_designs_in_any_company_have_the_same_peaks():

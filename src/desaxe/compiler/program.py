@@ -157,9 +157,11 @@ def renamed_temporaries(program: Program, order: Iterable[str]) -> Program:
 def renamed(program: Program, names: Mapping[str, str]) -> Program:
     """Rename lines of a program."""
     lines = tuple(
-        line._replace(
-            name=names.get(line.name, line.name),
-            args=tuple(names.get(a, a) if isinstance(a, str) else a for a in line.args),
+        Line(
+            names.get(line.name, line.name),
+            line.op,
+            tuple(names.get(a, a) if isinstance(a, str) else a for a in line.args),
+            line.type,
         )
         for line in program.lines
     )

@@ -138,6 +138,8 @@ class ProgramText:
         self.inputs = tuple(name.strip() for name in inputs.split(",") if name.strip())
         self._text = text[end:]
         self._parsed: dict[str, _Parsed] = {}
+        self._read: dict[str, list[Line]] = {}  # name -> the operations of its line
+        self._types: dict[str, str] = dict.fromkeys(self.inputs, "f64")
 
     def outputs(self) -> tuple[str, ...]:
         """The names that the function returns, in order."""
@@ -165,13 +167,16 @@ class ProgramText:
             found[name] = self._line_of(name)
             stack += [used for used in found[name].names if used not in found and used not in self.inputs]
         ordered = sorted(found.items(), key=lambda item: item[1].place)
-        reader = _Reader(self.inputs)
-        for name, line in ordered:
-            reader.assign(name, line.tree)
-        used = {name for line in reader.lines for name in names_in(line.args)} | set(wanted)
+        lines: list[Line] = []
+        used = set(wanted)
+        for name, parsed in ordered:
+            if name not in self._read:
+                self._read[name] = _Reader(name, self._types).lines_of(parsed.tree)
+            lines += self._read[name]
+            used.update(parsed.names)
         notes = {name: line.note for name, line in ordered if line.note is not None}
         inputs = tuple(name for name in self.inputs if name in used)
-        return Program(inputs, tuple(reader.lines), tuple(wanted), notes)
+        return Program(inputs, tuple(lines), tuple(wanted), notes)
 
     def _line_of(self, name: str) -> "_Parsed":
         """The line of a name, parsed when it is first asked for."""
@@ -218,20 +223,20 @@ _CALLS = {
 
 
 class _Reader:
-    """Turns expressions back into lines of one operation each."""
+    """Turns the expression of a line back into lines of one operation each."""
 
-    def __init__(self, inputs: Iterable[str]) -> None:
+    def __init__(self, name: str, types: dict[str, str]) -> None:
+        self.name, self.types = name, types
         self.lines: list[Line] = []
-        self.types: dict[str, str] = dict.fromkeys(inputs, "f64")
-        self.temporaries = 0
 
-    def assign(self, name: str, tree: ast.expr) -> None:
-        """Append the lines of an assignment; ProgramError where they are no operations."""
+    def lines_of(self, tree: ast.expr) -> list[Line]:
+        """The lines of the assignment; ProgramError where they are no operations."""
         try:
             op, args = self._operation(tree)
-            self._append(name, op, args)
+            self._append(self.name, op, args)
         except (KeyError, TypeError) as error:
-            raise ProgramError(f"cannot read {name} = {ast.unparse(tree)}: {error}") from None
+            raise ProgramError(f"cannot read {self.name} = {ast.unparse(tree)}: {error}") from None
+        return self.lines
 
     def _append(self, name: str, op: str, args: tuple[Argument, ...]) -> None:
         types = tuple(type_of(argument, self.types) for argument in args)
@@ -249,8 +254,7 @@ class _Reader:
             case ast.UnaryOp(ast.USub(), ast.Constant(int() | float() as value)):
                 return -value
         op, args = self._operation(tree)
-        name = f"_{self.temporaries}"
-        self.temporaries += 1
+        name = f"_{self.name}_{len(self.lines)}"
         self._append(name, op, args)
         return name
 

@@ -28,7 +28,7 @@ def value_text(
     writer = _Writer(numbers)
     last = writer.value(tree)
     lines = (*writer.lines, Line(OUTPUT, "copy", (last,)))
-    program = optimise(Program(inputs, lines, (OUTPUT,), {OUTPUT: note}))[0]
+    program = optimise(Program(inputs, lines, (OUTPUT,), {OUTPUT: note}))
     return write_function(program, "own", f"{name}, in SI units and radians.")
 
 

@@ -55,14 +55,13 @@ def _program_of(names: tuple[str, ...], form: Variant) -> Program:
         others = (*(name for name in names if name not in own), *lines_needed(own, form.own).names)
         base = _program_of(tuple(dict.fromkeys(others)), form._replace(own=()))
         return with_own_lines(base, names, form.own)
-    program = assume(_text("program").read(names), {"wide_margins": form.wide_margins})
+    if form.default_centres:
+        given, halfway = _program_of(names, form._replace(default_centres=())), _text("centres").read()
+        moved = [name for name in halfway.outputs if name.startswith(form.default_centres)]
+        return overlay(given, keep_outputs(halfway, moved))
     if form.state:
-        program = keep_outputs(overlay(program, _text("state").read()), names)
-    for centre in form.default_centres:
-        halfway = _text("centres").read()
-        moved = [name for name in halfway.outputs if name.startswith(centre)]
-        program = keep_outputs(overlay(program, keep_outputs(halfway, moved)), names)
-    return program
+        return overlay(_program_of(names, form._replace(state=False)), _text("state").read())
+    return assume(_text("program").read(names), {"wide_margins": form.wide_margins})
 
 
 @cache

@@ -34,7 +34,7 @@ BLOCK = 1_024  # designs at once in NumPy: the cost of each operation is shared 
 MOST_LOADED = 64  # searches in memory
 LEAST_PART = 1_024  # designs of a thread
 LONGEST_PART = 8_192  # designs: less than half a second
-BREAK_EVEN = 262_144  # designs of a call that take longer by NumPy than compiling does
+BREAK_EVEN = 786_432  # designs of a call that take longer by NumPy than compiling does
 FEW = 8  # designs that are searched one after the other
 SIGNATURE = """ints, row, rows = types.int64[::1], types.float64[::1], types.float64[:, ::1]
 signature = types.void(rows, ints, ints, row, ints, types.int64, row, rows)
@@ -131,7 +131,7 @@ def kernel_for(search: Search, designs: int) -> Kernel:
 @lru_cache(maxsize=1024)
 def _on_disk(search: Search) -> bool:
     """True if an earlier process has stored the machine code."""
-    return is_kept("search", source_of(search))
+    return is_kept("search", lambda: source_of(search))
 
 
 @lru_cache(maxsize=1024)

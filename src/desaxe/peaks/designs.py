@@ -19,7 +19,6 @@ from ..runtime.accuracy import accuracy_of
 from ..runtime.interpreted import are_good
 from ..runtime.kernels import STRUCTURAL_ZEROS
 from ..runtime.request import Request, is_steady, request
-from ..runtime.specialise import plain_form
 from ..runtime.threads import run_parts
 from ..runtime.wide_margins import all_have_wide_margins, have_wide_margins
 from ..support.progress import Portions, progress_bar
@@ -101,7 +100,7 @@ def _new_plan(name: str, given: dict[str, Any], branch: int, accuracy: Any, know
         given["omega0"] = 0.0
     if "mu" not in parameters:
         given["mu"] = None  # what friction does matters to forces only
-    told = request((*names, "status"), given, branch, accuracy, known).inputs
+    told = request((STATUS,), {**given, "theta": 0.0}, branch, accuracy, known).inputs
     needs = (*parameters, *(n for n in told if n not in (*parameters, "theta")))
     return Plan(wanted, parameters, needs)
 
@@ -223,16 +222,12 @@ def _each(rows: NDArray[np.intp], nodes: Array, together: bool = False) -> Group
 
 
 def _in_form(search: Search, checked: Checked) -> Search:
-    """The search in plain forms, if those are shorter and all designs of the usual kind have wide margins.
+    """The search in plain forms, if all designs of the usual kind have wide margins.
 
     A second one, for a few that are not, would take longer to compile than it saves.
     """
     columns, rows = checked.designs.columns, np.flatnonzero(~checked.special)
-    names = search.name, sensitivity(search.name, "theta")
-    derived = tuple(name for name in names if has(name))
     if not rows.size or search.extended or not all(name in columns for name in LENGTHS):
-        return search
-    if plain_form(derived, search.form, search.fixed) is None:
         return search
     lengths = {name: _at(columns[name], rows) for name in LENGTHS}
     if all_have_wide_margins(search.form, **lengths) or have_wide_margins(lengths, search.form).all():

@@ -34,9 +34,11 @@ def classes(ec: Array, AB: Array, BC: Array) -> NDArray[np.int16]:
 
 
 def coarser(numbers: NDArray[np.int16]) -> NDArray[np.int16]:
-    """The classes with each of both replaced by the next one of COARSE."""
+    """The classes with each of both replaced by the next one of COARSE, or by the finest of all designs."""
     finer = np.array(COARSE, np.int16)
-    right, left = (finer[np.searchsorted(finer, part)] for part in np.divmod(numbers, 64))
+    right, left = (
+        np.minimum(finer[np.searchsorted(finer, part)], part.max()) for part in np.divmod(numbers, 64)
+    )
     return (64 * right + left).astype(np.int16)
 
 

@@ -76,6 +76,7 @@ def programs_of(search: Search, written_out: bool) -> Programs:
     return Programs(*programs, tuple(name for name in whole.inputs if name in used and name != "theta"))
 
 
+@lru_cache(maxsize=1024)
 def _whole(search: Search) -> tuple[Program, list[str]]:
     """One program of value, slope and gradient, and the names of its outputs."""
     name = search.name
@@ -104,7 +105,7 @@ def _differentiated(program: Program, name: str, parameter: str) -> tuple[Progra
     own = f"{name}_by_{parameter}"
     lines = (*program.lines, *chain.lines, Line(own, "copy", (chain.slope(name),)))
     outputs = (*program.outputs, own)
-    longer = optimise(program._replace(lines=lines, outputs=outputs))[0]
+    longer = optimise(program._replace(lines=lines, outputs=outputs))
     return with_short_temporaries(longer), own
 
 

@@ -298,7 +298,7 @@ def source_of(key: KernelKey) -> str:
 
 def is_on_disk(key: KernelKey) -> bool:
     """True if an earlier process has stored the kernel's machine code."""
-    return is_kept("kernel", source_of(key))
+    return is_kept("kernel", lambda: source_of(key))
 
 
 def _load(key: KernelKey) -> CompiledKernel:

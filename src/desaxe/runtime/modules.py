@@ -108,9 +108,9 @@ def path_of(kind: str, text: str) -> Path:
     return _cache.folder().path / f"{kind}_{digest[:40]}{SUFFIX}"
 
 
-def is_kept(kind: str, text: str) -> bool:
-    """True if an earlier process has stored the machine code of a text."""
-    return path_of(kind, text).exists()
+def is_kept(kind: str, text: Callable[[], str]) -> bool:
+    """True if an earlier process has stored the machine code of a text, which is asked for if any is stored."""
+    return any(_cache.folder().path.glob(f"{kind}_*{SUFFIX}")) and path_of(kind, text()).exists()
 
 
 def _from_disk(path: Path) -> Loaded | None:

@@ -32,7 +32,7 @@ def _specialise(
 ) -> Program:
     program = _with_extended_forms(program_of(names, form), accuracy)
     single = accuracy == "single"
-    result = optimise(program, dict(fixed), single=single)[0]
+    result = optimise(program, dict(fixed), single=single)
     before, after = _needs(program), _needs(result)
     kept = {"D"} if dict(fixed).get("alpha") == 0.0 else set(KEPT)  # a crank at constant speed never stalls
     outputs = program.outputs
@@ -50,7 +50,7 @@ def _specialise(
         if lost[name]:
             lines.append(Line(name, "copy", (value,)))
     whole = keep_outputs(wide._replace(lines=tuple(lines)), outputs)
-    return optimise(whole, dict(fixed), single=single)[0]
+    return optimise(whole, dict(fixed), single=single)
 
 
 @lru_cache(maxsize=1024)

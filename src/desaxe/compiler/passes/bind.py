@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from ..program import Program, renamed
+from ..program import Program, names_in, renamed
 from .slicing import drop_unused
 
 
@@ -12,10 +12,12 @@ def bind_constants(program: Program, constants: Mapping[str, float]) -> Program:
     Effect: every use of the input becomes the constant, and the input is gone. `fold` then
     computes what has become constant.
     """
-    lines = []
-    for line in program.lines:
-        args = tuple(float(constants[a]) if isinstance(a, str) and a in constants else a for a in line.args)
-        lines.append(line._replace(args=args))
+    lines = [
+        line._replace(args=tuple(float(constants[a]) if a in fixed else a for a in line.args))
+        if (fixed := constants.keys() & names_in(line.args))
+        else line
+        for line in program.lines
+    ]
     inputs = tuple(name for name in program.inputs if name not in constants)
     return program._replace(inputs=inputs, lines=tuple(lines))
 

@@ -30,7 +30,7 @@ def with_derivatives(program: Program, parameters: tuple[str, ...]) -> Program:
         for output in numbers:
             outputs.append(f"{output}{_JOINT}{parameter}")
             lines.append(Line(outputs[-1], "copy", (chain.slope(output),)))
-    return optimise(program._replace(lines=tuple(lines), outputs=tuple(outputs)))[0]
+    return optimise(program._replace(lines=tuple(lines), outputs=tuple(outputs)))
 
 
 class Chain:

@@ -24,7 +24,7 @@ def fold_constants(program: Program, apply: Callable[..., Any] = ieee) -> Progra
     lines: list[Line] = []
     for line in program.lines:
         args = tuple(value.get(a, a) if isinstance(a, str) else a for a in line.args)
-        result = _simplified(line._replace(args=args), apply)
+        result = _simplified(Line(line.name, line.op, args, line.type), apply)
         if isinstance(result, Line):
             lines.append(result)
         elif line.name in program.outputs:

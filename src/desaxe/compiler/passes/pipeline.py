@@ -1,6 +1,6 @@
 """The passes in their order, with what each of them saved."""
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from functools import partial
 from typing import NamedTuple
 
@@ -34,24 +34,34 @@ PASSES = (
 )
 
 
-def optimise(
-    program: Program,
-    fixed: Mapping[str, float] | None = None,
-    without: Collection[str] = (),
-    single: bool = False,
-) -> tuple[Program, list[Step]]:
-    """The program with `fixed` inputs bound, after every pass not switched off; the cost after each.
+def optimise(program: Program, fixed: Mapping[str, float] | None = None, single: bool = False) -> Program:
+    """The program with `fixed` inputs bound, after every pass.
 
     `single`: what is fixed is computed in single precision, in which the rest will run.
     """
+    *_, (_, last) = _stages(program, fixed or {}, (), single)
+    return last
+
+
+def optimise_in_steps(
+    program: Program, fixed: Mapping[str, float] | None = None, without: Collection[str] = ()
+) -> tuple[Program, list[Step]]:
+    """The program after every pass that is not switched off; the cost after each."""
     unknown = set(without) - {step.name for step in PASSES}
     if unknown:
         raise ValueError(f"no pass {', '.join(sorted(unknown))}: {', '.join(step.name for step in PASSES)}")
-    steps = [Step("sliced", cost_of(program))]
-    program = bind_constants(program, fixed or {})
+    stages = list(_stages(program, fixed or {}, without))
+    return stages[-1][1], [Step(name, cost_of(stage)) for name, stage in stages]
+
+
+def _stages(
+    program: Program, fixed: Mapping[str, float], without: Collection[str], single: bool = False
+) -> Iterator[tuple[str, Program]]:
+    """The program before and after each pass."""
+    program = bind_constants(program, fixed)
+    yield "sliced", program
     for step in PASSES:
         if step.name not in without:
-            run = partial(fold_constants, apply=ieee_single) if single and step.name == "fold" else step.run
-            program = run(program)
-            steps.append(Step(step.name, cost_of(program)))
-    return program, steps
+            own = partial(fold_constants, apply=ieee_single) if single and step.name == "fold" else step.run
+            program = own(program)
+            yield step.name, program

@@ -22,7 +22,7 @@ def value_numbering(program: Program) -> Program:
         first = leader[line.name]
         args = tuple(best[leader[a]] if a in leader else a for a in line.args)
         if line.name == first:
-            lines.append(line._replace(name=best[first], args=args))
+            lines.append(Line(best[first], line.op, args, line.type))
         elif line.name in program.outputs and line.name != best[first]:
             lines.append(line._replace(op="copy", args=(best[first],)))
     return drop_unused(program._replace(lines=tuple(lines)))

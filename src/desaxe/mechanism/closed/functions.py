@@ -18,7 +18,7 @@ class ClosedForm:
 
     def __init__(self, text: str, outputs: tuple[str, ...], **fixed: float) -> None:
         program = read_function(text)
-        self.program = optimise(keep_outputs(program, outputs or program.outputs), fixed)[0]
+        self.program = optimise(keep_outputs(program, outputs or program.outputs), fixed)
 
     @computed_once
     def point(self) -> Callable[..., tuple[Any, ...]]:

@@ -5,7 +5,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 from ...compiler.cost import cost_of
-from ...compiler.passes.pipeline import optimise
+from ...compiler.passes.pipeline import optimise_in_steps
 from ...mechanism.inputs import INPUTS
 from ...mechanism.program import program_of, whole_program
 from ...runtime.kernels import KernelKey
@@ -46,7 +46,7 @@ def steps_of(key: KernelKey, request: Request, inside: int) -> list[Step]:
     fixed = key.fixed
     whole = len(whole_program().lines)
     program = program_of(request.names, request.form)
-    _, costs = optimise(program, dict(fixed))
+    _, costs = optimise_in_steps(program, dict(fixed))
     counts = [("derivation", whole), ("slice", costs[0].cost.operations)]
     names = {"fold": "fold", "number": "number", "slice": "unused"}
     counts += [(names.get(step.name, step.name), step.cost.operations) for step in costs[1:]]

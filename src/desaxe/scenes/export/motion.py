@@ -68,7 +68,7 @@ def motion(given: Mapping[str, object], branch: int, single: bool = False) -> Pr
     lines, outputs = (*base.lines, *law.lines, *status), ("_acceleration", "told")
     whole = Program(tuple(inputs), lines, outputs, base.notes)
     held = {"mu": numbers["mu"]} if rubs and "mu" in numbers else {}
-    program = optimise(whole, held, single=single)[0]
+    program = optimise(whole, held, single=single)
     return guard_inputs(program, [name for name in program.inputs if name != "way"], LEAST, {})
 
 

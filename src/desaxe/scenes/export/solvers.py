@@ -33,5 +33,5 @@ def solvers(fixed: Mapping[str, float], single: bool = False) -> dict[str, Solve
 
 def _cut(text: str, fixed: Mapping[str, float], single: bool, outputs: tuple[str, ...] = ()) -> Program:
     """The program with fixed inputs folded in; invalid arguments give NaN and status 4."""
-    program = optimise(closed_form(text, outputs).program, fixed, single=single)[0]
+    program = optimise(closed_form(text, outputs).program, fixed, single=single)
     return guard_inputs(program, program.inputs, LEAST, {})

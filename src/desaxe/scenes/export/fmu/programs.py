@@ -116,4 +116,4 @@ def _slopes(
         lines.append(Line(f"_slope{number}", "copy", (place,)))
         outputs.append(f"_slope{number}")
     whole = Program(tuple(inputs), tuple(lines), tuple(outputs), program.notes)
-    return optimise(whole)[0], tuple(places)
+    return optimise(whole), tuple(places)
