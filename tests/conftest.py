@@ -108,7 +108,7 @@ def cold(monkeypatch, tmp_path_factory):
     """A process that has no kernel, in memory or on disk, whatever other tests compiled."""
     empty = _cache.Folder(tmp_path_factory.mktemp("cold"), lasting=True)
     monkeypatch.setattr(_cache, "folder", lambda: empty)
-    monkeypatch.setattr(kernels, "_LOADED", Recent(kernels.MOST_LOADED))
+    monkeypatch.setattr(kernels.STORE, "_loaded", Recent(kernels.MOST_LOADED))
     monkeypatch.delenv(tiers.VARIABLE, raising=False)
 
 

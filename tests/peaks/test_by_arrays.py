@@ -11,19 +11,18 @@ from desaxe.support.recent import Recent
 from tests.effort import cases
 
 BODIES = {"m_slider": 1.0, "m_rod": 0.6, "I_rod": 0.004, "r_rod": 0.03, "g_Y": 9.81}
-ON_DISK = compiled._on_disk
 
 
 @pytest.fixture(autouse=True)
 def cold(monkeypatch):
     """No search in memory or on disk, and no compiler."""
 
-    def refuse(kind, text):
-        raise AssertionError(f"a {kind} is compiled")
+    def refuse(search):
+        raise AssertionError(f"the search for {search.name} is compiled")
 
-    monkeypatch.setattr(compiled, "_LOADED", Recent(compiled.MOST_LOADED))
+    monkeypatch.setattr(compiled.STORE, "_loaded", Recent(compiled.MOST_LOADED))
     monkeypatch.setattr(compiled, "_on_disk", lambda search: False)
-    monkeypatch.setattr(compiled, "native", refuse)
+    monkeypatch.setattr(compiled.STORE, "load", refuse)
 
 
 def designs(size, seed, narrowest=1e-9):
@@ -64,8 +63,8 @@ def test_no_number_of_calls_waits_for_a_compiler():
 def test_where_no_search_is_stored_no_text_of_one_is_written(tmp_path, monkeypatch):
     """The text is what a stored search is looked up by: it takes as long as half of the call."""
     monkeypatch.setattr(cache, "folder", lambda: cache.Folder(tmp_path, lasting=True))
-    monkeypatch.setattr(compiled, "_on_disk", ON_DISK.__wrapped__)
-    monkeypatch.setattr(compiled, "source_of", lambda search: pytest.fail("a text is written"))
+    monkeypatch.setattr(compiled, "_on_disk", compiled.STORE.is_on_disk)
+    monkeypatch.setattr(compiled.STORE, "_text", lambda search: pytest.fail("a text is written"))
     assert (dx.peak("V_C", **designs(100, 6, narrowest=0.3))["status"] == 0).all()
 
 
@@ -79,7 +78,7 @@ def test_designs_far_from_any_change_point_are_searched_at_few_angles():
 
 
 def test_a_call_that_takes_longer_than_compiling_compiles():
-    with pytest.raises(AssertionError, match="a search is compiled"):
+    with pytest.raises(AssertionError, match="the search for a_C is compiled"):
         dx.peak("a_C", **designs(800_000, 3, narrowest=0.3))
 
 

@@ -199,10 +199,10 @@ def test_a_kernel_of_another_version_is_not_taken_for_this_one(tmp_path, monkeyp
     monkeypatch.setattr(_cache, "folder", lambda: _cache.Folder(tmp_path, True))
     key = _kernels.KernelKey(("V_B_X",), Variant(state=True), (("branch", 1.0),), (("AB", 0),), 1)
     values, out = {"theta": 0.0, "omega": 2.0, "AB": np.array([-0.5])}, np.empty(1)
-    _kernels._load(key).run(values, [out])
+    _kernels.STORE.load(key).run(values, [out])
     assert math.isnan(out[0])
     monkeypatch.setattr(_kernels, "LEAST", {})
-    _kernels._load(key).run(values, [out])
+    _kernels.STORE.load(key).run(values, [out])
     assert out[0] == -1.0
 
 

@@ -13,7 +13,7 @@ each name up in the text and never parses the rest.
 
 import ast
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from textwrap import wrap
 from typing import NamedTuple
 

@@ -16,11 +16,9 @@ from ..compiler.builder import module_text, rebound
 from ..compiler.languages.numba import peaks
 from ..compiler.languages.numba.module import numba_parts
 from ..compiler.languages.python import SCOPE
-from ..runtime.modules import is_kept, native
+from ..runtime.modules import Store
 from ..runtime.threads import run_parts
 from ..runtime.tiers import INTERPRETED, NUMPY, forced_tier
-from ..support.forks import ForkSafeLock
-from ..support.recent import Recent
 from . import search as loops
 from .by_arrays import functions_of, whole_blocks
 from .nodes import Array
@@ -107,8 +105,7 @@ def run(
     run_parts(part, order.size, threads, LEAST_PART, LONGEST_PART)
 
 
-_LOADED: Recent[Search, Kernel] = Recent(MOST_LOADED)
-_LOCK = ForkSafeLock()
+STORE = Store("search", source_of, lambda _, function: Kernel(function), MOST_LOADED)
 
 
 def kernel_for(search: Search, designs: int) -> Kernel:
@@ -116,22 +113,13 @@ def kernel_for(search: Search, designs: int) -> Kernel:
     forced = forced_tier()
     if forced == INTERPRETED:
         return _plain(search)
-    found = None if forced == NUMPY else _LOADED.get(search)
-    if found is not None:
-        return found
-    early = forced is None and designs < BREAK_EVEN and not _on_disk(search)
+    early = forced is None and designs < BREAK_EVEN and not (STORE.is_ready(search) or _on_disk(search))
     if early or forced == NUMPY:
         return _by_arrays(search) if designs > FEW else _by_loops(search)
-    with _LOCK:
-        found = _LOADED.get(search) or Kernel(native("search", source_of(search)))
-        _LOADED[search] = found
-    return found
+    return STORE.of(search)
 
 
-@lru_cache(maxsize=1024)
-def _on_disk(search: Search) -> bool:
-    """True if an earlier process has stored the machine code."""
-    return is_kept("search", lambda: source_of(search))
+_on_disk = lru_cache(maxsize=1024)(STORE.is_on_disk)  # once for all: calls must not change their tier
 
 
 @lru_cache(maxsize=1024)

@@ -39,7 +39,7 @@ def coarser(numbers: NDArray[np.int16]) -> NDArray[np.int16]:
     right, left = (
         np.minimum(finer[np.searchsorted(finer, part)], part.max()) for part in np.divmod(numbers, 64)
     )
-    return (64 * right + left).astype(np.int16)
+    return np.asarray(64 * right + left, np.int16)
 
 
 def _class(margin: Array) -> NDArray[np.int16]:

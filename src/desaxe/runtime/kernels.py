@@ -17,10 +17,9 @@ from ..mechanism.constants import constants, double_constants
 from ..mechanism.inputs import LEAST, SAFE
 from ..mechanism.names import LENGTHS, LOADS
 from ..mechanism.program import Variant
-from ..support.forks import IMPORTS, ForkSafeLock
-from ..support.recent import Recent
+from ..support.forks import IMPORTS
 from .accuracy import check_angle
-from .modules import Native, is_kept, native
+from .modules import Native, Store
 from .request import Request
 from .specialise import plain_form, specialise
 
@@ -107,8 +106,6 @@ def _exceed(angles: Any, limit: float) -> bool:
 
 
 MOST_LOADED = 256  # kernels in memory
-_LOADED: Recent[KernelKey, CompiledKernel] = Recent(MOST_LOADED)
-_LOCK = ForkSafeLock()
 
 
 def _is_seen(program: Program, angle: str) -> bool:
@@ -116,21 +113,6 @@ def _is_seen(program: Program, angle: str) -> bool:
     types = {line.name: line.type for line in program.lines}
     told = angle in program.outputs or any(types.get(name) == "i64" for name in program.outputs)
     return told or any(angle in line.args and line.op not in ("sin", "cos") for line in program.lines)
-
-
-def is_ready(key: KernelKey) -> bool:
-    """True if the kernel is in memory."""
-    return key in _LOADED
-
-
-def kernel_for(key: KernelKey) -> CompiledKernel:
-    """The compiled kernel of a key, from memory, from disk, or compiled now."""
-    found = _LOADED.get(key)
-    if found is None:
-        with _LOCK:
-            found = _LOADED.get(key) or _load(key)
-            _LOADED[key] = found
-    return found
 
 
 def has_near_limit(key: KernelKey) -> bool:
@@ -296,12 +278,11 @@ def source_of(key: KernelKey) -> str:
     return emit_numba(kernel, docstring, TO_COMPILE)
 
 
-def is_on_disk(key: KernelKey) -> bool:
-    """True if an earlier process has stored the kernel's machine code."""
-    return is_kept("kernel", lambda: source_of(key))
-
-
-def _load(key: KernelKey) -> CompiledKernel:
+def _compiled(key: KernelKey, function: Native) -> CompiledKernel:
     axes = dict(key.axis_of)
     order = tuple((name, axes.get(name)) for name in specialise(key.names, key.form, key.fixed).inputs)
-    return CompiledKernel(native("kernel", source_of(key)), order)
+    return CompiledKernel(function, order)
+
+
+STORE = Store("kernel", source_of, _compiled, MOST_LOADED)
+is_ready, is_on_disk, kernel_for = STORE.is_ready, STORE.is_on_disk, STORE.of

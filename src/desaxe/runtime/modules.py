@@ -13,11 +13,12 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from ctypes import CFUNCTYPE, c_char_p, c_int64
 from pathlib import Path
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from ..support import private
 from ..support.forks import IMPORTS, ForkSafeLock
 from ..support.interrupts import finished
+from ..support.recent import Recent
 from . import cache as _cache
 from .machine_code import DOUBLE, NO_MEMORY, Code, Loaded, load, machine
 
@@ -108,9 +109,53 @@ def path_of(kind: str, text: str) -> Path:
     return _cache.folder().path / f"{kind}_{digest[:40]}{SUFFIX}"
 
 
-def is_kept(kind: str, text: Callable[[], str]) -> bool:
-    """True if an earlier process has stored the machine code of a text, which is asked for if any is stored."""
-    return any(_cache.folder().path.glob(f"{kind}_*{SUFFIX}")) and path_of(kind, text()).exists()
+Key = TypeVar("Key")
+Made = TypeVar("Made")
+
+
+class Store(Generic[Key, Made]):
+    """Machine code by key: from memory, from disk, or compiled now.
+
+    text   of the code of a key
+    made   from a key and its code
+    most   how many to keep in memory
+    """
+
+    def __init__(
+        self, kind: str, text: Callable[[Key], str], made: Callable[[Key, Native], Made], most: int
+    ) -> None:
+        self._kind, self._text, self._made, self._most = kind, text, made, most
+        self._lock = ForkSafeLock()
+        self.clear()
+
+    def __len__(self) -> int:
+        return len(self._loaded)
+
+    def clear(self) -> None:
+        """Forget what is in memory."""
+        self._loaded: Recent[Key, Made] = Recent(self._most)
+
+    def is_ready(self, key: Key) -> bool:
+        """True if it is in memory."""
+        return key in self._loaded
+
+    def is_on_disk(self, key: Key) -> bool:
+        """True if an earlier process has stored its code; the text is written if there is any of its kind."""
+        stored = _cache.folder().path.glob(f"{self._kind}_*{SUFFIX}")
+        return any(stored) and path_of(self._kind, self._text(key)).exists()
+
+    def load(self, key: Key) -> Made:
+        """From disk or compiled now, and not kept in memory."""
+        return self._made(key, native(self._kind, self._text(key)))
+
+    def of(self, key: Key) -> Made:
+        """From memory, from disk, or compiled now."""
+        found = self._loaded.get(key)
+        if found is None:
+            with self._lock:
+                found = self._loaded.get(key) or self.load(key)
+                self._loaded[key] = found
+        return found
 
 
 def _from_disk(path: Path) -> Loaded | None:

@@ -125,7 +125,7 @@ def _size(axis):
 
 
 def test_the_break_even_is_the_one_that_holds(monkeypatch):
-    monkeypatch.setattr(_kernels, "_load", None)  # whoever compiles fails
+    monkeypatch.setattr(_kernels.STORE, "load", None)  # whoever compiles fails
     points = {"start": 0, "stop": 1, "num": tiers.BREAK_EVEN - 1}
     few = free(CONCENTRIC, "motion", "theta", points)
     assert dx.explain(few)["run"]["way"] == "plain Python"
@@ -146,7 +146,7 @@ def test_what_is_cached(reduce):
     after = dx.explain(scene)
     assert after["run"]["cached"] == "memory"
     assert after["run"]["seconds"]["before_the_first"] == 0.0
-    _kernels._LOADED.clear()
+    _kernels.STORE.clear()
     assert dx.explain(scene)["run"]["cached"] == "disk"
 
 
