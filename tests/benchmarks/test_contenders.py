@@ -89,6 +89,7 @@ def largest(design):
     return float(size(angle)), angle
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("key", ["point", "grid_out"])
 @pytest.mark.parametrize("contender", HERE, ids=lambda one: one.name)
 def test_two_threads_give_the_same(contender, key):

@@ -134,6 +134,7 @@ def test_definitions_travel_with_what_was_made():
             assert value == other == pytest.approx(factor * V, rel=1e-14)
 
 
+@pytest.mark.thorough
 def test_lazy_results_keep_their_definitions():
     dask = pytest.importorskip("dask.array")
     lazy = {}

@@ -15,6 +15,7 @@ def test_both_derivatives_choose():
     assert {line.args[1] for line in choices} == {"rod_start", "slider_start"}
 
 
+@pytest.mark.thorough
 def test_a_state_is_never_near_its_start():
     lines = derivation().state.lines
     assert Line("near_start", "lt", (1.0, 0.0), "bool") in lines

@@ -133,6 +133,7 @@ def test_the_flywheel_of_flywheel():
     assert set(heavy["gradient"]["flywheel_inertia"].values()) == {0.0}
 
 
+@pytest.mark.thorough
 def test_starting_from_the_worst_standstill():
     """Loads, gravity and friction at a creep, in the way of turning; either way in reverse."""
     still = {**RUBBING, "omega0": 1e-9}

@@ -27,8 +27,9 @@ PAGES = sorted(
 WITH_BLOCKS = [page for page in PAGES if BLOCK.search((ROOT / page).read_text(encoding="utf-8"))]
 
 
-# The page on clusters starts one.
-ONCE = [pytest.param(p, marks=pytest.mark.thorough if p == "docs/scale.md" else ()) for p in WITH_BLOCKS]
+# One starts a cluster, the others compile much.
+SLOW = ["design", "forces", "howto", "languages", "machine", "pictures", "scale"]
+ONCE = [pytest.param(p, marks=pytest.mark.thorough if Path(p).stem in SLOW else ()) for p in WITH_BLOCKS]
 
 
 @pytest.mark.parametrize("page", ONCE)

@@ -87,6 +87,7 @@ def test_a_reach_that_hangs_on_rounding_has_the_status_of_evaluate(f):
     assert [int(f(t, ec)[2]) for t in theta] == f(theta, ec)[2].tolist()
 
 
+@pytest.mark.thorough
 def test_another_process_has_the_same_digits(f, tmp_path):
     """The second one has the kernel from the disk, and needs no numba."""
     theta, ec = points(300)

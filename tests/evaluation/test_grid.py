@@ -164,6 +164,7 @@ def test_bad_arguments(arguments, error, words):
         dx.grid("a_C", **{"theta": THETA, "ec": 0.1, **MACHINE, **arguments})
 
 
+@pytest.mark.thorough
 def test_the_order_of_axes_changes_no_digit(monkeypatch):
     """Nor does broadcasting or reducing: which loop an operation is moved to must not change its rounding."""
     take_way(monkeypatch, "compiled")

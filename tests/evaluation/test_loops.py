@@ -40,6 +40,7 @@ FIRST = ("designs by angles", "designs in a table")  # each is a kernel to compi
 PARAMETERS = [pytest.param(p, marks=() if p in FIRST else pytest.mark.thorough) for p in PATTERNS]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("pattern", PARAMETERS)
 def test_a_nest_has_the_values_of_one_loop(pattern, way, monkeypatch):
     inputs = {"ec": 0.01, "AB": 0.15, "BC": 0.4, "omega0": 3.0}

@@ -60,6 +60,7 @@ CHANGES = {
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", CHANGES)
 def test_a_difference_fails_and_names_the_file_and_the_command(check, kind):
     change, name = CHANGES[kind]

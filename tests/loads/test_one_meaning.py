@@ -131,6 +131,7 @@ def test_a_motion_under_the_torque_of_constant_speed_keeps_that_speed(kind):
     np.testing.assert_allclose(np.asarray(several["omega"])[..., -1], SPEED, rtol=1e-7)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", some(kind for kind in LOADS if kind != "function"))
 def test_tolerances_scenes_and_modules(kind, tmp_path):
     load = LOADS[kind][0]

@@ -152,6 +152,7 @@ def test_the_schema_knows_loads():
         jsonschema.validate({"loads": {"F_Y": {"over_phi": "press.csv"}}}, rules)
 
 
+@pytest.mark.thorough
 def test_a_module_of_given_states_has_its_inputs_in_one_order(tmp_path):
     """Speeds of both signs and none, where alpha decides the way; F_Y as a load and as an axis."""
     stroke = dx.over_Y([0.02, 0.05, 0.1], [-900, -200, -30], [-90, -40, -3])

@@ -84,6 +84,7 @@ def test_plans_and_modules(tmp_path):
     dx.compile(scene, path, check=True)
 
 
+@pytest.mark.thorough
 def test_a_synthesis_keeps_what_the_machine_has():
     """The rod; the stroke or the time ratio that is not asked for; the speed of a peak."""
     own = dx.events(ec=0.01, AB=0.05, BC=0.2)

@@ -29,6 +29,7 @@ def test_chunked_designs_stay_lazy():
         np.testing.assert_allclose(lazy["gradient"][name].compute(), slope, rtol=1e-6)
 
 
+@pytest.mark.thorough
 def test_peaks_in_a_store(tmp_path):
     ec, BC = EC[:4], np.array([0.3, 0.35])
     inputs = {"ec": ec, "AB": 0.125, "BC": BC, "omega0": 157.08}

@@ -301,6 +301,7 @@ def test_the_same_for_any_number_of_threads(threads, monkeypatch):
         assert np.array_equal(slope, more["gradient"][name], equal_nan=True)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("bad", [False, True], ids=["all good", "one bad"])
 @pytest.mark.parametrize("one_special", [False, True], ids=["all turn", "one does not"])
 def test_the_same_in_parts(monkeypatch, bad, one_special):

@@ -164,9 +164,9 @@ def stopped_between_two_names(folder: Path, random: Random) -> Verdict:
 
 
 TRIALS = [
-    Trial("SIGKILL while generated/ is written", killed_while_writing_generated, 6, 200),
-    Trial("two writers of generated/ at once", two_writers_of_generated, 10, 300),
+    Trial("SIGKILL while generated/ is written", killed_while_writing_generated, 2, 200),
+    Trial("two writers of generated/ at once", two_writers_of_generated, 2, 300),
     Trial("SIGKILL while results are written (Zarr, NetCDF, CSV, npz)", killed_while_writing_results, 2, 80),
-    Trial("no room for results (a limit on file sizes)", no_room_for_results, 4, 40),
+    Trial("no room for results (a limit on file sizes)", no_room_for_results, 1, 40),
     Trial("stopped between two renames", stopped_between_two_names, 1, 5),
 ]

@@ -217,8 +217,8 @@ def _has_disks() -> bool:
 
 
 TRIALS = [
-    Trial("a damaged store of a sweep", damaged_store, 8, 400),
-    Trial("three sweeps into one place", two_sweeps, 2, 60),
+    Trial("a damaged store of a sweep", damaged_store, 2, 400),
+    Trial("three sweeps into one place", two_sweeps, 1, 60),
 ]
 if _has_disks():
     TRIALS.append(Trial("`desaxe run` on a full disk", run_on_a_full_disk, 1, 40))

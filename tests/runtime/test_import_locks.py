@@ -88,6 +88,7 @@ sys.meta_path.insert(0, Spy())
 """
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("tier", ["", "compiled"])
 def test_first_calls_import_nothing_without_the_lock(tier, tmp_path, monkeypatch):
     """What libraries import inside their functions is seen, too."""

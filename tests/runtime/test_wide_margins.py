@@ -60,7 +60,7 @@ def eccentric_as_crank(count=60):
         }  # fmt: skip
 
 
-@pytest.mark.sampled
+@pytest.mark.thorough
 def test_the_side_of_the_axis_is_known_where_the_pin_meets_it(monkeypatch):
     take_way(monkeypatch, "compiled")
     rows, names = list(eccentric_as_crank(cases(20, 60))), ["a_C", "alpha_BC", *SIDES]

@@ -18,6 +18,7 @@ ISSUE = {
 START = {"torque": 1.5, "theta0": 0.3, "omega_start": 20.0}
 
 
+@pytest.mark.thorough
 def test_a_step_where_one_estimate_vanishes():
     """The error of order 5 passes through 0 in a step of .9 rad: 5.2e-3 rad off at the end."""
     theta, omega = true_end(ISSUE, *START.values(), 1.0, 800)
@@ -73,6 +74,7 @@ def test_an_unusual_energy_residual_ends_the_message():
     assert each["message"].endswith("in 2 of 2 designs: repeat with rtol = 1e-05")
 
 
+@pytest.mark.thorough
 def test_a_usual_energy_residual_is_not_told():
     light = {"AB": 0.05, "BC": 0.2, "ec": 0.0, "m_slider": 1e5, "g_Y": -9.81, "m_crank": 1.0}
     drawn = designs(8, seed=4)

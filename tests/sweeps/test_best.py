@@ -66,7 +66,7 @@ TAKEN = {
 }  # fmt: skip
 
 
-@pytest.mark.sampled
+@pytest.mark.thorough
 def test_either_end_of_every_kind_is_that_of_the_grid(monkeypatch):
     """Random designs, all of which turn, by NumPy's own reductions."""
     monkeypatch.setattr("desaxe.sweeps.layout.REDUCED", (400, 400))

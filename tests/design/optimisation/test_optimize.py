@@ -37,6 +37,7 @@ def test_at_a_bound_of_a_parameter_and_units():
     }
 
 
+@pytest.mark.thorough
 def test_paper_a_has_no_highest_peak():
     found = dx.optimize(maximize=("absmax", "a_C"), over={"ec": (0, 0.25)}, **A)
     assert (found["status"], found["value"]) == (2, np.inf)

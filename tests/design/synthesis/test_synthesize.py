@@ -92,6 +92,7 @@ def test_peak_acceleration():
     )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("ratio", "wanted"), [(1.001, 400.0), (1.02, 400.0), (1.3, 400.0), (2.9, 2e4)])
 def test_peak_acceleration_next_to_both_change_points(ratio, wanted):
     """A high peak is reached twice, next to either end of the family, however long the rod is there."""

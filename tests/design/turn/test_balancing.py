@@ -134,6 +134,7 @@ def test_a_flywheel_in_a_simulated_motion(fluctuation):
     assert found["inertia_first_order"] == pytest.approx(found["inertia"], rel=3 * fluctuation)
 
 
+@pytest.mark.thorough
 def test_torques_and_energy_by_sums():
     found = flywheel(fluctuation=0.02, **PRESS)
     torque = dx.evaluate("T_in", theta=ANGLES, **PRESS)

@@ -54,6 +54,7 @@ COMPILERS = (
 )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("build", COMPILERS, ids=lambda build: build[0])
 def test_no_warning(build, sources):
     compiler, flags = build

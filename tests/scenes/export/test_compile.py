@@ -311,6 +311,7 @@ def test_ruff_finds_nothing_undefined_or_unused(tmp_path):
     assert done.returncode == 0, done.stdout
 
 
+@pytest.mark.thorough
 def test_bytes_depend_on_the_scene_alone(tmp_path):
     code = "import sys, desaxe as dx; dx.compile(sys.argv[1], sys.argv[2])"
     texts = set()
@@ -438,6 +439,7 @@ BAD = {
 }  # fmt: skip
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("scene", BAD.values(), ids=BAD)
 def test_every_bad_input_is_status_4(scene, tmp_path):
     """NaN, an infinity, a length below zero: of a point, a number and an element, as `evaluate` says."""

@@ -166,7 +166,7 @@ VALUES = {
 }
 
 
-@pytest.mark.sampled
+@pytest.mark.thorough
 @pytest.mark.parametrize("to", VALUES)
 def test_words_as_quantities(to, tmp_path):
     """All words that are taken, in one module."""
