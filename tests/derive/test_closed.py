@@ -16,6 +16,7 @@ WRONG = {
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", WRONG)
 def test_a_wrong_line_is_not_proved(name, monkeypatch):
     right, wrong = WRONG[name]

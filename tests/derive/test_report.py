@@ -21,6 +21,7 @@ def rows(name):
     return [line.split() for line in lines() if line.startswith(f"{name} ")]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", QUANTITIES)
 def test_every_quantity_has_a_row_in_both_tables(name):
     assert len(rows(name)) == 2

@@ -65,7 +65,7 @@ def test_the_bound_holds_next_to_the_change_point():
         assert not too_small(dx.evaluate(names_for(point), **point, quality=True), point), point
 
 
-@pytest.mark.sampled
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", ["smooth", "friction", "default_centres", "loads alone"])
 def test_the_bound_holds_for_forces(kind):
     for point in points("slowing down", kind, cases(3, 8)):

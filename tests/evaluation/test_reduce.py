@@ -185,6 +185,7 @@ BOTH = {"theta": TURN[::40], "ec": [0.0, 0.1, 0.24, 0.6], "BC": [0.35, 0.4], **M
 FEASIBLE = {**BOTH, "ec": [0.0, 0.1, 0.2]}
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("way")
 def test_two_axes_at_once_are_all_their_points():
     found = dx.grid(

@@ -134,6 +134,7 @@ def of_numba(folder, kind):
     np.testing.assert_array_equal(own["T_in_absmax_theta"], np.abs(grid).argmax(axis=-1))
 
 
+@pytest.mark.thorough
 def test_numba_has_the_values_of_evaluate_and_of_a_reduced_grid(tmp_path):
     of_numba(tmp_path, "outer")
 

@@ -296,6 +296,7 @@ def test_where_no_forces_balance_on_the_other_side():
 # ---- what is made of peaks -------------------------------------------------------------------------
 
 
+@pytest.mark.thorough
 def test_lazy_peaks_and_sweeps_tell_the_side(tmp_path):
     dask = pytest.importorskip("dask.array")
     lengths = np.array([0.3, 0.299999, 0.31])
@@ -333,6 +334,7 @@ def test_tolerance_samples_the_truth():
     assert found["monte_carlo"]["largest"] - found["monte_carlo"]["least"] < 8e-6 * slope
 
 
+@pytest.mark.thorough
 def test_optimize_finds_the_least_of_the_truth():
     best = dx.optimize(minimize=("absmax", "T_in"), over={"BC": (0.2999, 0.3001)}, starts=1, **PRESS, **LOAD)
     assert best["value"] == pytest.approx(press_peak(best["BC"]), rel=1e-9)
@@ -367,6 +369,7 @@ def test_run_tells_the_side(tmp_path, monkeypatch):
     assert "side" in run.report()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("way", [1, -1])
 def test_drive_has_the_gradient_at_a_jump(way):
     machine = {**PRESS, **LOAD, "BC": 0.299999, "omega0": way * 2 * pi}

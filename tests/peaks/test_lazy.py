@@ -17,6 +17,7 @@ def _synchronous():
         yield
 
 
+@pytest.mark.thorough
 def test_chunked_designs_stay_lazy():
     lazy = dx.peak("a_C", ec=da.from_array(EC, chunks=2), **MACHINE)
     eager = dx.peak("a_C", ec=EC, **MACHINE)

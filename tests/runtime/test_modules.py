@@ -140,6 +140,7 @@ def test_no_memory_is_an_error(folder):
         function(2**58, out)
 
 
+@pytest.mark.thorough
 def test_a_text_that_calls_what_only_numba_can_give_runs_in_this_process(folder):
     text = """
 from numba import types

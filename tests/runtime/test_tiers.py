@@ -73,6 +73,7 @@ def points():
     return {"theta": theta, "ec": ec, "AB": AB, "BC": BC, "omega0": 157.08}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("accuracy", ["standard", "extended"])
 def test_numpy_keeps_what_a_kernel_does(monkeypatch, accuracy):
     given = {name: value if np.ndim(value) == 0 else value[::10] for name, value in points().items()}

@@ -26,6 +26,7 @@ def test_feeder_against_what_paper_b_prints(feeder):
     assert verdicts == right + [("this model", False)] * 2
 
 
+@pytest.mark.thorough
 def test_feeder_has_the_torque_of_its_mechanism(feeder):
     """Over a turn at constant speed the drive does no work; the peaks are those of a fine sweep."""
     torque = feeder[1].dataset.T_in

@@ -70,6 +70,7 @@ def plain(tmp_path_factory):
     return compiled("x", tmp_path_factory.mktemp("plain"))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("title", TITLES.values(), ids=TITLES)
 def test_source_in_every_language(title, plain, tmp_path):
     found = compiled(title, tmp_path / "hostile")

@@ -38,7 +38,7 @@ def test_the_worst_error_beside_the_usual_one(power):
     assert found["omega"].ratio <= 100.0
 
 
-@pytest.mark.sampled
+@pytest.mark.thorough
 def test_one_design_takes_the_steps_of_many():
     drawn = designs(cases(4, 40), seed=3)
     many = dx.simulate(t_end=1.0, rtol=1e-6, times=[1.0], **drawn)

@@ -192,7 +192,7 @@ def test_a_search_that_was_stopped_goes_on(tmp_path, monkeypatch):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["stopped.zarr", "whole.zarr"]
 
 
-@pytest.mark.sampled
+@pytest.mark.thorough
 def test_a_finished_store_that_was_disturbed(tmp_path):
     """What is lost or damaged is made again, to the same bytes; changed metadata are refused by name."""
     whole, root = tmp_path / "whole.zarr", tmp_path / "again.zarr"

@@ -136,6 +136,7 @@ CHANGES = {
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("change", CHANGES)
 @pytest.mark.parametrize("copy", ["the array's", "the group's"])
 def test_changed_metadata_are_refused_by_name(change, copy, tmp_path):

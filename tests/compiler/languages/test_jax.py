@@ -16,6 +16,7 @@ def made(tmp_path_factory):
         yield imported(place)
 
 
+@pytest.mark.thorough
 def test_the_coverage_set_against_exact(made):
     import jax
 

@@ -243,6 +243,7 @@ SCENES = {
 }  # fmt: skip
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("libm", [True, False])
 def test_values_of_other_scenes(name, libm, tmp_path):

@@ -273,7 +273,7 @@ FILES = {
 }
 
 
-@pytest.mark.sampled
+@pytest.mark.thorough
 @pytest.mark.parametrize("to", FILES)
 def test_words_as_files(to, tmp_path, monkeypatch):
     read, suffix = FILES[to]

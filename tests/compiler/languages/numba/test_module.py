@@ -246,6 +246,7 @@ def with_vectors(wide):
     return njit(scope["signature"], error_model="numpy")(scope["function"]), names
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("size", [7, 520, 1100])
 def test_one_loop_or_two_have_the_same_digits(size):
     """The plain form runs in stages where vectors are narrow: both ways exist on every machine."""

@@ -51,6 +51,7 @@ def test_rows_of_any_length(reduced, length):
     np.testing.assert_allclose(found["f_rms"], np.sqrt(np.nanmean(f * f, -1)), rtol=1e-14)
 
 
+@pytest.mark.thorough
 def test_more_designs_than_a_block(reduced):
     x, a, b = np.linspace(-1, 1, 5), np.linspace(0, 1, SCRATCH // 4), np.arange(3.0)
     found = reduced(x, a, b)
