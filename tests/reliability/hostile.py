@@ -26,7 +26,7 @@ from desaxe.compiler.languages import languages
 from desaxe.scenes import schema
 from tests.reliability.rig import CRASHED, GOOD, HUNG, Trial, Verdict
 
-SECONDS = 20
+SECONDS = 60
 LENGTHS = {"ec": 0.01, "AB": 0.125, "BC": 0.35}
 MACHINE = {**LENGTHS, "omega0": 157.08}
 ANGLES = np.linspace(0.1, 6.0, 9)
