@@ -18,7 +18,7 @@ from ..compiler.languages.arrays import compile_arrays
 from ..compiler.program import Program
 from .nodes import Array
 from .programs import Programs
-from .search import AFTER, BEFORE, FIFTH, FIRST, FLAT, HIGH, LOW, THETA, TIE, WIDTH
+from .search import AFTER, BEFORE, DIP, FIFTH, FIRST, FLAT, HIGH, LOW, THETA, TIE, WIDTH
 
 Function = Callable[..., None]
 
@@ -183,6 +183,27 @@ def told(kind: int, count: int, chosen: Any, here: Array, found: Array, theta: A
 
 
 SEQUENTIAL = {f.__name__: f for f in (inverse, gather, candidates, interior, brackets, choose, told)}
+
+
+def bound_by_rows(
+    kind: int, count: int, nodes: Array, value: Array, slope: Array, best: Array, theta: Array, upper: Array
+) -> None:
+    """`bound` for designs with a column of nodes each; between two that are equal is nothing."""
+    value, slope = value[: len(nodes), :count], slope[: len(nodes), :count]
+    top = np.abs(value) if kind == 0 else value if kind == 1 else -value
+    known = np.where(np.isnan(top), -np.inf, top)
+    place = known.argmax(axis=0), np.arange(count)
+    best[:count] = known[place]
+    theta[:count] = np.where(known[place] > -np.inf, nodes[place], np.nan)
+    width, a, b = np.diff(nodes, axis=0), slope[:-1], slope[1:]
+    size_a, size_b = np.abs(a), np.abs(b)
+    less, more = np.fmin(size_a, size_b), np.fmax(size_a, size_b)
+    middle = 1.5 * np.diff(value, axis=0) / np.where(width > 0.0, width, np.inf) - 0.25 * (a + b)
+    rising = a > 0.0
+    dips = np.where(rising, middle, -middle) < DIP * more
+    some = ((rising != (b > 0.0)) | dips | (less < FLAT * more)) & (width > 0.0)
+    bounds = np.fmax(top[:-1], top[1:]) + width * np.fmax(np.abs(middle), more)
+    upper[1 : len(nodes), :count] = np.where(some, bounds, np.nan)
 
 
 def whole_blocks(source: Path, scope: dict[str, Any]) -> dict[str, Any]:

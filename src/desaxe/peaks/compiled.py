@@ -20,7 +20,7 @@ from ..runtime.modules import Store
 from ..runtime.threads import run_parts
 from ..runtime.tiers import INTERPRETED, NUMPY, forced_tier
 from . import search as loops
-from .by_arrays import functions_of, whole_blocks
+from .by_arrays import bound_by_rows, functions_of, whole_blocks
 from .nodes import Array
 from .programs import Programs, Search, programs_of
 
@@ -146,6 +146,12 @@ def _by_loops(search: Search) -> Kernel:
 def plain_finish(search: Search) -> Function:
     """`finish(count, theta, block, out)` in plain Python: value, slope and gradient at a fixed load."""
     return _quiet(_scope(search, texts_of(programs_of(search, False), "python"))["finish"])
+
+
+def search_by_rows(sweep: Function, points: Function, finish: Function) -> Function:
+    """The search by NumPy of designs with a column of nodes each, which are one group and one block."""
+    functions = {"sweep": sweep, "points": points, "finish": finish, "bound": bound_by_rows}
+    return _quiet(whole_blocks(SEARCH, {"WORK": 1, "BLOCK": 2**62, **functions})["search"])
 
 
 def search_with(sweep: Function, points: Function, finish: Function) -> Function:

@@ -104,7 +104,8 @@ def _over_Y(load: OverY, arcs: Arcs | None, designs: Designs) -> _Part:
     kinks = [(own, crossing), (turning, TURNING)]
     if arcs is None:
         smooth = crossings(load, load.positions(smooth=True), lengths, designs.branch)
-        return _Part(repeated(smooth, *designs.theta), kinks, [])
+        room = BESIDE * np.spacing(1.0 + np.abs(own))  # so that no search halves its way to a kink
+        return _Part(np.concatenate([repeated(smooth, *designs.theta), own - room, own + room], 1), kinks, [])
     before = np.where(arcs.leaps, np.nextafter(arcs.starts, -inf), np.nan)
     jumps = [(np.where(arcs.turns, arcs.starts, np.nan), TURNING)]
     jumps += [(np.where(arcs.leaps & ~arcs.turns, arcs.starts, np.nan), crossing)]

@@ -180,7 +180,8 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
     rows = np.flatnonzero(~own_nodes)
     loaded = Values(name, search, designs, course_of(designs), told) if designs.loads else None
     if rows.size and loaded is not None:
-        loaded.run(with_nodes(_classed(designs, rows), loaded.course.nodes), number, theta, out)
+        for part, nodes in with_nodes(_classed(designs, rows), loaded.course.nodes):
+            loaded.run(part, nodes, number, theta, out)
     elif rows.size:
         run(usual, columns, rows.size, partial(_classed, designs, rows), number, theta, out, threads)
     if bad.any():
@@ -191,9 +192,8 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
         some = designs.part(part)
         nodes, limits = special.own_nodes(some)
         if loaded is not None:
-            nodes = np.sort(np.concatenate([nodes, loaded.course.nodes[part]], axis=1), axis=1)
-        if loaded is not None:
-            loaded.run(_each(part, nodes), number, theta, out)
+            nodes = np.sort(np.append(nodes, loaded.course.nodes[part], axis=1), axis=1)
+            loaded.run(part, nodes, number, theta, out)
         else:
             cost = special.NODES * rows.size if rows.size > 1 else 1  # one alone: its loops as they stand
             run(search, columns, cost, partial(_each, part, nodes), number, theta, out, threads)

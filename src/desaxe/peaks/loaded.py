@@ -1,10 +1,11 @@
 """Peaks under loads that vary with the motion: the same search, with values and slopes under these loads.
 
-The text of `search` runs in plain Python; what it calls evaluates many angles of many designs at once, with
-total derivatives. Between jumps the piece of a load over Y is held, so that next to one a value is the limit
+The text of `search` runs by NumPy, many designs at once, each with nodes of its own; what it calls has total
+derivatives. Between jumps the piece of a load over Y is held, so that next to one a value is the limit
 from its side; there are nodes on both.
 """
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from ..evaluation.values import values
 from ..loads.resolve import Forces, Plan
 from ..mechanism.names import parts, sensitivity
 from ..support.progress import Portions
-from .compiled import Groups, plain_finish, search_with
+from .compiled import Groups, plain_finish, search_by_rows
 from .course import Course
 from .nodes import Array
 from .programs import Search, needs_own, programs_of
@@ -24,19 +25,22 @@ from .special import Designs
 Rows = NDArray[np.intp]
 
 
-def with_nodes(groups: Groups, nodes: Array) -> Groups:
-    """A group of its own for each design: the nodes of its class and its own."""
+MOST = 2**18  # angles at once: the arrays of a block are a few megabytes each
+
+
+def with_nodes(groups: Groups, own: Array) -> Iterator[tuple[Rows, Array]]:
+    """Blocks of designs, and for each of them a row of nodes: those of its group and its own, ascending."""
     order, starts, shared, node_starts = groups
-    grids = []
-    for g in range(starts.size - 1):
-        common = shared[node_starts[g] : node_starts[g + 1]].tolist()
-        grids += [
-            np.array(sorted({*common, *nodes[row].tolist()})) for row in order[starts[g] : starts[g + 1]]
-        ]
-    if all(np.array_equal(grid, grids[0]) for grid in grids):
-        return Groups(order, np.array([0, order.size]), grids[0], np.array([0, grids[0].size]))
-    ends = np.cumsum([0, *(grid.size for grid in grids)])
-    return Groups(order, np.arange(order.size + 1), np.concatenate(grids), ends)
+    widest = int(np.diff(node_starts).max())
+    size = max(1, MOST // (widest + own.shape[1]))
+    for first in range(0, order.size, size):
+        rows = order[first : first + size]
+        nodes = np.repeat(own[rows, :1], widest, axis=1)
+        for g in range(starts.size - 1):
+            here = nodes[max(starts[g] - first, 0) : max(starts[g + 1] - first, 0)]
+            grid = shared[node_starts[g] : node_starts[g + 1]]
+            here[:, : grid.size] = grid
+        yield rows, np.sort(np.append(nodes, own[rows], axis=1), axis=1)
 
 
 class Values:
@@ -54,12 +58,15 @@ class Values:
         self.derived = not needs_own(search.name, ("theta", *search.parameters))
         self.plans: dict[int, Plan] = {}
 
-    def run(self, groups: Groups, kind: int, theta: Array, out: Array) -> None:
-        """Search groups of designs; `theta` and the rows of `out` are filled at these designs."""
-        order, starts, nodes, node_starts = groups
+    def run(self, rows: Rows, nodes: Array, kind: int, theta: Array, out: Array) -> None:
+        """Search designs with a row of nodes each; `theta` and `out` are filled at these designs."""
         numbers = np.arange(float(self.designs.size))[None]
-        search = search_with(self.sweep, self.points, self.finish)
-        search(numbers, order, starts, nodes, node_starts, kind, theta, out)
+        search = search_by_rows(self.sweep, self.points, self.finish)
+        size, widths = max(1, MOST // nodes.shape[1]), np.array([0, nodes.shape[1]])
+        for first in range(0, rows.size, size):
+            part = rows[first : first + size]
+            grid = np.ascontiguousarray(nodes[first : first + size].T)
+            search(numbers, part, np.array([0, part.size]), grid, widths, kind, theta, out)
 
     def at(self, count: int, rows: Rows, theta: Array, pieces: dict[str, Rows] | None = None) -> list[Array]:
         """Value, slope and gradient, the first `count` of them, at an angle of each of some designs.
@@ -108,9 +115,7 @@ class Values:
 
     def sweep(self, count: int, nodes: Array, block: Array, work: Array, value: Array, slope: Array) -> None:
         """Value and slope at every node, for `count` designs."""
-        rows = np.tile(block[0, :count].astype(np.intp), nodes.size)
-        for out, found in zip((value, slope), self.at(2, rows, np.repeat(nodes, count)), strict=True):
-            out[: nodes.size, :count] = found.reshape(nodes.size, count)
+        self.points(len(nodes), count, nodes, block, value, slope)
         self.told.add(count)
 
     def points(self, rows: int, count: int, theta: Array, block: Array, value: Array, slope: Array) -> None:

@@ -1,0 +1,62 @@
+"""Peaks of many designs under loads: they go through the search at once, and each is what it is alone."""
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from desaxe.peaks.loaded import Values
+
+MACHINE = {"AB": 0.1, "BC": 0.35, "omega0": 30.0, "m_slider": 2.0, "m_rod": 1.0}
+LOADS = {
+    "theta": dx.over_theta([0.0, 1.0, 3.0, 4.5], [0.0, -400.0, -50.0, 20.0], kind="step"),
+    "Y": dx.over_Y([0.27, 0.33, 0.42], [0.0, -100.0, -400.0], [0.0, -10.0, -50.0], kind="step"),
+    "stroke": dx.over_stroke([0.0, 0.008, 0.1], [-400.0, -100.0, 0.0], kind="linear", dead_centre="inner"),
+}
+
+
+@pytest.fixture(autouse=True)
+def nobody_waits_for_a_compiler(monkeypatch):
+    monkeypatch.setenv("DESAXE_TIER", "numpy")
+
+
+@pytest.mark.parametrize("over", LOADS)
+def test_the_steps_of_a_search_are_those_of_one_design(over, monkeypatch):
+    calls = []
+    at = Values.at
+
+    def counted(self, *args, **more):
+        calls.append(1)
+        return at(self, *args, **more)
+
+    monkeypatch.setattr(Values, "at", counted)
+    found = dx.peak("T_in", ec=np.linspace(-0.05, 0.05, 24), F_Y=LOADS[over], **MACHINE)
+    assert found["status"].tolist() == [0] * 24
+    assert len(calls) < 20
+
+
+@pytest.mark.parametrize("over", LOADS)
+@pytest.mark.parametrize("kind", ["absmax", "max", "min"])
+def test_each_design_has_the_peak_that_it_has_alone(over, kind):
+    """One of them cannot turn fully, one has a bad length; blocks of two designs give the same."""
+    ec = np.array([-0.05, 0.0, 0.02, 0.26, 0.049])
+    BC = np.array([0.35, 0.35, 0.30, 0.35, -1.0])
+    machine = {name: value for name, value in MACHINE.items() if name != "BC"}
+    every = dx.peak("T_in", ec=ec, BC=BC, F_Y=LOADS[over], kind=kind, **machine)
+    for row in range(4):
+        alone = dx.peak("T_in", ec=ec[row], BC=BC[row], F_Y=LOADS[over], kind=kind, **machine)
+        assert every["status"][row] == alone["status"]
+        assert every["side"][row] == alone["side"]
+        for key in ("value", "theta"):
+            np.testing.assert_allclose(every[key][row], alone[key], rtol=1e-9, err_msg=f"{key} of {row}")
+        for p, slope in alone["gradient"].items():
+            np.testing.assert_allclose(every["gradient"][p][row], slope, rtol=1e-7, atol=1e-9, err_msg=p)
+    assert every["status"][4] == 4
+
+
+def test_blocks_of_few_designs_change_nothing(monkeypatch):
+    ec = np.linspace(-0.05, 0.05, 7)
+    whole = dx.peak("T_in", ec=ec, F_Y=LOADS["Y"], **MACHINE)
+    monkeypatch.setattr("desaxe.peaks.loaded.MOST", 250)
+    cut = dx.peak("T_in", ec=ec, F_Y=LOADS["Y"], **MACHINE)
+    np.testing.assert_allclose(cut["value"], whole["value"], rtol=1e-14)
+    np.testing.assert_array_equal(cut["side"], whole["side"])
