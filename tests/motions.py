@@ -5,6 +5,8 @@ energy gives M(theta) and H = M'/2, and M theta'' + H theta'^2 = Q is solved ste
 iteration on power series (python-flint), to some 25 digits.
 """
 
+from contextlib import contextmanager
+
 from flint import arb, arb_series, ctx
 
 ORDER = 28
@@ -41,15 +43,39 @@ def step(design, torque, t, theta, omega, h):
     return tuple(sum((x[k] * arb(h) ** k for k in range(ORDER)), arb(0)).mid() for x in (angle, speed))
 
 
-def true_end(design, torque, theta, omega, t_end, steps):
-    """theta and omega at t_end, as floats; torque may be a number or a function of power series."""
-    before = ctx.prec, ctx.cap
-    ctx.prec, ctx.cap = 160, ORDER
+def end(design, torque, theta, omega, t_end, steps):
+    """theta and omega at t_end."""
     law = torque if callable(torque) else lambda t, theta, omega: arb_series([torque])
+    theta, omega, h = arb(theta), arb(omega), arb(t_end) / steps
+    for k in range(steps):
+        theta, omega = step(design, law, h * k, theta, omega, h)
+    return theta, omega
+
+
+@contextmanager
+def digits(prec):
+    """Power series of the order of a step, with this many bits."""
+    before = ctx.prec, ctx.cap
+    ctx.prec, ctx.cap = prec, ORDER
     try:
-        theta, omega, h = arb(theta), arb(omega), arb(t_end) / steps
-        for k in range(steps):
-            theta, omega = step(design, law, h * k, theta, omega, h)
-        return float(theta), float(omega)
+        yield
     finally:
         ctx.prec, ctx.cap = before
+
+
+def true_end(design, torque, theta, omega, t_end, steps):
+    """theta and omega at t_end, as floats; torque may be a number or a function of power series."""
+    with digits(160):
+        return tuple(map(float, end(design, torque, theta, omega, t_end, steps)))
+
+
+def true_slopes(parameter, design, torque, theta0, omega_start, t_end, steps):
+    """The derivatives of theta and omega at t_end by a parameter: central differences at 60 digits."""
+    with digits(200):
+        ends = []
+        for side in (1, -1):
+            given = {**design, "torque": torque, "theta0": theta0, "omega_start": omega_start}
+            given[parameter] = arb(given.get(parameter, 0.0)) + side * arb(2) ** -36
+            start = given.pop("torque"), given.pop("theta0"), given.pop("omega_start")
+            ends.append(end(given, *start, t_end, steps))
+        return tuple(float((a - b) * arb(2) ** 35) for a, b in zip(*ends, strict=True))

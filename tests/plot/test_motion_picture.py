@@ -48,5 +48,7 @@ def test_each_of_many_designs_has_its_curve():
     lines = found.plot()["omega"]
     assert len(lines) == 3
     np.testing.assert_array_equal(lines[2].get_ydata(), found["omega"][2])
+    one = dx.simulate(torque=1.0, t_end=0.2, wrt="theta0", **DESIGN)
+    assert list(one.plot())[3:] == ["theta_wrt_theta0", "omega_wrt_theta0"]
     with pytest.raises(ValueError, match="over='t'"):
         dx.plot.curves(found, "omega")

@@ -23,6 +23,13 @@ PLAIN = (
     "kind", "active", "residual", "scale",
 )  # fmt: skip
 
+OF_MOTIONS = (
+    "theta",
+    "omega",
+    "t_last",
+    "work",
+)  # derivatives of these may be by theta0, omega_start, torque
+
 
 class Shown(NamedTuple):
     """The form of results: a unit system, as plain numbers or as pint quantities."""
@@ -93,6 +100,9 @@ class Shown(NamedTuple):
 
 def conversion_of(system: UnitSystem, name: str) -> Conversion | None:
     """The conversion of a key of a result; None where it has no unit."""
+    base, _, parameter = name.partition("_wrt_")
+    if base in OF_MOTIONS and (parameter in OTHERS or parameter in INPUTS):
+        return system.slope(base, parameter)
     if name in OTHERS or name in INPUTS or name.startswith("theta_"):
         return system.of(name)
     try:
@@ -155,6 +165,7 @@ def _motion(found: Any, show: Shown) -> Any:
             t=show.number(event.t, second),
             theta=show.number(event.theta, angle),
             omega=show.number(event.omega, speed),
+            wrt=event.wrt and {p: show.number(d, show.system.slope("t", p)) for p, d in event.wrt.items()},
         )
         for event in found.get("events", [])
     ]

@@ -6,7 +6,6 @@ import numpy as np
 
 from ..evaluation.labels import attributes, import_xarray
 from ..mechanism.inputs import INPUTS
-from ..mechanism.names import parts
 from ..mechanism.unit_system import SI
 
 if TYPE_CHECKING:
@@ -48,11 +47,9 @@ def _attributes(name: str, units: Any) -> dict[str, Any]:
     """Meaning and unit of a history."""
     if name == "t":
         return {**TIME, "units": units.of("t").unit}
-    base, by = parts(name)
-    if name in INPUTS:
-        told = {"long_name": INPUTS[name].meaning}
-    elif by and base in ("theta", "omega"):
-        told = {"long_name": f"derivative of {base} by {by[0]}"}
-    else:
-        told = attributes(name, state=True)
+    base, _, parameter = name.partition("_wrt_")
+    if parameter and base in ("theta", "omega"):
+        unit = units.slope(base, parameter).unit
+        return {"units": unit, "long_name": f"derivative of {base} by {parameter}"}
+    told = {"long_name": INPUTS[name].meaning} if name in INPUTS else attributes(name, state=True)
     return {**told, "units": units.of(name).unit}

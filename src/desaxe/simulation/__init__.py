@@ -15,6 +15,10 @@ dop853        the same for many designs, which numba compiles
 tableau       the coefficients of both
 compiled      the module of a family of designs
 history       histories of angle, speed, quantities and energy
+sensitivities  derivatives of a motion by parameters
+slopes        the derivatives of a torque by angle and speed
+cuts          by how much sensitivities jump where a motion is cut
+collocation   linear equations along a motion, on panels of time
 residual      the energy residual, and a message where it is unusual
 result        the result and its statuses
 held          loads as functions of time, smooth between their kinks

@@ -15,6 +15,7 @@ from ..mechanism.closed.limits import theta_intervals
 from ..mechanism.inputs import INPUTS, Input
 from ..mechanism.names import CENTRES, LENGTHS, LOADS, MASSES
 from ..mechanism.read import read
+from ..mechanism.spelling import did_you_mean
 from ..runtime.request import several
 from ..support.checks import real_number
 from ..support.deadline import Deadline
@@ -218,6 +219,25 @@ def read_until(until: Any) -> tuple[float, ...]:
         return ()
     several = until if isinstance(until, (list, tuple, np.ndarray)) else [until]
     return tuple(scalar("until", angle, "rad") for angle in several)
+
+
+def read_wrt(wrt: Any, given: Mapping[str, Any]) -> tuple[str, ...]:
+    """The parameters of the sensitivities of a motion: numbers of the call, whose loads have derivatives."""
+    wanted = (wrt,) if isinstance(wrt, str) else several(wrt)
+    for name in wanted:
+        if name not in given:
+            asked = did_you_mean(name, given) if isinstance(name, str) else ""
+            raise ValueError(f"wrt: no parameter {shown(name)}; {asked}there are {', '.join(given)}")
+        if callable(given[name]):
+            raise ValueError(f"wrt: {name} = {shown(given[name])} is no number, there is no derivative by it")
+    for name in ("F_X", "F_Y"):
+        load = given[name]
+        if wanted and callable(load) and not (isinstance(load, LoadOverMotion) and load.has_slope):
+            raise TypeError(
+                f"{name} = {shown(load)}: wrt= needs its derivative: give a table, or "
+                "desaxe.over_theta(f, derivative=...)"
+            )
+    return wanted
 
 
 def read_method(method: str) -> str:

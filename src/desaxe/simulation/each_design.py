@@ -11,7 +11,7 @@ from ..mechanism.names import CENTRES, LENGTHS, LOADS
 from ..support.progress import Portions, progress_bar
 from .many_designs import SAMPLES, STARTS, message, starting
 from .residual import TELLS, told_of
-from .result import NO_START, Simulation
+from .result import NO_START, SENSITIVITIES, Simulation
 
 Array = NDArray[np.float64]
 OneDesign = Callable[[Mapping[str, Any], Mapping[str, Any], Array], Simulation]
@@ -23,6 +23,7 @@ def simulate_each(
     starts: Mapping[str, Any],
     branch: int,
     names: Sequence[str],
+    wrt: Sequence[str],
     times: Any,
     end: float,
     rtol: float,
@@ -47,9 +48,12 @@ def simulate_each(
     size = int(np.prod(shape))
     still = {name: np.zeros(size) for name in varying}
     status = starting({**still, **flat}, branch)
-    histories = {name: np.full((size, t.size), np.nan) for name in ("theta", "omega", "alpha", *names)}
-    numbers = {name: np.full(size, np.nan) for name in ("t_last", "energy_residual", "work")}
+    along = [f"{name}_wrt_{p}" for p in wrt for name in ("theta", "omega")]
+    ends = [f"{name}_wrt_{p}" for p in wrt for name in ("t_last", "work")]
+    histories = {n: np.full((size, t.size), np.nan) for n in ("theta", "omega", "alpha", *names, *along)}
+    numbers = {name: np.full(size, np.nan) for name in ("t_last", "energy_residual", "work", *ends)}
     rounded = np.full(size, np.inf)  # or 0 where the residual of a design is told
+    without = []  # designs of which a derivative does not exist
 
     def follow(row: int) -> None:
         design = {name: values[row].item() for name, values in flat.items()} | varying
@@ -60,6 +64,8 @@ def simulate_each(
             history[row, :count] = found[name]
         status[row] = found["status"]
         rounded[row] = 0.0 if TELLS in found["message"] else np.inf
+        if SENSITIVITIES in found["message"]:
+            without.append(row)
         for name, column_of in numbers.items():
             column_of[row] = found[name]
 
@@ -72,4 +78,6 @@ def simulate_each(
     result = Simulation(t=t, **{name: h.reshape(*shape, t.size) for name, h in histories.items()})
     result["status"] = status.reshape(shape)
     result["message"] = message(status) + told_of(numbers["energy_residual"], rounded, rtol)
+    if without:
+        result["message"] += f"{SENSITIVITIES}NaN in {len(without)} of {size} designs, where there are none"
     return Simulation(result, **{name: values.reshape(shape) for name, values in numbers.items()})

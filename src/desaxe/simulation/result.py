@@ -1,5 +1,6 @@
 """The result of a simulation: a dict with a readable repr."""
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from ..mechanism.status import SimulationStatus
@@ -7,13 +8,15 @@ from ..support.answer import Answer
 from ..support.forks import IMPORTS
 
 DONE, REST, LIMIT, JAMS, FAILED, NO_INERTIA, NO_START = map(int, SimulationStatus)
+SENSITIVITIES = "; sensitivities: "  # what a message says of them follows
 WORDS = {int(status): status.words for status in SimulationStatus}
 
 
 class Event(NamedTuple):
     """An event: kind, time [s], crank angle [rad], speed [rad/s].
 
-    `which` says more: outer or inner dead centre, what the friction does.
+    `which` says more: outer or inner dead centre, what the friction does. `wrt`, of a motion with
+    sensitivities: parameter -> dt/dp.
     """
 
     kind: str
@@ -21,6 +24,7 @@ class Event(NamedTuple):
     theta: float
     omega: float
     which: str = ""
+    wrt: Mapping[str, float] | None = None
 
 
 class Simulation(Answer):

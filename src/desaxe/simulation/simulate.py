@@ -1,6 +1,6 @@
 """`simulate`: the motion of the crank under a torque."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import inf, sqrt
 from typing import Any
 
@@ -13,6 +13,7 @@ from ..mechanism.inputs import TINY
 from ..runtime.request import check_common, with_known_inputs
 from ..support.checks import whole_number
 from ..support.deadline import Deadline
+from ..support.forks import IMPORTS
 from .checks import (
     check_names,
     design_values,
@@ -22,14 +23,17 @@ from .checks import (
     read_rtol,
     read_times,
     read_until,
+    read_wrt,
     scalar,
 )
 from .each_design import simulate_each
+from .held import Held
 from .history import result_of
 from .many_designs import is_array, simulate_many
 from .model import Load, Model
 from .one_design import Run, Tolerance
 from .result import Simulation
+from .slopes import Slopes
 
 LEAST_ATOL = 1e-100  # with none at all a state of 0 would have no scale
 
@@ -63,6 +67,8 @@ def simulate(
     method: str = "DOP853",
     times: Any = None,
     until: Any = None,
+    wrt: str | Sequence[str] = (),
+    derivative: Callable[..., Any] | None = None,
     max_step: Any = None,
     max_steps: int = 1_000_000,
     threads: int | None = None,
@@ -85,6 +91,10 @@ def simulate(
     method       DOP853, or by SciPy (extra `simulate`) RK45, RK23, Radau, BDF, LSODA
     times        instants of the histories [s]; by default 1001 from start to end
     until        crank angle or angles [rad]: the first that is reached ends the motion
+    wrt          parameters by which the motion is differentiated: inputs of the mechanism that are numbers,
+                 "theta0", "omega_start", "torque" where it is a number
+    derivative   for wrt, of a torque that is a function: one of the same arguments that returns dT/dtheta
+                 and dT/domega
     max_step     longest step [s], for loads that act briefly
     max_steps    more steps than this are a failure
     timeout      seconds of computing, None for no limit: then one motion ends with status 4 and what there is
@@ -102,14 +112,21 @@ def simulate(
                      kinetic energy; above 100 times what is usual at this rtol, `message` ends with it and
                      the rtol to repeat with
     work             of torque, loads and friction, gravity not included [J]
+    t_last           when the motion ends [s]
     solution         function t -> dict of theta and omega, anywhere up to the end
+    theta_wrt_<p>, omega_wrt_<p>   for each p of wrt: derivatives of the histories at each instant
+    t_last_wrt_<p>, work_wrt_<p>   of the end of the motion, and of the work up to there
+
+    With wrt each event has `wrt`, parameter -> dt/dp. The derivatives are exact but for the integration's own
+    error, across jumps of loads, standstills and friction, too. They are NaN where there are none, and
+    `message` says so: at an angle or a standstill that is only touched, and after a jump there.
 
     Many designs at once: lengths, masses, constant loads, theta0, omega_start and a constant torque may be
     arrays that broadcast like NumPy. All run in compiled code (numba compiles a torque function), without
     friction; where F_X, F_Y or a table of the torque vary with the motion one after the other. Histories then
     have the shape (designs..., times), 101 instants without `times`, NaN where a motion has ended. status
-    (also 6: bad input, or no mechanism at the start), energy_residual, work and t_last, where each ends, have
-    the shape of the designs; there are no events and no solution.
+    (also 6: bad input, or no mechanism at the start), energy_residual, work and t_last have the shape of
+    the designs; there are no events and no solution. With wrt they run one after the other.
 
     Equation: M_eff alpha + M_eff' omega^2/2 = torque - static torque - friction (paper C, section 3).
     Raises ValueError where no motion can start (no mechanism there, no inertia) and for a bad value.
@@ -130,19 +147,22 @@ def simulate(
     longest = inf if max_step is None else scalar("max_step", max_step, "s", TINY, "a finite time > 0")
     instants, angles, rtol = read_times(times, end), read_until(until), read_rtol(rtol)
     starts = {"theta0": theta0, "omega_start": omega_start, "torque": torque}
+    by = read_wrt(wrt, {**given, **starts})
+    slopes = Slopes(torque, derivative) if by else None
     if any(map(is_array, (*given.values(), *starts.values()))):
         _check_many(method, atol, until)
-        if any(map(callable, (given["F_X"], given["F_Y"]))) or isinstance(torque, (LoadOverMotion, Motor)):
+        varying = any(map(callable, (given["F_X"], given["F_Y"])))
+        if by or varying or isinstance(torque, (LoadOverMotion, Motor)):
 
             def one(inputs: Mapping[str, Any], begin: Mapping[str, Any], t: Any) -> Simulation:
                 deadline.check()
                 return simulate(
                     **inputs, **begin, t_end=end, names=wanted, branch=branch, rtol=rtol, times=t,
                     max_step=None if longest == inf else longest, max_steps=max_steps,
-                    timeout=deadline.left(),
+                    timeout=deadline.left(), wrt=by, derivative=derivative,
                 )  # fmt: skip
 
-            return simulate_each(one, given, starts, int(branch), wanted, instants, end, rtol)
+            return simulate_each(one, given, starts, int(branch), wanted, by, instants, end, rtol)
         how = (rtol, end, longest, max_steps)
         return simulate_many(given, starts, int(branch), wanted, instants, how, threads, deadline)
     start = scalar("theta0", theta0, "rad"), scalar("omega_start", omega_start, "rad/s")
@@ -157,7 +177,14 @@ def simulate(
     with np.errstate(all="ignore"):  # values beyond every double end the motion with a status
         run.to_the_end()
     shown = {**values, "branch": branch, "F_X": drive.F_X, "F_Y": drive.F_Y}
-    return result_of(run, wanted, instants, shown)
+    result = result_of(run, wanted, instants, shown)
+    if slopes is not None:
+        with IMPORTS:
+            from .sensitivities import add_sensitivities
+
+        held = {name: load.load for name in ("F_X", "F_Y") if isinstance(load := shown[name], Held)}
+        add_sensitivities(result, run, by, {**values, "branch": int(branch), **held}, slopes)
+    return result
 
 
 def _check_many(method: str, atol: Any, until: Any) -> None:

@@ -1,0 +1,146 @@
+"""Cuts of a motion that move with the parameters: by how much the sensitivities jump there, and dt/dp.
+
+A cut at the angle theta_c(p) comes at dt/dp = (theta_c,p - theta_p)/omega, a standstill at -omega_p/alpha.
+Where the acceleration jumps there, omega_p jumps by (alpha before - alpha after) dt/dp. Where the motion only
+touches the angle or the standstill there is no such derivative: NaN.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from math import copysign, cos, nan, sin
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..loads.load import OverY
+from ..mechanism.names import LENGTHS
+from .equations import Resting, State, state_of
+from .events import Q, V
+from .held import Held
+from .one_design import Piece, Run
+
+Array = NDArray[np.float64]
+SAME = 1e-9  # of the accelerations: a jump by less is rounding
+TOUCHED = 1e-6  # of the largest speed, or of its change in the motion's time: less is none
+Values = Callable[..., Mapping[str, Any]]
+
+
+class Cuts:
+    """The cuts of a motion; `notes` say where derivatives end.
+
+    values  quantities of the design at an angle
+    """
+
+    def __init__(self, run: Run, wrt: Sequence[str], values: Values) -> None:
+        self.run, self.wrt, self.values = run, wrt, values
+        self.model = run.model
+        self.notes: list[str] = []
+        self.fastest = max(abs(state_of(self.model, y[Q], y[V]).omega) for _, y in run.accepted)
+
+    def hold(self, piece: Piece, only: Held | None = None) -> None:
+        """Hold loads, or only one of them, to what they are on a piece of the motion."""
+        if not self.model.drive.held:
+            return
+        middle = self.state(piece, 0.5 * (piece.start + piece.stop))
+        for held in self.model.drive.held:
+            if only is None or held is only:
+                held.hold(middle.theta, copysign(1.0, middle.omega))
+
+    def release(self) -> None:
+        """Hold nothing."""
+        for held in self.model.drive.held:
+            held.release()
+
+    def state(self, piece: Piece, t: float) -> State:
+        """The state of the crank at an instant of a piece."""
+        q, v, _ = piece.state(np.array([t]))[:, 0].tolist()
+        return state_of(self.model, q, v)
+
+    # ---- jumps ------------------------------------------------------------------------------
+
+    def jump(self, before: Piece, after: Piece, x: Array, v: Array) -> Array:
+        """By how much omega_p jumps from one piece to the next; x, v: theta_p, omega_p before."""
+        none = np.zeros(len(self.wrt))
+        if before.law is after.law:
+            return none  # the next step of the same stretch
+        if isinstance(before.law, Resting):
+            return none  # it breaks away without a jump of alpha, or at an instant of its own
+        if isinstance(after.law, Resting):
+            return -v
+        theta, omega, _ = self.state(after, after.start)
+        place = after.start, theta, omega
+        self.hold(before)
+        left = before.law.alpha(*place)
+        self.hold(after)
+        right = after.law.alpha(*place)
+        least = SAME * (abs(left) + abs(right))
+        if abs(left - right) <= least:
+            return none
+        if omega == 0.0:
+            return (left - right) * self.standstill(after.start, left, v)
+        self.hold(before)
+        shares = {}
+        last = left
+        for held in self.model.drive.held:
+            self.hold(after, held)
+            now = before.law.alpha(*place)
+            if abs(now - last) > least:
+                shares[held] = last - now
+            last = now
+        if len(shares) == 1:  # all of it, with what friction makes of it on the other side of the guide
+            shares = dict.fromkeys(shares, left - right)
+        elif abs(last - right) > least:
+            self.notes.append(
+                f"NaN from t = {after.start:.6g} s on, where the friction jumps with several loads"
+            )
+            return none + nan
+        passages = [
+            share * self.passage(after.start, omega, self.kink(held, theta), x)
+            for held, share in shares.items()
+        ]
+        total: Array = np.sum(passages, axis=0)
+        return total
+
+    def passage(self, t: float, omega: float, shift: Array, x: Array) -> Array:
+        """dt/dp where the crank passes an angle that moves by `shift`; NaN where it only touches it."""
+        if abs(omega) <= TOUCHED * self.fastest:
+            self.notes.append(f"NaN where an angle is only touched, at t = {t:.6g} s")
+            return np.full(len(self.wrt), nan)
+        found: Array = (shift - x) / omega
+        return found
+
+    def standstill(self, t: float, alpha: float, v: Array) -> Array:
+        """dt/dp of a standstill; NaN where the crank only touches it."""
+        if abs(alpha) * self.run.t <= TOUCHED * self.fastest:
+            self.notes.append(f"NaN where a standstill is only touched, at t = {t:.6g} s")
+            return np.full(len(self.wrt), nan)
+        return -v / alpha
+
+    # ---- angles that move ----------------------------------------------------------------------
+
+    def _by_lengths(self, slopes: Mapping[str, float]) -> Array:
+        return np.array([slopes.get(p, 0.0) for p in self.wrt])
+
+    def kink(self, held: Held, theta: float) -> Array:
+        """What a kink of a load moves by: one over the slider moves with the lengths."""
+        load = held.load
+        if not isinstance(load, OverY):
+            return self._by_lengths({})
+        found = self.values(load.motion(("theta", *LENGTHS)), theta)
+        found = {name: float(value) for name, value in found.items()}
+        along = float(load.moved("theta", found))
+        return self._by_lengths({p: -float(load.moved(p, found)) / along for p in LENGTHS})
+
+    def dead_centre(self, theta: float) -> Array:
+        """What a dead centre moves by."""
+        found = self.values(("Y_wrt_theta_theta", *(f"Y_wrt_theta_{p}" for p in LENGTHS)), theta)
+        bend = float(found["Y_wrt_theta_theta"])
+        return self._by_lengths({p: -float(found[f"Y_wrt_theta_{p}"]) / bend for p in LENGTHS})
+
+    def limit(self, theta: float) -> Array:
+        """What a limit angle moves by: ec + AB sin(theta) = BC or -BC there; NaN at a change point."""
+        ec, AB, _ = self.model.lengths
+        side, arm = copysign(1.0, ec + AB * sin(theta)), AB * cos(theta)
+        if abs(arm) <= TOUCHED * AB:
+            return self._by_lengths(dict.fromkeys(LENGTHS, nan))
+        return self._by_lengths({"ec": -1.0 / arm, "AB": -sin(theta) / arm, "BC": side / arm})

@@ -1,0 +1,277 @@
+"""Sensitivities of a motion: against 60 digits on the raw loop, closed forms, energy and differences."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+
+import desaxe as dx
+from tests.effort import cases
+from tests.motions import true_slopes
+
+PRESS = {
+    "AB": 0.14, "BC": 0.31, "ec": 0.06, "m_crank": 0.7637, "m_rod": 1.559464, "m_slider": 1.95025,
+    "I_crank": 80.6e-6, "I_rod": 166.8085e-6,
+}  # fmt: skip
+LOADED = {**PRESS, "r_rod": 0.1, "r_crank": -0.03, "g_X": -3.0, "g_Y": -9.81, "F_Y": 4.0}
+ROCKER = {**PRESS, "BC": 0.16, "g_Y": -9.81}  # cannot turn fully
+CRANK = {"AB": 0.14, "BC": 0.31, "ec": 0.0, "m_crank": 1.0, "I_crank": 0.002, "g_Y": -9.81}
+BY_TRUTH = (
+    "AB",
+    "torque",
+    "theta0",
+    "ec",
+    "BC",
+    "m_rod",
+    "I_rod",
+    "r_rod",
+    "r_crank",
+    "g_X",
+    "F_Y",
+    "omega_start",
+)
+KEYS = ("theta", "omega", "work", "t_last")
+H = 2e-5  # of a parameter: the step of the differences
+
+
+@pytest.mark.sampled
+@pytest.mark.parametrize("parameter", BY_TRUTH[: cases(2, 6, len(BY_TRUTH))])
+def test_sensitivities_are_those_of_60_digits(parameter):
+    start = {"torque": -0.5, "theta0": 1.0, "omega_start": 12.0, "t_end": 0.05}
+    found = dx.simulate(**start, times=[0.05], wrt=parameter, **LOADED)
+    theta, omega = true_slopes(parameter, LOADED, -0.5, 1.0, 12.0, 0.05, 13)
+    assert found[f"theta_wrt_{parameter}"][0] == pytest.approx(theta, rel=1e-9)
+    assert found[f"omega_wrt_{parameter}"][0] == pytest.approx(omega, rel=1e-9)
+
+
+def test_standstills_of_a_pendulum():
+    """theta'' = -(m g r/I) sin(theta), with r half the crank: the quarter period is K(sin(a/2))/w."""
+    wrt = ["theta0", "g_Y", "m_crank", "I_crank", "AB"]
+    found = dx.simulate(torque=0.0, t_end=2.0, theta0=math.pi - 2.5, wrt=wrt, **CRANK)
+    given = {"theta0": math.pi - 2.5, **CRANK}
+
+    def half(p, value):
+        at = {**given, p: value}
+        arm, amplitude = at["AB"] / 2, mpmath.pi - at["theta0"]
+        inertia = at["I_crank"] + at["m_crank"] * arm**2
+        speed = mpmath.sqrt(-at["m_crank"] * at["g_Y"] * arm / inertia)
+        return 2 * mpmath.ellipk(mpmath.sin(amplitude / 2) ** 2) / speed
+
+    stops = [event for event in found["events"] if event.kind == "standstill"]
+    assert len(stops) >= 2
+    for p in wrt:
+        slope = float(mpmath.diff(lambda value, p=p: half(p, value), given[p]))
+        for k, event in enumerate(stops):
+            assert event.wrt[p] == pytest.approx((k + 1) * slope, rel=1e-8)
+
+
+def test_the_work_of_a_constant_torque_is_that_of_the_angle():
+    wrt = ["torque", "AB", "theta0", "m_slider"]
+    found = dx.simulate(torque=0.25, t_end=1.0, theta0=0.3, wrt=wrt, **PRESS)
+    turned = found["theta"][-1] - 0.3
+    for p in wrt:
+        own = turned if p == "torque" else -0.25 if p == "theta0" else 0.0
+        wanted = 0.25 * found[f"theta_wrt_{p}"][-1] + own
+        assert found[f"work_wrt_{p}"] == pytest.approx(wanted, rel=1e-8)
+        assert found[f"t_last_wrt_{p}"] == 0.0
+    found = dx.simulate(torque=0.25, t_end=5.0, theta0=0.3, until=4.0, wrt=wrt, **PRESS)
+    wanted = {"torque": 3.7, "AB": 0.0, "theta0": -0.25, "m_slider": 0.0}
+    for p in wrt:
+        assert found[f"work_wrt_{p}"] == pytest.approx(wanted[p], abs=1e-8)
+        assert found[f"t_last_wrt_{p}"] == found["events"][-1].wrt[p] != 0.0
+        along = found[f"theta_wrt_{p}"][-1] + found["omega"][-1] * found[f"t_last_wrt_{p}"]
+        assert along == pytest.approx(0.0, abs=1e-8)
+
+
+# ---- against differences of tight integrations ------------------------------------------------------
+
+
+def moved(call, given, p, steps):
+    """The motion with a parameter moved by some steps."""
+    step = H * max(abs(given[p]), 0.05)
+    return dx.simulate(**call, **{**given, p: given[p] + steps * step}), step
+
+
+def differences(call, given, p):
+    """Central differences of order 4 by a parameter; None where the events are not those of all four."""
+    runs = [moved(call, given, p, k) for k in (-2, -1, 1, 2)]
+    kinds = [(run["status"], [(e.kind, e.which) for e in run["events"]], len(run["t"])) for run, _ in runs]
+    if kinds.count(kinds[0]) < 4:
+        return None
+    (a, step), (b, _), (c, _), (d, _) = runs
+
+    def slope(key):
+        return (8.0 * (key(c) - key(b)) - (key(d) - key(a))) / (12.0 * step)
+
+    found = {key: slope(lambda run, key=key: np.asarray(run[key])) for key in KEYS}
+    return found | {"events": slope(lambda run: np.array([event.t for event in run["events"]]))}
+
+
+def check(call, given, wrt, tolerance=1e-5, derivative=None):
+    """Compare all sensitivities with differences; False where there are none."""
+    call = {"rtol": 3e-14, "times": np.linspace(0.0, call["t_end"], 9), **call}
+    extra = {} if derivative is None else {"derivative": derivative}
+    found = dx.simulate(**{**call, "rtol": 1e-10}, wrt=wrt, **extra, **given)
+    for p in wrt:
+        wanted = differences(call, given, p)
+        if wanted is None or len(wanted["theta"]) != len(found["t"]):
+            return False
+        for key in KEYS:
+            own, size = np.asarray(found[f"{key}_wrt_{p}"]), np.abs(wanted[key]).max()
+            least = np.abs(found[key]).max() / max(abs(given[p]), 0.05)
+            np.testing.assert_allclose(
+                own, wanted[key], rtol=0, atol=tolerance * (size + 1e-2 * least), err_msg=f"{key} by {p}"
+            )
+        events = [e.wrt[p] for e in found["events"] if e.kind != "break-away"]
+        mask = [e.kind != "break-away" for e in found["events"]]
+        size = np.abs(wanted["events"]).max(initial=0.0) + 1e-2 * call["t_end"] / max(abs(given[p]), 0.05)
+        np.testing.assert_allclose(events, wanted["events"][mask], rtol=0, atol=tolerance * size, err_msg=p)
+    return True
+
+
+def drawn(rng):
+    """A random design with its torque, loads and start: call, numbers, derivative of a function."""
+    AB, ec = rng.uniform(0.05, 0.15), rng.uniform(-0.05, 0.05)
+    BC = abs(ec) + AB * rng.uniform(1.3, 3.0)
+    given = {
+        "AB": AB, "BC": BC, "ec": ec, "m_crank": rng.uniform(0.2, 1.0), "m_rod": rng.uniform(0.2, 2.0),
+        "m_slider": rng.uniform(0.5, 3.0), "I_crank": rng.uniform(1e-3, 1e-2),
+        "I_rod": rng.uniform(1e-4, 1e-2), "g_X": rng.normal(), "g_Y": rng.normal(0, 5),
+        "theta0": rng.uniform(-3, 3), "omega_start": rng.normal(0, 8),
+        "mu": rng.choice([0.0, 0.0, rng.uniform(0.02, 0.2)]),
+    }  # fmt: skip
+    call, derivative = {"t_end": 0.35}, None
+    angles, forces = np.sort(rng.uniform(0.0, 6.2, 4)), rng.normal(0, 20, 4)
+    places = np.linspace(BC - AB, BC + AB, 4)
+    load = rng.integers(6)
+    if load == 0:
+        given["F_Y"] = rng.normal(0, 10)
+    elif load <= 2:
+        call["F_Y"] = dx.over_theta(angles, forces, kind=("step", "linear")[load - 1])
+    elif load == 3:
+        call["F_Y"] = dx.over_Y(places[[0, 1, 1, 3]], forces, rng.normal(0, 20, 4))
+    else:
+        stroke = dx.events(ec=ec, AB=AB, BC=BC)["stroke"]
+        distances = [0.0, 0.5 * stroke, 0.5 * stroke, 1.1 * stroke]
+        call["F_Y"] = dx.over_stroke(
+            distances, forces, rng.normal(0, 20, 4), dead_centre=("outer", "inner")[load - 4]
+        )
+    torque = rng.integers(5)
+    if torque <= 1:
+        given["torque"] = rng.normal(0, 1)
+    elif torque == 2:
+        call["torque"] = dx.over_theta(angles, rng.normal(0, 1, 4), kind="step")
+    elif torque == 3:
+        call["torque"] = dx.kloss(1.0, 0.2, rng.choice([-20.0, 20.0]))
+    else:
+        k, w = rng.normal(0, 0.02), rng.uniform(1, 5)
+        call["torque"] = lambda t, theta, omega: math.cos(w * t) + math.sin(theta) + k * omega
+        derivative = lambda t, theta, omega: (math.cos(theta), k)  # noqa: E731
+    return call, given, derivative
+
+
+@pytest.mark.sampled
+def test_random_motions_with_events():
+    """Two parameters of each; a motion whose events change within the step of differences is redrawn."""
+    rng = np.random.default_rng(20)
+    wanted, done, tried = cases(4, 12, 1000), 0, 0
+    while done < wanted:
+        tried += 1
+        call, given, derivative = drawn(rng)
+        wrt = sorted(rng.choice(sorted(p for p in given if given[p]), 2, replace=False).tolist())
+        done += check(call, given, wrt, 3e-5, derivative)
+        assert tried < 3 * wanted + 10
+
+
+# ---- where there is none, and who asks -----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("omega_start", [9.0, -3.0])
+def test_a_limit_angle_and_when_it_is_reached(omega_start):
+    given = {**ROCKER, "torque": 0.25, "theta0": 0.3, "omega_start": omega_start}
+    wrt = ["m_slider", "theta0"]
+    found = dx.simulate(t_end=1.0, times=[0.0], wrt=wrt, **given)
+    assert found["status"] == 2
+    for p in wrt:
+        wanted = differences({"t_end": 1.0, "times": [0.0], "rtol": 3e-14}, given, p)
+        assert found[f"t_last_wrt_{p}"] == found["events"][-1].wrt[p]
+        assert found[f"t_last_wrt_{p}"] == pytest.approx(wanted["t_last"], rel=1e-4)
+
+
+def test_an_angle_that_is_only_touched_has_no_derivative():
+    swing = {"torque": 0.0, "theta0": math.pi - 2.5, "rtol": 1e-12, **CRANK}
+    free = dx.simulate(t_end=1.0, **swing)
+    stop = next(event for event in free["events"] if event.kind == "standstill")
+    found = dx.simulate(t_end=1.0, until=stop.theta - 1e-14, wrt=["g_Y", "torque"], **swing)
+    last = found["events"][-1]
+    assert last.kind == "angle"
+    assert all(map(math.isnan, (*last.wrt.values(), found["t_last_wrt_g_Y"], found["work_wrt_torque"])))
+    assert "sensitivities: NaN where an angle is only touched" in found["message"]
+    assert np.isfinite(found["theta_wrt_g_Y"]).all()
+
+
+def test_a_crank_that_friction_holds_has_none_of_its_speed():
+    wrt = ["omega_start", "mu", "theta0"]
+    call = {"torque": lambda omega: 0.0, "derivative": lambda omega: (0.0, 0.0), "wrt": wrt}
+    found = dx.simulate(**call, t_end=2.0, omega_start=3.0, mu=0.3, F_X=-8.0, **PRESS)
+    assert "at rest from" in found["message"]
+    end, stop = found["events"][-1], found["theta"] == found["theta"][-1]
+    assert end.kind == "standstill"
+    for p in wrt:
+        assert stop.sum() > 100
+        assert np.ptp(found[f"theta_wrt_{p}"][stop]) == 0.0
+        assert not found[f"omega_wrt_{p}"][stop].any()
+        assert end.wrt[p] != 0.0
+
+
+def test_an_array_of_designs_has_those_of_each():
+    wrt, masses = ["m_slider", "torque", "omega_start"], np.array([[1.0, 2.0], [3.0, -1.0]])
+    call = {"torque": 0.25, "t_end": 0.3, "times": [0.1, 0.3], "omega_start": 2.0, "wrt": wrt}
+    found = dx.simulate(**call, **{**PRESS, "m_slider": masses})
+    for at in ((0, 0), (0, 1), (1, 0)):
+        one = dx.simulate(**call, **{**PRESS, "m_slider": masses[at]})
+        for p in wrt:
+            for key in (f"theta_wrt_{p}", f"omega_wrt_{p}", f"t_last_wrt_{p}", f"work_wrt_{p}"):
+                np.testing.assert_array_equal(found[key][at], one[key])
+    assert found["theta_wrt_torque"].shape == (2, 2, 2)
+    assert np.isnan(found["work_wrt_torque"][1, 1])
+    assert found["status"][1, 1] == 6
+
+
+def test_a_machine_tells_them_in_its_units():
+    si = {"ec": 0.01, "AB": 0.05, "BC": 0.12, "m_slider": 2.0, "I_crank": 0.01}
+    machine = dx.Machine(si, units="m, kg").replace(units="mm, deg, rpm")
+    wrt = ["AB", "theta0", "omega_start", "torque"]
+    ours = machine.simulate(torque=1.5, t_end=0.3, wrt=wrt)
+    plain = dx.simulate(torque=1.5, t_end=0.3, wrt=wrt, **si)
+    degree, rpm = math.degrees(1.0), 30.0 / math.pi
+    shown = {"AB": 1000.0, "theta0": degree, "omega_start": rpm, "torque": 1.0}
+    for p, unit in shown.items():
+        for key, own in {"theta": degree, "omega": rpm, "t_last": 1.0, "work": 1.0}.items():
+            wanted = np.asarray(plain[f"{key}_wrt_{p}"]) * own / unit
+            np.testing.assert_allclose(ours[f"{key}_wrt_{p}"], wanted, rtol=1e-12)
+        assert ours["events"][0].wrt[p] == pytest.approx(plain["events"][0].wrt[p] / unit, rel=1e-12)
+
+
+WRONG = {
+    "no parameter 'm_slidr'; did you mean m_slider": {"wrt": "m_slidr"},
+    "torque = <function": {"wrt": "torque", "torque": lambda t, theta, omega: 1.0},
+    "F_Y = <load": {"wrt": "F_Y", "F_Y": dx.over_theta([0.0, 1.0], [0.0, 1.0])},
+    "F_Y = <function": {"wrt": "AB", "F_Y": lambda theta: 1.0},
+    "give derivative=": {"wrt": "AB", "torque": lambda theta: 1.0},
+    "it is for a torque that is a function": {"wrt": "AB", "derivative": lambda omega: (0.0, 0.0)},
+    "expected two numbers": {
+        "wrt": "AB", "torque": lambda omega: 1.0 - omega, "derivative": lambda omega: -1.0,
+    },
+    "both must be finite": {
+        "wrt": "AB", "torque": lambda omega: 1.0 - omega, "derivative": lambda omega: (0.0, math.inf),
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("words", WRONG)
+def test_what_has_no_derivative_is_refused_by_name(words):
+    error = ValueError if words.startswith(("no parameter", "torque =", "F_Y = <load", "both")) else TypeError
+    with pytest.raises(error, match=words):
+        dx.simulate(**{"torque": 1.0, "t_end": 0.1, **PRESS, **WRONG[words]})
