@@ -199,6 +199,25 @@ def test_a_limit_angle_and_when_it_is_reached(omega_start):
         assert found[f"t_last_wrt_{p}"] == pytest.approx(wanted["t_last"], rel=1e-4)
 
 
+@pytest.mark.parametrize("kind", ["number", "over Y", "over the stroke", "over theta"])
+def test_the_work_up_to_a_limit_angle_is_that_of_where_it_starts(kind):
+    """A constant torque, and a load F(Y) or F(theta): what they do less when the crank starts later."""
+    place = {n: ROCKER[n] for n in ("ec", "AB", "BC")} | {"theta": 0.3}
+    Y, slope = (dx.evaluate(name, **place) for name in ("Y", "Y_wrt_theta"))
+    outer = dx.evaluate("Y_outer", **{n: place[n] for n in ("ec", "AB", "BC")})
+    loads = {
+        "number": (4.0, 4.0),
+        "over Y": (dx.over_Y([-1.0, 1.0], [0.0, 40.0]), 20.0 + 20.0 * Y),
+        "over the stroke": (dx.over_stroke([0.0, 1.0], [0.0, 40.0], dead_centre="outer"), 40.0 * (outer - Y)),
+        "over theta": (dx.over_theta([0.0, 3.0, 5.0], [5.0, 8.0, 1.0], kind="linear"), 5.3),
+    }
+    load, there = loads[kind]
+    call = {"torque": 0.25, "t_end": 1.0, "theta0": 0.3, "omega_start": 9.0, "F_Y": load}
+    found = dx.simulate(**call, wrt="theta0", **ROCKER)
+    assert found["status"] == 2
+    assert found["work_wrt_theta0"] == pytest.approx(-0.25 - there * slope, abs=1e-6)
+
+
 def test_an_angle_that_is_only_touched_has_no_derivative():
     swing = {"torque": 0.0, "theta0": math.pi - 2.5, "rtol": 1e-12, **CRANK}
     free = dx.simulate(t_end=1.0, **swing)

@@ -16,6 +16,8 @@ tableau       the coefficients of both
 compiled      the module of a family of designs
 history       histories of angle, speed, quantities and energy
 sensitivities  derivatives of a motion by parameters
+variational   the linear equations that they obey
+work          the derivative of the work
 slopes        the derivatives of a torque by angle and speed
 cuts          by how much sensitivities jump where a motion is cut
 collocation   linear equations along a motion, on panels of time

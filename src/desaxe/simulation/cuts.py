@@ -122,7 +122,7 @@ class Cuts:
         return np.array([slopes.get(p, 0.0) for p in self.wrt])
 
     def kink(self, held: Held, theta: float) -> Array:
-        """What a kink of a load moves by: one over the slider moves with the lengths."""
+        """The shift of a kink of a load by each parameter: one over the slider moves with the lengths."""
         load = held.load
         if not isinstance(load, OverY):
             return self._by_lengths({})
@@ -132,13 +132,13 @@ class Cuts:
         return self._by_lengths({p: -float(load.moved(p, found)) / along for p in LENGTHS})
 
     def dead_centre(self, theta: float) -> Array:
-        """What a dead centre moves by."""
+        """The shift of a dead centre by each parameter."""
         found = self.values(("Y_wrt_theta_theta", *(f"Y_wrt_theta_{p}" for p in LENGTHS)), theta)
         bend = float(found["Y_wrt_theta_theta"])
         return self._by_lengths({p: -float(found[f"Y_wrt_theta_{p}"]) / bend for p in LENGTHS})
 
     def limit(self, theta: float) -> Array:
-        """What a limit angle moves by: ec + AB sin(theta) = BC or -BC there; NaN at a change point."""
+        """The shift of a limit angle, at which ec + AB sin(theta) = BC or -BC; NaN at a change point."""
         ec, AB, _ = self.model.lengths
         side, arm = copysign(1.0, ec + AB * sin(theta)), AB * cos(theta)
         if abs(arm) <= TOUCHED * AB:

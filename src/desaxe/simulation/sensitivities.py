@@ -1,232 +1,20 @@
-"""The sensitivities of a motion: exact derivatives of angle, speed, events, end and work by parameters.
+"""The sensitivities of a motion: exact derivatives of histories, events, end and work by parameters."""
 
-Along the motion the torque that it takes equals the torque given, T_in(theta, omega, alpha; p) = T(t, theta,
-omega; p), with the loads and the friction in T_in. Differentiated by p at a fixed time that is
-
-    T_in_alpha alpha_p = T_p - T_in_p - (T_in_theta - T_theta) theta_p - (T_in_omega - T_omega) omega_p
-
-with alpha_p = theta_p'' and derivatives of T_in that are generated like every other quantity: a linear
-equation along a motion that is known, solved on panels between the cuts of the motion (`collocation`), which
-are halved until they resolve it. At a cut that moves with p, where the acceleration jumps, omega_p jumps by
-(alpha before - alpha after) dt/dp (`cuts`). The work of torque, loads and friction is the change of both
-energies, and so is its derivative.
-"""
-
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from math import nan
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 
-from ..evaluation.evaluate import evaluate
-from ..runtime.compiled_only import uncompiled
-from .collocation import NODES, ONCE, PLACES, SERIES, TWICE, Course, Local, solve
-from .cuts import Cuts
-from .equations import Resting, state_of
-from .one_design import Piece, Run
-from .result import FAILED, JAMS, LIMIT, SENSITIVITIES, Event, Simulation
+from .one_design import Run
+from .result import FAILED, JAMS, SENSITIVITIES, Event, Simulation
 from .slopes import Slopes
+from .variational import Variations
+from .work import of_work
 
 Array = NDArray[np.float64]
-RESOLVED = 1e-9  # of a series: its last terms, at most
-HALVINGS = 10  # of a step of the motion, at most
-SHORT = (
-    0.88  # of the last step: where the inertia grows without bound at its end, polynomials go on from there
-)
-STARTS = ("theta0", "omega_start")
 ENDS = ("angle", "standstill", "limit", "no inertia")
-ENERGIES = ("kinetic_energy", "potential_energy")
-
-
-class Along(NamedTuple):
-    """The motion at the nodes of panels: arrays of the shape (panels, NODES)."""
-
-    t: Array
-    theta: Array
-    omega: Array
-    alpha: Array
-
-
-class Sensitivities:
-    """The derivatives of one motion by parameters.
-
-    given   the inputs of the mechanism: numbers, and loads that vary with the motion
-    slopes  of the torque
-    """
-
-    def __init__(self, run: Run, wrt: Sequence[str], given: Mapping[str, Any], slopes: Slopes) -> None:
-        self.run, self.wrt, self.given, self.slopes = run, tuple(wrt), given, slopes
-        self.inputs = [p for p in wrt if p not in (*STARTS, "torque")]
-        self.cuts = Cuts(run, self.wrt, self.values)
-        self.grows = run.status == LIMIT and bool(run.model.coordinate.half)  # the inertia, without bound
-        self.pieces = [piece for piece in run.pieces if piece.stop > piece.start] or run.pieces[:1]
-        while (
-            self.grows
-            and len(self.pieces) > 1
-            and run.t - self.pieces[-2].stop < (1.0 - SHORT) * _length(self.pieces[-2])
-        ):
-            self.pieces.pop()
-        self.course = self._joined(*self._solved())
-        self.at_end = self.course.at(np.array([run.t]))
-
-    def values(
-        self, names: Sequence[str], theta: Any, omega: Any = 1.0, alpha: Any = 0.0
-    ) -> dict[str, Array]:
-        """Quantities along the motion, by `evaluate`."""
-        shape = np.shape(theta)
-        with uncompiled():
-            found = evaluate(list(names), theta=theta, omega=omega, alpha=alpha, **self.given)
-        return {name: np.broadcast_to(value, shape) for name, value in found.items()}
-
-    # ---- panels -----------------------------------------------------------------------------
-
-    def _solved(self) -> tuple[Array, Array, Local]:
-        """The panels, by their piece and start in order, and the solutions on them."""
-        moving = [k for k, piece in enumerate(self.pieces) if not isinstance(piece.law, Resting)]
-        piece = np.array(moving, int)
-        start = np.array([self.pieces[k].start for k in moving])
-        h = np.array([self.pieces[k].stop - self.pieces[k].start for k in moving])
-        if self.grows:
-            h[-1] *= SHORT
-        done = []
-        for halving in range(HALVINGS + 1):
-            local = self._local(piece, start, h)
-            bad = local.unresolved(RESOLVED) & (halving < HALVINGS)
-            if self.grows:
-                bad &= start < self.pieces[-1].start  # the longer the last panel, the better it goes on
-            done.append((piece[~bad], start[~bad], h[~bad], local.series[~bad]))
-            if not bad.any():
-                break
-            half = 0.5 * h[bad]
-            piece, h = np.tile(piece[bad], 2), np.tile(half, 2)
-            start = np.concatenate([start[bad], start[bad] + half])
-        columns = [np.concatenate(column) for column in zip(*done, strict=True)]
-        order = np.argsort(columns[1])
-        piece, start, h, series = (column[order] for column in columns)
-        return piece, start, Local(h, series)
-
-    def _local(self, piece: Array, start: Array, h: Array) -> Local:
-        """The solutions on some panels."""
-        along = self._along(piece, start, h)
-        by_inputs = [f"T_in_wrt_{p}" for p in self.inputs]
-        names = ["T_in_wrt_theta", "T_in_wrt_omega", "T_in_wrt_alpha", *by_inputs]
-        found = self.values(names, along.theta, along.omega, along.alpha)
-        by_theta, by_omega = self.slopes.at(along.t, along.theta, along.omega)
-        mass = found["T_in_wrt_alpha"]
-        pushes = {p: -found[f"T_in_wrt_{p}"] for p in self.inputs} | {"torque": np.ones(mass.shape)}
-        columns = [pushes.get(p, np.zeros(mass.shape)) / mass for p in self.wrt]
-        a, b = (by_theta - found["T_in_wrt_theta"]) / mass, (by_omega - found["T_in_wrt_omega"]) / mass
-        return solve(h, a, b, np.stack(columns, axis=-1))
-
-    def _along(self, piece: Array, start: Array, h: Array) -> Along:
-        t = start[:, None] + h[:, None] * PLACES
-        rows = np.empty((3, *t.shape))
-        for row, k in enumerate(piece.tolist()):
-            rows[:, row] = self._states(self.pieces[k], t[row])
-        return Along(t, *rows)
-
-    def _states(self, piece: Piece, t: Array) -> Array:
-        """Angle, speed and acceleration at instants of a piece."""
-        self.cuts.hold(piece)
-        found = np.empty((3, t.size))
-        for k, (q, v, _) in enumerate(piece.state(t).T.tolist()):
-            theta, omega, _ = state_of(self.run.model, q, v)
-            found[:, k] = theta, omega, piece.law.alpha(float(t[k]), theta, omega)
-        return found
-
-    # ---- from the start to the end ------------------------------------------------------------
-
-    def _joined(self, piece: Array, start: Array, local: Local) -> Course:
-        """The course of theta_p and omega_p through all pieces."""
-        x, v = (np.array([float(p == own) for p in self.wrt]) for own in STARTS)
-        rows: list[tuple[float, float, Array, Array, Array]] = []
-        for k, one in enumerate(self.pieces):
-            if k:
-                v = v + self.cuts.jump(self.pieces[k - 1], one, x, v)
-            if isinstance(one.law, Resting):
-                v = np.zeros(len(self.wrt))
-                rows.append((one.start, one.stop - one.start, x, v, np.zeros((NODES, len(self.wrt)))))
-                continue
-            for row in np.flatnonzero(piece == k):
-                h, series = local.h[row], local.series[row]
-                y = h * v
-                own = series[:, 2:] + series[:, :1] * x + series[:, 1:2] * y
-                rows.append((start[row], h, x, y, own))
-                x, v = x + y + _END_TWICE @ own, (y + _END_ONCE @ own) / h
-        return Course(*(np.array(column) for column in zip(*rows, strict=True)))
-
-    # ---- what they are asked for -----------------------------------------------------------------
-
-    def of_event(self, event: Event) -> Array:
-        """dt/dp of an event, from the side it is met from."""
-        x, v = (part[0] for part in self.course.at(np.array([event.t])))
-        if event.kind in ("dead centre", "no inertia"):
-            return self.cuts.passage(event.t, event.omega, self.cuts.dead_centre(event.theta), x)
-        if event.kind == "angle" or (event.kind == "limit" and not self.run.model.coordinate.half):
-            shift = self.cuts.limit(event.theta) if event.kind == "limit" else np.zeros(x.size)
-            return self.cuts.passage(event.t, event.omega, shift, x)
-        if event.kind == "limit":  # a standstill
-            slopes: Array = -v / self._extrapolated(lambda along: along.alpha)
-            return slopes
-        if event.kind == "standstill":
-            piece = next(one for one in self.pieces if one.stop >= event.t)
-            self.cuts.hold(piece)
-            return self.cuts.standstill(event.t, piece.law.alpha(event.t, event.theta, 0.0), v)
-        self.cuts.notes.append(f"NaN of {event.kind} at t = {event.t:.6g} s")
-        return np.full(x.size, nan)
-
-    def _extrapolated(self, function: Callable[[Along], Array]) -> Array:
-        """A function along the motion, smooth up to its end, at that end, where it cannot be evaluated."""
-        start, h = self.course.start[-1:], self.course.h[-1:]
-        values = np.asarray(function(self._along(np.array([len(self.pieces) - 1]), start, h)))[..., 0, :]
-        end = 2.0 * (self.run.t - start) / h - 1.0
-        found: Array = values @ SERIES.T @ legvander(end, NODES - 1)[0]
-        return found
-
-    def of_end(self, of_events: Sequence[Array]) -> Array:
-        """The derivative of the instant at which the motion ends."""
-        run = self.run
-        if run.status in (FAILED, JAMS):
-            return np.full(len(self.wrt), nan)
-        ended = run.events and run.events[-1].t == run.t and run.events[-1].kind in ENDS
-        return of_events[-1] if ended else np.zeros(len(self.wrt))
-
-    def of_work(self, of_end: Array) -> Array:
-        """The derivative of the work up to the end: that of both energies from the start to the end."""
-
-        def energy(along: Along) -> Array:
-            """dE/dp at a fixed time; and the power as the last row."""
-            names = [f"{one}_wrt_{p}" for one in ENERGIES for p in ("theta", "omega", *self.inputs)]
-            found = self.values(names, along.theta, along.omega)
-            whole = {
-                p: sum(found[f"{one}_wrt_{p}"] for one in ENERGIES) for p in ("theta", "omega", *self.inputs)
-            }
-            x, v = (part.T.reshape(-1, *along.t.shape) for part in self.course.at(along.t.reshape(-1)))
-            rows = [
-                whole["theta"] * x[k] + whole["omega"] * v[k] + whole.get(p if p in self.inputs else "", 0.0)
-                for k, p in enumerate(self.wrt)
-            ]
-            return np.stack([*rows, whole["theta"] * along.omega + whole["omega"] * along.alpha])
-
-        first, last = self.pieces[0], self.pieces[-1]
-        start = energy(self._at(first, first.start))[:-1, 0]
-        end = self._extrapolated(energy) if self.grows else energy(self._at(last, last.stop))[:, 0]
-        power = end[-1] * of_end if of_end.any() else 0.0
-        found: Array = end[:-1] + power - start
-        return found
-
-    def _at(self, piece: Piece, t: float) -> Along:
-        instant = np.array([t])
-        return Along(instant, *self._states(piece, instant))
-
-
-def _length(piece: Piece) -> float:
-    return piece.stop - piece.start
-
-
-_END_ONCE, _END_TWICE = ONCE.sum(axis=0), TWICE.sum(axis=0)  # Legendre polynomials are 1 at the end
 
 
 def add_sensitivities(
@@ -235,22 +23,50 @@ def add_sensitivities(
     """Add theta_wrt_<p>, omega_wrt_<p>, t_last_wrt_<p> and work_wrt_<p>, and `wrt` of each event."""
     try:
         with np.errstate(all="ignore"):
-            found = Sensitivities(run, wrt, given, slopes)
+            found = Variations(run, wrt, given, slopes)
             theta, omega = found.course.at(result["t"])
-            of_events = [found.of_event(event) for event in run.events]
-            of_end = found.of_end(of_events)
-            of_work = found.of_work(of_end)
+            of_events = [of_event(found, event) for event in run.events]
+            ended = of_end(found, of_events)
+            work = of_work(found, ended)
     finally:
         for held in run.model.drive.held:
             held.release()
     for k, p in enumerate(wrt):
         result[f"theta_wrt_{p}"], result[f"omega_wrt_{p}"] = theta[:, k].copy(), omega[:, k].copy()
-        result[f"t_last_wrt_{p}"], result[f"work_wrt_{p}"] = float(of_end[k]), float(of_work[k])
+        result[f"t_last_wrt_{p}"], result[f"work_wrt_{p}"] = float(ended[k]), float(work[k])
     result["events"] = [
         event._replace(wrt=dict(zip(wrt, slopes_of.tolist(), strict=True)))
         for event, slopes_of in zip(run.events, of_events, strict=True)
     ]
-    if not found.cuts.notes and not (np.isfinite(theta).all() and np.isfinite([of_end, of_work]).all()):
+    if not found.cuts.notes and not (np.isfinite(theta).all() and np.isfinite([ended, work]).all()):
         found.cuts.notes.append("NaN where the forces have no derivatives, or none is known")
     if found.cuts.notes:
         result["message"] += SENSITIVITIES + "; ".join(dict.fromkeys(found.cuts.notes))
+
+
+def of_event(own: Variations, event: Event) -> Array:
+    """dt/dp of an event, from the side it is met from."""
+    x, v = (part[0] for part in own.course.at(np.array([event.t])))
+    if event.kind in ("dead centre", "no inertia"):
+        return own.cuts.passage(event.t, event.omega, own.cuts.dead_centre(event.theta), x)
+    if event.kind == "angle" or (event.kind == "limit" and not own.run.model.coordinate.half):
+        shift = own.cuts.limit(event.theta) if event.kind == "limit" else np.zeros(x.size)
+        return own.cuts.passage(event.t, event.omega, shift, x)
+    if event.kind == "limit":  # a standstill
+        slopes: Array = -v / own.at_limit(lambda along: along.alpha)
+        return slopes
+    if event.kind == "standstill":
+        piece = next(one for one in own.pieces if one.stop >= event.t)
+        own.cuts.hold(piece)
+        return own.cuts.standstill(event.t, piece.law.alpha(event.t, event.theta, 0.0), v)
+    own.cuts.notes.append(f"NaN of {event.kind} at t = {event.t:.6g} s")
+    return np.full(x.size, nan)
+
+
+def of_end(own: Variations, of_events: Sequence[Array]) -> Array:
+    """The derivative of the instant at which the motion ends."""
+    run = own.run
+    if run.status in (FAILED, JAMS):
+        return np.full(len(own.wrt), nan)
+    ended = run.events and run.events[-1].t == run.t and run.events[-1].kind in ENDS
+    return of_events[-1] if ended else np.zeros(len(own.wrt))
