@@ -138,7 +138,7 @@ def test_labels():
 
 
 def test_small_grids_compile_nothing(cold, monkeypatch):
-    monkeypatch.setattr(_kernels, "_load", None)
+    monkeypatch.setattr(_kernels.STORE, "load", None)
     theta = np.linspace(0.0, 3.0, 7)
     dx.grid("phi", theta=theta, ec=[0.01, 0.02], AB=0.11, BC=0.37)
     dx.grid("phi", reduce={"theta": "max"}, theta=theta, ec=[0.01, 0.02], AB=0.11, BC=0.37)

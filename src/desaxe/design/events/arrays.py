@@ -35,19 +35,19 @@ def events_of_arrays(
     slow = np.where(bad, 0, branch * turning * np.sign(np.nan_to_num(ec))).astype(np.int8)
     result: dict[str, Any] = {**found.values, "slow_stroke": slow, **found.places}
     gradient = found.gradient
-    turns = (status == 0) | (status == 2)
     if with_velocities:
-        for name, found_there in _velocities(found.values, branch, turns, (ec, AB, BC, omega)).items():
-            value, theta, slopes = found_there
+        for name, own in _velocities(found.values, branch, status, (ec, AB, BC, omega)).items():
+            value, theta, slopes = own
             result |= {name: value, f"theta_{name}": theta}
             gradient[name] = slopes if with_speed else {p: slopes[p] for p in LENGTHS}
     return {**result, "gradient": gradient, "status": status}
 
 
 def _velocities(
-    values: dict[str, Any], branch: int, turns: NDArray[np.bool_], inputs: tuple[Array, ...]
+    values: dict[str, Any], branch: int, status: NDArray[np.int8], inputs: tuple[Array, ...]
 ) -> dict[str, tuple[Array, Array, dict[str, Array]]]:
     """The largest |V_C| while the slider moves outward and inward: values, crank angles, derivatives."""
+    turns = (status == 0) | (status == 2)
     *lengths, omega = (np.tile(a[turns], 2) for a in inputs)  # the designs outward, then inward
     here: dict[str, Any] = {**dict(zip(LENGTHS, lengths, strict=True)), "branch": branch}
     names = ["V_C", *(f"V_C_wrt_{p}" for p in (*LENGTHS, "omega0"))]
@@ -55,13 +55,16 @@ def _velocities(
     ends = [np.stack(stroke_ends(values, way, branch))[:, turns] for way in (1, -1)]
     growing = np.where((side > 0) == (omega >= 0.0), *(np.tile(end, 2) for end in ends))
     with uncompiled():
-        theta = _fastest(growing[0], growing[1], here) if omega.size else omega
+        theta, within = _fastest(growing[0], growing[1], here) if omega.size else (omega, omega > 0.0)
         found = (
             evaluate(names, theta=theta, omega0=omega, **here) if omega.size else dict.fromkeys(names, omega)
         )
     told = {name: side * found[name] for name in names} | {
         "theta": np.where(theta < -np.pi / 2, theta + 2 * np.pi, theta)
     }
+    sharp = np.tile(status[turns] == 2, 2) & ~within & (told["V_C"] != 0.0)
+    for name in names[1:4]:  # by the lengths: what is fastest at a change point grows as a root of the margin
+        told[name] = np.where(sharp, np.copysign(np.inf, told[name]), told[name])
     rows = {}
     for place, name in enumerate(VELOCITIES):
         spread = {each: np.full(turns.shape, np.nan) for each in told}
@@ -72,8 +75,11 @@ def _velocities(
     return rows
 
 
-def _fastest(a: Array, b: Array, here: dict[str, Any]) -> Array:
-    """The crank angles between a and b at which |V_C| is largest: where the acceleration vanishes."""
+def _fastest(a: Array, b: Array, here: dict[str, Any]) -> tuple[Array, NDArray[np.bool_]]:
+    """The crank angles at which |V_C| is largest: where the acceleration vanishes between a and b, or an end.
+
+    Which of them are between a and b.
+    """
 
     def at(theta: Array) -> Array:
         found: Array = evaluate("a_C", theta=theta, omega0=1.0, **here)
@@ -82,4 +88,5 @@ def _fastest(a: Array, b: Array, here: dict[str, Any]) -> Array:
     ends = evaluate(["V_C", "a_C"], theta=np.stack([a, b]), omega0=1.0, **here)
     (one, other), (first, last) = np.abs(ends["V_C"]), ends["a_C"]
     end = np.where(one >= other, a, b)  # no crank, or fastest at a change point
-    return np.where(np.sign(first) * np.sign(last) < 0.0, roots(at, a, b, first, last), end)
+    within = np.sign(first) * np.sign(last) < 0.0
+    return np.where(within, roots(at, a, b, first, last), end), within

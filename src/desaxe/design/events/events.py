@@ -1,6 +1,6 @@
 """`events`: the dead centres of a design, its strokes, and the extremes of its rod and slider."""
 
-from math import nan, pi
+from math import copysign, inf, nan, pi
 from typing import Any
 
 from ...evaluation.evaluate import evaluate
@@ -76,16 +76,19 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
         if found.status != 1:
             side = direction * int(branch)  # of Y
             ends = stroke_ends(found.values, side * forward, int(branch))
-            value, theta, slopes = _velocity(ends, side, int(branch), omega, lengths)
+            value, theta, slopes = _velocity(ends, side, int(branch), omega, lengths, found.status == 2)
         result |= {name: value, f"theta_{name}": theta}
         gradient[name] = {p: slopes[p] for p in parameters}
     return {**result, "gradient": gradient, "status": found.status}
 
 
 def _velocity(
-    ends: tuple[float, float], side: int, branch: int, omega: float, lengths: dict[str, Any]
+    ends: tuple[float, float], side: int, branch: int, omega: float, lengths: dict[str, Any], sharp: bool
 ) -> tuple[float, float, dict[str, float]]:
-    """The largest |V_C| between two dead centres: value, crank angle, derivatives."""
+    """The largest |V_C| between two dead centres: value, crank angle, derivatives.
+
+    sharp   one of them is a change point: if it is fastest there, that grows as a root of the margin
+    """
 
     def at(theta: float, name: str, omega0: float = 1.0) -> float:
         return float(evaluate(name, theta=theta, omega0=omega0, branch=branch, **lengths))
@@ -93,11 +96,14 @@ def _velocity(
     first, last = ends
     rising, falling = at(first, "a_C"), at(last, "a_C")
     if rising * falling < 0.0:
-        theta = root(lambda angle: at(angle, "a_C"), first, last)
+        theta, sharp = root(lambda angle: at(angle, "a_C"), first, last), False
     else:  # no crank, or it is fastest at the change point itself
         theta = max(ends, key=lambda angle: abs(at(angle, "V_C")))
     slopes = {p: side * at(theta, f"V_C_wrt_{p}", omega) for p in (*LENGTHS, "omega0")}
-    return side * at(theta, "V_C", omega), in_turn(theta), slopes
+    value = side * at(theta, "V_C", omega)
+    if sharp and value:
+        slopes |= {p: copysign(inf, slopes[p]) for p in LENGTHS}
+    return value, in_turn(theta), slopes
 
 
 def in_turn(theta: float) -> float:

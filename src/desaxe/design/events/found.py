@@ -1,6 +1,6 @@
 """The outputs of the closed form of the dead centres, by name: numbers or arrays."""
 
-from math import pi
+from math import nextafter, pi
 from typing import Any
 
 from ...mechanism.closed.dead_centres import PLACES, SENSITIVITIES
@@ -21,7 +21,12 @@ class Found:
 
 
 def stroke_ends(values: dict[str, Any], side: int, branch: int) -> tuple[Any, Any]:
-    """The crank angles, ascending, between which Y grows (side 1) or falls (-1) as the angle does."""
+    """The crank angles, ascending, between which Y grows (side 1) or falls (-1) as the angle does.
+
+    A slider whose crank is as long as its rod, in line with A, rests there for half of the turn.
+    """
     outer, inner = values["theta_outer"], values["theta_inner"]
-    top, bottom = (outer, inner) if branch > 0 else (inner, outer)
+    rests = (values["Y_inner"] == 0.0) & (values["advance_angle"] == pi)
+    rest = side * branch * (pi / 2 if branch > 0 else nextafter(pi / 2, pi)) * rests  # where it moves
+    top, bottom = (outer, inner + rest) if branch > 0 else (inner + rest, outer)
     return (bottom - 2.0 * pi, top) if side > 0 else (top, bottom)
