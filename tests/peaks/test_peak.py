@@ -437,5 +437,6 @@ def test_a_rate_that_jumps_at_a_change_point_has_no_gradient(kind):
     assert found["value"][0] == pytest.approx(1.2, rel=1e-9)
     assert found["status"].tolist() == [2, 0]
     assert np.isnan(found["gradient"]["AB"]).tolist() == [True, False]
+    assert found["gradient"]["omega0"][0] == pytest.approx(found["value"][0] / 2.0, rel=1e-9)
     still = dx.peak("Y", ec=0.0, AB=0.3, BC=0.3)
     assert (still["status"], still["value"], still["gradient"]["AB"]) == (0, 0.6, 1.0)

@@ -87,7 +87,9 @@ def _angles(
     """Both crank angles, ascending, NaN where there is none; and the status, but for bad inputs."""
     ec, AB, BC = lengths
     crank = np.where((AB >= 0.0) & (BC > 0.0), AB, np.nan)
-    first, second, status = closed_form(INVERSE, branch=float(branch)).arrays(position, ec, crank, BC)
+    form = closed_form(INVERSE, branch=float(branch))
+    inputs = position, ec, crank, BC
+    first, second, status = form.arrays(*inputs) if shape else form.point(*map(float, inputs))
     theta = np.stack([np.broadcast_to(angle, shape) for angle in (first, second)], axis=-1)
     return theta, np.broadcast_to(np.asarray(status, np.int8), shape)
 

@@ -1,8 +1,7 @@
 """Crank angles of slider positions and of dead centres: the nodes of a load over Y."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from fractions import Fraction
-from math import gcd, nan
+from math import gcd
 from typing import Any
 
 import numpy as np
@@ -10,13 +9,14 @@ from numpy.typing import NDArray
 
 from ..mechanism.closed.dead_centres import DEAD_CENTRES
 from ..mechanism.closed.functions import closed_form
+from ..mechanism.closed.inverse import INVERSE
 from ..mechanism.closed.limits import ANGLES, LIMITS
+from ..mechanism.status import InverseStatus
 from .load import TURN, Load, OverTheta, OverY, TableOverTheta
 from .stroke import OverStroke
 
 Array = NDArray[np.float64]
-FLAT = 2.0**-6  # of AB + BC: what is left of a side where the triangle is flat
-STEEP = 0.9  # the sine of an angle that loses digits
+ALL_TURN = 2.0**-12  # of BC: designs with more of it to spare have no limit angles
 
 
 def crossings(load: OverY, places: Sequence[float], lengths: Sequence[Array], branch: int) -> Array:
@@ -45,54 +45,24 @@ def passages(Y: Sequence[float] | Array, lengths: Sequence[Array], branch: int) 
 
     Y        positions, the same for all designs or a row for each
     lengths  ec, AB, BC, a value for each design
-
-    The triangle A B C has the sides AB, BC and L = |AC|; tan(beta/2) of its angle at A keeps its digits where
-    the triangle is flat, which is decided exactly: a position is reached, or it is not.
     """
-    ec, AB, BC = (np.asarray(side, float)[:, None] for side in lengths)
-    position = np.atleast_2d(np.asarray(Y, float))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        L = np.hypot(ec, position)
-        outer, inner, other = BC - (L - AB), (L + AB) - BC, BC + (L - AB)
-        flat = np.abs([outer, inner, other]).min(axis=0) < FLAT * (AB + BC)
-        for at in map(tuple, np.argwhere(flat)):
-            sides = [float(side[at[0], 0]) for side in (ec, AB, BC)]
-            here = float(np.broadcast_to(position, L.shape)[at])
-            outer[at], inner[at], other[at] = _spare(sides, here, float(L[at]))
-        beta = 2.0 * np.arctan2(np.sqrt(outer * other), np.sqrt(inner * ((L + AB) + BC)))
-        found = [np.arctan2(-ec, position) + side * beta for side in (-1.0, 1.0)]
-        return np.concatenate(
-            [np.where((position - AB * np.cos(t)) * branch >= 0.0, t, np.nan) for t in found], axis=1
-        )
-
-
-def _spare(lengths: Sequence[float], Y: float, L: float) -> tuple[float, float, float]:
-    """AB + BC - L, L + AB - BC and L + BC - AB of a flat triangle, from exact differences of squares."""
-    ec, AB, BC = map(Fraction, lengths)
-    square = ec**2 + Fraction(Y) ** 2
-    outer, long = float((AB + BC) ** 2 - square) / (float(AB + BC) + L), L + abs(float(BC - AB))
-    inner = float(square - (BC - AB) ** 2) / long if long else nan
-    return (outer, inner, long) if BC >= AB else (outer, long, inner)
+    sides = (np.asarray(side, float)[:, None] for side in lengths)
+    angles = closed_form(INVERSE, branch=float(branch)).arrays(np.atleast_2d(np.asarray(Y, float)), *sides)
+    first, last, status = np.broadcast_arrays(*angles)
+    return np.concatenate([first, np.where(status == InverseStatus.DEAD_CENTRE, first, last)], axis=1)
 
 
 def dead_centres(lengths: Sequence[Array]) -> Array:
     """The angles [rad] of the dead centres of each design, on either branch; NaN where there is none."""
-    ec, AB, BC = lengths
-    with np.errstate(invalid="ignore", divide="ignore"):
-        sines = np.stack([-ec / (AB + BC), ec / (BC - AB)], axis=-1)
-        first = np.arcsin(sines)
-    steep = np.abs(sines) > STEEP
-    if steep.any():
-        (outer,) = closed_form(DEAD_CENTRES, ("theta_outer",), branch=1.0).arrays(*lengths)
-        (inner,) = closed_form(DEAD_CENTRES, ("theta_inner",), branch=-1.0).arrays(*lengths)
-        first = np.where(steep, np.stack([outer, inner], axis=-1), first)
+    outer, inner = closed_form(DEAD_CENTRES, ("outer_turn", "inner_turn")).arrays(*lengths)
+    first = np.stack([outer, -inner], axis=-1)
     return np.concatenate([first, np.pi - first], axis=-1)
 
 
 def limit_angles(lengths: Sequence[Array]) -> Array:
     """The angles [rad] between which designs can be assembled, NaN in empty places; none if all turn."""
     ec, AB, BC = lengths
-    if (BC - AB - np.abs(ec) > FLAT * FLAT * BC).all():
+    if (BC - AB - np.abs(ec) > ALL_TURN * BC).all():
         return np.empty((ec.size, 0))
     return np.stack(np.broadcast_arrays(*closed_form(LIMITS, ANGLES).arrays(ec, AB, BC)), axis=-1)
 

@@ -201,7 +201,7 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
         found = special.Found(out[0, part], theta[part], out[1, part], status[part])
         marks = () if loaded is None else (loaded.course.kinks, loaded.course.jumps)
         at = (mark.angles[part] for mark in marks)
-        usable = special.complete(name, kind, some, nodes, limits, found, *at)
+        usable = special.complete(name, kind, some, nodes, limits, found, search.parameters, *at)
         out[0, part], theta[part], status[part] = found.value, found.theta, found.status
         out[2:, part] = np.where(usable, out[2:, part], np.nan)
     theta[np.isnan(out[0])] = np.nan

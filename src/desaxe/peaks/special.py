@@ -162,10 +162,13 @@ def complete(
     nodes: Array,
     ends: list[tuple[int, float]],
     found: Found,
+    parameters: tuple[str, ...],
     kinks: Array | None = None,
     jumps: Array | None = None,
 ) -> NDArray[np.bool_]:
-    """Add limit angles, ends of the force balance and status to the results; return which have a gradient.
+    """Add limit angles, ends of the force balance and status to the results.
+
+    Which have a derivative by each of the parameters is returned: a row for each parameter.
 
     value   signed, also for "absmax"
     kinks   for each design angles at which a load has a kink: there the slope does not vanish
@@ -179,12 +182,14 @@ def complete(
     _mark_limits(kind, found, value, nodes, ends)
     at_kink = kinks is not None and (np.abs(kinks - found.theta[:, None]) <= AT_KINK).any(axis=1)
     turns |= _turn(designs, found, nodes, value) & np.logical_not(at_kink)
-    turns |= _at_change_point(designs, found)
+    fixed = _at_change_point(designs, found) & ~turns
+    turns |= fixed
     found.value[jams] = np.copysign(np.inf, found.value[jams])
     # Without a value at any angle but a change point, which is all that a stalling crank reaches, too.
     found.status[(turns | np.isnan(found.value)) & (found.status == 0)] = 2
-    usable: NDArray[np.bool_] = np.isin(found.status, USABLE) & ~turns & np.isfinite(found.value)
-    return usable
+    usable = np.isin(found.status, USABLE) & ~turns & np.isfinite(found.value)
+    moved_by = np.array([p in LENGTHS for p in parameters], np.bool_)[:, None]  # what moves a change point
+    return usable | (fixed & np.isfinite(found.value) & ~moved_by)
 
 
 def _at_change_point(designs: Designs, found: Found) -> NDArray[np.bool_]:

@@ -153,6 +153,31 @@ def check_inverse(angles, Y, ec, AB, BC, branch):
         assert (min(turned, default=mp.inf) <= loss) == (rise > 0), (angles, exact, Y, ec, AB, BC, branch)
 
 
+@pytest.mark.sampled
+@pytest.mark.parametrize("long", [False, True])
+def test_the_inverse_keeps_its_digits_next_to_a_dead_centre(long):
+    """Down to the last double before it, where the angle between the two is a root of a few last bits."""
+    rng = random.Random(f"flat {long}")
+    for _ in range(cases(60, 600, 12_500)):
+        AB, BC = rng.uniform(0.1, 1.0), rng.uniform(1.0, 3.0)
+        AB, BC = (BC, AB) if long else (AB, BC)
+        ec, scale = rng.uniform(-0.99, 0.99) * abs(BC - AB), 2.0 ** rng.randint(-900, 900)
+        reach = rng.choice([AB + BC, abs(BC - AB)])
+        Y = math.sqrt((reach - ec) * (reach + ec)) + rng.randint(-3, 3) * 2.0 ** -rng.randint(20, 52)
+        lengths = [v * scale for v in (Y, ec, AB, BC)]
+        with mp.workdps(60):
+            y, e, a, b = map(mp.mpf, (Y, ec, AB, BC))
+            side = mp.hypot(e, y)
+            cosine = (side**2 + a**2 - b**2) / (2 * side * a)
+            found = [closed_form(INVERSE, branch=branch).point(*lengths) for branch in (1.0, -1.0)]
+            angles = [angle for *some, _ in found for angle in some if angle == angle]
+            assert bool(angles) == (abs(cosine) <= 1), (Y, ec, AB, BC)
+            exact = [mp.atan2(-e, y) + side * mp.acos(cosine) for side in (1, -1)] if angles else []
+            for angle in angles:
+                apart = [abs(angle - one + 2 * mp.pi * k) for one in exact for k in (-1, 0, 1)]
+                assert min(apart) <= 2.0**-50, (Y, ec, AB, BC)
+
+
 @pytest.mark.parametrize(("text", "given"), [(LIMITS, (0.3, 1.0, 1.1)), (INVERSE, (0.7, 0.3, 1.0, 1.1))])
 def test_sensitivities_by_differentiation(text, given):
     form = closed_form(text, **({"branch": 1.0} if text is INVERSE else {}))
