@@ -69,7 +69,7 @@ def peak(
     gradient  dict parameter -> exact derivative of the value (ec, AB, BC, omega0 or omega, alpha, as
               far as the quantity depends on them), at a kink or jump with its own motion; NaN where the
               value is not finite or is reached at a limit angle, or where friction turns round or
-              begins to jam
+              begins to jam; by the lengths at a change point at which a rate jumps
     status    0 ok, 1 cannot be assembled anywhere in the range, 2 reached at a limit angle or change
               point, or at an angle at which the friction turns round, 3 stalled in all of the range,
               4 bad input; 5 friction jams at some of the angles (no forces balance), 6 two sets of
