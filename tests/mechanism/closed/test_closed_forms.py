@@ -12,7 +12,7 @@ from desaxe.compiler.interpret import run_in_doubles
 from desaxe.mechanism.closed.dead_centres import DEAD_CENTRES, SENSITIVITIES
 from desaxe.mechanism.closed.functions import closed_form
 from desaxe.mechanism.closed.inverse import INVERSE
-from desaxe.mechanism.closed.limits import LIMITS, theta_intervals
+from desaxe.mechanism.closed.limits import ANGLES, LIMITS, in_intervals, theta_intervals
 from desaxe.mechanism.names import WHOLE
 from desaxe.oracle.truth import ulp_error
 from tests.effort import cases
@@ -90,25 +90,31 @@ def test_limit_angles_and_margins(part):
     rng = random.Random(f"limits {part}")
     form = closed_form(LIMITS)
     for _ in range(cases(50, 500, 12_500)):
-        ec, AB, BC, _ = design(rng)
-        found = dict(zip(form.program.outputs, form.point(ec, AB, BC), strict=True))
-        margin = exact_margin(ec, AB, BC)
-        with mp.workdps(400):
-            exact = mp.mpf(margin.numerator) / margin.denominator
-            assert (
-                ulp_error(found["margin"], exact) <= 0.5 + 1e-9
-            )  # half an ulp may be a tie that ec alone decides
-        assert (found["link_margin"] >= 0.0) == (abs(Fraction(BC) - Fraction(AB)) >= abs(Fraction(ec)))
+        lengths = design(rng)[:3]
+        found = dict(zip(form.program.outputs, form.point(*lengths), strict=True))
+        margin = exact_margin(*lengths)
         assert found["status"] == (2 if margin == 0 else 0 if margin > 0 else 1)
-        intervals = theta_intervals(ec, AB, BC)
-        if margin >= 0:
-            assert intervals == [(0.0, 2 * math.pi)]
-            continue
-        reaches = AB != 0.0 and abs(Fraction(ec)) <= Fraction(AB) + Fraction(BC)
-        assert bool(intervals) == reaches, (ec, AB, BC)
-        with mp.workdps(100):
-            for angle in (angle for interval in intervals for angle in interval):
-                check_limit(angle, *map(mp.mpf, (ec, AB, BC)))
+        assert theta_intervals(*lengths) == in_intervals([found[name] for name in ANGLES])
+        check_limits(found, *lengths)
+
+
+def check_limits(found, ec, AB, BC):
+    """The margins, rounded once, and the limit angles."""
+    margin = exact_margin(ec, AB, BC)
+    with mp.workdps(400):
+        exact = mp.mpf(margin.numerator) / margin.denominator
+        # half an ulp may be a tie that ec alone decides
+        assert ulp_error(found["margin"], exact) <= 0.5 + 1e-9, (ec, AB, BC)
+    assert (found["link_margin"] >= 0.0) == (abs(Fraction(BC) - Fraction(AB)) >= abs(Fraction(ec)))
+    intervals = in_intervals([found[name] for name in ANGLES])
+    if margin >= 0:
+        assert intervals == [(0.0, 2 * math.pi)]
+        return
+    reaches = AB != 0.0 and abs(Fraction(ec)) <= Fraction(AB) + Fraction(BC)
+    assert bool(intervals) == reaches, (ec, AB, BC)
+    with mp.workdps(100):
+        for angle in (angle for interval in intervals for angle in interval):
+            check_limit(angle, *map(mp.mpf, (ec, AB, BC)))
 
 
 def check_limit(angle, ec, AB, BC):
