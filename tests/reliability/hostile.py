@@ -265,7 +265,12 @@ TABLES: dict[str, Any] = {
     "peak": {"quantity": "a_C"},
     "picture": {"file": "a.png", "quantity": "a_C"},
     "quantities": {"expression": "2*a_C"},
+    "steady": {"torque": 10.0},
+    "kloss": {"breakdown_torque": 40.0, "breakdown_slip": 0.15, "synchronous_speed": 157.0},
 }
+
+
+LISTS = ("check", "claim", "peak", "picture")
 
 
 def scene_keys() -> list[tuple[str, ...]]:
@@ -302,7 +307,7 @@ def scene_with(path: tuple[str, ...], value: Any) -> dict[str, Any]:
         if name == "quantities":
             table = place[name] = {"own": table}
             table = table["own"]
-        elif name in TABLES:
+        elif name in LISTS:
             place[name] = (table,)
         place = table
     place[path[-1]] = value

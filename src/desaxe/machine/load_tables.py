@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..loads.load import Load, OverY, TableOverTheta
+from ..loads.motors import ROWS, Kloss, OverOmega
 from ..loads.stroke import OverStroke
 
 INLINE = 24  # points that stand in the scene itself
@@ -46,3 +47,15 @@ def load_table(name: str, load: Load, scene: Path, unit: str | None = None) -> L
     file = scene.with_name(f"{scene.stem}_{name}.csv")
     lines = [",".join(heads), *(",".join(map(repr, row)) for row in rows)]
     return LoadTable({over: file.name, **more}, file, "\n".join(lines) + "\n")
+
+
+def motor_table(motor: Any) -> Any:
+    """The data of a motor in a scene, in SI units with all its digits; anything else as it is."""
+    if isinstance(motor, OverOmega):
+        rows = zip(motor.table.knots, motor.table.values, strict=True)
+        return {"over_omega": [[f"{x!r} rad/s", f"{y!r} N m"] for x, y in rows], "kind": motor.kind}
+    if isinstance(motor, Kloss):
+        units = {row.name: row.unit for row in ROWS}
+        told = {name: f"{value!r} {units[name]}" for name, value in motor.numbers.items()}
+        return {"kloss": {name: text.removesuffix(" 1") for name, text in told.items()}}
+    return motor

@@ -16,7 +16,7 @@ from ..scenes.needs import SECTIONS
 from ..scenes.scene import scene
 from ..scenes.schema import SceneError
 from ..support.files import check_target, write_text
-from .load_tables import load_table
+from .load_tables import load_table, motor_table
 
 TURN = {"start": 0, "stop": "360 deg", "num": 721}
 
@@ -59,6 +59,8 @@ def write_scene(
     for table in tables.values():
         if table.file is not None:
             write_text(table.file, table.text)
+    if "steady" in more:
+        more = {**more, "steady": {name: motor_table(value) for name, value in more["steady"].items()}}
     data = _data(machine, outputs, more, {name: table.data for name, table in tables.items()})
     write_text(place, _toml(data))
     return place

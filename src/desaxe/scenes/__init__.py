@@ -15,6 +15,7 @@ run          Content -> values, peaks, checks, then files
 command      `desaxe run`
 grid         the plan of its grid, run block by block
 peaks        peaks over designs
+motor        [steady]: steady states on a motor
 turning      which designs turn fully
 pictures     families of curves as files
 stored       a scene as a sweep into its store

@@ -58,6 +58,15 @@ class Picture(NamedTuple):
     inputs: dict[str, Value]
 
 
+class OnMotor(NamedTuple):
+    """The steady states on a motor, for the outer product of `axes` with everything else fixed."""
+
+    torque: Any
+    axes: dict[str, tuple[float, ...]]
+    fixed: dict[str, Value]
+    seeks: bool  # the flywheel for a fluctuation
+
+
 class Content(NamedTuple):
     """The content of a scene in SI units, its inputs in the order of the file."""
 
@@ -78,6 +87,7 @@ class Content(NamedTuple):
     memory: int | None = None
     definitions: tuple[Definition, ...] = ()
     order: str | None = None
+    steady: OnMotor | None = None
 
     @property
     def fused(self) -> Reduction | None:

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from ..loads.load import Load
+from ..loads.motors import Motor
 from ..loads.tabulated import over_stroke, over_theta, over_Y
 from ..support.extras import MissingExtraError
 from .schema import Range, SceneError, Varying, shown
@@ -24,10 +25,10 @@ MAKE: dict[str, Any] = {"over_theta": over_theta, "over_Y": over_Y, "over_stroke
 
 
 def without_objects(data: Mapping[str, Any]) -> dict[str, Any]:
-    """The data of a scene with each Load object replaced by a number, for the schema."""
+    """The data of a scene with each Load or Motor object replaced by a number, for the schema."""
     return {
-        section: {name: 0.0 if isinstance(value, Load) else value for name, value in table.items()}
-        if section == "loads" and isinstance(table, Mapping)
+        section: {name: 0.0 if isinstance(value, (Load, Motor)) else value for name, value in table.items()}
+        if section in ("loads", "steady") and isinstance(table, Mapping)
         else table
         for section, table in data.items()
     }

@@ -21,6 +21,7 @@ from ..sweeps.layout import bytes_of
 from . import schema
 from .content import Content
 from .loads import varying, without_objects
+from .motor import on_motor
 from .needs import SECTIONS, require_for_grid, require_known
 from .requested import checks_of, peak_of, picture_of
 from .schema import SceneError, shown
@@ -84,9 +85,9 @@ def _content(
         require_known(f"outputs #{index}", name, "omega" in inputs)
     if outputs:
         require_for_grid("outputs", outputs, inputs)
-    if not (outputs or file.peak or file.check or file.picture):
+    if not (outputs or file.peak or file.check or file.picture or file.steady):
         raise SceneError(
-            "the scene requests nothing: give outputs = [...], [[peak]], [[check]] or [[picture]]"
+            "the scene requests nothing: give outputs = [...], [[peak]], [[check]], [[picture]] or [steady]"
         )
     _require_names(file)
     checks = [
@@ -94,11 +95,12 @@ def _content(
     ]
     peaks = [peak_of(f"peak #{index}", table, inputs) for index, table in enumerate(file.peak, 1)]
     pictures = [picture_of(f"picture #{index}", table, inputs) for index, table in enumerate(file.picture, 1)]
+    motor = None if file.steady is None else on_motor(file.steady, data["steady"]["torque"], inputs, units)
     return Content(
         file.title, outputs, _accuracy(file.accuracy), branch, inputs,
         tuple(checks), tuple(peaks), tuple(pictures), file.results.data,
         _reduction(file, outputs, inputs), file.threads, units, *_storage(file, outputs, inputs), own,
-        file.results.order,
+        file.results.order, motor,
     )  # fmt: skip
 
 

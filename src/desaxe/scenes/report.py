@@ -3,19 +3,23 @@
 from collections.abc import Sequence
 from math import degrees, isfinite, isnan, pi
 from pathlib import Path
+from textwrap import fill
 
 import numpy as np
 
+from ..evaluation.in_units import in_units
 from ..mechanism.catalogue import quantity
 from ..mechanism.status import PeakStatus
 from ..mechanism.unit_system import UnitSystem
 from ..support.text_table import table as text_table
 from .content import Content, Peak
+from .motor import MotorResult
 from .peaks import SIDEWAYS, WORDS, ClaimResult, PeakResult, group_names, peaks_in_units
 from .places import data_files
 from .run import CheckResult, Run
 from .turning import FeasibilityResult
 
+WIDTH = 100  # columns
 ROWS = 24  # of a table; a longer one is thinned out
 HUGE = 1e6  # percent: more is written as a power of ten
 GAPS = 5  # designs that cannot turn fully
@@ -30,6 +34,7 @@ def report(content: Content, result: Run, units: UnitSystem) -> str:
     parts += [checks_report(result.checks)] if result.checks else []
     parts += [feasibility_report(result.feasibility, units)] if result.feasibility else []
     parts += [_peak(found, units) for found in peaks]
+    parts += [_steady(result.steady, content, units)] if result.steady is not None else []
     parts += [_values(content, result)] if result.dataset is not None else []
     parts += [files_report(content, result)] if result.files or result.failures else []
     return "\n\n".join(parts)
@@ -209,6 +214,44 @@ def _with_unit(name: str, value: float, units: UnitSystem) -> str:
     """An input with its unit, in the units of the scene."""
     conversion = units.of(name)
     return f"{number(conversion.shown(value))} {conversion.unit}".removesuffix(" 1")
+
+
+# ---- the steady state ----------------------------------------------------------------------------
+
+FIGURES = ("omega_mean", "fluctuation", "power_mean", "work", "multiplier", "flywheel_inertia")
+
+
+def _steady(found: MotorResult, content: Content, units: UnitSystem) -> str:
+    """A table with a row for each design, and why some have no steady state."""
+    rows = steady_rows(found, content, units)
+    head = fill(f"Steady state on {found.asked.torque!r}", WIDTH, subsequent_indent="  ")
+    return "\n".join([head, *table(rows, "r"), *steady_remarks(found)])
+
+
+def steady_rows(found: MotorResult, content: Content, units: UnitSystem) -> list[list[str]]:
+    """Names, units, and the figures of each design."""
+    dataset = found.dataset if content.units else in_units(found.dataset, units)
+    axes = list(found.asked.axes)
+    names = [*axes, *(name for name in FIGURES if name in dataset.data_vars)]
+    heads = ["" if dataset[name].units == "1" else dataset[name].units for name in names]
+    rows = [names, heads]
+    for index in _thinned(list(np.ndindex(dataset["status"].shape))):
+        row = [number(dataset[name].values[k]) for name, k in zip(axes, index, strict=True)]
+        rows.append([*row, *(_or_dash(dataset[name].values[index]) for name in names[len(axes) :])])
+    return rows
+
+
+def _or_dash(value: float) -> str:
+    return "-" if isnan(value) else number(value)
+
+
+def steady_remarks(found: MotorResult) -> list[str]:
+    """Why designs have no steady state, the reasons each once, and the rows left out."""
+    messages = np.ravel(np.asarray(found.found["message"], object)).tolist()
+    lines = [f"  {message}" for message in dict.fromkeys(messages) if message != "ok"]
+    more = [f"  and {len(lines) - GAPS} more reasons"] if len(lines) > GAPS else []
+    left_out = [f"  {ROWS} of {len(messages)} designs are shown"] if len(messages) > ROWS else []
+    return [*lines[:GAPS], *more, *left_out]
 
 
 # ---- values and files ----------------------------------------------------------------------------

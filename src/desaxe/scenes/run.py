@@ -13,6 +13,7 @@ from ..support.shown import printable
 from .content import Check, Content, Peak, Picture
 from .files import write
 from .grid import blocks_of, values_of_grid
+from .motor import MotorResult, steady_of
 from .peaks import PeakResult, batches, group_names, peaks_in_units, peaks_of
 from .pictures import draw
 from .places import require_modules, require_places
@@ -43,6 +44,7 @@ class Run(NamedTuple):
     feasibility: FeasibilityResult | None
     files: tuple[Path, ...] = ()
     failures: tuple[str, ...] = ()
+    steady: MotorResult | None = None
 
 
 def steps_of(content: Content, watch: Progress | None) -> Steps:
@@ -51,7 +53,7 @@ def steps_of(content: Content, watch: Progress | None) -> Steps:
     blocks = blocks_of(content)[0] if content.outputs and not stored else 0
     peaks = sum(batches(one) for one in _shown_peaks(content))
     files = len(content.pictures) + (content.data is not None)
-    return Steps(blocks + stored + peaks + files, watch)
+    return Steps(blocks + stored + peaks + files + (content.steady is not None), watch)
 
 
 def _shown_peaks(content: Content) -> tuple[Peak, ...]:
@@ -76,7 +78,12 @@ def compute(content: Content, steps: Steps, overwrite: bool) -> Run:
     elif content.outputs:
         dataset = in_units(values_of_grid(content, steps), content.units)
     peaks = tuple(_peaks(one, content, steps) for one in _shown_peaks(content))
-    return Run(dataset, checks, peaks, feasibility_of(content.inputs), (), failures)
+    steady = None
+    if content.steady is not None:
+        steps.next("steady state")
+        steady = steady_of(content.steady, content)
+        steady = steady._replace(dataset=in_units(steady.dataset, content.units))
+    return Run(dataset, checks, peaks, feasibility_of(content.inputs), (), failures, steady)
 
 
 def write_files(content: Content, found: Run, steps: Steps, shown_in: UnitSystem, overwrite: bool) -> Run:

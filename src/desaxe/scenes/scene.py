@@ -11,6 +11,7 @@ from ..mechanism.unit_system import SI, UnitSystem
 from ..support.progress import Progress
 from ..support.shown import printable
 from .content import Content
+from .motor import MotorResult
 from .peaks import PeakResult
 from .read import plain_data, read
 from .report import report
@@ -36,6 +37,8 @@ class SceneResult:
     feasibility  how many designs turn fully, and the gaps of those that do not
     files        what was written
     failures     what could not be written, and why: a line for each
+    steady       of [steady]: its `dataset` (`omega_mean`, `fluctuation`, `power_mean`, `status`, ...), and
+                 `found`, the answer of `desaxe.steady` in SI units
     """
 
     scene: "Scene"
@@ -45,10 +48,13 @@ class SceneResult:
     feasibility: FeasibilityResult | None
     files: "tuple[Path, ...]"
     failures: tuple[str, ...] = ()
+    steady: MotorResult | None = None
 
     def report(self) -> str:
         """The text that `desaxe run` prints."""
-        run = Run(self.dataset, self.checks, self.peaks, self.feasibility, self.files, self.failures)
+        run = Run(
+            self.dataset, self.checks, self.peaks, self.feasibility, self.files, self.failures, self.steady
+        )
         return report(self.scene.content, run, self.scene.shown_in)
 
     def __str__(self) -> str:
@@ -108,8 +114,9 @@ class Scene:
             found = compute(self.content, steps, overwrite)
             found = write_files(self.content, found, steps, self.shown_in, overwrite)
         result = SceneResult(
-            self, found.dataset, found.peaks, found.checks, found.feasibility, found.files, found.failures
-        )
+            self, found.dataset, found.peaks, found.checks, found.feasibility, found.files, found.failures,
+            found.steady,
+        )  # fmt: skip
         if found.failures:
             raise NotWrittenError(result)
         return result

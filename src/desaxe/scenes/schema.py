@@ -73,6 +73,12 @@ Column = Annotated[tuple[Number, ...], Meta(description="a list of numbers in SI
 TableKind = Annotated[
     Literal["cubic", "linear", "step"], Meta(description='one of "cubic", "linear", "step"')
 ]
+MotorPoints = Annotated[
+    tuple[tuple[Number, Number], ...],
+    Meta(description='points of speed and torque, such as [["0 rpm", 30], ["1000 rpm", 0]]'),
+]
+MotorKind = Annotated[Literal["linear", "smooth"], Meta(description='one of "linear", "smooth"')]
+Numbers = Annotated[float | str | tuple[Number, ...], Meta(description=f"{_NUMBER}, or a list of these")]
 DeadCentre = Annotated[
     Literal["outer", "inner"],
     Meta(description='"outer" or "inner": the dead centre from which over_stroke measures distances'),
@@ -170,6 +176,37 @@ class Loads(Section, frozen=True):
     mu: Values | None = None
 
 
+class KlossTable(Section, frozen=True):
+    """An induction motor by Kloss's formula; see `desaxe.kloss`."""
+
+    breakdown_torque: Number
+    breakdown_slip: Number
+    synchronous_speed: Number
+    gear: Number = 1.0
+
+
+class MotorTable(Section, frozen=True):
+    """A motor: points of its torque over the crank's speed, or Kloss's formula."""
+
+    over_omega: MotorPoints | None = None
+    kind: MotorKind | None = None
+    kloss: KlossTable | None = None
+
+
+_MOTOR = (
+    'a number in SI units, text with a unit, or a motor such as {over_omega = [["0 rpm", 30], '
+    '["1000 rpm", 0]]} or {kloss = {breakdown_torque = 40, breakdown_slip = 0.15, synchronous_speed = 157}}'
+)
+
+
+class SteadyTable(Section, frozen=True):
+    """`[steady]`: the steady state of the machine on its motor; see `desaxe.steady`."""
+
+    torque: Annotated[float | str | MotorTable, Meta(description=_MOTOR)]
+    flywheel_inertia: Numbers = 0.0
+    fluctuation: Numbers | None = None
+
+
 class CheckTable(Section, frozen=True):
     """`[[check]]`: printed values, shown next to the computed ones."""
 
@@ -254,6 +291,7 @@ class SceneFile(Section, frozen=True):
     quantities: Annotated[
         dict[str, QuantityTable], Meta(description="tables of quantities of your own, [quantities.NAME]")
     ] = {}
+    steady: Annotated[SteadyTable | None, Meta(description="a table, [steady]")] = None
     check: Annotated[tuple[CheckTable, ...], Meta(description="a list of tables, [[check]]")] = ()
     peak: Annotated[tuple[PeakTable, ...], Meta(description="a list of tables, [[peak]]")] = ()
     picture: Annotated[tuple[PictureTable, ...], Meta(description="a list of tables, [[picture]]")] = ()

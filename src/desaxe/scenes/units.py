@@ -18,6 +18,7 @@ ENDS = ("start", "stop", "step")
 TABLES = {"over_theta": "theta", "over_Y": "Y", "over_stroke": "distance"}
 PLACES = {"distance": "Y"}
 WORDS = ("printed", "quantities", "reduce")  # tables whose texts are no values of inputs
+MOTOR = ("torque", "flywheel_inertia")  # of [steady]
 # What the text of an input says of all quantities of its dimension; a rate does not follow the lengths.
 SHARED = {
     si: name
@@ -44,7 +45,7 @@ def with_units(data: Mapping[str, Any], units: UnitSystem) -> dict[str, Any]:
 
 def _part(value: Any, key: str, units: UnitSystem) -> Any:
     """A table, list or value of a scene, by the key that it stands at."""
-    if key in INPUTS:
+    if key in INPUTS or key in MOTOR:
         return _input(value, key, units)
     if key == "printed" and isinstance(value, Mapping):
         return {name: _printed(part, str(name), units) for name, part in value.items()}

@@ -82,8 +82,10 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
         lost = design.parameters if status != 2 else [n for n in ("ec", "AB", "BC") if n in design.parameters]
         for gradient in slopes.values():
             gradient.update(dict.fromkeys(lost, nan))
-    about = {"fluctuation": float(fluctuation), "gradient": slopes, "status": status}
-    return Drive({**found, **about}, {**design.numbers, **design.loads}, design.branch, course)
+    figures = {name: float(value) for name, value in found.items()}
+    gradient = {name: {by: float(slope) for by, slope in own.items()} for name, own in slopes.items()}
+    about = {"fluctuation": float(fluctuation), "gradient": gradient, "status": status}
+    return Drive({**figures, **about}, {**design.numbers, **design.loads}, design.branch, course)
 
 
 def design_of(caller: str, inputs: Mapping[str, Any], branch: int) -> Turn:
@@ -124,12 +126,12 @@ def _over_a_turn(
     """The figures other than flywheel and starting torque, and the arrays of torque and power."""
     names = ["T_in", *(f"T_in_wrt_{name}" for name in design.parameters)]
     turn = design.panels(names)
-    turn = turn.split(turn.roots(turn.values["T_in"]))
+    turn = turn.split(turn.roots(turn.values["T_in"]).tolist())
     torque, way = turn.values["T_in"], design.direction
     by = {name: turn.values[f"T_in_wrt_{name}"] for name in design.parameters}
     alpha = design.numbers.get("alpha", 0.0)
-    speed = np.sqrt(design.numbers["omega0"] ** 2 + 2.0 * alpha * turn.theta)
-    speed_by = {"omega0": design.numbers["omega0"] / speed, "alpha": turn.theta / speed}
+    speed = np.sqrt(design.numbers["omega0"] ** 2 + 2.0 * alpha * turn.x)
+    speed_by = {"omega0": design.numbers["omega0"] / speed, "alpha": turn.x / speed}
     period = turn.integral(1.0 / speed)
     mean = turn.integral(torque / speed) / period
     square = turn.integral(torque**2 / speed) / period
@@ -164,8 +166,7 @@ def _over_a_turn(
     found["torque_peak"], place = _peak(design, "T_in", turn, torque, by, slopes["torque_peak"])
     found["power_peak"], _ = _peak(design, "power_in", turn, power, power_by, slopes["power_peak"])
     found["theta_peak"] = _in_cycle(place, design)
-    course["theta"], course["T_in"] = turn.curve(torque)
-    course["power_in"] = turn.curve(power)[1]
+    course |= {"theta": turn.places, "T_in": turn.samples(torque), "power_in": turn.samples(power)}
 
 
 def _peak(

@@ -17,7 +17,7 @@ the fastest and the slowest angle.
 
 from collections.abc import Callable
 from math import inf, nan
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -76,7 +76,7 @@ def flywheel_for(design: Turn, fluctuation: float) -> Flywheel | None:
     inertia, torque = ({name: pair[k] for name, pair in slopes.items()} for k in (1, 0))
     omega = state.panels.values["omega"].ravel()
     places = state.fastest, state.slowest, state.without if not design.has_friction else nan
-    return Flywheel(state.inertia, state.torque, inertia, torque, state.panels.theta.ravel(), omega, *places)
+    return Flywheel(state.inertia, state.torque, inertia, torque, state.panels.x.ravel(), omega, *places)
 
 
 def _store(design: Turn, fluctuation: float, before: State | None) -> State:
@@ -97,13 +97,8 @@ def _store(design: Turn, fluctuation: float, before: State | None) -> State:
     drive = panels.integral(load) / design.angle
     work = panels.running(drive - load)
 
-    def stored(share: float) -> tuple[float, float, float, float]:
-        """The flywheel for a fluctuation, its constant C, the fastest and the slowest angle."""
-        a, b = (0.5 * (speed * (1.0 + side * share / 2.0)) ** 2 for side in (1.0, -1.0))
-        high, fastest, _ = panels.extreme(work - a * M, 1.0)
-        low, slowest, _ = panels.extreme(work - b * M, -1.0)
-        J = (high - low) / (share * speed**2)
-        return J, a * J - high, fastest, slowest
+    def stored(share: float) -> tuple[Any, Any, Any, Any]:
+        return storing(panels, work, M, speed, share)
 
     J, C, fastest, slowest = stored(fluctuation)
     without = _without(lambda share: stored(share)[0], fluctuation, J)
@@ -115,7 +110,21 @@ def _store(design: Turn, fluctuation: float, before: State | None) -> State:
         "omega": design.direction * np.sqrt(z),
         "alpha": (drive - load - 0.5 * slope * z) / inertia,
     }
-    return State(Panels(panels.start, panels.stop, values), J, drive, fastest, slowest, without)
+    return State(Panels(panels.edges, values), J, drive, fastest, slowest, without)
+
+
+def storing(panels: Panels, work: Array, M: Array, speed: Any, share: Any) -> tuple[Any, Any, Any, Any]:
+    """The flywheels of designs for a fluctuation, their constants C, the fastest and the slowest angles."""
+    a, b = (0.5 * (speed * (1.0 + side * share / 2.0)) ** 2 for side in (1.0, -1.0))
+    high, fastest, _ = panels.extreme(work - _beside(a, M) * M, 1.0)
+    low, slowest, _ = panels.extreme(work - _beside(b, M) * M, -1.0)
+    J = (high - low) / (share * speed**2)
+    return J, a * J - high, fastest, slowest
+
+
+def _beside(values: Any, nodes: Array) -> Any:
+    """Numbers of designs beside the nodes of their panels."""
+    return np.reshape(values, (*np.shape(values), 1, 1)) if np.ndim(values) else values
 
 
 def _without(inertia: Callable[[float], float], fluctuation: float, J: float) -> float:
@@ -162,4 +171,4 @@ def _gradient(design: Turn, fluctuation: float, state: State) -> dict[str, tuple
 
 def _torque(design: Turn, names: list[str], state: State) -> dict[str, Array]:
     """The derivatives of the torque along the motion."""
-    return design.values(names, state.panels.theta.ravel(), state.motion)
+    return design.values(names, state.panels.x.ravel(), state.motion)

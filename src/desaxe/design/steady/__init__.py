@@ -3,7 +3,7 @@
 steady    `desaxe.steady`: all periodic motions of a machine, the stable one at the highest speed first
 source    a torque of any kind over angle and speed
 designs   designs in rows, and the equation of motion over the crank angle
-mesh      their turns in panels: integrals, roots, linear periodic equations
+linear    linear periodic equations along their panels
 scan      turns from many speeds, and the changes of sign of what a turn gains
 orbit     periodic motions by Newton's method, on panels between kinks
 slopes    their derivatives by every number

@@ -27,7 +27,7 @@ from .source import Source
 Array = NDArray[Any]
 CREEP = 1e-100  # rad/s: loads know the way of turning, inertia does not act
 INSIDE = 1e-9  # of a panel: so far from its ends a value belongs to it
-WIDEST = 0.4  # rad
+WIDEST = 0.5  # rad
 MANY = 50_000  # points, for which compiling pays
 NOTHING = 1e-12  # of the inertia elsewhere
 
@@ -144,6 +144,17 @@ class Course(NamedTuple):
         four = (v[at][:, None] for v in (self.theta, self.inertia, self.slope, self.load))
         theta, inertia, slope, load = four
         return Course(theta, np.reshape(self.way, (-1, 1)), inertia, slope, load, guide)
+
+
+def picked(fields: Any, rows: Array) -> Any:
+    """Some rows of a named tuple of arrays, of tuples of them and of numbers."""
+
+    def of(value: Any) -> Any:
+        if isinstance(value, tuple):
+            return tuple(map(of, value))
+        return value[rows] if isinstance(value, np.ndarray) else value
+
+    return type(fields)(*map(of, fields))
 
 
 def course_of(designs: Designs, x: Array) -> Course:

@@ -5,13 +5,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..drive.inertia import storing
+from ..turn.panels import Panels
 from .designs import Designs, course_of
-from .mesh import Mesh
 from .states import States, main_of, states_of
 
 Array = NDArray[Any]
 ROUNDS = 60
 SETTLED = 4e-15  # of the fluctuation
+LEAST = 1e-12  # kg m2
 DOUBLED = 40  # times that a heavier wheel is tried
 
 
@@ -62,14 +64,12 @@ def with_flywheels(designs: Designs, wanted: Array) -> Designs:
 
 
 def _estimate(designs: Designs, wanted: Array) -> Array:
-    """The textbook's flywheel at the motor's highest speed, a generous one."""
-    mesh = Mesh(designs.edges())
-    course = course_of(designs, mesh.x)
-    load = course.load - (mesh.integral(course.load) / designs.period)[:, None, None]
-    stored = mesh.running(load)
-    energy = stored.max((1, 2)) - stored.min((1, 2))
+    """The flywheel under a constant torque at a speed of the motor, twice that: a generous one."""
+    panels = Panels(designs.edges())
+    course = course_of(designs, panels.x)
+    load = designs.each(designs.way, 3) * course.load
+    work = panels.running((panels.integral(load) / designs.period)[:, None, None] - load)
     speeds = designs.source.speeds(designs.motor) * np.ones((designs.size, 1))
     typical = np.nanmedian(np.where(speeds * designs.way[:, None] > 0.0, np.abs(speeds), np.nan), axis=1)
-    spread = course.inertia.max((1, 2)) - course.inertia.min((1, 2))
-    found: Array = energy / (wanted * typical**2) + 0.5 * spread / wanted
-    return np.maximum(found, 1e-12)
+    J, *_ = storing(panels, work, course.inertia, typical, wanted)
+    return np.maximum(2.0 * J, LEAST)

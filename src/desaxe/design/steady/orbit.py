@@ -10,16 +10,19 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .designs import Course, Designs, Rate, course_of, rate
-from .mesh import Linear, Mesh
+from ..turn.panels import TO_COEFFICIENTS, Panels
+from .designs import Course, Designs, Rate, course_of, picked, rate
+from .linear import Linear
 
 Array = NDArray[Any]
 STEPS = 40  # of Newton's method
 SETTLED = 4e-16  # of the energy: what a step may still change
+EXTRAPOLATED = 1e-17  # the same, of the step after it
 ROUNDS = 12  # of moving edges
 MOVED = 1e-13  # rad
-RESOLVED = 3e-12  # of the largest value: the last coefficients of a panel
+RESOLVED = 3e-11  # of the largest value: the last coefficients of a panel
 NOISE, PLATEAU = 1e-9, 0.05  # the same, where they are not smaller than this share of earlier ones
+FLAT = 1e-13  # of the energy: what the last coefficients of its slope may add to it
 NARROWEST = 2.0**-40  # rad
 HALVINGS = 40
 PANELS = 1500
@@ -30,12 +33,12 @@ class Orbit(NamedTuple):
     """Periodic motions of designs: the energy at the start and its slope at the nodes."""
 
     designs: Designs
-    mesh: Mesh
+    mesh: Panels
     E0: Array
     F: Array
     course: Course
     rate: Rate
-    linear: Linear
+    log_multiplier: Array
     good: Array  # where Newton's method settled
 
     @property
@@ -44,36 +47,57 @@ class Orbit(NamedTuple):
         return energy(self.mesh, self.E0, self.F)
 
 
-def energy(mesh: Mesh, E0: Array, F: Array) -> Array:
+def energy(mesh: Panels, E0: Array, F: Array) -> Array:
     """The energy at the nodes."""
     return np.asarray(E0[:, None, None] + mesh.running(F))
 
 
-def newton(designs: Designs, mesh: Mesh, E0: Array, F: Array) -> Orbit:
+class _Lanes(NamedTuple):
+    """What Newton's method needs of designs that it has not settled yet."""
+
+    designs: Designs
+    edges: Array
+    course: Course
+
+    def rows(self, index: Array) -> "_Lanes":
+        return _Lanes(self.designs.rows(index), self.edges[index], picked(self.course, index))
+
+    def step(self, E0: Array, F: Array) -> tuple[Array, Array, Array]:
+        """Energy and slope after a step of Newton's method, and the relative change that it wants."""
+        mesh = Panels(self.edges)
+        E = energy(mesh, E0, F)
+        here = rate(self.course, self.designs.source, self.designs.row(3), E)
+        linear = Linear(mesh, np.nan_to_num(here.g))
+        start, y = linear.solve(np.nan_to_num(here.f - F), mesh.integral(F))
+        wanted = y / E
+        least = wanted.min((1, 2))
+        share = np.where(least < -SHRINK, SHRINK / np.abs(least), 1.0)
+        F = F + share[:, None, None] * (here.f + here.g * y - F)
+        return E0 + share * start, F, np.abs(wanted).max((1, 2))
+
+
+def newton(designs: Designs, mesh: Panels, E0: Array, F: Array) -> Orbit:
     """The periodic motion near a guess."""
-    course, row = course_of(designs, mesh.x), designs.row(3)
-    good = np.zeros(len(E0), bool)
+    course = course_of(designs, mesh.x)
+    left, lanes = np.arange(len(E0)), _Lanes(designs, mesh.edges, course)
+    E0, F, good = E0.copy(), F.copy(), np.zeros(len(E0), bool)
     before = np.full(len(E0), np.inf)
-    E = energy(mesh, E0, F)
     with np.errstate(all="ignore"):
         for _ in range(STEPS):
-            here = rate(course, designs.source, row, E)
-            linear = Linear(mesh, np.nan_to_num(here.g))
-            start, y = linear.solve(np.nan_to_num(here.f - F), mesh.integral(F))
-            least = (y / E).min((1, 2))
-            share = np.where(least < -SHRINK, SHRINK / np.abs(least), 1.0)
-            E0 = E0 + share * start
-            F = F + share[:, None, None] * (here.f + here.g * y - F)
-            E = energy(mesh, E0, F)
-            change = np.abs(y / E).max((1, 2))
-            good |= (change <= SETTLED) | ((change <= 1e-10) & (change >= 0.5 * before))
-            good &= np.isfinite(change)
-            before = change
-            if (good | ~np.isfinite(change)).all():
+            if not len(left):
                 break
-        here = rate(course, designs.source, row, E)
-        linear = Linear(mesh, np.nan_to_num(here.g))
-    return Orbit(designs, mesh, E0, F, course, here, linear, good & (E > 0.0).all((1, 2)))
+            E0[left], F[left], change = lanes.step(E0[left], F[left])
+            done = (change <= SETTLED) | ((change <= 1e-10) & (change >= 0.5 * before))
+            done |= (change * change <= EXTRAPOLATED * before) & np.isfinite(before)
+            good[left] = done
+            go = np.flatnonzero(~done & np.isfinite(change))
+            before = change[go]
+            if len(go) < len(left):
+                left, lanes = left[go], lanes.rows(go)
+        E = energy(mesh, E0, F)
+        here = rate(course, designs.source, designs.row(3), E)
+    grown = mesh.integral(np.nan_to_num(here.g))
+    return Orbit(designs, mesh, E0, F, course, here, grown, good & (E > 0.0).all((1, 2)))
 
 
 def switches(orbit: Orbit) -> Array:
@@ -87,7 +111,7 @@ def switches(orbit: Orbit) -> Array:
 
 def moved(orbit: Orbit, edges: Array) -> Orbit:
     """The motion on other panels."""
-    mesh = Mesh(edges)
+    mesh = Panels(edges)
     shape = mesh.x.shape
     F = orbit.mesh.at(mesh.x.reshape(len(edges), -1), np.nan_to_num(orbit.F)).reshape(shape)
     return newton(orbit.designs, mesh, orbit.E0, F)
@@ -118,10 +142,16 @@ def unresolved(orbit: Orbit, more: tuple[Array, ...] = ()) -> Array:
     bad = np.zeros(width.shape, bool)
     with np.errstate(all="ignore"):
         for values in more or (F, 1.0 / orbit.rate.omega):
-            tail, before = mesh.tails(values)
+            tail, before = tails(values)
             size = np.abs(values).max((1, 2))[:, None]
             own = (tail > RESOLVED * size) & ((tail > NOISE * size) | (tail < PLATEAU * before))
             if values is F:
-                own &= tail * width > 1e-15 * np.abs(E).min((1, 2))[:, None]
+                own &= tail * width > FLAT * np.abs(E).min((1, 2))[:, None]
             bad |= own
     return bad & (width > NARROWEST) & orbit.good[:, None]
+
+
+def tails(values: Array) -> tuple[Array, Array]:
+    """The last two Legendre coefficients of each panel, and two before them: the larger magnitudes."""
+    four = np.abs(values @ TO_COEFFICIENTS[[10, 11, -2, -1]].T)
+    return four[..., 2:].max(-1), four[..., :2].max(-1)

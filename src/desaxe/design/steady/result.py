@@ -53,96 +53,83 @@ class Steady(Answer):
 
 def result_of(shape: tuple[int, ...], parts: Sequence[Part], about: Mapping[str, Any]) -> Steady:
     """The result in the shape of the designs."""
-    rows: list[dict[str, Any]] = [bad_row() for _ in range(int(np.prod(shape)))]
+    found = _empty(int(np.prod(shape)), max((part for _, part, *_ in parts), key=lambda part: part.size))
     for index, designs, states, wheel in parts:
-        for k, row in enumerate(_rows(designs, states, wheel)):
-            rows[index[k]] = row
-    found = rows[0] if not shape else _stacked(rows, shape)
-    result = Steady(found)
+        _fill(found, index, designs, states, wheel)
+    result = Steady(_shaped(found, shape) if shape else _first(found))
     result.inputs, result.torque, result.branch = about["inputs"], about["torque"], about["branch"]
     return result
 
 
-def bad_row() -> dict[str, Any]:
-    """A design with a bad input."""
-    return _empty(4, "bad input", 1, 1.0)
-
-
-def _empty(status: int, message: str, turns: int, way: float) -> dict[str, Any]:
-    theta = way * np.linspace(0.0, 2.0 * np.pi * turns, STEPS * turns + 1)
-    nothing = np.full_like(theta, np.nan)
+def _empty(count: int, designs: Designs) -> dict[str, Any]:
+    """Rows of designs with bad inputs."""
+    steps = STEPS * designs.turns + 1
+    nothing = {name: np.full((count, steps), np.nan) for name in COURSE}
+    objects = {"others": np.empty(count, object), "message": np.full(count, "bad input", object)}
+    objects["others"][:] = [[] for _ in range(count)]
     return {
-        "theta": theta, "omega": nothing, "T_motor": nothing.copy(), **dict.fromkeys(NUMBERS, np.nan),
-        "stable": False, "gradient": {key: {} for key in KEYS}, "flywheel_inertia": np.nan, "others": [],
-        "status": status, "message": message,
+        **nothing, **{name: np.full(count, np.nan) for name in NUMBERS}, "stable": np.zeros(count, bool),
+        "gradient": {key: {} for key in KEYS}, "flywheel_inertia": np.full(count, np.nan),
+        "others": objects["others"], "status": np.full(count, 4, np.int8), "message": objects["message"],
     }  # fmt: skip
 
 
-def _rows(designs: Designs, states: States, wheel: bool) -> list[dict[str, Any]]:
-    """The results of designs."""
+def _fill(found: dict[str, Any], index: Array, designs: Designs, states: States, wheel: bool) -> None:
+    """The results of some designs."""
     main = main_of(states, designs.size)
-    order = np.argsort(-np.abs(states.figures.values.get("omega_mean", np.empty(0))), kind="stable")
-    others: list[list[dict[str, Any]]] = [[] for _ in range(designs.size)]
-    for row in order:
+    there = np.flatnonzero(main >= 0)
+    rows, into = main[there], index[there]
+    found["theta"][index] = designs.theta(np.linspace(0.0, designs.period, found["theta"].shape[1])[None])
+    found["flywheel_inertia"][index] = designs.J
+    found["status"][index], found["status"][into] = 1, 0
+    found["message"][into] = "ok"
+    for k in np.flatnonzero(main < 0):
+        found["message"][index[k]] = why_none(designs, states, k)
+    for row in np.argsort(-np.abs(states.figures.values.get("omega_mean", np.empty(0))), kind="stable"):
         k = states.design[row]
         if row != main[k]:
-            others[k].append(_one(states, row) | {"flywheel_inertia": float(designs.J[k])})
-    found = []
-    for k, row in enumerate(main):
-        if row < 0:
-            one = _empty(1, why_none(designs, states, k), designs.turns, float(designs.way[k]))
-        else:
-            one = _one(states, row)
-            if wheel:
-                one["gradient"]["flywheel_inertia"] = _of_wheel(one["gradient"]["fluctuation"], designs.J[k])
-        found.append(one | {"flywheel_inertia": float(designs.J[k]), "others": others[k]})
-    return found
+            found["others"][index[k]].append(_other(states, row, float(designs.J[k])))
+    if not len(there):
+        return
+    for name, values in (*states.course.items(), *states.figures.values.items()):
+        found[name][into] = values[rows]
+    gradient = {key: {p: v[rows] for p, v in by.items()} for key, by in states.figures.gradient.items()}
+    if wheel:
+        gradient["flywheel_inertia"] = _of_wheel(gradient["fluctuation"], designs.J[there])
+    for key, by in gradient.items():
+        own = found["gradient"].setdefault(key, {})
+        for p, slopes in by.items():
+            own.setdefault(p, np.full(len(found["status"]), np.nan))[into] = slopes
 
 
-def _one(states: States, row: int) -> dict[str, Any]:
-    """One periodic motion."""
-    figures = states.figures
-    gradient = {key: {p: float(v[row]) for p, v in by.items()} for key, by in figures.gradient.items()}
-    values = {name: v[row].item() for name, v in figures.values.items()}
-    jams = bool(states.jams[row])
+def _other(states: States, row: int, J: float) -> dict[str, Any]:
+    """A periodic motion that is not the one of its design."""
+    figures, jams = states.figures, bool(states.jams[row])
     return {
-        **{name: states.course[name][row] for name in COURSE}, **values, "gradient": gradient,
-        "flywheel_inertia": np.nan, "others": [], "status": 1 if jams else 0,
+        **{name: states.course[name][row] for name in COURSE},
+        **{name: v[row].item() for name, v in figures.values.items()},
+        "gradient": {key: {p: float(v[row]) for p, v in by.items()} for key, by in figures.gradient.items()},
+        "flywheel_inertia": J, "others": [], "status": 1 if jams else 0,
         "message": "the guide jams, friction leaves no balance of forces" if jams else "ok",
     }  # fmt: skip
 
 
-def _of_wheel(by: Mapping[str, float], J: float) -> dict[str, float]:
+def _of_wheel(by: Mapping[str, Array], J: Array) -> dict[str, Array]:
     """The derivatives of the flywheel that keeps a fluctuation, from those of the fluctuation."""
     own = by["flywheel_inertia"]
-    slopes = {p: -slope / own if J else 0.0 for p, slope in by.items() if p != "flywheel_inertia"}
-    return {**slopes, "fluctuation": 1.0 / own if J else 0.0}
+    slopes = {p: np.where(J > 0.0, -v / own, 0.0) for p, v in by.items() if p != "flywheel_inertia"}
+    return {**slopes, "fluctuation": np.where(J > 0.0, 1.0 / own, 0.0)}
 
 
-def _stacked(rows: list[dict[str, Any]], shape: tuple[int, ...]) -> dict[str, Any]:
-    """The results of designs as arrays."""
-    found: dict[str, Any] = {}
-    longest = max(rows, key=lambda row: len(row["theta"]) * (row["status"] != 4))
-    for name in rows[0]:
-        if name == "gradient":
-            continue
-        if name in COURSE:
-            full = [row[name] if row["status"] != 4 else longest[name] * np.nan for row in rows]
-            found[name] = np.reshape(full, (*shape, -1))
-        elif name in ("others", "message"):
-            objects = np.empty(len(rows), object)
-            objects[:] = [row[name] for row in rows]
-            found[name] = objects.reshape(shape)
-        else:
-            found[name] = np.array([row[name] for row in rows]).reshape(shape)
-    found["status"] = found["status"].astype(np.int8)
-    fullest = max((row["gradient"] for row in rows), key=lambda by: (len(by), len(by["period"])))
-    gradient = {
-        key: {
-            p: np.array([row["gradient"].get(key, {}).get(p, np.nan) for row in rows]).reshape(shape)
-            for p in by
-        }
-        for key, by in fullest.items()
-    }
-    order = ("theta", "omega", "T_motor", *NUMBERS, "stable")
-    return {**{n: found.pop(n) for n in order}, "gradient": gradient, **found}
+def _shaped(values: Any, shape: tuple[int, ...]) -> Any:
+    """Rows in the shape of the designs."""
+    if isinstance(values, dict):
+        return {name: _shaped(value, shape) for name, value in values.items()}
+    return values.reshape(*shape, *values.shape[1:])
+
+
+def _first(values: Any) -> Any:
+    """The only row, as plain numbers and arrays."""
+    if isinstance(values, dict):
+        return {name: _first(value) for name, value in values.items()}
+    return values[0].item() if values.dtype != object and values.ndim == 1 else values[0]

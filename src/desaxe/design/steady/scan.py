@@ -20,7 +20,7 @@ CLOSE = 1e-4  # of an energy: nearer to each other no two starts are told apart
 SPLIT = 6  # starts put into an interval
 INTERVALS = 4  # so many of a design in a round
 LARGEST = 30.0  # exponent
-SERIES = 1.0  # below it phi_3 is a series
+SERIES = 1e-2  # below it they are series
 
 
 class Turns:
@@ -75,18 +75,11 @@ class Turns:
 
 def _phi(c: Array) -> tuple[Array, Array, Array]:
     """(exp(c) - 1)/c and the two functions after it."""
-    small = np.clip(c, -SERIES, SERIES)
-    phi3 = np.ones_like(c)
-    for k in range(16, 3, -1):
-        phi3 = 1.0 + small * phi3 / k
-    phi3 = phi3 / 6.0
     far = np.abs(c) > SERIES
     safe = np.where(far, c, 1.0)
-    one = np.expm1(safe) / safe
-    two = (one - 1.0) / safe
-    phi3 = np.where(far, (two - 0.5) / safe, phi3)
-    phi2 = np.where(far, two, c * phi3 + 0.5)
-    return np.where(far, one, c * phi2 + 1.0), phi2, phi3
+    one = np.where(far, np.expm1(safe) / safe, 1.0 + c * (0.5 + c / 6.0))
+    two = np.where(far, (one - 1.0) / safe, 0.5 + c * (1.0 + 0.25 * c) / 6.0)
+    return one, two, np.where(far, (two - 0.5) / safe, (1.0 + c * (0.25 + 0.05 * c)) / 6.0)
 
 
 class Found(NamedTuple):
@@ -154,7 +147,8 @@ def _scores(starts: Array, gains: Array) -> Array:
 
 def _between(starts: Array, score: Array) -> Array:
     """More starts, in the intervals of each design that need them most."""
-    chosen = np.argsort(-score, axis=1, kind="stable")[:, :INTERVALS]
+    many = min(INTERVALS, int((score > 0.0).sum(1).max()))
+    chosen = np.argsort(-score, axis=1, kind="stable")[:, :many]
     a, b = np.take_along_axis(starts, chosen, 1), np.take_along_axis(starts, chosen + 1, 1)
     share = np.arange(1, SPLIT + 1) / (SPLIT + 1.0)
     found: Array = (a[..., None] + (b - a)[..., None] * share).reshape(len(starts), -1)

@@ -19,7 +19,7 @@ from ...mechanism.names import LENGTHS
 from ...runtime.request import request
 from ...support.computed import computed_once
 from .designs import Designs
-from .mesh import Linear
+from .linear import Linear
 from .orbit import Orbit
 
 Array = NDArray[Any]

@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .designs import Designs, vanishing
+from ..turn.panels import Panels
+from .designs import Designs, picked, vanishing
 from .figures import Figures, course_at_steps, figures_of
-from .mesh import Linear, Mesh
 from .orbit import HALVINGS, PANELS, Orbit, between_kinks, moved, newton, unresolved
 from .scan import Scan, Turns, scan
 from .slopes import Slopes
@@ -17,6 +17,7 @@ Array = NDArray[Any]
 JAMS_AT = 1.0 - 1e-6  # of the wedge K: as in simulation/friction.py
 SAME = 1e-9  # of an energy: two motions are one
 CLOSER = 14  # secant steps to a change of sign, where Newton's method did not settle from a rough one
+ROUGH = 1e-4  # of the energy: a gain from which Newton's method settles
 REPEATS = 4  # rows of finer panels for these
 
 
@@ -39,13 +40,14 @@ def states_of(designs: Designs, gradient: bool) -> States:
     lanes = designs.rows(found.design)
     first = _from_turns(lanes, edges[found.design], found.E0)
     solved = _Solved(lanes, gradient)
-    stable = first.linear.log_multiplier < 0.0
+    stable = first.log_multiplier < 0.0
     lost = ~first.good | (stable != found.falls) | ~_first_of_each(found.design, first.E0)
     kept, again = np.flatnonzero(~lost), np.flatnonzero(lost)
     solved.settle(kept, edges[found.design][kept], _rows(first, kept))
     if len(again):
         fine = _finer(edges[found.design][again])
-        E0 = _closer(lanes.rows(again), fine, found.low[again], found.high[again])
+        there, E0 = _closer(lanes.rows(again), fine, found.low[again], found.high[again])
+        again, fine = again[there], fine[there]
         solved.settle(again, fine, _from_turns(lanes.rows(again), fine, E0))
     solved.jams |= vanishing(designs)[found.design]
     good = np.flatnonzero(solved.good & _first_of_each(found.design, solved.E0))
@@ -136,20 +138,9 @@ def _rows(orbit: Orbit, rows: Array) -> Orbit:
     if len(rows) == len(orbit.E0):
         return orbit
 
-    def part(fields: Any) -> Any:
-        picked: list[Any] = []
-        for value in fields:
-            if isinstance(value, tuple):
-                picked.append(tuple(v[rows] for v in value))
-            else:
-                picked.append(value[rows] if isinstance(value, np.ndarray) else value)
-        return type(fields)(*picked)
-
-    linear = orbit.linear
-    mesh = Mesh(orbit.mesh.edges[rows])
     return Orbit(
-        orbit.designs.rows(rows), mesh, orbit.E0[rows], orbit.F[rows], part(orbit.course), part(orbit.rate),
-        Linear(mesh, linear.g[rows]), orbit.good[rows],
+        orbit.designs.rows(rows), Panels(orbit.mesh.edges[rows]), orbit.E0[rows], orbit.F[rows],
+        picked(orbit.course, rows), picked(orbit.rate, rows), orbit.log_multiplier[rows], orbit.good[rows],
     )  # fmt: skip
 
 
@@ -157,7 +148,7 @@ def _from_turns(lanes: Designs, edges: Array, E0: Array) -> Orbit:
     """The motion near a rough turn from an energy."""
     path: list[Array] = [np.zeros((lanes.size, 1))]
     Turns(lanes, edges).gain(E0[:, None], path)
-    mesh = Mesh(edges)
+    mesh = Panels(edges)
     energies = np.concatenate(path, axis=1)
     width = np.diff(edges)
     with np.errstate(all="ignore"):
@@ -173,23 +164,24 @@ def _finer(edges: Array) -> Array:
     return np.concatenate([inner.reshape(len(edges), -1), edges[:, -1:]], axis=1)
 
 
-def _closer(lanes: Designs, edges: Array, low: Array, high: Array) -> Array:
-    """The energies at which the gain changes its sign in brackets, by Illinois steps."""
-    turns = Turns(lanes, edges)
-
-    def gain(E0: Array) -> Array:
-        return turns.gain(E0[:, None])[:, 0]
-
-    below, above = gain(low), gain(high)
-    for _ in range(CLOSER):
+def _closer(lanes: Designs, edges: Array, low: Array, high: Array) -> tuple[Array, Array]:
+    """The lanes whose gain changes its sign in or next to a bracket, and where, by Illinois steps."""
+    low, high = np.maximum(2.0 * low - high, 0.5 * low), 2.0 * high - low
+    below, above = Turns(lanes, edges).gain(np.stack([low, high], axis=1)).T
+    there = np.flatnonzero(~(np.sign(below) == np.sign(above)))
+    low, high, below, above = (values[there] for values in (low, high, below, above))
+    turns = Turns(lanes.rows(there), edges[there])
+    for _ in range(CLOSER if len(there) else 0):
         with np.errstate(all="ignore"):
             middle = high - above * (high - low) / (above - below)
         middle = np.where((middle > low) & (middle < high), middle, 0.5 * (low + high))
-        here = gain(middle)
+        here = turns.gain(middle[:, None])[:, 0]
         same = np.sign(here) == np.sign(above)
         low, below = np.where(same, low, middle), np.where(same, 0.5 * below, here)
         high, above = np.where(same, middle, high), np.where(same, here, 0.5 * above)
-    return np.where(np.abs(below) < np.abs(above), low, high)
+        if (np.abs(here) <= ROUGH * np.abs(middle)).all():
+            break
+    return there, np.where(np.abs(below) < np.abs(above), low, high)
 
 
 def _first_of_each(design: Array, E0: Array) -> Array:

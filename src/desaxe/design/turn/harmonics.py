@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ...mechanism.catalogue import quantity
 from ...support.answer import answering
 from ...support.checks import whole_number
-from .panels import RESOLVED
+from .panels import RESOLVED, WEIGHT
 from .turn import MOST, Turn, one_turn
 
 WAVES = 4.0  # rad of the highest wave in a panel of 16 nodes: what Gauss's rule integrates to rounding
@@ -78,8 +78,8 @@ def _across_kinks(turn: Turn, name: str, orders: int) -> tuple[NDArray[np.comple
     widest = WAVES / (orders + 1)
     edges = [np.linspace(a, b, int(np.ceil((b - a) / widest)) + 1) for a, b in pairwise(panels.edges)]
     panels = panels.split(np.concatenate(edges).tolist())
-    value, weight = panels.values[name], panels.weight / (2.0 * np.pi)
-    c = np.array([np.sum(weight * value * np.exp(-1j * n * panels.theta)) for n in range(orders + 1)])
-    series = c[0].real + 2.0 * sum((c[n] * np.exp(1j * n * panels.theta)).real for n in range(1, orders + 1))
+    value, weight = panels.values[name], panels.half * WEIGHT / (2.0 * np.pi)
+    c = np.array([np.sum(weight * value * np.exp(-1j * n * panels.x)) for n in range(orders + 1)])
+    series = c[0].real + 2.0 * sum((c[n] * np.exp(1j * n * panels.x)).real for n in range(1, orders + 1))
     remainder = float(np.sqrt(np.sum(weight * (value - series) ** 2)))
     return c, remainder, RESOLVED * float(np.abs(value).max()), value.size

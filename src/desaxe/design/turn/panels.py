@@ -1,10 +1,11 @@
-"""A range of crank angles in panels, on each of which functions are polynomials at Gauss nodes.
+"""Crank angles in panels, on each of which functions are polynomials: of one design or of many.
 
-A panel is halved until the Legendre coefficients of every function on it have fallen to rounding. Kinks must
-be edges of panels. Gauss's rule is then exact to rounding, and so are running integrals, roots and extremes.
+Kinks must be edges of panels. Gauss's rule is then exact to rounding, and so are running integrals, roots and
+extremes. Values at the nodes are arrays (panels, NODES), of designs in rows
+(designs, panels, NODES).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -13,139 +14,209 @@ from numpy.typing import NDArray
 
 from ...support.computed import computed_once
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 
 NODES = 16
 NODE, WEIGHT = legendre.leggauss(NODES)
 TO_COEFFICIENTS = np.linalg.inv(legendre.legvander(NODE, NODES - 1))
+ENDS = legendre.legvander(np.array([-1.0, 1.0]), NODES - 1) @ TO_COEFFICIENTS
 # Integral from the left end of a panel to each node, of values at the nodes.
 RUNNING = legendre.legvander(NODE, NODES) @ legendre.legint(TO_COEFFICIENTS, lbnd=-1.0, axis=0)
+SAMPLES = np.concatenate([[-1.0], NODE, [1.0]])  # of a panel, where signs and extremes are looked for
 RESOLVED = 1e-13  # of the largest value: what the last coefficients of a resolved function may be
-NOISE, PLATEAU = (
-    1e-8,
-    0.6,
-)  # below the first, coefficients that halving does not shrink by the second are rounding
+# Below the first, of the largest value, coefficients that halving does not shrink by the second are rounding.
+NOISE, PLATEAU = 1e-8, 0.6
 MOST = 20_000  # panels
 WIDEST = 0.4  # rad
 NARROWEST = 2.0**-44  # rad: next to a change point functions bend within the root of the margin
+CLIMBS = 30  # steps of Newton's method
+PEAKS = 4  # so many of the highest samples are refined
 
 
 class Panels:
-    """Panels and the values of functions, by name, at their nodes: arrays (panels, NODES)."""
+    """Panels between edges, which ascend along the last axis, and functions by name at their nodes.
 
-    def __init__(self, start: Array, stop: Array, values: dict[str, Array]) -> None:
-        self.start, self.stop, self.values = start, stop, values
+    A panel may have no width: it fills the row of a design that needs fewer.
+    """
+
+    def __init__(self, edges: Array, values: Mapping[str, Array] | None = None) -> None:
+        self.edges, self.values = edges, dict(values or {})
 
     @computed_once
-    def theta(self) -> Array:
+    def half(self) -> Array:
+        """Half the width of each panel, beside nodes."""
+        return 0.5 * np.diff(self.edges)[..., None]
+
+    @computed_once
+    def x(self) -> Array:
         """The nodes."""
-        return nodes_of(self.start, self.stop)
+        return nodes_of(self.edges[..., :-1], self.edges[..., 1:])
 
-    @computed_once
-    def weight(self) -> Array:
-        """The quadrature weight of each node."""
-        return 0.5 * (self.stop - self.start)[:, None] * WEIGHT
-
-    @property
-    def edges(self) -> list[float]:
-        """The edges of the panels, ascending."""
-        return [*self.start.tolist(), float(self.stop[-1])]
-
-    def integral(self, values: Array) -> float:
-        """The integral over all panels."""
-        return float(np.sum(self.weight * values))
+    def integral(self, values: Array) -> Any:
+        """The integral over all panels, of each design."""
+        return ((values @ WEIGHT) * self.half[..., 0]).sum(-1)
 
     def running(self, values: Array) -> Array:
-        """The integral from the first panel's left end to each node."""
-        half = 0.5 * (self.stop - self.start)[:, None]
-        whole = np.cumsum((self.weight * values).sum(1))
-        result: Array = half * (values @ RUNNING.T) + np.concatenate([[0.0], whole[:-1]])[:, None]
-        return result
+        """The integral from the first edge to each node."""
+        whole = np.cumsum((values @ WEIGHT) * self.half[..., 0], axis=-1)
+        start = np.concatenate([np.zeros_like(whole[..., :1]), whole[..., :-1]], axis=-1)
+        return np.asarray(self.half * (values @ RUNNING.T) + start[..., None])
 
-    def curve(self, values: Array) -> tuple[Array, Array]:
-        """Angles and values for a curve: of both ends of each panel too, so of each side of a jump."""
-        ends = values @ TO_COEFFICIENTS.T @ legendre.legvander(np.array([-1.0, 1.0]), NODES - 1).T
-        theta = np.concatenate([self.start[:, None], self.theta, self.stop[:, None]], axis=1)
-        return theta.ravel(), np.concatenate([ends[:, :1], values, ends[:, 1:]], axis=1).ravel()
+    def ends(self, values: Array) -> Array:
+        """The values at both ends of each panel."""
+        return np.asarray(values @ ENDS.T)
 
-    def at(self, theta: Array, values: Array) -> Array:
-        """Values at any angles within the range."""
-        panel = np.clip(np.searchsorted(self.stop, theta), 0, self.stop.size - 1)
-        x = 2.0 * (theta - self.start[panel]) / (self.stop - self.start)[panel] - 1.0
-        basis = legendre.legvander(np.clip(x, -1.0, 1.0), NODES - 1)
-        result: Array = np.sum(basis * (values @ TO_COEFFICIENTS.T)[panel], -1)
-        return result
+    def samples(self, values: Array) -> Array:
+        """The values at start, nodes and end of each panel: on each side of a jump."""
+        ends = self.ends(values)
+        every = np.concatenate([ends[..., :1], values, ends[..., 1:]], axis=-1)
+        return every.reshape(*every.shape[:-2], -1)
 
-    def roots(self, values: Array) -> list[float]:
-        """The angles at which a function changes its sign."""
-        ends = np.array([-1.0, *NODE, 1.0])
-        coefficients = values @ TO_COEFFICIENTS.T
-        sampled = np.sign(coefficients @ legendre.legvander(ends, NODES - 1).T)
-        found = []
-        for panel in np.flatnonzero((np.abs(np.diff(sampled, axis=1)) > 1).any(1)):
-            middle, half = self._shape(panel)
-            found += [middle + half * x for x in _real_roots(coefficients[panel])]
-        return sorted(found)
+    @computed_once
+    def places(self) -> Array:
+        """The places of `samples`."""
+        every = np.concatenate([self.edges[..., :-1, None], self.x, self.edges[..., 1:, None]], axis=-1)
+        return every.reshape(*every.shape[:-2], -1)
 
-    def extreme(self, values: Array, sign: float) -> tuple[float, float, bool]:
-        """The largest (sign 1) or smallest (-1) value, its angle, and whether that is within a panel."""
-        coefficients = sign * (values @ TO_COEFFICIENTS.T)
-        samples = coefficients @ legendre.legvander(np.array([-1.0, *NODE, 1.0]), NODES - 1).T
-        bound = coefficients[:, 0] + np.abs(coefficients[:, 1:]).sum(1)
-        best, place, inside = -np.inf, 0.0, False
-        top = float(samples.max())
-        for panel in np.flatnonzero(bound >= top - RESOLVED * abs(top)):
-            flat = _real_roots(legendre.legder(coefficients[panel]))
-            x = np.array([*flat, -1.0, 1.0])
-            here = legendre.legval(x, coefficients[panel])
-            number = int(np.argmax(here))
-            if here[number] > best:
-                middle, half = self._shape(panel)
-                best, place, inside = (
-                    float(here[number]),
-                    float(middle + half * x[number]),
-                    number < len(flat),
-                )
-        return sign * best, place, inside
+    def at(self, x: Array, values: Array) -> Array:
+        """Values at any places within the range, of each design at its own."""
+        edges = self._rows(self.edges)
+        places = np.reshape(x, (len(edges), -1))
+        found = [np.searchsorted(e[1:], p, side="right") for e, p in zip(edges, places, strict=True)]
+        row, panel = np.arange(len(edges))[:, None], np.minimum(np.array(found), edges.shape[1] - 2)
+        middle, half = self._shape(row, panel)
+        local = np.clip((places - middle) / np.where(half > 0.0, half, 1.0), -1.0, 1.0)
+        return _series(self._coefficients(values)[row, panel], local).reshape(np.shape(x))
+
+    def roots(self, values: Array) -> Array:
+        """The places at which a function changes its sign, in rows padded with the first edge."""
+        sampled, places = np.sign(self._rows(self.samples(values))), self._rows(self.places)
+        sampled[sampled == 0.0] = 1.0
+        row, at = np.nonzero(np.diff(sampled, axis=1))
+        found = places[row, at].copy()
+        panel, number = np.divmod(at, SAMPLES.size)
+        inside = number < SAMPLES.size - 1  # else between two panels
+        rows, panels, number = row[inside], panel[inside], number[inside]
+        middle, half = self._shape(rows, panels)
+        series = self._coefficients(values)[rows, panels]
+        found[inside] = middle + half * _root(series, SAMPLES[number], SAMPLES[number + 1])
+        every = padded(row, found, len(places), places[:, 0])
+        return every.reshape(*self.edges.shape[:-1], -1)
+
+    def extreme(self, values: Array, sign: float) -> tuple[Any, Any, Any]:
+        """The largest (sign 1) or smallest (-1) value, its place, and whether that is within a panel."""
+        sampled, series = sign * self._rows(self.samples(values)), sign * self._coefficients(values)
+        row = np.arange(len(sampled))[:, None]
+        wrapped = np.concatenate([sampled[:, -1:], sampled, sampled[:, :1]], axis=1)
+        peak = (sampled >= wrapped[:, :-2]) & (sampled >= wrapped[:, 2:])
+        best = np.argsort(np.where(peak, -sampled, np.inf), axis=1, kind="stable")[:, :PEAKS]
+        shift = np.array([[0], [-1], [1]])  # the panel of a sample at an end may rise further in the next
+        panel = np.clip(best[:, None] // SAMPLES.size + shift, 0, series.shape[1] - 1).reshape(len(row), -1)
+        middle, half = self._shape(row, panel)
+        start = np.tile(self._rows(self.places)[row, best], (1, len(shift)))
+        near = np.clip((start - middle) / np.where(half > 0.0, half, 1.0), -1.0, 1.0)
+        own = series[row, panel]
+        local = np.concatenate([_climbed(own, near), near], axis=1)
+        here = _series(np.concatenate([own, own], axis=1), local)
+        k = np.argmax(here, axis=1)[:, None]
+        place = np.tile(middle, 2) + np.tile(half, 2) * local
+        within = (np.abs(local) < 1.0) & (k < near.shape[1])
+        found = (np.take_along_axis(part, k, 1) for part in (sign * here, place, within))
+        top, at, inside = (part.reshape(self.edges.shape[:-1])[()] for part in found)
+        return top, at, inside
 
     def split(self, places: list[float]) -> "Panels":
-        """These functions on panels with additional edges."""
-        edges = np.array(sorted({*self.edges, *places}))
-        start, stop = edges[:-1], edges[1:]
-        wide = stop - start > 1e-15 * np.maximum(np.abs(start), 1.0)
-        start, stop = start[wide], stop[wide]
-        theta = nodes_of(start, stop)
-        return Panels(start, stop, {name: self.at(theta, v) for name, v in self.values.items()})
+        """The functions of one design on panels with additional edges."""
+        edges = np.array(sorted({*self.edges.tolist(), *places}))
+        wide = np.diff(edges) > 1e-15 * np.maximum(np.abs(edges[:-1]), 1.0)
+        edges = np.append(edges[:-1][wide], edges[-1])
+        x = nodes_of(edges[:-1], edges[1:])
+        return Panels(edges, {name: self.at(x, v) for name, v in self.values.items()})
 
-    def _shape(self, panel: Any) -> tuple[float, float]:
-        """Middle and half width."""
-        start, stop = self.start[panel], self.stop[panel]
-        return float(0.5 * (start + stop)), float(0.5 * (stop - start))
+    def refined(self, bad: Array, edges: Array) -> Array:
+        """These edges of designs and the middles of their bad panels, in rows."""
+        row, panel = np.nonzero(bad)
+        middles = padded(row, self._shape(row, panel)[0], len(edges), edges[:, 0])
+        return np.sort(np.concatenate([edges, middles], axis=1), axis=1)
 
+    def _rows(self, values: Array) -> Array:
+        """Edges or samples of one design as a row."""
+        return np.asarray(values.reshape(-1, values.shape[-1]))
 
-def _real_roots(coefficients: Array) -> list[float]:
-    """The roots of a Legendre series within its panel, without coefficients that are rounding."""
-    series = legendre.legtrim(coefficients, 1e-15 * float(np.abs(coefficients).max()))
-    roots = legendre.legroots(series)
-    return [float(x.real) for x in roots if abs(x.imag) < 1e-9 and abs(x.real) <= 1.0]
+    def _coefficients(self, values: Array) -> Array:
+        """The Legendre coefficients of panels, of designs in rows."""
+        return np.asarray((values @ TO_COEFFICIENTS.T).reshape(-1, *values.shape[-2:]))
+
+    def _shape(self, row: Array, panel: Array) -> tuple[Array, Array]:
+        """Middle and half width of panels of rows."""
+        edges = self._rows(self.edges)
+        start, stop = edges[row, panel], edges[row, panel + 1]
+        return 0.5 * (start + stop), 0.5 * (stop - start)
 
 
 def nodes_of(start: Array, stop: Array) -> Array:
     """The Gauss nodes of panels."""
-    nodes: Array = 0.5 * (start + stop)[:, None] + 0.5 * (stop - start)[:, None] * NODE
-    return nodes
+    return np.asarray(0.5 * (start + stop)[..., None] + 0.5 * (stop - start)[..., None] * NODE)
+
+
+def padded(row: Array, values: Array, count: int, filler: Array) -> Array:
+    """Values of rows as an array with as many columns as the fullest row needs."""
+    sizes = np.bincount(row, minlength=count)
+    order = np.argsort(row, kind="stable")
+    starts = np.concatenate([[0], np.cumsum(sizes)[:-1]])
+    found = np.repeat(filler[:, None], sizes.max(initial=0), axis=1)
+    found[row[order], np.arange(len(row)) - starts[row[order]]] = values[order]
+    return found
+
+
+def _series(coefficients: Array, x: Array) -> Array:
+    """Legendre series, each at its own place."""
+    basis = legendre.legvander(x, coefficients.shape[-1] - 1)
+    return np.asarray(np.einsum("...k,...k->...", basis, coefficients))
+
+
+def _root(series: Array, low: Array, high: Array) -> Array:
+    """The roots of Legendre series in brackets, by Illinois steps and bisection."""
+    at_low, at_high = _series(series, low), _series(series, high)
+    for step in range(60):
+        with np.errstate(invalid="ignore", divide="ignore"):
+            x = high - at_high * (high - low) / (at_high - at_low)
+        x = np.where((x > low) & (x < high) & (step % 3 < 2), x, 0.5 * (low + high))
+        here = _series(series, x)
+        same = np.sign(here) == np.sign(at_high)
+        at_low, at_high = np.where(same, 0.5 * at_low, here), np.where(same, here, 0.5 * at_high)
+        low, high = np.where(same, low, x), np.where(same, x, high)
+        # Halved values steer the secant only; the signs, which decide, stay.
+        if not (high - low > 4e-16).any():
+            break
+    return np.where(np.abs(at_low) < np.abs(at_high), low, high)
+
+
+def _climbed(coefficients: Array, x: Array) -> Array:
+    """The places where the slope vanishes, by Newton's method within the panel."""
+    first = legendre.legder(coefficients, axis=-1)
+    second = legendre.legder(first, axis=-1)
+    for _ in range(CLIMBS):
+        slope, bend = _series(first, x), _series(second, x)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = np.where(bend < 0.0, -slope / bend, 0.02 * np.sign(slope))
+        before, x = x, np.clip(x + np.clip(np.nan_to_num(step), -0.2, 0.2), -1.0, 1.0)
+        if (np.abs(x - before) <= 4e-16).all():
+            break
+    return x
 
 
 def resolved(functions: Callable[[Array], dict[str, Array]], breaks: list[float]) -> Panels:
-    """Panels between the first and the last break, on which all functions are polynomials.
+    """Panels of one design between the first and the last break, on which all functions are polynomials.
 
-    `functions(theta)` gives values by name for a flat array of angles. Breaks are in order.
+    `functions(theta)` gives values by name for a flat array of angles. Breaks are in order. A panel is halved
+    until the Legendre coefficients of every function on it have fallen to rounding.
     """
     edges = np.array(sorted(set(breaks)))
     counts = np.maximum(1, np.ceil(np.diff(edges) / WIDEST)).astype(int)
     pieces = [np.linspace(a, b, n + 1) for a, b, n in zip(edges[:-1], edges[1:], counts, strict=True)]
     start, stop = (np.concatenate([piece[part] for piece in pieces]) for part in (np.s_[:-1], np.s_[1:]))
-    done: list[tuple[Array, Array, dict[str, Array]]] = []
+    done: list[tuple[Array, dict[str, Array]]] = []
     scale: dict[str, float] = {}
     before: dict[str, Array] = {}
     count = 0
@@ -160,13 +231,13 @@ def resolved(functions: Callable[[Array], dict[str, Array]], breaks: list[float]
             rounding = (tail <= NOISE * scale[name]) & (tail >= PLATEAU * before.get(name, np.inf))
             fine &= (tail <= RESOLVED * scale[name]) | rounding
         good |= fine
-        done.append((start[good], stop[good], {name: v[good] for name, v in values.items()}))
+        done.append((start[good], {name: v[good] for name, v in values.items()}))
         before = {name: np.tile(tail[~good], 2) for name, tail in tails.items()}
         start, stop = start[~good], stop[~good]
         middle = 0.5 * (start + stop)
         start, stop = np.concatenate([start, middle]), np.concatenate([middle, stop])
         count += start.size
-    order = np.argsort(np.concatenate([part[0] for part in done]))
-    joined = {name: np.concatenate([part[2][name] for part in done])[order] for name in done[0][2]}
-    first, last = (np.concatenate([part[k] for part in done])[order] for k in (0, 1))
-    return Panels(first, last, joined)
+    first = np.concatenate([part[0] for part in done])
+    order = np.argsort(first)
+    joined = {name: np.concatenate([part[1][name] for part in done])[order] for name in done[0][1]}
+    return Panels(np.append(first[order], edges[-1]), joined)

@@ -128,7 +128,7 @@ class Turn:
                 return self.values(["N_C"], theta, motion, **other, mu=None)
 
             smooth = resolved(normal_force, found)
-            found += smooth.roots(smooth.values["N_C"])
+            found += smooth.roots(smooth.values["N_C"]).tolist()
         return sorted(found)
 
     def panels(self, names: Sequence[str], **other: Any) -> Panels:

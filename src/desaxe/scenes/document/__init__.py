@@ -6,6 +6,7 @@ inputs     inputs, loads, own quantities; the mechanism to scale and its geometr
 curves     the quantities asked for over the crank angle, and the pictures of the scene
 peaks      extreme values with angle, side and gradient
 drive      torque, power and flywheel
+motor      the steady state on a motor
 spread     what tolerances do
 origin     warnings, versions, and the command that made it
 html       a document as a page without scripts or anything from elsewhere, for screen and paper

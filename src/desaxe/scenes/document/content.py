@@ -14,6 +14,7 @@ from ..run import Run
 from .curves import curves, statuses
 from .drive import drive
 from .inputs import inputs, mechanism
+from .motor import motor
 from .origin import origin, warned
 from .parts import Document, Lines, Section
 from .peaks import peaks
@@ -49,6 +50,7 @@ def document_of(content: Content, run: Run, units: UnitSystem, asked: Asked) -> 
             curves(content, run.dataset, units),
             peaks(content, run.peaks, units),
             drive(content, units, asked.fluctuation),
+            motor(content, run.steady, units),
             spread(content, units, asked.tolerances),
         ]
     own = [str(one.message) for one in heard if one.category.__module__.startswith("desaxe.")]

@@ -283,6 +283,10 @@ def _also(content: Content) -> list[dict[str, Any]]:
         found.append(
             {"what": f"{peak.kind} of {peak.quantity}", "count": designs, "of": "designs", "how": how}
         )
+    if content.steady is not None:
+        designs = prod(len(values) for values in content.steady.axes.values())
+        how = "periodic motions by Newton's method, in NumPy"
+        found.append({"what": "steady state on a motor", "count": designs, "of": "designs", "how": how})
     for picture in content.pictures:
         points = prod(len(value) for value in picture.inputs.values() if isinstance(value, tuple))
         how = f"drawn to {picture.file}"

@@ -19,6 +19,7 @@ PICTURE = 0.15  # s to draw and write a picture
 PEAK_COMPILE = 6.0  # s to compile the search for a quantity
 PEAK = 1.5e-6  # s for a design by the compiled search
 NUMPY_PEAK, NUMPY_START = 1e-5, 2e-2  # s for one by NumPy, and for the first
+STEADY, STEADY_START = 1e-3, 0.1  # s for a steady state, and for the first
 CELL = 0.9e-6  # s for a number in a CSV file
 FILES = {".nc": 3e-9, ".zarr": 8e-9, ".npz": 1e-9}  # s a byte
 FILE = 0.05  # s to open one
@@ -50,6 +51,9 @@ def costs_of(content: Content, run: Mapping[str, Any] | None, cells: int, stored
     for peak in content.peaks:
         costs.append(_peak(peak, peak.quantity in quantities, content.store is not None))
         quantities.add(peak.quantity)
+    if content.steady is not None:
+        time = STEADY_START + STEADY * prod(len(values) for values in content.steady.axes.values())
+        costs.append(Cost("steady state", time, time))
     if content.checks:
         time = CHECK * len(content.checks)
         costs.append(Cost("printed values", time, time))

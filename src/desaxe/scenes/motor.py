@@ -1,0 +1,142 @@
+"""[steady] of a scene: the machine on its motor, and its steady states, labelled."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..design.steady.result import NUMBERS, Steady
+from ..design.steady.steady import FLUCTUATION, FLYWHEEL, steady
+from ..evaluation.labels import import_xarray, input_attributes, loads_text
+from ..loads.load import Load
+from ..loads.motors import MakeKloss, MakeOverOmega, Motor
+from ..mechanism.inputs import Input
+from ..mechanism.names import LENGTHS
+from ..mechanism.read import number_of
+from ..mechanism.status import SteadyStatus
+from ..mechanism.unit_system import OTHERS, UnitSystem
+from ..support.forks import IMPORTS
+from . import schema
+from .content import Content, OnMotor
+from .peaks import provenance
+from .schema import SceneError, shown
+from .values import Value
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+SPEEDS = ("omega0", "omega", "alpha")  # of which the way of turning counts alone
+TORQUE = Input("torque", "N*m", "", None, "a finite torque")
+ROWS = {"flywheel_inertia": FLYWHEEL, "fluctuation": FLUCTUATION}
+MEANINGS = {
+    "period": "time of a period", "omega_mean": "mean speed of the crank",
+    "fluctuation": "fastest less slowest over mean speed", "power_mean": "mean power of the motor",
+    "work": "work of the motor in a period", "multiplier": "share of a change of energy left a period later",
+    "flywheel_inertia": "flywheel, added at the crank",
+    "status": "; ".join(f"{status:d} {status.words}" for status in SteadyStatus),
+}  # fmt: skip
+
+
+class MotorResult(NamedTuple):
+    """The steady states of all designs, labelled.
+
+    `dataset` has over the designs' dimensions: `omega_mean`, `period`, `fluctuation`, `power_mean`, `work`,
+    `multiplier`, `flywheel_inertia`, `status`. `found` is what `desaxe.steady` gave [SI].
+    """
+
+    asked: OnMotor
+    dataset: "xr.Dataset"
+    found: Steady
+
+
+def on_motor(
+    table: schema.SteadyTable, torque: Any, inputs: Mapping[str, Value], units: UnitSystem
+) -> OnMotor:
+    """What a [steady] asks for; `torque` as it stands in the scene, where it may be a motor."""
+    for name in LENGTHS:
+        if name not in inputs:
+            raise SceneError(f"steady: {name} is missing: give mechanism.{name}")
+    motor = torque if isinstance(torque, Motor) else _motor(table.torque, units)
+    given = {n: v for n, v in inputs.items() if n != "theta" and n not in SPEEDS}
+    given |= {name: _numbers(name, written) for name in ROWS if (written := getattr(table, name)) is not None}
+    speeds = {n: v for n, v in inputs.items() if n in SPEEDS}
+    if np.any(speeds.get("alpha", 0.0)):
+        raise SceneError("motion.alpha: a steady state has its own course of the speed; leave it out")
+    speed = np.sign(np.ravel([v for n, v in speeds.items() if n != "alpha"]))
+    if speed.size and (speed != speed[0]).any():
+        raise SceneError("steady: the speeds of [motion] turn the crank both ways; give one way of turning")
+    given |= {"omega0": float(speed[0])} if speed.size and speed[0] else {}
+    axes = {n: v for n, v in given.items() if isinstance(v, tuple)}
+    fixed = {n: v for n, v in given.items() if n not in axes}
+    return OnMotor(motor, axes, fixed, table.fluctuation is not None)
+
+
+def _numbers(name: str, written: Any) -> Any:
+    """A number, or several, of the flywheel or the fluctuation."""
+    if isinstance(written, tuple):
+        return tuple(_number(f"{name} #{k}", ROWS[name], part) for k, part in enumerate(written, 1))
+    return _number(name, ROWS[name], written)
+
+
+def _number(key: str, row: Input, written: Any) -> float:
+    try:
+        number = number_of(row, written)
+    except ValueError as error:
+        raise SceneError(f"steady.{key}: {error}") from None
+    if number is None or (row is FLUCTUATION and number >= 2.0):
+        raise SceneError(f"steady.{key} = {shown(written)}: it must be {row.limit}")
+    return number
+
+
+def _motor(written: Any, units: UnitSystem) -> Any:
+    """The motor, or the number, of a torque as it stands in a scene."""
+    if not isinstance(written, schema.MotorTable):
+        return _number("torque", TORQUE, written)
+    if (written.over_omega is None) == (written.kloss is None):
+        raise SceneError("steady.torque: a motor has over_omega = [...] or kloss = {...}")
+    key = "over_omega" if written.kloss is None else "kloss"
+    if written.kind is not None and written.kloss is not None:
+        raise SceneError(f"steady.torque.kind = {shown(written.kind)}: it has no place beside kloss")
+    try:
+        if written.kloss is not None:
+            four = {name: getattr(written.kloss, name) for name in written.kloss.__struct_fields__}
+            return MakeKloss(units)(**four)
+        speeds, torques = (list(column) for column in zip(*written.over_omega or (), strict=True))
+        return MakeOverOmega(units)(speeds, torques, written.kind or "linear")
+    except (ValueError, TypeError) as error:
+        raise SceneError(f"steady.torque.{key}: {error}") from None
+
+
+def steady_of(asked: OnMotor, content: Content) -> MotorResult:
+    """The steady states of all designs, together."""
+    arrays = np.meshgrid(*(np.asarray(v) for v in asked.axes.values()), indexing="ij") if asked.axes else []
+    given: dict[str, Any] = {**asked.fixed, **dict(zip(asked.axes, arrays, strict=True))}
+    found = steady(torque=asked.torque, branch=content.branch, **given)
+    return MotorResult(asked, _labelled(asked, content, found), found)
+
+
+def _labelled(asked: OnMotor, content: Content, found: Steady) -> "xr.Dataset":
+    import_xarray()
+    with IMPORTS:
+        import xarray
+
+    names = [*NUMBERS, "flywheel_inertia", "status"]
+    dims = tuple(asked.axes)
+    data = {
+        name: (dims, found[name], {"units": OTHERS.get(name, "1"), "long_name": MEANINGS[name]})
+        for name in names
+        if name not in dims
+    }
+    axes = {name: (name, list(values), _attributes(name)) for name, values in asked.axes.items()}
+    loads = {n: v for n, v in asked.fixed.items() if isinstance(v, Load)}
+    scalars = {n: ((), v, _attributes(n)) for n, v in asked.fixed.items() if n not in loads and n not in data}
+    told = {"torque": repr(asked.torque)} | ({"loads": loads_text(loads)} if loads else {})
+    return xarray.Dataset(
+        data, {**axes, **scalars}, {**provenance(content), "branch": content.branch, **told}
+    )
+
+
+def _attributes(name: str) -> dict[str, str]:
+    if name not in ROWS:
+        return input_attributes(name)
+    return {"units": ROWS[name].unit, "long_name": MEANINGS[name]}

@@ -1,0 +1,124 @@
+"""[steady] of a scene: the values of `desaxe.steady`, in the scene's units; what is wrong is named."""
+
+from math import pi
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from desaxe.scenes.scene import SceneError
+
+KLOSS = {"breakdown_torque": 40, "breakdown_slip": 0.15, "synchronous_speed": 1500, "gear": 12}
+LOAD = {"over_Y": [[150, -4000, 3000], [200, -2000, 0], [250, 0, 0]]}
+SCENE = {
+    "units": "mm, rpm",
+    "mechanism": {"AB": 50, "BC": [180, 200], "ec": 10},
+    "masses": {"m_slider": 20, "I_crank": 2},
+    "loads": {"F_Y": LOAD},
+    "steady": {"torque": {"kloss": KLOSS}, "flywheel_inertia": [3, "5 kg m2"]},
+}
+
+
+def plain(**more):
+    """The same machines by `steady`."""
+    motor = dx.kloss(40.0, 0.15, "1500 rpm", 12)
+    load = dx.over_Y([0.15, 0.2, 0.25], [-4000, -2000, 0], [3000, 0, 0])
+    lengths = {"AB": 0.05, "BC": np.array([[0.18], [0.2]]), "ec": 0.01}
+    return dx.steady(torque=motor, m_slider=20, I_crank=2, F_Y=load, **lengths, **more)
+
+
+def test_the_steady_states_of_a_scene_are_those_of_the_call():
+    result = dx.scene(SCENE).run()
+    found, known = result.steady.dataset, plain(flywheel_inertia=[3.0, 5.0])
+    assert found["omega_mean"].dims == ("BC", "flywheel_inertia")
+    assert found["omega_mean"].units == "rpm"
+    assert found["BC"].values.tolist() == [180, 200]
+    np.testing.assert_allclose(found["omega_mean"], known["omega_mean"] * 30 / pi, rtol=1e-13)
+    for name in ("fluctuation", "power_mean", "work", "multiplier", "period"):
+        np.testing.assert_allclose(found[name], known[name], rtol=1e-12)
+    text = result.report()
+    assert "Steady state on <induction motor" in text
+    assert f"{float(found['omega_mean'][1, 1]):.6g}" in text
+    assert max(map(len, text.splitlines())) <= 100
+
+
+def test_the_flywheel_for_a_fluctuation():
+    scene = {**SCENE, "steady": {"torque": {"kloss": KLOSS}, "fluctuation": [0.01, 0.02]}}
+    found, known = dx.scene(scene).run().steady.dataset, plain(fluctuation=[0.01, 0.02])
+    np.testing.assert_allclose(found["flywheel_inertia"], known["flywheel_inertia"], rtol=1e-12)
+    assert found["flywheel_inertia"].dims == ("BC", "fluctuation")
+
+
+def test_a_motor_of_points_and_a_number():
+    points = {"over_omega": [[0, 300], ["90 rpm", 450], [110, -200]], "kind": "smooth"}
+    one = {**SCENE, "mechanism": {"AB": 50, "BC": 200, "ec": 10}, "steady": {"torque": points}}
+    found = dx.scene(one).run().steady
+    motor = dx.over_omega([0, "90 rpm", "110 rpm"], [300, 450, -200], kind="smooth")
+    known = dx.steady(torque=motor, **dx.Machine(one))
+    assert found.found["omega_mean"] == pytest.approx(known["omega_mean"], rel=1e-12)
+    weak = dx.scene({**one, "steady": {"torque": 3}}).run()
+    assert weak.steady.dataset["status"] == 1
+    assert "too weak" in weak.report()
+
+
+def test_a_machine_writes_the_motor_into_its_scene(tmp_path):
+    press = dx.Machine(units="mm, rpm", ec=10, AB=50, BC=200, m_slider=20.0, I_crank=2.0)
+    for motor in (press.kloss(40, 0.15, 1500, 12), press.over_omega([0, 100, 130], [30, 45, -20], "smooth")):
+        path = tmp_path / "press.toml"
+        press.to_scene(path, outputs="Y", steady={"torque": motor, "flywheel_inertia": 3})
+        again = dx.scene(path)
+        assert (
+            again.content.steady.torque
+            == motor
+            == press.scene("Y", steady={"torque": motor}).content.steady.torque
+        )
+        found = again.run().steady.found
+        own = press.steady(torque=motor, flywheel_inertia=3)["omega_mean"]
+        assert found["omega_mean"] * 30 / pi == pytest.approx(own, rel=1e-12)
+
+
+def test_the_page_has_table_and_picture(tmp_path, capsys):
+    from desaxe.scenes.command import run_scene
+
+    place = tmp_path / "press.toml"
+    place.write_text(
+        'title = "Press"\n[mechanism]\nAB = 0.05\nBC = 0.2\nec = 0.01\n[masses]\nm_slider = 20\nI_crank = 2\n'
+        '[steady]\ntorque = { over_omega = [["0 rpm", 300], ["130 rpm", -100]] }\n'
+    )
+    assert run_scene(str(place), False, str(tmp_path / "press.md")) == 0
+    assert "Steady state" in capsys.readouterr().out
+    page = (tmp_path / "press.md").read_text()
+    assert "## Steady state" in page
+    assert "| omega_mean \\[rad/s\\] |" in page
+    assert "its loop on the motor's curve" in page
+    plan = dx.explain(str(place))
+    assert any(one["what"] == "steady state on a motor" for one in plan["also"])
+
+
+@pytest.mark.parametrize(
+    ("steady", "said"),
+    [
+        ({}, "steady.torque is missing"),
+        ({"torque": "30 kg"}, "steady.torque"),
+        ({"torque": {}}, "over_omega"),
+        ({"torque": {"kloss": {**KLOSS, "gear": 0}}}, r"kloss: gear = 0"),
+        ({"torque": {"kloss": {"gear": 2}}}, "breakdown_torque is missing"),
+        ({"torque": {"kloss": KLOSS, "kind": "linear"}}, "kind"),
+        ({"torque": {"over_omega": [[1, 2], [0, 3]]}}, "must ascend"),
+        ({"torque": 3, "flywheel_inertia": -1}, "flywheel_inertia = .*-1"),
+        ({"torque": 3, "fluctuation": [0.1, 2.5]}, "fluctuation #2 = 2.5"),
+        ({"torque": 3, "speed": 3}, "speed = 3: unknown key"),
+    ],
+)
+def test_what_is_wrong_is_named(steady, said):
+    with pytest.raises(SceneError, match=said):
+        dx.scene({**SCENE, "steady": steady})
+
+
+def test_speeds_of_the_motion_say_the_way_of_turning_alone():
+    back = {**SCENE, "motion": {"omega0": [-50, -80]}, "steady": {"torque": -3}}
+    assert dx.scene(back).content.steady.fixed["omega0"] == -1.0
+    with pytest.raises(SceneError, match="both ways"):
+        dx.scene({**back, "motion": {"omega0": [-50, 80]}})
+    with pytest.raises(SceneError, match="alpha"):
+        dx.scene({**back, "motion": {"omega0": 50, "alpha": 3}})
