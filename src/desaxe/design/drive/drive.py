@@ -83,8 +83,8 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
         for gradient in slopes.values():
             gradient.update(dict.fromkeys(lost, nan))
     figures = {name: float(value) for name, value in found.items()}
-    gradient = {name: {by: float(slope) for by, slope in own.items()} for name, own in slopes.items()}
-    about = {"fluctuation": float(fluctuation), "gradient": gradient, "status": status}
+    gradients = {name: {by: float(slope) for by, slope in own.items()} for name, own in slopes.items()}
+    about = {"fluctuation": float(fluctuation), "gradient": gradients, "status": status}
     return Drive({**figures, **about}, {**design.numbers, **design.loads}, design.branch, course)
 
 

@@ -91,7 +91,7 @@ def _store(design: Turn, fluctuation: float, before: State | None) -> State:
             found["T_in"] = found["T_in"] + rough - design.values(["T_in"], theta, motion, mu=None)["T_in"]
         return found
 
-    panels = resolved(loads, design.breaks(motion, () if before is None else before.panels.edges))
+    panels = resolved(loads, design.breaks(motion, () if before is None else before.panels.edges.tolist()))
     load, M, slope = (panels.values[name] for name in names)
     speed = abs(design.numbers["omega0"])
     drive = panels.integral(load) / design.angle

@@ -72,4 +72,4 @@ def _estimate(designs: Designs, wanted: Array) -> Array:
     speeds = designs.source.speeds(designs.motor) * np.ones((designs.size, 1))
     typical = np.nanmedian(np.where(speeds * designs.way[:, None] > 0.0, np.abs(speeds), np.nan), axis=1)
     J, *_ = storing(panels, work, course.inertia, typical, wanted)
-    return np.maximum(2.0 * J, LEAST)
+    return np.asarray(np.maximum(2.0 * J, LEAST))

@@ -83,7 +83,7 @@ def _fill(found: dict[str, Any], index: Array, designs: Designs, states: States,
     found["flywheel_inertia"][index] = designs.J
     found["status"][index], found["status"][into] = 1, 0
     found["message"][into] = "ok"
-    for k in np.flatnonzero(main < 0):
+    for k in np.flatnonzero(main < 0).tolist():
         found["message"][index[k]] = why_none(designs, states, k)
     for row in np.argsort(-np.abs(states.figures.values.get("omega_mean", np.empty(0))), kind="stable"):
         k = states.design[row]

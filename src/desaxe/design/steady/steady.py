@@ -143,9 +143,14 @@ def _designs(
         count, rows(arrays), loads, int(branch), source, rows(motor), _flat(J, shape),
         _flat(np.asarray(way, float), shape), turns_of("steady", turning, MOST_TURNS),
     )  # fmt: skip
-    bad = np.zeros(count, bool)
+    return shape, designs, _bad(designs)
+
+
+def _bad(designs: Designs) -> NDArray[np.bool_]:
+    """True for designs with a bad input."""
+    bad = np.zeros(designs.size, bool)
     for name, value in designs.numbers.items():
-        bad |= ~np.broadcast_to(are_good(name, np.asarray(value)), (count,))
+        bad |= ~are_good(name, np.asarray(value))
     for value in designs.motor.values():
-        bad |= ~np.broadcast_to(np.isfinite(value), (count,))
-    return shape, designs, bad
+        bad |= ~np.isfinite(value)
+    return bad
