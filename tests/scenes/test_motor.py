@@ -20,7 +20,7 @@ SCENE = {
 
 
 def plain(**more):
-    """The same machines by `steady`."""
+    """The steady states of the machines of SCENE, by `desaxe.steady`."""
     motor = dx.kloss(40.0, 0.15, "1500 rpm", 12)
     load = dx.over_Y([0.15, 0.2, 0.25], [-4000, -2000, 0], [3000, 0, 0])
     lengths = {"AB": 0.05, "BC": np.array([[0.18], [0.2]]), "ec": 0.01}

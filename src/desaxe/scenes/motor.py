@@ -52,7 +52,7 @@ class MotorResult(NamedTuple):
 def on_motor(
     table: schema.SteadyTable, torque: Any, inputs: Mapping[str, Value], units: UnitSystem
 ) -> OnMotor:
-    """What a [steady] asks for; `torque` as it stands in the scene, where it may be a motor."""
+    """The machine of a [steady] on its motor; `torque` as it stands in the scene, perhaps a Motor."""
     for name in LENGTHS:
         if name not in inputs:
             raise SceneError(f"steady: {name} is missing: give mechanism.{name}")
@@ -60,9 +60,9 @@ def on_motor(
     given = {n: v for n, v in inputs.items() if n != "theta" and n not in SPEEDS}
     given |= {name: _numbers(name, written) for name in ROWS if (written := getattr(table, name)) is not None}
     speeds = {n: v for n, v in inputs.items() if n in SPEEDS}
-    if np.any(speeds.get("alpha", 0.0)):
+    if np.any(np.asarray(speeds.get("alpha", 0.0), float)):
         raise SceneError("motion.alpha: a steady state has its own course of the speed; leave it out")
-    speed = np.sign(np.ravel([v for n, v in speeds.items() if n != "alpha"]))
+    speed = np.sign(np.ravel([np.asarray(v, float) for n, v in speeds.items() if n != "alpha"]))
     if speed.size and (speed != speed[0]).any():
         raise SceneError("steady: the speeds of [motion] turn the crank both ways; give one way of turning")
     given |= {"omega0": float(speed[0])} if speed.size and speed[0] else {}

@@ -53,7 +53,7 @@ def energy(mesh: Panels, E0: Array, F: Array) -> Array:
 
 
 class _Lanes(NamedTuple):
-    """What Newton's method needs of designs that it has not settled yet."""
+    """Designs that Newton's method has not settled yet, their edges and courses."""
 
     designs: Designs
     edges: Array

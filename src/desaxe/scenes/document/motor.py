@@ -30,7 +30,7 @@ def motor(content: Content, found: MotorResult | None, units: UnitSystem) -> Sec
 
 
 def _in(one: Any, units: UnitSystem) -> Any:
-    """What the picture draws, in these units."""
+    """The answer with the values that a picture draws in these units."""
     for name in ("theta", "omega", "T_motor", "omega_mean", "power_mean"):
         one[name] = units.of(name).shown(one[name])
     return one
