@@ -19,7 +19,7 @@ class Kernel(NamedTuple):
     """A loop nest over `axes` loops.
 
     `inputs` maps an input to its axis (0 is the outermost loop), or to None for a scalar.
-    `levels[k]` has the lines inside k loops.
+    `levels[k]` has the lines inside k loops. `given` are the tables of numbers whose arrays are arguments.
     """
 
     axes: int
@@ -30,6 +30,7 @@ class Kernel(NamedTuple):
     notes: Mapping[str, Note]
     tables: tuple["Table", ...] = ()
     close: "StableBranch | None" = None
+    given: tuple[str, ...] = ()
 
 
 class StableBranch(NamedTuple):

@@ -6,6 +6,7 @@ point: cutting a grid changes no digit.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
+from math import prod
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,11 +21,14 @@ from ..mechanism.names import LENGTHS
 from ..mechanism.own import Definition, using
 from ..runtime.kernels import KernelKey, key_of
 from ..runtime.request import Request, request
+from ..runtime.threads import run_in_blocks
+from ..runtime.tiers import COMPILED, tier_of
 from .arrays import copied_back, dtype_of, fill, outputs_for, scratch_for
 from .labels import Output, attributes
 from .loaded import evaluate_loaded
 from .loops import Loops
 from .outer import Outer, first_joined, join_from, require_inputs
+from .under import UnderLoads, in_kernel, whole_points
 
 Array = NDArray[Any]
 
@@ -40,6 +44,7 @@ class Points(NamedTuple):
     branch   the assembly
     loads    the plan of loads that vary with the motion; derivatives are total ones then
     motion   the values of the motion that these loads follow
+    inside   the kernel that has the loads in it, where one does
     """
 
     dims: tuple[str, ...]
@@ -50,6 +55,7 @@ class Points(NamedTuple):
     branch: int
     loads: LoadPlan | None = None
     motion: "Points | None" = None
+    inside: UnderLoads | None = None
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -80,6 +86,9 @@ class Points(NamedTuple):
 
     def cut(self, lengths: Mapping[str, int]) -> "Points":
         """Prepare the step for blocks of these lengths: short axes are joined to one long loop."""
+        inside = None if self.inside is None else self.inside.cut(lengths)
+        if inside != self.inside:
+            return self._replace(inside=inside).cut(lengths)
         first = 0
         if not self._flat:
             first = first_joined(self._order, tuple(lengths[name] for name in self.dims) or (1,))
@@ -99,6 +108,10 @@ class Points(NamedTuple):
         if self.loads is None:
             buffers = places if out is None else scratch_for(places, values.values())
             self._fill(values, list(buffers.values()), None, threads)
+            return copied_back(places, buffers, False)
+        if self.inside is not None and all(shape) and tier_of(self.inside.key, prod(shape)) == COMPILED:
+            buffers = places if out is None else scratch_for(places, values.values())
+            self._fill_inside(self.inside, values, list(buffers.values()), threads)
             return copied_back(places, buffers, False)
         found = {name: np.empty(shape, dtype_of(name)) for name in self.wanted.shown}
         forces = self._forces(values, threads)
@@ -159,6 +172,17 @@ class Points(NamedTuple):
         loops = Loops(sizes, columns | whole, places | dict.fromkeys(whole, 0))
         fill(self.wanted, scalars, loops, outs, threads, bool(loads), self.key)
 
+    def _fill_inside(
+        self, inside: UnderLoads, values: Mapping[str, Array], outs: Sequence[Array], threads: int | None
+    ) -> None:
+        """Fill the outputs by the kernel that has the loads in it; what rounding leaves open, exactly."""
+        given, sizes = inside.joined(values)
+        run_in_blocks(inside.key, given, [out.reshape(sizes) for out in outs], threads)
+        for index in whole_points(inside.open(values), {name: values[name].size for name in self.dims}):
+            found = self.at({name: values[name][own] for name, own in index.items()})
+            for name, out in zip(self.names, outs, strict=True):
+                out[tuple(index.values())] = found[name]
+
     def _forces(self, values: Mapping[str, Array], threads: int | None) -> Forces:
         """The loads at the points of a block, and their derivatives, in shapes that broadcast to its own."""
         assert self.loads is not None
@@ -200,7 +224,8 @@ def points_of(
     wanted = request(plan.names, {**given, **dict.fromkeys(plan.loads, 0.0)}, branch, accuracy)
     motion = _motion_of(plan, wanted, outer, along, branch) if plan.motion else None
     require_inputs(wanted, {*axes, *plan.loads})
-    return _keyed(wanted, outer, along, branch, plan, motion)
+    step = _keyed(wanted, outer, along, branch, plan, motion)
+    return step._replace(inside=in_kernel(plan, outer, along, branch, wanted.accuracy))
 
 
 def _motion_of(plan: LoadPlan, wanted: Request, outer: Outer, along: Sequence[str], branch: int) -> Points:

@@ -23,6 +23,7 @@ from .outer import Outer
 from .points import Points, points_of
 from .reductions import Chain, Reductions, chain_name, extremes_at_end, method_of
 from .sides import sides_of
+from .under import UnderLoads, whole_points
 
 Array = NDArray[Any]
 FLOAT = np.dtype(np.float64)
@@ -180,17 +181,44 @@ class Reduced(NamedTuple):
         rest, along = self.of.dims[:-1], self.of.dims[-1]
         shape, axis = tuple(values[name].size for name in rest), values[along]
         outs = {name: np.empty(shape or (1,), kind) for name, kind in outputs_of(self.names, key.reduce)}
-        inputs = {name: np.ascontiguousarray(values[name]) for name, _ in key.axis_of}
-        fill_reduced(key, {**dict(self.of.numbers), **inputs}, axis.size, list(outs.values()), threads)
+        inside = self.of.inside
+        if inside is None:
+            inputs = {name: np.ascontiguousarray(values[name]) for name, _ in key.axis_of}
+            given: dict[str, Any] = {**dict(self.of.numbers), **inputs}
+        else:
+            given = inside.arguments(values)
+        fill_reduced(key, given, axis.size, list(outs.values()), threads)
         arrays = {name: out if shape else out.reshape(()) for name, out in outs.items()}
         places = np.append(axis, np.nan)  # place -1
         found = {}
         for name in self.names:
             for kind in key.reduce:
                 own = f"{name}_{kind}"
-                at = {along: places[arrays[f"{own}_place"]]} if kind in EXTREMES else {}
+                at = {along: np.asarray(places[arrays[f"{own}_place"]])} if kind in EXTREMES else {}
                 found[name, kind] = Field(rest, arrays[own], arrays[f"{name}_count"], at)
+        if inside is not None:
+            self._repair(self.of, inside, values, found)
         return found
+
+    def _repair(
+        self, of: Points, inside: UnderLoads, values: Mapping[str, Array], found: Mapping[Any, Field]
+    ) -> None:
+        """Reduce the rows anew in which rounding may decide on the side of a jump."""
+        rest, along = of.dims[:-1], of.dims[-1]
+        index, length = inside.open(values), values[along].size
+        some = [name for name in index or () if name in rest]
+        if index is not None:
+            alone = np.unique(np.stack([index[name] for name in some]), axis=1) if some else ()
+            index = dict(zip(some, alone, strict=True))
+        for part in whole_points(index, {name: values[name].size for name in rest}, length):
+            here, count = tuple(part.values()), next((own.size for own in part.values()), 1)
+            points = {name: np.repeat(values[name][own], length) for name, own in part.items()}
+            rows = of.at({**points, along: np.tile(values[along], count)})
+            for (name, kind), field in found.items():
+                new = folded(field_of(("", along), rows[name].reshape(-1, length)), [along], kind, values)
+                pairs = [(field.values, new.values), (field.counts, new.counts)]
+                for place, row in [*pairs, *((field.places[axis], own) for axis, own in new.places.items())]:
+                    place[here] = row.reshape(place[here].shape)
 
     def _side(self, of: Points, name: str, variable: str, field: Field, values: Mapping[str, Array]) -> Array:
         """The sides of jumps on which extremes over theta are; 0 where other inputs were averaged."""
@@ -250,8 +278,9 @@ def _values_of(
     along = "theta" if "theta" in stage.axes else max(stage.axes, key=lambda name: outer.axes[name].size)
     last = *(name for name in axes if name != along), along
     of = points_of(names, outer, last, branch, accuracy)
-    if of.loads is not None or set(kinds) - set(KINDS):
+    if (of.loads is not None and of.inside is None) or set(kinds) - set(KINDS):
         return (of if axes == last else points_of(names, outer, axes, branch, accuracy)), None
+    key = of.key if of.inside is None else of.inside.key
     alone = len(last) == 1  # a kernel has an axis beside the one that it reduces
-    axis_of = tuple((name, last.index(name) + alone) for name, _ in of.key.axis_of)
-    return of, of.key._replace(axis_of=axis_of, axes=len(last) + alone, reduce=kinds)
+    axis_of = tuple((n, last.index(n if n in last else "theta") + alone) for n, _ in key.axis_of)
+    return of, key._replace(axis_of=axis_of, axes=len(last) + alone, reduce=kinds)

@@ -22,14 +22,17 @@ from .names import LENGTHS, STATUS
 class LoadLines(NamedTuple):
     """A load: the force, what its table is over, and the period of one over theta.
 
-    over    "theta", "Y", or the position of a dead centre: "Y_outer" or "Y_inner"
+    over    "theta", "Y", the position of a dead centre: "Y_outer" or "Y_inner"; "" of a force that stays an
+            input, as its derivative is, `<force>_by_theta`
     first   the first knot of a table over theta
+    ways    whether another table holds for the way inward
     """
 
     force: str
     over: str
     period: float = 0.0
     first: float = 0.0
+    ways: bool = True
 
 
 class Total(NamedTuple):
@@ -68,6 +71,24 @@ def with_totals(
     return validate(drop_unused(whole))
 
 
+class Under(NamedTuple):
+    """The loads of a request: their lines, the totals that are its outputs, and what these are made of.
+
+    names   quantities, and in the same order what the Program of a variant calls them
+    """
+
+    names: tuple[tuple[str, str], ...]
+    loads: tuple[LoadLines, ...]
+    totals: tuple[Total, ...]
+    way: Way
+
+    def added_to(self, program: Program, fixed: Mapping[str, float]) -> Program:
+        """The program of the totals, from that of `names`; some inputs are fixed."""
+        names = dict(zip((shown for shown, _ in self.names), program.outputs, strict=True))
+        way = Way(*(fixed.get(one, one) if isinstance(one, str) else one for one in self.way))
+        return with_totals(program, names, self.loads, self.totals, way)
+
+
 class _Writer:
     """Appends lines: those that no load changes, the loads, the others, the totals."""
 
@@ -93,8 +114,11 @@ class _Writer:
     def load(self, load: LoadLines, parameters: set[str]) -> None:
         """The lines of a force and of its derivatives by these parameters."""
         force, table = load.force, TableName(load.force)
+        if not load.over:
+            self.slopes.update({(force, p): f"{force}_by_{p}" for p in parameters})
+            return
         x = self._reduced(load) if load.over == "theta" else self._along(load)
-        way = 1.0 if load.over == "theta" else self._ahead()
+        way = 1.0 if load.over == "theta" or not load.ways else self._ahead()
         piece = self.new(f"{force}_piece", "lookup_piece", x, table, way)
         value = self.new(f"{force}_found", "lookup", x, table, piece)
         size = self.new(f"{force}_size", "abs", value)

@@ -14,6 +14,7 @@ from ..compiler.passes.slicing import keep_outputs
 from ..compiler.program import Program
 from ..compiler.text import ProgramText
 from ..support.forks import imported
+from .load_lines import Under
 from .names import parts
 from .own import Definition, used_by
 from .own_lines import lines_needed, with_own_lines
@@ -26,6 +27,7 @@ class Variant(NamedTuple):
     default_centres: tuple[str, ...] = ()  # centres of mass halfway along their links
     wide_margins: bool = False  # plain forms, for designs with AB + |ec| < 7/8 BC, where nothing cancels
     own: tuple[Definition, ...] = ()  # quantities of a user's own that are among the names, or behind them
+    under: Under | None = None  # loads that vary with the motion, of which the content is known at run time
 
 
 @cache

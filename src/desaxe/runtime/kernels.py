@@ -8,7 +8,7 @@ from math import inf, prod
 from typing import Any, NamedTuple
 
 from ..compiler.kernel import Kernel
-from ..compiler.languages.numba.module import TO_COMPILE, emit_numba
+from ..compiler.languages.numba.module import TO_COMPILE, arrays_of, emit_numba
 from ..compiler.languages.numba.reductions import emit_reduced
 from ..compiler.lowering import Limits, guarded_for_loops, guarded_pairs, nest, nest_of_two_forms
 from ..compiler.passes.trigonometry import Trigonometry
@@ -136,6 +136,16 @@ def plain_of(key: KernelKey) -> Program | None:
 
 def kernel_of(key: KernelKey) -> Kernel:
     """The loop nest of a key."""
+    return _loops_of(key)._replace(given=tables_of(key))
+
+
+def tables_of(key: KernelKey) -> tuple[str, ...]:
+    """The tables of a key's loads, which are arguments of its kernel."""
+    under = key.form.under
+    return () if under is None else tuple(load.force for load in under.loads if load.over)
+
+
+def _loops_of(key: KernelKey) -> Kernel:
     program = specialise(key.names, key.form, key.fixed, key.accuracy)
     axes = dict(key.axis_of)
     varying = [name for name in program.inputs if name in axes]
@@ -280,7 +290,8 @@ def source_of(key: KernelKey) -> str:
 
 def _compiled(key: KernelKey, function: Native) -> CompiledKernel:
     axes = dict(key.axis_of)
-    order = tuple((name, axes.get(name)) for name in specialise(key.names, key.form, key.fixed).inputs)
+    inputs = specialise(key.names, key.form, key.fixed).inputs
+    order = tuple((name, axes.get(name)) for name in (*inputs, *arrays_of(tables_of(key))))
     return CompiledKernel(function, order)
 
 

@@ -5,6 +5,7 @@ from functools import lru_cache
 from ..compiler.passes.pipeline import optimise
 from ..compiler.passes.slicing import keep_outputs
 from ..compiler.program import Line, Program, names_in, renamed
+from ..mechanism.load_lines import Under
 from ..mechanism.own import used_by
 from ..mechanism.program import Variant, program_of
 from ..support.forks import IMPORTS
@@ -30,6 +31,8 @@ def specialise(
 def _specialise(
     names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...], accuracy: str
 ) -> Program:
+    if form.under is not None:
+        return _under_loads(form.under, form._replace(under=None), fixed, accuracy)
     program = _with_extended_forms(program_of(names, form), accuracy)
     single = accuracy == "single"
     result = optimise(program, dict(fixed), single=single)
@@ -51,6 +54,15 @@ def _specialise(
             lines.append(Line(name, "copy", (value,)))
     whole = keep_outputs(wide._replace(lines=tuple(lines)), outputs)
     return optimise(whole, dict(fixed), single=single)
+
+
+def _under_loads(under: Under, form: Variant, fixed: tuple[tuple[str, float], ...], accuracy: str) -> Program:
+    """The program of the totals under loads."""
+    names = tuple(dict.fromkeys(name for _, name in under.names))
+    program = _specialise(names, form, fixed, accuracy)
+    outputs = dict(zip(names, program.outputs, strict=True))
+    every = program._replace(outputs=tuple(outputs[name] for _, name in under.names))
+    return under.added_to(every, dict(fixed))
 
 
 @lru_cache(maxsize=1024)

@@ -41,7 +41,9 @@ def _extremes(values: Any) -> tuple[float, ...]:
 
 
 def _test(form: Variant) -> Program:
-    return specialise(("wide_margins",), form._replace(wide_margins=False), ())._replace(inputs=LENGTHS)
+    return specialise(("wide_margins",), form._replace(wide_margins=False, under=None), ())._replace(
+        inputs=LENGTHS
+    )
 
 
 @lru_cache(maxsize=1024)

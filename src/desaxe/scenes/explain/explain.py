@@ -194,7 +194,9 @@ def _kernel_of(plan: Planned) -> GridKernel:
     """The kernel of a plan, with its loops: axes joined to one have a name together."""
     (step, *_) = plan.steps
     assert isinstance(step, (Points, Reduced))
-    of, key = (step.values, step.key or step.values.key) if isinstance(step, Reduced) else (step, step.key)
+    points = step.values if isinstance(step, Reduced) else step
+    of = points.inside or points
+    key = step.key or of.key if isinstance(step, Reduced) else of.key
     order = [*[""] * (key.axes - of.first - 1 if key.reduce else not of.dims), *of.dims]
     first = len(order) - 1 if key.reduce else of.first
     sizes = [plan.outer.axes[name].size if name else 1 for name in order]

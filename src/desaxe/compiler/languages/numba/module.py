@@ -18,6 +18,7 @@ from ...builder import HELPERS, MATH, Parts, function_text, module_text, with_so
 from ...kernel import Kernel, level_program
 from ...program import Program
 from ...text import INDENT, WIDTH, write_lines
+from .lookups import looks_up, rooms, three_loops
 from .two_forms import has_two_forms, inner_loops, scratch, stable_function
 
 _TYPES = {"f64": "float64", "i64": "int8"}  # a status is stored as int8
@@ -25,7 +26,7 @@ NJIT = '@njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=Tru
 # Where people may call what is written as plain Python, too: without its wrapper that would crash.
 CALLABLE = '@njit(error_model="numpy")\n'
 SOURCES = Path(__file__).with_name("sources")
-FILES = (SOURCES / "spellings.py", SOURCES / "rooms.py", SOURCES / "reductions.py", HELPERS)
+FILES = tuple(SOURCES / f"{name}.py" for name in ("spellings", "rooms", "lookups", "reductions"))
 # Where the names come from that stand in the text of Programs and loops.
 IMPORTS = MATH | {
     "asarray": "numpy", "ascontiguousarray": "numpy", "broadcast_arrays": "numpy", "empty": "numpy",
@@ -42,7 +43,7 @@ TO_COMPILE = "function = loops\n"  # the tail of a text that the runtime compile
 
 def numba_parts(parts: Sequence[str], *files: Path, jit: str = NJIT) -> Parts:
     """Parts of a module behind all that they call, of these files and of this language's own."""
-    return with_sources(parts, (*files, *FILES), jit, IMPORTS)
+    return with_sources(parts, (*files, *FILES, HELPERS), jit, IMPORTS)
 
 
 def emit_numba(kernel: Kernel, docstring: str, tail: str = _COMPILE) -> str:
@@ -62,10 +63,10 @@ def emit_numba_with_front(kernel: Kernel, docstring: str, front: str, optional: 
 
 def loops_parts(kernel: Kernel) -> list[str]:
     """The loops as a plain function, what they call, and their signature."""
-    given = ["types.float64" if axis is None else "AXIS" for axis in kernel.inputs.values()]
+    given = input_types(kernel)
     shape = ", ".join([":"] * (kernel.axes - 1) + ["::1"])
     given += [f"types.{_TYPES[kernel.types.get(name, 'f64')]}[{shape}]" for name in kernel.outputs]
-    names = [*_parameters(kernel), *(f"out_{name}" for name in kernel.outputs)]
+    names = [*parameters_of(kernel), *(f"out_{name}" for name in kernel.outputs)]
     loops = function_text("loops", names, _body(kernel))
     stable = [NJIT + stable_function(kernel)] if has_two_forms(kernel) else []
     return [*stable, loops, signature("signature", "int64" if counts(kernel) else "void", given)]
@@ -82,15 +83,28 @@ def counts(kernel: Kernel) -> bool:
     return kernel.close is not None and kernel.close.undecided is not None
 
 
-def _parameters(kernel: Kernel) -> list[str]:
-    """An input that varies along an axis comes in as `<name>_axis`."""
-    return [name if axis is None else f"{name}_axis" for name, axis in kernel.inputs.items()]
+def parameters_of(kernel: Kernel) -> list[str]:
+    """An input that varies along an axis comes in as `<name>_axis`; the arrays of given tables follow."""
+    own = [name if axis is None else f"{name}_axis" for name, axis in kernel.inputs.items()]
+    return own + arrays_of(kernel.given)
+
+
+def arrays_of(tables: Sequence[str]) -> list[str]:
+    """The knots and coefficients of tables."""
+    return [f"{table}_{end}" for table in tables for end in "xc"]
+
+
+def input_types(kernel: Kernel) -> list[str]:
+    """The types of the parameters."""
+    own = ["types.float64" if axis is None else "AXIS" for axis in kernel.inputs.values()]
+    return own + ["AXIS"] * 2 * len(kernel.given)
 
 
 def _body(kernel: Kernel) -> list[str]:
     """The loops, those of the tables first."""
     lines = ["apart()"] if kernel.axes else []
     lines += scratch(kernel)
+    lines += rooms(kernel) if looks_up(kernel) else []
     lines += ["undecided = 0"] if counts(kernel) else []
     everywhere = tuple(range(kernel.axes))
     for table in kernel.tables:
@@ -111,6 +125,7 @@ def _loops(
 ) -> list[str]:
     """One loop nest over some axes; lengths are those of the output `measure`."""
     lines = _indented(level_program(kernel, 0), 0)
+    stores = [f"{store.format(name)}[{_index(along)}] = {name}" for name in kernel.outputs]
     for depth, axis in enumerate(along):
         # The length is read from an output: an axis may have no input that is needed. An index that has no
         # sign cannot count from the end: where LLVM has to allow for that, it mistakes arrays that lie
@@ -120,11 +135,12 @@ def _loops(
         loads |= {name: f"{name}_table[{_index(on)}]" for name, on in reads.items() if on[-1] == axis}
         if kernel.close is not None and depth == len(along) - 1:
             return lines + [INDENT * depth + row for row in inner_loops(kernel, length, loads)]
+        if depth == len(along) - 1 and store.startswith("out") and looks_up(kernel):
+            return lines + [INDENT * depth + row for row in three_loops(kernel, length, loads, stores)]
         lines.append(f"{INDENT * depth}for i{axis} in range({length}):")
         lines += [f"{INDENT * (depth + 1)}{name} = {text}" for name, text in loads.items()]
         lines += _indented(level_program(kernel, depth + 1), depth + 1)
-    pad = INDENT * len(along)
-    return lines + [f"{pad}{store.format(name)}[{_index(along)}] = {name}" for name in kernel.outputs]
+    return lines + [INDENT * len(along) + row for row in stores]
 
 
 def _index(along: tuple[int, ...]) -> str:

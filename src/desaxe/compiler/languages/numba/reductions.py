@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from ...builder import function_text, module_text
 from ...kernel import Kernel
 from ...text import INDENT
-from .module import loops_parts, numba_parts, signature
+from .module import arrays_of, input_types, loops_parts, numba_parts, parameters_of, signature
 
 # Kind -> what it is called in CF's `cell_methods`.
 KINDS = {
@@ -64,8 +64,7 @@ def outputs_of(names: Sequence[str], kinds: Sequence[str]) -> list[tuple[str, st
 
 def _reduced_loops(kernel: Kernel, kinds: Sequence[str]) -> list[str]:
     """The function of the reductions, and its signature."""
-    parameters = [name if axis is None else f"{name}_axis" for name, axis in kernel.inputs.items()]
-    types = ["types.float64" if axis is None else "AXIS" for axis in kernel.inputs.values()] + ["types.int64"]
+    parameters, types = parameters_of(kernel), [*input_types(kernel), "types.int64"]
     outs = outputs_of(kernel.outputs, kinds)
     shape = ", ".join([":"] * (kernel.axes - 2) + ["::1"])
     types += [f"types.{kind}[{shape}]" for _, kind in outs]
@@ -122,6 +121,7 @@ def _block(kernel: Kernel, kinds: Sequence[str]) -> list[str]:
     for name in names:
         lines.append(f"{INDENT}block_{name} = scratch_{name}[: rows * n].reshape(({sizes}))")
     cut = [_cut(name, axis, kernel.axes - 1) for name, axis in kernel.inputs.items()]
+    cut += arrays_of(kernel.given)
     lines += [f"{INDENT}kernel(", *(f"{INDENT * 2}{a}," for a in [*cut, *(f"block_{n}" for n in names)])]
     lines += [f"{INDENT})", f"{INDENT}for r in range(rows):"]
     for name in names:

@@ -2,5 +2,6 @@
 
 spellings   functions that numba spells in its own way
 rooms       buffers and flags of a block of points
+lookups     tables looked up at the points of a block
 reductions  reductions of a row
 """

@@ -1,0 +1,76 @@
+"""`python -m benchmarks.loads`: grids and peaks of a driving torque under loads, beside a constant force.
+
+The same machine in one process and in turns: a grid of 721 angles and 512 designs, stored and reduced,
+and the peaks of 512 designs in one call, by NumPy as in a first call, and with machine code.
+"""
+
+import os
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+import desaxe as dx
+
+from .peaks import times
+
+DESIGNS, ANGLES = 512, 721
+ROUNDS = 9
+MACHINE = {"AB": 0.1, "BC": 0.35, "omega0": 30.0, "m_slider": 2.0, "m_rod": 1.0, "I_rod": 0.01}
+
+
+def loads() -> dict[str, Any]:
+    """Loads of every kind, and no load that varies."""
+    turn = np.linspace(0.0, 2.0 * np.pi, 73)[:-1]
+    positions, distances = [0.27, 0.33, 0.40], [0.0, 0.008, 0.1]
+    out, back = [0.0, -100.0, -400.0], [0.0, -10.0, -50.0]
+    return {
+        "a number": -300.0,
+        "over theta, 9 points, linear": dx.over_theta(
+            turn[::8], 100.0 * np.sin(turn[::8]) - 50.0, kind="linear"
+        ),
+        "over theta, 72 points, cubic": dx.over_theta(turn, -100.0 * np.cos(turn)),
+        "over Y, 3 points, linear": dx.over_Y(positions, out, kind="linear"),
+        "over Y, 3 points, step, both ways": dx.over_Y(positions, out, back, kind="step"),
+        "over the stroke, 3 points, linear": dx.over_stroke(
+            distances, out[::-1], kind="linear", dead_centre="inner"
+        ),
+        "over the stroke, 3 points, step, both ways": dx.over_stroke(
+            distances, out[::-1], back, kind="step", dead_centre="inner"
+        ),
+    }
+
+
+def works(load: Any) -> dict[str, Callable[[], Any]]:
+    """The works under a load."""
+    ec = np.linspace(-0.05, 0.05, DESIGNS)
+    grid = partial(dx.grid, "T_in", theta=np.linspace(0.0, 2.0 * np.pi, ANGLES), ec=ec, F_Y=load, **MACHINE)
+    peak = partial(dx.peak, "T_in", ec=ec, F_Y=load, **MACHINE)
+    return {
+        "grid": grid,
+        "grid, reduced": partial(grid, reduce={"theta": ["absmax", "mean"]}),
+        "peaks": partial(_by, "numpy", peak),
+        "peaks, compiled": partial(_by, "compiled", peak),
+    }
+
+
+def _by(tier: str, run: Callable[[], Any]) -> None:
+    os.environ["DESAXE_TIER"] = tier
+    run()
+    del os.environ["DESAXE_TIER"]
+
+
+def main() -> None:
+    """Print times and their ratios to those without a load."""
+    rows = {name: works(load) for name, load in loads().items()}
+    print(f"{ANGLES} angles, {DESIGNS} designs\n\n| ms (ratio) | {' | '.join(rows['a number'])} |")
+    print("|---" * (1 + len(rows["a number"])) + "|")
+    found = {work: times({n: row[work] for n, row in rows.items()}, ROUNDS) for work in rows["a number"]}
+    for name in rows:
+        cells = [f"{own[name] * 1e3:.1f} ({own[name] / own['a number']:.1f})" for own in found.values()]
+        print(f"| {name} | {' | '.join(cells)} |")
+
+
+if __name__ == "__main__":
+    main()

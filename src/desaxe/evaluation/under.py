@@ -1,0 +1,243 @@
+"""Loads in a kernel: the request that names them, their tables as its arguments.
+
+A kernel looks a load over Y or the stroke up in a pass of its own; one over theta is a column, as its
+derivative is, and totals are lines of the kernel. Rounding may decide on the side of a jump for angles next
+to it: those points are found from the jump's own angles, and answered again, exactly.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import prod
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..loads.angles import crossings, dead_centres, repeated
+from ..loads.load import Load, OverTheta, OverY
+from ..loads.pieces import Place
+from ..loads.resolve import Plan
+from ..mechanism.load_lines import LoadLines, Total, Under, Way
+from ..mechanism.names import LENGTHS
+from ..runtime.kernels import KernelKey, key_of, plain_of
+from ..runtime.request import Request, request
+from ..runtime.tiers import forced_tier
+from .extremes import MOST, are_extreme
+from .outer import Outer, first_joined, join_from
+
+Array = NDArray[Any]
+LEAST = 10_000  # points: of fewer, to look for those that rounding decides takes what the kernel saves
+LEAST_ANGLE = 1e-290  # rad: products with the sine of a smaller one underflow
+# Where the plain forms are for, nothing is open farther from a jump's angle than this, in rad times what the
+# lengths of the rod in cranks add: the root of that next to a dead centre, where positions hardly change.
+BESIDE, BESIDE_DEAD_CENTRE, NEAR_DEAD_CENTRE = 2.0**-30, 2.0**-18, 2.0**-10
+
+
+class UnderLoads(NamedTuple):
+    """Names under loads by one kernel, over some dimensions of a grid; without arrays.
+
+    dims     the dimensions of the outputs, in their order
+    wanted   the request, whose variant names the loads
+    numbers  the inputs that are numbers here
+    key      the kernel of all blocks
+    first    the first of the last dimensions that the kernel runs over as one
+    branch   the assembly
+    plan     that of the loads
+    """
+
+    dims: tuple[str, ...]
+    wanted: Request
+    numbers: tuple[tuple[str, float], ...]
+    key: KernelKey
+    first: int
+    branch: int
+    plan: Plan
+
+    def cut(self, lengths: Mapping[str, int]) -> "UnderLoads":
+        """Prepare for blocks of these lengths: short axes are joined to one long loop."""
+        first = first_joined(list(self.dims), tuple(lengths[name] for name in self.dims))
+        axis_of = tuple((name, min(self._place(name), first)) for name, _ in self.key.axis_of)
+        return self._replace(key=self.key._replace(axis_of=axis_of, axes=first + 1), first=first)
+
+    def _place(self, name: str) -> int:
+        """The dimension along which an input varies; a load over theta, or its derivative, along theta."""
+        return self.dims.index(name if name in self.dims else "theta")
+
+    def joined(self, values: Mapping[str, Array]) -> tuple[dict[str, Any], tuple[int, ...]]:
+        """The arguments of the kernel for a block, and the lengths of its loops."""
+        given = self.arguments(values)
+        columns = {name: given[name] for name, _ in self.key.axis_of}
+        places = {name: self._place(name) for name in columns}
+        sizes = join_from(self.first, columns, places, tuple(values[name].size for name in self.dims))
+        return {**given, **columns}, sizes
+
+    def arguments(self, values: Mapping[str, Array]) -> dict[str, Any]:
+        """The numbers, columns and tables of a block by name."""
+        given = {**dict(self.numbers), **{name: np.ascontiguousarray(values[name]) for name in self.dims}}
+        over_theta = {name: load for name, load in self.plan.loads.items() if isinstance(load, OverTheta)}
+        if over_theta:
+            theta = given["theta"]
+            forces = self.plan._replace(loads=over_theta).forces(Place(theta, (), 1.0, self.branch), {})
+            given |= forces.values
+            given |= {f"{force}_by_{p}": slope for (force, p), slope in forces.slopes.items()}
+        return {**given, **table_arrays(self.plan.loads)}
+
+    def open(self, values: Mapping[str, Array]) -> dict[str, Array] | None:
+        """The points at which rounding may decide on the side of a jump: indices along some dimensions.
+
+        None where there is none; an empty dict where all points may be.
+        """
+        if not any(isinstance(load, OverY) and load.jumping for load in self.plan.loads.values()):
+            return None
+        own = [name for name in self.dims if name in LENGTHS]
+        given = {**dict(self.numbers), **values}
+        grids: Any = np.meshgrid(*(given[name] for name in own), indexing="ij")
+        sides = {**given, **{name: grid.reshape(-1) for name, grid in zip(own, grids, strict=True)}}
+        shape = [values[name].size for name in own]
+        lengths = [np.broadcast_to(np.asarray(sides[name], float), (prod(shape),)) for name in LENGTHS]
+        rows, places = open_points(
+            self.plan.loads, lengths, self.branch, np.asarray(given["theta"], float).reshape(-1)
+        )
+        if not rows.size:
+            return None
+        index = dict(zip(own, np.unravel_index(rows, shape) if own else (), strict=True))
+        return {**index, "theta": places} if "theta" in self.dims else index
+
+
+def in_kernel(
+    plan: Plan, outer: Outer, along: Sequence[str], branch: int, accuracy: Any
+) -> UnderLoads | None:
+    """The kernel of a plan's names over dimensions of a grid; None where it takes more than one."""
+    given, axes = outer.given, outer.axes
+    few = prod(axes[name].size for name in along) < LEAST and forced_tier() is None
+    if few or accuracy == "extended" or not along or _extreme(plan.loads, axes):
+        return None
+    wanted = under_loads(plan, given, branch, accuracy)
+    made = {n for n, load in plan.loads.items() if isinstance(load, OverTheta)}
+    columns, numbers = {}, {}
+    for name in wanted.inputs:
+        if name in axes:
+            if name in along:
+                columns[name] = np.ascontiguousarray(axes[name])
+            elif axes[name].size:
+                numbers[name] = float(axes[name].reshape(-1)[0])
+        elif name.removesuffix("_by_theta") in made and "theta" in along:
+            columns[name] = axes["theta"]
+        else:
+            return None
+    places = {name: along.index(name if name in along else "theta") for name in columns}
+    key = key_of(wanted, numbers, columns, places, len(along))
+    if not key.form.wide_margins and plain_of(key) is not None:
+        return None
+    alone = [name for name in ("theta", *LENGTHS) if name not in along]
+    numbers |= {name: float(axes[name].reshape(-1)[0]) for name in alone}
+    step = UnderLoads(tuple(along), wanted, tuple(numbers.items()), key, len(along) - 1, branch, plan)
+    return step.cut({name: axes[name].size for name in along})
+
+
+def _extreme(loads: Mapping[str, Load], axes: Mapping[str, Array]) -> bool:
+    """True where an input, or a load, is near the ends of the double range."""
+    large = (load.largest > MOST for load in loads.values() if isinstance(load, OverY))
+    return any(large) or any(are_extreme(n, a) is not False for n, a in axes.items())
+
+
+def under_loads(plan: Plan, given: Mapping[str, Any], branch: int, accuracy: Any) -> Request:
+    """The request of a plan's totals, whose variant names the loads."""
+    every = tuple(dict.fromkeys((*plan.names, *plan.motion)))
+    asked = request(every, {**given, **dict.fromkeys(plan.loads, 1.0)}, branch, accuracy)
+    totals = [
+        Total(name, plan.forces_of.get(name, ()), tuple((*term,) for term in plan.terms.get(name, ())))
+        for name in plan.shown
+    ]
+    names = dict(zip(asked.shown, asked.names, strict=True))
+    lines = tuple(_lines(name, load) for name, load in plan.loads.items())
+    under = Under(tuple(names.items()), lines, tuple(totals), _way(given))
+    own = tuple(names[name] for name in plan.shown)
+    return Request(plan.shown, own, asked.form._replace(under=under), asked.fixed, asked.accuracy)
+
+
+def _lines(name: str, load: Load) -> LoadLines:
+    if not isinstance(load, OverY):
+        return LoadLines(name, "")
+    return LoadLines(name, load.centre or "Y", ways=load.inward is not None)
+
+
+def _way(given: Mapping[str, Any]) -> Way:
+    """The inputs that tell the way of turning."""
+    speeds = [name for name in ("omega", "omega0") if given.get(name) is not None]
+    start = "alpha" if speeds == ["omega"] and given.get("alpha") is not None else 0.0
+    return Way(speeds[0] if speeds else 1.0, start)
+
+
+def table_arrays(loads: Mapping[str, Load]) -> dict[str, Array]:
+    """The arrays of the tables of loads over the slider's place, by the names of a kernel's arguments."""
+    found: dict[str, Array] = {}
+    for name, load in loads.items():
+        if isinstance(load, OverY):
+            ways = load.outward, load.outward if load.inward is None else load.inward
+            found[f"{name}_x"] = np.array(load.outward.knots)
+            found[f"{name}_c"] = np.array([row for table in ways for row in table.rows]).reshape(-1)
+    return found
+
+
+def open_points(
+    loads: Mapping[str, Load], lengths: Sequence[Array], branch: int, theta: Array
+) -> tuple[Array, Array]:
+    """The designs, and the places in `theta`, at which rounding may decide on the side of a jump."""
+    order = np.argsort(theta, kind="stable")
+    ascending = theta[order]
+    rows, places = [np.empty(0, np.intp)], [np.empty(0, np.intp)]
+    for load in loads.values():
+        if isinstance(load, OverY) and load.jumping:
+            lost = np.flatnonzero((theta != 0.0) & (np.abs(theta) < LEAST_ANGLE))
+            rows.append(np.repeat(np.arange(lengths[0].size), lost.size))
+            places.append(np.tile(lost, lengths[0].size))
+            angles, room = _jumps(load, lengths, branch)
+            every = repeated(angles, ascending[0] - 1.0, ascending[-1] + 1.0)
+            row, number = np.nonzero(np.isfinite(every))
+            here, beside = every[row, number], room[row, number // (every.shape[1] // angles.shape[1])]
+            first = np.searchsorted(ascending, here - beside)
+            last = np.searchsorted(ascending, here + beside, side="right")
+            for k in np.flatnonzero(last > first):
+                places.append(order[first[k] : last[k]])
+                rows.append(np.full(places[-1].size, row[k]))
+    return np.concatenate(rows), np.concatenate(places)
+
+
+def _jumps(load: OverY, lengths: Sequence[Array], branch: int) -> tuple[Array, Array]:
+    """The angles of a load's jumps in a turn, and how far beside each rounding may decide."""
+    angles, ends = crossings(load, load.jumps, lengths, branch), dead_centres(lengths)
+    flat = np.zeros(angles.shape, np.bool_)
+    for end in ends.T:
+        flat |= np.abs(np.sin(0.5 * (angles - end[:, None]))) <= NEAR_DEAD_CENTRE
+    if load.turns:
+        # Without offset the sign of the slope is that of the sine, right to the last bit.
+        own = np.where(lengths[0][:, None] == 0.0, np.nan, ends)
+        angles, flat = np.append(angles, own, axis=1), np.append(flat, np.ones(own.shape, np.bool_), axis=1)
+    ratio = (1.0 + lengths[2] / lengths[1])[:, None]
+    return angles, np.where(flat, BESIDE_DEAD_CENTRE * np.sqrt(ratio), BESIDE * ratio)
+
+
+MOST_AT_ONCE = 2**18  # points
+
+
+def whole_points(
+    index: Mapping[str, Array] | None, sizes: Mapping[str, int], each: int = 1
+) -> Iterator[dict[str, Array]]:
+    """Points of a grid from indices along some dimensions, at all places along the others; in blocks.
+
+    each   points behind each of them, of which not too many are taken at once
+    """
+    if index is None or not all(sizes.values()):
+        return
+    if not index:
+        index = {name: np.arange(size) for name, size in [*sizes.items()][:1]}
+    count = next((places.size for places in index.values()), 1)
+    others = [sizes[name] for name in sizes if name not in index]
+    step = max(1, MOST_AT_ONCE // (each * prod(others)))
+    for first in range(0, count, step):
+        some = {name: places[first : first + step] for name, places in index.items()}
+        number = min(step, count - first)
+        rest = np.unravel_index(np.tile(np.arange(prod(others)), number), others) if others else ()
+        every = {name: np.repeat(places, prod(others)) for name, places in some.items()}
+        every |= zip((name for name in sizes if name not in index), rest, strict=True)
+        yield {name: every[name] for name in sizes}
