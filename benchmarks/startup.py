@@ -31,6 +31,9 @@ CALLS = {
         'dx.function(["V_C", "a_C"], inputs=("theta", "ec"), **CRANK)(ANGLES[:720], 0.01)'
     ),
     "`peak` of 2,000 designs": 'dx.peak("a_C", ec=DESIGNS, **CRANK)',
+    "`peak` of the torque of 1,000 designs": (
+        'dx.peak("T_in", **{**MASSES, "ec": DESIGNS[::2]}, omega0=157.08)'
+    ),
     "`events` of 2,000 designs": "dx.events(ec=DESIGNS, **LENGTHS)",
     "`simulate`, one motion": "dx.simulate(torque=1.0, t_end=0.1, **MASSES)",
     "`simulate`, 20 motions": "dx.simulate(torque=np.linspace(1.0, 2.0, 20), t_end=0.1, **MASSES)",

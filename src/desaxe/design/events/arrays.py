@@ -1,16 +1,22 @@
 """`events` for arrays of designs: closed forms in NumPy; velocities where the acceleration vanishes."""
 
+from collections.abc import Callable
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...compiler.languages.arrays import compile_arrays
 from ...evaluation.arrays import as_array, broadcast_shape
 from ...evaluation.evaluate import evaluate
 from ...mechanism.closed.dead_centres import DEAD_CENTRES
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.names import LENGTHS
+from ...mechanism.program import Variant
 from ...runtime.compiled_only import uncompiled
+from ...runtime.specialise import specialise
+from ...runtime.wide_margins import have_wide_margins
 from ...support.roots import roots
 from ..feasibility.arrays import only_good
 from .found import VELOCITIES, Found, stroke_ends
@@ -80,13 +86,23 @@ def _fastest(a: Array, b: Array, here: dict[str, Any]) -> tuple[Array, NDArray[n
 
     Which of them are between a and b.
     """
-
-    def at(theta: Array) -> Array:
-        found: Array = evaluate("a_C", theta=theta, omega0=1.0, **here)
-        return found
-
     ends = evaluate(["V_C", "a_C"], theta=np.stack([a, b]), omega0=1.0, **here)
     (one, other), (first, last) = np.abs(ends["V_C"]), ends["a_C"]
     end = np.where(one >= other, a, b)  # no crank, or fastest at a change point
     within = np.sign(first) * np.sign(last) < 0.0
-    return np.where(within, roots(at, a, b, first, last), end), within
+    sides = [here[name][within] for name in LENGTHS]
+    unit = np.frexp(sides[2])[1]  # in which no square leaves the range of doubles
+    sides = [np.ldexp(side, -unit) for side in sides]
+    wide = have_wide_margins(dict(zip(LENGTHS, sides, strict=True)), Variant()).all()
+    acceleration = _acceleration(here["branch"], bool(wide))
+    inside = (v[within] for v in (a, b, first, last))
+    end[within] = roots(lambda theta: acceleration(theta, *sides)[0], *inside)
+    return end, within
+
+
+@lru_cache(maxsize=4)
+def _acceleration(branch: int, wide: bool) -> Callable[..., tuple[Array, ...]]:
+    """a_C at a speed of 1 rad/s, for arrays of angles and lengths: a root needs no other inputs checked."""
+    fixed = ("branch", float(branch)), ("omega0", 1.0), ("alpha", 0.0)
+    program = specialise(("a_C",), Variant(wide_margins=wide), fixed)
+    return np.errstate(all="ignore")(compile_arrays(program._replace(inputs=("theta", *LENGTHS)), np))
