@@ -41,6 +41,7 @@ CALLS = {
     "grid(chunks=)": lambda load, _: dx.grid("T_in", theta=THETA, chunks={"theta": 3}, F_Y=load, **DESIGN),
     "sweep": lambda load, room: dx.sweep("T_in", store=str(room / "s.zarr"), theta=THETA, F_Y=load, **DESIGN),
     "peak": lambda load, _: dx.peak("T_in", F_Y=load, **DESIGN),
+    "design_map": lambda load, _: dx.design_map([("absmax", "T_in")], F_Y=load, **DESIGN),
     "harmonics": lambda load, _: dx.harmonics("T_in", orders=2, F_Y=load, **DESIGN),
     "drive": lambda load, _: dx.drive(F_Y=load, **DESIGN),
     "steady": lambda load, _: dx.steady(torque=MOTOR, I_crank=1.0, F_Y=load, **DESIGN),

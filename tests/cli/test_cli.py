@@ -178,6 +178,7 @@ COMPLAINTS = {
     "no such branch": (["point", "Y", "branch=2"], "branch=2: it is 1 or -1"),
     "no such option": (["point", "--exact"], "unrecognized arguments: --exact"),
     "no such command": (["frobnicate"], "invalid choice: 'frobnicate'"),
+    "almost a command": (["pont"], "'pont' (did you mean point? choose from"),
     "no scene": (["run"], "required: SCENE (see desaxe run --help)"),
     "no such file": (["run", "missing.toml"], "missing.toml: No such file or directory"),
     "no such verdict": (["errata", "--verdict", "maybe"], "unknown verdict 'maybe'"),

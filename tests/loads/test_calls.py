@@ -55,14 +55,6 @@ def test_the_motion_keeps_its_energy_and_its_torque_across_jumps(kind, mu):
     )  # the torque that this motion needs is the one given
 
 
-def test_the_work_along_a_motion_is_that_of_the_load_over_the_stroke():
-    run = dx.simulate(
-        torque=0.0, t_end=1.0, until=3.0, omega_start=60.0, theta0=0.5, I_crank=0.01, F_Y=STROKE, **BODIES
-    )
-    assert run["theta"][-1] == pytest.approx(3.0)
-    assert run["work"] == pytest.approx(work(STROKE, 0.5, 3.0), rel=1e-6)
-
-
 def test_one_parameter_is_theta_and_three_are_t_theta_omega():
     given = {**BODIES, "t_end": 0.05, "omega_start": 30.0}
     one = dx.simulate(torque=lambda theta: 8.0 + np.cos(theta), **given)
@@ -70,18 +62,6 @@ def test_one_parameter_is_theta_and_three_are_t_theta_omega():
     np.testing.assert_array_equal(one["omega"], three["omega"])
     with pytest.raises(TypeError, match=r"torque: expected a function of \(t, theta, omega\), or of theta"):
         dx.simulate(torque=lambda t, theta: 0.0, **given)
-
-
-@pytest.mark.parametrize("kind", ["cubic", "step", "stroke"])
-def test_a_turn_costs_the_work_of_the_load_in_every_call(kind):
-    load, machine = LOADS[kind], BODIES | {"omega0": 50.0}
-    mean = -work(load, 0.0, TURN) / TURN
-    motor = dx.drive(fluctuation=0.05, F_Y=load, **machine)
-    series = dx.harmonics("T_in", orders=2, F_Y=load, **machine)
-    for found in (motor["torque_mean"], series["mean"]):
-        assert found == pytest.approx(mean, rel=1e-9, abs=1e-11)
-    top = dx.peak("T_in", F_Y=load, **machine)["value"]
-    assert motor["torque_peak"] == pytest.approx(top, rel=1e-12)
 
 
 def test_harmonics_across_jumps_are_integrals():
@@ -112,21 +92,6 @@ def test_a_four_stroke_load_repeats_after_two_turns():
     assert back["work_in"] == pytest.approx(motor["work_out"], rel=1e-9)
     with pytest.raises(ValueError, match="F_Y: harmonics is over a turn, after which the load must repeat"):
         dx.harmonics("T_in", F_Y=load, **machine)
-
-
-@pytest.mark.thorough
-def test_tolerance_and_optimum_follow_the_load():
-    machine = {"theta": 4.0, "omega0": 50.0, "m_slider": 0.8, "ec": 0.01, "F_Y": STROKE}
-    lengths = {"AB": dx.plus_minus(0.04, 1e-5), "BC": dx.plus_minus(0.064, 1e-5)}
-    found = dx.tolerance("T_in", samples=2000, sobol=0, **lengths, **machine)
-    for name in lengths:
-        right = dx.evaluate(f"T_in_wrt_{name}", AB=0.04, BC=0.064, **machine)
-        assert found["gradient"][name] == pytest.approx(right, rel=1e-12)
-    assert found["monte_carlo"]["std"] == pytest.approx(found["first_order"]["std"], rel=0.1)
-    fixed = {"AB": 0.04, "BC": 0.064, "F_Y": STROKE}
-    best = dx.optimize(minimize=("absmax", "T_in"), over={"ec": (0.0, 0.02)}, starts=1, **fixed)
-    scan = [dx.peak("T_in", ec=ec, **fixed)["value"] for ec in np.linspace(0.0, 0.02, 5)]
-    assert best["value"] <= min(scan) * (1 + 1e-9)
 
 
 @pytest.mark.parametrize("measure", [("rms", "T_in"), ("mean", "N_C"), ("rms", "F_C_Y")])

@@ -327,5 +327,5 @@ def test_what_is_no_table_is_refused_by_name(given, message):
     *columns, which = given
     with pytest.raises(ValueError, match=f"over_stroke.*{message}"):
         dx.over_stroke(*columns, dead_centre=which)
-    with pytest.raises(TypeError, match="dead_centre"):
+    with pytest.raises(TypeError, match=r'^over_stroke: dead_centre is missing: dead_centre="outer" or'):
         dx.over_stroke(*columns)

@@ -60,8 +60,6 @@ def test_reductions_best_designs_and_peaks_follow_the_load():
 
 def test_where_only_numbers_make_sense_a_load_is_refused_by_name():
     machine = {"ec": 0.01, "AB": 0.04, "BC": 0.064, "omega0": 50.0, "F_Y": LOADS["linear"]}
-    with pytest.raises(TypeError, match=r"F_Y: quality=True takes numbers, .* give its values at"):
-        dx.evaluate("T_in", theta=1.0, quality=True, **machine)
     with pytest.raises(TypeError, match=r"F_Y: function takes numbers, .* give F_Y among inputs="):
         dx.function("T_in", **machine)
     with pytest.raises(TypeError, match=r"F_Y: enclose takes numbers, .* F_Y = \(low, high\)"):

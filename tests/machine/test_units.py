@@ -364,6 +364,38 @@ def test_slips_of_a_machine(inputs, words):
     assert caught[0].filename == __file__
 
 
+FORGE = {"ec": 0, "AB": 40, "BC": 64, "units": "mm, kN"}
+
+
+@pytest.mark.parametrize("force", ["number", "over_Y", "over_theta"])
+def test_a_force_that_no_rod_carries_is_told(force):
+    """80 kN as 80000 in a machine in kN: 80 MN on a rod of 64 mm."""
+    press = dx.Machine(**FORGE)
+    loads = {
+        "number": -80e3,
+        "over_Y": press.over_Y([30, 100], [-80e3, 0]),
+        "over_theta": press.over_theta([0, 3], [10, -80e3], kind="step"),
+    }
+    told = "almost surely a slip: F_Y up to 80000 kN on a rod of 64 mm: half as thick .* carry 78 GPa$"
+    with pytest.warns(dx.UnitWarning, match=told) as caught:
+        press.replace(F_Y=loads[force])
+    assert caught[0].filename == __file__
+    with pytest.warns(dx.UnitWarning, match=told):
+        dx.Machine(**FORGE, F_Y=loads[force])
+    if force == "number":
+        data = {"outputs": ["T_in"], "units": "mm, kN", "mechanism": {"ec": 0, "AB": 40, "BC": 64}}
+        with pytest.warns(dx.UnitWarning, match="F_Y up to 80000 kN on a rod of 64 mm"):
+            dx.scene({**data, "motion": {"theta": 1, "omega0": 1}, "loads": {"F_Y": -80e3}})
+
+
+def test_forces_of_real_presses_are_no_slips():
+    """Rated forces and rods [N, m]: a bench press, a knuckle press, a forging press of 160 MN, a pump."""
+    for force, rod in ((1e4, 0.06), (1.6e7, 1.0), (1.6e8, 2.2), (6e5, 0.25)):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            dx.Machine(ec=0, AB=0.1 * rod, BC=rod, F_Y=-force)
+
+
 def test_slips_of_calls_scenes_and_commands(capsys):
     machine = dx.Machine(ec=0, AB=0.125, BC=0.35, omega0="1500 rpm")
     with pytest.warns(dx.UnitWarning, match='theta = 60 rad, write theta = "60 deg"'):
@@ -473,3 +505,14 @@ def test_endless_units_are_refused(units, problem):
     with pytest.raises(ValueError, match=problem) as caught:
         dx.Machine(ec=15, AB=75, BC=300, omega0=60, units=units)
     assert len(str(caught.value)) < 300
+
+
+def test_a_bad_number_is_told_in_the_units_it_was_given_in():
+    machine = dx.Machine(units="mm, deg, rpm, kN", ec=10, AB=40, BC=64, omega0=500)
+    for call in (machine.replace, lambda **own: machine.evaluate("V_C", theta=30, **own)):
+        with pytest.raises(ValueError, match=r"^AB = -75 mm: it must be a finite length >= 0$"):
+            call(AB=-75)
+    with pytest.raises(ValueError, match=r"^theta = nan deg: it must be a finite number$"):
+        machine.evaluate("V_C", theta=float("nan"))
+    with pytest.raises(ValueError, match=r"^mu = -1: it must be"):
+        machine.replace(mu=-1)

@@ -1,9 +1,11 @@
 """Shared by the commands: a parser with one-line errors, sub-commands, the sign convention."""
 
 import argparse
+import re
 from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
 
+from ..mechanism.spelling import did_you_mean
 from .words import UsageError
 
 SIGNS = """\
@@ -18,7 +20,10 @@ class Parser(argparse.ArgumentParser):
     """A parser that reports an error in one line."""
 
     def error(self, message: str) -> NoReturn:
-        """Raise UsageError with the message."""
+        """Raise UsageError with the message; a wrong choice is told the one that is similar."""
+        wrong = re.search(r"invalid choice: '([^']*)' \(choose from ([^)]*)", message)
+        hint = did_you_mean(wrong[1], re.findall(r"[\w-]+", wrong[2])) if wrong else ""
+        message = message.replace("(choose from", f"({hint}choose from")
         raise UsageError(f"{message} (see {self.prog} --help)")
 
 

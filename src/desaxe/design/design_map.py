@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..evaluation.arrays import as_array
-from ..evaluation.labels import STATUS_FLAGS, import_xarray, input_attributes, provenance
+from ..evaluation.labels import STATUS_FLAGS, import_xarray, input_attributes, provenance, with_loads
+from ..loads.resolve import split
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS, sensitivity
@@ -24,7 +25,8 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
 
     names        of quantities of a design: "margin", those of `events`, and peaks such as ("absmax", "a_C"),
                  which are called absmax_a_C in the Dataset; one, a list, or none
-    inputs       as in `evaluate`, without theta; each 1-d array is a dimension, in the order given
+    inputs       as in `evaluate`, without theta; each 1-d array is a dimension, in the order given; a load
+                 that varies with the motion is that of all designs
     derivatives  whether each quantity's exact derivatives come along, as stroke_wrt_ec
 
     `margin`, `status` (0 the crank turns fully, 1 it does not, 2 change point, 4 bad input), `can_turn` and
@@ -40,9 +42,8 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
     check_inputs("design_map", inputs, known)
     one = isinstance(names, (str, tuple)) and bool(names)
     wanted: Sequence[Measure] = [checked(name) for name in ([names] if one else names)]
-    axes = {
-        n: as_array(n, value, LENGTHS, ("design_map",)) for n, value in inputs.items() if value is not None
-    }
+    numbers, loads = split({n: value for n, value in inputs.items() if value is not None})
+    axes = {n: as_array(n, value, LENGTHS, ("design_map",)) for n, value in numbers.items()}
     for name in LENGTHS:
         if name not in axes:
             as_array(name, None, LENGTHS, ("design_map",))
@@ -56,7 +57,7 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
     }
     designs = {n: np.broadcast_to(a, shape).reshape(-1) for n, a in open_axes.items()}
     variables = _feasible(designs, shape, dimensions)
-    for measure, found in measured(wanted, designs, branch).items():
+    for measure, found in measured(wanted, designs | loads, branch).items():
         name = text_of(measure).replace(" ", "_")
         attributes = {"units": unit_of(measure), "long_name": _meaning(measure)}
         variables[name] = (dimensions, np.reshape(found.value, shape), attributes)
@@ -76,7 +77,7 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
     coordinates = {n: ((n,) if axis.ndim else (), axis, input_attributes(n)) for n, axis in axes.items()}
     names = [text_of(measure).replace(" ", "_") for measure in wanted]
     about = provenance(names, axes, branch, title="offset slider-crank designs")
-    return xarray.Dataset(variables, coordinates, about)
+    return with_loads(xarray.Dataset(variables, coordinates, about), loads)
 
 
 def _along(axis: Any, place: int | None, count: int) -> Any:

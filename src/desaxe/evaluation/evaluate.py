@@ -70,7 +70,8 @@ def evaluate(
     out      for arrays: the array to fill, or a dict name -> array; those that share memory are filled one
              after the other
     quality  True: for each name, in place of the value, an object with `value`, `conditions` (input ->
-             |input/value d value/d input|), `error_bound` (of the rounding) and `digits`
+             |input/value d value/d input|), `error_bound` (of the rounding) and `digits`; loads are
+             numbers or tables then
 
     Labelled arrays (xarray) broadcast by the names of their dimensions, and labelled arrays come back.
     Inputs that the names do not need may be left out; masses and loads are 0 without. A number may
@@ -92,9 +93,10 @@ def evaluate(
         if any(map(callable, loads)):
             with IMPORTS:
                 from .loaded import evaluate_loaded as values_of
-                from .loaded import refuse_quality
+                from .loaded_quality import evaluate_loaded_quality
 
-            refuse_quality(quality, given)
+            if quality:
+                return evaluate_loaded_quality(names, given, branch, accuracy, threads, out)
     if quality:
         with IMPORTS:
             from .quality import evaluate_quality

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..loads.function import FunctionOverTheta
 from ..loads.load import TURN, Load, OverY
 from ..loads.pieces import Place
-from ..loads.resolve import VARIABLE, Forces, Plan, plan_of, split, way_of, without_loads
+from ..loads.resolve import VARIABLE, Forces, Plan, plan_of, split, way_of
 from ..loads.tabulated import over_theta
 from ..mechanism.names import LENGTHS
 from ..runtime.request import as_number, check_common, several
@@ -83,12 +83,6 @@ def forces_at(
                 lengths = [x if type(x) is float else numeric(n, x, plan.shown) for n, x in own]
     speeds = {n: numeric(n, numbers[n], plan.shown) for n in ("omega0", "omega", "alpha") if n in numbers}
     return plan.forces(Place(theta, lengths, way_of(speeds), branch), motion, held)
-
-
-def refuse_quality(quality: bool, given: Mapping[str, Any]) -> None:
-    """TypeError for a quality under loads: the error of a table or function is unknown."""
-    if quality:
-        without_loads("quality=True", given, "its values at these angles, {name} = load(theta)")
 
 
 def numeric(name: str, value: Any, names: Sequence[str]) -> Any:

@@ -105,6 +105,14 @@ def _slope_names(name: str, needs: Sequence[str], state: bool) -> dict[str, str]
     return found
 
 
+def conditions_of(f: Any, x: Any, slope: Any) -> Any:
+    """|x/f df/dx|, a float for one point."""
+    with np.errstate(all="ignore"):
+        step = _step(np.asarray(x, float), np.asarray(slope))
+        found = np.where(step == 0.0, 0.0, step / np.abs(f))
+    return _shaped(np.where(np.isnan(f), np.nan, found), np.shape(f))
+
+
 def _step(x: Array, slope: Array) -> Array:
     """|x df/dx|; a relative change of 0 moves nothing."""
     return np.where((x == 0.0) | (slope == 0.0), 0.0, np.abs(x * slope))

@@ -98,6 +98,11 @@ class TableOverTheta(OverTheta):
         """The angle after which the load repeats [rad]."""
         return self.table.period or TURN
 
+    @computed_once
+    def largest(self) -> float:
+        """The largest magnitude at a knot."""
+        return max(map(abs, self.table.values))
+
     def both(self, theta: Any) -> tuple[Any, Any]:
         """The load and its derivative."""
         return self.table.both(theta)

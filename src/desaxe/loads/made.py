@@ -78,6 +78,9 @@ def table_over_Y(positions: Column, ways: Sequence[Column], kind: str) -> Load:
 
 def table_over_stroke(distances: Column, ways: Sequence[Column], kind: str, dead_centre: Any) -> Load:
     """A load over the distance from a dead centre; ValueError where the columns are no table."""
+    if dead_centre is None:
+        both = " or ".join(f'dead_centre="{which}"' for which in DEAD_CENTRES)
+        raise TypeError(f"over_stroke: dead_centre is missing: {both}, from which distances are measured")
     if not isinstance(dead_centre, str) or dead_centre not in DEAD_CENTRES:
         raise ValueError(
             f"over_stroke: dead_centre = {shown(dead_centre)}: it is one of {', '.join(DEAD_CENTRES)}"

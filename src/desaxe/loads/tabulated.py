@@ -194,7 +194,13 @@ class MakeOverStroke:
         self.units = units  # of plain numbers: those of a machine, else SI
 
     def __call__(
-        self, distances: Any, outward: Any, inward: Any = None, kind: str = "linear", *, dead_centre: str
+        self,
+        distances: Any,
+        outward: Any,
+        inward: Any = None,
+        kind: str = "linear",
+        *,
+        dead_centre: Any = None,
     ) -> Load:
         """A load over the distance from a dead centre; see `help(desaxe.over_stroke)`."""
         columns = _columns("over_stroke", "distances", distances, outward, inward, self.units)
@@ -207,7 +213,7 @@ class MakeOverStroke:
         value: str | None = None,
         kind: str = "linear",
         *,
-        dead_centre: str,
+        dead_centre: Any = None,
     ) -> Load:
         """A load over the distance from a dead centre from a text file: distance, outward and perhaps inward.
 

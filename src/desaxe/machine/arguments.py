@@ -5,11 +5,12 @@ from os import PathLike
 from typing import Any
 
 from ..loads.resolve import settled
-from ..mechanism.inputs import INPUTS
+from ..mechanism.inputs import INPUTS, is_good
 from ..mechanism.names import WHOLE
 from ..mechanism.unit_system import OTHERS, UnitSystem
 from ..support.forks import IMPORTS
 from ..support.quantity_text import PLUS_MINUS, with_unit_of
+from ..support.shown import shown
 from .results import conversion_of
 
 # Arguments that carry no unit of their own name: what they are about is said by their keys.
@@ -33,7 +34,14 @@ def in_si(system: UnitSystem, name: str, value: Any) -> Any:
         value = columns_of(value)
     if name in BY_KEY and isinstance(value, Mapping):
         return {key: converted(system, _measure(key), part) for key, part in value.items()}
-    return converted(system, name, value) if has_unit(name) else value
+    if not has_unit(name):
+        return value
+    found = converted(system, name, value)
+    if type(value) in (int, float) and name in INPUTS and not is_good(name, found):
+        conversion = conversion_of(system, name)
+        unit = "" if conversion is None else f" {conversion.unit}".removesuffix(" 1")
+        raise ValueError(f"{name} = {shown(value)}{unit}: it must be {INPUTS[name].limit}")
+    return found
 
 
 def _measure(key: Any) -> str:

@@ -82,8 +82,9 @@ class Machine(Mapping[str, Any]):
         plain = {} if isinstance(source, Machine) or (source and is_scene(source)) else given
         named = {**plain, **inputs}
         si = {**given, **{key: in_si(system, key, value) for key, value in named.items()}}
-        warn_of_slips(named, system)
-        self._set(_checked_inputs(si), system, named, made)
+        checked = _checked_inputs(si)
+        warn_of_slips(named, system, inputs=checked)
+        self._set(checked, system, named, made)
 
     def _set(
         self,
@@ -118,10 +119,12 @@ class Machine(Mapping[str, Any]):
         gone |= {other[key] for key in inputs if key in other and inputs[key] is not None}
         kept = {key: value for key, value in self.items() if key not in gone}
         system = UnitSystem.read(units)
-        warn_of_slips(inputs, system)
         new = {key: in_si(system, key, value) for key, value in inputs.items() if value is not None}
         given = {**self.in_units(), **inputs} if system == self.units else inputs
-        return _restored(_checked_inputs({**kept, **new}), system, given, self.definitions)
+        checked = _checked_inputs({**kept, **new})
+        loaded = checked if {"BC", "F_X", "F_Y"} & {*inputs} else {}
+        warn_of_slips(inputs, system, inputs=loaded)
+        return _restored(checked, system, given, self.definitions)
 
     def in_units(self) -> dict[str, Any]:
         """The inputs in the units of the machine: numbers as they were given."""

@@ -1,12 +1,14 @@
 """Plain numbers that are almost surely in another unit than they are taken for, such as a crank of 125 m.
 
-A warning, never an error, for single numbers that a person has typed: never in calls with arrays.
+A warning, never an error, for single numbers that a person has typed: never in calls with arrays. A force has
+no size of its own by which a slip would show; but none is larger than what the rod could carry.
 """
 
 import sys
 import warnings
 from collections.abc import Iterator, Mapping
 from math import isclose, pi
+from types import MappingProxyType
 from typing import Any
 
 from .ranges import Between, PlusMinus
@@ -25,6 +27,8 @@ LARGEST_DOUBLE = sys.float_info.max
 SMALLEST = dict.fromkeys(("g_X", "g_Y"), 0.1)
 LINKS, SHORTEST = ("AB", "BC"), 5e-4  # shorter ones were given in metres where another unit was named
 MOST_TURNS = 2.0
+FORCES = ("F_X", "F_Y")
+STRONGEST = 1e9  # Pa: of steel, in a rod half as thick as it is long; those of presses carry some 2e7
 # What to write instead, of the number that was written.
 REMEDIES = {
     "theta": '"{number:.6g} deg"',
@@ -40,12 +44,38 @@ class UnitWarning(UserWarning):
     """A number that is almost surely meant in another unit than it is taken for."""
 
 
-def warn_of_slips(written: Mapping[str, Any], units: UnitSystem = SI, stacklevel: int = 3) -> None:
-    """Warn once of all plain numbers, by input, that are almost surely slips; `units` are what they mean."""
+def warn_of_slips(
+    written: Mapping[str, Any],
+    units: UnitSystem = SI,
+    stacklevel: int = 3,
+    inputs: Mapping[str, Any] = MappingProxyType({}),
+) -> None:
+    """Warn once of all plain numbers, by input, that are almost surely slips; `units` are what they mean.
+
+    inputs   in SI units, among which forces are looked for
+    """
     found = [told for name, value in _alone(written) if (told := slip(name, value, units))]
+    found += slips_of_forces(inputs, units)
     if found:
         message = f"almost surely a slip: {'; '.join(found)}"
         warnings.warn(message, UnitWarning, stacklevel=stacklevel)
+
+
+def slips_of_forces(inputs: Mapping[str, Any], units: UnitSystem = SI) -> list[str]:
+    """The warnings about forces, numbers and tables, that no rod of this length could carry."""
+    length, found = inputs.get("BC", 0.0), []
+    rod = max(length, default=0.0) if hasattr(length, "__len__") else length
+    for name in FORCES if rod else ():
+        value = inputs.get(name)
+        size = abs(value) if isinstance(value, (int, float)) else getattr(value, "largest", 0.0)
+        stress = 4.0 * size / rod**2
+        if stress > STRONGEST:
+            force, along = units.of(name), units.of("BC")
+            found.append(
+                f"{name} up to {force.shown(size):.6g} {force.unit} on a rod of {along.shown(rod):.6g} "
+                f"{along.unit}: half as thick as it is long it would carry {1e-9 * stress:.2g} GPa"
+            )
+    return found
 
 
 def _alone(written: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:

@@ -13,7 +13,7 @@ from ..loads.load import Load
 from ..loads.resolve import settled
 from ..mechanism.inputs import INPUTS
 from ..mechanism.own import Definition, using
-from ..mechanism.slips import UnitWarning
+from ..mechanism.slips import UnitWarning, slips_of_forces
 from ..mechanism.unit_system import UnitSystem
 from ..runtime.accuracy import accuracy_of
 from ..support.toml import read_toml
@@ -75,6 +75,7 @@ def _content(
     own: tuple[Definition, ...],
 ) -> Content:
     inputs = _inputs(data, file, folder, units)
+    _warn(slips_of_forces(inputs, units))
     branch = file.mechanism.branch
     if "omega" in inputs and "omega0" in inputs:
         raise SceneError(
@@ -135,10 +136,13 @@ def _units(data: Mapping[str, Any]) -> UnitSystem:
         units = units_of(data)
     except (ValueError, TypeError) as error:
         raise SceneError(str(error)) from None
-    slips = slips_of(data, units)
-    if slips:
-        warnings.warn(f"almost surely a slip: {'; '.join(slips)}", UnitWarning, stacklevel=4)
+    _warn(slips_of(data, units))
     return units
+
+
+def _warn(slips: list[str]) -> None:
+    if slips:
+        warnings.warn(f"almost surely a slip: {'; '.join(slips)}", UnitWarning, stacklevel=5)
 
 
 def _defined(tables: Mapping[str, Any]) -> tuple[Definition, ...]:

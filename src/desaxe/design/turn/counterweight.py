@@ -7,6 +7,7 @@ m r omega^2 exp(i psi) to f, and nothing to b.
 """
 
 from cmath import phase
+from collections.abc import Callable
 from math import pi
 from typing import Any
 
@@ -17,12 +18,15 @@ from ...mechanism.inputs import TINY, Input
 from ...mechanism.read import read
 from ...support.answer import answering
 from ...support.shown import shown
-from .turn import extreme, one_turn
+from .panels import RESOLVED, resolved
+from .turn import Turn, extreme, one_turn
 
 ALONG = {"both": 0.0, "Y": 1.0, "X": -1.0}
 POINTS = 8192  # among which the largest force is looked for
 FORCES = ("F_shaking_X", "F_shaking_Y")
 RADIUS = Input("radius", "m", "from the crank centre to the counterweight", TINY, "a length > 0")
+# Of exp(i n theta), of exp(-i n theta), their error, and the largest force under a counterweight.
+Harmonics = tuple[Any, Any, float, Callable[[complex], float]]
 
 
 @answering
@@ -65,16 +69,10 @@ def counterweight(
     speed = turn.numbers.get("omega0")
     if not speed:
         raise ValueError("counterweight: omega0 is missing or 0, and a crank at rest shakes nothing")
-    found, error = turn.spectrum(FORCES)
-    X, Y = (found[name] for name in FORCES)
-    forward, backward = Y + 1j * X, np.conj(Y) + 1j * np.conj(X)  # of exp(i n theta), of exp(-i n theta)
+    forward, backward, error, peak = _across_kinks(turn) if turn.kinks else _at_equal_steps(turn)
     weight = -(forward[1] + ALONG[along] * np.conj(backward[1]))
-    left = forward[1] + weight
-    forces = turn.samples(FORCES, max(POINTS, 2 * (len(X) - 1)))
-    z = forces["F_shaking_Y"] + 1j * forces["F_shaking_X"]
-    turned = z + weight * np.exp(2j * pi * np.arange(z.size) / z.size)
-    before = _shaking(forward[1], backward[1], forward[2], backward[2], z)
-    after = _shaking(left, backward[1], forward[2], backward[2], turned)
+    before = _shaking(forward[1], backward[1], forward[2], backward[2], peak(0.0))
+    after = _shaking(forward[1] + weight, backward[1], forward[2], backward[2], peak(weight))
     product = abs(weight) / speed**2
     result = {
         "product": float(product),
@@ -90,13 +88,44 @@ def counterweight(
     return result
 
 
-def _shaking(f: Any, b: Any, f2: Any, b2: Any, z: Any) -> dict[str, float]:
+def _at_equal_steps(turn: Turn) -> Harmonics:
+    """The harmonics of a smooth force, by the fast Fourier transform."""
+    found, error = turn.spectrum(FORCES)
+    X, Y = (found[name] for name in FORCES)
+    forces = turn.samples(FORCES, max(POINTS, 2 * (len(X) - 1)))
+    z = forces["F_shaking_Y"] + 1j * forces["F_shaking_X"]
+    wave = np.exp(2j * pi * np.arange(z.size) / z.size)
+    forward, backward = Y + 1j * X, np.conj(Y) + 1j * np.conj(X)
+    return forward, backward, error, lambda weight: extreme(np.abs(z + weight * wave), 1.0)[0]
+
+
+def _across_kinks(turn: Turn) -> Harmonics:
+    """The harmonics of a force with kinks and jumps, between which panels are."""
+    panels = turn.panels(FORCES)
+    z = panels.values["F_shaking_Y"] + 1j * panels.values["F_shaking_X"]
+    forward, backward = (
+        [np.sum(panels.weight * z * np.exp(-way * n * panels.theta)) / (2.0 * pi) for n in range(3)]
+        for way in (1j, -1j)
+    )
+
+    def peak(weight: complex) -> float:
+        def squared(theta: Any) -> dict[str, Any]:
+            X, Y = (panels.at(theta, panels.values[name]) for name in FORCES)
+            return {"square": np.abs(Y + 1j * X + weight * np.exp(1j * theta)) ** 2}
+
+        found = resolved(squared, panels.edges)
+        return float(np.sqrt(found.extreme(found.values["square"], 1.0)[0]))
+
+    return forward, backward, RESOLVED * float(np.abs(z).max()), peak
+
+
+def _shaking(f: Any, b: Any, f2: Any, b2: Any, peak: float) -> dict[str, float]:
     return {
         "X": float(abs(f - np.conj(b))),
         "Y": float(abs(f + np.conj(b))),
         "largest": float(abs(f) + abs(b)),
         "second": float(abs(f2) + abs(b2)),
-        "peak": extreme(np.abs(z), 1.0)[0],
+        "peak": peak,
     }
 
 

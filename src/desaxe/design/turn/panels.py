@@ -28,6 +28,7 @@ RESOLVED = 1e-13  # of the largest value: what the last coefficients of a resolv
 NOISE, PLATEAU = 1e-8, 0.6
 MOST = 20_000  # panels
 WIDEST = 0.4  # rad
+SAME = 1e-14  # rad
 NARROWEST = 2.0**-44  # rad: next to a change point functions bend within the root of the margin
 CLIMBS = 30  # steps of Newton's method
 PEAKS = 4  # so many of the highest samples are refined
@@ -213,6 +214,9 @@ def resolved(functions: Callable[[Array], dict[str, Array]], breaks: list[float]
     until the Legendre coefficients of every function on it have fallen to rounding.
     """
     edges = np.array(sorted(set(breaks)))
+    # An angle that is known twice, each time rounded, is one: no polynomial fits the doubles between them.
+    edges = edges[np.append(True, np.diff(edges) > SAME)]
+    edges[-1] = max(breaks)
     counts = np.maximum(1, np.ceil(np.diff(edges) / WIDEST)).astype(int)
     pieces = [np.linspace(a, b, n + 1) for a, b, n in zip(edges[:-1], edges[1:], counts, strict=True)]
     start, stop = (np.concatenate([piece[part] for piece in pieces]) for part in (np.s_[:-1], np.s_[1:]))

@@ -1,0 +1,118 @@
+"""`evaluate(..., quality=True)` under loads that are tables.
+
+Conditions are those of the whole: they count that an input moves the place at which a load is looked up; that
+of a load is by a percent of it. The bound is that at the force of the instant, as if it were exact, and what
+the force itself may be wrong by: what it changes within the error of its place, and the rounding of a cubic.
+"""
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..loads.load import Load, OverY, TableOverTheta
+from ..loads.pieces import Place, ahead, pieces_at
+from ..loads.resolve import way_of
+from ..loads.stroke import OverStroke
+from ..loads.table import Table
+from ..mechanism.names import LENGTHS, sensitivity
+from ..runtime.request import several
+from .loaded import MOTION, evaluate_loaded, forces_at, numeric, plan_for
+from .quality import MOST_DIGITS, ROUNDED_ONCE, Quality, conditions_of, evaluate_quality
+from .values import values
+
+Array = NDArray[Any]
+ROUNDINGS = 8.0  # of a cubic and its distance from a knot
+
+
+def evaluate_loaded_quality(
+    names: str | Sequence[str],
+    given: Mapping[str, Any],
+    branch: int,
+    accuracy: Any,
+    threads: int | None,
+    out: Any,
+) -> Any:
+    """The qualities of one name under loads, or a dict of them; TypeError for a load that is a function."""
+    for name, load in given.items():
+        if callable(load) and not isinstance(load, (TableOverTheta, OverY)):
+            raise TypeError(
+                f"{name}: quality=True takes numbers and tables, whose errors it knows, not a function; give "
+                f"its values at these angles, {name} = load(theta)"
+            )
+    if not isinstance(names, str):
+        rest = (given, branch, accuracy, threads, out)
+        return {name: evaluate_loaded_quality(name, *rest) for name in several(names)}
+    numbers, plan = plan_for((names,), given)
+    forces = forces_at(plan, numbers, branch, "standard").values if plan.loads else {}
+    held = {**dict.fromkeys(MOTION), **numbers, **forces}
+    found: Quality = evaluate_quality(names, held, branch, accuracy, threads, out)
+    if not plan.loads:
+        return found
+    by_force = {n: sensitivity(names, n) for n in plan.loads}
+    moving = {p for load in plan.loads.values() for p in load.parameters} & found.conditions.keys()
+    totals = {p: sensitivity(names, p) for p in moving}
+    try:
+        slopes = evaluate_loaded([*totals.values()], given, branch, accuracy, threads, None)
+    except ValueError as error:
+        raise ValueError(f"quality of {names}: not available under a load; {error}") from None
+    partial = values([*by_force.values()], held, branch, threads=threads)
+    bound = np.asarray(found.error_bound)
+    for name, slope in by_force.items():
+        error = _error_of(plan.loads[name], numbers, branch, threads)
+        bound = bound + np.abs(partial[slope]) * error
+    bound = bound.reshape(np.shape(found.value))
+    value = evaluate_loaded(names, given, branch, accuracy, threads, None)
+    moved = {p: conditions_of(value, numbers[p], slopes[slope]) for p, slope in totals.items()}
+    with np.errstate(all="ignore"):
+        digits = np.clip(-np.log10(np.where(bound == 0.0, 0.0, bound / np.abs(value))), 0.0, MOST_DIGITS)
+    plain = (float(x) if np.ndim(value) == 0 else np.array(x) for x in (bound, digits))
+    return Quality(value, {**found.conditions, **moved}, *plain)
+
+
+def _error_of(load: Load, numbers: Mapping[str, Any], branch: int, threads: int | None) -> Array:
+    """What a force from a table may be wrong by."""
+    theta = np.atleast_1d(numeric("theta", numbers["theta"], ("quality",)))
+    if isinstance(load, TableOverTheta):
+        room = 4.0 * ROUNDED_ONCE * (np.abs(theta) + load.period)
+        here, *beside = (load.both(theta + side * room)[0] for side in (0.0, -1.0, 1.0))
+        return _largest(here, beside) + ROUNDINGS * ROUNDED_ONCE * _size(load.table)
+    assert isinstance(load, OverY)
+    lengths = {n: np.atleast_1d(numeric(n, numbers[n], ("quality",))) for n in LENGTHS}
+    given = {**dict.fromkeys(MOTION), **lengths, "theta": theta}
+    places = evaluate_quality(
+        ["Y", *([load.centre] if isinstance(load, OverStroke) else [])],
+        given,
+        branch,
+        "standard",
+        threads,
+        None,
+    )
+    motion = values(list(load.motion()), given, branch, threads=threads)
+    x, speeds = load.along(motion), {n: numbers.get(n) for n in ("omega0", "omega", "alpha")}
+    way = way_of({n: np.atleast_1d(np.asarray(v, float)) for n, v in speeds.items() if v is not None})
+    room = sum(np.asarray(one.error_bound) for one in places.values()) + 2.0 * ROUNDED_ONCE * np.abs(x)
+    if load.jumping:  # the piece that holds is known exactly
+        piece = pieces_at(load, Place(theta, [*lengths.values()], way, branch), motion)
+        here, *beside = (load.held(np.asarray(x + side * room), piece)[0] for side in (0.0, -1.0, 1.0))
+    else:
+        along = ahead(motion, way)
+        here, *beside = (load.both(np.asarray(x + side * room), along)[0] for side in (0.0, -1.0, 1.0))
+    ways = [load.outward] if load.inward is None else [load.outward, load.inward]
+    return _largest(here, beside) + ROUNDINGS * ROUNDED_ONCE * max(map(_size, ways))
+
+
+def _largest(here: Array, beside: Sequence[Array]) -> Array:
+    return np.maximum.reduce([np.abs(other - here) for other in beside])
+
+
+def _size(table: Table) -> float:
+    """The largest sum of the magnitudes of a cubic's terms on its piece."""
+    ends = [*table.knots, table.knots[0] + table.period if table.period else table.knots[-1]]
+    widths = [0.0, *(b - a for a, b in pairwise(ends))]
+    return max(
+        sum(abs(c) * width**k for k, c in enumerate(row))
+        for row, width in zip(table.rows, widths, strict=True)
+    )
