@@ -28,7 +28,7 @@ WITH_BLOCKS = [page for page in PAGES if BLOCK.search((ROOT / page).read_text(en
 
 
 # One starts a cluster, the others compile much.
-SLOW = ["design", "forces", "howto", "languages", "machine", "pictures", "scale"]
+SLOW = ["design", "forces", "howto", "languages", "loads", "machine", "pictures", "scale"]
 ONCE = [pytest.param(p, marks=pytest.mark.thorough if Path(p).stem in SLOW else ()) for p in WITH_BLOCKS]
 
 

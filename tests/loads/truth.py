@@ -37,7 +37,7 @@ class Pieces(NamedTuple):
 
 
 class Force(NamedTuple):
-    """What a load is over, its pieces each way of the slider, and the load itself."""
+    """A load: its place, its pieces each way of the slider, and how it is given to a call."""
 
     place: str
     outward: Pieces
@@ -148,7 +148,7 @@ class Truth(NamedTuple):
         return _lib(theta).floor((theta - self.force.outward.knots[0]) / TURN)
 
     def place(self, theta: Any, turns: Any) -> Any:
-        """Where the force is looked up."""
+        """The place at which the force is looked up."""
         if self.force.place == "theta":
             return theta - TURN * turns
         Y = slider(theta, self.design, self.branch)[0]
@@ -176,7 +176,7 @@ class Truth(NamedTuple):
         return pieces.at(self.place(theta, turns), piece)
 
     def shaking(self, theta: Any, held: Any = None) -> Any:
-        """What acts on the frame along Y: the load less what accelerates the slider."""
+        """The force on the frame along Y: the load less the slider's inertia."""
         return self.load(theta, held) - self.inertia(slider(theta, self.design, self.branch)[2])
 
     def by(self, parameter: str, theta: float, of: str = "torque") -> mpf:
@@ -217,7 +217,7 @@ class Truth(NamedTuple):
         return [t for k in turns for a in angles if low < (t := float(a) + k * TURN) < high]
 
     def integral(self, function: Any, low: float = 0.0, high: float = TURN) -> float:
-        """Of a function of angles and a piece, arc by arc; each in four panels."""
+        """The integral of a function of angles and a piece, arc by arc, each in four panels."""
         total = 0.0
         for a, b, piece in self.arcs(low, high):
             for p, q in pairwise(np.linspace(a, b, 5)):

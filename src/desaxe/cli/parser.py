@@ -20,7 +20,7 @@ class Parser(argparse.ArgumentParser):
     """A parser that reports an error in one line."""
 
     def error(self, message: str) -> NoReturn:
-        """Raise UsageError with the message; a wrong choice is told the one that is similar."""
+        """Raise UsageError with the message, and the choice that is similar to a wrong one."""
         wrong = re.search(r"invalid choice: '([^']*)' \(choose from ([^)]*)", message)
         hint = did_you_mean(wrong[1], re.findall(r"[\w-]+", wrong[2])) if wrong else ""
         message = message.replace("(choose from", f"({hint}choose from")

@@ -61,8 +61,8 @@ def evaluate_loaded_quality(
     partial = values([*by_force.values()], held, branch, threads=threads)
     bound = np.asarray(found.error_bound)
     for name, slope in by_force.items():
-        error = _error_of(plan.loads[name], numbers, branch, threads)
-        bound = bound + np.abs(partial[slope]) * error
+        off = _error_of(plan.loads[name], numbers, branch, threads)
+        bound = bound + np.abs(partial[slope]) * off
     bound = bound.reshape(np.shape(found.value))
     value = evaluate_loaded(names, given, branch, accuracy, threads, None)
     moved = {p: conditions_of(value, numbers[p], slopes[slope]) for p, slope in totals.items()}
@@ -73,7 +73,7 @@ def evaluate_loaded_quality(
 
 
 def _error_of(load: Load, numbers: Mapping[str, Any], branch: int, threads: int | None) -> Array:
-    """What a force from a table may be wrong by."""
+    """The error bound of a force from a table."""
     theta = np.atleast_1d(numeric("theta", numbers["theta"], ("quality",)))
     if isinstance(load, TableOverTheta):
         room = 4.0 * ROUNDED_ONCE * (np.abs(theta) + load.period)
@@ -105,7 +105,7 @@ def _error_of(load: Load, numbers: Mapping[str, Any], branch: int, threads: int 
 
 
 def _largest(here: Array, beside: Sequence[Array]) -> Array:
-    return np.maximum.reduce([np.abs(other - here) for other in beside])
+    return np.asarray(np.maximum.reduce([np.abs(other - here) for other in beside]))
 
 
 def _size(table: Table) -> float:
