@@ -18,7 +18,7 @@ from tests.effort import cases
 from tests.loads.truth import DIGITS, LENGTHS, PLACES, SHAPES, TURN, Truth, drawn, given, slider
 
 LOADS = [("number", "smooth"), *((place, shape) for place in PLACES for shape in SHAPES)]
-# Calls that compile or search: the default and a thorough run take some of these loads, or the first one where
+# Calls that compile or search: default and thorough runs take some of these loads, or the first one where
 # that takes seconds, and DESAXE_THOROUGH=all the whole table.
 SOME = [("over_stroke", "jumping"), ("over_theta", "smooth"), ("over_Y", "kinked"), ("function", "jumping")]
 FAST = {"rel": 1e-11, "abs": 1e-10}  # values at a point
