@@ -104,8 +104,7 @@ def _across_kinks(turn: Turn) -> Harmonics:
     panels = turn.panels(FORCES)
     z = panels.values["F_shaking_Y"] + 1j * panels.values["F_shaking_X"]
     forward, backward = (
-        [np.sum(panels.weight * z * np.exp(-way * n * panels.theta)) / (2.0 * pi) for n in range(3)]
-        for way in (1j, -1j)
+        [panels.integral(z * np.exp(-way * n * panels.x)) / (2.0 * pi) for n in range(3)] for way in (1j, -1j)
     )
 
     def peak(weight: complex) -> float:
@@ -113,7 +112,7 @@ def _across_kinks(turn: Turn) -> Harmonics:
             X, Y = (panels.at(theta, panels.values[name]) for name in FORCES)
             return {"square": np.abs(Y + 1j * X + weight * np.exp(1j * theta)) ** 2}
 
-        found = resolved(squared, panels.edges)
+        found = resolved(squared, panels.edges.tolist())
         return float(np.sqrt(found.extreme(found.values["square"], 1.0)[0]))
 
     return forward, backward, RESOLVED * float(np.abs(z).max()), peak
