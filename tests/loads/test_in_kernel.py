@@ -81,6 +81,16 @@ def test_a_grid_has_the_values_of_its_points(over, monkeypatch):
         np.testing.assert_allclose(found[name], points[name], rtol=1e-11, atol=1e-12 * scale, err_msg=name)
 
 
+def test_a_load_that_a_name_does_not_hang_on_changes_nothing():
+    """Without friction the torque has no part of a force across."""
+    across = dx.over_theta([0.0, 1.0, 2.0, 4.0], [0.0, -300.0, 50.0, 20.0])
+    axes = {"theta": np.linspace(0.0, 6.0, 5), "ec": [0.0, 0.01]}
+    both, one = (
+        dx.grid("T_in", F_Y=LOADS["stroke"], **more, **axes, **MACHINE) for more in ({"F_X": across}, {})
+    )
+    np.testing.assert_array_equal(both.T_in, one.T_in)
+
+
 @pytest.mark.thorough
 def test_a_reduced_grid_has_the_values_of_its_points(monkeypatch):
     monkeypatch.setenv("DESAXE_TIER", "compiled")

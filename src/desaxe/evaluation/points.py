@@ -156,7 +156,8 @@ class Points(NamedTuple):
         if not all(shape):
             return
         inputs, varying = self.wanted.inputs, [name for name, _ in self.key.axis_of]
-        loads = {} if forces is None else forces.values
+        every = {} if forces is None else forces.values
+        loads = {name: value for name, value in every.items() if name in inputs}
         columns = {name: np.ascontiguousarray(values[name]) for name in varying if name not in loads}
         scalars = {name: value for name, value in self.numbers if name in inputs}
         whole: dict[str, Array] = {}
