@@ -1,12 +1,13 @@
 """The sensitivities of a motion: exact derivatives of histories, events, end and work by parameters."""
 
 from collections.abc import Mapping, Sequence
-from math import nan
+from math import copysign, nan
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .cuts import TOUCHED
 from .one_design import Run
 from .result import FAILED, JAMS, SENSITIVITIES, Event, Simulation
 from .slopes import Slopes
@@ -14,6 +15,7 @@ from .variational import Variations
 from .work import of_work
 
 Array = NDArray[np.float64]
+BARELY = 1e-30  # rad/s: turning, for friction; without an effect of its own
 ENDS = ("angle", "standstill", "limit", "no inertia")
 
 
@@ -59,8 +61,31 @@ def of_event(own: Variations, event: Event) -> Array:
         piece = next(one for one in own.pieces if one.stop >= event.t)
         own.cuts.hold(piece)
         return own.cuts.standstill(event.t, piece.law.alpha(event.t, event.theta, 0.0), v)
+    if event.kind == "break-away":
+        return _break_away(own, event, x)
     own.cuts.notes.append(f"NaN of {event.kind} at t = {event.t:.6g} s")
     return np.full(x.size, nan)
+
+
+def _break_away(own: Variations, event: Event, x: Array) -> Array:
+    """dt/dp of the instant from which the torque moves the crank: T(t, theta, 0) = T_in at barely a speed."""
+    after = next((one for one in own.pieces if one.start >= event.t), None)
+    by_time = own.slopes.by_time(event.t, event.theta, 0.0)
+    if after is None or by_time != by_time:
+        own.cuts.notes.append(
+            f"NaN of break-away at t = {event.t:.6g} s, but for a derivative= that returns dT/dt, too"
+        )
+        return np.full(x.size, nan)
+    own.cuts.hold(after)
+    if abs(after.law.alpha(event.t, event.theta, 0.0)) * own.run.t > TOUCHED * own.cuts.fastest:
+        return np.zeros(x.size)  # the torque jumps at an instant of its own
+    way = copysign(BARELY, own.cuts.state(after, 0.5 * (after.start + after.stop)).omega)
+    names = [f"T_in_wrt_{p}" for p in ("theta", *own.inputs)]
+    found = {name: float(value) for name, value in own.values(names, event.theta, way).items()}
+    instant = (np.array([number]) for number in (event.t, event.theta, 0.0))
+    by_theta = float(own.slopes.at(*instant)[0][0]) - found["T_in_wrt_theta"]
+    pushes = np.array([float(p == "torque") - found.get(f"T_in_wrt_{p}", 0.0) for p in own.wrt])
+    return -(by_theta * x + pushes) / by_time
 
 
 def of_end(own: Variations, of_events: Sequence[Array]) -> Array:

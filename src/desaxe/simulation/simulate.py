@@ -94,7 +94,7 @@ def simulate(
     wrt          parameters by which the motion is differentiated: inputs of the mechanism that are numbers,
                  "theta0", "omega_start", "torque" where it is a number
     derivative   for wrt, of a torque that is a function: one of the same arguments that returns dT/dtheta
-                 and dT/domega
+                 and dT/domega; and dT/dt, without which the instants of "break-away" have no derivative
     max_step     longest step [s], for loads that act briefly
     max_steps    more steps than this are a failure
     timeout      seconds of computing, None for no limit: then one motion ends with status 4 and what there is

@@ -1,7 +1,7 @@
 """The derivatives of a torque by angle and speed: of a table, a motor, or by a user's own function."""
 
 from collections.abc import Callable
-from math import isfinite
+from math import isfinite, nan
 from typing import Any
 
 import numpy as np
@@ -53,24 +53,33 @@ class Slopes:
         if self.derivative is not None:
             places = {"t": t, "theta": theta, "omega": omega}
             rows = zip(*(places[role].reshape(-1).tolist() for role in self.roles), strict=True)
-            pairs = np.array([self._pair(row) for row in rows])
-            return pairs[:, 0].reshape(t.shape), pairs[:, 1].reshape(t.shape)
+            told = np.array([self._told(row)[:2] for row in rows])
+            return told[:, 0].reshape(t.shape), told[:, 1].reshape(t.shape)
         if isinstance(self.torque, Motor):
             return none, np.asarray(self.torque.both(omega, self.torque.numbers)[1]) + none
         if isinstance(self.torque, OverTheta):
             return np.asarray(self.torque.both(theta)[1]) + none, none
         return none, none
 
-    def _pair(self, row: tuple[float, ...]) -> tuple[float, float]:
+    def by_time(self, t: float, theta: float, omega: float) -> float:
+        """dT/dt at an instant, if the derivative tells it as a third number; else NaN."""
+        if "t" not in self.roles:
+            return 0.0
+        told = self._told((t, theta, omega))
+        return told[2] if len(told) > 2 else nan
+
+    def _told(self, row: tuple[float, ...]) -> list[float]:
         assert self.derivative is not None
         found = self.derivative(*row)
         try:
-            by_theta, by_omega = (real_number("derivative", part) for part in found)
+            told = [real_number("derivative", part) for part in found]
+            if len(told) not in (2, 3):
+                raise ValueError
         except (TypeError, ValueError):
-            told = ", ".join(f"{role} = {x:g}" for role, x in zip(self.roles, row, strict=True))
+            place = ", ".join(f"{role} = {x:g}" for role, x in zip(self.roles, row, strict=True))
             raise TypeError(
-                f"derivative gave {shown(found)} at {told}: expected two numbers, dT/dtheta and dT/domega"
+                f"derivative gave {shown(found)} at {place}: expected two numbers, dT/dtheta and dT/domega"
             ) from None
-        if not isfinite(by_theta + by_omega) and all(map(isfinite, row)):
-            raise ValueError(f"derivative gave {shown(found)}: both must be finite")
-        return by_theta, by_omega
+        if not isfinite(sum(told)) and all(map(isfinite, row)):
+            raise ValueError(f"derivative gave {shown(found)}: they must be finite")
+        return told
