@@ -44,7 +44,8 @@ def test_curves_of_a_motion_over_time_and_over_the_angle():
 
 
 def test_each_of_many_designs_has_its_curve():
-    found = dx.simulate(torque=1.0, t_end=0.2, **{**DESIGN, "m_slider": [1.0, 2.0, 3.0]})
+    torque = dx.over_omega([0.0, 90.0], [1.0, 0.0])
+    found = dx.simulate(torque=torque, t_end=0.2, **{**DESIGN, "m_slider": [1.0, 2.0, 3.0]})
     lines = found.plot()["omega"]
     assert len(lines) == 3
     np.testing.assert_array_equal(lines[2].get_ydata(), found["omega"][2])

@@ -36,7 +36,7 @@ H = 2e-5  # of a parameter: the step of the differences
 
 
 @pytest.mark.sampled
-@pytest.mark.parametrize("parameter", BY_TRUTH[: cases(2, 6, len(BY_TRUTH))])
+@pytest.mark.parametrize("parameter", BY_TRUTH[: cases(2, 3, len(BY_TRUTH))])
 def test_sensitivities_are_those_of_60_digits(parameter):
     start = {"torque": -0.5, "theta0": 1.0, "omega_start": 12.0, "t_end": 0.05}
     found = dx.simulate(**start, times=[0.05], wrt=parameter, **LOADED)
@@ -87,15 +87,15 @@ def test_the_work_of_a_constant_torque_is_that_of_the_angle():
 # ---- against differences of tight integrations ------------------------------------------------------
 
 
-def moved(call, given, p, steps):
+def moved(call, given, p, steps, share):
     """The motion with a parameter moved by some steps."""
-    step = H * max(abs(given[p]), 0.05)
+    step = share * max(abs(given[p]), 0.05)
     return dx.simulate(**call, **{**given, p: given[p] + steps * step}), step
 
 
-def differences(call, given, p):
+def differences(call, given, p, share=H):
     """Central differences of order 4 by a parameter; None where the events are not those of all four."""
-    runs = [moved(call, given, p, k) for k in (-2, -1, 1, 2)]
+    runs = [moved(call, given, p, k, share) for k in (-2, -1, 1, 2)]
     kinds = [(run["status"], [(e.kind, e.which) for e in run["events"]], len(run["t"])) for run, _ in runs]
     if kinds.count(kinds[0]) < 4:
         return None
@@ -142,7 +142,7 @@ def drawn(rng):
     }  # fmt: skip
     call, derivative = {"t_end": 0.35}, None
     angles, forces = np.sort(rng.uniform(0.0, 6.2, 4)), rng.normal(0, 20, 4)
-    places = np.linspace(BC - AB, BC + AB, 4)
+    places = np.linspace(BC - AB, BC + 1.3 * AB, 4)
     load = rng.integers(6)
     if load == 0:
         given["F_Y"] = rng.normal(0, 10)
@@ -174,7 +174,7 @@ def drawn(rng):
 def test_random_motions_with_events():
     """Two parameters of each; a motion whose events change within the step of differences is redrawn."""
     rng = np.random.default_rng(20)
-    wanted, done, tried = cases(4, 12, 1000), 0, 0
+    wanted, done, tried = cases(3, 7, 1000), 0, 0
     while done < wanted:
         tried += 1
         call, given, derivative = drawn(rng)
@@ -186,16 +186,18 @@ def test_random_motions_with_events():
 # ---- where there is none, and who asks -----------------------------------------------------------------
 
 
-@pytest.mark.parametrize("omega_start", [9.0, -3.0])
-def test_a_limit_angle_and_when_it_is_reached(omega_start):
-    given = {**ROCKER, "torque": 0.25, "theta0": 0.3, "omega_start": omega_start}
+@pytest.mark.parametrize(("omega_start", "mu"), [(9.0, 0.0), (-3.0, 0.0), (9.0, 0.07)])
+def test_a_limit_angle_and_when_it_is_reached(omega_start, mu):
+    """With friction two sets of forces balance the acceleration there; the motion has one of them."""
+    given = {**ROCKER, "torque": 0.25, "theta0": 0.3, "omega_start": omega_start, "mu": mu}
     wrt = ["m_slider", "theta0"]
     found = dx.simulate(t_end=1.0, times=[0.0], wrt=wrt, **given)
     assert found["status"] == 2
     for p in wrt:
-        wanted = differences({"t_end": 1.0, "times": [0.0], "rtol": 3e-14}, given, p)
+        wanted = differences({"t_end": 1.0, "times": [0.0]}, given, p, 2e-3)
         assert found[f"t_last_wrt_{p}"] == found["events"][-1].wrt[p]
         assert found[f"t_last_wrt_{p}"] == pytest.approx(wanted["t_last"], rel=1e-4)
+        assert found[f"work_wrt_{p}"] == pytest.approx(wanted["work"], rel=1e-4, abs=1e-5)
 
 
 @pytest.mark.parametrize("kind", ["number", "over Y", "over the stroke", "over theta"])

@@ -17,6 +17,7 @@ compiled      the module of a family of designs
 history       histories of angle, speed, quantities and energy
 sensitivities  derivatives of a motion by parameters
 variational   the linear equations that they obey
+rubbing_slopes  the derivatives of the torque that friction takes
 work          the derivative of the work
 slopes        the derivatives of a torque by angle and speed
 cuts          by how much sensitivities jump where a motion is cut

@@ -87,16 +87,17 @@ class Cuts:
             if abs(now - last) > least:
                 shares[held] = last - now
             last = now
-        if len(shares) == 1:  # all of it, with what friction makes of it on the other side of the guide
-            shares = dict.fromkeys(shares, left - right)
+        shifts = {held: self.kink(held, theta) for held in shares}
+        first = next(iter(shifts), None)
+        if first and all((shift == shifts[first]).all() for shift in shifts.values()):
+            shares = {first: left - right}  # with what friction makes of it on the other side of the guide
         elif abs(last - right) > least:
             self.notes.append(
                 f"NaN from t = {after.start:.6g} s on, where the friction jumps with several loads"
             )
             return none + nan
         passages = [
-            share * self.passage(after.start, omega, self.kink(held, theta), x)
-            for held, share in shares.items()
+            share * self.passage(after.start, omega, shifts[held], x) for held, share in shares.items()
         ]
         total: Array = np.sum(passages, axis=0)
         return total

@@ -85,7 +85,8 @@ def _break_away(own: Variations, event: Event, x: Array) -> Array:
     instant = (np.array([number]) for number in (event.t, event.theta, 0.0))
     by_theta = float(own.slopes.at(*instant)[0][0]) - found["T_in_wrt_theta"]
     pushes = np.array([float(p == "torque") - found.get(f"T_in_wrt_{p}", 0.0) for p in own.wrt])
-    return -(by_theta * x + pushes) / by_time
+    slopes: Array = -(by_theta * x + pushes) / by_time
+    return slopes
 
 
 def of_end(own: Variations, of_events: Sequence[Array]) -> Array:

@@ -11,6 +11,7 @@ are halved until they resolve it. At a cut that moves with p, where the accelera
 (alpha before - alpha after) dt/dp (`cuts`).
 """
 
+from bisect import bisect
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -23,16 +24,18 @@ from ..runtime.compiled_only import uncompiled
 from .collocation import NODES, ONCE, PLACES, SERIES, TWICE, Course, Local, solve
 from .cuts import Cuts
 from .equations import Resting, state_of
+from .events import Q
+from .friction import Rubbing
 from .one_design import Piece, Run
 from .result import LIMIT
+from .rubbing_slopes import Signs, rubbing_slopes
 from .slopes import Slopes
 
 Array = NDArray[np.float64]
 RESOLVED = 1e-9  # of a series: its last terms, at most
 HALVINGS = 10  # of a step of the motion, at most
-SHORT = (
-    0.88  # of the last step: where the inertia grows without bound at its end, polynomials go on from there
-)
+SHORT = 0.88  # of the last panel: where the inertia grows without bound, polynomials go on from there
+WELL_BEFORE = 0.1  # of q: so far from a limit angle nothing has lost its digits
 STARTS = ("theta0", "omega_start")
 
 
@@ -58,22 +61,17 @@ class Variations:
         self.cuts = Cuts(run, self.wrt, self.values)
         self.grows = run.status == LIMIT and bool(run.model.coordinate.half)  # the inertia, without bound
         self.pieces = [piece for piece in run.pieces if piece.stop > piece.start] or run.pieces[:1]
-        while (
-            self.grows
-            and len(self.pieces) > 1
-            and run.t - self.pieces[-2].stop < (1.0 - SHORT) * _length(self.pieces[-2])
-        ):
-            self.pieces.pop()
+        if self.grows:
+            self.pieces = _with_long_end(self.pieces, run.model.coordinate.ends)
         self.course = self._joined(*self._solved())
-        self.at_end = self.course.at(np.array([run.t]))
 
     def values(
-        self, names: Sequence[str], theta: Any, omega: Any = 1.0, alpha: Any = 0.0
+        self, names: Sequence[str], theta: Any, omega: Any = 1.0, alpha: Any = 0.0, **other: float
     ) -> dict[str, Array]:
-        """Quantities along the motion, by `evaluate`."""
+        """Quantities along the motion, by `evaluate`; `other` inputs replace those given."""
         shape = np.shape(theta)
         with uncompiled():
-            found = evaluate(list(names), theta=theta, omega=omega, alpha=alpha, **self.given)
+            found = evaluate(list(names), theta=theta, omega=omega, alpha=alpha, **{**self.given, **other})
         return {name: np.broadcast_to(value, shape) for name, value in found.items()}
 
     # ---- panels -----------------------------------------------------------------------------
@@ -106,15 +104,32 @@ class Variations:
     def _local(self, piece: Array, start: Array, h: Array) -> Local:
         """The solutions on some panels."""
         along = self._along(piece, start, h)
-        by_inputs = [f"T_in_wrt_{p}" for p in self.inputs]
-        names = ["T_in_wrt_theta", "T_in_wrt_omega", "T_in_wrt_alpha", *by_inputs]
-        found = self.values(names, along.theta, along.omega, along.alpha)
+        takes = self._taken(along, piece)
         by_theta, by_omega = self.slopes.at(along.t, along.theta, along.omega)
-        mass = found["T_in_wrt_alpha"]
-        pushes = {p: -found[f"T_in_wrt_{p}"] for p in self.inputs} | {"torque": np.ones(mass.shape)}
+        mass = takes["alpha"]
+        pushes = {p: -takes[p] for p in self.inputs} | {"torque": np.ones(mass.shape)}
         columns = [pushes.get(p, np.zeros(mass.shape)) / mass for p in self.wrt]
-        a, b = (by_theta - found["T_in_wrt_theta"]) / mass, (by_omega - found["T_in_wrt_omega"]) / mass
+        a, b = (by_theta - takes["theta"]) / mass, (by_omega - takes["omega"]) / mass
         return solve(h, a, b, np.stack(columns, axis=-1))
+
+    def _taken(self, along: Along, piece: Array) -> dict[str, Array]:
+        """The derivatives of the torque that the motion takes, by its state and by the inputs."""
+        by = ("theta", "omega", "alpha", *self.inputs)
+        state, mu = (along.theta, along.omega, along.alpha), self.run.model.mu
+        found = self.values([f"T_in_wrt_{q}" for q in by], *state, mu=0.0)
+        slopes = {q: found[f"T_in_wrt_{q}"] for q in by}
+        if mu:
+            own, _ = self.rubbing(along, piece, by)
+            slopes |= {q: own[q] + (slopes[q] if q != "mu" else 0.0) for q in by}
+        return slopes
+
+    def rubbing(self, along: Along, piece: Array, by: Sequence[str]) -> tuple[dict[str, Array], Array]:
+        """The derivatives of the torque that friction takes, and that torque."""
+        laws = [law for k in piece.tolist() if isinstance(law := self.pieces[k].law, Rubbing)]
+        sides = (np.array([law.way * law.side for law in laws]), np.array([law.pressed for law in laws]))
+        model, state = self.run.model, (along.theta, along.omega, along.alpha)
+        signs = Signs(*sides, model.sign)
+        return rubbing_slopes(lambda names: self.values(names, *state, mu=0.0), model.mu, signs, by)
 
     def _along(self, piece: Array, start: Array, h: Array) -> Along:
         t = start[:, None] + h[:, None] * PLACES
@@ -174,8 +189,23 @@ class Variations:
         return found
 
 
-def _length(piece: Piece) -> float:
-    return piece.stop - piece.start
+def _with_long_end(pieces: Sequence[Piece], ends: Sequence[float]) -> list[Piece]:
+    """The pieces with the last ones joined, if the motion has one law from well before its limit angle on."""
+
+    def gap(piece: Piece) -> float:
+        q = float(piece.state(np.array([piece.start]))[Q, 0])
+        return min(abs(end - q) for end in ends)
+
+    first = len(pieces) - 1
+    while first and pieces[first - 1].law is pieces[first].law and gap(pieces[first]) < WELL_BEFORE:
+        first -= 1
+    last = pieces[first:]
+    edges = [piece.start for piece in last[1:]]
+
+    def state(t: Array) -> Array:
+        return np.stack([last[bisect(edges, x)].state(x) for x in t.tolist()], axis=1)
+
+    return [*pieces[:first], Piece(last[0].start, last[-1].stop, state, last[0].law)]
 
 
 _END_ONCE, _END_TWICE = ONCE.sum(axis=0), TWICE.sum(axis=0)  # Legendre polynomials are 1 at the end

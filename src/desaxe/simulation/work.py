@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ..loads.load import OverTheta, OverY
 from ..mechanism.names import LENGTHS
-from .collocation import NODES, ONCE, SERIES
+from .collocation import NODES, ONCE, PLACES, SERIES
 from .variational import Along, Variations
 
 Array = NDArray[np.float64]
@@ -19,13 +19,9 @@ def of_work(own: Variations, of_end: Array) -> Array:
     """The derivative of the work up to the end, which comes at an instant of its own."""
     first, last = own.pieces[0], own.pieces[-1]
     start = _energy(own, own.at(first, first.start))[:-1, 0]
-    if own.grows and not own.run.model.mu:
-        return _to_limit(own) - start
-    end = (
-        own.at_limit(lambda along: _energy(own, along))
-        if own.grows
-        else _energy(own, own.at(last, last.stop))[:, 0]
-    )
+    if own.grows:
+        return _to_limit(own, of_end) - start
+    end = _energy(own, own.at(last, last.stop))[:, 0]
     power = end[-1] * of_end if of_end.any() else 0.0
     found: Array = end[:-1] + power - start
     return found
@@ -49,11 +45,11 @@ def _course(own: Variations, along: Along) -> tuple[Array, Array]:
     return x, v
 
 
-def _to_limit(own: Variations) -> Array:
+def _to_limit(own: Variations, of_end: Array) -> Array:
     """The derivative of both energies at a limit angle where the inertia grows without bound.
 
-    They are evaluated where the last panel starts; from there on torque and load do work. At the limit the
-    slider stands at AB cos(theta).
+    They are evaluated where the last panel starts; from there on torque, load and friction do work. At the
+    limit the slider stands at AB cos(theta).
     """
     begin, model = own.at(own.pieces[-1], float(own.course.start[-1])), own.run.model
     along = own.last_panel
@@ -64,6 +60,24 @@ def _to_limit(own: Variations) -> Array:
     push = by_theta * x + by_omega * v + np.array([float(p == "torque") for p in own.wrt])[:, None, None]
     power = (push * along.omega + torque * v)[:, 0]
     found: Array = _energy(own, begin)[:-1, 0] + _integral(own, power) + _of_load(own, begin)
+    return found - _of_friction(own, along, of_end) if model.mu else found
+
+
+def _of_friction(own: Variations, along: Along, of_end: Array) -> Array:
+    """The derivative of the work that friction takes on the last panel."""
+    x, v = _course(own, along)
+    by = ("theta", "omega", "alpha", *own.inputs)
+    piece = np.array([len(own.pieces) - 1])
+    slopes, taken = own.rubbing(along, piece, by)
+    bend = (legendre.legvander(2.0 * PLACES - 1.0, NODES - 1) @ own.course.series[-1]).T / own.course.h[
+        -1
+    ] ** 2
+    rows = [
+        slopes["theta"] * x[k] + slopes["omega"] * v[k] + slopes["alpha"] * bend[k] + slopes.get(p, 0.0)
+        for k, p in enumerate(own.wrt)
+    ]
+    last = own.at_limit(lambda along: own.rubbing(along, piece, ())[1] * along.omega)
+    found: Array = _integral(own, (np.array(rows) * along.omega + taken * v)[:, 0]) + last * of_end
     return found
 
 
