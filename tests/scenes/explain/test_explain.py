@@ -309,3 +309,21 @@ def test_under_a_load_the_kernel_is_the_one_that_runs(load, tmp_path, monkeypatc
     run = dx.explain(scene)["run"]
     assert run["cached"] == "memory"
     assert run["way"] == "compiled"
+
+
+@pytest.mark.parametrize("load", UNDER)
+def test_the_cost_of_a_load_is_told(load):
+    """Over theta once for each angle, over Y at each point; the time of that is part of the whole."""
+    scene = {
+        "outputs": ["T_in"],
+        "mechanism": {"AB": 0.125, "BC": 0.35, "ec": [0.0, 0.05]},
+        "motion": {"omega0": 157.0, "theta": {"start": 0, "stop": 6, "num": 13_000}},
+        "masses": {"m_slider": 1.0},
+    }
+    plan, bare = dx.explain({**scene, "loads": {"F_Y": UNDER[load]}}), dx.explain(scene)
+    (cost,) = plan["loads"]
+    assert (cost["name"], cost["lookups"]) == ("F_Y", {"over theta": 13_000, "over Y": 26_000}[load])
+    assert plan["run"]["seconds"]["one_core"] >= bare["run"]["seconds"]["one_core"] + cost["seconds"]
+    assert f"F_Y is looked up {cost['lookups']:,} times" in str(plan)
+    assert "no requested name depends on it" not in str(plan)
+    assert bare["loads"] == []

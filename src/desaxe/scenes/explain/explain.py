@@ -12,7 +12,6 @@ from typing import Any
 from ...compiler.kernel import Kernel
 from ...compiler.passes.double_double import double_double
 from ...evaluation.plan import Plan as Planned
-from ...evaluation.points import Points
 from ...evaluation.reduced import Reduced
 from ...loads.load import Load
 from ...mechanism.catalogue import quantity
@@ -35,9 +34,10 @@ from ..scene import scene as scene_of
 from ..stored import prepared_content
 from ..values import Value
 from . import estimate
+from .loads import load_costs, points_of
 from .loops import Loop, loops_of
 from .steps import skipped_of, steps_of
-from .total import costs_of
+from .total import costs_of, work_besides
 
 PROMISES = {
     "standard": "at most 8 ulp x (1 + the sum of the condition numbers), wherever it can be assembled",
@@ -105,7 +105,11 @@ def _plan_of(content: Content) -> Plan:
         "inputs": [_input(name, value, content.units) for name, value in content.inputs.items()],
     }
     plan = plan_of_grid(content) if content.outputs else None
-    data |= dict.fromkeys(("points", "loops", "operations", "run")) if plan is None else _grid(content, plan)
+    data |= (
+        dict.fromkeys(("points", "loops", "operations", "loads", "run"))
+        if plan is None
+        else _grid(content, plan)
+    )
     stored = _sweep(content)
     costs = costs_of(content, data["run"], _cells(plan), stored["disk"] if stored else 0)
     total = {
@@ -114,7 +118,7 @@ def _plan_of(content: Content) -> Plan:
         "later": sum(cost.later for cost in costs),
     }
     results = content.data if content.store is None else content.store
-    return Plan(data | {"also": _also(content), "results": results, "sweep": stored, "total": total})
+    return Plan(data | {"also": work_besides(content), "results": results, "sweep": stored, "total": total})
 
 
 def _sweep(content: Content) -> dict[str, Any] | None:
@@ -177,15 +181,18 @@ def _grid(content: Content, plan: Planned) -> dict[str, Any]:
     straight = sum(loop.operations for loop in loops if not loop.close)
     total = sum(loop.work for loop in loops)
     steps = steps_of(found.key, found.request, straight)
+    loads = load_costs(plan, found.points, compiled)
+    given = {n: value for n, value in content.inputs.items() if n not in {load.name for load in loads}}
     return {
         "points": found.points,
         "axes": [{"name": n, "size": s} for n, s in zip(found.axes, found.sizes, strict=True) if n],
         "steps": [step._asdict() for step in steps],
-        "skipped": [one._asdict() for one in skipped_of(found.key, found.request, content.inputs)],
+        "skipped": [one._asdict() for one in skipped_of(found.key, found.request, given)],
         "loops": [_loop(loop, found.points) for loop in loops],
         "operations": {"straight": straight, "per_point": total / found.points, "total": total},
         "reduction": _reduction(plan, found.key),
-        "run": _run(content, found, loops, compiled),
+        "loads": [load._asdict() for load in loads],
+        "run": _run(content, found, loops, compiled, sum(load.seconds or 0.0 for load in loads)),
         "memory": _memory(plan, found),
     }
 
@@ -193,8 +200,7 @@ def _grid(content: Content, plan: Planned) -> dict[str, Any]:
 def _kernel_of(plan: Planned) -> GridKernel:
     """The kernel of a plan, with its loops: axes joined to one have a name together."""
     (step, *_) = plan.steps
-    assert isinstance(step, (Points, Reduced))
-    points = step.values if isinstance(step, Reduced) else step
+    points = points_of(plan)
     of = points.inside or points
     key = step.key or of.key if isinstance(step, Reduced) else of.key
     order = [*[""] * (key.axes - of.first - 1 if key.reduce else not of.dims), *of.dims]
@@ -230,13 +236,15 @@ def _loop(loop: Loop, points: int) -> dict[str, Any]:
     return {**row, "along": list(loop.along), "values": list(loop.values), "per_point": loop.work / points}
 
 
-def _run(content: Content, found: GridKernel, loops: list[Loop], compiled: bool) -> dict[str, Any]:
-    """The execution of the grid: tier, threads, estimated times."""
+def _run(
+    content: Content, found: GridKernel, loops: list[Loop], compiled: bool, loads: float
+) -> dict[str, Any]:
+    """The execution of the grid: tier, threads, estimated times; `loads` is the time of their lookups."""
     points = found.points
     cached, path = _cached(found.key)
-    plain = estimate.plain_time(sum(loop.operations for loop in loops), points)
+    plain = estimate.plain_time(sum(loop.operations for loop in loops), points) + loads
     outs = sum(name not in STATUSES for name in found.key.names)
-    one = estimate.loops_time(loops, 0 if found.key.reduce else points * outs)
+    one = estimate.loops_time(loops, 0 if found.key.reduce else points * outs) + loads
     length = found.sizes[0]
     threads = max(1, min(content.threads or available(), points // LEAST_BLOCK, length))
     first = {"memory": 0.0, "disk": estimate.LOAD}.get(cached, estimate.IMPORT + estimate.compile_time(loops))
@@ -274,26 +282,3 @@ def _memory(plan: Planned, found: GridKernel) -> dict[str, int]:
     grid = sum(1 if name in STATUSES else 8 for name in found.key.names) * found.points
     inputs = 8 * max(1, sum(plan.outer.axes[name].size for name in plan.outer.dimensions))
     return {"result": result, "grid": result if plan.reductions is None else grid, "inputs": inputs}
-
-
-def _also(content: Content) -> list[dict[str, Any]]:
-    """The work besides the grid: peaks, pictures, checks."""
-    found: list[dict[str, Any]] = []
-    for peak in content.peaks:
-        designs = prod(len(values) for values in peak.axes.values())
-        how = "refined over theta by its derivative"
-        found.append(
-            {"what": f"{peak.kind} of {peak.quantity}", "count": designs, "of": "designs", "how": how}
-        )
-    if content.steady is not None:
-        designs = prod(len(values) for values in content.steady.axes.values())
-        how = "periodic motions by Newton's method, in NumPy"
-        found.append({"what": "steady state on a motor", "count": designs, "of": "designs", "how": how})
-    for picture in content.pictures:
-        points = prod(len(value) for value in picture.inputs.values() if isinstance(value, tuple))
-        how = f"drawn to {picture.file}"
-        found.append({"what": f"picture of {picture.quantity}", "count": points, "of": "points", "how": how})
-    if content.checks:
-        how = "single points in plain Python"
-        found.append({"what": "printed values", "count": len(content.checks), "of": "points", "how": how})
-    return found

@@ -165,6 +165,7 @@ def _how(plan: Mapping[str, Any]) -> str:
         lines.append(f"  why      {forced or why}")
     if run["far_angles"]:
         lines.append("  angles   some are so large that sine and cosine are those of the C library (slower)")
+    lines += [row for load in plan["loads"] for row in _wrapped("load", [_load(load)])]
     per = f"{_time(seconds['per_point'])} a point" + (" and core" if run["way"] == "compiled" else "")
     lines.append(f"  time     about {_time(seconds['expected'])} ({per})")
     if seconds["before_the_first"]:
@@ -178,6 +179,13 @@ def _how(plan: Mapping[str, Any]) -> str:
     lines.append(kept)
     lines.append(f"  results  {plan['results'] or 'returned, not written to a file'}")
     return "\n".join(lines)
+
+
+def _load(load: Mapping[str, Any]) -> str:
+    """The cost of a load."""
+    times = f"{load['lookups']:,} time{'s' if load['lookups'] > 1 else ''}"
+    took = "" if load["seconds"] is None else f": about {_time(load['seconds'])} on one core"
+    return f"{load['name']} is looked up {times}, {load['where']}{took}"
 
 
 def _time(seconds: float) -> str:
