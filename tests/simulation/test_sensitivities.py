@@ -170,6 +170,22 @@ def drawn(rng):
     return call, given, derivative
 
 
+JUMPS = {
+    "over Y": (dx.over_Y([0.1, 0.25, 0.25, 0.4], [0.0, 20.0, -10.0, 0.0]), 0.0, ["AB"]),
+    "over the stroke": (
+        dx.over_stroke([0.0, 0.1, 0.1, 0.3], [0, 20, -10, 0], [0, 0, -10, 0], dead_centre="outer"),
+        0.1, ["BC", "mu"],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", JUMPS)
+def test_jumps_of_loads_that_move_with_the_lengths(kind):
+    load, mu, wrt = JUMPS[kind]
+    given = {**PRESS, "torque": 0.25, "theta0": 0.3, "omega_start": 4.0, "mu": mu}
+    assert check({"t_end": 0.4, "F_Y": load}, given, wrt, 3e-5)
+
+
 @pytest.mark.sampled
 def test_random_motions_with_events():
     """Two parameters of each; a motion whose events change within the step of differences is redrawn."""
