@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..loads.angles import crossings, dead_centres, repeated
-from ..loads.load import Load, OverTheta, OverY
+from ..loads.angles import crossings, dead_centres
+from ..loads.load import TURN, Load, OverTheta, OverY
 from ..loads.pieces import Place
 from ..loads.resolve import Plan
 from ..mechanism.load_lines import LoadLines, Total, Under, Way
@@ -183,8 +183,11 @@ def open_points(
     loads: Mapping[str, Load], lengths: Sequence[Array], branch: int, theta: Array
 ) -> tuple[Array, Array]:
     """The designs, and the places in `theta`, at which rounding may decide on the side of a jump."""
-    order = np.argsort(theta, kind="stable")
-    ascending = theta[order]
+    with np.errstate(invalid="ignore"):
+        reduced = np.remainder(theta, TURN)
+    order = np.argsort(reduced, kind="stable")
+    ascending = reduced[order]
+    lost_by_turns = 2.0**-53 * np.abs(theta[np.isfinite(theta)]).max(initial=0.0)
     rows, places = [np.empty(0, np.intp)], [np.empty(0, np.intp)]
     for load in loads.values():
         if isinstance(load, OverY) and load.jumping:
@@ -192,9 +195,11 @@ def open_points(
             rows.append(np.repeat(np.arange(lengths[0].size), lost.size))
             places.append(np.tile(lost, lengths[0].size))
             angles, room = _jumps(load, lengths, branch)
-            every = repeated(angles, ascending[0] - 1.0, ascending[-1] + 1.0)
-            row, number = np.nonzero(np.isfinite(every))
-            here, beside = every[row, number], room[row, number // (every.shape[1] // angles.shape[1])]
+            every = np.remainder(angles, TURN)[:, None, :] + np.array([-TURN, 0.0, TURN])[:, None]
+            row, turn, number = np.nonzero(
+                (every > -1.0 - lost_by_turns) & (every < TURN + 1.0 + lost_by_turns)
+            )
+            here, beside = every[row, turn, number], room[row, number] + lost_by_turns
             first = np.searchsorted(ascending, here - beside)
             last = np.searchsorted(ascending, here + beside, side="right")
             for k in np.flatnonzero(last > first):

@@ -17,6 +17,7 @@ from ..support.forks import IMPORTS
 from .table import Table, polynomial
 
 TURN = 2.0 * pi
+MOST_RANGES = 16  # of angles, of which a table remembers the nodes
 POSITION = ("Y", "Y_wrt_theta", "Y_wrt_theta_theta")  # which piece holds: the position, and the way
 
 
@@ -109,6 +110,19 @@ class TableOverTheta(OverTheta):
 
     def nodes(self, low: float, high: float, smooth: bool) -> list[float]:
         """The angles at which pieces meet, each rounded up into the piece to its right."""
+        known, range_ = self._nodes, (low, high, smooth)
+        if range_ not in known:
+            if len(known) >= MOST_RANGES:
+                known.clear()
+            known[range_] = self._nodes_in(*range_)
+        return list(known[range_])
+
+    @computed_once
+    def _nodes(self) -> dict[tuple[float, float, bool], list[float]]:
+        """The nodes of ranges: each takes some 30 us, and searches of designs ask for the same."""
+        return {}
+
+    def _nodes_in(self, low: float, high: float, smooth: bool) -> list[float]:
         angles = self.table.knots if smooth else self.table.kinks
         found = [self._first_right(angle) for angle in self._repeated(angles, low, high)]
         return sorted({angle for angle in found if low <= angle <= high})
