@@ -137,17 +137,17 @@ def labelled(
 
 
 def with_loads(dataset: "xr.Dataset", loads: Mapping[str, Any]) -> "xr.Dataset":
-    """The Dataset with loads that vary with the motion: one over theta as a coordinate, and what each is."""
+    """A new Dataset with loads that vary with the motion: one over theta as a coordinate, and what each is."""
     if not loads:
         return dataset
     over_theta = {name: load for name, load in loads.items() if load.over == "theta"}
-    if "theta" in dataset.dims:
+    if over_theta and "theta" in dataset.dims:
         theta = dataset["theta"]
         columns = {n: (theta.dims, load(theta.values), input_attributes(n)) for n, load in over_theta.items()}
         dataset = dataset.assign_coords(columns)
-    found = dataset.assign_attrs(loads=loads_text(loads))
-    found.encoding = {**found.encoding, KNOWN: KnownLoads(loads)}
-    return found
+    dataset.attrs["loads"] = loads_text(loads)
+    dataset.encoding = {**dataset.encoding, KNOWN: KnownLoads(loads)}
+    return dataset
 
 
 KNOWN = "loads"  # the key in a Dataset's `encoding`, which no file gets
