@@ -137,7 +137,7 @@ def labelled(
 
 
 def with_loads(dataset: "xr.Dataset", loads: Mapping[str, Any]) -> "xr.Dataset":
-    """A new Dataset with loads that vary with the motion: one over theta as a coordinate, and what each is."""
+    """A new Dataset with its varying loads: one over theta as a coordinate, and what each is."""
     if not loads:
         return dataset
     over_theta = {name: load for name, load in loads.items() if load.over == "theta"}
