@@ -261,6 +261,17 @@ def test_a_crank_that_friction_holds_has_none_of_its_speed():
         assert end.wrt[p] != 0.0
 
 
+def test_a_motion_that_jams_has_those_up_to_there():
+    jams = {"ec": 0.06, "AB": 0.04, "BC": 0.101, "m_slider": 1.0, "I_crank": 0.01, "F_Y": -50.0, "mu": 0.9}
+    wrt = ["omega_start", "theta0", "AB"]
+    found = dx.simulate(torque=3.0, t_end=1.0, theta0=1.0, omega_start=-3.0, times=[0.0], wrt=wrt, **jams)
+    assert found["status"] == 3
+    assert [found[f"omega_wrt_{p}"][0] for p in wrt] == [1.0, 0.0, 0.0]
+    assert [found[f"theta_wrt_{p}"][0] for p in wrt] == [0.0, 1.0, 0.0]
+    assert math.isnan(found["t_last_wrt_AB"])
+    assert "NaN of friction jams" in found["message"]
+
+
 def test_a_break_away_comes_when_the_torque_is_enough():
     given = {"mu": 0.3, "F_X": -40.0, "theta0": 1.0, "AB": 0.14, "omega_start": 0.0}
     rest = {n: value for n, value in PRESS.items() if n not in given}

@@ -157,7 +157,7 @@ class Variations:
             if k:
                 v = v + self.cuts.jump(self.pieces[k - 1], one, x, v)
             if isinstance(one.law, Resting):
-                v = np.zeros(len(self.wrt))
+                v = v if one.stop == one.start else np.zeros(len(self.wrt))  # stopped where it started
                 rows.append((one.start, one.stop - one.start, x, v, np.zeros((NODES, len(self.wrt)))))
                 continue
             for row in np.flatnonzero(piece == k):
