@@ -2,6 +2,7 @@
 
 import math
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -29,6 +30,44 @@ def test_the_page_has_the_numbers_of_evaluate_and_saves_the_load(kind, visit, fo
     assert saved.inputs["F_Y"] == load
 
 
+NAMES = ["T_in", "T_in_wrt_theta", "T_in_wrt_ec", "T_in_wrt_BC", "N_C", "status"]
+UNDER = """(points) => points.map(([theta, added, ec, omega0]) => NAMES.map((name) => window.desaxe.valueAt(
+  name, { ...window.desaxe.state.designs[0], F_Y: added, ec, omega0 }, theta)))""".replace(
+    "NAMES", str(NAMES)
+)
+PLACES, OUTWARD, INWARD = [0.0, 0.02, 0.035, 0.06], [-900.0, -300.0, -80.0, 20.0], [10.0, -70.0, 30.0, 0.0]
+SLIDER = {
+    "over Y": lambda out, back: dx.over_Y([0.04 + x for x in PLACES], out, back),
+    "over Y, one way, cubic": lambda out, back: dx.over_Y([0.02 + x for x in PLACES], out, kind="cubic"),
+    "a jump from the outer": lambda out, back: dx.over_stroke(
+        [0.0, 0.02, 0.02, 0.06], out, back, dead_centre="outer"
+    ),
+    "from the inner": lambda out, back: dx.over_stroke(PLACES, out, back, "step", dead_centre="inner"),
+}
+
+
+@pytest.mark.parametrize("kind", SLIDER)
+def test_a_load_that_follows_the_slider(kind, visit, folder):
+    """Values and total derivatives, either way; a design without the dead centre; the scene in mm."""
+    load = SLIDER[kind](OUTWARD, INWARD)
+    draw = np.random.default_rng(31)
+    path = folder / f"slider_{list(SLIDER).index(kind)}.html"
+    page = visit(dx.explore(path=path, F_Y=load, units="mm, deg, rpm, kN", **PRESS))
+    points = [
+        [draw.uniform(-7, 7), 0.0, draw.uniform(-0.02, 0.02), draw.choice([-50.0, 50.0])] for _ in range(40)
+    ]
+    points += [[1.0, 30.0, 0.01, 200.0], [0.3, 0.0, 0.03, 50.0]]  # the last has no inner dead centre
+    for (theta, added, ec, omega0), found in zip(points, page.evaluate(UNDER, points), strict=True):
+        under = SLIDER[kind]([v + added for v in OUTWARD], [v + added for v in INWARD])
+        right = dx.evaluate(NAMES, theta=theta, F_Y=under, **{**PRESS, "ec": ec, "omega0": omega0})
+        for value, name in zip(found, NAMES, strict=True):
+            shown = math.nan if value is None else value
+            assert shown == pytest.approx(right[name], rel=1e-10, abs=1e-8, nan_ok=True), (theta, ec, name)
+    assert "over" in page.evaluate("document.getElementById('loads-words').textContent")
+    saved = dx.scene(tomllib.loads(page.evaluate("window.desaxe.sceneText()")))
+    assert replace(saved.inputs["F_Y"], unit=None) == load
+
+
 def test_a_function_is_refused(folder):
-    with pytest.raises(TypeError, match=r"explore: F_Y = .* a page holds numbers and tables over theta"):
+    with pytest.raises(TypeError, match=r"explore: F_Y = .* a page holds numbers and tables, no functions"):
         dx.explore(path=folder / "none.html", F_Y=np.sin, **PRESS)

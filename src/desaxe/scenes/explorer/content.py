@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ...compiler.languages.javascript import emit_javascript
-from ...loads.load import Load, TableOverTheta
+from ...loads.load import Load, OverY, TableOverTheta
 from ...loads.resolve import plan_of, split
 from ...mechanism.catalogue import Quantity, law_name, quantities, quantity
 from ...mechanism.inputs import INPUTS
@@ -45,8 +45,8 @@ class Function(NamedTuple):
     names: tuple[str, ...]
     inputs: tuple[str, ...]
     source: str
-    # Of a total derivative: its place, that of the slope by a load, and the load.
-    terms: tuple[tuple[int, int, str], ...] = ()
+    # Of a total derivative: its place, that of the slope by a load, the load, the parameter that moves it.
+    terms: tuple[tuple[int, int, str, str], ...] = ()
 
 
 class Content(NamedTuple):
@@ -60,7 +60,8 @@ class Content(NamedTuple):
     functions: tuple[Function, ...]
     left_out: Mapping[str, tuple[float, ...]]  # input -> its values that no design has
     given: tuple[str, ...]  # the inputs that were given
-    loads: Mapping[str, TableOverTheta] = MappingProxyType({})
+    loads: Mapping[str, TableOverTheta | OverY] = MappingProxyType({})
+    motion: Function | None = None  # that loads over Y or the stroke follow
     units: UnitSystem = SI
     fields: UnitSystem = SI
     definitions: tuple[Definition, ...] = ()  # of the scene
@@ -78,7 +79,7 @@ def content(
 ) -> Content:
     """The content for these inputs; `names` are the quantities, those of the motion without.
 
-    A load over theta is a table; what the page changes of it is a constant added to it.
+    A load that varies with the motion is a table; what the page changes of it is a constant added to it.
     """
     loads = _tables(inputs)
     given: dict[str, Value] = {"alpha": 0.0, **inputs, **dict.fromkeys(loads, 0.0)}
@@ -93,17 +94,18 @@ def content(
         groups |= {} if names is not None else {name: [name] for name in VALUES if name not in groups}
         given = {**given, **{name: 0.0 for name in CHANGED if name not in given}}
     functions = tuple(_function(base, own, given, branch, loads) for base, own in groups.items())
+    motion = _motion(groups.values(), given, branch, loads)
     designs = _designs(given)
     left = {n: out for n, value in given.items() if n != "theta" and (out := _left_out(n, value, designs))}
-    return Content(title, branch, _angles(given), designs, shown, functions, left, named, loads)
+    return Content(title, branch, _angles(given), designs, shown, functions, left, named, loads, motion)
 
 
-def _tables(inputs: Mapping[str, Any]) -> dict[str, TableOverTheta]:
-    """The loads that vary with the motion; TypeError for one that is no table over theta."""
+def _tables(inputs: Mapping[str, Any]) -> dict[str, TableOverTheta | OverY]:
+    """The loads that vary with the motion; TypeError for one that is no table."""
     found = {}
     for name, load in split(inputs)[1].items():
-        if not isinstance(load, TableOverTheta):
-            raise TypeError(f"explore: {name} = {load!r}: a page holds numbers and tables over theta")
+        if not isinstance(load, (TableOverTheta, OverY)):
+            raise TypeError(f"explore: {name} = {load!r}: a page holds numbers and tables, no functions")
         found[name] = load
     return found
 
@@ -169,11 +171,24 @@ def _function(
     asked = _request(plan.names, given, branch)
     program = specialise(asked.names, asked.form, asked.fixed)
     terms = tuple(
-        (plan.names.index(name), plan.names.index(term.slope), term.force)
+        (plan.names.index(name), plan.names.index(term.slope), term.force, term.parameter)
         for name, group in plan.terms.items()
         for term in group
     )
     return Function(base, plan.shown, program.inputs, emit_javascript(program, f"of_{base}"), terms)
+
+
+def _motion(
+    groups: Iterable[Iterable[str]], given: Mapping[str, Value], branch: int, loads: Mapping[str, Load]
+) -> Function | None:
+    """The motion that loads over Y or the stroke follow, with the derivatives that totals need."""
+    plans = [plan_of(tuple(names), loads, "omega" in given, "mu" in given) for names in groups]
+    names = tuple(dict.fromkeys(name for plan in plans for name in plan.motion))
+    if not names:
+        return None
+    asked = _request(names, given, branch)
+    program = specialise(asked.names, asked.form, asked.fixed)
+    return Function("motion", names, program.inputs, emit_javascript(program, "of_motion"))
 
 
 def _request(names: tuple[str, ...], given: Mapping[str, Value], branch: int) -> Request:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ...compiler.languages.javascript import HEADER
+from ...loads.load import OverY, TableOverTheta
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import parts
 from ...mechanism.status import PointStatus
@@ -51,8 +52,9 @@ def _asset(name: str) -> str:
 
 def _program(content: Content) -> str:
     """The emitted functions, and a table of them."""
-    table = [f"  {f.quantity}: of_{f.quantity}," for f in content.functions]
-    sources = "\n".join(function.source for function in content.functions)
+    functions = [*content.functions, *([content.motion] if content.motion else [])]
+    table = [f"  {f.quantity}: of_{f.quantity}," for f in functions]
+    sources = "\n".join(function.source for function in functions)
     return "\n".join([HEADER, sources, "const FUNCTIONS = {", *table, "};"])
 
 
@@ -85,18 +87,22 @@ def _data(content: Content) -> dict[str, Any]:
         "functions": {
             f.quantity: {"names": f.names, "inputs": f.inputs, "terms": f.terms} for f in content.functions
         },
-        "loads": {
-            name: {
-                "knots": load.table.knots,
-                "rows": load.table.rows,
-                "period": load.period,
-                "kind": load.kind,
-            }
-            for name, load in content.loads.items()
-        },
+        "loads": {name: _load(load) for name, load in content.loads.items()},
+        "motion": content.motion and {"names": content.motion.names, "inputs": content.motion.inputs},
         "quantities": {row.name: _about(row.name, row.unit, row.meaning) for row in content.quantities},
         "status": {str(int(status)): status.words for status in PointStatus},
     }
+
+
+def _load(load: TableOverTheta | OverY) -> dict[str, Any]:
+    """A table: cubics in the distance from a knot; one over Y or the stroke has them for each way."""
+    if isinstance(load, TableOverTheta):
+        own = {"knots": load.table.knots, "rows": load.table.rows, "period": load.period}
+    else:
+        inward = None if load.inward is None else load.inward.rows
+        own = {"knots": load.outward.knots, "rows": load.outward.rows, "inward": inward}
+        own |= {"centre": load.centre, "rises": load.rises}
+    return {**own, "over": load.over, "kind": load.kind}
 
 
 def _units(units: UnitSystem) -> dict[str, str]:

@@ -9,23 +9,65 @@ const SAMPLES = 721;
 const NEARER = [1, 2, 3, 4, 5, 6, 7, 8].map((k) => 4 ** -k); // of a step towards a border
 
 function answers(base, design, theta) {
-  const { inputs, terms } = CONTENT.functions[base];
-  const added = (name) => (name in CONTENT.loads ? loadAt(name, theta)[0] : 0);
+  const { inputs, names, terms } = CONTENT.functions[base], loads = loadsAt(base, design, theta);
+  const added = (name) => loads[name]?.value ?? 0;
   const found = FUNCTIONS[base](...inputs.map((name) => (name === "theta" ? theta : (design[name] ?? 0) + added(name))));
-  for (const [place, slope, force] of terms) found[place] += found[slope] * loadAt(force, theta)[1];
-  return found;
+  for (const [place, slope, force, parameter] of terms) found[place] += found[slope] * loads[force].by(parameter);
+  if (Object.values(loads).every(({ there }) => there)) return found;
+  return found.map((value, k) => (names[k] !== "status" ? NaN : value || NO_DEAD_CENTRE));
 }
 
-// A load over theta and its derivative, from its table: cubics in the distance from a knot.
-function loadAt(name, theta) {
-  const { knots, rows, period } = CONTENT.loads[name], first = knots[0];
+const NO_DEAD_CENTRE = 1; // the status of a load that is measured from one
+
+// The status of the linkage itself, whatever its loads.
+function linkageAt(design, theta) {
+  const { inputs, names } = CONTENT.functions.status;
+  return FUNCTIONS.status(...inputs.map((name) => (name === "theta" ? theta : (design[name] ?? 0))))[names.indexOf("status")];
+}
+
+// The loads that a function needs, at an angle: the value, the derivative by a parameter, whether it is there.
+function loadsAt(base, design, theta) {
+  const { inputs } = CONTENT.functions[base];
+  const names = Object.keys(CONTENT.loads).filter((name) => inputs.includes(name));
+  const follow = names.some((name) => CONTENT.loads[name].over !== "theta");
+  const motion = follow ? motionAt(design, theta) : {};
+  const at = (name) => (CONTENT.loads[name].over === "theta" ? overTheta : overSlider)(CONTENT.loads[name], theta, motion, design);
+  return Object.fromEntries(names.map((name) => [name, at(name)]));
+}
+
+function motionAt(design, theta) {
+  const { names, inputs } = CONTENT.motion;
+  const found = FUNCTIONS.motion(...inputs.map((name) => (name === "theta" ? theta : (design[name] ?? 0))));
+  return Object.fromEntries(names.map((name, place) => [name, found[place]]));
+}
+
+function overTheta({ knots, rows, period }, theta) {
+  const first = knots[0];
   let x = theta - period * Math.floor((theta - first) / period);
   if (x < first) x += period;
   if (x >= first + period) x -= period;
+  const [value, slope] = looked(knots, rows, x, false);
+  return { value, by: () => slope, there: true };
+}
+
+// Over the slider's position, or its distance from a dead centre: the way it goes chooses the table.
+function overSlider({ knots, rows, inward, centre, rises }, theta, motion, design) {
+  const forward = motion.Y_wrt_theta || motion.Y_wrt_theta_theta;
+  const turning = "omega" in design ? design.omega || design.alpha : design.omega0;
+  const ahead = turning < 0 ? -forward : forward, side = centre && motion[centre] < motion.Y ? -1 : 1;
+  const x = centre ? Math.abs(motion[centre] - motion.Y) : motion.Y;
+  const [value, slope] = looked(knots, ahead < 0 && inward ? inward : rows, x, ahead * rises < 0);
+  const moved = (p) => (centre ? side * ((motion[`${centre}_wrt_${p}`] ?? 0) - motion[`Y_wrt_${p}`]) : motion[`Y_wrt_${p}`]);
+  const number = (v) => (Number.isFinite(v) ? v : NaN);
+  return { value: number(value) || 0, by: (p) => slope * number(moved(p)), there: !centre || Number.isFinite(x) || !Number.isFinite(motion.Y) };
+}
+
+// Value and derivative of a table: cubics in the distance from a knot; on a knot `back` takes the piece below.
+function looked(knots, rows, x, back) {
   let piece = 0, beyond = knots.length;
   while (piece < beyond) {
     const middle = (piece + beyond) >> 1;
-    if (knots[middle] <= x) piece = middle + 1;
+    if (back ? knots[middle] < x : knots[middle] <= x) piece = middle + 1;
     else beyond = middle;
   }
   const [a, b, c, d] = rows[piece], s = x - knots[Math.max(piece - 1, 0)];
@@ -102,7 +144,7 @@ function curve(name, design) {
 
 // The arcs of one turn in which the linkage cannot be assembled, as [from, to].
 function gaps(design) {
-  const stuck = (theta) => statusAt(design, theta) === 1;
+  const stuck = (theta) => linkageAt(design, theta) === 1;
   const even = Array.from({ length: 181 }, (_, k) => (TURN * k) / 180);
   const angles = anglesOf(stuck, design, 0, TURN, even);
   const found = [];
