@@ -195,11 +195,11 @@ def open_points(
             rows.append(np.repeat(np.arange(lengths[0].size), lost.size))
             places.append(np.tile(lost, lengths[0].size))
             angles, room = _jumps(load, lengths, branch)
+            room += lost_by_turns
             every = np.remainder(angles, TURN)[:, None, :] + np.array([-TURN, 0.0, TURN])[:, None]
-            row, turn, number = np.nonzero(
-                (every > -1.0 - lost_by_turns) & (every < TURN + 1.0 + lost_by_turns)
-            )
-            here, beside = every[row, turn, number], room[row, number] + lost_by_turns
+            most = room.max(initial=0.0)
+            row, turn, number = np.nonzero((every >= -most) & (every <= TURN + most))
+            here, beside = every[row, turn, number], room[row, number]
             first = np.searchsorted(ascending, here - beside)
             last = np.searchsorted(ascending, here + beside, side="right")
             for k in np.flatnonzero(last > first):
@@ -211,9 +211,9 @@ def open_points(
 def _jumps(load: OverY, lengths: Sequence[Array], branch: int) -> tuple[Array, Array]:
     """The angles of a load's jumps in a turn, and how far beside each rounding may decide."""
     angles, ends = crossings(load, load.jumps, lengths, branch), dead_centres(lengths)
-    flat = np.zeros(angles.shape, np.bool_)
-    for end in ends.T:
-        flat |= np.abs(np.sin(0.5 * (angles - end[:, None]))) <= NEAR_DEAD_CENTRE
+    # Half of what lies between both angles of a position is that of the crank with the line to the slider.
+    first, second = np.split(angles, 2, axis=1)
+    flat = np.tile(~(np.abs(np.sin(0.5 * (second - first))) > NEAR_DEAD_CENTRE), 2)
     if load.turns:
         # Without offset the sign of the slope is that of the sine, right to the last bit.
         own = np.where(lengths[0][:, None] == 0.0, np.nan, ends)
