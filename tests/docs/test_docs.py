@@ -148,7 +148,7 @@ def broken_links(site):
 
 
 def test_every_call_with_loads_is_in_their_table(monkeypatch):
-    """Every public call that has loads among its inputs, but those that ask for the geometry alone."""
+    """Every public call that has loads among its inputs."""
     monkeypatch.syspath_prepend(ROOT / "docs" / "_site")
     loads = import_module("loads")
     told = {call.partition("(")[0] for call in loads.CALLS}
@@ -158,7 +158,7 @@ def test_every_call_with_loads_is_in_their_table(monkeypatch):
         kinds = {parameter.kind for parameter in known.values()}
         if "F_Y" in known or inspect.Parameter.VAR_KEYWORD in kinds:
             with_inputs.add(name)
-    assert with_inputs - told == {"design_map", "flywheel"}  # of the geometry; another name of `drive`
+    assert with_inputs - told == {"flywheel"}  # another name of `drive`
 
 
 @pytest.mark.parametrize(("call", "kinds"), [("evaluate", 5), ("peak", 5), ("function", 1)])
