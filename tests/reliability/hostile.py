@@ -1,8 +1,8 @@
 """Trials of input: absurd values for every argument of every public call, and for every key of a scene.
 
 A call may answer, or refuse with a ValueError or TypeError that names the input; MemoryError and TimeoutError
-are refusals, too. Anything else, a warning included, is a crash, and a minute without an end is a hang: a first
-call compiles, perhaps on a busy machine.
+are refusals, too. Anything else, a warning included, is a crash, and a minute without an end is a hang: a
+first call compiles, perhaps on a busy machine.
 """
 
 import copy

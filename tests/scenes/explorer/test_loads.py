@@ -63,6 +63,8 @@ def test_a_load_that_follows_the_slider(kind, visit, folder):
         for value, name in zip(found, NAMES, strict=True):
             shown = math.nan if value is None else value
             assert shown == pytest.approx(right[name], rel=1e-10, abs=1e-8, nan_ok=True), (theta, ec, name)
+    lacks = page.evaluate("window.desaxe.statusWords({ ...window.desaxe.state.designs[0], ec: 0.03 }, 0.3)")
+    assert ("lacks the dead centre" in lacks) == (kind == "from the inner")
     assert "over" in page.evaluate("document.getElementById('loads-words').textContent")
     saved = dx.scene(tomllib.loads(page.evaluate("window.desaxe.sceneText()")))
     assert replace(saved.inputs["F_Y"], unit=None) == load

@@ -114,4 +114,4 @@ charts.forEach((_, index) => listen(index));
 addEventListener("resize", () => later(() => drawMechanism(state.designs, state.theta)));
 
 // For scripts, and for those who would like to check a number.
-window.desaxe = { content: CONTENT, state, valueAt, curve, gaps, kindOf, canTurn, turnOf, peakOf, toSI, sceneText, valuesText };
+window.desaxe = { content: CONTENT, state, valueAt, curve, gaps, kindOf, canTurn, turnOf, peakOf, toSI, sceneText, statusWords, valuesText };
