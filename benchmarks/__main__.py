@@ -15,6 +15,7 @@ RESULTS = Path(__file__).parent / "results" / "measured.json"
 DOCS = ROOT / "docs"
 PAGE, MEASURED = DOCS / "benchmarks.md", DOCS / "measured.md"
 STARTS = "starts"  # no race: processes of desaxe alone
+STEADY = "steady"  # no race: beside simulating
 DESCRIPTION = """\
 desaxe beside NumPy, numba, numexpr, JAX, CasADi, heyoka and C at the same works, on one core and on all:
 time as a multiple of desaxe's, error against the truth. The peers come with the extra `peers`, C with gcc;
@@ -51,9 +52,10 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--only",
         action="append",
-        choices=[*keys, STARTS],
+        choices=[*keys, STARTS, STEADY],
         metavar="WORK",
-        help=f"this work alone; repeatable; {STARTS}: desaxe's first calls and second processes",
+        help=f"this work alone; repeatable; {STARTS}: desaxe's first calls and second processes; "
+        f"{STEADY}: steady states beside simulating them",
     )
     parser.add_argument(
         "--quick", action="store_true", help="five small works, few rounds, no cold starts: a minute"
@@ -82,6 +84,7 @@ def _listed() -> str:
 
     works = [f"  {work.key:11}{work.title}" for work in WORKS]
     works.append(f"  {STARTS:11}first calls and second processes of desaxe")
+    works.append(f"  {STEADY:11}steady states on a motor beside simulating until two turns agree")
     missing = {one.name: "" if one.is_here else f"not here: needs {one.needs}" for one in CONTENDERS}
     return "\n".join(
         ["works", *works, "contenders", *(f"  {n:18}{why}".rstrip() for n, why in missing.items())]
@@ -102,7 +105,13 @@ def _measure(options: argparse.Namespace) -> None:
     effort = QUICK if options.quick else FULL
     effort = effort._replace(points=options.points, rounds=options.rounds or effort.rounds)
     only = options.only or ()
-    works = [BY_KEY[key] for key in only if key != STARTS]
+    if STEADY in only:
+        from .steady import table
+
+        print(table())
+        if set(only) == {STEADY}:
+            return
+    works = [BY_KEY[key] for key in only if key in BY_KEY]
     with progress_bar() as watch:
         data = measure([], Effort(False, 2)) if STARTS in only else {}
         if works or not only:

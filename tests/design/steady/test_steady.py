@@ -357,3 +357,16 @@ def test_simulate_takes_motors(change):
 def test_a_motor_that_is_none_is_refused_by_name(make, said):
     with pytest.raises(ValueError, match=said):
         make()
+
+
+def test_where_every_speed_is_one_of_balance_the_message_says_so():
+    """Beyond its last speed this motor has no torque, nor has the load a mean."""
+    found = dx.steady(torque=dx.over_omega([0.0, 5.0, 14.0], [300.0, 400.0, 0.0]), **PRESS)
+    assert found["status"] == 1
+    assert "balances the loads" in found["message"]
+
+
+def test_without_a_steady_state_there_is_no_flywheel_either():
+    found = dx.steady(torque=dx.over_omega([0.0, 5.0], [300.0, 400.0]), fluctuation=0.01, **PRESS)
+    assert found["status"] == 1
+    assert np.isnan(found["flywheel_inertia"])

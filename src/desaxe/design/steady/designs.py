@@ -112,7 +112,10 @@ class Designs(NamedTuple):
             own = dead_centres(self.lengths()) * self.way[:, None]
             found += [(own + 2.0 * pi * k) % period for k in range(self.turns)]
         every = np.concatenate(found, axis=1)
-        return np.sort(np.where(np.isnan(every), 0.0, every), axis=1)
+        every = np.sort(np.where(np.isnan(every), 0.0, every), axis=1)
+        again = np.diff(every, axis=1, prepend=-1.0) == 0.0
+        every = np.sort(np.where(again, 0.0, every), axis=1)
+        return every[:, max(int((every == 0.0).all(0).sum()) - 1, 0) :]
 
 
 def vanishing(designs: Designs) -> Array:

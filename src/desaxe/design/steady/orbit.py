@@ -19,7 +19,7 @@ STEPS = 40  # of Newton's method
 SETTLED = 4e-16  # of the energy: what a step may still change
 EXTRAPOLATED = 1e-17  # the same, of the step after it
 ROUNDS = 12  # of moving edges
-MOVED = 1e-13  # rad
+MOVED = 1e-11  # rad
 RESOLVED = 3e-11  # of the largest value: the last coefficients of a panel
 NOISE, PLATEAU = 1e-9, 0.05  # the same, where they are not smaller than this share of earlier ones
 FLAT = 1e-13  # of the energy: what the last coefficients of its slope may add to it
@@ -121,14 +121,12 @@ def between_kinks(orbit: Orbit, edges: Array) -> Orbit:
     """The motion with its own kinks as edges, besides these."""
     if not orbit.designs.source.knots and orbit.rate.normal is None:
         return orbit
-    before = np.empty((len(edges), 0))
     for _ in range(ROUNDS):
-        now = np.sort(switches(orbit), axis=1)
-        if now.shape[1] > PANELS:
+        now = switches(orbit)
+        away = np.abs(now[..., None] - orbit.mesh.edges[:, None, :]).min(-1)
+        if now.shape[1] > PANELS or (away <= MOVED).all():
             break
-        if now.shape == before.shape and (np.abs(now - before) <= MOVED).all():
-            break
-        orbit, before = moved(orbit, np.sort(np.concatenate([edges, now], axis=1), axis=1)), now
+        orbit = moved(orbit, np.sort(np.concatenate([edges, now], axis=1), axis=1))
     return orbit
 
 

@@ -80,7 +80,7 @@ def _fill(found: dict[str, Any], index: Array, designs: Designs, states: States,
     there = np.flatnonzero(main >= 0)
     rows, into = main[there], index[there]
     found["theta"][index] = designs.theta(np.linspace(0.0, designs.period, found["theta"].shape[1])[None])
-    found["flywheel_inertia"][index] = designs.J
+    found["flywheel_inertia"][index] = np.where((main < 0) & wheel, np.nan, designs.J)
     found["status"][index], found["status"][into] = 1, 0
     found["message"][into] = "ok"
     for k in np.flatnonzero(main < 0).tolist():

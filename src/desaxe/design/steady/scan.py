@@ -6,12 +6,13 @@ Comput. Phys. 176, 2002), which a stiff motor does not upset, from speeds that t
 between which more are put where the crank only just gets round and where two fixed points could hide.
 """
 
+from copy import copy
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .designs import INSIDE, Course, Designs, course_of, rate
+from .designs import INSIDE, Course, Designs, course_of, picked, rate
 
 Array = NDArray[Any]
 PLACES = np.array([INSIDE, 0.25, 0.5, 0.75, 1.0 - INSIDE])  # of a panel: two steps
@@ -35,6 +36,14 @@ class Turns:
         weight = self.width[..., None] / PLACES.size
         inertia = np.where(np.isfinite(self.course.inertia), self.course.inertia, 0.0)
         self.mean_inertia = (inertia * weight).sum((1, 2)) / designs.period
+
+    def rows(self, index: Array) -> "Turns":
+        """The turns of some of the designs, or of one several times."""
+        found = copy(self)
+        found.designs, found.row = self.designs.rows(index), self.designs.rows(index).row(2)
+        found.edges, found.width = self.edges[index], self.width[index]
+        found.course, found.mean_inertia = picked(self.course, index), self.mean_inertia[index]
+        return found
 
     def gain(self, E0: Array, path: list[Array] | None = None) -> Array:
         """The gain of each start (designs, starts); the energies at the edges go into `path`."""
@@ -122,7 +131,7 @@ def scan(designs: Designs, edges: Array) -> Scan:
         if not len(rows):
             break
         more = _between(starts[rows], score[rows])
-        gained = Turns(designs.rows(rows), edges[rows]).gain(more)
+        gained = turns.rows(rows).gain(more)
         extra, extra_gain = (np.full((len(starts), more.shape[1]), np.nan) for _ in range(2))
         extra[rows], extra_gain[rows] = more, gained
         starts, gains = np.concatenate([starts, extra], 1), np.concatenate([gains, extra_gain], 1)

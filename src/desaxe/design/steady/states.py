@@ -38,7 +38,7 @@ def states_of(designs: Designs, gradient: bool) -> States:
     scanned = scan(designs, edges)
     found = scanned.found()
     lanes = designs.rows(found.design)
-    first = _from_turns(lanes, edges[found.design], found.E0)
+    first = _from_turns(scanned.turns.rows(found.design), found.E0)
     solved = _Solved(lanes, gradient)
     stable = first.log_multiplier < 0.0
     lost = ~first.good | (stable != found.falls) | ~_first_of_each(found.design, first.E0)
@@ -46,9 +46,9 @@ def states_of(designs: Designs, gradient: bool) -> States:
     solved.settle(kept, edges[found.design][kept], _rows(first, kept))
     if len(again):
         fine = _finer(edges[found.design][again])
-        there, E0 = _closer(lanes.rows(again), fine, found.low[again], found.high[again])
-        again, fine = again[there], fine[there]
-        solved.settle(again, fine, _from_turns(lanes.rows(again), fine, E0))
+        turns = Turns(lanes.rows(again), fine)
+        there, E0 = _closer(turns, found.low[again], found.high[again])
+        solved.settle(again[there], fine[there], _from_turns(turns.rows(there), E0))
     solved.jams |= vanishing(designs)[found.design]
     good = np.flatnonzero(solved.good & _first_of_each(found.design, solved.E0))
     return States(
@@ -144,17 +144,16 @@ def _rows(orbit: Orbit, rows: Array) -> Orbit:
     )  # fmt: skip
 
 
-def _from_turns(lanes: Designs, edges: Array, E0: Array) -> Orbit:
-    """The motion near a rough turn from an energy."""
-    path: list[Array] = [np.zeros((lanes.size, 1))]
-    Turns(lanes, edges).gain(E0[:, None], path)
-    mesh = Panels(edges)
+def _from_turns(turns: Turns, E0: Array) -> Orbit:
+    """The motions near rough turns from an energy each."""
+    path: list[Array] = [np.zeros((len(E0), 1))]
+    turns.gain(E0[:, None], path)
+    mesh, width = Panels(turns.edges), turns.width
     energies = np.concatenate(path, axis=1)
-    width = np.diff(edges)
     with np.errstate(all="ignore"):
         slope = np.where(width > 0.0, np.diff(energies) / np.where(width > 0.0, width, 1.0), 0.0)
     F = np.broadcast_to(np.nan_to_num(slope)[..., None], mesh.x.shape).copy()
-    return newton(lanes, mesh, E0, F)
+    return newton(turns.designs, mesh, E0, F)
 
 
 def _finer(edges: Array) -> Array:
@@ -164,13 +163,13 @@ def _finer(edges: Array) -> Array:
     return np.concatenate([inner.reshape(len(edges), -1), edges[:, -1:]], axis=1)
 
 
-def _closer(lanes: Designs, edges: Array, low: Array, high: Array) -> tuple[Array, Array]:
+def _closer(turns: Turns, low: Array, high: Array) -> tuple[Array, Array]:
     """The lanes whose gain changes its sign in or next to a bracket, and where, by Illinois steps."""
     low, high = np.maximum(2.0 * low - high, 0.5 * low), 2.0 * high - low
-    below, above = Turns(lanes, edges).gain(np.stack([low, high], axis=1)).T
+    below, above = turns.gain(np.stack([low, high], axis=1)).T
     there = np.flatnonzero(~(np.sign(below) == np.sign(above)))
     low, high, below, above = (values[there] for values in (low, high, below, above))
-    turns = Turns(lanes.rows(there), edges[there])
+    turns = turns.rows(there)
     for _ in range(CLOSER if len(there) else 0):
         with np.errstate(all="ignore"):
             middle = high - above * (high - low) / (above - below)

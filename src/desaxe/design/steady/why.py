@@ -37,6 +37,11 @@ def why_none(designs: Designs, states: States, k: int) -> str:
     if not there.any() or (gains[there] < 0.0).all():
         return f"no steady state: the motor is too weak, {_stall(designs, scan, k)}"
     last = np.flatnonzero(there)[-1]
+    if abs(gains[last]) <= BALANCED * _work(scan, k):
+        return (
+            f"no steady state of its own: at {_speed(scan, k, starts[last])}, as at others, the motor "
+            "balances the loads; its torque must fall over the speed there"
+        )
     return (
         f"no steady state: the motor is too strong, it runs away: at {_speed(scan, k, starts[last])} "
         f"a period still gains {gains[last]:.6g} J"
@@ -65,12 +70,15 @@ def _stall(designs: Designs, scan: Scan, k: int) -> str:
     return f"it stalls near theta = {theta:.3g} rad ({degrees(theta):.0f} deg)"
 
 
+def _work(scan: Scan, k: int) -> float:
+    """The work of the loads over a period, of either sign."""
+    return float((np.abs(scan.turns.course.load[k]).mean(-1) * scan.turns.width[k]).sum())
+
+
 def _of_number(designs: Designs, scan: Scan, k: int) -> str:
     """A torque that does not depend on the speed gains the same at every one."""
     gain = float(np.nanmedian(scan.gains[k]))
-    course, width = scan.turns.course, scan.turns.width
-    load = float((np.abs(course.load[k]).mean(-1) * width[k]).sum())
-    if abs(gain) <= BALANCED * load:
+    if abs(gain) <= BALANCED * _work(scan, k):
         return (
             "no steady state of its own: the torque balances the loads at every speed; give the motor's "
             "torque over the speed"
