@@ -45,7 +45,7 @@ def kloss(p, omega):
 
 
 def differences():
-    """Of a trigonometric polynomial at equal steps, the matrix of its derivative."""
+    """Return the matrix that differentiates a trigonometric polynomial at equal steps."""
     j = np.arange(POINTS)
     gap = j[:, None] - j
     row = [mp.mpf(0)] + [mp.mpf((-1) ** k) / (2 * mp.sin(mp.pi * k / POINTS)) for k in range(1, POINTS)]
