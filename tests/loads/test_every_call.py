@@ -86,7 +86,8 @@ def quality(truth, draw, folder):
     near(np.array([found.error_bound, found.value]).T, [found.error_bound, dx.evaluate("T_in", **inputs)])
     for p in ("theta", *LENGTHS, "m_slider"):
         slope = abs(float(truth.by(p, theta)) * inputs[p] / found.value)
-        assert found.conditions[p] == pytest.approx(slope, rel=1e-6, abs=1e-6), p
+        room = 1e-6 + found.error_bound / abs(found.value)  # next to a dead centre the torque is rounding
+        assert found.conditions[p] == pytest.approx(slope, rel=room, abs=1e-6), p
     several = dx.evaluate("T_in", quality=True, **{**inputs, "theta": np.array([theta, theta + TURN])})
     assert several.error_bound[0] == pytest.approx(found.error_bound, rel=1e-6)
 
