@@ -12,11 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
-from ..loads.angles import dead_centres, repeated
+from ..loads.angles import dead_centres, limit_angles, repeated
 from ..loads.load import Load
 from ..loads.pieces import Place
 from ..loads.resolve import way_of
-from ..mechanism.closed.limits import theta_intervals
 from ..mechanism.names import LENGTHS
 from .nodes import Array
 
@@ -30,7 +29,6 @@ ACROSS = 1e-6  # of the cosine of an angle: as far as a search ends from a jump
 JAMS, TWO_BALANCES = 5, 6  # the status where friction leaves no balance of forces, or two
 USABLE = (0, JAMS, TWO_BALANCES)  # with one of these an extremum may have a gradient
 MARGIN_ROUNDING = 2.0**-50  # of BC: more than BC - AB - |ec| may lose to rounding
-WHOLE_TURN = [(0.0, 2.0 * np.pi)]  # the feasible angles of a design that turns fully
 FARTHER = 2.0**-20  # rad from a limit angle: unbounded quantities have grown from there on, in a wide arc
 REACH = 1.0  # rad: a stall nearer to the range than this shapes what is in it
 
@@ -118,15 +116,10 @@ def _limit_angles(designs: Designs) -> list[list[float]]:
     found: list[list[float]] = [[] for _ in range(designs.size)]
     lengths = [columns[n] for n in LENGTHS if n in columns]
     if len(lengths) == 3:
-        ec, AB, BC = lengths
-        for row in np.flatnonzero(BC - AB - np.abs(ec) <= MARGIN_ROUNDING * BC):
-            intervals = theta_intervals(*(float(c[row]) for c in lengths))
-            if intervals == WHOLE_TURN:  # the margin, rounded once, is not negative
-                continue
-            for interval in intervals:
-                for end in interval:
-                    first = end + 2.0 * np.pi * np.ceil((low - end) / (2.0 * np.pi))
-                    found[row] += list(np.arange(first, high + 1e-12, 2.0 * np.pi))
+        angles = limit_angles(lengths)
+        whole = angles[:, 1:2] - angles[:, 0:1] == 2.0 * np.pi
+        every = repeated(np.where(whole, np.nan, angles), low, high)
+        found = [row[np.isfinite(row)].tolist() for row in every]
     if "alpha" in columns and "omega0" in columns:
         stops = _stall(columns["omega0"], columns["alpha"])
         for row in np.flatnonzero((stops > low - REACH) & (stops < high + REACH)):
