@@ -137,7 +137,7 @@ def test_a_peak_is_that_of_constant_forces_on_each_side_of_the_jumps(part):
 @pytest.mark.thorough
 @pytest.mark.parametrize("part", range(4))
 def test_with_friction(part):
-    for seed in range(part, cases(0, 60, 1000), 4):
+    for seed in range(part, cases(0, 24, 1000), 4):
         draw = Draw(10_000 + seed, mu=0.08)
         check(draw, dx.peak(draw.name, kind=draw.kind, theta=draw.theta, **draw.given))
 
@@ -160,7 +160,7 @@ def test_in_arrays():
 
 @pytest.mark.thorough
 def test_in_arrays_in_every_tier(way):
-    for seed in range(cases(0, 12, 30)):
+    for seed in range(cases(0, 6, 30)):
         in_arrays(seed)
 
 
