@@ -74,6 +74,9 @@ def test_a_grid_has_the_values_of_its_points(over, monkeypatch):
     """The jumps of the step are exactly at points of the grid, where one offset is 0."""
     monkeypatch.setenv("DESAXE_TIER", "compiled")
     found = dx.grid(NAMES, F_Y=LOADS[over], **AXES, **MACHINE)
+    cut = dx.grid(NAMES, F_Y=LOADS[over], chunks={"ec": 7, "theta": 20}, **AXES, **MACHINE)
+    for name in NAMES:
+        np.testing.assert_array_equal(cut[name], found[name], err_msg=name)
     monkeypatch.setenv("DESAXE_TIER", "interpreted")
     points = dx.evaluate(NAMES, theta=AXES["theta"][:, None], ec=AXES["ec"], F_Y=LOADS[over], **MACHINE)
     for name in NAMES:
@@ -95,6 +98,11 @@ def test_a_load_that_a_name_does_not_hang_on_changes_nothing():
 def test_a_reduced_grid_has_the_values_of_its_points(monkeypatch):
     monkeypatch.setenv("DESAXE_TIER", "compiled")
     found = dx.grid("T_in", F_Y=LOADS["step"], reduce={"theta": ["max", "mean"]}, **AXES, **MACHINE)
+    one = {**AXES, "ec": AXES["ec"][20:21]}
+    alone = dx.grid(
+        "T_in", F_Y=LOADS["step"], reduce={"theta": ["max", "mean"]}, chunks={"ec": 1}, **one, **MACHINE
+    )
+    np.testing.assert_array_equal(alone.T_in_mean, found.T_in_mean[20:21])
     monkeypatch.setenv("DESAXE_TIER", "interpreted")
     points = dx.evaluate("T_in", theta=AXES["theta"][:, None], ec=AXES["ec"], F_Y=LOADS["step"], **MACHINE)
     np.testing.assert_allclose(found.T_in_max, points.max(axis=0), rtol=1e-12)

@@ -28,7 +28,7 @@ from .labels import Output, attributes
 from .loaded import evaluate_loaded
 from .loops import Loops
 from .outer import Outer, first_joined, join_from, require_inputs
-from .under import UnderLoads, in_kernel, whole_points
+from .under import UnderLoads, in_kernel
 
 Array = NDArray[Any]
 
@@ -111,7 +111,7 @@ class Points(NamedTuple):
             return copied_back(places, buffers, False)
         if self.inside is not None and all(shape) and tier_of(self.inside.key, prod(shape)) == COMPILED:
             buffers = places if out is None else scratch_for(places, values.values())
-            self._fill_inside(self.inside, values, list(buffers.values()), threads)
+            self.fill_inside(values, list(buffers.values()), threads)
             return copied_back(places, buffers, False)
         found = {name: np.empty(shape, dtype_of(name)) for name in self.wanted.shown}
         forces = self._forces(values, threads)
@@ -173,16 +173,14 @@ class Points(NamedTuple):
         loops = Loops(sizes, columns | whole, places | dict.fromkeys(whole, 0))
         fill(self.wanted, scalars, loops, outs, threads, bool(loads), self.key)
 
-    def _fill_inside(
-        self, inside: UnderLoads, values: Mapping[str, Array], outs: Sequence[Array], threads: int | None
-    ) -> None:
+    def fill_inside(self, values: Mapping[str, Array], outs: Sequence[Array], threads: int | None) -> None:
         """Fill the outputs by the kernel that has the loads in it; what rounding leaves open, exactly."""
-        given, sizes = inside.joined(values)
-        run_in_blocks(inside.key, given, [out.reshape(sizes) for out in outs], threads)
-        for index in whole_points(inside.open(values), {name: values[name].size for name in self.dims}):
-            found = self.at({name: values[name][own] for name, own in index.items()})
-            for name, out in zip(self.names, outs, strict=True):
-                out[tuple(index.values())] = found[name]
+        assert self.inside is not None
+        given, sizes = self.inside.joined(values)
+        run_in_blocks(self.inside.key, given, [out.reshape(sizes) for out in outs], threads)
+        for region, found in self.inside.settled(values):
+            for out, new in zip(outs, found, strict=True):
+                out[region] = new
 
     def _forces(self, values: Mapping[str, Array], threads: int | None) -> Forces:
         """The loads at the points of a block, and their derivatives, in shapes that broadcast to its own."""

@@ -23,7 +23,7 @@ from .outer import Outer
 from .points import Points, points_of
 from .reductions import Chain, Reductions, chain_name, extremes_at_end, method_of
 from .sides import sides_of
-from .under import UnderLoads, whole_points
+from .under import UnderLoads, each_point, region_of
 
 Array = NDArray[Any]
 FLOAT = np.dtype(np.float64)
@@ -205,20 +205,23 @@ class Reduced(NamedTuple):
     ) -> None:
         """Reduce the rows anew in which rounding may decide on the side of a jump."""
         rest, along = of.dims[:-1], of.dims[-1]
-        index, length = inside.open(values), values[along].size
+        index = inside.open(values)
         some = [name for name in index or () if name in rest]
         if index is not None:
             alone = np.unique(np.stack([index[name] for name in some]), axis=1) if some else ()
             index = dict(zip(some, alone, strict=True))
-        for part in whole_points(index, {name: values[name].size for name in rest}, length):
-            here, count = tuple(part.values()), next((own.size for own in part.values()), 1)
-            points = {name: np.repeat(values[name][own], length) for name, own in part.items()}
-            rows = of.at({**points, along: np.tile(values[along], count)})
+        some = some or list(rest[:1])  # row by row
+        for point in each_point(index, {name: values[name].size for name in some}):
+            block = {n: values[n][point[n] : point[n] + 1] if n in point else values[n] for n in of.dims}
+            shape, region = tuple(block[name].size for name in of.dims), region_of(point, rest)
+            rows = [np.empty(shape) for _ in of.names]
+            of.fill_inside(block, rows, 1)
+            lines = {name: field_of(of.dims, row) for name, row in zip(of.names, rows, strict=True)}
             for (name, kind), field in found.items():
-                new = folded(field_of(("", along), rows[name].reshape(-1, length)), [along], kind, values)
-                pairs = [(field.values, new.values), (field.counts, new.counts)]
-                for place, row in [*pairs, *((field.places[axis], own) for axis, own in new.places.items())]:
-                    place[here] = row.reshape(place[here].shape)
+                new = folded(lines[name], [along], kind, values)
+                field.values[region], field.counts[region] = new.values, new.counts
+                for axis, places in new.places.items():
+                    field.places[axis][region] = places
 
     def _side(self, of: Points, name: str, variable: str, field: Field, values: Mapping[str, Array]) -> Array:
         """The sides of jumps on which extremes over theta are; 0 where other inputs were averaged."""

@@ -14,17 +14,20 @@ from numpy.typing import NDArray
 
 from ..loads.angles import crossings, dead_centres
 from ..loads.load import TURN, Load, OverTheta, OverY
-from ..loads.pieces import Place
-from ..loads.resolve import Plan
+from ..loads.pieces import Place, piece_at
+from ..loads.resolve import Plan, way_of
 from ..mechanism.load_lines import LoadLines, Total, Under, Way
-from ..mechanism.names import LENGTHS
+from ..mechanism.names import LENGTHS, STATUSES
 from ..runtime.kernels import KernelKey, key_of, plain_of
 from ..runtime.request import Request, request
+from ..runtime.threads import run_in_blocks
 from ..runtime.tiers import forced_tier
 from .extremes import MOST, are_extreme
 from .outer import Outer, first_joined, join_from
 
 Array = NDArray[Any]
+Region = tuple[slice, ...]
+SPEEDS = ("omega0", "omega", "alpha")  # of which the way of turning is that of the sign
 LEAST = 10_000  # points: of fewer, to look for those that rounding decides takes what the kernel saves
 LEAST_ANGLE = 1e-290  # rad: products with the sine of a smaller one underflow
 # Where the plain forms are for, nothing is open farther from a jump's angle than this, in rad times what the
@@ -101,6 +104,37 @@ class UnderLoads(NamedTuple):
             return None
         index = dict(zip(own, np.unravel_index(rows, shape) if own else (), strict=True))
         return {**index, "theta": places} if "theta" in self.dims else index
+
+    def settled(self, values: Mapping[str, Array]) -> Iterator[tuple[Region, list[Array]]]:
+        """Regions of a block that rounding leaves open, with the values on the exact side of each jump.
+
+        The same kernel runs on tables of one piece: no digit hangs on who asks.
+        """
+        index = self.open(values)
+        sizes = {name: values[name].size for name in self.dims if name in (index or {}) or name in SPEEDS}
+        for point in each_point(index, sizes):
+            block = {n: own[point[n] : point[n] + 1] if n in point else own for n, own in values.items()}
+            given, lengths = self.joined(block)
+            given |= self._held(block)
+            shape = tuple(block[name].size for name in self.dims)
+            outs = [np.empty(shape, np.int8 if n in STATUSES else np.float64) for n in self.key.names]
+            run_in_blocks(self.key, given, [out.reshape(lengths) for out in outs], 1)
+            yield region_of(point, self.dims), outs
+
+    def _held(self, block: Mapping[str, Array]) -> dict[str, Array]:
+        """The tables of one piece each, that which holds at the one place of a block."""
+        own = {name: float(array.item()) for name, array in block.items() if array.size == 1}
+        given = {**dict(self.numbers), **own}
+        lengths = [given[name] for name in LENGTHS]
+        place = Place(given["theta"], lengths, way_of(given), self.branch)
+        jumping = {n: a for n, a in self.plan.loads.items() if isinstance(a, OverY) and a.jumping}
+        tables = table_arrays(jumping)
+        for name, load in jumping.items():
+            piece, knots = piece_at(load, place), tables[f"{name}_x"]
+            row = tables[f"{name}_c"].reshape(-1, 4)[piece]
+            tables[f"{name}_x"] = np.full_like(knots, load.edges(0.0)[max(piece % (knots.size + 1), 1)])
+            tables[f"{name}_c"] = np.tile(row, 2 * (knots.size + 1))
+        return tables
 
 
 def in_kernel(
@@ -222,27 +256,17 @@ def _jumps(load: OverY, lengths: Sequence[Array], branch: int) -> tuple[Array, A
     return angles, np.where(flat, BESIDE_DEAD_CENTRE * np.sqrt(ratio), BESIDE * ratio)
 
 
-MOST_AT_ONCE = 2**18  # points
-
-
-def whole_points(
-    index: Mapping[str, Array] | None, sizes: Mapping[str, int], each: int = 1
-) -> Iterator[dict[str, Array]]:
-    """Points of a grid from indices along some dimensions, at all places along the others; in blocks.
-
-    each   points behind each of them, of which not too many are taken at once
-    """
-    if index is None or not all(sizes.values()):
+def each_point(index: Mapping[str, Array] | None, sizes: Mapping[str, int]) -> Iterator[dict[str, int]]:
+    """Places along dimensions, from indices along some of them and all along the others; none for None."""
+    if index is None:
         return
-    if not index:
-        index = {name: np.arange(size) for name, size in [*sizes.items()][:1]}
-    count = next((places.size for places in index.values()), 1)
-    others = [sizes[name] for name in sizes if name not in index]
-    step = max(1, MOST_AT_ONCE // (each * prod(others)))
-    for first in range(0, count, step):
-        some = {name: places[first : first + step] for name, places in index.items()}
-        number = min(step, count - first)
-        rest = np.unravel_index(np.tile(np.arange(prod(others)), number), others) if others else ()
-        every = {name: np.repeat(places, prod(others)) for name, places in some.items()}
-        every |= zip((name for name in sizes if name not in index), rest, strict=True)
-        yield {name: every[name] for name in sizes}
+    others = [name for name in sizes if name not in index]
+    own = [dict(zip(index, map(int, row), strict=True)) for row in zip(*index.values(), strict=True)] or [{}]
+    for one in own:
+        for rest in np.ndindex(*(sizes[name] for name in others)):
+            yield {**one, **dict(zip(others, rest, strict=True))}
+
+
+def region_of(point: Mapping[str, int], dims: Sequence[str]) -> Region:
+    """The region of a block at places along some of its dimensions."""
+    return tuple(slice(point[n], point[n] + 1) if n in point else slice(None) for n in dims)
