@@ -125,3 +125,19 @@ def test_speeds_of_the_motion_say_the_way_of_turning_alone():
         dx.scene({**back, "motion": {"omega0": [-50, 80]}})
     with pytest.raises(SceneError, match="alpha"):
         dx.scene({**back, "motion": {"omega0": 50, "alpha": 3}})
+
+
+@pytest.mark.parametrize("end", ["nc", "csv"])
+def test_the_steady_states_are_written_beside_the_values(tmp_path, end):
+    import xarray
+
+    one = {**SCENE, "loads": {"F_Y": -900}, "results": {"data": str(tmp_path / f"press.{end}")}}
+    result = dx.scene(one).run()
+    assert "group steady" in result.report()
+    (file,) = result.files
+    if end == "nc":
+        back = xarray.open_dataset(file, group="steady")
+        np.testing.assert_array_equal(back["omega_mean"], result.steady.dataset["omega_mean"])
+        assert back["omega_mean"].units == "rpm"
+    else:
+        assert "omega_mean [rpm]" in file.read_text()

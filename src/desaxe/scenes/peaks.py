@@ -186,6 +186,11 @@ def provenance(content: Content) -> dict[str, str]:
     return {**title, "source": source(), "Conventions": CONVENTIONS}
 
 
+def groups_of(content: Content) -> list[str]:
+    """A name for each labelled result besides the values: of the peaks, and of the steady states."""
+    return [*group_names(content.peaks), *(["steady"] if content.steady is not None else [])]
+
+
 def group_names(peaks: Sequence[Peak]) -> list[str]:
     """A name for each peak, such as `peak_absmax_a_C`; further ones of the same kind get a number."""
     names: list[str] = []

@@ -13,7 +13,7 @@ from ..support.files import require_writable
 from ..sweeps.layout import size_text
 from .content import Content
 from .files import check_place, files_of, requirements_of
-from .peaks import group_names
+from .peaks import groups_of
 from .schema import SceneError
 from .stored import require_store
 from .workbook import require_room
@@ -56,7 +56,7 @@ def require_places(content: Content, overwrite: bool) -> None:
 def data_files(content: Content) -> list[Path]:
     """The files of results.data."""
     assert content.data is not None
-    return files_of(Path(content.data), bool(content.outputs), group_names(content.peaks))
+    return files_of(Path(content.data), bool(content.outputs), groups_of(content))
 
 
 def _claim(places: dict[str, str], key: str, path: str | PathLike[str]) -> None:

@@ -190,7 +190,7 @@ def _require_names(file: schema.SceneFile) -> None:
     if data is not None and not data.endswith(DATA):
         ends = ", ".join(DATA)
         raise SceneError(f"results.data = {shown(data)}: its name must end in one of {ends}")
-    if data is not None and not (file.outputs or file.peak):
+    if data is not None and not (file.outputs or file.peak or file.steady):
         raise SceneError(f"results.data = {shown(data)}: there is nothing to write, give outputs = [...]")
     for index, picture in enumerate(file.picture, 1):
         if not picture.file.lower().endswith(PICTURES):

@@ -14,7 +14,7 @@ from ..mechanism.unit_system import UnitSystem
 from ..support.text_table import table as text_table
 from .content import Content, Peak
 from .motor import MotorResult
-from .peaks import SIDEWAYS, WORDS, ClaimResult, PeakResult, group_names, peaks_in_units
+from .peaks import SIDEWAYS, WORDS, ClaimResult, PeakResult, groups_of, peaks_in_units
 from .places import data_files
 from .run import CheckResult, Run
 from .turning import FeasibilityResult
@@ -276,7 +276,7 @@ def files_report(content: Content, result: Run) -> str:
     if content.data is not None:
         files = [str(file) for file in data_files(content) if file in result.files]
         told = ["the values"] if content.outputs else []
-        told += [f"group {name}" for name in group_names(content.peaks)]
+        told += [f"group {name}" for name in groups_of(content)]
         rows += zip([*files, *[""] * len(told)], told, strict=False) if files else []
     rows += [
         (str(Path(picture.file)), f"{picture.quantity} over {picture.over}")

@@ -14,7 +14,7 @@ from .content import Check, Content, Peak, Picture
 from .files import write
 from .grid import blocks_of, values_of_grid
 from .motor import MotorResult, steady_of
-from .peaks import PeakResult, batches, group_names, peaks_in_units, peaks_of
+from .peaks import PeakResult, batches, groups_of, peaks_in_units, peaks_of
 from .pictures import draw
 from .places import require_modules, require_places
 from .stored import sweep_content
@@ -105,7 +105,9 @@ def _jobs(
     """Each file, what is said while it is written, and what writes it."""
     jobs: list[tuple[str, str, Callable[[], list[Path]]]] = []
     if content.data is not None:
-        groups = dict(zip(group_names(content.peaks), (one.dataset for one in found.peaks), strict=True))
+        datasets = [one.dataset for one in found.peaks]
+        datasets += [found.steady.dataset] if found.steady is not None else []
+        groups = dict(zip(groups_of(content), datasets, strict=True))
         job = partial(write, Path(content.data), found.dataset, groups, overwrite)
         jobs.append((content.data, f"writing {content.data}", job))
     for picture in content.pictures:
