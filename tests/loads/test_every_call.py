@@ -229,12 +229,15 @@ def energy(truth, inertia, theta, omega):
 def simulate(truth, draw, folder):
     way = np.sign(truth.design["omega0"])
     inputs = without(given(truth), "omega0") | {"I_crank": 0.05, "theta0": 0.4}
-    torque, speeds = 3.0 * way, 40.0 * way * np.array([1.0, 1.2])
+    torque, speeds = 3.0 * way, 60.0 * way * np.array([1.0, 1.2])
     one = dx.simulate(torque=torque, t_end=0.3, omega_start=speeds[0], **inputs)
     several = dx.simulate(torque=torque, t_end=0.3, omega_start=speeds, **inputs)
-    ends = [(one["theta"][-1], one["omega"][-1], speeds[0])]
-    ends += [(t[-1], w[-1], s) for t, w, s in zip(several["theta"], several["omega"], speeds, strict=True)]
-    for theta, omega, start in ends:
+    runs = [(one["theta"], one["omega"], speeds[0])]
+    runs += [*zip(several["theta"], several["omega"], speeds, strict=True)]
+    for angles, rates, start in runs:
+        if np.min(way * rates) <= 0.0:
+            continue  # it has stopped, or turns back under the load of the other way
+        theta, omega = angles[-1], rates[-1]
         low, high = sorted((0.4, float(theta)))
         gained = torque * (theta - 0.4) + np.sign(theta - 0.4) * truth.work(low, high)
         right = energy(truth, 0.05, 0.4, start) + gained
@@ -244,7 +247,7 @@ def simulate(truth, draw, folder):
 def steady(truth, draw, folder):
     """After a turn of its own equation of motion it is as fast as at its beginning."""
     truth = truth._replace(design={**truth.design, "omega0": abs(truth.design["omega0"])})
-    motor = dx.over_omega([0.0, 100.0], [120.0, -30.0])
+    motor = dx.over_omega([0.0, 300.0], [120.0, -330.0])
     inputs = without(given(truth), "omega0") | {"I_crank": 0.2}
     found = dx.steady(torque=motor, **inputs)
     start = speed = float(found["omega"][0])
