@@ -186,10 +186,19 @@ def _optimum(found: Mapping[str, Any], call: Mapping[str, Any], show: Shown) -> 
         conversion = unit_of(match[1])
         return f"{match[1]} = {conversion.shown(float(match[2])):.6g} {conversion.unit}".removesuffix(" 1")
 
+    def missed(match: re.Match[str]) -> str:
+        conversion = unit_of(match[1].split()[-1])
+        by = f"{conversion.shown(float(match[3])):.3g} {conversion.unit}".removesuffix(" 1")
+        return f"{match[1]} misses {match[2]} by {by} at"
+
     objectives = [call[side] for side in ("maximize", "minimize") if call.get(side) is not None]
-    result: dict[str, Any] = show.mapping(found, None)
+    by_measure = ("active", "multipliers")  # whose keys may be pairs
+    result: dict[str, Any] = show.mapping({k: v for k, v in found.items() if k not in by_measure}, None)
+    result = {key: result.get(key, part) for key, part in found.items()}
     names = "|".join(map(re.escape, call["over"]))
     result["message"] = re.sub(rf"\b({names}) = ([-+.0-9e]*[0-9])", in_own_unit, found["message"])
+    by = r"(?<=limits: )(.+?) misses (its \w+ limit) by ([-+.0-9e]*[0-9]).*? at(?= the nearest)"
+    result["message"] = re.sub(by, missed, result["message"])
     value = found["value"]
     if isinstance(value, Mapping):
         result["value"] = {key: show.number(part, unit_of(key)) for key, part in value.items()}

@@ -1,5 +1,6 @@
 """Optima against a fine scan, their multipliers against optima with moved limits, and where there is none."""
 
+import math
 import subprocess
 import sys
 
@@ -174,6 +175,25 @@ def test_no_design_keeps_the_limits():
     assert np.isnan(found["value"])
 
 
+@pytest.mark.parametrize("low", [0.0, 0.005])
+def test_where_no_design_keeps_the_limits_the_nearest_is_told(low):
+    """The pressure angle grows with the eccentricity: the least one is the nearest."""
+    keep = {"max_pressure_angle": (None, "5 deg")}
+    found = dx.optimize(minimize="time_ratio", over={"ec": (low, 0.04)}, keep=keep, AB=0.075, BC=0.3)
+    miss = math.asin((0.075 + low) / 0.3) - math.radians(5.0)
+    assert found["ec"] == pytest.approx(low, abs=1e-9)
+    assert f"misses its upper limit by {miss:.3g} rad at the nearest" in found["message"]
+    machine = dx.Machine(ec=15, AB=75, BC=300, omega0=60, units="mm, deg, rpm")
+    limits = {("absmax", "a_C"): (None, 1), "max_pressure_angle": (None, 90)}
+    told = machine.optimize(minimize="time_ratio", over={"ec": (1000 * low, 40)}, keep=limits)
+    assert "absmax a_C misses its upper limit by" in told["message"]
+    assert told["message"].count("mm") == 2
+    told = machine.optimize(
+        minimize="time_ratio", over={"ec": (1000 * low, 40)}, keep={"stroke": (1500, None)}
+    )
+    assert "stroke misses its lower limit by 1.35e+03 mm at" in told["message"]
+
+
 def test_pareto_front():
     found = dx.optimize(
         minimize=("absmax", "a_C"), maximize="time_ratio", over={"ec": (0, 0.1), "BC": (0.25, 0.5)}, points=5,
@@ -217,7 +237,7 @@ def test_pareto_front_of_three():
 def test_how_far_a_design_is_from_turning():
     found = dx.optimize(maximize="stroke", over={"ec": (0.23, 0.25)}, AB=0.125, BC=0.35)
     assert found["status"] == 1
-    assert "the crank turns, by 0.005 at the nearest, ec = 0.23" in found["message"]
+    assert "the crank turns, by 0.005 m at the nearest, ec = 0.23" in found["message"]
     near = dx.optimize(maximize=("absmax", "a_C"), over={"ec": (0, 0.25)}, keep={"margin": (1e-9, None)}, **A)
     assert "ec = 0.224999999" in near["message"]
 

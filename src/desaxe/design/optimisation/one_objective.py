@@ -47,6 +47,11 @@ def _best(
         for number in search.margins() if stalled else ():
             candidates.append((search.run(search.at_limit(near.z, number), number), search))
     found, search = min(candidates, key=_rank)
+    if found.violation > SATISFIED:
+        nearest = search.nearest(found)
+        if nearest.violation > SATISFIED:
+            return nearest, search
+        found, search = min(*candidates, (nearest, search), (search.run(nearest.z), search), key=_rank)
     found = search.polished(found)
     return (search.probed(found) if found.residual > SETTLED else found), search
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ..measures import checked, text_of
+from ..measures import checked, text_of, unit_of
 from .objectives import Goal
 from .problem import EQUAL, LOWER, UPPER, Space
 from .search import Found, Search
@@ -107,7 +107,9 @@ def _missed(found: Found, search: Search) -> str:
     short = abs(float(value[worst] * search.scale[search.count + worst]))
     if limit.key is None:  # the implied one, which is kept with a little to spare
         return (
-            f"margin = BC - AB - |ec| misses 0, from which on the crank turns, by {short - limit.bound:.3g}"
+            f"margin = BC - AB - |ec| misses 0, from which on the crank turns, by {short - limit.bound:.3g} m"
         )
-    key = text_of(checked(limit.key))
-    return f"{key} misses its {limit.side} limit by {short:.3g}"
+    measure = checked(limit.key)
+    return f"{text_of(measure)} misses its {limit.side} limit by {short:.3g} {unit_of(measure)}".removesuffix(
+        " 1"
+    )

@@ -70,6 +70,11 @@ class Search:
         bounds = np.array([0.0] * self.count + [abs(c.bound) for c in self.limits])
         self.scale = np.where(np.maximum(middle, bounds) > 0.0, np.maximum(middle, bounds), 1.0)
         self.scale[: self.count] = self.scale[: self.count].max()
+        keys = [limit.key for limit in self.limits]  # limits of one key are sides of one measure
+        sizes = self.scale[self.count :]
+        sizes[:] = [
+            max(size for size, other in zip(sizes, keys, strict=True) if other == key) for key in keys
+        ]
         self.scanned = found / self.scale
 
     def starts(self, count: int) -> list[Array]:
@@ -178,6 +183,20 @@ class Search:
         better = other.violation <= BROKEN and other.value < found.value
         gain = (found.value - other.value) / self.scale[0] if better else 0.0
         return (other if better else found)._replace(kink=bool(gain <= BROKEN))
+
+    def nearest(self, found: Found) -> Found:
+        """The design that breaks the limits least, found without derivatives from the best of the scan."""
+        m = self.count
+
+        def broken(z: Array) -> float:
+            return float(self._violation(self.scaled(z)[0][m:]))
+
+        start = self.places[np.argmin(self._violation(self.scanned[:, m:]))]
+        ends = {"type": "ineq", "fun": lambda z: np.append(z, 1.0 - z)}
+        options = {"rhobeg": 0.1, "tol": 1e-9, "maxiter": PROBES}
+        answer = minimize(broken, start, method="COBYLA", constraints=[ends], options=options)
+        tried = [found.z, start, np.clip(answer.x, 0.0, 1.0)]
+        return self.judged(min(tried, key=broken))
 
     # ---- optimality -------------------------------------------------------------------------------
 
