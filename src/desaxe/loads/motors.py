@@ -189,6 +189,8 @@ class MakeOverOmega:
             raise ValueError("over_omega: two speeds are too close for the torques there")
         return OverOmega(table, kind, ("omega",) * x.plain + ("torque",) * y.plain)
 
+    __call__.__qualname__ = "over_omega"  # as errors of Python call it
+
     def __repr__(self) -> str:
         units = f" in {self.units!r}" if self.units else ""
         return f"desaxe.over_omega(speeds, torques, kind='linear'){units}"
@@ -228,6 +230,8 @@ class MakeKloss:
             plain += [names[row.unit]] if bare and row.unit in names and own is None else []
         most, slip, speed, ratio = values
         return Kloss(most, slip, speed, ratio, tuple(plain))
+
+    __call__.__qualname__ = "kloss"  # as errors of Python call it
 
     def __repr__(self) -> str:
         units = f" in {self.units!r}" if self.units else ""

@@ -80,6 +80,8 @@ class MakeOverTheta:
         y = column_of(f"{name}: values", values, ("N", "N*m"), _force(self.units))
         return table_over_theta(x, y, kind, turn)
 
+    __call__.__qualname__ = "over_theta"  # as errors of Python call it
+
     def read(
         self,
         path: str | PathLike[str],
@@ -148,6 +150,8 @@ class MakeOverY:
         """A load over the slider's position; see `help(desaxe.over_Y)`."""
         return table_over_Y(*_columns("over_Y", "positions", positions, outward, inward, self.units), kind)
 
+    __call__.__qualname__ = "over_Y"  # as errors of Python call it
+
     def read(
         self, path: str | PathLike[str], Y: str | None = None, value: str | None = None, kind: str = "linear"
     ) -> Load:
@@ -205,6 +209,8 @@ class MakeOverStroke:
         """A load over the distance from a dead centre; see `help(desaxe.over_stroke)`."""
         columns = _columns("over_stroke", "distances", distances, outward, inward, self.units)
         return table_over_stroke(*columns, kind, dead_centre)
+
+    __call__.__qualname__ = "over_stroke"  # as errors of Python call it
 
     def read(
         self,
