@@ -60,7 +60,8 @@ def panels(
     for place, (array, axis) in enumerate(zip(arrays, axes, strict=True)):
         lines = draw(axis, array, over, beside=True if place == 0 else None)
         axis.set_title(meaning_of(array), loc="left", fontsize="small", color="0.3")
-        axis.set_ylabel(f"{array.name} {unit_of(array)}".rstrip())
+        between = "\n" if "_wrt_" in str(array.name) else " "  # as long as a panel is high
+        axis.set_ylabel(f"{array.name}{between}{unit_of(array)}".rstrip())
         if place < len(arrays) - 1:
             axis.set_xlabel("")
         drawn[str(array.name)] = lines
