@@ -32,6 +32,8 @@ SAME = 1e-14  # rad
 NARROWEST = 2.0**-44  # rad: next to a change point functions bend within the root of the margin
 CLIMBS = 30  # steps of Newton's method
 PEAKS = 4  # so many of the highest samples are refined
+EQUAL = 1e-13  # of the largest value: extremes that differ by less are equal
+APART = 1e-6  # rad: equal ones that are no nearer are two
 
 
 class Panels:
@@ -121,7 +123,8 @@ class Panels:
         here = _series(np.concatenate([own, own], axis=1), local)
         k = np.argmax(here, axis=1)[:, None]
         place = np.tile(middle, 2) + np.tile(half, 2) * local
-        within = (np.abs(local) < 1.0) & (k < near.shape[1])
+        within = (np.abs(local) < 1.0) & (np.arange(local.shape[1]) < near.shape[1])
+        k = _first_of_equal(k, here, place, within)
         found = (np.take_along_axis(part, k, 1) for part in (sign * here, place, within))
         top, at, inside = (part.reshape(self.edges.shape[:-1])[()] for part in found)
         return top, at, inside
@@ -153,6 +156,14 @@ class Panels:
         edges = self._rows(self.edges)
         start, stop = edges[row, panel], edges[row, panel + 1]
         return 0.5 * (start + stop), 0.5 * (stop - start)
+
+
+def _first_of_equal(best: Any, values: Array, places: Array, within: Array) -> Any:
+    """The first of extremes that rounding alone tells apart, such as mirror images of each other."""
+    equal = values >= np.take_along_axis(values, best, 1) - EQUAL * np.abs(values).max(axis=1, keepdims=True)
+    first = np.argmin(np.where(equal & within, places, np.inf), axis=1)[:, None]
+    ahead = np.take_along_axis(places, best, 1) - np.take_along_axis(places, first, 1)
+    return np.where((ahead > APART) & np.take_along_axis(equal & within, first, 1), first, best)
 
 
 def nodes_of(start: Array, stop: Array) -> Array:
