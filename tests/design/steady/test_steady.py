@@ -249,6 +249,18 @@ def test_without_a_steady_state_the_message_says_why(torque, said):
     assert np.isnan(found["omega"]).all()
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_loads_that_drive_the_crank_are_told(way):
+    """A force against the stroke inward is positive; with the wrong sign it gives 240 J on its 40 mm."""
+    load = dx.over_stroke([0.0, 0.03, 0.04], [0, 0, 0], [-8e3, -6e3, 0], dead_centre="inner")
+    motor = dx.kloss(2.0, 0.2, way * 157.08, gear=15)
+    found = dx.steady(torque=motor, **{**PRESS, "F_Y": load, "mu": 0.05})
+    assert found["status"] == 1
+    assert found["message"].endswith(
+        "; the loads themselves drive the crank, 240 J a period: check their signs"
+    )
+
+
 def test_an_unstable_motion_alone_is_no_steady_state():
     found = dx.steady(torque=lambda omega: 10.0 * (omega - 20.0), flywheel_inertia=5.0, **PRESS)
     assert found["status"] == 1

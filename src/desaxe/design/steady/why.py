@@ -8,6 +8,8 @@ from .designs import Designs, vanishing
 from .scan import Scan
 from .states import States
 
+SHARE = 0.01  # of the gain: less work of the loads is not worth a word
+SIMPSON = np.array([1.0, 4.0, 2.0, 4.0, 1.0]) / 12.0  # at the places of a panel that turns take
 BALANCED = 1e-9  # of the work over a period: what of it counts as none
 
 
@@ -44,7 +46,7 @@ def why_none(designs: Designs, states: States, k: int) -> str:
         )
     return (
         f"no steady state: the motor is too strong, it runs away: at {_speed(scan, k, starts[last])} "
-        f"a period still gains {gains[last]:.6g} J"
+        f"a period still gains {gains[last]:.6g} J{_driven(designs, scan, k, gains[last])}"
     )
 
 
@@ -73,6 +75,14 @@ def _stall(designs: Designs, scan: Scan, k: int) -> str:
 def _work(scan: Scan, k: int) -> float:
     """The work of the loads over a period, of either sign."""
     return float((np.abs(scan.turns.course.load[k]).mean(-1) * scan.turns.width[k]).sum())
+
+
+def _driven(designs: Designs, scan: Scan, k: int, gain: float) -> str:
+    """That the loads drive the crank, where they do a share of what a period gains."""
+    work = -float(designs.way[k] * (scan.turns.course.load[k] @ SIMPSON * scan.turns.width[k]).sum())
+    if work <= SHARE * gain:
+        return ""
+    return f"; the loads themselves drive the crank, {work:.4g} J a period: check their signs"
 
 
 def _of_number(designs: Designs, scan: Scan, k: int) -> str:
