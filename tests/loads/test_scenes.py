@@ -140,7 +140,7 @@ def test_what_no_module_can_hold_is_refused(tmp_path):
         dx.compile(scene, tmp_path / "press.py")
     with pytest.raises(SceneError, match=r"loads.F_Y = .* holds tables over theta"):
         dx.compile(scene, tmp_path / "press", to="c")
-    with pytest.raises(TypeError, match="a page holds numbers and tables over theta"):
+    with pytest.raises(TypeError, match="a page holds numbers and tables, no functions"):
         dx.explore(scene, tmp_path / "press.html")
 
 

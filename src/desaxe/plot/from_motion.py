@@ -7,6 +7,7 @@ import numpy as np
 from ..evaluation.labels import attributes, import_xarray
 from ..mechanism.inputs import INPUTS
 from ..mechanism.unit_system import SI
+from ..support.forks import IMPORTS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,7 +26,8 @@ def dataset_of_motion(found: Any, over: str) -> "xr.Dataset":
     ValueError for another `over`, and for theta of many designs, each of which has angles of its own.
     """
     import_xarray("a picture of a motion")
-    import xarray
+    with IMPORTS:
+        import xarray
 
     t, designs = np.asarray(found["t"]), np.shape(found["theta"])[:-1]
     if over not in ("t", "theta"):
