@@ -283,3 +283,14 @@ def test_panels_of_derivatives_say_which():
     grid = dx.grid(["Y_wrt_theta", "Y_wrt_theta_theta"], theta=[0.0, 1.0, 2.0], ec=0.1, AB=0.125, BC=0.35)
     titles = [lines[0].axes.get_title(loc="left") for lines in dx.plot.panels(grid).values()]
     assert titles == ["derivative of Y by theta", "derivative of Y by theta, theta"]
+
+
+def test_a_title_does_not_break_inside_of_a_word():
+    load = dx.over_stroke([0.0, 0.008, 0.02], [-8e4, -8e4, 0.0], inward=[0.0, 0.0, 1.0], dead_centre="outer")
+    inputs = {"ec": 0.0, "AB": 0.075, "BC": 0.3, "omega0": 1.0, "m_slider": 1.0}
+    grid = dx.grid("T_in", theta=[0.0, 1.0, 2.0], F_Y=load, **inputs)
+    title = dx.plot.curves(grid, "T_in")[0].axes.get_title(loc="left").replace("\u00a0", " ")
+    whole = (
+        "F_Y over the distance from the outer dead centre: 3 points, linear, -80000 to 0, another one inward"
+    )
+    assert whole in " ".join(title.split())

@@ -25,7 +25,8 @@ def title_of(dataset: "xr.Dataset", names: Sequence[str], width: int = WIDTH) ->
     told = [*_numbers(dataset, needs), *_loads(dataset, needs)]
     if dataset.attrs.get("branch") == -1:
         told.append("branch = -1")
-    return textwrap.fill(", ".join(one.replace(" ", "\u00a0") for one in told), width)
+    whole = (one.replace(" ", "\u00a0") if len(one) < width else one for one in told)
+    return textwrap.fill(", ".join(whole), width)
 
 
 def _numbers(dataset: "xr.Dataset", needs: Collection[str]) -> Iterator[str]:
