@@ -67,7 +67,7 @@ def test_generic_points_are_generic():
 @pytest.mark.parametrize("kind", ["generic", "concentric", "state"])
 def test_a_kernel_is_as_right_as_a_point(kind):
     """The same through the compiled loop, which has a sine and cosine of its own."""
-    points = list(draw(kind, 50))
+    points = list(draw(kind, cases(0, 25, 50)))
     columns = {name: np.tile([point[name] for point in points], 50) for name in points[0] if name != "branch"}
     answers = dx.evaluate(names_for(points[0]), **columns, branch=points[0]["branch"])
     for index, point in enumerate(points):
