@@ -166,7 +166,10 @@ def drawn(rng):
     else:
         k, w = rng.normal(0, 0.02), rng.uniform(1, 5)
         call["torque"] = lambda t, theta, omega: math.cos(w * t) + math.sin(theta) + k * omega
-        derivative = lambda t, theta, omega: (math.cos(theta), k, -w * math.sin(w * t))  # noqa: E731
+
+        def derivative(t, theta, omega):
+            return math.cos(theta), k, -w * math.sin(w * t)
+
     return call, given, derivative
 
 
@@ -277,7 +280,10 @@ def test_a_break_away_comes_when_the_torque_is_enough():
     rest = {n: value for n, value in PRESS.items() if n not in given}
     wrt = ["mu", "F_X", "theta0", "AB"]
     call = {"torque": lambda t, theta, omega: 4.0 * math.sin(5.0 * t), "t_end": 0.2, **rest}
-    slopes = lambda t, theta, omega: (0.0, 0.0, 20.0 * math.cos(5.0 * t))  # noqa: E731
+
+    def slopes(t, theta, omega):
+        return 0.0, 0.0, 20.0 * math.cos(5.0 * t)
+
     found = dx.simulate(**call, **given, wrt=wrt, derivative=slopes)
     assert found["events"][0].kind == "break-away"
     held = {**given, **rest, "theta": 1.0, "omega": 1e-30, "alpha": 0.0}

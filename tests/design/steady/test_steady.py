@@ -75,8 +75,11 @@ def motor(rng, way):
         return (lambda omega: way * size * (1.2 - abs(omega) / top)), (
             lambda theta, omega: way * size * (1.2 - abs(omega) / top)
         )
-    found = lambda theta, omega: way * size * (1.2 + 0.3 * np.sin(2 * theta) - (omega / top) ** 2)  # noqa: E731
-    return found, found
+
+    def torque(theta, omega):
+        return way * size * (1.2 + 0.3 * np.sin(2 * theta) - (omega / top) ** 2)
+
+    return torque, torque
 
 
 def drawn(seed):
