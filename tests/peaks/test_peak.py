@@ -132,11 +132,12 @@ def test_a_margin_below_zero_by_less_than_its_rounding():
     BC = AB + ec
     exact = [Fraction(c) - Fraction(a) - Fraction(e) for a, e, c in zip(AB, ec, BC, strict=True)]
     short = np.array([margin < 0 for margin in exact])
+    changes = np.array([margin == 0 for margin in exact])  # V_C is greatest there and jumps, a_C elsewhere
     assert np.count_nonzero(short & (BC - AB - ec >= 0.0)) > 0
-    for name in ("V_C", "a_C"):
+    for name, special in (("V_C", short | changes), ("a_C", short)):
         found = dx.peak(name, AB=AB, ec=ec, BC=BC, omega0=90.0)
         assert np.array_equal(np.isinf(found["value"]), short)
-        assert np.array_equal(found["status"] == 2, short)
+        assert np.array_equal(found["status"] == 2, special)
 
 
 @pytest.mark.parametrize("name", ["V_C", "a_C"])
@@ -428,6 +429,21 @@ def test_a_bad_design_is_told_alone(name, loads, bad):
     assert np.isnan(found["value"]).tolist() == [False, True, False]
     assert np.isnan(found["gradient"]["ec"]).tolist() == [False, True, False]
     assert found["value"][0] == pytest.approx(dx.peak(name, **good, **loads)["value"], rel=1e-12)
+
+
+@pytest.mark.parametrize("branch", [1, -1])
+@pytest.mark.parametrize(("ec", "AB", "BC"), [(0.25, 0.5, 0.75), (-0.125, 0.375, 0.5)])
+def test_the_jump_of_a_rate_at_an_eccentric_change_point_has_no_gradient(ec, AB, BC, branch):
+    """AB + |ec| = BC: |dY/dtheta| is AB + sqrt(AB BC) on one side of the quarter, sqrt(AB BC) - AB beyond."""
+    design = {"ec": ec, "AB": AB, "BC": BC, "omega0": 2.0, "branch": branch}
+    for name, value in (("V_C", 2.0 * (AB + math.sqrt(AB * BC))), ("s", None)):
+        found = dx.peak(name, **design)
+        assert found["status"] == 2
+        assert value is None or found["value"] == pytest.approx(value, rel=1e-9)
+        assert all(np.isnan(found["gradient"][p]) for p in ("ec", "AB", "BC"))
+    elsewhere = dx.peak("Y", **design)
+    assert elsewhere["status"] == 0
+    assert np.isfinite(list(elsewhere["gradient"].values())).all()
 
 
 @pytest.mark.parametrize("kind", ["absmax", "max"])

@@ -16,6 +16,8 @@ from ..loads.angles import dead_centres, limit_angles, repeated
 from ..loads.load import Load
 from ..loads.pieces import Place
 from ..loads.resolve import way_of
+from ..mechanism.closed.functions import closed_form
+from ..mechanism.closed.limits import LIMITS
 from ..mechanism.names import LENGTHS
 from .nodes import Array
 
@@ -186,11 +188,13 @@ def complete(
 
 
 def _at_change_point(designs: Designs, found: Found) -> NDArray[np.bool_]:
-    """True where a crank as long as its rod, in line, lies across: rates jump there, bounded."""
+    """True where a crank lies across its guide at a change point, in line with the rod: rates jump there."""
     if any(name not in designs.columns for name in LENGTHS):
         return np.zeros(designs.size, bool)
-    ec, AB, BC = (designs.columns[n] for n in LENGTHS)
-    across: NDArray[np.bool_] = (ec == 0.0) & (AB == BC) & (np.abs(np.cos(found.theta)) < ACROSS)
+    lengths = [designs.columns[name] for name in LENGTHS]
+    upper, lower = closed_form(LIMITS, ("upper", "lower")).arrays(*lengths)
+    margin = np.where(np.sin(found.theta) > 0.0, upper, lower)
+    across: NDArray[np.bool_] = (margin == 0.0) & (np.abs(np.cos(found.theta)) < ACROSS)
     return across
 
 
