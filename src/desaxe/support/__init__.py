@@ -4,6 +4,7 @@ extras         a missing optional dependency as one line that says what to insta
 files          files written whole or not at all
 locks          a lock across processes
 roots          one root of a function
+panels         functions as polynomials on panels: integrals, roots, extremes
 progress       how far long work is, and a bar on the terminal
 quantity_text  a number with its unit as text
 version        the version of this installation

@@ -8,8 +8,8 @@ import numpy as np
 
 from ...peaks.peak import peak
 from ...runtime.request import as_number
+from ...support.panels import Array, Panels
 from ...support.shown import shown
-from ..turn.panels import Array, Panels
 from ..turn.turn import JAMS, NoCycleError, Turn
 from .inertia import flywheel_for
 from .result import FIGURES, Drive

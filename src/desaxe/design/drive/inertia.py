@@ -21,8 +21,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...support.panels import Array, Panels, resolved
 from ...support.roots import root
-from ..turn.panels import Array, Panels, resolved
 from ..turn.turn import Turn
 
 ROUNDS = 60  # of corrections of the friction

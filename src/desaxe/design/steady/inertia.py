@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...support.panels import Panels
 from ..drive.inertia import storing
-from ..turn.panels import Panels
 from .designs import Designs, course_of
 from .states import States, main_of, states_of
 

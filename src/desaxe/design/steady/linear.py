@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...support.computed import computed_once
-from ..turn.panels import NODES, RUNNING, WEIGHT, Panels
+from ...support.panels import NODES, RUNNING, WEIGHT, Panels
 
 Array = NDArray[Any]
 # Growth over a panel beyond which an integrating factor is no polynomial, not even a rough one: what

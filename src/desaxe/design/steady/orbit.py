@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..turn.panels import TO_COEFFICIENTS, Panels
+from ...support.panels import TO_COEFFICIENTS, Panels
 from .designs import Course, Designs, Rate, course_of, picked, rate
 from .linear import Linear
 

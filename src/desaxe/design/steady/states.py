@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..turn.panels import Panels
+from ...support.panels import Panels
 from .designs import Designs, picked, vanishing
 from .figures import Figures, course_at_steps, figures_of
 from .orbit import HALVINGS, PANELS, Orbit, between_kinks, moved, newton, unresolved

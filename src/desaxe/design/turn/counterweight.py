@@ -17,8 +17,8 @@ from ...evaluation.extremes import check_range
 from ...mechanism.inputs import TINY, Input
 from ...mechanism.read import read
 from ...support.answer import answering
+from ...support.panels import RESOLVED, resolved
 from ...support.shown import shown
-from .panels import RESOLVED, resolved
 from .turn import Turn, extreme, one_turn
 
 ALONG = {"both": 0.0, "Y": 1.0, "X": -1.0}

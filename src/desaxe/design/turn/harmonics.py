@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ...mechanism.catalogue import quantity
 from ...support.answer import answering
 from ...support.checks import whole_number
-from .panels import RESOLVED, WEIGHT
+from ...support.panels import RESOLVED, WEIGHT
 from .turn import MOST, Turn, one_turn
 
 WAVES = 4.0  # rad of the highest wave in a panel of 16 nodes: what Gauss's rule integrates to rounding

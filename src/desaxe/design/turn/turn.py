@@ -24,7 +24,7 @@ from ...mechanism.names import LENGTHS
 from ...mechanism.read import read
 from ...runtime.request import as_number, check_common, check_inputs, is_steady, request
 from ...support.computed import computed_once
-from .panels import Array, Panels, resolved
+from ...support.panels import Array, Panels, resolved
 
 LEAST, MOST = 128, 131072  # steps of a turn
 MOST_TURNS = 4  # after which the loads must repeat; two in a four-stroke engine

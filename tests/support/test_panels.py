@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from desaxe.design.turn.panels import Panels
+from desaxe.support.panels import Panels
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])

@@ -1,4 +1,4 @@
-"""Crank angles in panels, on each of which functions are polynomials: of one design or of many.
+"""Functions of an angle in panels, on each of which they are polynomials: of one design or of many.
 
 Kinks must be edges of panels. Gauss's rule is then exact to rounding, and so are running integrals, roots and
 extremes. Values at the nodes are arrays (panels, NODES), of designs in rows
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from ...support.computed import computed_once
+from .computed import computed_once
 
 Array = NDArray[Any]
 
@@ -221,7 +221,7 @@ def _climbed(coefficients: Array, x: Array) -> Array:
 def resolved(functions: Callable[[Array], dict[str, Array]], breaks: list[float]) -> Panels:
     """Panels of one design between the first and the last break, on which all functions are polynomials.
 
-    `functions(theta)` gives values by name for a flat array of angles. Breaks are in order. A panel is halved
+    `functions(x)` gives values by name for a flat array of places. Breaks are in order. A panel is halved
     until the Legendre coefficients of every function on it have fallen to rounding.
     """
     edges = np.array(sorted(set(breaks)))
@@ -236,8 +236,8 @@ def resolved(functions: Callable[[Array], dict[str, Array]], breaks: list[float]
     before: dict[str, Array] = {}
     count = 0
     while start.size:
-        theta = nodes_of(start, stop)
-        values = {name: v.reshape(theta.shape) for name, v in functions(theta.ravel()).items()}
+        x = nodes_of(start, stop)
+        values = {name: v.reshape(x.shape) for name, v in functions(x.ravel()).items()}
         good = (stop - start <= NARROWEST) | (count > MOST)
         tails = {name: np.abs(v @ TO_COEFFICIENTS[-2:].T).max(1) for name, v in values.items()}
         fine = np.ones(start.size, bool)
