@@ -22,6 +22,7 @@ fmpy = pytest.importorskip("fmpy")
 OUTPUTS = ["V_C", "a_C", "T_in", "N_C", "kinetic_energy"]
 TURN = [[0.4, -5], [1.0, -40], [2.0, 10], [4.0, 0]]
 STROKE = [[0.08, 0, 9], [0.1, -60, 20], [0.13, -5, 0]]
+NEAR = [[0.0, -30, 5], [0.02, -60, 20], [0.03, 0, 0]]
 ONE_WAY = [row[:2] for row in STROKE]
 LOADS = {
     "step": {"over_theta": TURN, "kind": "step"},
@@ -30,18 +31,20 @@ LOADS = {
     "over Y": {"over_Y": ONE_WAY, "kind": "linear"},
     "both ways": {"over_Y": STROKE, "kind": "linear"},
     "steps over Y": {"over_Y": ONE_WAY, "kind": "step"},
+    "outer": {"over_stroke": NEAR, "kind": "linear", "dead_centre": "outer"},
+    "inner": {"over_stroke": [row[:2] for row in NEAR], "kind": "linear", "dead_centre": "inner"},
 }
 
 
 def load_of(name):
     """A load of `LOADS` as a call takes it."""
     given = dict(LOADS[name])
-    kind = given.pop("kind")
+    options = {key: given.pop(key) for key in ("kind", "dead_centre") if key in given}
     ((over, rows),) = given.items()
     x, y, *inward = np.array(rows).T.tolist()
     if over == "over_theta":
-        return dx.over_theta(x, y, kind=kind)
-    return dx.over_Y(x, y, kind=kind, **({"inward": inward[0]} if inward else {}))
+        return dx.over_theta(x, y, **options)
+    return getattr(dx, over)(x, y, **options, **({"inward": inward[0]} if inward else {}))
 
 
 @pytest.fixture(scope="module")
@@ -186,6 +189,9 @@ def force_at(name, theta, **lengths):
         x = mpmath.mpf(theta) + (load.period if theta < table.knots[0] else 0)
     else:
         table, x = load.outward, truth("Y", theta=theta, omega=1.0, alpha=0.0, **lengths)
+    if name == "inner":
+        ec, AB, BC = (mpmath.mpf(lengths[n]) for n in ("ec", "AB", "BC"))
+        x -= mpmath.sqrt((BC - AB) ** 2 - ec**2)
     piece = table.piece(float(x))
     s, (a, b, c, d) = x - mpmath.mpf(table.origin(piece)), map(mpmath.mpf, table.rows[piece])
     return a + s * (b + s * (c + s * d))
@@ -207,7 +213,7 @@ def exact(name, load, torque, theta, omega, F_Y, **given):
     return still + alpha * by_alpha
 
 
-@pytest.mark.parametrize("name", [pytest.param("cubic", marks=pytest.mark.thorough), "over Y"])
+@pytest.mark.parametrize("name", [pytest.param("cubic", marks=pytest.mark.thorough), "over Y", "inner"])
 def test_partial_derivatives_go_through_the_table(name, made, monkeypatch):
     """By angle, speed and force while time runs, by lengths in initialisation mode."""
     monkeypatch.setattr(test_fmu, "exact", lambda row, **at: exact(row, name, **at))
@@ -261,6 +267,12 @@ def test_what_an_fmu_does_not_have_is_refused_by_name(tmp_path):
     loads = {"F_Y": LOADS["linear"]}
     with pytest.raises(ValueError, match="'T_in_wrt_theta' is a derivative through"):
         dx.compile(content(outputs=["T_in_wrt_theta"], loads=loads), tmp_path / "press.fmu", to="fmu")
-    stroke = {"F_Y": {"over_stroke": [["0 mm", 0], ["20 mm", -50]], "dead_centre": "outer"}}
-    with pytest.raises(ValueError, match="an FMU holds tables over theta or Y"):
-        dx.compile(content(outputs=["T_in"], loads=stroke), tmp_path / "press.fmu", to="fmu")
+
+
+def test_a_dead_centre_that_the_lengths_do_not_have_is_told(made):
+    """The instance says so before anything moves: AB + |ec| > BC has no inner one."""
+    one = Instance(made("inner"), start={"ec": 0.07})
+    with pytest.raises(Exception, match="fmi3ExitInitializationMode"):
+        one.start()
+    assert any("from the inner dead centre, and there is none" in line for line in one.log), one.log
+    one.close()

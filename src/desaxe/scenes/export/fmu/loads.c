@@ -1,8 +1,9 @@
-/* ---- loads from tables: cubics over the crank angle or the slider's position, held between two kinks ---- */
+/* ---- loads from tables: cubics over the crank angle, the slider's position or the distance
+   from a dead centre, held between two kinks ---- */
 
 /* Row 0 holds below the first place (above a period it is the last row), row k from place k - 1 on. */
 typedef struct {
-  int force, over_Y, n, n_kinks;
+  int force, over_Y, centre, n, n_kinks; /* centre: where a dead centre stands in the position, 0 for none */
   double period; /* of an angle; over Y the ends go on */
   const double *places, (*rows)[4], (*inward)[4];
   const int *kinks; /* indices of the places where value or slope jumps */
@@ -30,9 +31,41 @@ static int kink_of(const Loads *loads, const Load *load, int number) {
   return loads->all ? number : load->kinks[number];
 }
 
+/* What a load over Y is looked up by, Y or the distance from its dead centre, with its derivatives by theta, ec,
+   AB, BC; dY/dtheta is returned. */
+static double find_position(const Load *load, const double v[], double found[5]) {
+  double every[N_POSITION];
+  (void)eval_position(v, every);
+  memcpy(found, every, 5 * sizeof *found);
+  if (load->centre) {
+    const double *centre = &every[load->centre], side = every[0] < centre[0] ? -1.0 : 1.0;
+    found[0] = side * (every[0] - centre[0]);
+    found[1] = side * every[1];
+    for (int j = 1; j < 4; j++) {
+      found[1 + j] = side * (every[1 + j] - centre[j]);
+    }
+  }
+  return every[1];
+}
+
+/* Name a dead centre that a load needs and that the lengths do not have; NULL where there is none such. */
+static const char *missing_dead_centre(const double v[]) {
+  double every[N_POSITION];
+  (void)eval_position(v, every);
+  for (int k = 0; k < N_LOADS; k++) {
+    const double centre = every[LOADS[k].centre];
+    if (LOADS[k].centre && centre != centre) {
+      return LOADS[k].centre == OUTER ? "outer" : "inner";
+    }
+  }
+  return NULL;
+}
+
 /* The crank angles of the kinks: where the slider passes a place, or turns round; NaN where it does not. */
 static void find_kinks(Loads *loads, const double v[], int all) {
   const double ec = v[EC], longest = v[LENGTH_BC] + v[LENGTH_AB], least = v[LENGTH_BC] - v[LENGTH_AB];
+  double every[N_POSITION];
+  (void)eval_position(v, every);
   loads->all = all;
   for (int k = 0; k < N_LOADS; k++) {
     const Load *load = &LOADS[k];
@@ -42,14 +75,17 @@ static void find_kinks(Loads *loads, const double v[], int all) {
     }
     for (int j = 0; j < count_of(loads, load); j++) {
       const double place = load->places[kink_of(loads, load, j)];
-      if (load->over_Y) {
+      if (load->centre) {
+        (void)eval_inverse(v, every[load->centre] - place, &angles[4 * j]);
+        (void)eval_inverse(v, every[load->centre] + place, &angles[4 * j + 2]);
+      } else if (load->over_Y) {
         (void)eval_inverse(v, place, &angles[2 * j]);
       } else {
         angles[j] = place;
       }
     }
     if (load->inward != NULL) {
-      double *centres = &angles[2 * count_of(loads, load)];
+      double *centres = &angles[(load->centre ? 4 : 2) * count_of(loads, load)];
       centres[0] = atan2(-ec, sqrt((longest - ec) * (longest + ec)));
       centres[1] = atan2(least < 0.0 ? -ec : ec, sqrt((least - ec) * (least + ec)));
       centres[2] = 3.141592653589793 - centres[0];
@@ -81,7 +117,7 @@ static void hold_loads(Loads *loads, const double v[], const double limits[2], d
     const Load *load = &LOADS[k];
     Held *held = &loads->held[k];
     const double ahead = v[THETA] + (HAS_STATES ? 1e-9 * way : 0.0), period = load->over_Y ? 6.283185307179586 : load->period;
-    double at[N_VALUES], found[N_POSITION], low = limits[0], high = limits[1];
+    double at[N_VALUES], found[5], low = limits[0], high = limits[1];
     held->edges[0] = -(double)INFINITY;
     held->edges[1] = (double)INFINITY;
     for (int j = 0; j < N_ANGLES; j++) {
@@ -99,9 +135,9 @@ static void hold_loads(Loads *loads, const double v[], const double limits[2], d
     double place = at[THETA] - held->shift;
     held->inward = 0;
     if (load->over_Y) {
-      (void)eval_position(at, found);
+      const double rises = find_position(load, at, found);
       place = found[0];
-      held->inward = load->inward != NULL && found[1] * (way < 0.0 ? -1.0 : 1.0) < 0.0;
+      held->inward = load->inward != NULL && rises * (way < 0.0 ? -1.0 : 1.0) < 0.0;
     }
     held->first = load->over_Y ? 0 : 1;
     held->last = load->n;
@@ -120,9 +156,9 @@ static void add_loads(const Loads *loads, double v[], double (*slopes)[4]) {
     const Load *load = &LOADS[k];
     const Held *held = &loads->held[k];
     const double shift = count_of(loads, load) > 0 ? held->shift : periods(load, v[THETA]);
-    double found[N_POSITION] = {v[THETA] - shift, 1.0};
+    double found[5] = {v[THETA] - shift, 1.0};
     if (load->over_Y) {
-      (void)eval_position(v, found);
+      (void)find_position(load, v, found);
     }
     const int row = row_at(load, found[0], held->first, held->last);
     const double *c = (held->inward ? load->inward : load->rows)[row];

@@ -8,6 +8,7 @@ from ....loads.load import Load, OverY, TableOverTheta
 from ....loads.resolve import plan_of
 from ....loads.stroke import OverStroke
 from ....loads.table import Row
+from ....mechanism.names import LENGTHS, sensitivity
 from ...schema import SceneError
 
 
@@ -17,13 +18,7 @@ def tables(given: Mapping[str, Any]) -> dict[str, Load]:
 
 
 def check_loads(where: str, outputs: Sequence[str], loads: Mapping[str, Load]) -> None:
-    """SceneError for a load that is no table, and for an output that is a derivative through one."""
-    for name, load in loads.items():
-        if not isinstance(load, (TableOverTheta, OverY)) or isinstance(load, OverStroke):
-            raise SceneError(
-                f"{where}: loads.{name} = {load!r}: an FMU holds tables over theta or Y; give "
-                f"one, sampled, or leave the load out and give it as the input {name} at each instant"
-            )
+    """SceneError for an output that is a derivative through a load."""
     if not loads:
         return
     through = plan_of(outputs, loads, True, False).terms
@@ -35,28 +30,38 @@ def check_loads(where: str, outputs: Sequence[str], loads: Mapping[str, Load]) -
         )
 
 
+def position_names(loads: Mapping[str, Load]) -> tuple[str, ...]:
+    """What loads over Y or the stroke are looked up by, with its derivatives by theta and the lengths."""
+    centres = dict.fromkeys(load.centre for load in loads.values() if isinstance(load, OverStroke))
+    by_lengths = {name: [sensitivity(name, length) for length in LENGTHS] for name in ("Y", *centres)}
+    names = [one for name, slopes in by_lengths.items() for one in (name, *slopes)]
+    return ("Y", sensitivity("Y", "theta"), *names[1:])
+
+
 def loads_text(loads: Mapping[str, Load], place: Mapping[str, int]) -> str:
     """The C of the loads, or of none."""
     if not loads:
         return _file("no_loads.c")
-    rows, angles = [], 1
+    rows, angles, known = [], 1, position_names(loads)
     lines: list[str] = []
     for force, load in loads.items():
         period, places, outward, inward, kinks = _arrays(load)
         over_Y = int(isinstance(load, OverY))
-        angles = max(angles, 2 * len(places) + 4 if over_Y else len(places))
+        centre = known.index(load.centre) if isinstance(load, OverStroke) else 0
+        angles = max(angles, (4 if centre else 2) * len(places) + 4 if over_Y else len(places))
         lines.append(_list(f"double {force}_PLACES[]", map(repr, places)))
         lines.append(_list(f"double {force}_ROWS[][4]", map(_braces, outward)))
         lines += [_list(f"double {force}_INWARD[][4]", map(_braces, inward))] if inward else []
         lines.append(_list(f"int {force}_KINKS[]", map(str, [*kinks, 0])))
         own = f"{force}_INWARD" if inward else "NULL"
         rows.append(
-            f"{{{place[force]}, {over_Y}, {len(places)}, {len(kinks)}, {period!r}, {force}_PLACES, "
+            f"{{{place[force]}, {over_Y}, {centre}, {len(places)}, {len(kinks)}, {period!r}, {force}_PLACES, "
             f"{force}_ROWS, {own}, {force}_KINKS}}"
         )
     lines.append(_list("Load LOADS[N_LOADS]", rows))
     turning = sum(isinstance(load, OverY) and load.inward is not None for load in loads.values())
-    sizes = {"N_LOADS": len(loads), "TURNING_LOADS": turning, "N_ANGLES": angles, "N_POSITION": 5}
+    sizes = {"N_LOADS": len(loads), "TURNING_LOADS": turning, "N_ANGLES": angles, "N_POSITION": len(known)}
+    sizes["OUTER"] = known.index("Y_outer") if "Y_outer" in known else -1
     head = "\n".join(f"#define {name} {size}" for name, size in sizes.items())
     return f"{head}\n\n{_file('loads.c').replace('/*TABLES*/', chr(10).join(lines))}"
 

@@ -192,6 +192,13 @@ static int is_sound(Model *m) {
     tell(m, 1, text);
     return 0;
   }
+  const char *missing = missing_dead_centre(x->v);
+  if (missing != NULL) {
+    snprintf(text, sizeof text, "ec = %.9g, AB = %.9g, BC = %.9g: a load is given over the distance from the %s dead centre, "
+             "and there is none", x->v[EC], x->v[LENGTH_AB], x->v[LENGTH_BC], missing);
+    tell(m, 1, text);
+    return 0;
+  }
   const int status = update(x);
   if (status == 0 && HAS_STATES && !(fabs(x->v[DER_OMEGA]) < (double)INFINITY)) {
     tell(m, 1, "nothing moves without inertia: M_eff must be > 0 where the motion starts");

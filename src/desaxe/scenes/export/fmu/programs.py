@@ -18,10 +18,9 @@ from ....runtime.request import Request, request
 from ....runtime.specialise import specialise
 from ...content import Content
 from ..motion import motion
-from .loads import tables
+from .loads import position_names, tables
 from .variables import FORCES, Variables
 
-POSITION = ("Y", "Y_wrt_theta", "Y_wrt_ec", "Y_wrt_AB", "Y_wrt_BC")
 TORQUE = "T_in"  # the row whose derivatives say how the acceleration depends on everything
 
 
@@ -34,7 +33,7 @@ class Programs(NamedTuple):
     slopes: Program
     entries: tuple[tuple[str, str], ...]
     limits: Program
-    position: Program  # of the slider, with its derivatives by theta and the lengths
+    position: Program  # of the slider and of its dead centres, with derivatives by theta and the lengths
     inverse: Program  # the crank angles for a slider position
     loads: Mapping[str, Load]  # those that vary with the motion
 
@@ -50,7 +49,8 @@ def programs(content: Content, table: Variables) -> Programs:
     outputs = specialise(asked.names, asked.form, asked.fixed)
     rows = dict.fromkeys((*(n for n in table.outputs if n != "status"), *([TORQUE] if moves else [])))
     slopes, entries = _slopes(tuple(rows), knowns, given, content.branch, moves)
-    position = _request(POSITION, {}, content.branch, False)
+    loads = tables(content.inputs)
+    position = _request(position_names(loads), {}, content.branch, False)
     return Programs(
         motion(given, content.branch) if moves else None,
         guard_inputs(outputs, [n for n in ("theta", "omega", *FORCES) if n in outputs.inputs], LEAST, {}),
@@ -60,7 +60,7 @@ def programs(content: Content, table: Variables) -> Programs:
         closed_form(LIMITS, (*ANGLES, "status")).program,
         specialise(position.names, position.form, position.fixed),
         closed_form(INVERSE, ("first", "second"), branch=float(content.branch)).program,
-        tables(content.inputs),
+        loads,
     )
 
 

@@ -51,7 +51,7 @@ def _functions(table: Variables, made: Programs) -> list[str]:
         *_function("limits", made.limits, table.place, 4, 4, ""),
     ]
     if made.loads:
-        found += _function("position", made.position, table.place, 5, None, "")
+        found += _function("position", made.position, table.place, len(made.position.outputs), None, "")
         found += _function("inverse", made.inverse, table.place, 2, None, "double Y, ")
     if made.motion is not None:
         return [*found, *_function("motion", made.motion, table.place, 1, 1, "double way, ")]
