@@ -41,10 +41,10 @@ def test_the_worst_error_beside_the_usual_one(power):
 @pytest.mark.thorough
 def test_one_design_takes_the_steps_of_many():
     drawn = designs(cases(4, 40), seed=3)
-    many = dx.simulate(t_end=1.0, rtol=1e-6, times=[1.0], **drawn)
+    many = dx.simulate(t_end=1.0, rtol=1e-8, times=[1.0], **drawn)
     for row in range(len(drawn["AB"])):
         one = {name: float(np.broadcast_to(v, drawn["AB"].shape)[row]) for name, v in drawn.items()}
-        alone = dx.simulate(t_end=1.0, rtol=1e-6, times=[1.0], **one)
+        alone = dx.simulate(t_end=1.0, rtol=1e-8, times=[1.0], **one)
         assert many["theta"][row, 0] == pytest.approx(alone["theta"][0], rel=1e-9)
         assert many["omega"][row, 0] == pytest.approx(alone["omega"][0], rel=1e-8)
 

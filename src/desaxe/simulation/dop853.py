@@ -227,7 +227,7 @@ def start(p: Any, setup: Any, rtol: float, t_end: float, y: Any, atol: Any, size
     if energy == 0.0:
         energy = inertia / square(t_end)
     size[0], size[1], size[2] = 1.0, sqrt(energy), energy
-    atol[0], atol[1], atol[2] = 1e-3 * rtol, 0.01 * rtol * size[1], 0.01 * rtol * size[2]
+    atol[0], atol[1], atol[2] = 0.03 * rtol, 0.01 * rtol * size[1], 0.01 * rtol * size[2]
     return True
 
 
@@ -249,7 +249,7 @@ def follow(
     """
     rtol, t_end, longest = how[0], how[1], how[2]
     y, new, atol, relative, size = empty(3), empty(3), empty(3), empty(3), empty(3)
-    relative[0], relative[1], relative[2] = 3e-14, rtol, rtol
+    relative[0], relative[1], relative[2] = 1e-16, rtol, rtol
     theta[:], omega[:], alpha[:] = nan, nan, nan
     if not start(p, setup, rtol, t_end, y, atol, size):
         return 6, nan, nan, nan, nan

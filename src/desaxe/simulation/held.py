@@ -58,7 +58,7 @@ class Held:
     def hold(self, theta: float, way: float) -> None:
         """Hold the piece that lies ahead of an angle for a crank that turns one way."""
         load = self.load
-        if isinstance(load, TableOverTheta) and load.table.kinks:
+        if isinstance(load, TableOverTheta):
             self._piece = _piece_of_table(load, theta + copysign(AHEAD, way))
         elif isinstance(load, FunctionOverTheta) and load.angles:
             self._piece = _piece_of_function(load, theta + copysign(AHEAD, way))
@@ -82,12 +82,12 @@ class Held:
     def kinks(self, lengths: tuple[float, ...], branch: int) -> list[tuple[float, float]]:
         """Angles of one period at which another piece is held, and that period [rad].
 
-        Over Y those are all places of the table: a cubic goes no farther than its own piece, however smoothly
-        the next one follows.
+        Those are all places of a table: a cubic goes no farther than its own piece, and a high order cannot
+        judge a step over a knot, however smoothly the next piece follows.
         """
         load = self.load
         if isinstance(load, TableOverTheta):
-            return [(angle, load.period) for angle in load.table.kinks]
+            return [(angle, load.period) for angle in dict.fromkeys(load.table.knots)]
         if isinstance(load, FunctionOverTheta):
             return [(angle, load.period) for angle in load.angles]
         assert isinstance(load, OverY)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..support.deadline import Deadline
 from ..support.extras import needed
-from .checks import SMALL
+from .checks import LEAST_RTOL, SMALL
 from .coordinate import TURN
 from .equations import Law, Resting, Smooth, State, state_of
 from .events import (
@@ -37,6 +37,7 @@ Array = NDArray[np.float64]
 SAME = 1e-9  # of a step: events so close together are one instant
 MOST_TURNS = 100_000  # in one step
 AT_LIMIT = 1e-9  # rad: so near to a limit a load on a massless slider has grown without bound
+ROUNDING = 1e-16  # of an angle
 CHATTER = 20  # standstills in a row, all within a millionth of the time
 
 
@@ -230,9 +231,10 @@ class Run:
         how = self.tolerance
         first = None if self.next_step is None else min(self.next_step, t_bound - t)
         # An angle counts absolutely, however many turns it has made; implicit methods take one rtol only.
-        several = np.array([3e-14, how.rtol, how.rtol])
+        several = np.array([ROUNDING, how.rtol, how.rtol])
         if how.method == "DOP853":
             return Dop853(law.rate, t, y, t_bound, several, how.atol, how.size, how.max_step, first)
+        several[Q] = LEAST_RTOL
         with needed(f"simulate: method={how.method}", "simulate"):
             from scipy import integrate
         rtol = how.rtol if how.method in ("Radau", "BDF") else several

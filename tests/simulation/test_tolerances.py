@@ -1,0 +1,35 @@
+"""The errors of random motions are what rtol says: `python -m benchmarks.tolerances` draws the many."""
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from benchmarks.tolerances import HIGHEST, KINDS, LOWEST, cranks, errors
+from tests.effort import cases
+
+POWERS = (6, 8, 10, 12)
+TABLE = dx.over_theta(np.linspace(0.0, 2.0 * np.pi, 7)[:-1], [0.6, 2.1, 0.9, 1.8, 2.4, 1.1], "cubic")
+
+
+@pytest.mark.parametrize("power", POWERS)
+def test_the_worst_error_is_near_rtol(power):
+    rtol = 10.0**-power
+    assert LOWEST * rtol <= errors("number", cases(100, 500, 1_000), rtol, seed=5).max() <= HIGHEST * rtol
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("kind", ["of t, theta, omega", "table of theta", "friction"])
+def test_whatever_drives_the_motion(kind):
+    count = cases(100, 100, 1_000) if KINDS[kind][1] else cases(2, 2, 40)
+    for power in POWERS:
+        rtol = 10.0**-power
+        assert errors(kind, count, rtol, seed=6).max() <= HIGHEST * rtol
+
+
+def test_a_step_ends_at_each_knot_of_a_table():
+    """Across one the third derivative jumps, and the estimate of a step was wrong by a thousand times."""
+    drawn = {name: float(np.broadcast_to(v, 1)[0]) for name, v in cranks(1, np.random.default_rng(3)).items()}
+    call = {"torque": TABLE, "t_end": 0.5, "times": [0.5], **drawn}
+    truth, found = (dx.simulate(rtol=rtol, **call) for rtol in (3e-14, 1e-10))
+    for name in ("theta", "omega"):
+        assert abs(found[name][0] / truth[name][0] - 1.0) < HIGHEST * 1e-10
