@@ -16,6 +16,7 @@ report       docs/benchmarks.md and the table of docs/measured.md
 picture      the pictures of that page
 startup      first calls and second processes; `python -m benchmarks.startup` alone
 steps        `python -m benchmarks.steps`: the worst error of many motions beside the usual one
+tolerances   `python -m benchmarks.tolerances`: errors of motions beside the tolerance asked for
 motions      `python -m benchmarks.motions`: simulations
 steady       `python -m benchmarks --only steady`: steady states beside simulating them
 loads        `python -m benchmarks.loads`: grids and peaks under loads that vary with the motion

@@ -172,8 +172,8 @@ def simulate(
     model = model_of(values, int(branch), start[0], drive)
     energy = energy_scale(model, *start, end)
     size = np.array([1.0, sqrt(energy), energy])
-    how = read_method(method)
-    tolerance = Tolerance(how, rtol, _atol(atol, rtol, size, how), size, longest, max_steps)
+    by_method = read_method(method)
+    tolerance = Tolerance(by_method, rtol, _atol(atol, rtol, size, by_method), size, longest, max_steps)
     v = start[1] * sqrt(model.inertia(start[0]))
     run = Run(model, np.array([model.coordinate.q(start[0]), v, 0.0]), end, angles, tolerance, deadline)
     with np.errstate(all="ignore"):  # values beyond every double end the motion with a status
