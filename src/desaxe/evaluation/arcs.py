@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 
 from ..loads.angles import crossings, dead_centres, limit_angles, repeated
 from ..loads.load import OverY
-from ..loads.pieces import Place, piece_at, pieces_at
+from ..loads.pieces import Place, piece_at, pieces_at, settled_pieces
 from ..loads.resolve import way_of
 from ..loads.table import SAME
 from ..mechanism.names import LENGTHS
 from .values import values
 
 Array = NDArray[np.float64]
+NEXT = 3  # doubles on either side of a rounded angle, among which the exact one mostly is
 
 
 class Arcs(NamedTuple):
@@ -44,6 +45,19 @@ class Arcs(NamedTuple):
         """The pieces of the arcs of some angles, of the designs `rows`."""
         places = (self.starts[rows] <= theta[:, None]).sum(axis=1) - 1
         found: NDArray[np.intp] = self.pieces[rows, places]
+        return found
+
+    def first_angles(self, place: Place, rows: NDArray[np.intp], numbers: NDArray[np.intp]) -> Array:
+        """The first doubles of arcs that begin at jumps, exactly; `place` is that of the designs `rows`."""
+        starts, pieces = self.starts[rows, numbers], self.pieces[rows, numbers]
+        theta = starts + np.arange(-NEXT, NEXT + 1.0)[:, None] * np.spacing(starts)
+        known = settled_pieces(self.load, place._replace(theta=theta))
+        holds = known == pieces
+        found: Array = theta[holds.argmax(axis=0), np.arange(rows.size)]
+        begins = ~holds[0] & holds[-1] & (np.diff(holds, axis=0).sum(axis=0) == 1) & (known >= 0).all(axis=0)
+        for k in np.flatnonzero(~begins).tolist():
+            one = Place(0.0, [float(side[k]) for side in place.lengths], float(place.way[k]), place.branch)
+            found[k] = self.first_angle(one, int(rows[k]), int(numbers[k]))
         return found
 
     def first_angle(self, place: Place, row: int, number: int) -> float:

@@ -72,6 +72,41 @@ def piece_at(load: OverY, place: Place) -> int:
     return bisect_right(table.knots, slider) + (len(load.outward.rows) if inward else 0)
 
 
+def settled_pieces(load: OverY, place: Place) -> Any:
+    """The numbers of pieces at arrays of angles as `piece_at` has them; -1 where long doubles cannot tell.
+
+    Eleven bits more settle all but one of a thousand doubles next to a jump, a thousand times sooner. Where
+    a long double is a double nothing is settled.
+    """
+    with IMPORTS:
+        import numpy as np
+
+    unit = 4.0 * float(np.finfo(np.longdouble).eps)  # twice what these lines round, of the sizes below
+    ec, AB, BC = (np.asarray(length, np.longdouble) for length in place.lengths)
+    theta = np.asarray(place.theta, np.longdouble)
+    with np.errstate(all="ignore"):
+        sine, cosine = np.sin(theta), np.cos(theta)
+        across, cross = ec + AB * sine, np.abs(ec) + AB
+        rise = np.sqrt((BC - across) * (BC + across))
+        x, room = AB * cosine + place.branch * rise, unit * (AB + rise + cross * np.abs(across) / rise)
+        slope = sine * rise + place.branch * cosine * across
+        room_of_slope = unit * (rise + cross * (1.0 + BC / rise))
+        if isinstance(load, OverStroke):
+            along = BC + AB if load.dead_centre == "outer" else BC - AB
+            height = np.sqrt((along - ec) * (along + ec))
+            x = np.abs(np.copysign(height, place.branch * along) - x)
+            room = room + unit * (height + (np.abs(ec) + np.abs(along)) ** 2 / height)
+        forward = np.where(np.less(place.way, 0.0), slope, -slope)
+        knots = np.array(load.outward.knots)
+        away = x[..., None] - knots
+        good = (np.abs(away) > room[..., None]).all(axis=-1) & (theta != 0.0)
+        if load.inward is not None:
+            good &= np.abs(slope) > room_of_slope
+    piece = (away >= 0.0).sum(axis=-1)
+    piece += np.where((forward < 0.0) & (load.inward is not None), len(load.outward.rows), 0)
+    return np.where(good & (unit < 2.0**-60), piece, -1)
+
+
 def slider_of(load: OverY, place: Place) -> Slider:
     """The slider at an angle, exactly, as the positions of a load measure it."""
     own = place.theta, place.lengths, place.branch

@@ -24,6 +24,7 @@ class LoadLines(NamedTuple):
 
     over    "theta", "Y", the position of a dead centre: "Y_outer" or "Y_inner"; "" of a force that stays an
             input, as its derivative is, `<force>_by_theta`
+    period  0 of a table without one
     first   the first knot of a table over theta
     ways    whether another table holds for the way inward
     """
@@ -137,6 +138,8 @@ class _Writer:
 
     def _reduced(self, load: LoadLines) -> str:
         """The crank angle in the first period of a table."""
+        if not load.period:
+            return "theta"
         force, first, period = load.force, load.first, load.period
         away = self.new(f"{force}_away", "sub", "theta", first)
         turns = self.new(f"{force}_turns", "floor", self.new(f"{force}_ratio", "div", away, period))

@@ -27,17 +27,21 @@ def functions_of(programs: Programs) -> tuple[Function, Function, Function]:
     """`sweep`, `points` and `finish` of `search`, for its designs and angles in arrays."""
     curve, told = (_over(program, programs.inputs) for program in (programs.curve, programs.finish))
 
-    def sweep(count: int, nodes: Array, block: Array, work: Array, value: Array, slope: Array) -> None:
+    def sweep(
+        count: int, nodes: Array, block: Array, tables: Array, work: Array, value: Array, slope: Array
+    ) -> None:
         """Value and slope at every node, for every design."""
         here = slice(0, len(nodes)), slice(0, count)
         value[here], slope[here] = curve(nodes.reshape(len(nodes), -1), block[:, None, :count])
 
-    def points(rows: int, count: int, theta: Array, block: Array, value: Array, slope: Array) -> None:
+    def points(
+        rows: int, count: int, theta: Array, block: Array, tables: Array, value: Array, slope: Array
+    ) -> None:
         """Value and slope of every design at angles of its own."""
         here = slice(0, rows), slice(0, count)
         value[here], slope[here] = curve(theta[here], block[:, None, :count])
 
-    def finish(count: int, theta: Array, block: Array, out: Array) -> None:
+    def finish(count: int, theta: Array, block: Array, tables: Array, out: Array) -> None:
         """Value, slope and gradient of every design at an angle."""
         for row, values in zip(out, told(theta[:count], block[:, :count]), strict=True):
             row[:count] = values
@@ -100,11 +104,6 @@ class _Loops(ast.NodeTransformer):
         return line
 
 
-def inverse(width: Any) -> Any:
-    """1 / width; 0 where nodes coincide."""
-    return np.where(width > 0.0, 1.0 / width, 0.0)
-
-
 def _at(nodes: Array, places: Any, owners: Any) -> Array:
     """Nodes of designs that share them, or of designs with a column each."""
     found: Array = nodes[places] if nodes.ndim == 1 else nodes[places, owners]
@@ -113,7 +112,7 @@ def _at(nodes: Array, places: Any, owners: Any) -> Array:
 
 def gather(count: int, chosen: Any, columns: Array, block: Array) -> None:
     """The inputs of chosen designs, next to each other."""
-    block[:, :count] = columns[:, chosen[:count]]
+    block[:, :count] = columns[: len(block), chosen[:count]]
 
 
 def candidates(count: int, nodes: Array, upper: Array, best: Array, places: Any, owners: Any) -> int:
@@ -182,19 +181,18 @@ def told(kind: int, count: int, chosen: Any, here: Array, found: Array, theta: A
         out[2:, chosen] *= np.where(found[0, :count] < 0.0, -1.0, 1.0)
 
 
-SEQUENTIAL = {f.__name__: f for f in (inverse, gather, candidates, interior, brackets, choose, told)}
-
-
-def bound_by_rows(
+def bound(
     kind: int, count: int, nodes: Array, value: Array, slope: Array, best: Array, theta: Array, upper: Array
 ) -> None:
-    """`bound` for designs with a column of nodes each; between two that are equal is nothing."""
+    """The best node of each design, and the bounds between nodes: NaN where no extremum is."""
+    nodes = nodes.reshape(len(nodes), -1)
     value, slope = value[: len(nodes), :count], slope[: len(nodes), :count]
     top = np.abs(value) if kind == 0 else value if kind == 1 else -value
     known = np.where(np.isnan(top), -np.inf, top)
     place = known.argmax(axis=0), np.arange(count)
     best[:count] = known[place]
-    theta[:count] = np.where(known[place] > -np.inf, nodes[place], np.nan)
+    best_node = nodes[place[0], 0] if nodes.shape[1] == 1 else nodes[place]
+    theta[:count] = np.where(known[place] > -np.inf, best_node, np.nan)
     width, a, b = np.diff(nodes, axis=0), slope[:-1], slope[1:]
     size_a, size_b = np.abs(a), np.abs(b)
     less, more = np.fmin(size_a, size_b), np.fmax(size_a, size_b)
@@ -204,6 +202,9 @@ def bound_by_rows(
     some = ((rising != (b > 0.0)) | dips | (less < FLAT * more)) & (width > 0.0)
     bounds = np.fmax(top[:-1], top[1:]) + width * np.fmax(np.abs(middle), more)
     upper[1 : len(nodes), :count] = np.where(some, bounds, np.nan)
+
+
+SEQUENTIAL = {f.__name__: f for f in (gather, bound, candidates, interior, brackets, choose, told)}
 
 
 def whole_blocks(source: Path, scope: dict[str, Any]) -> dict[str, Any]:

@@ -19,14 +19,16 @@ from ..compiler.languages.python import SCOPE
 from ..runtime.modules import Store
 from ..runtime.threads import run_parts
 from ..runtime.tiers import INTERPRETED, NUMPY, forced_tier
+from . import columns
 from . import search as loops
-from .by_arrays import bound_by_rows, functions_of, whole_blocks
+from .by_arrays import functions_of, whole_blocks
 from .nodes import Array
 from .programs import Programs, Search, programs_of
 
 Function = Callable[..., object]
 
 SEARCH = Path(loops.__file__)
+COLUMNS = Path(columns.__file__)
 FUNCTIONS = ("sweep", "points", "finish")  # that a search calls, made of its Programs
 BLOCK = 1_024  # designs at once in NumPy: the cost of each operation is shared by so many
 MOST_LOADED = 64  # searches in memory
@@ -34,8 +36,9 @@ LEAST_PART = 1_024  # designs of a thread
 LONGEST_PART = 8_192  # designs: less than half a second
 BREAK_EVEN = 786_432  # designs of a call that take longer by NumPy than compiling does
 FEW = 8  # designs that are searched one after the other
+NO_TABLES = np.empty(0)
 SIGNATURE = """ints, row, rows = types.int64[::1], types.float64[::1], types.float64[:, ::1]
-signature = types.void(rows, ints, ints, row, ints, types.int64, row, rows)
+signature = types.void(rows, ints, ints, row, ints, row, types.int64, row, rows)
 function = search.py_func
 """
 
@@ -44,13 +47,15 @@ function = search.py_func
 def source_of(search: Search) -> str:
     """The text of the compiled module."""
     docstring = f"desaxe search: extreme values of {search.name} over theta."
-    parts = [*texts_of(programs_of(search, True), "numba"), SIGNATURE]
-    return module_text(docstring, numba_parts(parts, SEARCH))
+    programs = programs_of(search, True)
+    files = (COLUMNS, SEARCH) if programs.own_nodes else (SEARCH, COLUMNS)
+    return module_text(docstring, numba_parts([*texts_of(programs, "numba"), SIGNATURE], *files))
 
 
 def texts_of(programs: Programs, column: str) -> list[str]:
     """`sweep`, `points` and `finish`, and the rows that `sweep` keeps."""
-    rows = peaks.Rows(programs.inputs, column, "theta")
+    own = programs.tables, programs.held, programs.own_nodes
+    rows = peaks.Rows(programs.inputs, column, "theta", *own)
     sweep, work = peaks.sweep_function(programs.curve, rows)
     points = peaks.points_function(programs.curve, rows)
     finish = peaks.finish_function(programs.finish, rows)
@@ -69,6 +74,13 @@ class Groups(NamedTuple):
     node_starts: NDArray[np.intp]
 
 
+class Tables(NamedTuple):
+    """The tables of loads (`columns`), and rows for each design behind its inputs: arcs, nodes of its own."""
+
+    packed: Array
+    rows: Array
+
+
 class Kernel(NamedTuple):
     """The function of a search; `coarse` if each group of designs costs more than their nodes."""
 
@@ -85,6 +97,7 @@ def run(
     theta: Array,
     out: Array,
     threads: int | None,
+    tables: Tables | None = None,
 ) -> None:
     """Search designs on some threads; `theta` and the rows of `out` are filled at these designs.
 
@@ -92,15 +105,19 @@ def run(
     grouped   their groups; few ones, if it is given True
     """
     inputs = programs_of(search, False).inputs
-    table = np.empty((len(inputs), theta.size))
-    for row, name in zip(table, inputs, strict=True):
+    more = np.empty((0, theta.size)) if tables is None else tables.rows
+    table = np.empty((len(inputs) + len(more), theta.size))
+    table[len(inputs) :] = more
+    for row, name in zip(table, inputs, strict=False):
         row[:] = columns[name]
+    packed = NO_TABLES if tables is None else tables.packed
     kernel = kernel_for(search, cost)
     order, starts, nodes, node_starts = grouped(kernel.coarse)
 
     def part(first: int, last: int) -> None:
         here = nodes if nodes.ndim == 1 else nodes[:, first:last]
-        kernel.function(table, order, np.clip(starts, first, last), here, node_starts, kind, theta, out)
+        own = np.clip(starts, first, last)
+        kernel.function(table, order, own, here, node_starts, packed, kind, theta, out)
 
     run_parts(part, order.size, threads, LEAST_PART, LONGEST_PART)
 
@@ -110,13 +127,19 @@ STORE = Store("search", source_of, lambda _, function: Kernel(function), MOST_LO
 
 def kernel_for(search: Search, designs: int) -> Kernel:
     """The search, compiled if this number of designs would take longer than compiling."""
-    forced = forced_tier()
-    if forced == INTERPRETED:
+    if forced_tier() == INTERPRETED:
         return _plain(search)
-    early = forced is None and designs < BREAK_EVEN and not (STORE.is_ready(search) or _on_disk(search))
-    if early or forced == NUMPY:
+    if not is_compiled(search, designs):
         return _by_arrays(search) if designs > FEW else _by_loops(search)
     return STORE.of(search)
+
+
+def is_compiled(search: Search, designs: int) -> bool:
+    """True if this number of designs goes through machine code."""
+    forced = forced_tier()
+    if forced is not None:
+        return forced not in (INTERPRETED, NUMPY)
+    return designs >= BREAK_EVEN or STORE.is_ready(search) or _on_disk(search)
 
 
 _on_disk = lru_cache(maxsize=1024)(STORE.is_on_disk)  # once for all: calls must not change their tier
@@ -150,7 +173,7 @@ def plain_finish(search: Search) -> Function:
 
 def search_by_rows(sweep: Function, points: Function, finish: Function) -> Function:
     """The search by NumPy of designs with a column of nodes each, which are one group and one block."""
-    functions = {"sweep": sweep, "points": points, "finish": finish, "bound": bound_by_rows}
+    functions = {"sweep": sweep, "points": points, "finish": finish}
     return _quiet(whole_blocks(SEARCH, {"WORK": 1, "BLOCK": 2**62, **functions})["search"])
 
 

@@ -69,6 +69,9 @@ def course_of(designs: Designs) -> Course:
     ]
     nodes = np.concatenate([np.full((designs.size, 1), low), *(part.nodes for part in parts)], axis=1)
     nodes = np.where(np.isfinite(nodes), np.clip(nodes, low, high), low)
+    some = (nodes != low).any(axis=0)  # of four turns that a range may touch, most are empty
+    some[0] = True
+    nodes = nodes[:, some]
     kinks, jumps = (_marks([mark for part in parts for mark in part[k]], designs.size) for k in (1, 2))
     return Course(nodes, kinks, jumps, arcs)
 
@@ -98,12 +101,13 @@ def _jumps_over_theta(load: OverTheta, low: float, high: float) -> Array:
 
 def _over_Y(load: OverY, arcs: Arcs | None, designs: Designs) -> _Part:
     lengths = [designs.columns[n] for n in LENGTHS]
-    bent = crossings(load, load.positions(smooth=False), lengths, designs.branch)
+    places, every = load.positions(smooth=False), load.positions(smooth=True)
+    bent = crossings(load, places, lengths, designs.branch)
     crossing = KIND_OF[load.centre]
     own, turning = (repeated(angles, *designs.theta) for angles in (bent, dead_centres(lengths)))
     kinks = [(own, crossing), (turning, TURNING)]
     if arcs is None:
-        smooth = crossings(load, load.positions(smooth=True), lengths, designs.branch)
+        smooth = bent if every == places else crossings(load, every, lengths, designs.branch)
         room = BESIDE * np.spacing(1.0 + np.abs(own))  # so that no search halves its way to a kink
         return _Part(np.concatenate([repeated(smooth, *designs.theta), own - room, own + room], 1), kinks, [])
     before = np.where(arcs.leaps, np.nextafter(arcs.starts, -inf), np.nan)

@@ -23,14 +23,15 @@ from ..runtime.threads import run_parts
 from ..runtime.wide_margins import all_have_wide_margins, have_wide_margins
 from ..support.progress import Portions, progress_bar
 from . import special
-from .compiled import LONGEST_PART, Groups, kernel_for, run
+from .compiled import LONGEST_PART, Groups, is_compiled, kernel_for, run
 from .course import course_of
 from .differences import with_slopes
 from .jumps import at_jumps
 from .loaded import Values, with_nodes
 from .nodes import Array, classes, coarser, shared_nodes
-from .programs import Search, needs_own
+from .programs import Search, needs_own, programs_of
 from .special import Designs
+from .under import search_under, tables_under, with_own
 
 KINDS = ("absmax", "max", "min")
 LARGE = 1_000  # designs that may take long: a bar tells
@@ -179,7 +180,15 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
     number = KINDS.index(kind)
     rows = np.flatnonzero(~own_nodes)
     loaded = Values(name, search, designs, course_of(designs), told) if designs.loads else None
-    if rows.size and loaded is not None:
+    under = _compiled_under(loaded, rows.size) if rows.size and loaded is not None else None
+    if under is not None and loaded is not None:
+        under = _in_form(under, checked)
+        tables = tables_under(under, designs, loaded.course)
+        grouped = partial(_classed, designs, rows)
+        if not programs_of(under, False).own_nodes:
+            grouped = partial(_classed_with, designs, rows, loaded.course.nodes[0])
+        run(under, columns, rows.size, grouped, number, theta, out, threads, tables)
+    elif rows.size and loaded is not None:
         for part, nodes in with_nodes(_classed(designs, rows), loaded.course.nodes):
             loaded.run(part, nodes, number, theta, out)
     elif rows.size:
@@ -211,6 +220,19 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
     value = np.abs(out[0]) if kind == "absmax" else out[0]
     gradient = dict(zip(search.parameters, out[2:], strict=True))
     return {"value": value, "theta": theta, "side": side, "gradient": gradient, "status": status}
+
+
+def _compiled_under(loaded: Values, count: int) -> Search | None:
+    """The compiled search for `count` designs under loads; None where NumPy searches."""
+    if not loaded.derived:
+        return None
+    search = search_under(loaded.search, loaded.all, loaded.designs, loaded.course)
+    return search if search is not None and is_compiled(search, count) else None
+
+
+def _classed_with(designs: Designs, rows: NDArray[np.intp], nodes: Array, coarse: bool = False) -> Groups:
+    """The designs by their classes, with the nodes of a load that all share."""
+    return with_own(_classed(designs, rows, coarse), nodes)
 
 
 def _each(rows: NDArray[np.intp], nodes: Array, together: bool = False) -> Groups:

@@ -4,7 +4,7 @@ A kink of a load over Y moves with the design: the gradient of an extreme value 
 at a fixed angle, and the slope over theta times the kink's derivative.
 """
 
-from math import inf, nextafter
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
@@ -53,8 +53,7 @@ def at_jumps(
         found = [jumps[row] for row in rows]
         side[rows] = [jump.side for jump in found]
         pieces = values.course.pieces(rows, theta[rows])
-        nearest = [_nearest(values, row, jump) for row, jump in zip(rows.tolist(), found, strict=True)]
-        theta[rows] = np.clip(nearest, *values.designs.theta)
+        theta[rows] = np.clip(_nearest(values, rows, found), *values.designs.theta)
         turning = np.array([jump.kind == TURNING for jump in found])
         if values.designs.rubs and turning.any():
             some = {name: own[turning] for name, own in pieces.items()}
@@ -95,16 +94,18 @@ def _jumps(values: Values, theta: Array) -> dict[int, Jump]:
     return {row: own.get(1) or own[-1] for row, own in found.items()}
 
 
-def _nearest(values: Values, row: int, jump: Jump) -> float:
-    """The double that is nearest to a jump on a side."""
-    starts = [
-        arcs.first_angle(values.designs.place(row), row, number)
-        for name, arcs in values.course.arcs.items()
-        for number in np.flatnonzero((arcs.starts[row] == jump.start) & arcs.leaps[row]).tolist()
-    ]
-    if jump.side > 0:
-        return max(starts, default=jump.start)
-    return nextafter(min(starts, default=jump.start), -inf)
+def _nearest(values: Values, rows: Rows, jumps: list[Jump]) -> Array:
+    """The doubles that are nearest to jumps on a side, of the designs `rows`."""
+    starts, after = np.array([jump.start for jump in jumps]), np.array([jump.side > 0 for jump in jumps])
+    first, last = np.full((2, rows.size), np.nan)
+    for arcs in values.course.arcs.values():
+        here, numbers = np.nonzero((arcs.starts[rows] == starts[:, None]) & arcs.leaps[rows])
+        own = rows[here]
+        angles = arcs.first_angles(values.designs.part(own).places(), own, numbers)
+        np.fmin.at(first, here, angles)
+        np.fmax.at(last, here, angles)
+    nearest = np.where(after, last, np.nextafter(first, -inf))
+    return np.where(np.isnan(first), np.where(after, starts, np.nextafter(starts, -inf)), nearest)
 
 
 def _certain(values: Values, rows: Rows, theta: Array, side: Array, pieces: dict[str, Rows]) -> Array:

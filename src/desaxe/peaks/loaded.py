@@ -16,7 +16,7 @@ from ..evaluation.values import values
 from ..loads.resolve import Forces, Plan
 from ..mechanism.names import parts, sensitivity
 from ..support.progress import Portions
-from .compiled import Groups, plain_finish, search_by_rows
+from .compiled import NO_TABLES, Groups, plain_finish, search_by_rows
 from .course import Course
 from .nodes import Array
 from .programs import Search, needs_own, programs_of
@@ -66,7 +66,8 @@ class Values:
         for first in range(0, rows.size, size):
             part = rows[first : first + size]
             grid = np.ascontiguousarray(nodes[first : first + size].T)
-            search(numbers, part, np.array([0, part.size]), grid, widths, kind, theta, out)
+            starts = np.array([0, part.size])
+            search(numbers, part, starts, grid, widths, NO_TABLES, kind, theta, out)
 
     def at(self, count: int, rows: Rows, theta: Array, pieces: dict[str, Rows] | None = None) -> list[Array]:
         """Value, slope and gradient, the first `count` of them, at an angle of each of some designs.
@@ -100,7 +101,8 @@ class Values:
         columns = {**inputs, **forces.values}
         out = np.empty((len(self.all), inputs["theta"].size))
         rows = programs_of(self.search, False).inputs
-        plain_finish(self.search)(out.shape[1], inputs["theta"], np.stack([columns[n] for n in rows]), out)
+        block = np.stack([columns[n] for n in rows])
+        plain_finish(self.search)(out.shape[1], inputs["theta"], block, NO_TABLES, out)
         fixed = out.copy()
         for (force, parameter), slope in forces.slopes.items():
             place = 1 if parameter == "theta" else 2 + self.search.parameters.index(parameter)
@@ -113,19 +115,23 @@ class Values:
         plan = self.plans[len(names)]
         return plan, forces_at(plan, inputs, self.designs.branch, self.designs.accuracy, held)
 
-    def sweep(self, count: int, nodes: Array, block: Array, work: Array, value: Array, slope: Array) -> None:
+    def sweep(
+        self, count: int, nodes: Array, block: Array, tables: Array, work: Array, value: Array, slope: Array
+    ) -> None:
         """Value and slope at every node, for `count` designs."""
-        self.points(len(nodes), count, nodes, block, value, slope)
+        self.points(len(nodes), count, nodes, block, tables, value, slope)
         self.told.add(count)
 
-    def points(self, rows: int, count: int, theta: Array, block: Array, value: Array, slope: Array) -> None:
+    def points(
+        self, rows: int, count: int, theta: Array, block: Array, tables: Array, value: Array, slope: Array
+    ) -> None:
         """Value and slope, each at its own angle."""
         if count:
             here, own = theta[:rows, :count].reshape(-1), np.tile(block[0, :count].astype(np.intp), rows)
             for out, found in zip((value, slope), self.at(2, own, here), strict=True):
                 out[:rows, :count] = found.reshape(rows, count)
 
-    def finish(self, count: int, theta: Array, block: Array, out: Array) -> None:
+    def finish(self, count: int, theta: Array, block: Array, tables: Array, out: Array) -> None:
         """Value, slope and gradient."""
         found = self.at(len(self.all), block[0, :count].astype(np.intp), theta[:count])
         for row, values_ in zip(out, found, strict=True):

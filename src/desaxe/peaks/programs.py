@@ -31,6 +31,7 @@ class Search(NamedTuple):
     fixed: tuple[tuple[str, float], ...]
     extended: bool = False  # value, slope and gradient at the peak in double-double
     far: bool = False  # angles beyond what the written-out sine and cosine reduce exactly
+    held: tuple[str, ...] = ()  # loads that jump: the angle tells which of their pieces holds
 
 
 class Programs(NamedTuple):
@@ -39,6 +40,9 @@ class Programs(NamedTuple):
     curve: Program  # value and slope
     finish: Program
     inputs: tuple[str, ...]
+    tables: tuple[str, ...] = ()  # of loads
+    held: tuple[str, ...] = ()  # those of the loads that jump
+    own_nodes: bool = False  # whether each design has some: where the slider meets the ends of pieces
 
 
 def needs_own(name: str, parameters: Sequence[str]) -> list[str]:
@@ -73,12 +77,18 @@ def programs_of(search: Search, written_out: bool) -> Programs:
         last = prepared(finish)
     programs = prepared((value, slope)), last
     used = {name for program in programs for name in program.inputs}
-    return Programs(*programs, tuple(name for name in whole.inputs if name in used and name != "theta"))
+    inputs = tuple(name for name in whole.inputs if name in used and name != "theta")
+    loads = search.form.under.loads if search.form.under is not None else ()
+    over = {load.force: load.over for load in loads}
+    return Programs(*programs, inputs, tuple(over), search.held, not {"theta"}.issuperset(over.values()))
 
 
 @lru_cache(maxsize=1024)
 def _whole(search: Search) -> tuple[Program, list[str]]:
     """One program of value, slope and gradient, and the names of its outputs."""
+    if search.form.under is not None:
+        program = specialise((), search.form, search.fixed)
+        return program, list(program.outputs)
     name = search.name
     wanted = [name, sensitivity(name, "theta")]
     derived = [n for n in wanted if has(n)]

@@ -18,6 +18,7 @@ choose    the best of the refined extrema and the nodes, ends of the range among
 A NaN wins no comparison: angles at which a quantity has no value take no part.
 
 columns   the inputs of the designs, a row each; order has the designs group by group
+tables    those of loads (`tables`); none for most searches
 kind      0 the largest magnitude, 1 the largest, 2 the smallest value
 out       rows: value, derivative by theta, gradient (of the magnitude for kind 0)
 """
@@ -34,13 +35,13 @@ if TYPE_CHECKING:
 
     WORK = 1  # rows of what `sweep` keeps of each design
 
-    def sweep(count: Any, nodes: Any, block: Any, work: Any, value: Any, slope: Any) -> None:
+    def sweep(count: Any, nodes: Any, block: Any, tables: Any, work: Any, value: Any, slope: Any) -> None:
         """The quantity and its derivative by theta at every node, for `count` designs."""
 
-    def points(rows: Any, count: Any, theta: Any, block: Any, value: Any, slope: Any) -> None:
+    def points(rows: Any, count: Any, theta: Any, block: Any, tables: Any, value: Any, slope: Any) -> None:
         """The quantity and its derivative by theta, each at its own angle."""
 
-    def finish(count: Any, theta: Any, block: Any, out: Any) -> None:
+    def finish(count: Any, theta: Any, block: Any, tables: Any, out: Any) -> None:
         """The quantity, its derivative by theta and its gradient."""
 
 
@@ -62,16 +63,46 @@ def score(kind: int, value: float) -> float:
 
 
 def gather(count: Any, chosen: Any, columns: Any, block: Any) -> None:
-    """The inputs of chosen designs, next to each other."""
-    for p in range(columns.shape[0]):
+    """The first inputs of chosen designs, as many as there is room for, next to each other."""
+    for p in range(block.shape[0]):
         source, target = columns[p], block[p]
         for i in range(count):
             target[i] = source[chosen[i]]
 
 
+def own_nodes(tables: Any) -> int:
+    """The number of nodes that each design has of its own."""
+    return 0
+
+
+def nodes_of(count: Any, shared: Any, block: Any, tables: Any) -> Any:
+    """The nodes of designs: those of their group."""
+    return shared
+
+
+def node(nodes: Any, j: Any, i: Any) -> Any:
+    """A node of a design."""
+    return nodes[j]
+
+
 def inverse(width: float) -> float:
     """1 / width; 0 where nodes coincide."""
     return 1.0 / width if width > 0.0 else 0.0
+
+
+def highest(
+    kind: int, width: float, per_width: float, value_a: float, value_b: float, a: float, b: float
+) -> float:
+    """At most how good an extremum between two nodes with slopes a and b can be; NaN where none can be."""
+    middle = 1.5 * per_width * (value_b - value_a) - 0.25 * (a + b)  # slope of the cubic
+    rising = a > 0.0
+    more = fabs(a) if fabs(a) > fabs(b) else fabs(b)
+    dips = (middle if rising else -middle) < DIP * more
+    steepest = fabs(middle) if fabs(middle) > more else more
+    top_a, top_b = score(kind, value_a), score(kind, value_b)
+    top = (top_a if top_a > top_b else top_b) + width * steepest
+    less = fabs(a) if fabs(a) < fabs(b) else fabs(b)
+    return top if (rising != (b > 0.0)) | dips | (less < FLAT * more) else nan
 
 
 def bound(
@@ -92,22 +123,13 @@ def bound(
         per_width = inverse(width)
         value_a, value_b, slope_a, slope_b, row = value[j - 1], value[j], slope[j - 1], slope[j], upper[j]
         for i in range(uint64(count)):
-            a, b = slope_a[i], slope_b[i]
-            middle = 1.5 * per_width * (value_b[i] - value_a[i]) - 0.25 * (a + b)  # slope of the cubic
-            rising = a > 0.0
-            more = fabs(a) if fabs(a) > fabs(b) else fabs(b)
-            dips = (middle if rising else -middle) < DIP * more
-            steepest = fabs(middle) if fabs(middle) > more else more
-            top_a, top_b = score(kind, value_a[i]), score(kind, value_b[i])
-            top = (top_a if top_a > top_b else top_b) + width * steepest
-            less = fabs(a) if fabs(a) < fabs(b) else fabs(b)
-            row[i] = top if (rising != (b > 0.0)) | dips | (less < FLAT * more) else nan
+            row[i] = highest(kind, width, per_width, value_a[i], value_b[i], slope_a[i], slope_b[i])
 
 
 def candidates(count: Any, nodes: Any, upper: Any, best: Any, places: Any, owners: Any) -> int:
     """Collect the intervals whose bound exceeds the best node: index and design; return their number."""
     found = 0
-    for j in range(1, nodes.size):
+    for j in range(1, nodes.shape[0]):
         row = upper[j]
         for i in range(count):
             places[found], owners[found] = j - 1, i
@@ -119,7 +141,8 @@ def interior(count: Any, nodes: Any, places: Any, owners: Any, slope: Any, theta
     """Three angles inside of each interval: even, or graded towards an end that is flat."""
     for c in range(count):
         j, i = places[c], owners[c]
-        low, width = nodes[j], nodes[j + 1] - nodes[j]
+        low = node(nodes, j, i)
+        width = node(nodes, j + 1, i) - low
         a, b = fabs(slope[j, i]), fabs(slope[j + 1, i])
         even[c] = 0 if a < FLAT * b or b < FLAT * a else 1
         if even[c] == 1:
@@ -139,9 +162,9 @@ def brackets(
     found = 0
     for c in range(count):
         j, i = places[c], owners[c]
-        low, before, last = nodes[j], slope[j, i], slope[j + 1, i]
+        low, before, last = node(nodes, j, i), slope[j, i], slope[j + 1, i]
         for k in range(4):
-            high = thetas[k, c] if k < 3 else nodes[j + 1]
+            high = thetas[k, c] if k < 3 else node(nodes, j + 1, i)
             after = slopes[k, c] if k < 3 else last
             if (before > 0.0) != (after > 0.0) and before == before and after == after:
                 roots[LOW, found], roots[HIGH, found] = low, high
@@ -271,14 +294,16 @@ def told(kind: int, count: Any, chosen: Any, here: Any, found: Any, theta: Any, 
 
 
 def search(
-    columns: Any, order: Any, starts: Any, nodes: Any, node_starts: Any, kind: int, theta: Any, out: Any
-) -> None:
+    columns: Any, order: Any, starts: Any, nodes: Any, node_starts: Any, tables: Any, kind: int, theta: Any,
+    out: Any,
+) -> None:  # fmt: skip
     """The extreme value of every design: its angle and what `finish` computes there."""
-    inputs, results = columns.shape[0], out.shape[0]
+    inputs, results, more = columns.shape[0], out.shape[0], own_nodes(tables)
     longest, most = 1, 1
     for g in range(starts.size - 1):
         longest = max(longest, node_starts[g + 1] - node_starts[g])
         most = max(most, min(BLOCK, starts[g + 1] - starts[g]))
+    longest += more
     value, slope, upper = (empty((longest, most)), empty((longest, most)), empty((longest, most)))
     block, work, found = empty((inputs, most)), empty((WORK, most)), empty((results, most))
     best, here, taken = empty(most), empty(most), empty(most, int64)
@@ -287,32 +312,33 @@ def search(
     even = empty(room, int64)
     wide = 64
     inner = empty((3, wide)), empty((3, wide)), empty((3, wide))
-    own, roots = empty((inputs, wide)), empty((ROWS, wide))
+    own, roots = empty((inputs - more, wide)), empty((ROWS, wide))
     for g in range(starts.size - 1):
-        grid = nodes[node_starts[g] : node_starts[g + 1]]
+        shared = nodes[node_starts[g] : node_starts[g + 1]]
         for start in range(starts[g], starts[g + 1], BLOCK):
             stop = min(start + BLOCK, starts[g + 1])
             count = stop - start
             gather(count, order[start:stop], columns, block)
-            sweep(count, grid, block, work, value, slope)
+            grid = nodes_of(count, shared, block, tables)
+            sweep(count, grid, block, tables, work, value, slope)
             bound(kind, count, grid, value, slope, best, here, upper)
             some = candidates(count, grid, upper, best, places, owners)
             if 4 * some > wide:
                 wide = 8 * some + 64
                 inner = empty((3, wide)), empty((3, wide)), empty((3, wide))
-                own, roots = empty((inputs, wide)), empty((ROWS, wide))
+                own, roots = empty((inputs - more, wide)), empty((ROWS, wide))
             thetas, values, slopes = inner
             gather(some, owners, block, own)
             interior(some, grid, places, owners, slope, thetas, even)
-            points(int64(3), some, thetas, own, values, slopes)
+            points(int64(3), some, thetas, own, tables, values, slopes)
             ready = brackets(some, grid, places, owners, slope, thetas, slopes, even, roots, whose)
             begin(ready, roots)
             gather(ready, whose, block, own)
             left, step = ready, 0
             while left > 0 and step < STEPS:
-                points(int64(1), ready, roots[THETA : THETA + 1], own, values, slopes)
+                points(int64(1), ready, roots[THETA : THETA + 1], own, tables, values, slopes)
                 left = newton(ready, roots, slopes[0])
                 step += 1
             choose(kind, ready, roots, whose, values[0], best, here, taken)
-            finish(count, here, block, found)
+            finish(count, here, block, tables, found)
             told(kind, count, order[start:stop], here, found, theta, out)

@@ -29,7 +29,7 @@ from ..peaks import WORDS, columns_of, group_names
 from .axes import rule_of
 from .portable import left_out
 
-ROWS = "types.float64[:, ::1]"
+ROW, ROWS = "types.float64[::1]", "types.float64[:, ::1]"
 INDICES = "types.int64[::1]"
 OWN = ("sweep", "points", "finish", "search", "WORK")  # of each search
 NODES = '''# Distances of nodes from a quarter turn: denser towards it, for narrow peaks at a change point.
@@ -77,7 +77,7 @@ def extremum(one, given, threads):
     search = compiled(one["search"], one["signature"])
 
     def block(start, stop):
-        search(table, order, array([start, stop]), nodes, edges, one["kind"], theta, out)
+        search(table, order, array([start, stop]), nodes, edges, empty(0), one["kind"], theta, out)
 
     in_blocks(block, size, 1_000 * size, threads)
     value = abs(out[0]) if one["kind"] == 0 else out[0]
@@ -157,7 +157,7 @@ def peak_texts(content: Content) -> PeakTexts:
 def _search_parts(search: Search, prefix: str) -> Parts:
     """A search under names of its own; what it shares with others is called so."""
     functions = functions_of(SEARCH)
-    kinds = (ROWS, INDICES, INDICES, "types.float64[::1]", INDICES, "types.int64", "types.float64[::1]", ROWS)
+    kinds = (ROWS, INDICES, INDICES, ROW, INDICES, ROW, "types.int64", ROW, ROWS)
     own = [*texts_of(programs_of(search, True), "numba"), functions["search"]]
     words = {name: prefix if name == "search" else f"{prefix}_{name}" for name in OWN}
     parts = [renamed(text, words) for text in own] + [signature(f"{prefix}_signature", "void", kinds)]

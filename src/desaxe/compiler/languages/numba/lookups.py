@@ -1,14 +1,14 @@
-"""The innermost loop of a kernel that looks tables up: three loops over a block of points.
+"""A loop that looks tables up, of a kernel or of a search: three loops over a block of points.
 
 A search in a loop keeps LLVM from making vectors of all the rest. So the first loop computes what the tables
 are looked up at, the second looks up, and the third computes what hangs on that. What the third needs of the
 first is kept in rooms, on the stack.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
-from ...kernel import Kernel, level_program
+from ...kernel import Kernel
 from ...program import Line, Program, names_in, reaching
 from ...stages import CHEAP
 from ...text import INDENT, write_lines
@@ -46,9 +46,8 @@ def looks_up(kernel: Kernel) -> bool:
     return searched and bool(kernel.given) and kernel.close is None
 
 
-def parted(kernel: Kernel) -> Parted:
-    """The lines of the innermost loop in three parts; conditions, and what is cheap, may stand in both."""
-    program = level_program(kernel, kernel.axes)._replace(outputs=kernel.outputs)
+def parted(program: Program) -> Parted:
+    """The lines of a loop in three parts; conditions, and what is cheap, may stand in both."""
     searches = tuple(line for line in program.lines if line.op == "lookup_piece")
     pieces = {line.name for line in searches}
     found = tuple(line for line in program.lines if line.op in VALUES and line.args[2] in pieces)
@@ -71,14 +70,25 @@ def parted(kernel: Kernel) -> Parted:
     return Parted(first, keep, searches, found, program._replace(lines=tuple(reversed(second))))
 
 
-def rooms(kernel: Kernel) -> list[str]:
+def rooms(parts: Parted) -> list[str]:
     """Allocate the rooms of a block."""
-    return [f"{name}_room = room({BLOCK + APART})" for name in parted(kernel).rooms]
+    return [f"{name}_room = room({BLOCK + APART})" for name in parts.rooms]
 
 
-def three_loops(kernel: Kernel, length: str, reads: Mapping[str, str], stores: Sequence[str]) -> list[str]:
-    """The text of the innermost loop over `length` points; `reads` has what each of them reads."""
-    parts, here = parted(kernel), f"i{kernel.axes - 1}"
+def three_loops(
+    parts: Parted,
+    here: str,
+    length: str,
+    reads: Mapping[str, str],
+    stores: Sequence[str],
+    held: Collection[str] = (),
+) -> list[str]:
+    """The text of a loop over `length` points.
+
+    here    its index
+    reads   what each point reads
+    held    the tables whose pieces the angle tells, by arcs (`search`); the others are searched
+    """
     place = f"{here} - start"
     points = f"for {here} in range(start, stop):"
     read = [f"{name} = {text}" for name, text in reads.items()]
@@ -86,29 +96,47 @@ def three_loops(kernel: Kernel, length: str, reads: Mapping[str, str], stores: S
     keep = [f"put({name}_room, {place}, {name})" for name in parts.kept]
     for line in parts.searches:
         x, _, way = line.args
-        keep += [f"put({line.name}_at_room, {place}, {x})", f"put({line.name}_way_room, {place}, {way})"]
+        keep += [f"put({line.name}_at_room, {place}, {x})"]
+        keep += [f"put({line.name}_way_room, {place}, {way})"] if str(line.args[1]) not in held else []
     again = [f"{n} = get({n}_room, {place})" for n in (*parts.kept, *(f.name for f in parts.found))]
     return [
         f"length = {length}",
         f"for start in range(uint64(0), length, uint64({BLOCK})):",
         f"{INDENT}stop = min(start + uint64({BLOCK}), length)",
         *_under(points, [*_used(read, parts.first, parts.places), *first, *keep]),
-        *(INDENT + row for row in _searched(parts)),
+        *(INDENT + row for row in _searched(parts, here, reads, held)),
         *_under(points, [*_used([*read, *again], parts.second), *second, *stores]),
     ]
 
 
-def _searched(parts: Parted) -> list[str]:
+def _searched(parts: Parted, here: str, reads: Mapping[str, str], held: Collection[str]) -> list[str]:
     """Look up: the pieces first, which values and slopes share."""
     rows = []
     for line in parts.searches:
-        room, knots = f"{line.name}_room", f"{line.args[1]}_x"
-        rows.append(f"find_pieces(stop - start, {line.name}_at_room, {line.name}_way_room, {knots}, {room})")
+        room, table = f"{line.name}_room", str(line.args[1])
+        if table in held:
+            rows += _on_arcs(room, table, here, reads["theta"])
+        else:
+            places = f"{line.name}_at_room, {line.name}_way_room"
+            rows.append(f"find_pieces(stop - start, {places}, {table}_x, {room})")
     at = {line.name: f"{line.name}_at_room, {line.name}_room" for line in parts.searches}
     for line in parts.found:
-        table, where = line.args[1], at[str(line.args[2])]
+        table, where = str(line.args[1]), at[str(line.args[2])]
         rows.append(f"{VALUES[line.op]}(stop - start, {where}, {table}_x, {table}_c, {line.name}_room)")
     return rows
+
+
+def _on_arcs(room: str, table: str, here: str, theta: str) -> list[str]:
+    """The pieces of the arcs of some angles: each arc that has begun changes them by a number."""
+    place, loop = f"{here} - start", f"for {here} in range(start, stop):"
+    change = f"{table}_change[{here}] if {table}_begin[{here}] <= {theta} else 0.0"
+    return [
+        loop,
+        f"{INDENT}put({room}, {place}, 0.0)",
+        f"for k in range({table}_first, {table}_last):",
+        f"{INDENT}{table}_begin, {table}_change = block[k], block[k + {table}_last - {table}_first]",
+        *_under(loop, [f"put({room}, {place}, get({room}, {place}) + ({change}))"]),
+    ]
 
 
 def _used(reads: Sequence[str], program: Program, more: Sequence[str] = ()) -> list[str]:

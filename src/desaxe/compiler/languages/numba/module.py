@@ -18,7 +18,7 @@ from ...builder import HELPERS, MATH, Parts, function_text, module_text, with_so
 from ...kernel import Kernel, level_program
 from ...program import Program
 from ...text import INDENT, WIDTH, write_lines
-from .lookups import looks_up, rooms, three_loops
+from .lookups import looks_up, parted, rooms, three_loops
 from .two_forms import has_two_forms, inner_loops, scratch, stable_function
 
 _TYPES = {"f64": "float64", "i64": "int8"}  # a status is stored as int8
@@ -104,7 +104,7 @@ def _body(kernel: Kernel) -> list[str]:
     """The loops, those of the tables first."""
     lines = ["apart()"] if kernel.axes else []
     lines += scratch(kernel)
-    lines += rooms(kernel) if looks_up(kernel) else []
+    lines += rooms(parted(_innermost(kernel))) if looks_up(kernel) else []
     lines += ["undecided = 0"] if counts(kernel) else []
     everywhere = tuple(range(kernel.axes))
     for table in kernel.tables:
@@ -136,11 +136,17 @@ def _loops(
         if kernel.close is not None and depth == len(along) - 1:
             return lines + [INDENT * depth + row for row in inner_loops(kernel, length, loads)]
         if depth == len(along) - 1 and store.startswith("out") and looks_up(kernel):
-            return lines + [INDENT * depth + row for row in three_loops(kernel, length, loads, stores)]
+            loops = three_loops(parted(_innermost(kernel)), f"i{axis}", length, loads, stores)
+            return lines + [INDENT * depth + row for row in loops]
         lines.append(f"{INDENT * depth}for i{axis} in range({length}):")
         lines += [f"{INDENT * (depth + 1)}{name} = {text}" for name, text in loads.items()]
         lines += _indented(level_program(kernel, depth + 1), depth + 1)
     return lines + [INDENT * len(along) + row for row in stores]
+
+
+def _innermost(kernel: Kernel) -> Program:
+    """The lines of the innermost loop."""
+    return level_program(kernel, kernel.axes)._replace(outputs=kernel.outputs)
 
 
 def _index(along: tuple[int, ...]) -> str:

@@ -7,24 +7,60 @@ from ...cost import cost_of
 from ...passes.slicing import drop_unused, keep_outputs
 from ...program import Line, Program, names_in
 from ...text import INDENT, with_short_temporaries, write_lines
+from .lookups import parted, rooms, three_loops
 from .module import NJIT
 
+SWEEP = "count, nodes, block, tables, work, value, slope"
 READ = 2.0  # what reading a value costs, in additions
 
 
 class Rows:
-    """Reads designs and spells lines in one language; `searched` is the searched input."""
+    """Reads designs and spells lines in one language; `searched` is the searched input.
 
-    def __init__(self, inputs: Sequence[str], column: str, searched: str) -> None:
+    tables  names of those that are looked up
+    held    those of them of which the angle tells the piece: rows behind the inputs say where each begins
+    own     whether each design has nodes of its own
+    """
+
+    def __init__(
+        self,
+        inputs: Sequence[str],
+        column: str,
+        searched: str,
+        tables: Sequence[str] = (),
+        held: Sequence[str] = (),
+        own: bool = False,
+    ) -> None:
         self.inputs, self.column, self.searched = tuple(inputs), column, searched
+        self.tables, self.held, self.own = tuple(tables), tuple(held), own
         compiled = column == "numba"
         self.jit = NJIT if compiled else ""
         self.range = "range(uint64({}))" if compiled else "range({})"
         self.read = "{}" if compiled else "float({})"
 
     def views(self, program: Program, source: str = "block") -> list[str]:
-        """A name for the row of each input."""
-        return [f"{n}_row = {source}[{self.inputs.index(n)}]" for n in self._own(program)]
+        """A name for the row of each input, and for the arrays of each table."""
+        return [*(f"{n}_row = {source}[{self.inputs.index(n)}]" for n in self._own(program)), *self._given()]
+
+    def _given(self) -> list[str]:
+        rows, first = [], str(len(self.inputs))
+        for k, table in enumerate(self.tables):
+            rows += [f"{table}_{end} = part_of(tables, {1 + 2 * k + n})" for n, end in enumerate("xc")]
+        for k, table in enumerate(self.held):
+            rows += [f"{table}_count = int64(part_of(tables, 0)[{1 + k}])", f"{table}_first = {first}"]
+            rows += [f"{table}_last = {table}_first + {table}_count"]
+            first = f"{table}_last + {table}_count"
+        return rows
+
+    def loop(self, program: Program, theta: str, stores: Sequence[str]) -> tuple[list[str], list[str]]:
+        """A loop over `count` designs, each at an angle, and what goes before all loops."""
+        read = {self.searched: self.read.format(theta)}
+        if not self.tables:
+            body = [f"{n} = {text}" for n, text in read.items()] + self.reads(program) + self.lines(program)
+            return [f"for i in {self.range.format('count')}:", *_in([*body, *stores])], []
+        read |= {n: self.read.format(f"{n}_row[i]") for n in self._own(program)}
+        parts = parted(program)
+        return three_loops(parts, "i", "uint64(count)", read, stores, self.held), rooms(parts)
 
     def reads(self, program: Program) -> list[str]:
         """The inputs of design i."""
@@ -43,11 +79,14 @@ class Rows:
 
 
 def sweep_function(program: Program, rows: Rows) -> tuple[str, int]:
-    """`sweep(count, nodes, block, work, value, slope)`, and how many rows of `work` it needs.
+    """`sweep(count, nodes, block, tables, work, value, slope)`, and how many rows of `work` it needs.
 
     Precondition: two outputs. Lines that depend on no design run once a node, lines that do not depend
     on the searched input once a design where keeping them pays.
     """
+    if rows.own:
+        every = ["points(nodes.shape[0], count, nodes, block, tables, value, slope)"]
+        return rows.function("sweep", SWEEP, every), 0
     program = with_short_temporaries(program)
     kept, rest = _split(program, rows.searched)
     shared = _without(rest, set(rows.inputs) | set(kept.outputs))
@@ -68,34 +107,27 @@ def sweep_function(program: Program, rows: Rows) -> tuple[str, int]:
     every += rows.lines(inner)
     every += [f"value_row[i] = {program.outputs[0]}", f"slope_row[i] = {program.outputs[1]}"]
     body += ["for j in range(nodes.size):", *_in([*node, *_in(every)])]
-    return rows.function("sweep", "count, nodes, block, work, value, slope", body), len(numbered)
+    return rows.function("sweep", SWEEP, body), len(numbered)
 
 
 def points_function(program: Program, rows: Rows) -> str:
-    """`points(rows, count, theta, block, value, slope)`."""
+    """`points(rows, count, theta, block, tables, value, slope)`."""
     program = with_short_temporaries(program)
     names = ("value", "slope")
-    loop = [
-        f"{rows.searched} = {rows.read.format('theta_row[i]')}",
-        *rows.reads(program),
-        *rows.lines(program),
-    ]
-    loop += [f"{n}_row[i] = {o}" for n, o in zip(names, program.outputs, strict=True)]
-    body = [*rows.views(program), "for j in range(rows):"]
-    body += _in(["theta_row = thetas[j]", *(f"{n}_row = {n}[j]" for n in names)])
-    body += _in([f"for i in {rows.range.format('count')}:", *_in(loop)])
-    return rows.function("points", "rows, count, thetas, block, value, slope", body)
+    stores = [f"{n}_row[i] = {o}" for n, o in zip(names, program.outputs, strict=True)]
+    loop, before = rows.loop(program, "theta_row[i]", stores)
+    body = [*rows.views(program), *before, "for j in range(rows):"]
+    body += _in(["theta_row = thetas[j]", *(f"{n}_row = {n}[j]" for n in names), *loop])
+    return rows.function("points", "rows, count, thetas, block, tables, value, slope", body)
 
 
 def finish_function(program: Program, rows: Rows) -> str:
-    """`finish(count, theta, block, out)`."""
+    """`finish(count, theta, block, tables, out)`."""
     program = with_short_temporaries(program)
     places = list(enumerate(program.outputs))
-    loop = [f"{rows.searched} = {rows.read.format('thetas[i]')}", *rows.reads(program), *rows.lines(program)]
-    loop += [f"out_{k}[i] = {name}" for k, name in places]
-    body = [*rows.views(program), *(f"out_{k} = out[{k}]" for k, _ in places)]
-    body += [f"for i in {rows.range.format('count')}:", *_in(loop)]
-    return rows.function("finish", "count, thetas, block, out", body)
+    loop, before = rows.loop(program, "thetas[i]", [f"out_{k}[i] = {name}" for k, name in places])
+    body = [*rows.views(program), *before, *(f"out_{k} = out[{k}]" for k, _ in places), *loop]
+    return rows.function("finish", "count, thetas, block, tables, out", body)
 
 
 def _split(program: Program, fast: str) -> tuple[Program, Program]:
