@@ -1,6 +1,7 @@
 """Options and fixtures of all tests.
 
-Compiled kernels of a test run live in a folder of their own, shared by its workers, gone at its end.
+Compiled kernels of a test run live in a folder of their own, shared by its workers, gone at its end without
+`--kernels`.
 
 By default random tests draw few cases and tests marked `thorough` are left out; `--thorough` runs just
 those two kinds, with many cases: `.ci/run` does both. Files, and the tests of each, run as they stand;
@@ -10,7 +11,9 @@ those two kinds, with many cases: `.ci/run` does both. Files, and the tests of e
 import os
 import random
 import shutil
+import sys
 import tempfile
+from pathlib import Path
 
 import pytest
 
@@ -22,15 +25,19 @@ from tests.effort import VARIABLE as THOROUGH
 from tests.ways import take_way
 
 VARIABLE = "DESAXE_CACHE_DIR"
+TESTS = Path(__file__).parent
 
 
-tiers.NUMPY_PAYS = 0  # tests are about kernels; that NumPy comes first has tests of its own
+# Rooms whose tests are about kernels; in the others NumPy answers first, as it does for everyone.
+KERNELS = {"compiler", "definitions", "evaluation", "generated", "loads", "runtime"}
 
 
 def pytest_addoption(parser):
     parser.addoption("--thorough", action="store_true", help="run tests marked thorough or sampled, in full")
     text = "draw the order of files, and of the tests in each; SEED is a number, or `any`, which is printed"
     parser.addoption("--shuffle", metavar="SEED", help=text)
+    text = "keep compiled kernels in this folder, for another run of the same tree"
+    parser.addoption("--kernels", metavar="FOLDER", help=text)
 
 
 def pytest_configure(config):
@@ -39,7 +46,14 @@ def pytest_configure(config):
         config.option.loadscopereorder = False  # xdist's own order: the largest file first
     if config.getoption("--thorough"):
         os.environ.setdefault(THOROUGH, "1")
-    if not hasattr(config, "workerinput"):
+    if hasattr(config, "workerinput"):
+        return
+    # Hundreds of processes import the same sources.
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    sys.dont_write_bytecode = False
+    if config.getoption("--kernels"):
+        os.environ[VARIABLE] = str(Path(config.getoption("--kernels")).absolute())
+    else:
         config.kernel_folder = os.environ[VARIABLE] = tempfile.mkdtemp(prefix="desaxe-tests-")
 
 
@@ -96,9 +110,11 @@ def _select(config, items):
 
 
 @pytest.fixture(autouse=True)
-def nothing_left_behind():
+def nothing_left_behind(request, monkeypatch):
     """Forget what earlier tests asked for, so that two calls of a test take the same tier, and defined."""
     tiers._ASKED.clear()
+    if request.path.relative_to(TESTS).parts[0] in KERNELS:
+        monkeypatch.setattr(tiers, "NUMPY_PAYS", 0)
     yield
     own.change(lambda _: {})
 

@@ -97,8 +97,3 @@ def test_it_evaluates_a_point(run, unzipped):
     where, answer = run("-c", f"import desaxe; print(desaxe.__file__, {call})").split()
     assert Path(where).is_relative_to(unzipped)
     assert float(answer) == 2.0
-
-
-@pytest.mark.thorough
-def test_its_generated_files_are_fresh(run):
-    assert run("-m", "desaxe.derive", "--check") == "generated/ is fresh\n"
