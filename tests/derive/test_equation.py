@@ -18,7 +18,7 @@ FIRST = [name for name in dx.quantities() if name.partition("_wrt_")[2] in POINT
 
 
 def number(expression, point=POINT):
-    """Its value at 40 digits."""
+    """Returns its value at 40 digits."""
     names = sorted(expression.free_symbols, key=str)
     function = sp.lambdify(names, expression.doit(), "mpmath", cse=True)
     known = {**point, "branch": 1}

@@ -69,7 +69,7 @@ def changed(node: ast.AST) -> ast.AST | None:
 
 
 def mutants_of(path: str, text: str) -> Iterator[Mutant]:
-    """Those inside of functions; annotations and texts stay."""
+    """Yield those inside of functions; annotations and texts stay."""
     starts = [0]
     for line in text.encode().splitlines(keepends=True):
         starts.append(starts[-1] + len(line))
@@ -106,7 +106,7 @@ def drawn(root: Path, seed: int, count: int) -> list[Mutant]:
 
 
 def nearest(root: Path, mutant: Mutant) -> list[str]:
-    """Its test files, the nearest first."""
+    """Return its test files, the nearest first."""
     path = Path(mutant.path)
     room = path.parts[2:-1]
     words = {w for w in [*mutant.function.split("."), path.stem] if not re.fullmatch(r"__\w+__", w)}
@@ -122,7 +122,7 @@ def nearest(root: Path, mutant: Mutant) -> list[str]:
 
 
 def meets(root: Path, mutant: Mutant, tests: list[str], seconds: float) -> tuple[str, str]:
-    """How the tests end, `killed`, `time` or `survived`, and the test that failed."""
+    """Tell how the tests end, `killed`, `time` or `survived`, and the test that failed."""
     file = root / mutant.path
     text = file.read_bytes()
     file.write_bytes(text[: mutant.start] + mutant.new.encode() + text[mutant.end :])

@@ -31,7 +31,7 @@ def check_loads(where: str, outputs: Sequence[str], loads: Mapping[str, Load]) -
 
 
 def position_names(loads: Mapping[str, Load]) -> tuple[str, ...]:
-    """What loads over Y or the stroke are looked up by, with its derivatives by theta and the lengths."""
+    """Names that loads over Y or the stroke are looked up by, and their derivatives by theta and lengths."""
     centres = dict.fromkeys(load.centre for load in loads.values() if isinstance(load, OverStroke))
     by_lengths = {name: [sensitivity(name, length) for length in LENGTHS] for name in ("Y", *centres)}
     names = [one for name, slopes in by_lengths.items() for one in (name, *slopes)]
