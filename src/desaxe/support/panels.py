@@ -190,6 +190,8 @@ def _series(coefficients: Array, x: Array) -> Array:
 def _root(series: Array, low: Array, high: Array) -> Array:
     """The roots of Legendre series in brackets, by Illinois steps and bisection."""
     at_low, at_high = _series(series, low), _series(series, high)
+    nearer, agree = np.where(np.abs(at_low) < np.abs(at_high), low, high), at_low * at_high > 0.0
+    low, high = np.where(agree, nearer, low), np.where(agree, nearer, high)  # a root at an end, rounded
     for step in range(60):
         with np.errstate(invalid="ignore", divide="ignore"):
             x = high - at_high * (high - low) / (at_high - at_low)

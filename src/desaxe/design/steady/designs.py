@@ -22,12 +22,13 @@ from ...loads.angles import dead_centres, meeting_angles
 from ...loads.load import Load
 from ...mechanism.names import LENGTHS
 from ...runtime.compiled_only import uncompiled
+from ...support.panels import padded
 from .source import Source
 
 Array = NDArray[Any]
 CREEP = 1e-100  # rad/s: loads know the way of turning, inertia does not act
 INSIDE = 1e-9  # of a panel: so far from its ends a value belongs to it
-WIDEST = 0.5  # rad
+WIDEST = 0.65  # rad
 MANY = 50_000  # points, for which compiling pays
 NOTHING = 1e-12  # of the inertia elsewhere
 
@@ -103,19 +104,31 @@ class Designs(NamedTuple):
         return np.where(self.way[:, None] < 0.0, self.period - found, found)
 
     def edges(self) -> Array:
-        """The edges of panels: even ones, kinks of loads, and dead centres under friction."""
+        """The edges of panels: kinks of loads, dead centres under friction, and even ones between them."""
         period = self.period
-        even = np.linspace(0.0, period, int(np.ceil(period / WIDEST)) + 1)
         loads = [*self.loads.values(), *([self.source.load] if self.source.load is not None else [])]
-        found = [np.tile(even, (self.size, 1)), *map(self.kinks, loads)]
+        found = [np.tile([0.0, period], (self.size, 1)), *map(self.kinks, loads)]
         if self.has_friction:
             own = dead_centres(self.lengths()) * self.way[:, None]
             found += [(own + 2.0 * pi * k) % period for k in range(self.turns)]
         every = np.concatenate(found, axis=1)
         every = np.sort(np.where(np.isnan(every), 0.0, every), axis=1)
-        again = np.diff(every, axis=1, prepend=-1.0) == 0.0
-        every = np.sort(np.where(again, 0.0, every), axis=1)
-        return every[:, max(int((every == 0.0).all(0).sum()) - 1, 0) :]
+        gaps = np.diff(every, axis=1)
+        pieces = np.ceil(gaps / WIDEST).astype(int)
+        row, gap = np.nonzero(pieces)
+        many = pieces[row, gap]
+        first = np.repeat(np.cumsum(many) - many, many)
+        row, gap, many = (np.repeat(each, many) for each in (row, gap, many))
+        inner = every[row, gap] + (np.arange(len(row)) - first) * (gaps[row, gap] / many)
+        return np.sort(
+            padded(
+                np.append(row, np.arange(self.size)),
+                np.append(inner, np.full(self.size, period)),
+                self.size,
+                every[:, 0],
+            ),
+            axis=1,
+        )
 
 
 def vanishing(designs: Designs) -> Array:

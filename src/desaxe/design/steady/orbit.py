@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...support.panels import TO_COEFFICIENTS, Panels
+from ...support.panels import TO_COEFFICIENTS, Panels, padded
 from .designs import Course, Designs, Rate, course_of, picked, rate
 from .linear import Linear
 
@@ -18,13 +18,11 @@ Array = NDArray[Any]
 STEPS = 40  # of Newton's method
 SETTLED = 4e-16  # of the energy: what a step may still change
 EXTRAPOLATED = 1e-17  # the same, of the step after it
-ROUNDS = 12  # of moving edges
 MOVED = 1e-11  # rad
 RESOLVED = 3e-11  # of the largest value: the last coefficients of a panel
 NOISE, PLATEAU = 1e-9, 0.05  # the same, where they are not smaller than this share of earlier ones
 FLAT = 1e-13  # of the energy: what the last coefficients of its slope may add to it
 NARROWEST = 2.0**-40  # rad
-HALVINGS = 40
 PANELS = 1500
 SHRINK = 0.8  # of the energy: what a step may take
 
@@ -101,12 +99,15 @@ def newton(designs: Designs, mesh: Panels, E0: Array, F: Array) -> Orbit:
 
 
 def switches(orbit: Orbit) -> Array:
-    """The places where a motion passes a knot of the motor or the guide changes sides, NaN-free rows."""
-    found = [np.empty((len(orbit.E0), 0))]
-    found += [orbit.mesh.roots(orbit.rate.omega - knot) for knot in orbit.designs.source.knots]
+    """The places where a motion passes a knot of the motor or the guide changes sides, in padded rows."""
+    mesh = orbit.mesh
+    found = [mesh.roots(orbit.rate.omega - knot) for knot in orbit.designs.source.knots]
     if orbit.rate.normal is not None:
-        found.append(orbit.mesh.roots(orbit.rate.normal))
-    return np.concatenate(found, axis=1)
+        found.append(mesh.roots(orbit.rate.normal))
+    every = np.sort(np.concatenate([mesh.edges[:, :1], *found], axis=1), axis=1)
+    own = np.diff(every, axis=1, prepend=-1.0) > MOVED  # each side of an edge may find the root that is there
+    row, at = np.nonzero(own)
+    return padded(row, every[row, at], len(every), every[:, 0])
 
 
 def moved(orbit: Orbit, edges: Array) -> Orbit:
@@ -117,17 +118,19 @@ def moved(orbit: Orbit, edges: Array) -> Orbit:
     return newton(orbit.designs, mesh, orbit.E0, F)
 
 
-def between_kinks(orbit: Orbit, edges: Array) -> Orbit:
-    """The motion with its own kinks as edges, besides these."""
-    if not orbit.designs.source.knots and orbit.rate.normal is None:
-        return orbit
-    for _ in range(ROUNDS):
-        now = switches(orbit)
-        away = np.abs(now[..., None] - orbit.mesh.edges[:, None, :]).min(-1)
-        if now.shape[1] > PANELS or (away <= MOVED).all():
-            break
-        orbit = moved(orbit, np.sort(np.concatenate([edges, now], axis=1), axis=1))
-    return orbit
+def astray(orbit: Orbit, switched: Array) -> Array:
+    """Where a motion switches at places that are no edges yet."""
+    return np.asarray((_away(switched, orbit.mesh.edges) > MOVED).any(1) & (switched.shape[1] <= PANELS))
+
+
+def besides(edges: Array, switched: Array) -> Array:
+    """Edges and the places between them where a motion switches."""
+    other = np.where(_away(switched, edges) > MOVED, switched, edges[:, :1])
+    return np.sort(np.concatenate([edges, other[:, (other != edges[:, :1]).any(0)]], axis=1), axis=1)
+
+
+def _away(places: Array, edges: Array) -> Array:
+    return np.asarray(np.abs(places[..., None] - edges[:, None, :]).min(-1))
 
 
 def unresolved(orbit: Orbit, more: tuple[Array, ...] = ()) -> Array:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ...support.panels import Panels
 from .designs import Designs, picked, vanishing
 from .figures import Figures, course_at_steps, figures_of
-from .orbit import HALVINGS, PANELS, Orbit, between_kinks, moved, newton, unresolved
+from .orbit import PANELS, Orbit, astray, besides, moved, newton, switches, unresolved
 from .scan import Scan, Turns, scan
 from .slopes import Slopes
 
@@ -18,6 +18,7 @@ JAMS_AT = 1.0 - 1e-6  # of the wedge K: as in simulation/friction.py
 SAME = 1e-9  # of an energy: two motions are one
 CLOSER = 14  # secant steps to a change of sign, where Newton's method did not settle from a rough one
 ROUGH = 1e-4  # of the energy: a gain from which Newton's method settles
+ROUNDS = 12  # of moving edges
 REPEATS = 4  # rows of finer panels for these
 
 
@@ -76,34 +77,35 @@ class _Solved:
         self.gradient: dict[str, dict[str, Array]] = {}
 
     def settle(self, index: Array, edges: Array, orbit: Orbit) -> None:
-        """Halve the panels of lanes until motion and derivatives are polynomials on each."""
-        for _ in range(HALVINGS):
-            if not len(index):
-                return
-            orbit = between_kinks(orbit, edges)
-            bad = unresolved(orbit) & ~jammed(orbit)[:, None]
-            if orbit.mesh.edges.shape[1] > PANELS:
-                bad[:] = False
-            done = np.flatnonzero(~bad.any(1) & orbit.good)
+        """Edges where motions switch, panels halved until motion and derivatives are polynomials."""
+        moves = np.zeros(len(index), int)
+        while len(index):
+            switched = switches(orbit)
+            away = astray(orbit, switched) & (moves < ROUNDS) & orbit.good
+            bad = unresolved(orbit) & ~(jammed(orbit) | away)[:, None]
+            bad &= orbit.mesh.edges.shape[1] <= PANELS
+            done = np.flatnonzero(~(away | bad.any(1)) & orbit.good)
             if len(done):
-                finished, slopes = _rows(orbit, done), None
-                if self.with_gradient:
-                    slopes = Slopes(finished)
-                    own = unresolved(finished, tuple(slopes.forcing[name] for name in slopes.names))
-                    bad[done] |= own & ~jammed(finished)[:, None] & (own.shape[1] < PANELS)
-                    if bad[done].any():
-                        done = np.flatnonzero(~bad.any(1) & orbit.good)
-                        finished = _rows(orbit, done)
-                        slopes = Slopes(finished)
-                self._take(index[done], finished, slopes)
-            rest = np.flatnonzero(bad.any(1))
+                bad[done] = self._finish(index[done], _rows(orbit, done))
+            rest = np.flatnonzero(away | bad.any(1))
             if not len(rest):
                 return
-            edges = orbit.mesh.refined(bad, edges)[rest]
-            index, orbit = (
-                index[rest],
-                moved(_rows(orbit, rest), orbit.mesh.refined(bad, orbit.mesh.edges)[rest]),
-            )
+            edges, moves = orbit.mesh.refined(bad, edges)[rest], np.where(away, moves + 1, 0)[rest]
+            index, orbit = index[rest], moved(_rows(orbit, rest), besides(edges, switched[rest]))
+
+    def _finish(self, index: Array, orbit: Orbit) -> Array:
+        """Take the motions whose derivatives are polynomials, too; the panels on which others are not."""
+        slopes, bad = None, np.zeros(orbit.mesh.half.shape[:2], bool)
+        if self.with_gradient:
+            slopes = Slopes(orbit)
+            bad = unresolved(orbit, tuple(slopes.forcing[name] for name in slopes.names))
+            bad &= ~jammed(orbit)[:, None] & (bad.shape[1] < PANELS)
+        if bad.any():
+            done = np.flatnonzero(~bad.any(1))
+            index, orbit = index[done], _rows(orbit, done)
+            slopes = Slopes(orbit) if len(done) else None
+        self._take(index, orbit, slopes)
+        return bad
 
     def _take(self, index: Array, orbit: Orbit, slopes: Slopes | None) -> None:
         if not len(index):
