@@ -100,7 +100,7 @@ class Kloss(Motor):
     gear: Any = 1.0
     plain: tuple[str, ...] = field(default=(), compare=False)
     call: ClassVar[str] = "kloss"
-    SLIPS: ClassVar[Array] = np.geomspace(0.05, 20.0, 10)  # over the breakdown slip
+    SLIPS: ClassVar[Array] = np.geomspace(0.05, 20.0, 7)  # over the breakdown slip
 
     @property
     def numbers(self) -> Mapping[str, Any]:
@@ -132,7 +132,7 @@ class Kloss(Motor):
         """From standstill beyond the synchronous speed, close together around the breakdown slips."""
         _, slip, speed, gear = (np.asarray(row[r.name], float)[..., None] for r in ROWS)
         near = np.concatenate([self.SLIPS, -self.SLIPS])
-        far = np.concatenate([1.0 - np.geomspace(1e-3, 0.1, 4), np.linspace(0.9, -3.0, 32)])
+        far = np.concatenate([1.0 - np.geomspace(1e-3, 0.1, 3), np.linspace(0.9, -3.0, 14)])
         slips = np.concatenate([slip * near, slip * 0.0 + far], axis=-1)
         found: Array = (1.0 - np.clip(slips, -3.0, 1.0)) * speed / gear
         return found

@@ -82,14 +82,17 @@ class Panels:
         return every.reshape(*every.shape[:-2], -1)
 
     def at(self, x: Array, values: Array) -> Array:
-        """Values at any places within the range, of each design at its own."""
+        """Values at any places within the range, of each design at its own; there may be leading axes."""
         edges = self._rows(self.edges)
         places = np.reshape(x, (len(edges), -1))
         found = [np.searchsorted(e[1:], p, side="right") for e, p in zip(edges, places, strict=True)]
         row, panel = np.arange(len(edges))[:, None], np.minimum(np.array(found), edges.shape[1] - 2)
         middle, half = self._shape(row, panel)
         local = np.clip((places - middle) / np.where(half > 0.0, half, 1.0), -1.0, 1.0)
-        return _series(self._coefficients(values)[row, panel], local).reshape(np.shape(x))
+        share = legendre.legvander(local, NODES - 1) @ TO_COEFFICIENTS
+        here = values if self.edges.ndim > 1 else values[..., None, :, :]
+        at = np.einsum("...k,...k->...", here[..., row, panel, :], share)
+        return at.reshape(*values.shape[: values.ndim - self.edges.ndim - 1], *np.shape(x))
 
     def roots(self, values: Array) -> Array:
         """The places at which a function changes its sign, in rows padded with the first edge."""

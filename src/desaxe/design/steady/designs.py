@@ -72,6 +72,11 @@ class Designs(NamedTuple):
         """True where the guide of a design has friction."""
         return bool(np.any(self.numbers.get("mu", 0.0)))
 
+    @property
+    def switches(self) -> bool:
+        """True where motions have kinks that hang on the speed."""
+        return bool(self.source.knots) or self.has_friction
+
     def each(self, values: Any, ndim: int) -> Any:
         """Numbers of designs beside arrays of this many dimensions."""
         return np.reshape(values, (-1, *[1] * (ndim - 1))) if np.ndim(values) else values
@@ -119,16 +124,9 @@ class Designs(NamedTuple):
         many = pieces[row, gap]
         first = np.repeat(np.cumsum(many) - many, many)
         row, gap, many = (np.repeat(each, many) for each in (row, gap, many))
-        inner = every[row, gap] + (np.arange(len(row)) - first) * (gaps[row, gap] / many)
-        return np.sort(
-            padded(
-                np.append(row, np.arange(self.size)),
-                np.append(inner, np.full(self.size, period)),
-                self.size,
-                every[:, 0],
-            ),
-            axis=1,
-        )
+        start = every[row, gap] + (np.arange(len(row)) - first) * (gaps[row, gap] / many)
+        starts = np.sort(padded(row, start, self.size, every[:, 0]), axis=1)
+        return np.concatenate([starts, every[:, -1:]], axis=1)
 
 
 def vanishing(designs: Designs) -> Array:

@@ -16,8 +16,9 @@ from .linear import Linear
 
 Array = NDArray[Any]
 STEPS = 40  # of Newton's method
-SETTLED = 4e-16  # of the energy: what a step may still change
+NEXT_SETTLED = 1e-10  # of the energy: a step after which another one is below rounding
 EXTRAPOLATED = 1e-17  # the same, of the step after it
+ROUGH = 1e-5  # a step that leaves a rough motion
 MOVED = 1e-11  # rad
 RESOLVED = 3e-11  # of the largest value: the last coefficients of a panel
 NOISE, PLATEAU = 1e-9, 0.05  # the same, where they are not smaller than this share of earlier ones
@@ -74,8 +75,8 @@ class _Lanes(NamedTuple):
         return E0 + share * start, F, np.abs(wanted).max((1, 2))
 
 
-def newton(designs: Designs, mesh: Panels, E0: Array, F: Array) -> Orbit:
-    """The periodic motion near a guess."""
+def newton(designs: Designs, mesh: Panels, E0: Array, F: Array, rough: bool = False) -> Orbit:
+    """The periodic motion near a guess; a rough one shows where it switches."""
     course = course_of(designs, mesh.x)
     left, lanes = np.arange(len(E0)), _Lanes(designs, mesh.edges, course)
     E0, F, good = E0.copy(), F.copy(), np.zeros(len(E0), bool)
@@ -85,7 +86,7 @@ def newton(designs: Designs, mesh: Panels, E0: Array, F: Array) -> Orbit:
             if not len(left):
                 break
             E0[left], F[left], change = lanes.step(E0[left], F[left])
-            done = (change <= SETTLED) | ((change <= 1e-10) & (change >= 0.5 * before))
+            done = change <= (ROUGH if rough else NEXT_SETTLED)
             done |= (change * change <= EXTRAPOLATED * before) & np.isfinite(before)
             good[left] = done
             go = np.flatnonzero(~done & np.isfinite(change))

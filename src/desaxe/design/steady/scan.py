@@ -46,7 +46,7 @@ class Turns:
         return found
 
     def gain(self, E0: Array, path: list[Array] | None = None) -> Array:
-        """The gain of each start (designs, starts); the energies at the edges go into `path`."""
+        """The gain of each start (designs, starts); those at edges and middles of panels go into `path`."""
         W = np.zeros_like(E0)
         with np.errstate(all="ignore"):
             for k in range(self.width.shape[1]):
@@ -54,8 +54,8 @@ class Turns:
                 for first in (0, 2):
                     courses = [self.course.part((slice(None), k, first + j)) for j in range(3)]
                     W = W + self._step(courses, h, E0 + W)
-                if path is not None:
-                    path.append(W)
+                    if path is not None:
+                        path.append(W)
         return W
 
     def _step(self, courses: list[Course], h: Array, E: Array) -> Array:

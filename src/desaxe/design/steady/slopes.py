@@ -24,6 +24,7 @@ from .orbit import Orbit
 
 Array = NDArray[Any]
 REFINED = 2  # times that a solution is corrected by what it leaves
+EXACT = 1e-8  # of a solution: a correction after which another one is below rounding
 JUMP = 1e-9  # of the largest z': less is none
 NEAR = 1e-9  # rad: an edge is where a load has a kink
 FLAT = 1e-6  # of the crank: Y_wrt_theta at a dead centre
@@ -43,7 +44,9 @@ class Slopes:
         self.orbit, self.designs = orbit, orbit.designs
         self.names = parameters(self.designs)
         self.z = orbit.rate.omega**2
-        self.alpha = orbit.course.way * self._half_slope()
+        by_x = orbit.course.way * orbit.course.slope
+        self.z_slope = 2.0 * (orbit.rate.f - 0.5 * by_x * self.z) / orbit.course.inertia  # from dE/dx
+        self.alpha = 0.5 * orbit.course.way * self.z_slope
         wanted = ["T_in_wrt_omega", "T_in_wrt_alpha", *(f"T_in_wrt_{name}" for name in self.names)]
         found = self.designs.values(wanted, orbit.mesh.x, omega=orbit.rate.omega, alpha=self.alpha)
         row, way = self.designs.row(3), orbit.course.way
@@ -55,12 +58,6 @@ class Slopes:
         pushes = {**self.by_motor, **{name: -found[f"T_in_wrt_{name}"] for name in self.names}}
         pushes["flywheel_inertia"] = -self.alpha
         self.forcing = {name: 2.0 * way * push / mass for name, push in pushes.items()}
-
-    def _half_slope(self) -> Array:
-        """Half of dz/dx, from dE/dx."""
-        orbit = self.orbit
-        by_x = orbit.course.way * orbit.course.slope
-        return np.asarray((orbit.rate.f - 0.5 * by_x * self.z) / orbit.course.inertia)
 
     @computed_once
     def y(self) -> Array:
@@ -77,25 +74,28 @@ class Slopes:
             y = start[..., None, None] + mesh.running(slope) + before
             more, change = self.linear.solve(b + g * y - slope, mesh.integral(slope) + jumps.sum(-1))
             start, slope = start + more, b + g * (y + change)
+            if (np.abs(change).max((-1, -2)) <= EXACT * np.abs(y).max((-1, -2))).all():
+                break
         return np.asarray(start[..., None, None] + mesh.running(slope) + before)
 
     @computed_once
     def jumps(self) -> dict[str, Array]:
         """For each length, what y jumps by at the end of each panel, where a load over the slider jumps."""
-        moving = [load for load in self.designs.loads.values() if isinstance(load, OverY)]
-        if not moving:
-            return {}
         mesh = self.orbit.mesh
-        ends = mesh.ends(2.0 * self._half_slope())
+        ends = mesh.ends(self.z_slope)
         jump = ends[..., 1] - np.roll(ends[..., 0], -1, axis=1)
         jump = np.where(np.abs(jump) > JUMP * np.abs(ends).max((1, 2))[:, None], jump, 0.0)
         if not jump.any():
             return {}
-        way = self.orbit.course.way[..., 0]
-        found = dict.fromkeys(LENGTHS, np.zeros(jump.shape))
-        for load in moving:
-            for name, shift in moves(self.designs, load, mesh.edges[:, 1:]).items():
-                found[name] = found[name] + jump * way * shift
+        return {name: jump * shift for name, shift in self.shifts(mesh.edges[:, 1:]).items()}
+
+    def shifts(self, x: Array) -> dict[str, Array]:
+        """By how much each length moves places where a load over the slider has a kink; 0 elsewhere."""
+        found: dict[str, Array] = {}
+        for load in self.designs.loads.values():
+            if isinstance(load, OverY):
+                for name, shift in moves(self.designs, load, x).items():
+                    found[name] = found.get(name, 0.0) + self.orbit.course.way[..., 0] * shift
         return found
 
 

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...support.panels import Panels
+from ...support.panels import NODE, Panels
 from .designs import Designs, picked, vanishing
 from .figures import Figures, course_at_steps, figures_of
 from .orbit import PANELS, Orbit, astray, besides, moved, newton, switches, unresolved
@@ -78,10 +78,10 @@ class _Solved:
 
     def settle(self, index: Array, edges: Array, orbit: Orbit) -> None:
         """Edges where motions switch, panels halved until motion and derivatives are polynomials."""
-        moves = np.zeros(len(index), int)
+        moves, rough = np.zeros(len(index), int), self.lanes.switches
         while len(index):
             switched = switches(orbit)
-            away = astray(orbit, switched) & (moves < ROUNDS) & orbit.good
+            away = (astray(orbit, switched) & (moves < ROUNDS) | rough) & orbit.good
             bad = unresolved(orbit) & ~(jammed(orbit) | away)[:, None]
             bad &= orbit.mesh.edges.shape[1] <= PANELS
             done = np.flatnonzero(~(away | bad.any(1)) & orbit.good)
@@ -91,7 +91,11 @@ class _Solved:
             if not len(rest):
                 return
             edges, moves = orbit.mesh.refined(bad, edges)[rest], np.where(away, moves + 1, 0)[rest]
-            index, orbit = index[rest], moved(_rows(orbit, rest), besides(edges, switched[rest]))
+            index, rough, orbit = (
+                index[rest],
+                False,
+                moved(_rows(orbit, rest), besides(edges, switched[rest])),
+            )
 
     def _finish(self, index: Array, orbit: Orbit) -> Array:
         """Take the motions whose derivatives are polynomials, too; the panels on which others are not."""
@@ -150,12 +154,13 @@ def _from_turns(turns: Turns, E0: Array) -> Orbit:
     """The motions near rough turns from an energy each."""
     path: list[Array] = [np.zeros((len(E0), 1))]
     turns.gain(E0[:, None], path)
-    mesh, width = Panels(turns.edges), turns.width
-    energies = np.concatenate(path, axis=1)
+    mesh = Panels(turns.edges)
+    W = np.concatenate(path, axis=1)
+    first, middle, last = W[:, :-1:2, None], W[:, 1::2, None], W[:, 2::2, None]
     with np.errstate(all="ignore"):
-        slope = np.where(width > 0.0, np.diff(energies) / np.where(width > 0.0, width, 1.0), 0.0)
-    F = np.broadcast_to(np.nan_to_num(slope)[..., None], mesh.x.shape).copy()
-    return newton(turns.designs, mesh, E0, F)
+        slope = (0.5 * (last - first) + NODE * (first - 2.0 * middle + last)) / mesh.half
+        slope = np.where(mesh.half > 0.0, slope, 0.0)
+    return newton(turns.designs, mesh, E0, np.nan_to_num(slope), turns.designs.switches)
 
 
 def _finer(edges: Array) -> Array:

@@ -66,7 +66,7 @@ def _stall(designs: Designs, scan: Scan, k: int) -> str:
     turns = type(scan.turns)(one, scan.turns.edges[[k]])
     path: list[np.ndarray] = []
     turns.gain(starts[None, [stopped[-1]]], path)
-    at = int(np.argmax(np.isnan(np.concatenate(path, axis=1)[0])))
+    at = int(np.argmax(np.isnan(np.concatenate(path, axis=1)[0]))) // 2
     x = float(0.5 * (scan.turns.edges[k, at] + scan.turns.edges[k, at + 1]))
     theta = float(designs.way[k]) * x
     return f"it stalls near theta = {theta:.3g} rad ({degrees(theta):.0f} deg)"
