@@ -31,6 +31,7 @@ WIDEST = 0.4  # rad
 SAME = 1e-14  # rad
 NARROWEST = 2.0**-44  # rad: next to a change point functions bend within the root of the margin
 CLIMBS = 30  # steps of Newton's method
+CLOSE = 1e-9  # of a panel: a step after which the next one is below rounding
 PEAKS = 4  # so many of the highest samples are refined
 EQUAL = 1e-13  # of the largest value: extremes that differ by less are equal
 APART = 1e-6  # rad: equal ones that are no nearer are two
@@ -218,7 +219,7 @@ def _climbed(coefficients: Array, x: Array) -> Array:
         with np.errstate(divide="ignore", invalid="ignore"):
             step = np.where(bend < 0.0, -slope / bend, 0.02 * np.sign(slope))
         before, x = x, np.clip(x + np.clip(np.nan_to_num(step), -0.2, 0.2), -1.0, 1.0)
-        if (np.abs(x - before) <= 4e-16).all():
+        if (np.abs(x - before) <= CLOSE).all():
             break
     return x
 

@@ -10,7 +10,7 @@ from ...support.panels import NODE, Panels
 from .designs import Designs, picked, vanishing
 from .figures import Figures, course_at_steps, figures_of
 from .orbit import PANELS, Orbit, astray, besides, moved, newton, switches, unresolved
-from .scan import Scan, Turns, scan
+from .scan import Found, Scan, Turns, scan
 from .slopes import Slopes
 
 Array = NDArray[Any]
@@ -19,6 +19,7 @@ SAME = 1e-9  # of an energy: two motions are one
 CLOSER = 14  # secant steps to a change of sign, where Newton's method did not settle from a rough one
 ROUGH = 1e-4  # of the energy: a gain from which Newton's method settles
 ROUNDS = 12  # of moving edges
+AT_ONCE = 5_000  # panels of designs
 REPEATS = 4  # rows of finer panels for these
 
 
@@ -38,18 +39,11 @@ def states_of(designs: Designs, gradient: bool) -> States:
     edges = designs.edges()
     scanned = scan(designs, edges)
     found = scanned.found()
-    lanes = designs.rows(found.design)
-    first = _from_turns(scanned.turns.rows(found.design), found.E0)
-    solved = _Solved(lanes, gradient)
-    stable = first.log_multiplier < 0.0
-    lost = ~first.good | (stable != found.falls) | ~_first_of_each(found.design, first.E0)
-    kept, again = np.flatnonzero(~lost), np.flatnonzero(lost)
-    solved.settle(kept, edges[found.design][kept], _rows(first, kept))
-    if len(again):
-        fine = _finer(edges[found.design][again])
-        turns = Turns(lanes.rows(again), fine)
-        there, E0 = _closer(turns, found.low[again], found.high[again])
-        solved.settle(again[there], fine[there], _from_turns(turns.rows(there), E0))
+    solved = _Solved(designs.rows(found.design), gradient)
+    many = max(1, AT_ONCE // edges.shape[1])
+    for first in range(0, designs.size, many):
+        lanes = np.arange(*np.searchsorted(found.design, [first, first + many]))
+        _settle(solved, edges[found.design[lanes]], scanned.turns, found, lanes)
     solved.jams |= vanishing(designs)[found.design]
     good = np.flatnonzero(solved.good & _first_of_each(found.design, solved.E0))
     return States(
@@ -63,6 +57,21 @@ def states_of(designs: Designs, gradient: bool) -> States:
         solved.jams[good],
         scanned,
     )
+
+
+def _settle(solved: "_Solved", edges: Array, turns: Turns, found: Found, lanes: Array) -> None:
+    """The motions of some of the lanes; from finer turns where they do not lead to their own motions."""
+    found = picked(found, lanes)
+    first = _from_turns(turns.rows(found.design), found.E0)
+    stable = first.log_multiplier < 0.0
+    lost = ~first.good | (stable != found.falls) | ~_first_of_each(found.design, first.E0)
+    kept, again = np.flatnonzero(~lost), np.flatnonzero(lost)
+    solved.settle(lanes[kept], edges[kept], _rows(first, kept))
+    if len(again):
+        fine = _finer(edges[again])
+        closer = Turns(solved.lanes.rows(lanes[again]), fine)
+        there, E0 = _closer(closer, found.low[again], found.high[again])
+        solved.settle(lanes[again][there], fine[there], _from_turns(closer.rows(there), E0))
 
 
 class _Solved:

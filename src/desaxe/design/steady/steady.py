@@ -22,7 +22,7 @@ from .states import states_of
 
 Array = NDArray[Any]
 MOST_TURNS = 4  # after which loads repeat; two in a four-stroke engine
-CHUNK = 250  # designs at once
+CHUNK = 1000  # designs at once
 FLYWHEEL = Input("flywheel_inertia", "kg*m^2", "", 0.0, "a finite moment of inertia >= 0")
 FLUCTUATION = Input("fluctuation", "1", "", 1e-9, "a number above 0, at least 1e-9, and below 2")
 
