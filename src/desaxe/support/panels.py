@@ -22,6 +22,7 @@ TO_COEFFICIENTS = np.linalg.inv(legendre.legvander(NODE, NODES - 1))
 ENDS = legendre.legvander(np.array([-1.0, 1.0]), NODES - 1) @ TO_COEFFICIENTS
 # Integral from the left end of a panel to each node, of values at the nodes.
 RUNNING = legendre.legvander(NODE, NODES) @ legendre.legint(TO_COEFFICIENTS, lbnd=-1.0, axis=0)
+BARYCENTRIC = (-1.0) ** np.arange(NODES) * np.sqrt((1.0 - NODE**2) * WEIGHT)  # of Gauss's nodes
 SAMPLES = np.concatenate([[-1.0], NODE, [1.0]])  # of a panel, where signs and extremes are looked for
 RESOLVED = 1e-13  # of the largest value: what the last coefficients of a resolved function may be
 # Below the first, of the largest value, coefficients that halving does not shrink by the second are rounding.
@@ -30,6 +31,7 @@ MOST = 20_000  # panels
 WIDEST = 0.4  # rad
 SAME = 1e-14  # rad
 NARROWEST = 2.0**-44  # rad: next to a change point functions bend within the root of the margin
+TINY = 1e-200  # stands for no distance from a node
 CLIMBS = 30  # steps of Newton's method
 CLOSE = 1e-9  # of a panel: a step after which the next one is below rounding
 PEAKS = 4  # so many of the highest samples are refined
@@ -83,17 +85,24 @@ class Panels:
         return every.reshape(*every.shape[:-2], -1)
 
     def at(self, x: Array, values: Array) -> Array:
-        """Values at any places within the range, of each design at its own; there may be leading axes."""
+        """Values at any places within the range, of each design at its own."""
+        return self.reader(x)(values)
+
+    def reader(self, x: Array) -> Callable[[Array], Array]:
+        """A function that returns values at places within the range, of each design at its own."""
         edges = self._rows(self.edges)
         places = np.reshape(x, (len(edges), -1))
         found = [np.searchsorted(e[1:], p, side="right") for e, p in zip(edges, places, strict=True)]
         row, panel = np.arange(len(edges))[:, None], np.minimum(np.array(found), edges.shape[1] - 2)
         middle, half = self._shape(row, panel)
         local = np.clip((places - middle) / np.where(half > 0.0, half, 1.0), -1.0, 1.0)
-        share = legendre.legvander(local, NODES - 1) @ TO_COEFFICIENTS
-        here = values if self.edges.ndim > 1 else values[..., None, :, :]
-        at = np.einsum("...k,...k->...", here[..., row, panel, :], share)
-        return at.reshape(*values.shape[: values.ndim - self.edges.ndim - 1], *np.shape(x))
+        share = _shares(local)
+
+        def read(values: Array) -> Array:
+            here = values.reshape(-1, *values.shape[-2:])[row, panel]
+            return np.einsum("...k,k...->...", here, share).reshape(np.shape(x))
+
+        return read
 
     def roots(self, values: Array) -> Array:
         """The places at which a function changes its sign, in rows padded with the first edge."""
@@ -210,18 +219,34 @@ def _root(series: Array, low: Array, high: Array) -> Array:
     return np.where(np.abs(at_low) < np.abs(at_high), low, high)
 
 
+def _shares(x: Array) -> Array:
+    """What the value at each node, along the first axis, has in a polynomial's value at x: barycentric."""
+    found = np.empty((NODES, *x.shape))
+    for share, node, weight in zip(found, NODE, BARYCENTRIC, strict=True):
+        np.subtract(x, node, out=share)
+        share[share == 0.0] = TINY
+        np.divide(weight, share, out=share)
+    found /= found.sum(0)
+    return found
+
+
 def _climbed(coefficients: Array, x: Array) -> Array:
     """The places where the slope vanishes, by Newton's method within the panel."""
+    shape, x = x.shape, x.reshape(-1)
+    coefficients = coefficients.reshape(len(x), -1)
+    left = np.arange(len(x))
     first = legendre.legder(coefficients, axis=-1)
     second = legendre.legder(first, axis=-1)
     for _ in range(CLIMBS):
-        slope, bend = _series(first, x), _series(second, x)
+        slope, bend = _series(first[left], x[left]), _series(second[left], x[left])
         with np.errstate(divide="ignore", invalid="ignore"):
             step = np.where(bend < 0.0, -slope / bend, 0.02 * np.sign(slope))
-        before, x = x, np.clip(x + np.clip(np.nan_to_num(step), -0.2, 0.2), -1.0, 1.0)
-        if (np.abs(x - before) <= CLOSE).all():
+        before = x[left]
+        x[left] = np.clip(before + np.clip(np.nan_to_num(step), -0.2, 0.2), -1.0, 1.0)
+        left = left[np.abs(x[left] - before) > CLOSE]
+        if not len(left):
             break
-    return x
+    return x.reshape(shape)
 
 
 def resolved(functions: Callable[[Array], dict[str, Array]], breaks: list[float]) -> Panels:

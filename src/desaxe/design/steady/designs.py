@@ -27,7 +27,7 @@ from .source import Source
 
 Array = NDArray[Any]
 CREEP = 1e-100  # rad/s: loads know the way of turning, inertia does not act
-INSIDE = 1e-9  # of a panel: so far from its ends a value belongs to it
+INSIDE = 1e-5  # of a panel: so far from its ends a value belongs to it
 WIDEST = 0.65  # rad
 MANY = 50_000  # points, for which compiling pays
 NOTHING = 1e-12  # of the inertia elsewhere
@@ -142,7 +142,7 @@ class Course(NamedTuple):
 
     inertia, slope   M_eff + J, and its derivative by theta
     load             L
-    guide            the normal force at rest, its parts by omega^2 and by alpha, lean and arm
+    guide            the normal force at rest, its parts by omega^2 and by T - L; K on one side, and the arm
     """
 
     theta: Array
@@ -180,17 +180,19 @@ def course_of(designs: Designs, x: Array) -> Course:
     if friction:
         names += ["N_C", "N_C_wrt_alpha", "Y_wrt_theta", "phi"]
     found = designs.values(names, x, **still, mu=None)
+    inertia, slope = found["M_eff"] + designs.each(designs.J, x.ndim), found["M_eff_wrt_theta"]
     guide = None
     if friction:
         mu = designs.each(designs.numbers["mu"], x.ndim)
         free = dict.fromkeys(designs.loads, 0.0)
         by_square = designs.values(["N_C_wrt_omega"], x, **free, omega=1.0, alpha=0.0, mu=None)
+        b = found["N_C_wrt_alpha"] / inertia
+        a = 0.5 * (by_square["N_C_wrt_omega"] - slope * b)
         travel = found["Y_wrt_theta"]
-        lean = designs.branch * np.tan(found["phi"]) * mu * np.sign(travel) * way
         arm = mu * np.abs(travel) * way
-        guide = (found["N_C"], 0.5 * by_square["N_C_wrt_omega"], found["N_C_wrt_alpha"], lean, arm)
-    inertia = found["M_eff"] + designs.each(designs.J, x.ndim)
-    return Course(designs.theta(x), way, inertia, found["M_eff_wrt_theta"], found["T_in"], guide)
+        lean = designs.branch * np.tan(found["phi"]) * mu * np.sign(travel) * way
+        guide = (found["N_C"], a, b, lean - arm * b, arm)
+    return Course(designs.theta(x), way, inertia, slope, found["T_in"], guide)
 
 
 class Rate(NamedTuple):
@@ -213,13 +215,10 @@ def rate(course: Course, source: Source, row: Mapping[str, Any], E: Array) -> Ra
         push, steep = torque - course.load, by_omega * omega / (2.0 * E)
         if course.guide is None:
             return Rate(course.way * push, course.way * steep, omega, torque)
-        still, by_square, by_alpha, lean, arm = course.guide
-        alpha = (push - 0.5 * course.slope * square) / course.inertia
-        alpha_by = (steep - course.slope / course.inertia) / course.inertia
-        normal = still + by_square * square + by_alpha * alpha
-        normal_by = 2.0 * by_square / course.inertia + by_alpha * alpha_by
-        pressed = np.where(normal < 0.0, -1.0, 1.0)
-        wedge = (lean - arm * by_alpha / course.inertia) * pressed
+        still, a, b, wedge, arm = course.guide
+        normal = still + a * square + b * push
+        pressed = np.copysign(1.0, normal)
+        wedge = wedge * pressed
         rub = arm * pressed / (1.0 - wedge)
-        f, g = push - rub * normal, steep - rub * normal_by
+        f, g = push - rub * normal, steep - rub * (2.0 * a / course.inertia + b * steep)
         return Rate(course.way * f, course.way * g, omega, torque, normal, wedge)

@@ -36,44 +36,45 @@ def figures_of(orbit: Orbit, slopes: Slopes | None) -> Figures:
         "power_mean": work / period, "work": work, "multiplier": multiplier, "stable": multiplier < 1.0,
     }  # fmt: skip
     gradient: dict[str, dict[str, Array]] = {key: {} for key in KEYS}
-    if slopes is not None:
-        by_period, by_work = _by_totals(orbit, slopes)
+    if slopes is None:
+        return Figures(values, gradient)
+    speeds = _Speeds(orbit, slopes, np.stack([at_fastest, at_slowest], axis=1))
+    share = mesh.half * WEIGHT  # of each node in an integral
+    through = slopes.by_speed * omega / speed**2  # twice the torque's slope by omega^2
+    in_period, in_work = -0.5 * share / speed**3, 0.5 * share * through
+    for name, y in slopes.each():
+        by_period, by_work = (np.einsum("npk,npk->n", weights, y) for weights in (in_period, in_work))
+        if name in slopes.by_motor:
+            by_work += mesh.integral(slopes.by_motor[name])
         by_mean = -mean / period * by_period
-        high, low = _by_extremes(orbit, slopes, np.stack([at_fastest, at_slowest], axis=1))
+        high, low = speeds.by(name, y).T
         rows = {
             "period": by_period,
             "omega_mean": way * by_mean,
             "fluctuation": (high - low) / mean - (fastest - slowest) / mean**2 * by_mean,
-            "power_mean": (by_work - work / period * by_period) / period,
+            "power_mean": (way * by_work - work / period * by_period) / period,
         }
-        gradient = {key: dict(zip(slopes.forcing, row, strict=True)) for key, row in rows.items()}
+        for key, row in rows.items():
+            gradient[key][name] = row
     return Figures(values, gradient)
 
 
-def _by_totals(orbit: Orbit, slopes: Slopes) -> tuple[Array, Array]:
-    """The derivatives of period and work by each parameter, in rows."""
-    mesh, speed = orbit.mesh, np.abs(orbit.rate.omega)
-    share = mesh.half * WEIGHT  # of each node in an integral
-    through = slopes.by_speed * orbit.rate.omega / speed**2  # 2 times the torque's slope by omega^2
-    weights = np.stack([-0.5 * share / speed**3, 0.5 * share * through])
-    by_period, by_work = np.einsum("wnpk,jnpk->wjn", weights, slopes.y)
-    for k, name in enumerate(slopes.forcing):
-        if name in slopes.by_motor:
-            by_work[k] += mesh.integral(slopes.by_motor[name])
-    return by_period, orbit.designs.way * by_work
+class _Speeds:
+    """The derivatives of speeds at places: fixed ones, or where a load jumps, which move with it."""
 
+    def __init__(self, orbit: Orbit, slopes: Slopes, places: Array) -> None:
+        mesh = orbit.mesh
+        gap = np.abs(mesh.edges[:, None, :] - places[..., None])
+        edge = np.take_along_axis(mesh.edges, gap.argmin(-1), 1)
+        edge = np.where(edge == mesh.edges[:, -1:], 0.0, edge)  # where the panel behind it begins
+        places = np.where(gap.min(-1) < NEAR, edge, places)
+        self.at = mesh.reader(places)
+        self.twice, self.steep = 2.0 * self.at(np.abs(orbit.rate.omega)), self.at(slopes.z_slope)
+        self.shifts = slopes.shifts(places)
 
-def _by_extremes(orbit: Orbit, slopes: Slopes, places: Array) -> tuple[Array, Array]:
-    """The derivatives of the speeds at extremes by each parameter; one at a jump moves with it."""
-    mesh = orbit.mesh
-    gap = np.abs(mesh.edges[:, None, :] - places[..., None])
-    edge = np.take_along_axis(mesh.edges, gap.argmin(-1), 1)
-    places = np.where(gap.min(-1) < NEAR, np.where(edge == mesh.edges[:, -1:], 0.0, edge), places)
-    y = mesh.at(places, slopes.y)
-    for name, shift in slopes.shifts(places).items():
-        y[list(slopes.forcing).index(name)] += mesh.at(places, slopes.z_slope) * shift
-    found = 0.5 * y / mesh.at(places, np.abs(orbit.rate.omega))
-    return found[..., 0], found[..., 1]
+    def by(self, name: str, y: Array) -> Array:
+        """The derivatives by a parameter."""
+        return np.asarray((self.at(y) + self.steep * self.shifts.get(name, 0.0)) / self.twice)
 
 
 def course_at_steps(orbit: Orbit) -> dict[str, Array]:

@@ -11,7 +11,7 @@ from ...support.panels import NODES, RUNNING, WEIGHT, Panels
 Array = NDArray[Any]
 # Growth over a panel beyond which an integrating factor is no polynomial, not even a rough one: what
 # that leaves is corrected by Newton's method, or by another solution.
-STIFF = 4.0
+STIFF = 6.0
 
 
 class Linear:
@@ -36,19 +36,16 @@ class Linear:
         self.log_multiplier = total.sum(-1)
 
     def solve(self, r: Array, defect: Array, jumps: Array | None = None) -> tuple[Array, Array]:
-        """y at the start and at the nodes; `jumps` of y stand at the end of each panel.
-
-        r may have an axis of several equations before those of the mesh.
-        """
+        """y at the start and at the nodes; `jumps` of y stand at the end of each panel."""
         half, (row, panel) = self.mesh.half, self.stiff
         inner = r / self.factor
         own = self.factor * (half * (inner @ RUNNING.T))
         last = self.through * half[..., 0] * (inner @ WEIGHT)
         if len(row):
-            wide, steep = half[row, panel], r[..., row, panel, :]
-            local = np.einsum("kij,...kj->...ki", self.inverse, wide * (steep @ RUNNING.T))
-            own[..., row, panel, :] = local
-            last[..., row, panel] = wide[:, 0] * ((steep + self.g[row, panel] * local) @ WEIGHT)
+            wide, steep = half[row, panel], r[row, panel]
+            local = np.einsum("kij,kj->ki", self.inverse, wide * (steep @ RUNNING.T))
+            own[row, panel] = local
+            last[row, panel] = wide[:, 0] * ((steep + self.g[row, panel] * local) @ WEIGHT)
         if jumps is not None:
             last = last + jumps
         entering = np.zeros((*last.shape[:-1], last.shape[-1] + 1))

@@ -63,7 +63,7 @@ class Turns:
         source, row = self.designs.source, self.row
         start = rate(courses[0], source, row, E)
         c = np.clip(h * start.g, -1e6, LARGEST)
-        half = 0.5 * h * _phi(0.5 * c)[0]
+        half = 0.5 * h * _one(0.5 * c)
         phi1, phi2, phi3 = _phi(c)
         g = c / np.where(h > 0.0, h, 1.0)
         a = half * start.f
@@ -82,11 +82,16 @@ class Turns:
         )
 
 
+def _one(c: Array) -> Array:
+    """(exp(c) - 1)/c."""
+    far = np.abs(c) > SERIES
+    return np.where(far, np.expm1(c) / np.where(far, c, 1.0), 1.0 + c * (0.5 + c / 6.0))
+
+
 def _phi(c: Array) -> tuple[Array, Array, Array]:
     """(exp(c) - 1)/c and the two functions after it."""
-    far = np.abs(c) > SERIES
+    far, one = np.abs(c) > SERIES, _one(c)
     safe = np.where(far, c, 1.0)
-    one = np.where(far, np.expm1(safe) / safe, 1.0 + c * (0.5 + c / 6.0))
     two = np.where(far, (one - 1.0) / safe, 0.5 + c * (1.0 + 0.25 * c) / 6.0)
     return one, two, np.where(far, (two - 0.5) / safe, (1.0 + c * (0.25 + 0.05 * c)) / 6.0)
 

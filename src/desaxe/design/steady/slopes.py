@@ -9,6 +9,7 @@ with y(period) = y(0). Where z' jumps at a place that moves with a length, y jum
 times what it moves by.
 """
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -59,24 +60,25 @@ class Slopes:
         pushes["flywheel_inertia"] = -self.alpha
         self.forcing = {name: 2.0 * way * push / mass for name, push in pushes.items()}
 
-    @computed_once
-    def y(self) -> Array:
-        """dz/dp at the nodes, for all parameters in the order of `forcing`: another axis at the front."""
-        mesh, b, g = self.orbit.mesh, np.stack(list(self.forcing.values())), self.linear.g
-        jumps = np.zeros(b.shape[:-1])
-        for k, name in enumerate(self.forcing):
-            if name in self.jumps:
-                jumps[k] = self.jumps[name]
-        before = (np.cumsum(jumps, axis=-1) - jumps)[..., None]
-        start, y = self.linear.solve(b, np.zeros(b.shape[:2]), jumps)
+    def each(self) -> Iterator[tuple[str, Array]]:
+        """The parameters, and dz/dp at the nodes."""
+        for name, b in self.forcing.items():
+            yield name, self._along(b, self.jumps.get(name))
+
+    def _along(self, b: Array, jumps: Array | None) -> Array:
+        """The periodic solution of y' = g y + b, with jumps at the ends of panels."""
+        mesh, g = self.orbit.mesh, self.linear.g
+        before = 0.0 if jumps is None else (np.cumsum(jumps, axis=-1) - jumps)[..., None]
+        start, y = self.linear.solve(b, np.zeros(len(b)), jumps)
         slope = b + g * y
         for _ in range(REFINED):
-            y = start[..., None, None] + mesh.running(slope) + before
-            more, change = self.linear.solve(b + g * y - slope, mesh.integral(slope) + jumps.sum(-1))
+            y = start[:, None, None] + mesh.running(slope) + before
+            gap = mesh.integral(slope) + (0.0 if jumps is None else jumps.sum(-1))
+            more, change = self.linear.solve(b + g * y - slope, gap)
             start, slope = start + more, b + g * (y + change)
-            if (np.abs(change).max((-1, -2)) <= EXACT * np.abs(y).max((-1, -2))).all():
+            if (np.abs(change).max((1, 2)) <= EXACT * np.abs(y).max((1, 2))).all():
                 break
-        return np.asarray(start[..., None, None] + mesh.running(slope) + before)
+        return np.asarray(start[:, None, None] + mesh.running(slope) + before)
 
     @computed_once
     def jumps(self) -> dict[str, Array]:
