@@ -100,7 +100,7 @@ class Panels:
 
         def read(values: Array) -> Array:
             here = values.reshape(-1, *values.shape[-2:])[row, panel]
-            return np.einsum("...k,k...->...", here, share).reshape(np.shape(x))
+            return np.asarray(np.einsum("...k,k...->...", here, share)).reshape(np.shape(x))
 
         return read
 
@@ -220,7 +220,7 @@ def _root(series: Array, low: Array, high: Array) -> Array:
 
 
 def _shares(x: Array) -> Array:
-    """What the value at each node, along the first axis, has in a polynomial's value at x: barycentric."""
+    """The weight of each node, along the first axis, in the value of a polynomial at x: barycentric."""
     found = np.empty((NODES, *x.shape))
     for share, node, weight in zip(found, NODE, BARYCENTRIC, strict=True):
         np.subtract(x, node, out=share)

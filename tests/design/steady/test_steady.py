@@ -385,3 +385,25 @@ def test_without_a_steady_state_there_is_no_flywheel_either():
     found = dx.steady(torque=dx.over_omega([0.0, 5.0], [300.0, 400.0]), fluctuation=0.01, **PRESS)
     assert found["status"] == 1
     assert np.isnan(found["flywheel_inertia"])
+
+
+HALF_WAY = ([0.0, 0.06, 0.06, 0.1], [0.0, 0.0, -9e3, -9e3], [0.0] * 4)
+
+
+@pytest.mark.parametrize(
+    "load",
+    [
+        {"F_Y": dx.over_stroke(*HALF_WAY, dead_centre="outer")},
+        {"F_Y": dx.over_stroke(HALF_WAY[0], [0.0] * 4, [0, 0, 9e3, 9e3], dead_centre="inner"), "mu": 0.1},
+        {"F_Y": dx.over_Y([0.1, 0.19, 0.19, 0.3], [-9e3, -9e3, 0, 0], [0.0] * 4)},
+    ],
+)
+def test_an_extreme_of_the_speed_at_a_jump_of_the_load_moves_with_it(load):
+    """Central differences of order 6: the load jumps at the slowest or at the fastest point."""
+    press = {**PRESS, "flywheel_inertia": 3.0, "m_rod": 3.0, **load}
+    found = dx.steady(torque=MOTOR, **press)
+    for name in ("ec", "AB", "BC", "m_rod"):
+        h = 1e-3 * press[name] if name != "ec" else 5e-5
+        near = dx.steady(torque=MOTOR, **{**press, name: press[name] + h * STEPS})["fluctuation"]
+        slope = found["gradient"]["fluctuation"][name]
+        assert slope == pytest.approx(WEIGHTS @ near / h, rel=1e-6, abs=1e-9), name

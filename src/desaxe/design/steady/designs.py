@@ -74,7 +74,7 @@ class Designs(NamedTuple):
 
     @property
     def switches(self) -> bool:
-        """True where motions have kinks that hang on the speed."""
+        """True if kinks of a motion depend on its speed."""
         return bool(self.source.knots) or self.has_friction
 
     def each(self, values: Any, ndim: int) -> Any:

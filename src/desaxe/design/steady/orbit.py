@@ -120,7 +120,7 @@ def moved(orbit: Orbit, edges: Array) -> Orbit:
 
 
 def astray(orbit: Orbit, switched: Array) -> Array:
-    """Where a motion switches at places that are no edges yet."""
+    """True for motions that switch at places which are no edges yet."""
     return np.asarray((_away(switched, orbit.mesh.edges) > MOVED).any(1) & (switched.shape[1] <= PANELS))
 
 

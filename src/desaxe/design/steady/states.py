@@ -108,11 +108,11 @@ class _Solved:
 
     def _finish(self, index: Array, orbit: Orbit) -> Array:
         """Take the motions whose derivatives are polynomials, too; the panels on which others are not."""
-        slopes, bad = None, np.zeros(orbit.mesh.half.shape[:2], bool)
+        slopes, bad = None, np.zeros(orbit.F.shape[:-1], bool)
         if self.with_gradient:
             slopes = Slopes(orbit)
             bad = unresolved(orbit, tuple(slopes.forcing[name] for name in slopes.names))
-            bad &= ~jammed(orbit)[:, None] & (bad.shape[1] < PANELS)
+            bad &= ~jammed(orbit)[:, None] & (orbit.mesh.edges.shape[1] <= PANELS)
         if bad.any():
             done = np.flatnonzero(~bad.any(1))
             index, orbit = index[done], _rows(orbit, done)
