@@ -9,6 +9,7 @@ friction      guide friction, which depends on the acceleration that it changes
 one_design    one motion, step by step, with its events
 events        what happens inside a step
 many_designs  arrays of designs in one compiled call
+energy        motions with the crank angle as the independent variable
 each_design   arrays of designs under loads over the motion, one after the other
 stepper       the integrator of one motion
 dop853        the same for many designs, which numba compiles

@@ -52,6 +52,7 @@ def simulate_each(
     ends = [f"{name}_wrt_{p}" for p in wrt for name in ("t_last", "work")]
     histories = {n: np.full((size, t.size), np.nan) for n in ("theta", "omega", "alpha", *names, *along)}
     numbers = {name: np.full(size, np.nan) for name in ("t_last", "energy_residual", "work", *ends)}
+    ways = np.full(size, "", "U6")
     rounded = np.full(size, np.inf)  # or 0 where the residual of a design is told
     without = []  # designs of which a derivative does not exist
 
@@ -62,7 +63,7 @@ def simulate_each(
         count = len(found["t"])
         for name, history in histories.items():
             history[row, :count] = found[name]
-        status[row] = found["status"]
+        status[row], ways[row] = found["status"], found["method"]
         rounded[row] = 0.0 if TELLS in found["message"] else np.inf
         if SENSITIVITIES in found["message"]:
             without.append(row)
@@ -78,6 +79,7 @@ def simulate_each(
     result = Simulation(t=t, **{name: h.reshape(*shape, t.size) for name, h in histories.items()})
     result["status"] = status.reshape(shape)
     result["message"] = message(status) + told_of(numbers["energy_residual"], rounded, rtol)
+    result["method"] = ways.reshape(shape)
     if without:
         result["message"] += f"{SENSITIVITIES}NaN in {len(without)} of {size} designs, where there are none"
     return Simulation(result, **{name: values.reshape(shape) for name, values in numbers.items()})

@@ -35,6 +35,7 @@ def result_of(run: Run, names: Sequence[str], times: Any, given: Mapping[str, An
     result["energy_residual"] = residual
     result["message"] += told_of(residual, rounded, run.tolerance.rtol, run.tolerance.method)
     result["work"], result["t_last"] = float(run.y[W]), run.t
+    result["method"] = run.tolerance.method
     result["solution"] = Solution(run)
     return result
 

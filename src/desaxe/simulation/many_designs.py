@@ -25,6 +25,9 @@ from . import tableau
 from .checks import check_signature, grows
 from .compiled import Family, kernel_of
 from .coordinate import TURN, arc_around, inside
+from .energy.many import NOT_HERE, follow_many
+from .energy.panels import Designs
+from .energy.serves import ENERGY, INTEGRATOR, no_energy_form, served
 from .model import fixed_zeros, form_of
 from .residual import told_of
 from .result import DONE, NO_START, WORDS, Simulation
@@ -32,7 +35,8 @@ from .result import DONE, NO_START, WORDS, Simulation
 Array = NDArray[np.float64]
 SAMPLES = 101  # instants of the histories by default
 LONGEST_PART = 16  # designs in one native call, that threads share the work evenly
-MOST_STEPS = 3  # its place in `how`
+LONGEST_BLOCK = 256  # the same in the energy form: its arrays stay in the cache
+LONGEST, MOST_STEPS = 2, 3  # places in `how`
 LARGE = 1_000  # designs that may take long: a bar tells
 _UNITS = {"theta0": "rad", "omega_start": "rad/s", "torque": "N*m"}
 STARTS = {name: Input(name, unit, "") for name, unit in _UNITS.items()}
@@ -58,6 +62,7 @@ def simulate_many(
     how: Sequence[float],
     threads: int | None,
     deadline: Deadline,
+    method: str | None,
 ) -> Simulation:
     """The motions; how: relative tolerance, t_end, longest step, most steps."""
     arrays = _arrays(given) | {
@@ -75,15 +80,23 @@ def simulate_many(
     t = np.linspace(0.0, how[1], SAMPLES) if times is None else times
     setup, status = _setup(flat, branch)
     rows = np.stack([flat[name] for name in family.inputs], axis=1)
-    histories = [np.empty((status.size, t.size)) for _ in range(3)]
-    numbers = np.full((status.size, 4), np.nan)
-    outs = (*histories, status, numbers)
-    for history in histories:
-        history[status == NO_START] = np.nan
-    _run(
-        kernel_of(family, torque), rows, setup, (t, np.array(how, dtype=np.float64)), outs, threads, deadline
-    )
-    return _result(arrays, shape, t, outs, names, branch, how[0])
+    outs = (
+        *(np.full((status.size, t.size), np.nan) for _ in range(3)), status, np.full((status.size, 4), np.nan)
+    )  # fmt: skip
+    ways = np.where(status < 0, INTEGRATOR, "")
+    limits = np.array(how, dtype=np.float64)
+    if method != INTEGRATOR and torque is None and limits[LONGEST] == np.inf:
+        _by_energy(_designs(scalars, flat, setup, branch), t, limits, outs, threads, deadline)
+        ways[(status >= 0) & (status != NO_START)] = ENERGY
+        if method == ENERGY and (status < 0).any():
+            raise ValueError(no_energy_form(np.flatnonzero(status < 0), status.size))
+    left = np.flatnonzero(status < 0)
+    if left.size:
+        own = tuple(out[left] for out in outs)
+        _run(kernel_of(family, torque), rows[left], setup[left], (t, limits), own, threads, deadline)
+        for out, part in zip(outs, own, strict=True):
+            out[left] = part
+    return _result(arrays, shape, t, (*outs, ways), names, branch, how[0])
 
 
 def given_centres(given: Mapping[str, Any]) -> dict[str, Any]:
@@ -208,17 +221,67 @@ def _run(
     def stop() -> None:  # the kernel looks at the most steps before each one
         how[MOST_STEPS] = 0.0
 
+    def block(a: int, b: int) -> None:
+        kernel(rows[a:b], setup[a:b], *shared, *tables, *(out[a:b] for out in outs))
+
+    _in_parts(block, stop, size, LONGEST_PART, threads, deadline)
+
+
+def _in_parts(
+    block: Callable[[int, int], None],
+    stop: Callable[[], None],
+    size: int,
+    longest: int,
+    threads: int | None,
+    deadline: Deadline,
+) -> None:
+    """Run parts of all designs on threads, with a bar where they may take long."""
     with progress_bar(unit="designs") if size > LARGE else nullcontext() as watch:
         told = Portions(size, "motions", watch)
 
-        def block(a: int, b: int) -> None:
-            kernel(rows[a:b], setup[a:b], *shared, *tables, *(out[a:b] for out in outs))
+        def part(a: int, b: int) -> None:
+            block(a, b)
             told.add(b - a)
 
-        def work() -> None:
-            run_parts(block, size, threads, 1, LONGEST_PART)
+        stopped_early(lambda: run_parts(part, size, threads, 1, longest), stop, deadline)
 
-        stopped_early(work, stop, deadline)
+
+def _designs(scalars: Mapping[str, Any], flat: Mapping[str, Array], setup: Array, branch: int) -> Designs:
+    """The designs as the energy form takes them."""
+    inputs = {
+        name: value if isinstance(value, float) else flat[name]
+        for name, value in scalars.items()
+        if name not in STARTS
+    }
+    with np.errstate(invalid="ignore"):
+        middle = np.where(np.isinf(setup[:, 1]), 0.0, 0.5 * (setup[:, 1] + setup[:, 2]))
+        middle[np.isfinite(middle) & np.isfinite(setup[:, 1]) & ~(setup[:, 3] > 0.0)] = np.nan
+    return Designs(
+        inputs, branch, flat["torque"], flat["F_Y"], flat["theta0"], flat["omega_start"], middle, setup[:, 3]
+    )
+
+
+def _by_energy(
+    designs: Designs, t: Array, limits: Array, outs: Sequence[Any], threads: int | None, deadline: Deadline
+) -> None:
+    """Fill in the motions that have an energy form; the status of the others stays below 0."""
+    status, most = outs[3], limits[MOST_STEPS:].copy()
+    rows = np.flatnonzero((status < 0) & served(designs))
+    times = np.append(t, limits[1])
+
+    def stop() -> None:
+        most[0] = 0.0
+
+    def block(a: int, b: int) -> None:
+        own = rows[a:b]
+        found = follow_many(designs.some(own), times, float(limits[0]), most)
+        there = found.status < NOT_HERE
+        for out, values in zip(outs[:3], found[:3], strict=True):
+            out[own[there]] = values[there, :-1]
+        status[own[there]], outs[4][own[there]] = found.status[there], found.numbers[there]
+
+    if rows.size:
+        _in_parts(block, stop, rows.size, LONGEST_BLOCK, threads, deadline)
 
 
 def _result(
@@ -231,7 +294,7 @@ def _result(
     rtol: float,
 ) -> Simulation:
     """The result in the shape of the designs."""
-    *histories, status, numbers = outs
+    *histories, status, numbers, ways = outs
     theta, omega, alpha = (history.reshape(*shape, t.size) for history in histories)
     result = Simulation(t=t, theta=theta, omega=omega, alpha=alpha)
     if names:
@@ -240,7 +303,10 @@ def _result(
         }
         result |= evaluate(list(names), theta=theta, omega=omega, alpha=alpha, branch=branch, **inputs)
     result["status"] = status.reshape(shape)
-    result["message"] = message(status) + told_of(numbers[:, 1], numbers[:, 3], rtol)
+    result["message"] = message(status) + told_of(
+        numbers[:, 1], numbers[:, 3], rtol, np.where(ways == ENERGY, ENERGY, INTEGRATOR)
+    )
+    result["method"] = ways.reshape(shape)
     end, residual, work = (numbers[:, k].reshape(shape) for k in range(3))
     return Simulation(result, t_last=end, energy_residual=residual, work=work)
 

@@ -15,7 +15,7 @@ from .model import Model
 
 # The usual residual, as a share of rtol: the medians of `python -m benchmarks.steps` (DOP853), and of 12
 # such motions by each of SciPy's methods.
-USUAL = {"DOP853": 2e-4, "RK45": 4e-4, "RK23": 4e-4, "Radau": 5e-3, "LSODA": 5e-3, "BDF": 3.0}
+USUAL = {"energy": 1e-3, "DOP853": 2e-4, "RK45": 4e-4, "RK23": 4e-4, "Radau": 5e-3, "LSODA": 5e-3, "BDF": 3.0}
 ROUNDED = 2e-17  # of the largest energy in a step: what rounding alone makes
 TOLD = 100.0  # times the usual
 TELLS = "; energy_residual "
@@ -53,15 +53,16 @@ def _energies(model: Model) -> Energies:
     return energies
 
 
-def told_of(residual: Any, rounded: Any, rtol: float, method: str = "DOP853") -> str:
+def told_of(residual: Any, rounded: Any, rtol: float, method: Any = "DOP853") -> str:
     """The end of a message: the largest of the residuals that are unusual at this rtol; "" if none is.
 
-    residual, rounded   of one motion or, as arrays, of many; NaN where there is none
+    residual, rounded, method   of one motion or, as arrays, of many; NaN where there is none
     """
     if rtol <= LEAST_RTOL:
         return ""
     several = np.atleast_1d(residual)
-    unusual = several > TOLD * (USUAL[method] * rtol + np.atleast_1d(rounded))
+    usual = np.array([USUAL[way] for way in np.atleast_1d(method).tolist()])
+    unusual = several > TOLD * (usual * rtol + np.atleast_1d(rounded))
     if not unusual.any():
         return ""
     count = f" at most, in {unusual.sum()} of {several.size} designs" if np.ndim(residual) else ""

@@ -51,7 +51,11 @@ class Simulation(Answer):
 
 
 def _shown(value: Any) -> str:
+    if isinstance(value, str):
+        return value
     shape = getattr(value, "shape", ())
+    if shape and value.dtype.kind == "U":
+        return f"{shape}  {', '.join(sorted(set(value.reshape(-1).tolist()) - {''}))}"
     if not shape:
         return f"{value:.6g}"
     known = value[value == value]  # no NaN

@@ -27,6 +27,7 @@ from .checks import (
     scalar,
 )
 from .each_design import simulate_each
+from .energy.serves import ENERGY, INTEGRATOR, refuse
 from .held import Held
 from .history import result_of
 from .many_designs import is_array, simulate_many
@@ -64,7 +65,7 @@ def simulate(
     mu: Any = None,
     rtol: float = 1e-10,
     atol: Any = None,
-    method: str = "DOP853",
+    method: str | None = None,
     times: Any = None,
     until: Any = None,
     wrt: str | Sequence[str] = (),
@@ -89,14 +90,16 @@ def simulate(
     rtol, atol   tolerances: the largest errors of theta and omega are about rtol of their largest values.
                  atol of a step, for the angle [rad], sqrt(kinetic energy) and work, is by default rtol times
                  0.03 rad (by SciPy 0.001) and a hundredth of the energy that start and loads suggest
-    method       DOP853, or by SciPy (extra `simulate`) RK45, RK23, Radau, BDF, LSODA
+    method       "energy": the crank angle is the independent variable, energy and time are integrals over it;
+                 the default for many designs where torque and loads are numbers. Else DOP853, the default for
+                 all other motions, or by SciPy (extra `simulate`) RK45, RK23, Radau, BDF, LSODA
     times        instants of the histories [s]; by default 1001 from start to end
     until        crank angle or angles [rad]: the first that is reached ends the motion
     wrt          parameters by which the motion is differentiated: inputs of the mechanism that are numbers,
                  "theta0", "omega_start", "torque" where it is a number
     derivative   for wrt, of a torque that is a function: one of the same arguments that returns dT/dtheta
                  and dT/domega; and dT/dt, without which the instants of "break-away" have no derivative
-    max_step     longest step [s], for loads that act briefly
+    max_step     longest step [s] of an integrator, for loads that act briefly
     max_steps    more steps than this are a failure
     timeout      seconds of computing, None for no limit: then one motion ends with status 4 and what there is
                  of it, and many designs with a TimeoutError
@@ -113,6 +116,7 @@ def simulate(
                      kinetic energy; above 100 times what is usual at this rtol, `message` ends with it and
                      the rtol to repeat with
     work             of torque, loads and friction, gravity not included [J]
+    method           the way that was taken
     t_last           when the motion ends [s]
     solution         function t -> dict of theta and omega, anywhere up to the end
     theta_wrt_<p>, omega_wrt_<p>   for each p of wrt: derivatives of the histories at each instant
@@ -123,11 +127,13 @@ def simulate(
     `message` says so: at an angle or a standstill that is only touched, and after a jump there.
 
     Many designs at once: lengths, masses, constant loads, theta0, omega_start and a constant torque may be
-    arrays that broadcast like NumPy. All run in compiled code (numba compiles a torque function), without
-    friction; where F_X, F_Y or a table of the torque vary with the motion one after the other. Histories then
-    have the shape (designs..., times), 101 instants without `times`, NaN where a motion has ended. status
-    (also 6: bad input, or no mechanism at the start), energy_residual, work and t_last have the shape of
-    the designs; there are no events and no solution. With wrt they run one after the other.
+    arrays that broadcast like NumPy. All run in compiled code, without friction: in the energy form; under a
+    torque function, which numba compiles, and where the energy form does not serve, such as at an unstable
+    equilibrium, by DOP853. Where F_X, F_Y or a table of the torque vary with the motion they run one after
+    the other. Histories then have the shape (designs..., times), 101 instants without `times`, NaN where a
+    motion has ended. status (also 6: bad input, or no mechanism at the start), energy_residual, work, t_last
+    and method have the shape of the designs; there are no events and no solution. With wrt they run one
+    after the other.
 
     Equation: M_eff alpha + M_eff' omega^2/2 = torque - static torque - friction (paper C, section 3).
     Raises ValueError where no motion can start (no mechanism there, no inertia) and for a bad value.
@@ -150,7 +156,13 @@ def simulate(
     starts = {"theta0": theta0, "omega_start": omega_start, "torque": torque}
     by = read_wrt(wrt, {**given, **starts})
     slopes = Slopes(torque, derivative) if by else None
-    if any(map(is_array, (*given.values(), *starts.values()))):
+    several = any(map(is_array, (*given.values(), *starts.values())))
+    if method == ENERGY:
+        options = {"max_step": max_step is not None, "atol": atol is not None}
+        refuse(torque, {name: given[name] for name in ("F_X", "F_Y")}, given["mu"], options)
+        if by or not several:
+            raise ValueError("method = 'energy': it is for many designs, without wrt=")
+    if several:
         _check_many(method, atol, until)
         varying = any(map(callable, (given["F_X"], given["F_Y"])))
         if by or varying or isinstance(torque, (LoadOverMotion, Motor)):
@@ -165,14 +177,14 @@ def simulate(
 
             return simulate_each(one, given, starts, int(branch), wanted, by, instants, end, rtol)
         how = (rtol, end, longest, max_steps)
-        return simulate_many(given, starts, int(branch), wanted, instants, how, threads, deadline)
+        return simulate_many(given, starts, int(branch), wanted, instants, how, threads, deadline, method)
     start = scalar("theta0", theta0, "rad"), scalar("omega_start", omega_start, "rad/s")
     drive = drive_of(torque, given["F_X"], given["F_Y"], deadline)
     values = design_values(given)
     model = model_of(values, int(branch), start[0], drive)
     energy = energy_scale(model, *start, end)
     size = np.array([1.0, sqrt(energy), energy])
-    by_method = read_method(method)
+    by_method = read_method(method or INTEGRATOR)
     tolerance = Tolerance(by_method, rtol, _atol(atol, rtol, size, by_method), size, longest, max_steps)
     v = start[1] * sqrt(model.inertia(start[0]))
     run = Run(model, np.array([model.coordinate.q(start[0]), v, 0.0]), end, angles, tolerance, deadline)
@@ -189,12 +201,18 @@ def simulate(
     return result
 
 
-def _check_many(method: str, atol: Any, until: Any) -> None:
+def _check_many(method: str | None, atol: Any, until: Any) -> None:
     """Reject options that are for one design at a time."""
-    given = {"method": method != "DOP853", "atol": atol is not None, "until": until is not None}
+    given = {
+        "method": method not in (None, ENERGY, INTEGRATOR),
+        "atol": atol is not None,
+        "until": until is not None,
+    }
     for name, there in given.items():
         if there:
-            raise ValueError(f"{name}= is for one design at a time: many run by DOP853 to t_end")
+            raise ValueError(
+                f"{name}= is for one design at a time: many run in the energy form or by DOP853 to t_end"
+            )
 
 
 def _atol(atol: Any, rtol: float, size: Any, method: str) -> Any:

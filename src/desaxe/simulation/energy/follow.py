@@ -1,0 +1,311 @@
+"""One motion in its energy form, in plain loops, whose text numba compiles (`compiled`).
+
+It knows nothing of the mechanism. In a coordinate x with the inertia M(x) and the generalised torque Q(x),
+both given at the Gauss nodes of panels, the kinetic energy is E(x) = E0 + integral of Q, and the time
+
+    t(x) = integral of sqrt(M / (2 E)) dx.
+
+Panels of one turn serve all turns. Where E vanishes the crank stands still and turns round: with
+x = x_s + span xi^2 the energy is xi^2 times a mean of Q, and dt/dxi is smooth. A piece of the motion is an x
+that is quadratic in u from -1 to 1, and dt/du as a Legendre series; instants are found on it by Newton's
+method. A piece whose series has not ended is cut.
+
+rough    how exactly M and Q are known on each panel, as a share of them
+setup    a row per design: E0, number of the edge at the start, way (-1 or 1), period or 0, 1 where Q does
+         not depend on the way
+how      tolerance, 1 to keep every piece
+most     pieces: an array of one, which another thread may set to 0
+tables   nodes; weights; columns by which values become Legendre coefficients, running integrals, and means
+         of 2 s f(s) from 0 to xi
+kept     pieces: start, duration, x as c0 + c1 u + c2 u^2, kind, panel counted over turns, way, and the
+         coefficients of dt/du
+numbers  end, x and energy at an end of the panels, instants reached, pieces kept, pieces
+"""
+
+from __future__ import annotations
+
+from math import floor, nan
+from typing import TYPE_CHECKING
+
+from numpy import empty, int64
+
+from .pieces import (
+    combined,
+    energies,
+    first_without,
+    integral,
+    lowest,
+    mean_near,
+    ordered,
+    part_of,
+    prepare,
+    rates,
+    rest_near,
+    series,
+    standstill,
+    tail,
+)
+
+if TYPE_CHECKING:
+    from typing import Any
+
+
+SLOW = 0.1  # of the energy at one end of a piece: so little at the other may be next to one
+NEAR = 0.01  # of a piece: next to it
+
+
+def put(parts: Any, top: Any, a: float, span: float, kind: float, over: float) -> Any:
+    """One more part of a panel to follow: where it starts, how long, its kind, what of it lies beyond."""
+    parts[top, 0], parts[top, 1], parts[top, 2], parts[top, 3] = a, span, kind, over
+    return top + 1
+
+
+def keep(
+    piece: Any, start: float, duration: float, a: float, span: float, kind: Any, half: float, middle: float
+) -> None:
+    """When a piece is gone through, and x on it as a polynomial in its u."""
+    bend = 0.0 if kind == 0 else (0.25 if kind == 1 else -0.25) * half * span
+    place = a + (0.5 if kind == 0 else 0.0 if kind == 1 else 1.0) * span
+    piece[0], piece[1], piece[2] = start, duration, middle + half * place + bend
+    piece[3], piece[4], piece[5] = 0.5 * half * span, bend, kind
+
+
+def follow(
+    edges: Any,
+    rough: Any,
+    M: Any,
+    forth: Any,
+    back: Any,
+    setup: Any,
+    times: Any,
+    how: Any,
+    most: Any,
+    tables: Any,
+    kept: Any,
+    which: Any,
+    since: Any,
+    bad: Any,
+    work: Any,
+    known: Any,
+    numbers: Any,
+) -> int:
+    """The pieces of a motion until the last instant.
+
+    The status: 0 there, 2 at an end of the panels, 4 too many pieces, 10 some panels are marked as too wide,
+    11 no energy form, 12 no room for more pieces.
+    """
+    rows, more, m, q, parts = empty((7, 16)), empty((7, 16)), empty(16), empty(16), empty((128, 4))
+    tolerance, energy, way, period = how[0], setup[0], setup[2], setup[3]
+    t, turn, largest, last_stop, begin, room = 0.0, 0.0, energy, nan, 0.0, 0.0
+    panel: Any = int64(setup[1]) - (1 if way < 0.0 else 0)
+    row, stored, pieces = int64(0), int64(0), int64(0)
+    rest, inside, marked, count = energy == 0.0, False, False, len(times)
+    known[:] = 0
+    while True:
+        if panel < 0 or panel >= len(M):
+            if period == 0.0:
+                numbers[0], numbers[1], numbers[2] = t, edges[0] if panel < 0 else edges[len(M)], energy
+                numbers[3], numbers[4], numbers[5] = row, stored, pieces
+                return 10 if marked else 2
+            turn += way
+            panel = len(M) - 1 if panel < 0 else int64(0)
+        half = 0.5 * (edges[panel + 1] - edges[panel])
+        if half <= 0.0:
+            panel += 1 if way > 0.0 else -1
+            continue
+        side = int64(0) if way > 0.0 else int64(1)
+        Q, done = forth[panel] if way > 0.0 else back[panel], work[side, panel]
+        if known[side, panel] == 0:
+            known[side, panel] = 1
+            if not prepare(M[panel], Q, half, energy, max(tolerance, rough[panel]), tables, done):
+                bad[panel], marked = 1, True
+        ready = inside or rest  # whether m and q are the series of this panel
+        if ready:
+            combined(M[panel], tables[2], m)
+            combined(Q, tables[2], q)
+        if not inside:
+            begin, room = -way, 2.0 * way
+            left = energy - (0.0 if way > 0.0 else done[16])
+        else:
+            left = -half * integral(q, begin)
+            if not series(q, begin) * way > 0.0:
+                return 10 if marked else 11
+        out = left + (done[16] if way > 0.0 else 0.0)
+        if rest and abs(room) < NEAR:
+            out = half * room * mean_near(q, begin, room)
+        middle, depth, stopped = 0.5 * (edges[panel] + edges[panel + 1]) + turn * period, 0, False
+        top = put(parts, int64(0), begin, room, 1.0 if rest else 0.0, 0.0)
+        while top > 0:
+            top -= 1
+            a, span, kind, over = parts[top, 0], parts[top, 1], int64(parts[top, 2]), parts[top, 3]
+            pieces += 1
+            depth += 1
+            if pieces > most[0]:
+                numbers[0], numbers[1], numbers[2] = t, middle + half * a, nan
+                numbers[3], numbers[4], numbers[5] = row, stored, pieces
+                return 10 if marked else 4
+            if depth > 100 or top > 120:
+                return 10 if marked else 11
+            last = top == 0  # it goes to the end of the panel
+            if kind == 0 and span == 2.0 * way:
+                ordered(M[panel], done, left, way > 0.0, rows)
+            else:
+                energies(a, span, kind, half, left, m, q, tables, rows)
+            end = 1.0
+            if kind != 2:
+                end = out if last else left + half * integral(q, a + span)
+            first, final = rows[2, 0], rows[2, 15]
+            few = kind == 0 and (first < SLOW * final or final < SLOW * first)
+            lost = first_without(rows[2])
+            if not ready and (few or lost < 16 or not end > 0.0):
+                combined(M[panel], tables[2], m)
+                combined(Q, tables[2], q)
+                ready = True
+            if kind == 0 and a == -way and ready and energy < NEAR * half * abs(series(q, a) * span):
+                near = rest_near(q, half, energy, a)
+                if near * way > 0.0:  # it comes to rest soon
+                    top = put(parts, int64(0), a, near, 2.0, 0.0)
+                else:  # as if it came from a rest before the panel
+                    top = put(parts, top, a + near, span - near, 1.0, -near)
+                continue
+            if lost < 16 or not end > 0.0:
+                if kind == 2 or (kind == 1 and lost == 0):
+                    return 10 if marked else 11
+                good = a if lost == 0 else a + span * part_of(tables[0][lost - 1], kind)
+                none = a + span * (1.0 if lost == 16 else part_of(tables[0][lost], kind))
+                far, start = standstill(q, half, left, good, none) - a, 0.0
+                if kind == 1:
+                    start = 0.5 * far
+                top = put(parts, int64(0), a + start, far - start, 2.0, 0.0)
+                if kind == 1:
+                    top = put(parts, top, a, start, 1.0, over)
+                continue
+            if few and last and final < first and out <= -NEAR * half * series(q, way) * span:
+                near = rest_near(q, half, out, way)
+                top = put(parts, top, a, span + near, 2.0, near)
+                continue
+            duration = rates(kind, half * abs(span) * (0.5 if kind == 0 else 1.0), tables[1], rows)
+            noise = 2e-14
+            if kind == 0:
+                noise = 2e-15 * largest / lowest(rows[2])
+            if not tail(rows[0], tables[2]) <= 0.5 * max(tolerance, noise) * duration:
+                cut = (0.5 if kind == 0 else 0.25 if kind == 1 else 0.75) * span
+                if kind != 0 and abs(over) >= 0.25 * abs(span):
+                    return 10 if marked else 11
+                top = put(
+                    parts, top, a + cut, span - cut, 2.0 if kind == 2 else 0.0, over if kind == 2 else 0.0
+                )
+                top = put(parts, top, a, cut, 1.0 if kind == 1 else 0.0, over if kind == 1 else 0.0)
+                if not ready:
+                    combined(M[panel], tables[2], m)
+                    combined(Q, tables[2], q)
+                    ready = True
+                continue
+            beyond = 0.0
+            if over != 0.0:  # the rest lies beyond the panel: that part takes no time
+                energies(a if kind == 1 else a + span - over, over, kind, half, left, m, q, tables, more)
+                beyond = rates(kind, half * abs(over), tables[1], more)
+            start = t - beyond if kind == 1 else t
+            t += duration - beyond
+            if how[1] > 0.0 or times[row] <= t:
+                if stored >= len(kept):
+                    return 12
+                keep(kept[stored], start, duration, a, span, kind, half, middle)
+                kept[stored, 6], kept[stored, 7] = panel + len(M) * turn, way
+                combined(rows[0], tables[2], kept[stored, 8:])
+                while row < count and times[row] <= t:
+                    which[row], since[row] = stored, times[row] - start
+                    row += 1
+                stored += 1
+            stopped, begin = kind == 2 and over == 0.0, a + span
+            room = -span if a == -way else -way - begin
+            if row >= count:
+                numbers[0], numbers[3], numbers[4], numbers[5] = t, row, stored, pieces
+                return 10 if marked else 0
+        rest, inside = stopped, stopped
+        if stopped:
+            swing, last_stop = t - last_stop, t
+            if setup[4] > 0.0 and how[1] == 0.0 and swing > 0.0:
+                last_stop += 2.0 * swing * max(floor((times[row] - t) / (2.0 * swing)), 0.0)
+                t = last_stop
+            way, energy = -way, 0.0
+        else:
+            energy = out
+            largest = max(largest, energy)
+            panel += 1 if way > 0.0 else -1
+
+
+def invert(count: Any, which: Any, since: Any, kept: Any, x: Any, speed: Any, lanes: Any) -> bool:
+    """x and its rate at instants of pieces, all at once; whether each was found."""
+    u, f, g, before, now = lanes[16], lanes[17], lanes[18], lanes[19], lanes[20]
+    for i in range(count):
+        for j in range(16):
+            lanes[j, i] = kept[which[i], 8 + j]
+        u[i] = min(2.0 * since[i] / kept[which[i], 1] - 1.0, 1.0)
+    done = False
+    for _ in range(40):
+        c = lanes[0]
+        for i in range(count):
+            before[i], now[i] = 1.0, u[i]
+            f[i], g[i] = c[i] * (u[i] + 1.0) - since[i], c[i]
+        for j in range(1, 16):
+            c, one, two = lanes[j], (2.0 * j + 1.0) / (j + 1.0), j / (j + 1.0)
+            share = 1.0 / (2.0 * j + 1.0)
+            for i in range(count):
+                after = one * u[i] * now[i] - two * before[i]
+                f[i] += c[i] * (after - before[i]) * share
+                g[i] += c[i] * now[i]
+                before[i], now[i] = now[i], after
+        if done:
+            break
+        change = 0.0
+        for i in range(count):
+            after = min(max(u[i] - f[i] / g[i], -1.0), 1.0)
+            change = max(change, abs(after - u[i]))
+            u[i] = after
+        done = change < 1e-9
+    for i in range(count):
+        piece = kept[which[i]]
+        x[i] = piece[2] + u[i] * (piece[3] + u[i] * piece[4])
+        speed[i] = (piece[3] + 2.0 * u[i] * piece[4]) / g[i]
+    return done
+
+
+def motions(
+    edges: Any,
+    rough: Any,
+    M: Any,
+    forth: Any,
+    back: Any,
+    setup: Any,
+    times: Any,
+    how: Any,
+    most: Any,
+    nodes: Any,
+    weights: Any,
+    coefficients: Any,
+    running: Any,
+    mean: Any,
+    kept: Any,
+    x: Any,
+    speed: Any,
+    status: Any,
+    bad: Any,
+    numbers: Any,
+) -> None:
+    """Every design: x and its rate at all instants, NaN where the motion has ended; status and numbers."""
+    tables, count, panels = (nodes, weights, coefficients, running, mean), len(times), M.shape[1]
+    which, since, lanes = empty(count, int64), empty(count), empty((21, count))
+    work, known = empty((2, panels, 17)), empty((2, panels), int64)
+    for n in range(len(setup)):
+        x[n, :], speed[n, :] = nan, nan
+        if status[n] > 0:
+            continue
+        numbers[n, 3] = 0.0
+        status[n] = follow(
+            edges[n], rough[n], M[n], forth[n], back[n], setup[n], times, how, most, tables, kept, which,
+            since, bad[n], work, known, numbers[n],
+        )  # fmt: skip
+        reached = int64(numbers[n, 3])
+        if status[n] < 10 and reached > 0 and not invert(reached, which, since, kept, x[n], speed[n], lanes):
+            status[n] = 11

@@ -1,0 +1,181 @@
+"""A piece of a motion, in plain loops: its inertia, energy and dt/du at Gauss nodes, from series on a panel.
+
+See `follow`. Series are Legendre's, of 16 terms over u from -1 to 1; Q is that of the way in which the crank
+turns, `half` half the width of the panel.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from typing import Any
+
+
+def combined(values: Any, columns: Any, out: Any) -> None:
+    """The sum of columns by 16 values."""
+    for j in range(16):
+        out[j] = 0.0
+    for k in range(16):
+        value = values[k]
+        for j in range(16):
+            out[j] += columns[k, j] * value
+
+
+def tail(values: Any, columns: Any) -> float:
+    """The larger of the last two Legendre coefficients of values at nodes: one is odd, one even."""
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    for k in range(0, 8, 2):
+        a += columns[k, 14] * (values[k] + values[15 - k])
+        b += columns[k, 15] * (values[k] - values[15 - k])
+        c += columns[k + 1, 14] * (values[k + 1] + values[14 - k])
+        d += columns[k + 1, 15] * (values[k + 1] - values[14 - k])
+    return float(max(abs(a + c), abs(b + d)))
+
+
+def series(c: Any, u: float) -> float:
+    """A Legendre series."""
+    before, now, total = 1.0, u, c[0] + c[1] * u
+    for j in range(2, 16):
+        before, now = now, ((2.0 * j - 1.0) * u * now - (j - 1.0) * before) / j
+        total += c[j] * now
+    return float(total)
+
+
+def integral(c: Any, u: float) -> float:
+    """The integral of a Legendre series from -1."""
+    before, now, total = 1.0, u, c[0] * (u + 1.0)
+    for j in range(1, 16):
+        after = ((2.0 * j + 1.0) * u * now - j * before) / (j + 1.0)
+        total += c[j] * (after - before) / (2.0 * j + 1.0)
+        before, now = now, after
+    return float(total)
+
+
+def mean_near(q: Any, u: float, d: float) -> float:
+    """The mean of a series from u to u + d, which is near: by three of Gauss's nodes."""
+    side = 0.5 * sqrt(0.6) * d
+    ends = series(q, u + 0.5 * d - side) + series(q, u + 0.5 * d + side)
+    return (5.0 * ends + 8.0 * series(q, u + 0.5 * d)) / 18.0
+
+
+def rest_near(q: Any, half: float, energy: float, u: float) -> float:
+    """How far from u, where there is little energy, a standstill is; relative to itself without error."""
+    d = 0.0
+    for _ in range(10):
+        d = -energy / (half * mean_near(q, u, d))
+    return d
+
+
+def standstill(q: Any, half: float, left: float, good: float, bad: float) -> float:
+    """Where left + half (integral of the series q) vanishes, from a place with energy to one without."""
+    u = 0.5 * (good + bad)
+    for _ in range(80):
+        here = left + half * integral(q, u)
+        if here > 0.0:
+            good = u
+        else:
+            bad = u
+        slope = half * series(q, u)
+        after = u - here / slope if slope != 0.0 else good
+        if not (after - good) * (after - bad) < 0.0:
+            after = 0.5 * (good + bad)
+        if abs(after - u) <= 1e-16:
+            break
+        u = after
+    return float(u)
+
+
+def part_of(node: float, kind: Any) -> float:
+    """How far along a piece a node of its u lies."""
+    xi = 0.5 + 0.5 * node
+    return xi * xi if kind == 1 else xi
+
+
+def energies(
+    a: float, span: float, kind: Any, half: float, left: float, m: Any, q: Any, tables: Any, rows: Any
+) -> None:
+    """Inertia and energy at the nodes of a piece that starts at a, into rows 1 and 2.
+
+    kind: 0 in motion all along, 1 at rest at its start, 2 at its end. At rest the energy is that over xi^2,
+    and the nodes go away from there.
+    """
+    u, inertia, push, done, before, now = rows[0], rows[1], rows[3], rows[4], rows[5], rows[6]
+    for k in range(16):
+        xi = 0.5 + 0.5 * tables[0][k]
+        u[k] = a + span * (xi if kind == 0 else xi * xi if kind == 1 else 1.0 - xi * xi)
+        before[k], now[k] = 1.0, u[k]
+        inertia[k], push[k], done[k] = m[0], q[0], q[0] * (u[k] + 1.0)
+    for j in range(1, 16):
+        one, two, share = (2.0 * j + 1.0) / (j + 1.0), j / (j + 1.0), q[j] / (2.0 * j + 1.0)
+        for k in range(16):
+            after = one * u[k] * now[k] - two * before[k]
+            inertia[k] += m[j] * now[k]
+            push[k] += q[j] * now[k]
+            done[k] += share * (after - before[k])
+            before[k], now[k] = now[k], after
+    if kind == 0:
+        for k in range(16):
+            rows[2, k] = left + half * done[k]
+    else:
+        combined(push, tables[4], rows[2])
+        for k in range(16):
+            rows[2, k] *= half * span if kind == 1 else -half * span
+
+
+def ordered(M: Any, work: Any, left: float, forwards: bool, rows: Any) -> None:
+    """The same for a whole panel, from what is known at its nodes."""
+    if forwards:
+        for k in range(16):
+            rows[1, k], rows[2, k] = M[k], left + work[k]
+    else:
+        for k in range(16):
+            rows[1, k], rows[2, k] = M[15 - k], left + work[15 - k]
+
+
+def rates(kind: Any, scale: float, weights: Any, rows: Any) -> float:
+    """dt/du at the nodes of a piece, in their order, into row 0; how long it takes."""
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    for k in range(16):
+        rows[0, k] = scale * sqrt(rows[1, k] / (2.0 * rows[2, k]))
+    for k in range(4):
+        a += weights[k] * rows[0, k]
+        b += weights[k + 4] * rows[0, k + 4]
+        c += weights[k + 8] * rows[0, k + 8]
+        d += weights[k + 12] * rows[0, k + 12]
+    if kind == 2:
+        for k in range(8):
+            rows[0, k], rows[0, 15 - k] = rows[0, 15 - k], rows[0, k]
+    return (a + b) + (c + d)
+
+
+def lowest(values: Any) -> float:
+    """The least of 16 values."""
+    a, b = min(values[0], values[8]), min(values[1], values[9])
+    for k in range(2, 8, 2):
+        a, b = min(a, values[k], values[k + 8]), min(b, values[k + 1], values[k + 9])
+    return float(min(a, b))
+
+
+def first_without(values: Any) -> int:
+    """The first node without energy; 16 where all have some."""
+    if lowest(values) > 0.0:
+        return 16
+    for k in range(16):
+        if not values[k] > 0.0:
+            return k
+    return 16
+
+
+def prepare(M: Any, Q: Any, half: float, energy: float, tolerance: float, tables: Any, work: Any) -> bool:
+    """The work done up to each node of a panel and up to its end; whether M and Q are resolved on it."""
+    combined(Q, tables[3], work)
+    total, push, inertia = 0.0, 0.0, 0.0
+    for k in range(16):
+        work[k] *= half
+        total += tables[1][k] * Q[k]
+        push, inertia = max(push, abs(Q[k])), max(inertia, M[k])
+    work[16] = half * total
+    reach = max(push, 0.1 * max(energy, abs(half * total)) / half)
+    return bool(tail(Q, tables[2]) <= tolerance * reach and tail(M, tables[2]) <= tolerance * inertia)

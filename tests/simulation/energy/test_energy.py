@@ -1,0 +1,120 @@
+"""The energy form beside the integrator and the true motion, over random machines."""
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from tests.effort import cases
+from tests.motions import true_end
+
+T_END = 1.2
+TIMES = np.linspace(0.0, T_END, 25)
+
+
+def drawn(count, seed):
+    """Designs that turn and that rock, on their way or at rest, with and without loads and gravity."""
+    rng = np.random.default_rng(seed)
+    AB, ec, room = (
+        rng.uniform(0.05, 0.15, count),
+        rng.uniform(-0.08, 0.08, count),
+        rng.uniform(-0.4, 1.5, count),
+    )
+
+    def some(low, high, share):
+        return rng.uniform(low, high, count) * (rng.random(count) < share)
+
+    return {
+        "AB": AB, "ec": ec, "BC": np.maximum((AB + np.abs(ec)) * (1.02 + room), 0.03),
+        "m_rod": rng.uniform(0.0, 2.0, count), "m_slider": rng.uniform(0.1, 3.0, count),
+        "I_crank": rng.uniform(1e-3, 0.1, count), "I_rod": rng.uniform(0.0, 0.02, count),
+        "m_crank": rng.uniform(0.0, 1.0, count), "F_Y": some(-50.0, 50.0, 0.5),
+        "g_X": some(-9.81, 9.81, 0.5), "g_Y": some(-9.81, 9.81, 0.5), "theta0": rng.uniform(-4.0, 4.0, count),
+        "omega_start": some(-10.0, 10.0, 0.7), "torque": some(-3.0, 3.0, 0.8),
+    }  # fmt: skip
+
+
+def apart(ours, theirs):
+    """The largest difference of each design, of its largest value; 0 where it has none."""
+    largest = np.nan_to_num(np.fmax.reduce(np.abs(theirs), axis=1))
+    return np.nan_to_num(np.fmax.reduce(np.abs(ours - theirs), axis=1)) / np.where(
+        largest > 0.0, largest, 1.0
+    )
+
+
+@pytest.mark.sampled
+@pytest.mark.parametrize("branch", [1, -1])
+def test_random_machines_move_as_the_integrator_moves_them(branch):
+    designs = drawn(cases(40, 500, 5_000), 7 + branch)
+    ours = dx.simulate(t_end=T_END, times=TIMES, branch=branch, **designs)
+    theirs = dx.simulate(t_end=T_END, times=TIMES, branch=branch, rtol=1e-12, method="DOP853", **designs)
+    np.testing.assert_array_equal(ours["status"], theirs["status"])
+    own = ours["method"] == "energy"
+    assert own.mean() > 0.8
+    assert (ours["method"][~own & (ours["status"] != 6)] == "DOP853").all()
+    assert apart(ours["theta"], theirs["theta"]).max() < 1e-9
+    assert apart(ours["omega"], theirs["omega"]).max() < 1e-8
+    assert apart(ours["alpha"], theirs["alpha"]).max() < 1e-6
+    np.testing.assert_array_equal(np.isnan(ours["theta"]), np.isnan(theirs["theta"]))
+    there = ours["status"] != 6
+    np.testing.assert_allclose(ours["t_last"][there], theirs["t_last"][there], rtol=1e-6)
+    work = np.maximum(np.abs(theirs["work"]), 1e-2)[there]
+    assert np.max(np.abs(ours["work"] - theirs["work"])[there] / work) < 1e-5  # at a limit angle
+    assert ours["energy_residual"][own].max() < 1e-8
+
+
+MACHINE = {"AB": 0.12, "BC": 0.35, "ec": 0.03, "m_rod": 1.1, "m_slider": 2.0, "I_crank": 0.01, "I_rod": 0.008}
+
+
+@pytest.mark.parametrize(
+    "start",
+    [
+        {"torque": 1.5, "theta0": 0.0},
+        {"torque": 1.5, "theta0": 2.0, "omega_start": -4.0},  # it turns round
+        {"torque": 0.0, "theta0": 1.0, "omega_start": 2.0, "g_Y": -9.81},
+    ],
+)
+def test_the_true_motion(start):
+    t_end = 0.25
+    given = {**MACHINE, **start, "theta0": [start["theta0"]]}
+    found = dx.simulate(t_end=t_end, times=[t_end], rtol=1e-12, method="energy", **given)
+    design = {**MACHINE, "g_Y": start.get("g_Y", 0.0)}
+    truth = true_end(design, start["torque"], start["theta0"], start.get("omega_start", 0.0), t_end, 80)
+    np.testing.assert_allclose(found["theta"][0, 0], truth[0], rtol=0.0, atol=1e-12)
+    np.testing.assert_allclose(found["omega"][0, 0], truth[1], rtol=0.0, atol=1e-10)
+
+
+def test_no_digit_hangs_on_the_other_designs():
+    designs = drawn(23, 3)
+    together = dx.simulate(t_end=T_END, times=TIMES, **designs)
+    for rows in ([4], [22, 1], list(range(5, 17))):
+        some = dx.simulate(t_end=T_END, times=TIMES, **{n: v[rows] for n, v in designs.items()})
+        for name in ("theta", "omega", "alpha", "status", "t_last", "work", "method"):
+            np.testing.assert_array_equal(some[name], together[name][rows])
+
+
+def test_many_swings_are_one():
+    """A crank swings 200 s: the instants of its standstills are those of its period."""
+    swing = {**MACHINE, "g_Y": -9.81, "torque": [0.0, 0.0], "theta0": 3.0}
+    first = dx.simulate(t_end=3.0, times=np.linspace(0.0, 3.0, 301), **swing)
+    single = dx.simulate(t_end=3.0, **{**swing, "torque": 0.0})
+    stops = [event.t for event in single["events"] if event.kind == "standstill"]
+    period = stops[1] if stops[0] > 1e-9 else stops[2]
+    assert abs(first["theta"][0]).max() < 20.0
+    count = round(200.0 / period)
+    late = dx.simulate(t_end=201.0, times=[count * period, (count + 0.25) * period, 201.0], **swing)
+    assert late["theta"][0, 0] == pytest.approx(3.0, abs=1e-7)
+    assert late["theta"][0, 1] == pytest.approx(single["solution"](0.25 * period)["theta"], abs=1e-6)
+
+
+def test_the_way_is_chosen_and_told():
+    designs = drawn(5, 11)
+    assert set(dx.simulate(t_end=0.1, **designs)["method"]) == {"energy"}
+    assert set(dx.simulate(t_end=0.1, method="DOP853", **designs)["method"]) == {"DOP853"}
+    massless = {"AB": 0.1, "BC": [0.06, 0.06], "ec": 0.0, "I_crank": 1.0, "theta0": 0.1, "torque": 1.0}
+    assert set(dx.simulate(t_end=5.0, **massless)["method"]) == {"DOP853"}
+    with pytest.raises(ValueError, match="method = 'energy': 2 of 2 designs, the first of them number 0"):
+        dx.simulate(t_end=5.0, method="energy", **massless)
+    with pytest.raises(ValueError, match="method = 'energy': the torque is a function of time or speed"):
+        dx.simulate(t_end=0.1, method="energy", **{**designs, "torque": lambda t, theta, omega: 1.0 - omega})
+    with pytest.raises(ValueError, match="method = 'energy': max_step= is for an integrator"):
+        dx.simulate(t_end=0.1, method="energy", max_step=0.1, **designs)
