@@ -69,9 +69,10 @@ KINDS: Mapping[str, tuple[Callable[[Any], dict[str, Any]], bool]] = {
 
 
 def motions(drawn: Designs, drive: Designs, rtol: float, t_end: float) -> Histories:
-    """theta and omega of motions at the instants."""
+    """theta and omega of motions at the instants, by the integrator, whose tolerances these are."""
     times = t_end * np.arange(1, INSTANTS + 1) / INSTANTS
-    found = dx.simulate(t_end=t_end, rtol=rtol, times=times, threads=1, **{**drawn, **drive})
+    how = {"method": "DOP853", "times": times, "threads": 1}
+    found = dx.simulate(t_end=t_end, rtol=rtol, **how, **{**drawn, **drive})
     return np.atleast_2d(found["theta"]), np.atleast_2d(found["omega"])
 
 

@@ -32,7 +32,7 @@ class Found(NamedTuple):
 
 
 class Marched(NamedTuple):
-    """What `follow` answers: coordinates and their rates at instants, status and numbers."""
+    """The answer of `follow`: coordinates and their rates at instants, status and numbers."""
 
     x: Array
     speed: Array

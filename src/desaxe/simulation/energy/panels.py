@@ -35,7 +35,7 @@ class Designs(NamedTuple):
     half: Array
 
     def some(self, rows: Any) -> "Designs":
-        """Those of some rows."""
+        """The designs of some rows."""
         inputs = {name: v if isinstance(v, float) else v[rows] for name, v in self.inputs.items()}
         torque, force, theta0, omega_start, middle, half = (column[rows] for column in self[2:])
         return Designs(inputs, self.branch, torque, force, theta0, omega_start, middle, half)

@@ -61,7 +61,7 @@ def mean_near(q: Any, u: float, d: float) -> float:
 
 
 def rest_near(q: Any, half: float, energy: float, u: float) -> float:
-    """How far from u, where there is little energy, a standstill is; relative to itself without error."""
+    """The distance from u, where there is little energy, to a standstill, exact relative to itself."""
     d = 0.0
     for _ in range(10):
         d = -energy / (half * mean_near(q, u, d))
@@ -69,7 +69,7 @@ def rest_near(q: Any, half: float, energy: float, u: float) -> float:
 
 
 def standstill(q: Any, half: float, left: float, good: float, bad: float) -> float:
-    """Where left + half (integral of the series q) vanishes, from a place with energy to one without."""
+    """The zero of left + half (integral of the series q), from a place with energy to one without."""
     u = 0.5 * (good + bad)
     for _ in range(80):
         here = left + half * integral(q, u)
@@ -88,7 +88,7 @@ def standstill(q: Any, half: float, left: float, good: float, bad: float) -> flo
 
 
 def part_of(node: float, kind: Any) -> float:
-    """How far along a piece a node of its u lies."""
+    """The share of a piece that lies before a node of its u."""
     xi = 0.5 + 0.5 * node
     return xi * xi if kind == 1 else xi
 
@@ -125,7 +125,7 @@ def energies(
 
 
 def ordered(M: Any, work: Any, left: float, forwards: bool, rows: Any) -> None:
-    """The same for a whole panel, from what is known at its nodes."""
+    """Inertia and energy at the nodes of a whole panel, in the way of the motion."""
     if forwards:
         for k in range(16):
             rows[1, k], rows[2, k] = M[k], left + work[k]

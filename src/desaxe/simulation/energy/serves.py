@@ -1,4 +1,4 @@
-"""Where the energy form serves: time does not enter, there is no friction, and M_eff stays > 0."""
+"""The limits of the energy form: time does not enter, there is no friction, and M_eff stays > 0."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -13,7 +13,7 @@ TABLE = "the torque is a table"
 
 
 def served(designs: Designs) -> Any:
-    """Of each design whether its motion is smooth in its coordinate up to the limit angles, if it has any."""
+    """True for each design whose motion is smooth in its coordinate up to the limit angles, if it has any."""
     return np.isfinite(designs.middle)
 
 
@@ -39,7 +39,7 @@ def _refuse(why: str) -> None:
 
 
 def no_energy_form(rows: Any, count: int) -> str:
-    """What to say of designs that the energy form has given up."""
+    """The message for designs that the energy form has given up."""
     return (
         f"method = 'energy': {rows.size} of {count} designs, the first of them number {rows[0]}, have no "
         "energy form that ends: they approach an equilibrium, have no inertia at some angle, or a limit "
