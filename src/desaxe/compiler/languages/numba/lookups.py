@@ -82,12 +82,14 @@ def three_loops(
     reads: Mapping[str, str],
     stores: Sequence[str],
     held: Collection[str] = (),
+    along: str = "",
 ) -> list[str]:
     """The text of a loop over `length` points.
 
     here    its index
     reads   what each point reads
-    held    the tables whose pieces the angle tells, by arcs (`search`); the others are searched
+    held    the tables whose pieces another input tells, by the arcs of it; the others are searched
+    along   the text that reads that input
     """
     place = f"{here} - start"
     points = f"for {here} in range(start, stop):"
@@ -104,18 +106,18 @@ def three_loops(
         f"for start in range(uint64(0), length, uint64({BLOCK})):",
         f"{INDENT}stop = min(start + uint64({BLOCK}), length)",
         *_under(points, [*_used(read, parts.first, parts.places), *first, *keep]),
-        *(INDENT + row for row in _searched(parts, here, reads, held)),
+        *(INDENT + row for row in _searched(parts, here, along, held)),
         *_under(points, [*_used([*read, *again], parts.second), *second, *stores]),
     ]
 
 
-def _searched(parts: Parted, here: str, reads: Mapping[str, str], held: Collection[str]) -> list[str]:
+def _searched(parts: Parted, here: str, along: str, held: Collection[str]) -> list[str]:
     """Look up: the pieces first, which values and slopes share."""
     rows = []
     for line in parts.searches:
         room, table = f"{line.name}_room", str(line.args[1])
         if table in held:
-            rows += _on_arcs(room, table, here, reads["theta"])
+            rows += _on_arcs(room, table, here, along)
         else:
             places = f"{line.name}_at_room, {line.name}_way_room"
             rows.append(f"find_pieces(stop - start, {places}, {table}_x, {room})")
@@ -126,10 +128,10 @@ def _searched(parts: Parted, here: str, reads: Mapping[str, str], held: Collecti
     return rows
 
 
-def _on_arcs(room: str, table: str, here: str, theta: str) -> list[str]:
-    """The pieces of the arcs of some angles: each arc that has begun changes them by a number."""
+def _on_arcs(room: str, table: str, here: str, along: str) -> list[str]:
+    """The pieces of the arcs of some points: each arc that has begun changes them by a number."""
     place, loop = f"{here} - start", f"for {here} in range(start, stop):"
-    change = f"{table}_change[{here}] if {table}_begin[{here}] <= {theta} else 0.0"
+    change = f"{table}_change[{here}] if {table}_begin[{here}] <= {along} else 0.0"
     return [
         loop,
         f"{INDENT}put({room}, {place}, 0.0)",

@@ -52,15 +52,15 @@ class Rows:
             first = f"{table}_last + {table}_count"
         return rows
 
-    def loop(self, program: Program, theta: str, stores: Sequence[str]) -> tuple[list[str], list[str]]:
-        """A loop over `count` designs, each at an angle, and what goes before all loops."""
-        read = {self.searched: self.read.format(theta)}
+    def loop(self, program: Program, along: str, stores: Sequence[str]) -> tuple[list[str], list[str]]:
+        """A loop over `count` designs, each at its own value of the searched input; what goes before all."""
+        read = {self.searched: self.read.format(along)}
         if not self.tables:
             body = [f"{n} = {text}" for n, text in read.items()] + self.reads(program) + self.lines(program)
             return [f"for i in {self.range.format('count')}:", *_in([*body, *stores])], []
         read |= {n: self.read.format(f"{n}_row[i]") for n in self._own(program)}
         parts = parted(program)
-        return three_loops(parts, "i", "uint64(count)", read, stores, self.held), rooms(parts)
+        return three_loops(parts, "i", "uint64(count)", read, stores, self.held, along), rooms(parts)
 
     def reads(self, program: Program) -> list[str]:
         """The inputs of design i."""
