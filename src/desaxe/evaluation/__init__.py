@@ -17,6 +17,8 @@ function       a prepared callable of some inputs
 planned        repeated calls of one shape: a cache of checked calls
 loaded         values under loads that vary with the motion
 under          loads in a kernel: its request, its tables, points that rounding leaves open
+under_request  the request of names under loads, and their tables
+under_points   names under loads at the points of large arrays, by one kernel
 loaded_quality condition numbers and error bounds under loads that are tables
 repair         points that a kernel leaves undecided, recomputed
 lazy_evaluate  `evaluate` of Dask arrays

@@ -1,6 +1,7 @@
 """Values under loads that vary with the motion: first the loads at each point, then the Program."""
 
 from collections.abc import Mapping, Sequence
+from math import prod
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -14,12 +15,14 @@ from ..loads.resolve import VARIABLE, Forces, Plan, plan_of, split, way_of
 from ..loads.tabulated import over_theta
 from ..mechanism.names import LENGTHS
 from ..runtime.request import as_number, check_common, several
+from ..support.forks import IMPORTS
 from .arrays import as_array, outputs_for
 from .labelled import evaluate_labelled, is_labelled
 from .values import values
 
 Array = NDArray[Any]
 MOTION = ("theta", *LENGTHS, "omega0", "alpha", "omega")  # inputs that every request has, if only as None
+MANY = 10_000  # points
 GAP = 1.5  # steps: a table that lacks no more of a turn is a whole one
 
 
@@ -43,15 +46,59 @@ def evaluate_loaded(
         labelled = evaluate_labelled(run, wanted, given)
         return labelled[names] if isinstance(names, str) else labelled
     numbers, plan = plan_for(wanted, given)
-    given = {**dict.fromkeys(MOTION), **numbers}
+    loaded, given = given, {**dict.fromkeys(MOTION), **numbers}
     if not plan.loads:
         return values(names, given, branch, accuracy, threads, out)
-    forces = forces_at(plan, numbers, branch, accuracy)
-    alone = values(list(plan.names), {**given, **forces.values}, branch, accuracy, threads)
-    found = plan.totals(alone, forces)
+    found = None
+    if accuracy == "standard" and are_many(numbers):
+        found = _by_kernel(plan, loaded, numbers, branch, threads)
+    if found is None:
+        found = _totals(plan, given, numbers, branch, accuracy, threads)
     if out is not None:
         found = _put(found, out)
     return found[names] if isinstance(names, str) else found
+
+
+def _totals(
+    plan: Plan,
+    given: Mapping[str, Any],
+    numbers: Mapping[str, Any],
+    branch: int,
+    accuracy: str | float,
+    threads: int | None,
+) -> dict[str, Any]:
+    """The loads at each point, then the Program."""
+    forces = forces_at(plan, numbers, branch, accuracy)
+    alone = values(list(plan.names), {**given, **forces.values}, branch, accuracy, threads)
+    return plan.totals(alone, forces)
+
+
+def _by_kernel(
+    plan: Plan, given: Mapping[str, Any], numbers: Mapping[str, Any], branch: int, threads: int | None
+) -> dict[str, Any] | None:
+    """The totals at many points by one kernel; None where it is not one, or not ready."""
+    with IMPORTS:
+        from .under_points import motion_of_jumps, points_under_loads
+
+    more = [name for name in motion_of_jumps(plan.loads) if name not in plan.shown]
+    every = plan_for((*plan.shown, *more), given)[1] if more else plan
+    answer = points_under_loads(every, numbers, branch, threads)
+    if answer is None:
+        return None
+    found, places = answer
+    if places is not None:
+        shape = next(iter(found.values())).shape
+        own = {n: np.broadcast_to(numeric(n, v, plan.shown), shape) for n, v in numbers.items()}
+        some = {name: array.reshape(-1)[places] for name, array in own.items()}
+        again = _totals(plan, {**dict.fromkeys(MOTION), **some}, some, branch, "standard", threads)
+        for name in plan.shown:
+            found[name].reshape(-1)[places] = again[name]
+    return {name: found[name] for name in plan.shown}
+
+
+def are_many(numbers: Mapping[str, Any]) -> bool:
+    """True if there may be enough points for one kernel under loads to pay."""
+    return prod(value.size for value in numbers.values() if type(value) is np.ndarray) >= MANY
 
 
 def plan_for(names: Sequence[str], given: Mapping[str, Any]) -> tuple[dict[str, Any], Plan]:

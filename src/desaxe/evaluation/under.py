@@ -16,19 +16,17 @@ from ..loads.angles import crossings, dead_centres
 from ..loads.load import TURN, Load, OverTheta, OverY
 from ..loads.pieces import Place, piece_at
 from ..loads.resolve import Plan, way_of
-from ..mechanism.load_lines import LoadLines, Total, Under, Way
 from ..mechanism.names import LENGTHS, STATUSES
 from ..runtime.kernels import KernelKey, key_of, plain_of
-from ..runtime.request import Request, request
+from ..runtime.request import Request
 from ..runtime.threads import run_in_blocks
 from ..runtime.tiers import forced_tier
-from .extremes import MOST, are_extreme
 from .outer import Outer, first_joined, join_from
+from .under_request import LEAST, are_extreme_under, table_arrays, under_loads
 
 Array = NDArray[Any]
 Region = tuple[slice, ...]
 SPEEDS = ("omega0", "omega", "alpha")  # of which the way of turning is that of the sign
-LEAST = 10_000  # points: of fewer, to look for those that rounding decides takes what the kernel saves
 LEAST_ANGLE = 1e-290  # rad: products with the sine of a smaller one underflow
 # Where the plain forms are for, nothing is open farther from a jump's angle than this, in rad times what the
 # lengths of the rod in cranks add: the root of that next to a dead centre, where positions hardly change.
@@ -143,7 +141,7 @@ def in_kernel(
     """The kernel of a plan's names over dimensions of a grid; None where it takes more than one."""
     given, axes = outer.given, outer.axes
     few = prod(axes[name].size for name in along) < LEAST and forced_tier() is None
-    if few or accuracy == "extended" or not along or _extreme(plan.loads, axes):
+    if few or accuracy == "extended" or not along or are_extreme_under(plan.loads, axes):
         return None
     wanted = under_loads(plan, given, branch, accuracy)
     made = {n for n, load in plan.loads.items() if isinstance(load, OverTheta)}
@@ -166,51 +164,6 @@ def in_kernel(
     numbers |= {name: float(axes[name].reshape(-1)[0]) for name in alone}
     step = UnderLoads(tuple(along), wanted, tuple(numbers.items()), key, len(along) - 1, branch, plan)
     return step.cut({name: axes[name].size for name in along})
-
-
-def _extreme(loads: Mapping[str, Load], axes: Mapping[str, Array]) -> bool:
-    """True where an input, or a load, is near the ends of the double range."""
-    large = (load.largest > MOST for load in loads.values() if isinstance(load, OverY))
-    return any(large) or any(are_extreme(n, a) is not False for n, a in axes.items())
-
-
-def under_loads(plan: Plan, given: Mapping[str, Any], branch: int, accuracy: Any) -> Request:
-    """The request of a plan's totals, whose variant names the loads."""
-    every = tuple(dict.fromkeys((*plan.names, *plan.motion)))
-    asked = request(every, {**given, **dict.fromkeys(plan.loads, 1.0)}, branch, accuracy)
-    totals = [
-        Total(name, plan.forces_of.get(name, ()), tuple((*term,) for term in plan.terms.get(name, ())))
-        for name in plan.shown
-    ]
-    names = dict(zip(asked.shown, asked.names, strict=True))
-    lines = tuple(_lines(name, load) for name, load in plan.loads.items())
-    under = Under(tuple(names.items()), lines, tuple(totals), _way(given))
-    own = tuple(names[name] for name in plan.shown)
-    return Request(plan.shown, own, asked.form._replace(under=under), asked.fixed, asked.accuracy)
-
-
-def _lines(name: str, load: Load) -> LoadLines:
-    if not isinstance(load, OverY):
-        return LoadLines(name, "")
-    return LoadLines(name, load.centre or "Y", ways=load.inward is not None)
-
-
-def _way(given: Mapping[str, Any]) -> Way:
-    """The inputs that tell the way of turning."""
-    speeds = [name for name in ("omega", "omega0") if given.get(name) is not None]
-    start = "alpha" if speeds == ["omega"] and given.get("alpha") is not None else 0.0
-    return Way(speeds[0] if speeds else 1.0, start)
-
-
-def table_arrays(loads: Mapping[str, Load]) -> dict[str, Array]:
-    """The arrays of the tables of loads over the slider's place, by the names of a kernel's arguments."""
-    found: dict[str, Array] = {}
-    for name, load in loads.items():
-        if isinstance(load, OverY):
-            ways = load.outward, load.outward if load.inward is None else load.inward
-            found[f"{name}_x"] = np.array(load.outward.knots)
-            found[f"{name}_c"] = np.array([row for table in ways for row in table.rows]).reshape(-1)
-    return found
 
 
 def open_points(

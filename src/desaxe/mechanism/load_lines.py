@@ -24,15 +24,15 @@ class LoadLines(NamedTuple):
 
     over    "theta", "Y", the position of a dead centre: "Y_outer" or "Y_inner"; "" of a force that stays an
             input, as its derivative is, `<force>_by_theta`
-    period  0 of a table without one
-    first   the first knot of a table over theta
+    period  of a table over theta: a number, 0 without one, or the name of an input
+    first   the first knot of such a table
     ways    whether another table holds for the way inward
     """
 
     force: str
     over: str
-    period: float = 0.0
-    first: float = 0.0
+    period: float | str = 0.0
+    first: float | str = 0.0
     ways: bool = True
 
 
@@ -146,7 +146,11 @@ class _Writer:
         back = self.new(f"{force}_back", "mul", period, turns)
         angle = self.new(f"{force}_angle", "sub", "theta", back)
         early = self.new(f"{force}_is_early", "lt", angle, first, type="bool")
-        late = self.new(f"{force}_is_late", "le", first + period, angle, type="bool")
+        if isinstance(first, str) or isinstance(period, str):
+            end: Argument = self.new(f"{force}_end", "add", first, period)
+        else:
+            end = first + period
+        late = self.new(f"{force}_is_late", "le", end, angle, type="bool")
         before = self.new(f"{force}_before", "sub", angle, period)
         after = self.new(f"{force}_after", "add", angle, period)
         inside = self.new(f"{force}_inside", "select", late, before, angle)

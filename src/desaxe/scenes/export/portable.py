@@ -12,6 +12,7 @@ from ...compiler.languages.protocol import Forms, Module, Symbol
 from ...compiler.passes.double_double import double_double
 from ...compiler.passes.guard import guard_inputs
 from ...compiler.program import Program
+from ...loads.lines import arrays_of, line_of, totals_of
 from ...loads.load import Load
 from ...loads.resolve import plan_of, split
 from ...mechanism.catalogue import law_name, quantities, quantity
@@ -29,7 +30,7 @@ from ..content import Content
 from ..kernel import own_axes
 from ..scene import Scene
 from ..schema import SceneError
-from .loaded import lines_of, require_tables, table_of
+from .loaded import require_tables
 from .motion import has_masses, motion_solver
 from .solvers import solvers
 
@@ -83,7 +84,7 @@ class Asked(NamedTuple):
             return program
         names = dict(zip(own.shown, program.outputs, strict=True))
         return with_totals(
-            program, names, [lines_of(n, load) for n, load in self.loads.items()], self.totals, self.way
+            program, names, [line_of(n, load) for n, load in self.loads.items()], self.totals, self.way
         )
 
 
@@ -109,7 +110,7 @@ def module_of(scene: Scene, order: Order) -> Module:
     given = content.inputs | {n: value for n, value in fixed if n in content.inputs}
     steps = has_masses(given) and not loads
     moves = motion_solver(given, content.branch, order.single) if steps else None
-    tables = {name: table_of(load) for name, load in loads.items()}
+    tables = {name: arrays_of(load) for name, load in loads.items()}
     told = (derivatives, values, solvers(dict(fixed), order.single), own, moves, order.single, tables)
     turning = single_constants() if order.single else constants()
     return Module(order.name, head, inputs, outputs, forms, turning, *told)
@@ -198,11 +199,8 @@ def asked_of(content: Content, names: Iterable[str]) -> Asked:
     fixed = dict(asked.fixed) | {n: value for n, value in values.items() if not isinstance(value, tuple)}
     if not plan.loads:
         return Asked(asked, tuple(fixed.items()), shown)
-    totals = [
-        Total(name, plan.forces_of.get(name, ()), tuple((*term,) for term in plan.terms.get(name, ())))
-        for name in shown
-    ]
-    return Asked(asked, tuple(fixed.items()), shown, plan.loads, tuple(totals), _way(given))
+    totals = totals_of(plan)
+    return Asked(asked, tuple(fixed.items()), shown, plan.loads, totals, _way(given))
 
 
 def _way(given: Mapping[str, Any]) -> Way:

@@ -35,8 +35,15 @@ def find_pieces(count: Any, at: Any, way: Any, knots: Any, piece: Any) -> None:
             for i in range(count):
                 put(piece, i, get(piece, i) + (1.0 if knot <= get(at, i) else 0.0))
         return
+    first, most = knots[0], float(size - uint64(2))
+    scale = (most + 1.0) / (knots[size - uint64(1)] - first)
     for i in range(count):
         x, low, high = get(at, i), uint64(0), size
+        guess = (x - first) * scale  # right where knots are even: then there is nothing to search
+        guess = guess if guess > 0.0 else 0.0
+        place = uint64(guess if guess < most else most)
+        if (knots[place] <= x) & (x < knots[place + uint64(1)]):
+            low = high = place + uint64(1)
         while low < high:
             middle = (low + high) >> uint64(1)
             below = knots[middle] <= x
