@@ -13,6 +13,7 @@ import random
 import shutil
 import sys
 import tempfile
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -28,8 +29,15 @@ VARIABLE = "DESAXE_CACHE_DIR"
 TESTS = Path(__file__).parent
 
 
-# Rooms whose tests are about kernels; in the others NumPy answers first, as it does for everyone.
+# Rooms whose tests are about kernels; in the others NumPy answers, as it does everyone's first requests.
 KERNELS = {"compiler", "definitions", "evaluation", "generated", "loads", "runtime"}
+
+
+class Forgetful(Counter):
+    """Requests of which each is the first one."""
+
+    def __setitem__(self, key, count):
+        pass
 
 
 def pytest_addoption(parser):
@@ -112,9 +120,11 @@ def _select(config, items):
 @pytest.fixture(autouse=True)
 def nothing_left_behind(request, monkeypatch):
     """Forget what earlier tests asked for, so that two calls of a test take the same tier, and defined."""
-    tiers._ASKED.clear()
     if request.path.relative_to(TESTS).parts[0] in KERNELS:
+        tiers._ASKED.clear()
         monkeypatch.setattr(tiers, "NUMPY_PAYS", 0)
+    else:
+        monkeypatch.setattr(tiers, "_ASKED", Forgetful())
     yield
     own.change(lambda _: {})
 

@@ -69,12 +69,13 @@ def compiled(names, rows):
 def test_the_promise_is_kept(family, monkeypatch):
     rows = list(points(family, cases(12, 200)))
     take_way(monkeypatch, "compiled")
-    for row, by_kernel in zip(rows, compiled(NAMES, rows), strict=True):
+    names = NAMES[:: cases(3, 1)]  # for a kernel of all names takes seconds
+    for row, by_kernel in zip(rows, compiled(names, rows), strict=True):
         plain = dx.evaluate(NAMES, **row)
         broken = {
             name: values[name]
             for values in (plain, by_kernel)
-            for name in NAMES
+            for name in values
             if not is_kept(name, values[name], row)
         }
         assert not broken, row

@@ -36,7 +36,11 @@ def grid():
 
 @pytest.mark.parametrize(
     ("by", "order", "sign"),
-    [("a_C", "largest", 1.0), (("min", "a_C"), None, -1.0), (("absmax", "a_C"), "largest", None)],
+    [
+        ("a_C", "largest", 1.0),
+        pytest.param(("min", "a_C"), None, -1.0, marks=pytest.mark.thorough),
+        (("absmax", "a_C"), "largest", None),
+    ],
 )
 def test_they_are_those_of_the_whole_grid(grid, monkeypatch, by, order, sign):
     monkeypatch.setattr("desaxe.sweeps.layout.REDUCED", (400, 400))  # several chunks
