@@ -54,6 +54,7 @@ def add_fit(commands: Any) -> None:
 
 def _fit(options: argparse.Namespace) -> int:
     from ..design.fit.fit import fit
+    from ..evaluation.in_units import in_units
     from ..runtime.written import replacing_ours, require_place
     from ..scenes.scene import scene
 
@@ -70,13 +71,13 @@ def _fit(options: argparse.Namespace) -> int:
     }
     sigma = dict(_pair("--sigma", word) for word in options.sigma) or None
     found = fit(options.data, over, sigma, options.nuisance, options.loss, branch=known.branch, **fixed)
-    told = found.in_units(whole.shown_in)  # JSON is in SI units
+    told = in_units(found, whole.shown_in)  # JSON is in SI units
     print(json.dumps(_plain(found), indent=2) if options.json else told.report(), flush=True)
     if options.picture:
         from ..plot.save import save
 
         with replacing_ours(Path(options.picture), options.overwrite) as staged:
-            save(found.plot(), staged)
+            save(told.plot(), staged)
     return 0
 
 

@@ -8,13 +8,14 @@ import numpy as np
 from ..evaluation.arrays import as_array
 from ..evaluation.labels import STATUS_FLAGS, import_xarray, input_attributes, provenance, with_loads
 from ..loads.resolve import split
+from ..mechanism.answer_units import unit_of
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS, sensitivity
 from ..runtime.request import check_common, check_inputs
 from ..support.forks import IMPORTS
 from .feasibility.arrays import KINDS, of_arrays
-from .measures import Measure, checked, measured, text_of, unit_of
+from .measures import Measure, checked, measured, text_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -59,7 +60,7 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
     variables = _feasible(designs, shape, dimensions)
     for measure, found in measured(wanted, designs | loads, branch).items():
         name = text_of(measure).replace(" ", "_")
-        attributes = {"units": unit_of(measure), "long_name": _meaning(measure)}
+        attributes = {"units": str(unit_of(measure)), "long_name": _meaning(measure)}
         variables[name] = (dimensions, np.reshape(found.value, shape), attributes)
         for p, slope in found.gradient.items() if derivatives else ():
             told = {
@@ -116,7 +117,7 @@ def _slope_unit(measure: Measure, parameter: str) -> str:
             return quantity(sensitivity(measure[-1], parameter)).unit
         except ValueError:
             pass
-    unit, by = unit_of(measure), INPUTS[parameter].unit
+    unit, by = str(unit_of(measure)), INPUTS[parameter].unit
     if unit == by:
         return "1"
     return f"{unit}/({by})" if "/" in by or "*" in by else f"{unit}/{by}"

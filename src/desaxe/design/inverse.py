@@ -7,13 +7,14 @@ from numpy.typing import NDArray
 
 from ..evaluation.arrays import as_array, broadcast_shape, number_or_array
 from ..evaluation.evaluate import evaluate
+from ..mechanism.answer_units import units_by_name
 from ..mechanism.closed.functions import closed_form
 from ..mechanism.closed.inverse import INVERSE
 from ..mechanism.inputs import INPUTS, Input
 from ..mechanism.names import LENGTHS
 from ..mechanism.status import InverseStatus
 from ..runtime.request import check_common, with_known_inputs
-from ..support.answer import answering
+from ..support.answer import Answer
 
 Array = NDArray[np.float64]
 DEAD_CENTRE = InverseStatus.DEAD_CENTRE
@@ -29,7 +30,6 @@ SLIDER_INPUTS = {
 }
 
 
-@answering
 @with_known_inputs
 def inverse(
     *, Y: Any, ec: Any, AB: Any, BC: Any, branch: int = 1, V_C: Any = None, a_C: Any = None
@@ -70,7 +70,7 @@ def inverse(
         if V_C is not None:
             _add_rates(result, arrays, lengths, branch, shape, status == DEAD_CENTRE)
     result["status"] = _status(status, arrays, shape)
-    return result
+    return Answer(result, units_by_name)
 
 
 def _input(name: str, value: Any) -> Array:

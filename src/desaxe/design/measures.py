@@ -83,17 +83,6 @@ def checked(measure: Any) -> Measure:
     )
 
 
-def unit_of(measure: Measure) -> str:
-    """The unit of a measure."""
-    if isinstance(measure, OwnMeasure):
-        return "1"
-    return (
-        "m/s"
-        if measure in VELOCITIES
-        else quantity(measure if isinstance(measure, str) else measure[-1]).unit
-    )
-
-
 def text_of(measure: Measure) -> str:
     """The name of a measure for messages."""
     if isinstance(measure, OwnMeasure):

@@ -18,13 +18,14 @@ from flint import arb, ctx
 from ..compiler.passes.differentiate import with_derivatives
 from ..compiler.program import Program
 from ..loads.resolve import without_loads
+from ..mechanism.answer_units import unit_of
 from ..mechanism.catalogue import has, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
 from ..mechanism.ranges import Between, PlusMinus, ends_of, refuse_bare_pair
 from ..runtime.request import Request, as_number, check_common, check_inputs, request
 from ..runtime.specialise import specialise
-from ..support.answer import answering
+from ..support.answer import Answer
 from ..support.checks import real_number, whole_number
 from ..support.deadline import Deadline
 from ..support.quantity_text import PLUS_MINUS
@@ -44,7 +45,6 @@ SMALLEST = 2.0**-1073
 ENDS = "expected a number or a pair, dx.between(low, high) or dx.plus_minus(value, tolerance)"
 
 
-@answering
 def enclose(
     name: str,
     *,
@@ -102,7 +102,8 @@ def enclose(
     given.update(loads)
     function = _function(name, given, branch)
     with ctx.workprec(BITS):
-        return _range(function, rtol, boxes, deadline)
+        found = _range(function, rtol, boxes, deadline)
+    return Answer(found, dict.fromkeys(("lower", "upper", "inner"), unit_of(name)))
 
 
 # ---- the quantity over boxes ----------------------------------------------------------------------

@@ -104,6 +104,14 @@ def evaluate(
         return evaluate_quality(names, given, branch, accuracy, threads, out)
     found = values_of(names, given, branch, accuracy, threads, out)
     if type(found) is dict:
-        found = Answer(found)
+        found = Answer(found, _units)
         found.inputs = {name: value for name, value in given.items() if value is not None}
     return found
+
+
+def _units(found: Any) -> Any:
+    """The units of an answer, when they are first asked for."""
+    with IMPORTS:
+        from ..mechanism.answer_units import units_by_name
+
+    return units_by_name(found)

@@ -1,12 +1,15 @@
-"""Labelled results in other units than SI."""
+"""Results in other units than SI: labelled ones, answers, numbers."""
 
+import copy
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..compiler.languages.numba.reductions import KINDS
+from ..mechanism.answer_units import Message, conversion_of
 from ..mechanism.inputs import INPUTS
 from ..mechanism.unit_system import SI, Conversion, UnitSystem
 from ..mechanism.units import registry
+from ..support.answer import Answer
 from ..support.forks import IMPORTS
 
 if TYPE_CHECKING:
@@ -15,19 +18,84 @@ if TYPE_CHECKING:
 FLAGS = ("status", "can_turn", "kind")
 
 
+class Shown(NamedTuple):
+    """The form of results: a unit system, as plain numbers or as pint quantities."""
+
+    system: UnitSystem
+    as_quantity: bool = False
+
+    def number(self, value: Any, conversion: Conversion) -> Any:
+        """A number or array in SI units."""
+        shown = conversion.shown(value)
+        if not self.as_quantity or conversion.unit in ("", "1"):
+            return shown
+        return registry().Quantity(shown, conversion.unit)
+
+    def entry(self, value: Any, unit: Any) -> Any:
+        """A value of an answer, whose unit is a text, or a mapping of units by key."""
+        if isinstance(value, Message):
+            return value.in_units(self.system)
+        if unit is None or value is None or isinstance(value, (str, bool)):
+            return value
+        if hasattr(value, "dims"):
+            labelled = value.to_dataset(name=unit.name)
+            return in_units(labelled, self.system, as_quantity=self.as_quantity)[unit.name]
+        if hasattr(value, "error_bound"):
+            parts = {key: self.entry(getattr(value, key), unit) for key in ("value", "error_bound")}
+            return value._replace(**parts)
+        if isinstance(value, Mapping):
+            return {key: self.entry(part, self._of(unit, key)) for key, part in value.items()}
+        if hasattr(value, "_fields"):
+            return value._replace(**self.entry({key: getattr(value, key) for key in unit}, unit))
+        if isinstance(value, (tuple, list)):
+            return type(value)(self.entry(part, unit) for part in value)
+        return self.number(value, conversion_of(unit, self.system))
+
+    def texts(self, units: Mapping[Any, Any]) -> dict[Any, Any]:
+        """The units themselves, in these."""
+        return {
+            key: self.texts(unit) if isinstance(unit, Mapping) else conversion_of(unit, self.system).unit
+            for key, unit in units.items()
+        }
+
+    @staticmethod
+    def _of(unit: Any, key: Any) -> Any:
+        """The unit of a key; one text holds for all of them."""
+        return unit.get(key) if isinstance(unit, Mapping) else unit
+
+
 def in_units(
-    dataset: "xr.Dataset",
+    found: Any,
     units: UnitSystem,
     given: Mapping[str, Any] | None = None,
     names: Mapping[str, str] | None = None,
     as_quantity: bool = False,
-) -> "xr.Dataset":
-    """A Dataset in other units, its attributes too.
+) -> Any:
+    """A result in SI units in others: an Answer by the units that it knows, a Dataset, its attributes too.
 
     given        coordinates that were given as plain numbers in these units, and are kept as they are
     names        variable -> the quantity that it is about, where its name does not say so
-    as_quantity  data as pint quantities instead (extra `units`)
+    as_quantity  numbers as pint quantities instead (extra `units`)
     """
+    if not isinstance(found, Answer):
+        return _dataset_in_units(found, units, given, names, as_quantity)
+    shown = Shown(units, as_quantity)
+    result = copy.copy(found)
+    for key, value in found.items():
+        result[key] = shown.entry(value, found.units.get(key))
+    result.convert_rest(shown)
+    result.become({} if as_quantity else shown.texts(found.units), units)
+    return result
+
+
+def _dataset_in_units(
+    dataset: "xr.Dataset",
+    units: UnitSystem,
+    given: Mapping[str, Any] | None,
+    names: Mapping[str, str] | None,
+    as_quantity: bool,
+) -> "xr.Dataset":
+    """A Dataset in other units, its attributes too; see `in_units`."""
     result = dataset.copy()
     for key in map(str, dataset.variables):
         array = dataset[key]
@@ -50,6 +118,11 @@ def in_units(
             del attributes["units"]
         changed = {key: (array.dims, values, attributes)}
         result = result.assign_coords(changed) if key in dataset.coords else result.assign(changed)
+    with IMPORTS:
+        from .labels import known_loads, loads_text
+    loads = known_loads(dataset)
+    if loads:
+        result.attrs["loads"] = loads_text(loads, units)
     if "scene" in dataset.attrs:
         result.attrs["scene"] = _scene_of(dataset, result)
     return result

@@ -11,6 +11,7 @@ from ..definitions.tables import text_of
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.status import PointStatus
+from ..mechanism.unit_system import SI, UnitSystem
 from ..support.extras import explained
 from ..support.forks import IMPORTS
 from ..support.interrupts import finished, import_whole
@@ -145,8 +146,14 @@ def with_loads(dataset: "xr.Dataset", loads: Mapping[str, Any]) -> "xr.Dataset":
         theta = dataset["theta"]
         columns = {n: (theta.dims, load(theta.values), input_attributes(n)) for n, load in over_theta.items()}
         dataset = dataset.assign_coords(columns)
-    dataset.attrs["loads"] = loads_text(loads)
-    dataset.encoding = {**dataset.encoding, KNOWN: KnownLoads(loads)}
+    return tell_loads(dataset, loads)
+
+
+def tell_loads(dataset: "xr.Dataset", loads: Mapping[str, Any]) -> "xr.Dataset":
+    """A Dataset that knows its varying loads, and says what each is."""
+    if loads:
+        dataset.attrs["loads"] = loads_text(loads)
+        dataset.encoding = {**dataset.encoding, KNOWN: KnownLoads(loads)}
     return dataset
 
 
@@ -169,6 +176,6 @@ def known_loads(dataset: "xr.Dataset") -> Mapping[str, Any]:
     return found
 
 
-def loads_text(loads: Mapping[str, Any]) -> str:
+def loads_text(loads: Mapping[str, Any], units: UnitSystem = SI) -> str:
     """The loads that vary with the motion, as text for an attribute."""
-    return "; ".join(f"{name}: {load!r}" for name, load in loads.items())
+    return "; ".join(f"{name}: {load.told(units.of(name))}" for name, load in loads.items())

@@ -10,11 +10,14 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from hashlib import sha256
 from math import ceil, floor, inf, nan, nextafter, pi
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..support.computed import computed_once
 from ..support.forks import IMPORTS
 from .table import Table, polynomial
+
+if TYPE_CHECKING:
+    from ..mechanism.unit_system import Conversion
 
 TURN = 2.0 * pi
 MOST_RANGES = 16  # of angles, of which a table remembers the nodes
@@ -50,6 +53,10 @@ class Load(ABC):
     @abstractmethod
     def _content(self) -> str:
         """The definition of the load as a text."""
+
+    def told(self, conversion: "Conversion | None" = None) -> str:
+        """What the load is, in a line; with a conversion in that unit."""
+        return repr(self)
 
 
 class OverTheta(Load):
@@ -139,8 +146,12 @@ class TableOverTheta(OverTheta):
     def _content(self) -> str:
         return f"{self.table!r}"
 
+    def told(self, conversion: "Conversion | None" = None) -> str:
+        """What the table is, in a line."""
+        return f"<load over theta: {_described(self.table, self.kind, self.unit, conversion)}>"
+
     def __repr__(self) -> str:
-        return f"<load over theta: {_described(self.table, self.kind, self.unit)}>"
+        return self.told()
 
 
 @dataclass(frozen=True)
@@ -276,9 +287,13 @@ class OverY(Load):
     def _content(self) -> str:
         return f"{self.outward!r} {self.inward!r}"
 
-    def __repr__(self) -> str:
+    def told(self, conversion: "Conversion | None" = None) -> str:
+        """What the table is, in a line."""
         ways = "" if self.inward is None else ", another one inward"
-        return f"<load over Y: {_described(self.outward, self.kind, self.unit)}{ways}>"
+        return f"<load over Y: {_described(self.outward, self.kind, self.unit, conversion)}{ways}>"
+
+    def __repr__(self) -> str:
+        return self.told()
 
 
 def _plain(x: Any) -> Any:
@@ -286,7 +301,9 @@ def _plain(x: Any) -> Any:
     return float(x) if isinstance(x, (int, float)) else x
 
 
-def _described(table: Table, kind: str, unit: str | None) -> str:
-    values = table.values
-    told = f"{len(table.knots)} points, {kind}, {min(values):g} to {max(values):g}"
+def _described(table: Table, kind: str, unit: str | None, conversion: "Conversion | None") -> str:
+    ends = min(table.values), max(table.values)
+    if conversion is not None and conversion.si != 1:
+        ends, unit = tuple(map(conversion.shown, ends)), conversion.unit
+    told = f"{len(table.knots)} points, {kind}, {ends[0]:g} to {ends[1]:g}"
     return f"{told} {unit}" if unit else told

@@ -73,9 +73,10 @@ class OverStroke(OverY):
     def _content(self) -> str:
         return f"{self.dead_centre} {super()._content()}"
 
-    def __repr__(self) -> str:
+    def told(self, conversion: Any = None) -> str:
+        """What the table is, in a line."""
         place = f"over the distance from the {self.dead_centre} dead centre"
-        return super().__repr__().replace("over Y", place)
+        return super().told(conversion).replace("over Y", place)
 
 
 def _finite_or_nan(x: float) -> float:

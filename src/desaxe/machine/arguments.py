@@ -11,7 +11,6 @@ from ..mechanism.unit_system import OTHERS, UnitSystem
 from ..support.forks import IMPORTS
 from ..support.quantity_text import PLUS_MINUS, with_unit_of
 from ..support.shown import shown
-from .results import conversion_of
 
 # Arguments that carry no unit of their own name: what they are about is said by their keys.
 BY_KEY = ("over", "keep", "changes", "sigma", "data")
@@ -38,7 +37,7 @@ def in_si(system: UnitSystem, name: str, value: Any) -> Any:
         return value
     found = converted(system, name, value)
     if type(value) in (int, float) and name in INPUTS and not is_good(name, found):
-        conversion = conversion_of(system, name)
+        conversion = system.find(name)
         unit = "" if conversion is None else f" {conversion.unit}".removesuffix(" 1")
         raise ValueError(f"{name} = {shown(value)}{unit}: it must be {INPUTS[name].limit}")
     return found
@@ -63,7 +62,7 @@ def converted(system: UnitSystem, name: str, value: Any) -> Any:
     if "units" in getattr(value, "attrs", {}):
         return value
     plain = isinstance(value, (int, float)) or hasattr(value, "dtype")
-    conversion = conversion_of(system, name) if plain else None
+    conversion = system.find(name) if plain else None
     if conversion is not None and hasattr(value, "dims"):
         with IMPORTS:
             import xarray
@@ -76,7 +75,7 @@ def converted(system: UnitSystem, name: str, value: Any) -> Any:
 
 def _with_unit(system: UnitSystem, name: str, text: str) -> str:
     """A text, of which a number without a unit is in the machine's, as if it were no text."""
-    conversion = conversion_of(system, name)
+    conversion = system.find(name)
     if conversion is None:
         return text
     value, *tolerance = PLUS_MINUS.split(text)

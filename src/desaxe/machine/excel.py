@@ -8,13 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from ..mechanism.unit_system import SI, Conversion, UnitSystem
+from ..evaluation.in_units import Shown, in_units
+from ..mechanism.answer_units import units_by_name
+from ..mechanism.unit_system import SI, UnitSystem
 from ..runtime.written import replacing_ours
 from ..scenes.tables import heading
 from ..scenes.workbook import Sheet, require_room, sheets_of, write_workbook
+from ..support.answer import Answer
 from ..support.files import as_path
 from ..support.shown import printable, shown
-from .results import OWN, PLAIN, conversion_of
 
 
 def to_excel(
@@ -30,7 +32,8 @@ def to_excel(
            each dimension and name, and a sheet with the inputs and where it comes from. Or a dict, as
            `evaluate`, `peak`, `drive` and the others give it: arrays are columns, numbers have a row each
     path   the file, .xlsx
-    units  of the numbers of a dict that does not know its own, such as "mm, deg, rpm"; SI units without
+    units  such as "mm, deg, rpm": those that an answer in SI units is written in, or that the numbers of a
+           plain dict are in; SI units without
 
     Numbers have 16 digits; NaN is an empty cell, an infinite number the text inf. The file appears whole or
     not at all. Raises FileExistsError for one that desaxe did not write, unless `overwrite`; ValueError for
@@ -52,13 +55,16 @@ def _sheets(data: Any, units: Any) -> Mapping[str, Sheet]:
         return sheets_of(data.to_dataset(name=data.name or "value"), {})
     if not isinstance(data, Mapping):
         raise TypeError(f"to_excel: expected a Dataset or a dict of answers, got {shown(data)}")
-    system = UnitSystem.read(units) if units is not None else getattr(data, "units", None) or SI
-    about, unit = getattr(data, "about", None), getattr(data, "unit", None)
-    own = conversion_of(system, about) if isinstance(about, str) else None
-    own = Conversion(unit) if isinstance(unit, str) else own
-    inputs = getattr(data, "inputs", {})  # in SI units
+    answer = data if isinstance(data, Answer) else Answer(data, _units_by_name)
+    system = answer.system or SI
+    if units is not None and not answer.system:
+        system = UnitSystem.read(units)
+        answer = (
+            in_units(answer, system) if answer is data else Answer(data, Shown(system).texts(answer.units))
+        )
+    inputs = answer.inputs  # in SI units
     shown_in = {n: value if callable(value) else system.of(n).shown(value) for n, value in inputs.items()}
-    rows = [*_rows(shown_in, system, None), *_rows(data, system, own)]
+    rows = [*_rows(shown_in, {n: system.of(n).unit for n in inputs}), *_rows(answer, answer.units)]
     columns = [(name, np.asarray(value), unit) for name, value, unit in rows if np.ndim(value)]
     numbers = [[name, value, unit] for name, value, unit in rows if not np.ndim(value)]
     tables: dict[str, Sheet] = {"values": _table(columns)} if columns else {}
@@ -66,33 +72,26 @@ def _sheets(data: Any, units: Any) -> Mapping[str, Sheet]:
     return {**tables, **({name: [["name", "value", "unit"], *numbers]} if numbers or not columns else {})}
 
 
-def _rows(
-    found: Mapping[Any, Any], system: UnitSystem, own: Conversion | None, before: str = ""
-) -> Iterator[tuple[str, Any, str]]:
+def _units_by_name(found: Mapping[Any, Any]) -> dict[Any, Any]:
+    """The units of a plain dict, also of dicts inside, by names that say what they are."""
+    units = units_by_name({key: value for key, value in found.items() if not isinstance(value, Mapping)})
+    inside = {key: part for key, part in found.items() if isinstance(part, Mapping) and key != "gradient"}
+    return {**units, **{key: _units_by_name(part) for key, part in inside.items()}}
+
+
+def _rows(found: Mapping[Any, Any], units: Any, before: str = "") -> Iterator[tuple[str, Any, str]]:
     """Name, value and unit of each number, array and text, also of dicts inside."""
     for key, value in found.items():
-        name = f"{before}{key}"
+        name, unit = f"{before}{key}", units.get(key, "") if isinstance(units, Mapping) else units
         if isinstance(value, Mapping):
-            figure = None if key == "gradient" else conversion_of(system, str(key))
-            inside = figure or own if "gradient " in before else own or figure
-            yield from _rows(value, system, inside, f"{name} ")
+            yield from _rows(value, unit or {}, f"{name} ")
         elif hasattr(value, "magnitude"):
             yield name, _plain(value.magnitude), f"{value.units}"
         elif "units" in getattr(value, "attrs", {}):
             yield name, value.values, str(value.attrs["units"])
         elif not callable(value) or hasattr(value, "over"):  # a load is shown, a solution is not
-            yield name, _plain(value), _unit(str(key), system, own, "gradient " in before)
-
-
-def _unit(key: str, system: UnitSystem, own: Conversion | None, slope: bool) -> str:
-    if key in PLAIN or key == "status":
-        return ""
-    known = conversion_of(system, key)
-    if slope:
-        found = None if own is None or known is None else own.per([known])
-    else:
-        found = own if own is not None and (key in OWN or known is None) else known
-    return "" if found is None or found.unit == "1" else found.unit
+            has = isinstance(unit, str) and not isinstance(value, (str, bool)) and unit != "1"
+            yield name, _plain(value), unit if has else ""
 
 
 def _plain(value: Any) -> Any:

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..evaluation.arrays import as_array
-from .results import Shown
+from ..evaluation.in_units import Shown
+from ..mechanism.answer_units import unit_of
 
 
 class FunctionInUnits:
@@ -35,9 +36,8 @@ class FunctionInUnits:
     def jacobian(self, *args: Any, **named: Any) -> dict[str, dict[str, Any]]:
         """The exact derivatives by the inputs: dict name -> dict input -> array."""
         found = self.si.jacobian(*self._positional(args), **self._named(named))
-        slope = self._show.system.slope
         return {
-            name: {by: self._show.number(value, slope(name, by)) for by, value in row.items()}
+            name: {by: self._show.entry(value, unit_of(name, by)) for by, value in row.items()}
             for name, row in found.items()
         }
 
@@ -54,7 +54,7 @@ class FunctionInUnits:
         return (
             found / float(self._show.system.of(name).si)
             if _is_labelled(found)
-            else self._show.named(found, name)
+            else self._show.entry(found, unit_of(name))
         )
 
     def _argument(self, name: str, value: Any) -> Any:

@@ -1,8 +1,8 @@
 """`Machine`: the inputs of a design as a frozen mapping, with every public call as a method."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..evaluation.arrays import as_array
 from ..loads.motors import MakeKloss, MakeOverOmega
@@ -23,6 +23,33 @@ from .summary import html_of, text_of
 LOADS = ("F_X", "F_Y")
 OUTPUTS = ("Y", "V_C", "a_C")
 SPEEDS = ("omega0", "omega", "alpha")
+
+
+class NoInputError(KeyError):
+    """A machine has no such input; the message names the nearest one."""
+
+    def __str__(self) -> str:
+        name, machine = self.args
+        near = _meant(name, machine) or _meant(name, INPUTS)
+        given = "" if near in machine else ", which is not given"
+        hint = f"did you mean {near}{given}?" if near else f"it has {', '.join(machine)}"
+        return f"a machine has no input {name!r}; {hint}"
+
+
+class NoAttributeError(AttributeError):
+    """A machine has no such method; the message names the nearest one."""
+
+    def __str__(self) -> str:
+        near = _meant(self.name, (name for name in dir(self.obj) if name[0] != "_"))
+        there = f"; its inputs are machine[{self.name!r}] and so on" if self.name in INPUTS else ""
+        return f"a machine has no method {self.name!r}" + (f"; did you mean {near}?" if near else there)
+
+
+def _meant(word: Any, allowed: Iterable[str]) -> str:
+    with IMPORTS:
+        from ..mechanism.spelling import meant
+
+    return next(iter(meant(word, allowed)), "")
 
 
 class Machine(Mapping[str, Any]):
@@ -50,10 +77,6 @@ class Machine(Mapping[str, Any]):
     Raises ValueError or TypeError that name the input, as `evaluate` does; a `UnitWarning` for a number that
     is almost surely meant in another unit, such as a crank of 125 m.
     """
-
-    if TYPE_CHECKING:  # the methods are made from the functions
-
-        def __getattr__(self, name: str) -> Any: ...
 
     __slots__ = ("_given", "_inputs", "definitions", "units")
     _given: dict[str, Any]
@@ -254,7 +277,19 @@ class Machine(Mapping[str, Any]):
         return write_scene(self, path, outputs, more)
 
     def __getitem__(self, name: str) -> Any:
+        if name not in self._inputs:
+            raise NoInputError(name, self)
         return self._inputs[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._inputs
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """The input in SI units, or the default where it is not given."""
+        return self._inputs.get(name, default)
+
+    def __getattr__(self, name: str) -> Any:  # also says that methods, made from functions, may be anything
+        raise NoAttributeError(name=name, obj=self)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._inputs)

@@ -8,14 +8,15 @@ from functools import wraps
 from inspect import Parameter, Signature, signature
 from typing import Any, NamedTuple
 
+from ..evaluation.in_units import Shown
+from ..mechanism.inputs import INPUTS
 from ..mechanism.own import using
 from ..mechanism.ranges import refuse_bare_pair
 from ..mechanism.slips import warn_of_slips
 from ..runtime.request import MachineSpeed
-from ..support.answer import Answer
 from ..support.forks import IMPORTS, imported
 from .arguments import in_si
-from .results import Shown, shown
+from .results import shown
 
 # Public function -> its module; what it takes that no machine gives, because it is what is looked for.
 METHODS = {
@@ -145,8 +146,8 @@ def call(
         raise TypeError(f"{name}() got two values of {twice[0]}")
     system = machine.units
     if name in OF_RANGES:
-        for key, value in inputs.items():
-            refuse_bare_pair(key, value)
+        for key in INPUTS.keys() & inputs.keys():
+            refuse_bare_pair(key, inputs[key])
     named = {**dict(zip(positional, args, strict=False)), **inputs}
     warn_of_slips(named, system, stacklevel=4)
     given = {key: in_si(system, key, value) for key, value in named.items()}
@@ -161,11 +162,7 @@ def call(
             from .function import FunctionInUnits
 
         return FunctionInUnits(found, show)
-    result = shown(name, found, {**machine.in_units(), **named}, show)
-    if type(result) is dict:
-        result = Answer(result)
-    if isinstance(result, Answer) and result.units is None:
-        result.units = system
+    result = shown(found, {**machine.in_units(), **named}, show)
     return _delivered(result, given.get("out"))
 
 

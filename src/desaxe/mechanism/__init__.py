@@ -12,6 +12,7 @@ closed        closed forms of the geometry as Programs: limit angles, dead centr
 status        the status codes of every call, with their words
 dimensions    units as exponents of m, s, rad and kg
 unit_system   the units of plain numbers in inputs and results
+answer_units  units of the numbers of answers and messages, for any unit system
 ranges        `between` and `plus_minus`: inputs with a range or tolerance
 slips         plain numbers that are almost surely in another unit
 own           user-defined quantities: the register

@@ -83,9 +83,7 @@ class Conversion(NamedTuple):
         si = self.si
         for other in others:
             si /= other.si
-        below = [
-            f"({other.unit})" if "/" in other.unit or "*" in other.unit else other.unit for other in others
-        ]
+        below = [f"({other.unit})" if re.search("[/* ]", other.unit) else other.unit for other in others]
         return Conversion("/".join([self.unit, *(unit for unit in below if unit != "1")]), si)
 
 
@@ -152,6 +150,13 @@ class UnitSystem:
             found = self.of(base).per([self.of(parameter) for parameter in by])
             return Conversion(_simplified(name, found.unit)) if found.si == 1 else found
         return self.of_unit(_si_unit(name))
+
+    def find(self, name: str) -> Conversion | None:
+        """The conversion of a name; None where it has no unit."""
+        try:
+            return self.of(name)
+        except ValueError:
+            return None
 
     def slope(self, name: str | Conversion, by: str) -> Conversion:
         """The conversion of a derivative by an input."""

@@ -7,6 +7,7 @@ no forces balance, towards which they grow without bound (`special`).
 """
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 from warnings import warn
 
@@ -18,10 +19,11 @@ from ..evaluation.extremes import Powers, are_extreme, can_rescale, rescaled, sc
 from ..evaluation.loaded import loads_of
 from ..loads.load import Load, LoadWarning, OverTheta
 from ..loads.resolve import VARIABLE
+from ..mechanism.answer_units import units_of_extreme
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..runtime.request import as_number, check_common, check_inputs
-from ..support.answer import answering
+from ..support.answer import Answer
 from ..support.forks import IMPORTS
 from ..support.shown import shown as shown_value
 from .designs import KINDS, Plan, peaks_of_designs, plan_of, search_of
@@ -33,7 +35,6 @@ MANY = 60  # values of a load: more are no designs that anybody compares
 INPUTS_OF_PEAK = (*INPUTS, "branch", "kind", "accuracy", "threads")
 
 
-@answering
 def peak(
     name: str,
     *,
@@ -106,7 +107,8 @@ def peak(
             with IMPORTS:
                 from .lazy import lazy_peak
 
-            return lazy_peak(name, kind, plan, given, branch, ends, threads, varying)
+            lazy = lazy_peak(name, kind, plan, given, branch, ends, threads, varying)
+            return Answer(lazy, partial(units_of_extreme, name))
     arrays = {n: as_array(n, given.get(n), plan.needs, (name,)) for n in plan.needs if n not in varying}
     shape = broadcast_shape(arrays)
     columns = {n: _flat(a, shape) for n, a in arrays.items()}
@@ -117,7 +119,7 @@ def peak(
     found = peaks_of_designs(plan, kind, search, columns, branch, ends, threads, varying)
     if powers is not None:
         _to_si(found, name, powers, omega is not None)
-    return _shaped(found, shape)
+    return Answer(_shaped(found, shape), partial(units_of_extreme, name))
 
 
 def _to_si(found: dict[str, Any], name: str, powers: Powers, state: bool) -> None:

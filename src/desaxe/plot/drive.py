@@ -1,7 +1,7 @@
 """Drive diagrams: torque and power over a turn, and the speed that a flywheel leaves."""
 
 import textwrap
-from math import degrees, isfinite, pi
+from math import degrees, isfinite
 from typing import TYPE_CHECKING, Any
 
 from ..support.extras import needed
@@ -87,12 +87,7 @@ def _speed(ax: "Axes", result: Any) -> "Line2D":
 
 def _scale(result: Any) -> float:
     """The factor from the angles of the result to degrees."""
-    return {"rad": degrees(1.0), "deg": 1.0}.get(result.unit("theta")) or 360.0 / _turn(result)
-
-
-def _turn(result: Any) -> float:
-    """A whole turn in the unit of the result."""
-    return float(result.units.of_unit("rad").shown(2.0 * pi))
+    return {"rad": degrees(1.0), "deg": 1.0}.get(result.unit("theta")) or 360.0 / result.whole_turn
 
 
 def _degrees(result: Any, name: str) -> Any:

@@ -35,7 +35,7 @@ def dataset_of_motion(found: Any, over: str) -> "xr.Dataset":
     if over == "theta" and designs:
         raise ValueError("over = 'theta': each of these designs has its own angles; give over='t'")
     names = ["design"] if len(designs) == 1 else [f"design_{k}" for k in range(len(designs))]
-    units = getattr(found, "units", None) or SI
+    units = getattr(found, "system", None) or SI
     histories = {
         name: ((*names, over), np.asarray(values), _attributes(name, units))
         for name, values in found.items()

@@ -30,7 +30,7 @@ def steady(result: Any, *, ax: "Axes | None" = None) -> Picture:
         raise ValueError("plot.steady draws one design, not an array of them")
     if not isfinite(result["period"]):
         raise ValueError(f"this machine has no steady state to draw: {result['message']}")
-    units = result.units or SI
+    units = result.system or SI
     names = {"omega": "speed of the crank", "T_motor": "torque of the motor"}
     labels = {name: f"{words} [{units.of(name).unit.replace('*', ' ')}]" for name, words in names.items()}
     lines: dict[str, Any] = {}

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..design.steady.result import NUMBERS, Steady
 from ..design.steady.steady import FLUCTUATION, FLYWHEEL, steady
-from ..evaluation.labels import import_xarray, input_attributes, loads_text
+from ..evaluation.labels import import_xarray, input_attributes, tell_loads
 from ..loads.load import Load
 from ..loads.motors import MakeKloss, MakeOverOmega, Motor
 from ..mechanism.inputs import Input
@@ -130,10 +130,8 @@ def _labelled(asked: OnMotor, content: Content, found: Steady) -> "xr.Dataset":
     axes = {name: (name, list(values), _attributes(name)) for name, values in asked.axes.items()}
     loads = {n: v for n, v in asked.fixed.items() if isinstance(v, Load)}
     scalars = {n: ((), v, _attributes(n)) for n, v in asked.fixed.items() if n not in loads and n not in data}
-    told = {"torque": repr(asked.torque)} | ({"loads": loads_text(loads)} if loads else {})
-    return xarray.Dataset(
-        data, {**axes, **scalars}, {**provenance(content), "branch": content.branch, **told}
-    )
+    about = {**provenance(content), "branch": content.branch, "torque": repr(asked.torque)}
+    return tell_loads(xarray.Dataset(data, {**axes, **scalars}, about), loads)
 
 
 def _attributes(name: str) -> dict[str, str]:

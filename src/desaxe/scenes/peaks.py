@@ -13,9 +13,9 @@ from ..evaluation.labels import (
     CONVENTIONS,
     import_xarray,
     input_attributes,
-    loads_text,
     side_attributes,
     source,
+    tell_loads,
 )
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
@@ -93,7 +93,8 @@ def peaks_in_units(found: PeakResult, units: UnitSystem) -> "xr.Dataset":
     slopes = [str(name) for name in found.dataset.data_vars if str(name).startswith("value_wrt_")]
     quantity = found.peak.quantity
     names = {name: sensitivity(quantity, name.removeprefix("value_wrt_")) for name in slopes}
-    return in_units(found.dataset, units, names={**names, "value": quantity})
+    shown: xr.Dataset = in_units(found.dataset, units, names={**names, "value": quantity})
+    return shown
 
 
 def _found(
@@ -157,8 +158,8 @@ def _labelled(one: Peak, content: Content, arrays: Mapping[str, NDArray[Any]]) -
     axes = {name: (name, list(values), input_attributes(name)) for name, values in one.axes.items()}
     scalars = {name: ((), value, input_attributes(name)) for name, value in one.fixed.items()}
     kind = {"quantity": one.quantity, "kind": one.kind, "branch": content.branch}
-    told = {"loads": loads_text(one.loads)} if one.loads else {}
-    return xarray.Dataset(data, {**axes, **scalars}, {**provenance(content), **kind, **told})
+    dataset = xarray.Dataset(data, {**axes, **scalars}, {**provenance(content), **kind})
+    return tell_loads(dataset, one.loads)
 
 
 def _peak_attributes(one: Peak, state: bool) -> dict[str, str]:

@@ -76,10 +76,10 @@ def simulate_each(
         for row in rows:
             follow(row)
             told.add(1)
-    result = Simulation(t=t, **{name: h.reshape(*shape, t.size) for name, h in histories.items()})
+    result = Simulation({"t": t, **{name: h.reshape(*shape, t.size) for name, h in histories.items()}})
     result["status"] = status.reshape(shape)
     result["message"] = message(status) + told_of(numbers["energy_residual"], rounded, rtol)
     result["method"] = ways.reshape(shape)
     if without:
         result["message"] += f"{SENSITIVITIES}NaN in {len(without)} of {size} designs, where there are none"
-    return Simulation(result, **{name: values.reshape(shape) for name, values in numbers.items()})
+    return Simulation({**result, **{name: values.reshape(shape) for name, values in numbers.items()}})

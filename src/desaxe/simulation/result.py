@@ -1,14 +1,20 @@
 """The result of a simulation: a dict with a readable repr."""
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ..mechanism.answer_units import slopes_of, unit_of, units_of
 from ..mechanism.status import SimulationStatus
 from ..support.answer import Answer
 from ..support.forks import IMPORTS
 
+if TYPE_CHECKING:
+    from ..evaluation.in_units import Shown
+
 DONE, REST, LIMIT, JAMS, FAILED, NO_INERTIA, NO_START = map(int, SimulationStatus)
 SENSITIVITIES = "; sensitivities: "  # what a message says of them follows
+MOTION = ("theta", "omega", "t_last", "work")  # whose derivatives may be by what starts and drives it, too
+WORDLESS = ("events", "status", "message", "method", "energy_residual", "solution")  # without a unit
 WORDS = {int(status): status.words for status in SimulationStatus}
 
 
@@ -30,6 +36,19 @@ class Event(NamedTuple):
 class Simulation(Answer):
     """The histories by name, `events`, `status`, `message`, `work`, `t_last` and others; `plot()`."""
 
+    @property
+    def units(self) -> Mapping[str, Any]:
+        """The units of the numbers by key, of the histories and of each event."""
+        known = super().units
+        return known or _units(self)
+
+    def convert_rest(self, shown: "Shown") -> None:
+        """The solution in other units, its time too."""
+        solution = self.get("solution")
+        if solution is not None:
+            to_si, units = shown.system.of("t").to_si, units_of(("theta", "omega"))
+            self["solution"] = lambda t: shown.entry(solution(to_si(t)), units)
+
     def __repr__(self) -> str:
         lines = [f"simulation: {self['message']}"]
         for name, value in self.items():
@@ -48,6 +67,19 @@ class Simulation(Answer):
             from ..plot import motion
 
         return motion(self, ax=ax)
+
+
+def _units(found: Mapping[str, Any]) -> dict[str, Any]:
+    """The units of a motion; of a derivative by a parameter a quotient."""
+    units: dict[str, Any] = {}
+    for key in found:
+        base, _, parameter = key.partition("_wrt_")
+        if base in MOTION and parameter:
+            units[key] = unit_of(base, parameter)
+        elif key not in WORDLESS:
+            units[key] = unit_of(key)
+    by: Mapping[str, Any] = next((event.wrt for event in found.get("events", ()) if event.wrt), {})
+    return {**units, "events": {**units_of(("t", "theta", "omega")), "wrt": slopes_of("t", by)}}
 
 
 def _shown(value: Any) -> str:

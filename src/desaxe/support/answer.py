@@ -1,12 +1,9 @@
-"""Results: dicts with a readable repr."""
+"""Results: dicts with a readable repr, which know the units of their numbers."""
 
 from collections.abc import Callable, Mapping
-from functools import wraps
 from types import MappingProxyType
-from typing import Any, ParamSpec, TypeVar, cast
+from typing import Any
 
-P = ParamSpec("P")
-T = TypeVar("T")
 DIGITS = 6  # shown of a number; the answer itself has all
 FEW = 6  # values of an array that are all shown
 WIDE = 96  # letters of a line
@@ -15,34 +12,45 @@ WIDE = 96  # letters of a line
 class Answer(dict[str, Any]):
     """A dict whose repr has a line for each name and numbers in six digits.
 
+    units   key -> unit of its numbers, nested like the answer; what it leaves out has none. Or a function of
+            the answer that gives them when they are first looked at
+    system  of an answer of a machine: its unit system; None for SI units
     inputs  of `evaluate`: what it was asked for with, by name
-    about   of `peak` and others of one quantity: its name
-    units   of an answer of a machine: the unit system of its numbers; SI units without
     """
 
     inputs: Mapping[str, Any] = MappingProxyType({})
-    about: Any = None
-    units: Any = None
+    system: Any = None
+    _units: "Mapping[Any, Any] | Callable[[Any], Mapping[Any, Any]]" = MappingProxyType({})
+
+    def __init__(
+        self,
+        values: Mapping[Any, Any] | None = None,
+        units: "Mapping[Any, Any] | Callable[[Any], Mapping[Any, Any]] | None" = None,
+        **more: Any,
+    ) -> None:
+        super().__init__(values or {}, **more)
+        if units is not None:
+            self._units = units
+
+    @property
+    def units(self) -> Mapping[Any, Any]:
+        """The units of the numbers by key."""
+        if callable(self._units):
+            self._units = self._units(self)
+        return self._units
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_units": self.units}
+
+    def become(self, units: Mapping[Any, Any], system: Any) -> None:
+        """Have other units now: what a conversion of the numbers ends with."""
+        self._units, self.system = units, system
+
+    def convert_rest(self, shown: Any) -> None:
+        """Convert what is not under a key; `shown` is a `Shown` of `evaluation.in_units`."""
 
     def __repr__(self) -> str:
         return "\n".join(_lines(self)) or "{}"
-
-
-def answering(function: Callable[P, T]) -> Callable[P, T]:
-    """Decorate a function to return its dict as an Answer."""
-    of_one = function.__code__.co_varnames[:1] == ("name",)
-
-    @wraps(function)
-    def answered(*args: P.args, **inputs: P.kwargs) -> T:
-        found = function(*args, **inputs)
-        if type(found) is not dict:
-            return found
-        answer = Answer(cast(dict[str, Any], found))
-        if of_one:
-            answer.about = args[0] if args else inputs.get("name")
-        return cast(T, answer)
-
-    return answered
 
 
 def _lines(mapping: Mapping[Any, Any]) -> list[str]:

@@ -2,14 +2,14 @@
 
 from typing import Any
 
+from ...mechanism.answer_units import units_by_name
 from ...peaks.peak import peak
-from ...support.answer import answering
+from ...support.answer import Answer
 from ...support.deprecation import deprecated
 from .drive import check_fluctuation, design_of
 from .inertia import flywheel_for
 
 
-@answering
 def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str, Any]:
     """Torque ripple over a turn, and the flywheel for a required fluctuation of speed.
 
@@ -49,7 +49,7 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
     wheel = flywheel_for(design, float(fluctuation))
     if wheel is None:
         raise ValueError(f"flywheel: no inertia was found for fluctuation = {fluctuation:g}")
-    return {
+    found = {
         "mean_torque": mean,
         "max_torque": high["value"],
         "min_torque": low["value"],
@@ -63,3 +63,4 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
         "theta_fastest": wheel.fastest % design.angle,
         "theta_slowest": wheel.slowest % design.angle,
     }
+    return Answer(found, units_by_name)

@@ -1,19 +1,21 @@
 """The result of `drive`: a dict with a report and a plot."""
 
 from collections.abc import Mapping
-from math import degrees, isnan
+from math import degrees, isnan, pi
 from typing import TYPE_CHECKING, Any
 
 from ...loads.angles import turns_of
+from ...mechanism.answer_units import units_by_name
 from ...mechanism.status import DriveStatus
 from ...mechanism.unit_system import SI, Conversion, UnitSystem
-from ...mechanism.units import registry
 from ...support.answer import Answer
 from ...support.forks import IMPORTS
 from ..turn.turn import MOST_TURNS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from ...evaluation.in_units import Shown
 
 STATUS = {int(status): status.words for status in DriveStatus if status}
 
@@ -23,7 +25,7 @@ class Drive(Answer):
 
     `inputs` are those of the design in SI units, varying loads included, `branch` is its branch. `course` has
     arrays over the turn: `theta`, `T_in`, `power_in` and, with the flywheel, `theta_of_speed` and `speed`.
-    `units` are the units of all but `inputs`.
+    `system` is the unit system of all but `inputs`.
     """
 
     def __init__(
@@ -32,36 +34,20 @@ class Drive(Answer):
         inputs: Mapping[str, Any],
         branch: int,
         course: "Mapping[str, NDArray[Any]]",
-        units: UnitSystem = SI,
     ) -> None:
-        super().__init__(figures)
-        self.inputs, self.branch, self.course, self.units = dict(inputs), branch, dict(course), units
+        super().__init__(figures, _units)
+        self.inputs, self.branch, self.course = dict(inputs), branch, dict(course)
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (dict(self), self.inputs, self.branch, self.course, self.units)
-
-    def in_units(self, units: UnitSystem) -> "Drive":
-        """The result in other units; it must be in SI units now."""
-        figures = {name: _shown(units, name, value) for name, value in self.items()}
-        course = {name: _conversion(units, name).shown(values) for name, values in self.course.items()}
-        return Drive(figures, self.inputs, self.branch, course, units)
-
-    def as_quantities(self, units: UnitSystem) -> dict[str, Any]:
-        """The figures in these units as pint quantities (extra `units`)."""
-        Quantity = registry().Quantity
-
-        def labelled(value: Any, conversion: Conversion) -> Any:
-            return value if conversion.unit == "1" else Quantity(conversion.shown(value), conversion.unit)
-
-        found = {n: labelled(v, _conversion(units, n)) for n, v in self.items() if n in FIGURES}
-        gradient = {
-            name: {by: labelled(slope, _slope(units, name, by)) for by, slope in slopes.items()}
-            for name, slopes in self["gradient"].items()
+    def convert_rest(self, shown: "Shown") -> None:
+        """The course over the turn in other units."""
+        self.course = {
+            name: _conversion(shown.system, name).shown(values) for name, values in self.course.items()
         }
-        return {**self, **found, "gradient": gradient}
 
     def report(self) -> str:
         """The figures as text for a data sheet; angles in radians are shown in degrees."""
+        if not self.units:  # pint quantities say their units themselves
+            return repr(self)
         lines = [
             f"Drive over {'one turn' if self.turns == 1 else f'{self.turns} turns'}",
             f"  {self.design()}",
@@ -71,6 +57,15 @@ class Drive(Answer):
         if not isnan(self["torque_mean"]):
             lines += [f"  {label:17} {value}" for label, value in self.rows()]
         return "\n".join(lines)
+
+    @property
+    def _system(self) -> UnitSystem:
+        return self.system or SI
+
+    @property
+    def whole_turn(self) -> float:
+        """A turn in the unit of its angles."""
+        return float(self._system.of_unit("rad").shown(2.0 * pi))
 
     @property
     def turns(self) -> int:
@@ -84,13 +79,13 @@ class Drive(Answer):
             if callable(value):
                 told.append(f"{name}: {value!r}".replace("<", "").replace(">", ""))
                 continue
-            conversion = self.units.of(name)
+            conversion = self._system.of(name)
             told.append(f"{name} = {conversion.shown(value):.6g} {conversion.unit}".removesuffix(" 1"))
         return ", ".join(told)
 
     def unit(self, name: str) -> str:
         """The unit of a figure or of an array of `course`, as a label has it."""
-        return _conversion(self.units, name).unit.replace("*", " ")
+        return _conversion(self._system, name).unit.replace("*", " ")
 
     def rows(self) -> list[tuple[str, str]]:
         """The figures as text, each with its name."""
@@ -100,7 +95,7 @@ class Drive(Answer):
             return "-" if isnan(self[name]) else f"{self[name]:.6g} {self.unit(name)}{where}"
 
         cycle = "a turn" if self.turns == 1 else f"in {self.turns} turns"
-        speed = 60.0 * self.turns / _conversion(self.units, "period").to_si(self["period"])
+        speed = 60.0 * self.turns / _conversion(self._system, "period").to_si(self["period"])
         return [
             ("speed", f"{speed:.6g} rpm, {figure('period')} {cycle}"),
             ("torque, mean", figure("torque_mean")),
@@ -143,15 +138,5 @@ def _conversion(units: UnitSystem, name: str) -> Conversion:
     return units.of_unit(COURSE[name]) if name in COURSE else units.of(name)
 
 
-def _slope(units: UnitSystem, name: str, by: str) -> Conversion:
-    return _conversion(units, name) if by == "fluctuation" else units.slope(name, by)
-
-
-def _shown(units: UnitSystem, name: str, value: Any) -> Any:
-    """A figure, or the derivatives of all, in these units."""
-    if name == "gradient":
-        return {
-            figure: {by: _slope(units, figure, by).shown(slope) for by, slope in slopes.items()}
-            for figure, slopes in value.items()
-        }
-    return _conversion(units, name).shown(value) if name in FIGURES else value
+def _units(found: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: unit for key, unit in units_by_name(found).items() if key in (*FIGURES, "gradient")}

@@ -4,17 +4,17 @@ from math import copysign, inf, nan, pi
 from typing import Any
 
 from ...evaluation.evaluate import evaluate
+from ...mechanism.answer_units import units_by_name
 from ...mechanism.closed.dead_centres import DEAD_CENTRES
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.names import LENGTHS
 from ...runtime.request import as_number, check_common, with_known_inputs
-from ...support.answer import answering
+from ...support.answer import Answer
 from ...support.forks import IMPORTS
 from ...support.roots import root
 from .found import VELOCITIES, Found, stroke_ends
 
 
-@answering
 @with_known_inputs
 def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) -> dict[str, Any]:
     """Dead centres, stroke, advance and return, and the extremes in between, of designs.
@@ -64,7 +64,7 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
         with IMPORTS:
             from .arrays import events_of_arrays
 
-        return events_of_arrays(given, int(branch), omega0 is not None)
+        return Answer(events_of_arrays(given, int(branch), omega0 is not None), units_by_name)
     e, crank, rod, omega = (float(value or 0.0) for value in numbers.values())
     lengths, forward = {"ec": e, "AB": crank, "BC": rod}, -1 if omega < 0.0 else 1
     found = Found(closed_form(DEAD_CENTRES, branch=float(branch)).point(e, crank, rod, float(forward)))
@@ -79,7 +79,7 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
             value, theta, slopes = _velocity(ends, side, int(branch), omega, lengths, found.status == 2)
         result |= {name: value, f"theta_{name}": theta}
         gradient[name] = {p: slopes[p] for p in parameters}
-    return {**result, "gradient": gradient, "status": found.status}
+    return Answer({**result, "gradient": gradient, "status": found.status}, units_by_name)
 
 
 def _velocity(

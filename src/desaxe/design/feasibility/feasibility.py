@@ -1,16 +1,17 @@
 """`feasibility`: can the mechanism be assembled, can it turn, at which crank angles."""
 
+from collections.abc import Mapping
 from math import fsum, ulp
 from typing import Any
 
+from ...mechanism.answer_units import slopes_of, units_of
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.closed.limits import CHANGE_POINT_ULPS, LIMITS, in_intervals
 from ...runtime.request import as_number, with_known_inputs
-from ...support.answer import answering
+from ...support.answer import Answer
 from ...support.forks import IMPORTS
 
 
-@answering
 @with_known_inputs
 def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
     """Type of a design, its margin, and the crank angles at which it can be assembled.
@@ -42,7 +43,7 @@ def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
     given = {"ec": ec, "AB": AB, "BC": BC}
     lengths = {name: as_number(name, value, tuple(given), ("feasibility",)) for name, value in given.items()}
     if None in lengths.values():
-        return _of_arrays(given)
+        return Answer(_of_arrays(given), _units)
     ec, AB, BC = lengths.values()
     *angles, status, _, link_margin = closed_form(LIMITS).point(ec, AB, BC)
     margin = fsum((BC, -AB, -abs(ec)))  # rounded once, ties too
@@ -50,7 +51,7 @@ def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
     near = abs(margin) <= CHANGE_POINT_ULPS * ulp(BC)
     kind = "change point" if near else "crank" if margin > 0.0 else "rocker" if intervals else "none"
     slope = 0.0 if ec == 0.0 else (-1.0 if ec > 0.0 else 1.0)
-    return {
+    found = {
         "margin": margin,
         "gradient": {"ec": slope, "AB": -1.0, "BC": 1.0},
         "can_turn": margin >= 0.0,
@@ -59,6 +60,12 @@ def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
         "grashof": link_margin >= 0.0,
         "status": status,
     }
+    return Answer(found, _units)
+
+
+def _units(found: Mapping[str, Any]) -> dict[str, Any]:
+    """The units of an answer of `feasibility`."""
+    return {**units_of(("margin", "theta_intervals")), "gradient": slopes_of("margin", found["gradient"])}
 
 
 def _of_arrays(given: dict[str, Any]) -> dict[str, Any]:

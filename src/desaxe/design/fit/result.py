@@ -4,10 +4,12 @@ from typing import Any
 
 import numpy as np
 
+from ...evaluation.in_units import Shown, in_units
+from ...mechanism.answer_units import Of, conversion_of, unit_of
 from ...mechanism.catalogue import quantity
 from ...mechanism.status import FitStatus
-from ...mechanism.unit_system import SI, Conversion, UnitSystem
-from ...mechanism.units import registry
+from ...mechanism.unit_system import SI, UnitSystem
+from ...support.answer import Answer
 from ...support.extras import needed
 from ...support.text_table import table
 from .model import Model
@@ -16,29 +18,32 @@ DONE, STOPPED, OPEN = map(int, FitStatus)
 WORDS = {int(status): status.words for status in FitStatus}
 
 
-class Fit(dict[str, Any]):
-    """The result of `fit`; see there for its keys. `units` are those of its numbers, report and plot."""
+class Fit(Answer):
+    """The result of `fit`; see there for its keys. `system` is that of its numbers, report and plot."""
 
-    def __init__(self, found: dict[str, Any], model: Model, units: UnitSystem = SI) -> None:
-        super().__init__(_in_units(found, model, units) if units else found)
-        self._found, self._model, self.units = found, model, units
+    def __init__(self, found: dict[str, Any], model: Model) -> None:
+        super().__init__(found, _units_of(found, model))
+        self._found, self._model = found, model
 
-    def __reduce__(self) -> Any:
-        return Fit, (self._found, self._model, self.units)
-
-    def in_units(self, units: UnitSystem, as_quantity: bool = False) -> "Fit":
-        """The result in other units; with `as_quantity` value, std_error and interval as pint quantities."""
-        shown = Fit(self._found, self._model, units)
-        if as_quantity:
-            for key in ("value", "std_error", "interval"):
-                rows = {n: (part, _unit_of(n, self._model, units).unit) for n, part in shown[key].items()}
-                shown[key] = {n: registry().Quantity(part, unit) for n, (part, unit) in rows.items()}
-        return shown
+    def convert_rest(self, shown: Shown) -> None:
+        """The covariance in other units, and of pint quantities all but the values as plain numbers."""
+        own = [conversion_of(_unit_of(name, self._model), shown.system) for name in self["names"]]
+        sizes = np.array([float(conversion.si) for conversion in own])
+        self["covariance"] = self._found["covariance"] / np.outer(sizes, sizes)
+        if shown.as_quantity:
+            plain = shown._replace(as_quantity=False)
+            for key in ("residuals", "jacobian"):
+                self[key] = plain.entry(self._found[key], _units_of(self._found, self._model)[key])
 
     @property
-    def _numbers(self) -> dict[str, Any]:
+    def _system(self) -> UnitSystem:
+        return self.system or SI
+
+    @property
+    def _numbers(self) -> "Fit":
         """The numbers that are shown, without pint."""
-        return _in_units(self._found, self._model, self.units)
+        shown: Fit = in_units(Fit(self._found, self._model), self._system)
+        return shown
 
     def predict(self, theta: Any = None, t: Any = None) -> dict[str, tuple[Any, Any]]:
         """Each quantity as (value, standard error of the fitted curve) at crank angles [rad] or times [s].
@@ -50,7 +55,7 @@ class Fit(dict[str, Any]):
         at = {"theta": theta, "t": t}[course]
         if at is None:
             raise TypeError(f"predict: this fit is over {course}: give {course}=")
-        at = np.atleast_1d(np.asarray(self.units.of(course).to_si(np.asarray(at, float))))
+        at = np.atleast_1d(np.asarray(self._system.of(course).to_si(np.asarray(at, float))))
         x = np.array([self._found["value"][name] for name in self["names"]])
         values, slopes = self._model.quantities(x, at)
         found = {}
@@ -59,7 +64,7 @@ class Fit(dict[str, Any]):
                 [slopes[q].get(name, np.zeros_like(at)) * np.ones_like(at) for name in self["names"]]
             )
             variance = np.einsum("ki,kl,li->i", rows, self._found["covariance"], rows)
-            own = self.units.of(q)
+            own = self._system.of(q)
             found[q] = own.shown(value), own.shown(np.sqrt(variance))
         return found
 
@@ -86,7 +91,7 @@ class Fit(dict[str, Any]):
 
     def _title(self, name: str) -> str:
         """Label a name with its unit."""
-        unit = _unit_of(name, self._model, self.units).unit
+        unit = conversion_of(_unit_of(name, self._model), self._system).unit
         return name if unit == "1" else f"{name} [{unit}]"
 
     def plot(self, figure: Any = None) -> Any:
@@ -96,18 +101,18 @@ class Fit(dict[str, Any]):
         data = self._model.data
         figure = figure or Figure(figsize=(8.0, 2.2 + 2.4 * len(data.measured)), layout="constrained")
         axes = figure.subplots(len(data.measured), 2, squeeze=False, sharex=True, width_ratios=(2, 1))
-        along = self.units.of(data.course)
+        along = self._system.of(data.course)
         at = along.shown(data.at)
         fine = np.linspace(at.min(), at.max(), 721)
         bands = self.predict(**{data.course: fine})
         for (left, right), (q, column) in zip(axes, data.measured.items(), strict=True):
-            (value, error), own = bands[q], self.units.of(q)
+            (value, error), own = bands[q], self._system.of(q)
             left.plot(at, own.shown(column), ".", ms=3, color="0.45", label="measured")
             left.plot(fine, value, color="tab:blue", label="fitted")
             left.fill_between(
                 fine, value - 1.96 * error, value + 1.96 * error, color="tab:blue", alpha=0.3, lw=0
             )
-            unit = own.unit if self.units else quantity(q, self._model.state).unit
+            unit = own.unit if self.system else quantity(q, self._model.state).unit
             left.set_ylabel(f"{q} [{unit}]")
             right.plot(at, self["residuals"][q], ".", ms=3, color="0.45")
             right.axhline(0.0, color="tab:blue", lw=1)
@@ -118,26 +123,19 @@ class Fit(dict[str, Any]):
         return figure
 
 
-def _unit_of(name: str, model: Model, units: UnitSystem) -> Conversion:
-    """The conversion of an unknown or a quantity: a bias is in the unit of its quantity, a scale in none."""
+def _unit_of(name: str, model: Model) -> Of:
+    """The unit of an unknown or a quantity: a bias is in the unit of its quantity, a scale in none."""
     measured = model.data.measured
     if any(name == f"{q}_scale" for q in measured):
-        return Conversion("1")
-    return units.of(next((q for q in measured if name == f"{q}_bias"), name))
+        return unit_of(None)
+    return unit_of(next((q for q in measured if name == f"{q}_bias"), name))
 
 
-def _in_units(found: dict[str, Any], model: Model, units: UnitSystem) -> dict[str, Any]:
-    """The result in other units; relative directions, correlations and words stay what they are."""
-    own = {name: _unit_of(name, model, units) for name in found["names"]}
-    sizes = np.array([float(own[name].si) for name in found["names"]])
+def _units_of(found: dict[str, Any], model: Model) -> dict[str, Any]:
+    """The units of a result; relative directions, correlations and words have none."""
+    own = {name: _unit_of(name, model) for name in found["names"]}
     return {
-        **found,
-        **{key: {n: own[n].shown(v) for n, v in found[key].items()} for key in ("value", "std_error")},
-        "interval": {n: tuple(map(own[n].shown, ends)) for n, ends in found["interval"].items()},
-        "covariance": found["covariance"] / np.outer(sizes, sizes),
-        "residuals": {q: units.of(q).shown(rest) for q, rest in found["residuals"].items()},
-        "jacobian": {
-            q: {n: units.of(q).per([own[n]]).shown(slope) for n, slope in rows.items()}
-            for q, rows in found["jacobian"].items()
-        },
+        **dict.fromkeys(("value", "std_error", "interval"), own),
+        "residuals": {q: unit_of(q) for q in found["residuals"]},
+        "jacobian": {q: {n: unit_of(q, own[n].name) for n in rows} for q, rows in found["jacobian"].items()},
     }

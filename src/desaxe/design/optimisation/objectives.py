@@ -6,13 +6,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...evaluation.loaded import loads_of
+from ...mechanism.answer_units import unit_of
 from ...mechanism.inputs import INPUTS, Input
 from ...mechanism.names import LENGTHS
 from ...mechanism.read import read
 from ...runtime.request import check_inputs
 from ...support.deadline import Deadline
 from ...support.shown import shown
-from ..measures import Measure, checked, is_named, text_of, unit_of
+from ..measures import Measure, checked, is_named, text_of
 from .kinks import sides_of
 from .problem import EQUAL, LOWER, UPPER, Limit, Piece, Space
 

@@ -1,10 +1,11 @@
 """`optimize`: the best design within limits, with the multipliers of the limits; or why there is none."""
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 from ...runtime.request import check_common
-from ...support.answer import answering
+from ...support.answer import Answer
 from ...support.checks import whole_number
 from ...support.deadline import Deadline
 from ...support.extras import explained
@@ -14,9 +15,9 @@ from .objectives import goals_of, limits_of, space_of
 with put_off(), explained("optimize", "design"):
     from .one_objective import solved
     from .pareto import front
+    from .result import units_of_optimum
 
 
-@answering
 def optimize(
     *,
     over: Mapping[str, tuple[Any, Any]],
@@ -86,5 +87,7 @@ def optimize(
     limits = limits_of({} if keep is None else keep)
     with deadline.shown():
         if len(goals) > 1:
-            return front(goals, space, limits, starts, seed, points)
-        return solved(goals[0], space, limits, starts, seed)
+            found = front(goals, space, limits, starts, seed, points)
+        else:
+            found = solved(goals[0], space, limits, starts, seed)
+    return Answer(found, partial(units_of_optimum, goals))

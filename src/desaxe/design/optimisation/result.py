@@ -1,10 +1,13 @@
 """The result of `optimize`: the design, its active limits with their multipliers, a message."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from ..measures import checked, text_of, unit_of
+from ...mechanism.answer_units import Message, Number, message, slopes_of, unit_of, units_by_name
+from ...mechanism.inputs import INPUTS
+from ..measures import checked, text_of
 from .objectives import Goal
 from .problem import EQUAL, LOWER, UPPER, Space
 from .search import Found, Search
@@ -75,41 +78,53 @@ def _named(space: Space, found: Found, search: Search) -> tuple[dict[Any, str], 
 
 def _message(
     status: int, goal: Goal, design: dict[str, float], found: Found, search: Search, active: dict[Any, str]
-) -> str:
+) -> Message:
     what = text_of(goal.measure)
-    where = ", ".join(f"{name} = {value:.9g}" for name, value in design.items())
+    where = [part for name, value in design.items() for part in (f", {name} = ", _number(name, value, ".9g"))]
+    where[0] = f"{next(iter(design))} = "
     limit = "margin = BC - AB - |ec| = 0"
     if status == NONE:
-        return f"no design in over= keeps all limits: {_missed(found, search)} at the nearest, {where}"
+        missed = _missed(found, search)
+        return message("no design in over= keeps all limits: ", *missed, " at the nearest, ", *where)
     if status == UNBOUNDED:
-        return (
-            f"no optimum: {what} grows without bound towards the limit of turning, {limit}, as near {where}; "
-            "keep a margin, such as keep={'margin': (0.005, None)}"
-        )
+        told = f"no optimum: {what} grows without bound towards the limit of turning, {limit}, as near "
+        keep = "; keep a margin, such as keep={'margin': ('", _number("margin", 0.005), "', None)}"
+        return message(told, *where, *keep)
     if status == EDGE:
-        return f"the best is at the limit of turning itself, {limit}: {what} is bounded there, near {where}"
+        told = f"the best is at the limit of turning itself, {limit}: {what} is bounded there, near "
+        return message(told, *where)
     if status == UNSURE:
-        return (
-            f"the search ended at {where}, where the optimality conditions hold to {found.residual:.1g} "
-            "only: more starts= may help"
-        )
+        unsure = f", where the optimality conditions hold to {found.residual:.1g} only: more starts= may help"
+        return message("the search ended at ", *where, unsure)
     names = {key: key if isinstance(key, str) else text_of(key) for key in active}
     held = ", ".join(f"{names[key]} ({side})" for key, side in active.items())
     kink = ", at a kink, where two peaks share the extreme value" if found.kink else ""
-    return f"optimum at {where}{kink}" + (f", held back by {held}" if held else ", inside of all limits")
+    rest = f", held back by {held}" if held else ", inside of all limits"
+    return message("optimum at ", *where, kink + rest)
 
 
-def _missed(found: Found, search: Search) -> str:
+def _number(name: Any, value: float, form: str = ".3g") -> Number:
+    return Number(value, unit_of(name), form)
+
+
+def _missed(found: Found, search: Search) -> tuple[str | Number, ...]:
     """The most violated limit, and the violation, as text."""
     value = search.scaled(found.z)[0][search.count :]
     worst = int(np.argmax(np.where(search.equal, np.abs(value), -value)))
     limit = search.limits[worst]
     short = abs(float(value[worst] * search.scale[search.count + worst]))
     if limit.key is None:  # the implied one, which is kept with a little to spare
-        return (
-            f"margin = BC - AB - |ec| misses 0, from which on the crank turns, by {short - limit.bound:.3g} m"
-        )
+        implied = "margin = BC - AB - |ec| misses 0, from which on the crank turns, by "
+        return implied, _number("margin", short - limit.bound)
     measure = checked(limit.key)
-    return f"{text_of(measure)} misses its {limit.side} limit by {short:.3g} {unit_of(measure)}".removesuffix(
-        " 1"
-    )
+    return f"{text_of(measure)} misses its {limit.side} limit by ", _number(measure, short)
+
+
+def units_of_optimum(goals: list[Goal], found: Mapping[str, Any]) -> dict[Any, Any]:
+    """The units of the design, of the objectives, and of what they gain by relaxing a limit."""
+    values = {goal.measure: unit_of(goal.measure) for goal in goals}
+    units = units_by_name({key: value for key, value in found.items() if key in INPUTS})
+    if isinstance(found["value"], Mapping):
+        return {**units, "value": values}
+    gains = slopes_of(goals[0].measure, found["multipliers"])
+    return {**units, "value": values[goals[0].measure], "multipliers": gains}

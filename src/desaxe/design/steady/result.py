@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...mechanism.answer_units import units_by_name
 from ...mechanism.unit_system import SI
 from ...support.answer import Answer
 from ...support.forks import IMPORTS
@@ -37,7 +38,7 @@ class Steady(Answer):
         if np.ndim(self["period"]) or not source.varies or not source.of_speed_alone:
             return None
         row = {name: float(value) for name, value in source.numbers.items()}
-        system = self.units or SI
+        system = self.system or SI
         ends = [system.of("omega").to_si(end) for end in (self["omega"].min(), self["omega"].max())]
         way = np.sign(ends[1] + ends[0])
         speed = np.linspace(0.0, way * max(CURVE * abs(end) for end in ends), POINTS)
@@ -56,9 +57,15 @@ def result_of(shape: tuple[int, ...], parts: Sequence[Part], about: Mapping[str,
     found = _empty(int(np.prod(shape)), max((part for _, part, *_ in parts), key=lambda part: part.size))
     for index, designs, states, wheel in parts:
         _fill(found, index, designs, states, wheel)
-    result = Steady(_shaped(found, shape) if shape else _first(found))
+    result = Steady(_shaped(found, shape) if shape else _first(found), _units)
     result.inputs, result.torque, result.branch = about["inputs"], about["torque"], about["branch"]
     return result
+
+
+def _units(found: Mapping[str, Any]) -> dict[str, Any]:
+    """The units of a steady state, and of the others."""
+    units = units_by_name(found)
+    return {**units, "others": units}
 
 
 def _empty(count: int, designs: Designs) -> dict[str, Any]:

@@ -36,7 +36,7 @@ class Family(NamedTuple):
         return sqrt(2.0 * t * (1.0 + t * t) / (t + sqrt(4.0 + 5.0 * t * t)))
 
 
-class Answer(NamedTuple):
+class Fitting(NamedTuple):
     """The designs found, the range of feasible values of the third requirement, and why there is none."""
 
     designs: list[dict[str, float]]

@@ -10,7 +10,7 @@ from ...mechanism.closed.limits import margin_of
 from ...peaks.peak import peak
 from ...support.deadline import Deadline
 from ...support.roots import root
-from .family import Answer, Family
+from .family import Family, Fitting
 
 Array = NDArray[np.float64]
 PER_DECADE = 15  # places
@@ -18,7 +18,7 @@ NEAREST = 1e-12  # to the ends of the family, at which the acceleration grows wi
 TURNS = 1e-9  # of the rod: lengths in doubles do not resolve a smaller margin
 
 
-def of_peak(family: Family, wanted: float, omega0: float, deadline: Deadline) -> Answer:
+def of_peak(family: Family, wanted: float, omega0: float, deadline: Deadline) -> Fitting:
     """Every design of the family with the required peak |a_C|, and the smallest feasible peak."""
     if omega0 == 0.0:
         raise ValueError("omega0 = 0: a crank at rest has no acceleration to wish for")
@@ -49,7 +49,7 @@ def of_peak(family: Family, wanted: float, omega0: float, deadline: Deadline) ->
     elif not found and wanted >= least:  # both crossings are next to the bottom
         found = [root(lambda place: at(place) - wanted, *ends) for ends in ((a, bottom), (bottom, b))]
     found = [place for place in found if isclose(at(place), wanted, rel_tol=1e-6)]  # no jump to infinity
-    return Answer([family.design(place) for place in found], least, np.inf)
+    return Fitting([family.design(place) for place in found], least, np.inf)
 
 
 def _places(low: float) -> Array:

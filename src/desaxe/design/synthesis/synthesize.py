@@ -19,15 +19,17 @@ from itertools import pairwise
 from math import asin, cos, inf, isclose, pi, sin, sqrt
 from typing import Any
 
+from ...mechanism.answer_units import Number, message, unit_of, units_of
 from ...mechanism.inputs import INPUTS, TINY, Input
+from ...mechanism.names import LENGTHS
 from ...mechanism.read import read
 from ...runtime.request import as_number, with_known_inputs
-from ...support.answer import answering
+from ...support.answer import Answer
 from ...support.deadline import Deadline
 from ...support.forks import IMPORTS
 from ...support.roots import root
 from ...support.shown import shown
-from .family import Answer, Family
+from .family import Family, Fitting
 
 WANTED = {
     row.name: row
@@ -41,7 +43,6 @@ WANTED = {
 THIRDS = ("BC", "AB", "max_pressure_angle", "peak_a_C")
 
 
-@answering
 @with_known_inputs
 def synthesize(
     *,
@@ -100,7 +101,7 @@ def synthesize(
         raise ValueError(f"time_ratio = {ratio}: the longer over the shorter stroke is at least 1")
     if ratio >= 3.0:
         why = f"time_ratio = {ratio:g}: below 3 wherever the crank turns fully"
-        return _result(third, value, slow_stroke, Answer([], *2 * (float("nan"),), why))
+        return _result(third, value, slow_stroke, Fitting([], *2 * (float("nan"),), why))
     family = Family(H, pi * (ratio - 1.0) / (ratio + 1.0))
     if third == "peak_a_C":
         with IMPORTS:
@@ -121,87 +122,83 @@ def _wish(name: str, value: Any) -> float:
     return number
 
 
-def _result(third: str, value: float, slow_stroke: int, answer: Answer) -> dict[str, Any]:
+def _result(third: str, value: float, slow_stroke: int, answer: Fitting) -> Answer:
     count = len(answer.designs)
-    unit = (WANTED.get(third) or INPUTS[third]).unit
-    message = f"{count} design{'s' if count != 1 else ''}"
-    if not count:
-        message = (
-            answer.why
-            or f"none: {third} = {value:g} {unit}, designs of this stroke and time ratio have it "
-            + _range(answer, unit)
+    told = message(f"{count} design{'s' if count != 1 else ''}")
+    if answer.why:
+        told = message(answer.why)
+    elif not count:
+        wish, low, high = (Number(number, unit_of(third)) for number in (value, answer.low, answer.high))
+        ends = (
+            ("from ", low, " on")
+            if answer.high == inf
+            else ("from ", low._replace(says_unit=False), " to ", high)
         )
-    elif answer.why:
-        message = answer.why
+        told = message(f"none: {third} = ", wish, ", designs of this stroke and time ratio have it ", *ends)
     solutions = sorted(answer.designs, key=lambda design: design["BC"])
-    return {
+    found = {
         "solutions": [{**design, "ec": slow_stroke * design["ec"]} for design in solutions],
         "limits": {third: (answer.low, answer.high)},
         "status": 1 if not count else 2 if answer.why else 0,
-        "message": message,
+        "message": told,
     }
-
-
-def _range(answer: Answer, unit: str) -> str:
-    if answer.high == inf:
-        return f"from {answer.low:.6g} {unit} on"
-    return f"from {answer.low:.6g} to {answer.high:.6g} {unit}"
+    return Answer(found, {"solutions": units_of(LENGTHS), "limits": units_of([third])})
 
 
 # ---- one more wish ------------------------------------------------------------------------------
 
 
-def _of_rod(family: Family, BC: float) -> Answer:
+def _of_rod(family: Family, BC: float) -> Fitting:
     half = family.stroke / 2.0
     low, high = half, half / family.t if family.t else inf
     if not low <= BC <= high or (low == BC and family.beta):
-        return Answer([], low, high)
+        return Fitting([], low, high)
     share = BC * sin(family.beta / 2.0)
     AB = sqrt((half - share) * (half + share)) / cos(family.beta / 2.0)
-    return Answer([family.lengths(AB, BC)], low, high)
+    return Fitting([family.lengths(AB, BC)], low, high)
 
 
-def _of_crank(family: Family, AB: float) -> Answer:
+def _of_crank(family: Family, AB: float) -> Fitting:
     half = family.stroke / 2.0
     low, high = half * family.t, half
     if not family.beta:
         if not isclose(AB, half, rel_tol=4e-16):
-            return Answer([], half, half)
+            return Fitting([], half, half)
         design = {"ec": 0.0, "AB": AB, "BC": inf}
-        return Answer(
+        return Fitting(
             [design],
             half,
             half,
             "time_ratio = 1: ec = 0 and AB = stroke/2, with a rod of any length BC >= AB",
         )
     if not low <= AB < high:
-        return Answer([], low, high)
+        return Fitting([], low, high)
     share = AB * cos(family.beta / 2.0)
     BC = sqrt((half - share) * (half + share)) / sin(family.beta / 2.0)
-    return Answer([family.lengths(AB, BC)], low, high)
+    return Fitting([family.lengths(AB, BC)], low, high)
 
 
-def _of_lean(family: Family, angle: float) -> Answer:
+def _of_lean(family: Family, angle: float) -> Fitting:
     lean, least = sin(angle), family.upright
     if not family.beta:
-        return Answer([family.design(lean)], 0.0, pi / 2)
+        return Fitting([family.design(lean)], 0.0, pi / 2)
     low = asin(min(family.lean(least), 1.0))
     if angle < low or lean >= 1.0:
         if lean >= 1.0:
-            return Answer([family.design(family.t**2)], low, pi / 2)
-        return Answer([], low, pi / 2)
+            return Fitting([family.design(family.t**2)], low, pi / 2)
+        return Fitting([], low, pi / 2)
 
     def excess(x: float) -> float:
         return family.lean(x) - lean
 
     ends = [family.t**2, least, 1.0]
     if excess(least) >= 0.0:
-        return Answer([family.design(least)], low, pi / 2)
+        return Fitting([family.design(least)], low, pi / 2)
     found = [root(excess, a, b) for a, b in pairwise(ends)]
-    return Answer([family.design(x) for x in found], low, pi / 2)
+    return Fitting([family.design(x) for x in found], low, pi / 2)
 
 
-_FORMS: dict[str, Callable[[Family, float], Answer]] = {
+_FORMS: dict[str, Callable[[Family, float], Fitting]] = {
     "BC": _of_rod,
     "AB": _of_crank,
     "max_pressure_angle": _of_lean,

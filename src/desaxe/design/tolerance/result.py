@@ -3,9 +3,11 @@
 from collections.abc import Mapping
 from typing import Any
 
+from ...mechanism.answer_units import slopes_of, unit_of
 from ...mechanism.status import ToleranceStatus
 from ...support.answer import Answer
 
+SCATTER = ("mean", "std", "mean_error", "std_error", "least", "largest", "percentiles")
 WORDS = {int(status): status.words for status in ToleranceStatus if status}
 SHOWN = 4  # inputs in the line of what drives the scatter
 LEAST = 0.005  # of the variance: a smaller share is not listed
@@ -14,15 +16,17 @@ LEAST = 0.005  # of the variance: a smaller share is not listed
 class Tolerance(Answer):
     """The result of `tolerance`; see there for its keys. `report()` shows all of them.
 
-    `name` is that of the quantity or measure, `unit` the unit of its values.
+    `name` is that of the quantity or measure.
     """
 
-    def __init__(self, found: Mapping[str, Any], name: str, unit: str) -> None:
-        super().__init__(found)
-        self.name, self.unit = name, unit
+    def __init__(self, found: Mapping[str, Any], name: Any) -> None:
+        super().__init__(found, _units(name, found))
+        self.name = " of ".join(map(str, name)) if isinstance(name, (tuple, list)) else str(name)
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (dict(self), self.name, self.unit)
+    @property
+    def unit(self) -> str:
+        """The unit of its values; "" of pint quantities."""
+        return str(self.units.get("value", ""))
 
     def __repr__(self) -> str:
         drawn, first = self["monte_carlo"], self["first_order"]
@@ -51,3 +55,15 @@ class Tolerance(Answer):
     def report(self) -> str:
         """Every key of the result, a line each."""
         return super().__repr__()
+
+
+def _units(name: Any, found: Mapping[str, Any]) -> dict[str, Any]:
+    """The units of the scatter of a quantity or measure."""
+    own = unit_of(name)
+    scatter = dict.fromkeys(SCATTER, own)
+    return {
+        "value": own,
+        "gradient": slopes_of(name, found["gradient"]),
+        **dict.fromkeys(("first_order", "second_order", "monte_carlo"), scatter),
+        "worst_case": dict.fromkeys(("lower", "upper"), own),
+    }

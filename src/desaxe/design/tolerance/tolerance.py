@@ -19,7 +19,7 @@ from ...support.extras import needed
 from ...support.forks import IMPORTS, imported
 from ...support.progress import Steps, progress_bar
 from ...support.shown import shown
-from ..measures import checked, is_named, unit_of
+from ..measures import checked, is_named
 from .function import Beside, Function, derived
 from .result import Tolerance
 from .uncertain import DISTRIBUTIONS, Array, Inexact, read
@@ -149,14 +149,7 @@ def _answer(
         "agreement": _agreement(first, second, drawn, shares, indices),
         "status": int(_status(value, drawn["infeasible"], beside, bends)),
     }
-    return Tolerance(answer, *_title(name, "omega" in (*function.fixed, *function.varying)))
-
-
-def _title(name: Any, state: bool) -> tuple[str, str]:
-    """The name of a quantity or measure, and its unit."""
-    if isinstance(name, (tuple, list)):
-        return " of ".join(map(str, name)), quantity(str(name[-1]), state).unit
-    return str(name), unit_of(name) if is_named(name) else quantity(name, state).unit
+    return Tolerance(answer, name)
 
 
 def _status(value: float, lost: float, beside: Beside, bends: Array) -> ToleranceStatus:

@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 
 from ...evaluation.extremes import check_range
+from ...mechanism.answer_units import unit_of, units_of
 from ...mechanism.inputs import TINY, Input
 from ...mechanism.read import read
-from ...support.answer import answering
+from ...support.answer import Answer
 from ...support.panels import RESOLVED, resolved
 from ...support.shown import shown
 from .turn import Turn, extreme, one_turn
@@ -29,7 +30,6 @@ RADIUS = Input("radius", "m", "from the crank centre to the counterweight", TINY
 Harmonics = tuple[Any, Any, float, Callable[[complex], float]]
 
 
-@answering
 def counterweight(
     *, along: str = "both", radius: Any = None, branch: int = 1, **inputs: Any
 ) -> dict[str, Any]:
@@ -85,7 +85,11 @@ def counterweight(
     }
     if radius is not None:
         result["mass"] = float(product / _radius(radius))
-    return result
+    weight_units, force = units_of(("product", "angle")), unit_of("F_X")
+    return Answer(result, {
+        **weight_units, "counter_rotating": weight_units, "mass": unit_of("mass"),
+        "before": force, "after": force, "error": force,
+    })  # fmt: skip
 
 
 def _at_equal_steps(turn: Turn) -> Harmonics:

@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...mechanism.answer_units import unit_of
 from ...mechanism.catalogue import quantity
-from ...support.answer import answering
+from ...support.answer import Answer
 from ...support.checks import whole_number
 from ...support.panels import RESOLVED, WEIGHT
 from .turn import MOST, Turn, one_turn
@@ -15,7 +16,6 @@ from .turn import MOST, Turn, one_turn
 WAVES = 4.0  # rad of the highest wave in a panel of 16 nodes: what Gauss's rule integrates to rounding
 
 
-@answering
 def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> dict[str, Any]:
     """The harmonics of a quantity over a turn at constant speed.
 
@@ -59,7 +59,7 @@ def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> 
         remainder = float(np.sqrt(2.0 * np.sum(np.abs(found[name][orders + 1 :]) ** 2)))
     scale = np.where(np.arange(orders + 1) == 0, 1.0, 2.0)
     cosine, sine = scale * c.real, -scale * c.imag
-    return {
+    series: dict[str, Any] = {
         "order": np.arange(orders + 1),
         "cos": cosine,
         "sin": sine,
@@ -70,6 +70,8 @@ def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> 
         "error": 2.0 * error,
         "points": points,
     }
+    own = dict.fromkeys(("cos", "sin", "amplitude", "mean", "remainder", "error"), unit_of(name))
+    return Answer(series, {**own, "phase": unit_of("phase")})
 
 
 def _across_kinks(turn: Turn, name: str, orders: int) -> tuple[NDArray[np.complex128], float, float, int]:

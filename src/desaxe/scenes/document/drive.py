@@ -3,6 +3,7 @@
 from typing import Any
 
 from ...design.drive.drive import drive as drive_of
+from ...evaluation.in_units import in_units
 from ...mechanism.names import LOADS
 from ...mechanism.status import DriveStatus
 from ...mechanism.unit_system import UnitSystem
@@ -20,10 +21,11 @@ def drive(content: Content, units: UnitSystem, fluctuation: float) -> Section | 
     for one in designs_of(content, units):
         words = one.words or "this design"
         try:
-            result = drive_of(fluctuation=fluctuation, branch=content.branch, **one.inputs).in_units(units)
+            result = drive_of(fluctuation=fluctuation, branch=content.branch, **one.inputs)
         except (ValueError, TypeError) as error:
             blocks.append(Text(f"{words}: {error}"))
             continue
+        result = in_units(result, units)
         if result["status"]:
             blocks.append(Text(f"{words}: status {result['status']}, {DriveStatus(result['status']).words}"))
         if "T_in" in result.course:

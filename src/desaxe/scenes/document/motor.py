@@ -3,6 +3,7 @@
 from typing import Any
 
 from ...design.steady.steady import steady
+from ...evaluation.in_units import in_units
 from ...mechanism.unit_system import UnitSystem
 from ...plot.steady import steady as picture_of
 from ..content import Content
@@ -23,14 +24,6 @@ def motor(content: Content, found: MotorResult | None, units: UnitSystem) -> Sec
     first: dict[str, Any] = {n: v[0] for n, v in found.asked.axes.items()}
     one = steady(torque=found.asked.torque, branch=content.branch, **found.asked.fixed, **first)
     if not one["status"]:
-        one.units = units
         words = "Speed and torque of the first design over a period, and its loop on the motor's curve"
-        blocks.append(image_of(picture_of(_in(one, units)).figure, words))
+        blocks.append(image_of(picture_of(in_units(one, units)).figure, words))
     return Section("Steady state", blocks)
-
-
-def _in(one: Any, units: UnitSystem) -> Any:
-    """The answer with the values that a picture draws in these units."""
-    for name in ("theta", "omega", "T_motor", "omega_mean", "power_mean"):
-        one[name] = units.of(name).shown(one[name])
-    return one

@@ -1,0 +1,95 @@
+"""Units of the numbers of answers: texts that know what they are the unit of, for any unit system."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any, NamedTuple
+
+from .unit_system import SI, Conversion, UnitSystem
+
+PLAIN = Conversion("1")
+
+
+class Of(str):
+    """The SI unit of a quantity, an input or a measure, or of its derivative by another one."""
+
+    name: str = ""
+    by: str = ""
+
+
+def unit_of(name: Any, by: Any = "") -> Of:
+    """The unit of a name, or of a measure such as ("absmax", "a_C"); "1" where there is none."""
+    told = [part[-1] if isinstance(part, (tuple, list)) else part for part in (name, by)]
+    names = [part if isinstance(part, str) else "" for part in told]
+    unit = Of(_conversion(SI, *names).unit)
+    unit.name, unit.by = names
+    return unit
+
+
+def units_of(names: Iterable[str]) -> dict[str, Of]:
+    """The units of answers whose keys are the names of what they are."""
+    return {name: unit_of(name) for name in names}
+
+
+def units_by_name(found: Mapping[Any, Any]) -> dict[Any, Any]:
+    """The units of an answer whose keys are the names of what they are, those of `gradient` too."""
+    known = [key for key in found if isinstance(key, str) and key != "status" and SI.find(key) is not None]
+    units: dict[Any, Any] = units_of(known)
+    if "gradient" in found:
+        units["gradient"] = {name: slopes_of(name, slopes) for name, slopes in found["gradient"].items()}
+    return units
+
+
+def units_of_extreme(name: str, found: Mapping[Any, Any]) -> dict[str, Any]:
+    """The units of an extreme value of a quantity, where it is reached, and its gradient."""
+    return {
+        "value": unit_of(name),
+        "theta": unit_of("theta"),
+        "gradient": slopes_of(name, found["gradient"]),
+    }
+
+
+def slopes_of(name: Any, parameters: Iterable[Any]) -> dict[Any, Of]:
+    """The units of the derivatives of a quantity by some parameters."""
+    return {parameter: unit_of(name, parameter) for parameter in parameters}
+
+
+def conversion_of(unit: str, system: UnitSystem) -> Conversion:
+    """The conversion of numbers in this SI unit; that of the quantity itself where the unit knows it."""
+    return _conversion(system, unit.name, unit.by) if isinstance(unit, Of) else system.of_unit(unit)
+
+
+def _conversion(system: UnitSystem, name: str, by: str) -> Conversion:
+    own = system.find(name) if name else None
+    per = system.find(by) if by else None
+    return (own or PLAIN) if per is None else (own or PLAIN).per([per])
+
+
+class Number(NamedTuple):
+    """A number in SI units that stands in a message: its unit, its digits, and whether the unit is said."""
+
+    value: float
+    unit: str = "1"
+    form: str = ".6g"
+    says_unit: bool = True
+
+    def text(self, system: UnitSystem) -> str:
+        """The number in these units."""
+        conversion = conversion_of(self.unit, system)
+        unit = f" {conversion.unit}" if self.says_unit and conversion.unit != "1" else ""
+        return f"{conversion.shown(float(self.value)):{self.form}}{unit}"
+
+
+class Message(str):
+    """A text with numbers that knows them, and so can be written in any unit system."""
+
+    parts: tuple[str | Number, ...] = ()
+
+    def in_units(self, system: UnitSystem) -> "Message":
+        """The message in these units."""
+        return message(*self.parts, system=system)
+
+
+def message(*parts: str | Number, system: UnitSystem = SI) -> Message:
+    """The text of words and numbers, in SI units."""
+    text = Message("".join(part if isinstance(part, str) else part.text(system) for part in parts))
+    text.parts = parts
+    return text
