@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..evaluation.arrays import array_of
 from ..evaluation.labels import attributes, labelled, with_loads
 from ..loads.resolve import split
 from ..mechanism.inputs import INPUTS
-from ..mechanism.units import in_si
 from .from_motion import dataset_of_motion, is_motion
 
 if TYPE_CHECKING:
@@ -61,7 +61,4 @@ def as_dataset(found: Any, over: str, inputs: Mapping[str, Any]) -> "xr.Dataset"
 def _numbers(name: str, value: Any) -> Any:
     if name not in INPUTS:
         raise TypeError(f"no input {name!r}; there are {', '.join(INPUTS)}")
-    array = np.asarray(in_si(name, value) if isinstance(value, str) or hasattr(value, "magnitude") else value)
-    if array.dtype.kind == "U":
-        array = np.array([in_si(name, text) for text in array.reshape(-1).tolist()]).reshape(array.shape)
-    return np.asarray(array, dtype=np.float64)
+    return array_of(INPUTS[name], value)

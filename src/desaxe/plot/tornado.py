@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
+from ..mechanism.read import number_of, read
 from ..mechanism.unit_system import UnitSystem
-from ..mechanism.units import in_si
 from ..support.extras import needed
 from ..support.shown import shown
 from .picture import Picture
@@ -116,13 +116,9 @@ def value_text(result: Mapping[str, Any], name: str, system: UnitSystem) -> str:
     told = f"{name or 'value'} = {_scalar(result['value']):.6g} {unit}".rstrip()
     if "theta" not in result:
         return told
-    theta = degrees(
-        float(
-            in_si("theta", result["theta"])
-            if isinstance(result["theta"], str)
-            else system.of("theta").to_si(result["theta"])
-        )
-    )
+    angle = result["theta"]
+    said = isinstance(angle, str) or hasattr(angle, "magnitude")
+    theta = degrees(read(INPUTS["theta"], angle, "tornado") if said else system.of("theta").to_si(angle))
     return f"{told} at theta = {theta:.4g} deg"
 
 
@@ -142,17 +138,14 @@ def _label(name: str, system: UnitSystem) -> str:
 def _number(parameter: str, change: Any, system: UnitSystem) -> float:
     if parameter not in INPUTS:
         raise TypeError(f"changes: no input {parameter!r}")
-    if (
-        not isinstance(change, (int, float))
-        and not isinstance(change, str)
-        and not hasattr(change, "magnitude")
-    ):
+    if isinstance(change, (int, float)):
+        return float(change)
+    half = number_of(INPUTS[parameter]._replace(least=None, limit="a finite number"), change)
+    if half is None:
         raise TypeError(
             f"changes: {parameter} = {shown(change)}: half its range is a number or a text with a unit"
         )
-    if not isinstance(change, (int, float)):
-        change = system.of(parameter).shown(float(in_si(parameter, change)))
-    return float(change)
+    return float(system.of(parameter).shown(half))
 
 
 def _text(parameter: str, change: Any, system: UnitSystem) -> str:

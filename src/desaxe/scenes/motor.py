@@ -12,7 +12,6 @@ from ..loads.load import Load
 from ..loads.motors import MakeKloss, MakeOverOmega, Motor
 from ..mechanism.inputs import Input
 from ..mechanism.names import LENGTHS
-from ..mechanism.read import number_of
 from ..mechanism.status import SteadyStatus
 from ..mechanism.unit_system import OTHERS, UnitSystem
 from ..support.forks import IMPORTS
@@ -20,7 +19,7 @@ from . import schema
 from .content import Content, OnMotor
 from .peaks import provenance
 from .schema import SceneError, shown
-from .values import Value
+from .values import Value, read_number
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -80,10 +79,10 @@ def _numbers(name: str, written: Any) -> Any:
 
 def _number(key: str, row: Input, written: Any) -> float:
     try:
-        number = number_of(row, written)
-    except ValueError as error:
-        raise SceneError(f"steady.{key}: {error}") from None
-    if number is None or (row is FLUCTUATION and number >= 2.0):
+        number = read_number(row, f"steady.{key}", written)
+    except TypeError:
+        raise SceneError(f"steady.{key} = {shown(written)}: it must be {row.limit}") from None
+    if row is FLUCTUATION and number >= 2.0:
         raise SceneError(f"steady.{key} = {shown(written)}: it must be {row.limit}")
     return number
 

@@ -3,11 +3,12 @@
 from collections.abc import Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
-from math import floor, isfinite
+from math import floor
 
 from ..loads.load import Load
-from ..mechanism.inputs import INPUTS, is_good
-from ..mechanism.units import exact, in_si
+from ..mechanism.inputs import INPUTS, Input
+from ..mechanism.read import read
+from ..mechanism.units import exact
 from . import schema
 from .schema import SceneError, shown
 from .spread import MOST, spread
@@ -28,17 +29,14 @@ def values_of(key: str, name: str, written: float | str | tuple[float | str, ...
 
 def number_of(key: str, name: str, written: float | str) -> float:
     """A number or text with a unit, in the SI unit of an input."""
-    value = float(written) if not isinstance(written, str) else _from_text(key, name, written)
-    if not is_good(name, value):
-        raise SceneError(f"{key} = {shown(written)}: it must be {INPUTS[name].limit}")
-    return value
+    return read_number(INPUTS[name], key, written)
 
 
-def _from_text(key: str, name: str, written: str) -> float:
+def read_number(row: Input, key: str, written: float | str) -> float:
+    """The number of a row, told by its key where it is bad."""
     try:
-        return float(in_si(name, written))
-    except ValueError as error:
-        # What the units' complaint says after the name and the value that it repeats.
+        return read(row, written, "a scene")
+    except ValueError as error:  # what it says after the name and the value
         reason = str(error).partition(": ")[2] or str(error)
         raise SceneError(f"{key} = {shown(written)}: {reason}") from None
 
@@ -69,10 +67,8 @@ def _exactly(name: str, written: float | str) -> Fraction:
 
 def _steps(key: str, name: str, written: schema.Range, length: Fraction) -> int:
     # A step may be negative, where the input itself may not.
-    if isinstance(written.step, str):
-        _from_text(f"{key}.step", name, written.step)
-    elif not isfinite(written.step or 0.0):
-        raise SceneError(f"{key}.step = {shown(written.step)}: it must be a finite number")
+    any_number = INPUTS[name]._replace(least=None, limit="a finite number")
+    read_number(any_number, f"{key}.step", written.step or 0.0)
     step = _exactly(name, written.step or 0.0)
     _require_few(key, length / step if step else Fraction(0))
     count = float(length / step) if step else 0.0

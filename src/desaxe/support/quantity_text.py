@@ -10,12 +10,17 @@ _NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 _TERM = r"[^\W\d_]+(?:_[^\W\d_]+)*(?:(?:\^|\*\*)?-?[1-9])?|%|\u00b0"
 _UNIT = rf"(?:{_TERM})(?:\s*[*/]\s*(?:{_TERM})|\s+(?:{_TERM}))*"
 PLUS_MINUS = re.compile(r"\u00b1|\+-|\+/-")  # between a value and its tolerance
+_PER_TIME = re.compile(rf"\s*{_NUMBER}\s*1?\s*/\s*(?:s|sec|min|h|hour|minute|second)\s*")
 _FORM = re.compile(rf"\s*({_NUMBER})\s*({_UNIT})?\s*")
 
 
 def split_quantity(text: str, example: str = '"125 mm"') -> tuple[str, str]:
     """The number and the unit (may be empty) of a text; ValueError where it is anything else."""
     match = _FORM.fullmatch(text)
+    if match is None and _PER_TIME.fullmatch(text):
+        raise ValueError(
+            'a rate "per time" does not say of what: write turns or an angle, such as "120 turn/min"'
+        )
     if match is None:
         raise ValueError(f"it must be a number, or a number with a unit such as {example}")
     return match[1], match[2] or ""
