@@ -55,7 +55,7 @@ class Load(ABC):
         """The definition of the load as a text."""
 
     def told(self, conversion: "Conversion | None" = None) -> str:
-        """What the load is, in a line; with a conversion in that unit."""
+        """The load in a line; with a conversion in that unit."""
         return repr(self)
 
 
@@ -147,7 +147,7 @@ class TableOverTheta(OverTheta):
         return f"{self.table!r}"
 
     def told(self, conversion: "Conversion | None" = None) -> str:
-        """What the table is, in a line."""
+        """The table in a line; with a conversion in that unit."""
         return f"<load over theta: {_described(self.table, self.kind, self.unit, conversion)}>"
 
     def __repr__(self) -> str:
@@ -288,7 +288,7 @@ class OverY(Load):
         return f"{self.outward!r} {self.inward!r}"
 
     def told(self, conversion: "Conversion | None" = None) -> str:
-        """What the table is, in a line."""
+        """The table in a line; with a conversion in that unit."""
         ways = "" if self.inward is None else ", another one inward"
         return f"<load over Y: {_described(self.outward, self.kind, self.unit, conversion)}{ways}>"
 

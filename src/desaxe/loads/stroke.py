@@ -74,7 +74,7 @@ class OverStroke(OverY):
         return f"{self.dead_centre} {super()._content()}"
 
     def told(self, conversion: Any = None) -> str:
-        """What the table is, in a line."""
+        """The table in a line; with a conversion in that unit."""
         place = f"over the distance from the {self.dead_centre} dead centre"
         return super().told(conversion).replace("over Y", place)
 

@@ -1,9 +1,11 @@
-"""What a call gives, in the units of a machine or as pint quantities."""
+"""The result of a call in the units of a machine or as pint quantities."""
 
 from collections.abc import Mapping
 from typing import Any
 
 from ..evaluation.in_units import Shown, in_units
+from ..evaluation.labels import loads_text, tell_loads
+from ..loads.load import Load
 from ..mechanism.answer_units import unit_of, units_by_name
 from ..support.answer import Answer
 
@@ -11,6 +13,9 @@ from ..support.answer import Answer
 def shown(found: Any, call: Mapping[str, Any], show: Shown) -> Any:
     """The result of a public function, called with these arguments, as it is shown."""
     if hasattr(found, "data_vars"):  # of grid, design_map, sweep
+        loads = {name: value for name, value in call.items() if isinstance(value, Load)}
+        if found.attrs.get("loads") == loads_text(loads):  # that of a sweep knows the text alone
+            found = tell_loads(found, loads)
         return in_units(found, show.system, _as_given(found, call), as_quantity=show.as_quantity)
     if type(found) is dict:
         found = Answer(found, units_by_name)

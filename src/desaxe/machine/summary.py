@@ -8,8 +8,10 @@ from typing import Any, NamedTuple
 from ..design.events.events import events
 from ..design.feasibility.feasibility import feasibility
 from ..evaluation.evaluate import evaluate
+from ..loads.load import Load
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LOADS
+from ..mechanism.unit_system import UnitSystem
 from ..support.text_table import table
 
 _ORDER = ("AB", "BC", "ec", "omega0", "omega", "alpha", *LOADS)
@@ -32,17 +34,21 @@ def rows_of(machine: Any) -> list[tuple[str, str, str]]:
     """Rows of the summary: name, value with unit, and meaning."""
     shown = machine.in_units()
     rows = [
-        (name, _value(shown[name], "" if name == "branch" else machine.units.of(name).unit), NAMES[name])
+        (name, _input(machine.units, name, shown[name]), NAMES[name])
         for name in NAMES
         if name in shown
     ]
     return rows + _geometry(machine)
 
 
+def _input(units: UnitSystem, name: str, value: Any) -> str:
+    if name == "branch":
+        return _value(value, "")
+    conversion = units.of(name)
+    return value.told(conversion) if isinstance(value, Load) else _value(value, conversion.unit)
+
+
 def _value(value: Any, unit: str) -> str:
-    if callable(value):
-        name = getattr(value, "__name__", None)
-        return f"the function {name}" if name else repr(value)
     if hasattr(value, "tolist"):
         numbers = value.tolist()
         text = f"{numbers[0]:.6g} ... {numbers[-1]:.6g}"

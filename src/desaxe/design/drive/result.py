@@ -5,6 +5,7 @@ from math import degrees, isnan, pi
 from typing import TYPE_CHECKING, Any
 
 from ...loads.angles import turns_of
+from ...loads.load import Load
 from ...mechanism.answer_units import units_by_name
 from ...mechanism.status import DriveStatus
 from ...mechanism.unit_system import SI, Conversion, UnitSystem
@@ -76,10 +77,10 @@ class Drive(Answer):
         """The inputs with their units, in a line."""
         told = []
         for name, value in self.inputs.items():
-            if callable(value):
-                told.append(f"{name}: {value!r}".replace("<", "").replace(">", ""))
-                continue
             conversion = self._system.of(name)
+            if isinstance(value, Load):
+                told.append(f"{name}: {value.told(conversion)}".replace("<", "").replace(">", ""))
+                continue
             told.append(f"{name} = {conversion.shown(value):.6g} {conversion.unit}".removesuffix(" 1"))
         return ", ".join(told)
 

@@ -169,7 +169,7 @@ def _input(name: str, value: Value, units: UnitSystem) -> dict[str, Any]:
     if isinstance(value, tuple):
         return {**row, "values": len(value), "from": own.shown(value[0]), "to": own.shown(value[-1])}
     if isinstance(value, Load):
-        return {**row, "load": repr(value)}
+        return {**row, "load": value.told(own)}
     return {**row, "value": own.shown(value)}
 
 
