@@ -1,4 +1,4 @@
-"""A rate per time that does not say of what is refused with the reason, in a call, on a machine, in a scene."""
+"""A rate per time that does not say of what is refused with the reason: in calls, machines, scenes."""
 
 import pytest
 

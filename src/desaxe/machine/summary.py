@@ -33,11 +33,7 @@ class Pose(NamedTuple):
 def rows_of(machine: Any) -> list[tuple[str, str, str]]:
     """Rows of the summary: name, value with unit, and meaning."""
     shown = machine.in_units()
-    rows = [
-        (name, _input(machine.units, name, shown[name]), NAMES[name])
-        for name in NAMES
-        if name in shown
-    ]
+    rows = [(name, _input(machine.units, name, shown[name]), NAMES[name]) for name in NAMES if name in shown]
     return rows + _geometry(machine)
 
 

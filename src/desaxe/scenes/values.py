@@ -33,7 +33,7 @@ def number_of(key: str, name: str, written: float | str) -> float:
 
 
 def read_number(row: Input, key: str, written: float | str) -> float:
-    """The number of a row, told by its key where it is bad."""
+    """The number of a row; SceneError by its key where it is bad."""
     try:
         return read(row, written, "a scene")
     except ValueError as error:  # what it says after the name and the value
