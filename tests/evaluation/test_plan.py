@@ -47,7 +47,7 @@ def roads(name, inputs, reduce, tmp_path, monkeypatch):
     parts = {"motion": ("theta", "omega0"), "mechanism": ("ec", "AB", "BC"), "masses": ("m_slider",)}
     scene = {part: {n: _plain(inputs[n]) for n in names} for part, names in parts.items()}
     loads = {n: inputs[n] for n in ("F_Y",) if n in inputs}
-    monkeypatch.setattr("desaxe.scenes.grid.BLOCK", 5)
+    monkeypatch.setattr("desaxe.scenes.parts.grid.BLOCK", 5)
     found = dx.scene({**scene, "loads": loads, "outputs": [name], "reduce": reduce or {}}).run()
     yield "scene", found.dataset
 

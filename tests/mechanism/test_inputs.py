@@ -13,7 +13,7 @@ from desaxe.mechanism.inputs import INPUTS, Inputs, names_in
 from desaxe.mechanism.names import LOADS, ORDER, PARAMETERS
 from desaxe.mechanism.program import Variant, program_of
 from desaxe.oracle import force_truth
-from desaxe.scenes.needs import SECTIONS
+from desaxe.scenes.reading.needs import SECTIONS
 
 ROOT = Path(__file__).resolve().parents[2]
 MOTION = {"theta", "omega0", "omega", "alpha"}

@@ -225,3 +225,12 @@ def test_the_check_knows_a_package():
     assert imported("from .passes import fold", "desaxe.compiler", is_package=True) == {
         "desaxe.compiler.passes.fold"
     }
+
+
+def test_rooms_of_scenes_are_small_and_no_name_stands_in_five_rooms():
+    scenes = ROOMS["desaxe"] / "scenes"
+    sizes = {room: len(list(room.glob("*.py"))) for room in (scenes, *scenes.rglob("*")) if room.is_dir()}
+    assert {room.name for room, size in sizes.items() if size > 14} == set()
+    named = [(path.name, path.parent) for _, path in modules("desaxe") if path.name != "__init__.py"]
+    rooms = {name: {room for other, room in named if other == name} for name, _ in named}
+    assert [name for name, places in rooms.items() if len(places) > 4] == []

@@ -139,7 +139,7 @@ def test_the_report_is_not_lost_and_other_files_are_written(capsys, monkeypatch)
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("desaxe.scenes.files.table_of", full)
+    monkeypatch.setattr("desaxe.scenes.stores.files.table_of", full)
     assert main(["run", scene_file("a.csv", "a.png")]) == 2
     out, err = capsys.readouterr()
     assert "Largest magnitude of a_C" in out

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.scenes.printed import read_percentage, read_printed
+from desaxe.scenes.reading.printed import read_percentage, read_printed
 from desaxe.scenes.schema import SceneError
 from desaxe.support.quantity_text import quantity_text
 from tests.example_scenes import COMPACTOR, SMALL, changed

@@ -177,7 +177,7 @@ def test_accuracy_reaches_values_peaks_and_checks():
 def test_large_grid_in_blocks(monkeypatch):
     monkeypatch.setenv("DESAXE_TIER", "compiled")
     whole = dx.scene(SMALL).run().dataset
-    monkeypatch.setattr("desaxe.scenes.grid.BLOCK", 5)
+    monkeypatch.setattr("desaxe.scenes.parts.grid.BLOCK", 5)
     steps = []
     parts = dx.scene(SMALL).run(lambda *step: steps.append(step)).dataset
     assert xarray.testing.assert_identical(parts, whole) is None

@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 
 import desaxe as dx
-from desaxe.scenes import spread
+from desaxe.scenes.reading import spread
 from tests.effort import cases
 
 SCENE = {

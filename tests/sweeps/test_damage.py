@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 import desaxe as dx
-from desaxe.scenes import quiet_store
+from desaxe.scenes.stores import quiet_store
 from desaxe.sweeps import place, store
 
 INPUTS = {"theta": np.linspace(0.0, 6.0, 20), "ec": [-0.05, 0.0], "AB": 0.2, "BC": 0.5, "omega0": 3.0}

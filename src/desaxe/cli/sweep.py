@@ -80,7 +80,7 @@ def _sweep(options: argparse.Namespace) -> int:
 def _best_of(found: Any, units: Any) -> str:
     """The best designs as text, in the units of the scene."""
     from ..evaluation.in_units import in_units
-    from ..scenes.tables import heading
+    from ..scenes.stores.tables import heading
 
     table = in_units(found, units)
     headings = {n: heading(str(n), v.attrs.get("units", "1")) for n, v in table.variables.items()}
@@ -89,7 +89,7 @@ def _best_of(found: Any, units: Any) -> str:
 
 def _swept(content: Any, options: argparse.Namespace) -> Any:
     """The sweep of a scene, on threads here or on a Dask cluster."""
-    from ..scenes.stored import sweep_content
+    from ..scenes.parts.stored import sweep_content
 
     with _client(options) as client:
         return sweep_content(
@@ -148,7 +148,7 @@ def _client(options: argparse.Namespace) -> Iterator[Any]:
 
 def _require_netcdf(place: str, overwrite: bool) -> None:
     """Fail before the sweep where the NetCDF file could not be written."""
-    from ..scenes.files import check_place
+    from ..scenes.stores.files import check_place
     from ..support.files import require_writable
 
     if not place.endswith(".nc"):
@@ -159,7 +159,7 @@ def _require_netcdf(place: str, overwrite: bool) -> None:
 
 def _write_netcdf(found: Any, place: str, overwrite: bool) -> None:
     """Write the Dataset as one file, if there is memory for it."""
-    from ..scenes.files import write
+    from ..scenes.stores.files import write
     from ..sweeps.layout import size_text
     from ..sweeps.memory import free_memory
 

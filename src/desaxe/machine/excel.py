@@ -12,8 +12,8 @@ from ..evaluation.in_units import Shown, in_units
 from ..mechanism.answer_units import units_by_name
 from ..mechanism.unit_system import SI, UnitSystem
 from ..runtime.written import replacing_ours
-from ..scenes.tables import heading
-from ..scenes.workbook import Sheet, require_room, sheets_of, write_workbook
+from ..scenes.stores.tables import heading
+from ..scenes.stores.workbook import Sheet, require_room, sheets_of, write_workbook
 from ..support.answer import Answer
 from ..support.files import as_path
 from ..support.shown import printable, shown

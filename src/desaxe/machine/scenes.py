@@ -12,7 +12,7 @@ from ..mechanism.inputs import INPUTS
 from ..mechanism.own import Definition
 from ..mechanism.unit_system import UnitSystem
 from ..mechanism.units import exact
-from ..scenes.needs import SECTIONS
+from ..scenes.reading.needs import SECTIONS
 from ..scenes.scene import scene
 from ..scenes.schema import SceneError
 from ..support.files import check_target, write_text

@@ -108,7 +108,7 @@ class ToleranceStatus(Status):
 class OptimizeStatus(Status):
     """The status of a search: `optimize`.
 
-    Decided by `design/optimisation/result.py`, of several objectives by `pareto.py`.
+    Decided by `design/optimisation/optimum.py`, of several objectives by `pareto.py`.
     """
 
     OPTIMUM = 0, "an optimum"

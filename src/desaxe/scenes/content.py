@@ -8,8 +8,8 @@ from ..evaluation.reductions import Reduction, Reductions
 from ..loads.load import Load
 from ..mechanism.own import Definition
 from ..mechanism.unit_system import SI, UnitSystem
-from .printed import Printed
-from .values import Value
+from .reading.printed import Printed
+from .reading.values import Value
 
 
 class Check(NamedTuple):

@@ -13,11 +13,11 @@ from ..mechanism.status import PeakStatus
 from ..mechanism.unit_system import UnitSystem
 from ..support.text_table import table as text_table
 from .content import Content, Peak
-from .motor import MotorResult
-from .peaks import SIDEWAYS, WORDS, ClaimResult, PeakResult, groups_of, peaks_in_units
-from .places import data_files
+from .parts.extremes import SIDEWAYS, WORDS, ClaimResult, PeakResult, groups_of, peaks_in_units
+from .parts.motor import MotorResult
+from .parts.turning import FeasibilityResult
 from .run import CheckResult, Run
-from .turning import FeasibilityResult
+from .stores.places import data_files
 
 WIDTH = 100  # columns
 ROWS = 24  # of a table; a longer one is thinned out

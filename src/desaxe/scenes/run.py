@@ -11,14 +11,14 @@ from ..mechanism.unit_system import UnitSystem
 from ..support.progress import Progress, Steps
 from ..support.shown import printable
 from .content import Check, Content, Peak, Picture
-from .files import write
-from .grid import blocks_of, values_of_grid
-from .motor import MotorResult, steady_of
-from .peaks import PeakResult, batches, groups_of, peaks_in_units, peaks_of
-from .pictures import draw
-from .places import require_modules, require_places
-from .stored import sweep_content
-from .turning import FeasibilityResult, feasibility_of
+from .parts.extremes import PeakResult, batches, groups_of, peaks_in_units, peaks_of
+from .parts.grid import blocks_of, values_of_grid
+from .parts.motor import MotorResult, steady_of
+from .parts.pictures import draw
+from .parts.stored import sweep_content
+from .parts.turning import FeasibilityResult, feasibility_of
+from .stores.files import write
+from .stores.places import require_modules, require_places
 
 if TYPE_CHECKING:
     import xarray as xr

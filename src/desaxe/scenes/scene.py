@@ -11,15 +11,15 @@ from ..mechanism.unit_system import SI, UnitSystem
 from ..support.progress import Progress
 from ..support.shown import printable
 from .content import Content
-from .motor import MotorResult
-from .peaks import PeakResult
-from .read import plain_data, read
+from .parts.extremes import PeakResult
+from .parts.motor import MotorResult
+from .parts.turning import FeasibilityResult
+from .reading.read import plain_data, read
+from .reading.units import units_written
+from .reading.values import Value
 from .report import report
 from .run import CheckResult, Run, compute, steps_of, write_files
 from .schema import SceneError as SceneError
-from .turning import FeasibilityResult
-from .units import units_written
-from .values import Value
 
 if TYPE_CHECKING:
     import xarray as xr

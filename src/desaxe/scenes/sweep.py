@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 from ..mechanism.own import using
 from ..sweeps.meter import Watch
 from ..sweeps.sweep import run_sweep
+from .parts.stored import sweep_content
 from .scene import Scene
 from .scene import scene as scene_of
-from .stored import sweep_content
 
 if TYPE_CHECKING:
     import xarray as xr

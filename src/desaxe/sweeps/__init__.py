@@ -2,7 +2,7 @@
 
 sweep     what `desaxe.sweep` does with names and inputs
 place     whether a store may be written at a place, and has room there
-peaks     refined peaks of the designs of a sweep
+peak_step refined peaks of the designs of a sweep
 estimate  size, time and free disk before it starts
 memory    how much memory is free
 request   what identifies a sweep, and how two differ

@@ -16,7 +16,7 @@ from ..runtime.accuracy import accuracy_of
 from ..runtime.request import several
 from ..support.version import version as desaxe_version
 from .layout import Layout, layout_of, table_of
-from .peaks import PeakRequest, PeakStep, peak_requests, peak_steps
+from .peak_step import PeakRequest, PeakStep, peak_requests, peak_steps
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,7 +9,7 @@ import desaxe as dx
 from desaxe.runtime import kernels as _kernels
 from desaxe.runtime import tiers
 from desaxe.runtime.kernels import kernel_of
-from desaxe.scenes.kernel import grid_kernel
+from desaxe.scenes.parts.kernel import grid_kernel
 from tests.example_scenes import COMPACTOR, SMALL
 
 pytestmark = pytest.mark.usefixtures("cold")

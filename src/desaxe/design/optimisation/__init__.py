@@ -7,5 +7,5 @@ kinks          measures with a kink as the largest or smallest of smooth ones
 search         scan, SLSQP, refinement by the optimality conditions
 one_objective  the optimum of one objective
 pareto         the front of several objectives
-result         what was found: multipliers, active limits, message
+optimum        what was found: multipliers, active limits, message
 """

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from .objectives import Goal, lower_limits, problems
+from .optimum import SATISFIED, SETTLED, result_of
 from .problem import UPPER, Array, Limit, Space
-from .result import SATISFIED, SETTLED, result_of
 from .search import Found, Search
 
 EDGES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # of the rod: how near to the limit of turning the search goes

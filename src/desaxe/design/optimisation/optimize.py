@@ -14,8 +14,8 @@ from .objectives import goals_of, limits_of, space_of
 
 with put_off(), explained("optimize", "design"):
     from .one_objective import solved
+    from .optimum import units_of_optimum
     from .pareto import front
-    from .result import units_of_optimum
 
 
 def optimize(

@@ -13,8 +13,8 @@ import numpy as np
 from ..measures import measured
 from .objectives import Goal, lower_limits, upper_limits
 from .one_objective import solved
+from .optimum import FOUND, NONE, UNSURE
 from .problem import Limit, Space
-from .result import FOUND, NONE, UNSURE
 
 
 def front(

@@ -1,7 +1,7 @@
 """The scatter of a quantity whose inputs have tolerances.
 
 tolerance  the public call
-result     the dict that is returned, and its lines
+scatter    the dict that is returned, and its lines
 function   a quantity as a function of its inputs, with slopes; whether it is smooth
 uncertain  inputs with a tolerance or a distribution
 """

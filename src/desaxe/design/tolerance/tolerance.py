@@ -21,7 +21,7 @@ from ...support.progress import Steps, progress_bar
 from ...support.shown import shown
 from ..measures import checked, is_named
 from .function import Beside, Function, derived
-from .result import Tolerance
+from .scatter import Tolerance
 from .uncertain import DISTRIBUTIONS, Array, Inexact, read
 
 BLOCK = 65536  # samples at a time

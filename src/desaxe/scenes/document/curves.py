@@ -10,7 +10,7 @@ from ...mechanism.status import PointStatus
 from ...mechanism.unit_system import UnitSystem
 from ...support.forks import IMPORTS
 from ..content import Content
-from ..pictures import drawn
+from ..parts.pictures import drawn
 from .parts import Block, Section, Table, Text, cell, image_of, thinned
 
 if TYPE_CHECKING:

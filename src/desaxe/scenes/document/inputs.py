@@ -14,7 +14,7 @@ from ...mechanism.names import LENGTHS
 from ...mechanism.unit_system import UnitSystem
 from ...support.forks import IMPORTS
 from ..content import Content
-from ..values import Value
+from ..reading.values import Value
 from .parts import Block, Section, Table, cell, designs_of, image_of, in_unit, unit_of, with_unit
 
 LISTED, POINTS = 6, 24  # values of a list, points of a load, that are all shown

@@ -7,7 +7,7 @@ from ...evaluation.in_units import in_units
 from ...mechanism.unit_system import UnitSystem
 from ...plot.steady import steady as picture_of
 from ..content import Content
-from ..motor import MotorResult
+from ..parts.motor import MotorResult
 from ..report import steady_remarks, steady_rows
 from .parts import Block, Lines, Section, Table, Text, image_of
 

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 from ...mechanism.unit_system import UnitSystem
 from ..content import Content
+from ..reading.values import Value
 from ..report import number
-from ..values import Value
 
 LARGE = 300_000  # bytes of a drawing: a larger one becomes an image of dots
 MOST = 6  # designs beside each other

@@ -12,9 +12,9 @@ from ...mechanism.unit_system import UnitSystem
 from ...support.progress import Steps
 from .. import schema
 from ..content import Content
-from ..peaks import WORDS, PeakResult, peaks_in_units, peaks_of
+from ..parts.extremes import WORDS, PeakResult, peaks_in_units, peaks_of
+from ..reading.requested import peak_of
 from ..report import remarks
-from ..requested import peak_of
 from ..schema import SceneError
 from .parts import MOST, Block, Section, Table, Text, axes_of, cell, thinned
 

@@ -5,6 +5,6 @@ steps     what was skipped and why, and what each pass saved
 loops     operations per loop of a kernel
 loads     how often a load is looked up, where, and its time
 estimate  time and memory, from the operations' costs
-report    the plan as text
+plan_text the plan as text
 total     time of a whole run, the first and later ones
 """

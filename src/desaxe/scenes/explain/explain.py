@@ -27,12 +27,12 @@ from ...runtime.threads import LEAST_BLOCK, available
 from ...runtime.tiers import BREAK_EVEN, COMPILED, forced_tier, tier_ahead
 from ...support.forks import IMPORTS
 from ..content import Content
-from ..grid import plan_of_grid
-from ..kernel import GridKernel
+from ..parts.grid import plan_of_grid
+from ..parts.kernel import GridKernel
+from ..parts.stored import prepared_content
+from ..reading.values import Value
 from ..scene import Scene
 from ..scene import scene as scene_of
-from ..stored import prepared_content
-from ..values import Value
 from . import estimate
 from .loads import load_costs, points_of
 from .loops import Loop, loops_of
@@ -73,7 +73,7 @@ class Plan:
 
     def __str__(self) -> str:
         with IMPORTS:
-            from .report import plan_text
+            from .plan_text import plan_text
 
         return plan_text(self.data)
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..spread import in_parts
+from ..reading.spread import in_parts
 
 SPACED = '''def spaced(first, rest, step, num):
     """num values from first + rest on, correctly rounded; step is in parts, whose products are exact."""

@@ -24,7 +24,7 @@ from ...mechanism.program import digest
 from ...runtime.kernels import KernelKey
 from ...runtime.written import UNSEALED
 from ...support.version import version
-from ..kernel import GridKernel, grid_kernel, own_axes
+from ..parts.kernel import GridKernel, grid_kernel, own_axes
 from ..scene import Scene
 from .axes import SPACED, WITH_AXES, axes_text, chosen_text
 from .entry_points import (

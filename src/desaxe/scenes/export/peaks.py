@@ -25,7 +25,7 @@ from ...peaks.designs import KINDS, Plan, plan_of, search_of
 from ...peaks.nodes import FINEST, graded
 from ...peaks.programs import Search, programs_of
 from ..content import Content, Peak
-from ..peaks import WORDS, columns_of, group_names
+from ..parts.extremes import WORDS, columns_of, group_names
 from .axes import rule_of
 from .portable import left_out
 

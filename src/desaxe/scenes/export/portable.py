@@ -27,7 +27,7 @@ from ...runtime.specialise import plain_form, specialise
 from ...runtime.written import UNSEALED
 from ...support.version import version
 from ..content import Content
-from ..kernel import own_axes
+from ..parts.kernel import own_axes
 from ..scene import Scene
 from ..schema import SceneError
 from .loaded import require_tables

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..evaluation.outer import outer_of
-from ..evaluation.plan import Plan, plan_of
-from ..support.progress import Steps
-from .content import Content
-from .peaks import provenance
-from .values import Value
+from ...evaluation.outer import outer_of
+from ...evaluation.plan import Plan, plan_of
+from ...support.progress import Steps
+from ..content import Content
+from ..reading.values import Value
+from .extremes import provenance
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -5,7 +5,7 @@ from math import isfinite, isnan, prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..support.extras import needed
+from ...support.extras import needed
 from .tables import table_of
 
 if TYPE_CHECKING:

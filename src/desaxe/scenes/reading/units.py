@@ -7,10 +7,10 @@ texts are those of its report and its pictures where it names none.
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from ..mechanism.inputs import INPUTS
-from ..mechanism.slips import slip
-from ..mechanism.unit_system import DIMENSIONS, SI, UnitSystem
-from ..support.quantity_text import split_quantity, with_unit_of
+from ...mechanism.inputs import INPUTS
+from ...mechanism.slips import slip
+from ...mechanism.unit_system import DIMENSIONS, SI, UnitSystem
+from ...support.quantity_text import split_quantity, with_unit_of
 
 SECTIONS = ("mechanism", "motion", "masses", "loads")
 ENDS = ("start", "stop", "step")

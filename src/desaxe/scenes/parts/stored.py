@@ -5,15 +5,15 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..evaluation.reductions import Reductions
-from ..sweeps.meter import Watch
-from ..sweeps.peaks import PeakRequest
-from ..sweeps.place import require_place
-from ..sweeps.request import Sweep, sweep_of
-from ..sweeps.sweep import Tell, run_sweep
-from .content import Content
+from ...evaluation.reductions import Reductions
+from ...sweeps.meter import Watch
+from ...sweeps.peak_step import PeakRequest
+from ...sweeps.place import require_place
+from ...sweeps.request import Sweep, sweep_of
+from ...sweeps.sweep import Tell, run_sweep
+from ..content import Content
+from ..schema import SceneError
 from .grid import arrays_of
-from .schema import SceneError
 
 if TYPE_CHECKING:
     import xarray as xr

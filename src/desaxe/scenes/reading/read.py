@@ -6,25 +6,25 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, cast
 
-from ..definitions.tables import read_definitions, redefine
-from ..evaluation.chunks import chunk_lengths
-from ..evaluation.reductions import NO_STATUS, Reductions, names_reduced, reductions_of
-from ..loads.load import Load
-from ..loads.resolve import settled
-from ..mechanism.inputs import INPUTS
-from ..mechanism.own import Definition, using
-from ..mechanism.slips import UnitWarning, slips_of_forces
-from ..mechanism.unit_system import UnitSystem
-from ..runtime.accuracy import accuracy_of
-from ..support.toml import read_toml
-from ..sweeps.layout import bytes_of
-from . import schema
-from .content import Content
+from ...definitions.tables import read_definitions, redefine
+from ...evaluation.chunks import chunk_lengths
+from ...evaluation.reductions import NO_STATUS, Reductions, names_reduced, reductions_of
+from ...loads.load import Load
+from ...loads.resolve import settled
+from ...mechanism.inputs import INPUTS
+from ...mechanism.own import Definition, using
+from ...mechanism.slips import UnitWarning, slips_of_forces
+from ...mechanism.unit_system import UnitSystem
+from ...runtime.accuracy import accuracy_of
+from ...scenes import schema
+from ...support.toml import read_toml
+from ...sweeps.layout import bytes_of
+from ..content import Content
+from ..parts.motor import on_motor
+from ..schema import SceneError, shown
 from .loads import varying, without_objects
-from .motor import on_motor
 from .needs import SECTIONS, require_for_grid, require_known
 from .requested import checks_of, peak_of, picture_of
-from .schema import SceneError, shown
 from .units import slips_of, units_of, with_units
 from .values import Value, values_of
 

@@ -7,15 +7,15 @@ from os import PathLike
 from os.path import abspath
 from pathlib import Path
 
-from ..runtime.written import require_place
-from ..support.extras import needed
-from ..support.files import require_writable
-from ..sweeps.layout import size_text
-from .content import Content
+from ...runtime.written import require_place
+from ...support.extras import needed
+from ...support.files import require_writable
+from ...sweeps.layout import size_text
+from ..content import Content
+from ..parts.extremes import groups_of
+from ..parts.stored import require_store
+from ..schema import SceneError
 from .files import check_place, files_of, requirements_of
-from .peaks import groups_of
-from .schema import SceneError
-from .stored import require_store
 from .workbook import require_room
 
 LEAST = {".nc": 8, ".npz": 8, ".csv": 4, ".xlsx": 1}  # bytes that a number takes in a file, at least

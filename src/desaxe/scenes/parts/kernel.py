@@ -6,13 +6,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..loads.load import Load, OverY
-from ..loads.resolve import plan_of, split
-from ..mechanism.catalogue import of_design
-from ..mechanism.names import LENGTHS, STATUS
-from ..runtime.kernels import KernelKey, key_of
-from ..runtime.request import Request, request
-from .content import Content
+from ...loads.load import Load, OverY
+from ...loads.resolve import plan_of, split
+from ...mechanism.catalogue import of_design
+from ...mechanism.names import LENGTHS, STATUS
+from ...runtime.kernels import KernelKey, key_of
+from ...runtime.request import Request, request
+from ..content import Content
 
 
 def own_axes(content: Content, names: Iterable[str]) -> dict[str, list[str]]:

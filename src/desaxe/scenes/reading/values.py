@@ -5,12 +5,12 @@ from decimal import Decimal
 from fractions import Fraction
 from math import floor
 
-from ..loads.load import Load
-from ..mechanism.inputs import INPUTS, Input
-from ..mechanism.read import read
-from ..mechanism.units import exact
-from . import schema
-from .schema import SceneError, shown
+from ...loads.load import Load
+from ...mechanism.inputs import INPUTS, Input
+from ...mechanism.read import read
+from ...mechanism.units import exact
+from ...scenes import schema
+from ..schema import SceneError, shown
 from .spread import MOST, spread
 
 Value = float | tuple[float, ...] | Load

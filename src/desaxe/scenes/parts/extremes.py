@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.evaluate import evaluate
-from ..evaluation.in_units import in_units
-from ..evaluation.labels import (
+from ...evaluation.evaluate import evaluate
+from ...evaluation.in_units import in_units
+from ...evaluation.labels import (
     CONVENTIONS,
     import_xarray,
     input_attributes,
@@ -17,16 +17,16 @@ from ..evaluation.labels import (
     source,
     tell_loads,
 )
-from ..mechanism.catalogue import quantity
-from ..mechanism.inputs import INPUTS
-from ..mechanism.names import sensitivity
-from ..mechanism.status import PeakStatus
-from ..mechanism.unit_system import UnitSystem
-from ..peaks.peak import peak
-from ..support.forks import IMPORTS
-from ..support.progress import Steps
-from .content import Claim, Content, Peak
-from .values import Value
+from ...mechanism.catalogue import quantity
+from ...mechanism.inputs import INPUTS
+from ...mechanism.names import sensitivity
+from ...mechanism.status import PeakStatus
+from ...mechanism.unit_system import UnitSystem
+from ...peaks.peak import peak
+from ...support.forks import IMPORTS
+from ...support.progress import Steps
+from ..content import Claim, Content, Peak
+from ..reading.values import Value
 
 if TYPE_CHECKING:
     import xarray as xr

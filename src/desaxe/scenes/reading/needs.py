@@ -3,12 +3,12 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from ..mechanism.catalogue import law_name, of_design, quantity
-from ..mechanism.names import FORCE_STATUS, LENGTHS, LOADS, STATUS
-from ..mechanism.program import Variant, program_of
-from ..runtime.request import needs_no_speed
-from . import schema
-from .schema import SceneError, shown
+from ...mechanism.catalogue import law_name, of_design, quantity
+from ...mechanism.names import FORCE_STATUS, LENGTHS, LOADS, STATUS
+from ...mechanism.program import Variant, program_of
+from ...runtime.request import needs_no_speed
+from ...scenes import schema
+from ..schema import SceneError, shown
 from .values import Value
 
 SECTIONS: dict[str, type[schema.Section]] = {

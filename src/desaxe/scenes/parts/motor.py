@@ -5,21 +5,21 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..design.steady.result import NUMBERS, Steady
-from ..design.steady.steady import FLUCTUATION, FLYWHEEL, steady
-from ..evaluation.labels import import_xarray, input_attributes, tell_loads
-from ..loads.load import Load
-from ..loads.motors import MakeKloss, MakeOverOmega, Motor
-from ..mechanism.inputs import Input
-from ..mechanism.names import LENGTHS
-from ..mechanism.status import SteadyStatus
-from ..mechanism.unit_system import OTHERS, UnitSystem
-from ..support.forks import IMPORTS
-from . import schema
-from .content import Content, OnMotor
-from .peaks import provenance
-from .schema import SceneError, shown
-from .values import Value, read_number
+from ...design.steady.result import NUMBERS, Steady
+from ...design.steady.steady import FLUCTUATION, FLYWHEEL, steady
+from ...evaluation.labels import import_xarray, input_attributes, tell_loads
+from ...loads.load import Load
+from ...loads.motors import MakeKloss, MakeOverOmega, Motor
+from ...mechanism.inputs import Input
+from ...mechanism.names import LENGTHS
+from ...mechanism.status import SteadyStatus
+from ...mechanism.unit_system import OTHERS, UnitSystem
+from ...scenes import schema
+from ...support.forks import IMPORTS
+from ..content import Content, OnMotor
+from ..reading.values import Value, read_number
+from ..schema import SceneError, shown
+from .extremes import provenance
 
 if TYPE_CHECKING:
     import xarray as xr

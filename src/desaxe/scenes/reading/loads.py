@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from ..loads.load import Load
-from ..loads.motors import Motor
-from ..loads.tabulated import over_stroke, over_theta, over_Y
-from ..support.extras import MissingExtraError
-from .schema import Range, SceneError, Varying, shown
+from ...loads.load import Load
+from ...loads.motors import Motor
+from ...loads.tabulated import over_stroke, over_theta, over_Y
+from ...support.extras import MissingExtraError
+from ..schema import Range, SceneError, Varying, shown
 from .values import Value, values_of
 
 RANGE = ("start", "stop", "num", "step")

@@ -3,12 +3,12 @@
 from pathlib import Path
 from typing import Any
 
-from ..evaluation.grid import grid
-from ..evaluation.in_units import in_units
-from ..mechanism.unit_system import UnitSystem
-from ..runtime.written import replacing_ours
-from ..support.forks import IMPORTS
-from .content import Content, Picture
+from ...evaluation.grid import grid
+from ...evaluation.in_units import in_units
+from ...mechanism.unit_system import UnitSystem
+from ...runtime.written import replacing_ours
+from ...support.forks import IMPORTS
+from ..content import Content, Picture
 from .grid import arrays_of
 
 
@@ -16,7 +16,7 @@ def draw(picture: Picture, content: Content, shown_in: UnitSystem, overwrite: bo
     """Draw the curves of a picture, in the units shown, into its file; return its path."""
     axes, path = drawn(picture, content, shown_in), Path(picture.file)
     with IMPORTS:
-        from ..plot import save
+        from ...plot import save
     with replacing_ours(path, overwrite) as staged:
         save(axes.figure, staged)
     return path
@@ -25,7 +25,7 @@ def draw(picture: Picture, content: Content, shown_in: UnitSystem, overwrite: bo
 def drawn(picture: Picture, content: Content, shown_in: UnitSystem) -> Any:
     """The curves of a picture, in the units shown; returns the Axes."""
     with IMPORTS:
-        from ..plot import curves
+        from ...plot import curves
 
     # With the names of the outputs the kernel of the grid serves here too, where all inputs are the same.
     shared = picture.quantity in content.outputs and set(picture.inputs) == set(content.inputs)

@@ -4,15 +4,15 @@ from collections.abc import Iterable, Mapping
 from math import pi
 from typing import Any
 
-from ..loads.load import Load, OverTheta
-from ..mechanism.catalogue import of_design, quantity
-from ..mechanism.inputs import INPUTS
-from ..mechanism.names import CENTRES, LENGTHS, STATUS, sensitivity
-from . import schema
-from .content import Check, Claim, Peak, Picture
+from ...loads.load import Load, OverTheta
+from ...mechanism.catalogue import of_design, quantity
+from ...mechanism.inputs import INPUTS
+from ...mechanism.names import CENTRES, LENGTHS, STATUS, sensitivity
+from ...scenes import schema
+from ..content import Check, Claim, Peak, Picture
+from ..schema import SceneError, shown
 from .needs import OPTIONAL, needs_of, require, require_for_grid, require_known, single, with_others
 from .printed import read_percentage, read_printed
-from .schema import SceneError, shown
 from .values import Value, design_of, number_of, only_inputs, values_of
 
 SENSITIVITIES = LENGTHS  # of a peak, those on which it depends, unless others are requested

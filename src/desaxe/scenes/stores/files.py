@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..runtime.written import remember, require_ours
-from ..support.files import check_target, kind_of, require_space, staging, swap_in
-from ..support.forks import IMPORTS, imported
-from ..support.shown import printable
+from ...runtime.written import remember, require_ours
+from ...support.files import check_target, kind_of, require_space, staging, swap_in
+from ...support.forks import IMPORTS, imported
+from ...support.shown import printable
 from .tables import table_of
 from .workbook import sheets_of, write_workbook
 
@@ -98,7 +98,7 @@ def _netcdf(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Da
 
 def _zarr(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:
     with IMPORTS:
-        from ..sweeps.skeleton import CONSOLIDATED
+        from ...sweeps.skeleton import CONSOLIDATED
         from .quiet_store import quiet_store
 
     with quiet_store(path) as store, warnings.catch_warnings():

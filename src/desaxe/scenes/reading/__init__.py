@@ -1,0 +1,11 @@
+"""Reading of scenes, a file or mapping as `Content`: numbers with their units, told by their keys.
+
+read       a file or mapping as Content
+requested  [[check]], [[peak]] and [[picture]] as what they ask for
+values     numbers with units, lists and ranges as SI numbers
+spread     evenly spaced values of a range, each rounded once
+printed    values as a paper prints them, compared digit by digit
+loads      loads of a scene: tables and files
+needs      the inputs that quantities need
+units      `[units]`: units attached to plain numbers
+"""
