@@ -1,4 +1,4 @@
-"""Reading of scenes, a file or mapping as `Content`: numbers with their units, told by their keys.
+"""Reading of scenes: a file or mapping as `Content`, numbers with their units.
 
 read       a file or mapping as Content
 requested  [[check]], [[peak]] and [[picture]] as what they ask for
