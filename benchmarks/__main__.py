@@ -2,6 +2,7 @@
 
 import argparse
 import json
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,8 @@ DOCS = ROOT / "docs"
 PAGE, MEASURED = DOCS / "benchmarks.md", DOCS / "measured.md"
 STARTS = "starts"  # no race: processes of desaxe alone
 STEADY = "steady"  # no race: beside simulating
+LOADS = "loads"  # no race: beside a constant force
+TABLES = (STEADY, LOADS)
 DESCRIPTION = """\
 desaxe beside NumPy, numba, numexpr, JAX, CasADi, heyoka and C at the same works, on one core and on all:
 time as a multiple of desaxe's, error against the truth. The peers come with the extra `peers`, C with gcc;
@@ -52,10 +55,10 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--only",
         action="append",
-        choices=[*keys, STARTS, STEADY],
+        choices=[*keys, STARTS, *TABLES],
         metavar="WORK",
         help=f"this work alone; repeatable; {STARTS}: desaxe's first calls and second processes; "
-        f"{STEADY}: steady states beside simulating them",
+        f"{STEADY}: steady states beside simulating them; {LOADS}: loads that vary beside a constant force",
     )
     parser.add_argument(
         "--quick", action="store_true", help="five small works, few rounds, no cold starts: a minute"
@@ -105,12 +108,11 @@ def _measure(options: argparse.Namespace) -> None:
     effort = QUICK if options.quick else FULL
     effort = effort._replace(points=options.points, rounds=options.rounds or effort.rounds)
     only = options.only or ()
-    if STEADY in only:
-        from .steady import table
-
-        print(table())
-        if set(only) == {STEADY}:
-            return
+    for name in TABLES:
+        if name in only:
+            print(import_module(f".{name}", __package__).table())
+    if only and set(only) <= set(TABLES):
+        return
     works = [BY_KEY[key] for key in only if key in BY_KEY]
     with progress_bar() as watch:
         data = measure([], Effort(False, 2)) if STARTS in only else {}

@@ -1,7 +1,8 @@
-"""`python -m benchmarks.loads`: grids and peaks of a driving torque under loads, beside a constant force.
+"""`python -m benchmarks --only loads`: a driving torque under loads, beside a constant force.
 
-The same machine in one process and in turns: a grid of 721 angles and 512 designs, stored and reduced,
-and the peaks of 512 designs in one call, by NumPy as in a first call, and with machine code.
+The same machine in one process and in turns: a grid of 721 angles and 512 designs, stored and reduced, as
+many points of an array, and the peaks of 512 designs in one call, by NumPy as in a first call, and with
+machine code.
 """
 
 import os
@@ -47,9 +48,12 @@ def works(load: Any) -> dict[str, Callable[[], Any]]:
     ec = np.linspace(-0.05, 0.05, DESIGNS)
     grid = partial(dx.grid, "T_in", theta=np.linspace(0.0, 2.0 * np.pi, ANGLES), ec=ec, F_Y=load, **MACHINE)
     peak = partial(dx.peak, "T_in", ec=ec, F_Y=load, **MACHINE)
+    points = np.meshgrid(np.linspace(0.0, 2.0 * np.pi, ANGLES), ec)
+    theta, offsets = (np.ascontiguousarray(column.reshape(-1)) for column in points)
     return {
         "grid": grid,
         "grid, reduced": partial(grid, reduce={"theta": ["absmax", "mean"]}),
+        "points": partial(dx.evaluate, "T_in", theta=theta, ec=offsets, F_Y=load, **MACHINE),
         "peaks": partial(_by, "numpy", peak),
         "peaks, compiled": partial(_by, "compiled", peak),
     }
@@ -61,16 +65,14 @@ def _by(tier: str, run: Callable[[], Any]) -> None:
     del os.environ["DESAXE_TIER"]
 
 
-def main() -> None:
-    """Print times and their ratios to those without a load."""
+def table() -> str:
+    """The times, and their ratios to those without a load."""
     rows = {name: works(load) for name, load in loads().items()}
-    print(f"{ANGLES} angles, {DESIGNS} designs\n\n| ms (ratio) | {' | '.join(rows['a number'])} |")
-    print("|---" * (1 + len(rows["a number"])) + "|")
-    found = {work: times({n: row[work] for n, row in rows.items()}, ROUNDS) for work in rows["a number"]}
+    first = rows["a number"]
+    lines = [f"{ANGLES} angles, {DESIGNS} designs", "", f"| ms (ratio) | {' | '.join(first)} |"]
+    lines.append("|---" * (1 + len(first)) + "|")
+    found = {work: times({n: row[work] for n, row in rows.items()}, ROUNDS) for work in first}
     for name in rows:
         cells = [f"{own[name] * 1e3:.1f} ({own[name] / own['a number']:.1f})" for own in found.values()]
-        print(f"| {name} | {' | '.join(cells)} |")
-
-
-if __name__ == "__main__":
-    main()
+        lines.append(f"| {name} | {' | '.join(cells)} |")
+    return "\n".join(lines)

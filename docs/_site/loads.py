@@ -53,6 +53,12 @@ CALLS = {
     ),
     "counterweight": lambda load, _: dx.counterweight(F_Y=load, **DESIGN),
     "fit": lambda load, _: dx.fit(_measured(), over={"m_slider": 1.0}, F_Y=load, **_without("m_slider")),
+    **{
+        call: lambda load, _, call=call: getattr(dx, call)(F_Y=load, **DESIGN)
+        for call in ("events", "feasibility")
+    },
+    "inverse": lambda load, _: dx.inverse(Y=0.2, F_Y=load, **DESIGN),
+    "synthesize": lambda load, _: dx.synthesize(stroke=0.1, time_ratio=1.05, BC=0.2, F_Y=load),
     "explore": lambda load, room: dx.explore(path=room / "page.html", F_Y=load, **DESIGN),
     **{
         f"compile(to={to!r})": lambda load, room, to=to: _machine(load).compile(

@@ -134,3 +134,18 @@ def test_a_load_that_opposes_either_way_holds_a_crank_at_rest(mu):
     given = BODIES | {"mu": mu, "F_Y": 30.0, "omega0": 1e-9}
     needed = dx.evaluate("T_in", theta=start.theta, **given)  # inward, against +30 N
     assert 5.0 * (start.t - 1.0) == pytest.approx(needed, rel=1e-6)
+
+
+@pytest.mark.parametrize("kind", LOADS)
+def test_calls_about_the_motion_alone_ignore_loads(kind):
+    """A machine with loads is good for each of them, and they answer what they answer without."""
+    asked = {"inverse": {"Y": 0.06}, "events": {}, "feasibility": {}}
+    machine = dx.Machine(**BODIES, omega0=3.0, F_Y=LOADS[kind])
+    for call, more in asked.items():
+        bare = getattr(dx, call)(ec=0.01, AB=0.04, BC=0.064, **more)
+        if call == "events":
+            bare = dx.events(ec=0.01, AB=0.04, BC=0.064, omega0=3.0)
+        for found in (getattr(dx, call)(**machine, **more), getattr(machine, call)(**more)):
+            assert repr(found) == repr(bare), call
+    needed = {"stroke": 0.082, "time_ratio": 1.1, "BC": 0.064}
+    assert repr(dx.synthesize(**needed, F_Y=LOADS[kind])) == repr(dx.synthesize(**needed))

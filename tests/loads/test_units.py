@@ -1,5 +1,7 @@
 """Loads in the units of a machine, and loads of plain numbers that meet other units."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -137,3 +139,32 @@ def test_the_period_of_a_table_is_in_the_unit_of_its_angles():
     table = {"over_theta": [[0, 0], [90, -500]], "theta": "deg", "period": 720, "kind": "linear"}
     load = dx.scene({**SCENE, "loads": {"F_Y": table}}).inputs["F_Y"]
     assert load.period == pytest.approx(4.0 * np.pi, rel=1e-15)
+
+
+def test_a_load_says_the_ranges_of_both_ways():
+    there_and_back = PRESS.over_Y([200, 300], [-80, 0], [0.0, 0.4], kind="linear")
+    assert repr(there_and_back) == "<load over Y: 2 points, linear, -80000 to 0 N, inward 0 to 400 N>"
+    assert repr(dx.over_Y([0.2, 0.3], [-80, 0], kind="linear")) == "<load over Y: 2 points, linear, -80 to 0>"
+
+
+@pytest.mark.parametrize("inward", [None, [0.0, 400.0]])
+def test_titles_show_loads_in_the_units_of_the_machine(inward):
+    load = dx.over_Y(["200 mm", "300 mm"], ["-80 kN", "-1e-3 kN"], inward and ["0 N", "400 N"], kind="linear")
+    machine = PRESS.replace(F_Y=load, F_X=PRESS.over_theta([0, 180], [1e-3, 2e3], "step"))
+    found = machine.grid("T_in", theta=np.linspace(0.0, 360.0, 5))
+    ways = "-80 to -0.001 kN" + ("" if inward is None else ", inward 0 to 0.4 kN")
+    assert f"F_Y: <load over Y: 2 points, linear, {ways}>" in found.attrs["loads"]
+    assert "F_X: <load over theta: 2 points, step, 0.001 to 2000 kN>" in found.attrs["loads"]
+    title = dx.plot.curves(found, "T_in")[0].axes.get_title(loc="left").replace("\u00a0", " ")
+    assert f"2 points, linear, {ways}" in " ".join(title.split())
+    assert " N" not in title
+
+
+def test_an_offset_in_metres_on_a_machine_in_millimetres_is_told():
+    with pytest.warns(dx.UnitWarning, match=r'ec = 0.015 mm, write ec = "0.015 m"'):
+        dx.Machine(ec=0.015, AB=75, BC=300, omega0=60, units=UNITS)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for ec in (0, 1, -15, 0.1, "0.015 mm"):
+            dx.Machine(ec=ec, AB=75, BC=300, omega0=60, units=UNITS)
+        dx.Machine(ec=1.5e-5, AB=0.075, BC=0.3, omega0=60.0)

@@ -290,7 +290,5 @@ def test_a_title_does_not_break_inside_of_a_word():
     inputs = {"ec": 0.0, "AB": 0.075, "BC": 0.3, "omega0": 1.0, "m_slider": 1.0}
     grid = dx.grid("T_in", theta=[0.0, 1.0, 2.0], F_Y=load, **inputs)
     title = dx.plot.curves(grid, "T_in")[0].axes.get_title(loc="left").replace("\u00a0", " ")
-    whole = (
-        "F_Y over the distance from the outer dead centre: 3 points, linear, -80000 to 0, another one inward"
-    )
+    whole = "over the distance from the outer dead centre: 3 points, linear, -80000 to 0 N, inward 0 to 1 N"
     assert whole in " ".join(title.split())

@@ -289,8 +289,7 @@ class OverY(Load):
 
     def told(self, conversion: "Conversion | None" = None) -> str:
         """The table in a line; with a conversion in that unit."""
-        ways = "" if self.inward is None else ", another one inward"
-        return f"<load over Y: {_described(self.outward, self.kind, self.unit, conversion)}{ways}>"
+        return f"<load over Y: {_described(self.outward, self.kind, self.unit, conversion, self.inward)}>"
 
     def __repr__(self) -> str:
         return self.told()
@@ -301,9 +300,14 @@ def _plain(x: Any) -> Any:
     return float(x) if isinstance(x, (int, float)) else x
 
 
-def _described(table: Table, kind: str, unit: str | None, conversion: "Conversion | None") -> str:
-    ends = min(table.values), max(table.values)
+def _described(
+    table: Table, kind: str, unit: str | None, conversion: "Conversion | None", inward: Table | None = None
+) -> str:
     if conversion is not None and conversion.si != 1:
-        ends, unit = tuple(map(conversion.shown, ends)), conversion.unit
-    told = f"{len(table.knots)} points, {kind}, {ends[0]:g} to {ends[1]:g}"
-    return f"{told} {unit}" if unit else told
+        unit = conversion.unit
+    ranges = []
+    for way in (table, inward) if inward is not None else (table,):
+        ends = min(way.values), max(way.values)
+        low, high = ends if conversion is None else map(conversion.shown, ends)
+        ranges.append(f"{low:g} to {high:g}" + (f" {unit}" if unit else ""))
+    return f"{len(table.knots)} points, {kind}, {', inward '.join(ranges)}"

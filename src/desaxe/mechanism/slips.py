@@ -26,6 +26,7 @@ LARGEST = {
 LARGEST_DOUBLE = sys.float_info.max
 SMALLEST = dict.fromkeys(("g_X", "g_Y"), 0.1)
 LINKS, SHORTEST = ("AB", "BC"), 5e-4  # shorter ones were given in metres where another unit was named
+SMALL_OFFSET = 5e-4  # of the crank: no smaller one is meant to be one
 MOST_TURNS = 2.0
 FORCES = ("F_X", "F_Y")
 STRONGEST = 1e9  # Pa: of steel, in a rod half as thick as it is long; those of presses carry some 2e7
@@ -55,10 +56,21 @@ def warn_of_slips(
     inputs   in SI units, among which forces are looked for
     """
     found = [told for name, value in _alone(written) if (told := slip(name, value, units))]
+    found += _offset_in_metres(written.get("ec"), units, inputs.get("AB"))
     found += slips_of_forces(inputs, units)
     if found:
         message = f"almost surely a slip: {'; '.join(found)}"
         warnings.warn(message, UnitWarning, stacklevel=stacklevel)
+
+
+def _offset_in_metres(ec: Any, units: UnitSystem, AB: Any) -> list[str]:
+    """The warning about an offset that is tiny beside the crank, and none in metres."""
+    conversion = units.of("ec")
+    if conversion.si == 1 or type(ec) not in (int, float) or type(AB) is not float:
+        return []
+    if not 0.0 < abs(conversion.to_si(float(ec))) < SMALL_OFFSET * AB or not abs(ec) > SMALL_OFFSET * AB:
+        return []
+    return [f'ec = {ec:.6g} {conversion.unit}, write ec = "{ec:.6g} m"']
 
 
 def slips_of_forces(inputs: Mapping[str, Any], units: UnitSystem = SI) -> list[str]:

@@ -43,8 +43,10 @@ def _loads(dataset: "xr.Dataset", needs: Collection[str]) -> Iterator[str]:
     """The loads that vary with the motion; what a table says of one without a unit is in newtons."""
     for name, words in _VARYING.findall(str(dataset.attrs.get("loads", ""))):
         if name in needs:
-            unit = f" {INPUTS[name].unit}" if re.search(r" to \S*[0-9]$", words) else ""
-            yield f"{name} {words}{unit}"
+            ways = words.split(", inward ")
+            plain = re.search(r" to \S*[0-9]$", words) is not None
+            unit = f" {INPUTS[name].unit}" if plain else ""
+            yield f"{name} " + ", inward ".join(f"{way}{unit}" for way in ways)
 
 
 def _needs(names: Sequence[str], state: bool) -> Collection[str]:
