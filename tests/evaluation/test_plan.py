@@ -1,5 +1,7 @@
 """A plan cut into blocks: each block has the digits of the whole, under loads and in reductions too."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -37,8 +39,9 @@ def over_Y():
 
 def roads(name, inputs, reduce, tmp_path, monkeypatch):
     """Compute a grid by other roads: lazy in several cuts, a store, a sweep in memory, a scene in blocks."""
+    reduced = [axis for key in reduce or () for axis in ([key] if isinstance(key, str) else key)]
     for cut in CUTS:
-        left = {axis: n for axis, n in cut.items() if axis not in (reduce or ())}
+        left = {axis: n for axis, n in cut.items() if axis not in reduced}
         yield cut, dx.grid(name, reduce=reduce, chunks=left, **inputs).compute(scheduler="synchronous")
     store = tmp_path / "store.zarr"
     yield "store", dx.sweep(name, store=store, chunks=2, reduce=reduce, **inputs).compute()
@@ -48,7 +51,8 @@ def roads(name, inputs, reduce, tmp_path, monkeypatch):
     scene = {part: {n: _plain(inputs[n]) for n in names} for part, names in parts.items()}
     loads = {n: inputs[n] for n in ("F_Y",) if n in inputs}
     monkeypatch.setattr("desaxe.scenes.parts.grid.BLOCK", 5)
-    found = dx.scene({**scene, "loads": loads, "outputs": [name], "reduce": reduce or {}}).run()
+    text = {key if isinstance(key, str) else ", ".join(key): kinds for key, kinds in (reduce or {}).items()}
+    found = dx.scene({**scene, "loads": loads, "outputs": [name], "reduce": text}).run()
     yield "scene", found.dataset
 
 
@@ -107,3 +111,85 @@ def test_an_empty_axis_gives_empty_results_or_none(reduce):
     )
     assert (found.a_C_skipped == 0).all()
     assert bits(dx.grid("a_C", chunks={"ec": 1}, **inputs).compute()) == bits(dx.grid("a_C", **inputs))
+
+
+# ---- axes that are cut while they are reduced ------------------------------------------------------
+
+ALL = {("theta", "ec"): ["absmax", "max", "min", "mean", "rms"]}
+
+
+PLAIN, LOADED = ("a_C", None), pytest.param("F_C_Y", over_Y, marks=pytest.mark.thorough)
+
+
+@pytest.mark.parametrize(("quantity", "load"), [PLAIN, LOADED])
+@pytest.mark.parametrize("most", [1, 2, 3])  # designs behind a result that are in memory at once
+def test_pieces_of_a_reduced_axis_combine_to_the_whole(quantity, load, most, tmp_path, monkeypatch):
+    inputs = {**EDGE, **MASSES, **({"F_Y": load()} if load else {})}
+    whole = dx.grid(quantity, reduce=ALL, **inputs)
+    monkeypatch.setattr("desaxe.evaluation.fold.MOST", most)
+    found = dx.grid(quantity, reduce=ALL, **inputs)
+    assert found.attrs == whole.attrs
+    for name in whole.variables:
+        if name.endswith(("_mean", "_rms")):
+            np.testing.assert_allclose(found[name], whole[name], rtol=1e-14)
+        else:  # extremes, where they are and on which side of a jump, and how many points count
+            np.testing.assert_array_equal(found[name], whole[name])
+    for road, other in roads(quantity, inputs, ALL, tmp_path, monkeypatch):
+        there = bits(other)
+        assert {n: there[n] for n in bits(found)} == bits(found), road
+
+
+def test_a_function_over_theta_is_cut_along_it(monkeypatch):
+    inputs = {**EDGE, **MASSES, "F_Y": dx.over_theta(lambda theta: 90.0 * np.cos(theta))}
+    names = [f"F_C_Y_{kind}" for kind in ("absmax", "absmax_theta", "min", "skipped")]
+    whole = dx.grid("F_C_Y", reduce={"theta": ["absmax", "min", "rms"]}, **inputs)
+    monkeypatch.setattr("desaxe.evaluation.fold.MOST", 7)
+    found = dx.grid("F_C_Y", reduce={"theta": ["absmax", "min", "rms"]}, **inputs)
+    for name in names:
+        np.testing.assert_array_equal(found[name], whole[name])
+    np.testing.assert_allclose(found.F_C_Y_rms, whole.F_C_Y_rms, rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    "reduce",
+    [{("theta", "ec"): "std"}, pytest.param({"theta": "max", "ec": "mean"}, marks=pytest.mark.thorough)],
+)
+def test_what_does_not_combine_has_its_axes_whole(reduce, monkeypatch):
+    whole = dx.grid("a_C", reduce=reduce, **EDGE, omega0=5.0)
+    monkeypatch.setattr("desaxe.evaluation.fold.MOST", 1)
+    assert bits(dx.grid("a_C", reduce=reduce, **EDGE, omega0=5.0)) == bits(whole)
+
+
+@pytest.mark.thorough
+def test_a_long_reduction_fits_into_memory(monkeypatch):
+    """Many designs behind one number: a few arrays of some of them at a time."""
+    monkeypatch.setattr("desaxe.evaluation.fold.MOST", 2**13, raising=False)
+    lengths = {"ec": np.linspace(0.0, 0.01, 512), "BC": np.linspace(0.3, 0.4, 512)}
+    asked = {"theta": [0.5, 1.0], "AB": 0.1, **lengths, "reduce": {("theta", "ec", "BC"): ["max", "mean"]}}
+    dx.grid("Y", **asked)  # compiles
+    tracemalloc.start()
+    found = dx.grid("Y", **asked)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 6e6  # 8 bytes a design are 2e6
+    assert found.Y_max_BC == 0.4
+    assert found.Y_skipped == 0
+
+
+def test_a_sweep_stopped_at_any_chunk_has_the_digits_of_the_grid(tmp_path, monkeypatch):
+    monkeypatch.setattr("desaxe.evaluation.fold.MOST", 2)
+    inputs = {**EDGE, **MASSES, "F_Y": over_Y()}
+    whole = bits(dx.grid("F_C_Y", reduce=ALL, **inputs))
+    for stopped in (1, 2):
+        asked = {"store": tmp_path / f"{stopped}.zarr", "chunks": {"BC": 1}, "reduce": ALL, **inputs}
+        calls = []
+
+        def stop(*_, calls=calls, stopped=stopped):
+            calls.append(0)
+            if len(calls) > stopped:
+                raise KeyboardInterrupt
+
+        with pytest.raises(KeyboardInterrupt):
+            dx.sweep("F_C_Y", progress=stop, **asked)
+        there = bits(dx.sweep("F_C_Y", **asked).compute())
+        assert {name: there[name] for name in whole} == whole

@@ -1,11 +1,12 @@
 """Reductions over several axes of arrays in memory, one group of axes after the other.
 
 A number without a value (NaN) is skipped. Where an axis has been reduced already, each number stands for as
-many points as it was made of, so that a mean over two axes is that of all their points.
+many points as it was made of, so that a mean over two axes is that of all their points. What is taken of
+pieces of an axis combines to that of the whole in the same way.
 """
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import prod
 from typing import Any, NamedTuple
 
@@ -17,6 +18,8 @@ from ..support.forks import imported
 from .reductions import percent_of
 
 Array = NDArray[Any]
+PIECE = "piece"  # the dimension of pieces that are combined
+MOST = 2**20  # numbers that are in memory behind each point of the result, where pieces combine
 
 
 class Field(NamedTuple):
@@ -68,6 +71,32 @@ def folded(field: Field, axes: Sequence[str], kind: str, coordinates: Mapping[st
     }
     places = {name: taken(rows(array)) for name, array in field.places.items()}
     return Field(rest, taken(np.abs(values) if kind == "absmax" else values), total, {**places, **own})
+
+
+def pieces(values: Mapping[str, Array], axes: Sequence[str]) -> Iterator[Mapping[str, Array]]:
+    """Yield the values of pieces along the first of some axes; without axes, the whole.
+
+    Their lengths depend on these axes alone, so that sums have one order however a grid is cut.
+    """
+    if not axes:
+        yield values
+        return
+    cut, *rest = axes
+    length = max(1, MOST // max(1, prod(values[name].size for name in rest)))
+    for start in range(0, max(1, values[cut].size), length):
+        yield {**values, cut: values[cut][start : start + length]}
+
+
+def combined(parts: Sequence[Field], kind: str) -> Field:
+    """One kind over an axis from that over its parts, which are in their order: sums go piece by piece."""
+    first = parts[0]
+    if len(parts) == 1:
+        return first
+    values, counts = np.stack([p.values for p in parts], -1), np.stack([p.counts for p in parts], -1)
+    places = {name: np.stack([p.places[name] for p in parts], -1) for name in first.places}
+    whole = Field((*first.dims, PIECE), values, counts, places)
+    found = folded(whole, (PIECE,), kind, {PIECE: np.arange(float(len(parts)))})
+    return found._replace(places={name: found.places[name] for name in first.places})
 
 
 def place(kind: str, rows: Array, good: Array) -> Array:

@@ -1,10 +1,11 @@
 """Reductions of a grid (largest, mean, ...) along some of its axes: a step of a plan.
 
 Where a kernel knows the first kinds, it reduces one axis on the way, and the grid is never stored; the rest
-is folded in memory. A reduced axis is whole in every block, so that a sum has one order.
+is folded in memory, piece by piece of a long axis. A reduced axis is whole in every block of a plan, so that
+a sum has one order.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import prod
 from typing import Any, NamedTuple
 
@@ -14,10 +15,10 @@ from numpy.typing import NDArray
 from ..compiler.languages.numba.reductions import EXTREMES, KINDS, outputs_of
 from ..mechanism.catalogue import quantity
 from ..mechanism.own import Definition
-from ..runtime.kernels import KernelKey, kernel_for
-from ..runtime.threads import in_blocks
+from ..runtime.kernels import KernelKey
+from ..runtime.threads import fill_reduced
 from ..runtime.tiers import COMPILED, tier_of
-from .fold import Field, field_of, folded
+from .fold import Field, combined, field_of, folded, pieces
 from .labels import Output, attributes, input_attributes, side_attributes
 from .outer import Outer
 from .points import Points, points_of
@@ -139,34 +140,55 @@ class Reduced(NamedTuple):
         return found
 
     def _kinds(self, of: Points, values: Mapping[str, Array], threads: int | None) -> dict[str, Array]:
-        """All kinds of all names, one stage after the other."""
+        """All kinds of all names; those of a cut axis are combined from its pieces."""
         found: dict[str, Array] = {}
-        firsts = self._firsts(of, values, threads)
+        whole = prod(values[name].size for name in of.dims)
+        compiled = self.key is not None and tier_of(self.key, whole) == COMPILED
+        parts = [self._chained(of, part, compiled, threads) for part in self._pieces(of, values)]
         total = prod(values[axis].size for axis in self.reductions.axes)
+        for name, chain in ((n, chain) for n in self.names for chain in self.reductions.chains(n)):
+            variable = chain_name(name, chain)
+            field = combined([fields[variable] for fields, _ in parts], chain[-1][1])
+            found[variable] = field.values
+            found |= {f"{variable}_{axis}": field.places[axis] for axis in extremes_at_end(chain)}
+            if self._has_side(chain):
+                found[f"{variable}_side"] = self._side(of, name, variable, field, values)
+            found[f"{name}_skipped"] = total - np.sum([counts[name] for _, counts in parts], axis=0)
+        return found
+
+    def _pieces(self, of: Points, values: Mapping[str, Array]) -> Iterator[Mapping[str, Array]]:
+        """The values of a block, along the outermost reduced axis in memory cut where all kinds combine."""
+        chains = [chain for name in self.names for chain in self.reductions.chains(name)]
+        stored = [name for name in self.reductions.axes if self.key is None or name != of.dims[-1]]
+        combine = all(len(chain) == 1 and chain[0][1] in KINDS for chain in chains)
+        return pieces(values, stored if combine else ())
+
+    def _chained(
+        self, of: Points, values: Mapping[str, Array], compiled: bool, threads: int | None
+    ) -> tuple[dict[str, Field], dict[str, Array]]:
+        """The results of all chains, one stage after the other; and how many points of each name count."""
+        found: dict[str, Field] = {}
+        counts: dict[str, Array] = {}
+        firsts = self._firsts(of, values, compiled, threads)
         for name, chain in ((n, chain) for n in self.names for chain in self.reductions.chains(n)):
             (axes, kind), *rest = chain
             first = firsts[name, kind]
             field = folded(first, [axis for axis in axes if axis in first.dims], kind, values)
             for axes, kind in rest:
                 field = folded(field.counted_anew(), axes, kind, values)
-            variable = chain_name(name, chain)
-            found[variable] = field.values
-            found |= {f"{variable}_{axis}": field.places[axis] for axis in extremes_at_end(chain)}
-            if self._has_side(chain):
-                found[f"{variable}_side"] = self._side(of, name, variable, field, values)
+            found[chain_name(name, chain)] = field
             left = tuple(number for number, axis in enumerate(first.dims) if axis not in self.dims)
-            found[f"{name}_skipped"] = total - first.counts.sum(axis=left)
-        return found
+            counts[name] = first.counts.sum(axis=left)
+        return found, counts
 
     def _firsts(
-        self, of: Points, values: Mapping[str, Array], threads: int | None
+        self, of: Points, values: Mapping[str, Array], compiled: bool, threads: int | None
     ) -> dict[tuple[str, str], Field]:
         """The values by name and kind of the first stage; where a kernel can, reduced along its axis."""
         stage = self.reductions.stages[0]
         kinds = tuple(dict.fromkeys(kind for name in self.names for kind in stage.kinds_of(name)))
         rest, along = of.dims[:-1], of.dims[-1]
         shape, length = tuple(values[name].size for name in rest), values[along].size
-        compiled = self.key is not None and tier_of(self.key, prod(shape) * length) == COMPILED
         if self.key is not None and compiled and length and all(shape):
             return self._fused(self.key, values, threads)
         fields = {name: field_of(of.dims, array) for name, array in of.compute(values, threads).items()}
@@ -232,21 +254,6 @@ class Reduced(NamedTuple):
         if not set(self.axes) <= set(flat):
             return np.zeros(shape, np.int8)
         return sides_of(name, of, flat).reshape(shape)
-
-
-def fill_reduced(
-    key: KernelKey, values: Mapping[str, Any], length: int, outs: Sequence[Array], threads: int | None
-) -> None:
-    """Fill the outputs of `outputs_of` by the kernel of a key, whose innermost axis has this length."""
-    kernel = kernel_for(key)
-    outer = {name for name, axis in kernel.axis_of if axis == 0}
-    names = [name for name, _ in kernel.axis_of]
-
-    def block(start: int, stop: int) -> None:
-        part = [values[n][start:stop] if n in outer else values[n] for n in names]
-        kernel.function(*part, length, *(out[start:stop] for out in outs))
-
-    in_blocks(block, outs[0].shape[0], outs[0].size * length, threads)
 
 
 def reduced_of(outer: Outer, branch: int, accuracy: Any, reductions: Reductions) -> Reduced:
