@@ -98,6 +98,32 @@ def test_the_page_has_table_and_picture(tmp_path, capsys):
     assert any(one["what"] == "steady state on a motor" for one in plan["also"])
 
 
+def test_a_motor_is_read_from_a_file_as_loads_are_and_swept_into_a_store(tmp_path, monkeypatch):
+    import xarray
+
+    rows = "0, 300\n90, 450\n110, -200\n"
+    (tmp_path / "bare.csv").write_text(rows)
+    (tmp_path / "heading.csv").write_text("speed [rpm]; torque [N m]\n" + rows.replace(",", ";"))
+    known = dx.over_omega([0, "90 rpm", "110 rpm"], [300, 450, -200], "smooth")
+    assert dx.over_omega.read(tmp_path / "bare.csv", "rpm", "N m", "smooth") == known
+    assert dx.over_omega.read(tmp_path / "heading.csv", kind="smooth") == known
+    assert dx.Machine(units="mm, rpm").over_omega.read(tmp_path / "bare.csv", kind="smooth") == known
+    scene = tmp_path / "press.toml"
+    text = (
+        'units = "mm, rpm"\n[mechanism]\nAB = 50\nBC = [180, 200]\nec = 10\n'
+        "[masses]\nm_slider = 20\nI_crank = 2\n"
+        '[loads]\nF_Y = -900\n[results]\ndata = "press.zarr"\n[steady]\nflywheel_inertia = [3, 5]\ntorque = '
+    )
+    monkeypatch.chdir(tmp_path)
+    for form in ('over_omega = "heading.csv"', 'over_omega = "bare.csv", omega = "rpm", torque = "N m"'):
+        scene.write_text(text + "{" + form + ', kind = "smooth"}\n')
+        found = dx.scene(scene).run().steady
+        assert found.asked.torque == known
+        back = xarray.open_zarr("press.zarr", group="steady")
+        assert back["omega_mean"].dims == ("steady_BC", "steady_flywheel_inertia")
+        np.testing.assert_array_equal(back["omega_mean"], found.dataset["omega_mean"])
+
+
 @pytest.mark.parametrize(
     ("steady", "said"),
     [
@@ -108,6 +134,9 @@ def test_the_page_has_table_and_picture(tmp_path, capsys):
         ({"torque": {"kloss": {"gear": 2}}}, "breakdown_torque is missing"),
         ({"torque": {"kloss": KLOSS, "kind": "linear"}}, "kind"),
         ({"torque": {"over_omega": [[1, 2], [0, 3]]}}, "must ascend"),
+        ({"torque": {"over_omega": "no.csv"}}, "no.csv.*No such file"),
+        ({"torque": {"over_omega": [[1, 2], [3, 3]], "omega": "rpm"}}, "omega = .rpm.: .* beside points"),
+        ({"torque": {"kloss": KLOSS, "torque": "N m"}}, "torque = .N m.: .* beside kloss"),
         ({"torque": 3, "flywheel_inertia": -1}, "flywheel_inertia = .*-1"),
         ({"torque": 3, "fluctuation": [0.1, 2.5]}, "fluctuation #2 = 2.5"),
         ({"torque": 3, "speed": 3}, "speed = 3: unknown key"),
@@ -141,3 +170,18 @@ def test_the_steady_states_are_written_beside_the_values(tmp_path, end):
         assert back["omega_mean"].units == "rpm"
     else:
         assert "omega_mean [rpm]" in file.read_text()
+
+
+def test_a_sweep_has_the_steady_states_in_its_store(tmp_path):
+    import xarray
+
+    place = str(tmp_path / "press.zarr")
+    motion = {"theta": [0.0, 1.0, 2.0], "omega0": 100}
+    scene = {**SCENE, "outputs": ["Y"], "motion": motion, "loads": {"F_Y": -900}, "results": {"store": place}}
+    for _ in range(2):  # the second run finds its store
+        result = dx.scene(scene).run()
+        assert result.failures == ()
+        back = xarray.open_zarr(place, group="steady")
+        np.testing.assert_array_equal(back["omega_mean"], result.steady.dataset["omega_mean"])
+        assert xarray.open_zarr(place)["Y"].shape == result.dataset["Y"].shape
+    assert "group steady" in result.report()

@@ -4,6 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import inf
+from os import PathLike
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,8 +13,8 @@ from numpy.typing import NDArray
 from ..mechanism.inputs import TINY, Input
 from ..mechanism.read import number_of
 from ..mechanism.unit_system import UnitSystem
-from ..support.shown import shown
-from .columns import column_of
+from ..support.shown import printable, shown
+from .columns import Column, column_of, column_of_file, rows_of, unit_of_column
 from .table import Table, held
 
 Array = NDArray[np.float64]
@@ -159,7 +160,8 @@ class MakeOverOmega:
     kind     "linear", or "smooth": a curve without corners, which rises and falls only where the table does
 
     `machine.over_omega` is the same in the units of a machine. Raises ValueError or TypeError for a table
-    that is no function of the speed.
+    that is no function of the speed. `over_omega.read("motor.csv", omega="rpm", torque="N m")` reads a table
+    from the first two columns of a file.
     """
 
     def __init__(self, units: UnitSystem | None = None) -> None:
@@ -170,30 +172,59 @@ class MakeOverOmega:
         own = (None, None) if self.units is None else (self.units.of("omega"), self.units.of("torque"))
         x = column_of("over_omega: speeds", speeds, ("rad/s",), own[0])
         y = column_of("over_omega: torques", torques, ("N*m",), own[1])
-        if not isinstance(kind, str) or kind not in KINDS:
-            raise ValueError(f"over_omega: kind = {shown(kind)}: it is one of {', '.join(KINDS)}")
-        if len(x.values) != len(y.values):
-            raise ValueError(
-                f"over_omega: {len(x.values)} speeds and {len(y.values)} torques; expected as many of both"
-            )
-        if len(x.values) < 2:
-            raise ValueError(f"over_omega: {len(x.values)} of the speeds; expected at least two points")
-        steps = np.diff(x.values)
-        if not (steps > 0.0).all():
-            at = int(np.argmin(steps))
-            raise ValueError(
-                f"over_omega: the speeds must ascend, but {x.values[at + 1]:g} follows {x.values[at]:g}"
-            )
-        table = held(x.values, y.values, kind)
-        if not np.isfinite(table.rows).all():
-            raise ValueError("over_omega: two speeds are too close for the torques there")
-        return OverOmega(table, kind, ("omega",) * x.plain + ("torque",) * y.plain)
+        return table_over_omega(x, y, kind)
 
     __call__.__qualname__ = "over_omega"  # as errors of Python call it
+
+    def read(
+        self,
+        path: str | PathLike[str],
+        omega: str | None = None,
+        torque: str | None = None,
+        kind: str = "linear",
+    ) -> Motor:
+        """A motor from the first two columns of a text file: speeds of the crank and torques.
+
+        omega, torque   units of the columns, such as "rpm" and "N m"; without, those of the heading, such as
+                        "speed [rpm], torque [N m]", else SI units
+        kind            as in `over_omega`; the form of the file is that of `over_theta.read`
+        """
+        heading, rows = rows_of(path, 2)
+        own = (None, None) if self.units is None else (self.units.of("omega"), self.units.of("torque"))
+        omega = unit_of_column(path, "omega", omega, heading[:1])
+        torque = unit_of_column(path, "torque", torque, heading[1:2])
+        x = column_of_file("omega", rows, 0, omega, ("rad/s",), own[0])
+        y = column_of_file("torque", rows, 1, torque, ("N*m",), own[1])
+        try:
+            return table_over_omega(x, y, kind)
+        except ValueError as error:
+            raise ValueError(f"{printable(path)}: {error}") from None
 
     def __repr__(self) -> str:
         units = f" in {self.units!r}" if self.units else ""
         return f"desaxe.over_omega(speeds, torques, kind='linear'){units}"
+
+
+def table_over_omega(x: Column, y: Column, kind: str) -> Motor:
+    """A motor from columns of speeds and torques; ValueError where they are no function."""
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise ValueError(f"over_omega: kind = {shown(kind)}: it is one of {', '.join(KINDS)}")
+    if len(x.values) != len(y.values):
+        raise ValueError(
+            f"over_omega: {len(x.values)} speeds and {len(y.values)} torques; expected as many of both"
+        )
+    if len(x.values) < 2:
+        raise ValueError(f"over_omega: {len(x.values)} of the speeds; expected at least two points")
+    steps = np.diff(x.values)
+    if not (steps > 0.0).all():
+        at = int(np.argmin(steps))
+        raise ValueError(
+            f"over_omega: the speeds must ascend, but {x.values[at + 1]:g} follows {x.values[at]:g}"
+        )
+    table = held(x.values, y.values, kind)
+    if not np.isfinite(table.rows).all():
+        raise ValueError("over_omega: two speeds are too close for the torques there")
+    return OverOmega(table, kind, ("omega",) * x.plain + ("torque",) * y.plain)
 
 
 class MakeKloss:

@@ -263,7 +263,7 @@ def _values(content: Content, result: Run) -> str:
     shape = " x ".join(f"{name} ({size})" for name, size in result.dataset.sizes.items())
     kept = "" if content.data is not None else '\n  not kept in a file: give [results] data = "out/values.nc"'
     if content.store is not None:
-        kept = f"\n  in the store {content.store}"
+        kept = f"\n  in the store {content.store}" + (", group steady beside them" if content.steady else "")
         return f"Values\n  {', '.join(map(str, result.dataset.data_vars))} over {shape or 'one point'}{kept}"
     taken = content.reduction
     of = f" ({', '.join(taken.kinds)} over {', '.join(taken.axes)})" if taken else ""

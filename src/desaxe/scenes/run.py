@@ -17,7 +17,7 @@ from .parts.motor import MotorResult, steady_of
 from .parts.pictures import draw
 from .parts.stored import sweep_content
 from .parts.turning import FeasibilityResult, feasibility_of
-from .stores.files import write
+from .stores.files import store_group, write
 from .stores.places import require_modules, require_places
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def steps_of(content: Content, watch: Progress | None) -> Steps:
     stored = content.store is not None
     blocks = blocks_of(content)[0] if content.outputs and not stored else 0
     peaks = sum(batches(one) for one in _shown_peaks(content))
-    files = len(content.pictures) + (content.data is not None)
+    files = len(content.pictures) + (content.data is not None) + (stored and content.steady is not None)
     return Steps(blocks + stored + peaks + files + (content.steady is not None), watch)
 
 
@@ -110,6 +110,9 @@ def _jobs(
         groups = dict(zip(groups_of(content), datasets, strict=True))
         job = partial(write, Path(content.data), found.dataset, groups, overwrite)
         jobs.append((content.data, f"writing {content.data}", job))
+    if content.store is not None and found.steady is not None and not found.failures:
+        storing = partial(store_group, Path(content.store), "steady", found.steady.dataset)
+        jobs.append((content.store, f"writing the group steady of {content.store}", storing))
     for picture in content.pictures:
         drawing = partial(_drawn, picture, content, shown_in, overwrite)
         jobs.append((picture.file, f"drawing {picture.file}", drawing))

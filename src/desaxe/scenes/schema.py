@@ -74,8 +74,11 @@ TableKind = Annotated[
     Literal["cubic", "linear", "step"], Meta(description='one of "cubic", "linear", "step"')
 ]
 MotorPoints = Annotated[
-    tuple[tuple[Number, Number], ...],
-    Meta(description='points of speed and torque, such as [["0 rpm", 30], ["1000 rpm", 0]]'),
+    str | tuple[tuple[Number, Number], ...],
+    Meta(
+        description='the path of a file such as "motor.csv", or points of speed and torque, such as '
+        '[["0 rpm", 30], ["1000 rpm", 0]]'
+    ),
 ]
 MotorKind = Annotated[Literal["linear", "smooth"], Meta(description='one of "linear", "smooth"')]
 Numbers = Annotated[float | str | tuple[Number, ...], Meta(description=f"{_NUMBER}, or a list of these")]
@@ -186,10 +189,12 @@ class KlossTable(Section, frozen=True):
 
 
 class MotorTable(Section, frozen=True):
-    """A motor: points of its torque over the crank's speed, or Kloss's formula."""
+    """A motor: a file or points of its torque over the crank's speed, or Kloss's formula."""
 
     over_omega: MotorPoints | None = None
     kind: MotorKind | None = None
+    omega: Unit | None = None
+    torque: Unit | None = None
     kloss: KlossTable | None = None
 
 

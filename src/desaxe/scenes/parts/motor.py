@@ -1,6 +1,7 @@
 """[steady] of a scene: the machine on its motor, and its steady states, labelled."""
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -9,14 +10,17 @@ from ...design.steady.result import NUMBERS, Steady
 from ...design.steady.steady import FLUCTUATION, FLYWHEEL, steady
 from ...evaluation.labels import import_xarray, input_attributes, tell_loads
 from ...loads.load import Load
-from ...loads.motors import MakeKloss, MakeOverOmega, Motor
+from ...loads.motors import MakeKloss, MakeOverOmega, Motor, over_omega
+from ...loads.resolve import settled
 from ...mechanism.inputs import Input
 from ...mechanism.names import LENGTHS
 from ...mechanism.status import SteadyStatus
 from ...mechanism.unit_system import OTHERS, UnitSystem
 from ...scenes import schema
+from ...support.extras import MissingExtraError
 from ...support.forks import IMPORTS
 from ..content import Content, OnMotor
+from ..reading.loads import file_of
 from ..reading.values import Value, read_number
 from ..schema import SceneError, shown
 from .extremes import provenance
@@ -49,13 +53,17 @@ class MotorResult(NamedTuple):
 
 
 def on_motor(
-    table: schema.SteadyTable, torque: Any, inputs: Mapping[str, Value], units: UnitSystem
+    table: schema.SteadyTable,
+    torque: Any,
+    inputs: Mapping[str, Value],
+    units: UnitSystem,
+    folder: Path | None,
 ) -> OnMotor:
     """The machine of a [steady] on its motor; `torque` as it stands in the scene, perhaps a Motor."""
     for name in LENGTHS:
         if name not in inputs:
             raise SceneError(f"steady: {name} is missing: give mechanism.{name}")
-    motor = torque if isinstance(torque, Motor) else _motor(table.torque, units)
+    motor = torque if isinstance(torque, Motor) else _motor(table.torque, units, folder)
     given = {n: v for n, v in inputs.items() if n != "theta" and n not in SPEEDS}
     given |= {name: _numbers(name, written) for name in ROWS if (written := getattr(table, name)) is not None}
     speeds = {n: v for n, v in inputs.items() if n in SPEEDS}
@@ -87,23 +95,43 @@ def _number(key: str, row: Input, written: Any) -> float:
     return number
 
 
-def _motor(written: Any, units: UnitSystem) -> Any:
+def _motor(written: Any, units: UnitSystem, folder: Path | None) -> Any:
     """The motor, or the number, of a torque as it stands in a scene."""
     if not isinstance(written, schema.MotorTable):
         return _number("torque", TORQUE, written)
     if (written.over_omega is None) == (written.kloss is None):
-        raise SceneError("steady.torque: a motor has over_omega = [...] or kloss = {...}")
+        raise SceneError('steady.torque: a motor has over_omega = "motor.csv", [...] or kloss = {...}')
     key = "over_omega" if written.kloss is None else "kloss"
-    if written.kind is not None and written.kloss is not None:
-        raise SceneError(f"steady.torque.kind = {shown(written.kind)}: it has no place beside kloss")
+    more = {
+        name: value for name in ("kind", "omega", "torque") if (value := getattr(written, name)) is not None
+    }
+    wrong = next(
+        (
+            name
+            for name in more
+            if key == "kloss" or (name != "kind" and not isinstance(written.over_omega, str))
+        ),
+        None,
+    )
+    if wrong is not None:
+        beside = "kloss" if key == "kloss" else "points"
+        raise SceneError(f"steady.torque.{wrong} = {shown(more[wrong])}: it has no place beside {beside}")
     try:
         if written.kloss is not None:
             four = {name: getattr(written.kloss, name) for name in written.kloss.__struct_fields__}
             return MakeKloss(units)(**four)
+        if isinstance(written.over_omega, str):
+            return settled("torque", over_omega.read(file_of(written.over_omega, folder), **more), units)
         speeds, torques = (list(column) for column in zip(*written.over_omega or (), strict=True))
-        return MakeOverOmega(units)(speeds, torques, written.kind or "linear")
+        return MakeOverOmega(units)(speeds, torques, **more)
+    except MissingExtraError:
+        raise
     except (ValueError, TypeError) as error:
         raise SceneError(f"steady.torque.{key}: {error}") from None
+    except OSError as error:
+        raise SceneError(
+            f"steady.torque.{key} = {shown(written.over_omega)}: {error.strerror or error}"
+        ) from None
 
 
 def steady_of(asked: OnMotor, content: Content) -> MotorResult:

@@ -74,13 +74,17 @@ def load_of(key: str, written: Varying, folder: Path | None) -> Load:
         raise SceneError(f"{key}.{over} = {shown(source)}: {error.strerror or error}") from None
 
 
-def _from_file(over: str, name: str, given: dict[str, Any], folder: Path | None) -> Load:
+def file_of(name: str, folder: Path | None) -> Path:
+    """The file of a table: beside the scene, else in the current directory."""
     beside = None if folder is None else folder / name
-    path = beside if beside is not None and beside.exists() else Path(name)
+    return beside if beside is not None and beside.exists() else Path(name)
+
+
+def _from_file(over: str, name: str, given: dict[str, Any], folder: Path | None) -> Load:
     columns = [column for column in COLUMNS[over] if column in given]
     if columns:
         raise ValueError(f"{columns[0]} beside a file: the file has the values")
-    made: Load = MAKE[over].read(path, **given)
+    made: Load = MAKE[over].read(file_of(name, folder), **given)
     return made
 
 

@@ -96,7 +96,11 @@ def _content(
     ]
     peaks = [peak_of(f"peak #{index}", table, inputs) for index, table in enumerate(file.peak, 1)]
     pictures = [picture_of(f"picture #{index}", table, inputs) for index, table in enumerate(file.picture, 1)]
-    motor = None if file.steady is None else on_motor(file.steady, data["steady"]["torque"], inputs, units)
+    motor = (
+        None
+        if file.steady is None
+        else on_motor(file.steady, data["steady"]["torque"], inputs, units, folder)
+    )
     return Content(
         file.title, outputs, _accuracy(file.accuracy), branch, inputs,
         tuple(checks), tuple(peaks), tuple(pictures), file.results.data,
@@ -115,7 +119,8 @@ def _storage(
             f"results.store = {shown(results.store)}: give a store or a file (results.data), not both"
         )
     if results.store is not None and not (outputs or file.peak):
-        raise SceneError(f"results.store = {shown(results.store)}: there is nothing to store")
+        told = "give outputs or [[peak]], or results.data for a steady state alone"
+        raise SceneError(f"results.store = {shown(results.store)}: there is nothing to store; {told}")
     try:
         memory = bytes_of(results.memory)
     except ValueError as error:

@@ -75,9 +75,10 @@ def check_place(path: Path, overwrite: bool = False) -> None:
     require_ours(path, overwrite)
 
 
-def _apart(peaks: "xr.Dataset") -> "xr.Dataset":
+def _apart(group: str, peaks: "xr.Dataset") -> "xr.Dataset":
     """Peaks under dimensions of their own: a group may not share one of another length with its parent."""
-    return peaks.rename({name: f"peak_{name}" for name in peaks.dims})
+    kind = group.partition("_")[0]  # peak, or steady
+    return peaks.rename({name: f"{kind}_{name}" for name in peaks.dims})
 
 
 def _parts(
@@ -86,7 +87,7 @@ def _parts(
     if values is not None:
         yield None, values
     for name, peaks in groups.items():
-        yield name, _apart(peaks)
+        yield name, _apart(name, peaks)
 
 
 def _netcdf(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:
@@ -103,9 +104,16 @@ def _zarr(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Data
 
     with quiet_store(path) as store, warnings.catch_warnings():
         for group, part in _parts(values, groups):
-            part.to_zarr(store, mode="a" if path.exists() else "w", group=group, consolidated=False)
+            mode = "a" if group is None and path.exists() else "w"  # of a group: only this is replaced
+            part.to_zarr(store, mode=mode, group=group, consolidated=False)
         warnings.filterwarnings("ignore", message=CONSOLIDATED)
         imported("zarr").consolidate_metadata(store)  # what xarray looks for when it opens the store
+
+
+def store_group(path: Path, name: str, part: "xr.Dataset") -> list[Path]:
+    """Add a group to the Zarr store of a sweep, or replace it there."""
+    _zarr(path, None, {name: part})
+    return []
 
 
 def _csv(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Dataset]") -> None:
