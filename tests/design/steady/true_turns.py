@@ -139,7 +139,7 @@ class Machine:
 
 
 class Turn(NamedTuple):
-    """What a period ends with."""
+    """The state after a period, its time and work, and the extremes of omega^2."""
 
     z: arb
     time: arb
@@ -291,7 +291,7 @@ KEYS = ("period", "omega_mean", "fluctuation", "power_mean")
 
 
 def figures(machine, z):
-    """What is left of a change of omega^2, and the figures, of the period that begins with omega^2 = z."""
+    """omega^2 after the period that begins with omega^2 = z, and its figures."""
     end = turn(machine, z)
     mean = 2 * arb.pi() / end.time
     ripple = (end.fastest.sqrt() - end.slowest.sqrt()) / mean

@@ -10,7 +10,7 @@ import os
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -104,7 +104,9 @@ def _zarr(path: Path, values: "xr.Dataset | None", groups: "Mapping[str, xr.Data
 
     with quiet_store(path) as store, warnings.catch_warnings():
         for group, part in _parts(values, groups):
-            mode = "a" if group is None and path.exists() else "w"  # of a group: only this is replaced
+            mode: Literal["a", "w"] = (
+                "a" if group is None and path.exists() else "w"
+            )  # of a group: only this is replaced
             part.to_zarr(store, mode=mode, group=group, consolidated=False)
         warnings.filterwarnings("ignore", message=CONSOLIDATED)
         imported("zarr").consolidate_metadata(store)  # what xarray looks for when it opens the store
