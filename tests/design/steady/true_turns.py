@@ -198,7 +198,7 @@ class _Run:
             at = _first(series, h)
             if at is not None and float(at) < float(h):
                 h, self.pressed = at, -pressed if k is None else pressed
-                piece = self.piece if k is None else k + (float(_value(series.derivative(), at)) * way > 0)
+                piece = self.piece if k is None else k + (float(_value(series.derivative(), at)) > 0)
         self.take(z, h)
         self.time += _value((way / omega).integral(), h)
         self.work += _value(torque.integral(), h) * way
