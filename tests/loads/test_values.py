@@ -150,3 +150,19 @@ def test_loads_compare_by_content_and_travel_by_pickle():
     for load in (dx.over_theta(ANGLES, FORCES), dx.over_Y(POSITIONS, OUTWARD, INWARD), dx.over_theta(np.sin)):
         assert pickle.loads(pickle.dumps(load)) == load
     assert dx.over_theta(ANGLES, FORCES) != dx.over_theta(ANGLES, FORCES, kind="linear")
+
+
+@pytest.mark.parametrize("kind", ["linear", "cubic"])
+def test_the_double_before_the_first_angle_of_a_table_ends_the_last_piece(kind):
+    """Whole periods are rounded there: the table's end may be taken for its beginning."""
+    rng = np.random.default_rng(11)
+    for _ in range(40):
+        period = TURN * rng.choice([1.0, 2.0])
+        angles = period * (np.arange(16) + rng.uniform(0.2, 0.8, 16)) / 16.0
+        forces = rng.uniform(1.0, 9.0, 16)
+        load = dx.over_theta([*angles, angles[0] + period], [*forces, forces[0]], kind=kind, period=period)
+        for turn in (-3, 0, 2):
+            theta = angles[0] + turn * period + np.arange(-3.0, 4.0) * np.spacing(angles[0])
+            np.testing.assert_allclose(load(theta), forces[0], rtol=1e-9)
+            for angle in theta.tolist():
+                assert load(angle) == pytest.approx(forces[0], rel=1e-9)

@@ -41,7 +41,10 @@ class Table:
             return x
         first = self.knots[0]
         x -= self.period * floor((x - first) / self.period)
-        return x + self.period if x < first else x - self.period if x >= first + self.period else x
+        if x < first:
+            return x + self.period  # perhaps rounded to the end, where the last piece holds
+        before = x - self.period
+        return before if before >= first else x
 
     def piece(self, x: float) -> int:
         """The index of the piece at a reduced argument."""
@@ -71,7 +74,7 @@ class Table:
             if self.period is not None:
                 first, period = knots[0], self.period
                 x = x - period * np.floor((x - first) / period)
-                x = np.where(x < first, x + period, np.where(x >= first + period, x - period, x))
+                x = np.where(x < first, x + period, np.where(x - period >= first, x - period, x))
             piece = np.searchsorted(knots, x, side="right")
             distance = np.where(np.isfinite(x), x - knots[np.maximum(piece - 1, 0)], np.nan)
             value, slope = polynomial(rows[:, piece], distance)

@@ -146,12 +146,8 @@ class _Writer:
         back = self.new(f"{force}_back", "mul", period, turns)
         angle = self.new(f"{force}_angle", "sub", "theta", back)
         early = self.new(f"{force}_is_early", "lt", angle, first, type="bool")
-        if isinstance(first, str) or isinstance(period, str):
-            end: Argument = self.new(f"{force}_end", "add", first, period)
-        else:
-            end = first + period
-        late = self.new(f"{force}_is_late", "le", end, angle, type="bool")
         before = self.new(f"{force}_before", "sub", angle, period)
+        late = self.new(f"{force}_is_late", "le", first, before, type="bool")
         after = self.new(f"{force}_after", "add", angle, period)
         inside = self.new(f"{force}_inside", "select", late, before, angle)
         return self.new(f"{force}_at", "select", early, after, inside)

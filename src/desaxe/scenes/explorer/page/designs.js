@@ -45,7 +45,7 @@ function overTheta({ knots, rows, period }, theta) {
   const first = knots[0];
   let x = theta - period * Math.floor((theta - first) / period);
   if (x < first) x += period;
-  if (x >= first + period) x -= period;
+  else if (x - period >= first) x -= period;
   const [value, slope] = looked(knots, rows, x, false);
   return { value, by: () => slope, there: true };
 }
