@@ -49,6 +49,12 @@ class Shown(NamedTuple):
             return value._replace(**self.entry({key: getattr(value, key) for key in unit}, unit))
         if isinstance(value, (tuple, list)):
             return type(value)(self.entry(part, unit) for part in value)
+        if getattr(getattr(value, "dtype", None), "hasobject", False):  # designs, each with its own entry
+            found = value.copy()
+            flat = found.reshape(-1)
+            for k, part in enumerate(flat):
+                flat[k] = self.entry(part, unit)
+            return found
         return self.number(value, conversion_of(unit, self.system))
 
     def texts(self, units: Mapping[Any, Any]) -> dict[Any, Any]:
