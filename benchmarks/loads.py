@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 
 import desaxe as dx
-
-from .peaks import times
+from desaxe.audit.rig import in_turns
 
 DESIGNS, ANGLES = 512, 721
 ROUNDS = 9
@@ -71,7 +70,7 @@ def table() -> str:
     first = rows["a number"]
     lines = [f"{ANGLES} angles, {DESIGNS} designs", "", f"| ms (ratio) | {' | '.join(first)} |"]
     lines.append("|---" * (1 + len(first)) + "|")
-    found = {work: times({n: row[work] for n, row in rows.items()}, ROUNDS) for work in first}
+    found = {work: in_turns({n: row[work] for n, row in rows.items()}, ROUNDS) for work in first}
     for name in rows:
         cells = [f"{own[name] * 1e3:.1f} ({own[name] / own['a number']:.1f})" for own in found.values()]
         lines.append(f"| {name} | {' | '.join(cells)} |")

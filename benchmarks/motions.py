@@ -5,13 +5,12 @@ design at a time, and bare `solve_ivp` on the same rates; the table has the time
 """
 
 import argparse
-import time
-from collections.abc import Callable
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
 import desaxe as dx
+from desaxe.audit.rig import timed
 from desaxe.simulation.checks import design_values, drive_of, model_of
 from desaxe.simulation.equations import Smooth
 
@@ -50,13 +49,15 @@ def main() -> None:
     dx.simulate(torque=TORQUE, t_end=0.1, **PRESS, **{name: column[:2] for name, column in designs.items()})
     print(f"a turning crank for {T_END:g} s, rtol 1e-10, ms for each design, one core\n")
     print("| way | ms | ratio | largest difference in theta |\n|---|---|---|---|")
-    ours, reference = _timed(together, options.designs)
+    seconds, reference = timed(together)
+    ours = seconds / options.designs
     for title, way, count in (
         ("one compiled call", together, options.designs),
         ("solve_ivp on the same rates", bare, options.single),
         ("simulate, one at a time", alone, options.single),
     ):
-        each, ends = _timed(way, count)
+        seconds, ends = timed(way)
+        each = seconds / count
         off = max(abs(a - b) for a, b in zip(ends, reference, strict=True))
         print(f"| {title} | {each * 1e3:.2f} | {each / ours:.0f} | {off:.1e} |")
 
@@ -67,13 +68,6 @@ def _bare(t: np.ndarray, row: dict[str, float]) -> float:
         Smooth(model).rate, (0.0, T_END), [0.0] * 3, method="DOP853", rtol=1e-10, atol=1e-13, t_eval=t
     )
     return float(found.y[0, -1])
-
-
-def _timed(way: Callable[[], list[float]], count: int) -> tuple[float, list[float]]:
-    """Seconds for each design, and where the first designs end."""
-    start = time.perf_counter()
-    ends = way()
-    return (time.perf_counter() - start) / count, ends
 
 
 if __name__ == "__main__":

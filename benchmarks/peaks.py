@@ -8,13 +8,13 @@ than compiling does while no machine code is on disk.
 """
 
 import os
-import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
 import desaxe as dx
+from desaxe.audit.rig import in_turns
 
 from .formulas import lambdified
 from .work import Inputs
@@ -33,14 +33,14 @@ def main() -> None:
         "dx.peak": peaks_of(designs, "compiled"),
         "dx.peak, uncompiled": peaks_of(designs, "numpy"),
     }
-    best = times(contenders, rounds=7)
+    best = in_turns(contenders, rounds=7)
     ours = best["dx.peak"]
     print(f"largest |a_C| of {DESIGNS} designs, one core\n\n| | ns a design | ratio |\n|---|---|---|")
     for name, seconds in best.items():
         print(f"| {name} | {seconds / DESIGNS * 1e9:.0f} | {seconds / ours:.1f} |")
     os.environ["DESAXE_TIER"] = "compiled"
     one = {name: float(column[0]) for name, column in designs.items()}
-    alone = times({"one": lambda: dx.peak("a_C", **one, omega0=SPEED)}, rounds=200)["one"]
+    alone = in_turns({"one": lambda: dx.peak("a_C", **one, omega0=SPEED)}, rounds=200)["one"]
     print(f"\none design in a call: {alone * 1e6:.0f} us")
 
 
@@ -76,17 +76,6 @@ def grid_of(designs: Mapping[str, Any], block: int) -> Callable[[], Any]:
         return found
 
     return run
-
-
-def times(contenders: Mapping[str, Callable[[], Any]], rounds: int) -> dict[str, float]:
-    """The fastest of several rounds, in turns."""
-    best = dict.fromkeys(contenders, float("inf"))
-    for _ in range(rounds + 1):
-        for name, run in contenders.items():
-            started = time.perf_counter()
-            run()
-            best[name] = min(best[name], time.perf_counter() - started)
-    return best
 
 
 if __name__ == "__main__":

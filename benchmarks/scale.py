@@ -14,11 +14,13 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import time
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from desaxe.audit.rig import timed
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "scale.md"
 NAMES = ["V_C", "a_C"]
@@ -73,9 +75,7 @@ def job(spec: dict[str, Any]) -> dict[str, float]:
     else:
         options["reduce"] = {"theta": "absmax"}
         dx.sweep(NAMES, **options, **designs(10_000))
-    start = time.perf_counter()
-    dx.sweep(NAMES, **options, **given)
-    seconds = time.perf_counter() - start
+    seconds, _ = timed(partial(dx.sweep, NAMES, **options, **given))
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
     disk = sum(p.stat().st_size for p in Path(options["store"]).rglob("*")) if kind == "stored" else 0
     return {"seconds": seconds, "memory": memory, "disk": disk, "points": _size(given)}
@@ -99,12 +99,8 @@ def _on_workers(points: int, workers: int) -> float:
         way: dict[str, Any] = {"reduce": {"theta": ["absmax", "rms"]}, "client": client}
         for _ in range(workers):  # each worker loads the kernel
             dx.sweep(SENSITIVE, **way, **designs(points // 8))
-        found = []
-        for _ in range(3):
-            start = time.perf_counter()
-            dx.sweep(SENSITIVE, **way, **designs(points))
-            found.append(time.perf_counter() - start)
-    return min(found)
+        run = partial(dx.sweep, SENSITIVE, **way, **designs(points))
+        return min(timed(run)[0] for _ in range(3))
 
 
 def measured(spec: dict[str, Any]) -> dict[str, float]:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 import desaxe as dx
+from desaxe.audit.rig import timed
 
 DESIGNS, SIMULATED, ROUNDS = 1000, 5, 3
 TURNS, AGREES, RTOL = 400, 1e-11, 1e-12
@@ -39,7 +40,7 @@ def table() -> str:
     lines = ["| way | ms a design | ratio | mean speed, largest difference |", "|---|---|---|---|"]
     first: tuple[float, list[float]] | None = None
     for title, (way, count) in ways.items():
-        seconds, speeds = min((_timed(way) for _ in range(ROUNDS)), key=lambda timed: timed[0])
+        seconds, speeds = min((timed(way, time.process_time) for _ in range(ROUNDS)), key=lambda one: one[0])
         first = first or (seconds / count, speeds)
         off = max(abs(a / b - 1.0) for a, b in zip(speeds, first[1], strict=False))
         ratio = seconds / count / first[0]
@@ -70,9 +71,3 @@ def _until_it_repeats(motor: Any, machine: dict[str, Any]) -> float:
         if abs(speed - before) <= AGREES * speed:
             return 2.0 * pi / turn["t_last"]
     raise RuntimeError(f"no periodic motion in {TURNS} turns")
-
-
-def _timed(way: Any) -> tuple[float, list[float]]:
-    start = time.process_time()
-    speeds = way()
-    return time.process_time() - start, speeds

@@ -7,12 +7,13 @@ and then shows in the ratio of the worst to the median: some 5,000 to 300,000 wi
 import argparse
 import time
 from collections.abc import Mapping
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
 import desaxe as dx
+from desaxe.audit.rig import timed
 
 TRUTH = 1e-13
 Designs = Mapping[str, Any]
@@ -75,9 +76,7 @@ def main() -> None:
     print(f"| rtol | {' | '.join(heads)} | s |")
     print("|---|---|---|---|---|---|---|---|")
     for power in range(4, 11):
-        start = time.process_time()
-        found = spread(drawn, 10.0**-power)
-        spent = time.process_time() - start
+        spent, found = timed(partial(spread, drawn, 10.0**-power), time.process_time)
         theta, omega, residual = found["theta"], found["omega"], found["residual"]
         print(
             f"| 1e-{power} | {theta.median:.1e} | {theta.ratio:.0f} | {omega.median:.1e} | {omega.ratio:.0f} "
