@@ -33,6 +33,8 @@ class Shown(NamedTuple):
 
     def entry(self, value: Any, unit: Any) -> Any:
         """A value of an answer, whose unit is a text, or a mapping of units by key."""
+        if type(value) is float and isinstance(unit, str):  # the most usual one first
+            return self.number(value, conversion_of(unit, self.system))
         if isinstance(value, Message):
             return value.in_units(self.system)
         if unit is None or value is None or isinstance(value, (str, bool)):

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+from ..evaluation.evaluate import Values
 from ..evaluation.in_units import Shown, in_units
 from ..evaluation.labels import loads_text, tell_loads
 from ..loads.load import Load
@@ -21,8 +22,8 @@ def shown(found: Any, call: Mapping[str, Any], show: Shown) -> Any:
         found = Answer(found, units_by_name)
     if isinstance(found, Answer):
         result = in_units(found, show.system, as_quantity=show.as_quantity)
-        if type(result) is Answer:
-            result.inputs = {}  # of `evaluate`, which are in SI units
+        if isinstance(result, Values):
+            result.inputs = {}  # which are in SI units
         return result
     names = call.get("names")
     return found if not isinstance(names, str) or names == "status" else show.entry(found, unit_of(names))

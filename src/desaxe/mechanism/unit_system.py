@@ -96,6 +96,7 @@ class UnitSystem:
     def __init__(self, units: Mapping[str, str], quotients: bool = True) -> None:
         self.units = dict(units)
         self.quotients = quotients
+        self.remembered: dict[tuple[str, str], Conversion] = {}  # by name and parameter
 
     @classmethod
     def read(cls, units: "str | Mapping[str, str] | UnitSystem | None") -> "UnitSystem":
