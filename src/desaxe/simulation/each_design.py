@@ -7,9 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.arrays import as_array, broadcast_shape, number_or_array
+from ..evaluation.evaluate import evaluate
 from ..mechanism.names import CENTRES, LENGTHS, LOADS
+from ..support.deadline import Deadline
 from ..support.progress import Portions, progress_bar
-from .many_designs import SAMPLES, STARTS, message, starting
+from .energy.serves import ENERGY, INTEGRATOR, no_energy_form, tables_alone
+from .many_designs import SAMPLES, STARTS, by_energy, designs_of, message, setup_of
 from .residual import TELLS, told_of
 from .result import NO_START, SENSITIVITIES, Simulation
 
@@ -26,7 +29,10 @@ def simulate_each(
     wrt: Sequence[str],
     times: Any,
     end: float,
-    rtol: float,
+    how: Sequence[float],
+    threads: int | None,
+    deadline: Deadline,
+    method: str | None,
 ) -> Simulation:
     """The motions in the shape of the designs, as `simulate_many` gives them.
 
@@ -47,7 +53,7 @@ def simulate_each(
     t = np.linspace(0.0, end, SAMPLES) if times is None else times
     size = int(np.prod(shape))
     still = {name: np.zeros(size) for name in varying}
-    status = starting({**still, **flat}, branch)
+    setup, status = setup_of({**still, **flat}, branch)
     along = [f"{name}_wrt_{p}" for p in wrt for name in ("theta", "omega")]
     ends = [f"{name}_wrt_{p}" for p in wrt for name in ("t_last", "work")]
     histories = {n: np.full((size, t.size), np.nan) for n in ("theta", "omega", "alpha", *names, *along)}
@@ -70,7 +76,27 @@ def simulate_each(
         for name, column_of in numbers.items():
             column_of[row] = found[name]
 
-    rows = np.flatnonzero(status != NO_START).tolist()
+    motion = [histories[name] for name in ("theta", "omega", "alpha")]
+    if not wrt and method in (None, ENERGY) and how[2] == np.inf and tables_alone(varying, arrays["mu"]):
+        scalars = {n: float(array) if array.ndim == 0 else array for n, array in arrays.items() if n != "mu"}
+        states = np.where(status == NO_START, NO_START, -1).astype(np.int8)
+        told_numbers = np.full((size, 4), np.nan)
+        designs = designs_of({**scalars, **varying}, flat, setup, branch)
+        by_energy(designs, t, np.array(how), (*motion, states, told_numbers), threads, deadline)
+        done = np.flatnonzero((states >= 0) & (states != NO_START))
+        status[done], ways[done], rounded[done] = states[done], ENERGY, told_numbers[done, 3]
+        for name, column in zip(("t_last", "energy_residual", "work"), told_numbers.T, strict=False):
+            numbers[name][done] = column[done]
+        if names and done.size:
+            state = dict(zip(("theta", "omega", "alpha"), (history[done] for history in motion), strict=True))
+            inputs = {n: array[done, None] for n, array in flat.items() if n not in STARTS}
+            forces = {n: load for n, load in varying.items() if n not in STARTS}
+            everything: dict[str, Any] = {"branch": branch, **state, **inputs, **forces}
+            for name, values in evaluate(list(names), **everything).items():
+                histories[name][done] = values
+        if method == ENERGY and (states < 0).any():
+            raise ValueError(no_energy_form(np.flatnonzero(states < 0), size))
+    rows = np.flatnonzero((status != NO_START) & (ways == "")).tolist()
     with progress_bar(unit="designs") as watch:
         told = Portions(len(rows), "motions", watch)
         for row in rows:
@@ -78,7 +104,9 @@ def simulate_each(
             told.add(1)
     result = Simulation({"t": t, **{name: h.reshape(*shape, t.size) for name, h in histories.items()}})
     result["status"] = status.reshape(shape)
-    result["message"] = message(status) + told_of(numbers["energy_residual"], rounded, rtol)
+    result["message"] = message(status) + told_of(
+        numbers["energy_residual"], rounded, how[0], np.where(ways == ENERGY, ENERGY, INTEGRATOR)
+    )
     result["method"] = ways.reshape(shape)
     if without:
         result["message"] += f"{SENSITIVITIES}NaN in {len(without)} of {size} designs, where there are none"

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..evaluation.arrays import as_array, broadcast_shape, number_or_array
 from ..evaluation.evaluate import evaluate
+from ..loads.load import Load
 from ..loads.resolve import names_of, takes
 from ..mechanism.closed.limits import theta_intervals
 from ..mechanism.inputs import LEAST, Input
@@ -30,11 +31,12 @@ from .energy.panels import Designs
 from .energy.serves import ENERGY, INTEGRATOR, no_energy_form, served
 from .model import fixed_zeros, form_of
 from .residual import told_of
-from .result import DONE, NO_START, WORDS, Simulation
+from .result import DONE, FAILED, NO_START, WORDS, Simulation
 
 Array = NDArray[np.float64]
 SAMPLES = 101  # instants of the histories by default
 LONGEST_PART = 16  # designs in one native call, that threads share the work evenly
+BRIEF = 500  # pieces of motions that run at once
 LONGEST_BLOCK = 256  # the same in the energy form: its arrays stay in the cache
 LONGEST, MOST_STEPS = 2, 3  # places in `how`
 LARGE = 1_000  # designs that may take long: a bar tells
@@ -78,7 +80,7 @@ def simulate_many(
     family = Family(form_of(given_centres(given)), fixed_zeros(scalars))
     flat = {name: np.broadcast_to(array, shape).reshape(-1) for name, array in arrays.items()}
     t = np.linspace(0.0, how[1], SAMPLES) if times is None else times
-    setup, status = _setup(flat, branch)
+    setup, status = setup_of(flat, branch)
     rows = np.stack([flat[name] for name in family.inputs], axis=1)
     outs = (
         *(np.full((status.size, t.size), np.nan) for _ in range(3)), status, np.full((status.size, 4), np.nan)
@@ -86,7 +88,7 @@ def simulate_many(
     ways = np.where(status < 0, INTEGRATOR, "")
     limits = np.array(how, dtype=np.float64)
     if method != INTEGRATOR and torque is None and limits[LONGEST] == np.inf:
-        _by_energy(_designs(scalars, flat, setup, branch), t, limits, outs, threads, deadline)
+        by_energy(designs_of(scalars, flat, setup, branch), t, limits, outs, threads, deadline)
         ways[(status >= 0) & (status != NO_START)] = ENERGY
         if method == ENERGY and (status < 0).any():
             raise ValueError(no_energy_form(np.flatnonzero(status < 0), status.size))
@@ -165,7 +167,7 @@ def _compile(torque: Callable[..., Any]) -> Any:
     return fast
 
 
-def _setup(flat: Mapping[str, Array], branch: int) -> tuple[Array, NDArray[np.int8]]:
+def setup_of(flat: Mapping[str, Array], branch: int) -> tuple[Array, NDArray[np.int8]]:
     """The rows that the kernel starts from (see `compiled`), and a status where nothing can start."""
     AB, BC, ec = (flat[name] for name in ("AB", "BC", "ec"))
     theta = flat["theta0"]
@@ -185,11 +187,6 @@ def _setup(flat: Mapping[str, Array], branch: int) -> tuple[Array, NDArray[np.in
     loads = np.abs(flat["F_Y"]) * AB
     columns = (np.full(theta.size, float(branch)), *arcs.T, flat["torque"], flat["F_Y"], theta)
     return np.stack([*columns, flat["omega_start"], loads], axis=1), status
-
-
-def starting(flat: Mapping[str, Array], branch: int) -> NDArray[np.int8]:
-    """For each design NO_START where no motion can start, another number elsewhere."""
-    return _setup(flat, branch)[1]
 
 
 def _arc(values: Mapping[str, float]) -> tuple[float, float, float] | None:
@@ -246,41 +243,51 @@ def _in_parts(
         stopped_early(lambda: run_parts(part, size, threads, 1, longest), stop, deadline)
 
 
-def _designs(scalars: Mapping[str, Any], flat: Mapping[str, Array], setup: Array, branch: int) -> Designs:
+def designs_of(scalars: Mapping[str, Any], flat: Mapping[str, Array], setup: Array, branch: int) -> Designs:
     """The designs as the energy form takes them."""
+    own = {**flat, **scalars}
+    loads = {name: value for name, value in own.items() if isinstance(value, Load)}
     inputs = {
-        name: value if isinstance(value, float) else flat[name]
+        name: 0.0 if name in loads else value if isinstance(value, float) else flat[name]
         for name, value in scalars.items()
         if name not in STARTS
     }
+    torque, force = (loads.get(name, flat.get(name)) for name in ("torque", "F_Y"))
     with np.errstate(invalid="ignore"):
         middle = np.where(np.isinf(setup[:, 1]), 0.0, 0.5 * (setup[:, 1] + setup[:, 2]))
         middle[np.isfinite(middle) & np.isfinite(setup[:, 1]) & ~(setup[:, 3] > 0.0)] = np.nan
-    return Designs(
-        inputs, branch, flat["torque"], flat["F_Y"], flat["theta0"], flat["omega_start"], middle, setup[:, 3]
-    )
+    return Designs(inputs, branch, torque, force, flat["theta0"], flat["omega_start"], middle, setup[:, 3])
 
 
-def _by_energy(
+def by_energy(
     designs: Designs, t: Array, limits: Array, outs: Sequence[Any], threads: int | None, deadline: Deadline
 ) -> None:
     """Fill in the motions that have an energy form; the status of the others stays below 0."""
     status, most = outs[3], limits[MOST_STEPS:].copy()
     rows = np.flatnonzero((status < 0) & served(designs))
-    times = np.append(t, limits[1])
+    times, brief = np.append(t, limits[1]), np.array([min(most[0], BRIEF)])
 
     def stop() -> None:
         most[0] = 0.0
 
-    def block(a: int, b: int) -> None:
-        own = rows[a:b]
-        found = follow_many(designs.some(own), times, float(limits[0]), most)
+    def follow(own: Any, most: Array) -> None:
+        part = designs.some(own) if own.size < status.size else designs
+        found = follow_many(part, times, float(limits[0]), most)
         there = found.status < NOT_HERE
+        if most is brief and brief[0] < limits[MOST_STEPS]:
+            there &= found.status != FAILED
         for out, values in zip(outs[:3], found[:3], strict=True):
             out[own[there]] = values[there, :-1]
         status[own[there]], outs[4][own[there]] = found.status[there], found.numbers[there]
 
+    if 0 < rows.size <= LONGEST_BLOCK:  # a thread of its own would take longer than short motions do
+        follow(rows, brief)
+        rows = rows[status[rows] < 0]
     if rows.size:
+
+        def block(a: int, b: int) -> None:
+            follow(rows[a:b], most)
+
         _in_parts(block, stop, rows.size, LONGEST_BLOCK, threads, deadline)
 
 

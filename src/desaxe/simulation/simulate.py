@@ -91,8 +91,8 @@ def simulate(
                  atol of a step, for the angle [rad], sqrt(kinetic energy) and work, is by default rtol times
                  0.03 rad (by SciPy 0.001) and a hundredth of the energy that start and loads suggest
     method       "energy": the crank angle is the independent variable, energy and time are integrals over it;
-                 the default for many designs where torque and loads are numbers. Else DOP853, the default for
-                 all other motions, or by SciPy (extra `simulate`) RK45, RK23, Radau, BDF, LSODA
+                 the default for many designs where torque and loads are numbers or tables. Else DOP853, the
+                 default for all other motions, or by SciPy (extra `simulate`) RK45, RK23, Radau, BDF, LSODA
     times        instants of the histories [s]; by default 1001 from start to end
     until        crank angle or angles [rad]: the first that is reached ends the motion
     wrt          parameters by which the motion is differentiated: inputs of the mechanism that are numbers,
@@ -127,13 +127,13 @@ def simulate(
     `message` says so: at an angle or a standstill that is only touched, and after a jump there.
 
     Many designs at once: lengths, masses, constant loads, theta0, omega_start and a constant torque may be
-    arrays that broadcast like NumPy. All run in compiled code, without friction: in the energy form; under a
-    torque function, which numba compiles, and where the energy form does not serve, such as at an unstable
-    equilibrium, by DOP853. Where F_X, F_Y or a table of the torque vary with the motion they run one after
-    the other. Histories then have the shape (designs..., times), 101 instants without `times`, NaN where a
-    motion has ended. status (also 6: bad input, or no mechanism at the start), energy_residual, work, t_last
-    and method have the shape of the designs; there are no events and no solution. With wrt they run one
-    after the other.
+    arrays that broadcast like NumPy. Without friction they run in compiled code: under numbers and tables that
+    repeat after at most four turns in the energy form; under a torque function, which numba compiles, and
+    under numbers where the energy form does not serve, such as at an unstable equilibrium, by DOP853. All
+    others run one after the other. Histories then have the shape (designs..., times), 101 instants without
+    `times`, NaN where a motion has ended. status (also 6: bad input, or no mechanism at the start),
+    energy_residual, work, t_last and method have the shape of the designs; there are no events and no
+    solution. With wrt they run one after the other.
 
     Equation: M_eff alpha + M_eff' omega^2/2 = torque - static torque - friction (paper C, section 3).
     Raises ValueError where no motion can start (no mechanism there, no inertia) and for a bad value.
@@ -159,7 +159,7 @@ def simulate(
     several = any(map(is_array, (*given.values(), *starts.values())))
     if method == ENERGY:
         options = {"max_step": max_step is not None, "atol": atol is not None}
-        refuse(torque, {name: given[name] for name in ("F_X", "F_Y")}, given["mu"], options)
+        refuse({"torque": torque, "F_X": F_X, "F_Y": F_Y}, given["mu"], options)
         if by or not several:
             raise ValueError("method = 'energy': it is for many designs, without wrt=")
     if several:
@@ -175,7 +175,10 @@ def simulate(
                     timeout=deadline.left(), wrt=by, derivative=derivative,
                 )  # fmt: skip
 
-            return simulate_each(one, given, starts, int(branch), wanted, by, instants, end, rtol)
+            how = (rtol, end, longest, max_steps)
+            return simulate_each(
+                one, given, starts, int(branch), wanted, by, instants, end, how, threads, deadline, method
+            )
         how = (rtol, end, longest, max_steps)
         return simulate_many(given, starts, int(branch), wanted, instants, how, threads, deadline, method)
     start = scalar("theta0", theta0, "rad"), scalar("omega_start", omega_start, "rad/s")

@@ -12,10 +12,9 @@ from ...support.panels import NODE, NODES, RUNNING, TO_COEFFICIENTS, WEIGHT, Arr
 
 FILES = tuple(Path(__file__).with_name(name) for name in ("follow.py", "pieces.py"))
 _SIGNATURE = """row, rows = types.float64[::1], types.float64[:, ::1]
-panels, marks = types.float64[:, :, ::1], types.int8[:, ::1]
 signature = types.void(
-    rows, rows, panels, panels, panels, rows, row, row, row, row, row, rows, rows, rows, rows, rows, rows,
-    types.int8[::1], marks, rows
+    rows, rows, rows, rows, rows, rows, row, row, row, row, row, rows, rows, rows, rows, rows, rows,
+    types.int8[::1], types.int8[:, ::1], rows
 )
 function = motions.py_func
 """

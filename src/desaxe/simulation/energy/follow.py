@@ -1,7 +1,8 @@
 """One motion in its energy form, in plain loops, whose text numba compiles (`compiled`).
 
 It knows nothing of the mechanism. In a coordinate x with the inertia M(x) and the generalised torque Q(x),
-both given at the Gauss nodes of panels, the kinetic energy is E(x) = E0 + integral of Q, and the time
+both given at the start and at the Gauss nodes of panels, the kinetic energy is E(x) = E0 + integral of Q, and
+the time
 
     t(x) = integral of sqrt(M / (2 E)) dx.
 
@@ -19,12 +20,12 @@ tables   nodes; weights; columns by which values become Legendre coefficients, r
          of 2 s f(s) from 0 to xi
 kept     pieces: start, duration, x as c0 + c1 u + c2 u^2, kind, panel counted over turns, way, and the
          coefficients of dt/du
-numbers  end, x and energy at an end of the panels, instants reached, pieces kept, pieces
+numbers  end, x and energy there, instants reached, pieces kept, pieces
 """
 
 from __future__ import annotations
 
-from math import floor, nan
+from math import floor, nan, sqrt
 from typing import TYPE_CHECKING
 
 from numpy import empty, int64
@@ -49,9 +50,12 @@ from .pieces import (
 if TYPE_CHECKING:
     from typing import Any
 
+    from .pieces import apart
+
 
 SLOW = 0.1  # of the energy at one end of a piece: so little at the other may be next to one
 NEAR = 0.01  # of a piece: next to it
+CLOSE = 1e-7  # of u: the step of Newton's method after this one is rounding
 
 
 def put(parts: Any, top: Any, a: float, span: float, kind: float, over: float) -> Any:
@@ -87,6 +91,7 @@ def follow(
     bad: Any,
     work: Any,
     known: Any,
+    last_push: Any,
     numbers: Any,
 ) -> int:
     """The pieces of a motion until the last instant.
@@ -100,28 +105,31 @@ def follow(
     panel: Any = int64(setup[1]) - (1 if way < 0.0 else 0)
     row, stored, pieces = int64(0), int64(0), int64(0)
     rest, inside, marked, count = energy == 0.0, False, False, len(times)
+    panels = len(edges) - 1
     known[:] = 0
     while True:
-        if panel < 0 or panel >= len(M):
+        if panel < 0 or panel >= panels:
             if period == 0.0:
-                numbers[0], numbers[1], numbers[2] = t, edges[0] if panel < 0 else edges[len(M)], energy
+                numbers[0], numbers[1], numbers[2] = t, edges[0] if panel < 0 else edges[panels], energy
                 numbers[3], numbers[4], numbers[5] = row, stored, pieces
                 return 10 if marked else 2
             turn += way
-            panel = len(M) - 1 if panel < 0 else int64(0)
+            panel = panels - 1 if panel < 0 else int64(0)
         half = 0.5 * (edges[panel + 1] - edges[panel])
         if half <= 0.0:
             panel += 1 if way > 0.0 else -1
             continue
         side = int64(0) if way > 0.0 else int64(1)
-        Q, done = forth[panel] if way > 0.0 else back[panel], work[side, panel]
+        nodes = 1 + 16 * panel  # the first of the panel's in a row
+        inertia, done = M[nodes : nodes + 16], work[side, panel]
+        Q = forth[nodes : nodes + 16] if way > 0.0 else back[nodes : nodes + 16]
         if known[side, panel] == 0:
             known[side, panel] = 1
-            if not prepare(M[panel], Q, half, energy, max(tolerance, rough[panel]), tables, done):
+            if not prepare(inertia, Q, half, energy, max(tolerance, rough[panel]), tables, done):
                 bad[panel], marked = 1, True
         ready = inside or rest  # whether m and q are the series of this panel
         if ready:
-            combined(M[panel], tables[2], m)
+            combined(inertia, tables[2], m)
             combined(Q, tables[2], q)
         if not inside:
             begin, room = -way, 2.0 * way
@@ -148,7 +156,7 @@ def follow(
                 return 10 if marked else 11
             last = top == 0  # it goes to the end of the panel
             if kind == 0 and span == 2.0 * way:
-                ordered(M[panel], done, left, way > 0.0, rows)
+                ordered(inertia, done, left, way > 0.0, rows[1], rows[2])
             else:
                 energies(a, span, kind, half, left, m, q, tables, rows)
             end = 1.0
@@ -158,7 +166,7 @@ def follow(
             few = kind == 0 and (first < SLOW * final or final < SLOW * first)
             lost = first_without(rows[2])
             if not ready and (few or lost < 16 or not end > 0.0):
-                combined(M[panel], tables[2], m)
+                combined(inertia, tables[2], m)
                 combined(Q, tables[2], q)
                 ready = True
             if kind == 0 and a == -way and ready and energy < NEAR * half * abs(series(q, a) * span):
@@ -184,7 +192,8 @@ def follow(
                 near = rest_near(q, half, out, way)
                 top = put(parts, top, a, span + near, 2.0, near)
                 continue
-            duration = rates(kind, half * abs(span) * (0.5 if kind == 0 else 1.0), tables[1], rows)
+            scale = half * abs(span) * (0.5 if kind == 0 else 1.0)
+            duration = rates(kind, scale, tables[1], rows[1], rows[2], rows[0])
             noise = 2e-14
             if kind == 0:
                 noise = 2e-15 * largest / lowest(rows[2])
@@ -197,21 +206,21 @@ def follow(
                 )
                 top = put(parts, top, a, cut, 1.0 if kind == 1 else 0.0, over if kind == 1 else 0.0)
                 if not ready:
-                    combined(M[panel], tables[2], m)
+                    combined(inertia, tables[2], m)
                     combined(Q, tables[2], q)
                     ready = True
                 continue
             beyond = 0.0
             if over != 0.0:  # the rest lies beyond the panel: that part takes no time
                 energies(a if kind == 1 else a + span - over, over, kind, half, left, m, q, tables, more)
-                beyond = rates(kind, half * abs(over), tables[1], more)
+                beyond = rates(kind, half * abs(over), tables[1], more[1], more[2], more[0])
             start = t - beyond if kind == 1 else t
             t += duration - beyond
             if how[1] > 0.0 or times[row] <= t:
                 if stored >= len(kept):
                     return 12
                 keep(kept[stored], start, duration, a, span, kind, half, middle)
-                kept[stored, 6], kept[stored, 7] = panel + len(M) * turn, way
+                kept[stored, 6], kept[stored, 7] = panel + panels * turn, way
                 combined(rows[0], tables[2], kept[stored, 8:])
                 while row < count and times[row] <= t:
                     which[row], since[row] = stored, times[row] - start
@@ -221,6 +230,8 @@ def follow(
             room = -span if a == -way else -way - begin
             if row >= count:
                 numbers[0], numbers[3], numbers[4], numbers[5] = t, row, stored, pieces
+                combined(Q, tables[2], last_push)
+                last_push[16], last_push[17], last_push[18] = left, half, middle
                 return 10 if marked else 0
         rest, inside = stopped, stopped
         if stopped:
@@ -235,35 +246,60 @@ def follow(
             panel += 1 if way > 0.0 else -1
 
 
+def guess_lanes(count: Any, c: Any, d: Any, u: Any, since: Any) -> None:
+    """The place at an instant from the first two terms of dt/du."""
+    apart()
+    for i in range(count):
+        left = since[i] - c[i] + 0.5 * d[i]
+        root = sqrt(max(c[i] * c[i] + 2.0 * d[i] * left, 0.0))
+        u[i] = min(max(2.0 * left / (c[i] + root), -1.0), 1.0)
+
+
+def begin_lanes(count: Any, c: Any, u: Any, since: Any, f: Any, g: Any, before: Any, now: Any) -> None:
+    """The first term of the time until u, less `since`, and of its rate."""
+    apart()
+    for i in range(count):
+        before[i], now[i] = 1.0, u[i]
+        f[i], g[i] = c[i] * (u[i] + 1.0) - since[i], c[i]
+
+
+def add_lanes(count: Any, j: Any, c: Any, u: Any, f: Any, g: Any, before: Any, now: Any) -> None:
+    """The j-th term of both."""
+    apart()
+    one, two, share = (2.0 * j + 1.0) / (j + 1.0), j / (j + 1.0), 1.0 / (2.0 * j + 1.0)
+    for i in range(count):
+        after = one * u[i] * now[i] - two * before[i]
+        f[i] += c[i] * (after - before[i]) * share
+        g[i] += c[i] * now[i]
+        before[i], now[i] = now[i], after
+
+
+def improve_lanes(count: Any, u: Any, f: Any, g: Any) -> float:
+    """A step of Newton's method; the largest change."""
+    apart()
+    change = 0.0
+    for i in range(count):
+        after = min(max(u[i] - f[i] / g[i], -1.0), 1.0)
+        change = max(change, abs(after - u[i]))
+        u[i] = after
+    return change
+
+
 def invert(count: Any, which: Any, since: Any, kept: Any, x: Any, speed: Any, lanes: Any) -> bool:
     """x and its rate at instants of pieces, all at once; whether each was found."""
     u, f, g, before, now = lanes[16], lanes[17], lanes[18], lanes[19], lanes[20]
     for i in range(count):
         for j in range(16):
             lanes[j, i] = kept[which[i], 8 + j]
-        u[i] = min(2.0 * since[i] / kept[which[i], 1] - 1.0, 1.0)
+    guess_lanes(count, lanes[0], lanes[1], u, since)
     done = False
     for _ in range(40):
-        c = lanes[0]
-        for i in range(count):
-            before[i], now[i] = 1.0, u[i]
-            f[i], g[i] = c[i] * (u[i] + 1.0) - since[i], c[i]
+        begin_lanes(count, lanes[0], u, since, f, g, before, now)
         for j in range(1, 16):
-            c, one, two = lanes[j], (2.0 * j + 1.0) / (j + 1.0), j / (j + 1.0)
-            share = 1.0 / (2.0 * j + 1.0)
-            for i in range(count):
-                after = one * u[i] * now[i] - two * before[i]
-                f[i] += c[i] * (after - before[i]) * share
-                g[i] += c[i] * now[i]
-                before[i], now[i] = now[i], after
+            add_lanes(count, j, lanes[j], u, f, g, before, now)
         if done:
             break
-        change = 0.0
-        for i in range(count):
-            after = min(max(u[i] - f[i] / g[i], -1.0), 1.0)
-            change = max(change, abs(after - u[i]))
-            u[i] = after
-        done = change < 1e-9
+        done = improve_lanes(count, u, f, g) < CLOSE
     for i in range(count):
         piece = kept[which[i]]
         x[i] = piece[2] + u[i] * (piece[3] + u[i] * piece[4])
@@ -294,9 +330,9 @@ def motions(
     numbers: Any,
 ) -> None:
     """Every design: x and its rate at all instants, NaN where the motion has ended; status and numbers."""
-    tables, count, panels = (nodes, weights, coefficients, running, mean), len(times), M.shape[1]
+    tables, count, panels = (nodes, weights, coefficients, running, mean), len(times), edges.shape[1] - 1
     which, since, lanes = empty(count, int64), empty(count), empty((21, count))
-    work, known = empty((2, panels, 17)), empty((2, panels), int64)
+    work, known, last = empty((2, panels, 17)), empty((2, panels), int64), empty(19)
     for n in range(len(setup)):
         x[n, :], speed[n, :] = nan, nan
         if status[n] > 0:
@@ -304,8 +340,10 @@ def motions(
         numbers[n, 3] = 0.0
         status[n] = follow(
             edges[n], rough[n], M[n], forth[n], back[n], setup[n], times, how, most, tables, kept, which,
-            since, bad[n], work, known, numbers[n],
+            since, bad[n], work, known, last, numbers[n],
         )  # fmt: skip
         reached = int64(numbers[n, 3])
         if status[n] < 10 and reached > 0 and not invert(reached, which, since, kept, x[n], speed[n], lanes):
             status[n] = 11
+        if status[n] == 0:
+            numbers[n, 2] = last[16] + last[17] * integral(last, (x[n, count - 1] - last[18]) / last[17])

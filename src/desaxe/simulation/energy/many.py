@@ -1,11 +1,11 @@
 """Many designs in their energy form: panels halved where they must be, one compiled loop, histories."""
 
-from math import pi
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...support.panels import NODES
 from ..residual import ROUNDED
 from ..result import FAILED, LIMIT
 from .compiled import TABLES, kernel
@@ -32,12 +32,13 @@ class Found(NamedTuple):
 
 
 class Marched(NamedTuple):
-    """The answer of `follow`: coordinates and their rates at instants, status and numbers."""
+    """The answer of `follow`: coordinates and their rates at instants, status and numbers; what starts."""
 
     x: Array
     speed: Array
     status: NDArray[np.int8]
     numbers: Array
+    start: dict[str, Array]
 
 
 def follow_many(designs: Designs, times: Array, rtol: float, most: Array) -> Found:
@@ -45,56 +46,67 @@ def follow_many(designs: Designs, times: Array, rtol: float, most: Array) -> Fou
 
     most   pieces of a motion: an array, which another thread may set to 0
     """
-    found = _marched(designs, times, rtol, most)
-    x, speed, status, numbers = found
+    x, speed, status, numbers, start = _marched(designs, times, rtol, most)
+    if (status >= TOO_WIDE).all():
+        return Found(x, speed, speed, status, numbers[:, :4])
     limit, short = status == LIMIT, status == FAILED
-    ends = np.where(limit | short, numbers[:, 1], x[:, -1])
-    t_last = np.where(limit | short, numbers[:, 0], times[-1])
-    places = np.concatenate([designs.coordinates()[:, None], x[:, :-1], ends[:, None]], axis=1)
-    theta, slope = designs.place(places)
-    at = designs.values(np.concatenate([designs.theta0[:, None], theta[:, 1:]], axis=1))
-    slider = at["Y"]
+    ended = limit | short
+    t_last = np.where(ended, numbers[:, 0], times[-1])
+    x[ended, -1] = numbers[ended, 1]
+    theta, slope = designs.place(x)
+    at, omega = designs.values(theta), speed * slope
+    inertia, slider = at["M_eff"], at["Y"]
     # There S = 0, of which Y would keep half its digits only.
     slider[limit, -1] = (designs.length("AB") * np.cos(theta[:, -1]))[limit]
-    omega = speed * (slope[:, 1:] if designs.half.any() else 1.0)
-    push = designs.torque[:, None] - at["T_in"][:, 1:]
-    alpha = (push - 0.5 * at["M_eff_wrt_theta"][:, 1:] * omega * omega) / at["M_eff"][:, 1:]
-    work = designs.torque[:, None] * (theta - designs.theta0[:, None])
-    work += designs.force[:, None] * (slider - slider[:, :1])
-    first = 0.5 * at["M_eff"][:, 0] * designs.omega_start**2
-    kinetic = np.concatenate([first[:, None], 0.5 * at["M_eff"][:, 1:] * omega * omega], axis=1)
+    half_square = 0.5 * omega * omega
+    with np.errstate(invalid="ignore"):
+        push = designs.push(theta, at, np.where(omega == 0.0, start["way"][:, None], omega))
+    alpha = (push - at["M_eff_wrt_theta"] * half_square) / inertia
+    first = 0.5 * start["M_eff"] * designs.omega_start**2
+    kinetic = inertia * half_square
+    if designs.tables:
+        # Of instants within the motion that of the end alone is known by itself.
+        work = kinetic + at["potential_energy"] - (first + start["potential_energy"])[:, None]
+        work[:, -1] = numbers[:, 2] - first + at["potential_energy"][:, -1] - start["potential_energy"]
+    else:
+        work = designs.torque[:, None] * (theta - designs.theta0[:, None])
+        if designs.force.any():
+            work += designs.force[:, None] * (slider - start["Y"][:, None])
+    largest = np.fmax(np.fmax.reduce(kinetic, axis=1), first)
     energy = kinetic + at["potential_energy"]
-    off = np.fmax.reduce(np.abs(energy - work - energy[:, :1]), axis=1)
-    turned = np.nansum(np.abs(np.diff(work, axis=1)), axis=1)
-    scale = np.maximum(np.fmax.reduce(kinetic, axis=1), turned)
-    heaviest = np.fmax.reduce(np.abs(energy), axis=1)
+    initial = first + start["potential_energy"]
+    heaviest = np.fmax(np.fmax.reduce(np.abs(energy), axis=1), np.abs(initial))
+    energy -= work
+    energy -= initial[:, None]
+    off = np.fmax.reduce(np.abs(energy), axis=1)
+    turned = np.nansum(np.abs(np.diff(work, axis=1, prepend=0.0)), axis=1)
+    scale = np.maximum(largest, turned)
     still = ~(scale > 0.0)
-    scale = np.where(still, 1.0, scale)
+    scale[still] = 1.0
     rounded = np.where(still, np.inf, ROUNDED * numbers[:, 5] * (1.0 + heaviest / scale))
     told = np.stack([t_last, np.where(still, 0.0, off / scale), work[:, -1], rounded], axis=1)
-    return Found(theta[:, 1:], omega, alpha, status, told)
+    return Found(theta, omega, alpha, status, told)
 
 
 def _marched(designs: Designs, times: Array, rtol: float, most: Array) -> Marched:
     """The motions in their coordinates; designs whose panels are too wide again, on halves of them."""
-    count = len(designs.theta0)
-    found = Marched(
-        np.full((count, times.size), np.nan),
-        np.full((count, times.size), np.nan),
-        np.full(count, NOT_HERE, np.int8),
-        np.full((count, 6), np.nan),
-    )
-    rows, edges = np.arange(count), first_edges(designs)
     tolerance = min(max(SHARE * rtol, FINEST), COARSEST)
+    edges = first_edges(designs)
+    found, bad = _tried(designs, fields_of(designs, edges), times, tolerance, most)
+    rows = np.flatnonzero(found.status == TOO_WIDE)
+    edges, bad = edges[rows], bad[rows]
     for _ in range(ROUNDS):
         if not rows.size:
-            break
-        part = designs.some(rows)
+            return found
+        part, edges = designs.some(rows), halved(edges, bad)
         answer, bad = _tried(part, fields_of(part, edges), times, tolerance, most)
-        good, again = answer.status < TOO_WIDE, answer.status == TOO_WIDE
-        found.x[rows[good]], found.speed[rows[good]] = answer.x[good], answer.speed[good]
-        found.status[rows[good]], found.numbers[rows[good]] = answer.status[good], answer.numbers[good]
-        rows, edges = rows[again], halved(edges[again], bad[again])
+        found.x[rows], found.speed[rows] = answer.x, answer.speed
+        found.status[rows], found.numbers[rows] = answer.status, answer.numbers
+        for name, values in answer.start.items():
+            found.start[name][rows] = values
+        again = answer.status == TOO_WIDE
+        rows, edges, bad = rows[again], edges[again], bad[again]
+    found.status[rows] = NOT_HERE
     return found
 
 
@@ -102,24 +114,32 @@ def _tried(
     designs: Designs, fields: Fields, times: Array, tolerance: float, most: Array
 ) -> tuple[Marched, NDArray[np.int8]]:
     """The motions on these panels, and the panels that are too wide."""
-    count, width = fields.inertia.shape[:2]
-    speed, push = designs.omega_start, fields.first_push
-    way = np.where(speed == 0.0, np.sign(push), np.copysign(1.0, speed))
-    energy = 0.5 * fields.first_inertia * speed**2
-    begin = np.argmax(fields.edges == designs.coordinates()[:, None], axis=1)
-    period = np.where(designs.half == 0.0, 2.0 * pi, 0.0)
-    setup = np.stack([energy, begin, way, period, np.ones(count)], axis=1)
-    status, bad = np.full(count, NOT_HERE, np.int8), np.zeros((count, width), np.int8)
-    answer = Marched(
-        np.full((count, times.size), np.nan), np.full((count, times.size), np.nan), status,
-        np.full((count, 6), np.nan),
-    )  # fmt: skip
-    starts = np.isfinite(energy) & (fields.first_inertia > 0.0) & np.isin(way, (-1.0, 1.0))
-    status[starts] = 0
-    kept = np.empty((times.size + 1, PIECE))
-    how = np.array([tolerance, 0.0])
-    panels = fields.edges, fields.rough, fields.inertia, fields.push, fields.push
-    kernel()(
-        *panels, setup, times, how, most, *TABLES, kept, answer.x, answer.speed, status, bad, answer.numbers
-    )
-    return answer, bad
+    count, start = len(fields.edges), fields.start
+    begin = np.argmax(fields.edges == designs.coordinates(designs.theta0)[:, None], axis=1)
+    start["way"] = way = _ways(designs, fields, begin)
+    energy = 0.5 * start["M_eff"] * designs.omega_start**2
+    period = np.where(designs.half == 0.0, designs.period, 0.0)
+    same = np.full(count, 0.0 if designs.turns_with_the_slider else 1.0)
+    setup = np.stack([energy, begin, way, period, same], axis=1)
+    starts = np.isfinite(energy) & (start["M_eff"] > 0.0) & (np.abs(way) == 1.0)
+    status = np.where(starts, 0, NOT_HERE).astype(np.int8)
+    bad, kept = np.zeros((count, fields.rough.shape[1]), np.int8), np.empty((times.size + 1, PIECE))
+    x, speeds, numbers = np.empty((count, times.size)), np.empty((count, times.size)), np.empty((count, 6))
+    panels = fields.edges, fields.rough, fields.inertia, fields.push, fields.back
+    outs = kept, x, speeds, status, bad, numbers
+    kernel()(*panels, setup, times, np.array([tolerance, 0.0]), most, *TABLES, *outs)
+    return Marched(x, speeds, status, numbers, fields.start), bad
+
+
+def _ways(designs: Designs, fields: Fields, begin: NDArray[np.intp]) -> Array:
+    """The ways in which designs set out, 1 or -1; another number where the energy form does not know."""
+    speed, start = designs.omega_start, fields.start
+    rest = np.where(start["push"] > 0.0, 1.0, np.where(start["back"] < 0.0, -1.0, 0.0))
+    if designs.tables:  # a load may jump at the start: what is ahead decides
+        row, count = np.arange(len(begin)), fields.rough.shape[1]
+        edges = fields.edges
+        last = (edges <= edges[row, begin][:, None]).sum(axis=1) - 1  # behind panels of no width
+        ahead = fields.push[row, 1 + NODES * np.minimum(last, count - 1)]
+        behind = fields.back[row, NODES * np.where(begin > 0, begin, count)]
+        rest[((rest > 0.0) & ~(ahead > 0.0)) | ((rest < 0.0) & ~(behind < 0.0))] = 0.0
+    return np.where(speed == 0.0, rest, np.copysign(1.0, speed))

@@ -8,12 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...evaluation.evaluate import evaluate
+from ...loads.angles import meeting_angles, turns_of, zero_of
+from ...loads.load import TURN, Load, OverTheta, OverY
+from ...mechanism.names import LENGTHS
 from ...runtime.compiled_only import compiled_only
-from ...support.panels import nodes_of, padded
+from ...support.panels import NODE, NODES, nodes_of, padded
 
 Array = NDArray[np.float64]
 LOST = 2.0**-53  # of an angle: its rounding, in the last terms of a series
-FIRST = 12  # panels of a turn, or between two limit angles, before any is halved
+SAME = 1e-12  # rad: edges that are no farther apart are one
+MOST_TURNS = 4  # after which loads must repeat
+FIRST = 8  # panels of a turn, or between two limit angles, before any is halved
 # All from one kernel: few compilations.
 QUANTITIES = ("M_eff", "T_in", "M_eff_wrt_theta", "Y", "potential_energy")
 
@@ -21,14 +26,15 @@ QUANTITIES = ("M_eff", "T_in", "M_eff_wrt_theta", "Y", "potential_energy")
 class Designs(NamedTuple):
     """Designs without friction: inputs of the mechanism, numbers or arrays (designs,), and their starts.
 
+    torque, force  on crank and slider: arrays, or tables
     middle, half   of the arc between limit angles; half is 0 where the crank turns fully, middle NaN where no
                    inertia grows there
     """
 
     inputs: Mapping[str, Any]
     branch: int
-    torque: Array
-    force: Array
+    torque: Any
+    force: Any
     theta0: Array
     omega_start: Array
     middle: Array
@@ -37,8 +43,41 @@ class Designs(NamedTuple):
     def some(self, rows: Any) -> "Designs":
         """The designs of some rows."""
         inputs = {name: v if isinstance(v, float) else v[rows] for name, v in self.inputs.items()}
-        torque, force, theta0, omega_start, middle, half = (column[rows] for column in self[2:])
+        torque, force = (v if isinstance(v, Load) else v[rows] for v in (self.torque, self.force))
+        theta0, omega_start, middle, half = (column[rows] for column in self[4:])
         return Designs(inputs, self.branch, torque, force, theta0, omega_start, middle, half)
+
+    @property
+    def tables(self) -> dict[str, Load]:
+        """The loads that vary with the motion."""
+        return {n: v for n, v in (("torque", self.torque), ("F_Y", self.force)) if isinstance(v, Load)}
+
+    @property
+    def lengths(self) -> list[Array]:
+        """Eccentricity, crank and rod [m] of each design."""
+        return [self.length(name) for name in LENGTHS]
+
+    @property
+    def period(self) -> float:
+        """The angle after which all repeats where the crank turns fully [rad]."""
+        return TURN * turns_of("simulate", self.tables, MOST_TURNS)
+
+    @property
+    def turns_with_the_slider(self) -> bool:
+        """True where the force hangs on the way of the slider."""
+        return isinstance(self.force, OverY) and self.force.turns
+
+    def push(self, theta: Array, found: Mapping[str, Array], way: Any) -> Array:
+        """The generalised torque of all that acts, with what `values` finds at the angles."""
+        torque = self.torque(theta) if isinstance(self.torque, OverTheta) else self.torque[:, None]
+        push = torque - found["T_in"]
+        if isinstance(self.force, OverY):
+            zero = zero_of(self.force, self.lengths, self.branch)[:, None]
+            along = self.force.along({"Y": found["Y"], self.force.centre: zero})
+            push += self.force(along, way * found["Y_wrt_theta"]) * found["Y_wrt_theta"]
+        elif isinstance(self.force, OverTheta):
+            push += self.force(theta) * found["Y_wrt_theta"]
+        return np.asarray(push)
 
     def length(self, name: str) -> Array:
         """A length of each design."""
@@ -55,7 +94,8 @@ class Designs(NamedTuple):
             theta = np.repeat(theta, 2, axis=0)
         state: dict[str, Any] = {"theta": theta, "omega": 0.0, "alpha": 0.0, **inputs}
         with compiled_only():
-            found = evaluate(list(QUANTITIES), branch=self.branch, threads=1, **state)
+            names = [*QUANTITIES, "Y_wrt_theta"] if isinstance(self.force, Load) else list(QUANTITIES)
+            found = evaluate(names, branch=self.branch, threads=1, **state)
         return {name: values[: len(self.theta0)] for name, values in found.items()}
 
     def place(self, x: Array) -> tuple[Array, Any]:
@@ -66,52 +106,95 @@ class Designs(NamedTuple):
         turns = half == 0.0
         return np.where(turns, x, middle + half * np.sin(x)), np.where(turns, 1.0, half * np.cos(x))
 
-    def coordinates(self) -> Array:
-        """The coordinates of the starts, measured from the nearer limit, so that no digit is lost."""
-        before = self.theta0 < self.middle
-        gap = np.where(before, self.theta0 - self.middle, self.middle - self.theta0) + self.half
+    def coordinates(self, theta: Array) -> Array:
+        """The coordinates of crank angles, measured from the nearer limit, so that no digit is lost."""
+        shape = (-1, *(1,) * (theta.ndim - 1))
+        middle, half = self.middle.reshape(shape), self.half.reshape(shape)
+        before = theta < middle
+        gap = np.where(before, theta - middle, middle - theta) + half
         with np.errstate(invalid="ignore", divide="ignore"):
-            quarter = 0.5 * pi - 2.0 * np.arcsin(np.sqrt(np.maximum(gap, 0.0) / (2.0 * self.half)))
-        return np.where(self.half == 0.0, self.theta0, np.where(before, -quarter, quarter))
+            quarter = 0.5 * pi - 2.0 * np.arcsin(np.sqrt(np.maximum(gap, 0.0) / (2.0 * half)))
+        return np.where(half == 0.0, theta, np.where(before, -quarter, quarter))
 
 
 class Fields(NamedTuple):
-    """Edges of panels, inertia and torque of the coordinate at their nodes, and both at the start.
+    """Edges of panels, and rows of the start and of all nodes: inertia and torque of the coordinate there.
 
+    back    the torque on the way back
     rough   how exactly they are known: next to a limit angle a rounded angle has lost digits
+    start   the quantities at the start
     """
 
     edges: Array
     rough: Array
     inertia: Array
     push: Array
-    first_inertia: Array
-    first_push: Array
+    back: Array
+    start: dict[str, Array]
 
 
 def fields_of(designs: Designs, edges: Array) -> Fields:
     """The fields of designs on panels."""
-    shape = (*edges[:, 1:].shape, -1)
-    x = nodes_of(edges[:, :-1], edges[:, 1:])
-    theta, slope = designs.place(x.reshape(len(edges), -1))
-    found = designs.values(np.concatenate([designs.theta0[:, None], theta], axis=1))
-    inertia, push = found["M_eff"], designs.torque[:, None] - found["T_in"]
-    own = inertia[:, 1:] * slope * slope, push[:, 1:] * slope
-    half = designs.half[:, None]
-    nearest = np.maximum(1.0 - np.abs(np.sin(x[:, :, [0, -1]])).max(axis=2), 2.0**-53) * half
+    count = len(edges)
+    x = np.empty((count, 1 + NODES * (edges.shape[1] - 1)))
+    x[:, 0] = designs.coordinates(designs.theta0)
+    x[:, 1:] = nodes_of(edges[:, :-1], edges[:, 1:]).reshape(count, -1)
+    theta, slope = designs.place(x)
+    if theta is not x:
+        theta[:, 0] = designs.theta0
+    found = designs.values(theta)
+    start = {name: values[:, 0].copy() for name, values in found.items()}
+    inertia, push = found["M_eff"], designs.push(theta, found, 1.0)
+    back = designs.push(theta, found, -1.0) if designs.turns_with_the_slider else push
+    start["push"], start["back"] = push[:, 0].copy(), back[:, 0].copy()
+    rough = np.zeros((count, edges.shape[1] - 1))
+    if designs.half.any():
+        rough, same = _rough(designs, edges), back is push
+        inertia, push = inertia * slope * slope, push * slope
+        back = push if same else back * slope
+    return Fields(edges, rough, np.ascontiguousarray(inertia), push, back, start)
+
+
+def _rough(designs: Designs, edges: Array) -> Array:
+    """The share of the fields that rounding of angles leaves open on each panel."""
+    half, (first, last) = designs.half[:, None], NODE[[0, -1]]
+    middle, width = 0.5 * (edges[:, 1:] + edges[:, :-1]), 0.5 * np.diff(edges)
+    ends = np.maximum(np.abs(np.sin(middle + width * first)), np.abs(np.sin(middle + width * last)))
+    nearest = np.maximum(1.0 - ends, 2.0**-53) * half
     with np.errstate(divide="ignore", invalid="ignore"):
         lost = LOST * (np.abs(designs.middle[:, None]) + half) / nearest
-    rough = np.where(half == 0.0, 0.0, lost)
-    values = [np.ascontiguousarray(part.reshape(shape)) for part in own]
-    return Fields(edges, rough, values[0], values[1], inertia[:, 0], push[:, 0])
+    return np.where(half == 0.0, 0.0, lost)
 
 
 def first_edges(designs: Designs) -> Array:
-    """Edges of panels over a turn from the start, or over the arc, with one more edge at the start."""
-    start = designs.coordinates()[:, None]
-    steps = np.arange(FIRST + 1) / FIRST
-    edges = np.where(designs.half[:, None] == 0.0, start + 2.0 * pi * steps, pi * steps - 0.5 * pi)
-    return np.sort(np.concatenate([start, edges], axis=1), axis=1)
+    """Edges of panels over a period from the start, or over the arc: at the start and where loads meet."""
+    start = designs.coordinates(designs.theta0)[:, None]
+    free, period = designs.half[:, None] == 0.0, designs.period
+    count = FIRST * round(period / TURN)
+    steps = np.arange(count + 1) / count
+    edges = [start, np.where(free, start + period * steps, pi * steps - 0.5 * pi)]
+    if designs.tables:
+        edges.append(_meeting(designs, start, period))
+    every = np.sort(np.concatenate(edges, axis=1), axis=1)
+    row, place = np.nonzero(np.diff(every, axis=1, prepend=-np.inf))
+    return np.sort(padded(row, every[row, place], len(every), start[:, 0]), axis=1)
+
+
+def _meeting(designs: Designs, start: Array, period: float) -> Array:
+    """The coordinates at which pieces of loads meet; the start in empty places."""
+    angles = meeting_angles(designs.tables.values(), period, designs.lengths, designs.branch)
+    angles = np.broadcast_to(angles, (len(start), angles.shape[1]))
+    with np.errstate(invalid="ignore"):
+        ahead = np.remainder(angles - start, period)
+        ahead = np.where((ahead > SAME) & (ahead < period - SAME), start + ahead, start)
+        middle, half = designs.middle[:, None], designs.half[:, None]
+        near = angles + period * np.round((middle - angles) / period)
+        every = np.concatenate([near - period, near, near + period], axis=1)
+        x = designs.coordinates(every)
+        inside = (np.abs(every - middle) < half - SAME) & (np.abs(x - start) > SAME)
+    own = np.where(inside, x, start)
+    free = half == 0.0
+    return np.where(free, np.concatenate([ahead, np.repeat(start, own.shape[1] - ahead.shape[1], 1)], 1), own)
 
 
 def halved(edges: Array, bad: NDArray[np.int8]) -> Array:

@@ -12,9 +12,13 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from typing import Any
 
+    def apart() -> None:
+        """The promise that what is written to shares no memory with anything else."""
+
 
 def combined(values: Any, columns: Any, out: Any) -> None:
     """The sum of columns by 16 values."""
+    apart()
     for j in range(16):
         out[j] = 0.0
     for k in range(16):
@@ -25,6 +29,7 @@ def combined(values: Any, columns: Any, out: Any) -> None:
 
 def tail(values: Any, columns: Any) -> float:
     """The larger of the last two Legendre coefficients of values at nodes: one is odd, one even."""
+    apart()
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
     for k in range(0, 8, 2):
         a += columns[k, 14] * (values[k] + values[15 - k])
@@ -101,52 +106,67 @@ def energies(
     kind: 0 in motion all along, 1 at rest at its start, 2 at its end. At rest the energy is that over xi^2,
     and the nodes go away from there.
     """
-    u, inertia, push, done, before, now = rows[0], rows[1], rows[3], rows[4], rows[5], rows[6]
+    sums(a, span, kind, m, q, tables[0], rows[0], rows[1], rows[3], rows[4], rows[5], rows[6])
+    if kind == 0:
+        shifted(left, half, rows[4], rows[2])
+    else:
+        combined(rows[3], tables[4], rows[2])
+        shifted(0.0, half * span if kind == 1 else -half * span, rows[2], rows[2])
+
+
+def shifted(left: float, half: float, values: Any, out: Any) -> None:
+    """left + half (values)."""
     for k in range(16):
-        xi = 0.5 + 0.5 * tables[0][k]
+        out[k] = left + half * values[k]
+
+
+def sums(
+    a: float, span: float, kind: Any, m: Any, q: Any, nodes: Any, u: Any, inertia: Any, push: Any, done: Any,
+    before: Any, now: Any,
+) -> None:  # fmt: skip
+    """The series m and q, and the integral of q, at the nodes of a piece."""
+    apart()
+    for k in range(16):
+        xi = 0.5 + 0.5 * nodes[k]
         u[k] = a + span * (xi if kind == 0 else xi * xi if kind == 1 else 1.0 - xi * xi)
         before[k], now[k] = 1.0, u[k]
         inertia[k], push[k], done[k] = m[0], q[0], q[0] * (u[k] + 1.0)
     for j in range(1, 16):
         one, two, share = (2.0 * j + 1.0) / (j + 1.0), j / (j + 1.0), q[j] / (2.0 * j + 1.0)
+        of_m, of_q = m[j], q[j]
         for k in range(16):
             after = one * u[k] * now[k] - two * before[k]
-            inertia[k] += m[j] * now[k]
-            push[k] += q[j] * now[k]
+            inertia[k] += of_m * now[k]
+            push[k] += of_q * now[k]
             done[k] += share * (after - before[k])
             before[k], now[k] = now[k], after
-    if kind == 0:
-        for k in range(16):
-            rows[2, k] = left + half * done[k]
-    else:
-        combined(push, tables[4], rows[2])
-        for k in range(16):
-            rows[2, k] *= half * span if kind == 1 else -half * span
 
 
-def ordered(M: Any, work: Any, left: float, forwards: bool, rows: Any) -> None:
+def ordered(M: Any, work: Any, left: float, forwards: bool, inertia: Any, energy: Any) -> None:
     """Inertia and energy at the nodes of a whole panel, in the way of the motion."""
+    apart()
     if forwards:
         for k in range(16):
-            rows[1, k], rows[2, k] = M[k], left + work[k]
+            inertia[k], energy[k] = M[k], left + work[k]
     else:
         for k in range(16):
-            rows[1, k], rows[2, k] = M[15 - k], left + work[15 - k]
+            inertia[k], energy[k] = M[15 - k], left + work[15 - k]
 
 
-def rates(kind: Any, scale: float, weights: Any, rows: Any) -> float:
-    """dt/du at the nodes of a piece, in their order, into row 0; how long it takes."""
-    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+def rates(kind: Any, scale: float, weights: Any, inertia: Any, energy: Any, rate: Any) -> float:
+    """dt/du at the nodes of a piece, in their order; how long it takes."""
+    apart()
     for k in range(16):
-        rows[0, k] = scale * sqrt(rows[1, k] / (2.0 * rows[2, k]))
+        rate[k] = scale * sqrt(inertia[k] / (2.0 * energy[k]))
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
     for k in range(4):
-        a += weights[k] * rows[0, k]
-        b += weights[k + 4] * rows[0, k + 4]
-        c += weights[k + 8] * rows[0, k + 8]
-        d += weights[k + 12] * rows[0, k + 12]
+        a += weights[k] * rate[k]
+        b += weights[k + 4] * rate[k + 4]
+        c += weights[k + 8] * rate[k + 8]
+        d += weights[k + 12] * rate[k + 12]
     if kind == 2:
         for k in range(8):
-            rows[0, k], rows[0, 15 - k] = rows[0, 15 - k], rows[0, k]
+            rate[k], rate[15 - k] = rate[15 - k], rate[k]
     return (a + b) + (c + d)
 
 

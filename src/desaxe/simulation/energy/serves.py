@@ -5,31 +5,49 @@ from typing import Any
 
 import numpy as np
 
-from ...loads.load import Load
-from .panels import Designs
+from ...loads.angles import turns_of, zero_of
+from ...loads.load import OverY, TableOverTheta
+from .panels import MOST_TURNS, Designs
 
 ENERGY, INTEGRATOR = "energy", "DOP853"  # what `method` of a result says
-TABLE = "the torque is a table"
 
 
 def served(designs: Designs) -> Any:
     """True for each design whose motion is smooth in its coordinate up to the limit angles, if it has any."""
-    return np.isfinite(designs.middle)
+    there = np.isfinite(designs.middle)
+    if isinstance(designs.force, OverY):
+        there &= np.isfinite(zero_of(designs.force, designs.lengths, designs.branch))
+    return there
 
 
-def refuse(torque: Any, loads: Mapping[str, Any], mu: Any, options: Mapping[str, bool]) -> None:
+def tables_alone(varying: Mapping[str, Any], mu: Any) -> bool:
+    """True where all that varies with the motion are tables that repeat after few turns, without friction."""
+    if np.any(mu) or not all(_is_table(name, load) for name, load in varying.items()):
+        return False
+    try:
+        turns_of("simulate", varying, MOST_TURNS)
+    except ValueError:
+        return False
+    return True
+
+
+def _is_table(name: str, load: Any) -> bool:
+    return isinstance(load, TableOverTheta) or (isinstance(load, OverY) and name != "torque")
+
+
+def refuse(varying: Mapping[str, Any], mu: Any, options: Mapping[str, bool]) -> None:
     """ValueError where the energy form is asked for and cannot serve.
 
     options   those of an integrator, and whether each is given
     """
-    varying = [name for name, load in loads.items() if callable(load)]
     given = [name for name, there in options.items() if there]
-    if callable(torque):
-        _refuse("the torque is a function of time or speed" if not isinstance(torque, Load) else TABLE)
-    if varying:
-        _refuse(f"{varying[0]} varies with the motion")
+    other = [name for name, load in varying.items() if callable(load) and not _is_table(name, load)]
+    if other:
+        _refuse(f"the {other[0]} is a function, of time or speed perhaps; give a table")
     if np.any(mu):
         _refuse("friction hangs on the acceleration that it changes")
+    if not tables_alone({n: v for n, v in varying.items() if callable(v)}, mu):
+        _refuse(f"the loads do not repeat after {MOST_TURNS} turns")
     if given:
         _refuse(f"{given[0]}= is for an integrator")
 
