@@ -127,9 +127,9 @@ def simulate(
     `message` says so: at an angle or a standstill that is only touched, and after a jump there.
 
     Many designs at once: lengths, masses, constant loads, theta0, omega_start and a constant torque may be
-    arrays that broadcast like NumPy. Without friction they run in compiled code: under numbers and tables that
-    repeat after at most four turns in the energy form; under a torque function, which numba compiles, and
-    under numbers where the energy form does not serve, such as at an unstable equilibrium, by DOP853. All
+    arrays that broadcast like NumPy. Without friction they run in compiled code: under numbers and tables
+    that repeat after at most four turns in the energy form; under a torque function, which numba compiles,
+    and under numbers where the energy form does not serve, such as at an unstable equilibrium, by DOP853. All
     others run one after the other. Histories then have the shape (designs..., times), 101 instants without
     `times`, NaN where a motion has ended. status (also 6: bad input, or no mechanism at the start),
     energy_residual, work, t_last and method have the shape of the designs; there are no events and no

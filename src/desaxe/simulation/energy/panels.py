@@ -64,7 +64,7 @@ class Designs(NamedTuple):
 
     @property
     def turns_with_the_slider(self) -> bool:
-        """True where the force hangs on the way of the slider."""
+        """True where the force depends on the direction of the slider."""
         return isinstance(self.force, OverY) and self.force.turns
 
     def push(self, theta: Array, found: Mapping[str, Array], way: Any) -> Array:
