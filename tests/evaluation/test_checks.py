@@ -125,7 +125,7 @@ REFUSED = [
     ("V_C, a_C", {}, ValueError, re.escape("'V_C, a_C': several names are a list, such as ['V_C', 'a_C']")),
     ("V_C", {"theta": True}, TypeError, "theta: expected real numbers, got a bool: True"),
     ("V_C", {"theta": "60,5 deg"}, ValueError, 'a number with a unit such as "60 deg"'),
-    ("V_C", {"omega0": "900 1/min"}, ValueError, 'a number with a unit such as "1500 rpm"'),
+    ("V_C", {"omega0": "900 1/min"}, ValueError, "'900 1/min': a rate .per time. does not say of what"),
     ("V_C_wrt_omega", {}, ValueError, "'V_C_wrt_omega' needs a state: give omega= instead of omega0="),
     (
         "V_C",

@@ -45,6 +45,9 @@ def _input(units: UnitSystem, name: str, value: Any) -> str:
 
 
 def _value(value: Any, unit: str) -> str:
+    if callable(value):
+        name = getattr(value, "__name__", None)
+        return f"the function {name}" if name else repr(value)
     if hasattr(value, "tolist"):
         numbers = value.tolist()
         text = f"{numbers[0]:.6g} ... {numbers[-1]:.6g}"
