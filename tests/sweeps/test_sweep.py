@@ -1,6 +1,8 @@
 """`sweep`: a grid in a Zarr store, gone on with after a stop, with the same bytes."""
 
+import ast
 import hashlib
+import inspect
 import json
 import os
 import re
@@ -18,7 +20,9 @@ import xarray as xr
 import zarr
 
 import desaxe as dx
+from desaxe.scenes.parts.stored import sweep_content
 from desaxe.support.locks import locked
+from desaxe.sweeps.sweep import run_sweep
 from tests.effort import cases
 from tests.ways import take_way
 
@@ -288,3 +292,14 @@ def test_progress_counts_points(tmp_path):
     )
     assert seen[-1] == (240, 240, "writing")
     assert len(seen) == 3
+
+
+def test_an_option_stands_in_the_call_and_its_body_alone():
+    """`desaxe.sweep` has it for completion, `run_sweep` uses it; a scene's own values fill in the rest."""
+    named = {"progress": "watch"}
+    public = {named.get(n, n) for n in inspect.signature(dx.sweep).parameters}
+    body = set(inspect.signature(run_sweep).parameters)
+    assert public - {"names", "inputs"} == body - {"names", "inputs", "tell"}
+    passing = ast.parse(inspect.getsource(sweep_content)).body[0].args
+    assert passing.kwarg is not None
+    assert not passing.kwonlyargs

@@ -1,16 +1,14 @@
 """A scene as a sweep: its grid and peaks in a Zarr store."""
 
 import os
-from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ...evaluation.reductions import Reductions
-from ...sweeps.meter import Watch
 from ...sweeps.peak_step import PeakRequest
 from ...sweeps.place import require_place
 from ...sweeps.request import Sweep, sweep_of
-from ...sweeps.sweep import Tell, run_sweep
+from ...sweeps.sweep import run_sweep
 from ..content import Content
 from ..schema import SceneError
 from .grid import arrays_of
@@ -62,39 +60,20 @@ def require_store(content: Content, overwrite: bool) -> None:
     require_place(prepared_content(content), Path(os.path.abspath(content.store)), overwrite, content.memory)
 
 
-def sweep_content(
-    content: Content,
-    *,
-    store: str | PathLike[str] | None = None,
-    chunks: Any = "auto",
-    memory: int | str | None = None,
-    best: int | None = None,
-    threads: int | None = None,
-    watch: Watch | None = None,
-    tell: Tell | None = None,
-    overwrite: bool = False,
-    client: Any = None,
-    by: Any = None,
-    order: str | None = None,
-) -> "xr.Dataset":
-    """Run the sweep of a scene; options that are not given come from the scene."""
+def sweep_content(content: Content, **options: Any) -> "xr.Dataset":
+    """Run the sweep of a scene with options of `run_sweep`; those that are not given come from the scene."""
     wanted = arguments_of(content)
+    whole = options.get("best") is None
+    own = {
+        "store": content.store if whole else None,
+        "chunks": "auto" if content.chunks is None else content.chunks,
+        "memory": content.memory,
+        "order": None if whole else content.order,
+    }
+    auto = isinstance(options.get("chunks"), str) and options["chunks"] == "auto"
+    given = {n: v for n, v in options.items() if v is not None and not (auto and n == "chunks")}
+    threads = options.get("threads") or content.threads
     return run_sweep(
-        wanted.names,
-        wanted.inputs,
-        store=content.store if store is None and best is None else store,
-        chunks=content.chunks if chunks == "auto" and content.chunks is not None else chunks,
-        memory=content.memory if memory is None else memory,
-        branch=content.branch,
-        accuracy=content.accuracy,
-        threads=threads or content.threads,
-        reduce=wanted.reduce,
-        peaks=() if best is not None else wanted.peaks,
-        best=best,
-        watch=watch,
-        tell=tell,
-        overwrite=overwrite,
-        client=client,
-        by=by,
-        order=content.order if order is None and best is not None else order,
-    )
+        wanted.names, wanted.inputs, branch=content.branch, accuracy=content.accuracy, reduce=wanted.reduce,
+        peaks=wanted.peaks if whole else (), **{**own, **given, "threads": threads},
+    )  # fmt: skip
