@@ -36,7 +36,7 @@ from .result import DONE, FAILED, NO_START, WORDS, Simulation
 Array = NDArray[np.float64]
 SAMPLES = 101  # instants of the histories by default
 LONGEST_PART = 16  # designs in one native call, that threads share the work evenly
-BRIEF = 500  # pieces of motions that run at once
+BRIEF = 500.0  # pieces of motions that run at once
 LONGEST_BLOCK = 256  # the same in the energy form: its arrays stay in the cache
 LONGEST, MOST_STEPS = 2, 3  # places in `how`
 LARGE = 1_000  # designs that may take long: a bar tells
@@ -265,24 +265,24 @@ def by_energy(
     """Fill in the motions that have an energy form; the status of the others stays below 0."""
     status, most = outs[3], limits[MOST_STEPS:].copy()
     rows = np.flatnonzero((status < 0) & served(designs))
-    times, brief = np.append(t, limits[1]), np.array([min(most[0], BRIEF)])
+    times, brief = np.append(t, limits[1]), np.minimum(most, BRIEF)
 
     def stop() -> None:
         most[0] = 0.0
 
-    def follow(own: Any, most: Array) -> None:
+    def follow(own: Any, most: Array) -> Any:
+        """True for each row that has taken all pieces that it may."""
         part = designs.some(own) if own.size < status.size else designs
         found = follow_many(part, times, float(limits[0]), most)
-        there = found.status < NOT_HERE
-        if most is brief and brief[0] < limits[MOST_STEPS]:
-            there &= found.status != FAILED
+        unfinished = (found.status == FAILED) & (most[0] < limits[MOST_STEPS])
+        there = (found.status < NOT_HERE) & ~unfinished
         for out, values in zip(outs[:3], found[:3], strict=True):
             out[own[there]] = values[there, :-1]
         status[own[there]], outs[4][own[there]] = found.status[there], found.numbers[there]
+        return unfinished
 
     if 0 < rows.size <= LONGEST_BLOCK:  # a thread of its own would take longer than short motions do
-        follow(rows, brief)
-        rows = rows[status[rows] < 0]
+        rows = rows[follow(rows, brief)]
     if rows.size:
 
         def block(a: int, b: int) -> None:

@@ -143,6 +143,21 @@ def test_many_swings_are_one():
     assert late["theta"][0, 1] == pytest.approx(single["solution"](0.25 * period)["theta"], abs=1e-6)
 
 
+def test_long_motions_and_their_most_pieces():
+    """Turns by the hundred: more pieces than a motion takes in the caller's own thread."""
+    call = {**MACHINE, "torque": [0.4, 0.8], "omega_start": 5.0, "t_end": 60.0, "times": [30.0, 60.0]}
+    ours, theirs = dx.simulate(**call), dx.simulate(method="DOP853", rtol=1e-12, **call)
+    assert (ours["method"] == "energy").all()
+    assert ours["theta"].max() > 1000.0 * np.pi
+    np.testing.assert_allclose(ours["theta"], theirs["theta"], rtol=1e-9)
+    # Within a turn the speed swings: 1e-12 of thousands of radians is what it hangs on.
+    np.testing.assert_allclose(ours["omega"], theirs["omega"], rtol=1e-6)
+    for most in (10, 1000):
+        few = dx.simulate(max_steps=most, **call)
+        assert few["status"].tolist() == [4, 4]
+        assert (few["t_last"] < 60.0).all()
+
+
 def test_the_way_is_chosen_and_told():
     designs = drawn(5, 11)
     assert set(dx.simulate(t_end=0.1, **designs)["method"]) == {"energy"}
