@@ -18,7 +18,9 @@ def tables(rng, over, kind, both_ways):
     value, back = 300.0 * rng.normal(size=(2, size))
     if over == "theta":
         period = TURN * rng.choice([1.0, 2.0])
-        return dx.over_theta(np.sort(rng.uniform(0.0, 0.98 * period, size)), value, kind=kind, period=period)
+        size, value = 3 * size, 300.0 * rng.normal(size=3 * size)
+        angles = period * (np.arange(size) + rng.uniform(0.2, 0.8, size)) / size
+        return dx.over_theta(angles, value, kind=kind, period=period)
     ways = (value, back) if both_ways else (value,)
     if over == "Y":
         return dx.over_Y(np.sort(rng.uniform(0.02, 0.25, size)), *ways, kind=kind)
@@ -48,6 +50,7 @@ def require_equal(one, other, scale):
     for parameter, slope in other["gradient"].items():
         found = one["gradient"][parameter]
         size = np.abs(slope) + np.abs(other["value"]) / (1.0 if parameter in ("F_X", "F_Y") else 0.05)
+        size += 1e-6 * scale  # of a value that is 0 but for rounding, at a dead centre, nothing is left
         good = (np.abs(found - slope) <= 1e-7 * size) | (np.isnan(found) & np.isnan(slope))
         assert good[near].all(), parameter
     return near
@@ -57,18 +60,17 @@ def require_equal(one, other, scale):
 @pytest.mark.parametrize(
     ("over", "kind", "both_ways"),
     [
-        pytest.param("theta", "linear", False, marks=pytest.mark.thorough),
+        ("theta", "linear", False),
         pytest.param("theta", "cubic", False, marks=pytest.mark.thorough),
         pytest.param("Y", "linear", False, marks=pytest.mark.thorough),
-        ("inner", "step", True),
-        pytest.param("outer", "linear", True, marks=pytest.mark.thorough),
+        pytest.param("inner", "step", True, marks=pytest.mark.thorough),
     ],
 )
 def test_machine_code_finds_what_numpy_finds_for_any_table(over, kind, both_ways, monkeypatch):
     """One search, compiled once, serves all tables of a kind: of any size, for any range of angles."""
     rng = np.random.default_rng([3, len(over), len(kind)])
     kept, alike = set(), 0
-    for _ in range(cases(3, 24, 400)):
+    for _ in range(cases(3, 8, 400)):
         given = designs(rng, 24) | {"F_Y": tables(rng, over, kind, both_ways)}
         given |= {"kind": rng.choice(["absmax", "max", "min"]).item(), "theta": RANGES[rng.integers(3)]}
         by_numpy = peaks(monkeypatch, "numpy", "T_in", given)
