@@ -102,6 +102,13 @@ def test_under_tables_of_all_kinds(kind):
 MACHINE = {"AB": 0.12, "BC": 0.35, "ec": 0.03, "m_rod": 1.1, "m_slider": 2.0, "I_crank": 0.01, "I_rod": 0.008}
 
 
+def machines(**given):
+    """Two equal designs; all that may vary is an array, so that all tests share their kernels."""
+    names = set(drawn(1, 0)) - {"theta0", "omega_start", "torque"}
+    values = {**dict.fromkeys(names, 0.0), **MACHINE, "torque": 0.0, **given}
+    return {name: np.broadcast_to(np.asarray(value), 2) for name, value in values.items()}
+
+
 @pytest.mark.parametrize(
     "start",
     [
@@ -112,8 +119,7 @@ MACHINE = {"AB": 0.12, "BC": 0.35, "ec": 0.03, "m_rod": 1.1, "m_slider": 2.0, "I
 )
 def test_the_true_motion(start):
     t_end = 0.25
-    given = {**MACHINE, **start, "theta0": [start["theta0"]]}
-    found = dx.simulate(t_end=t_end, times=[t_end], rtol=1e-12, method="energy", **given)
+    found = dx.simulate(t_end=t_end, times=[t_end], rtol=1e-12, method="energy", **machines(**start))
     design = {**MACHINE, "g_Y": start.get("g_Y", 0.0)}
     truth = true_end(design, start["torque"], start["theta0"], start.get("omega_start", 0.0), t_end, 80)
     np.testing.assert_allclose(found["theta"][0, 0], truth[0], rtol=0.0, atol=1e-12)
@@ -131,9 +137,9 @@ def test_no_digit_hangs_on_the_other_designs():
 
 def test_many_swings_are_one():
     """A crank swings 200 s: the instants of its standstills are those of its period."""
-    swing = {**MACHINE, "g_Y": -9.81, "torque": [0.0, 0.0], "theta0": 3.0}
+    swing = machines(g_Y=-9.81, theta0=3.0)
     first = dx.simulate(t_end=3.0, times=np.linspace(0.0, 3.0, 301), **swing)
-    single = dx.simulate(t_end=3.0, **{**swing, "torque": 0.0})
+    single = dx.simulate(t_end=3.0, **{**MACHINE, "g_Y": -9.81, "torque": 0.0, "theta0": 3.0})
     stops = [event.t for event in single["events"] if event.kind == "standstill"]
     period = stops[1] if stops[0] > 1e-9 else stops[2]
     assert abs(first["theta"][0]).max() < 20.0
@@ -145,7 +151,7 @@ def test_many_swings_are_one():
 
 def test_long_motions_and_their_most_pieces():
     """Turns by the hundred: more pieces than a motion takes in the caller's own thread."""
-    call = {**MACHINE, "torque": [0.4, 0.8], "omega_start": 5.0, "t_end": 60.0, "times": [30.0, 60.0]}
+    call = {**machines(torque=[0.4, 0.8], omega_start=5.0), "t_end": 60.0, "times": [30.0, 60.0]}
     ours, theirs = dx.simulate(**call), dx.simulate(method="DOP853", rtol=1e-12, **call)
     assert (ours["method"] == "energy").all()
     assert ours["theta"].max() > 1000.0 * np.pi
@@ -162,7 +168,8 @@ def test_the_way_is_chosen_and_told():
     designs = drawn(5, 11)
     assert set(dx.simulate(t_end=0.1, **designs)["method"]) == {"energy"}
     assert set(dx.simulate(t_end=0.1, method="DOP853", **designs)["method"]) == {"DOP853"}
-    massless = {"AB": 0.1, "BC": [0.06, 0.06], "ec": 0.0, "I_crank": 1.0, "theta0": 0.1, "torque": 1.0}
+    bare = dict.fromkeys(("m_rod", "m_slider", "I_rod", "ec"), 0.0)
+    massless = machines(AB=0.1, BC=0.06, I_crank=1.0, theta0=0.1, torque=1.0, **bare)
     assert set(dx.simulate(t_end=5.0, **massless)["method"]) == {"DOP853"}
     with pytest.raises(ValueError, match="method = 'energy': 2 of 2 designs, the first of them number 0"):
         dx.simulate(t_end=5.0, method="energy", **massless)
