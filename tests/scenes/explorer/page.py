@@ -1,4 +1,4 @@
-"""What tests of the page in a browser ask it for."""
+"""Helpers that read the page in a browser."""
 
 MINUS, NONE = "\u2212", "\u2013"
 RAISED = str.maketrans("\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079", "-0123456789")
