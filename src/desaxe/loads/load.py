@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..support.computed import computed_once
 from ..support.forks import IMPORTS
-from .table import Table, polynomial
+from .table import Table, described, polynomial
 
 if TYPE_CHECKING:
     from ..mechanism.unit_system import Conversion
@@ -148,7 +148,7 @@ class TableOverTheta(OverTheta):
 
     def told(self, conversion: "Conversion | None" = None) -> str:
         """The table in a line; with a conversion in that unit."""
-        return f"<load over theta: {_described(self.table, self.kind, self.unit, conversion)}>"
+        return f"<load over theta: {described((self.table,), self.kind, self.unit, conversion)}>"
 
     def __repr__(self) -> str:
         return self.told()
@@ -289,7 +289,7 @@ class OverY(Load):
 
     def told(self, conversion: "Conversion | None" = None) -> str:
         """The table in a line; with a conversion in that unit."""
-        return f"<load over Y: {_described(self.outward, self.kind, self.unit, conversion, self.inward)}>"
+        return f"<load over Y: {described((self.outward, self.inward), self.kind, self.unit, conversion)}>"
 
     def __repr__(self) -> str:
         return self.told()
@@ -298,16 +298,3 @@ class OverY(Load):
 def _plain(x: Any) -> Any:
     """A float for a number, an array for anything else."""
     return float(x) if isinstance(x, (int, float)) else x
-
-
-def _described(
-    table: Table, kind: str, unit: str | None, conversion: "Conversion | None", inward: Table | None = None
-) -> str:
-    if conversion is not None and conversion.si != 1:
-        unit = conversion.unit
-    ranges = []
-    for way in (table, inward) if inward is not None else (table,):
-        ends = min(way.values), max(way.values)
-        low, high = ends if conversion is None else map(conversion.shown, ends)
-        ranges.append(f"{low:g} to {high:g}" + (f" {unit}" if unit else ""))
-    return f"{len(table.knots)} points, {kind}, {', inward '.join(ranges)}"

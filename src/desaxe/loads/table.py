@@ -238,3 +238,16 @@ def _slopes(x: Sequence[float], y: Sequence[float]) -> list[float]:
         from scipy.interpolate import CubicSpline
     found: list[float] = CubicSpline(x, y)(x, 1).tolist()
     return found
+
+
+def described(ways: Sequence[Table | None], kind: str, unit: str | None, conversion: Any = None) -> str:
+    """The tables of a load, one or one for each way, in a line; with a conversion in that unit."""
+    tables = [way for way in ways if way is not None]
+    if conversion is not None and conversion.si != 1:
+        unit = conversion.unit
+    ranges = []
+    for way in tables:
+        ends = min(way.values), max(way.values)
+        low, high = ends if conversion is None else map(conversion.shown, ends)
+        ranges.append(f"{low:g} to {high:g}" + (f" {unit}" if unit else ""))
+    return f"{len(tables[0].knots)} points, {kind}, {', inward '.join(ranges)}"
