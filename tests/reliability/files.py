@@ -10,7 +10,7 @@ import openpyxl
 import xarray as xr
 
 from desaxe.derive.write import write
-from desaxe.scenes import files as results
+from desaxe.scenes.stores import files as results
 from desaxe.support import files
 from tests.reliability.rig import (
     CRASHED,
