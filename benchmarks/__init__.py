@@ -19,6 +19,7 @@ steps        `python -m benchmarks.steps`: the worst error of many motions besid
 tolerances   `python -m benchmarks.tolerances`: errors of motions beside the tolerance asked for
 motions      `python -m benchmarks.motions`: simulations
 steady       `python -m benchmarks --only steady`: steady states beside simulating them
+integrators  `--only integrators`: many motions beside heyoka
 loads        `--only loads`: grids, points and peaks under loads that vary with the motion
 scale        `python -m benchmarks.scale`: sweeps
 """

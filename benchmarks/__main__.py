@@ -18,7 +18,8 @@ PAGE, MEASURED = DOCS / "benchmarks.md", DOCS / "measured.md"
 STARTS = "starts"  # no race: processes of desaxe alone
 STEADY = "steady"  # no race: beside simulating
 LOADS = "loads"  # no race: beside a constant force
-TABLES = (STEADY, LOADS)
+INTEGRATORS = "integrators"  # no race: beside heyoka's Taylor series
+TABLES = (STEADY, LOADS, INTEGRATORS)
 DESCRIPTION = """\
 desaxe beside NumPy, numba, numexpr, JAX, CasADi, heyoka and C at the same works, on one core and on all:
 time as a multiple of desaxe's, error against the truth. The peers come with the extra `peers`, C with gcc;
@@ -58,7 +59,8 @@ def _parser() -> argparse.ArgumentParser:
         choices=[*keys, STARTS, *TABLES],
         metavar="WORK",
         help=f"this work alone; repeatable; {STARTS}: desaxe's first calls and second processes; "
-        f"{STEADY}: steady states beside simulating them; {LOADS}: loads that vary beside a constant force",
+        f"{STEADY}: steady states beside simulating them; {LOADS}: loads that vary beside a constant force; "
+        f"{INTEGRATORS}: simulations beside heyoka",
     )
     parser.add_argument(
         "--quick", action="store_true", help="five small works, few rounds, no cold starts: a minute"
@@ -88,6 +90,7 @@ def _listed() -> str:
     works = [f"  {work.key:11}{work.title}" for work in WORKS]
     works.append(f"  {STARTS:11}first calls and second processes of desaxe")
     works.append(f"  {STEADY:11}steady states on a motor beside simulating until two turns agree")
+    works.append(f"  {INTEGRATORS:11}simulations of many designs beside heyoka's Taylor series")
     missing = {one.name: "" if one.is_here else f"not here: needs {one.needs}" for one in CONTENDERS}
     return "\n".join(
         ["works", *works, "contenders", *(f"  {n:18}{why}".rstrip() for n, why in missing.items())]

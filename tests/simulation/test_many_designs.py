@@ -13,6 +13,7 @@ from scipy.integrate import DOP853
 import desaxe as dx
 from desaxe.mechanism.program import Variant
 from desaxe.simulation import dop853 as compiled
+from desaxe.simulation import nodes
 from desaxe.simulation.compiled import Family, source_of
 from desaxe.simulation.coordinate import EDGE
 from tests.motions import true_end
@@ -193,7 +194,7 @@ def test_what_is_refused(change, error, message):
 def test_the_text_stands_alone():
     tree = ast.parse(source_of(Family(Variant(True, ("r_crank", "r_rod")), ()), False))
     modules = {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
-    assert modules == {"__future__", "math", "numba", "numpy", "typing"}
+    assert modules == {"__future__", "math", "numba", "numba.extending", "numpy", "typing"}
     assert not [node for node in ast.walk(tree) if isinstance(node, ast.Import)]
 
 
@@ -212,10 +213,11 @@ def test_the_text_runs_uncompiled(monkeypatch):
         monkeypatch.setattr(compiled, name, lambda theta, branch, p, found=found: found, raising=False)
     monkeypatch.setattr(compiled, "torque", lambda t, theta, omega, number: number, raising=False)
     setup = np.array([[1.0, -math.inf, math.inf, 0.0, 3.0, 0.0, 0.5, 1.0, 0.0]])
-    times, how = np.array([0.0, 0.3, 2.0]), np.array([1e-10, 2.0, math.inf, 1000.0])
+    times, how = np.array([0.0, 0.3, 2.0]), np.array([1e-10, 2.0, math.inf, 1000.0, 0.0])
     tables = [getattr(DOP853, name) for name in ("A", "B", "C", "E3", "E5", "D", "A_EXTRA", "C_EXTRA")]
+    tables.append(nodes.table())
     theta, omega, alpha = (np.empty((1, 3)) for _ in range(3))
-    status, numbers = np.full(1, -1, np.int8), np.empty((1, 4))
+    status, numbers = np.full(1, -1, np.int8), np.empty((1, 5))
     compiled.designs(np.empty((1, 0)), setup, times, how, *tables, theta, omega, alpha, status, numbers)
     np.testing.assert_allclose(theta[0], 0.5 + times + 1.5 * times**2, rtol=1e-13)
     np.testing.assert_allclose(omega[0], 1.0 + 3.0 * times, rtol=1e-13)

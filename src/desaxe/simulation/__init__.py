@@ -14,6 +14,8 @@ each_design   arrays of designs under loads over the motion, one after the other
 stepper       the integrator of one motion
 dop853        the same for many designs, which numba compiles
 tableau       the coefficients of both
+picard        panels of the crank angle in between, where it does not rest
+nodes         the coefficients of the panels
 compiled      the module of a family of designs
 history       histories of angle, speed, quantities and energy
 sensitivities  derivatives of a motion by parameters

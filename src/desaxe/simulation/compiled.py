@@ -5,19 +5,22 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..compiler.builder import function_text, module_text
+from ..compiler.builder import function_text, functions_of, module_text
 from ..compiler.languages.numba.module import NJIT, numba_parts
+from ..compiler.lowering import for_loops
 from ..compiler.program import Program
 from ..compiler.text import with_short_temporaries, write_lines
+from ..mechanism.constants import constants
 from ..mechanism.program import Variant
 from ..runtime.modules import Native, native, native_here
 from ..runtime.specialise import specialise
 from .model import MOVING, STILL, UNLOADED
 
-DOP853 = Path(__file__).with_name("dop853.py")
+FILES = tuple(Path(__file__).with_name(name) for name in ("dop853.py", "picard.py"))
 _SIGNATURE = """rows, row = types.float64[:, ::1], types.float64[::1]
 signature = types.void(
-    rows, rows, row, row, rows, row, row, row, row, rows, rows, row, rows, rows, rows, types.int8[::1], rows
+    rows, rows, row, row, rows, row, row, row, row, rows, rows, row, rows, rows, rows, rows, types.int8[::1],
+    rows
 )
 function = designs.py_func
 """
@@ -58,11 +61,20 @@ def source_of(family: Family, given_torque: bool) -> str:
     torque = "given_torque(t, theta, omega)" if given_torque else "number"
     parts = [
         *(_function(name, program, inputs) for name, program in family.programs.items()),
+        _function("still_in_lanes", for_loops(family.programs["still"], constants(), plain=True), inputs),
         NJIT + function_text("torque", ("t", "theta", "omega", "number"), [f"return {torque}"]),
+        *([] if given_torque else _without_panels()),
         _SIGNATURE,
     ]
     docstring = f"desaxe: the motion of many designs; p has {', '.join(inputs)}."
-    return module_text(docstring, numba_parts(parts, DOP853))
+    return module_text(docstring, numba_parts(parts, *FILES))
+
+
+def _without_panels() -> list[str]:
+    """No panels where the torque is a number: such motions have an energy form, and compiling takes time."""
+    texts = functions_of(FILES[0]) | functions_of(FILES[1])
+    heads = (texts[name][: texts[name].index('"""')] for name in ("land", "tell_inside", "by_panel"))
+    return [f"{NJIT}{head}return -1.0\n" for head in heads]
 
 
 def _function(name: str, program: Program, places: Mapping[str, str]) -> str:

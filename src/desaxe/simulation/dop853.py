@@ -8,7 +8,9 @@ an int64, for numba compiles a function anew for each literal.
 
 setup   a row per design: branch, limit angles, half of the arc (see `chart`), torque, F_Y, theta0,
         omega_start, an energy that the loads suggest
-tables  A, B, C, E3, E5, D and the rows of A and C for the dense output
+tables  A, B, C, E3, E5, D and the rows of A and C for the dense output; that of the panels
+
+A crank that turns fully goes by panels of the crank angle (`picard`) where its speed lets it.
 """
 
 from __future__ import annotations
@@ -16,7 +18,20 @@ from __future__ import annotations
 from math import asin, copysign, cos, inf, nan, pi, sin, sqrt
 from typing import TYPE_CHECKING
 
-from numpy import empty, int64, nextafter
+from numpy import empty, int64, nextafter, zeros
+
+from .picard import (
+    OF_ENERGY,
+    OF_TIME,
+    RATE,
+    ROWS,
+    SLOWNESS,
+    along,
+    by_panel,
+    expand,
+    panel,
+    part_at,
+)  # fmt: skip
 
 if TYPE_CHECKING:
     from typing import Any
@@ -231,6 +246,72 @@ def start(p: Any, setup: Any, rtol: float, t_end: float, y: Any, atol: Any, size
     return True
 
 
+def account(y: Any, new: Any, p: Any, setup: Any, sums: Any) -> None:
+    """Take a step into account, and make it.
+
+    sums: first energy, work done either way, largest kinetic energy, residual now and before, largest energy.
+    """
+    energy = energy_of(new, p, setup)
+    off = abs(energy - new[2] - sums[0])
+    sums[1] += abs(new[2] - y[2])
+    sums[2] = max(sums[2], 0.5 * new[1] * new[1])
+    sums[4] = sums[3]
+    sums[3] = max(sums[3], off) if off == off else sums[3]
+    sums[5] = max(sums[5], abs(energy))
+    for i in range(3):
+        y[i] = new[i]
+
+
+def land(
+    t: float,
+    end: float,
+    t_end: float,
+    y: Any,
+    p: Any,
+    setup: Any,
+    rtol: float,
+    panels: Any,
+    room: Any,
+    memory: Any,
+    K: Any,
+    new: Any,
+) -> float:
+    """Make the series of a panel, shortened where it goes beyond the end of the motion; its end."""
+    width = memory[3]
+    expand(t, abs(width), panels, room, int64(SLOWNESS), int64(OF_TIME))
+    if end > t_end:
+        memory[3] = width * part_at(t_end, (t_end - t) / (end - t), room)
+        end, _ = panel(t, y, memory[3], p, setup, rtol, panels, room, new)
+        rates(end, new, p, setup, K[1])
+        for i in range(3):
+            new[i] += (t_end - end) * K[1, i]
+        expand(t, abs(memory[3]), panels, room, int64(SLOWNESS), int64(OF_TIME))
+        end = t_end
+    expand(0.5 * y[1] * y[1], memory[3], panels, room, int64(RATE), int64(OF_ENERGY))
+    return end
+
+
+def tell_inside(
+    t: float,
+    end: float,
+    instant: float,
+    y: Any,
+    p: Any,
+    setup: Any,
+    room: Any,
+    memory: Any,
+    theta: Any,
+    omega: Any,
+    alpha: Any,
+    row: Any,
+) -> None:
+    """Angle, speed and acceleration at an instant inside of a panel, into the histories."""
+    x = part_at(instant, (instant - t) / (end - t), room)
+    energy, _ = along(x, room, int64(OF_ENERGY))
+    speed = copysign(sqrt(2.0 * energy), memory[3])
+    tell(instant, y[0] + memory[3] * x, speed, p, setup, theta, omega, alpha, row)
+
+
 def follow(
     p: Any,
     setup: Any,
@@ -243,16 +324,16 @@ def follow(
     K: Any,
     F: Any,
 ) -> Any:
-    """The motion of one design; its status, end, energy residual, work, and the residual that rounding makes.
+    """The motion of one design; status, end, energy residual, work, residual by rounding, number of panels.
 
-    how: relative tolerance, t_end, longest step, most steps.
+    how: relative tolerance, t_end, longest step, most steps, whether panels may be taken.
     """
     rtol, t_end, longest = how[0], how[1], how[2]
     y, new, atol, relative, size = empty(3), empty(3), empty(3), empty(3), empty(3)
     relative[0], relative[1], relative[2] = 1e-16, rtol, rtol
     theta[:], omega[:], alpha[:] = nan, nan, nan
     if not start(p, setup, rtol, t_end, y, atol, size):
-        return 6, nan, nan, nan, nan
+        return 6, nan, nan, nan, nan, 0
     first, last = (-pi / 2, pi / 2) if setup[3] > 0.0 else (setup[1], setup[2])
     t, row, count = 0.0, int64(0), len(times)
     while row < count and times[row] <= 0.0:
@@ -260,8 +341,10 @@ def follow(
         row += 1
     rates(0.0, y, p, setup, K[0])
     h = first_step(t_end, y, p, setup, relative, atol, K, new)
-    initial, residual, turned, largest = energy_of(y, p, setup), 0.0, 0.0, 0.5 * y[1] * y[1]
-    heaviest = abs(initial)
+    sums, memory, room = zeros(6), zeros(4), empty((ROWS, 17))
+    sums[0], sums[2], memory[0] = energy_of(y, p, setup), 0.5 * y[1] * y[1], 0.5
+    sums[5] = abs(sums[0])
+    turns, stale, panels, made = how[4] > 0.0 and setup[1] == -inf, False, tables[8], 0
     status, rejected, steps, tries, wished = -1, False, 0, 0, inf
     least, most = inf, still(setup[6], setup[0], p)[0]
     while status < 0:
@@ -269,6 +352,22 @@ def follow(
         h = min(h, longest)
         if not rejected:
             h = max(h, smallest)
+        end = by_panel(t, y, longest, p, setup, rtol, panels, room, memory, new) if turns else -1.0
+        if end > t and steps < how[3]:
+            if end > t_end or (row < count and times[row] <= end):
+                end = land(t, end, t_end, y, p, setup, rtol, panels, room, memory, K, new)
+            while row < count and times[row] <= end:
+                tell_inside(t, end, times[row], y, p, setup, room, memory, theta, omega, alpha, row)
+                row += 1
+            for i in range(16):
+                least = min(least, room[1, i])
+            account(y, new, p, setup, sums)
+            h, wished, t, stale = 0.1 * (end - t), inf, end, True
+            status, steps, made = 0 if end >= t_end else -1, steps + 1, made + 1
+            continue
+        if stale:
+            rates(t, y, p, setup, K[0])
+            stale = False
         if not h >= smallest or steps >= how[3]:
             near = (
                 min(last - y[0], y[0] - first) < 1e-3
@@ -309,30 +408,24 @@ def follow(
             q, v = inside(x, y, F, int64(0)), inside(x, y, F, int64(1))
             tell(times[row], q, v, p, setup, theta, omega, alpha, row)
             row += 1
-        turned += abs(new[2] - y[2])
-        kinetic = 0.5 * new[1] * new[1]
-        largest = max(largest, kinetic)
-        energy = energy_of(new, p, setup)
-        heaviest = max(heaviest, abs(energy))
-        off = abs(energy - new[2] - initial)
-        if off == off and status != 2:  # at a limit angle Y has half its digits
-            residual = max(residual, off)
+        memory[2] = abs(new[0] - y[0])
+        account(y, new, p, setup, sums)
+        sums[3] = sums[4] if status == 2 else sums[3]  # at a limit angle Y has half its digits
         growth = min(10.0, 0.9 * error**-0.125) if error > 0.0 else 10.0
         wish = h * (min(1.0, growth) if rejected else growth)
         h, wished = min(wish, wished), wish
         rejected = False
         t = end
         for i in range(3):
-            y[i] = new[i]
             K[0, i] = K[12, i]
         least = min(least, still(place(y[0], setup)[0], setup[0], p)[0])
         if status < 0 and t >= t_end:
             status = 0
-    scale = max(turned, largest)
+    scale = max(sums[1], sums[2])
     if not scale > 0.0:
-        return status, t, 0.0, y[2], inf
-    rounded = 2e-17 * steps * (1.0 + heaviest / scale)  # `residual.ROUNDED`
-    return status, t, residual / scale, y[2], rounded
+        return status, t, 0.0, y[2], inf, made
+    rounded = 2e-17 * steps * (1.0 + sums[5] / scale)  # `residual.ROUNDED`
+    return status, t, sums[3] / scale, y[2], rounded, made
 
 
 def designs(
@@ -348,17 +441,19 @@ def designs(
     D: Any,
     A_more: Any,
     C_more: Any,
+    panels: Any,
     theta: Any,
     omega: Any,
     alpha: Any,
     status: Any,
     numbers: Any,
 ) -> None:
-    """Every design: histories, status, and end, energy residual, work and rounding as numbers."""
+    """Every design: histories, status, and end, energy residual, work, rounding and panels as numbers."""
     K, F = empty((16, 3)), empty((7, 3))
-    tables = (A, B, C, E3, E5, D, A_more, C_more)
+    tables = (A, B, C, E3, E5, D, A_more, C_more, panels)
     for n in range(len(setup)):
         if status[n] < 0:
             told = follow(p[n], setup[n], times, how, tables, theta[n], omega[n], alpha[n], K, F)
             status[n] = told[0]
             numbers[n, 0], numbers[n, 1], numbers[n, 2], numbers[n, 3] = told[1], told[2], told[3], told[4]
+            numbers[n, 4] = told[5]

@@ -22,13 +22,13 @@ from ..support.deadline import Deadline
 from ..support.forks import IMPORTS, ForkSafeLock
 from ..support.interrupts import finished, stopped_early
 from ..support.progress import Portions, progress_bar
-from . import tableau
+from . import nodes, tableau
 from .checks import check_signature, grows
 from .compiled import Family, kernel_of
 from .coordinate import TURN, arc_around, inside
 from .energy.many import NOT_HERE, follow_many
 from .energy.panels import Designs
-from .energy.serves import ENERGY, INTEGRATOR, no_energy_form, served
+from .energy.serves import ENERGY, INTEGRATOR, PANELS, no_energy_form, served
 from .model import fixed_zeros, form_of
 from .residual import told_of
 from .result import DONE, FAILED, NO_START, WORDS, Simulation
@@ -39,6 +39,7 @@ LONGEST_PART = 16  # designs in one native call, that threads share the work eve
 BRIEF = 500.0  # pieces of motions that run at once
 LONGEST_BLOCK = 256  # the same in the energy form: its arrays stay in the cache
 LONGEST, MOST_STEPS = 2, 3  # places in `how`
+BY_PANELS = 4  # the place of their number in `numbers`
 LARGE = 1_000  # designs that may take long: a bar tells
 _UNITS = {"theta0": "rad", "omega_start": "rad/s", "torque": "N*m"}
 STARTS = {name: Input(name, unit, "") for name, unit in _UNITS.items()}
@@ -83,11 +84,11 @@ def simulate_many(
     setup, status = setup_of(flat, branch)
     rows = np.stack([flat[name] for name in family.inputs], axis=1)
     outs = (
-        *(np.full((status.size, t.size), np.nan) for _ in range(3)), status, np.full((status.size, 4), np.nan)
+        *(np.full((status.size, t.size), np.nan) for _ in range(3)), status, np.full((status.size, 5), np.nan)
     )  # fmt: skip
     ways = np.where(status < 0, INTEGRATOR, "")
-    limits = np.array(how, dtype=np.float64)
-    if method != INTEGRATOR and torque is None and limits[LONGEST] == np.inf:
+    limits = np.array([*how, method != INTEGRATOR], dtype=np.float64)
+    if method in (None, ENERGY) and torque is None and limits[LONGEST] == np.inf:
         by_energy(designs_of(scalars, flat, setup, branch), t, limits, outs, threads, deadline)
         ways[(status >= 0) & (status != NO_START)] = ENERGY
         if method == ENERGY and (status < 0).any():
@@ -98,6 +99,7 @@ def simulate_many(
         _run(kernel_of(family, torque), rows[left], setup[left], (t, limits), own, threads, deadline)
         for out, part in zip(outs, own, strict=True):
             out[left] = part
+        ways[left[own[-1][:, BY_PANELS] > 0.0]] = PANELS
     return _result(arrays, shape, t, (*outs, ways), names, branch, how[0])
 
 
@@ -211,7 +213,7 @@ def _run(
     """Run the kernel over blocks of designs; designs are independent, so blocks do not change results."""
     A, C, last = tableau.A, tableau.C, tableau.STAGES
     step = A[:last, :last].copy(), tableau.B, C[:last], tableau.E3, tableau.E5
-    tables = (*step, tableau.D, A[last + 1 :], C[last + 1 :])
+    tables = (*step, tableau.D, A[last + 1 :], C[last + 1 :], nodes.table())
 
     how, size = shared[1], len(setup)
 
@@ -278,7 +280,7 @@ def by_energy(
         there = (found.status < NOT_HERE) & ~unfinished
         for out, values in zip(outs[:3], found[:3], strict=True):
             out[own[there]] = values[there, :-1]
-        status[own[there]], outs[4][own[there]] = found.status[there], found.numbers[there]
+        status[own[there]], outs[4][own[there], :BY_PANELS] = found.status[there], found.numbers[there]
         return unfinished
 
     if 0 < rows.size <= LONGEST_BLOCK:  # a thread of its own would take longer than short motions do
@@ -311,7 +313,7 @@ def _result(
         result |= evaluate(list(names), theta=theta, omega=omega, alpha=alpha, branch=branch, **inputs)
     result["status"] = status.reshape(shape)
     result["message"] = message(status) + told_of(
-        numbers[:, 1], numbers[:, 3], rtol, np.where(ways == ENERGY, ENERGY, INTEGRATOR)
+        numbers[:, 1], numbers[:, 3], rtol, np.where(ways == "", INTEGRATOR, ways)
     )
     result["method"] = ways.reshape(shape)
     end, residual, work = (numbers[:, k].reshape(shape) for k in range(3))

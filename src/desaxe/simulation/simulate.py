@@ -27,7 +27,7 @@ from .checks import (
     scalar,
 )
 from .each_design import simulate_each
-from .energy.serves import ENERGY, INTEGRATOR, refuse
+from .energy.serves import ENERGY, INTEGRATOR, PANELS, refuse
 from .held import Held
 from .history import result_of
 from .many_designs import is_array, simulate_many
@@ -91,8 +91,10 @@ def simulate(
                  atol of a step, for the angle [rad], sqrt(kinetic energy) and work, is by default rtol times
                  0.03 rad (by SciPy 0.001) and a hundredth of the energy that start and loads suggest
     method       "energy": the crank angle is the independent variable, energy and time are integrals over it;
-                 the default for many designs where torque and loads are numbers or tables. Else DOP853, the
-                 default for all other motions, or by SciPy (extra `simulate`) RK45, RK23, Radau, BDF, LSODA
+                 the default for many designs where torque and loads are numbers or tables. "panels": the same
+                 with the torque found by iteration, while a crank that turns fully is not near rest; the
+                 default for many designs under a function. Else DOP853, the default for all other motions, or
+                 by SciPy (extra `simulate`) RK45, RK23, Radau, BDF, LSODA
     times        instants of the histories [s]; by default 1001 from start to end
     until        crank angle or angles [rad]: the first that is reached ends the motion
     wrt          parameters by which the motion is differentiated: inputs of the mechanism that are numbers,
@@ -162,6 +164,8 @@ def simulate(
         refuse({"torque": torque, "F_X": F_X, "F_Y": F_Y}, given["mu"], options)
         if by or not several:
             raise ValueError("method = 'energy': it is for many designs, without wrt=")
+    elif method == PANELS and (by or not several):
+        raise ValueError("method = 'panels': it is for many designs, without wrt=")
     if several:
         _check_many(method, atol, until)
         varying = any(map(callable, (given["F_X"], given["F_Y"])))
@@ -207,14 +211,14 @@ def simulate(
 def _check_many(method: str | None, atol: Any, until: Any) -> None:
     """Reject options that are for one design at a time."""
     given = {
-        "method": method not in (None, ENERGY, INTEGRATOR),
+        "method": method not in (None, ENERGY, PANELS, INTEGRATOR),
         "atol": atol is not None,
         "until": until is not None,
     }
     for name, there in given.items():
         if there:
             raise ValueError(
-                f"{name}= is for one design at a time: many run in the energy form or by DOP853 to t_end"
+                f"{name}= is for one design at a time: many run over the crank angle or by DOP853 to t_end"
             )
 
 

@@ -9,7 +9,7 @@ from ...loads.angles import turns_of, zero_of
 from ...loads.load import OverY, TableOverTheta
 from .panels import MOST_TURNS, Designs
 
-ENERGY, INTEGRATOR = "energy", "DOP853"  # what `method` of a result says
+ENERGY, PANELS, INTEGRATOR = "energy", "panels", "DOP853"  # what `method` of a result says
 
 
 def served(designs: Designs) -> Any:

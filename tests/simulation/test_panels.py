@@ -1,0 +1,90 @@
+"""Motions under a torque of t, theta and omega by panels of the crank angle: those of DOP853, and of arbs."""
+
+import math
+
+import numpy as np
+import pytest
+
+import desaxe as dx
+from benchmarks.integrators import designs, of_t_and_omega
+from tests.effort import cases
+from tests.motions import true_end
+
+
+def wave(t, theta, omega):
+    """Drives, brakes and turns the crank round."""
+    return 1.5 * math.sin(3.0 * t) - 0.01 * omega + 0.2 * math.cos(theta)
+
+
+def jumps(t, theta, omega):
+    """Off for a while, and with a kink at rest."""
+    return (1.0 if t < 0.31 or t > 0.52 else 0.0) - 0.02 * abs(omega)
+
+
+def drawn(count, seed):
+    """Designs that start from rest, turn either way, or have limit angles."""
+    rng = np.random.default_rng(seed)
+    AB = rng.uniform(0.04, 0.06, count)
+    return {
+        "AB": AB, "BC": AB * rng.uniform(0.9, 4.0, count), "ec": 0.01, "m_crank": 0.5, "I_crank": 5e-3,
+        "m_rod": rng.uniform(0.2, 0.5, count), "I_rod": 5e-4, "m_slider": rng.uniform(0.5, 2.0, count),
+        "F_Y": rng.uniform(-10.0, 10.0, count), "g_Y": -9.81, "theta0": rng.uniform(-0.5, 0.5, count),
+        "omega_start": rng.choice([0.0, -5.0, 12.0, 30.0], count),
+    }  # fmt: skip
+
+
+def off(found, other):
+    """The largest difference of histories, relative to the largest value of each."""
+    sizes = {"theta": 1.0, "omega": 1.0, "alpha": 1e-2}
+    parts = []
+    for name, factor in sizes.items():
+        a, b = found[name], other[name]
+        assert np.array_equal(np.isnan(a), np.isnan(b))
+        size = np.maximum(np.nanmax(np.abs(b), axis=-1, keepdims=True), 1.0)
+        parts.append(factor * np.nanmax(np.abs(a - b) / size))
+    return max(parts)
+
+
+@pytest.mark.parametrize(
+    "torque",
+    [wave, *(pytest.param(f, marks=pytest.mark.thorough) for f in (jumps, of_t_and_omega))],
+)
+def test_the_motions_are_those_of_an_integrator_in_time(torque):
+    call = {"torque": torque, "t_end": 1.5, "rtol": 1e-9, **drawn(cases(60, 300), seed=7)}
+    found, other = dx.simulate(**call), dx.simulate(method="DOP853", **call)
+    assert (found["method"] == "panels").sum() > 0.4 * found["method"].size
+    assert set(other["method"].tolist()) <= {"DOP853", ""}
+    assert found["status"].tolist() == other["status"].tolist()
+    assert off(found, other) < 1e-5
+    usual = {name: np.nanmedian(np.abs(found[name] - other[name])) for name in ("theta", "omega")}
+    assert max(usual.values()) < 1e-8
+    np.testing.assert_allclose(found["work"], other["work"], rtol=1e-6, atol=1e-6)
+    _check_that_neighbours_do_not_matter(call, found)
+
+
+def _check_that_neighbours_do_not_matter(call, found):
+    some = slice(3, 40, 5)
+    fewer = {n: v[some] if isinstance(v, np.ndarray) else v for n, v in call.items()}
+    for threads in (1, 3):
+        part = dx.simulate(threads=threads, **fewer)
+        for name in ("theta", "omega", "alpha", "t_last", "work"):
+            np.testing.assert_array_equal(part[name], found[name][some])
+
+
+@pytest.mark.thorough
+def test_the_end_of_a_motion_against_arbs():
+    many = designs()
+    row = {name: float(np.broadcast_to(v, 200)[0]) for name, v in many.items()}
+    theta, omega = true_end(
+        row, lambda t, theta, omega: -0.02 * omega + 1.5 + 0.3 * t.sin(), 0.0, 0.0, 1.0, 300
+    )
+    found = dx.simulate(torque=of_t_and_omega, t_end=1.0, times=[1.0], rtol=1e-10, **many)
+    assert abs(found["theta"][0, 0] / theta - 1.0) < 1e-12
+    assert abs(found["omega"][0, 0] / omega - 1.0) < 1e-11
+
+
+@pytest.mark.parametrize("change", [{}, {"AB": [0.05, 0.06], "wrt": "AB"}])
+def test_panels_are_for_many_designs(change):
+    call = {"torque": wave, "t_end": 0.1, "AB": 0.05, "BC": 0.2, "ec": 0.0, "m_slider": 1.0, "I_crank": 0.1}
+    with pytest.raises(ValueError, match="method = 'panels': it is for many designs, without wrt="):
+        dx.simulate(method="panels", **{**call, **change, "derivative": lambda t, theta, omega: (0.0, 0.0)})
