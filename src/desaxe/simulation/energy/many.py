@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 PIECE = 24  # numbers of a piece: see `follow`
 TOO_WIDE, NOT_HERE = 10, 11  # statuses of `follow`
 ROUNDS = 14  # halvings of a panel
+LOST_DIGITS = 0.03  # of dtheta/dx at most: of angles so near to a limit angle
 STRICT = 1e-12  # below it most designs need finer panels from the start
 SHARE, FINEST, COARSEST = 0.1, 3e-14, 1e-9  # of rtol: how small the last terms of series must be
 
@@ -79,6 +80,8 @@ def follow_many(designs: Designs, times: Array, rtol: float, most: Array) -> Fou
     heaviest = np.fmax(np.fmax.reduce(np.abs(energy), axis=1), np.abs(initial))
     energy -= work
     energy -= initial[:, None]
+    if designs.half.any():  # next to a limit angle M_eff has lost the digits that would tell
+        energy[np.abs(slope) < LOST_DIGITS * designs.half[:, None]] = 0.0
     off = np.fmax.reduce(np.abs(energy), axis=1)
     turned = np.nansum(np.abs(np.diff(work, axis=1, prepend=0.0)), axis=1)
     scale = np.maximum(largest, turned)
