@@ -14,7 +14,7 @@ from desaxe.mechanism.names import parts
 from desaxe.mechanism.status import TABLES
 from desaxe.scenes import schema
 from desaxe.scenes.explain.explain import Plan
-from desaxe.scenes.needs import SECTIONS
+from desaxe.scenes.reading.needs import SECTIONS
 from desaxe.scenes.scene import Scene, SceneResult
 from desaxe.simulation.result import Event, Simulation
 
