@@ -26,9 +26,10 @@ def table_over_theta(angles: Column, values: Column, kind: str, turn: Column) ->
     _require_order(name, "angles", "ascend", x, kind)
     span = x[-1] - x[0]
     if span > (1.0 + CLOSED) * period:
+        hint = f' (degrees are texts: "{x[-1]:g} deg")' if angles.plain else ""
         raise ValueError(
             f"{name}: the angles go over {span:g} rad, the period is {period:g} rad; give a longer period= "
-            f'or one period of the table (degrees are texts: "{x[-1]:g} deg")'
+            f"or one period of the table{hint}"
         )
     if span >= (1.0 - CLOSED) * period:
         if abs(y[-1] - y[0]) > EQUAL * max(map(abs, y)):

@@ -74,8 +74,9 @@ def check_signature(name: str, value: Callable[..., Any]) -> None:
     """A load that varies is a function of (t, theta, omega), or of theta alone."""
     if not (takes(value, 3) or takes(value, 1) or (name == "torque" and _takes_theta_and_omega(value))):
         raise TypeError(
-            f"{name}: expected a function of (t, theta, omega), or of theta alone, "
-            f"got one of {signature(value)}"
+            f"{name}: expected a function of (t, theta, omega), "
+            + ("of (theta, omega), of omega or of theta" if name == "torque" else "or of theta alone")
+            + f", got one of {signature(value)}"
         )
 
 
@@ -208,8 +209,12 @@ def read_times(times: Any, t_end: float) -> Any:
         raise TypeError(f"times = {shown(times)}: expected a row of finite instants in s") from None
     if array.ndim != 1 or not array.size or not np.isfinite(array).all():
         raise ValueError("times: expected a row of finite instants in s")
-    if array[0] < 0.0 or array[-1] > t_end or (np.diff(array) < 0.0).any():
-        raise ValueError(f"times: they must ascend from 0 to t_end = {t_end:g}")
+    wrong = (array < 0.0) | (array > t_end) | (np.diff(array, prepend=array[0]) < 0.0)
+    if wrong.any():
+        place = int(np.argmax(wrong))
+        raise ValueError(
+            f"times[{place}] = {array[place]:g}: instants must ascend from 0 to t_end = {t_end:g}"
+        )
     return array
 
 
@@ -243,7 +248,7 @@ def read_wrt(wrt: Any, given: Mapping[str, Any]) -> tuple[str, ...]:
 def read_method(method: str) -> str:
     """Check the method: the name of one of SciPy's integrators."""
     if not isinstance(method, str) or method not in METHODS:
-        raise ValueError(f"method = {shown(method)}: it is one of {', '.join(METHODS)}")
+        raise ValueError(f"method = {shown(method)}: it is one of energy, {', '.join(METHODS)}")
     return method
 
 

@@ -313,6 +313,8 @@ def test_a_machine_that_stores_enough_needs_no_flywheel():
         ({"torque": lambda omega: float("nan")}, ValueError, "finite"),
         ({"flywheel_inertia": -1.0}, ValueError, "flywheel_inertia = -1.0"),
         ({"fluctuation": 2.0}, ValueError, "fluctuation = 2.0"),
+        ({"fluctuation": 0.1, "flywheel_inertia": 7.0}, ValueError, "give one of them"),
+        ({"fluctation": 0.1}, TypeError, "did you mean fluctuation"),
         ({"alpha": 1.0}, ValueError, "alpha"),
         ({"AB": None}, TypeError, "AB"),
         ({"m_slidr": 1.0}, TypeError, "m_slider"),

@@ -21,6 +21,7 @@ from .source import Source, source_of
 from .states import states_of
 
 Array = NDArray[Any]
+OWN = ("torque", "flywheel_inertia", "fluctuation", "branch")
 MOST_TURNS = 4  # after which loads repeat; two in a four-stroke engine
 CHUNK = 1000  # designs at once
 FLYWHEEL = Input("flywheel_inertia", "kg*m^2", "", 0.0, "a finite moment of inertia >= 0")
@@ -106,7 +107,7 @@ def _designs(
 ) -> tuple[tuple[int, ...], Designs, NDArray[np.bool_]]:
     """The shape of the designs, these in rows, and which of them have a bad input."""
     given = {name: value for name, value in inputs.items() if value is not None}
-    check_inputs("steady", given, [n for n in INPUTS if n != "theta"])
+    check_inputs("steady", given, [*OWN, *(n for n in INPUTS if n != "theta")])
     check_common(given, branch)
     numbers, loads = loads_of(given)
     if np.any(np.asarray(numbers.pop("alpha", 0.0), float)):
@@ -120,6 +121,11 @@ def _designs(
     motor = {name: np.asarray(value, float) for name, value in source.numbers.items()}
     J = _row(FLYWHEEL, flywheel)
     extra = {"flywheel_inertia": J}
+    if fluctuation is not None and J.any():
+        raise ValueError(
+            f"flywheel_inertia = {shown(flywheel)}, fluctuation = {shown(fluctuation)}: give one of them; "
+            "a flywheel that stays is a part of I_crank"
+        )
     if fluctuation is not None:
         extra["fluctuation"] = array_of(FLUCTUATION, fluctuation)
     if speed is not None and source.way is None:
