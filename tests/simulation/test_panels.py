@@ -57,7 +57,7 @@ def test_the_motions_are_those_of_an_integrator_in_time(torque):
     assert found["status"].tolist() == other["status"].tolist()
     assert off(found, other) < 1e-5
     usual = {name: np.nanmedian(np.abs(found[name] - other[name])) for name in ("theta", "omega")}
-    assert max(usual.values()) < 1e-8
+    assert max(usual.values()) < (1e-6 if torque is jumps else 1e-8)  # a step in time over a jump errs, too
     np.testing.assert_allclose(found["work"], other["work"], rtol=1e-6, atol=1e-6)
     _check_that_neighbours_do_not_matter(call, found)
 
