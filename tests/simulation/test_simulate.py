@@ -543,3 +543,15 @@ def test_scipy_is_not_loaded_before_it_is_needed():
     code = f"import sys, desaxe as dx; dx.evaluate('Y', {point}); print('scipy' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"
+
+
+@pytest.mark.parametrize("torque", [1.5, -1.5])
+def test_a_start_at_rest_has_the_load_of_the_way_in_which_it_starts(torque):
+    """Without friction the drive torque is the torque given, also at the instant of the start."""
+    load = dx.over_Y([0.1, 0.3], [-5.0, -5.0], inward=[7.0, 7.0])
+    found = dx.simulate(
+        torque=torque, t_end=1e-3, theta0=1.0, omega_start=0.0, names=["T_in"], times=[0.0, 1e-3],
+        ec=0.01, AB=0.05, BC=0.2, m_slider=2.0, I_crank=0.05, F_Y=load,
+    )  # fmt: skip
+    np.testing.assert_allclose(found["T_in"], torque, rtol=1e-9)
+    assert found["alpha"][0] == pytest.approx(found["alpha"][1], rel=1e-3)

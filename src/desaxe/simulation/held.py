@@ -32,12 +32,12 @@ class Held:
         self._piece: Callable[[float], float] | None = None
 
     def __call__(self, t: float, theta: float, omega: float) -> float:
-        """The load now."""
+        """The load now; at rest the sign of omega's zero is the way in which the crank starts."""
         if self._piece is not None:
             return self._piece(theta)
         if isinstance(self.load, OverY):
             _, slope = self.place(theta)
-            return float(self.load(self._along(self.load, theta), slope if omega >= 0.0 else -slope))
+            return float(self.load(self._along(self.load, theta), slope * copysign(1.0, omega)))
         assert isinstance(self.load, OverTheta)
         return float(self.load(theta))
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
-from .equations import state_of
+from .equations import Law, State, state_of
 from .events import Q, W
 from .held import Held
 from .model import Model
@@ -81,10 +81,16 @@ def _histories(run: Run | Motion, t: Array, without_alpha: bool = False) -> tupl
             state = state_of(run.model, q, v)
             theta[row], omega[row] = state.theta, state.omega
             if not without_alpha:
-                alpha[row] = piece.law.alpha(float(t[row]), state.theta, state.omega)
+                alpha[row] = _acceleration(piece.law, float(t[row]), state)
     if run.events and run.events[-1].t == run.t and run.status != FAILED:
         _set_end(run, t, theta, omega, alpha)
     return theta, omega, alpha
+
+
+def _acceleration(law: Law, t: float, state: State) -> float:
+    """The crank's acceleration; at rest under the load of the way in which it starts."""
+    alpha = law.alpha(t, state.theta, state.omega or 0.0)
+    return law.alpha(t, state.theta, -0.0) if alpha < 0.0 and not state.omega else alpha
 
 
 def _set_end(run: Run | Motion, t: Array, theta: Array, omega: Array, alpha: Array) -> None:
