@@ -192,7 +192,7 @@ def error_inside(width: float, least: float, table: Any, room: Any) -> float:
 def jumps(outside: float, room: Any, at: Any, way: Any) -> bool:
     """True where the torque jumps between an end of a panel and the node next to it, which no node sees."""
     a, b, c = room[TORQUE, at], room[TORQUE, at + way], room[TORQUE, at + 2 * way]
-    return abs(outside - a) > 2.0 * (abs(a - b) + abs(b - c)) + 1e-6 * abs(a)
+    return bool(abs(outside - a) > 2.0 * (abs(a - b) + abs(b - c)) + 1e-6 * abs(a))
 
 
 def panel(
