@@ -60,7 +60,9 @@ def test_one_parameter_is_theta_and_three_are_t_theta_omega():
     one = dx.simulate(torque=lambda theta: 8.0 + np.cos(theta), **given)
     three = dx.simulate(torque=lambda t, theta, omega: 8.0 + np.cos(theta), **given)
     np.testing.assert_array_equal(one["omega"], three["omega"])
-    with pytest.raises(TypeError, match=r"torque: expected a function of \(t, theta, omega\), or of theta"):
+    with pytest.raises(
+        TypeError, match=r"torque: expected a function of \(t, theta, omega\), of \(theta, omega\)"
+    ):
         dx.simulate(torque=lambda t, theta: 0.0, **given)
 
 

@@ -104,3 +104,18 @@ def test_places_next_to_jumps_are_settled_as_integers_settle_them():
             assert piece in (-1, exact)
             settled += piece >= 0
     assert settled > 50 or np.finfo(np.longdouble).eps > 2.0**-60
+
+
+def test_machine_code_of_another_form_does_not_serve(monkeypatch):
+    """A store that has the search of narrow margins alone: a design with wide ones goes by NumPy."""
+    given = {
+        "ec": 0.01,
+        "AB": 0.04,
+        "BC": 0.2,
+        "F_Y": dx.over_theta([0.0, 2.0, 5.0], [1.0, -5.0, 2.0], period=TURN),
+    }
+    wanted = peaks(monkeypatch, "numpy", "T_in", given)
+    monkeypatch.delenv("DESAXE_TIER")
+    monkeypatch.setattr(type(compiled.STORE), "is_ready", lambda _, search: not search.form.wide_margins)
+    monkeypatch.setattr(compiled, "_on_disk", lambda _: False)
+    assert dx.peak("T_in", **given) == wanted

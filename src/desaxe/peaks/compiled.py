@@ -111,7 +111,7 @@ def run(
     for row, name in zip(table, inputs, strict=False):
         row[:] = columns[name]
     packed = NO_TABLES if tables is None else tables.packed
-    kernel = kernel_for(search, cost)
+    kernel = kernel_for(search, cost) if tables is None else STORE.of(search)  # the one that takes tables
     order, starts, nodes, node_starts = grouped(kernel.coarse)
 
     def part(first: int, last: int) -> None:

@@ -180,9 +180,8 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
     number = KINDS.index(kind)
     rows = np.flatnonzero(~own_nodes)
     loaded = Values(name, search, designs, course_of(designs), told) if designs.loads else None
-    under = _compiled_under(loaded, rows.size) if rows.size and loaded is not None else None
+    under = _compiled_under(loaded, checked, rows.size) if rows.size and loaded is not None else None
     if under is not None and loaded is not None:
-        under = _in_form(under, checked)
         tables = tables_under(under, designs, loaded.course)
         grouped = partial(_classed, designs, rows)
         if not programs_of(under, False).own_nodes:
@@ -222,11 +221,12 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
     return {"value": value, "theta": theta, "side": side, "gradient": gradient, "status": status}
 
 
-def _compiled_under(loaded: Values, count: int) -> Search | None:
+def _compiled_under(loaded: Values, checked: Checked, count: int) -> Search | None:
     """The compiled search for `count` designs under loads; None where NumPy searches."""
     if not loaded.derived:
         return None
     search = search_under(loaded.search, loaded.all, loaded.designs, loaded.course)
+    search = search and _in_form(search, checked)
     return search if search is not None and is_compiled(search, count) else None
 
 
