@@ -164,14 +164,29 @@ def test_a_torque_that_numba_cannot_compile(torque, message):
         dx.simulate(torque=torque, t_end=0.5, **{**LOADED, "ec": ECS})
 
 
+@pytest.mark.parametrize("more", [{"mu": np.array([0.0, 0.05, 0.1, 0.2])}, {"until": 1.5}])
+def test_designs_that_rub_or_stop_at_an_angle_are_each_alone(more):
+    """A history of many is NaN from where the motion of its design ends."""
+    given = {**PRESS, "torque": 0.25, "t_end": 1.0, "omega_start": 10.0}
+    times = np.linspace(0.0, 1.0, 11)
+    many = dx.simulate(**{**given, "ec": ECS, **more}, times=times)
+    for row, ec in enumerate(ECS):
+        own = {name: value[row] if np.ndim(value) else value for name, value in more.items()}
+        one = dx.simulate(**{**given, "ec": ec, **own}, times=times)
+        count = len(one["t"])
+        np.testing.assert_array_equal(many["omega"][row, :count], one["omega"])
+        assert np.isnan(many["omega"][row, count:]).all()
+        assert (many["t_last"][row], many["status"][row]) == (one["t_last"], one["status"])
+
+
 # ---- refusals ------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
     ("change", "error", "message"),
     [
-        ({"mu": 0.1}, ValueError, "mu: friction has kinks"),
-        ({"until": 3.0}, ValueError, "until= is for one design at a time"),
+        ({"mu": 0.1, "method": "panels"}, ValueError, "method = 'panels': it is for loads that are numbers"),
+        ({"until": 3.0, "method": "energy"}, ValueError, "method = 'energy'"),
         ({"atol": 1e-9}, ValueError, "atol= is for one design at a time"),
         ({"method": "Radau"}, ValueError, "method= is for one design at a time"),
         ({"torque": [1.0, 2.0]}, ValueError, "the shapes do not broadcast together"),

@@ -6,10 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from ..evaluation.arrays import as_array
 from ..evaluation.loaded import with_labelled
 from ..loads.load import Load as LoadOverMotion
 from ..loads.motors import Motor
 from ..mechanism.inputs import TINY
+from ..mechanism.names import LENGTHS
 from ..runtime.request import check_common, with_known_inputs
 from ..support.checks import whole_number
 from ..support.deadline import Deadline
@@ -130,12 +132,12 @@ def simulate(
 
     Many designs at once: lengths, masses, constant loads, theta0, omega_start and a constant torque may be
     arrays that broadcast like NumPy. Without friction they run in compiled code: under numbers and tables
-    that repeat after at most four turns in the energy form; under a torque function, which numba compiles,
-    and under numbers where the energy form does not serve, such as at an unstable equilibrium, by DOP853. All
-    others run one after the other. Histories then have the shape (designs..., times), 101 instants without
-    `times`, NaN where a motion has ended. status (also 6: bad input, or no mechanism at the start),
-    energy_residual, work, t_last and method have the shape of the designs; there are no events and no
-    solution. With wrt they run one after the other.
+    that repeat after at most four turns in the energy form; under a torque function, which numba compiles, by
+    panels; under numbers where these do not serve, such as at an unstable equilibrium, by DOP853. All others,
+    also those with `until` or wrt, run one after the other. Histories then have the shape (designs...,
+    times), 101 instants without `times`, NaN where a motion has ended. status (also 6: bad input, or no
+    mechanism at the start), energy_residual, work, t_last and method have the shape of the designs; there
+    are no events and no solution.
 
     Equation: M_eff alpha + M_eff' omega^2/2 = torque - static torque - friction (paper C, section 3).
     Raises ValueError where no motion can start (no mechanism there, no inertia) and for a bad value.
@@ -160,28 +162,33 @@ def simulate(
     slopes = Slopes(torque, derivative) if by else None
     several = any(map(is_array, (*given.values(), *starts.values())))
     if method == ENERGY:
-        options = {"max_step": max_step is not None, "atol": atol is not None}
+        options = {"max_step": max_step is not None, "atol": atol is not None, "until": bool(angles)}
         refuse({"torque": torque, "F_X": F_X, "F_Y": F_Y}, given["mu"], options)
         if by or not several:
             raise ValueError("method = 'energy': it is for many designs, without wrt=")
     elif method == PANELS and (by or not several):
         raise ValueError("method = 'panels': it is for many designs, without wrt=")
     if several:
-        _check_many(method, atol, until)
+        _check_many(method, atol)
         varying = any(map(callable, (given["F_X"], given["F_Y"])))
-        if by or varying or isinstance(torque, (LoadOverMotion, Motor)):
+        if by or angles or varying or isinstance(torque, (LoadOverMotion, Motor)) or _rubs(given["mu"]):
+            if method == PANELS:
+                raise ValueError(
+                    "method = 'panels': it is for loads that are numbers, without mu, until=, wrt="
+                )
 
             def one(inputs: Mapping[str, Any], begin: Mapping[str, Any], t: Any) -> Simulation:
                 deadline.check()
                 return simulate(
                     **inputs, **begin, t_end=end, names=wanted, branch=branch, rtol=rtol, times=t,
                     max_step=None if longest == inf else longest, max_steps=max_steps,
-                    timeout=deadline.left(), wrt=by, derivative=derivative,
+                    timeout=deadline.left(), wrt=by, derivative=derivative, until=angles or None,
                 )  # fmt: skip
 
             how = (rtol, end, longest, max_steps)
+            way = INTEGRATOR if angles else method
             return simulate_each(
-                one, given, starts, int(branch), wanted, by, instants, end, how, threads, deadline, method
+                one, given, starts, int(branch), wanted, by, instants, end, how, threads, deadline, way
             )
         how = (rtol, end, longest, max_steps)
         return simulate_many(given, starts, int(branch), wanted, instants, how, threads, deadline, method)
@@ -208,17 +215,21 @@ def simulate(
     return result
 
 
-def _check_many(method: str | None, atol: Any, until: Any) -> None:
+def _rubs(mu: Any) -> bool:
+    """True if any design has friction."""
+    return mu is not None and bool(np.any(as_array("mu", mu, LENGTHS, ("simulate",)) != 0.0))
+
+
+def _check_many(method: str | None, atol: Any) -> None:
     """Reject options that are for one design at a time."""
     given = {
         "method": method not in (None, ENERGY, PANELS, INTEGRATOR),
         "atol": atol is not None,
-        "until": until is not None,
     }
     for name, there in given.items():
         if there:
             raise ValueError(
-                f"{name}= is for one design at a time: many run over the crank angle or by DOP853 to t_end"
+                f"{name}= is for one design at a time: many run over the crank angle or by DOP853"
             )
 
 
