@@ -74,6 +74,23 @@ def keep(
     piece[3], piece[4], piece[5] = 0.5 * half * span, bend, kind
 
 
+def whole_turn(
+    edges: Any, M: Any, work: Any, energy: float, way: float, t: float, tables: Any, rows: Any
+) -> Any:
+    """Time and energy after a turn whose panels are whole pieces, by the sums of `follow`."""
+    panels = len(edges) - 1
+    for i in range(panels):
+        panel = i if way > 0.0 else panels - 1 - i
+        half = 0.5 * (edges[panel + 1] - edges[panel])
+        if half > 0.0:
+            done, nodes = work[panel], 1 + 16 * panel
+            left = energy - (0.0 if way > 0.0 else done[16])
+            ordered(M[nodes : nodes + 16], done, left, way > 0.0, rows[1], rows[2])
+            t += rates(int64(0), half, tables[1], rows[1], rows[2], rows[0])
+            energy = left + (done[16] if way > 0.0 else 0.0)
+    return t, energy
+
+
 def follow(
     edges: Any,
     rough: Any,
@@ -106,6 +123,7 @@ def follow(
     row, stored, pieces = int64(0), int64(0), int64(0)
     rest, inside, marked, count = energy == 0.0, False, False, len(times)
     panels = len(edges) - 1
+    smooth, began, proven = False, 0.0, 0.0  # of this turn: whole pieces so far, its start, its first energy
     known[:] = 0
     while True:
         if panel < 0 or panel >= panels:
@@ -115,6 +133,14 @@ def follow(
                 return 10 if marked else 2
             turn += way
             panel = panels - 1 if panel < 0 else int64(0)
+        if period != 0.0 and panel == (int64(0) if way > 0.0 else panels - 1):
+            # As fast as the turn before, whose panels were whole pieces, or faster: its series end, too.
+            lasted, slowest = 1.01 * (t - began), 0.999 * proven
+            while smooth and energy >= slowest and t + lasted < times[row] and pieces + panels <= most[0]:
+                side = int64(0) if way > 0.0 else int64(1)
+                t, energy = whole_turn(edges, M, work[side], energy, way, t, tables, rows)
+                turn, pieces, largest = turn + way, pieces + panels, max(largest, energy)
+            smooth, began, proven = how[1] == 0.0, t, energy
         half = 0.5 * (edges[panel + 1] - edges[panel])
         if half <= 0.0:
             panel += 1 if way > 0.0 else -1
@@ -226,6 +252,7 @@ def follow(
                     which[row], since[row] = stored, times[row] - start
                     row += 1
                 stored += 1
+            smooth = smooth and kind == 0 and span == 2.0 * way
             stopped, begin = kind == 2 and over == 0.0, a + span
             room = -span if a == -way else -way - begin
             if row >= count:

@@ -9,15 +9,14 @@ from ...support.panels import NODES
 from ..residual import ROUNDED
 from ..result import FAILED, LIMIT
 from .compiled import TABLES, kernel
-from .panels import FINE, FIRST, Designs, Fields, fields_of, first_edges, halved
+from .panels import Designs, Fields, fields_of, first_edges, halved
 
 Array = NDArray[np.float64]
 PIECE = 24  # numbers of a piece: see `follow`
 TOO_WIDE, NOT_HERE = 10, 11  # statuses of `follow`
 ROUNDS = 14  # halvings of a panel
 LOST_DIGITS = 0.03  # of dtheta/dx at most: of angles so near to a limit angle
-STRICT = 1e-12  # below it most designs need finer panels from the start
-SHARE, FINEST, COARSEST = 0.1, 3e-14, 1e-9  # of rtol: how small the last terms of series must be
+FINEST, COARSEST = 3e-14, 1e-6  # how small the last terms of series must be at least and at most
 
 
 class Found(NamedTuple):
@@ -94,8 +93,8 @@ def follow_many(designs: Designs, times: Array, rtol: float, most: Array) -> Fou
 
 def _marched(designs: Designs, times: Array, rtol: float, most: Array) -> Marched:
     """The motions in their coordinates; designs whose panels are too wide again, on halves of them."""
-    tolerance = min(max(SHARE * rtol, FINEST), COARSEST)
-    edges = first_edges(designs, FINE if tolerance < STRICT else FIRST)
+    tolerance = min(max(rtol, FINEST), COARSEST)
+    edges = first_edges(designs, tolerance)
     found, bad = _tried(designs, fields_of(designs, edges), times, tolerance, most)
     rows = np.flatnonzero(found.status == TOO_WIDE)
     edges, bad = edges[rows], bad[rows]

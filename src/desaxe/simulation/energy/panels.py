@@ -1,7 +1,7 @@
 """Inertia and torque of many designs at the nodes of panels, over the coordinate of their motion."""
 
 from collections.abc import Mapping
-from math import pi
+from math import ceil, pi
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 LOST = 2.0**-53  # of an angle: its rounding, in the last terms of a series
 SAME = 1e-12  # rad: edges that are no farther apart are one
 MOST_TURNS = 4  # after which loads must repeat
-FIRST, FINE = 8, 12  # panels of a turn, or between two limit angles, before any is halved
+FIRST = 1.65  # times 1/tolerance^(1/16): panels of a turn, or between limit angles, that most designs need
 # All from one kernel: few compilations.
 QUANTITIES = ("M_eff", "T_in", "M_eff_wrt_theta", "Y", "potential_energy")
 
@@ -166,11 +166,11 @@ def _rough(designs: Designs, edges: Array) -> Array:
     return np.where(half == 0.0, 0.0, lost)
 
 
-def first_edges(designs: Designs, first: int) -> Array:
+def first_edges(designs: Designs, tolerance: float) -> Array:
     """Edges of panels over a period from the start, or over the arc: at the start and where loads meet."""
     start = designs.coordinates(designs.theta0)[:, None]
     free, period = designs.half[:, None] == 0.0, designs.period
-    count = first * round(period / TURN)
+    count = ceil(FIRST * tolerance ** (-1.0 / NODES)) * round(period / TURN)
     steps = np.arange(count + 1) / count
     edges = [start, np.where(free, start + period * steps, pi * steps - 0.5 * pi)]
     if designs.tables:

@@ -1,5 +1,8 @@
 """A piece of a motion, in plain loops: its inertia, energy and dt/du at Gauss nodes, from series on a panel.
 
+Loops that should run in the lanes of a vector end at a length that is read from an array: LLVM unrolls a short
+loop whose length it knows, before it looks for vectors.
+
 See `follow`. Series are Legendre's, of 16 terms over u from -1 to 1; Q is that of the way in which the crank
 turns, `half` half the width of the panel.
 """
@@ -19,12 +22,17 @@ if TYPE_CHECKING:
 def combined(values: Any, columns: Any, out: Any) -> None:
     """The sum of columns by 16 values."""
     apart()
-    for j in range(16):
+    count = columns.shape[1]
+    for j in range(count):
         out[j] = 0.0
-    for k in range(16):
-        value = values[k]
-        for j in range(16):
-            out[j] += columns[k, j] * value
+    for k in range(0, 16, 4):
+        a, b, c, d = values[k], values[k + 1], values[k + 2], values[k + 3]
+        for j in range(count):
+            first, last = (
+                columns[k, j] * a + columns[k + 1, j] * b,
+                columns[k + 2, j] * c + columns[k + 3, j] * d,
+            )
+            out[j] += first + last
 
 
 def tail(values: Any, columns: Any) -> float:
@@ -116,7 +124,7 @@ def energies(
 
 def shifted(left: float, half: float, values: Any, out: Any) -> None:
     """left + half (values)."""
-    for k in range(16):
+    for k in range(len(out)):
         out[k] = left + half * values[k]
 
 
@@ -145,29 +153,27 @@ def sums(
 def ordered(M: Any, work: Any, left: float, forwards: bool, inertia: Any, energy: Any) -> None:
     """Inertia and energy at the nodes of a whole panel, in the way of the motion."""
     apart()
+    count = len(M)
     if forwards:
-        for k in range(16):
+        for k in range(count):
             inertia[k], energy[k] = M[k], left + work[k]
     else:
-        for k in range(16):
+        for k in range(count):
             inertia[k], energy[k] = M[15 - k], left + work[15 - k]
 
 
 def rates(kind: Any, scale: float, weights: Any, inertia: Any, energy: Any, rate: Any) -> float:
     """dt/du at the nodes of a piece, in their order; how long it takes."""
     apart()
-    for k in range(16):
+    for k in range(len(weights)):
         rate[k] = scale * sqrt(inertia[k] / (2.0 * energy[k]))
-    a, b, c, d = 0.0, 0.0, 0.0, 0.0
-    for k in range(4):
-        a += weights[k] * rate[k]
-        b += weights[k + 4] * rate[k + 4]
-        c += weights[k + 8] * rate[k + 8]
-        d += weights[k + 12] * rate[k + 12]
+    total = 0.0
+    for k in range(8):
+        total += weights[k] * rate[k] + weights[k + 8] * rate[k + 8]
     if kind == 2:
         for k in range(8):
             rate[k], rate[15 - k] = rate[15 - k], rate[k]
-    return (a + b) + (c + d)
+    return total
 
 
 def lowest(values: Any) -> float:
