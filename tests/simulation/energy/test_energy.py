@@ -135,6 +135,19 @@ def test_no_digit_hangs_on_the_other_designs():
             np.testing.assert_array_equal(some[name], together[name][rows])
 
 
+@pytest.mark.parametrize("start", [{"torque": 0.8}, {"torque": -0.8}, {"omega_start": 30.0, "g_Y": -9.81}])
+def test_an_instant_is_the_same_alone_and_among_many(start):
+    """Whole turns that hold no instant are passed by at once."""
+    rng = np.random.default_rng(5)
+    designs = drawn(20, 3) | {"ec": 0.01, "BC": 0.5, "theta0": rng.uniform(-3.0, 3.0, 20), "F_Y": 0.0}
+    designs |= {"torque": 0.0, "omega_start": 0.0, "g_X": 0.0, "g_Y": 0.0} | start
+    alone = dx.simulate(t_end=5.0, times=[5.0], **designs)
+    among = dx.simulate(t_end=5.0, times=np.linspace(0.0, 5.0, 400), **designs)
+    assert np.abs(alone["theta"]).max() > 40.0
+    for name in ("theta", "omega"):
+        np.testing.assert_allclose(alone[name][:, -1], among[name][:, -1], rtol=1e-12)
+
+
 def test_many_swings_are_one():
     """A crank swings 200 s: the instants of its standstills are those of its period."""
     swing = machines(g_Y=-9.81, theta0=3.0)

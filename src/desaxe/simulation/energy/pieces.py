@@ -1,7 +1,7 @@
 """A piece of a motion, in plain loops: its inertia, energy and dt/du at Gauss nodes, from series on a panel.
 
-Loops that should run in the lanes of a vector end at a length that is read from an array: LLVM unrolls a short
-loop whose length it knows, before it looks for vectors.
+Loops that should run in the lanes of a vector end at a length that is read from an array: LLVM unrolls a
+short loop whose length it knows before it looks for vectors.
 
 See `follow`. Series are Legendre's, of 16 terms over u from -1 to 1; Q is that of the way in which the crank
 turns, `half` half the width of the panel.
@@ -28,10 +28,8 @@ def combined(values: Any, columns: Any, out: Any) -> None:
     for k in range(0, 16, 4):
         a, b, c, d = values[k], values[k + 1], values[k + 2], values[k + 3]
         for j in range(count):
-            first, last = (
-                columns[k, j] * a + columns[k + 1, j] * b,
-                columns[k + 2, j] * c + columns[k + 3, j] * d,
-            )
+            first = columns[k, j] * a + columns[k + 1, j] * b
+            last = columns[k + 2, j] * c + columns[k + 3, j] * d
             out[j] += first + last
 
 
