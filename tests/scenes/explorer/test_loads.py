@@ -47,12 +47,12 @@ SLIDER = {
 
 
 @pytest.mark.parametrize("kind", SLIDER)
-def test_a_load_that_follows_the_slider(kind, visit, folder):
+def test_a_load_that_follows_the_slider(kind, numbers_of, folder):
     """Values and total derivatives, either way; a design without the dead centre; the scene in mm."""
     load = SLIDER[kind](OUTWARD, INWARD)
     draw = np.random.default_rng(31)
     path = folder / f"slider_{list(SLIDER).index(kind)}.html"
-    page = visit(dx.explore(path=path, F_Y=load, units="mm, deg, rpm, kN", **PRESS))
+    page = numbers_of(dx.explore(path=path, F_Y=load, units="mm, deg, rpm, kN", **PRESS))
     points = [
         [draw.uniform(-7, 7), 0.0, draw.uniform(-0.02, 0.02), draw.choice([-50.0, 50.0])] for _ in range(40)
     ]

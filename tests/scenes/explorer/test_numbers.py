@@ -76,10 +76,10 @@ USUAL = ("generic", "the other branch", "next to a change point", "forces")
 @pytest.mark.parametrize(
     "case", [c if c in USUAL else pytest.param(c, marks=pytest.mark.thorough) for c in CASES]
 )
-def test_values_and_sensitivities(case, visit, tmp_path):
+def test_values_and_sensitivities(case, numbers_of, tmp_path):
     points = CASES[case]()
     inputs = {name: value for name, value in points[0].items() if name not in ("theta", "branch")}
-    page = visit(dx.explore(path=tmp_path / "page.html", branch=points[0]["branch"], **inputs))
+    page = numbers_of(dx.explore(path=tmp_path / "page.html", branch=points[0]["branch"], **inputs))
     names = page.evaluate("Object.keys(desaxe.content.quantities)")
     found = page.evaluate(VALUES, points)
     wrong = []

@@ -9,8 +9,8 @@ from desaxe.mechanism.units import in_si
 from tests.scenes.explorer.page import MINUS, design, reading, settle, verdict
 
 
-def test_it_says_what_it_shows(visit, one_design):
-    page = visit(one_design)
+def test_it_says_what_it_shows(standing):
+    page = standing
     assert verdict(page)[0] == "Turns fully"
     assert "225 mm" in page.inner_text("#margin-words")
     value = dx.evaluate("a_C", theta=math.pi / 3, **design(page))
@@ -19,7 +19,7 @@ def test_it_says_what_it_shows(visit, one_design):
     assert titles == ["aC [m/s²]", "∂aC/∂ec [1/s²]"]
 
 
-def test_a_slider_by_keyboard(visit, one_design):
+def test_a_slider_by_keyboard_and_typed_numbers(visit, one_design):
     page = visit(one_design)
     page.focus("#slide-ec")
     before = reading(page, "a_C")
@@ -31,6 +31,14 @@ def test_a_slider_by_keyboard(visit, one_design):
     assert float(page.input_value("#number-ec")) == pytest.approx(3000 * step)
     value = dx.evaluate("a_C", theta=math.pi / 3, **design(page))
     assert reading(page, "a_C") == [pytest.approx(value, rel=1e-7)] != before
+    # a typed number is the double that was meant
+    page.fill("#number-AB", "62.3")
+    page.fill("#number-omega0", "3000")
+    page.fill("#number-alpha", "-7.5")
+    settle(page)
+    found = design(page)
+    assert (found["AB"], found["alpha"]) == (0.0623, -7.5)
+    assert found["omega0"] == pytest.approx(100 * math.pi, rel=1e-15)
 
 
 @pytest.mark.thorough
@@ -45,19 +53,8 @@ def test_a_slider_by_mouse(visit, one_design):
     assert 0.6 < design(page)["BC"] < 0.66
 
 
-def test_a_typed_number_is_the_double_that_was_meant(visit, one_design):
-    page = visit(one_design)
-    page.fill("#number-AB", "62.3")
-    page.fill("#number-omega0", "3000")
-    page.fill("#number-alpha", "-7.5")
-    settle(page)
-    found = design(page)
-    assert (found["AB"], found["alpha"]) == (0.0623, -7.5)
-    assert found["omega0"] == pytest.approx(100 * math.pi, rel=1e-15)
-
-
-def test_a_bad_number_is_refused_in_words(visit, one_design):
-    page = visit(one_design)
+def test_a_bad_number_is_refused_in_words(standing):
+    page = standing
     page.fill("#number-BC", "-3")
     settle(page)
     assert design(page)["BC"] == 0.35

@@ -31,9 +31,9 @@ def test_turning_is_that_of_feasibility(visit, one_design):
 
 
 @pytest.mark.parametrize("branch", [1, -1])
-def test_the_figures_of_a_design(branch, visit, folder):
+def test_the_figures_of_a_design(branch, numbers_of, folder):
     inputs = {"AB": 0.125, "BC": 0.35, "omega0": 157.0, "branch": branch}
-    page = visit(dx.explore(path=folder / "figures.html", ec=[0.0, 0.1, -0.2], **inputs))
+    page = numbers_of(dx.explore(path=folder / "figures.html", ec=[0.0, 0.1, -0.2], **inputs))
     for k, ec in enumerate((0.0, 0.1, -0.2)):
         found = page.evaluate(f"desaxe.turnOf(desaxe.state.designs[{k}])")
         wanted = dx.events(ec=ec, AB=0.125, BC=0.35, branch=branch)
