@@ -50,21 +50,27 @@ LOADS = {
 
 
 def solved(load, theta, **changed):
-    """T_in and N_C of the free bodies under a load of that instant."""
+    """The forces of the free bodies under a load of that instant, and what the frame feels of them."""
     motion = loop.Motion(theta=theta, **DESIGN)._replace(**changed)
-    return free_bodies.solve(motion, free_bodies.Bodies(F_Y=load(motion), **BODIES))
+    found = free_bodies.solve(motion, free_bodies.Bodies(F_Y=load(motion), **BODIES))
+    shaking = {
+        "F_shaking_Y": -found["F_A_Y"],
+        "M_shaking": -found["T_in"] - loop.slider(motion)[1] * found["N_C"],
+    }
+    return found | shaking
 
 
 @pytest.mark.parametrize("kind", LOADS)
 @pytest.mark.parametrize("theta", [0.9, 4.4])
 def test_forces_and_total_derivatives_are_those_of_the_free_bodies(kind, theta):
     load, at = LOADS[kind][0](), LOADS[kind][1]
-    names = [f"{name}{by}" for name in ("T_in", "N_C") for by in ("", "_wrt_theta", "_wrt_AB")]
+    felt = ("T_in", "N_C", "F_shaking_Y", "M_shaking")  # partial derivatives of F_shaking_Y have no load
+    names = [f"{name}{by}" for name in felt for by in ("", "_wrt_theta", "_wrt_AB")]
     found = dx.evaluate(names, theta=theta, F_Y=load, **DESIGN, **BODIES)
     right = solved(at, theta)
     with mp.workdps(2 * loop.DIGITS):
         h = mpf(10) ** -12
-        for name in ("T_in", "N_C"):
+        for name in felt:
             assert abs(found[name] - right[name]) <= 1e-12 * abs(right[name])
             for p, value in (("theta", theta), ("AB", DESIGN["AB"])):
                 ahead, behind = (solved(at, **{"theta": theta, p: mpf(value) + s * h})[name] for s in (1, -1))

@@ -234,9 +234,10 @@ def plan_of(
 
 @lru_cache(maxsize=1024)
 def _depends(name: str, force: str, mu: bool, own: tuple[Definition, ...]) -> bool:
+    """True if a force matters: also to a derivative, at a fixed force, that does not have it as an input."""
     if name == STATUS:
         return mu
-    return force in program_of((name,), Variant(own=own)).inputs
+    return force in program_of((parts(name)[0],), Variant(own=own)).inputs
 
 
 def _terms(name: str, force: str, load: Load, state: bool, known: Register) -> tuple[Term, ...]:
