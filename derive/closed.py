@@ -6,6 +6,7 @@ and offset. There all roots and angles become symbols, r with r^2 = f and a with
 be 0 is a polynomial that these relations reduce to 0.
 """
 
+from functools import cache
 from itertools import product
 from typing import Any
 
@@ -166,8 +167,14 @@ class _Sector:
 
     def vanishes(self, expression: sp.Expr) -> bool:
         """True if an expression is 0 wherever the roots are those of their squares."""
-        rest = sp.numer(sp.together(expression))
-        for root, square in self.roots.items():
-            if rest.has(root):
-                rest = sp.rem(sp.expand(rest), root**2 - square, root)
-        return bool(sp.expand(rest) == 0)
+        return _vanishes(expression, tuple(self.roots.items()))
+
+
+@cache
+def _vanishes(expression: sp.Expr, roots: tuple[tuple[sp.Symbol, sp.Expr], ...]) -> bool:
+    """The sectors share most of their expressions."""
+    rest = sp.numer(sp.together(expression))
+    for root, square in roots:
+        if rest.has(root):
+            rest = sp.rem(sp.expand(rest), root**2 - square, root)
+    return bool(sp.expand(rest) == 0)
