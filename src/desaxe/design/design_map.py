@@ -11,8 +11,9 @@ from ..loads.resolve import split
 from ..mechanism.answer_units import unit_of
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
+from ..mechanism.keywords import check_inputs, with_known_keywords
 from ..mechanism.names import LENGTHS, sensitivity
-from ..runtime.request import check_common, check_inputs
+from ..runtime.request import check_common
 from ..support.forks import IMPORTS
 from .feasibility.arrays import KINDS, of_arrays
 from .measures import Measure, checked, measured, text_of
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+@with_known_keywords
 def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, **inputs: Any) -> "xr.Dataset":
     """Quantities of designs over the outer product of the inputs, as an xarray.Dataset with units.
 

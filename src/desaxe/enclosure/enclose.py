@@ -21,9 +21,11 @@ from ..loads.resolve import without_loads
 from ..mechanism.answer_units import unit_of
 from ..mechanism.catalogue import has, quantity
 from ..mechanism.inputs import INPUTS
+from ..mechanism.keywords import check_inputs, with_known_keywords
 from ..mechanism.names import sensitivity
 from ..mechanism.ranges import Between, PlusMinus, ends_of, refuse_bare_pair
-from ..runtime.request import Request, as_number, check_common, check_inputs, request
+from ..mechanism.spoken import named
+from ..runtime.request import Request, as_number, check_common, request
 from ..runtime.specialise import specialise
 from ..support.answer import Answer
 from ..support.checks import real_number, whole_number
@@ -45,6 +47,7 @@ SMALLEST = 2.0**-1073
 ENDS = "expected a number or a pair, dx.between(low, high) or dx.plus_minus(value, tolerance)"
 
 
+@with_known_keywords
 def enclose(
     name: str,
     *,
@@ -188,7 +191,7 @@ def _interval(name: str, value: Any, wanted: str) -> Interval:
     if low is None or high is None:
         raise ValueError(f"{name} = {shown(value)}: {ENDS}")
     if low > high:
-        raise ValueError(f"{name} = {value!r}: expected two numbers, the lower one first")
+        raise ValueError(f"{named(name, value)}: expected two numbers, the lower one first")
     return low, high
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanism.inputs import INPUTS, Input, is_good
+from ..mechanism.spoken import named, spoken
 from ..runtime.interpreted import are_good, fill_by_points
 from ..runtime.kernels import KernelKey, key_of, tells_unsafe
 from ..runtime.point import point_of
@@ -107,15 +108,14 @@ def number_or_array(row: Input, value: Any) -> Array:
     """The array of `array_of`; ValueError for a number that is not finite."""
     array = array_of(row, value)
     if not array.ndim and not np.isfinite(array):
-        raise ValueError(f"{row.name} = {shown(value)}: it must be {row.limit}")
+        raise ValueError(f"{named(row.name, value)}: it must be {row.limit}")
     return array
 
 
 def _not_wholly_bad(name: str, array: Array) -> Array:
     if array.size and not is_good(name, array.item(0)) and not are_good(name, array).any():
-        raise ValueError(
-            f"{name}: every value is bad, the first is {array.item(0)}; it must be {INPUTS[name].limit}"
-        )
+        first = spoken(name, array.item(0))
+        raise ValueError(f"{name}: every value is bad, the first is {first}; it must be {INPUTS[name].limit}")
     return array
 
 

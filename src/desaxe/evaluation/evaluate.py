@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ..mechanism.inputs import INPUTS
+from ..mechanism.keywords import check_inputs
 from ..mechanism.names import LOADS
-from ..runtime.request import check_inputs
 from ..support.answer import Answer
 from ..support.forks import IMPORTS
 from .values import values

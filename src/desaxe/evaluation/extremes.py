@@ -12,6 +12,7 @@ from ..mechanism.catalogue import quantity
 from ..mechanism.dimensions import unit_of
 from ..mechanism.inputs import INPUTS, SAFE
 from ..mechanism.names import LENGTHS
+from ..mechanism.spoken import named
 from ..runtime.request import Request
 from ..support.forks import IMPORTS
 
@@ -33,7 +34,7 @@ def check_range(caller: str, name: str, number: float) -> float:
     """The number; ValueError beyond WIDEST, where sums of products of several inputs lose their digits."""
     if name != "theta" and number != 0.0 and not 1.0 / WIDEST <= abs(number) <= WIDEST:
         limit = f"{caller} takes 0 and magnitudes from {1.0 / WIDEST:g} to {WIDEST:g}"
-        raise ValueError(f"{name} = {number:g}: {limit}")
+        raise ValueError(f"{named(name, number, 'g')}: {limit}")
     return number
 
 

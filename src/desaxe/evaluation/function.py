@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 from ..loads.resolve import without_loads
 from ..mechanism.catalogue import has, law_name, quantity
 from ..mechanism.inputs import INPUTS
+from ..mechanism.keywords import check_inputs
 from ..mechanism.names import LENGTHS, sensitivity
 from ..mechanism.own import Definition, Register, register, register_with, used_by
 from ..mechanism.program import Variant, program_of
 from ..runtime.any_stride import Bound, bind
 from ..runtime.kernels import STRUCTURAL_ZEROS, KernelKey, kernel_for
 from ..runtime.native_calls import point_caller, scalar_of, ufunc_of
-from ..runtime.request import Request, as_number, check_common, check_inputs, request, several, standstill
+from ..runtime.request import Request, as_number, check_common, request, several, standstill
 from ..runtime.specialise import plain_form
 from ..runtime.wide_margins import all_have_wide_margins
 from ..support.computed import computed_once
@@ -29,7 +30,7 @@ from ..support.shown import shown as as_shown
 from .repair import limit_of, repair_for
 
 Array = NDArray[Any]
-INPUTS_OF_FUNCTION = (*INPUTS, "branch", "accuracy")
+INPUTS_OF_FUNCTION = ("inputs", *INPUTS, "branch", "accuracy")
 MARGIN = {"AB": -1.0, "BC": 1.0}  # derivatives of BC - AB - |ec|
 
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..compiler.languages.numba.reductions import KINDS
-from ..mechanism.answer_units import Message, conversion_of
+from ..mechanism.answer_units import conversion_of
 from ..mechanism.inputs import INPUTS
 from ..mechanism.unit_system import SI, Conversion, UnitSystem
 from ..mechanism.units import registry
@@ -35,8 +35,6 @@ class Shown(NamedTuple):
         """A value of an answer, whose unit is a text, or a mapping of units by key."""
         if type(value) is float and isinstance(unit, str):  # the most usual one first
             return self.number(value, conversion_of(unit, self.system))
-        if isinstance(value, Message):
-            return value.in_units(self.system)
         if unit is None or value is None or isinstance(value, (str, bool)):
             return value
         if hasattr(value, "dims"):

@@ -14,6 +14,7 @@ from ..loads.pieces import Place
 from ..loads.resolve import VARIABLE, Forces, Plan, plan_of, split, way_of
 from ..loads.tabulated import over_theta
 from ..mechanism.names import LENGTHS
+from ..mechanism.spoken import spoken
 from ..runtime.request import as_number, check_common, several
 from ..support.forks import IMPORTS
 from .arrays import as_array, outputs_for
@@ -176,7 +177,8 @@ def labelled_load(name: str, array: Any, theta: Any = None) -> Load:
         raise ValueError(f"{name}: {y.size} values over theta, which has {x.size}")
     try:
         if x.size and x[-1] - x[0] < TURN - GAP * np.diff(x).max(initial=0.0):
-            raise ValueError(f"its angles go from {x[0]:g} to {x[-1]:g} rad, which is not a whole turn")
+            first, last = (spoken("theta", end, "g", says_unit=True) for end in (x[0], x[-1]))
+            raise ValueError(f"its angles go from {first} to {last}, which is not a whole turn")
         return over_theta(x, y)
     except ValueError as error:
         if theta is None or not np.array_equal(x, as_array("theta", theta, ("theta",), (name,))):

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from ..loads.load import Load
 from ..mechanism.catalogue import of_design
 from ..mechanism.inputs import INPUTS
+from ..mechanism.keywords import check_inputs
 from ..mechanism.names import LENGTHS, STATUS
 from ..mechanism.program import program_of
-from ..runtime.request import Request, check_common, check_inputs, several, standstill
+from ..runtime.request import Request, check_common, several, standstill
 from .arrays import as_array
 from .loaded import split_axes
 from .loops import spread

@@ -5,6 +5,7 @@ function   a user's function of theta as a load
 table      tables as piecewise cubics
 columns    numbers with or without units, from lists, arrays and files
 made       loads made of columns, checked
+maker      public calls that make loads and motors, in SI units or a machine's
 tabulated  `over_theta`, `over_Y`, `over_stroke`: loads from lists, files and functions
 motors     a torque over the speed: `over_omega`, `kloss`
 stroke     a load over the distance from a dead centre

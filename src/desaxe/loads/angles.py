@@ -11,6 +11,7 @@ from ..mechanism.closed.dead_centres import DEAD_CENTRES
 from ..mechanism.closed.functions import closed_form
 from ..mechanism.closed.inverse import INVERSE
 from ..mechanism.closed.limits import ANGLES, LIMITS
+from ..mechanism.spoken import spoken
 from ..mechanism.status import InverseStatus
 from .load import TURN, Load, OverTheta, OverY, TableOverTheta
 from .stroke import OverStroke
@@ -108,7 +109,7 @@ def turns_of(caller: str, loads: Mapping[str, Load], most: int) -> int:
         if own is None:
             raise ValueError(
                 f"{name}: {caller} is over {'a turn' if most == 1 else f'at most {most} turns'}, after which "
-                f"the load must repeat; its period is {load.period:.6g} rad"
+                f"the load must repeat; its period is {spoken('theta', load.period, '.6g', True)}"
             )
         turns = turns * own // gcd(turns, own)
     return turns

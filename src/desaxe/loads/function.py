@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import Any
 
+from ..mechanism.spoken import named
 from ..support.forks import IMPORTS
 from .load import TURN, OverTheta
 from .table import SAME
@@ -86,8 +87,8 @@ def called(function: Callable[[Any], Any], theta: Any, what: str) -> Any:
     bad = np.isfinite(theta) & ~np.isfinite(found)
     if bad.any():
         raise ValueError(
-            f"{what}: the function gave {found[bad].flat[0]} at theta = {theta[bad].flat[0]:g}: it must be "
-            "finite"
+            f"{what}: the function gave {found[bad].flat[0]} at {named('theta', theta[bad].flat[0], 'g')}: "
+            "it must be finite"
         )
     return found
 
@@ -97,13 +98,17 @@ def _one(function: Callable[[Any], Any], theta: float, what: str) -> float:
         found = function(theta)
     except Exception as error:
         kind = type(error).__name__
-        raise ValueError(f"{what}: the function failed at theta = {theta:g}: {kind}: {error}") from error
+        raise ValueError(
+            f"{what}: the function failed at {named('theta', theta, 'g')}: {kind}: {error}"
+        ) from error
     try:
         number = float(found)
     except (TypeError, ValueError):
         raise TypeError(
-            f"{what}: the function gave {found!r} at theta = {theta:g}: expected a number"
+            f"{what}: the function gave {found!r} at {named('theta', theta, 'g')}: expected a number"
         ) from None
     if isfinite(theta) and not isfinite(number):
-        raise ValueError(f"{what}: the function gave {number} at theta = {theta:g}: it must be finite")
+        raise ValueError(
+            f"{what}: the function gave {number} at {named('theta', theta, 'g')}: it must be finite"
+        )
     return number

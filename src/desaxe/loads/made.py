@@ -7,6 +7,7 @@ from math import isfinite
 from typing import Any
 from warnings import warn
 
+from ..mechanism.spoken import spoken
 from ..support.shown import shown
 from .columns import Column
 from .load import Load, LoadWarning, OverY, TableOverTheta
@@ -63,11 +64,12 @@ def _warn_of_gap(x: list[float], kind: str, period: float) -> None:
     """Warn of a spline with a gap of most of a turn between two points."""
     gaps = sorted(b - a for a, b in zip(x, [*x[1:], x[0] + period], strict=True))
     if kind == "cubic" and gaps[-1] > max(period / 4.0, WIDE * gaps[len(gaps) // 2]):
+        gap = spoken("theta", gaps[-1], ".3g", True)
         warn(
-            f"over_theta: a gap of {gaps[-1]:.3g} rad without a point, which a cubic spline bridges with a "
+            f"over_theta: a gap of {gap} without a point, which a cubic spline bridges with a "
             'wide swing; give points there too, or kind="linear" or "step"',
             LoadWarning,
-            stacklevel=4,
+            stacklevel=6,
         )
 
 
@@ -88,7 +90,8 @@ def table_over_stroke(distances: Column, ways: Sequence[Column], kind: str, dead
         )
     wrong = next((x for x in distances.values if x < 0.0), None)
     if wrong is not None:
-        raise ValueError(f"over_stroke: the distance {wrong:g} m is below 0: distances have no sign")
+        distance = spoken("Y", wrong, "g", True)
+        raise ValueError(f"over_stroke: the distance {distance} is below 0: distances have no sign")
     outward, inward = _both_ways("over_stroke", "distances", distances, ways, kind)
     return OverStroke(outward, inward, kind, *_given("Y", distances, ways), dead_centre)
 
@@ -124,14 +127,19 @@ def _check(name: str, places: str, x: list[float], columns: Sequence[list[float]
 
 def _require_order(name: str, places: str, order: str, x: Sequence[float], kind: str) -> None:
     """ValueError for places out of order; one given twice is a jump of a linear table."""
+
+    def follows(b: float, a: float) -> str:
+        one, other = (spoken("theta" if places == "angles" else "Y", place, "g") for place in (b, a))
+        return f"{name}: the {places} must {order}, but {one} follows {other}"
+
     found = next(((a, b) for a, b in pairwise(x) if not a <= b), None)
     if found is not None:
-        raise ValueError(f"{name}: the {places} must {order}, but {found[1]:g} follows {found[0]:g}")
+        raise ValueError(follows(found[1], found[0]))
     twice = next((a for a, b in pairwise(x) if a == b), None)
     if twice is None:
         return
     if kind != "linear":
         only = 'a jump, which only kind="linear" has'
-        raise ValueError(f"{name}: the {places} must {order}, but {twice:g} follows {twice:g}: {only}")
+        raise ValueError(f"{follows(twice, twice)}: {only}")
     if x.count(twice) > 2 or any(x.count(a) > 2 for a in x):
         raise ValueError(f"{name}: one of the {places} is given three times; twice is a jump")

@@ -12,13 +12,17 @@ from numpy.typing import NDArray
 
 from ..mechanism.inputs import TINY, Input
 from ..mechanism.read import number_of
-from ..mechanism.unit_system import UnitSystem
+from ..mechanism.slips import warn_of_slips
+from ..mechanism.spoken import UNITS, named, speaking, spoken
+from ..mechanism.unit_system import SI, UnitSystem
 from ..support.shown import printable, shown
 from .columns import Column, column_of, column_of_file, rows_of, unit_of_column
+from .maker import Maker
 from .table import Table, held
 
 Array = NDArray[np.float64]
 KINDS = ("linear", "smooth")
+MAKING = 5  # frames between the caller of a maker and its warning
 ROWS = (
     Input("breakdown_torque", "N*m", "", TINY, "a finite torque > 0"),
     Input("breakdown_slip", "1", "", TINY, "a finite slip > 0"),
@@ -31,12 +35,14 @@ class Motor(ABC):
     """A torque on the crank [N m], positive like theta, over the crank's speed [rad/s].
 
     knots   speeds at which pieces of a table meet
+    units   that its text is in, of the machine or scene that it was made for
     plain   what was given as plain numbers, which a machine in other units could mean otherwise
     """
 
     call: ClassVar[str] = "over_omega"  # the call that makes it
     knots: tuple[float, ...] = ()
     plain: tuple[str, ...] = ()
+    units: UnitSystem | None = None
 
     @property
     def numbers(self) -> Mapping[str, Any]:
@@ -60,14 +66,23 @@ class Motor(ABC):
         torque = self.both(np.asarray(omega, float), self.numbers)[0]
         return float(torque) if np.ndim(torque) == 0 else torque
 
+    def __repr__(self) -> str:
+        with speaking(UNITS.get() or self.units or SI):
+            return f"<{self._told()}>"
 
-@dataclass(frozen=True)
+    @abstractmethod
+    def _told(self) -> str:
+        """Return its kind and its numbers as text."""
+
+
+@dataclass(frozen=True, repr=False)
 class OverOmega(Motor):
     """A table over the speed, held beyond its ends."""
 
     table: Table
     kind: str
     plain: tuple[str, ...] = field(default=(), compare=False)
+    units: UnitSystem | None = field(default_factory=UNITS.get, compare=False)
 
     @property
     def knots(self) -> tuple[float, ...]:  # type: ignore[override]
@@ -86,12 +101,12 @@ class OverOmega(Motor):
         between = np.interp(np.arange(0.0, len(self.knots) - 0.9, 0.25), range(len(self.knots)), self.knots)
         return np.concatenate([between, most * np.linspace(-3.0, 3.0, 49)])
 
-    def __repr__(self) -> str:
-        told = f"{len(self.knots)} speeds, {self.kind}, {min(self.table.values):g} to"
-        return f"<motor over omega: {told} {max(self.table.values):g} N*m>"
+    def _told(self) -> str:
+        low, high = (spoken("torque", end(self.table.values), "g", True) for end in (min, max))
+        return f"motor over omega: {len(self.knots)} speeds, {self.kind}, {low} to {high}"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Kloss(Motor):
     """An induction motor by Kloss's formula, behind a gear."""
 
@@ -100,6 +115,7 @@ class Kloss(Motor):
     synchronous_speed: Any
     gear: Any = 1.0
     plain: tuple[str, ...] = field(default=(), compare=False)
+    units: UnitSystem | None = field(default_factory=UNITS.get, compare=False)
     call: ClassVar[str] = "kloss"
     SLIPS: ClassVar[Array] = np.geomspace(0.05, 20.0, 7)  # over the breakdown slip
 
@@ -138,9 +154,8 @@ class Kloss(Motor):
         found: Array = (1.0 - np.clip(slips, -3.0, 1.0)) * speed / gear
         return found
 
-    def __repr__(self) -> str:
-        told = ", ".join(f"{name} = {shown(value)}" for name, value in self.numbers.items())
-        return f"<induction motor: {told}>"
+    def _told(self) -> str:
+        return "induction motor: " + ", ".join(named(name, value) for name, value in self.numbers.items())
 
 
 def _bend(square: Any) -> Any:
@@ -148,7 +163,7 @@ def _bend(square: Any) -> Any:
     return 2.0 * (1.0 - square) / (1.0 + square) ** 2
 
 
-class MakeOverOmega:
+class MakeOverOmega(Maker):
     """`over_omega(speeds, torques, kind="linear")`: a motor from a table, wherever a torque is given.
 
         motor = dx.over_omega(["0 rpm", "600 rpm", "1000 rpm"], [30, 45, 0])
@@ -164,17 +179,16 @@ class MakeOverOmega:
     from the first two columns of a file.
     """
 
-    def __init__(self, units: UnitSystem | None = None) -> None:
-        self.units = units
+    name = "over_omega"
+    takes = "speeds, torques, kind='linear'"
 
     def __call__(self, speeds: Any, torques: Any, kind: str = "linear") -> Motor:
         """A motor from a table; see `help(desaxe.over_omega)`."""
-        own = (None, None) if self.units is None else (self.units.of("omega"), self.units.of("torque"))
-        x = column_of("over_omega: speeds", speeds, ("rad/s",), own[0])
-        y = column_of("over_omega: torques", torques, ("N*m",), own[1])
+        x = column_of("over_omega: speeds", speeds, ("rad/s",), self.unit("omega"))
+        y = column_of("over_omega: torques", torques, ("N*m",), self.unit("torque"))
+        if x.plain and self.units is None:
+            warn_of_slips({"omega": max(x.values, key=abs, default=0.0)}, stacklevel=MAKING)
         return table_over_omega(x, y, kind)
-
-    __call__.__qualname__ = "over_omega"  # as errors of Python call it
 
     def read(
         self,
@@ -190,19 +204,14 @@ class MakeOverOmega:
         kind            as in `over_omega`; the form of the file is that of `over_theta.read`
         """
         heading, rows = rows_of(path, 2)
-        own = (None, None) if self.units is None else (self.units.of("omega"), self.units.of("torque"))
         omega = unit_of_column(path, "omega", omega, heading[:1])
         torque = unit_of_column(path, "torque", torque, heading[1:2])
-        x = column_of_file("omega", rows, 0, omega, ("rad/s",), own[0])
-        y = column_of_file("torque", rows, 1, torque, ("N*m",), own[1])
+        x = column_of_file("omega", rows, 0, omega, ("rad/s",), self.unit("omega"))
+        y = column_of_file("torque", rows, 1, torque, ("N*m",), self.unit("torque"))
         try:
             return table_over_omega(x, y, kind)
         except ValueError as error:
             raise ValueError(f"{printable(path)}: {error}") from None
-
-    def __repr__(self) -> str:
-        units = f" in {self.units!r}" if self.units else ""
-        return f"desaxe.over_omega(speeds, torques, kind='linear'){units}"
 
 
 def table_over_omega(x: Column, y: Column, kind: str) -> Motor:
@@ -218,16 +227,15 @@ def table_over_omega(x: Column, y: Column, kind: str) -> Motor:
     steps = np.diff(x.values)
     if not (steps > 0.0).all():
         at = int(np.argmin(steps))
-        raise ValueError(
-            f"over_omega: the speeds must ascend, but {x.values[at + 1]:g} follows {x.values[at]:g}"
-        )
+        one, next = (spoken("omega", x.values[k], "g") for k in (at, at + 1))
+        raise ValueError(f"over_omega: the speeds must ascend, but {next} follows {one}")
     table = held(x.values, y.values, kind)
     if not np.isfinite(table.rows).all():
         raise ValueError("over_omega: two speeds are too close for the torques there")
     return OverOmega(table, kind, ("omega",) * x.plain + ("torque",) * y.plain)
 
 
-class MakeKloss:
+class MakeKloss(Maker):
     """`kloss(breakdown_torque, breakdown_slip, synchronous_speed, gear=1)`: an induction motor.
 
         motor = dx.kloss("40 N m", 0.15, "1500 rpm", gear=12)
@@ -242,8 +250,8 @@ class MakeKloss:
     array for an array of designs. `machine.kloss` is the same in the units of a machine.
     """
 
-    def __init__(self, units: UnitSystem | None = None) -> None:
-        self.units = units
+    name = "kloss"
+    takes = "breakdown_torque, breakdown_slip, synchronous_speed, gear=1"
 
     def __call__(
         self, breakdown_torque: Any, breakdown_slip: Any, synchronous_speed: Any, gear: Any = 1.0
@@ -252,8 +260,10 @@ class MakeKloss:
         given = (breakdown_torque, breakdown_slip, synchronous_speed, gear)
         names = {"N*m": "torque", "rad/s": "omega"}
         plain, values = [], []
+        written = {row.name: one for row, one in zip(ROWS, given, strict=True)}
+        warn_of_slips(written, self.units or SI, stacklevel=MAKING)
         for row, one in zip(ROWS, given, strict=True):
-            own = self.units.of(names[row.unit]) if self.units is not None and row.unit in names else None
+            own = self.unit(names[row.unit]) if row.unit in names else None
             value = _array(row, one) if isinstance(one, (list, tuple)) else one
             text = isinstance(value, str) or getattr(getattr(value, "dtype", None), "kind", "") == "U"
             bare = not text and not hasattr(value, "magnitude")
@@ -261,12 +271,6 @@ class MakeKloss:
             plain += [names[row.unit]] if bare and row.unit in names and own is None else []
         most, slip, speed, ratio = values
         return Kloss(most, slip, speed, ratio, tuple(plain))
-
-    __call__.__qualname__ = "kloss"  # as errors of Python call it
-
-    def __repr__(self) -> str:
-        units = f" in {self.units!r}" if self.units else ""
-        return f"desaxe.kloss(breakdown_torque, breakdown_slip, synchronous_speed, gear=1){units}"
 
 
 def _array(row: Input, value: Any) -> Any:
@@ -286,7 +290,7 @@ def _number(row: Input, value: Any) -> Any:
     if number is None:
         raise TypeError(f"{row.name} = {shown(value)}: kloss expects a number or an array of numbers")
     if row.least is None and (number == 0.0 or abs(number) == inf):
-        raise ValueError(f"{row.name} = {shown(value)}: it must be {row.limit}")
+        raise ValueError(f"{named(row.name, value)}: it must be {row.limit}")
     return number
 
 

@@ -13,12 +13,13 @@ from .columns import Column, column_of, column_of_file, rows_of, unit_of_column
 from .function import FunctionOverTheta
 from .load import TURN, Load
 from .made import table_over_stroke, table_over_theta, table_over_Y
+from .maker import Maker
 
 LONGEST_PERIOD = 1e9
 FARTHEST = LARGEST["ec"]  # m: a position beyond is almost surely in another unit
 
 
-class MakeOverTheta:
+class MakeOverTheta(Maker):
     """`over_theta(angles, values)`: a load over the crank angle, wherever F_X, F_Y or a torque is given.
 
         press = dx.over_theta(["0 deg", "90 deg", "180 deg", "270 deg"], [0, -400, -50, 0], kind="linear")
@@ -43,8 +44,8 @@ class MakeOverTheta:
     ValueError or TypeError for a table that is no periodic function.
     """
 
-    def __init__(self, units: UnitSystem | None = None) -> None:
-        self.units = units  # of plain numbers: those of a machine, else SI
+    name = "over_theta"
+    takes = "angles, values, kind='cubic', period=2 pi"
 
     def __call__(
         self,
@@ -68,7 +69,7 @@ class MakeOverTheta:
                 raise TypeError(f"{name}: values = {values!r} beside a function; give values or a function")
             if derivative is not None and not callable(derivative):
                 raise TypeError(f"{name}: derivative = {derivative!r}: expected a function of theta")
-            places = column_of(f"{name}: nodes", nodes, ("rad",), _unit(self.units, "theta")).values
+            places = column_of(f"{name}: nodes", nodes, ("rad",), self.unit("theta")).values
             if self.units:
                 angles, derivative = _in_units_of(self.units, angles, derivative)
             return FunctionOverTheta(angles, derivative, tuple(places), turn.values[0])
@@ -76,11 +77,9 @@ class MakeOverTheta:
             raise TypeError(f"{name}: derivative= and nodes= belong to a function; a table knows its own")
         if values is None:
             raise TypeError(f"{name}: values is missing (angles and values, or a function of theta)")
-        x = column_of(f"{name}: angles", angles, ("rad",), _unit(self.units, "theta"))
+        x = column_of(f"{name}: angles", angles, ("rad",), self.unit("theta"))
         y = column_of(f"{name}: values", values, ("N", "N*m"), _force(self.units))
         return table_over_theta(x, y, kind, turn)
-
-    __call__.__qualname__ = "over_theta"  # as errors of Python call it
 
     def read(
         self,
@@ -102,7 +101,7 @@ class MakeOverTheta:
         heading, rows = rows_of(path, 2)
         theta = unit_of_column(path, "theta", theta, heading[:1])
         value = unit_of_column(path, "value", value, heading[1:2])
-        x = column_of_file("theta", rows, 0, theta, ("rad",), _unit(self.units, "theta"))
+        x = column_of_file("theta", rows, 0, theta, ("rad",), self.unit("theta"))
         y = column_of_file("value", rows, 1, value, ("N", "N*m"), _force(self.units))
         try:
             return table_over_theta(x, y, kind, self._period(period))
@@ -112,18 +111,14 @@ class MakeOverTheta:
     def _period(self, period: Any) -> "Column":
         if isinstance(period, float) and period == TURN:  # a turn, in any unit
             return Column([TURN])
-        found = column_of("over_theta: period", [period], ("rad",), _unit(self.units, "theta"))
+        found = column_of("over_theta: period", [period], ("rad",), self.unit("theta"))
         if not 0.0 < found.values[0] <= LONGEST_PERIOD:
             limit = f"expected an angle above 0 and at most {LONGEST_PERIOD:g} rad"
             raise ValueError(f"over_theta: period = {shown(period)}: {limit}")
         return found
 
-    def __repr__(self) -> str:
-        units = f" in {self.units!r}" if self.units else ""
-        return f"desaxe.over_theta(angles, values, kind='cubic', period=2 pi){units}"
 
-
-class MakeOverY:
+class MakeOverY(Maker):
     """`over_Y(positions, outward, inward=None)`: a load over the slider's position, for F_X and F_Y.
 
     A press or a compressor is given by its stroke: the load follows the slider, so that sensitivities by
@@ -143,14 +138,12 @@ class MakeOverY:
     `machine.over_Y` is the same in the units of a machine: its plain positions and forces.
     """
 
-    def __init__(self, units: UnitSystem | None = None) -> None:
-        self.units = units  # of plain numbers: those of a machine, else SI
+    name = "over_Y"
+    takes = "positions, outward, inward=None"
 
     def __call__(self, positions: Any, outward: Any, inward: Any = None, kind: str = "linear") -> Load:
         """A load over the slider's position; see `help(desaxe.over_Y)`."""
         return table_over_Y(*_columns("over_Y", "positions", positions, outward, inward, self.units), kind)
-
-    __call__.__qualname__ = "over_Y"  # as errors of Python call it
 
     def read(
         self, path: str | PathLike[str], Y: str | None = None, value: str | None = None, kind: str = "linear"
@@ -165,12 +158,8 @@ class MakeOverY:
         except ValueError as error:
             raise ValueError(f"{printable(path)}: {error}") from None
 
-    def __repr__(self) -> str:
-        units = f" in {self.units!r}" if self.units else ""
-        return f"desaxe.over_Y(positions, outward, inward=None){units}"
 
-
-class MakeOverStroke:
+class MakeOverStroke(Maker):
     """`over_stroke(distances, outward, inward=None, dead_centre="outer")`: a load over the stroke itself.
 
     The die of a press is hit a given way before bottom dead centre, whatever the design: the load is over the
@@ -194,8 +183,8 @@ class MakeOverStroke:
     `machine.over_stroke` is the same in the units of a machine: its plain distances and forces.
     """
 
-    def __init__(self, units: UnitSystem | None = None) -> None:
-        self.units = units  # of plain numbers: those of a machine, else SI
+    name = "over_stroke"
+    takes = "distances, outward, inward=None, *, dead_centre"
 
     def __call__(
         self,
@@ -209,8 +198,6 @@ class MakeOverStroke:
         """A load over the distance from a dead centre; see `help(desaxe.over_stroke)`."""
         columns = _columns("over_stroke", "distances", distances, outward, inward, self.units)
         return table_over_stroke(*columns, kind, dead_centre)
-
-    __call__.__qualname__ = "over_stroke"  # as errors of Python call it
 
     def read(
         self,
@@ -231,10 +218,6 @@ class MakeOverStroke:
         except ValueError as error:
             raise ValueError(f"{printable(path)}: {error}") from None
 
-    def __repr__(self) -> str:
-        units = f" in {self.units!r}" if self.units else ""
-        return f"desaxe.over_stroke(distances, outward, inward=None, *, dead_centre){units}"
-
 
 over_theta = MakeOverTheta()
 over_Y = MakeOverY()
@@ -252,7 +235,7 @@ def _columns(
             f"{name}: {places} up to {farthest:.6g} m, almost surely a slip: write "
             f'"{farthest:.6g} mm"; plain numbers are metres',
             UnitWarning,
-            stacklevel=3,
+            stacklevel=5,
         )
     ways = [("outward", outward), *([] if inward is None else [("inward", inward)])]
     return at, [column_of(f"{name}: {way}", values, ("N",), _force(units)) for way, values in ways]

@@ -5,12 +5,11 @@ from os import PathLike
 from typing import Any
 
 from ..loads.resolve import settled
-from ..mechanism.inputs import INPUTS, is_good
+from ..mechanism.inputs import INPUTS
 from ..mechanism.names import WHOLE
 from ..mechanism.unit_system import OTHERS, UnitSystem
 from ..support.forks import IMPORTS
 from ..support.quantity_text import PLUS_MINUS, with_unit_of
-from ..support.shown import shown
 
 # Arguments that carry no unit of their own name: what they are about is said by their keys.
 BY_KEY = ("over", "keep", "changes", "sigma", "data")
@@ -35,12 +34,7 @@ def in_si(system: UnitSystem, name: str, value: Any) -> Any:
         return {key: converted(system, _measure(key), part) for key, part in value.items()}
     if not has_unit(name):
         return value
-    found = converted(system, name, value)
-    if type(value) in (int, float) and name in INPUTS and not is_good(name, found):
-        conversion = system.find(name)
-        unit = "" if conversion is None else f" {conversion.unit}".removesuffix(" 1")
-        raise ValueError(f"{name} = {shown(value)}{unit}: it must be {INPUTS[name].limit}")
-    return found
+    return converted(system, name, value)
 
 
 def _measure(key: Any) -> str:

@@ -6,6 +6,7 @@ from typing import Any
 from ..evaluation.arrays import as_array
 from ..evaluation.in_units import Shown
 from ..mechanism.answer_units import unit_of
+from ..mechanism.spoken import speaking
 
 
 class FunctionInUnits:
@@ -23,7 +24,8 @@ class FunctionInUnits:
 
     def __call__(self, *args: Any, out: Any = None, **named: Any) -> Any:
         """The values: an array for a name, a tuple for a list of names."""
-        found = self.si(*self._positional(args), **self._named(named))
+        with speaking(self._show.system):
+            found = self.si(*self._positional(args), **self._named(named))
         if not isinstance(found, tuple):
             shown = self._value(found, self.names[0])
             return shown if out is None else _filled(out, shown)
@@ -35,7 +37,8 @@ class FunctionInUnits:
 
     def jacobian(self, *args: Any, **named: Any) -> dict[str, dict[str, Any]]:
         """The exact derivatives by the inputs: dict name -> dict input -> array."""
-        found = self.si.jacobian(*self._positional(args), **self._named(named))
+        with speaking(self._show.system):
+            found = self.si.jacobian(*self._positional(args), **self._named(named))
         return {
             name: {by: self._show.entry(value, unit_of(name, by)) for by, value in row.items()}
             for name, row in found.items()

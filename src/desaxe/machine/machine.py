@@ -9,10 +9,12 @@ from ..loads.motors import MakeKloss, MakeOverOmega
 from ..loads.resolve import settled
 from ..loads.tabulated import MakeOverStroke, MakeOverTheta, MakeOverY
 from ..mechanism.inputs import INPUTS, is_good
+from ..mechanism.keywords import check_inputs
 from ..mechanism.own import Definition
 from ..mechanism.slips import warn_of_slips
+from ..mechanism.spoken import named, speaking
 from ..mechanism.unit_system import SI, UnitSystem
-from ..runtime.request import MachineSpeed, as_number, check_common, check_inputs
+from ..runtime.request import MachineSpeed, as_number, check_common
 from ..support.forks import IMPORTS
 from .arguments import in_si
 from .methods import METHODS, Method
@@ -104,8 +106,9 @@ class Machine(Mapping[str, Any]):
         system = UnitSystem.read(units)
         plain = {} if isinstance(source, Machine) or (source and is_scene(source)) else given
         named = {**plain, **inputs}
-        si = {**given, **{key: in_si(system, key, value) for key, value in named.items()}}
-        checked = _checked_inputs(si)
+        with speaking(system):
+            si = {**given, **{key: in_si(system, key, value) for key, value in named.items()}}
+            checked = _checked_inputs(si)
         warn_of_slips(named, system, inputs=checked)
         self._set(checked, system, named, made)
 
@@ -142,9 +145,10 @@ class Machine(Mapping[str, Any]):
         gone |= {other[key] for key in inputs if key in other and inputs[key] is not None}
         kept = {key: value for key, value in self.items() if key not in gone}
         system = UnitSystem.read(units)
-        new = {key: in_si(system, key, value) for key, value in inputs.items() if value is not None}
         given = {**self.in_units(), **inputs} if system == self.units else inputs
-        checked = _checked_inputs({**kept, **new})
+        with speaking(system):
+            new = {key: in_si(system, key, value) for key, value in inputs.items() if value is not None}
+            checked = _checked_inputs({**kept, **new})
         loaded = checked if {"BC", "F_X", "F_Y"} & {*inputs} else {}
         warn_of_slips(inputs, system, inputs=loaded)
         return _restored(checked, system, given, self.definitions)
@@ -374,5 +378,5 @@ def _checked(name: str, value: Any) -> Any:
         )
     bad = next((v for v in array.tolist() if not is_good(name, v)), None)
     if bad is not None or not array.size:
-        raise ValueError(f"{name} = {bad!r}: it must be {INPUTS[name].limit}")
+        raise ValueError(f"{named(name, bad)}: it must be {INPUTS[name].limit}")
     return array.copy()

@@ -13,6 +13,7 @@ from ..mechanism.inputs import INPUTS
 from ..mechanism.own import using
 from ..mechanism.ranges import refuse_bare_pair
 from ..mechanism.slips import warn_of_slips
+from ..mechanism.spoken import speaking
 from ..runtime.request import MachineSpeed
 from ..support.forks import IMPORTS, imported
 from .arguments import in_si
@@ -150,10 +151,11 @@ def call(
             refuse_bare_pair(key, inputs[key])
     named = {**dict(zip(positional, args, strict=False)), **inputs}
     warn_of_slips(named, system, stacklevel=4)
-    given = {key: in_si(system, key, value) for key, value in named.items()}
-    if system and "units" in takes.names:
-        given.setdefault("units", system)
-    found = function(**given, **filled(machine, name, takes, given))
+    with speaking(system):
+        given = {key: in_si(system, key, value) for key, value in named.items()}
+        if system and "units" in takes.names:
+            given.setdefault("units", system)
+        found = function(**given, **filled(machine, name, takes, given))
     if not system and not as_quantity:
         return found
     show = Shown(system, as_quantity)
@@ -162,7 +164,7 @@ def call(
             from .function import FunctionInUnits
 
         return FunctionInUnits(found, show)
-    result = shown(found, {**machine.in_units(), **named}, show)
+    result = shown(found, machine, named, show)
     return _delivered(result, given.get("out"))
 
 

@@ -6,6 +6,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from ..loads.load import Load
 from ..mechanism.names import LOADS
 from ..mechanism.own import using
 from ..mechanism.slips import warn_of_slips
@@ -60,7 +61,7 @@ def _command(
     machine: Any, path: Path, outputs: Any, tolerances: Mapping[str, Any], more: Mapping[str, Any]
 ) -> str:
     """The call that makes the report again."""
-    given = [f"{name}={_written(value)}" for name, value in machine.in_units().items()]
+    given = [f"{name}={_written(machine, name, value)}" for name, value in machine.in_units().items()]
     units = [f"units={machine.units!r}"] if machine.units else []
     told = [] if outputs is None else [f"outputs={outputs!r}"]
     told += [f"tolerances={dict(tolerances)!r}"] if tolerances else []
@@ -71,5 +72,7 @@ def _command(
     )
 
 
-def _written(value: Any) -> str:
+def _written(machine: Any, name: str, value: Any) -> str:
+    if isinstance(value, Load):
+        return value.told(machine.units.of(name))
     return repr(value.tolist()) if hasattr(value, "tolist") else repr(value)

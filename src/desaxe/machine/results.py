@@ -11,9 +11,10 @@ from ..mechanism.answer_units import unit_of, units_by_name
 from ..support.answer import Answer
 
 
-def shown(found: Any, call: Mapping[str, Any], show: Shown) -> Any:
-    """The result of a public function, called with these arguments, as it is shown."""
+def shown(found: Any, machine: Any, named: Mapping[str, Any], show: Shown) -> Any:
+    """The result of a public function, called with these arguments beside a machine's, as it is shown."""
     if hasattr(found, "data_vars"):  # of grid, design_map, sweep
+        call = {**machine.in_units(), **named}
         loads = {name: value for name, value in call.items() if isinstance(value, Load)}
         if found.attrs.get("loads") == loads_text(loads):  # that of a sweep knows the text alone
             found = tell_loads(found, loads)
@@ -25,7 +26,7 @@ def shown(found: Any, call: Mapping[str, Any], show: Shown) -> Any:
         if isinstance(result, Values):
             result.inputs = {}  # which are in SI units
         return result
-    names = call.get("names")
+    names = named.get("names")
     return found if not isinstance(names, str) or names == "status" else show.entry(found, unit_of(names))
 
 

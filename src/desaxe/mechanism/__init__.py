@@ -5,6 +5,7 @@ inputs        the inputs: meaning, unit, limits
 catalogue     the quantities and sensitivities: unit, meaning, source
 units         text and pint quantities as SI numbers
 read          one reader of numbers, with or without a unit
+keywords      unknown keywords, refused with the one that was meant
 spelling      the name that was meant by one that does not exist
 program       the committed Program, sliced to some names, and its variants
 constants     coefficients of the written-out sine and cosine
@@ -12,7 +13,8 @@ closed        closed forms of the geometry as Programs: limit angles, dead centr
 status        the status codes of every call, with their words
 dimensions    units as exponents of m, s, rad and kg
 unit_system   the units of plain numbers in inputs and results
-answer_units  units of the numbers of answers and messages, for any unit system
+answer_units  units of the numbers of answers, for any unit system
+spoken        numbers in messages, in the units of the machine or scene whose call it is
 ranges        `between` and `plus_minus`: inputs with a range or tolerance
 slips         plain numbers that are almost surely in another unit
 own           user-defined quantities: the register

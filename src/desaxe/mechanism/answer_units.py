@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any
 
 from .own import register
 from .unit_system import SI, Conversion, UnitSystem
@@ -89,35 +89,3 @@ def _conversion(system: UnitSystem, name: str, by: str) -> Conversion:
     own = system.find(name) if name else None
     per = system.find(by) if by else None
     return (own or PLAIN) if per is None else (own or PLAIN).per([per])
-
-
-class Number(NamedTuple):
-    """A number in SI units that stands in a message: its unit, its digits, and whether the unit is said."""
-
-    value: float
-    unit: str = "1"
-    form: str = ".6g"
-    says_unit: bool = True
-
-    def text(self, system: UnitSystem) -> str:
-        """The number in these units."""
-        conversion = conversion_of(self.unit, system)
-        unit = f" {conversion.unit}" if self.says_unit and conversion.unit != "1" else ""
-        return f"{conversion.shown(float(self.value)):{self.form}}{unit}"
-
-
-class Message(str):
-    """A text with numbers that knows them, and so can be written in any unit system."""
-
-    parts: tuple[str | Number, ...] = ()
-
-    def in_units(self, system: UnitSystem) -> "Message":
-        """The message in these units."""
-        return message(*self.parts, system=system)
-
-
-def message(*parts: str | Number, system: UnitSystem = SI) -> Message:
-    """The text of words and numbers, in SI units."""
-    text = Message("".join(part if isinstance(part, str) else part.text(system) for part in parts))
-    text.parts = parts
-    return text

@@ -22,6 +22,8 @@ LARGEST = {
     **dict.fromkeys(("m_crank", "m_rod", "m_slider"), 1e5),
     **dict.fromkeys(("g_X", "g_Y"), 100.0),
     "mu": 5.0,
+    "synchronous_speed": 1000.0,
+    "breakdown_slip": 3.0,
 }
 LARGEST_DOUBLE = sys.float_info.max
 SMALLEST = dict.fromkeys(("g_X", "g_Y"), 0.1)
@@ -38,6 +40,8 @@ REMEDIES = {
     **dict.fromkeys(("m_crank", "m_rod", "m_slider"), '"{number:.6g} g"'),
     **dict.fromkeys(("g_X", "g_Y"), '"{earth:.2f} m/s^2"'),
     "mu": "{hundredth:.6g}",
+    "synchronous_speed": '"{number:.6g} rpm"',
+    "breakdown_slip": '"{number:.6g} %"',
 }
 
 

@@ -21,7 +21,7 @@ from ..support.shown import shown
 from .catalogue import quantity
 from .inputs import INPUTS
 from .names import parts
-from .units import exact
+from .units import did_you_mean_unit, exact
 
 DIMENSIONS = {
     "length": "m",
@@ -57,6 +57,7 @@ OTHERS = {
     **dict.fromkeys(("work", "work_in", "work_out", "energy_fluctuation"), "J"),
     **dict.fromkeys(("power_mean", "power_peak"), "W"),
     **dict.fromkeys(("inertia", "inertia_first_order", "flywheel_inertia"), "kg*m^2"),
+    **dict.fromkeys(("breakdown_slip", "gear"), "1"),
     "radius": "m",
     "mass": "kg",
     "product": "kg*m",
@@ -72,11 +73,11 @@ class Conversion(NamedTuple):
 
     def shown(self, value: Any) -> Any:
         """A number or array in SI units, in the unit shown."""
-        return value if self.si == 1 else _scaled(value, 1 / self.si)
+        return value if self.si == 1 else _scaled(value, self.si.denominator, self.si.numerator)
 
     def to_si(self, value: Any) -> Any:
         """A number or array in the unit shown, in SI units: the double nearest to it."""
-        return value if self.si == 1 else _scaled(value, self.si)
+        return value if self.si == 1 else _scaled(value, self.si.numerator, self.si.denominator)
 
     def per(self, others: "list[Conversion]") -> "Conversion":
         """The conversion of a derivative."""
@@ -238,6 +239,10 @@ def _dimension_of(unit: str) -> str:
                 ) from None
         else:
             fitting.append(name)
+    others = (si for name, si in DIMENSIONS.items() if name not in fitting)
+    meant = "".join(did_you_mean_unit(unit, si) for si in others)
+    if meant:  # kn is a knot
+        raise ValueError(f"units: {shown(unit)}: {meant}".rstrip())
     if not fitting:
         raise ValueError(f"units: {shown(unit)} is none of {', '.join(DIMENSIONS)}")
     product = re.search(r"[^\W\d_][ *.·][^\W\d_]", unit) is not None
@@ -251,18 +256,21 @@ def _si_of(name: str, unit: str, si: str) -> Fraction:
     return exact(f"units: {name}", f"1 {unit}", si)
 
 
-def _scaled(value: Any, factor: Fraction) -> Any:
-    """A number times an exact factor, rounded once; an array in extended precision where supported."""
+def _scaled(value: Any, above: int, below: int) -> Any:
+    """A number times above/below, rounded once; an array in extended precision where supported."""
     if isinstance(value, (int, float)):
-        return float(Fraction(value) * factor) if isfinite(value) else float(value)
+        if not isfinite(value):
+            return float(value)
+        own, under = value.as_integer_ratio()
+        return own * above / (under * below)
     with IMPORTS:
         import numpy as np
 
     wide = np.asarray(value, dtype=np.longdouble)
-    if factor.numerator == 1:
-        scaled = wide / np.longdouble(str(factor.denominator))
+    if above == 1:
+        scaled = wide / np.longdouble(str(below))
     else:
         with localcontext(prec=30):
-            scaled = wide * np.longdouble(str(Decimal(factor.numerator) / Decimal(factor.denominator)))
+            scaled = wide * np.longdouble(str(Decimal(above) / Decimal(below)))
     result = np.asarray(scaled, dtype=np.float64)
     return result if result.ndim else float(result)

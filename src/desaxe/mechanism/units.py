@@ -30,6 +30,17 @@ EXAMPLES = {
     "N": '"50 N"',
     "m/s^2": '"9.81 m/s^2"',
 }
+# Units whose letters people write in the wrong case, by SI unit.
+COMMON = {
+    "m": ("mm", "cm", "m"),
+    "rad": ("deg", "rad"),
+    "rad/s": ("rpm",),
+    "kg": ("kg", "g"),
+    "N": ("kN", "N"),
+    "N*m": ("N m", "kN m"),
+    "W": ("kW", "W"),
+    "J": ("kJ", "J"),
+}
 
 
 @cache
@@ -128,10 +139,17 @@ def exact(name: str, text: str, unit: str) -> Fraction:
     except ValueError as error:
         raise ValueError(f"{name} = {shown(text)}: {error}") from None
     except Exception:
-        raise ValueError(f"{name} = {shown(text)}: unknown unit; {_wanted(unit)}") from None
+        hint = did_you_mean_unit(own, unit)
+        raise ValueError(f"{name} = {shown(text)}: unknown unit; {hint}{_wanted(unit)}") from None
     if not _says_the_same(quantity, unit):
-        raise ValueError(f"{name} = {shown(text)}: {_wanted(unit)}")
+        raise ValueError(f"{name} = {shown(text)}: {did_you_mean_unit(own, unit)}{_wanted(unit)}")
     return Fraction(quantity.to(unit).magnitude)
+
+
+def did_you_mean_unit(own: str, unit: str) -> str:
+    """The question "did you mean kN? " for a unit in wrong letters: kn is a knot; empty for any other."""
+    near = next((each for each in COMMON.get(unit, ()) if each.lower() == own.lower() and each != own), "")
+    return f"did you mean {near}? " if near else ""
 
 
 def _check_size(number: str) -> None:

@@ -22,7 +22,9 @@ from ..loads.resolve import VARIABLE
 from ..mechanism.answer_units import units_of_extreme
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
-from ..runtime.request import as_number, check_common, check_inputs
+from ..mechanism.keywords import check_inputs
+from ..mechanism.spoken import named
+from ..runtime.request import as_number, check_common
 from ..support.answer import Answer
 from ..support.forks import IMPORTS
 from ..support.shown import shown as shown_value
@@ -138,12 +140,12 @@ def _range(theta: Any, name: str) -> tuple[float, float]:
         raise ValueError(f"theta = {shown_value(theta)}: expected a range (lower end, upper end)") from None
     low, high = (as_number("theta", end, ("theta",), (name,)) for end in (first, last))
     if low is None or high is None or low > high:
-        raise ValueError(
-            f"theta = ({shown_value(first)}, {shown_value(last)}): two angles, the lower one first"
-        )
+        raise ValueError(f"{named('theta', (first, last))}: two angles, the lower one first")
     if high - low > MOST_TURNS * 2.0 * np.pi:
         turns = (high - low) / (2.0 * np.pi)
-        raise ValueError(f"theta = ({low:g}, {high:g}): {turns:.3g} turns are too many, at most {MOST_TURNS}")
+        raise ValueError(
+            f"{named('theta', (low, high), 'g')}: {turns:.3g} turns are too many, at most {MOST_TURNS}"
+        )
     return low, high
 
 

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from ..mechanism.catalogue import law_name, of_design, quantity
 from ..mechanism.inputs import INPUTS
+from ..mechanism.keywords import unknown_input
 from ..mechanism.names import CENTRES, FORCE_STATUS, LENGTHS, LOADS, STATUS, STATUSES, TURN_STATUS, parts
 from ..mechanism.own import Definition, Register, register, used_by
 from ..mechanism.own_lines import not_extended
@@ -124,25 +125,6 @@ def is_steady(alpha: Any) -> bool:
     return alpha is None or (type(alpha) is float and alpha == 0.0)
 
 
-def check_inputs(caller: str, given: Iterable[str], allowed: Sequence[str]) -> None:
-    """TypeError for an unknown input, with similar names."""
-    for name in given:
-        if name not in allowed:
-            raise _unknown_input(caller, name, allowed)
-
-
-def _unknown_input(caller: str, name: str, allowed: Sequence[str]) -> TypeError:
-    with IMPORTS:
-        from ..mechanism.spelling import did_you_mean
-
-    if name == "as_quantity":
-        way = f"a machine's {caller} has it, as in dx.Machine(**inputs).{caller}(..., as_quantity=True)"
-        return TypeError(f"{caller}() has no as_quantity=: {way}")
-    asked = did_you_mean(name, allowed)
-    there = f"{'There' if asked else 'there'} are {', '.join(allowed)}"
-    return TypeError(f"{caller}() has no input {name!r}; {asked}{there}")
-
-
 def with_known_inputs(function: Callable[P, T]) -> Callable[P, T]:
     """Decorate a function to refuse unknown inputs as `check_inputs` does.
 
@@ -166,7 +148,7 @@ def with_known_inputs(function: Callable[P, T]) -> Callable[P, T]:
             name for name in others if not (name in OF_NO_EFFECT or isinstance(inputs[name], MachineSpeed))
         ]
         if strange:
-            raise _unknown_input(function.__name__, strange[0], known)
+            raise unknown_input(function.__name__, strange[0], known)
         own: Any = {name: value for name, value in inputs.items() if name in known}
         speed = inputs.get("omega0", inputs.get("omega"))
         if speed is not None and "omega_start" in known:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..mechanism.own import change, using
+from ..mechanism.spoken import speaking
 from ..mechanism.unit_system import SI, UnitSystem
 from ..support.progress import Progress
 from ..support.shown import printable
@@ -110,7 +111,7 @@ class Scene:
         cannot be written; NotWrittenError, which has the result, where writing failed after all.
         """
         steps = steps_of(self.content, progress)
-        with using(self.content.definitions):
+        with using(self.content.definitions), speaking(self.shown_in):
             found = compute(self.content, steps, overwrite)
             found = write_files(self.content, found, steps, self.shown_in, overwrite)
         result = SceneResult(

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
+from ..mechanism.keywords import with_known_keywords
 from ..mechanism.own import using
 from ..sweeps.meter import Watch
 from ..sweeps.sweep import run_sweep
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+@with_known_keywords
 def sweep(
     names: str | Sequence[str] | Scene | PathLike[str] | Mapping[str, Any],
     *,

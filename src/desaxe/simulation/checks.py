@@ -16,6 +16,7 @@ from ..mechanism.inputs import INPUTS, Input
 from ..mechanism.names import CENTRES, LENGTHS, LOADS, MASSES
 from ..mechanism.read import read
 from ..mechanism.spelling import did_you_mean
+from ..mechanism.spoken import named, spoken
 from ..runtime.request import several
 from ..support.checks import real_number
 from ..support.deadline import Deadline
@@ -120,8 +121,8 @@ def load(name: str, value: Any, unit: str, deadline: Deadline) -> Load:
             raise TypeError(f"{name} gave {shown(found)} at t = {t:g}: expected a number in {unit}") from None
         if not isfinite(number) and isfinite(theta) and isfinite(omega):
             raise ValueError(
-                f"{name} gave {number} at t = {t:g}, theta = {theta:g}, omega = {omega:g}: "
-                f"it must be a finite number in {unit}"
+                f"{name} gave {number} at {named('t', t, 'g')}, {named('theta', theta, 'g')}, "
+                f"{named('omega', omega, 'g')}: it must be a finite number in {unit}"
             )
         return number
 
@@ -145,10 +146,12 @@ def model_of(values: Mapping[str, float], branch: int, theta0: float, drive: Dri
     lengths = tuple(values[name] for name in LENGTHS)
     arc = arc_around(theta0, *lengths)
     if arc is None:
-        raise ValueError(f"theta0 = {theta0:g}: it cannot be assembled there; {_feasible(lengths)}")
+        raise ValueError(
+            f"theta0 = {spoken('theta', theta0, 'g')}: it cannot be assembled there; {_feasible(lengths)}"
+        )
     if not inside(arc, theta0):
         raise ValueError(
-            f"theta0 = {theta0!r}: that is a limit angle (S = 0), where no motion can start; "
+            f"theta0 = {spoken('theta', theta0)}: that is a limit angle (S = 0), where no motion can start; "
             f"{_feasible(lengths)}"
         )
     model = Model(values, branch, Coordinate(*arc, 0.0), drive) if isfinite(arc[0] - arc[1]) else None
@@ -171,22 +174,28 @@ def grows(values: Mapping[str, float]) -> bool:
 
 
 def _feasible(lengths: tuple[float, ...]) -> str:
-    found = [f"{first:.6g} to {last:.6g}" for first, last in theta_intervals(*lengths)]
-    told = ", ".join(f"{name} = {value:g}" for name, value in zip(LENGTHS, lengths, strict=True))
-    return f"with {told} theta goes {' or '.join(found)} rad" if found else f"{told}: there is no mechanism"
+    found = [
+        f"{spoken('theta', first, '.6g', True)} to {spoken('theta', last, '.6g', True)}"
+        for first, last in theta_intervals(*lengths)
+    ]
+    told = ", ".join(f"{named(name, value, 'g')}" for name, value in zip(LENGTHS, lengths, strict=True))
+    return f"with {told} theta goes {' or '.join(found)}" if found else f"{told}: there is no mechanism"
 
 
 def _check_inertia(model: Model, theta0: float) -> None:
     inertia = model.inertia(theta0)
     if isnan(inertia):
-        raise ValueError(f"theta0 = {theta0:g}: the effective inertia is not finite there")
+        raise ValueError(
+            f"theta0 = {spoken('theta', theta0, 'g')}: the effective inertia is not finite there"
+        )
     gaps = {which: _gap(theta0, angle) for which, angle in model.vanishing().items()}
     near = [which for which, gap in gaps.items() if gap <= SMALL]
     if near or inertia <= 0.0:
         moves = any(model.values[name] for name in MASSES)
         where = f" (the {near[0]} dead centre)" if near and moves else ""
+        there = f"M_eff = {spoken('M_eff', inertia, 'g', True)} at theta0 = {spoken('theta', theta0, 'g')}"
         raise ValueError(
-            f"M_eff = {inertia:g} kg m^2 at theta0 = {theta0:g}{where}: nothing moves without inertia; "
+            f"{there}{where}: nothing moves without inertia; "
             f"give {'m_crank or I_crank' if moves else 'masses'}, M_eff must be > 0"
         )
 
@@ -213,7 +222,8 @@ def read_times(times: Any, t_end: float) -> Any:
     if wrong.any():
         place = int(np.argmax(wrong))
         raise ValueError(
-            f"times[{place}] = {array[place]:g}: instants must ascend from 0 to t_end = {t_end:g}"
+            f"times[{place}] = {spoken('t', array[place], 'g')}: "
+            f"instants must ascend from 0 to t_end = {spoken('t', t_end, 'g')}"
         )
     return array
 

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..mechanism.spoken import named, spoken
 from ..support.deadline import Deadline
 from ..support.extras import needed
 from .checks import LEAST_RTOL, SMALL
@@ -189,7 +190,7 @@ class Run:
         state = self.state
         which = "no forces balance" if solutions == 0 else "two sets of forces balance"
         self.tell(JAMMED.kind, state, which)
-        where = f"at t = {self.t:.6g} s, theta = {state.theta:.6g} rad"
+        where = f"at t = {_time(self.t)}, theta = {_angle(state.theta)}"
         self.stop(JAMS, f"the friction jams {where}: {which}")
 
     # ---- at rest --------------------------------------------------------------------------------
@@ -211,13 +212,13 @@ class Run:
         """Wait for the torque or load to break the crank away."""
         start, self.next_step = self.t, None
         if self.model.drive.steady:
-            self.stop(REST, f"at rest from t = {start:.6g} s on: the torque cannot move the crank there")
+            self.stop(REST, f"at rest from t = {_time(start)} on: the torque cannot move the crank there")
             return
         moves = breaks_away(self.model, theta, branch, start, self.t_end)
         self.t = self.t_end if moves is None else moves
         self._keep_still(start)
         if moves is None:
-            self.stop(DONE, f"reached t_end = {self.t_end:g} s, at rest from t = {start:.6g} s on")
+            self.stop(DONE, f"reached t_end = {_time(self.t_end)}, at rest from t = {_time(start)} on")
         else:
             self.tell("break-away", self.state)
 
@@ -266,7 +267,7 @@ class Run:
                 return
             self._accept(Piece(step.t, step.end, step.inside, law), solver.y.copy())
             self.left = inf
-        self.stop(DONE, f"reached t_end = {self.t_end:g} s")
+        self.stop(DONE, f"reached t_end = {_time(self.t_end)}")
 
     def _accept(self, piece: Piece, y: Array) -> None:
         self.pieces.append(piece)
@@ -284,7 +285,8 @@ class Run:
             if mark.kind == "limit" and abs(mark.angle - state.theta) < AT_LIMIT:
                 self._tell_end(Found(self.t, mark, Q, float(self.y[Q])))
                 return
-        where = f"at t = {self.t:.6g} s, theta = {state.theta:.6g}, omega = {state.omega:.6g}"
+        speed = spoken("omega", state.omega, ".6g")
+        where = f"at t = {_time(self.t)}, {named('theta', state.theta, '.6g')}, omega = {speed}"
         self.stop(FAILED, f"the integration failed {where}: {reason}")
 
     def _meet_all(self, step: Step) -> bool:
@@ -362,7 +364,7 @@ class Run:
             return False
         self.stop(
             FAILED,
-            f"the crank chatters at standstill from t = {last[0].t:.6g} s on: torque or load jumps where "
+            f"the crank chatters at standstill from t = {_time(last[0].t)} on: torque or load jumps where "
             "omega changes its sign; let it change over a small range of omega",
         )
         return True
@@ -412,13 +414,21 @@ class Run:
         return y
 
 
+def _time(t: float) -> str:
+    return spoken("t", t, ".6g", says_unit=True)
+
+
+def _angle(theta: float) -> str:
+    return spoken("theta", theta, ".6g", says_unit=True)
+
+
 def _words(mark: Mark, t: float) -> str:
     if mark.status == DONE:
-        return f"reached the angle {mark.angle:g} rad at t = {t:.6g} s"
+        return f"reached the angle {_angle(mark.angle)} at t = {_time(t)}"
     if mark.status == LIMIT:
-        told = f"reached the limit angle {mark.angle:.6g} rad (S = 0) at t = {t:.6g} s"
+        told = f"reached the limit angle {_angle(mark.angle)} (S = 0) at t = {_time(t)}"
         return f"{told}: beyond it there is no mechanism, or, at a change point, either branch"
     return (
         f"the effective inertia vanishes at the {mark.which} dead centre: without m_crank and I_crank the "
-        f"crank has no speed there (M_eff -> 0); stopped {SMALL:g} rad before it at t = {t:.6g} s"
+        f"crank has no speed there (M_eff -> 0); stopped {_angle(SMALL)} before it at t = {_time(t)}"
     )

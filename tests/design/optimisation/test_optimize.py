@@ -275,3 +275,18 @@ def test_without_scipy_one_line_says_what_to_install():
     last = run.stderr.strip().splitlines()[-1]
     assert "optimize needs scipy" in last
     assert last.endswith("python -m pip install 'desaxe[design]'")
+
+
+@pytest.mark.parametrize(
+    ("over", "keep", "told"),
+    [
+        ({"ec": (0.2, 0.3), "AB": (0.05, 0.4)}, {}, "misses 0, from which on the crank turns, by 0.05 m"),
+        ({"ec": (-0.3, 0.2), "AB": (0.05, 0.4)}, {"margin": (0.2, None)}, "misses its lower limit by 0.05 m"),
+    ],
+)
+def test_bounds_within_which_nothing_turns_are_told_without_a_search(over, keep, told, monkeypatch):
+    monkeypatch.setattr("desaxe.design.optimisation.one_objective.Search", None)
+    for goal in (("absmax", "a_C"), ["stroke", ("absmax", "a_C")]):
+        found = dx.optimize(minimize=goal, over=over, keep=keep, BC=0.2, omega0=10.0)
+        assert np.all(found["status"] == 1)
+        assert told in found["message"]

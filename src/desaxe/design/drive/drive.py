@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ...mechanism.keywords import with_known_keywords
 from ...peaks.peak import peak
 from ...runtime.request import as_number
 from ...support.panels import Array, Panels
@@ -21,6 +22,7 @@ SAME = 1e-9  # of an extreme value
 DIFFERENTIATED = tuple(name for name in FIGURES if not name.startswith("theta_"))
 
 
+@with_known_keywords
 def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, **inputs: Any) -> Drive:
     """Torque, power, work, flywheel and starting torque that one turn of a design requires.
 

@@ -3,13 +3,16 @@
 from typing import Any
 
 from ...mechanism.answer_units import units_by_name
+from ...mechanism.keywords import with_known_keywords
 from ...peaks.peak import peak
 from ...support.answer import Answer
 from ...support.deprecation import deprecated
+from ..turn.turn import cannot_turn
 from .drive import check_fluctuation, design_of
 from .inertia import flywheel_for
 
 
+@with_known_keywords
 def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str, Any]:
     """Torque ripple over a turn, and the flywheel for a required fluctuation of speed.
 
@@ -36,9 +39,7 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
     check_fluctuation(fluctuation)
     design = design_of("flywheel", inputs, branch)
     if design.margin < 0.0:
-        raise ValueError(
-            f"flywheel: the crank cannot turn fully, margin = {design.margin:g} m is less than 0"
-        )
+        raise cannot_turn("flywheel", design)
     over = design.panels(["T_in"])
     torque = over.values["T_in"]
     mean = over.integral(torque) / design.angle

@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 
 from ...mechanism.catalogue import quantity
-from ...mechanism.inputs import INPUTS, TINY, Input
+from ...mechanism.inputs import TINY, Input
+from ...mechanism.keywords import with_known_keywords
 from ...mechanism.read import read
 from ...mechanism.spelling import did_you_mean
-from ...runtime.request import check_common, check_inputs
+from ...runtime.request import check_common
 from ...support.checks import whole_number
 from ...support.forks import IMPORTS
 from ...support.shown import shown
@@ -26,6 +27,7 @@ UNLIKELY = 1e-6  # a chi-square that chance exceeds less often is told
 EDGE = 1e-9  # of an unknown's size: a bound that is met
 
 
+@with_known_keywords
 def fit(
     data: Any,
     over: Mapping[str, Any],
@@ -73,7 +75,6 @@ def fit(
 
     See docs/choose.md: which call for which question.
     """
-    check_inputs("fit", fixed, tuple(INPUTS))
     if "theta" in fixed:
         raise TypeError("fit: theta belongs into data")
     state = dict.fromkeys((*over, *fixed), 1.0) if isinstance(over, Mapping) else fixed

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...mechanism.spoken import named
 from ...support.extras import needed
 from .model import Model
 from .unknowns import starts_of
@@ -40,7 +41,8 @@ def solve(model: Model, loss: str, seed: int, absolute: bool = False) -> Any:
     order = np.argsort(costs, kind="stable")[:RUNS]
     runs += [run for k in order if np.isfinite(costs[k]) for run in _run(model, points[1 + k], options)]
     if not runs:
-        where = ", ".join(f"{name} = {value:g}" for name, value in zip(model.names, points[0], strict=True))
+        values = zip(model.names, points[0], strict=True)
+        where = ", ".join(f"{named(name, value, 'g')}" for name, value in values)
         raise ValueError(f"fit: the mechanism cannot be assembled at every sample at the start: {where}")
     return _best(runs)
 

@@ -8,9 +8,10 @@ import numpy as np
 from ...evaluation.loaded import loads_of
 from ...mechanism.answer_units import unit_of
 from ...mechanism.inputs import INPUTS, Input
+from ...mechanism.keywords import check_inputs
 from ...mechanism.names import LENGTHS
 from ...mechanism.read import read
-from ...runtime.request import check_inputs
+from ...mechanism.spoken import named, spoken
 from ...support.deadline import Deadline
 from ...support.shown import shown
 from ..measures import Measure, checked, is_named, text_of
@@ -75,9 +76,9 @@ def _pair(name: str, bounds: Any) -> tuple[float, float]:
     try:
         low, high = (_number(name, end) for end in bounds)
     except (TypeError, ValueError) as error:
-        raise type(error)(f"over: {name} = {bounds!r}: expected two finite bounds ({error})") from None
+        raise type(error)(f"over: {named(name, bounds)}: expected two finite bounds ({error})") from None
     if not low < high:
-        raise ValueError(f"over: {name} = ({low:g}, {high:g}): the lower bound first, and smaller")
+        raise ValueError(f"over: {named(name, (low, high), 'g')}: the lower bound first, and smaller")
     return low, high
 
 
@@ -95,13 +96,13 @@ def limits_of(keep: Mapping[Any, Any]) -> list[Limit]:
         measure = checked(key)
         pair = bounds if isinstance(bounds, (tuple, list)) else (bounds, bounds)
         if len(pair) != 2:
-            raise ValueError(
-                f"keep: {text_of(measure)} = {bounds!r}: expected a pair (low, high) or a number"
-            )
+            got = spoken(measure, bounds)
+            raise ValueError(f"keep: {text_of(measure)} = {got}: expected a pair (low, high) or a number")
         low, high = (None if end is None else _in_si(measure, end) for end in pair)
         if low is not None and high is not None and low >= high:
             if low > high:
-                raise ValueError(f"keep: {text_of(measure)} = ({low:g}, {high:g}): the lower bound first")
+                both = spoken(measure, (low, high), "g")
+                raise ValueError(f"keep: {text_of(measure)} = {both}: the lower bound first")
             limits.append(Limit(key, measure, 1.0, low, EQUAL))
             continue
         if low is not None:

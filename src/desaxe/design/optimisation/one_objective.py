@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from .objectives import Goal, lower_limits, problems
-from .optimum import SATISFIED, SETTLED, result_of
+from .optimum import SATISFIED, SETTLED, none_turns, result_of
 from .problem import UPPER, Array, Limit, Space
 from .search import Found, Search
 
@@ -15,6 +15,9 @@ GROWS = 0.2  # the power of the margin from which growth towards the limit is no
 
 def solved(goal: Goal, space: Space, limits: list[Limit], starts: int, seed: int) -> dict[str, Any]:
     """The optimum of one objective; see `optimize`."""
+    none = none_turns(space, limits)
+    if none is not None:
+        return none
     rod = space.fixed.get("BC") or float(space.high[space.names.index("BC")])
     own = any(c.key == "margin" and c.side != UPPER and c.bound > EDGES[-1] * rod for c in limits)
     history: list[tuple[float, float]] = []

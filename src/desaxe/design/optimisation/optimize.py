@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
+from ...mechanism.keywords import with_known_keywords
 from ...runtime.request import check_common
 from ...support.answer import Answer
 from ...support.checks import whole_number
@@ -18,6 +19,7 @@ with put_off(), explained("optimize", "design"):
     from .pareto import front
 
 
+@with_known_keywords
 def optimize(
     *,
     over: Mapping[str, tuple[Any, Any]],

@@ -1,15 +1,18 @@
 """The result of `optimize`: the design, its active limits with their multipliers, a message."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
+from math import fsum
 from typing import Any
 
 import numpy as np
 
-from ...mechanism.answer_units import Message, Number, message, slopes_of, unit_of, units_by_name
+from ...mechanism.answer_units import slopes_of, unit_of, units_by_name
 from ...mechanism.inputs import INPUTS
-from ..measures import checked, text_of
+from ...mechanism.names import LENGTHS
+from ...mechanism.spoken import spoken
+from ..measures import Measure, checked, text_of
 from .objectives import Goal
-from .problem import EQUAL, LOWER, UPPER, Space
+from .problem import EQUAL, LOWER, UPPER, Limit, Space
 from .search import Found, Search
 
 FOUND, NONE, UNBOUNDED, EDGE, UNSURE = range(5)
@@ -78,46 +81,78 @@ def _named(space: Space, found: Found, search: Search) -> tuple[dict[Any, str], 
 
 def _message(
     status: int, goal: Goal, design: dict[str, float], found: Found, search: Search, active: dict[Any, str]
-) -> Message:
+) -> str:
     what = text_of(goal.measure)
-    where = [part for name, value in design.items() for part in (f", {name} = ", _number(name, value, ".9g"))]
-    where[0] = f"{next(iter(design))} = "
+    where = _where(design)
     limit = "margin = BC - AB - |ec| = 0"
     if status == NONE:
-        missed = _missed(found, search)
-        return message("no design in over= keeps all limits: ", *missed, " at the nearest, ", *where)
+        return f"no design in over= keeps all limits: {_missed(found, search)} at the nearest, {where}"
     if status == UNBOUNDED:
         told = f"no optimum: {what} grows without bound towards the limit of turning, {limit}, as near "
-        keep = "; keep a margin, such as keep={'margin': ('", _number("margin", 0.005), "', None)}"
-        return message(told, *where, *keep)
+        keep = f"; keep a margin, such as keep={{'margin': ('{_number('margin', 0.005)}', None)}}"
+        return told + where + keep
     if status == EDGE:
         told = f"the best is at the limit of turning itself, {limit}: {what} is bounded there, near "
-        return message(told, *where)
+        return told + where
     if status == UNSURE:
         unsure = f", where the optimality conditions hold to {found.residual:.1g} only: more starts= may help"
-        return message("the search ended at ", *where, unsure)
+        return f"the search ended at {where}{unsure}"
     names = {key: key if isinstance(key, str) else text_of(key) for key in active}
     held = ", ".join(f"{names[key]} ({side})" for key, side in active.items())
     kink = ", at a kink, where two peaks share the extreme value" if found.kink else ""
     rest = f", held back by {held}" if held else ", inside of all limits"
-    return message("optimum at ", *where, kink + rest)
+    return f"optimum at {where}{kink}{rest}"
 
 
-def _number(name: Any, value: float, form: str = ".3g") -> Number:
-    return Number(value, unit_of(name), form)
+def _number(name: Any, value: float, form: str = ".3g") -> str:
+    return spoken(name, value, form, says_unit=True)
 
 
-def _missed(found: Found, search: Search) -> tuple[str | Number, ...]:
+def none_turns(space: Space, limits: Sequence[Limit]) -> dict[str, Any] | None:
+    """The result where no design within the bounds turns fully, or has the margin to be kept; else None."""
+    ends = dict(zip(space.names, zip(space.low.tolist(), space.high.tolist(), strict=True), strict=True))
+    design = {name: 0.5 * (low + high) for name, (low, high) in ends.items()}
+    best: dict[str, Callable[[float, float], float]] = {
+        "ec": lambda low, high: min(max(0.0, low), high),
+        "AB": min,
+        "BC": max,
+    }
+    design |= {name: choose(*ends[name]) for name, choose in best.items() if name in ends}
+    ec, AB, BC = (float({**space.fixed, **design}[name]) for name in LENGTHS)
+    margin = fsum((BC, -AB, -abs(ec)))
+    kept = max((c.bound for c in limits if c.key == "margin" and c.side != UPPER), default=None)
+    if margin >= (kept or 0.0) - SATISFIED * BC:
+        return None
+    missed = _misses_turning(-margin) if kept is None else _misses("margin", LOWER, kept - margin)
+    keys = [*(limit.key for limit in limits), *space.names]
+    return {
+        **design, "value": np.nan, "active": {}, "multipliers": dict.fromkeys(keys, np.nan), "status": NONE,
+        "message": f"no design in over= keeps all limits: {missed} at the nearest, {_where(design)}",
+        "residual": 0.0,
+    }  # fmt: skip
+
+
+def _where(design: Mapping[str, float]) -> str:
+    return ", ".join(f"{name} = {_number(name, value, '.9g')}" for name, value in design.items())
+
+
+def _misses(measure: Measure, side: str, short: float) -> str:
+    return f"{text_of(measure)} misses its {side} limit by {_number(measure, short)}"
+
+
+def _misses_turning(short: float) -> str:
+    return f"margin = BC - AB - |ec| misses 0, from which on the crank turns, by {_number('margin', short)}"
+
+
+def _missed(found: Found, search: Search) -> str:
     """The most violated limit, and the violation, as text."""
     value = search.scaled(found.z)[0][search.count :]
     worst = int(np.argmax(np.where(search.equal, np.abs(value), -value)))
     limit = search.limits[worst]
     short = abs(float(value[worst] * search.scale[search.count + worst]))
     if limit.key is None:  # the implied one, which is kept with a little to spare
-        implied = "margin = BC - AB - |ec| misses 0, from which on the crank turns, by "
-        return implied, _number("margin", short - limit.bound)
-    measure = checked(limit.key)
-    return f"{text_of(measure)} misses its {limit.side} limit by ", _number(measure, short)
+        return _misses_turning(short - limit.bound)
+    return _misses(checked(limit.key), limit.side, short)
 
 
 def units_of_optimum(goals: list[Goal], found: Mapping[str, Any]) -> dict[Any, Any]:

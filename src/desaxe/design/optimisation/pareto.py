@@ -21,10 +21,11 @@ def front(
     goals: list[Goal], space: Space, limits: list[Limit], starts: int, seed: int, points: int
 ) -> dict[str, Any]:
     """Designs along the front; see `optimize`."""
-    alone = [solved(goal, space, limits, starts, seed) for goal in goals]
-    unbounded = [result for result in alone if result["status"] not in (FOUND, UNSURE)]
-    if unbounded:
-        return _none(goals, space, unbounded[0])
+    alone: list[dict[str, Any]] = []
+    for goal in goals:
+        alone.append(solved(goal, space, limits, starts, seed))
+        if alone[-1]["status"] not in (FOUND, UNSURE):
+            return _none(goals, space, alone[-1])
     senses = np.array([goal.sense for goal in goals])
     corners = np.array([_values(goals, space, result) for result in alone])
     worst = np.min(corners * senses, axis=0) * senses

@@ -13,6 +13,7 @@ from ...loads.load import Load, OverTheta
 from ...loads.motors import Motor
 from ...loads.resolve import as_load, roles_of
 from ...mechanism.inputs import Input
+from ...mechanism.spoken import named
 from ...support.forks import IMPORTS
 from ...support.shown import shown
 
@@ -136,10 +137,9 @@ class OfFunction(Source):
         found = np.broadcast_to(found, omega.shape)
         bad = ~np.isfinite(found) & np.isfinite(omega)
         if bad.any():
-            raise ValueError(
-                f"torque: {self.name} gave {found[bad].flat[0]} at omega = {omega[bad].flat[0]:g}: it must "
-                "be a finite number in N*m"
-            )
+            where = named("omega", omega[bad].flat[0], "g")
+            what = f"torque: {self.name} gave {found[bad].flat[0]} at {where}"
+            raise ValueError(f"{what}: it must be a finite number in N*m")
         return np.asarray(found)
 
     def _one(self, row: tuple[float, ...]) -> float:
@@ -148,7 +148,9 @@ class OfFunction(Source):
         try:
             return float(self.function(*row))
         except (TypeError, ValueError) as error:
-            told = ", ".join(f"{role} = {value:g}" for role, value in zip(self.roles, row, strict=True))
+            told = ", ".join(
+                f"{named(role, value, 'g')}" for role, value in zip(self.roles, row, strict=True)
+            )
             raise type(error)(f"torque: {self.name} failed at {told}: {error}") from error
 
     def both(self, theta: Array, omega: Array, row: Mapping[str, Any]) -> tuple[Array, Array]:

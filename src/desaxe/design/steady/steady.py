@@ -10,9 +10,12 @@ from ...evaluation.arrays import array_of, as_array, broadcast_shape
 from ...evaluation.loaded import loads_of
 from ...loads.angles import turns_of
 from ...mechanism.inputs import INPUTS, Input
+from ...mechanism.keywords import check_inputs, with_known_keywords
 from ...mechanism.names import LENGTHS
+from ...mechanism.slips import warn_of_slips
+from ...mechanism.spoken import UNITS, named
 from ...runtime.interpreted import are_good
-from ...runtime.request import as_number, check_common, check_inputs
+from ...runtime.request import as_number, check_common
 from ...support.shown import shown
 from .designs import Designs
 from .inertia import with_flywheels
@@ -28,6 +31,7 @@ FLYWHEEL = Input("flywheel_inertia", "kg*m^2", "", 0.0, "a finite moment of iner
 FLUCTUATION = Input("fluctuation", "1", "", 1e-9, "a number above 0, at least 1e-9, and below 2")
 
 
+@with_known_keywords
 def steady(
     *, torque: Any, flywheel_inertia: Any = 0.0, fluctuation: Any = None, branch: int = 1, **inputs: Any
 ) -> Steady:
@@ -94,7 +98,7 @@ def _row(row: Input, value: Any) -> Array:
     with np.errstate(invalid="ignore"):
         wrong = ~np.isfinite(array) | (array < (row.least or 0.0))
     if wrong.any():
-        raise ValueError(f"{row.name} = {shown(array[wrong].item(0))}: it must be {row.limit}")
+        raise ValueError(f"{named(row.name, array[wrong].item(0))}: it must be {row.limit}")
     return array
 
 
@@ -109,6 +113,8 @@ def _designs(
     given = {name: value for name, value in inputs.items() if value is not None}
     check_inputs("steady", given, [*OWN, *(n for n in INPUTS if n != "theta")])
     check_common(given, branch)
+    if UNITS.get() is None:  # a machine and a scene have told of slips when they were made
+        warn_of_slips(given, stacklevel=5, inputs=given)
     numbers, loads = loads_of(given)
     if np.any(np.asarray(numbers.pop("alpha", 0.0), float)):
         raise ValueError("alpha: steady finds the speed over a turn itself; leave it out")
@@ -123,7 +129,7 @@ def _designs(
     extra = {"flywheel_inertia": J}
     if fluctuation is not None and J.any():
         raise ValueError(
-            f"flywheel_inertia = {shown(flywheel)}, fluctuation = {shown(fluctuation)}: give one of them; "
+            f"{named('flywheel_inertia', flywheel)}, fluctuation = {shown(fluctuation)}: give one of them; "
             "a flywheel that stays is a part of I_crank"
         )
     if fluctuation is not None:

@@ -4,6 +4,7 @@ from math import degrees
 
 import numpy as np
 
+from ...mechanism.spoken import spoken
 from .designs import Designs, vanishing
 from .scan import Scan
 from .states import States
@@ -28,9 +29,9 @@ def why_none(designs: Designs, states: States, k: int) -> str:
     if (own & states.jams).any():
         return "no steady state: the guide jams, friction leaves no balance of forces"
     if own.any():
-        speeds = ", ".join(f"{w:.6g}" for w in sorted(states.figures.values["omega_mean"][own], key=abs))
+        speeds = sorted(states.figures.values["omega_mean"][own].tolist(), key=abs)
         return (
-            f"no stable steady state: below the unstable ones (omega_mean = {speeds} rad/s, in others) it "
+            f"no stable steady state: below the unstable ones (omega_mean = {_each(speeds)}, in others) it "
             "slows down, above them it runs away"
         )
     there = np.isfinite(gains)
@@ -46,12 +47,20 @@ def why_none(designs: Designs, states: States, k: int) -> str:
         )
     return (
         f"no steady state: the motor is too strong, it runs away: at {_speed(scan, k, starts[last])} "
-        f"a period still gains {gains[last]:.6g} J{_driven(designs, scan, k, gains[last])}"
+        f"a period still gains {_energy(gains[last])}{_driven(designs, scan, k, gains[last])}"
     )
 
 
 def _speed(scan: Scan, k: int, energy: float) -> str:
-    return f"{np.sqrt(2.0 * energy / scan.turns.mean_inertia[k]):.6g} rad/s"
+    return spoken("omega", np.sqrt(2.0 * energy / scan.turns.mean_inertia[k]), ".6g", says_unit=True)
+
+
+def _each(speeds: list[float]) -> str:
+    return ", ".join(spoken("omega", speed, ".6g", says_unit=True) for speed in speeds)
+
+
+def _energy(work: float, form: str = ".6g") -> str:
+    return spoken("work", work, form, says_unit=True)
 
 
 def _stall(designs: Designs, scan: Scan, k: int) -> str:
@@ -61,7 +70,7 @@ def _stall(designs: Designs, scan: Scan, k: int) -> str:
     if not len(stopped) and np.isnan(gains).all():
         return "it turns the crank at no speed"
     if not len(stopped):
-        return f"a period takes {-np.nanmax(gains):.6g} J or more from the crank at any speed"
+        return f"a period takes {_energy(-np.nanmax(gains))} or more from the crank at any speed"
     one = designs.rows(np.array([k]))
     turns = type(scan.turns)(one, scan.turns.edges[[k]])
     path: list[np.ndarray] = []
@@ -69,7 +78,8 @@ def _stall(designs: Designs, scan: Scan, k: int) -> str:
     at = int(np.argmax(np.isnan(np.concatenate(path, axis=1)[0]))) // 2
     x = float(0.5 * (scan.turns.edges[k, at] + scan.turns.edges[k, at + 1]))
     theta = float(designs.way[k]) * x
-    return f"it stalls near theta = {theta:.3g} rad ({degrees(theta):.0f} deg)"
+    angle = spoken("theta", theta, ".3g", says_unit=True)
+    return f"it stalls near theta = {angle}" + ("" if "deg" in angle else f" ({degrees(theta):.0f} deg)")
 
 
 def _work(scan: Scan, k: int) -> float:
@@ -82,7 +92,7 @@ def _driven(designs: Designs, scan: Scan, k: int, gain: float) -> str:
     work = -float(designs.way[k] * (scan.turns.course.load[k] @ SIMPSON * scan.turns.width[k]).sum())
     if work <= SHARE * gain:
         return ""
-    return f"; the loads themselves drive the crank, {work:.4g} J a period: check their signs"
+    return f"; the loads themselves drive the crank, {_energy(work, '.4g')} a period: check their signs"
 
 
 def _of_number(designs: Designs, scan: Scan, k: int) -> str:
@@ -96,6 +106,6 @@ def _of_number(designs: Designs, scan: Scan, k: int) -> str:
     way = "strong, it runs away" if gain > 0.0 else f"weak, {_stall(designs, scan, k)}"
     return (
         f"no steady state: the motor is too {way}: a torque that does not depend on the speed must balance "
-        f"the loads in the mean; this one gains {gain:.6g} J in a period at every speed, "
-        f"{gain / designs.period:.6g} N m in the mean"
+        f"the loads in the mean; this one gains {_energy(gain)} in a period at every speed, "
+        f"{spoken('torque', gain / designs.period, '.6g', says_unit=True)} in the mean"
     )

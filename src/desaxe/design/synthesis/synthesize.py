@@ -19,10 +19,11 @@ from itertools import pairwise
 from math import asin, cos, inf, isclose, pi, sin, sqrt
 from typing import Any
 
-from ...mechanism.answer_units import Number, message, unit_of, units_of
+from ...mechanism.answer_units import units_of
 from ...mechanism.inputs import INPUTS, TINY, Input
 from ...mechanism.names import LENGTHS
 from ...mechanism.read import read
+from ...mechanism.spoken import spoken
 from ...runtime.request import as_number, with_known_inputs
 from ...support.answer import Answer
 from ...support.deadline import Deadline
@@ -118,23 +119,17 @@ def _wish(name: str, value: Any) -> float:
     row = WANTED.get(name) or INPUTS[name]
     number = read(row._replace(least=TINY, limit="finite and more than 0"), value, "synthesize")
     if name == "max_pressure_angle" and number > pi / 2:
-        raise ValueError(f"max_pressure_angle = {number:g} rad: it is at most pi/2")
+        raise ValueError(f"{name} = {spoken(name, number, 'g', True)}: it is at most pi/2, a right angle")
     return number
 
 
 def _result(third: str, value: float, slow_stroke: int, answer: Fitting) -> Answer:
     count = len(answer.designs)
-    told = message(f"{count} design{'s' if count != 1 else ''}")
-    if answer.why:
-        told = message(answer.why)
-    elif not count:
-        wish, low, high = (Number(number, unit_of(third)) for number in (value, answer.low, answer.high))
-        ends = (
-            ("from ", low, " on")
-            if answer.high == inf
-            else ("from ", low._replace(says_unit=False), " to ", high)
-        )
-        told = message(f"none: {third} = ", wish, ", designs of this stroke and time ratio have it ", *ends)
+    told = answer.why or f"{count} design{'s' if count != 1 else ''}"
+    if not answer.why and not count:
+        wish, low, high = (spoken(third, x, ".6g", True) for x in (value, answer.low, answer.high))
+        ends = f"from {low} on" if answer.high == inf else f"from {low.partition(' ')[0]} to {high}"
+        told = f"none: {third} = {wish}, designs of this stroke and time ratio have it {ends}"
     solutions = sorted(answer.designs, key=lambda design: design["BC"])
     found = {
         "solutions": [{**design, "ec": slow_stroke * design["ec"]} for design in solutions],

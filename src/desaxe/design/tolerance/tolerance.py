@@ -9,11 +9,11 @@ import numpy as np
 
 from ...evaluation.loaded import loads_of
 from ...mechanism.catalogue import quantity
-from ...mechanism.inputs import INPUTS
+from ...mechanism.keywords import with_known_keywords
 from ...mechanism.names import LENGTHS, sensitivity
 from ...mechanism.ranges import Between
 from ...mechanism.status import ToleranceStatus
-from ...runtime.request import check_common, check_inputs
+from ...runtime.request import check_common
 from ...support.checks import whole_number
 from ...support.extras import needed
 from ...support.forks import IMPORTS, imported
@@ -35,6 +35,7 @@ MOST_SAMPLES, MOST_BASE = 10**8, 2**20
 MANY, SOME = 100_000, 10_000  # samples of a quantity at a point, and of a peak
 
 
+@with_known_keywords
 def tolerance(
     name: Any,
     *,
@@ -95,7 +96,6 @@ def tolerance(
     """
     _check(distribution, sigmas, samples, sobol, seed)
     check_common(inputs, branch)
-    check_inputs("tolerance", inputs, tuple(INPUTS))
     numbers, loads = loads_of({n: v for n, v in inputs.items() if v is not None})
     given = {**{n: read(n, v, distribution, sigmas) for n, v in numbers.items()}, **loads}
     rough = [value for value in given.values() if isinstance(value, Inexact)]

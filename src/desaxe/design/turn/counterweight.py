@@ -16,6 +16,7 @@ import numpy as np
 from ...evaluation.extremes import check_range
 from ...mechanism.answer_units import unit_of, units_of
 from ...mechanism.inputs import TINY, Input
+from ...mechanism.keywords import with_known_keywords
 from ...mechanism.read import read
 from ...support.answer import Answer
 from ...support.panels import RESOLVED, resolved
@@ -30,6 +31,7 @@ RADIUS = Input("radius", "m", "from the crank centre to the counterweight", TINY
 Harmonics = tuple[Any, Any, float, Callable[[complex], float]]
 
 
+@with_known_keywords
 def counterweight(
     *, along: str = "both", radius: Any = None, branch: int = 1, **inputs: Any
 ) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ...mechanism.answer_units import unit_of
 from ...mechanism.catalogue import quantity
+from ...mechanism.keywords import with_known_keywords
 from ...support.answer import Answer
 from ...support.checks import whole_number
 from ...support.panels import RESOLVED, WEIGHT
@@ -16,6 +17,7 @@ from .turn import MOST, Turn, one_turn
 WAVES = 4.0  # rad of the highest wave in a panel of 16 nodes: what Gauss's rule integrates to rounding
 
 
+@with_known_keywords
 def harmonics(name: str, *, orders: int = 8, branch: int = 1, **inputs: Any) -> dict[str, Any]:
     """The harmonics of a quantity over a turn at constant speed.
 

@@ -20,9 +20,11 @@ from ...loads.resolve import VARIABLE
 from ...mechanism.closed.dead_centres import DEAD_CENTRES
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.inputs import INPUTS
+from ...mechanism.keywords import check_inputs
 from ...mechanism.names import LENGTHS
 from ...mechanism.read import read
-from ...runtime.request import as_number, check_common, check_inputs, is_steady, request
+from ...mechanism.spoken import spoken
+from ...runtime.request import as_number, check_common, is_steady, request
 from ...support.computed import computed_once
 from ...support.panels import Array, Panels, resolved
 
@@ -103,7 +105,8 @@ class Turn:
         if bad.any():
             codes, k = status[bad], int(np.argmax(bad))
             why = JAMS if JAMS in codes else int(codes[0]) or 4
-            told = f"{', '.join(names)}: no value at theta = {theta[k]:.6g} (status {status[k]})"
+            angle = spoken("theta", theta[k], ".6g")
+            told = f"{', '.join(names)}: no value at theta = {angle} (status {status[k]})"
             raise NoCycleError(told, why)
         return {name: np.broadcast_to(found[name], theta.shape) for name in names}
 
@@ -165,8 +168,14 @@ def one_turn(caller: str, inputs: Mapping[str, Any], branch: int) -> Turn:
     turn = Turn(caller, inputs, branch)
     turns_of(caller, turn.loads, 1)
     if turn.margin < 0.0:
-        raise ValueError(f"{caller}: the crank cannot turn fully, margin = {turn.margin:g} m is less than 0")
+        raise cannot_turn(caller, turn)
     return turn
+
+
+def cannot_turn(caller: str, turn: Turn) -> ValueError:
+    """The error for a design whose crank cannot turn fully."""
+    margin = spoken("margin", turn.margin, "g", says_unit=True)
+    return ValueError(f"{caller}: the crank cannot turn fully, margin = {margin} is less than 0")
 
 
 def extreme(values: Array, sign: float) -> tuple[float, float]:

@@ -45,7 +45,9 @@ def inputs(content: Content, units: UnitSystem) -> Section:
 
 def _value(name: str, value: Value, units: UnitSystem) -> tuple[str, str]:
     if isinstance(value, Load):
-        return repr(value).strip("<>"), "" if getattr(value, "unit", None) else INPUTS[name].unit
+        conversion = units.of(name)
+        own = value.unit is not None or conversion.si != 1
+        return value.told(conversion).strip("<>"), "" if own else INPUTS[name].unit
     if not isinstance(value, tuple):
         return in_unit(units, name, value), unit_of(units, name)
     if len(value) <= LISTED:

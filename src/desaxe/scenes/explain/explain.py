@@ -16,6 +16,7 @@ from ...evaluation.reduced import Reduced
 from ...loads.load import Load
 from ...mechanism.catalogue import quantity
 from ...mechanism.constants import double_constants
+from ...mechanism.keywords import with_known_keywords
 from ...mechanism.names import STATUSES
 from ...mechanism.own import using
 from ...mechanism.program import digest
@@ -78,6 +79,7 @@ class Plan:
         return plan_text(self.data)
 
 
+@with_known_keywords
 def explain(scene: Scene | str | PathLike[str] | Mapping[str, Any]) -> Plan:
     """The plan of a scene (or of a path or mapping that describes one), without running it.
 

@@ -8,10 +8,11 @@ from typing import Any
 
 from ...evaluation.loaded import loads_of
 from ...mechanism.inputs import INPUTS
+from ...mechanism.keywords import check_inputs, with_known_keywords
 from ...mechanism.names import LOADS
 from ...mechanism.own import using
 from ...mechanism.unit_system import UnitSystem
-from ...runtime.request import as_number, check_common, check_inputs, several
+from ...runtime.request import as_number, check_common, several
 from ...runtime.written import require_place
 from ...support.forks import IMPORTS
 from .content import FORCES, Content, Value, content, forces_first, is_loaded
@@ -21,6 +22,7 @@ TITLE = "Offset slider-crank"
 START = ("a_C", "a_C_wrt_ec")  # what the two charts show first where a scene names nothing
 
 
+@with_known_keywords
 def explore(
     source: str | PathLike[str] | Mapping[str, Any] | None = None,
     path: str | PathLike[str] = "explorer.html",

@@ -10,6 +10,7 @@ from typing import Any
 from ...compiler.languages import language_of, languages
 from ...compiler.languages.shared import refuse_taken
 from ...compiler.languages.words import words_of
+from ...mechanism.keywords import with_known_keywords
 from ...mechanism.own import using
 from ...runtime.written import replacing_ours, require_place, sealed
 from ...support.checks import yes_or_no
@@ -25,6 +26,7 @@ from .peaks import left_out_of_module
 from .portable import Order, left_out, module_of
 
 
+@with_known_keywords
 def compile(
     scene: Scene | str | PathLike[str] | Mapping[str, Any],
     path: str | PathLike[str],

@@ -1,0 +1,48 @@
+"""Public calls that make loads and motors: in SI units, and as methods of a machine in its units."""
+
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, ClassVar
+
+from ..mechanism.keywords import with_known_keywords
+from ..mechanism.spoken import speaking
+from ..mechanism.unit_system import SI, Conversion, UnitSystem
+
+
+class Maker:
+    """A call that makes a load or a motor, and perhaps its `read`, which takes it from a file.
+
+    units  of plain numbers: those of a machine, else SI
+    """
+
+    name: ClassVar[str]
+    takes: ClassVar[str]  # its arguments, as they are shown
+
+    def __init__(self, units: UnitSystem | None = None) -> None:
+        self.units = units
+
+    def __init_subclass__(cls) -> None:
+        for method, name in (("__call__", cls.name), ("read", f"{cls.name}.read")):
+            if method in cls.__dict__:
+                function = cls.__dict__[method]
+                function.__qualname__ = name  # as errors of Python call it
+                setattr(cls, method, with_known_keywords(_in_its_units(function), name))
+
+    def unit(self, name: str) -> Conversion | None:
+        """The unit of plain numbers of a name; None where none is given."""
+        return None if self.units is None else self.units.of(name)
+
+    def __repr__(self) -> str:
+        units = f" in {self.units!r}" if self.units else ""
+        return f"desaxe.{self.name}({self.takes}){units}"
+
+
+def _in_its_units(method: Callable[..., Any]) -> Callable[..., Any]:
+    """The method, whose messages are in the units of its maker."""
+
+    @wraps(method)
+    def made(self: Maker, *args: Any, **named: Any) -> Any:
+        with speaking(self.units or SI):
+            return method(self, *args, **named)
+
+    return made

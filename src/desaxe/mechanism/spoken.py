@@ -1,0 +1,57 @@
+"""Numbers in messages, in the units of the machine or scene whose call it is; SI units without."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from typing import TYPE_CHECKING, Any
+
+from ..support.forks import IMPORTS
+from ..support.shown import shown
+
+if TYPE_CHECKING:
+    from .unit_system import UnitSystem
+
+UNITS: "ContextVar[UnitSystem | None]" = ContextVar("UNITS", default=None)
+
+
+@contextmanager
+def speaking(units: "UnitSystem") -> Iterator[None]:
+    """Messages written in this block are in these units."""
+    before = UNITS.set(units)
+    try:
+        yield
+    finally:
+        UNITS.reset(before)
+
+
+def spoken(name: Any, value: Any, form: str = "", says_unit: bool = False) -> str:
+    """The text of a number in SI units, or of a pair, that is a value of this quantity, input or measure.
+
+    form       of its digits, all of them without; what is no number is shown as it is
+    says_unit  True: in SI units, too, its unit follows; other units always do
+    """
+    with IMPORTS:
+        from .answer_units import conversion_of, unit_of
+        from .unit_system import SI
+
+    conversion = conversion_of(unit_of(name), UNITS.get() or SI)
+    plain = conversion.si == 1
+    unit = conversion.unit.replace("*", " ") if says_unit or not plain else "1"
+
+    def text(number: Any) -> str:
+        if plain and not form:
+            return shown(number)
+        return f"{conversion.shown(float(number)):{form or '.15g'}}"
+
+    if hasattr(value, "ndim") and value.ndim:
+        return f"{shown(conversion.shown(value))} {unit}".removesuffix(" 1")
+    parts = value if isinstance(value, (tuple, list)) else (value,)
+    if not all(isinstance(part, (int, float)) or hasattr(part, "is_integer") for part in parts):
+        return shown(value)
+    told = text(value) if parts is not value else f"({', '.join(map(text, parts))})"
+    return told if unit == "1" else f"{told} {unit}"
+
+
+def named(name: str, value: Any, form: str = "") -> str:
+    """The text "ec = 30 mm" for an eccentricity of 0.03 m in a machine's millimetres."""
+    return f"{name} = {spoken(name, value, form)}"

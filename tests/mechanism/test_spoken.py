@@ -1,0 +1,125 @@
+"""Numbers in messages are in the units of the machine or scene whose call it is."""
+
+import re
+import threading
+import warnings
+
+import pytest
+
+import desaxe as dx
+from desaxe.mechanism.spoken import named, speaking, spoken
+from desaxe.mechanism.unit_system import UnitSystem
+
+UNITS = UnitSystem.read("mm, deg, rpm, kN")
+PRESS = dx.Machine(units="mm, deg, rpm, kN", ec=10, AB=50, BC=200, omega0=300, m_slider=4, I_crank=0.1)
+PEAK = {"minimize": ("absmax", "a_C")}
+
+
+def test_numbers_pairs_and_what_is_no_number():
+    assert spoken("ec", 0.03) == "0.03"
+    assert spoken("ec", 0.03, "g", says_unit=True) == "0.03 m"
+    with speaking(UNITS):
+        assert named("ec", 0.03) == "ec = 30 mm"
+        assert spoken("AB", (0.03, -0.01), "g") == "(30, -10) mm"
+        assert spoken("omega_mean", 31.41592653589793, ".6g") == "300 rpm"
+        assert spoken("T_in", 2.0, "g", says_unit=True) == "2 N m"
+        assert spoken("ec", "12 mm") == "'12 mm'"
+        other: list[str] = []
+        thread = threading.Thread(target=lambda: other.append(spoken("ec", 0.03)))
+        thread.start()
+        thread.join()
+    assert [*other, spoken("ec", 0.03)] == ["0.03", "0.03"]
+
+
+ERRORS = {
+    "over: ec = (30, 0) mm": lambda: PRESS.optimize(**PEAK, over={"ec": (30, 0)}),
+    "over: AB = (-30, 10) mm: expected two finite bounds (AB = -30 mm": lambda: PRESS.optimize(
+        **PEAK, over={"AB": (-30, 10)}
+    ),
+    "keep: stroke = (120, 100) mm": lambda: PRESS.optimize(
+        **PEAK, over={"AB": (30, 60)}, keep={"stroke": (120, 100)}
+    ),
+    "theta0 = -90 deg: it cannot be assembled there; with ec = 10 mm, AB = 195 mm, BC = 150 mm": (
+        lambda: PRESS.replace(AB=195, BC=150).simulate(torque=1, t_end=0.1, theta0=-90)
+    ),
+    "theta = (90, 20) deg": lambda: PRESS.peak("a_C", theta=(90, 20)),
+    "AB = -3 mm: it must be": lambda: PRESS.evaluate("a_C", theta=30, AB=-3),
+    "the crank cannot turn fully, margin = -10 mm": lambda: PRESS.harmonics("a_C", AB=200),
+    "at omega =": lambda: PRESS.steady(torque=lambda omega: float("nan")),
+    "but 10 mm follows 20 mm": lambda: PRESS.over_Y([0, 20, 10], [1, 2, 3]),
+    "the speeds must ascend, but 100 rpm follows 300 rpm": lambda: PRESS.over_omega([300, 100], [1, 2]),
+    "F_Y = inf kN: it must be": lambda: PRESS.replace(F_Y=float("inf")),
+}
+
+
+@pytest.mark.parametrize("told", ERRORS)
+def test_errors_of_a_machine_are_in_its_units(told):
+    with pytest.raises(ValueError, match=re.escape(told)):
+        ERRORS[told]()
+
+
+def test_messages_of_steady_are_in_the_machines_units():
+    weak = PRESS.steady(torque=PRESS.kloss(1e-6, 0.15, 1500), F_Y=-1.0, mu=0.1)["message"]
+    assert "rad" not in weak
+    strong = PRESS.steady(torque=lambda omega: 0.5 * omega)["message"]
+    assert "rpm a period still gains" in strong
+
+
+def test_a_motor_speaks_the_units_of_its_machine():
+    assert "synchronous_speed = 1500 rpm" in repr(PRESS.kloss(40, 0.15, 1500))
+    assert "synchronous_speed = 157" in repr(dx.kloss(40, 0.15, 157))
+    table = dx.Machine(units="kN m, rpm", AB=0.1).over_omega([0, 1500], [1, 0])
+    assert repr(table) == "<motor over omega: 2 speeds, linear, 0 kN m to 1 kN m>"
+
+
+def test_a_report_shows_loads_in_the_machines_units(tmp_path):
+    press = PRESS.replace(F_Y=PRESS.over_Y([150, 250], [-1, -2]))
+    text = press.report(tmp_path / "press.md", outputs="Y").read_text(encoding="utf-8")
+    assert "-2 to -1 kN" in text
+    assert "-1000" not in text
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "asked"),
+    [
+        ("F_Y", "3 kn", "did you mean kN? it must be a quantity in N"),
+        ("AB", "30 MM", "did you mean mm? it must"),
+        ("m_rod", "3 KG", "unknown unit; did you mean kg? it must"),
+        ("F_X", "3 NM", "unknown unit; it must"),
+    ],
+)
+def test_units_in_wrong_letters(name, text, asked):
+    with pytest.raises(ValueError, match=re.escape(asked)):
+        dx.Machine(**{name: text})
+
+
+def test_a_knot_is_no_force_of_a_machine():
+    with pytest.raises(ValueError, match="'kn': did you mean kN"):
+        dx.Machine(units="mm, kn", AB=50)
+    assert dx.Machine(units="knot", AB=1).units.units == {"velocity": "knot"}
+    assert dx.Machine(units="RPM", AB=1).units.units == {"angular speed": "RPM"}
+
+
+SLIPS = {
+    'breakdown_slip = "15 %"': lambda: dx.kloss(40.0, 15.0, 157.0),
+    'synchronous_speed = "1500 rpm"': lambda: dx.kloss(40.0, 0.15, 1500.0),
+    'omega = "1500 rpm"': lambda: dx.over_omega([0.0, 1500.0], [40.0, 0.0]),
+    'AB = "50 mm"': lambda: dx.steady(
+        torque=dx.kloss(40.0, 0.15, 157.0), ec=10.0, AB=50.0, BC=200.0, I_crank=0.1
+    ),
+}
+
+
+@pytest.mark.parametrize("told", SLIPS)
+def test_slips_of_motors_are_told(told):
+    with pytest.warns(dx.UnitWarning, match=told) as warned:
+        SLIPS[told]()
+    assert [each.filename for each in warned] == [__file__]
+
+
+def test_proper_motors_are_no_slips():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        motor = PRESS.kloss("40 N m", "15 %", 1500, gear=5)
+        dx.kloss(40.0, [0.1, 0.5], 377.0)
+        PRESS.steady(torque=motor)
