@@ -137,11 +137,6 @@ def vector(value):
     return value if isinstance(value, tuple) else (value,)
 
 
-def paper_frame(q, name):
-    """A vector of the crank pin in the paper's frame: y is the package's Y reversed."""
-    return q(f"{name}_X"), -q(f"{name}_Y")
-
-
 def three_digits(value):
     """Rounded to the three significant digits the paper prints."""
     return float(f"{float(value):.3g}")

@@ -94,23 +94,6 @@ def by_theta(function, q):
         return mp.diff(lambda theta: function(q._replace(theta=theta)), q.theta)
 
 
-def same_rate(formula, function, kind):
-    """A printed derivative equals the numerical one of another equation, to 30 digits."""
-    for motion in STEADY:
-        with mp.workdps(loop.DIGITS):
-            q = exact_case(motion)
-            assert close(formula(q), by_theta(function, q), scale_of(kind, motion), 30)
-
-
-def other_rate(formula, function):
-    """A printed derivative is off by more than a millionth in every design."""
-    for motion in STEADY:
-        with mp.workdps(loop.DIGITS):
-            q = exact_case(motion)
-            true = by_theta(function, q)
-            assert abs(formula(q) - true) > 1e-6 * abs(true)
-
-
 def force_scale(motion, m_2, m_3):
     """The natural magnitude of a force of a design, N."""
     return (m_2 + m_3) * scale_of("acceleration", motion)
@@ -148,13 +131,6 @@ def in_stroke(e, k, c, theta):
     """+1 where the slider moves outwards at this crank angle, -1 where inwards; the crank turns forwards."""
     outer, inner = B.dead_centres(e, k, c)
     return -1 if (theta - outer) % (2 * math.pi) < inner - outer else 1
-
-
-def peaks_by_stroke(function, e, k, c, steps=3600):
-    """Greatest size of a function of theta in the inward (return) and in the outward (advance) stroke."""
-    angles = sweep(steps)
-    sizes = [(in_stroke(e, k, c, angle), abs(function(angle))) for angle in angles]
-    return tuple(max(size for stroke, size in sizes if stroke == sign) for sign in (-1, 1))
 
 
 def excess(motion, masses, inertia):

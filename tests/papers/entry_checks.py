@@ -23,7 +23,7 @@ NAME = re.compile(r"[A-Za-z][\w/]*\d\w*")
 ENTRY = re.compile(r"\b[ABC]-[A-Za-z0-9][\w.-]*\w")
 REFERENCE = re.compile(r"\b[ABC]-[A-Za-z0-9][\w.-]*\w|(?<![\w.])\d+(?:\.\d+)*[a-z]?")
 SIGN = re.compile(r"(?<![\w)\]])[-+](?=[\w(.])|(?<= )[-+](?= )")
-TEXT = 1e-25  # agreement of formulas
+NUMBERED = re.compile(r"[AB]-(eq|listing)")
 OPPOSITE = {
     "sign": r"[-+\s]",
     "sign and exponent": r"[-+\s]|\^\(\d/2\)",
@@ -57,11 +57,12 @@ def complaints(row: dict[str, str], proof: Proof) -> list[str]:
 
 
 def copied(row: dict[str, str], proof: Proof) -> list[str]:
-    """Texts that are those of an entry of another test."""
+    """Texts that are those of an entry of another test, or of another numbered equation."""
     others = [
         raw_entries()[key]
         for key, other in PROOFS.items()
-        if other.name != proof.name and key in raw_entries()
+        if key in raw_entries() and key != row["id"]
+        if other.name != proof.name or NUMBERED.match(key)
     ]
     fields = ("corrected", "evidence")
     return [

@@ -7,14 +7,17 @@ digit or function in any of these strings shows.
 """
 
 import ast
+import itertools
 import operator
 import re
+from difflib import SequenceMatcher
 
 from mpmath import mp, mpc, mpf
 
+from desaxe.errata.equations import FINE
 from desaxe.errata.formula import parse
 from tests.papers import newton_euler_c as ne
-from tests.papers.letters import names_of
+from tests.papers.letters import DESIGNS_OF, ORACLE, PACKAGE, names_of, twin_of
 
 OPERATORS = {
     ast.Add: operator.add,
@@ -65,7 +68,8 @@ def misses(key, text, printed, names=None, true=None):
     with mp.workdps(2 * ne.DIGITS):
         angles = {"pi": +mp.pi, "deg": mp.pi / 180}
         for number in range(1 if names else SAMPLES):
-            v, expected = names_of(key, number)
+            v, twin = names_of(key, number), twin_of(key, number)
+            expected = [twin.sides] if twin else None
             try:
                 got = [[value(side, v | angles | (names or {})) for side in sides] for sides in parse(text)]
             except (*NO_VALUE, AttributeError) as error:
@@ -83,3 +87,81 @@ def misses(key, text, printed, names=None, true=None):
                 if any(abs(a - b) > mpf(10) ** -25 * size for a, b in zip(sides, right, strict=True)):
                     return f"{text}: {[mp.nstr(side, 8) for side in sides]}"
     return ""
+
+
+# --- in every design, by the loop and by the package ----------------------------------------------
+
+AGREEMENT = {ORACLE: mpf(10) ** -30, PACKAGE: mpf(10) ** -12}  # of the size of the terms
+OFF = mpf(10) ** -6  # what a wrong form is off by, at least
+NO_FORMULA = {"B-eq50"}  # corrected by a sentence
+
+
+def terms(node):
+    """What a side adds up."""
+    is_sum = isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Add, ast.Sub))
+    return [*terms(node.left), *terms(node.right)] if is_sum else [node]
+
+
+def apart(text, v, wanted=None):
+    """How far the sides of a formula are from the first one, or from those wanted; of the terms' size."""
+    found = []
+    for number, sides in enumerate(parse(text)):
+        size = max(abs(value(term, v)) for side in sides for term in terms(side)) or 1
+        got = [value(side, v) for side in sides]
+        right = wanted[number] if wanted else [got[0]] * len(got)
+        found += [abs(a - b) / size for a, b in zip(got, right, strict=True)]
+    return max(found)
+
+
+def half_mended(printed, corrected):
+    """The printed form with only the signs put right, and with only the rest put right."""
+    old, new = (re.findall(r"\w+|\s+|.", text) for text in (printed, corrected))
+    changes = SequenceMatcher(None, old, new, autojunk=False).get_opcodes()
+    for signs in (True, False):
+        mended = [bool({"+", "-"} & {*old[a:b], *new[c:d]}) == signs for _, a, b, c, d in changes]
+        parts = [new[c:d] if one else old[a:b] for one, (_, a, b, c, d) in zip(mended, changes, strict=True)]
+        yield "".join(itertools.chain(*parts))
+
+
+def opposite(text):
+    """A formula with its right-hand sides reversed."""
+    left, *others = text.split(" = ")
+    return " = ".join([left, *(f"-({side})" for side in others)])
+
+
+def everywhere(row, verdict):
+    """Where an entry's formulas are not as right or as wrong as the verdict says: (form, design, source).
+
+    A wrong form is what its hand-written twin makes of it, and off in every design; so is its opposite,
+    unless the sign alone is wrong, and so is the form with one of two mistakes put right.
+    """
+    key, printed, corrected = row["id"], row["printed"], row["corrected"]
+    if not FORMULA.fullmatch(key):
+        return
+    fine = verdict in FINE
+    right = [printed] if fine else [corrected] * (key not in NO_FORMULA)
+    wrong = [] if fine else [printed]
+    if verdict not in ("sign", "typo", *FINE):
+        wrong += [opposite(printed)]
+    if " and " in verdict:
+        wrong += half_mended(printed, corrected)
+    for number, source in itertools.product(range(DESIGNS_OF[key[0]]), AGREEMENT):
+        with mp.workdps(2 * ne.DIGITS):
+            v, twin = names_of(key, number, source), twin_of(key, number)
+            wanted = [twin.sides] if twin and fine else None
+            yield from (
+                (text, number, source) for text in right if apart(text, v, wanted) > AGREEMENT[source]
+            )
+            yield from ((text, number, source) for text in wrong if apart(text, v) < OFF)
+            if source == ORACLE and twin and not agrees(twin, printed, v, fine):
+                yield "hand-written", number, source
+
+
+def agrees(twin, printed, v, fine):
+    """True if a hand-written form is what is printed, and right if that is right, or corrected."""
+    truth, *others = twin.sides
+    right = (others if fine else []) + ([] if twin.corrected is None else [twin.corrected])
+    error = max(
+        [apart(printed, v, [twin.sides]), *(abs(other - truth) / (abs(truth) or 1) for other in right)]
+    )
+    return error <= AGREEMENT[ORACLE]

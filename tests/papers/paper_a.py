@@ -27,19 +27,9 @@ def add(*vectors: Vector) -> Vector:
 # --- the crank, Eqs. 1 to 4 -----------------------------------------------------------------------
 
 
-def printed_eq1(V_A: Vector, V_BA: Vector) -> Vector:
-    """V_B = V_A + V_BA, m/s (Eq. 1)."""
-    return add(V_A, V_BA)
-
-
 def printed_eq2(theta: Any, AB: Any, omega: Any, m: ModuleType = math) -> Vector:
     """Velocity of the crank pin B, m/s (Eq. 2)."""
     return AB * omega * m.cos(theta), AB * omega * m.sin(theta)
-
-
-def printed_eq3(a_A: Vector, a_BA_n: Vector, a_BA_t: Vector) -> Vector:
-    """a_B = a_A + (a_BA)_n + (a_BA)_t, m/s2 (Eq. 3)."""
-    return add(a_A, a_BA_n, a_BA_t)
 
 
 def printed_normal(AB: Any, omega: Any, alpha: Any) -> Any:
@@ -75,11 +65,6 @@ def printed_eq4(theta: Any, AB: Any, omega: Any, alpha: Any, m: ModuleType = mat
 # --- the rod, Eqs. 5 to 18 ------------------------------------------------------------------------
 
 
-def printed_eq5(theta: Any, ec: Any, AB: Any, BC: Any, m: ModuleType = math) -> Any:
-    """Delta, the angle between rod and the x axis, rad (Eq. 5)."""
-    return m.acos((ec + AB * m.sin(theta)) / BC)
-
-
 def printed_eq6(theta: Any, ec: Any, AB: Any, BC: Any, m: ModuleType = math) -> Any:
     """Phi, the angle between rod and slider axis, rad (Eq. 6)."""
     return m.asin((ec + AB * m.sin(theta)) / BC)
@@ -88,11 +73,6 @@ def printed_eq6(theta: Any, ec: Any, AB: Any, BC: Any, m: ModuleType = math) -> 
 def printed_eq7(theta: Any, ec: Any, AB: Any, BC: Any, m: ModuleType = math) -> Any:
     """Y, the slider's distance from A along its axis, m (Eq. 7)."""
     return AB * m.cos(theta) + BC * m.cos(printed_eq6(theta, ec, AB, BC, m))
-
-
-def printed_eq8(V_C: Vector, V_BC: Vector) -> Vector:
-    """V_B = V_C + V_BC, m/s (Eq. 8)."""
-    return add(V_C, V_BC)
 
 
 def printed_eq9(phi: Any, BC: Any, omega_BC: Any, V_C: Any, m: ModuleType = math) -> Vector:
@@ -117,18 +97,6 @@ def V_C_of_signs(
 def printed_eq11(theta: Any, ec: Any, AB: Any, BC: Any, omega: Any, m: ModuleType = math) -> Any:
     """V_C = dY/dt, m/s (Eq. 11)."""
     return V_C_of_signs((-1, -1), theta, ec, AB, BC, omega, m)
-
-
-def printed_eq12(a_C: Vector, a_BC_t: Vector, a_BC_n: Vector) -> Vector:
-    """a_B = a_C + (a_BC)_t + (a_BC)_n, m/s2 (Eq. 12)."""
-    return add(a_C, a_BC_t, a_BC_n)
-
-
-def printed_eq13(phi: Any, BC: Any, omega_BC: Any, alpha_BC: Any, a_C: Any, m: ModuleType = math) -> Vector:
-    """Right-hand side of Eq. 13, m/s2; its left-hand side is Eq. 4."""
-    tangential = BC * alpha_BC * m.cos(phi), -BC * alpha_BC * m.sin(phi)
-    normal = -BC * omega_BC**2 * m.sin(phi), -BC * omega_BC**2 * m.cos(phi)
-    return add((0, -a_C), tangential, normal)
 
 
 def printed_eq15(theta: Any, AB: Any, omega: Any, m: ModuleType = math) -> Any:

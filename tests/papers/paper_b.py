@@ -65,34 +65,9 @@ class Masses(NamedTuple):
 # --- the crank, Eqs. 1 to 3 -----------------------------------------------------------------------
 
 
-def printed_eq1(omega: Any, t: Any) -> Any:
-    """Theta, rad (Eq. 1)."""
-    return omega * t
-
-
-def printed_eq2a(omega: Any) -> Any:
-    """dtheta/dt, rad/s (Eq. 2a)."""
-    return omega
-
-
 def printed_eq2b_middle(omega: Any, dtheta_dt: Any) -> Any:
     """The middle of Eq. 2b as printed: omega dtheta/dt, which is rad2/s2 and no velocity."""
     return omega * dtheta_dt
-
-
-def corrected_eq2b_middle(k: Any, dtheta_dt: Any) -> Any:
-    """v_k = k dtheta/dt, m/s (Eq. 2b corrected)."""
-    return k * dtheta_dt
-
-
-def printed_eq2b(omega: Any, k: Any) -> Any:
-    """v_k = omega k, m/s (the right-hand end of Eq. 2b)."""
-    return omega * k
-
-
-def printed_eq3(omega: Any, k: Any) -> Any:
-    """a_k = omega^2 k, m/s2 (Eq. 3)."""
-    return omega**2 * k
 
 
 # --- the slider's position, Eqs. 4 to 10 ----------------------------------------------------------
@@ -106,11 +81,6 @@ def printed_eq4(q: Case, alpha: Any) -> Any:
 def printed_eq5a(q: Case) -> Any:
     """h = k sin(theta), m (Eq. 5a)."""
     return q.k * q.sin
-
-
-def printed_eq5b(q: Case, alpha: Any) -> Any:
-    """h = c sin(alpha) - e, m (Eq. 5b)."""
-    return q.c * q.m.sin(alpha) - q.e
 
 
 def printed_eq6(q: Case) -> Any:
@@ -128,11 +98,6 @@ def printed_eq8(q: Case) -> Any:
     return q.k * q.cos + q.root(1)
 
 
-def printed_eq9(q: Case, x: Any) -> Any:
-    """s = k + c - x, m (Eq. 9)."""
-    return q.k + q.c - x
-
-
 def printed_eq10(q: Case) -> Any:
     """s as printed, m (Eq. 10): the sign of the root is wrong."""
     return (q.k + q.c) - q.k * q.cos + q.root(1)
@@ -146,11 +111,6 @@ def corrected_eq10(q: Case) -> Any:
 # --- the slider's velocity and acceleration, Eqs. 11 to 20 ----------------------------------------
 
 
-def chain(rate_by_theta: Any, dtheta_dt: Any) -> Any:
-    """df/dt = df/dtheta dtheta/dt (Eqs. 11, 14, 23 and 28)."""
-    return rate_by_theta * dtheta_dt
-
-
 def printed_eq12(q: Case) -> Any:
     """ds/dtheta, m (Eq. 12)."""
     return q.k * q.sin + q.k * q.cos * q.side / q.root(1)
@@ -159,16 +119,6 @@ def printed_eq12(q: Case) -> Any:
 def printed_eq13(q: Case) -> Any:
     """v_s, m/s (Eq. 13)."""
     return q.omega * q.k * q.sin + q.omega * q.k * q.cos * q.side / q.root(1)
-
-
-def printed_eq15(q: Case) -> Vector:
-    """v_1 and v_2, m/s (Eq. 15)."""
-    return q.omega * q.k * q.sin, q.omega * q.k * q.cos * q.side / q.root(1)
-
-
-def printed_eq16(first: Any, second: Any) -> Any:
-    """v_s = v_1 + v_2 and dv_s/dtheta = dv_1/dtheta + dv_2/dtheta (Eq. 16)."""
-    return first + second
 
 
 def printed_eq17(q: Case) -> Any:
@@ -241,16 +191,6 @@ def printed_eq24(q: Case) -> Any:
     return printed_eq21(q)[1] * q.cos
 
 
-def printed_eq25(q: Case, alpha: Any) -> Any:
-    """dalpha/dtheta (Eq. 25)."""
-    return printed_eq21(q)[1] * q.cos / q.m.cos(alpha)
-
-
-def printed_eq26(q: Case, alpha: Any) -> Any:
-    """v_c, rad/s (Eq. 26)."""
-    return q.omega * printed_eq21(q)[1] * q.cos / q.m.cos(alpha)
-
-
 def printed_eq27(q: Case) -> Any:
     """v_c, rad/s (Eq. 27)."""
     return q.omega * q.k * q.cos / q.m.sqrt(q.square)
@@ -285,11 +225,6 @@ def corrected_eq30(q: Case) -> Any:
 
 
 # --- equivalent masses, Eqs. 31 to 36 -------------------------------------------------------------
-
-
-def printed_eq31(m_2c: Any, m_3c: Any) -> Any:
-    """m_c, kg (Eq. 31)."""
-    return m_2c + m_3c
 
 
 def printed_eq32(q: Case, w: Masses) -> Any:
@@ -392,16 +327,6 @@ def corrected_eq42b(q: Case, m_3: Any) -> Any:
     return -m_3 * (q.omega**2 * q.k * q.cos + second + (q.omega * q.k * q.cos * q.side) ** 2 / q.root(3))
 
 
-def printed_eq43(F_c: Any, alpha: Any, m: ModuleType) -> Any:
-    """F_h = F_c cos(alpha), N (Eq. 43)."""
-    return F_c * m.cos(alpha)
-
-
-def printed_eq44(F_c: Any, alpha: Any, m: ModuleType) -> Any:
-    """F_v = F_c sin(alpha), N (Eq. 44)."""
-    return F_c * m.sin(alpha)
-
-
 def printed_eq45(F_Is: Any, F_c: Any, alpha: Any, m: ModuleType) -> Any:
     """F_s = F_Is + F_c cos(alpha), N (Eq. 45)."""
     return F_Is + F_c * m.cos(alpha)
@@ -453,7 +378,7 @@ def corrected_eq49(e: Any, k: Any, c: Any, m: ModuleType = math) -> Any:
 
 def printed_eq50(e: Any) -> Any:
     """Rod length, m, as printed (Eq. 50)."""
-    return 3.2 * e
+    return 32 * e / 10
 
 
 def printed_eq51(advance: Any, back: Any) -> Any:

@@ -40,50 +40,6 @@ PACKAGE = {
 # --- Sec. 2: links 2, 3 and 4, each as left side less right side ----------------------------------
 
 
-def link2_x(v: Symbols) -> Any:
-    """Link 2 along X, N."""
-    return v["F12x"] + v["F32x"] - v["m2"] * v["aG2x"]
-
-
-def link2_y(v: Symbols) -> Any:
-    """Link 2 along Y, N."""
-    return v["F12y"] + v["F32y"] - v["m2"] * v["aG2y"]
-
-
-def link2_moment(v: Symbols) -> Any:
-    """Link 2 about its centre of mass, N m."""
-    first = v["R12x"] * v["F12y"] - v["R12y"] * v["F12x"]
-    second = v["R32x"] * v["F32y"] - v["R32y"] * v["F32x"]
-    return v["T12"] + first + second - v["IG2"] * v["alpha2"]
-
-
-def link3_x(v: Symbols) -> Any:
-    """Link 3 along X, N."""
-    return v["F43x"] - v["F32x"] - v["m3"] * v["aG3x"]
-
-
-def link3_y(v: Symbols) -> Any:
-    """Link 3 along Y, N."""
-    return v["F43y"] - v["F32y"] - v["m3"] * v["aG3y"]
-
-
-def link3_moment(v: Symbols) -> Any:
-    """Link 3 about its centre of mass, N m."""
-    first = v["R43x"] * v["F43y"] - v["R43y"] * v["F43x"]
-    second = v["R23x"] * v["F32y"] - v["R23y"] * v["F32x"]
-    return first - second - v["IG3"] * v["alpha3"]
-
-
-def link4_x(v: Symbols) -> Any:
-    """Link 4 along X, N."""
-    return v["F14x"] - v["F43x"] + v["FPx"] - v["m4"] * v["aG4x"]
-
-
-def link4_y(v: Symbols) -> Any:
-    """Link 4 along Y, N."""
-    return v["F14y"] - v["F43y"] + v["FPy"] - v["m4"] * v["aG4y"]
-
-
 def link4_moment(v: Symbols) -> Any:
     """Link 4 about its centre of mass, N m; its inertia term is left out since alpha4 = 0."""
     guide = v["R14x"] * v["F14y"] - v["R14y"] * v["F14x"]

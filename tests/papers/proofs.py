@@ -118,7 +118,9 @@ def _register(proof: Proof) -> None:
 
 
 def _hold(name: str) -> None:
-    """Hold an entry of the ledger against its proof."""
+    """Hold an entry of the ledger against its proof, and an equation against every design."""
     from tests.papers.entry_checks import complaints, raw_entries  # the proofs know nothing of the ledger
+    from tests.papers.formulas import everywhere
 
     assert complaints(raw_entries()[name], PROOFS[name]) == []
+    assert list(everywhere(raw_entries()[name], PROOFS[name].verdict)) == []

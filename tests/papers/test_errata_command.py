@@ -54,7 +54,7 @@ def test_wrong_entries_only(capsys):
 
 def test_json_has_proof_and_paper(capsys):
     (found,) = json.loads(shown(capsys, "B-eq10", "--json"))
-    assert found["test"] == "tests/papers/test_paper_b_kinematics.py::test_eq10"
+    assert found["test"] == "tests/papers/test_paper_equations.py::test_equation[B-eq10]"
     assert found["paper"] == title("B")
     assert found["conventions"] == list(conventions("B"))
     assert found["latex_corrected"].startswith("s = k + c - k")

@@ -1,11 +1,14 @@
 """The ledgers' formulas as syntax trees and as LaTeX."""
 
+import re
+
 import pytest
 
 from desaxe.errata.equations import FINE
 from desaxe.errata.formula import latex, parse
 from desaxe.errata.ledger import entries
-from tests.papers.formulas import FORMULA, misses
+from tests.papers.entry_checks import raw_entries
+from tests.papers.formulas import FORMULA, everywhere, misses
 
 FORMULAS = [entry for entry in entries() if FORMULA.fullmatch(entry.id)]
 
@@ -31,6 +34,19 @@ def test_wrong_formula_is_told():
     assert "['0." in misses("A-eq7", "Y(theta) = AB*cos(theta) - BC*cos(phi)", printed=True)
     assert "KeyError" in misses("A-eq7", "Y(theta) = AB*cos(theta) + CD*cos(phi)", printed=True)
     assert "other sides" in misses("A-eq7", "AB*cos(theta) + BC*cos(phi)", printed=True)
+
+
+@pytest.mark.parametrize("row", [raw_entries()[entry.id] for entry in FORMULAS], ids=lambda row: row["id"])
+def test_changed_formula_is_noticed(row):
+    """Each sign of what is printed and of its correction, and the verdict: `everywhere` sees any change."""
+    for field in ("printed", "corrected"):
+        for sign in re.finditer(r"[-+]", row[field] if is_formula(row[field]) else ""):
+            other = {"-": "+", "+": "-"}[sign.group()]
+            text = row[field][: sign.start()] + other + row[field][sign.end() :]
+            assert any(everywhere(row | {field: text}, row["verdict"])), text
+    flipped = "wrong claim" if row["verdict"] in FINE else "correct"
+    whole = row | {"corrected": row["corrected"] or row["printed"]}
+    assert any(everywhere(whole, flipped)) or row["id"] in ("A-eq24", "A-eq25")  # a name alone, of one side
 
 
 def test_latex():

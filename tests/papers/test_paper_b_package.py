@@ -4,10 +4,9 @@ import math
 import random
 
 import pytest
-from mpmath import mp
 
 import desaxe as dx
-from tests.papers import free_bodies, loop
+from tests.papers import free_bodies
 from tests.papers import paper_b as B
 from tests.papers.designs import close
 from tests.papers.designs_b import (
@@ -43,29 +42,6 @@ def test_free_bodies(number):
     scale = force_scale(motion, sum(bodies[:3]), 0) + 1000
     for name in UNKNOWNS:
         assert close(got[name], solved[name], scale, 12)
-
-
-def test_forces_of_two_masses():
-    """Eqs. 38 to 48, corrected, are what the package says of m_2 at the pin and m_3 at the slider."""
-    for motion, masses in LOADED:
-        got = forces(list(UNKNOWNS), motion, lumped(motion, masses))
-        with mp.workdps(loop.DIGITS):
-            q, m_2, m_3 = equivalent(motion, masses)
-            alpha, F_c = B.printed_eq22(q), B.corrected_eq41(q, m_3)
-            paper = {
-                "F_A_Y": B.corrected_eq38(q, m_2, m_3),
-                "F_A_X": B.corrected_eq39(q, m_2, m_3),
-                "F_C_Y": B.printed_eq43(F_c, alpha, mp),
-                "F_C_X": -B.printed_eq44(F_c, alpha, mp),
-                "F_B_Y": B.corrected_eq42b(q, m_3),
-                "F_B_X": -B.printed_eq44(F_c, alpha, mp),
-                "N_C": B.printed_eq44(F_c, alpha, mp),
-                "T_in": -B.corrected_eq48(q, B.corrected_eq42a(q, m_3)),
-            }
-            scale = force_scale(motion, m_2, m_3)
-        assert set(paper) == set(UNKNOWNS)
-        for name, value in paper.items():
-            assert close(got[name], value, scale, 12)
 
 
 def test_shaking_force_of_two_masses():

@@ -32,6 +32,15 @@ def test_text_crank_has_no_offset():
             assert loop.truth(name, other) != pytest.approx(float(loop.truth(name, motion)), rel=1e-6)
 
 
+@proves("B-text-liner", "typo", cites="3")
+def test_text_liner():
+    """The pin's speed does not change, only its direction: that makes a_k."""
+    for motion in STEADY:
+        turned = loop.partial("V_B_X", "theta", motion) * motion.omega0
+        assert close(turned, loop.truth("a_B_X", motion), 1, 20)
+        assert abs(loop.rate(lambda t, at=motion: mp.hypot(*loop.pin(at, t)), 1)) < mpf(10) ** -30
+
+
 @proves("B-text-x", "wrong claim")
 def test_text_x_is_not_the_distance():
     for motion in STEADY:

@@ -16,62 +16,6 @@ from tests.papers.states_c import STATES, WEIGHTLESS, at_rest, force_scale, repo
 
 TINY = mpf(10) ** -35
 SOLVED = [symbols(state) for state in WEIGHTLESS]
-LINKS = {
-    "link2_x": (C.link2_x, ("F12x", "F32x", "aG2x")),
-    "link2_y": (C.link2_y, ("F12y", "F32y", "aG2y")),
-    "link2_moment": (C.link2_moment, ("T12", "F12x", "F12y", "F32x", "F32y", "R12x", "R12y", "alpha2")),
-    "link3_x": (C.link3_x, ("F43x", "F32x", "aG3x")),
-    "link3_y": (C.link3_y, ("F43y", "F32y", "aG3y")),
-    "link3_moment": (
-        C.link3_moment,
-        ("F43x", "F43y", "F32x", "F32y", "R43x", "R43y", "R23x", "R23y", "alpha3"),
-    ),
-    "link4_x": (C.link4_x, ("F43x", "FPx", "aG4x")),
-    "link4_y": (C.link4_y, ("F14y", "F43y", "FPy")),
-}
-
-
-@proves_each({f"C-{link.replace('_', '-')}": link for link in LINKS if link != "link4_x"}, "correct")
-def test_link_equation(link):
-    equation, needed = LINKS[link]
-    for v in SOLVED:
-        scale = force_scale(v) + abs(v["T12"])
-        assert abs(equation(v)) < TINY * scale
-        for name in needed:  # the equation sees each of its symbols: none may be reversed
-            assert abs(equation(v | {name: -v[name]})) > mpf(10) ** -6 * abs(v[name]) > 0
-
-
-@proves("C-link4-x", "correct")
-def test_link4_friction_term():
-    for v in SOLVED:
-        assert abs(C.link4_x(v)) < TINY * force_scale(v)
-        for name in LINKS["link4_x"][1]:
-            assert abs(C.link4_x(v | {name: -v[name]})) > mpf(10) ** -6 * abs(v[name]) > 0
-    for state in WEIGHTLESS:
-        for friction in (mpf("0.2"), mpf("-0.2")):
-            v = symbols(state, friction)
-            assert abs(C.link4_x(v)) < TINY * force_scale(v)
-            assert abs(C.link4_x(v | {"F14x": -v["F14x"]})) > mpf("0.1") * abs(v["F14y"])
-
-
-@proves("C-link4-moment", "correct")
-def test_link4_moment():
-    """Any arms: the printed terms are the moments of F14, of -F43 and of FP."""
-    for v in SOLVED:
-        arms = {
-            "R14x": mpf(1),
-            "R14y": mpf(2),
-            "R34x": mpf(3),
-            "R34y": mpf(-1),
-            "RPx": mpf(-2),
-            "RPy": mpf(5),
-        }
-        total = mpf(0)
-        for joint, force, sign in (("R14", "F14", 1), ("R34", "F43", -1), ("RP", "FP", 1)):
-            arm = arms[joint + "x"], arms[joint + "y"]
-            total += sign * ne.moment(arm, (v[force + "x"], v[force + "y"]))
-        assert abs(C.link4_moment(v | arms) - total) < TINY * force_scale(v)
-        assert total != 0
 
 
 @proves("C-link4-no-turning", "given", says="alpha4 = 0 and aG4y is also zero")
