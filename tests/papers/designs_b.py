@@ -15,19 +15,7 @@ TABLE_1 = {"omega": 251.0, "k": 0.040, "c": 0.064, "M_k": 0.2, "M_c": 0.5, "M_s"
 OFFSETS = (0.0, 0.010, 0.020)  # m: the offsets of Figs. 15 and 16; Table 1 has the last
 TABLE_2 = {"omega": 20.994, "k": 0.0381, "c": 0.1524, "M_2": 7.0, "M_3": 1.543}
 
-# Extremes of the drive's torque T_in over a turn for Table 1 at 251 rad/s, by offset (m): angle of the
-# greatest (rad), greatest (N m), angle of the least, least. "two masses": the paper's model with all centres
-# of mass in the middle, m_3 = 0.8 + 0.5/2 kg and m_2 = (0.2 + 0.5)/2 kg; "uniform rod": the rod as it is,
-# I = m c^2/12 about its middle. Found as roots of the numerical derivative of the power of `free_bodies`,
-# in 30 digits.
-EXTREMES = {
-    ("two masses", 0.000): (0.582227033979491, 105.085984315876149, 5.7009582732001, -105.085984315876149),
-    ("two masses", 0.010): (0.549388353915099, 130.389782867258802, 1.52879119437994, -133.749406467785917),
-    ("two masses", 0.020): (0.58538581445154, 185.297356630532596, 1.48226578804059, -316.061112782418534),
-    ("uniform rod", 0.000): (0.588467817329228, 108.124729415759808, 5.69471748985036, -108.124729415759808),
-    ("uniform rod", 0.010): (0.556437626960137, 132.618770007908116, 1.5432889528245, -133.001863176798823),
-    ("uniform rod", 0.020): (0.591308611495623, 185.9212484006624, 1.48906041686415, -310.573243798830402),
-}
+# Table 1 as the paper's two masses, every centre of mass in the middle, and with the uniform rod as it is.
 TABLE_1_BODIES = {
     "two masses": Bodies(m_crank=0.35, r_crank=TABLE_1["k"], m_slider=1.05),
     "uniform rod": Bodies(m_crank=0.2, m_rod=0.5, m_slider=0.8, I_rod=0.5 * TABLE_1["c"] ** 2 / 12),

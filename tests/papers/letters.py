@@ -162,11 +162,19 @@ def equivalent_masses(number):
     return {"m_2k": m_2k, "m_2c": rods[0], "m_3c": rods[1], "m_2": m_2, "m_3": m_3}
 
 
+def masses_of_the_package(motion, masses):
+    """m_2 and m_3."""
+    bodies = {"m_crank": masses.m_k, "m_rod": masses.m_c, "m_slider": masses.m_s}
+    centres = {"r_crank": masses.k_1, "r_rod": masses.c_2}
+    got = dx.evaluate(["m_rotating", "m_reciprocating"], **motion._asdict(), **bodies, **centres)
+    return {"m_2": mpf(got["m_rotating"]), "m_3": mpf(got["m_reciprocating"])}
+
+
 @remembered
 def names_b(number, source=ORACLE):
     """Paper B's names at a random design with random masses, at constant speed; i and j are 1 and 1j."""
     motion, masses = LOADED[number]
-    lumps = equivalent_masses(number)
+    lumps = equivalent_masses(number) | (masses_of_the_package(motion, masses) if source == PACKAGE else {})
     m_2, m_3 = lumps["m_2"], lumps["m_3"]
     f = quantities(source, motion, Bodies(m_crank=m_2, r_crank=motion.AB, m_slider=m_3))
     q, w = exact_case(motion), exact_masses(masses)

@@ -1,8 +1,4 @@
-"""End states of paper C's driven motions, to some 25 digits, from the raw loop.
-
-Two methods that share only the effective moment of inertia: where the torque is constant, energy gives the
-speed and a quadrature the time; for any torque, Gauss collocation solves the equation of motion.
-"""
+"""Paper C's driven motions from the raw loop: Gauss collocation of the equation of motion."""
 
 from collections.abc import Callable
 from functools import cache
@@ -99,32 +95,3 @@ def drive(state: State, torque: Torque, t_end: mpf, steps: int, digits: int = 30
         for number in range(steps):
             at = step(state, torque, number * length, length, at, digits, stages)
         return at
-
-
-def time_to(state: State, torque: mpf, theta: mpf, pieces_per_radian: int = 4) -> mpf:
-    """Time from rest at theta = 0 to this angle under a constant torque: dt = d theta/omega.
-
-    M omega^2/2 = T theta; with theta = q^2 the integrand sqrt(2 M/T) dq is smooth at the start.
-    """
-
-    def slowness(q: mpf) -> mpf:
-        return mp.sqrt(2 * inertia(state, q * q)[0] / torque)
-
-    pieces = int(pieces_per_radian * theta) + 1
-    ends = [mp.sqrt(theta * number / pieces) for number in range(pieces + 1)]
-    return mp.quad(slowness, ends, method="gauss-legendre", maxdegree=5)
-
-
-def speed_at(state: State, torque: mpf, theta: mpf) -> mpf:
-    """Crank speed at this angle, from rest at theta = 0 under a constant torque, by energy."""
-    return mp.sqrt(2 * torque * theta / inertia(state, theta)[0])
-
-
-def end_by_quadrature(state: State, torque: mpf, t_end: mpf, guess: mpf, digits: int = 30) -> Pair:
-    """(theta, omega) at t_end under a constant torque: Newton's method on the time."""
-    with mp.workdps(digits + 10):
-        theta, change = mpf(guess), mpf(1)
-        while abs(change) > mpf(10) ** -(digits // 2 + 2):
-            change = (mpf(t_end) - time_to(state, torque, theta)) * speed_at(state, torque, theta)
-            theta += change
-        return theta, speed_at(state, torque, theta)

@@ -237,14 +237,6 @@ def effective_inertia(state: State) -> mpf:
     return turning + mp.fsum(mass * dot(v, v) for mass, v in velocities)
 
 
-def effective_inertia_slope(state: State) -> mpf:
-    """The derivative of the effective inertia by theta, kg m2/rad."""
-    paths = ((state.m_crank, crank_centre), (state.m_rod, rod_centre), (state.m_slider, slider))
-    first, second = rod_turning(state)
-    moving = (2 * mpf(mass) * dot(*by_theta(path, state)[1:]) for mass, path in paths)
-    return mp.fsum(moving) + 2 * mpf(state.I_rod) * first * second
-
-
 def kinetic_energy(state: State) -> mpf:
     """Kinetic energy, J."""
     return effective_inertia(state) * mpf(state.omega) ** 2 / 2

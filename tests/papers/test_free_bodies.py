@@ -6,8 +6,10 @@ import random
 import pytest
 from mpmath import mp, mpf
 
+import desaxe as dx
 from tests.papers import free_bodies, loop
 from tests.papers.designs import DESIGNS, close, scale_of
+from tests.papers.designs_b import force_scale
 from tests.papers.free_bodies import Bodies
 from tests.papers.loop import Motion
 
@@ -56,6 +58,14 @@ def test_moment_about_the_crank_centre(number):
             outer += mpf(m) * (y * mpf(bodies.g_X) - x * mpf(bodies.g_Y))
         scale = sum(bodies[:3]) * scale_of("acceleration", motion) * motion.BC
         assert close(outer, change, scale, 30)
+
+
+@pytest.mark.parametrize("number", range(len(LOADED)))
+def test_package(number):
+    motion, bodies = LOADED[number]
+    solved, scale = free_bodies.solve(motion, bodies), force_scale(motion, sum(bodies[:3]), 0) + 1000
+    got = dx.evaluate(free_bodies.UNKNOWNS, **motion._asdict(), **bodies._asdict())
+    assert all(close(got[name], solved[name], scale, 12) for name in free_bodies.UNKNOWNS)
 
 
 def test_weight_of_a_crank_at_rest():

@@ -4,8 +4,10 @@ import itertools
 import math
 
 import numpy as np
+import pytest
 from mpmath import mp, mpf
 
+import desaxe as dx
 from tests.papers import curves_b as curves
 from tests.papers import free_bodies, loop
 from tests.papers import paper_b as B
@@ -44,6 +46,14 @@ def test_readings_of_the_torque():
     q = case_1(mpf("0.582"), 0)
     assert close(-free_bodies.solve(motion_of(q), LUMPED)["T_in"], curves.right(q), 0, 14)
     assert close(-free_bodies.solve(motion_of(q), ROD)["T_in"], curves.uniform(q), 0, 14)
+
+
+@pytest.mark.parametrize("e", OFFSETS)
+@pytest.mark.parametrize(("reading", "bodies"), [(curves.right, LUMPED), (curves.uniform, ROD)])
+def test_peak_of_the_package(reading, bodies, e):
+    loads = {name: value for name, value in bodies._asdict().items() if value is not None}
+    found = dx.peak("T_in", **loads, ec=e / 1000, AB=0.04, BC=0.064, omega0=curves.SPEED)["value"]
+    assert abs(found) == pytest.approx(float(max(torques(reading)[e])), rel=1e-11)
 
 
 @proves("B-table1-c", "given", says="Length of Connecting Rod [c] 64 Mm")
