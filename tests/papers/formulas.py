@@ -97,13 +97,13 @@ NO_FORMULA = {"B-eq50"}  # corrected by a sentence
 
 
 def terms(node):
-    """What a side adds up."""
+    """The summands of a side."""
     is_sum = isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Add, ast.Sub))
     return [*terms(node.left), *terms(node.right)] if is_sum else [node]
 
 
 def apart(text, v, wanted=None):
-    """How far the sides of a formula are from the first one, or from those wanted; of the terms' size."""
+    """Distance of the sides of a formula from the first one, or from those wanted; of the terms' size."""
     found = []
     for number, sides in enumerate(parse(text)):
         size = max(abs(value(term, v)) for side in sides for term in terms(side)) or 1
@@ -130,7 +130,7 @@ def opposite(text):
 
 
 def everywhere(row, verdict):
-    """Where an entry's formulas are not as right or as wrong as the verdict says: (form, design, source).
+    """(form, design, source) of an entry's formulas that are not as right or as wrong as the verdict says.
 
     A wrong form is what its hand-written twin makes of it, and off in every design; so is its opposite,
     unless the sign alone is wrong, and so is the form with one of two mistakes put right.

@@ -122,7 +122,7 @@ def case_2_as_printed():
 
 
 def signs_of_eq19():
-    """What Eq. 19 makes of test case 2, and the only choice of signs that prints the results."""
+    """Test case 2 by Eq. 19, and the only choice of signs that prints the results."""
     p = exact_point(CASE)
     run, tried = signs_that_were_run()
     assert run == [((-1, -1), (1, -1), (1, 1, 1))]
