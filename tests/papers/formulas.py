@@ -103,7 +103,7 @@ def terms(node):
 
 
 def apart(text, v, wanted=None):
-    """Distance of the sides of a formula from the first one, or from those wanted; of the terms' size."""
+    """Distance of the sides of a formula from the first one, or from given values, by the terms' size."""
     found = []
     for number, sides in enumerate(parse(text)):
         size = max(abs(value(term, v)) for side in sides for term in terms(side)) or 1
