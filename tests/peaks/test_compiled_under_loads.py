@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.loads.pieces import Place, piece_at, settled_pieces
+from desaxe.evaluation.arcs import arcs_of
+from desaxe.loads.pieces import Place, first_doubles
 from desaxe.peaks import compiled
 from tests.effort import cases
 
@@ -89,25 +90,25 @@ def test_machine_code_finds_what_numpy_finds_for_any_table(over, kind, both_ways
     assert alike
 
 
-def test_places_next_to_jumps_are_settled_as_integers_settle_them():
-    """Long doubles tell the piece of nearly every double there, and never another one."""
-    rng, settled = np.random.default_rng(8), 0
-    for _ in range(20):
+def test_jumps_are_settled_as_integers_settle_them():
+    """A step in long doubles tells the double behind nearly every jump, and never another one."""
+    rng, settled, every = np.random.default_rng(8), 0, 0
+    for _ in range(cases(20, 60, 2000)):
         one = {name: float(column[0]) for name, column in designs(rng, 1).items()}
-        load = tables(rng, rng.choice(["Y", "inner", "outer"]), "step", bool(rng.integers(2)))
-        from_centre = 0.0 if load.over == "Y" else dx.events(**one)[load.centre]
-        position = load.positions(smooth=True)[1]
-        places = [from_centre + side * position for side in (1.0, -1.0)]
-        angles = np.concatenate([np.ravel(dx.inverse(Y=Y, **one)["theta"]) for Y in places])
-        near = angles[np.isfinite(angles)]
-        theta = (near + np.arange(-3.0, 4.0)[:, None] * np.spacing(near)).reshape(-1)
-        lengths = [np.full(theta.size, one[name]) for name in ("ec", "AB", "BC")]
-        found = settled_pieces(load, Place(theta, lengths, np.full(theta.size, -1.0), 1))
-        for angle, piece in zip(theta.tolist(), found.tolist(), strict=True):
-            exact = piece_at(load, Place(angle, [one[name] for name in ("ec", "AB", "BC")], -1.0, 1))
-            assert piece in (-1, exact)
-            settled += piece >= 0
-    assert settled > 50 or np.finfo(np.longdouble).eps > 2.0**-60
+        load = tables(rng, rng.choice(["Y", "inner", "outer"]), rng.choice(["step", "linear"]), True)
+        columns = {name: np.array([side]) for name, side in one.items()} | {"omega0": np.array([1.0])}
+        arcs = arcs_of(load, columns, 1, -7.0, 7.0)
+        numbers = np.flatnonzero(arcs.leaps[0])
+        lengths = [np.full(numbers.size, one[name]) for name in ("ec", "AB", "BC")]
+        near = arcs.starts[0, numbers]
+        near = near + rng.integers(-3, 4, near.size) * np.spacing(near)
+        found = first_doubles(load, Place(near, lengths, 1.0, 1), arcs.turns[0, numbers])
+        place = Place(0.0, [one[name] for name in ("ec", "AB", "BC")], 1.0, 1)
+        for angle, number in zip(found.tolist(), numbers.tolist(), strict=True):
+            assert np.isnan(angle) or angle == arcs.first_angle(place, 0, number)
+            settled += not np.isnan(angle)
+            every += 1
+    assert settled > 0.9 * every > 50 or np.finfo(np.longdouble).eps > 2.0**-60
 
 
 def test_machine_code_of_another_form_does_not_serve(monkeypatch):

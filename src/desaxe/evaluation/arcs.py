@@ -4,23 +4,22 @@ Where an arc begins is rounded; which piece holds on it is not. So whoever holds
 right side of a jump, and can ask for the double next to it.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from math import inf, isfinite, nextafter, ulp
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..loads.angles import crossings, dead_centres, limit_angles, repeated
 from ..loads.load import OverY
-from ..loads.pieces import Place, piece_at, pieces_at, settled_pieces
+from ..loads.pieces import Place, first_doubles, piece_at, pieces_at
 from ..loads.resolve import way_of
 from ..loads.table import SAME
 from ..mechanism.names import LENGTHS
 from .values import values
 
 Array = NDArray[np.float64]
-NEXT = 3  # doubles on either side of a rounded angle, among which the exact one mostly is
 
 
 class Arcs(NamedTuple):
@@ -49,13 +48,9 @@ class Arcs(NamedTuple):
 
     def first_angles(self, place: Place, rows: NDArray[np.intp], numbers: NDArray[np.intp]) -> Array:
         """The first doubles of arcs that begin at jumps, exactly; `place` is that of the designs `rows`."""
-        starts, pieces = self.starts[rows, numbers], self.pieces[rows, numbers]
-        theta = starts + np.arange(-NEXT, NEXT + 1.0)[:, None] * np.spacing(starts)
-        known = settled_pieces(self.load, place._replace(theta=theta))
-        holds = known == pieces
-        found: Array = theta[holds.argmax(axis=0), np.arange(rows.size)]
-        begins = ~holds[0] & holds[-1] & (np.diff(holds, axis=0).sum(axis=0) == 1) & (known >= 0).all(axis=0)
-        for k in np.flatnonzero(~begins).tolist():
+        starts = self.starts[rows, numbers]
+        found: Array = first_doubles(self.load, place._replace(theta=starts), self.turns[rows, numbers])
+        for k in np.flatnonzero(np.isnan(found)).tolist():
             one = Place(0.0, [float(side[k]) for side in place.lengths], float(place.way[k]), place.branch)
             found[k] = self.first_angle(one, int(rows[k]), int(numbers[k]))
         return found
@@ -75,43 +70,70 @@ class Arcs(NamedTuple):
         return first + 0.5 * ((nextafter(after, -inf) if isfinite(after) else self.end) - first)
 
 
-def arcs_of(load: OverY, columns: Mapping[str, Array], branch: int, low: float, high: float) -> Arcs:
+def arcs_of(
+    load: OverY,
+    columns: Mapping[str, Array],
+    branch: int,
+    low: float,
+    high: float,
+    meeting: Array | None = None,
+) -> Arcs:
     """The arcs over a range of angles and the doubles beside it; columns have a value for each design.
 
     Each end is an arc of its own: there the value itself counts, on whichever side of a jump it is.
+
+    meeting   the angles in a turn at which pieces of the load meet, where they are known
     """
-    starts = _starts(load, [columns[name] for name in LENGTHS], branch, low, high)
+    lengths = [columns[name] for name in LENGTHS]
+    if meeting is None:
+        meeting = meeting_in_turn(load, lengths, branch)
+    starts = _starts(meeting, limit_angles(lengths), low, high)
     first = np.where(np.isfinite(starts), starts, high)
     after = np.where(np.isfinite(starts[:, 1:]), np.nextafter(starts[:, 1:], -inf), first[:, :-1])
     last = np.maximum(np.append(after, first[:, -1:], axis=1), first)
-    wide = {name: column[:, None] for name, column in columns.items()}
-    lengths, way = {name: wide[name] for name in LENGTHS}, way_of(wide)
-    theta = np.stack([first, first + 0.5 * (last - first)])
-    motion = values(list(load.motion()), {**lengths, "theta": theta}, branch)
-    place = Place(theta[1], tuple(lengths.values()), way, branch)
-    pieces = pieces_at(load, place, {name: found[1] for name, found in motion.items()})
-    before, along = np.roll(pieces, 1, axis=1), load.along({name: found[0] for name, found in motion.items()})
-    change = load.held(along, pieces)[0] - load.held(along, before)[0]
-    leaps, inward = np.abs(change) > SAME * load.largest, len(load.outward.rows)
-    turns = leaps & ((pieces < inward) != (before < inward))
-    same = pieces == before
-    same[:, 0] = leaps[:, 0] = turns[:, 0] = False
-    order = np.argsort(np.where(same, inf, starts), axis=1, kind="stable")
-    parts = (np.where(same, inf, starts), pieces, leaps & np.isfinite(starts), turns & np.isfinite(starts))
-    return Arcs(load, nextafter(high, inf), *(np.take_along_axis(part, order, axis=1) for part in parts))
+    wide = [length[:, None] for length in lengths]
+    theta = first + 0.5 * (last - first)
+    motion = values(list(load.motion()), {**dict(zip(LENGTHS, wide, strict=True)), "theta": theta}, branch)
+    way = way_of({name: column[:, None] for name, column in columns.items()})
+    pieces = pieces_at(load, Place(theta, wide, way, branch), motion)
+    changes = np.append(np.ones((len(pieces), 1), np.bool_), pieces[:, 1:] != pieces[:, :-1], axis=1)
+    rows, numbers = np.nonzero(changes)
+    here, before = pieces[rows, numbers], pieces[rows, np.maximum(numbers, 1) - 1]
+    angles = starts[rows, numbers]
+    own = {name: column[rows] for name, column in zip(LENGTHS, lengths, strict=True)}
+    motion = values(list(load.motion()), {**own, "theta": angles}, branch)
+    along = load.along(motion)
+    change = load.held(along, here)[0] - load.held(along, before)[0]
+    leaps, inward = (np.abs(change) > SAME * load.largest) & (numbers > 0), len(load.outward.rows)
+    turns = leaps & ((here < inward) != (before < inward))
+    places = rows, (np.cumsum(changes, axis=1) - 1)[rows, numbers]
+    shape = len(pieces), int(places[1].max(initial=0)) + 2
+
+    def placed(values_: NDArray[Any], empty: Any) -> NDArray[Any]:
+        table = np.full(shape, empty, values_.dtype)
+        table[places] = values_
+        return table
+
+    parts = placed(angles, inf), placed(here, 0), placed(leaps, False), placed(turns, False)
+    return Arcs(load, nextafter(high, inf), *parts)
 
 
-def _starts(load: OverY, lengths: list[Array], branch: int, low: float, high: float) -> Array:
-    """Angles at which arcs begin: knots, dead centres if the way matters, limits of the rod, ends."""
-    angles = [crossings(load, load.positions(smooth=True), lengths, branch), limit_angles(lengths)]
-    angles += [dead_centres(lengths)] if load.turns else []
-    between = repeated(np.concatenate(angles, axis=1), low, high)
+def meeting_in_turn(load: OverY, lengths: Sequence[Array], branch: int) -> Array:
+    """The angles in a turn at which pieces of a load meet: its positions, dead centres if the way matters."""
+    found = crossings(load, load.positions(smooth=True), lengths, branch)
+    return np.append(found, dead_centres(lengths), axis=1) if load.turns else found
+
+
+def _starts(meeting: Array, limits: Array, low: float, high: float) -> Array:
+    """Angles at which arcs begin: where pieces meet, limits of the rod, ends."""
+    between = repeated(np.append(meeting, limits, axis=1), low, high)
     between = np.where((between > nextafter(low, inf)) & (between < high), between, inf)
     ends = nextafter(low, -inf), low, nextafter(low, inf), high, nextafter(high, inf), inf
     starts = np.sort(np.append(between, np.tile(ends, (len(between), 1)), axis=1), axis=1)
     starts = starts[:, : np.isfinite(starts).sum(axis=1).max() + 1]
-    for k in range(1, starts.shape[1]):  # a position that is only just reached has two equal ones
-        starts[:, k] = np.maximum(starts[:, k], np.nextafter(starts[:, k - 1], inf))
+    if (starts[:, 1:] <= starts[:, :-1]).any():
+        for k in range(1, starts.shape[1]):  # a position that is only just reached has two equal ones
+            starts[:, k] = np.maximum(starts[:, k], np.nextafter(starts[:, k - 1], inf))
     return starts
 
 

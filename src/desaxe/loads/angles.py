@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import gcd
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +16,7 @@ from .load import TURN, Load, OverTheta, OverY, TableOverTheta
 from .stroke import OverStroke
 
 Array = NDArray[np.float64]
+A_BIT = 2.0**-30  # turns: more than the rounded number of turns is off
 ALL_TURN = 2.0**-12  # of BC: designs with more of it to spare have no limit angles
 
 
@@ -70,8 +70,9 @@ def limit_angles(lengths: Sequence[Array]) -> Array:
 
 def repeated(angles: Array, low: float, high: float) -> Array:
     """Repeat angles of one turn over a range; NaN outside of it."""
-    turns: Any = 2.0 * np.pi * np.arange(np.floor(low / (2.0 * np.pi)) - 1, np.ceil(high / (2.0 * np.pi)) + 2)
-    every: Array = (angles[..., None] + turns).reshape(*angles.shape[:-1], -1)
+    count = int(np.floor((high - low) / TURN + A_BIT)) + 1
+    turns = np.ceil((low - angles) / TURN - A_BIT)[..., None] + np.arange(float(count))
+    every: Array = (angles[..., None] + TURN * turns).reshape(*angles.shape[:-1], -1)
     return np.where((every >= low) & (every <= high), every, np.nan)
 
 

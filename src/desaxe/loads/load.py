@@ -37,6 +37,7 @@ class Load(ABC):
 
     over = "theta"
     parameters: tuple[str, ...] = ("theta",)  # that the load depends on
+    centre = ""  # the dead centre from which positions are measured: the name of its position
     unit: str | None = None
     plain: tuple[str, ...] = ()
 
@@ -167,7 +168,6 @@ class OverY(Load):
     over = "Y"
     parameters = ("theta", "ec", "AB", "BC")
     rises = 1.0  # the way of the slider in which the table is gone through upwards
-    centre = ""  # the dead centre from which positions are measured: the name of its position
 
     @property
     def kept(self) -> tuple[str, ...]:

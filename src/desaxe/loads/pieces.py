@@ -11,6 +11,9 @@ from .stroke import OverStroke
 
 NEAR = 2.0**-44  # of AB + BC: next to a jump, as far as a rounded position tells
 FLAT = 2.0**-36  # of AB: next to a dead centre, as far as a rounded slope tells
+MOST_STEPS = 8.0  # doubles between an angle and a jump that it is rounded from
+ROUNDED_STEP = 2.0**-20  # of the step between doubles: more than a step of Newton's method is off, next to it
+APART = 2.0**-40  # of BC: so far from a position the slider does not reach it next to a dead centre
 
 
 class Place(NamedTuple):
@@ -72,39 +75,46 @@ def piece_at(load: OverY, place: Place) -> int:
     return bisect_right(table.knots, slider) + (len(load.outward.rows) if inward else 0)
 
 
-def settled_pieces(load: OverY, place: Place) -> Any:
-    """The numbers of pieces at arrays of angles as `piece_at` has them; -1 where long doubles cannot tell.
+def first_doubles(load: OverY, place: Place, turns: Any) -> Any:
+    """The first doubles behind jumps, from their rounded angles; NaN where long doubles cannot tell.
 
-    Eleven bits more settle all but one of a thousand doubles next to a jump, a thousand times sooner. Where
-    a long double is a double nothing is settled.
+    A step of Newton's method: eleven bits more settle nearly all jumps, a thousand times sooner than integers
+    do. Where a long double is a double nothing is settled.
+
+    turns   true for jumps at dead centres; the others are at the nearest position of the load
     """
     with IMPORTS:
         import numpy as np
 
     unit = 4.0 * float(np.finfo(np.longdouble).eps)  # twice what these lines round, of the sizes below
     ec, AB, BC = (np.asarray(length, np.longdouble) for length in place.lengths)
-    theta = np.asarray(place.theta, np.longdouble)
+    theta, branch = np.asarray(place.theta, float), place.branch
     with np.errstate(all="ignore"):
-        sine, cosine = np.sin(theta), np.cos(theta)
+        sine, cosine = np.sin(theta.astype(np.longdouble)), np.cos(theta.astype(np.longdouble))
         across, cross = ec + AB * sine, np.abs(ec) + AB
         rise = np.sqrt((BC - across) * (BC + across))
-        x, room = AB * cosine + place.branch * rise, unit * (AB + rise + cross * np.abs(across) / rise)
-        slope = sine * rise + place.branch * cosine * across
-        room_of_slope = unit * (rise + cross * (1.0 + BC / rise))
+        x, room = AB * cosine + branch * rise, unit * (AB + rise + cross * np.abs(across) / rise)
+        slope = sine * rise + branch * cosine * across
+        bend = cosine * (rise + branch * AB * cosine) - sine * across * (branch + AB * cosine / rise)
         if isinstance(load, OverStroke):
             along = BC + AB if load.dead_centre == "outer" else BC - AB
             height = np.sqrt((along - ec) * (along + ec))
-            x = np.abs(np.copysign(height, place.branch * along) - x)
+            x = x - np.copysign(height, branch * along)
             room = room + unit * (height + (np.abs(ec) + np.abs(along)) ** 2 / height)
-        forward = np.where(np.less(place.way, 0.0), slope, -slope)
-        knots = np.array(load.outward.knots)
-        away = x[..., None] - knots
-        good = (np.abs(away) > room[..., None]).all(axis=-1) & (theta != 0.0)
-        if load.inward is not None:
-            good &= np.abs(slope) > room_of_slope
-    piece = (away >= 0.0).sum(axis=-1)
-    piece += np.where((forward < 0.0) & (load.inward is not None), len(load.outward.rows), 0)
-    return np.where(good & (unit < 2.0**-60), piece, -1)
+        rate, x = (-np.copysign(AB, x), np.abs(x)) if load.centre else (-AB, x)
+        steep = np.where(turns, bend, rate * slope / rise)
+        step = np.spacing(np.abs(theta))
+        away = x - np.array(sorted(set(load.outward.knots)))[:, None]
+        value = np.take_along_axis(away, np.abs(away).argmin(axis=0)[None], axis=0)[0]
+        error = np.where(turns, unit * (rise + cross * (1.0 + BC / rise)), room)
+        room += np.where(turns, APART * BC, 2.0 * MOST_STEPS * step * np.abs(steep))
+        alone = (np.abs(away) <= room).sum(axis=0) == np.where(turns, 0, 1)
+        steps = (-np.where(turns, slope, value) / (steep * step)).astype(float)
+        open_ = np.abs(error / (steep * step)) + ROUNDED_STEP
+        good = alone & (np.abs(steps) < MOST_STEPS) & (np.abs(steps - np.rint(steps)) > open_)
+        good &= np.spacing(np.abs(theta) + MOST_STEPS * step) == step
+        good &= np.spacing(np.abs(theta) - MOST_STEPS * step) == step
+        return np.where(good & (unit < 2.0**-60), theta + np.ceil(steps) * step, np.nan)
 
 
 def slider_of(load: OverY, place: Place) -> Slider:

@@ -196,6 +196,10 @@ class Plan(NamedTuple):
         return result
 
 
+MOST_PLANS = 1024
+_PLANS: dict[Any, tuple[Plan, tuple[str, ...]]] = {}  # without their loads, whose names follow
+
+
 def plan_of(
     names: Sequence[str], loads: Mapping[str, Load], state: bool, mu: bool, known: Register | None = None
 ) -> Plan:
@@ -206,6 +210,20 @@ def plan_of(
     known   the definitions that names have
     """
     known = known or register()
+    sorts = tuple((name, type(load), load.centre, load.has_slope) for name, load in loads.items())
+    key = tuple(names), sorts, state, mu, known
+    found = _PLANS.get(key)
+    if found is None:
+        if len(_PLANS) >= MOST_PLANS:
+            _PLANS.clear()
+        plan = _new_plan(names, loads, state, mu, known)
+        found = _PLANS[key] = plan._replace(loads={}), tuple(plan.loads)
+    return found[0]._replace(loads={name: loads[name] for name in found[1]})
+
+
+def _new_plan(
+    names: Sequence[str], loads: Mapping[str, Load], state: bool, mu: bool, known: Register
+) -> Plan:
     terms: dict[str, tuple[Term, ...]] = {}
     used: dict[str, Load] = {}
     forces_of: dict[str, tuple[str, ...]] = {}

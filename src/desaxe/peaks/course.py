@@ -62,9 +62,18 @@ class Course(NamedTuple):
 def course_of(designs: Designs) -> Course:
     """The loads of designs over their range of angles."""
     low, high = designs.theta
-    arcs = _arcs(designs)
+    over_Y = {name: load for name, load in designs.loads.items() if isinstance(load, OverY)}
+    dead = dead_centres([designs.columns[n] for n in LENGTHS]) if over_Y else np.empty((0, 0))
+    met = {name: _met(load, designs) for name, load in over_Y.items()}
+    arcs = _arcs(
+        designs,
+        {n: np.append(met[n].all, dead, axis=1) if a.turns else met[n].all for n, a in over_Y.items()},
+    )
+    turning = repeated(dead, low, high) if over_Y else dead
     parts = [
-        _over_Y(load, arcs.get(name), designs) if isinstance(load, OverY) else _over_theta(load, designs)
+        _over_Y(over_Y[name], arcs.get(name), designs, met[name], turning)
+        if name in met
+        else _over_theta(load, designs)
         for name, load in designs.loads.items()
     ]
     nodes = np.concatenate([np.full((designs.size, 1), low), *(part.nodes for part in parts)], axis=1)
@@ -99,28 +108,41 @@ def _jumps_over_theta(load: OverTheta, low: float, high: float) -> Array:
     return np.array(load.nodes(low - room, high + room, smooth=False))
 
 
-def _over_Y(load: OverY, arcs: Arcs | None, designs: Designs) -> _Part:
+class _Met(NamedTuple):
+    """The angles in a turn at which pieces of a load over Y meet; those at which it is not smooth."""
+
+    all: Array
+    bent: Array
+
+
+def _met(load: OverY, designs: Designs) -> _Met:
     lengths = [designs.columns[n] for n in LENGTHS]
     places, every = load.positions(smooth=False), load.positions(smooth=True)
     bent = crossings(load, places, lengths, designs.branch)
-    crossing = KIND_OF[load.centre]
-    own, turning = (repeated(angles, *designs.theta) for angles in (bent, dead_centres(lengths)))
+    return _Met(bent if every == places else crossings(load, every, lengths, designs.branch), bent)
+
+
+def _over_Y(load: OverY, arcs: Arcs | None, designs: Designs, met: _Met, turning: Array) -> _Part:
+    crossing, own = KIND_OF[load.centre], repeated(met.bent, *designs.theta)
     kinks = [(own, crossing), (turning, TURNING)]
     if arcs is None:
-        smooth = bent if every == places else crossings(load, every, lengths, designs.branch)
         room = BESIDE * np.spacing(1.0 + np.abs(own))  # so that no search halves its way to a kink
-        return _Part(np.concatenate([repeated(smooth, *designs.theta), own - room, own + room], 1), kinks, [])
+        smooth = own if met.all is met.bent else repeated(met.all, *designs.theta)
+        return _Part(np.concatenate([smooth, own - room, own + room], axis=1), kinks, [])
     before = np.where(arcs.leaps, np.nextafter(arcs.starts, -inf), np.nan)
     jumps = [(np.where(arcs.turns, arcs.starts, np.nan), TURNING)]
     jumps += [(np.where(arcs.leaps & ~arcs.turns, arcs.starts, np.nan), crossing)]
     return _Part(np.append(arcs.starts, before, axis=1), kinks, jumps)
 
 
-def _arcs(designs: Designs) -> dict[str, Arcs]:
-    """The arcs of the loads over Y that jump; of designs with NaN among their inputs those of others."""
+def _arcs(designs: Designs, met: Mapping[str, Array]) -> dict[str, Arcs]:
+    """The arcs of the loads over Y that jump; of designs with NaN among their inputs those of others.
+
+    met   the angles in a turn at which pieces of each load over Y meet
+    """
     clean = {name: np.where(np.isnan(column), 1.0, column) for name, column in designs.columns.items()}
     arcs = {
-        name: arcs_of(load, clean, designs.branch, *designs.theta)
+        name: arcs_of(load, clean, designs.branch, *designs.theta, met[name])
         for name, load in designs.loads.items()
         if isinstance(load, OverY) and load.jumping
     }

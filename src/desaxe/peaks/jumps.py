@@ -27,12 +27,18 @@ KEPT = {
 }
 
 
-class Jump(NamedTuple):
-    """A jump next to an extremum: the first angle after it, the extremum's side, what keeps its place."""
+class Jumps(NamedTuple):
+    """The jumps next to extrema: the designs, the first angle after each, the extremum's side, what keeps it.
 
-    start: float
-    side: int
-    kind: int
+    value, slope   on that side
+    """
+
+    rows: Rows
+    starts: Array
+    sides: NDArray[np.int8]
+    kinds: NDArray[np.int8]
+    value: Array
+    slope: Array
 
 
 def at_jumps(
@@ -48,60 +54,78 @@ def at_jumps(
     """
     side = np.zeros(theta.size, np.int8)
     jumps = _jumps(values, np.where(usable, theta, np.nan))
-    rows = np.array(sorted(jumps), np.intp)
-    if rows.size:
-        found = [jumps[row] for row in rows]
-        side[rows] = [jump.side for jump in found]
-        pieces = values.course.pieces(rows, theta[rows])
-        theta[rows] = np.clip(_nearest(values, rows, found), *values.designs.theta)
-        turning = np.array([jump.kind == TURNING for jump in found])
-        if values.designs.rubs and turning.any():
-            some = {name: own[turning] for name, own in pieces.items()}
-            theta[rows[turning]] = _certain(
-                values, rows[turning], theta[rows[turning]], side[rows[turning]], some
-            )
-        new = np.array(values.at(len(out), rows, theta[rows], pieces))
-        out[:2, rows] = new[:2]
-        out[2:, rows] = np.where((kind == 0) & (new[0] < 0.0), -new[2:], new[2:])
+    if jumps is not None and jumps.rows.size:
+        rows, kinds = jumps.rows, jumps.kinds
+        side[rows] = jumps.sides
+        _complete(values, kind, jumps, theta, out)
         for what in KEPT:
-            _move(values, kind, what, rows[np.array([jump.kind == what for jump in found])], theta, out)
+            _move(values, kind, what, rows[kinds == what], theta, out)
     angles, kinds = values.course.kinks
-    for what in KEPT:
-        near = (np.abs(angles[:, kinds == what] - theta[:, None]) <= AT_KINK).any(axis=1) & (side == 0)
-        _move(values, kind, what, np.flatnonzero(near), theta, out)
+    near = np.abs(angles - theta[:, None]) <= AT_KINK
+    near[side != 0] = False
+    for what in KEPT if near.any() else ():
+        _move(values, kind, what, np.flatnonzero(near[:, kinds == what].any(axis=1)), theta, out)
     return side
 
 
-def _jumps(values: Values, theta: Array) -> dict[int, Jump]:
-    """The jumps next to extrema, by the number of the design; of an angle between two the one before it."""
+def _complete(values: Values, kind: int, jumps: Jumps, theta: Array, out: Array) -> None:
+    """The nearest double to each jump, with value, slope and gradient there.
+
+    The search ends next to it: of so few doubles the slope tells what they change, and no gradient changes.
+    """
+    rows, before = jumps.rows, theta[jumps.rows]
+    pieces = values.course.pieces(rows, before)
+    theta[rows] = np.clip(_nearest(values, jumps), *values.designs.theta)
+    turning = jumps.kinds == TURNING
+    if values.designs.rubs and turning.any():
+        some = {name: own[turning] for name, own in pieces.items()}
+        there = rows[turning]
+        theta[there] = _certain(values, there, theta[there], jumps.sides[turning], some)
+    first = np.where(jumps.sides > 0, jumps.starts, np.nextafter(jumps.starts, -inf))
+    out[0, rows] = jumps.value + jumps.slope * (theta[rows] - first)
+    out[1, rows] = jumps.slope
+    moved = np.maximum(np.abs(theta[rows] - first), np.abs(theta[rows] - before))
+    far = (moved > ROUNDED * np.spacing(1.0 + np.abs(before))) | values.designs.rubs
+    if far.any():
+        rows = rows[far]
+        new = np.array(values.at(len(out), rows, theta[rows], {n: own[far] for n, own in pieces.items()}))
+        out[:2, rows] = new[:2]
+        out[2:, rows] = np.where((kind == 0) & (new[0] < 0.0), -new[2:], new[2:])
+
+
+def _jumps(values: Values, theta: Array) -> Jumps | None:
+    """The jumps next to extrema; of an angle between two the one before it."""
     angles, kinds = values.course.jumps
     with np.errstate(invalid="ignore"):
+        away = np.abs(theta[:, None] - angles)
         room = BESIDE * np.spacing(np.maximum(np.abs(theta[:, None]), np.abs(angles)))
         if values.designs.rubs:  # there `Course.aside` makes more angles equal
             room[:, kinds == TURNING] = 1.5 * ROUNDED * np.spacing(1.0 + np.abs(theta[:, None]))
-        rows, places = np.nonzero(np.abs(theta[:, None] - angles) <= room)
+        rows, places = np.nonzero(away <= room)
     if not rows.size:
-        return {}
+        return None
     starts = angles[rows, places]
+    sides = np.where(theta[rows] < starts, np.int8(-1), np.int8(1))
     both = values.at(2, np.tile(rows, 2), np.append(np.nextafter(starts, -inf), starts))
-    before, after = np.split(np.array(both), 2, axis=1)
-    value, slope = np.maximum(np.abs(before), np.abs(after))
-    apart = ~(np.abs(before - after)[0] <= EQUAL * value + slope * ROUNDED * np.spacing(1.0 + np.abs(starts)))
-    found: dict[int, dict[int, Jump]] = {}
-    for row, place, start in zip(rows[apart].tolist(), places[apart], starts[apart].tolist(), strict=True):
-        jump = Jump(start, -1 if theta[row] < start else 1, int(kinds[place]))
-        found.setdefault(row, {})[jump.side] = jump
-    return {row: own.get(1) or own[-1] for row, own in found.items()}
+    value, slope = (row.reshape(2, -1) for row in both)
+    most = EQUAL * np.abs(value).max(axis=0)
+    most += np.abs(slope).max(axis=0) * ROUNDED * np.spacing(1.0 + np.abs(starts))
+    apart = np.flatnonzero(~(np.abs(value[0] - value[1]) <= most))
+    order = apart[np.lexsort((sides[apart], rows[apart]))]
+    last = order[np.append(rows[order][1:] != rows[order][:-1], True)[: order.size]]
+    own = np.where(sides[last] > 0, value[1, last], value[0, last])
+    own_slope = np.where(sides[last] > 0, slope[1, last], slope[0, last])
+    return Jumps(rows[last], starts[last], sides[last], kinds[places[last]], own, own_slope)
 
 
-def _nearest(values: Values, rows: Rows, jumps: list[Jump]) -> Array:
-    """The doubles that are nearest to jumps on a side, of the designs `rows`."""
-    starts, after = np.array([jump.start for jump in jumps]), np.array([jump.side > 0 for jump in jumps])
+def _nearest(values: Values, jumps: Jumps) -> Array:
+    """The doubles that are nearest to jumps on their sides."""
+    rows, starts, after = jumps.rows, jumps.starts, jumps.sides > 0
     first, last = np.full((2, rows.size), np.nan)
     for arcs in values.course.arcs.values():
         here, numbers = np.nonzero((arcs.starts[rows] == starts[:, None]) & arcs.leaps[rows])
         own = rows[here]
-        angles = arcs.first_angles(values.designs.part(own).places(), own, numbers)
+        angles = arcs.first_angles(values.designs.places(own), own, numbers)
         np.fmin.at(first, here, angles)
         np.fmax.at(last, here, angles)
     nearest = np.where(after, last, np.nextafter(first, -inf))

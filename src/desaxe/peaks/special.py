@@ -59,10 +59,10 @@ class Designs(NamedTuple):
         design = {name: float(column[row]) for name, column in self.columns.items()}
         return Place(0.0, [design[name] for name in LENGTHS], way_of(design), self.branch)
 
-    def places(self) -> Place:
-        """Marks that tell the sliders of all designs their places, at the angle 0."""
+    def places(self, rows: NDArray[np.intp]) -> Place:
+        """Marks that tell the sliders of the designs `rows` their places, at the angle 0."""
         way = np.broadcast_to(way_of(self.columns), (self.size,))
-        return Place(0.0, [self.columns[name] for name in LENGTHS], way, self.branch)
+        return Place(0.0, [self.columns[name][rows] for name in LENGTHS], way[rows], self.branch)
 
     def values(self, names: tuple[str, ...], rows: NDArray[np.intp], theta: Array) -> dict[str, Any]:
         """Values of names by their name, for the designs `rows` at one angle each."""
