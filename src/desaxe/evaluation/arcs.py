@@ -4,8 +4,8 @@ Where an arc begins is rounded; which piece holds on it is not. So whoever holds
 right side of a jump, and can ask for the double next to it.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from math import inf, isfinite, nextafter, ulp
+from collections.abc import Callable, Mapping
+from math import inf, isfinite, nan, nextafter, ulp
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,6 +20,7 @@ from ..mechanism.names import LENGTHS
 from .values import values
 
 Array = NDArray[np.float64]
+BESIDE = 1e-6  # rad: more than what is rounded of an angle next to a dead centre
 
 
 class Arcs(NamedTuple):
@@ -48,20 +49,25 @@ class Arcs(NamedTuple):
 
     def first_angles(self, place: Place, rows: NDArray[np.intp], numbers: NDArray[np.intp]) -> Array:
         """The first doubles of arcs that begin at jumps, exactly; `place` is that of the designs `rows`."""
-        starts = self.starts[rows, numbers]
-        found: Array = first_doubles(self.load, place._replace(theta=starts), self.turns[rows, numbers])
-        for k in np.flatnonzero(np.isnan(found)).tolist():
+        near = place._replace(theta=self.starts[rows, numbers])
+        found, sure = first_doubles(self.load, near, self.turns[rows, numbers])
+        for k in np.flatnonzero(~sure).tolist():
             one = Place(0.0, [float(side[k]) for side in place.lengths], float(place.way[k]), place.branch)
-            found[k] = self.first_angle(one, int(rows[k]), int(numbers[k]))
-        return found
+            found[k] = self.first_angle(one, int(rows[k]), int(numbers[k]), float(found[k]))
+        return np.asarray(found)
 
-    def first_angle(self, place: Place, row: int, number: int) -> float:
-        """The first double of an arc that begins at a jump, exactly; `place` is the design's."""
+    def first_angle(self, place: Place, row: int, number: int, known: float = nan) -> float:
+        """The first double of an arc that begins at a jump, exactly; `place` is the design's.
+
+        known   that double or the one before it
+        """
         piece = int(self.pieces[row, number])
 
         def holds(theta: float) -> bool:
             return piece_at(self.load, place._replace(theta=theta)) == piece
 
+        if known == known:
+            return known if holds(known) else nextafter(known, inf)
         before, inside = self._middle(row, number - 1), self._middle(row, number)
         return _first(holds, before, float(self.starts[row, number]), inside)
 
@@ -74,8 +80,7 @@ def arcs_of(
     load: OverY,
     columns: Mapping[str, Array],
     branch: int,
-    low: float,
-    high: float,
+    ends: tuple[float, float],
     meeting: Array | None = None,
 ) -> Arcs:
     """The arcs over a range of angles and the doubles beside it; columns have a value for each design.
@@ -84,18 +89,20 @@ def arcs_of(
 
     meeting   the angles in a turn at which pieces of the load meet, where they are known
     """
+    low, high = ends
     lengths = [columns[name] for name in LENGTHS]
     if meeting is None:
-        meeting = meeting_in_turn(load, lengths, branch)
+        crossed = crossings(load, load.positions(smooth=True), lengths, branch)
+        meeting = meeting_in_turn(load, crossed, dead_centres(lengths))
     starts = _starts(meeting, limit_angles(lengths), low, high)
     first = np.where(np.isfinite(starts), starts, high)
-    after = np.where(np.isfinite(starts[:, 1:]), np.nextafter(starts[:, 1:], -inf), first[:, :-1])
+    after = np.where(np.isfinite(starts[:, 1:]), np.nextafter(starts[:, 1:], -inf), high)
     last = np.maximum(np.append(after, first[:, -1:], axis=1), first)
-    wide = [length[:, None] for length in lengths]
-    theta = first + 0.5 * (last - first)
+    theta = (first + 0.5 * (last - first)).reshape(-1)
+    way = np.broadcast_to(way_of(columns), lengths[0].shape)
+    *wide, ways = (np.repeat(column, first.shape[1]) for column in (*lengths, way))
     motion = values(list(load.motion()), {**dict(zip(LENGTHS, wide, strict=True)), "theta": theta}, branch)
-    way = way_of({name: column[:, None] for name, column in columns.items()})
-    pieces = pieces_at(load, Place(theta, wide, way, branch), motion)
+    pieces = pieces_at(load, Place(theta, wide, ways, branch), motion).reshape(first.shape)
     changes = np.append(np.ones((len(pieces), 1), np.bool_), pieces[:, 1:] != pieces[:, :-1], axis=1)
     rows, numbers = np.nonzero(changes)
     here, before = pieces[rows, numbers], pieces[rows, np.maximum(numbers, 1) - 1]
@@ -118,17 +125,19 @@ def arcs_of(
     return Arcs(load, nextafter(high, inf), *parts)
 
 
-def meeting_in_turn(load: OverY, lengths: Sequence[Array], branch: int) -> Array:
-    """The angles in a turn at which pieces of a load meet: its positions, dead centres if the way matters."""
-    found = crossings(load, load.positions(smooth=True), lengths, branch)
-    return np.append(found, dead_centres(lengths), axis=1) if load.turns else found
+def meeting_in_turn(load: OverY, crossed: Array, dead: Array) -> Array:
+    """The angles in a turn at which pieces of a load meet: at its positions, and where the way matters."""
+    return np.append(crossed, dead, axis=1) if load.turns else crossed
 
 
 def _starts(meeting: Array, limits: Array, low: float, high: float) -> Array:
-    """Angles at which arcs begin: where pieces meet, limits of the rod, ends."""
-    between = repeated(np.append(meeting, limits, axis=1), low, high)
+    """Angles at which arcs begin: where pieces meet, limits of the rod, ends if pieces meet next to them."""
+    between = repeated(np.append(meeting, limits, axis=1), low - BESIDE, high + BESIDE)
+    every = between[between == between]
+    beside = ((every <= low + BESIDE) | (every >= high - BESIDE)).any()
     between = np.where((between > nextafter(low, inf)) & (between < high), between, inf)
-    ends = nextafter(low, -inf), low, nextafter(low, inf), high, nextafter(high, inf), inf
+    ends = (low, nextafter(low, inf), high, nextafter(high, inf)) if beside else ()
+    ends = nextafter(low, -inf), *ends, inf
     starts = np.sort(np.append(between, np.tile(ends, (len(between), 1)), axis=1), axis=1)
     starts = starts[:, : np.isfinite(starts).sum(axis=1).max() + 1]
     if (starts[:, 1:] <= starts[:, :-1]).any():

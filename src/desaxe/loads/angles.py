@@ -33,6 +33,16 @@ def crossings(load: OverY, places: Sequence[float], lengths: Sequence[Array], br
     return passages(np.concatenate([centre + side * distance for side in ways], axis=1), lengths, branch)
 
 
+def meeting_and_bent(load: OverY, lengths: Sequence[Array], branch: int) -> tuple[Array, Array]:
+    """The crank angles [rad] in a turn at which pieces of a load meet; those where it is not smooth."""
+    every, bent = load.positions(smooth=True), load.positions(smooth=False)
+    found = crossings(load, every, lengths, branch)
+    if bent == every:
+        return found, found
+    known = [place in bent for place in every if place > 0.0 or not load.centre]
+    return found, found[:, np.resize(known, found.shape[1])]
+
+
 def zero_of(load: OverY, lengths: Sequence[Array], branch: int) -> Array:
     """The position [m] of each design from which a load measures positions; NaN where there is none."""
     if not load.centre:
@@ -70,9 +80,11 @@ def limit_angles(lengths: Sequence[Array]) -> Array:
 
 def repeated(angles: Array, low: float, high: float) -> Array:
     """Repeat angles of one turn over a range; NaN outside of it."""
-    count = int(np.floor((high - low) / TURN + A_BIT)) + 1
-    turns = np.ceil((low - angles) / TURN - A_BIT)[..., None] + np.arange(float(count))
-    every: Array = (angles[..., None] + TURN * turns).reshape(*angles.shape[:-1], -1)
+    turns, count = np.ceil((low - angles) / TURN - A_BIT), int(np.floor((high - low) / TURN + A_BIT)) + 1
+    if count > 1 and not (angles + TURN * (turns + (count - 1.0)) <= high).any():
+        count -= 1
+    every = angles[..., None] + TURN * (turns[..., None] + np.arange(float(count)))
+    every = every.reshape(*angles.shape[:-1], angles.shape[-1] * count)
     return np.where((every >= low) & (every <= high), every, np.nan)
 
 

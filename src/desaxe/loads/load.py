@@ -231,7 +231,7 @@ class OverY(Load):
         _, origins, rows = self._arrays
         with np.errstate(invalid="ignore"):
             distance = np.where(np.isfinite(Y), Y - origins[piece], np.nan)
-            value, slope = polynomial(rows[:, piece], distance)
+            value, slope = polynomial(rows.take(piece, axis=1), distance)
         return value, slope
 
     def edges(self, Y: Any) -> Any:

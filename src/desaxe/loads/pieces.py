@@ -75,11 +75,11 @@ def piece_at(load: OverY, place: Place) -> int:
     return bisect_right(table.knots, slider) + (len(load.outward.rows) if inward else 0)
 
 
-def first_doubles(load: OverY, place: Place, turns: Any) -> Any:
-    """The first doubles behind jumps, from their rounded angles; NaN where long doubles cannot tell.
+def first_doubles(load: OverY, place: Place, turns: Any) -> tuple[Any, Any]:
+    """The first doubles behind jumps, from their rounded angles, and where long doubles are sure of that.
 
-    A step of Newton's method: eleven bits more settle nearly all jumps, a thousand times sooner than integers
-    do. Where a long double is a double nothing is settled.
+    Elsewhere it is that double or the next one; NaN where any may be, as where a long double is a double. A
+    step of Newton's method: eleven bits more settle nearly all jumps, a thousand times sooner than integers.
 
     turns   true for jumps at dead centres; the others are at the nearest position of the load
     """
@@ -87,34 +87,44 @@ def first_doubles(load: OverY, place: Place, turns: Any) -> Any:
         import numpy as np
 
     unit = 4.0 * float(np.finfo(np.longdouble).eps)  # twice what these lines round, of the sizes below
-    ec, AB, BC = (np.asarray(length, np.longdouble) for length in place.lengths)
     theta, branch = np.asarray(place.theta, float), place.branch
     with np.errstate(all="ignore"):
+        ec, AB, BC = (np.asarray(length, np.longdouble) for length in place.lengths)
         sine, cosine = np.sin(theta.astype(np.longdouble)), np.cos(theta.astype(np.longdouble))
-        across, cross = ec + AB * sine, np.abs(ec) + AB
+        across = ec + AB * sine
         rise = np.sqrt((BC - across) * (BC + across))
-        x, room = AB * cosine + branch * rise, unit * (AB + rise + cross * np.abs(across) / rise)
-        slope = sine * rise + branch * cosine * across
-        bend = cosine * (rise + branch * AB * cosine) - sine * across * (branch + AB * cosine / rise)
+        x, slope = AB * cosine + branch * rise, sine * rise + branch * cosine * across
         if isinstance(load, OverStroke):
             along = BC + AB if load.dead_centre == "outer" else BC - AB
             height = np.sqrt((along - ec) * (along + ec))
             x = x - np.copysign(height, branch * along)
-            room = room + unit * (height + (np.abs(ec) + np.abs(along)) ** 2 / height)
         rate, x = (-np.copysign(AB, x), np.abs(x)) if load.centre else (-AB, x)
-        steep = np.where(turns, bend, rate * slope / rise)
-        step = np.spacing(np.abs(theta))
-        away = x - np.array(sorted(set(load.outward.knots)))[:, None]
-        value = np.take_along_axis(away, np.abs(away).argmin(axis=0)[None], axis=0)[0]
+        away = (x - np.array(sorted(set(load.outward.knots)))[:, None]).astype(float)
+        # What is small has its digits: the rest needs no more of them than doubles have.
+        sine, cosine, across, rise, slope, rate = (
+            part.astype(float) for part in (sine, cosine, across, rise, slope, rate)
+        )
+        ec, AB, BC = place.lengths
+        cross = np.abs(ec) + AB
+        room = unit * (AB + rise + cross * np.abs(across) / rise)
+        if isinstance(load, OverStroke):
+            height, along = height.astype(float), along.astype(float)
+            room += unit * (height + (np.abs(ec) + np.abs(along)) ** 2 / height)
+        bend = cosine * (rise + branch * AB * cosine) - sine * across * (branch + AB * cosine / rise)
+        steep, step = np.where(turns, bend, rate * slope / rise), np.spacing(np.abs(theta))
         error = np.where(turns, unit * (rise + cross * (1.0 + BC / rise)), room)
+        size = np.abs(away)
+        value = np.where(turns, slope, away[size.argmin(axis=0), np.arange(theta.size)])
         room += np.where(turns, APART * BC, 2.0 * MOST_STEPS * step * np.abs(steep))
-        alone = (np.abs(away) <= room).sum(axis=0) == np.where(turns, 0, 1)
-        steps = (-np.where(turns, slope, value) / (steep * step)).astype(float)
+        alone = (size <= room).sum(axis=0) == np.where(turns, 0, 1)
+        steps = -value / (steep * step)
         open_ = np.abs(error / (steep * step)) + ROUNDED_STEP
-        good = alone & (np.abs(steps) < MOST_STEPS) & (np.abs(steps - np.rint(steps)) > open_)
+        sure = np.abs(steps - np.rint(steps)) > open_
+        good = alone & (np.abs(steps) < MOST_STEPS) & (open_ < 0.5) & (unit < 2.0**-60)
         good &= np.spacing(np.abs(theta) + MOST_STEPS * step) == step
         good &= np.spacing(np.abs(theta) - MOST_STEPS * step) == step
-        return np.where(good & (unit < 2.0**-60), theta + np.ceil(steps) * step, np.nan)
+        steps = np.where(sure, np.ceil(steps), np.rint(steps))
+        return np.where(good, theta + steps * step, np.nan), sure & good
 
 
 def slider_of(load: OverY, place: Place) -> Slider:

@@ -77,7 +77,7 @@ class Table:
                 x = np.where(x < first, x + period, np.where(x - period >= first, x - period, x))
             piece = np.searchsorted(knots, x, side="right")
             distance = np.where(np.isfinite(x), x - knots[np.maximum(piece - 1, 0)], np.nan)
-            value, slope = polynomial(rows[:, piece], distance)
+            value, slope = polynomial(rows.take(piece, axis=1), distance)
         return value, slope
 
     @computed_once

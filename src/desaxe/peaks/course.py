@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.arcs import Arcs, arcs_of
-from ..loads.angles import crossings, dead_centres, repeated
+from ..evaluation.arcs import Arcs, arcs_of, meeting_in_turn
+from ..loads.angles import dead_centres, meeting_and_bent, repeated
 from ..loads.load import Load, OverTheta, OverY
 from ..mechanism.names import LENGTHS
 from .nodes import Array
@@ -63,15 +63,13 @@ def course_of(designs: Designs) -> Course:
     """The loads of designs over their range of angles."""
     low, high = designs.theta
     over_Y = {name: load for name, load in designs.loads.items() if isinstance(load, OverY)}
-    dead = dead_centres([designs.columns[n] for n in LENGTHS]) if over_Y else np.empty((0, 0))
-    met = {name: _met(load, designs) for name, load in over_Y.items()}
-    arcs = _arcs(
-        designs,
-        {n: np.append(met[n].all, dead, axis=1) if a.turns else met[n].all for n, a in over_Y.items()},
-    )
+    lengths = [designs.columns[n] for n in LENGTHS] if over_Y else []
+    dead = dead_centres(lengths) if over_Y else np.empty((0, 0))
+    met = {name: meeting_and_bent(load, lengths, designs.branch) for name, load in over_Y.items()}
+    arcs = _arcs(designs, {name: every for name, (every, _) in met.items()}, dead)
     turning = repeated(dead, low, high) if over_Y else dead
     parts = [
-        _over_Y(over_Y[name], arcs.get(name), designs, met[name], turning)
+        _over_Y(over_Y[name], arcs.get(name), designs, *met[name], turning)
         if name in met
         else _over_theta(load, designs)
         for name, load in designs.loads.items()
@@ -108,26 +106,14 @@ def _jumps_over_theta(load: OverTheta, low: float, high: float) -> Array:
     return np.array(load.nodes(low - room, high + room, smooth=False))
 
 
-class _Met(NamedTuple):
-    """The angles in a turn at which pieces of a load over Y meet; those at which it is not smooth."""
-
-    all: Array
-    bent: Array
-
-
-def _met(load: OverY, designs: Designs) -> _Met:
-    lengths = [designs.columns[n] for n in LENGTHS]
-    places, every = load.positions(smooth=False), load.positions(smooth=True)
-    bent = crossings(load, places, lengths, designs.branch)
-    return _Met(bent if every == places else crossings(load, every, lengths, designs.branch), bent)
-
-
-def _over_Y(load: OverY, arcs: Arcs | None, designs: Designs, met: _Met, turning: Array) -> _Part:
-    crossing, own = KIND_OF[load.centre], repeated(met.bent, *designs.theta)
+def _over_Y(
+    load: OverY, arcs: Arcs | None, designs: Designs, every: Array, bent: Array, turning: Array
+) -> _Part:
+    crossing, own = KIND_OF[load.centre], repeated(bent, *designs.theta)
     kinks = [(own, crossing), (turning, TURNING)]
     if arcs is None:
         room = BESIDE * np.spacing(1.0 + np.abs(own))  # so that no search halves its way to a kink
-        smooth = own if met.all is met.bent else repeated(met.all, *designs.theta)
+        smooth = own if every is bent else repeated(every, *designs.theta)
         return _Part(np.concatenate([smooth, own - room, own + room], axis=1), kinks, [])
     before = np.where(arcs.leaps, np.nextafter(arcs.starts, -inf), np.nan)
     jumps = [(np.where(arcs.turns, arcs.starts, np.nan), TURNING)]
@@ -135,16 +121,13 @@ def _over_Y(load: OverY, arcs: Arcs | None, designs: Designs, met: _Met, turning
     return _Part(np.append(arcs.starts, before, axis=1), kinks, jumps)
 
 
-def _arcs(designs: Designs, met: Mapping[str, Array]) -> dict[str, Arcs]:
-    """The arcs of the loads over Y that jump; of designs with NaN among their inputs those of others.
-
-    met   the angles in a turn at which pieces of each load over Y meet
-    """
+def _arcs(designs: Designs, met: Mapping[str, Array], dead: Array) -> dict[str, Arcs]:
+    """The arcs of the loads over Y that jump; of designs with NaN among their inputs those of others."""
     clean = {name: np.where(np.isnan(column), 1.0, column) for name, column in designs.columns.items()}
     arcs = {
-        name: arcs_of(load, clean, designs.branch, *designs.theta, met[name])
-        for name, load in designs.loads.items()
-        if isinstance(load, OverY) and load.jumping
+        name: arcs_of(load, clean, designs.branch, designs.theta, meeting_in_turn(load, every, dead))
+        for name, every in met.items()
+        if isinstance(load := designs.loads[name], OverY) and load.jumping
     }
     if len(designs.loads) > 1:
         _part_jumps(designs._replace(columns=clean), arcs)

@@ -74,21 +74,18 @@ def _complete(values: Values, kind: int, jumps: Jumps, theta: Array, out: Array)
     The search ends next to it: of so few doubles the slope tells what they change, and no gradient changes.
     """
     rows, before = jumps.rows, theta[jumps.rows]
-    pieces = values.course.pieces(rows, before)
-    theta[rows] = np.clip(_nearest(values, jumps), *values.designs.theta)
-    turning = jumps.kinds == TURNING
-    if values.designs.rubs and turning.any():
-        some = {name: own[turning] for name, own in pieces.items()}
-        there = rows[turning]
-        theta[there] = _certain(values, there, theta[there], jumps.sides[turning], some)
+    there = np.clip(_nearest(values, jumps), *values.designs.theta)
+    turning = (jumps.kinds == TURNING) & values.designs.rubs
+    if turning.any():
+        there[turning] = _certain(values, rows[turning], there[turning], jumps.sides[turning])
     first = np.where(jumps.sides > 0, jumps.starts, np.nextafter(jumps.starts, -inf))
-    out[0, rows] = jumps.value + jumps.slope * (theta[rows] - first)
-    out[1, rows] = jumps.slope
-    moved = np.maximum(np.abs(theta[rows] - first), np.abs(theta[rows] - before))
+    theta[rows], out[1, rows] = there, jumps.slope
+    out[0, rows] = jumps.value + jumps.slope * (there - first)
+    moved = np.maximum(np.abs(there - first), np.abs(there - before))
     far = (moved > ROUNDED * np.spacing(1.0 + np.abs(before))) | values.designs.rubs
     if far.any():
         rows = rows[far]
-        new = np.array(values.at(len(out), rows, theta[rows], {n: own[far] for n, own in pieces.items()}))
+        new = np.array(values.at(len(out), rows, there[far], values.course.pieces(rows, before[far])))
         out[:2, rows] = new[:2]
         out[2:, rows] = np.where((kind == 0) & (new[0] < 0.0), -new[2:], new[2:])
 
@@ -132,7 +129,7 @@ def _nearest(values: Values, jumps: Jumps) -> Array:
     return np.where(np.isnan(first), np.where(after, starts, np.nextafter(starts, -inf)), nearest)
 
 
-def _certain(values: Values, rows: Rows, theta: Array, side: Array, pieces: dict[str, Rows]) -> Array:
+def _certain(values: Values, rows: Rows, theta: Array, side: Array) -> Array:
     """The nearest angles to dead centres from which on rounding takes the friction of their own side."""
     steps = np.arange(ROUNDED + 1.0) * np.spacing(np.abs(theta) + 1.0)[:, None]
     angles = theta[:, None] + side[:, None] * steps

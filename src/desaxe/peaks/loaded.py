@@ -75,15 +75,16 @@ class Values:
         pieces   of the loads that jump, without those that hold at these angles
         """
         bad = np.isnan(theta) | self.bad[rows]
-        theta = np.where(bad, 1.0, theta)  # a value that any input can have
+        some = bool(bad.any())
+        theta = np.where(bad, 1.0, theta) if some else theta  # a value that any input can have
         held = self.course.pieces(rows, theta) if pieces is None else pieces
         if pieces is None and self.designs.rubs:
             theta = self.course.aside(rows, theta)
         inputs: dict[str, Any] = {"alpha": 0.0, "theta": theta}
         for name, column in self.designs.columns.items():
-            inputs[name] = np.where(bad, 1.0, column[rows])
+            inputs[name] = np.where(bad, 1.0, column[rows]) if some else column[rows]
         found = self._of_plan(count, inputs, held) if self.derived else self._of_search(inputs, held)
-        return [np.where(bad, np.nan, row) for row in found[:count]]
+        return [np.where(bad, np.nan, row) for row in found[:count]] if some else found[:count]
 
     def _of_plan(self, count: int, inputs: dict[str, Any], held: dict[str, Rows]) -> list[Array]:
         names = list(dict.fromkeys(self.all[:count]))

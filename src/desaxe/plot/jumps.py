@@ -61,7 +61,7 @@ def _jumps(
             nodes = np.array(load.nodes(low, high, smooth=False))
             found += [nodes, np.nextafter(nodes, -inf)]
         elif isinstance(load, OverY) and load.jumping:
-            arcs = arcs_of(load, columns, branch, low, high)
+            arcs = arcs_of(load, columns, branch, (low, high))
             starts = arcs.starts[arcs.leaps]
             found += [starts - BESIDE, starts + BESIDE]
     angles = np.unique(np.concatenate(found))
