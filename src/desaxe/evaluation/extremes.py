@@ -45,10 +45,11 @@ def are_extreme(name: str, values: Any) -> Any:
 
     if name == "theta" or not values.size:
         return False
-    low, high = np.fmin.reduce(values, axis=None), np.fmax.reduce(values, axis=None)
-    if low >= LEAST and high <= MOST:
+    if values.min() >= LEAST and values.max() <= MOST:
         return False
     size = np.abs(values)
+    if size.min() >= LEAST and size.max() <= MOST:
+        return False
     found = (size < LEAST) & (size > 0.0) | (size > MOST) & (size < np.inf)
     return found if found.any() else False
 

@@ -83,7 +83,7 @@ def _by_kernel(
 
     more = [name for name in motion_of_jumps(plan.loads) if name not in plan.shown]
     every = plan_for((*plan.shown, *more), given)[1] if more else plan
-    answer = points_under_loads(every, numbers, branch, threads)
+    answer = points_under_loads(every, plan.shown, numbers, branch, threads)
     if answer is None:
         return None
     found, places = answer
@@ -94,7 +94,7 @@ def _by_kernel(
         again = _totals(plan, {**dict.fromkeys(MOTION), **some}, some, branch, "standard", threads)
         for name in plan.shown:
             found[name].reshape(-1)[places] = again[name]
-    return {name: found[name] for name in plan.shown}
+    return found
 
 
 def are_many(numbers: Mapping[str, Any]) -> bool:

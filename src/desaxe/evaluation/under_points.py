@@ -5,7 +5,7 @@ nothing compiles, the values at each point are. Points at which rounding may dec
 answered again by the road of few points, exactly, and so are arrays with a design next to its change point.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import prod
 from typing import Any
 
@@ -18,20 +18,23 @@ from ..loads.resolve import Plan
 from ..mechanism.names import LENGTHS
 from ..runtime.kernels import KernelKey, key_of, plain_of
 from ..runtime.request import Request
-from ..runtime.threads import run_in_blocks
+from ..runtime.threads import least_of, run_in_blocks, run_parts
 from ..runtime.tiers import COMPILED, tier_of
 from ..runtime.wide_margins import all_have_wide_margins
 from .arrays import as_array, broadcast_shape, dtype_of
 from .loops import Loops, loops_over
 from .under_request import LEAST, Array, are_extreme_under, table_arrays, under_loads
 
+PART = 2**15  # points of which the motion is in the cache
+
 
 def points_under_loads(
-    plan: Plan, numbers: Mapping[str, Any], branch: int, threads: int | None
+    plan: Plan, kept: Sequence[str], numbers: Mapping[str, Any], branch: int, threads: int | None
 ) -> tuple[dict[str, Array], Array | None] | None:
-    """The totals at all points, and the places of those that rounding leaves open; None without a kernel.
+    """Totals at all points, and the places of those that rounding leaves open; None without a kernel.
 
     plan   its names include the motion that `opens` asks for
+    kept   those of its names that are returned
     """
     wanted = with_tables(under_loads(plan, numbers, branch, "standard"), plan.loads)
     own = {
@@ -54,10 +57,40 @@ def points_under_loads(
     key = _key(wanted, scalars, loops)
     if key is None or tier_of(key, prod(shape), True) != COMPILED:
         return None
-    outs = {name: np.empty(shape, dtype_of(name)) for name in wanted.shown}
-    places = [out.reshape(loops.sizes) for out in outs.values()]
-    run_in_blocks(key, {**scalars, **loops.columns, **tables}, places, threads)
-    return outs, opens(plan.loads, arrays, outs)
+    outs = {name: np.empty(shape, dtype_of(name)) for name in kept}
+    places = {name: out.reshape(loops.sizes) for name, out in outs.items()}
+    if len(kept) == len(wanted.shown):
+        run_in_blocks(key, {**scalars, **loops.columns, **tables}, [*places.values()], threads)
+        return outs, opens(plan.loads, arrays, outs)
+    return outs, _in_parts(plan.loads, key, {**scalars, **tables}, loops, wanted.shown, places, threads)
+
+
+def _in_parts(
+    loads: Mapping[str, Load],
+    key: KernelKey,
+    given: Mapping[str, Any],
+    loops: Loops,
+    names: Sequence[str],
+    places: Mapping[str, Array],
+    threads: int | None,
+) -> Array | None:
+    """Fill `places`; the flat places of open points. The motion that tells them never leaves the cache."""
+    found: list[Array] = []
+    each = prod(loops.sizes[1:])
+
+    def part(first: int, last: int) -> None:
+        columns = {n: c[first:last] if loops.axis_of[n] == 0 else c for n, c in loops.columns.items()}
+        own = {n: place[first:last] for n, place in places.items()}
+        size = last - first, *loops.sizes[1:]
+        own |= {n: np.empty(size) for n in names if n not in own}
+        run_in_blocks(key, {**given, **columns}, [own[n] for n in names], 1)
+        wide = {n: c.reshape(c.size, *[1] * (len(size) - 1 - loops.axis_of[n])) for n, c in columns.items()}
+        some = opens(loads, {**given, **wide}, own)
+        if some is not None:
+            found.append(some + first * each)
+
+    run_parts(part, loops.sizes[0], threads, max(1, least_of(1) // each), max(1, PART // each))
+    return np.sort(np.concatenate(found)) if found else None
 
 
 def with_tables(wanted: Request, loads: Mapping[str, Load]) -> Request:
@@ -112,7 +145,10 @@ def opens(
             _, AB, BC = (arrays[name] for name in LENGTHS)
             with np.errstate(invalid="ignore"):
                 along, room = load.along(motion), NEAR * (AB + BC)
-                marks = [np.abs(along - x) <= room for x in load.jumps]
-                marks += [np.abs(motion["Y_wrt_theta"]) <= FLAT * AB] if load.turns else []
-            found = np.logical_or.reduce([*marks, *([] if found is None else [found])])
+                found = np.zeros(along.shape, np.bool_) if found is None else found
+                for x in load.jumps:
+                    away = along - x
+                    found |= np.abs(away, out=away) <= room
+                if load.turns:
+                    found |= np.abs(motion["Y_wrt_theta"]) <= FLAT * AB
     return np.flatnonzero(found) if found is not None and found.any() else None
