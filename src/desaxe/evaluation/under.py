@@ -182,16 +182,23 @@ def open_points(
             rows.append(np.repeat(np.arange(lengths[0].size), lost.size))
             places.append(np.tile(lost, lengths[0].size))
             angles, room = _jumps(load, lengths, branch)
-            room += lost_by_turns
-            every = np.remainder(angles, TURN)[:, None, :] + np.array([-TURN, 0.0, TURN])[:, None]
-            most = room.max(initial=0.0)
-            row, turn, number = np.nonzero((every >= -most) & (every <= TURN + most))
-            here, beside = every[row, turn, number], room[row, number]
-            first = np.searchsorted(ascending, here - beside)
-            last = np.searchsorted(ascending, here + beside, side="right")
-            for k in np.flatnonzero(last > first):
-                places.append(order[first[k] : last[k]])
-                rows.append(np.full(places[-1].size, row[k]))
+            row, number = np.nonzero(angles == angles)
+            here, beside = np.remainder(angles[row, number], TURN), room[row, number] + lost_by_turns
+            for turn in (
+                -TURN,
+                0.0,
+                TURN,
+            ):  # next to an end of the turn an angle is beside the other end, too
+                near = (
+                    np.arange(here.size)
+                    if not turn
+                    else np.flatnonzero(np.abs(here - 0.5 * (TURN - turn)) <= beside)
+                )
+                first = np.searchsorted(ascending, here[near] + turn - beside[near])
+                last = np.searchsorted(ascending, here[near] + turn + beside[near], side="right")
+                for k in np.flatnonzero(last > first):
+                    places.append(order[first[k] : last[k]])
+                    rows.append(np.full(places[-1].size, row[near[k]]))
     return np.concatenate(rows), np.concatenate(places)
 
 
