@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..mechanism.keywords import with_known_keywords
 from ..mechanism.own import using
-from ..sweeps.meter import Watch
+from ..support.progress import Progress
 from ..sweeps.sweep import run_sweep
 from .parts.stored import sweep_content
 from .scene import Scene
@@ -34,7 +34,7 @@ def sweep(
     best: int | None = None,
     by: Any = None,
     order: str | None = None,
-    progress: Watch | None = None,
+    progress: Progress | None = None,
     **inputs: Any,
 ) -> "xr.Dataset":
     """A grid of any size, written chunk by chunk to a Zarr store; the opened Dataset, which is lazy.

@@ -12,6 +12,8 @@ from .forks import IMPORTS
 # Called before each step: steps done, steps in all, what comes next.
 Progress = Callable[[int, int, str], None]
 
+Count = Callable[[int, bool], None]  # points that are done now, and whether they were computed
+
 DELAY = 1.0  # seconds without a bar
 PACE = 0.2  # seconds between two looks
 FORMAT = "{n_fmt} of {total_fmt} {unit} |{bar}| {desc}"
@@ -34,18 +36,26 @@ class Portions:
     """Counts what is done of a large number, and tells beforehand and on the way what the rest takes."""
 
     def __init__(self, total: int, what: str, watch: Progress | None) -> None:
-        self.done, self.total, self.what, self.watch = 0, total, what, watch
+        self.done, self.found, self.total, self.what, self.watch = 0, 0, total, what, watch
         self.begun = monotonic()
         if watch is not None:
             watch(0, total, what)
 
-    def add(self, count: int) -> None:
-        """Count designs, or other parts, that are done now."""
+    def add(self, count: int, computed: bool = True) -> None:
+        """Count designs, or other parts, that are done now; those that were there already take no time."""
         if self.watch is None:
             return
         self.done = min(self.total, self.done + count)
-        left = (monotonic() - self.begun) * (self.total / max(1, self.done) - 1.0)
-        self.watch(self.done, self.total, f"{self.what}, about {left:.0f} s left")
+        self.found += 0 if computed else count
+        left = (monotonic() - self.begun) * (self.total - self.done) / max(1, self.done - self.found)
+        self.watch(self.done, self.total, f"{self.what}, about {_time(left)} left")
+
+
+def _time(seconds: float) -> str:
+    whole = round(seconds)
+    if whole < 120:
+        return f"{whole} s"
+    return f"{whole // 60} min" if whole < 7200 else f"{whole // 3600} h {whole % 3600 // 60:02d} min"
 
 
 _drawn = Lock()  # held while a bar is: one at a time

@@ -13,5 +13,4 @@ tasks     a chunk as a task that travels to a worker
 cluster   tasks in threads or on a Dask cluster, a bounded number at a time
 best      the best designs of a sweep, without a store
 kept      the state of such a search on disk
-meter     points, rate and time left on a terminal
 """

@@ -18,11 +18,11 @@ from ..mechanism.spelling import did_you_mean
 from ..runtime.accuracy import accuracy_of
 from ..runtime.compiled_only import compiled_only
 from ..runtime.request import several
+from ..support.progress import Count
 from ..support.shown import shown
 from .cluster import Crew, run_all
 from .kept import Found, Kept
 from .layout import Layout, layout_of
-from .meter import Meter
 from .request import identity, versions
 from .tasks import check_version
 
@@ -183,15 +183,15 @@ def _best_of_block(task: BestTask) -> Found:
 
 
 def best_designs(
-    search: Search, count: int, crew: Crew, meter: Meter, inner: int, kept: Kept | None = None
+    search: Search, count: int, crew: Crew, told: Count, inner: int, kept: Kept | None = None
 ) -> "xr.Dataset":
     """Run a search, or resume it from the chunks that are kept; return the best designs, the best first."""
     kept = Kept(search.layout.chunks) if kept is None else kept
-    meter.add(kept.points, False)
+    told(kept.points, False)
     with closing(kept):
         tasks = _tasks(search, count, inner, kept.done)
         for number, found in run_all(crew, best_of_block, tasks, ahead=crew.size):
-            meter.add(found.points, True)
+            told(found.points, True)
             best = found if kept.best is None else _merged(kept.best, found, count, search.ranking)
             kept.add(number, best)
     assert kept.best is not None

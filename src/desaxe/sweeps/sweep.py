@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, closing
+from contextlib import AbstractContextManager, contextmanager
 from importlib import import_module
 from os import PathLike
 from pathlib import Path
@@ -13,6 +13,7 @@ import numpy as np
 from ..runtime.threads import available
 from ..support.extras import needed
 from ..support.files import as_path
+from ..support.progress import Count, Portions, Progress, progress_bar
 from ..support.shown import printable
 from . import store as zarr_store
 from .best import Search, best_designs, search_for
@@ -21,7 +22,6 @@ from .cluster import threads as thread_crew
 from .estimate import CHUNK, announcement, seconds_of
 from .kept import Kept
 from .layout import Layout, bytes_of
-from .meter import Meter, Watch
 from .place import CHUNKS, clear, free_at, placed, placed_search, require_room
 from .request import Sweep, sweep_of
 from .skeleton import COMPLETE, STATE, as_signed
@@ -40,7 +40,7 @@ class Way(NamedTuple):
     memory: int | None
     client: Any
     threads: int | None
-    watch: Watch | None
+    watch: Progress | None
     tell: Tell | None
 
 
@@ -54,11 +54,11 @@ def stored_sweep(sweep: Sweep, store: str | PathLike[str], overwrite: bool, way:
         if absent:
             sweep.layout.require_memory(way.memory)
             require_room(sweep, root, absent)
-        meter = Meter(sweep.plan.points, way.watch)
-        with closing(meter), _crew(sweep.layout, way) as crew:
+        with _counted(sweep.plan.points, way.watch) as count, _crew(sweep.layout, way) as crew:
             if absent and way.tell is not None:
                 way.tell(_announcement(sweep, root, crew.size))
-            _write(sweep, root, crew, meter, _inner(crew, way))
+            for done in run_all(crew, run, _tasks(sweep, root, _inner(crew, way)), ahead=_ahead(crew)):
+                count(done.points, done.computed)
         remove_strays(root)  # of workers that were killed
         sync_folders(root)
         set_state(root, COMPLETE)
@@ -85,10 +85,21 @@ def _inner(crew: Crew, way: Way) -> int:
     return 1 if way.client is not None else max(1, (way.threads or available()) // crew.size)
 
 
-def _write(sweep: Sweep, root: Path, crew: Crew, meter: Meter, inner: int) -> None:
-    """Write every chunk that is not in the store, whole."""
-    for done in run_all(crew, run, _tasks(sweep, root, inner), ahead=_ahead(crew)):
-        meter.add(done.points, done.computed)
+@contextmanager
+def _counted(points: int, watch: Progress | None) -> Iterator[Count]:
+    """Counts points that are computed or were there, for a callback, or in a bar on the terminal."""
+    if watch is None:
+        with progress_bar(unit="points") as bar:
+            yield Portions(points, "sweep", bar).add
+        return
+    done = 0
+
+    def count(more: int, computed: bool) -> None:
+        nonlocal done
+        done += more
+        watch(done, points, "writing" if computed else "reading")
+
+    yield count
 
 
 def _ahead(crew: Crew) -> int:
@@ -106,12 +117,12 @@ def unstored_sweep(sweep: Sweep, way: Way) -> "xr.Dataset":
     """Run a sweep whose result fits into memory, a reduced one; its Dataset."""
     arrays = {str(n): np.empty(v.shape, v.dtype) for n, v in sweep.template.data_vars.items()}
     sweep.layout.require_memory(way.memory)
-    with closing(Meter(sweep.plan.points, way.watch)) as meter, _crew(sweep.layout, way) as crew:
+    with _counted(sweep.plan.points, way.watch) as count, _crew(sweep.layout, way) as crew:
         tasks = _tasks(sweep, None, _inner(crew, way))
         for done in run_all(crew, compute, tasks, ahead=_ahead(crew)):
             for name, (region, values) in done.variables.items():
                 arrays[name][region] = values
-            meter.add(done.points, True)
+            count(done.points, True)
     return sweep.template.assign({n: sweep.template[n].copy(data=a) for n, a in arrays.items()})
 
 
@@ -136,9 +147,9 @@ def best_sweep(
 
 
 def _searched(search: Search, count: int, way: Way, root: Path | None) -> "xr.Dataset":
-    with closing(Meter(search.plan.points, way.watch)) as meter, _crew(search.layout, way) as crew:
+    with _counted(search.plan.points, way.watch) as told, _crew(search.layout, way) as crew:
         kept = Kept(search.layout.chunks, root)
-        return best_designs(search, count, crew, meter, _inner(crew, way), kept)
+        return best_designs(search, count, crew, told, _inner(crew, way), kept)
 
 
 class NotStoredError(OSError):
@@ -172,7 +183,7 @@ def run_sweep(
     best: int | None = None,
     by: Any = None,
     order: str | None = None,
-    watch: Watch | None = None,
+    watch: Progress | None = None,
     tell: Tell | None = None,
 ) -> "xr.Dataset":
     """The body of `desaxe.sweep` for names and inputs."""
