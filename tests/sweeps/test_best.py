@@ -9,7 +9,7 @@ import xarray as xr
 
 import desaxe as dx
 from desaxe.sweeps import best
-from desaxe.sweeps.kept import NAME, Found, Kept
+from desaxe.sweeps.kept import NAME, BestDesigns, Kept
 from desaxe.sweeps.sweep import NotStoredError
 from tests.effort import cases
 from tests.ways import take_way
@@ -225,7 +225,7 @@ def test_a_finished_store_that_was_disturbed(tmp_path):
 
 def test_a_damaged_state_is_not_used(tmp_path):
     kept = Kept(3, tmp_path)
-    kept.add(1, Found(np.array([4]), np.array([2.0]), np.array([0.1]), np.array([0]), 7, 9))
+    kept.add(1, BestDesigns(np.array([4]), np.array([2.0]), np.array([0.1]), np.array([0]), 7, 9))
     kept.close()
     assert Kept(3, tmp_path).done.tolist() == [False, True, False]
     assert Kept(3, tmp_path).points == 9

@@ -44,7 +44,7 @@ class Examination(NamedTuple):
     usable: bool
 
 
-class Loop(NamedTuple):
+class AssemblyLoop(NamedTuple):
     """Instruction counts of a kernel's machine code, and its calls of the C library."""
 
     packed: int
@@ -199,13 +199,13 @@ def _loops() -> tuple[list[str], bool]:
     ], True
 
 
-def examine_assembly(assembly: str) -> Loop:
+def examine_assembly(assembly: str) -> AssemblyLoop:
     """Count packed and single arithmetic on doubles, and the C library's sines and cosines."""
     registers = [match[1] or "" for match in _PACKED.finditer(assembly)]
     doubles = max((_DOUBLES[register] for register in registers), default=1)
     single = len(_SINGLE.findall(assembly))
     calls = tuple(sorted(set(_LIBRARY.findall(assembly))))
-    return Loop(len(registers), single, doubles, calls)
+    return AssemblyLoop(len(registers), single, doubles, calls)
 
 
 def _assembly() -> Iterator[str]:

@@ -41,7 +41,7 @@ EXACT = "standard"  # a request has an accuracy; over balls it says nothing
 CORNERS = 64  # of the box, looked at first
 MORE_BITS = (BITS, 512, 2048)  # for the value at a point
 ENOUGH = 64  # bits of it
-TURN = (0.0, nextafter(2 * pi, inf))  # not less than one
+WHOLE_TURN = (0.0, nextafter(2 * pi, inf))  # not less than one
 LAST_BIT = 2.0**-52
 SMALLEST = 2.0**-1073
 ENDS = "expected a number or a pair, dx.between(low, high) or dx.plus_minus(value, tolerance)"
@@ -112,7 +112,7 @@ def enclose(
 # ---- the quantity over boxes ----------------------------------------------------------------------
 
 
-class Function(NamedTuple):
+class BoxedQuantity(NamedTuple):
     """A quantity as a function of boxes of its varying inputs, with derivatives."""
 
     value: Program
@@ -143,7 +143,7 @@ class Function(NamedTuple):
         return {**self.fixed, **dict(zip(self.varying, box, strict=True))}
 
 
-def _function(name: str, given: dict[str, Any], branch: int) -> Function:
+def _function(name: str, given: dict[str, Any], branch: int) -> BoxedQuantity:
     intervals = {p: _interval(p, value, name) for p, value in given.items() if value is not None}
     plain: dict[str, Any] = {p: low if low == high else (low, high) for p, (low, high) in intervals.items()}
     alone = request((name,), plain, branch, EXACT)
@@ -160,7 +160,7 @@ def _function(name: str, given: dict[str, Any], branch: int) -> Function:
     else:
         full = with_derivatives(program, varying)
     whole = tuple(_turned(own[p]) if p == "theta" and _turns(program) else own[p] for p in varying)
-    return Function(program, full, varying, fixed, whole)
+    return BoxedQuantity(program, full, varying, fixed, whole)
 
 
 def _turns(program: Program) -> bool:
@@ -170,7 +170,7 @@ def _turns(program: Program) -> bool:
 
 def _turned(theta: Interval) -> Interval:
     """The interval of theta, reduced to one turn if it is longer."""
-    return TURN if theta[1] - theta[0] > TURN[1] else theta
+    return WHOLE_TURN if theta[1] - theta[0] > WHOLE_TURN[1] else theta
 
 
 def _program(wanted: Request) -> Program:
@@ -198,11 +198,11 @@ def _interval(name: str, value: Any, wanted: str) -> Interval:
 # ---- the search -----------------------------------------------------------------------------------
 
 
-def _range(function: Function, rtol: float, limit: int, deadline: Deadline) -> dict[str, Any]:
+def _range(function: BoxedQuantity, rtol: float, limit: int, deadline: Deadline) -> dict[str, Any]:
     status, count = _status(function, limit, deadline)
     if status == 1:
         return {"lower": nan, "upper": nan, "inner": (nan, nan), "status": 1, "tight": True, "boxes": count}
-    search = Search(function, rtol, limit, deadline)
+    search = Bisection(function, rtol, limit, deadline)
     upper, lower = search.largest(1), -search.largest(-1)
     low, high = search.inner
     return {
@@ -215,7 +215,7 @@ def _range(function: Function, rtol: float, limit: int, deadline: Deadline) -> d
     }
 
 
-def _status(function: Function, limit: int, deadline: Deadline) -> tuple[int, int]:
+def _status(function: BoxedQuantity, limit: int, deadline: Deadline) -> tuple[int, int]:
     """The status (0 defined in all of the box, 1 nowhere, 2 otherwise) and the number of boxes used."""
     corners = [tuple((x, x) for x in corner) for corner in islice(product(*function.whole), CORNERS)]
     boxes, count, known = [function.whole], 0, {_defined(function, corner) for corner in corners}
@@ -232,7 +232,7 @@ def _status(function: Function, limit: int, deadline: Deadline) -> tuple[int, in
     return 2 if {True, False} <= known else 1 if False in known else 0, count
 
 
-def _defined(function: Function, box: Box) -> bool | None:
+def _defined(function: BoxedQuantity, box: Box) -> bool | None:
     """True if the quantity is defined in all of a box, False if nowhere, None if undecided."""
     found = function.defined(box)
     return False if found.values == (None,) else None if found.flags & PARTLY else True
@@ -246,10 +246,10 @@ class Node(NamedTuple):
     weights: tuple[float, ...]
 
 
-class Search:
+class Bisection:
     """Branch and bound for the largest value of a quantity (sign 1) or of its negative (sign -1)."""
 
-    def __init__(self, function: Function, rtol: float, limit: int, deadline: Deadline) -> None:
+    def __init__(self, function: BoxedQuantity, rtol: float, limit: int, deadline: Deadline) -> None:
         self.function, self.rtol, self.limit, self.deadline = function, rtol, limit, deadline
         self.inner = (inf, -inf)  # attained
         self.count = 0
@@ -343,7 +343,7 @@ def _middle(ends: Interval) -> float:
     return 0.0 if low < 0.0 < high else min(max(low + 0.5 * (high - low), low), high)
 
 
-def _sizes(function: Function, box: Box) -> tuple[float, ...]:
+def _sizes(function: BoxedQuantity, box: Box) -> tuple[float, ...]:
     """The sides of a box relative to their inputs: angles to one radian, lengths to the longest."""
     ends = {**function.fixed, **dict(zip(function.varying, function.whole, strict=True))}
     largest = {name: max(abs(low), abs(high)) for name, (low, high) in ends.items()}
@@ -352,7 +352,7 @@ def _sizes(function: Function, box: Box) -> tuple[float, ...]:
     return tuple((high - low) / scales[name] for name, (low, high) in zip(function.varying, box, strict=True))
 
 
-def _halves(function: Function, box: Box, weights: tuple[float, ...], finest: float) -> tuple[Box, ...]:
+def _halves(function: BoxedQuantity, box: Box, weights: tuple[float, ...], finest: float) -> tuple[Box, ...]:
     """The box cut across the input that matters most; nothing if no number lies between its ends."""
     sizes = _sizes(function, box)
     can = [k for k, (low, high) in enumerate(box) if low < _middle((low, high)) < high and sizes[k] > finest]

@@ -18,7 +18,7 @@ from ..scenes.schema import SceneError
 from ..support.files import check_target, write_text
 from .load_tables import load_table, motor_table
 
-TURN = {"start": 0, "stop": "360 deg", "num": 721}
+ANGLES = {"start": 0, "stop": "360 deg", "num": 721}
 
 
 def is_scene(source: Mapping[str, Any]) -> bool:
@@ -74,7 +74,7 @@ def _si_unit(machine: Any, name: str) -> str | None:
 def _data(machine: Any, outputs: Any, more: Mapping[str, Any], loads: Mapping[str, Any]) -> dict[str, Any]:
     """The scene as data; inputs are texts with units that stand for the same doubles, `loads` as they are."""
     other = dict(more)
-    theta = other.pop("theta", TURN)
+    theta = other.pop("theta", ANGLES)
     data: dict[str, Any] = {"title": other.pop("title", "")} if "title" in other else {}
     data["outputs"] = [outputs] if isinstance(outputs, str) else list(outputs)
     if machine.units:

@@ -10,7 +10,7 @@ from ..design.feasibility.feasibility import feasibility
 from ..evaluation.evaluate import evaluate
 from ..loads.load import Load
 from ..mechanism.inputs import INPUTS
-from ..mechanism.names import LOADS
+from ..mechanism.names import LENGTHS, LOADS
 from ..mechanism.unit_system import UnitSystem
 from ..support.text_table import table
 
@@ -19,7 +19,6 @@ NAMES = {name: INPUTS[name].brief for name in _ORDER} | {"branch": "side of the 
 ROWS, COLUMNS = 11, 21  # of the drawing in text
 WIDEST = 28  # letters of a value that the column is made for
 ANGLE = pi / 3  # at which it is drawn
-LENGTHS = ("ec", "AB", "BC")
 
 
 class Pose(NamedTuple):

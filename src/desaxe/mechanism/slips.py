@@ -14,9 +14,9 @@ from typing import Any
 from .ranges import Between, PlusMinus
 from .unit_system import SI, UnitSystem
 
-LENGTHS = ("ec", "AB", "BC", "r_crank", "r_rod")
+SIZES = ("ec", "AB", "BC", "r_crank", "r_rod")
 LARGEST = {
-    **dict.fromkeys(LENGTHS, 20.0),
+    **dict.fromkeys(SIZES, 20.0),
     "omega0": 1000.0,
     "omega": 1000.0,
     **dict.fromkeys(("m_crank", "m_rod", "m_slider"), 1e5),
@@ -35,7 +35,7 @@ STRONGEST = 1e9  # Pa: of steel, in a rod half as thick as it is long; those of 
 # What to write instead, of the number that was written.
 REMEDIES = {
     "theta": '"{number:.6g} deg"',
-    **dict.fromkeys(LENGTHS, '"{number:.6g} mm"'),
+    **dict.fromkeys(SIZES, '"{number:.6g} mm"'),
     **dict.fromkeys(("omega0", "omega"), '"{number:.6g} rpm"'),
     **dict.fromkeys(("m_crank", "m_rod", "m_slider"), '"{number:.6g} g"'),
     **dict.fromkeys(("g_X", "g_Y"), '"{earth:.2f} m/s^2"'),

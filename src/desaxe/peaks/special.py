@@ -19,6 +19,7 @@ from ..loads.resolve import way_of
 from ..mechanism.closed.functions import closed_form
 from ..mechanism.closed.limits import LIMITS
 from ..mechanism.names import LENGTHS
+from ..mechanism.status import PeakStatus
 from .nodes import Array
 
 UNIFORM = 240  # nodes per turn
@@ -28,7 +29,7 @@ BLOCK = 1_024  # designs at a time, at most as many as a search by NumPy takes a
 AT_KINK = 2.0**-40  # rad: an extremum so near to a kink is at the kink
 SMOOTH = 1e-6  # of the median slope: what is left of the slope at the top of a smooth peak is less
 ACROSS = 1e-6  # of the cosine of an angle: as far as a search ends from a jump
-JAMS, TWO_BALANCES = 5, 6  # the status where friction leaves no balance of forces, or two
+JAMS, TWO_BALANCES = int(PeakStatus.NO_FORCE_BALANCE), int(PeakStatus.TWO_FORCE_BALANCES)
 USABLE = (0, JAMS, TWO_BALANCES)  # with one of these an extremum may have a gradient
 MARGIN_ROUNDING = 2.0**-50  # of BC: more than BC - AB - |ec| may lose to rounding
 FARTHER = 2.0**-20  # rad from a limit angle: unbounded quantities have grown from there on, in a wide arc

@@ -21,7 +21,7 @@ from ..runtime.request import several
 from ..support.progress import Count
 from ..support.shown import shown
 from .cluster import Crew, run_all
-from .kept import Found, Kept
+from .kept import BestDesigns, Kept
 from .layout import Layout, layout_of
 from .request import identity, versions
 from .tasks import check_version
@@ -56,7 +56,7 @@ class Ranking(NamedTuple):
         return compared if self.order == "smallest" else -compared
 
 
-class Search(NamedTuple):
+class BestSearch(NamedTuple):
     """A search for the best designs: the plan of what they are ranked by, and how it is cut."""
 
     plan: Plan
@@ -129,7 +129,7 @@ def search_for(
     memory: int | None,
     count: int,
     order: str | None = None,
-) -> Search:
+) -> BestSearch:
     """The search for `count` designs, checked; over an axis theta a design is ranked by its extreme."""
     name, kind = _named(by, reduce)
     wanted = dict.fromkeys(((names,) if isinstance(names, str) else several(names)) + (name,))
@@ -151,16 +151,16 @@ def search_for(
     others = tuple(name for name in outer.names if name != ranking.name)
     own = [repr(step.own) for step in plan.steps if step.own]
     told = identity(outer, branch, accuracy_of(accuracy), asked, (), own, (count, *ranking[:3]))
-    return Search(plan, others, ranking, reduction, layout, told)
+    return BestSearch(plan, others, ranking, reduction, layout, told)
 
 
-def best_of_block(task: BestTask) -> tuple[int, Found]:
+def best_of_block(task: BestTask) -> tuple[int, BestDesigns]:
     """The number of a chunk and its best designs."""
     check_version(task.version, task.digest)
     return task.number, _best_of_block(task)
 
 
-def _best_of_block(task: BestTask) -> Found:
+def _best_of_block(task: BestTask) -> BestDesigns:
     arrays = computed(task.step, task.values, task.threads)
     name, variable = task.ranking.name, task.ranking.variable
     values = arrays[variable]
@@ -175,15 +175,15 @@ def _best_of_block(task: BestTask) -> Found:
     flat = {n: a.reshape(-1)[order] for n, a in arrays.items()}
     angles = np.full(order.size, np.nan)
     if task.axis is None:
-        return Found(places, flat[variable], angles, angles, int((~np.isnan(rank)).sum()), task.points)
+        return BestDesigns(places, flat[variable], angles, angles, int((~np.isnan(rank)).sum()), task.points)
     skipped = arrays[f"{name}_skipped"]
     feasible = int(skipped.size * task.values[task.axis].size - skipped.sum())
     angles = flat.get(f"{variable}_{task.axis}", angles)
-    return Found(places, flat[variable], angles, flat[f"{name}_skipped"], feasible, task.points)
+    return BestDesigns(places, flat[variable], angles, flat[f"{name}_skipped"], feasible, task.points)
 
 
 def best_designs(
-    search: Search, count: int, crew: Crew, told: Count, inner: int, kept: Kept | None = None
+    search: BestSearch, count: int, crew: Crew, told: Count, inner: int, kept: Kept | None = None
 ) -> "xr.Dataset":
     """Run a search, or resume it from the chunks that are kept; return the best designs, the best first."""
     kept = Kept(search.layout.chunks) if kept is None else kept
@@ -198,7 +198,7 @@ def best_designs(
     return _labelled(search, kept.best)
 
 
-def _tasks(search: Search, count: int, inner: int, done: Array) -> Iterator[BestTask]:
+def _tasks(search: BestSearch, count: int, inner: int, done: Array) -> Iterator[BestTask]:
     plan, layout = search.plan, search.layout
     axis, shape = None if search.reduction is None else search.reduction.axis, tuple(layout.sizes.values())
     for number, block in enumerate(plan.cut(layout.chunk).blocks(layout.chunk)):
@@ -208,15 +208,15 @@ def _tasks(search: Search, count: int, inner: int, done: Array) -> Iterator[Best
             yield BestTask(number, *about, plan.points_in(block), inner, *versions())
 
 
-def _merged(one: Found, other: Found, count: int, ranking: Ranking) -> Found:
+def _merged(one: BestDesigns, other: BestDesigns, count: int, ranking: Ranking) -> BestDesigns:
     """The best of two; of equal ones the earlier in the grid, whichever chunk was done first."""
     places, values, theta, skipped = (np.concatenate([a, b]) for a, b in zip(one[:4], other[:4], strict=True))
     order = np.lexsort((places, ranking.rank(values)))[:count]
     feasible, points = one.feasible + other.feasible, one.points + other.points
-    return Found(places[order], values[order], theta[order], skipped[order], feasible, points)
+    return BestDesigns(places[order], values[order], theta[order], skipped[order], feasible, points)
 
 
-def _labelled(search: Search, kept: Found) -> "xr.Dataset":
+def _labelled(search: BestSearch, kept: BestDesigns) -> "xr.Dataset":
     """The designs by rank, with every name at the point where it is attained."""
     plan, outer, ranking, reduction = search.plan, search.plan.outer, search.ranking, search.reduction
     state = outer.given.get("omega") is not None

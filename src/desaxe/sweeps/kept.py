@@ -20,7 +20,7 @@ NAME = "search.state"  # gone when the store is finished
 PACE = 1.0  # seconds between two states
 
 
-class Found(NamedTuple):
+class BestDesigns(NamedTuple):
     """The best designs of some chunks: flat indices, values, angles, number of points without a value."""
 
     places: NDArray[np.int64]
@@ -37,7 +37,7 @@ class Kept:
     def __init__(self, chunks: int, folder: Path | None = None) -> None:
         self.path = None if folder is None else folder / NAME
         self.done: Array = np.zeros(chunks, np.bool_)
-        self.best: Found | None = None
+        self.best: BestDesigns | None = None
         self.changed, self.written = False, time.monotonic()
         self._read()
 
@@ -46,7 +46,7 @@ class Kept:
         """Points of the chunks that are done."""
         return 0 if self.best is None else self.best.points
 
-    def add(self, number: int, best: Found) -> None:
+    def add(self, number: int, best: BestDesigns) -> None:
         """Take note that a chunk is done, with the best designs so far."""
         self.done[number], self.best, self.changed = True, best, True
         if time.monotonic() - self.written >= PACE:
@@ -75,5 +75,5 @@ class Kept:
         with np.load(io.BytesIO(data[32:]), allow_pickle=False) as state:
             if state["done"].shape == self.done.shape:
                 self.done = state["done"]
-                best = Found(**{name: state[name] for name in Found._fields})
+                best = BestDesigns(**{name: state[name] for name in BestDesigns._fields})
                 self.best = best._replace(feasible=int(best.feasible), points=int(best.points))

@@ -14,7 +14,7 @@ from ..support.files import remove_strays as remove_folders
 from ..support.files import require_writable
 from ..support.forks import IMPORTS
 from ..support.shown import printable
-from .best import Search
+from .best import BestSearch
 from .layout import size_text
 from .request import IDENTITY, Sweep, differences
 from .skeleton import INCOMPLETE, STATE, Compared, as_signed, compared, skeleton_of
@@ -112,7 +112,7 @@ def placed(sweep: Sweep, root: Path, overwrite: bool, memory: int | None) -> Swe
     return sweep
 
 
-def placed_search(search: Search, root: Path, overwrite: bool) -> Search:
+def placed_search(search: BestSearch, root: Path, overwrite: bool) -> BestSearch:
     """Create a store for the best designs, or check the existing one; return the search with its chunks."""
     told = {**search.identity, CHUNKS: json.dumps(search.layout.chunk)}
     there = kept_at(root, told, overwrite)

@@ -16,7 +16,7 @@ from ..support.files import as_path
 from ..support.progress import Count, Portions, Progress, progress_bar
 from ..support.shown import printable
 from . import store as zarr_store
-from .best import Search, best_designs, search_for
+from .best import BestSearch, best_designs, search_for
 from .cluster import Crew, cluster, require_workers, run_all
 from .cluster import threads as thread_crew
 from .estimate import CHUNK, announcement, seconds_of
@@ -127,7 +127,7 @@ def unstored_sweep(sweep: Sweep, way: Way) -> "xr.Dataset":
 
 
 def best_sweep(
-    search: Search, count: int, store: str | PathLike[str] | None, overwrite: bool, way: Way
+    search: BestSearch, count: int, store: str | PathLike[str] | None, overwrite: bool, way: Way
 ) -> "xr.Dataset":
     """Run a search for the best designs, or resume the one whose store it is; the Dataset."""
     if store is None:
@@ -146,7 +146,7 @@ def best_sweep(
     return open_store(root)
 
 
-def _searched(search: Search, count: int, way: Way, root: Path | None) -> "xr.Dataset":
+def _searched(search: BestSearch, count: int, way: Way, root: Path | None) -> "xr.Dataset":
     with _counted(search.plan.points, way.watch) as told, _crew(search.layout, way) as crew:
         kept = Kept(search.layout.chunks, root)
         return best_designs(search, count, crew, told, _inner(crew, way), kept)

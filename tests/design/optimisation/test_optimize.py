@@ -285,7 +285,7 @@ def test_without_scipy_one_line_says_what_to_install():
     ],
 )
 def test_bounds_within_which_nothing_turns_are_told_without_a_search(over, keep, told, monkeypatch):
-    monkeypatch.setattr("desaxe.design.optimisation.one_objective.Search", None)
+    monkeypatch.setattr("desaxe.design.optimisation.one_objective.LocalSearch", None)
     for goal in (("absmax", "a_C"), ["stroke", ("absmax", "a_C")]):
         found = dx.optimize(minimize=goal, over=over, keep=keep, BC=0.2, omega0=10.0)
         assert np.all(found["status"] == 1)

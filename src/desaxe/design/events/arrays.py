@@ -19,7 +19,7 @@ from ...runtime.specialise import specialise
 from ...runtime.wide_margins import have_wide_margins
 from ...support.roots import roots
 from ..feasibility.arrays import only_good
-from .found import VELOCITIES, Found, stroke_ends
+from .found import VELOCITIES, DesignEvents, stroke_ends
 
 Array = NDArray[np.float64]
 
@@ -36,7 +36,7 @@ def events_of_arrays(
     ec, AB, BC, omega = (np.where(bad, np.nan, a) for a in (*lengths, omega))
     turning = np.where(omega < 0.0, -1.0, 1.0)
     outputs = closed_form(DEAD_CENTRES, branch=float(branch)).arrays(ec, AB, BC, turning)
-    found = Found(tuple(np.array(np.broadcast_to(output, shape)) for output in outputs))
+    found = DesignEvents(tuple(np.array(np.broadcast_to(output, shape)) for output in outputs))
     status = np.where(bad, 4, found.status).astype(np.int8)
     slow = np.where(bad, 0, branch * turning * np.sign(np.nan_to_num(ec))).astype(np.int8)
     result: dict[str, Any] = {**found.values, "slow_stroke": slow, **found.places}

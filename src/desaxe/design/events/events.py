@@ -12,7 +12,7 @@ from ...runtime.request import as_number, check_common, with_known_inputs
 from ...support.answer import Answer
 from ...support.forks import IMPORTS
 from ...support.roots import root
-from .found import VELOCITIES, Found, stroke_ends
+from .found import VELOCITIES, DesignEvents, stroke_ends
 
 
 @with_known_inputs
@@ -67,7 +67,7 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
         return Answer(events_of_arrays(given, int(branch), omega0 is not None), units_by_name)
     e, crank, rod, omega = (float(value or 0.0) for value in numbers.values())
     lengths, forward = {"ec": e, "AB": crank, "BC": rod}, -1 if omega < 0.0 else 1
-    found = Found(closed_form(DEAD_CENTRES, branch=float(branch)).point(e, crank, rod, float(forward)))
+    found = DesignEvents(closed_form(DEAD_CENTRES, branch=float(branch)).point(e, crank, rod, float(forward)))
     slow = int(branch) * forward * ((e > 0.0) - (e < 0.0))
     result, gradient = {**found.values, "slow_stroke": slow, **found.places}, found.gradient
     parameters = (*LENGTHS, "omega0") if omega0 is not None else LENGTHS

@@ -11,7 +11,7 @@ VELOCITIES = {"V_outward": 1, "V_inward": -1}  # name -> direction along the str
 BESIDE = 4.0 * ulp(pi)  # rad: next to an angle, on whichever side of it rounding has put that
 
 
-class Found:
+class DesignEvents:
     """Values, their gradient, the angles of the extremes of the rod, and the status."""
 
     def __init__(self, outputs: tuple[Any, ...]) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 from .objectives import Goal, lower_limits, problems
 from .optimum import SATISFIED, SETTLED, none_turns, result_of
 from .problem import UPPER, Array, Limit, Space
-from .search import Found, Search
+from .search import Candidate, LocalSearch
 
 EDGES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # of the rod: how near to the limit of turning the search goes
 GROWS = 0.2  # the power of the margin from which growth towards the limit is no rounding
@@ -37,11 +37,11 @@ def solved(goal: Goal, space: Space, limits: list[Limit], starts: int, seed: int
 
 def _best(
     goal: Goal, space: Space, limits: list[Limit], starts: int, seed: int, places: list[Array]
-) -> tuple[Found, Search]:
+) -> tuple[Candidate, LocalSearch]:
     """The best of all local searches, to its last digits."""
     candidates = []
     for pieces in problems(goal):
-        search = Search(space, pieces, limits, seed)
+        search = LocalSearch(space, pieces, limits, seed)
         begin = [*places, *search.starts(starts)]
         candidates += [(search.run(start), search) for start in begin]
         # Towards the limit of turning a search may stall, so steep does it get: look along that limit too.
@@ -59,7 +59,7 @@ def _best(
     return (search.probed(found) if found.residual > SETTLED else found), search
 
 
-def _rank(candidate: tuple[Found, Search]) -> tuple[float, float]:
+def _rank(candidate: tuple[Candidate, LocalSearch]) -> tuple[float, float]:
     found = candidate[0]
     return max(found.violation, SATISFIED), found.value
 

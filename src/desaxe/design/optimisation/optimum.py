@@ -13,14 +13,14 @@ from ...mechanism.spoken import spoken
 from ..measures import Measure, checked, text_of
 from .objectives import Goal
 from .problem import EQUAL, LOWER, UPPER, Limit, Space
-from .search import Found, Search
+from .search import Candidate, LocalSearch
 
 FOUND, NONE, UNBOUNDED, EDGE, UNSURE = range(5)
 SATISFIED = 1e-7  # of its scale: a limit that is broken by less is kept
 SETTLED = 1e-4  # residual of the optimality conditions
 
 
-def result_of(goal: Goal, space: Space, found: Found, search: Search, grows: bool) -> dict[str, Any]:
+def result_of(goal: Goal, space: Space, found: Candidate, search: LocalSearch, grows: bool) -> dict[str, Any]:
     """The result of `optimize` for one objective; `grows` where it does without bound towards the edge."""
     design = {name: float(x[0]) for name, x in space.designs(found.z).items() if name in space.names}
     active, multipliers = _named(space, found, search)
@@ -56,7 +56,7 @@ def result_of(goal: Goal, space: Space, found: Found, search: Search, grows: boo
     }
 
 
-def _named(space: Space, found: Found, search: Search) -> tuple[dict[Any, str], dict[Any, float]]:
+def _named(space: Space, found: Candidate, search: LocalSearch) -> tuple[dict[Any, str], dict[Any, float]]:
     """The active limits and the multipliers, by name."""
     n, count = len(space.names), len(search.limits)
     active: dict[Any, str] = {}
@@ -80,7 +80,12 @@ def _named(space: Space, found: Found, search: Search) -> tuple[dict[Any, str], 
 
 
 def _message(
-    status: int, goal: Goal, design: dict[str, float], found: Found, search: Search, active: dict[Any, str]
+    status: int,
+    goal: Goal,
+    design: dict[str, float],
+    found: Candidate,
+    search: LocalSearch,
+    active: dict[Any, str],
 ) -> str:
     what = text_of(goal.measure)
     where = _where(design)
@@ -144,7 +149,7 @@ def _misses_turning(short: float) -> str:
     return f"margin = BC - AB - |ec| misses 0, from which on the crank turns, by {_number('margin', short)}"
 
 
-def _missed(found: Found, search: Search) -> str:
+def _missed(found: Candidate, search: LocalSearch) -> str:
     """The most violated limit, and the violation, as text."""
     value = search.scaled(found.z)[0][search.count :]
     worst = int(np.argmax(np.where(search.equal, np.abs(value), -value)))

@@ -31,7 +31,7 @@ FLAT = 1e-10  # of the scale: a smaller gain ends a run
 WORST = 1e3  # of the scale: what a design counts that cannot be judged
 
 
-class Found(NamedTuple):
+class Candidate(NamedTuple):
     """A candidate for the optimum, in the variables from 0 to 1."""
 
     z: Array
@@ -42,7 +42,7 @@ class Found(NamedTuple):
     kink: bool = False  # not settled, and yet nothing better is near
 
 
-class Search:
+class LocalSearch:
     """The search of one problem: minimise the largest piece within the limits."""
 
     def __init__(self, space: Space, pieces: Sequence[Piece], limits: Sequence[Limit], seed: int) -> None:
@@ -122,7 +122,7 @@ class Search:
         value = np.where(bad, np.where(np.arange(value.size) < self.count, WORST, -WORST), value)
         return value, np.where(np.isfinite(slope), slope, 0.0)
 
-    def run(self, start: Array, pinned: int | None = None) -> Found:
+    def run(self, start: Array, pinned: int | None = None) -> Candidate:
         """SLSQP from one point; `pinned` is the index of a limit to stay on."""
         n, m = len(start), self.count
         several = m > 1
@@ -163,7 +163,7 @@ class Search:
                 found = min(found, other, key=lambda each: each.violation)
         return found
 
-    def probed(self, found: Found) -> Found:
+    def probed(self, found: Candidate) -> Candidate:
         """Continue from an unsettled point without derivatives (COBYLA): two peaks may tie in a kink."""
         m = self.count
         both = np.flatnonzero(self.equal)
@@ -184,7 +184,7 @@ class Search:
         gain = (found.value - other.value) / self.scale[0] if better else 0.0
         return (other if better else found)._replace(kink=bool(gain <= BROKEN))
 
-    def nearest(self, found: Found) -> Found:
+    def nearest(self, found: Candidate) -> Candidate:
         """The design that breaks the limits least, found without derivatives from the best of the scan."""
         m = self.count
 
@@ -200,7 +200,7 @@ class Search:
 
     # ---- optimality -------------------------------------------------------------------------------
 
-    def judged(self, z: Array) -> Found:
+    def judged(self, z: Array) -> Candidate:
         """A point with its violation, and the multipliers that best satisfy the optimality conditions."""
         n, m = len(z), self.count
         value, slope = self.scaled(z)
@@ -227,9 +227,9 @@ class Search:
         multipliers[: len(own)] = own / self.scale[m:]
         multipliers[len(own) :][at_end] = found[many + some :]
         violation = float(self._violation(limits))
-        return Found(z, float(largest * self.scale[0]), violation, residual, multipliers)
+        return Candidate(z, float(largest * self.scale[0]), violation, residual, multipliers)
 
-    def polished(self, found: Found) -> Found:
+    def polished(self, found: Candidate) -> Candidate:
         """The optimality conditions with these limits active, solved for the last digits."""
         m = self.count
         value, slope = self.scaled(found.z)
@@ -266,7 +266,7 @@ class Search:
         moved = bool(np.abs(z - found.z).max() < 1e-2) and bool(((z >= 0.0) & (z <= 1.0)).all())
         return self._better(found, z) if moved else found
 
-    def _better(self, found: Found, z: Array) -> Found:
+    def _better(self, found: Candidate, z: Array) -> Candidate:
         other = self.judged(z)
         worth = other.violation <= max(found.violation, 1e-9) and other.residual <= max(found.residual, 1e-9)
         return other if worth else found

@@ -96,7 +96,7 @@ def _phi(c: Array) -> tuple[Array, Array, Array]:
     return one, two, np.where(far, (two - 0.5) / safe, (1.0 + c * (0.25 + 0.05 * c)) / 6.0)
 
 
-class Found(NamedTuple):
+class Brackets(NamedTuple):
     """Changes of sign: the design of each, an energy at the start, and the bracket around it."""
 
     design: Array
@@ -113,14 +113,14 @@ class Scan(NamedTuple):
     starts: Array
     gains: Array
 
-    def found(self) -> Found:
+    def found(self) -> Brackets:
         """All changes of sign, and where in between the gain vanishes."""
         with np.errstate(invalid="ignore"):
             sign = np.sign(self.gains)
             design, at = np.nonzero(sign[:, 1:] * sign[:, :-1] < 0.0)
         low, high = self.starts[design, at], self.starts[design, at + 1]
         below, above = self.gains[design, at], self.gains[design, at + 1]
-        return Found(design, low + (high - low) * below / (below - above), low, high, below > 0.0)
+        return Brackets(design, low + (high - low) * below / (below - above), low, high, below > 0.0)
 
 
 def scan(designs: Designs, edges: Array) -> Scan:

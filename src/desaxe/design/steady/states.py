@@ -10,7 +10,7 @@ from ...support.panels import NODE, Panels
 from .designs import Designs, picked, vanishing
 from .figures import Figures, course_at_steps, figures_of
 from .orbit import PANELS, Orbit, astray, besides, moved, newton, switches, unresolved
-from .scan import Found, Scan, Turns, scan
+from .scan import Brackets, Scan, Turns, scan
 from .slopes import Slopes
 
 Array = NDArray[Any]
@@ -59,7 +59,7 @@ def states_of(designs: Designs, gradient: bool) -> States:
     )
 
 
-def _settle(solved: "_Solved", edges: Array, turns: Turns, found: Found, lanes: Array) -> None:
+def _settle(solved: "_Solved", edges: Array, turns: Turns, found: Brackets, lanes: Array) -> None:
     """The motions of some of the lanes; from finer turns where they do not lead to their own motions."""
     found = picked(found, lanes)
     first = _from_turns(turns.rows(found.design), found.E0)

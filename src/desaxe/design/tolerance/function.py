@@ -16,7 +16,7 @@ KINK = 0.1  # of the first-order change: slopes that jump by more have no deriva
 ROUNDING = 1e-11  # of a value
 
 
-class Function(NamedTuple):
+class SampledQuantity(NamedTuple):
     """A quantity at a crank angle, or of a whole design, as a function of the varying inputs."""
 
     measure: Measure

@@ -20,7 +20,7 @@ from ...support.forks import IMPORTS, imported
 from ...support.progress import Steps, progress_bar
 from ...support.shown import shown
 from ..measures import checked, is_named
-from .function import Beside, Function, derived
+from .function import Beside, SampledQuantity, derived
 from .scatter import Tolerance
 from .uncertain import DISTRIBUTIONS, Array, Inexact, read
 
@@ -113,7 +113,7 @@ def tolerance(
 
 def _answer(
     name: Any,
-    function: Function,
+    function: SampledQuantity,
     rough: Sequence[Inexact],
     progress: Steps,
     count: int,
@@ -176,23 +176,23 @@ def _check(distribution: str, sigmas: Any, samples: Any, sobol: Any, seed: Any) 
     whole_number("seed", seed, 0, 2**32 - 1)
 
 
-def _function(name: Any, given: Mapping[str, Any], branch: int) -> Function:
+def _function(name: Any, given: Mapping[str, Any], branch: int) -> SampledQuantity:
     design = isinstance(name, (tuple, list)) or (is_named(name) and name != "margin")
     fixed = {n: v for n, v in given.items() if not isinstance(v, Inexact)}
     varying = tuple(n for n in given if n not in fixed)
     if design and "theta" in given:
         raise ValueError(f"theta: {name} is of a whole turn")
     if design:
-        return Function(checked(name), False, fixed, varying, branch)
+        return SampledQuantity(checked(name), False, fixed, varying, branch)
     quantity(name, "omega" in given)
     if name == "status":
         raise ValueError("status is not a real number")
     if name == "margin":
-        return Function("margin", False, fixed, varying, branch)
+        return SampledQuantity("margin", False, fixed, varying, branch)
     names = [sensitivity(name, p) for p in varying]
     if not derived(names, "omega" in given):
         raise ValueError(f"tolerance of {name}: its derivatives are not derived")
-    return Function(name, True, fixed, varying, branch)
+    return SampledQuantity(name, True, fixed, varying, branch)
 
 
 def _propagated(value: float, slopes: Array, bends: Array, rough: Sequence[Inexact]) -> tuple[Any, Any, Any]:
@@ -210,7 +210,7 @@ def _propagated(value: float, slopes: Array, bends: Array, rough: Sequence[Inexa
     return first, {"mean": value + float(own.sum()) / 2.0, "std": float(np.sqrt(max(variance, 0.0)))}, shares
 
 
-def _sampled(function: Function, rough: Sequence[Inexact], count: int, seed: int) -> Array:
+def _sampled(function: SampledQuantity, rough: Sequence[Inexact], count: int, seed: int) -> Array:
     """The values of random samples, drawn and evaluated in blocks."""
     random = np.random.default_rng(seed)
     blocks = []
@@ -244,7 +244,7 @@ def _monte_carlo(every: Array) -> dict[str, Any]:
     }
 
 
-def _sobol(function: Function, rough: Sequence[Inexact], count: int, seed: int) -> dict[str, Any]:
+def _sobol(function: SampledQuantity, rough: Sequence[Inexact], count: int, seed: int) -> dict[str, Any]:
     """First and total indices, from SALib's sequence and estimates."""
     with needed("tolerance: Sobol indices (sobol=0 leaves them out)", "design"):
         from SALib.analyze import sobol as analyse
@@ -265,7 +265,7 @@ def _sobol(function: Function, rough: Sequence[Inexact], count: int, seed: int) 
     return {n: {k: float(found[own][i]) for k, own in keys.items()} for i, n in enumerate(names)}
 
 
-def _worst_case(function: Function, value: float, slopes: Array, rough: Sequence[Inexact]) -> Any:
+def _worst_case(function: SampledQuantity, value: float, slopes: Array, rough: Sequence[Inexact]) -> Any:
     """The extreme values within all tolerances; see `tolerance`."""
     if any(row.tolerance is None for row in rough):
         return None

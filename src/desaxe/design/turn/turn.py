@@ -24,6 +24,7 @@ from ...mechanism.keywords import check_inputs
 from ...mechanism.names import LENGTHS
 from ...mechanism.read import read
 from ...mechanism.spoken import spoken
+from ...mechanism.status import PointStatus
 from ...runtime.request import as_number, check_common, is_steady, request
 from ...support.computed import computed_once
 from ...support.panels import Array, Panels, resolved
@@ -31,7 +32,7 @@ from ...support.panels import Array, Panels, resolved
 LEAST, MOST = 128, 131072  # steps of a turn
 MOST_TURNS = 4  # after which the loads must repeat; two in a four-stroke engine
 CONVERGED = 1e-14  # of the largest coefficient: what halving the steps may change
-JAMS = 5  # the status where friction leaves no balance of forces
+JAMS = int(PointStatus.NO_FORCE_BALANCE)
 Motion = Callable[[Array], dict[str, Array]]  # angles -> omega and alpha there
 
 

@@ -18,7 +18,7 @@ from ..reading.values import Value
 from .parts import Block, Section, Table, cell, designs_of, image_of, in_unit, unit_of, with_unit
 
 LISTED, POINTS = 6, 24  # values of a list, points of a load, that are all shown
-TURN = {
+OF_TURN = {
     "stroke": "stroke",
     "theta_outer": "outer dead centre",
     "theta_inner": "inner dead centre",
@@ -119,6 +119,6 @@ def _geometry(lengths: dict[str, Any], branch: int, units: UnitSystem) -> dict[s
         "margin BC - AB - |ec|": with_unit(units, "margin", found["margin"]),
     }
     turn = events(branch=branch, **lengths)
-    for name, words in TURN.items():
+    for name, words in OF_TURN.items():
         told[words] = with_unit(units, name, turn[name])
     return {**told, "time ratio": cell(turn["time_ratio"])}

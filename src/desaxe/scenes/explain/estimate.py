@@ -7,7 +7,7 @@ next, from 82 additions a point to 1034. `python -m benchmarks.startup` measures
 
 from collections.abc import Sequence
 
-from .loops import Loop
+from .loops import LoopCost
 
 ADDITION = 0.03e-9  # s, in a vectorised loop on one core
 STORE = 0.4e-9  # s to write a double that does not stay in the cache
@@ -19,7 +19,7 @@ COMPILE = 0.3  # s to compile a kernel, and for each of its lines
 COMPILE_LINE = 2e-3
 
 
-def loops_time(loops: Sequence[Loop], stored: int) -> float:
+def loops_time(loops: Sequence[LoopCost], stored: int) -> float:
     """Seconds on one core, from the operations and the doubles that are stored."""
     return sum(loop.runs * loop.cost for loop in loops if not loop.close) * ADDITION + stored * STORE
 
@@ -29,6 +29,6 @@ def plain_time(operations: int, points: int) -> float:
     return points * (PLAIN_POINT + operations * PLAIN)
 
 
-def compile_time(loops: Sequence[Loop]) -> float:
+def compile_time(loops: Sequence[LoopCost]) -> float:
     """Seconds that the first process waits for a kernel."""
     return COMPILE + COMPILE_LINE * sum(loop.operations for loop in loops)

@@ -36,7 +36,7 @@ from ..scene import Scene
 from ..scene import scene as scene_of
 from . import estimate
 from .loads import load_costs, points_of
-from .loops import Loop, loops_of
+from .loops import LoopCost, loops_of
 from .steps import skipped_of, steps_of
 from .total import costs_of, work_besides
 
@@ -219,11 +219,11 @@ def _reduction(plan: Planned, key: KernelKey) -> dict[str, Any] | None:
     return {"axis": ", ".join(taken.axes), "kinds": taken.kinds, "stored": not key.reduce}
 
 
-def _compiled_loops(found: GridKernel) -> list[Loop]:
+def _compiled_loops(found: GridKernel) -> list[LoopCost]:
     return loops_of(kernel_of(found.key), found.axes, found.sizes)
 
 
-def _plain_loops(found: GridKernel) -> list[Loop]:
+def _plain_loops(found: GridKernel) -> list[LoopCost]:
     """Every operation at every point, sine and cosine from `math`."""
     program = specialise(found.key.names, found.key.form, found.key.fixed)
     if found.key.accuracy == "extended":
@@ -233,13 +233,13 @@ def _plain_loops(found: GridKernel) -> list[Loop]:
     return loops_of(kernel, axes, [s for n, s in zip(found.axes, found.sizes, strict=True) if n])
 
 
-def _loop(loop: Loop, points: int) -> dict[str, Any]:
+def _loop(loop: LoopCost, points: int) -> dict[str, Any]:
     row = loop._asdict()
     return {**row, "along": list(loop.along), "values": list(loop.values), "per_point": loop.work / points}
 
 
 def _run(
-    content: Content, found: GridKernel, loops: list[Loop], compiled: bool, loads: float
+    content: Content, found: GridKernel, loops: list[LoopCost], compiled: bool, loads: float
 ) -> dict[str, Any]:
     """The execution of the grid: tier, threads, estimated times; `loads` is the time of their lookups."""
     points = found.points

@@ -10,7 +10,7 @@ from ...compiler.operations import OPERATIONS
 from ...compiler.program import Line
 
 
-class Loop(NamedTuple):
+class LoopCost(NamedTuple):
     """A loop body: its operations and how often it runs.
 
     `along` are the axes that it runs over, the outermost first; a `table` runs before the main loops
@@ -33,7 +33,7 @@ class Loop(NamedTuple):
         return 0 if self.close else self.runs * self.operations
 
 
-def loops_of(kernel: Kernel, axes: Sequence[str], sizes: Sequence[int]) -> list[Loop]:
+def loops_of(kernel: Kernel, axes: Sequence[str], sizes: Sequence[int]) -> list[LoopCost]:
     """Every loop that has operations: tables first, then the main nest from outside in."""
     found = []
     for table in kernel.tables:
@@ -46,7 +46,7 @@ def loops_of(kernel: Kernel, axes: Sequence[str], sizes: Sequence[int]) -> list[
     return found
 
 
-def _nest(kernel: Kernel, axes: Sequence[str], sizes: Sequence[int], table: bool) -> list[Loop]:
+def _nest(kernel: Kernel, axes: Sequence[str], sizes: Sequence[int], table: bool) -> list[LoopCost]:
     return [
         _loop(lines, table, tuple(axes[:level]), prod(sizes[:level]), kernel)
         for level, lines in enumerate(kernel.levels)
@@ -54,8 +54,8 @@ def _nest(kernel: Kernel, axes: Sequence[str], sizes: Sequence[int], table: bool
     ]
 
 
-def _loop(lines: Sequence[Line], table: bool, along: tuple[str, ...], runs: int, kernel: Kernel) -> Loop:
+def _loop(lines: Sequence[Line], table: bool, along: tuple[str, ...], runs: int, kernel: Kernel) -> LoopCost:
     kinds = Counter(line.op for line in lines if line.op != "copy")
     cost = sum(OPERATIONS[op].cost * count for op, count in kinds.items())
     values = tuple(line.name for line in lines if line.name in kernel.notes or line.name in kernel.outputs)
-    return Loop(table, along, runs, kinds.total(), cost, dict(sorted(kinds.items())), values)
+    return LoopCost(table, along, runs, kinds.total(), cost, dict(sorted(kinds.items())), values)

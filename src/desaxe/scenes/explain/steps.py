@@ -13,7 +13,7 @@ from ...runtime.request import Request
 from ...runtime.specialise import specialise
 
 
-class Step(NamedTuple):
+class LoweringStep(NamedTuple):
     """A pass: operations at each point after it, and what it saved (below 0: what it added)."""
 
     name: str
@@ -41,7 +41,7 @@ WHAT = {
 }
 
 
-def steps_of(key: KernelKey, request: Request, inside: int) -> list[Step]:
+def steps_of(key: KernelKey, request: Request, inside: int) -> list[LoweringStep]:
     """From the whole derivation to the kernel, in operations at each point; `inside` is the kernel's."""
     fixed = key.fixed
     whole = len(whole_program().lines)
@@ -55,10 +55,10 @@ def steps_of(key: KernelKey, request: Request, inside: int) -> list[Step]:
         counts.append(("plain", cost_of(specialise(key.names, key.form, fixed)).operations))
     if inside != counts[-1][1]:
         counts.append(("write out", inside))
-    steps = [Step("derivation", "every line of the derivation", whole, 0)]
+    steps = [LoweringStep("derivation", "every line of the derivation", whole, 0)]
     for (_, before), (name, after) in pairwise(counts):
         if before != after or name in ("slice", "fold"):
-            steps.append(Step(name, WHAT.get(name, f"the pass {name}"), after, before - after))
+            steps.append(LoweringStep(name, WHAT.get(name, f"the pass {name}"), after, before - after))
     return steps
 
 

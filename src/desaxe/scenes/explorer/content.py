@@ -38,7 +38,7 @@ FROM_MANY = 4  # of more values than that, evenly chosen
 LISTED = 6  # values that are left out; of more only their number is shown
 
 
-class Function(NamedTuple):
+class PageFunction(NamedTuple):
     """One function of the page: the values that it returns, the inputs that it takes, its source."""
 
     quantity: str
@@ -49,7 +49,7 @@ class Function(NamedTuple):
     terms: tuple[tuple[int, int, str, str], ...] = ()
 
 
-class Content(NamedTuple):
+class PageContent(NamedTuple):
     """The content of a page in SI units; `units`: of values, tables, files; `fields`: of the controls."""
 
     title: str
@@ -57,11 +57,11 @@ class Content(NamedTuple):
     theta: tuple[float, float]
     designs: tuple[dict[str, float], ...]
     shown: tuple[str, ...]
-    functions: tuple[Function, ...]
+    functions: tuple[PageFunction, ...]
     left_out: Mapping[str, tuple[float, ...]]  # input -> its values that no design has
     given: tuple[str, ...]  # the inputs that were given
     loads: Mapping[str, TableOverTheta | OverY] = MappingProxyType({})
-    motion: Function | None = None  # that loads over Y or the stroke follow
+    motion: PageFunction | None = None  # that loads over Y or the stroke follow
     units: UnitSystem = SI
     fields: UnitSystem = SI
     definitions: tuple[Definition, ...] = ()  # of the scene
@@ -76,7 +76,7 @@ class Content(NamedTuple):
 
 def content(
     title: str, branch: int, inputs: Mapping[str, Any], shown: Iterable[str], names: Iterable[str] | None
-) -> Content:
+) -> PageContent:
     """The content for these inputs; `names` are the quantities, those of the motion without.
 
     A load that varies with the motion is a table; what the page changes of it is a constant added to it.
@@ -97,7 +97,7 @@ def content(
     motion = _motion(groups.values(), given, branch, loads)
     designs = _designs(given)
     left = {n: out for n, value in given.items() if n != "theta" and (out := _left_out(n, value, designs))}
-    return Content(title, branch, _angles(given), designs, shown, functions, left, named, loads, motion)
+    return PageContent(title, branch, _angles(given), designs, shown, functions, left, named, loads, motion)
 
 
 def _tables(inputs: Mapping[str, Any]) -> dict[str, TableOverTheta | OverY]:
@@ -110,7 +110,7 @@ def _tables(inputs: Mapping[str, Any]) -> dict[str, TableOverTheta | OverY]:
     return found
 
 
-def left_out_text(content: Content) -> str:
+def left_out_text(content: PageContent) -> str:
     """The input values that no design of the page has, as text; empty if there are none."""
     told = []
     for name, values in content.left_out.items():
@@ -166,7 +166,7 @@ def _sensitivities(base: str, given: Mapping[str, Value]) -> list[str]:
 
 def _function(
     base: str, names: Iterable[str], given: Mapping[str, Value], branch: int, loads: Mapping[str, Load]
-) -> Function:
+) -> PageFunction:
     plan = plan_of(tuple(names), loads, "omega" in given, "mu" in given)
     asked = _request(plan.names, given, branch)
     program = specialise(asked.names, asked.form, asked.fixed)
@@ -175,12 +175,12 @@ def _function(
         for name, group in plan.terms.items()
         for term in group
     )
-    return Function(base, plan.shown, program.inputs, emit_javascript(program, f"of_{base}"), terms)
+    return PageFunction(base, plan.shown, program.inputs, emit_javascript(program, f"of_{base}"), terms)
 
 
 def _motion(
     groups: Iterable[Iterable[str]], given: Mapping[str, Value], branch: int, loads: Mapping[str, Load]
-) -> Function | None:
+) -> PageFunction | None:
     """The motion that loads over Y or the stroke follow, with the derivatives that totals need."""
     plans = [plan_of(tuple(names), loads, "omega" in given, "mu" in given) for names in groups]
     names = tuple(dict.fromkeys(name for plan in plans for name in plan.motion))
@@ -188,7 +188,7 @@ def _motion(
         return None
     asked = _request(names, given, branch)
     program = specialise(asked.names, asked.form, asked.fixed)
-    return Function("motion", names, program.inputs, emit_javascript(program, "of_motion"))
+    return PageFunction("motion", names, program.inputs, emit_javascript(program, "of_motion"))
 
 
 def _request(names: tuple[str, ...], given: Mapping[str, Value], branch: int) -> Request:

@@ -15,7 +15,7 @@ from ...mechanism.unit_system import UnitSystem
 from ...runtime.request import as_number, check_common, several
 from ...runtime.written import require_place
 from ...support.forks import IMPORTS
-from .content import FORCES, Content, Value, content, forces_first, is_loaded
+from .content import FORCES, PageContent, Value, content, forces_first, is_loaded
 from .write import write_page
 
 TITLE = "Offset slider-crank"
@@ -75,7 +75,7 @@ def content_of(
     branch: int = 1,
     title: str = TITLE,
     inputs: Mapping[str, Any] = MappingProxyType({}),
-) -> Content:
+) -> PageContent:
     """The content of the page that `explore` writes for these arguments."""
     names = None if names is None else (names,) if isinstance(names, str) else several(names)
     if source is None:
@@ -94,7 +94,7 @@ def content_of(
     return _of_scene(source, names)
 
 
-def _of_scene(source: Any, names: Iterable[str] | None) -> Content:
+def _of_scene(source: Any, names: Iterable[str] | None) -> PageContent:
     """The content of a scene: its outputs, and the quantities of its peaks and pictures."""
     with IMPORTS:
         from ..scene import Scene, scene

@@ -15,7 +15,7 @@ from ...mechanism.status import PointStatus
 from ...mechanism.unit_system import DIMENSIONS, UnitSystem
 from ...runtime.written import UNSEALED, replacing_ours, sealed
 from ...support.extras import needed
-from .content import Content, left_out_text
+from .content import PageContent, left_out_text
 
 # In the order in which they build on each other.
 SCRIPTS = ("numbers", "designs", "words", "mechanism", "charts", "controls", "files", "main")
@@ -23,14 +23,14 @@ _COMMENT = re.compile(r"^\s*//.*\n", re.MULTILINE)  # of a line of its own: the 
 _PLACE = re.compile(r"@@(\w+)@@")
 
 
-def write_page(content: Content, path: Path, overwrite: bool = False) -> Path:
+def write_page(content: PageContent, path: Path, overwrite: bool = False) -> Path:
     """Write the page; its path."""
     with replacing_ours(path, overwrite) as staged:
         staged.write_text(page(content), encoding="utf-8")
     return path
 
 
-def page(content: Content) -> str:
+def page(content: PageContent) -> str:
     """The text of the page."""
     with needed("desaxe explore"):
         from plotly.offline import get_plotlyjs
@@ -50,7 +50,7 @@ def _asset(name: str) -> str:
     return (files(__package__) / "page" / name).read_text(encoding="utf-8")
 
 
-def _program(content: Content) -> str:
+def _program(content: PageContent) -> str:
     """The emitted functions, and a table of them."""
     functions = [*content.functions, *([content.motion] if content.motion else [])]
     table = [f"  {f.quantity}: of_{f.quantity}," for f in functions]
@@ -58,7 +58,7 @@ def _program(content: Content) -> str:
     return "\n".join([HEADER, sources, "const FUNCTIONS = {", *table, "};"])
 
 
-def _data(content: Content) -> dict[str, Any]:
+def _data(content: PageContent) -> dict[str, Any]:
     """The data that the scripts of the page read."""
     return {
         "title": content.title,
