@@ -4,6 +4,7 @@ Read from the source text, so that an import inside a function counts too.
 """
 
 import ast
+import re
 import sys
 from pathlib import Path
 
@@ -111,6 +112,12 @@ def arrows():
 def test_every_room_has_its_floor():
     rooms = {path.parent.name for path in ROOMS["desaxe"].glob("*/__init__.py")}
     assert rooms <= set(FLOORS)
+
+
+def test_the_readme_has_the_floors():
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^  (\w+)/ +(\d)  \S", text, re.MULTILINE)
+    assert {room: int(floor) for room, floor in rows} == FLOORS
 
 
 def test_a_room_imports_lower_floors_only():

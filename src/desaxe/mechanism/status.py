@@ -132,7 +132,7 @@ class SynthesisStatus(Status):
 class DriveStatus(Status):
     """The status of a drive over a turn: `drive`.
 
-    Decided by `_status` in `design/drive/drive.py` and by `design/drive/cycle.py`.
+    Decided by `_status` in `design/drive/drive.py` and, where a turn has no value, by `design/turn/turn.py`.
     """
 
     OK = 0, "ok"
