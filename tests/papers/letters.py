@@ -119,8 +119,8 @@ def twins_a(number):
         "A-eq15": Twin((v["alpha_BC1"], A.printed_eq15(p.theta, p.AB, p.omega, mp))),
         "A-eq20": Twin((v["a_C1"], A.printed_eq20(p.theta, p.AB, p.omega, mp))),
         "A-eq23": Twin((v["a_C4"], A.printed_eq23(*turning, mp))),
-        "A-eq24": Twin((A.printed_eq24(*p.design, p.sheet),)),
-        "A-eq25": Twin((A.printed_eq25(*p.design, p.sheet),)),
+        "A-eq24": Twin((p.sheet.corrected_V_C(*p.design),)),
+        "A-eq25": Twin((p.sheet.corrected_a_C(*p.design),)),
         "A-eq19": Twin(
             (v["a_C"], A.printed_eq19(*turning, p.alpha, mp)), A.corrected_eq19(*turning, p.alpha, mp)
         ),

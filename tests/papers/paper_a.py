@@ -198,108 +198,43 @@ def corrected_eq19(
 
 
 class Worksheet:
-    """The listing as printed, one method a line; `omega0` (rad/s) and `alpha` (rad/s2) are set once above it.
+    """The listing's functions: `omega0` (rad/s) and `alpha` (rad/s2) are set once, above it (Fig. 7).
 
     Lines that are not right have a `corrected_` twin. Arguments are in the paper's order.
     """
 
     def __init__(self, omega0: Any, alpha: Any, m: ModuleType = math) -> None:
-        """Set the two constants of the main window (Fig. 7) and the mathematics."""
+        """Set the two constants and the mathematics."""
         self.omega0, self.alpha, self.m = omega0, alpha, m
 
     def omega(self, theta: Any) -> Any:
         """Crank speed, rad/s."""
         return self.m.sqrt(self.omega0**2 + 2 * self.alpha * theta)
 
-    def delta(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
-        """Delta, rad."""
-        return self.m.acos((ec + AB * self.m.sin(theta)) / BC)
-
-    def phi(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
-        """Phi, rad."""
-        return self.m.asin((ec + AB * self.m.sin(theta)) / BC)
-
-    def Y(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
-        """Slider position, m."""
-        return AB * self.m.cos(theta) + BC * self.m.cos(self.phi(theta, ec, AB, BC))
-
     def V_B(self, theta: Any, AB: Any) -> Vector:
         """Velocity of the crank pin, m/s, in the paper's frame."""
-        return AB * self.omega(theta) * self.m.cos(theta), AB * self.omega(theta) * self.m.sin(theta)
+        return printed_eq2(theta, AB, self.omega(theta), self.m)
 
-    def a_B(self, theta: Any, AB: Any) -> Vector:
-        """Acceleration of the crank pin, m/s2, in the paper's frame."""
-        sin, cos, square = self.m.sin(theta), self.m.cos(theta), self.omega(theta) ** 2
-        return add((-AB * square * sin, AB * square * cos), (AB * self.alpha * cos, AB * self.alpha * sin))
-
-    def omega_BC(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+    def omega_BC(self, *design: Any) -> Any:
         """Rod rate, rad/s."""
-        return AB * self.omega(theta) * self.m.cos(theta) / (BC * self.m.cos(self.phi(theta, ec, AB, BC)))
+        return printed_eq10(*design, self.omega(design[0]), self.m)
 
-    def V_C(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+    def V_C(self, *design: Any) -> Any:
         """Slider velocity as printed, m/s: the sign of the whole line is wrong."""
-        rod = BC * self.omega_BC(theta, ec, AB, BC) * self.m.sin(self.phi(theta, ec, AB, BC))
-        return AB * self.omega(theta) * self.m.sin(theta) + rod
+        return V_C_of_signs((1, 1), *design, self.omega(design[0]), self.m)
 
-    def corrected_V_C(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
-        """Slider velocity, m/s, with the signs of Eq. 11."""
-        rod = BC * self.omega_BC(theta, ec, AB, BC) * self.m.sin(self.phi(theta, ec, AB, BC))
-        return -AB * self.omega(theta) * self.m.sin(theta) - rod
+    def corrected_V_C(self, *design: Any) -> Any:
+        """Slider velocity, m/s, with the signs of Eq. 11; Eq. 24."""
+        return V_C_of_signs((-1, -1), *design, self.omega(design[0]), self.m)
 
-    def alpha_BC(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
-        """Rod angular acceleration, rad/s2, in the two fractions of the listing."""
-        design = theta, ec, AB, BC
-        first = (self.alpha_BC1(*design) + self.alpha_BC2(*design)) / self.alpha_BC4(*design)
-        return first + -self.alpha_BC3(*design) / self.alpha_BC4(*design)
+    def alpha_BC(self, *design: Any) -> Any:
+        """Rod angular acceleration, rad/s2."""
+        return printed_eq14(*design, self.omega(design[0]), self.alpha, self.m)
 
-    def alpha_BC1(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
-        """First term of alpha_BC, m/s2."""
-        return -AB * self.omega(theta) ** 2 * self.m.sin(theta)
-
-    def alpha_BC2(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
-        """Second term of alpha_BC, m/s2."""
-        return AB * self.alpha * self.m.cos(theta)
-
-    def alpha_BC3(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
-        """Third term of alpha_BC, m/s2."""
-        return -BC * self.omega_BC(theta, ec, AB, BC) ** 2 * self.m.sin(self.phi(theta, ec, AB, BC))
-
-    def alpha_BC4(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
-        """Divisor of alpha_BC, m."""
-        return BC * self.m.cos(self.phi(theta, ec, AB, BC))
-
-    def a_C(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
+    def a_C(self, *design: Any) -> Any:
         """Slider acceleration as printed, m/s2: two signs are wrong, as in Eq. 19."""
-        design = theta, ec, AB, BC
-        return self.a_C1(*design) + self.a_C2(*design) - self.a_C3(*design) - self.a_C4(*design)
+        return printed_eq19(*design, self.omega(design[0]), self.alpha, self.m)
 
-    def corrected_a_C(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
-        """Slider acceleration, m/s2."""
-        design = theta, ec, AB, BC
-        return self.a_C1(*design) + self.a_C2(*design) + self.a_C3(*design) + self.a_C4(*design)
-
-    def a_C1(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
-        """First term of a_C, m/s2."""
-        return -AB * self.omega(theta) ** 2 * self.m.cos(theta)
-
-    def a_C2(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
-        """Second term of a_C, m/s2."""
-        return -AB * self.alpha * self.m.sin(theta)
-
-    def a_C3(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
-        """Third term of a_C, m/s2."""
-        return -BC * self.alpha_BC(theta, ec, AB, BC) * self.m.sin(self.phi(theta, ec, AB, BC))
-
-    def a_C4(self, theta: Any, ec: Any, AB: Any, BC: Any) -> Any:
-        """Fourth term of a_C, m/s2."""
-        return -BC * self.omega_BC(theta, ec, AB, BC) ** 2 * self.m.cos(self.phi(theta, ec, AB, BC))
-
-
-def printed_eq24(theta: Any, ec: Any, AB: Any, BC: Any, sheet: Worksheet) -> Any:
-    """V_C(theta, ec, AB, BC), m/s, as Eq. 11 (Eq. 24): the sheet supplies omega0 and alpha."""
-    return printed_eq11(theta, ec, AB, BC, sheet.omega(theta), sheet.m)
-
-
-def printed_eq25(theta: Any, ec: Any, AB: Any, BC: Any, sheet: Worksheet) -> Any:
-    """a_C(theta, ec, AB, BC), m/s2, as Eq. 19 corrected (Eq. 25): the sheet supplies omega0 and alpha."""
-    return corrected_eq19(theta, ec, AB, BC, sheet.omega(theta), sheet.alpha, sheet.m)
+    def corrected_a_C(self, *design: Any) -> Any:
+        """Slider acceleration, m/s2; Eq. 25."""
+        return corrected_eq19(*design, self.omega(design[0]), self.alpha, self.m)
