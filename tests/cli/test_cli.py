@@ -12,7 +12,6 @@ import pytest
 
 import desaxe as dx
 from desaxe.cli import command, doctor, main
-from desaxe.errata.page import markdown
 from desaxe.mechanism.inputs import INPUTS
 
 COMPACTOR = str(Path(__file__).parents[2] / "examples" / "compactor.toml")
@@ -198,11 +197,6 @@ def test_complaint(complaint, capsys):
     assert err.count("\n") == 1
 
 
-def test_errata_of_a_paper_in_small_letters(capsys):
-    assert main(["errata", "--document", "a", "--verdict", "sign"]) == 0
-    assert "3 entries: 3 sign" in capsys.readouterr().out
-
-
 def test_scene_that_is_wrong(tmp_path, capsys):
     path = tmp_path / "press.toml"
     path.write_text('outputs = ["a_C"]\n[mechanism]\nec = { start = 0, stop = "3 kg", num = 3 }\n')
@@ -298,20 +292,6 @@ def test_no_command_gives_help(capsys):
 def test_version(capsys):
     assert main(["--version"]) == 0
     assert capsys.readouterr().out == f"desaxe {dx.__version__}\n"
-
-
-def test_errata(capsys):
-    assert main(["errata", "--document", "A"]) == 0
-    assert "A-eq19" in capsys.readouterr().out
-    assert main(["errata", "--verdict", "sign", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found
-    assert {entry["verdict"] for entry in found} == {"sign"}
-
-
-def test_errata_as_a_page(capsys):
-    assert main(["errata", "--markdown"]) == 0
-    assert capsys.readouterr().out == markdown() + "\n"
 
 
 def test_derive_hands_its_options_on(monkeypatch):

@@ -12,7 +12,9 @@ from desaxe.mechanism.units import registry
 from desaxe.plot.titles import title_of
 
 SI = {"ec": 0.01, "AB": 0.05, "BC": 0.2, "omega0": 31.0, "m_slider": 4.0, "I_crank": 0.5, "F_Y": -600.0}
-PRESS = dx.Machine(**SI).replace(units={"length": "mm", "angle": "deg", "torque": "kN m", "a_C": "cm/s^2"})
+PRESS = dx.Machine(**SI).replace(
+    units={"length": "mm", "angle": "deg", "omega0": "rpm", "torque": "kN m", "a_C": "cm/s^2"}
+)
 NARROW = {"ec": (0, 0.06), "AB": (0.02, 0.05)}
 TORQUE = {"torque": 50.0, "t_end": 0.05, "times": [0.0, 0.05], "mu": 0.0}
 CALLS = {

@@ -160,48 +160,6 @@ def test_second_sensitivities_by_differences(pair, point):
             assert agree(truth(f"{name}_wrt_{pair[0]}_{pair[1]}", **point), twist, digits=20), name
 
 
-@pytest.mark.parametrize("point", POINTS)
-def test_each_body_alone(point):
-    """The forces on crank, rod and slider, and their moments about A, from the oracle's numbers alone."""
-    q = truth_all(FORCES, **point)
-    with mpmath.workdps(160):
-        at = numbers(point)
-        moving = motion(at)
-        A, B, C = (mpmath.matrix([q[f"F_{joint}_X"], q[f"F_{joint}_Y"]]) for joint in "ABC")
-        guide = mpmath.matrix([q["N_C"] + at["F_X"], q["F_friction"] + at["F_Y"]])
-        at_B, at_C = moving["B"][0], moving["C"][0]
-        (crank, about), (rod, rod_about), (slider, _) = momentum(at, moving)
-        for left, right in ((A - B, crank), (B - C, rod), (C + guide, slider)):
-            assert agree(left[0], right[0], digits=40)
-            assert agree(left[1], right[1], digits=40)
-        assert agree(q["T_in"] - moment(B, at_B), about, digits=40)
-        assert agree(moment(B, at_B) - moment(C, at_C), rod_about, digits=40)
-
-
-@pytest.mark.parametrize("point", POINTS)
-def test_frame_feels_what_changes_the_momentum(point):
-    """Shaking force = -(sum m a) + weight + load, and its moment about A likewise; from no bearing force."""
-    with mpmath.workdps(160):
-        at = numbers(point)
-        moving = motion(at)
-        forces, moments = zip(*momentum(at, moving), strict=True)
-        load = mpmath.matrix([at["F_X"], at["F_Y"]])
-        shaking = load - (forces[0] + forces[1] + forces[2])
-        assert agree(truth("F_shaking_X", **point), shaking[0], digits=40)
-        assert agree(truth("F_shaking_Y", **point), shaking[1], digits=40)
-        expected = moment(load, moving["C"][0]) - sum(moments)
-        assert agree(truth("M_shaking", **point), expected, digits=40)
-
-
-@pytest.mark.parametrize("point", POINTS)
-def test_frame_feels_its_bearings(point):
-    q = truth_all((*FORCES, "Y"), **point)
-    assert agree(q["F_shaking_X"] + q["F_A_X"] + q["N_C"], 0)
-    assert agree(q["F_shaking_Y"] + q["F_A_Y"] + q["F_friction"], 0)
-    ec = mpmath.mpf(point["ec"])
-    assert agree(q["M_shaking"] + q["T_in"] + q["Y"] * q["N_C"] + ec * q["F_friction"], 0)
-
-
 @pytest.mark.parametrize("branch", [1, -1])
 @pytest.mark.parametrize("centres", [{}, CENTRES])
 def test_virtual_work_in_statics(branch, centres):

@@ -1,8 +1,5 @@
 """Pictures: labels from the dataset, gaps where infeasible, no pyplot."""
 
-import subprocess
-import sys
-
 import matplotlib.figure
 import numpy as np
 import pytest
@@ -213,29 +210,6 @@ def test_unknown_kind_of_file_leaves_nothing(tmp_path):
     with pytest.raises(ValueError, match="xyz"):
         save(figure, tmp_path / "picture.xyz")
     assert not list(tmp_path.iterdir())
-
-
-def test_pyplot_is_never_loaded():
-    code = """
-import sys
-import numpy as np
-import desaxe as dx
-dataset = dx.grid(["a_C"], ec=[0, 0.1], theta=np.linspace(0, 6, 9), AB=0.125, BC=0.35, omega0=1)
-dx.plot.curves(dataset, "a_C")
-dx.plot.polar(dataset, "a_C")
-print("matplotlib.pyplot" in sys.modules)
-"""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == "False\n"
-
-
-def test_missing_extra(monkeypatch):
-    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(ImportError, match=r"plot\.curves needs matplotlib.*'desaxe\[plot\]'"):
-        curves(family([0, 0.1]), "a_C")
-    with pytest.raises(ImportError, match=r"plot\.polar needs matplotlib"):
-        polar(family([0, 0.1]), "a_C")
 
 
 # ---- dicts, gaps, titles -------------------------------------------------------------------------

@@ -104,6 +104,8 @@ before = matplotlib.rcParams.copy()
 press = dict(AB=0.125, BC=0.35, omega0=1.0)
 theta = np.linspace(0, 6, 9)
 grid = dx.grid(["a_C", "V_C"], ec=[0, 0.1], theta=theta, **press)
+dx.plot.curves(grid, "a_C")
+dx.plot.polar(grid, "a_C")
 dx.plot.panels(grid)
 dx.plot.design_map(grid, "a_C")
 dx.plot.tornado(dx.peak("a_C", ec=0.1, **press), {"ec": 1e-3})
@@ -120,6 +122,8 @@ print("matplotlib.pyplot" in sys.modules, matplotlib.rcParams.copy() == before)
 @pytest.mark.parametrize(
     ("name", "call"),
     [
+        ("curves", lambda: dx.plot.curves({}, "a_C")),
+        ("polar", lambda: dx.plot.polar({}, "a_C")),
         ("design_map", lambda: dx.plot.design_map({}, "a_C")),
         ("tornado", lambda: dx.plot.tornado({}, {})),
         ("mechanism", lambda: dx.plot.mechanism(theta=0, ec=0, AB=1, BC=2)),
