@@ -51,34 +51,28 @@ def link4_moment(v: Symbols) -> Any:
 # --- Sec. 2: the system ---------------------------------------------------------------------------
 
 UNKNOWNS = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14y", "T12")
+MATRIX = """\
+1 0 1 0 0 0 0 0
+0 1 0 1 0 0 0 0
+-R12y R12x -R32y R32x 0 0 0 1
+0 0 -1 0 1 0 0 0
+0 0 0 -1 0 1 0 0
+0 0 R23y -R23x -R43y R43x 0 0
+0 0 0 0 -1 0 +-mu 0
+0 0 0 0 0 -1 1 0""".splitlines()
+RIGHT_HAND_SIDE = "[m2 aG2x, m2 aG2y, IG2 alpha2, m3 aG3x, m3 aG3y, IG3 alpha3, m4 aG4x - FPx, -FPy]"
 
 
 def printed_matrix(v: Symbols, mu: Any = 0) -> list[list[Any]]:
     """The 8 by 8 matrix; `mu` carries the sign of the printed +-."""
-    return [
-        [1, 0, 1, 0, 0, 0, 0, 0],
-        [0, 1, 0, 1, 0, 0, 0, 0],
-        [-v["R12y"], v["R12x"], -v["R32y"], v["R32x"], 0, 0, 0, 1],
-        [0, 0, -1, 0, 1, 0, 0, 0],
-        [0, 0, 0, -1, 0, 1, 0, 0],
-        [0, 0, v["R23y"], -v["R23x"], -v["R43y"], v["R43x"], 0, 0],
-        [0, 0, 0, 0, -1, 0, mu, 0],
-        [0, 0, 0, 0, 0, -1, 1, 0],
-    ]
+    rows = (row.replace("+-", "").split() for row in MATRIX)
+    return [[number(entry, {**v, "mu": mu}) for entry in row] for row in rows]
 
 
 def printed_right_hand_side(v: Symbols) -> list[Any]:
     """The right-hand side, row by row."""
-    return [
-        v["m2"] * v["aG2x"],
-        v["m2"] * v["aG2y"],
-        v["IG2"] * v["alpha2"],
-        v["m3"] * v["aG3x"],
-        v["m3"] * v["aG3y"],
-        v["IG3"] * v["alpha3"],
-        v["m4"] * v["aG4x"] - v["FPx"],
-        -v["FPy"],
-    ]
+    products = re.sub(r"(?<=\w) (?=\w)", "*", RIGHT_HAND_SIDE.strip("[]"))
+    return [number(entry, v) for entry in products.split(", ")]
 
 
 # --- Sec. 2: the listing, its text as printed -----------------------------------------------------
