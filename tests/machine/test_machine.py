@@ -69,15 +69,8 @@ def test_a_method_is_its_function(name):
     inputs = {} if name == "synthesize" else inputs
     inputs |= {"omega_start": INPUTS["omega0"]} if name == "simulate" else {}
     same(found, function(**given, **inputs))
-
-
-@pytest.mark.parametrize("name", [name for name in CALLS if name not in ("optimize", "synthesize")])
-def test_a_machine_can_be_unpacked_everywhere(name):
-    function, given = getattr(dx, name), CALLS[name]
-    same(
-        getattr(PRESS, name)(**given),
-        function(**{**given, **{k: v for k, v in PRESS.items() if k not in given}}),
-    )
+    if name not in ("optimize", "synthesize"):  # a machine can be unpacked everywhere
+        same(found, function(**given, **{k: v for k, v in PRESS.items() if k not in given}))
 
 
 def test_its_deprecated_flywheel_names_the_call_of_the_machine():
