@@ -1,8 +1,8 @@
 """`python -m benchmarks --only loads`: a driving torque under loads, beside a constant force.
 
 The same machine in one process and in turns: a grid of 721 angles and 512 designs, stored and reduced, as
-many points of an array, and the peaks of 512 designs in one call, by NumPy as in a first call, and with
-machine code.
+many points of an array, the peaks of 512 designs in one call, by NumPy as in a first call, and with machine
+code, `tolerance` of a peak with 2,000 samples, and `optimize` of a peak over two variables.
 """
 
 import os
@@ -16,7 +16,7 @@ import desaxe as dx
 from desaxe.audit.rig import in_turns
 
 DESIGNS, ANGLES = 512, 721
-ROUNDS = 9
+ROUNDS = {"tolerance": 2, "optimize": 1}  # of those that take long; 9 of the others
 MACHINE = {"AB": 0.1, "BC": 0.35, "omega0": 30.0, "m_slider": 2.0, "m_rod": 1.0, "I_rod": 0.01}
 
 
@@ -49,12 +49,21 @@ def works(load: Any) -> dict[str, Callable[[], Any]]:
     peak = partial(dx.peak, "T_in", ec=ec, F_Y=load, **MACHINE)
     points = np.meshgrid(np.linspace(0.0, 2.0 * np.pi, ANGLES), ec)
     theta, offsets = (np.ascontiguousarray(column.reshape(-1)) for column in points)
+    rest = {name: value for name, value in MACHINE.items() if name not in ("AB", "BC")} | {"F_Y": load}
+    scatter = {
+        "ec": dx.plus_minus(0.01, 0.001),
+        "AB": dx.plus_minus(0.1, 5e-4),
+        "BC": dx.plus_minus(0.35, 1e-3),
+    }
+    over = {"ec": (-0.03, 0.03), "BC": (0.25, 0.5)}
     return {
         "grid": grid,
         "grid, reduced": partial(grid, reduce={"theta": ["absmax", "mean"]}),
         "points": partial(dx.evaluate, "T_in", theta=theta, ec=offsets, F_Y=load, **MACHINE),
         "peaks": partial(_by, "numpy", peak),
         "peaks, compiled": partial(_by, "compiled", peak),
+        "tolerance": partial(dx.tolerance, ("absmax", "T_in"), samples=2_000, **scatter, **rest),
+        "optimize": partial(dx.optimize, minimize=("absmax", "T_in"), over=over, AB=0.1, **rest),
     }
 
 
@@ -70,7 +79,7 @@ def table() -> str:
     first = rows["a number"]
     lines = [f"{ANGLES} angles, {DESIGNS} designs", "", f"| ms (ratio) | {' | '.join(first)} |"]
     lines.append("|---" * (1 + len(first)) + "|")
-    found = {work: in_turns({n: row[work] for n, row in rows.items()}, ROUNDS) for work in first}
+    found = {work: in_turns({n: row[work] for n, row in rows.items()}, ROUNDS.get(work, 9)) for work in first}
     for name in rows:
         cells = [f"{own[name] * 1e3:.1f} ({own[name] / own['a number']:.1f})" for own in found.values()]
         lines.append(f"| {name} | {' | '.join(cells)} |")

@@ -5,7 +5,7 @@ import pytest
 
 import desaxe as dx
 from desaxe.evaluation.arcs import arcs_of
-from desaxe.loads.pieces import Place, first_doubles
+from desaxe.loads.pieces import Place, first_doubles, piece_at, settled_pieces
 from desaxe.peaks import compiled
 from tests.effort import cases
 
@@ -110,6 +110,27 @@ def test_jumps_are_settled_as_integers_settle_them():
             settled += known
             every += 1
     assert settled > 0.9 * every > 50 or np.finfo(np.longdouble).eps > 2.0**-60
+
+
+def test_places_next_to_jumps_are_settled_as_integers_settle_them():
+    """Long doubles tell the piece of nearly every double there, and never another one."""
+    rng, settled = np.random.default_rng(8), 0
+    for _ in range(20):
+        one = {name: float(column[0]) for name, column in designs(rng, 1).items()}
+        load = tables(rng, rng.choice(["Y", "inner", "outer"]), "step", bool(rng.integers(2)))
+        from_centre = 0.0 if load.over == "Y" else dx.events(**one)[load.centre]
+        position = load.positions(smooth=True)[1]
+        places = [from_centre + side * position for side in (1.0, -1.0)]
+        angles = np.concatenate([np.ravel(dx.inverse(Y=Y, **one)["theta"]) for Y in places])
+        near = angles[np.isfinite(angles)]
+        theta = (near + np.arange(-3.0, 4.0)[:, None] * np.spacing(near)).reshape(-1)
+        lengths = [np.full(theta.size, one[name]) for name in ("ec", "AB", "BC")]
+        found = settled_pieces(load, Place(theta, lengths, np.full(theta.size, -1.0), 1))
+        for angle, piece in zip(theta.tolist(), found.tolist(), strict=True):
+            exact = piece_at(load, Place(angle, [one[name] for name in ("ec", "AB", "BC")], -1.0, 1))
+            assert piece in (-1, exact)
+            settled += piece >= 0
+    assert settled > 50 or np.finfo(np.longdouble).eps > 2.0**-60
 
 
 def test_machine_code_of_another_form_does_not_serve(monkeypatch):
