@@ -22,12 +22,6 @@ from desaxe.oracle.truth import truth as kinematic_truth
 from tests.oracle.force_points import AT_REST, PLAIN, POINTS, agree
 
 
-@pytest.fixture(autouse=True)
-def sixty_digits():
-    with mpmath.workdps(60):
-        yield
-
-
 def balances_by_trial(point):
     """The normal forces N at which a slider without friction, loaded with the friction of N, is pushed by N.
 

@@ -39,12 +39,6 @@ ODD_IN_X |= {"F_A_X", "F_B_X", "F_C_X", "F_shaking_X"}
 ODD_IN_Y = {"T_in", "M_shaking", "F_friction", "F_A_Y", "F_B_Y", "F_C_Y", "F_shaking_Y"}
 
 
-@pytest.fixture(autouse=True)
-def sixty_digits():
-    with mpmath.workdps(60):
-        yield
-
-
 def parity(name, odd):
     quantity, _, parameter = name.partition("_wrt_")
     return math.prod(-1 for part in (quantity, parameter) if part in odd)

@@ -18,12 +18,6 @@ from desaxe.oracle.force_truth import (
 from tests.oracle.force_points import BODIES, CENTRES, LOADS, PLAIN, POINTS, agree, numbers
 
 
-@pytest.fixture(autouse=True)
-def sixty_digits():
-    with mpmath.workdps(60):
-        yield
-
-
 def places(at, theta):
     """B, C, the centres of mass of crank and rod, and the rod's direction, at an angle of the crank."""
     r_crank = at["AB"] / 2 if at["r_crank"] is None else at["r_crank"]

@@ -18,6 +18,7 @@ from desaxe.oracle.truth import (
     truth_all,
     ulp_error,
 )
+from tests.oracle.force_points import agree
 
 POINTS = [
     {"theta": 1.047, "ec": 0.01, "AB": 0.125, "BC": 0.35, "omega0": 157.08, "alpha": 0.0},
@@ -48,16 +49,6 @@ def degree(name):
     """The powers of length and of 1/time; the test says what to add where there are none."""
     assert name in DEGREES, MISSING.format(name=name, file=__file__, units="length and 1/time")
     return DEGREES[name]
-
-
-@pytest.fixture(autouse=True)
-def sixty_digits():
-    with mpmath.workdps(60):
-        yield
-
-
-def agree(left, right, digits=45):
-    return abs(left - right) <= mpmath.mpf(10) ** -digits * (1 + abs(left))
 
 
 def textbook(branch):

@@ -101,13 +101,12 @@ def test_omega_is_that_at_theta():
 @proves("A-text-first-component", "correct", says="9", cites="9")
 def test_first_component_gives_omega_BC():
     for motion in DESIGNS:
-        with mp.workdps(loop.DIGITS):
-            p, phi = exact_point(motion), loop.truth("phi", motion)
-            left = A.printed_eq2(p.theta, p.AB, p.omega, mp)
-            unit = A.printed_eq9(phi, p.BC, mpf(1), mpf(0), mp)
-            omega_BC = left[0] / unit[0]
-            V_C = -(left[1] - omega_BC * unit[1])
-            assert A.printed_eq9(phi, p.BC, mpf(1), mpf(7), mp)[0] == unit[0]
+        p, phi = exact_point(motion), loop.truth("phi", motion)
+        left = A.printed_eq2(p.theta, p.AB, p.omega, mp)
+        unit = A.printed_eq9(phi, p.BC, mpf(1), mpf(0), mp)
+        omega_BC = left[0] / unit[0]
+        V_C = -(left[1] - omega_BC * unit[1])
+        assert A.printed_eq9(phi, p.BC, mpf(1), mpf(7), mp)[0] == unit[0]
         assert close(omega_BC, loop.truth("omega_BC", motion), 0, 30)
         assert close(V_C, loop.truth("V_C", motion), scale_of("velocity", motion), 30)
         assert close(V_C, package("V_C", motion), scale_of("velocity", motion), 12)

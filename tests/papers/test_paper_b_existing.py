@@ -26,12 +26,11 @@ def with_long_rod(function, ratio, theta="0.9"):
 @proves("B-eq52", "correct", cites="9 14 B-claim-compared 1 2")
 def test_eq52():
     """To first order in k/c this is d2x/dt2; the paper's a_s is d2s/dt2, its opposite."""
-    with mp.workdps(loop.DIGITS):
-        for ratio in ("1e-5", "1e-7"):
-            exact = with_long_rod(B.corrected_eq20, ratio)
-            assert abs(with_long_rod(B.reversed_eq52, ratio) - exact) < 2 * mpf(ratio) ** 3
-            assert abs(with_long_rod(B.printed_eq52, ratio) + exact) < 2 * mpf(ratio) ** 3
-            assert abs(with_long_rod(B.printed_eq52, ratio) - exact) > 1
+    for ratio in ("1e-5", "1e-7"):
+        exact = with_long_rod(B.corrected_eq20, ratio)
+        assert abs(with_long_rod(B.reversed_eq52, ratio) - exact) < 2 * mpf(ratio) ** 3
+        assert abs(with_long_rod(B.printed_eq52, ratio) + exact) < 2 * mpf(ratio) ** 3
+        assert abs(with_long_rod(B.printed_eq52, ratio) - exact) > 1
     centric = [motion._replace(ec=0.0) for motion in STEADY]
     off(lambda p: B.printed_eq52(case(p)), lambda q, p: -q("a_C"), centric)
     for motion in centric:
@@ -44,15 +43,14 @@ def test_eq52():
 @proves("B-eq53", "correct", cites="1 2")
 def test_eq53():
     """To first order in k/c this is the inertia torque: the drive's torque reversed."""
-    with mp.workdps(loop.DIGITS):
-        for ratio, theta in itertools.product(("1e-5", "1e-7"), ("0.9", "2.0", "4.0")):
-            exact = -with_long_rod(lambda q: B.drive_torque(q, 1), ratio, theta)
-            printed = with_long_rod(lambda q: B.printed_eq53(q, 1), ratio, theta)
-            assert abs(printed - exact) < 2 * mpf(ratio) ** 2
-            without = mp.sin(2 * mpf(theta)) / 2
-            assert abs(printed + without) > mpf(ratio) / 10  # the terms with k/c do count
-            doubled = printed + mpf(ratio) * mp.sin(mpf(theta)) / 4
-            assert abs(doubled - exact) > mpf(ratio) / 10  # nor would another coefficient of sin(theta) do
+    for ratio, theta in itertools.product(("1e-5", "1e-7"), ("0.9", "2.0", "4.0")):
+        exact = -with_long_rod(lambda q: B.drive_torque(q, 1), ratio, theta)
+        printed = with_long_rod(lambda q: B.printed_eq53(q, 1), ratio, theta)
+        assert abs(printed - exact) < 2 * mpf(ratio) ** 2
+        without = mp.sin(2 * mpf(theta)) / 2
+        assert abs(printed + without) > mpf(ratio) / 10  # the terms with k/c do count
+        doubled = printed + mpf(ratio) * mp.sin(mpf(theta)) / 4
+        assert abs(doubled - exact) > mpf(ratio) / 10  # nor would another coefficient of sin(theta) do
     return model_errors(lambda q: B.printed_eq53(q, 1), lambda q: -B.drive_torque(q, 1))
 
 

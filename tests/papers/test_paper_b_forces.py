@@ -32,17 +32,16 @@ def rod_bodies(masses):
 def test_moment_about_point_2():
     """Moments about point 2 give Eq. 33; with Eq. 32 the two masses keep the rod's centre of mass."""
     for motion, masses in LOADED:
-        with mp.workdps(loop.DIGITS):
-            q, w = exact_case(motion), exact_masses(masses)
-            G, P, C = (
-                free_bodies.rod_centre(motion, rod_bodies(masses)),
-                loop.pin(motion),
-                loop.slider(motion),
-            )
-            assert close(B.printed_eq33(q, w) * q.c, w.m_c * mp.hypot(G[0] - P[0], G[1] - P[1]), 0, 30)
-            for axis in (0, 1):
-                both = B.printed_eq32(q, w) * P[axis] + B.printed_eq33(q, w) * C[axis]
-                assert close(both, w.m_c * G[axis], w.m_c * q.c, 30)
+        q, w = exact_case(motion), exact_masses(masses)
+        G, P, C = (
+            free_bodies.rod_centre(motion, rod_bodies(masses)),
+            loop.pin(motion),
+            loop.slider(motion),
+        )
+        assert close(B.printed_eq33(q, w) * q.c, w.m_c * mp.hypot(G[0] - P[0], G[1] - P[1]), 0, 30)
+        for axis in (0, 1):
+            both = B.printed_eq32(q, w) * P[axis] + B.printed_eq33(q, w) * C[axis]
+            assert close(both, w.m_c * G[axis], w.m_c * q.c, 30)
 
 
 def rod_as_two_masses(motion, masses):
@@ -57,29 +56,24 @@ def rod_as_two_masses(motion, masses):
 def test_lumped_rod_turns_too_heavily():
     """Two masses at the pins keep mass and centre but not the moment of inertia, and the torque shows it."""
     for motion, masses in LOADED:
-        with mp.workdps(loop.DIGITS):
-            q, w = exact_case(motion), exact_masses(masses)
-            two = B.printed_eq32(q, w) * w.c_2**2 + B.printed_eq33(q, w) * (q.c - w.c_2) ** 2
-            inertia = w.m_c * q.c**2 / 17
-            assert close(two - inertia, excess(motion, masses, inertia), two, 30)
-            about_B, about_C = (inertia + w.m_c * d**2 for d in (w.c_2, q.c - w.c_2))
-            assert close(
-                B.printed_eq33(q, w) * q.c**2 - about_B, excess(motion, masses, inertia), about_B, 30
-            )
-            assert close(
-                B.printed_eq32(q, w) * q.c**2 - about_C, excess(motion, masses, inertia), about_C, 30
-            )
-            true = free_bodies.solve(motion, Bodies(m_rod=w.m_c, m_slider=w.m_s, I_rod=inertia, r_rod=w.c_2))
-            moved = rod_as_two_masses(motion, masses)
-            turning = loop.truth("omega_BC", motion) * loop.truth("alpha_BC", motion) / loop.omega(motion)
-            difference = moved["T_in"] - true["T_in"]
-            want = excess(motion, masses, inertia) * turning
-            scale = force_scale(motion, w.m_c, w.m_s) * q.k
-            assert close(difference, want, scale, 30)
-            assert abs(difference) > 1e-9 * scale
-            share = B.printed_eq33(q, w) * loop.truth("a_C", motion)
-            assert close(moved["F_A_Y"], true["F_A_Y"], scale / q.k, 30)
-            assert close(moved["F_C_Y"] - true["F_C_Y"], share, scale / q.k, 30)
+        q, w = exact_case(motion), exact_masses(masses)
+        two = B.printed_eq32(q, w) * w.c_2**2 + B.printed_eq33(q, w) * (q.c - w.c_2) ** 2
+        inertia = w.m_c * q.c**2 / 17
+        assert close(two - inertia, excess(motion, masses, inertia), two, 30)
+        about_B, about_C = (inertia + w.m_c * d**2 for d in (w.c_2, q.c - w.c_2))
+        assert close(B.printed_eq33(q, w) * q.c**2 - about_B, excess(motion, masses, inertia), about_B, 30)
+        assert close(B.printed_eq32(q, w) * q.c**2 - about_C, excess(motion, masses, inertia), about_C, 30)
+        true = free_bodies.solve(motion, Bodies(m_rod=w.m_c, m_slider=w.m_s, I_rod=inertia, r_rod=w.c_2))
+        moved = rod_as_two_masses(motion, masses)
+        turning = loop.truth("omega_BC", motion) * loop.truth("alpha_BC", motion) / loop.omega(motion)
+        difference = moved["T_in"] - true["T_in"]
+        want = excess(motion, masses, inertia) * turning
+        scale = force_scale(motion, w.m_c, w.m_s) * q.k
+        assert close(difference, want, scale, 30)
+        assert abs(difference) > 1e-9 * scale
+        share = B.printed_eq33(q, w) * loop.truth("a_C", motion)
+        assert close(moved["F_A_Y"], true["F_A_Y"], scale / q.k, 30)
+        assert close(moved["F_C_Y"] - true["F_C_Y"], share, scale / q.k, 30)
     letters = dict(zip(("m_k", "m_c", "m_s", "k_1", "c_2"), w, strict=True))
     names = letters | {"c_3": q.c - w.c_2, "I": inertia, "alpha_BC": loop.truth("alpha_BC", motion)}
     names |= {name: loop.truth(name, motion) for name in ("omega_BC", "omega")}
@@ -104,17 +98,14 @@ def rod_of_table_1():
 def test_text_inertia_force_points_outwards():
     """What points to the centre is the force on the mass; its inertia pulls outwards, at the frame."""
     for motion, masses in LOADED:
-        with mp.workdps(loop.DIGITS):
-            q, m_2, _ = equivalent(motion, masses)
-            f = free_bodies.solve(motion, Bodies(m_crank=m_2, r_crank=q.k))
-            on_crank, place = (f["F_A_Y"], f["F_A_X"]), (q.k * q.cos, q.k * q.sin)
-            towards = B.printed_eq37b(q, m_2)
-            assert all(
-                close(a, b, B.printed_eq37a(q, m_2), 30) for a, b in zip(on_crank, towards, strict=True)
-            )
-            assert sum(a * b for a, b in zip(towards, place, strict=True)) < 0
-            shaking = [-a for a in on_crank]
-            assert sum(a * b for a, b in zip(shaking, place, strict=True)) > 0
+        q, m_2, _ = equivalent(motion, masses)
+        f = free_bodies.solve(motion, Bodies(m_crank=m_2, r_crank=q.k))
+        on_crank, place = (f["F_A_Y"], f["F_A_X"]), (q.k * q.cos, q.k * q.sin)
+        towards = B.printed_eq37b(q, m_2)
+        assert all(close(a, b, B.printed_eq37a(q, m_2), 30) for a, b in zip(on_crank, towards, strict=True))
+        assert sum(a * b for a, b in zip(towards, place, strict=True)) < 0
+        shaking = [-a for a in on_crank]
+        assert sum(a * b for a, b in zip(shaking, place, strict=True)) > 0
 
 
 def test_eq41_is_endless_where_crank_and_rod_cross():
@@ -172,12 +163,11 @@ def test_half_of_the_repair_of_eq48(half):
 def test_rotating_mass_needs_no_torque():
     """The rotating mass alone needs no torque at constant speed: its force is radial."""
     for motion, masses in LOADED:
-        with mp.workdps(loop.DIGITS):
-            q, m_2, _ = equivalent(motion, masses)
-            f = free_bodies.solve(motion, Bodies(m_crank=m_2, r_crank=q.k))
-            scale = force_scale(motion, m_2, 0) * q.k
-            assert close(f["T_in"], 0, scale, 30)
-            F_x, F_y = B.printed_eq37b(q, m_2)
-            assert close(q.k * q.cos * F_y - q.k * q.sin * F_x, 0, scale, 30)
-            assert close(B.printed_eq47(q, m_2), q.k * f["F_A_Y"], scale, 30)
-            assert abs(B.printed_eq47(q, m_2)) > 1e-3 * m_2 * q.omega**2 * q.k**2
+        q, m_2, _ = equivalent(motion, masses)
+        f = free_bodies.solve(motion, Bodies(m_crank=m_2, r_crank=q.k))
+        scale = force_scale(motion, m_2, 0) * q.k
+        assert close(f["T_in"], 0, scale, 30)
+        F_x, F_y = B.printed_eq37b(q, m_2)
+        assert close(q.k * q.cos * F_y - q.k * q.sin * F_x, 0, scale, 30)
+        assert close(B.printed_eq47(q, m_2), q.k * f["F_A_Y"], scale, 30)
+        assert abs(B.printed_eq47(q, m_2)) > 1e-3 * m_2 * q.omega**2 * q.k**2

@@ -6,7 +6,7 @@ import numpy as np
 from mpmath import mp, mpf
 
 from tests.papers import curves_b as curves
-from tests.papers import free_bodies, loop
+from tests.papers import free_bodies
 from tests.papers import paper_b as B
 from tests.papers.curves_b import CENTRES, OFFSETS, case_1, mean, motion_of, places, torques
 from tests.papers.designs import close
@@ -33,15 +33,14 @@ def solved(theta, e, bodies):
 def test_pin_and_centre_are_two_places():
     """The force at the crank pin is neither that at the crank centre nor what shakes the frame."""
     for motion, masses in LOADED:
-        with mp.workdps(loop.DIGITS):
-            f = free_bodies.solve(motion, lumped(motion, masses))
-            pin, centre = mp.hypot(f["F_B_X"], f["F_B_Y"]), mp.hypot(f["F_A_X"], f["F_A_Y"])
-            shaking = mp.hypot(f["F_A_X"] + f["N_C"], f["F_A_Y"])
-            assert abs(pin - centre) > 1e-3 * centre
-            assert abs(pin - shaking) > 1e-3 * shaking
-            q, m_2, m_3 = equivalent(motion, masses)
-            total = B.printed_eq46a(q, m_2, m_3, B.corrected_eq20(q))
-            assert close(mp.hypot(*total), shaking, shaking, 30)
+        f = free_bodies.solve(motion, lumped(motion, masses))
+        pin, centre = mp.hypot(f["F_B_X"], f["F_B_Y"]), mp.hypot(f["F_A_X"], f["F_A_Y"])
+        shaking = mp.hypot(f["F_A_X"] + f["N_C"], f["F_A_Y"])
+        assert abs(pin - centre) > 1e-3 * centre
+        assert abs(pin - shaking) > 1e-3 * shaking
+        q, m_2, m_3 = equivalent(motion, masses)
+        total = B.printed_eq46a(q, m_2, m_3, B.corrected_eq20(q))
+        assert close(mp.hypot(*total), shaking, shaking, 30)
 
 
 @proves("B-fig-12", "typo", says="11 12", cites="12")
@@ -115,22 +114,20 @@ def test_not_balanced_without_offset():
 @proves("B-claim-total-inertia", "wrong claim")
 def test_only_the_reciprocating_mass_makes_torque():
     for motion, masses in LOADED:
-        with mp.workdps(loop.DIGITS):
-            _, _, m_3 = equivalent(motion, masses)
-            whole = free_bodies.solve(motion, lumped(motion, masses))["T_in"]
-            slider = free_bodies.solve(motion, Bodies(m_slider=m_3))["T_in"]
-            assert close(whole, slider, abs(whole), 30)
-            assert close(slider, B.drive_torque(exact_case(motion), m_3), abs(whole), 30)
+        _, _, m_3 = equivalent(motion, masses)
+        whole = free_bodies.solve(motion, lumped(motion, masses))["T_in"]
+        slider = free_bodies.solve(motion, Bodies(m_slider=m_3))["T_in"]
+        assert close(whole, slider, abs(whole), 30)
+        assert close(slider, B.drive_torque(exact_case(motion), m_3), abs(whole), 30)
 
 
 @proves("B-text-torque-of-crank", "correct", cites="40 48")
 def test_torque_is_crank_length_times_tangential_force():
     for motion, masses in LOADED:
-        with mp.workdps(loop.DIGITS):
-            q, _, m_3 = equivalent(motion, masses)
-            across = B.corrected_eq40(q, B.corrected_eq41(q, m_3))
-            want = -free_bodies.solve(motion, lumped(motion, masses))["T_in"]
-            assert close(q.k * across, want, abs(want), 30)
+        q, _, m_3 = equivalent(motion, masses)
+        across = B.corrected_eq40(q, B.corrected_eq41(q, m_3))
+        want = -free_bodies.solve(motion, lumped(motion, masses))["T_in"]
+        assert close(q.k * across, want, abs(want), 30)
 
 
 @proves("B-text-tangential", "wrong claim")

@@ -44,11 +44,10 @@ def test_text_liner():
 @proves("B-text-x", "wrong claim")
 def test_text_x_is_not_the_distance():
     for motion in STEADY:
-        with mp.workdps(loop.DIGITS):
-            distance = mp.hypot(*loop.slider(motion))
-            q = exact_case(motion)
-            assert close(mp.sqrt(B.printed_eq8(q) ** 2 + q.e**2), distance, 0, 30)
-            assert distance - B.printed_eq8(q) > mpf("1e-7") * distance
+        distance = mp.hypot(*loop.slider(motion))
+        q = exact_case(motion)
+        assert close(mp.sqrt(B.printed_eq8(q) ** 2 + q.e**2), distance, 0, 30)
+        assert distance - B.printed_eq8(q) > mpf("1e-7") * distance
     return {"distance": distance, "names": {"x": loop.truth("Y", motion), "e": q.e}}
 
 
@@ -57,11 +56,10 @@ def test_text_alpha_is_not_from_eq4():
     """Eq. 4 gives cos(alpha) only, the same for either side of the axis; Eq. 6 tells the side."""
     for motion in STEADY:
         q = exact_case(motion)
-        with mp.workdps(loop.DIGITS):
-            alpha = B.printed_eq22(q)
-            assert B.printed_eq4(q, alpha) == B.printed_eq4(q, -alpha)
-            assert abs(mp.sin(alpha) - mp.sin(-alpha)) > mpf("1e-3") * abs(mp.sin(alpha))
-            assert close(mp.sin(alpha), B.printed_eq6(q), 1, 30)
+        alpha = B.printed_eq22(q)
+        assert B.printed_eq4(q, alpha) == B.printed_eq4(q, -alpha)
+        assert abs(mp.sin(alpha) - mp.sin(-alpha)) > mpf("1e-3") * abs(mp.sin(alpha))
+        assert close(mp.sin(alpha), B.printed_eq6(q), 1, 30)
 
 
 @proves(
@@ -71,11 +69,10 @@ def test_text_eq27_follows_from_eq7():
     """Eq. 26 with the cosine of Eq. 7 is Eq. 27; with the sine of Eq. 5b it is not."""
     for motion in STEADY:
         q = exact_case(motion)
-        with mp.workdps(loop.DIGITS):
-            top = q.omega * B.printed_eq24(q)
-            assert close(top / B.printed_eq7(q), B.printed_eq27(q), abs(q.omega), 30)
-            by_5b = top / ((B.printed_eq5a(q) + q.e) / q.c)
-            assert abs(by_5b - B.printed_eq27(q)) > mpf("1e-3") * abs(B.printed_eq27(q))
+        top = q.omega * B.printed_eq24(q)
+        assert close(top / B.printed_eq7(q), B.printed_eq27(q), abs(q.omega), 30)
+        by_5b = top / ((B.printed_eq5a(q) + q.e) / q.c)
+        assert abs(by_5b - B.printed_eq27(q)) > mpf("1e-3") * abs(B.printed_eq27(q))
 
 
 @proves("B-text-rod-velocity", "typo")
@@ -96,10 +93,9 @@ def test_text_differentiating_eq9_not_the_stroke():
     """The stroke is one number for a design; what is differentiated is the position s."""
     for motion in STEADY:
         q = exact_case(motion)
-        with mp.workdps(loop.DIGITS):
-            assert by_theta(lambda r: B.corrected_eq49(r.e, r.k, r.c, mp), q) == 0
-            assert close(by_theta(B.corrected_eq10, q), B.printed_eq12(q), q.k, 30)
-            assert abs(B.printed_eq12(q)) > mpf("1e-6") * q.k
+        assert by_theta(lambda r: B.corrected_eq49(r.e, r.k, r.c, mp), q) == 0
+        assert close(by_theta(B.corrected_eq10, q), B.printed_eq12(q), q.k, 30)
+        assert abs(B.printed_eq12(q)) > mpf("1e-6") * q.k
 
 
 @proves("B-claim-novel", "wrong claim", cites="2012 6 7 22 8")
@@ -109,10 +105,9 @@ def test_same_x_as_paper_a():
     from tests.papers import paper_a as A
 
     for motion in STEADY:
-        with mp.workdps(loop.DIGITS):
-            p = exact_point(motion)
-            assert close(A.printed_eq7(*p.design, mp), B.printed_eq8(case(p)), p.AB, 30)
-            assert close(A.printed_eq6(*p.design, mp), B.printed_eq22(case(p)), 1, 30)
+        p = exact_point(motion)
+        assert close(A.printed_eq7(*p.design, mp), B.printed_eq8(case(p)), p.AB, 30)
+        assert close(A.printed_eq6(*p.design, mp), B.printed_eq22(case(p)), 1, 30)
 
 
 def test_no_mechanism_where_the_root_is_imaginary():
