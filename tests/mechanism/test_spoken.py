@@ -48,6 +48,14 @@ ERRORS = {
     "at omega =": lambda: PRESS.steady(torque=lambda omega: float("nan")),
     "but 10 mm follows 20 mm": lambda: PRESS.over_Y([0, 20, 10], [1, 2, 3]),
     "the speeds must ascend, but 100 rpm follows 300 rpm": lambda: PRESS.over_omega([300, 100], [1, 2]),
+    "theta = 5 deg: expected a range": lambda: PRESS.peak("a_C", theta=5),
+    "theta = 1000000000000 deg: accuracy='extended' reaches |theta| <= 96636764156 deg": (
+        lambda: PRESS.evaluate("a_C", theta=1e12, accuracy="extended")
+    ),
+    "AB: a tolerance of -1 mm": lambda: PRESS.tolerance("Y", theta=30, AB=dx.plus_minus(50, -1)),
+    "the angles go over 400 deg, the period is 360 deg": lambda: PRESS.over_theta([0, 90, 400], [1, 2, 3]),
+    "the first is -200 mm": lambda: PRESS.grid("a_C", theta=[0, 30], BC=[-200, -300]),
+    "AB = 1e+40 mm": lambda: PRESS.fit({"theta": [0, 30], "Y": [250, 240]}, over={"AB": 1e40}),
     "F_Y = inf kN: it must be": lambda: PRESS.replace(F_Y=float("inf")),
 }
 

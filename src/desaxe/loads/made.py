@@ -28,8 +28,9 @@ def table_over_theta(angles: Column, values: Column, kind: str, turn: Column) ->
     span = x[-1] - x[0]
     if span > (1.0 + CLOSED) * period:
         hint = f' (degrees are texts: "{x[-1]:g} deg")' if angles.plain else ""
+        wide, turn_text = (spoken("theta", angle, "g", says_unit=True) for angle in (span, period))
         raise ValueError(
-            f"{name}: the angles go over {span:g} rad, the period is {period:g} rad; give a longer period= "
+            f"{name}: the angles go over {wide}, the period is {turn_text}; give a longer period= "
             f"or one period of the table{hint}"
         )
     if span >= (1.0 - CLOSED) * period:

@@ -7,6 +7,7 @@ from typing import Any
 from warnings import warn
 
 from ..mechanism.slips import LARGEST, UnitWarning
+from ..mechanism.spoken import spoken
 from ..mechanism.unit_system import Conversion, UnitSystem
 from ..support.shown import printable, shown
 from .columns import Column, column_of, column_of_file, rows_of, unit_of_column
@@ -113,7 +114,8 @@ class MakeOverTheta(Maker):
             return Column([TURN])
         found = column_of("over_theta: period", [period], ("rad",), self.unit("theta"))
         if not 0.0 < found.values[0] <= LONGEST_PERIOD:
-            limit = f"expected an angle above 0 and at most {LONGEST_PERIOD:g} rad"
+            most = spoken("theta", LONGEST_PERIOD, "g", says_unit=True)
+            limit = f"expected an angle above 0 and at most {most}"
             raise ValueError(f"over_theta: period = {shown(period)}: {limit}")
         return found
 

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from ..support.quantity_text import with_unit_of
 from ..support.shown import shown
 from .inputs import INPUTS
+from .spoken import named
 from .units import exact, in_si, rounded
 
 
@@ -81,7 +82,7 @@ def middle_of(name: str, given: Between) -> tuple[float, float]:
     """The middle of a range and half its width; ValueError where the lower end is not first."""
     low, high = (_number(name, end, given) for end in given)
     if low > high:
-        raise ValueError(f"{name} = {given!r}: the lower end comes first")
+        raise ValueError(f"{named(name, given)}: the lower end comes first")
     return rounded(name, str(given), (low + high) / 2), rounded(name, str(given), (high - low) / 2)
 
 
@@ -94,7 +95,7 @@ def _tolerance(name: str, given: PlusMinus) -> tuple[Fraction, Fraction]:
     else:
         found = _number(name, tolerance, given)
     if found < 0:
-        raise ValueError(f"{name} = {given!r}: a tolerance must be at least 0")
+        raise ValueError(f"{named(name, given)}: a tolerance must be at least 0")
     return value, found
 
 

@@ -14,7 +14,6 @@ from .spoken import named
 
 def number_of(row: Input, value: Any) -> float | None:
     """The number in the row's unit; None for an array or anything else, ValueError beyond its limit."""
-    given = value
     if isinstance(value, str) or hasattr(value, "magnitude"):
         with IMPORTS:
             from .units import in_unit
@@ -25,9 +24,9 @@ def number_of(row: Input, value: Any) -> float | None:
     try:
         number = float(value)
     except OverflowError:
-        raise ValueError(f"{row.name} = {shown(given)}: it must be {row.limit}, at most 1.8e308") from None
+        raise ValueError(f"{row.name} = {shown(value)}: it must be {row.limit}, at most 1.8e308") from None
     if not (-inf < number < inf and (row.least is None or row.least <= number)):
-        raise ValueError(f"{named(row.name, given)}: it must be {row.limit}")
+        raise ValueError(f"{named(row.name, value)}: it must be {row.limit}")
     return number
 
 

@@ -38,9 +38,10 @@ def spoken(name: Any, value: Any, form: str = "", says_unit: bool = False) -> st
     plain = conversion.si == 1
     unit = conversion.unit.replace("*", " ") if says_unit or not plain else "1"
 
+    if plain and not form:
+        return f"{shown(value)} {unit}".removesuffix(" 1")
+
     def text(number: Any) -> str:
-        if plain and not form:
-            return shown(number)
         return f"{conversion.shown(float(number)):{form or '.15g'}}"
 
     if hasattr(value, "ndim") and value.ndim:

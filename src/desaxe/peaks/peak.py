@@ -137,7 +137,7 @@ def _range(theta: Any, name: str) -> tuple[float, float]:
     try:
         first, last = theta
     except (TypeError, ValueError):
-        raise ValueError(f"theta = {shown_value(theta)}: expected a range (lower end, upper end)") from None
+        raise ValueError(f"{named('theta', theta)}: expected a range (lower end, upper end)") from None
     low, high = (as_number("theta", end, ("theta",), (name,)) for end in (first, last))
     if low is None or high is None or low > high:
         raise ValueError(f"{named('theta', (first, last))}: two angles, the lower one first")

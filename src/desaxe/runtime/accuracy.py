@@ -8,6 +8,7 @@ last digits of the inputs change anyway is not counted against it. `fast` is dep
 from typing import Any
 
 from ..mechanism.constants import double_constants
+from ..mechanism.spoken import named, spoken
 from ..support.deprecation import deprecated
 from ..support.shown import shown
 
@@ -36,5 +37,5 @@ def accuracy_of(asked: Any) -> str:
 def check_angle(accuracy: str, theta: float) -> None:
     """Refuse an angle that the accuracy cannot reduce exactly."""
     if accuracy == "extended" and abs(theta) > double_constants().limit:
-        reach = f"accuracy='extended' reaches |theta| <= {double_constants().limit:.0f} rad"
-        raise ValueError(f"theta = {theta!r}: {reach}")
+        reach = spoken("theta", double_constants().limit, ".0f", says_unit=True)
+        raise ValueError(f"{named('theta', theta)}: accuracy='extended' reaches |theta| <= {reach}")

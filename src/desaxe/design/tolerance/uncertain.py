@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ...mechanism.inputs import INPUTS
 from ...mechanism.ranges import Between, PlusMinus, middle_of, refuse_bare_pair
 from ...mechanism.read import read as read_number
+from ...mechanism.spoken import spoken
 from ...mechanism.units import in_si
 from ...support.extras import needed
 from ...support.quantity_text import PLUS_MINUS, with_unit_of
@@ -56,7 +57,9 @@ def read(name: str, value: Any, distribution: str, sigmas: float) -> float | Ine
         return _number(name, value)
     nominal, tolerance = pair
     if not 0.0 <= tolerance < inf:
-        raise ValueError(f"{name}: a tolerance of {tolerance:g}; it must be finite and at least 0")
+        raise ValueError(
+            f"{name}: a tolerance of {spoken(name, tolerance, 'g')}; it must be finite and at least 0"
+        )
     if tolerance == 0.0:
         return nominal
     if distribution == "uniform":
