@@ -172,3 +172,16 @@ def test_the_double_before_the_first_angle_of_a_table_ends_the_last_piece(kind):
             np.testing.assert_allclose(load(theta), forces[0], rtol=1e-9)
             for angle in theta.tolist():
                 assert load(angle) == pytest.approx(forces[0], rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", LOADS)
+def test_what_a_whole_design_has_needs_no_angle_under_friction_and_loads(kind):
+    machine = {"AB": 0.04, "BC": 0.064, "mu": 0.1, "F_Y": LOADS[kind][0]()}
+    found = dx.grid("stroke", ec=[0.0, 0.01, 0.05], **machine)
+    assert found.status.values.tolist() == [0, 0, 1]
+    one = dx.evaluate(["stroke", "margin", "status"], ec=0.01, **machine)
+    assert one["stroke"] == pytest.approx(np.sqrt(0.104**2 - 1e-4) - np.sqrt(0.024**2 - 1e-4), rel=1e-14)
+    assert one["status"] == 0
+    assert found.margin[1] == one["margin"]
+    with pytest.raises(TypeError, match="theta, over which F_Y varies, is missing"):
+        dx.evaluate(["stroke", "T_in"], ec=0.01, **machine)

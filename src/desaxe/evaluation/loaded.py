@@ -105,7 +105,8 @@ def are_many(numbers: Mapping[str, Any]) -> bool:
 def plan_for(names: Sequence[str], given: Mapping[str, Any]) -> tuple[dict[str, Any], Plan]:
     """The inputs that are numbers, and the plan for names under the loads that are not."""
     numbers, loads = split({name: value for name, value in given.items() if value is not None})
-    return numbers, plan_of(names, loads, "omega" in numbers, "mu" in numbers)
+    rubs = "mu" in numbers and "theta" in numbers  # the status of a design has no friction
+    return numbers, plan_of(names, loads, "omega" in numbers, rubs)
 
 
 def forces_at(

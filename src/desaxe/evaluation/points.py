@@ -212,7 +212,8 @@ def points_of(
     """The step of names over dimensions of a grid, checked; TypeError for what is missing."""
     given, axes = outer.given, outer.axes
     state = given.get("omega") is not None
-    plan = plan_of_loads(names, outer.loads, state, given.get("mu") is not None) if outer.loads else None
+    rubs = given.get("mu") is not None and "theta" in axes  # the status of a design has no friction
+    plan = plan_of_loads(names, outer.loads, state, rubs) if outer.loads else None
     if plan is None or not plan.loads:
         wanted = request(names, given, branch, accuracy)
         require_inputs(wanted, {*axes, *outer.loads})
