@@ -4,152 +4,195 @@ import numpy as np
 import pytest
 
 import desaxe as dx
+from desaxe.compiler.languages import languages
+from desaxe.compiler.languages.python import compile_python
+from desaxe.compiler.passes.trigonometry import expand_trigonometry
+from desaxe.compiler.program import tables_in
+from desaxe.mechanism.constants import constants
+from desaxe.scenes.export.portable import Form, Order, module_of
 from desaxe.scenes.schema import SceneError
-from tests.compiler.languages.tools import array_values, es_module, imported, jax_in_doubles, library, octave
+from tests.compiler.languages.runners import SLOW, compiled
+from tests.compiler.languages.tools import imported, jax_in_doubles
 from tests.effort import cases
+from tests.loads.module_loads import FIXED, INPUTS, KINDS, NAMES, SHAPES, columns, load, scene, wrong_tables
 
-POSITIONS, OUTWARD, INWARD = [0.03, 0.05, 0.05, 0.09], [-900, -200, -50, -30], [-90, -40, -15, -3]
-DISTANCES, CLOSED, OPENED = [0, 0.008, 0.008, 0.02], [-80, -80, -10, 0], [0, 1, 2, 0]
-LOADS = {
-    "cubic over theta": dx.over_theta([0.5, 1.0, 2.0, 4.0], [0.0, -400.0, -50.0, 20.0]),
-    "two turns, jumps": dx.over_theta([0.0, 1.0, 1.0, 9.0], [0.0, 5.0, -90.0, 1.0], "linear", 4 * np.pi),
-    "over Y, jumps": dx.over_Y(POSITIONS, OUTWARD, INWARD),
-    "over Y, cubic": dx.over_Y([0.02, 0.05, 0.07, 0.1], [-900, -200, -50, -30], kind="cubic"),
-    "outer": dx.over_stroke(DISTANCES, CLOSED, OPENED, dead_centre="outer"),
-    "inner": dx.over_stroke(DISTANCES, CLOSED, dead_centre="inner"),
-}
-NAMES = ["T_in", "T_in_wrt_theta", "T_in_wrt_AB", "T_in_wrt_ec", "N_C", "Y", "status"]
-INPUTS = ("theta", "ec", "AB", "omega0")
-FIXED = {"BC": 0.064, "m_slider": 0.8}
+FORMS = ("frozen", "arguments")
+OPEN = [language.name for language in languages() if language.open_tables]
+DEFAULT = {
+    ("c", "frozen", "inner both ways"), ("c", "arguments", "theta"), ("c", "arguments", "Y both ways"),
+    ("c", "arguments", "outer"), ("octave", "frozen", "Y"), ("octave", "arguments", "inner both ways"),
+    ("javascript", "frozen", "theta"), ("javascript", "arguments", "outer both ways"),
+}  # fmt: skip
 
 
-def scene(load, **more):
-    return {
-        "outputs": NAMES,
-        "mechanism": {"ec": [0.0, 0.01], "AB": [0.03, 0.04], "BC": 0.064},
-        "motion": {"theta": [0.0, 1.0, 2.0], "omega0": [1.0, 2.0]},
-        "masses": {"m_slider": 0.8},
-        "loads": {"F_Y": load},
-        **more,
-    }
+def tried():
+    """Every language, form and kind; those of a thorough run are marked."""
+    for language in (one.name for one in languages()):
+        for form in FORMS if language in OPEN else FORMS[:1]:
+            for kind in KINDS if language not in SLOW else ("theta", "inner both ways"):
+                of_default = (language, form, kind) in DEFAULT
+                marks = pytest.mark.sampled if of_default else pytest.mark.thorough
+                yield pytest.param(language, form, kind, marks=marks, id=f"{language}-{form}-{kind}")
 
 
-def columns(load, count):
-    """Designs that turn fully or not, knots of tables over theta, a crank that stands still."""
-    random = np.random.default_rng(31)
-    theta, ec = random.uniform(-9.0, 9.0, count), random.uniform(-0.03, 0.03, count)
-    if load.over == "theta":
-        theta[:40] = random.choice(load.table.knots, 40) + load.period * random.integers(-2, 3, 40)
-    theta[40:43] = np.nan, np.inf, 1e6
-    ec[43] = np.nan
-    return [theta, ec, random.uniform(0.03, 0.05, count), random.choice([-3.0, 3.0, 0.0], count)]
+def options(form):
+    """The options of `compile`; a language that has one form alone is not asked."""
+    return {"tables": form} if form == "arguments" else {}
 
 
-def of_c(folder, written, given, libm=True):
-    source = dx.compile(written, folder / "press", to="c", libm=libm) / "press.c"
-    loaded = library(source, "gcc", ("-O2", "-ffp-contract=off"), libm)
-    return dict(zip(NAMES, array_values(loaded, "press", given, len(NAMES)), strict=True))
-
-
-def of_octave(folder, written, given):
-    place = dx.compile(written, folder / "press.m", to="octave")
-    return dict(zip(NAMES, octave(place, given, len(NAMES)), strict=True))
-
-
-def of_jax(folder, written, given):
-    with jax_in_doubles():
-        module = imported(dx.compile(written, folder / "press_jax.py", to="jax"))
-        found = module.evaluate(**dict(zip(INPUTS, given, strict=True)))
-        return {name: np.asarray(value) for name, value in found.items()}
-
-
-def of_javascript(folder, written, given):
-    place = dx.compile(written, folder / "press.js", to="javascript")
-    lists = {name: column.tolist() for name, column in zip(INPUTS, given, strict=True)}
-    return es_module(place, [["evaluate", lists]])[0]  # as JSON, which has no NaN
-
-
-LANGUAGES = {"c": of_c, "octave": of_octave, "jax": of_jax, "javascript": of_javascript}
-
-
-TRIED = [(language, kind) for language in LANGUAGES for kind in LOADS if language != "jax" or kind == "inner"]
-
-
-@pytest.mark.sampled
-@pytest.mark.parametrize(("language", "kind"), TRIED)
-def test_every_language_has_the_values_of_evaluate(language, kind, tmp_path):
-    load = LOADS[kind]
-    given = columns(load, cases(300, 10_000))
-    if language == "javascript":
-        given = [column[44:] for column in given]
-    right = dx.evaluate(NAMES, **dict(zip(INPUTS, given, strict=True)), **FIXED, F_Y=load)
-    found = LANGUAGES[language](tmp_path, scene(load), given)
+def compare(found, given, load):
+    """The values are those of `evaluate`, to what an ulp of an angle is worth."""
+    right = dx.evaluate(NAMES, **given, **FIXED, F_Y=load)
     for name in NAMES:
-        own, truth = np.asarray(found[name], float), np.asarray(right[name], float)
+        own, truth = found[name], np.asarray(right[name], float)
         np.testing.assert_array_equal(np.isnan(own), np.isnan(truth), name)
         size = np.nanmedian(np.abs(truth))
         near = np.isnan(truth) | (np.abs(own - truth) <= 2e-11 * (np.abs(truth) + size))
-        assert near.all(), (name, [c[~near][:3] for c in given], own[~near][:3], truth[~near][:3])
+        assert near.all(), (name, [c[~near][:3] for c in given.values()], own[~near][:3], truth[~near][:3])
+
+
+@pytest.mark.parametrize(("language", "form", "kind"), [*tried()])
+def test_every_language_has_the_values_of_evaluate(language, form, kind, tmp_path):
+    """One module whose tables are arguments serves all shapes, and tables of another length."""
+    shapes = SHAPES if form == "arguments" else (SHAPES[len(kind) % 3],)
+    module = compiled(language, tmp_path, scene(load(kind, shapes[-1])), INPUTS, **options(form))
+    for shape in shapes:
+        one = load(kind, shape)
+        given = columns(one, cases(100, 2_000, 10_000))
+        tables = {"F_Y": one.arrays()} if form == "arguments" else {}
+        compare(module([*given.values()], tables), given, one)
+
+
+@pytest.mark.parametrize(
+    "language", [pytest.param(n, marks=[pytest.mark.thorough] if n in SLOW else []) for n in OPEN]
+)
+def test_what_is_no_table_is_bad_input(language, tmp_path):
+    """Status 4, NaN where the load counts, and the motion keeps its values."""
+    kind = "theta" if language == "c" else "outer both ways"
+    one = load(kind, "kinked")
+    given = {name: column[44:64] for name, column in columns(one, 64).items()}
+    known = dx.evaluate(["Y"], **given, BC=0.064)
+    wrong = wrong_tables(one)
+    if language not in ("c", "javascript"):  # some tenths of a second each
+        wrong = {name: wrong[name] for name in ("one knot", "thrice", "no coefficient")}
+    module = compiled(language, tmp_path, scene(one), INPUTS, tables="arguments")
+    for name, table in wrong.items():
+        found = module([*given.values()], {"F_Y": table})
+        assert set(found["status"]) == {4.0}, name
+        for lost in ("T_in", "T_in_wrt_theta", "N_C"):
+            assert np.isnan(found[lost]).all(), (name, lost)
+        np.testing.assert_allclose(found["Y"], known["Y"], rtol=1e-12)
+
+
+@pytest.mark.sampled
+@pytest.mark.parametrize("kind", ["theta", pytest.param("outer both ways", marks=pytest.mark.thorough)])
+def test_c_has_the_digits_of_its_program_in_python(kind, tmp_path):
+    """Frozen or given: every operation is rounded as plain Python rounds it, and in the same order."""
+    one = load(kind, "smooth")
+    given = columns(one, cases(100, 1_000))
+    rows = [*given.values()]
+    frozen = compiled("c", tmp_path, scene(one), INPUTS)(rows)
+    opened = compiled("c", tmp_path / "open", scene(one), INPUTS, tables="arguments")(
+        rows, {"F_Y": one.arrays()}
+    )
+    module = module_of(dx.scene(scene(one)), Order("c", "press", "", form=Form()))
+    own = module.forms
+    stable, plain, test = (
+        compile_python(expand_trigonometry(p, constants())) for p in (own.stable, own.plain, own.test)
+    )
+    arrays = [*one.arrays()]
+    assert tables_in(own.stable) == ["F_Y"]
+    for number, point in enumerate(zip(*given.values(), strict=True)):
+        row = dict(zip(INPUTS, map(float, point), strict=True))
+        if not abs(row["theta"]) <= constants().limit:
+            continue  # those angles are the C library's
+        wide = test(*(row[name] for name in own.test.inputs))[0]
+        chosen, inputs = (plain, own.plain.inputs) if wide else (stable, own.stable.inputs)
+        wanted = [float(x) for x in chosen(*(row[n] for n in inputs), *arrays)[: len(NAMES)]]
+        np.testing.assert_array_equal([frozen[name][number] for name in NAMES], wanted)
+        np.testing.assert_array_equal([opened[name][number] for name in NAMES], wanted)
+
+
+@pytest.mark.sampled
+def test_a_table_over_theta_has_the_digits_of_the_kernels(tmp_path):
+    """What is looked up by an angle alone is the same number in machine code of numba and of C."""
+    dx.define("push", "1.0 * F_Y", "N")
+    try:
+        one = load("theta", "smooth")
+        given = columns(one, cases(2_000, 10_000))
+        written = scene(one, outputs=["push", "push_wrt_theta", "T_in"])
+        module = compiled("c", tmp_path, written, INPUTS, tables="arguments")
+        found = module([*given.values()], {"F_Y": one.arrays()})
+        right = dx.evaluate(["push", "push_wrt_theta"], **given, **FIXED, F_Y=one)
+        good = np.isfinite(given["theta"]) & np.isfinite(given["ec"])
+        for name in right:
+            np.testing.assert_array_equal(found[name][good], right[name][good])
+    finally:
+        dx.undefine("push")
 
 
 @pytest.mark.thorough
 def test_jax_has_total_derivatives(tmp_path):
-    load = LOADS["outer"]
+    one = load("outer both ways", "jumping")
     with jax_in_doubles():
         import jax
 
-        module = imported(dx.compile(scene(load, outputs=["T_in"]), tmp_path / "press_jax.py", to="jax"))
+        module = imported(dx.compile(scene(one, outputs=["T_in"]), tmp_path / "press_jax.py", to="jax"))
         point = (5.8, 0.01, 0.04, 3.0)
         given = dict(zip(INPUTS, point, strict=True))
         found = jax.grad(module.T_in, argnums=(0, 1, 2, 3))(*point)
         for name, own in zip(INPUTS, found, strict=True):
-            right = dx.evaluate(f"T_in_wrt_{name}", **given, **FIXED, F_Y=load)
+            right = dx.evaluate(f"T_in_wrt_{name}", **given, **FIXED, F_Y=one)
             assert float(own) == pytest.approx(right, rel=1e-12)
         with pytest.raises(NotImplementedError, match="no derived derivative by AB"):
             jax.grad(jax.grad(module.T_in, argnums=2), argnums=2)(*point)
 
 
-def of_numba(folder, kind):
-    """A module of a reduced grid: its grid, arrays, points and scalars."""
-    load = LOADS[kind]
-    names = ["T_in"]
-    written = scene(load, reduce={"theta": "absmax"}, outputs=names)
-    module = imported(dx.compile(written, folder / "press_kernels.py"))
-    given = columns(load, cases(300, 10_000))
-    right = dx.evaluate(names, **dict(zip(INPUTS, given, strict=True)), **FIXED, F_Y=load)
-    found = module.evaluate(*given)
-    for name in names:
-        size = np.nanmedian(np.abs(right[name]))
-        np.testing.assert_allclose(found[name], right[name], rtol=2e-11, atol=2e-11 * size)
+@pytest.mark.thorough
+@pytest.mark.parametrize("form", FORMS)
+def test_numba_has_points_functions_and_a_reduced_grid(form, tmp_path):
+    one, names = load("outer both ways", "jumping"), ["T_in"]
+    written = scene(one, reduce={"theta": "absmax"}, outputs=names)
+    module = imported(dx.compile(written, tmp_path / "press_kernels.py", tables=form))
+    tables = [*map(np.array, one.arrays())] if form == "arguments" else []
+    given = [*columns(one, 60).values()]
+    found = module.evaluate(*given, *tables)
     for k in range(44, 60):
         point = [float(column[k]) for column in given]
-        assert module.T_in(*point) == pytest.approx(found["T_in"][k], rel=1e-11, abs=1e-11, nan_ok=True)
-        np.testing.assert_allclose(module.point(*point)[0], found["T_in"][k], rtol=1e-11, atol=1e-11)
+        own = module.T_in(*point, *tables)
+        assert own == pytest.approx(found["T_in"][k], rel=1e-11, abs=1e-11, nan_ok=True)
+        np.testing.assert_allclose(module.point(*point, *tables)[0], found["T_in"][k], rtol=1e-11, atol=1e-11)
     axes = np.ix_([0.0, 0.01], [0.03, 0.04], [1.0, 2.0], [0.0, 1.0, 2.0])
     grid = dx.evaluate(
-        "T_in", **dict(zip(("ec", "AB", "omega0", "theta"), axes, strict=True)), **FIXED, F_Y=load
+        "T_in", **dict(zip(("ec", "AB", "omega0", "theta"), axes, strict=True)), **FIXED, F_Y=one
     )
-    own = module.run()
+    own = module.run(*tables)
     np.testing.assert_allclose(own["T_in_absmax"], np.abs(grid).max(axis=-1), rtol=1e-11, atol=1e-11)
     np.testing.assert_array_equal(own["T_in_absmax_theta"], np.abs(grid).argmax(axis=-1))
 
 
-@pytest.mark.thorough
-def test_numba_has_the_values_of_evaluate_and_of_a_reduced_grid(tmp_path):
-    of_numba(tmp_path, "outer")
-
-
 def test_extended_is_in_c_too(tmp_path):
-    written = scene(LOADS["outer"], accuracy="extended", outputs=["T_in", "T_in_wrt_AB"])
-    given = [np.linspace(-6.0, 6.0, 9), np.linspace(-0.01, 0.01, 9), np.full(9, 0.04), np.full(9, 3.0)]
-    source = dx.compile(written, tmp_path / "press", to="c") / "press.c"
-    found = np.array(array_values(library(source, "gcc", ("-O2",), True), "press", given, 2))
-    for k, point in enumerate(zip(*given, strict=True)):
+    one, names = load("outer both ways", "jumping"), ["T_in", "T_in_wrt_AB"]
+    rows = [np.linspace(-6.0, 6.0, 9), np.linspace(-0.01, 0.01, 9), np.full(9, 0.04), np.full(9, 3.0)]
+    written = scene(one, accuracy="extended", outputs=names)
+    found = compiled("c", tmp_path, written, INPUTS, tables="arguments")(rows, {"F_Y": one.arrays()})
+    for k, point in enumerate(zip(*rows, strict=True)):
         here = {n: float(x) for n, x in zip(INPUTS, point, strict=True)}
-        right = dx.evaluate(["T_in", "T_in_wrt_AB"], **here, **FIXED, F_Y=LOADS["outer"], accuracy="extended")
-        np.testing.assert_allclose(found[:, k], list(right.values()), rtol=1e-12, atol=1e-12)
+        right = dx.evaluate(names, **here, **FIXED, F_Y=one, accuracy="extended")
+        np.testing.assert_allclose([found[n][k] for n in names], [*right.values()], rtol=1e-12, atol=1e-12)
 
 
 def test_what_a_module_cannot_hold_is_refused_by_name(tmp_path):
+    one = load("theta", "smooth")
     with pytest.raises(SceneError, match=r"loads.F_Y = .*a compiled module holds tables"):
         dx.compile(scene(dx.over_theta(np.sin, np.cos)), tmp_path / "press", to="c")
+    with pytest.raises(ValueError, match=f"is for {', '.join(OPEN[:-1])} and {OPEN[-1]}: in jax"):
+        dx.compile(scene(one), tmp_path / "press_jax.py", to="jax", tables="arguments")
+    with pytest.raises(ValueError, match="the tables of an FMU are frozen"):
+        dx.compile(scene(one), tmp_path / "press.fmu", to="fmu", tables="arguments")
+    with pytest.raises(ValueError, match="tables = 'given': it is one of frozen, arguments"):
+        dx.compile(scene(one), tmp_path / "press", to="c", tables="given")
+    with pytest.raises(SceneError, match="no load of the scene is a table"):
+        dx.compile(scene(-3.0), tmp_path / "press", to="c", tables="arguments")
+    with pytest.raises(TypeError, match="is no table"):
+        dx.over_theta(np.sin, np.cos).arrays()

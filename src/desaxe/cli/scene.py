@@ -170,6 +170,10 @@ def add_compile(commands: Any) -> None:
     parser.add_argument(
         "--float", action="store_true", help="C in single precision, for a processor without doubles"
     )
+    parser.add_argument(
+        "--tables", choices=("frozen", "arguments"), default="frozen",
+        help="tables of loads: in the text, or knots and coefficients as arguments (default: frozen)",
+    )  # fmt: skip
     parser.add_argument("--fmi", type=int, choices=(3, 2), default=3, help="version of an FMU (default: 3)")
     parser.add_argument(
         "--input", choices=("torque", "omega"), default="torque", help="what drives an FMU (default: torque)"
@@ -182,10 +186,12 @@ def add_compile(commands: Any) -> None:
 
 def _compile(options: argparse.Namespace) -> int:
     from ..scenes.export.command import run_compile
+    from ..scenes.export.form import Form
 
+    form = Form(options.no_libm, options.float, options.tables == "arguments")
     return run_compile(
-        options.scene, options.place, options.to, not options.no_libm, options.check, options.overwrite,
-        options.fmi, options.input, options.float,
+        options.scene, options.place, options.to, form, options.check, options.overwrite,
+        options.fmi, options.input,
     )  # fmt: skip
 
 

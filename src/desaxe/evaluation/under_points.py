@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from ..loads.lines import arrays_of
 from ..loads.load import Load, OverTheta, OverY, TableOverTheta
 from ..loads.pieces import FLAT, NEAR, Place
 from ..loads.resolve import Plan
@@ -112,7 +111,7 @@ def tables_of(loads: Mapping[str, Load]) -> tuple[dict[str, Array], dict[str, fl
     for name, load in loads.items():
         if isinstance(load, TableOverTheta):
             bounds |= {f"{name}_first": load.table.knots[0], f"{name}_period": load.period}
-            arrays[f"{name}_x"], arrays[f"{name}_c"] = map(np.array, arrays_of(load))
+            arrays[f"{name}_x"], arrays[f"{name}_c"] = map(np.array, load.arrays())
     return arrays, bounds
 
 

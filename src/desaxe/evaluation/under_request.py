@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..loads.lines import arrays_of, line_of, totals_of
+from ..loads.lines import line_of, totals_of
 from ..loads.load import Load, OverTheta, OverY
 from ..loads.resolve import Plan
 from ..mechanism.load_lines import LoadLines, Under, Way
@@ -44,7 +44,7 @@ def table_arrays(loads: Mapping[str, Load]) -> dict[str, Array]:
     found: dict[str, Array] = {}
     for name, load in loads.items():
         if isinstance(load, OverY):
-            knots, coefficients = arrays_of(load)
+            knots, coefficients = load.arrays()
             found |= {f"{name}_x": np.array(knots), f"{name}_c": np.array(coefficients)}
     return found
 

@@ -11,7 +11,7 @@ motors     a torque over the speed: `over_omega`, `kloss`
 stroke     a load over the distance from a dead centre
 pieces     which piece of a load over Y holds at an angle
 exact      where the slider is, exactly
-lines      a load as lines of a Program, and the arrays of its table
+lines      a load as lines of a Program
 angles     crank angles of slider positions and dead centres
 resolve    loads as numbers at each point, and total derivatives
 """

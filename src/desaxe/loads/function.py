@@ -15,7 +15,7 @@ ROUNDED = 8  # last bits of an angle: so far from its node a user's function may
 BESIDE = 1e-9  # rad: more than these are
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FunctionOverTheta(OverTheta):
     """A user's function of the crank angle, which is called with the angle as it is."""
 
@@ -61,7 +61,8 @@ class FunctionOverTheta(OverTheta):
         angles = [self.every * k / SAMPLES for k in range(SAMPLES)]
         return f"{[self(angle) for angle in angles]} {self.angles} {self.every}"
 
-    def __repr__(self) -> str:
+    def told(self, conversion: Any = None) -> str:
+        """The function's name in a line."""
         name = getattr(self.function, "__name__", type(self.function).__name__)
         return f"<load over theta: the function {name}>"
 

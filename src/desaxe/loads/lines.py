@@ -1,35 +1,21 @@
-"""A load as lines of a Program and as the arrays of its table; totals of a plan as its outputs."""
-
-from itertools import chain
-from typing import NamedTuple
+"""A load as lines of a Program, and totals of a plan as its outputs."""
 
 from ..mechanism.load_lines import LoadLines, Total
 from .load import Load, OverY, TableOverTheta
 from .resolve import Plan
 
 
-class Arrays(NamedTuple):
-    """Knots of a table, and the coefficients of its pieces, those inward behind those outward."""
+def line_of(name: str, load: Load, is_open: bool = False) -> LoadLines:
+    """The place at which the table of a load is looked up; a function of theta stays an input.
 
-    knots: tuple[float, ...]
-    coefficients: list[float]
-
-
-def arrays_of(load: Load) -> Arrays:
-    """The table of a load."""
+    Where the table is open, inputs say where its period begins, and whether it is one.
+    """
+    valid = f"{name}_valid" if is_open else ""
     if isinstance(load, TableOverTheta):
-        return Arrays(load.table.knots, [*chain.from_iterable(load.table.rows)])
-    assert isinstance(load, OverY)
-    ways = load.outward, load.outward if load.inward is None else load.inward
-    return Arrays(load.outward.knots, [*chain.from_iterable(row for table in ways for row in table.rows)])
-
-
-def line_of(name: str, load: Load) -> LoadLines:
-    """The place at which the table of a load is looked up; a function of theta stays an input."""
-    if isinstance(load, TableOverTheta):
-        return LoadLines(name, "theta", load.period, load.table.knots[0])
+        first = f"{name}_first" if is_open else load.table.knots[0]
+        return LoadLines(name, "theta", load.period, first, valid=valid)
     if isinstance(load, OverY):
-        return LoadLines(name, load.centre or "Y", ways=load.inward is not None)
+        return LoadLines(name, load.centre or "Y", ways=load.inward is not None, valid=valid)
     return LoadLines(name, "")
 
 

@@ -9,12 +9,12 @@ from bisect import bisect_left
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from hashlib import sha256
-from math import ceil, floor, inf, nan, nextafter, pi
+from math import ceil, floor, inf, nan, pi
 from typing import TYPE_CHECKING, Any
 
 from ..support.computed import computed_once
 from ..support.forks import IMPORTS
-from .table import Table, described, polynomial
+from .table import Arrays, Table, arrays_of, described, polynomial
 
 if TYPE_CHECKING:
     from ..mechanism.unit_system import Conversion
@@ -55,9 +55,16 @@ class Load(ABC):
     def _content(self) -> str:
         """The definition of the load as a text."""
 
+    def arrays(self) -> Arrays:
+        """The arrays of a table, as modules that `compile(..., tables="arguments")` wrote take them."""
+        raise TypeError(f"{self!r} is no table")
+
+    @abstractmethod
     def told(self, conversion: "Conversion | None" = None) -> str:
         """The load in a line; with a conversion in that unit."""
-        return repr(self)
+
+    def __repr__(self) -> str:
+        return self.told()
 
 
 class OverTheta(Load):
@@ -93,7 +100,7 @@ class OverTheta(Load):
         ]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class TableOverTheta(OverTheta):
     """A table over the crank angle, which repeats after its period."""
 
@@ -106,6 +113,10 @@ class TableOverTheta(OverTheta):
     def period(self) -> float:
         """The angle after which the load repeats [rad]."""
         return self.table.period or TURN
+
+    def arrays(self) -> Arrays:
+        """The arrays of the table, as modules that `compile(..., tables="arguments")` wrote take them."""
+        return arrays_of(self.table)
 
     @computed_once
     def largest(self) -> float:
@@ -132,17 +143,8 @@ class TableOverTheta(OverTheta):
 
     def _nodes_in(self, low: float, high: float, smooth: bool) -> list[float]:
         angles = self.table.knots if smooth else self.table.kinks
-        found = [self._first_right(angle) for angle in self._repeated(angles, low, high)]
+        found = [self.table.first_right(angle) for angle in self._repeated(angles, low, high)]
         return sorted({angle for angle in found if low <= angle <= high})
-
-    def _first_right(self, angle: float) -> float:
-        """The smallest double that belongs to the piece right of an angle: whole periods are rounded."""
-        here = self.table.piece(self.table.reduced(angle + 1e-9))
-        while self.table.piece(self.table.reduced(angle)) != here:
-            angle = nextafter(angle, inf)
-        while self.table.piece(self.table.reduced(before := nextafter(angle, -inf))) == here:
-            angle = before
-        return angle
 
     def _content(self) -> str:
         return f"{self.table!r}"
@@ -151,11 +153,8 @@ class TableOverTheta(OverTheta):
         """The table in a line; with a conversion in that unit."""
         return f"<load over theta: {described((self.table,), self.kind, self.unit, conversion)}>"
 
-    def __repr__(self) -> str:
-        return self.told()
 
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class OverY(Load):
     """A load over the slider's position, one table for each way it goes, both over the same positions."""
 
@@ -173,6 +172,14 @@ class OverY(Load):
     def kept(self) -> tuple[str, ...]:
         """The quantities whose difference keeps its value where the slider is at a position of the table."""
         return ("Y", self.centre) if self.centre else ("Y",)
+
+    def arrays(self) -> Arrays:
+        """The arrays of the tables, those inward last, as modules take them (`tables="arguments"`)."""
+        return arrays_of(self.outward, self.outward if self.inward is None else self.inward)
+
+    @property
+    def _ways(self) -> list[Table]:
+        return [self.outward] if self.inward is None else [self.outward, self.inward]
 
     def motion(self, parameters: Iterable[str] = ()) -> tuple[str, ...]:
         """The names of the motion from which the load and its derivatives by these parameters follow."""
@@ -211,9 +218,8 @@ class OverY(Load):
         knots = self._arrays[0][1:-1]
         found = np.searchsorted(knots, Y, side="right")
         if self.outward.jumps_at_points:
-            found = np.where(
-                np.multiply(way, self.rises) < 0.0, np.searchsorted(knots, Y, side="left"), found
-            )
+            left = np.searchsorted(knots, Y, side="left")
+            found = np.where(np.multiply(way, self.rises) < 0.0, left, found)
         if self.inward is None:
             return found
         return found + np.where(np.less(way, 0.0), len(self.outward.rows), 0)
@@ -248,10 +254,10 @@ class OverY(Load):
         with IMPORTS:
             import numpy as np
 
-        ways = [self.outward] if self.inward is None else [self.outward, self.inward]
         edges = np.array(self._edges)
         origins = np.concatenate([edges[1:2], edges[1:-1]])
-        return edges, np.tile(origins, len(ways)), np.array([row for table in ways for row in table.rows]).T
+        rows = [row for table in self._ways for row in table.rows]
+        return edges, np.tile(origins, len(self._ways)), np.array(rows).T
 
     def __getstate__(self) -> dict[str, Any]:
         """The state without the arrays, which are rebuilt when needed."""
@@ -260,8 +266,7 @@ class OverY(Load):
     @computed_once
     def largest(self) -> float:
         """The largest magnitude at a knot."""
-        ways = (self.outward, self.outward if self.inward is None else self.inward)
-        return max(abs(row[0]) for table in ways for row in table.rows)
+        return max(abs(row[0]) for table in self._ways for row in table.rows)
 
     @computed_once
     def turns(self) -> bool:
@@ -276,13 +281,11 @@ class OverY(Load):
     @property
     def jumps(self) -> list[float]:
         """The positions at which the load jumps."""
-        tables = [table for table in (self.outward, self.inward) if table is not None]
-        return sorted({x for table in tables for x in table.jumps})
+        return sorted({x for table in self._ways for x in table.jumps})
 
     def positions(self, smooth: bool) -> list[float]:
         """The positions at which the load is not smooth; with `smooth`, at which its pieces meet too."""
-        tables = [table for table in (self.outward, self.inward) if table is not None]
-        return sorted({x for table in tables for x in (table.knots if smooth else table.kinks)})
+        return sorted({x for table in self._ways for x in (table.knots if smooth else table.kinks)})
 
     def _content(self) -> str:
         return f"{self.outward!r} {self.inward!r}"
@@ -290,9 +293,6 @@ class OverY(Load):
     def told(self, conversion: "Conversion | None" = None) -> str:
         """The table in a line; with a conversion in that unit."""
         return f"<load over Y: {described((self.outward, self.inward), self.kind, self.unit, conversion)}>"
-
-    def __repr__(self) -> str:
-        return self.told()
 
 
 def _plain(x: Any) -> Any:

@@ -7,9 +7,9 @@ to the right holds, value and derivative alike.
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
-from math import floor, nan
-from typing import Any
+from itertools import chain, pairwise
+from math import floor, inf, nan, nextafter
+from typing import Any, NamedTuple
 
 from ..support.computed import computed_once
 from ..support.extras import needed
@@ -45,6 +45,15 @@ class Table:
             return x + self.period  # perhaps rounded to the end, where the last piece holds
         before = x - self.period
         return before if before >= first else x
+
+    def first_right(self, x: float) -> float:
+        """The smallest double that belongs to the piece right of a knot: whole periods are rounded."""
+        here = self.piece(self.reduced(x + 1e-9))
+        while self.piece(self.reduced(x)) != here:
+            x = nextafter(x, inf)
+        while self.piece(self.reduced(before := nextafter(x, -inf))) == here:
+            x = before
+        return x
 
     def piece(self, x: float) -> int:
         """The index of the piece at a reduced argument."""
@@ -124,6 +133,19 @@ class Table:
             jump, kink = abs(left[0] - right[0]) > SAME * high, abs(left[1] - right[1]) > SAME * steep
             found.append((x, jump, kink))
         return found
+
+
+class Arrays(NamedTuple):
+    """Knots, and four coefficients for each piece: one more than there are knots, for each way in turn."""
+
+    knots: list[float]
+    coefficients: list[float]
+
+
+def arrays_of(*ways: Table) -> Arrays:
+    """The arrays of tables over the same knots."""
+    rows = chain.from_iterable(table.rows for table in ways)
+    return Arrays([*ways[0].knots], [*chain.from_iterable(rows)])
 
 
 def polynomial(row: Any, s: Any) -> tuple[Any, Any]:

@@ -13,7 +13,6 @@ import numpy as np
 
 from ..evaluation.loaded import MOTION, plan_for
 from ..evaluation.under_request import under_loads
-from ..loads.lines import arrays_of
 from ..loads.load import Load, OverY, TableOverTheta
 from ..mechanism.load_lines import LoadLines
 from .compiled import Groups, Tables
@@ -65,7 +64,7 @@ def tables_under(search: Search, designs: Designs, course: Course) -> Tables:
 def _arrays(load: Load, low: float, high: float) -> list[Array]:
     """Knots and coefficients; of a table over theta those of all pieces in a range."""
     if isinstance(load, OverY):
-        return list(map(np.array, arrays_of(load)))
+        return list(map(np.array, load.arrays()))
     assert isinstance(load, TableOverTheta)
     table, period = load.table, load.period
     knots = load.nodes(low - period, high, smooth=True)

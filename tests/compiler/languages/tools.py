@@ -115,7 +115,8 @@ import * as module from "./{name}.mjs";
 import {{ readFileSync }} from "fs";
 const plain = (x) => typeof x === "number" ? String(x) : ArrayBuffer.isView(x) ? Array.from(x, plain)
   : Object.fromEntries(Object.entries(x).map(([key, value]) => [key, plain(value)]));
-const calls = JSON.parse(readFileSync("calls.json", "utf8"));
+const special = {{ nan: NaN, inf: Infinity, "-inf": -Infinity }};
+const calls = JSON.parse(readFileSync("calls.json", "utf8"), (key, x) => x?.special ? special[x.special] : x);
 console.log(JSON.stringify(calls.map(([name, ...given]) => plain(module[name](...given)))));
 """
 
@@ -129,10 +130,19 @@ def es_module(file, calls):
     """The answers of a module's functions, each called as (name, *arguments), by node."""
     folder = file.parent
     (folder / f"{file.stem}.mjs").write_text(file.read_text(encoding="utf-8"), encoding="utf-8")
-    (folder / "calls.json").write_text(json.dumps(calls), encoding="utf-8")
+    (folder / "calls.json").write_text(json.dumps(_sent(calls)), encoding="utf-8")
     (folder / "main.mjs").write_text(NODE.format(name=file.stem), encoding="utf-8")
     found = json.loads(run(node(), "main.mjs", cwd=folder))
     return [_numbers(each) for each in found]
+
+
+def _sent(value):
+    """What JSON can carry."""
+    if isinstance(value, dict):
+        return {name: _sent(each) for name, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [*map(_sent, value)]
+    return {"special": str(value)} if isinstance(value, float) and not np.isfinite(value) else value
 
 
 def _numbers(value):

@@ -5,9 +5,28 @@ from ..text import with_short_temporaries
 from .javascript import HEADER, emit_javascript
 from .protocol import Module, Symbol
 from .shared import arrays_of, numbers, one_line, safe_name, with_safe_names
+from .tables import columns_of, described, numbers_of, period_of
 from .words import words_of
 
 WORDS = words_of("javascript").lines
+CHECKED = """\
+/** The numbers of all tables, then their arrays. */
+function valuesOf(tables) {
+  return [...tables.flatMap((one) => one.slice(0, 2)), ...tables.flatMap((one) => one.slice(2))];
+}
+
+/** 0, or NaN where something is no table, and then zeros in its place; the first knot; both arrays. */
+function checkedTable(x, c, ways, period) {
+  if (!x || !c || x.length === undefined || c.length === undefined) throw new TypeError("a table is missing");
+  const n = x.length;
+  let good = n >= 2 && c.length >= 4 * ways * (n + 1) && x[n - 1] - x[0] < period;
+  for (let k = 0; good && k < n; k++) {
+    good = Number.isFinite(x[k]) && (k < 1 || x[k - 1] <= x[k]) && (k < 2 || x[k - 2] < x[k]);
+  }
+  for (let k = 0; good && k < 4 * ways * (n + 1); k++) good = Number.isFinite(c[k]);
+  return good ? [0, x[0], x, c] : [NaN, 0, [0, 1], new Array(24).fill(0)];
+}
+"""
 EVALUATE = """\
 /** A number as it is; text, which would be read as one, and anything else is refused. */
 function number(name, value) {
@@ -24,16 +43,17 @@ export function evaluate(inputs) {
     if (!isArray(inputs[name])) number(name, inputs[name]);
   }
   const given = INPUTS.map((name) => inputs[name]);
+  const tables = TABLES;
   const lengths = given.filter(isArray).map((value) => value.length);
   if (!lengths.length) {
-    const found = values(...given);
+    const found = values(...given, ...tables);
     return Object.fromEntries(OUTPUTS.map((name, place) => [name, found[place]]));
   }
   if (lengths.some((length) => length !== lengths[0])) throw new RangeError("arrays must have one length");
   const arrays = OUTPUTS.map(() => new Float64Array(lengths[0]));
   for (let k = 0; k < lengths[0]; k++) {
     const point = given.map((value, place) => (isArray(value) ? number(INPUTS[place], value[k]) : value));
-    values(...point).forEach((one, place) => {
+    values(...point, ...tables).forEach((one, place) => {
       arrays[place][k] = one;
     });
   }
@@ -50,6 +70,7 @@ class JavaScript:
     second_order = False
     own_functions = False
     single = False
+    open_tables = True
     extended = True
     loops = None
 
@@ -60,17 +81,20 @@ class JavaScript:
 
 def _source(module: Module) -> str:
     program = module.forms.stable
-    program = program._replace(inputs=tuple(symbol.name for symbol in module.inputs))
+    given = numbers_of(module.open_tables)
+    program = program._replace(inputs=(*(symbol.name for symbol in module.inputs), *given))
     # An output may be an input, or stand twice: it is returned as it is called here.
     program = with_safe_names(with_short_temporaries(program), WORDS)
-    program = program._replace(outputs=program.outputs[: len(module.outputs)])
+    inputs = (*program.inputs, *columns_of(module.open_tables))
+    program = program._replace(inputs=inputs, outputs=program.outputs[: len(module.outputs)])
     units = ", ".join(f'{s.name}: "{s.unit}"' for s in _once((*module.inputs, *module.outputs)))
     functions = [_function(module, symbol, place) for place, symbol in enumerate(module.outputs)]
     return "\n".join(
         [
             _comment(module),
             HEADER,
-            *(JAVASCRIPT_TABLES.values() if module.tables else ()),
+            *(JAVASCRIPT_TABLES.values() if module.tables or module.open_tables else ()),
+            *([CHECKED] if module.open_tables else []),
             *_content(module),
             f"export const INPUTS = {_list(module.inputs)};",
             f"export const OUTPUTS = {_list(module.outputs)};",
@@ -78,7 +102,7 @@ def _source(module: Module) -> str:
             "",
             emit_javascript(program, "values"),
             *functions,
-            EVALUATE,
+            _evaluate(module),
         ]
     )
 
@@ -91,12 +115,28 @@ def _content(module: Module) -> list[str]:
     return found
 
 
+def _checked(module: Module, ahead: str = "") -> list[str]:
+    """What `values` takes of the tables that are arguments."""
+    found = [
+        f"checkedTable({ahead}{n}_x, {ahead}{n}_c, {table.ways}, {period_of(table, 'Infinity')})"
+        for n, table in module.open_tables.items()
+    ]
+    return [f"...valuesOf([{', '.join(found)}])"] if found else []
+
+
+def _evaluate(module: Module) -> str:
+    given = ", ".join(_checked(module, "inputs."))
+    text = EVALUATE.replace("TABLES", f"[{given}]")
+    return text if given else text.replace("  const tables = [];\n", "").replace(", ...tables", "")
+
+
 def _function(module: Module, symbol: Symbol, place: int) -> str:
     """The function of one output; an argument that it does not take is NaN."""
     taken = module.taken(symbol.name)
-    given = ", ".join(safe_name(name, WORDS) for name in taken)
+    given = ", ".join([*(safe_name(name, WORDS) for name in taken), *columns_of(module.open_tables)])
     names = [one.name for one in module.inputs]
     checked = [f'number("{n}", {safe_name(n, WORDS)})' if n in taken else "NaN" for n in names]
+    checked += _checked(module)
     head = f"/** {_about(symbol)} */\nexport function {symbol.name}({given}) {{"
     return f"{head}\n  return values({', '.join(checked)})[{place}];\n}}\n"
 
@@ -104,15 +144,18 @@ def _function(module: Module, symbol: Symbol, place: int) -> str:
 def _types(module: Module) -> str:
     functions = []
     for symbol in module.outputs:
-        given = ", ".join(f"{safe_name(name, WORDS)}: number" for name in module.taken(symbol.name))
+        taken = [f"{safe_name(name, WORDS)}: number" for name in module.taken(symbol.name)]
+        given = ", ".join([*taken, *(f"{name}: Column" for name in columns_of(module.open_tables))])
         functions.append(f"/** {_about(symbol)} */\nexport function {symbol.name}({given}): number;")
     return "\n".join(
         [
             _comment(module),
-            "type Values = number | readonly number[] | Float64Array;",
+            "type Column = readonly number[] | Float64Array;",
+            "type Values = number | Column;",
             "",
             "export interface Inputs<T = Values> {",
             *(f"  /** {_about(symbol)} */\n  {symbol.name}: T;" for symbol in module.inputs),
+            *(f"  {name}: Column;" for name in columns_of(module.open_tables)),
             "}",
             "",
             "export interface Outputs<T> {",
@@ -149,4 +192,5 @@ def _list(symbols: tuple[Symbol, ...]) -> str:
 
 
 def _comment(module: Module) -> str:
-    return "\n".join(["/*", *(f" * {one_line(line)}".rstrip() for line in module.head), " */"])
+    lines = [*module.head, *described(module.open_tables)]
+    return "\n".join(["/*", *(f" * {one_line(line)}".rstrip() for line in lines), " */"])

@@ -156,6 +156,7 @@ class Jax:
     second_order = True
     own_functions = False
     single = False
+    open_tables = False
     extended = False  # products may be fused with sums
     loops = None
 

@@ -8,6 +8,7 @@ from ..program import Program
 from ..text import with_short_temporaries
 from .protocol import Module
 from .shared import arrays_of, numbers, one_line, safe_name, statements, with_helpers, with_safe_names
+from .tables import columns_of, described, period_of
 from .words import words_of
 
 WORDS = {"nan": "NaN", "inf": "Inf", "True": "true", "False": "false"}
@@ -19,6 +20,21 @@ HELPERS = {
     error('%s: expected real numbers in SI units', name);
   end
   x = double(x);
+end
+""",
+    "checked_table": """function [valid, first, x, c] = checked_table(x, c, ways, period)
+  % 0, or NaN where something is no table, and then zeros in its place; the first knot.
+  x = reshape(numbers('knots', x), 1, []);
+  c = reshape(numbers('coefficients', c), 1, []);
+  valid = 0;
+  n = numel(x);
+  if n < 2 || numel(c) < 4 * ways * (n + 1) || ~all(isfinite(x)) || ~all(isfinite(c)) ...
+      || any(diff(x) < 0) || ~all(x(1:end - 2) < x(3:end)) || x(end) - x(1) >= period
+    valid = NaN;
+    x = [0, 1];
+    c = zeros(1, 24);
+  end
+  first = x(1);
 end
 """,
     "select": """function x = select(c, a, b)
@@ -156,6 +172,7 @@ class Octave:
     second_order = False
     own_functions = False
     single = False
+    open_tables = True
     extended = True
     loops = None
 
@@ -166,11 +183,12 @@ class Octave:
 
 def _text(module: Module) -> str:
     inputs = [safe_name(symbol.name, RESERVED) for symbol in module.inputs]
+    given = [*inputs, *columns_of(module.open_tables)]
     program = with_short_temporaries(module.forms.stable)
     program = program._replace(outputs=program.outputs[: len(module.outputs)])
     outputs = [symbol.name for symbol in module.outputs]
-    head = f"function [{', '.join(f'out_{name}' for name in outputs)}] = {module.name}({', '.join(inputs)})"
-    rows = [*_help(module), *_same_shape(inputs), *_content(module), *_body(program)]
+    head = f"function [{', '.join(f'out_{name}' for name in outputs)}] = {module.name}({', '.join(given)})"
+    rows = [*_help(module), *_same_shape(inputs), *_content(module), *_checked(module), *_body(program)]
     body = [f"  {row}" for row in [*rows, *_results(program, outputs)]]
     main = "\n".join([head, *body, "end", ""])
     return "\n".join([main, *with_helpers(main, HELPERS)])
@@ -179,11 +197,12 @@ def _text(module: Module) -> str:
 def _help(module: Module) -> list[str]:
     """The text that `help name` prints."""
     names = ", ".join(symbol.name for symbol in module.outputs)
-    given = ", ".join(symbol.name for symbol in module.inputs)
+    given = ", ".join([*(symbol.name for symbol in module.inputs), *columns_of(module.open_tables)])
     rows = [f"{module.name.upper()}  [{names}] = {module.name}({given})", "", *map(one_line, module.head), ""]
     for symbol in (*module.inputs, *module.outputs):
         source = f" ({symbol.source})" if symbol.source else ""
         rows.append(f"  {symbol.name} [{symbol.unit}]: {one_line(symbol.meaning)}{source}")
+    rows += described(module.open_tables, 1)
     rows += [
         "",
         "Numbers or arrays, which broadcast; what has no value is NaN.",
@@ -198,6 +217,15 @@ def _content(module: Module) -> list[str]:
     for name, column in arrays_of(module.tables).items():
         rows += [f"{name} = [ ...", *(f"  {row} ..." for row in numbers(column)), "];"]
     return rows
+
+
+def _checked(module: Module) -> list[str]:
+    """The tables that are arguments, and what Programs take of them."""
+    return [
+        f"[{n}_valid, {n}_first, {n}_x, {n}_c] = "
+        f"checked_table({n}_x, {n}_c, {table.ways}, {period_of(table, 'Inf')});"
+        for n, table in module.open_tables.items()
+    ]
 
 
 def _same_shape(inputs: list[str]) -> list[str]:

@@ -5,6 +5,7 @@ constants. It knows no mechanism. A language turns it into the texts of one or m
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from math import inf
 from typing import NamedTuple, Protocol
 
 from ..kernel import Kernel
@@ -47,6 +48,24 @@ class Solver(NamedTuple):
     slopes: Program | None = None
 
 
+class OpenTable(NamedTuple):
+    """A table that is an argument: `<name>_x` and `<name>_c`, its knots and the coefficients of its pieces.
+
+    Programs take two numbers that are made of it, as inputs: `<name>_valid`, NaN where it is none, and
+    `<name>_first`, its first knot.
+
+    symbol  the input that it stands for
+    over    what its knots are, with their unit
+    period  after which it repeats
+    ways    the number of tables in its coefficients, one behind the other
+    """
+
+    symbol: Symbol
+    over: str
+    period: float = inf
+    ways: int = 1
+
+
 class Module(NamedTuple):
     """The content of a module, independent of the language.
 
@@ -63,6 +82,7 @@ class Module(NamedTuple):
     constants    of the written-out sine and cosine; beyond their limit they are wrong
     single       whether all numbers are of single precision, for languages that have it
     tables       name -> knots and coefficients of a table that Programs look into
+    open_tables  name -> such a table whose content is an argument, for languages that take it
     """
 
     name: str
@@ -78,6 +98,7 @@ class Module(NamedTuple):
     motion: Solver | None = None
     single: bool = False
     tables: Mapping[str, Content] = {}
+    open_tables: Mapping[str, OpenTable] = {}
 
     def taken(self, name: str) -> list[str]:
         """The arguments of a result's own function, in order."""
@@ -93,6 +114,7 @@ class Language(Protocol):
     second_order: bool  # whether `derivatives` and `values` are wanted
     own_functions: bool  # whether the language can do without a library of elementary functions
     single: bool  # whether the language is written in single precision, too
+    open_tables: bool  # whether tables can be arguments
     extended: bool  # whether sums and products are rounded as they stand, which twice the digits want
 
     @property

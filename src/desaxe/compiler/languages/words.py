@@ -56,8 +56,8 @@ _JAVASCRIPT = frozenset((
     "Array", "ArrayBuffer", "Float64Array", "Infinity", "Math", "NaN", "Object", "RangeError", "TypeError",
     "undefined",
     # defined
-    "False", "INPUTS", "OUTPUTS", "True", "UNITS", "evaluate", "inf", "lookup", "lookup_piece",
-    "lookup_slope", "nan", "number", "values",
+    "False", "INPUTS", "OUTPUTS", "True", "UNITS", "checkedTable", "evaluate", "inf", "lookup",
+    "lookup_piece", "lookup_slope", "nan", "number", "values", "valuesOf",
 ))  # fmt: skip
 
 _OCTAVE = frozenset((
@@ -69,13 +69,13 @@ _OCTAVE = frozenset((
     "persistent", "properties", "return", "spmd", "switch", "try", "until", "unwind_protect",
     "unwind_protect_cleanup", "while",
     # called
-    "Inf", "NaN", "abs", "atan2", "cos", "double", "error", "exp", "false", "fix", "floor", "hypot",
-    "islogical", "isnumeric", "isreal", "log", "max", "min", "mod", "numel", "ones", "reshape", "sin", "size",
-    "sqrt", "true", "zeros",
+    "Inf", "NaN", "abs", "all", "any", "atan2", "cos", "diff", "double", "error", "exp",
+    "false", "fix", "floor", "hypot", "isfinite", "islogical", "isnumeric", "isreal", "log", "max",
+    "min", "mod", "numel", "ones", "reshape", "sin", "size", "sqrt", "true", "zeros",
     # defined
-    "copysign", "extended_only", "logarithm", "looked_up", "looked_up_slope", "lookup_piece", "mul_add",
-    "numbers", "power_of", "root", "rotated_cos", "rotated_sin", "rounding", "row_of", "select", "shape",
-    "two_product_error", "two_sum_error",
+    "checked_table", "copysign", "extended_only", "logarithm", "looked_up", "looked_up_slope", "lookup_piece",
+    "mul_add", "numbers", "power_of", "root", "rotated_cos", "rotated_sin", "rounding", "row_of",
+    "select", "shape", "two_product_error", "two_sum_error",
 ))  # fmt: skip
 
 _JAX = frozenset((
@@ -113,8 +113,8 @@ _NUMBA = frozenset((
 # What a module imports, and what that imports in turn.
 _PYTHON_MODULES = frozenset((*sys.stdlib_module_names, "jax", "jaxlib", "llvmlite", "numba", "numpy"))
 
-# The tables of loads that a module holds: places and pieces.
-_OF_LOADS = frozenset(("F_X_c", "F_X_x", "F_Y_c", "F_Y_x"))
+# The tables of loads that a module holds or takes: pieces, how many knots, knots.
+_OF_LOADS = frozenset(("F_X_c", "F_X_n", "F_X_x", "F_Y_c", "F_Y_n", "F_Y_x"))
 
 _TABLES = {
     "c": _C._replace(lines=_C.lines | _OF_LOADS),

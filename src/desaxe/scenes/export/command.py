@@ -10,30 +10,32 @@ from ..scene import Scene
 from ..scene import scene as scene_of
 from .compile import compile, lost_of, require_fmu, texts_of
 from .fmu.write import stale_fmu, write_fmu
+from .form import Form
 
 
 def run_compile(
     source: str,
     place: str,
     to: str,
-    libm: bool,
+    form: Form,
     check: bool,
     overwrite: bool,
     fmi: int,
     drive: str,
-    single: bool,
 ) -> int:
     """Write the files, or with `check` compare them; return the exit status."""
     scene = scene_of(source)
     if to == "fmu":
-        require_fmu(Path(place), libm, single)
+        require_fmu(Path(place), form)
         return _run_fmu(scene, source, Path(place), check, overwrite, fmi, drive)
     if (fmi, drive) != (3, "torque"):
         raise ValueError("--fmi and --input are for --to fmu")
-    texts = texts_of(scene, Path(place), to, libm, single)
+    texts = texts_of(scene, Path(place), to, form)
     if check:
         return _compare(texts, source, place)
-    compile(scene, place, to, libm=libm, overwrite=overwrite, float=single)
+    tables = "arguments" if form.open_tables else "frozen"
+    single, libm = form.single, not form.freestanding
+    compile(scene, place, to, libm=libm, overwrite=overwrite, float=single, tables=tables)
     for file, text in texts.items():
         print(f"{printable(file)}: {len(text.splitlines())} lines")
     lost = lost_of(scene.content, to)

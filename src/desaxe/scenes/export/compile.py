@@ -2,12 +2,12 @@
 
 import keyword
 import re
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Container, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from ...compiler.languages import language_of, languages
+from ...compiler.languages import language_of
 from ...compiler.languages.shared import refuse_taken
 from ...compiler.languages.words import words_of
 from ...mechanism.keywords import with_known_keywords
@@ -21,6 +21,7 @@ from ..scene import Scene
 from ..scene import scene as scene_of
 from ..schema import SceneError
 from .fmu.write import stale_fmu, write_fmu
+from .form import PLAIN, TABLES, Form, are_open, those_with
 from .numba_module import text_of
 from .peaks import left_out_of_module
 from .portable import Order, left_out, module_of
@@ -38,6 +39,7 @@ def compile(
     fmi: int = 3,
     input: str = "torque",
     float: bool = False,
+    tables: str = "frozen",
 ) -> Path:
     """Write the outputs of a scene as source code of its own, which needs nothing of desaxe.
 
@@ -60,6 +62,9 @@ def compile(
     A path that ends as the language's files do is the file; any other is a folder, whose last part is the
     name. `libm=False` (c) writes elementary functions of its own, `float=True` (c) single precision: values
     of the inputs as rounded to float, |theta| up to 100 rad. The same scene gives the same bytes;
+    `tables="arguments"` makes the tables of loads arguments: knots and coefficients, `F_Y_x` and `F_Y_c`,
+    which `load.arrays()` has; what they are over, periods and whether the way inward has a table of its own
+    are the scene's (numba, c, octave, javascript).
     `check=True` writes nothing and raises ValueError where the files are not what would be written. A file
     that it did not write, or that was edited since, is left as it is, and FileExistsError raised, unless
     `overwrite` is true.
@@ -74,12 +79,13 @@ def compile(
     """
     place = as_path("path", path)
     yes_or_no(libm=libm, check=check, overwrite=overwrite, float=float)
+    form = Form(not libm, float, are_open(tables))
     given = scene if isinstance(scene, Scene) else scene_of(scene)
     if to == "fmu":
-        require_fmu(place, libm, float)
+        require_fmu(place, form)
         if not check:
             return write_fmu(given, place, fmi, input, overwrite)
-    texts = {} if to == "fmu" else texts_of(given, place, to, libm, float)
+    texts = {} if to == "fmu" else texts_of(given, place, to, form)
     if check:
         stale = stale_fmu(given, place, fmi, input) if to == "fmu" else differing(texts)
         if stale:
@@ -94,38 +100,43 @@ def compile(
     return place
 
 
-def require_fmu(place: Path, libm: bool = True, single: bool = False) -> None:
+def require_fmu(place: Path, form: Form) -> None:
     """ValueError for the place of an FMU that is not NAME.fmu, and for an option that it does not have."""
     if place.suffix != ".fmu":
         raise ValueError(f"{printable(place)}: the file of an FMU is called NAME.fmu")
-    if not libm:
+    if form.freestanding:
         raise ValueError("libm=False is for c: an FMU is compiled with the C library")
-    if single:
+    if form.open_tables:
+        raise ValueError(f"{TABLES} is for {those_with('open_tables')}: the tables of an FMU are frozen")
+    if form.single:
         raise ValueError("float=True (--float) is for c: the numbers of an FMU are doubles")
     require_name(place.stem, place, words_of("c").modules)
 
 
-def texts_of(
-    scene: Scene, place: Path, to: str = "numba", libm: bool = True, single: bool = False
-) -> dict[Path, str]:
+def texts_of(scene: Scene, place: Path, to: str = "numba", form: Form = PLAIN) -> dict[Path, str]:
     """The files of a scene in a language, with their texts; nothing is written."""
     with using(scene.content.definitions):
-        return _texts_of(scene, place, to, libm, single)
+        return _texts_of(scene, place, to, form)
 
 
-def _texts_of(scene: Scene, place: Path, to: str, libm: bool, single: bool) -> dict[Path, str]:
+def _texts_of(scene: Scene, place: Path, to: str, form: Form) -> dict[Path, str]:
     language = language_of(to, "fmu")
-    if not libm and not language.own_functions:
-        own = _listed(one.name for one in languages() if one.own_functions)
-        raise ValueError(f"libm=False is for {own}: {to} has its elementary functions at hand")
-    if single and not language.single:
-        own = _listed(one.name for one in languages() if one.single)
-        raise ValueError(f"float=True (--float) is for {own}: {to} is not written in single precision")
-    if scene.content.accuracy == "extended" and single:
+    if form.freestanding and not language.own_functions:
+        raise ValueError(
+            f"libm=False is for {those_with('own_functions')}: {to} has its elementary functions at hand"
+        )
+    if form.single and not language.single:
+        raise ValueError(
+            f"float=True (--float) is for {those_with('single')}: {to} is not written in single precision"
+        )
+    if form.open_tables and not language.open_tables:
+        raise ValueError(f"{TABLES} is for {those_with('open_tables')}: in {to} they are frozen")
+    if form.open_tables and not any(map(callable, scene.content.inputs.values())):
+        raise SceneError(f"{scene.name or 'scene'}: {TABLES}: no load of the scene is a table")
+    if scene.content.accuracy == "extended" and form.single:
         raise SceneError('accuracy = "extended": single precision has standard alone')
     if scene.content.accuracy == "extended" and not language.extended:
-        both = _listed(one.name for one in languages() if one.extended)
-        raise SceneError(f'accuracy = "extended": {to} has standard, {both} have both')
+        raise SceneError(f'accuracy = "extended": {to} has standard, {those_with("extended")} have both')
     words = words_of(to)
     refuse_taken(scene.content.outputs, words.outputs)
     is_file = place.suffix == language.suffix
@@ -136,23 +147,16 @@ def _texts_of(scene: Scene, place: Path, to: str, libm: bool, single: bool) -> d
     require_name(name, place, words.modules)
     folder = place.parent if is_file else place
     source = Path(scene.name).name
-    said = (
-        f"desaxe compile {source} --to {to} -o {place.name}" + " --no-libm" * (not libm) + " --float" * single
-    )
+    said = f"desaxe compile {source} --to {to} -o {place.name}{form.options}"
     if not source:
-        more = ", libm=False" * (not libm) + ", float=True" * single
-        said = f'desaxe.compile(scene, "{place.name}", to="{to}"{more})'
-    module = module_of(scene, Order(to, name, said, language.second_order, not libm, single))
-    return {folder / file: sealed(text) for file, text in language.files(module, not libm).items()}
+        said = f'desaxe.compile(scene, "{place.name}", to="{to}"{form.keywords})'
+    module = module_of(scene, Order(to, name, said, language.second_order, form))
+    return {folder / file: sealed(text) for file, text in language.files(module, form.freestanding).items()}
 
 
 def lost_of(content: Content, to: str) -> list[str]:
     """The parts of a scene that its module in a language leaves out, by name."""
     return left_out(content) if language_of(to).loops is None else left_out_of_module(content)
-
-
-def _listed(names: Iterable[str]) -> str:
-    return " and ".join(", ".join(names).rsplit(", ", 1))
 
 
 def differing(texts: Mapping[Path, str]) -> list[Path]:

@@ -6,14 +6,20 @@ own: at rest there is an answer for each way.
 """
 
 from collections.abc import Mapping
+from types import MappingProxyType
 
 from ...compiler.languages.protocol import Solver, Symbol
 from ...compiler.passes.guard import guard_inputs
 from ...compiler.passes.pipeline import optimise
 from ...compiler.program import Line, Program, renamed
 from ...compiler.text import read_function
+from ...loads.lines import line_of, totals_of
+from ...loads.load import Load
+from ...loads.resolve import plan_of
 from ...mechanism.inputs import LEAST
+from ...mechanism.load_lines import Total, Way, with_totals
 from ...mechanism.names import CENTRES, LENGTHS, LOADS, MASSES, STATUS
+from ...mechanism.program import Variant
 from ...runtime.specialise import specialise
 from ...simulation.friction import JAMS_AT
 from ...simulation.model import form_of
@@ -41,10 +47,16 @@ def has_masses(given: Mapping[str, object]) -> bool:
     return any(given.get(name, 0.0) != 0.0 for name in MASSES)
 
 
-def motion(given: Mapping[str, object], branch: int, single: bool = False) -> Program:
+def motion(
+    given: Mapping[str, object],
+    branch: int,
+    single: bool = False,
+    loads: Mapping[str, Load] = MappingProxyType({}),
+    open_tables: bool = False,
+) -> Program:
     """The acceleration and its status, from theta, omega, torque, what is not a number, and `way` (-1, 1).
 
-    Without friction, mu = 0, there is no `way`.
+    Without friction, mu = 0, and loads that differ by the way of the slider there is no `way`.
     """
     values = {
         name: given.get(name, 0.0) for name in (*LENGTHS, *LOADS) if name in given or name not in CENTRES
@@ -54,7 +66,7 @@ def motion(given: Mapping[str, object], branch: int, single: bool = False) -> Pr
     fixed = {**numbers, "branch": float(branch), "alpha": 0.0, "mu": 0.0}
     names = (*SMOOTH, STATUS, *(CONTACT if rubs else ()))
     accuracy = "single" if single else "standard"
-    base = specialise(names, form_of(values), tuple(fixed.items()), accuracy)
+    base = _base(names, form_of(values), tuple(fixed.items()), accuracy, loads, open_tables)
     law = read_function(RUBBING if rubs else FREE)
     parts = dict(zip((*SMOOTH, STATUS, *CONTACT), base.outputs, strict=False))
     law = renamed(law, parts | {line.name: f"_{line.name}" for line in law.lines})
@@ -72,7 +84,30 @@ def motion(given: Mapping[str, object], branch: int, single: bool = False) -> Pr
     return guard_inputs(program, [name for name in program.inputs if name != "way"], LEAST, {})
 
 
-def motion_solver(given: Mapping[str, object], branch: int, single: bool = False) -> Solver:
+def _base(
+    names: tuple[str, ...],
+    form: Variant,
+    fixed: tuple[tuple[str, float], ...],
+    accuracy: str,
+    loads: Mapping[str, Load],
+    open_tables: bool,
+) -> Program:
+    """The program of names of the motion, under loads with `way`."""
+    if not loads:
+        return specialise(names, form, fixed, accuracy)
+    public = tuple(name for name in names if name != "lean")
+    plan = plan_of(public, loads, True, public != names)
+    every = tuple(dict.fromkeys((*names, *plan.names, *plan.motion)))
+    base = specialise(every, form, fixed, accuracy)
+    lines = [line_of(name, load, open_tables) for name, load in plan.loads.items()]
+    of_all = {total.name: total for total in totals_of(plan)}
+    totals = [of_all.get(name, Total(name)) for name in names]
+    return with_totals(base, dict(zip(every, base.outputs, strict=True)), lines, totals, Way("way"))
+
+
+def motion_solver(
+    given: Mapping[str, object], branch: int, single: bool, loads: Mapping[str, Load], open_tables: bool
+) -> Solver:
     """The acceleration as a function of its own arguments and those of a module."""
     told = (
         ("N*m", "torque on the crank"),
@@ -81,4 +116,5 @@ def motion_solver(given: Mapping[str, object], branch: int, single: bool = False
         ("1", "sign of the speed"),
     )
     own = zip(("torque", "theta", "omega", "way"), told, strict=True)
-    return Solver(tuple(Symbol(name, *each) for name, each in own), motion(given, branch, single))
+    law = motion(given, branch, single, loads, open_tables)
+    return Solver(tuple(Symbol(name, *each) for name, each in own), law)

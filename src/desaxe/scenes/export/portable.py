@@ -11,8 +11,8 @@ from ...compiler.interpret import to_single
 from ...compiler.languages.protocol import Forms, Module, Symbol
 from ...compiler.passes.double_double import double_double
 from ...compiler.passes.guard import guard_inputs
-from ...compiler.program import Program
-from ...loads.lines import arrays_of, line_of, totals_of
+from ...compiler.program import Program, tables_in
+from ...loads.lines import line_of, totals_of
 from ...loads.load import Load
 from ...loads.resolve import plan_of, split
 from ...mechanism.catalogue import law_name, quantities, quantity
@@ -30,7 +30,8 @@ from ..content import Content
 from ..parts.kernel import own_axes
 from ..scene import Scene
 from ..schema import SceneError
-from .loaded import require_tables
+from .form import PLAIN, Form
+from .loaded import require_tables, tables_of
 from .motion import has_masses, motion_solver
 from .solvers import solvers
 
@@ -53,14 +54,14 @@ class Order(NamedTuple):
     name: str
     command: str
     second_order: bool = False
-    freestanding: bool = False
-    single: bool = False
+    form: Form = PLAIN
 
 
 class Asked(NamedTuple):
     """A request of a scene, its fixed inputs, and its loads that vary with the motion.
 
     shown   the names whose values are wanted; the request has what their totals are made of, too
+    open    whether the tables of the loads are not known yet
     """
 
     request: Request
@@ -69,6 +70,7 @@ class Asked(NamedTuple):
     loads: Mapping[str, Load] = MappingProxyType({})
     totals: tuple[Total, ...] = ()
     way: Way = Way(1.0)
+    open: bool = False
 
     def stable(self, accuracy: str) -> Program:
         """The Program of the shown names that is right everywhere."""
@@ -83,9 +85,8 @@ class Asked(NamedTuple):
         if program is None or not self.loads:
             return program
         names = dict(zip(own.shown, program.outputs, strict=True))
-        return with_totals(
-            program, names, [line_of(n, load) for n, load in self.loads.items()], self.totals, self.way
-        )
+        lines = [line_of(n, load, self.open) for n, load in self.loads.items()]
+        return with_totals(program, names, lines, self.totals, self.way)
 
 
 def module_of(scene: Scene, order: Order) -> Module:
@@ -94,10 +95,8 @@ def module_of(scene: Scene, order: Order) -> Module:
     require_outputs(scene)
     loads = split(content.inputs)[1]
     require_tables(scene.name or "scene", loads)
-    if loads and order.single:
-        raise SceneError(f"{scene.name or 'scene'}: a load that varies with the motion is in doubles alone")
-    asked = asked_of(content, (*content.outputs, "status"))
-    if order.single:
+    asked = asked_of(content, (*content.outputs, "status"), order.form.open_tables)
+    if order.form.single:
         asked = asked._replace(fixed=_in_single(scene, asked.fixed))
     fixed, state = asked.fixed, asked.request.form.state
     arguments = [n for n in ORDER if isinstance(content.inputs.get(n), tuple)]
@@ -108,11 +107,14 @@ def module_of(scene: Scene, order: Order) -> Module:
     head = (*heading(scene, order.command), *_facts(content, asked, arguments, order))
     own = own_axes(content, content.outputs)
     given = content.inputs | {n: value for n, value in fixed if n in content.inputs}
-    steps = has_masses(given) and not loads
-    moves = motion_solver(given, content.branch, order.single) if steps else None
-    tables = {name: arrays_of(load) for name, load in loads.items()}
-    told = (derivatives, values, solvers(dict(fixed), order.single), own, moves, order.single, tables)
-    turning = single_constants() if order.single else constants()
+    moves = None
+    if has_masses(given):
+        moves = motion_solver(given, content.branch, order.form.single, loads, order.form.open_tables)
+    used = {*asked.loads, *(tables_in(moves.solve) if moves else ())}
+    tables = tables_of({n: load for n, load in loads.items() if n in used}, order.form.open_tables)
+    single = order.form.single
+    told = (derivatives, values, solvers(dict(fixed), single), own, moves, single, *tables)
+    turning = single_constants() if single else constants()
     return Module(order.name, head, inputs, outputs, forms, turning, *told)
 
 
@@ -160,7 +162,8 @@ def _facts(content: Content, asked: Asked, arguments: Iterable[str], order: Orde
     """Accuracy, frame, what is folded in and what is left out."""
     fixed = {n: value for n, value in asked.fixed if n in INPUTS}
     numbers = [f"{n} = {value!r} {INPUTS[n].unit}".removesuffix(" 1") for n, value in fixed.items()]
-    numbers += [f"{n}, a {repr(load).strip('<>')}" for n, load in asked.loads.items()]
+    tables = [f"{n}, a {repr(load).strip('<>')}" for n, load in asked.loads.items()]
+    numbers += [] if asked.open else tables
     branch = dict(asked.fixed)["branch"]
     motion = "A given state" if asked.request.form.state else "Constant alpha"
     lines = [
@@ -168,12 +171,15 @@ def _facts(content: Content, asked: Asked, arguments: Iterable[str], order: Orde
         "Y points along the slider axis towards the slider,",
         f"theta turns from +Y towards +X. {motion}; branch {branch:+.0f}.",
     ]
-    if order.single:
+    if order.form.single:
         lines.append("Single precision: inputs are rounded to float, values are those of the rounded inputs.")
-    if order.freestanding:
+    if order.form.freestanding:
         lines.append(
             f"Without libm: |theta| is at most {_reach(asked.request, order):.0f} rad, else the status is 4."
         )
+    if asked.open:
+        names = ", ".join(asked.loads)
+        lines.append(f"Tables are arguments: {names}. In desaxe load.arrays() has knots and coefficients.")
     lines += [f"Folded in: {', '.join(numbers)}."] if numbers else []
     lost = left_out(content)
     lines += [f"Not in here (`desaxe run` has it): {', '.join(lost)}."] if lost else []
@@ -181,12 +187,12 @@ def _facts(content: Content, asked: Asked, arguments: Iterable[str], order: Orde
 
 
 def _reach(asked: Request, order: Order) -> float:
-    if order.single:
+    if order.form.single:
         return single_constants().limit
     return double_constants().limit if asked.accuracy == "extended" else constants().limit
 
 
-def asked_of(content: Content, names: Iterable[str]) -> Asked:
+def asked_of(content: Content, names: Iterable[str], open_tables: bool = False) -> Asked:
     """The request of a scene for names; an absent input without effect is 0."""
     shown = tuple(dict.fromkeys(names))
     given, loads = split(content.inputs)
@@ -200,7 +206,7 @@ def asked_of(content: Content, names: Iterable[str]) -> Asked:
     if not plan.loads:
         return Asked(asked, tuple(fixed.items()), shown)
     totals = totals_of(plan)
-    return Asked(asked, tuple(fixed.items()), shown, plan.loads, totals, _way(given))
+    return Asked(asked, tuple(fixed.items()), shown, plan.loads, totals, _way(given), open_tables)
 
 
 def _way(given: Mapping[str, Any]) -> Way:
@@ -215,9 +221,9 @@ def _forms(asked: Asked, order: Order) -> Forms:
     """The Programs of the names, the status among them, in the forms that the accuracy has."""
     kept = asked.request.accuracy
     status = asked.shown.index("status")
-    bounded = order.freestanding or kept == "extended"
+    bounded = order.form.freestanding or kept == "extended"
     largest = {"theta": _reach(asked.request, order)} if bounded else {}
-    accuracy = "single" if order.single else kept
+    accuracy = "single" if order.form.single else kept
     stable = asked.stable(accuracy)
     guarded = guard_inputs(stable, stable.inputs, LEAST, largest)
     if kept == "extended":

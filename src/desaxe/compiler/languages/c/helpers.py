@@ -29,6 +29,49 @@ CPLUSPLUS = """\
 """
 
 HELPERS = {
+    "checked_table": """/* 0, or NaN where something is no table: then x, c and n become one of zeros. */
+static double checked_table(const double **x, const double **c, int64_t *n, int64_t ways, double period) {
+  static const double places[2] = {0.0, 1.0}, zeros[24] = {0.0};
+  const double *knots = *x, *rows = *c;
+  const int64_t count = *n;
+  int bad = knots == NULL || rows == NULL || count < 2;
+  if (!bad) {
+    bad |= !(fabs(knots[0]) < (double)INFINITY) | !(knots[count - 1] - knots[0] < period);
+    for (int64_t k = 1; k < count; k++) {
+      bad |= !(knots[k - 1] <= knots[k]) | !(knots[k] < (double)INFINITY);
+    }
+    for (int64_t k = 2; k < count; k++) {
+      bad |= !(knots[k - 2] < knots[k]);
+    }
+    for (int64_t k = 0; k < 4 * ways * (count + 1); k++) {
+      bad |= !(fabs(rows[k]) < (double)INFINITY);
+    }
+  }
+  if (bad) {
+    *x = places;
+    *c = zeros;
+    *n = 2;
+  }
+  return bad ? (double)NAN : 0.0;
+}
+""",
+    "filled_table": """/* The pieces between points: straight lines, or steps, each up to the next point. */
+static void filled_table(int64_t n, const double *x, const double *y, int steps, double period, double *c) {
+  const int repeats = period < (double)INFINITY;
+  for (int64_t k = 0; k <= n; k++) {
+    const int inside = k > 0 && (k < n || repeats);
+    const int64_t left = k > 0 ? k - 1 : 0, right = k < n ? k : 0;
+    const double width = (k < n ? x[right] : x[0] + period) - x[left];
+    c[4 * k] = y[left];
+    c[4 * k + 1] = inside && !steps && width > 0.0 ? (y[right] - y[left]) / width : 0.0;
+    c[4 * k + 2] = 0.0;
+    c[4 * k + 3] = 0.0;
+  }
+  for (int k = 0; repeats && k < 4; k++) {
+    c[k] = c[4 * n + k];
+  }
+}
+""",
     "lookup_piece": """/* The number of the piece of a table at x; those of the way back follow. */
 static inline double lookup_piece(double x, const double *knots, int64_t n, double way) {
   int64_t low = 0, high = n;

@@ -5,10 +5,11 @@ becomes `float`, and a function of libm its float twin. Comments and strings sta
 """
 
 import re
+from sys import float_info
 
 from ...interpret import to_single
 
-LEAST, MOST = "1e-45f", "(float)INFINITY"
+LEAST, MOST, LARGEST = "1e-45f", "(float)INFINITY", "3.4028235e+38f"
 FUNCTIONS = ("fabs", "sqrt", "sin", "cos", "atan2", "hypot", "exp", "log", "pow", "floor", "copysign")
 
 # What helpers and steps say of doubles -> what holds for floats.
@@ -22,14 +23,14 @@ FORMAT = {
     "1e-15": "1e-7f",  # of a step, to which its cut is sought
     # functions without libm: the bits of a number, whole numbers, scales
     "uint64_t": "uint32_t",
-    "int64_t": "int32_t",
+    "(double)(int64_t)a": "(double)(int32_t)a",
     "UINT64_C(0x8000000000000000)": "UINT32_C(0x80000000)",
     "UINT64_C(0x7ff8000000000000)": "UINT32_C(0x7fc00000)",
     "UINT64_C(0x7ff0000000000000)": "UINT32_C(0x7f800000)",
     "UINT64_C(0x1ff8000000000000)": "UINT32_C(0x1fc00000)",
     ">> 63": ">> 31",
     "4503599627370496.0": "8388608.0f",
-    "1.7976931348623157e308": "3.4028235e+38f",
+    "1.7976931348623157e308": LARGEST,
     **{f"0x1p{old}": f"0x1p{new}f" for old, new in {
         "-500": "-60", "+512": "+64", "-256": "-32", "+500": "+60", "-512": "-64", "+256": "+32",
         "-960": "-100", "+960": "+100", "+100": "+60", "-100": "-60",
@@ -76,6 +77,8 @@ def _spelled(match: re.Match[str]) -> str:
 def _number(value: float) -> str:
     """The shortest text of the nearest float; what is not 0 stays so."""
     rounded = to_single(value)
+    if value == float_info.max:  # a bound
+        return LARGEST
     if rounded in (0.0, float("inf")):
         return "0.0f" if value == 0.0 else LEAST if rounded == 0.0 else MOST
     text = next(

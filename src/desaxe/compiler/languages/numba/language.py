@@ -26,6 +26,7 @@ class Numba:
     second_order = False
     own_functions = False
     single = False
+    open_tables = False
     extended = True
     loops = staticmethod(emit_numba)
 
