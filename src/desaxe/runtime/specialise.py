@@ -39,18 +39,19 @@ def _specialise(
     before, after = _needs(program), _needs(result)
     kept = {"D"} if dict(fixed).get("alpha") == 0.0 else set(KEPT)  # a crank at constant speed never stalls
     outputs = program.outputs
-    lost = {name: (before[name] & kept) - after[name] for name in outputs}
+    whole_numbers = {line.name for line in program.lines if line.type == "i64"}  # a status cannot be NaN
+    lost = {name: (before[name] & kept) - after[name] for name in outputs if name not in whole_numbers}
     if not any(lost.values()):
         return result
     wide = _with_extended_forms(program_of((*names, *KEPT.values()), form), accuracy)
-    wide = renamed(wide, {name: f"{name}_alone" for name in outputs if lost[name]})
+    wide = renamed(wide, {name: f"{name}_alone" for name in outputs if lost.get(name)})
     lines = list(wide.lines)
     for name in outputs:
         value = f"{name}_alone"
-        for need in sorted(lost[name]):
+        for need in sorted(lost.get(name, ())):
             lines.append(Line(f"{value}_{need}", "add", (value, KEPT[need])))
             value = lines[-1].name
-        if lost[name]:
+        if lost.get(name):
             lines.append(Line(name, "copy", (value,)))
     whole = keep_outputs(wide._replace(lines=tuple(lines)), outputs)
     return optimise(whole, dict(fixed), single=single)

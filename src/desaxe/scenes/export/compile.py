@@ -143,7 +143,7 @@ def _texts_of(scene: Scene, place: Path, to: str, form: Form) -> dict[Path, str]
     name = place.stem if is_file else place.name
     if language.loops is not None:
         _require_importable(place, words.modules)
-        return {place: sealed(text_of(scene, place.name))}
+        return {place: sealed(text_of(scene, place.name, form))}
     require_name(name, place, words.modules)
     folder = place.parent if is_file else place
     source = Path(scene.name).name

@@ -4,11 +4,16 @@ from collections.abc import Iterable, Mapping, Sequence
 from textwrap import wrap
 
 from ...compiler.languages.numba.reductions import KINDS, outputs_of
+from ...compiler.languages.protocol import OpenTable
+from ...compiler.languages.tables import columns_of
 from ...compiler.program import Program
 from ...compiler.text import with_short_temporaries, write_lines
 from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS
 from .axes import arguments_of, taken_from
+from .taken import call_of, taking
+
+Tables = Mapping[str, OpenTable]
 
 THREADS = '''def in_blocks(block, length, points, threads):
     """Call block(start, stop) for as many parts of an axis as there are threads that pay."""
@@ -54,17 +59,20 @@ def docstring(first: str, lines: Sequence[str]) -> list[str]:
     return [f'"""{first}', *([""] if wrapped else []), *wrapped, '"""'] if wrapped else [f'"""{first}"""']
 
 
-def point_function(program: Program, shown: Sequence[str], state: bool) -> str:
+def point_function(
+    program: Program, inputs: Sequence[str], shown: Sequence[str], state: bool, tables: Tables
+) -> str:
     """`point(...)` in plain math, with the helpers that it calls."""
     body = write_lines(with_short_temporaries(program), "python")
     returned = ", ".join(program.outputs)
-    told = [*described(program.inputs, state), "", "Gives:", *described(shown, state)]
-    types = ", ".join(f"type({name})" for name in program.inputs)
-    check = [f"if str in ({types},):", f"    {_doubles(program.inputs)}  # says what is wrong"]
+    told = [*described(inputs, state), "", "Gives:", *described(shown, state)]
+    types = ", ".join(f"type({name})" for name in inputs)
+    check = [f"if str in ({types},):", f"    {_doubles(inputs)}  # says what is wrong"]
     lines = [
-        f"def point({', '.join(program.inputs)}):",
+        f"def point({', '.join([*inputs, *columns_of(tables)])}):",
         *indented(docstring("One point in plain Python, nothing compiled: numbers in, a tuple out.", told)),
-        *indented(check if program.inputs else []),
+        *indented(check if inputs else []),
+        *indented(taking(tables)),
         *indented(body),
         f"    return ({returned},)",
         "",
@@ -82,10 +90,15 @@ def indented(lines: Iterable[str]) -> list[str]:
 
 
 def evaluate_function(
-    program: Program, shown: Sequence[str], state: bool, limit: float | None, whole: bool
+    inputs: Sequence[str],
+    shown: Sequence[str],
+    state: bool,
+    limit: float | None,
+    kernel: Mapping[str, int | None],
+    tables: Tables,
 ) -> str:
     """`evaluate(...)`: numbers by `point`, arrays by the kernel, broadcast like NumPy."""
-    inputs = program.inputs
+    columns = columns_of(tables)
     told = [
         *described(inputs, state),
         "",
@@ -93,16 +106,19 @@ def evaluate_function(
         "no value is NaN" + (", and `status` tells why." if "status" in shown else "."),
         "`threads`: how many share the work, all cores without; the answer is the same.",
     ]
-    if not whole:
+    if not inputs:
         return "\n".join(
             [
-                "def evaluate():",
+                f"def evaluate({', '.join(columns)}):",
                 *indented(docstring("The values; every input is fixed.", [])),
-                "    return dict(zip(OUTPUTS, point(), strict=True))",
+                f"    return dict(zip(OUTPUTS, point({', '.join(columns)}), strict=True))",
                 "",
             ]
         )
-    head = ", ".join(inputs)
+    head = ", ".join([*inputs, *columns])
+    of_point = ", ".join(["*(float(a) for a in arrays)", *columns])
+    more = [*(name for name, axis in kernel.items() if axis is None), *columns]
+    of_kernel = ", ".join(["*(a[start:stop] for a in flat)", *more, "*(a[start:stop] for a in places)"])
     check = []
     if limit is not None and "theta" in inputs:
         place = f"arrays[{inputs.index('theta')}]"
@@ -118,13 +134,14 @@ def evaluate_function(
             f"    arrays = broadcast_arrays(*{_doubles(inputs)})",
             *check,
             "    if not arrays[0].ndim:",
-            "        return dict(zip(OUTPUTS, point(*(float(a) for a in arrays)), strict=True))",
+            f"        return dict(zip(OUTPUTS, point({of_point}), strict=True))",
+            *indented(taking(tables)),
             "    flat = [ascontiguousarray(a).reshape(-1) for a in arrays]",
             "    out = {name: empty(arrays[0].shape, kind) for name, kind in OUTPUTS.items()}",
             "    places = [place.reshape(-1) for place in out.values()]",
             "",
             "    def block(start, stop):",
-            "        point_kernel(*(a[start:stop] for a in flat), *(a[start:stop] for a in places))",
+            f"        point_kernel({of_kernel})",
             "",
             "    in_blocks(block, flat[0].size, flat[0].size, threads)",
             "    return out",
@@ -138,6 +155,7 @@ def run_function(
     axes: Sequence[str],
     inputs: Mapping[str, int | None],
     own_axes: Mapping[str, Sequence[str]],
+    tables: Tables,
 ) -> str:
     """`run()`: the outputs over the outer product of the scene's axes, or of others in their place.
 
@@ -154,22 +172,19 @@ def run_function(
         *(f"{name} has {' x '.join(own_axes[name]) or 'none'} alone." for name in others if others[name]),
         "An axis that is given takes the place of the scene's.",
     ]
-    first = [
-        f'axes["{name}"][start:stop]' if axis == 0 else f'axes["{name}"]'
-        for name, axis in inputs.items()
-        if axis is not None
-    ]
     kernel = "point_kernel" if len(axes) == 1 else "grid_kernel"
+    given = ", ".join([*call_of(inputs, tables), "*(a[start:stop] for a in out.values())"])
     return "\n".join(
         [
-            f"def run({arguments_of(axes)}):",
+            f"def run({', '.join([*columns_of(tables), arguments_of(axes)])}):",
             *indented(docstring(f"{', '.join(names)} over the scene's axes.", told)),
             taken_from(axes),
+            *indented(taking(tables)),
             "    shape = tuple(axis.size for axis in axes.values())",
             "    out = {name: empty(shape, kind) for name, kind in OUTPUTS.items()}",
             "",
             "    def block(start, stop):",
-            f"        {kernel}({', '.join([*first, '*(a[start:stop] for a in out.values())'])})",
+            f"        {kernel}({given})",
             "",
             "    in_blocks(block, shape[0], prod(shape), threads)",
             *left,
@@ -185,6 +200,7 @@ def run_reduced_function(
     axes: Sequence[str],
     inputs: Mapping[str, int | None],
     own: Sequence[str],
+    tables: Tables,
 ) -> str:
     """`run()` of a scene with a reduction: the last axis is reduced, the grid is not stored."""
     last = axes[-1]
@@ -196,15 +212,12 @@ def run_reduced_function(
     ]
     outs = outputs_of(own, kinds)
     shown = outputs_of(names, kinds)
-    given = [
-        f'axes["{name}"][start:stop]' if axis == 0 else f'axes["{name}"]'
-        for name, axis in inputs.items()
-        if axis is not None
-    ]
+    given = call_of(inputs, tables)
     lines = [
-        f"def run({arguments_of([axis for axis in axes if axis])}):",
+        f"def run({', '.join([*columns_of(tables), arguments_of([axis for axis in axes if axis])])}):",
         *indented(docstring(f"{', '.join(names)} over the scene's axes, {last} reduced.", told)),
         taken_from([axis for axis in axes if axis]),
+        *indented(taking(tables)),
         f"    shape = tuple(axes[name].size for name in {tuple(rest)!r}) or (1,)",
         f'    length = axes["{last}"].size',
         "    places = [",

@@ -40,9 +40,9 @@ def open_table(name: str, load: Load) -> OpenTable:
     return OpenTable(symbol, f"{place} [m]; the pieces of the way inward are behind those outward", ways=2)
 
 
-def table_text(name: str, load: Load) -> str:
+def table_text(name: str, load: Load, table: Arrays) -> str:
     """The arrays of a load's table as text: knots, and coefficients in the distance from one."""
     rows = []
-    for end, column in zip("xc", load.arrays(), strict=True):
+    for end, column in zip("xc", table, strict=True):
         rows += [f"{name}_{end} = array([", *(f"    {row}" for row in numbers(column)), "])"]
     return "\n".join([f"# {name}, a {repr(load).strip('<>')}: knots, and the cubics between them.", *rows])

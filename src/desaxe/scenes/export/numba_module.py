@@ -8,13 +8,13 @@ from typing import Any, NamedTuple
 
 from ...compiler.builder import HELPERS, MATH, Parts, functions_of, module_text, renamed, with_sources
 from ...compiler.cost import cost_of
-from ...compiler.languages.numba.language import scalar_parts
+from ...compiler.languages.numba.language import CHECKED, scalar_parts
 from ...compiler.languages.numba.module import CALLABLE, loops_parts, numba_parts
 from ...compiler.languages.numba.reductions import reduced_parts
-from ...compiler.languages.protocol import Symbol
+from ...compiler.languages.protocol import OpenTable, Symbol
 from ...compiler.languages.shared import refuse_taken, taken_in_python
+from ...compiler.languages.tables import columns_of, described, numbers_of
 from ...compiler.operations import OPERATIONS
-from ...compiler.program import Program
 from ...loads.load import Load
 from ...loads.resolve import split
 from ...mechanism.catalogue import quantity
@@ -37,15 +37,17 @@ from .entry_points import (
     run_reduced_function,
 )
 from .first_call import COMPILED, LAZY, LAZY_REDUCED
-from .loaded import require_tables, table_text
+from .form import PLAIN, Form
+from .loaded import require_tables, table_text, tables_of
 from .made import Made, OfKey, UnderLoads, axes_of, limit_of
 from .peaks import left_out_of_module, peak_texts
 from .portable import WITHOUT_VALUE, asked_of, require_outputs
+from .taken import TAKEN
 
 WIDTH = 96
 
 
-def text_of(scene: Scene, name: str = "my_kernels.py") -> str:
+def text_of(scene: Scene, name: str = "my_kernels.py", form: Form = PLAIN) -> str:
     """The text of the module of a scene."""
     content = scene.content
     require_outputs(scene)
@@ -56,7 +58,9 @@ def text_of(scene: Scene, name: str = "my_kernels.py") -> str:
     key = _all_fixed(found.key._replace(form=anywhere), found, numbers, loads)
     made: Made = OfKey()
     order, shown = found.axes, found.request.shown
-    asked = asked_of(content, (*content.outputs, *([] if content.reduction else ["status"])))
+    names = (*content.outputs, *([] if content.reduction else ["status"]))
+    asked = asked_of(content, names, form.open_tables)
+    frozen, opened = tables_of(asked.loads, form.open_tables)
     if asked.loads:
         made, order, shown = UnderLoads(content, asked), tuple(axes_of(content)), asked.shown
         places = tuple((n, order.index(n)) for n in sorted(order) if n)
@@ -64,12 +68,13 @@ def text_of(scene: Scene, name: str = "my_kernels.py") -> str:
         key = key._replace(names=shown, axis_of=places, axes=len(order), reduce=kinds)
     axes = {n: value for n in order if isinstance(value := content.inputs.get(n), tuple)}
     state = found.request.form.state
-    program = _in_order(made.guarded(key, key.names))
-    kernels = _kernels(made, key, program.inputs) if program.inputs else Kernels([], {}, ())
+    program = made.guarded(key, key.names)
+    inputs = tuple(sorted(set(program.inputs) - set(numbers_of(opened)), key=ORDER.index))
+    kernels = _kernels(made, key, inputs) if inputs else Kernels([], {}, (), {})
     peaks = peak_texts(content)
-    scalars = _scalars(made, key, shown, program.inputs, own_axes(content, shown))
+    scalars = _scalars(made, key, shown, inputs, own_axes(content, shown), opened)
     groups = [
-        with_sources([point_function(program, shown, state)]),
+        with_sources([point_function(program, inputs, shown, state, opened)]),
         *map(
             _compiled,
             [
@@ -79,25 +84,32 @@ def text_of(scene: Scene, name: str = "my_kernels.py") -> str:
             ],
         ),
     ]
-    compiles = bool(program.inputs or peaks.searches)
+    compiles = bool(inputs or peaks.searches or opened)
     limit = None if key.far else limit_of(key)
     calls = [THREADS] if compiles else []
     calls += [WITH_AXES] if axes or peaks.functions else []
-    calls.append(evaluate_function(program, shown, state, limit, bool(program.inputs)))
+    calls.append(evaluate_function(inputs, shown, state, limit, kernels.of_points, opened))
     calls += [axes_text(axes), chosen_text(axes, limit)] if axes else []
-    if not program.inputs:
-        calls.append('def run():\n    """The values; every input is fixed."""\n    return evaluate()')
+    if not inputs:
+        given = ", ".join(columns_of(opened))
+        calls.append(
+            f'def run({given}):\n    """The values; every input is fixed."""\n    return evaluate({given})'
+        )
     elif content.fused is None:
-        calls.append(run_function(shown, list(axes), kernels.inputs, own_axes(content, shown)))
+        calls.append(run_function(shown, list(axes), kernels.inputs, own_axes(content, shown), opened))
     else:
-        calls.append(run_reduced_function(shown, key.reduce, order, kernels.inputs, kernels.outputs))
+        calls.append(run_reduced_function(shown, key.reduce, order, kernels.inputs, kernels.outputs, opened))
     calls += peaks.functions
     if "spaced(" in "".join(peaks.functions) and not any("def spaced" in call for call in calls):
         calls.insert(0, SPACED)
     tables = [*([AFFINITY, DOUBLES, COMPILED] if compiles else [])]
-    tables += [table_text(n, load) for n, load in asked.loads.items()]
-    tables += [f"INPUTS = {program.inputs!r}", _outputs(shown), _fixed(key)]
-    head = _docstring(scene, name, key, shown, program.inputs, cost_of(program).operations)
+    tables += [CHECKED, TAKEN] if opened else []
+    tables += [table_text(n, asked.loads[n], each) for n, each in frozen.items()]
+    tables += [f"INPUTS = {inputs!r}", _outputs(shown), _fixed(key)]
+    command = f"desaxe compile {Path(scene.name).name} -o {name}{form.options}"
+    if not scene.name:
+        command = f'desaxe.compile(scene, "{name}"{form.keywords})'
+    head = _docstring(scene, command, key, shown, inputs, cost_of(program).operations, opened)
     text = module_text(head, _front(tables), *groups, _front(calls))
     refuse_taken(shown, taken_in_python(text) | {f"compiled_{name}" for name in functions_of(HELPERS)})
     return text
@@ -106,7 +118,7 @@ def text_of(scene: Scene, name: str = "my_kernels.py") -> str:
 # Where the names come from that stand in the functions that people call.
 _NUMPY = (
     "append", "arange", "array", "asarray", "ascontiguousarray", "broadcast_arrays", "broadcast_to", "empty",
-    "float64", "floor", "fmax", "int8", "isfinite", "linspace", "searchsorted", "unique", "where",
+    "float64", "floor", "fmax", "int8", "isfinite", "linspace", "searchsorted", "unique", "where", "zeros",
 )  # fmt: skip
 IMPORTS = {
     **MATH, **dict.fromkeys(_NUMPY, "numpy"), "ThreadPoolExecutor": "concurrent.futures", "prod": "math",
@@ -129,17 +141,13 @@ def _all_fixed(
     return key._replace(fixed=tuple(fixed.items()))
 
 
-def _in_order(program: Program) -> Program:
-    """The program with its inputs in the order in which they stand in names."""
-    return program._replace(inputs=tuple(sorted(program.inputs, key=ORDER.index)))
-
-
 def _scalars(
     made: Made,
     key: KernelKey,
     shown: tuple[str, ...],
     inputs: tuple[str, ...],
     own: Mapping[str, Sequence[str]],
+    opened: Mapping[str, OpenTable],
 ) -> Parts:
     """The functions of one output each; those of a whole design take its own inputs alone."""
     scalars = []
@@ -147,27 +155,34 @@ def _scalars(
         row = quantity(name, key.form.state)
         taken = [n for n in inputs if n in own.get(name, inputs)]
         scalars.append((Symbol(name, row.unit, row.meaning), made.guarded(key, (law,)), taken))
-    return numba_parts(scalar_parts(scalars), jit=CALLABLE)
+    parts = numba_parts(scalar_parts(scalars, opened), jit=CALLABLE)
+    return parts._replace(imports={**parts.imports, "isfinite": "numpy"})
 
 
 class Kernels(NamedTuple):
-    """The array kernel and the grid kernel, one where they are the same; what the latter takes and gives."""
+    """The array kernel and the grid kernel, one where they are the same; what the latter takes and gives.
+
+    of_points  what the array kernel takes
+    """
 
     parts: list[Parts]
     inputs: Mapping[str, int | None]
     outputs: tuple[str, ...]
+    of_points: Mapping[str, int | None]
 
 
 def _kernels(made: Made, key: KernelKey, inputs: tuple[str, ...]) -> Kernels:
     """The kernels of a scene; the array kernel takes the inputs in the order in which they stand in names."""
     kernel = made.kernel(key._replace(axis_of=tuple((n, 0) for n in sorted(inputs)), axes=1, reduce=()))
-    kernel = kernel._replace(inputs={name: kernel.inputs[name] for name in inputs})
+    numbers = {name: axis for name, axis in kernel.inputs.items() if axis is None}
+    of_points = {name: kernel.inputs[name] for name in inputs} | numbers
+    kernel = kernel._replace(inputs=of_points)
     parts = [_named("point", [*loops_parts(kernel), LAZY])]
     if key.axes > 1:
         kernel = made.kernel(key)
         reduced = key.reduce and reduced_parts(kernel, key.reduce, LAZY_REDUCED)
         parts.append(_named("grid", reduced or [*loops_parts(kernel), LAZY]))
-    return Kernels(parts, kernel.inputs, kernel.outputs)
+    return Kernels(parts, kernel.inputs, kernel.outputs, of_points)
 
 
 def _named(prefix: str, parts: Sequence[str]) -> Parts:
@@ -196,17 +211,22 @@ def _fixed(key: KernelKey) -> str:
 
 
 def _docstring(
-    scene: Scene, name: str, key: KernelKey, shown: tuple[str, ...], inputs: tuple[str, ...], operations: int
+    scene: Scene,
+    command: str,
+    key: KernelKey,
+    shown: tuple[str, ...],
+    inputs: tuple[str, ...],
+    operations: int,
+    opened: Mapping[str, OpenTable],
 ) -> str:
     """The module's docstring: its source, its contents, its units."""
-    source = Path(scene.name).name
-    command = f"desaxe compile {source} -o {name}" if source else f'desaxe.compile(scene, "{name}")'
     peak_lines = peak_texts(scene.content).lines
     loads = [load.identity for load in scene.content.inputs.values() if isinstance(load, Load)]
     said = hashlib.sha256(repr((scene.content, *loads) if loads else scene.content).encode())
     state = key.form.state
     own = own_axes(scene.content, shown).get(shown[0])
-    first = f"{shown[0]}({'*INPUTS' if own is None else ', '.join(n for n in inputs if n in own)})"
+    given = ["*INPUTS"] if own is None else [n for n in inputs if n in own]
+    first = f"{shown[0]}({', '.join([*given, *columns_of(opened)])})"
     lines = [
         f"{scene.title or 'An offset slider-crank'}: {', '.join(shown)}.",
         "",
@@ -228,6 +248,7 @@ def _docstring(
         *WITHOUT_VALUE,
         "",
     ]
+    lines += [*described(opened)[1:], ""] if opened else []
     lost = left_out_of_module(scene.content)
     lines += [f"Not in here (`desaxe run` has it): {', '.join(lost)}.", ""] if lost else []
     rows = [("inputs", n, INPUTS[n].unit, INPUTS[n].meaning) for n in inputs]
