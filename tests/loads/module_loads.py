@@ -57,7 +57,7 @@ def columns(given, count):
 
 
 def wrong_tables(given):
-    """What is no table, by what is wrong with it: knots and coefficients."""
+    """Knots and coefficients that are no table, by their fault."""
     x, c = (np.array(column, float) for column in given.arrays())
     swapped, thrice = x.copy(), x.copy()
     swapped[[1, 2]] = swapped[[2, 1]] + [1e-6, 0.0]

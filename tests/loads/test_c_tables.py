@@ -215,7 +215,7 @@ FLOAT, FLOATS = np.float32, ctypes.POINTER(ctypes.c_float)
     [("theta", "arguments"), pytest.param(ONE, "frozen", marks=pytest.mark.thorough)],
 )
 def test_single_precision_under_tables(kind, form, tmp_path):
-    """In float ulp over 1 + condition, 64 of which are promised; the condition counts the place in the table."""
+    """In float ulp over 1 + condition, 64 promised; the condition counts the place in the table."""
     one = load(kind, "smooth")
     content = scene(one, outputs=["T_in", "N_C", "status"])
     more = {"tables": form} if form == "arguments" else {}

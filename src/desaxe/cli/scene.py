@@ -186,7 +186,7 @@ def add_compile(commands: Any) -> None:
 
 def _compile(options: argparse.Namespace) -> int:
     from ..scenes.export.command import run_compile
-    from ..scenes.export.form import Form
+    from ..scenes.export.portable import Form
 
     form = Form(options.no_libm, options.float, options.tables == "arguments")
     return run_compile(

@@ -137,7 +137,7 @@ def es_module(file, calls):
 
 
 def _sent(value):
-    """What JSON can carry."""
+    """The value as JSON can carry it."""
     if isinstance(value, dict):
         return {name: _sent(each) for name, each in value.items()}
     if isinstance(value, (list, tuple)):

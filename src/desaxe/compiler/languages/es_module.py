@@ -116,7 +116,7 @@ def _content(module: Module) -> list[str]:
 
 
 def _checked(module: Module, ahead: str = "") -> list[str]:
-    """What `values` takes of the tables that are arguments."""
+    """The arguments of `values` that are made of the open tables."""
     found = [
         f"checkedTable({ahead}{n}_x, {ahead}{n}_c, {table.ways}, {period_of(table, 'Infinity')})"
         for n, table in module.open_tables.items()

@@ -10,7 +10,7 @@ from ..scene import Scene
 from ..scene import scene as scene_of
 from .compile import compile, lost_of, require_fmu, texts_of
 from .fmu.write import stale_fmu, write_fmu
-from .form import Form
+from .portable import Form
 
 
 def run_compile(

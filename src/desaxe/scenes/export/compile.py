@@ -7,7 +7,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from ...compiler.languages import language_of
+from ...compiler.languages import language_of, languages
 from ...compiler.languages.shared import refuse_taken
 from ...compiler.languages.words import words_of
 from ...mechanism.keywords import with_known_keywords
@@ -15,16 +15,17 @@ from ...mechanism.own import using
 from ...runtime.written import replacing_ours, require_place, sealed
 from ...support.checks import yes_or_no
 from ...support.files import as_path
-from ...support.shown import printable
+from ...support.shown import printable, shown
 from ..content import Content
 from ..scene import Scene
 from ..scene import scene as scene_of
 from ..schema import SceneError
 from .fmu.write import stale_fmu, write_fmu
-from .form import PLAIN, TABLES, Form, are_open, those_with
 from .numba_module import text_of
 from .peaks import left_out_of_module
-from .portable import Order, left_out, module_of
+from .portable import PLAIN, Form, Order, left_out, module_of
+
+TABLES = 'tables="arguments" (--tables arguments)'
 
 
 @with_known_keywords
@@ -98,6 +99,19 @@ def compile(
         with replacing_ours(file, overwrite) as staged:
             staged.write_bytes(text.encode())
     return place
+
+
+def are_open(tables: str) -> bool:
+    """True where tables are to be arguments; ValueError for a word that is neither of the two."""
+    if tables not in ("frozen", "arguments"):
+        raise ValueError(f"tables = {shown(tables)}: it is one of frozen, arguments")
+    return tables == "arguments"
+
+
+def those_with(has: str) -> str:
+    """The languages that have something, listed."""
+    names = (one.name for one in languages() if getattr(one, has))
+    return " and ".join(", ".join(names).rsplit(", ", 1))
 
 
 def require_fmu(place: Path, form: Form) -> None:

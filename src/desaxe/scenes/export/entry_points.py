@@ -5,13 +5,12 @@ from textwrap import wrap
 
 from ...compiler.languages.numba.reductions import KINDS, outputs_of
 from ...compiler.languages.protocol import OpenTable
-from ...compiler.languages.tables import columns_of
+from ...compiler.languages.tables import columns_of, period_of
 from ...compiler.program import Program
 from ...compiler.text import with_short_temporaries, write_lines
 from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS
 from .axes import arguments_of, taken_from
-from .taken import call_of, taking
 
 Tables = Mapping[str, OpenTable]
 
@@ -38,6 +37,30 @@ DOUBLES = '''def doubles(**inputs):
             raise TypeError(f"{name} = {inputs[name]!r}: expected numbers in SI units, not text")
     return [asarray(numbers, float64) for numbers in held.values()]
 '''
+
+
+TAKEN = '''def taken_table(x, c, ways, period):
+    """What the code takes of a table: two numbers, knots, coefficients; zeros where something is none."""
+    x, c = (ascontiguousarray(column).reshape(-1) for column in doubles(knots=x, coefficients=c))
+    valid, first = checked_table(x, c, ways, period)
+    return (valid, first, x, c) if valid == 0.0 else (valid, 0.0, arange(2.0), zeros(24))
+'''
+
+
+def taking(tables: Mapping[str, OpenTable]) -> list[str]:
+    """The lines that take the tables."""
+    return [
+        f"{n}_valid, {n}_first, {n}_x, {n}_c = "
+        f"taken_table({n}_x, {n}_c, {table.ways}, {period_of(table, 'inf')})"
+        for n, table in tables.items()
+    ]
+
+
+def call_of(inputs: Mapping[str, int | None], tables: Iterable[str]) -> list[str]:
+    """The arguments of a kernel over axes, of which the first is cut into blocks."""
+    own = {None: "{}", 0: 'axes["{}"][start:stop]'}
+    given = [own.get(axis, 'axes["{}"]').format(name) for name, axis in inputs.items()]
+    return [*given, *(f"{name}_{end}" for name in tables for end in "xc")]
 
 
 def described(names: Iterable[str], state: bool) -> list[str]:

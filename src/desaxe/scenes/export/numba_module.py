@@ -30,6 +30,7 @@ from .axes import SPACED, WITH_AXES, axes_text, chosen_text
 from .entry_points import (
     AFFINITY,
     DOUBLES,
+    TAKEN,
     THREADS,
     evaluate_function,
     point_function,
@@ -37,12 +38,10 @@ from .entry_points import (
     run_reduced_function,
 )
 from .first_call import COMPILED, LAZY, LAZY_REDUCED
-from .form import PLAIN, Form
 from .loaded import require_tables, table_text, tables_of
 from .made import Made, OfKey, UnderLoads, axes_of, limit_of
 from .peaks import left_out_of_module, peak_texts
-from .portable import WITHOUT_VALUE, asked_of, require_outputs
-from .taken import TAKEN
+from .portable import PLAIN, WITHOUT_VALUE, Form, asked_of, require_outputs
 
 WIDTH = 96
 

@@ -30,7 +30,6 @@ from ..content import Content
 from ..parts.kernel import own_axes
 from ..scene import Scene
 from ..schema import SceneError
-from .form import PLAIN, Form
 from .loaded import require_tables, tables_of
 from .motion import has_masses, motion_solver
 from .solvers import solvers
@@ -45,6 +44,31 @@ WITHOUT_VALUE = (
     "its value: positions where the motion stalls, the motion where forces are bad or have no balance.",
     *wrap(f"Status: {_REASONS}.", 96),
 )
+
+
+_OPTIONS = " --no-libm", " --float", " --tables arguments"
+_KEYWORDS = ", libm=False", ", float=True", ', tables="arguments"'
+
+
+class Form(NamedTuple):
+    """The options of a written module: without libm, in single precision, with tables as arguments."""
+
+    freestanding: bool = False
+    single: bool = False
+    open_tables: bool = False
+
+    @property
+    def options(self) -> str:
+        """The options as the command line has them."""
+        return "".join(text for text, chosen in zip(_OPTIONS, self, strict=True) if chosen)
+
+    @property
+    def keywords(self) -> str:
+        """The options as `compile` has them."""
+        return "".join(text for text, chosen in zip(_KEYWORDS, self, strict=True) if chosen)
+
+
+PLAIN = Form()
 
 
 class Order(NamedTuple):
