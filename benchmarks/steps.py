@@ -39,7 +39,7 @@ def designs(count: int, seed: int) -> dict[str, Any]:
     return {
         "AB": AB, "BC": BC, "ec": (BC - AB) * rng.uniform(-0.5, 0.5, count),
         "m_slider": rng.uniform(0.3, 3.0, count), "m_crank": 0.5, "m_rod": 0.8, "I_crank": 6e-4,
-        "I_rod": 7e-3, "r_crank": 0.04, "r_rod": 0.11, "F_X": 7.0, "F_Y": -50.0, "g_X": 3.0, "g_Y": -9.81,
+        "I_rod": 7e-3, "F_Y": -50.0, "g_X": 3.0, "g_Y": -9.81,
         "torque": 1.5, "theta0": 0.3, "omega_start": 20.0,
     }  # fmt: skip
 

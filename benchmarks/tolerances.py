@@ -49,7 +49,8 @@ def cranks(count: int, rng: Any) -> dict[str, Any]:
         "AB": AB, "BC": BC, "ec": (BC - AB) * rng.uniform(-0.5, 0.5, count),
         "m_slider": rng.uniform(0.3, 3.0, count), "m_crank": 0.5, "m_rod": rng.uniform(0.2, 1.0, count),
         "I_crank": rng.uniform(5e-4, 5e-3, count), "I_rod": 7e-3, "F_Y": rng.uniform(-60.0, 60.0, count),
-        "g_Y": -9.81, "theta0": rng.uniform(0.0, 6.0, count), "omega_start": rng.uniform(20.0, 40.0, count),
+        "g_X": 3.0, "g_Y": -9.81, "theta0": rng.uniform(0.0, 6.0, count),
+        "omega_start": rng.uniform(20.0, 40.0, count),
     }  # fmt: skip
 
 

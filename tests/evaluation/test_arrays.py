@@ -8,6 +8,8 @@ import pytest
 import desaxe as dx
 from tests.ways import POINT, SIZES, close, columns, one_by_one, take_way
 
+SEVERAL = ["status", "Y", "V_C"]
+
 # ---- shapes and layouts --------------------------------------------------------------------------
 
 SHAPES = [
@@ -98,7 +100,7 @@ def test_other_numbers_are_computed_as_doubles(way, kind):
 def test_inputs_are_left_alone(way):
     theta, ec = columns(5)
     before = theta.copy(), ec.copy()
-    dx.evaluate(["Y", "V_C"], theta=theta, ec=ec, **SIZES)
+    dx.evaluate(SEVERAL, theta=theta, ec=ec, **SIZES)
     assert np.array_equal(theta, before[0])
     assert np.array_equal(ec, before[1])
 
@@ -112,8 +114,8 @@ def test_a_list_gives_a_dict_in_order():
 
 def test_a_list_of_arrays_gives_a_dict_in_order(way):
     theta, ec = columns(3)
-    found = dx.evaluate(("V_C", "Y"), theta=theta, ec=ec, **SIZES)
-    assert list(found) == ["V_C", "Y"]
+    found = dx.evaluate(tuple(SEVERAL), theta=theta, ec=ec, **SIZES)
+    assert list(found) == SEVERAL
     assert close(found["Y"], one_by_one("Y", theta, ec))
 
 
@@ -127,7 +129,7 @@ def test_a_name_may_come_twice(theta):
 def test_a_name_may_come_twice_from_a_kernel(monkeypatch):
     take_way(monkeypatch, "compiled")
     theta, ec = columns(3)
-    assert list(dx.evaluate(["Y", "Y"], theta=theta, ec=ec, **SIZES)) == ["Y"]
+    assert list(dx.evaluate([*SEVERAL, "Y"], theta=theta, ec=ec, **SIZES)) == SEVERAL
 
 
 def test_one_name_in_a_list_is_still_a_dict():
@@ -172,10 +174,10 @@ def test_out_is_filled_and_returned(way):
 
 def test_out_of_a_list_is_a_dict(way):
     theta, ec = columns(5)
-    out = {"V_C": np.empty(5), "Y": np.empty(5)}
-    found = dx.evaluate(["Y", "V_C"], theta=theta, ec=ec, **SIZES, out=out)
+    out = {"V_C": np.empty(5), "Y": np.empty(5), "status": np.empty(5, np.int8)}
+    found = dx.evaluate(SEVERAL, theta=theta, ec=ec, **SIZES, out=out)
     assert all(found[name] is out[name] for name in out)
-    assert list(found) == ["Y", "V_C"]
+    assert list(found) == SEVERAL
     assert close(out["Y"], one_by_one("Y", theta, ec))
 
 
@@ -218,8 +220,8 @@ def test_out_may_have_no_axes():
 
 def test_a_status_may_go_into_wider_numbers(way):
     theta, ec = columns(3)
-    out = {"status": np.full(3, 9), "Y": np.empty(3)}
-    dx.evaluate(["status", "Y"], theta=theta, ec=ec, **SIZES, out=out)
+    out = {"status": np.full(3, 9), "Y": np.empty(3), "V_C": np.empty(3)}
+    dx.evaluate(SEVERAL, theta=theta, ec=ec, **SIZES, out=out)
     assert out["status"].tolist() == [0, 0, 0]
 
 

@@ -100,6 +100,9 @@ MIXED = {
     "I_rod": np.array([1e-4, 1e-4, 0.0, 1e-4, 0.0, 1e-4]),
     "m_crank": np.array([0.7, 0.7, 0.7, 0.7, 0.0, 0.7]),
     "I_crank": np.array([1e-4, 1e-4, 1e-4, 1e-4, 0.0, 1e-4]),
+    "F_Y": 0.01,
+    "g_X": 0.01,
+    "g_Y": -0.01,  # of the family of other tests, which share its kernel
 }
 
 

@@ -141,6 +141,7 @@ def test_an_instant_is_the_same_alone_and_among_many(start):
     rng = np.random.default_rng(5)
     designs = drawn(20, 3) | {"ec": 0.01, "BC": 0.5, "theta0": rng.uniform(-3.0, 3.0, 20), "F_Y": 0.0}
     designs |= {"torque": 0.0, "omega_start": 0.0, "g_X": 0.0, "g_Y": 0.0} | start
+    designs = {name: np.broadcast_to(value, 20) for name, value in designs.items()}  # see `machines`
     alone = dx.simulate(t_end=5.0, times=[5.0], **designs)
     among = dx.simulate(t_end=5.0, times=np.linspace(0.0, 5.0, 400), **designs)
     assert np.abs(alone["theta"]).max() > 40.0
