@@ -9,6 +9,9 @@ from ..support.forks import IMPORTS, imported
 from .machine_code import DOUBLE, ENTRY, NO_MEMORY, WHOLE, Code, Loaded, outside
 
 NAME = "desaxe_native"  # of the module of a text
+# A text that sets it to True has loops of a few rounds that should run in vectors: LLVM unrolls such loops
+# before it looks for vectors.
+SHORT_LOOPS = "short_loops"
 # numba's passes for closures, comprehensions, generators, literals of the user's and array expressions.
 UNUSED = {
     "WithLifting", "InlineClosureLikes", "RewriteDynamicRaises", "MakeFunctionToJitFunction", "LiteralUnroll",
@@ -125,7 +128,7 @@ def compile_text(text: str, title: str, scope: Mapping[str, Any]) -> Code | Load
         entry = llvm.parse_assembly(_entry(made.fndesc.mangled_name, given, ranks))
         kinds = zip(given, ranks, strict=True)
         sizes = tuple(kind.dtype.bitwidth // 8 if rank >= 0 else 8 for kind, rank in kinds)
-        alone = _alone(library, entry)
+        alone = _alone(library, entry, namespace.get(SHORT_LOOPS, False))
         if alone is not None:
             return Code(ranks, sizes, alone)
         return Loaded(_within(target, library, entry), ranks, sizes, library)
@@ -258,8 +261,18 @@ def _quoted(name: str) -> str:
     return f'"{name}"'
 
 
-def _alone(library: Any, entry: Any) -> bytes | None:
+def _alone(library: Any, entry: Any, short_loops: bool) -> bytes | None:
     """The machine code of a library and an entry; None if it calls functions that we cannot provide."""
+    module = optimised(library, entry, short_loops)
+    called = [f.name for f in module.functions if f.is_declaration and not f.name.startswith("llvm.")]
+    if not set(called) <= set(outside()):
+        return None
+    found: bytes = library.codegen._tm.emit_object(module)
+    return found
+
+
+def optimised(library: Any, entry: Any, short_loops: bool) -> Any:
+    """The LLVM module of a library, of an entry and of what numba's runtime would do."""
     with IMPORTS:
         import llvmlite.binding as llvm
 
@@ -274,12 +287,16 @@ def _alone(library: Any, entry: Any) -> bytes | None:
     codegen = library.codegen
     for how in ({"cost": "cheap", "opt": 0, "loop_vectorize": False, "slp_vectorize": False}, {}):
         passes, builder = codegen._module_pass_manager(**how)  # the two rounds of numba's own
+        if short_loops and not how:
+            options = llvm.create_pipeline_tuning_options(speed_level=3)
+            options.loop_unrolling, options.slp_vectorization = False, False
+            builder = llvm.create_pass_builder(codegen._tm, options)
+            passes = builder.getModulePassManager()
+            passes.add_refprune_pass()
         passes.add_global_dead_code_eliminate_pass()
         passes.add_strip_dead_prototype_pass()
         passes.run(module, builder)
-    called = [f.name for f in module.functions if f.is_declaration and not f.name.startswith("llvm.")]
-    found: bytes | None = codegen._tm.emit_object(module) if set(called) <= set(outside()) else None
-    return found
+    return module
 
 
 def _within(target: Any, library: Any, entry: Any) -> int:

@@ -17,6 +17,7 @@ tableau       the coefficients of both
 picard        panels of the crank angle in between, where it does not rest
 nodes         the coefficients of the panels
 compiled      the module of a family of designs
+torque        a torque's function, compiled alone
 history       histories of angle, speed, quantities and energy
 sensitivities  derivatives of a motion by parameters
 variational   the linear equations that they obey

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ..compiler.builder import function_text, functions_of, module_text
 from ..compiler.languages.numba.module import NJIT, numba_parts
@@ -12,7 +12,7 @@ from ..compiler.program import Program
 from ..compiler.text import with_short_temporaries, write_lines
 from ..mechanism.constants import constants
 from ..mechanism.program import Variant
-from ..runtime.modules import Native, native, native_here
+from ..runtime.modules import Native, native
 from ..runtime.specialise import specialise
 from .model import MOVING, STILL, UNLOADED
 
@@ -23,6 +23,7 @@ signature = types.void(
     rows
 )
 function = designs.py_func
+short_loops = True
 """
 
 
@@ -57,17 +58,27 @@ class Family(NamedTuple):
 @lru_cache(maxsize=1024)
 def source_of(family: Family, given_torque: bool) -> str:
     """The text of the module."""
-    inputs = {name: f"p[{at}]" for at, name in enumerate(family.inputs)}
-    torque = "given_torque(t, theta, omega)" if given_torque else "number"
+    inputs = _places(family)
+    torque = "asked(number, t, theta, omega)" if given_torque else "number"
     parts = [
         *(_function(name, program, inputs) for name, program in family.programs.items()),
-        _function("still_in_lanes", for_loops(family.programs["still"], constants(), plain=True), inputs),
+        still_in_lanes(family),
         NJIT + function_text("torque", ("t", "theta", "omega", "number"), [f"return {torque}"]),
         *([] if given_torque else _without_panels()),
         _SIGNATURE,
     ]
     docstring = f"desaxe: the motion of many designs; p has {', '.join(inputs)}."
     return module_text(docstring, numba_parts(parts, *FILES))
+
+
+def _places(family: Family) -> dict[str, str]:
+    return {name: f"p[{at}]" for at, name in enumerate(family.inputs)}
+
+
+def still_in_lanes(family: Family) -> str:
+    """`still` for a loop of vectors."""
+    program = for_loops(family.programs["still"], constants(), plain=True)
+    return _function("still_in_lanes", program, _places(family))
 
 
 def _without_panels() -> list[str]:
@@ -87,9 +98,6 @@ def _function(name: str, program: Program, places: Mapping[str, str]) -> str:
 
 
 @lru_cache(maxsize=32)
-def kernel_of(family: Family, given_torque: Any) -> Native:
+def kernel_of(family: Family, given_torque: bool) -> Native:
     """The compiled loop over designs, from memory, from disk, or compiled now."""
-    source = source_of(family, given_torque is not None)
-    if given_torque is not None:
-        return native_here(source, {"given_torque": given_torque})
-    return native("designs", source)
+    return native("designs", source_of(family, given_torque))

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 from numpy import empty, int64, nextafter, zeros
 
 from .picard import (
+    INERTIA,
     OF_ENERGY,
     OF_TIME,
     RATE,
@@ -29,6 +30,7 @@ from .picard import (
     along,
     by_panel,
     expand,
+    furnish,
     panel,
     part_at,
 )  # fmt: skip
@@ -345,6 +347,7 @@ def follow(
     sums[0], sums[2], memory[0] = energy_of(y, p, setup), 0.5 * y[1] * y[1], 0.5
     sums[5] = abs(sums[0])
     turns, stale, panels, made = how[4] > 0.0 and setup[1] == -inf, False, tables[8], 0
+    furnish(panels, room)
     status, rejected, steps, tries, wished = -1, False, 0, 0, inf
     least, most = inf, still(setup[6], setup[0], p)[0]
     while status < 0:
@@ -360,7 +363,7 @@ def follow(
                 tell_inside(t, end, times[row], y, p, setup, room, memory, theta, omega, alpha, row)
                 row += 1
             for i in range(16):
-                least = min(least, room[1, i])
+                least = min(least, room[INERTIA, i])
             account(y, new, p, setup, sums)
             h, wished, t, stale = 0.1 * (end - t), inf, end, True
             status, steps, made = 0 if end >= t_end else -1, steps + 1, made + 1

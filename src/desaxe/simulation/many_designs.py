@@ -3,7 +3,6 @@
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
-from functools import lru_cache
 from math import isfinite
 from typing import Any
 
@@ -13,17 +12,15 @@ from numpy.typing import NDArray
 from ..evaluation.arrays import as_array, broadcast_shape, number_or_array
 from ..evaluation.evaluate import evaluate
 from ..loads.load import Load
-from ..loads.resolve import names_of, takes
 from ..mechanism.closed.limits import theta_intervals
 from ..mechanism.inputs import LEAST, Input
 from ..mechanism.names import CENTRES, LENGTHS, LOADS
 from ..runtime.threads import run_parts
 from ..support.deadline import Deadline
-from ..support.forks import IMPORTS, ForkSafeLock
-from ..support.interrupts import finished, stopped_early
+from ..support.interrupts import stopped_early
 from ..support.progress import Portions, progress_bar
 from . import nodes, tableau
-from .checks import check_signature, grows
+from .checks import grows
 from .compiled import Family, kernel_of
 from .coordinate import TURN, arc_around, inside
 from .energy.many import NOT_HERE, follow_many
@@ -32,18 +29,19 @@ from .energy.serves import ENERGY, INTEGRATOR, PANELS, no_energy_form, served
 from .model import fixed_zeros, form_of
 from .residual import told_of
 from .result import DONE, FAILED, NO_START, WORDS, Simulation
+from .torque import compiled
 
 Array = NDArray[np.float64]
 SAMPLES = 101  # instants of the histories by default
-LONGEST_PART = 16  # designs in one native call, that threads share the work evenly
+LONGEST_PART = 64  # designs in one native call, that threads share the work evenly
 BRIEF = 500.0  # pieces of motions that run at once
 LONGEST_BLOCK = 256  # the same in the energy form: its arrays stay in the cache
 LONGEST, MOST_STEPS = 2, 3  # places in `how`
 BY_PANELS = 4  # the place of their number in `numbers`
+TORQUE = 4  # its place in a row of `setup`: a number, or the address of its function
 LARGE = 1_000  # designs that may take long: a bar tells
 _UNITS = {"theta0": "rad", "omega_start": "rad/s", "torque": "N*m"}
 STARTS = {name: Input(name, unit, "") for name, unit in _UNITS.items()}
-_LOCK = ForkSafeLock()
 
 
 def is_array(value: Any) -> bool:
@@ -76,7 +74,7 @@ def simulate_many(
     if empty is not None:
         raise ValueError(f"{empty}: an empty array; expected at least one design")
     shape = broadcast_shape(arrays)
-    torque = _compiled(starts["torque"]) if callable(starts["torque"]) else None
+    torque = compiled(starts["torque"]) if callable(starts["torque"]) else None
     scalars = {name: float(array) if array.ndim == 0 else array for name, array in arrays.items()}
     family = Family(form_of(given_centres(given)), fixed_zeros(scalars))
     flat = {name: np.broadcast_to(array, shape).reshape(-1) for name, array in arrays.items()}
@@ -96,7 +94,17 @@ def simulate_many(
     left = np.flatnonzero(status < 0)
     if left.size:
         own = tuple(out[left] for out in outs)
-        _run(kernel_of(family, torque), rows[left], setup[left], (t, limits), own, threads, deadline)
+        if torque is not None:
+            setup[:, TORQUE] = torque.address
+        _run(
+            kernel_of(family, torque is not None),
+            rows[left],
+            setup[left],
+            (t, limits),
+            own,
+            threads,
+            deadline,
+        )
         for out, part in zip(outs, own, strict=True):
             out[left] = part
         ways[left[own[-1][:, BY_PANELS] > 0.0]] = PANELS
@@ -120,52 +128,6 @@ def _arrays(given: Mapping[str, Any]) -> dict[str, Array]:
         arrays[name] = as_array(name, value, LENGTHS, ("simulate",))
     del arrays["mu"]  # designs with friction run one after the other
     return arrays
-
-
-@lru_cache(maxsize=32)
-def _compiled(torque: Callable[..., Any]) -> Any:
-    """The torque's function, compiled; TypeError where numba cannot."""
-
-    def made() -> Any:
-        with _LOCK:
-            return _compile(torque)
-
-    return finished(made)
-
-
-def _compile(torque: Callable[..., Any]) -> Any:
-    with IMPORTS:
-        from numba import float64, njit
-        from numba.core.dispatcher import Dispatcher
-        from numba.core.errors import NumbaError
-        from numba.core.types import Float, Integer
-
-    plain = getattr(torque, "py_func", torque)
-    check_signature("torque", plain)
-    try:
-        fast: Any = torque if isinstance(torque, Dispatcher) else njit(error_model="numpy")(torque)
-        if not takes(plain, 3):
-            own = fast
-            of_speed = names_of(plain)[:1] == ("omega",)
-            fast = njit(error_model="numpy")(
-                (lambda t, theta, omega: own(theta, omega))
-                if takes(plain, 2)
-                else (lambda t, theta, omega: own(omega))
-                if of_speed
-                else (lambda t, theta, omega: own(theta))
-            )
-        fast.compile((float64, float64, float64))
-    except (NumbaError, TypeError) as error:
-        told = str(error).strip().splitlines()
-        why = next((line for line in told if line.strip() and "pipeline" not in line), "")
-        raise TypeError(
-            "torque: for many designs at once numba must be able to compile the function, and it cannot: "
-            f"{why.strip()}; use numbers and math in it, or simulate one design at a time"
-        ) from None
-    result = fast.overloads[(float64, float64, float64)].signature.return_type
-    if not isinstance(result, (Float, Integer)):
-        raise TypeError(f"torque: the function gives {result}, expected a number in N*m")
-    return fast
 
 
 def setup_of(flat: Mapping[str, Array], branch: int) -> tuple[Array, NDArray[np.int8]]:

@@ -6,7 +6,8 @@ Away from standstills the crank angle is a good variable: the kinetic energy E a
 
 and M_eff, loads and gravity are known at the nodes of a panel before E is. Only the torque asks for t and
 omega there. Picard's iteration finds them: a sweep asks for the torque at all nodes and integrates twice, by
-products with a constant matrix. Loops over the nodes run in the lanes of a vector, each design by itself.
+products with a constant matrix. Loops over the nodes run in the lanes of a vector, each design by itself;
+they end at a length that is read from an array, for LLVM unrolls a short loop before it looks for vectors.
 Gauss nodes make the end of a panel far more exact than its inside, by which its width is chosen.
 
 table    of `nodes`: a row for each node
@@ -17,7 +18,7 @@ memory   the width of the next panel [rad], steps in time to wait before it is t
 
 from __future__ import annotations
 
-from math import copysign, inf, sqrt
+from math import copysign, inf, nan, sqrt
 from typing import TYPE_CHECKING
 
 from numpy import int64
@@ -27,6 +28,9 @@ if TYPE_CHECKING:
 
     def torque(t: float, theta: float, omega: float, number: float) -> float:
         """The torque [N m]."""
+
+    def asked_at_nodes(number: float, room: Any, first: Any, count: Any) -> bool:
+        """Fill in the torques at the nodes, in the fourth row from one on; True if they could be had."""
 
     def apart() -> None:
         """The promise that arrays share no memory."""
@@ -39,21 +43,29 @@ if TYPE_CHECKING:
 
 
 NODES = int64(16)
-ANGLE, INERTIA, LOAD, WEIGHT, TORQUE, ENERGY, SLOWNESS, TIME, RATE, MISS, GAIN, PART = range(12)
-OF_TIME, OF_ENERGY, ROWS = 12, 13, 14
+INERTIA, LOAD, WEIGHT, TORQUE, ENERGY, SLOWNESS, RATE, MISS, GAIN, PART = range(10)
+TIME, ANGLE, SPEED, NOW = 10, 11, 12, 13  # as the torque takes them
+OF_TIME, OF_ENERGY, PLACES, ROWS = 14, 15, 16, 17
 PLACE, SHARE, LAST, INTEGRALS, SERIES = 0, 1, 2, 4, 20
-SWEEPS, TRIALS = int64(24), int64(6)
+SWEEPS, TRIALS = int64(24), int64(8)
 FAR = 1e5  # rad: beyond, an angle has lost digits that the tolerance asks for
-WIDEST, LEAST = 1.75, 0.02  # rad
+WIDEST, LEAST = 2.5, 0.02  # rad
 INSIDE = 3.0  # of rtol: the error inside of a panel
 WAIT = 8.0  # steps in time after a panel that failed
+FAR_TOO_WIDE = 3.0  # times the largest error, with a torque that is not quite right yet
 
 
-def still_at_nodes(theta: float, width: float, p: Any, setup: Any, table: Any, room: Any) -> None:
+def furnish(table: Any, room: Any) -> None:
+    """The places of the nodes as a row, for a loop down a column is no loop of vectors."""
+    for i in range(NODES):
+        room[PLACES, i] = table[i, PLACE]
+
+
+def still_at_nodes(theta: float, width: float, p: Any, setup: Any, room: Any) -> None:
     """Inertia, loads and gravity, which depend on the angle alone."""
     apart()
     for i in range(NODES):
-        angle = theta + width * table[i, PLACE]
+        angle = theta + width * room[PLACES, i]
         inertia, weight, travel = still_in_lanes(angle, setup[0], p)
         room[ANGLE, i] = angle
         room[INERTIA, i] = inertia
@@ -66,7 +78,7 @@ def integrate(start: float, width: float, table: Any, room: Any, rate: Any, out:
     apart()
     for i in range(NODES):
         room[out, i] = start
-    for j in range(0, len(table), 8):  # eight at once: a shorter loop would be unrolled, not vectorised
+    for j in range(0, NODES, 8):  # eight at once: a shorter loop would be unrolled, not vectorised
         a, b, c, d = room[rate, j], room[rate, j + 1], room[rate, j + 2], room[rate, j + 3]
         e, f, g, h = room[rate, j + 4], room[rate, j + 5], room[rate, j + 6], room[rate, j + 7]
         for i in range(NODES):
@@ -82,49 +94,59 @@ def integrate(start: float, width: float, table: Any, room: Any, rate: Any, out:
             room[out, i] = mul_add(width, first + last, room[out, i])
 
 
-def powers(room: Any) -> None:
+def powers(table: Any, room: Any) -> None:
     """dE/dtheta at the nodes."""
     apart()
     for i in range(NODES):
         room[RATE, i] = room[TORQUE, i] + room[LOAD, i] - room[WEIGHT, i]
 
 
-def slowness(room: Any) -> None:
-    """dt/dtheta at the nodes, but for its sign."""
+def slowness(way: float, table: Any, room: Any) -> None:
+    """dt/dtheta at the nodes, but for its sign, and the speed."""
     apart()
     for i in range(NODES):
-        room[SLOWNESS, i] = sqrt(0.5 * room[INERTIA, i] / room[ENERGY, i])
+        slow = sqrt(0.5 * room[INERTIA, i] / room[ENERGY, i])
+        room[SLOWNESS, i] = slow
+        room[SPEED, i] = way / slow
 
 
 def course(t: float, energy: float, width: float, table: Any, room: Any) -> float:
     """Energies, speeds and instants at the nodes from the torque there; the least energy."""
-    powers(room)
+    powers(table, room)
     integrate(energy, width, table, room, int64(RATE), int64(ENERGY))
     least = inf
-    for i in range(len(table)):
+    for i in range(NODES):
         least = min(least, room[ENERGY, i])
     if least > 0.0:  # else NaN would slow down what follows
-        slowness(room)
+        slowness(copysign(1.0, width), table, room)
         integrate(t, abs(width), table, room, int64(SLOWNESS), int64(TIME))
     return least
 
 
-def ask(way: float, number: float, room: Any) -> float:
+def ask(number: float, table: Any, room: Any) -> float:
     """The torque at all nodes; by how much it has changed at most, NaN where it is none."""
+    if not asked_at_nodes(number, room, int64(TIME), NODES):
+        return nan
+    differ(table, room)
     most, none = 0.0, 0.0
     for i in range(NODES):
-        now = torque(room[TIME, i], room[ANGLE, i], way / room[SLOWNESS, i], number)
-        change = abs(now - room[TORQUE, i])
+        change = abs(room[MISS, i])
         most = max(most, change)
         none += 0.0 * change
-        room[MISS, i] = now - room[TORQUE, i]
-        room[TORQUE, i] = now
     return most + none
 
 
-def bend_of(way: float, number: float, room: Any) -> float:
+def differ(table: Any, room: Any) -> None:
+    """The torque's change at the nodes, and the new one."""
+    apart()
+    for i in range(NODES):
+        room[MISS, i] = room[NOW, i] - room[TORQUE, i]
+        room[TORQUE, i] = room[NOW, i]
+
+
+def bend_of(number: float, room: Any) -> float:
     """The derivative of the torque by the speed in the middle of a panel, for the corrections alone."""
-    t, angle, omega = room[TIME, 8], room[ANGLE, 8], way / room[SLOWNESS, 8]
+    t, angle, omega = room[TIME, 8], room[ANGLE, 8], room[SPEED, 8]
     step = 1e-4 * omega
     return float((torque(t, angle, omega + step, number) - torque(t, angle, omega, number)) / step)
 
@@ -132,16 +154,20 @@ def bend_of(way: float, number: float, room: Any) -> float:
 def correct(bend: float, width: float, table: Any, room: Any) -> None:
     """Foresee what the torque's change makes of the speed, and that again of the torque: Newton's method."""
     integrate(0.0, width, table, room, int64(MISS), int64(GAIN))
-    for _ in range(2):
-        respond(bend, room)
-        integrate(0.0, width, table, room, int64(PART), int64(GAIN))
-    respond(bend, room)
+    respond(bend, table, room)
+    integrate(0.0, width, table, room, int64(PART), int64(GAIN))
+    respond(bend, table, room)
+    foresee(table, room)
+
+
+def foresee(table: Any, room: Any) -> None:
+    """Add to the torque what its last change makes of it."""
     apart()
     for i in range(NODES):
         room[TORQUE, i] += room[PART, i] - room[MISS, i]
 
 
-def respond(bend: float, room: Any) -> None:
+def respond(bend: float, table: Any, room: Any) -> None:
     """The torque's change by a gain of energy, besides that which is known."""
     apart()
     for i in range(NODES):
@@ -149,15 +175,16 @@ def respond(bend: float, room: Any) -> None:
         room[PART, i] = room[MISS, i] + by_energy * room[GAIN, i]
 
 
-def sweep(t: float, energy: float, width: float, number: float, rtol: float, table: Any, room: Any) -> float:
+def sweep(
+    t: float, energy: float, least: float, width: float, number: float, rtol: float, table: Any, room: Any
+) -> float:
     """Sweeps until the torque stays as it is: the least energy at the nodes; 0 where that fails."""
-    before, way = inf, copysign(1.0, width)
-    least = course(t, energy, width, table, room)
-    bend = way * bend_of(way, number, room) if least > 0.0 else 0.0
+    before = inf
+    bend = copysign(1.0, width) * bend_of(number, room)
     for _ in range(SWEEPS):
         if not least > 0.0:
             return 0.0
-        change = ask(way, number, room) * abs(width) / least
+        change = ask(number, table, room) * abs(width) / least
         if not change < 0.7 * before:
             return 0.0 if not change < 1e-15 else least
         if change > 0.0:
@@ -170,23 +197,28 @@ def sweep(t: float, energy: float, width: float, number: float, rtol: float, tab
     return 0.0
 
 
-def total(table: Any, column: Any, room: Any, row: Any) -> float:
-    """A weighted sum over the nodes."""
-    found = 0.0
-    for i in range(len(table)):
-        found += table[i, column] * room[row, i]
-    return found
+def sums(table: Any, room: Any) -> Any:
+    """Over the whole of a panel, for each radian of it: gain of energy, work, time."""
+    gain, work, time = 0.0, 0.0, 0.0
+    for i in range(NODES):
+        share = table[i, SHARE]
+        gain += share * room[RATE, i]
+        work += share * (room[TORQUE, i] + room[LOAD, i])
+        time += share * room[SLOWNESS, i]
+    return gain, work, time
 
 
 def error_inside(width: float, least: float, table: Any, room: Any) -> float:
     """The error inside of a panel: of the speed, relative, or of the angle [rad]."""
-    last = int64(LAST)
-    energy = abs(total(table, last, room, RATE)) + abs(total(table, last + 1, room, RATE))
-    time = abs(total(table, last, room, SLOWNESS)) + abs(total(table, last + 1, room, SLOWNESS))
-    quickest = inf
-    for i in range(len(table)):
-        quickest = min(quickest, room[SLOWNESS, i])
-    return abs(width) * max(0.5 * energy / least, time / quickest)
+    a, b, c, d, quickest = 0.0, 0.0, 0.0, 0.0, inf
+    for i in range(NODES):
+        first, last, rate, slow = table[i, LAST], table[i, LAST + 1], room[RATE, i], room[SLOWNESS, i]
+        a += first * rate
+        b += last * rate
+        c += first * slow
+        d += last * slow
+        quickest = min(quickest, slow)
+    return abs(width) * max(0.5 * (abs(a) + abs(b)) / least, (abs(c) + abs(d)) / quickest)
 
 
 def jumps(outside: float, room: Any, at: Any, way: Any) -> bool:
@@ -200,21 +232,27 @@ def panel(
 ) -> Any:
     """The state and the time at the end of a panel, the error inside of it as a multiple of rtol."""
     energy = 0.5 * y[1] * y[1]
-    still_at_nodes(y[0], width, p, setup, table, room)
+    still_at_nodes(y[0], width, p, setup, room)
     first = torque(t, y[0], copysign(sqrt(2.0 * energy / room[INERTIA, 0]), width), setup[4])
     for i in range(NODES):
         room[TORQUE, i] = first
-    least = sweep(t, energy, width, setup[4], rtol, table, room)
+    least = course(t, energy, width, table, room)
     if not least > 0.0:
         return t, inf
-    weights, work = int64(SHARE), int64(TORQUE)
-    after = energy + width * total(table, weights, room, int64(RATE))
+    error = error_inside(width, least, table, room) / (INSIDE * rtol)
+    if not error < FAR_TOO_WIDE:  # the torque will not mend that
+        return t, error
+    least = sweep(t, energy, least, width, setup[4], rtol, table, room)
+    if not least > 0.0:
+        return t, inf
+    gain, work, time = sums(table, room)
+    after = energy + width * gain
     if not after > 0.0:
         return t, inf
     new[0] = y[0] + width
     new[1] = copysign(sqrt(2.0 * after), width)
-    new[2] = y[2] + width * (total(table, weights, room, work) + total(table, weights, room, int64(LOAD)))
-    end = t + abs(width) * total(table, weights, room, int64(SLOWNESS))
+    new[2] = y[2] + width * work
+    end = t + abs(width) * time
     omega = copysign(1.0 / room[SLOWNESS, 15], width)
     last = torque(end, new[0], omega, setup[4])
     if jumps(first, room, 0, 1) or jumps(last, room, 15, -1):
@@ -235,8 +273,10 @@ def by_panel(
     new: Any,
 ) -> float:
     """The end of the next panel; -1 where steps in time go on."""
-    if memory[1] > 0.0 or y[1] == 0.0 or abs(y[0]) > FAR:
-        memory[1] -= 1.0
+    if y[1] == 0.0:
+        memory[1] = WAIT
+    if memory[1] > 0.0 or abs(y[0]) > FAR:
+        memory[0], memory[1] = max(0.5, 3.0 * memory[2]), memory[1] - 1.0
         return -1.0
     width = memory[0]
     for _ in range(TRIALS):
@@ -249,7 +289,7 @@ def by_panel(
             memory[0] = min(width * factor, WIDEST)
             return float(end)
         width *= min(factor, 0.8) if error > 1.0 else 0.9 * longest / (end - t)
-    memory[0], memory[1] = max(0.5, 3.0 * memory[2]), WAIT
+    memory[1] = WAIT
     return -1.0
 
 
@@ -257,7 +297,7 @@ def expand(start: float, width: float, table: Any, room: Any, rate: Any, out: An
     """The Legendre series of the integral of a rate over a panel."""
     for k in range(len(table) + 1):
         room[out, k] = 0.0
-        for j in range(len(table)):
+        for j in range(NODES):
             room[out, k] += width * table[j, SERIES + k] * room[rate, j]
     room[out, 0] += start
 

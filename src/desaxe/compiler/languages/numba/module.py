@@ -26,7 +26,7 @@ NJIT = '@njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=Tru
 # Where people may call what is written as plain Python, too: without its wrapper that would crash.
 CALLABLE = '@njit(error_model="numpy")\n'
 SOURCES = Path(__file__).with_name("sources")
-FILES = tuple(SOURCES / f"{name}.py" for name in ("spellings", "rooms", "lookups", "reductions"))
+FILES = tuple(SOURCES / f"{name}.py" for name in ("spellings", "rooms", "given", "lookups", "reductions"))
 # Where the names come from that stand in the text of Programs and loops.
 IMPORTS = MATH | {
     "asarray": "numpy", "ascontiguousarray": "numpy", "broadcast_arrays": "numpy", "empty": "numpy",

@@ -2,6 +2,7 @@
 
 spellings   functions that numba spells in its own way
 rooms       buffers and flags of a block of points
+given       a function of the user's behind an address
 lookups     tables looked up at the points of a block
 reductions  reductions of a row
 """

@@ -1,0 +1,58 @@
+"""Loops over the nodes of panels run in the lanes of vectors: LLVM's text of them has packed arithmetic."""
+
+import re
+
+import pytest
+
+from desaxe.compiler.builder import module_text
+from desaxe.compiler.languages.numba.module import numba_parts
+from desaxe.mechanism.program import Variant
+from desaxe.runtime import compiled_text
+from desaxe.simulation import compiled
+from desaxe.simulation.compiled import Family
+from desaxe.simulation.energy import compiled as energy
+
+PANELS = {
+    "still_at_nodes": ("0.1, 0.5, row, row, rows", {"div", "sqrt", "mul"}),
+    "integrate": ("0.0, 0.5, rows, rows, int64(4), int64(5)", {"mul", "fmuladd"}),
+    "slowness": ("1.0, rows, rows", {"div", "sqrt"}),
+    "respond": ("0.1, rows, rows", {"div", "mul"}),
+}
+PIECES = {
+    "combined": ("row, rows, other", {"mul", "add"}),
+    "ordered": ("row, other, 0.1, True, rows[0], rows[1]", {"add"}),
+    "rates": ("int64(0), 0.5, row, rows[0], rows[1], other", {"div", "sqrt"}),
+}
+FAMILY = Family(Variant(True, ("r_crank", "r_rod")), ())
+
+
+def vectors_of(text, monkeypatch):
+    """The operations on vectors of doubles in a text's optimised module."""
+    found, own = [], compiled_text.optimised
+    monkeypatch.setattr(compiled_text, "optimised", lambda *a: found.append(own(*a)) or found[0])
+    compiled_text.compile_text(text, "a test", {})
+    written = str(found[0])
+    names = re.findall(r"= f(\w+) (?:[a-z]+ )*<\d+ x double>", written)
+    return {*names, *re.findall(r"call (?:[a-z]+ )*<\d+ x double> @llvm\.(\w+)\.v", written)}
+
+
+def text_of(name, given, parts, files, tail):
+    """A text whose function only calls one of these."""
+    call = f"def looped(row, other, rows):\n    {name}({given})\n"
+    row, rows = "types.float64[::1]", "types.float64[:, ::1]"
+    signature = f"signature = types.void({row}, {row}, {rows})\nfunction = looped\n{tail}"
+    return module_text("A test.", numba_parts([*parts, call, signature], *files))
+
+
+@pytest.mark.parametrize("name", PANELS)
+def test_panels_in_time(name, monkeypatch):
+    given, wanted = PANELS[name]
+    parts = [compiled.still_in_lanes(FAMILY)] if name == "still_at_nodes" else []
+    text = text_of(name, given, parts, compiled.FILES, "short_loops = True\n")
+    assert wanted <= vectors_of(text, monkeypatch)
+
+
+@pytest.mark.parametrize("name", PIECES)
+def test_pieces_in_energy_form(name, monkeypatch):
+    given, wanted = PIECES[name]
+    assert wanted <= vectors_of(text_of(name, given, [], energy.FILES, ""), monkeypatch)
