@@ -18,7 +18,7 @@ from desaxe.mechanism.closed.functions import closed_form
 from desaxe.mechanism.closed.inverse import INVERSE
 from desaxe.mechanism.closed.limits import ANGLES, LIMITS
 from tests.compiler.languages.modules import module
-from tests.compiler.languages.tools import array_values, es_module, imported, jax_in_doubles, library, octave
+from tests.compiler.languages.runners import RUNNERS, SLOW, caller
 from tests.effort import cases
 from tests.mechanism.closed.test_closed_forms import check_inverse, check_limits
 from tests.mechanism.closed.truth import design
@@ -53,40 +53,10 @@ def designs(branch, number):
         number -= 1
 
 
-def of_numba(place, columns):
-    functions = imported(place)
-    return [[getattr(functions, name)(*row) for row in zip(*columns, strict=True)] for name in OUTPUTS]
-
-
-def of_c(place, columns):
-    return array_values(library(place.with_name("made.c"), "gcc", ("-O2",)), "made", columns, len(OUTPUTS))
-
-
-def of_octave(place, columns):
-    return octave(place, columns, len(OUTPUTS))
-
-
-def of_jax(place, columns):
-    with jax_in_doubles():
-        found = imported(place).evaluate(**dict(zip(INPUTS, columns, strict=True)))
-        return [np.asarray(found[name]) for name in OUTPUTS]
-
-
-def of_javascript(place, columns):
-    given = {name: column.tolist() for name, column in zip(INPUTS, columns, strict=True)}
-    (found,) = es_module(place, [["evaluate", given]])
-    return [found[name] for name in OUTPUTS]
-
-
-SLOW = ("jax", "numba")
-RUN = {"numba": of_numba, "c": of_c, "octave": of_octave, "jax": of_jax, "javascript": of_javascript}
-
-
 @pytest.mark.sampled
 @pytest.mark.parametrize("branch", [1, -1])
 @pytest.mark.parametrize(
-    "to",
-    ["c", "octave", "javascript", *(pytest.param(n, marks=pytest.mark.thorough) for n in ("jax", "numba"))],
+    "to", [pytest.param(name, marks=[pytest.mark.thorough] if name in SLOW else []) for name in RUNNERS]
 )
 def test_limit_angles_and_the_inverse_in_every_language(to, branch, tmp_path):
     language = language_of(to)
@@ -94,8 +64,8 @@ def test_limit_angles_and_the_inverse_in_every_language(to, branch, tmp_path):
         (tmp_path / file).write_text(text, encoding="utf-8")
     rows = list(designs(branch, cases(60, 400, 50_000)))
     columns = [np.array(column) for column in zip(*rows, strict=True)]
-    found = RUN[to](tmp_path / f"made{language.suffix}", columns)
-    for (Y, ec, AB, BC), *values in zip(rows, *found, strict=True):
+    found = caller(to, tmp_path / f"made{language.suffix}", INPUTS, OUTPUTS)(columns)
+    for (Y, ec, AB, BC), *values in zip(rows, *found.values(), strict=True):
         own = dict(zip(OUTPUTS, map(float, values), strict=True))
         check_limits(own, ec, AB, BC)
         if Y and AB:

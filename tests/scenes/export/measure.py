@@ -8,17 +8,20 @@ import tempfile
 from pathlib import Path
 
 import desaxe as dx
-from tests.compiler.languages.tools import array_values, es_module, imported, jax_in_doubles, library, octave
+from tests.compiler.languages.runners import compiled
+from tests.compiler.languages.tools import imported, jax_in_doubles
 from tests.scenes.export.stress import INPUTS, NAMES, columns, scene, shares
 
 REACH = 1.6e6  # rad, without libm
 
 
-def c(folder, branch, libm):
-    source = dx.compile(scene(branch), folder / "press", to="c", libm=libm) / "press.c"
-    loaded = library(source, "gcc", ("-O2",), libm)
-    reach = math.inf if libm else REACH
-    return dict(zip(NAMES, array_values(loaded, "press", columns(branch, reach), len(NAMES)), strict=True))
+def arrays(language, reach=math.inf, **options):
+    """The values of a language's arrays."""
+
+    def values(folder, branch):
+        return compiled(language, folder, scene(branch), INPUTS, **options)(columns(branch, reach))
+
+    return values, reach
 
 
 def numba(folder, branch):
@@ -28,11 +31,6 @@ def numba(folder, branch):
     return {name: [getattr(module, name)(*point) for point in points] for name in NAMES}
 
 
-def of_octave(folder, branch):
-    place = dx.compile(scene(branch), folder / "press.m", to="octave")
-    return dict(zip(NAMES, octave(place, columns(branch), len(NAMES)), strict=True))
-
-
 def jax(folder, branch):
     import jax as library_of_jax
 
@@ -40,19 +38,13 @@ def jax(folder, branch):
     return library_of_jax.jit(module.evaluate)(**dict(zip(INPUTS, columns(branch), strict=True)))
 
 
-def javascript(folder, branch):
-    place = dx.compile(scene(branch), folder / "press.js", to="javascript")
-    given = {name: column.tolist() for name, column in zip(INPUTS, columns(branch), strict=True)}
-    return es_module(place, [["evaluate", given]])[0]
-
-
 LANGUAGES = {
-    "c": (lambda folder, branch: c(folder, branch, True), math.inf),
-    "c, --no-libm": (lambda folder, branch: c(folder, branch, False), REACH),
-    "octave": (of_octave, math.inf),
+    "c": arrays("c"),
+    "c, --no-libm": arrays("c", REACH, libm=False),
+    "octave": arrays("octave"),
     "jax, under jit": (jax, math.inf),
     "numba, scalar functions": (numba, math.inf),
-    "javascript": (javascript, math.inf),
+    "javascript": arrays("javascript"),
 }
 
 

@@ -11,7 +11,8 @@ import desaxe as dx
 from desaxe.cli.scene import _COMPILE as COMMAND
 from desaxe.compiler.languages import languages
 from desaxe.oracle.truth import truth
-from tests.compiler.languages.tools import es_module, imported, jax_in_doubles, octave
+from tests.compiler.languages.runners import compiled
+from tests.compiler.languages.tools import es_module, imported, jax_in_doubles
 from tests.scenes.export.stress import INPUTS, NAMES, broken, columns, rows, scene
 
 REACH = {"standard": math.inf, "extended": 1e3}
@@ -38,24 +39,18 @@ def test_the_promise_is_kept_by_jax(module):
 
 @pytest.mark.parametrize("accuracy", ["standard", pytest.param("extended", marks=pytest.mark.thorough)])
 @pytest.mark.parametrize("branch", [1, -1])
-def test_the_promise_is_kept_by_octave(accuracy, branch, tmp_path):
+@pytest.mark.parametrize("language", ["octave", "javascript"])
+def test_the_promise_is_kept_by_arrays(language, accuracy, branch, tmp_path):
     reach = REACH[accuracy]
-    dx.compile(scene(branch, accuracy=accuracy), tmp_path / "press.m", to="octave")
-    found = octave(tmp_path / "press.m", columns(branch, reach), len(NAMES))
-    assert not broken(dict(zip(NAMES, found, strict=True)), branch, reach)
+    module = compiled(language, tmp_path, scene(branch, accuracy=accuracy), INPUTS)
+    assert not broken(module(columns(branch, reach)), branch, reach)
 
 
-@pytest.mark.parametrize("accuracy", ["standard", pytest.param("extended", marks=pytest.mark.thorough)])
-@pytest.mark.parametrize("branch", [1, -1])
-def test_the_promise_is_kept_by_javascript(accuracy, branch, tmp_path):
-    """Arrays by `evaluate`; the function of one name gives the same."""
-    reach = REACH[accuracy]
-    dx.compile(scene(branch, accuracy=accuracy), tmp_path / "press.js", to="javascript")
-    given = {name: column.tolist() for name, column in zip(INPUTS, columns(branch, reach), strict=True)}
-    first = [given[name][0] for name in INPUTS]
-    found, a_C = es_module(tmp_path / "press.js", [["evaluate", given], ["a_C", *first]])
-    assert a_C == found["a_C"][0]
-    assert not broken(found, branch, reach)
+def test_a_function_of_javascript_gives_what_evaluate_does(tmp_path):
+    dx.compile(scene(1), tmp_path / "press.js", to="javascript")
+    point = {name: float(column[0]) for name, column in zip(INPUTS, columns(1), strict=True)}
+    found, a_C = es_module(tmp_path / "press.js", [["evaluate", point], ["a_C", *point.values()]])
+    assert a_C == found["a_C"]
 
 
 def test_the_promise_is_kept_by_scalars_of_numba(tmp_path):

@@ -10,7 +10,8 @@ import pytest
 import desaxe as dx
 from desaxe.mechanism.closed.dead_centres import SENSITIVITIES
 from desaxe.mechanism.names import LENGTHS, WHOLE
-from tests.compiler.languages.tools import array_values, es_module, imported, jax_in_doubles, library, octave
+from tests.compiler.languages.runners import RUNNERS, compiled
+from tests.compiler.languages.tools import es_module, imported, jax_in_doubles
 from tests.effort import cases
 from tests.mechanism.closed.test_closed_forms import check
 from tests.mechanism.closed.truth import design, truths
@@ -54,48 +55,13 @@ def columns(branch):
     return [np.array(column) for column in zip(*known(branch)[0], strict=True)]
 
 
-def of_numba(folder, written, given):
-    module = imported(dx.compile(written, folder / "press_whole.py"))
-    assert module.INPUTS == LENGTHS
-    return module.evaluate(*given)
-
-
-def of_c(folder, written, given, libm=True):
-    source = dx.compile(written, folder / "press", to="c", libm=libm) / "press.c"
-    found = array_values(library(source, "gcc", ("-O2",), libm), "press", given, len(NAMES))
-    return dict(zip(NAMES, found, strict=True))
-
-
-def of_c_alone(folder, written, given):
-    return of_c(folder, written, given, libm=False)
-
-
-def of_octave(folder, written, given):
-    place = dx.compile(written, folder / "press.m", to="octave")
-    return dict(zip(NAMES, octave(place, given, len(NAMES)), strict=True))
-
-
-def of_jax(folder, written, given):
-    with jax_in_doubles():
-        module = imported(dx.compile(written, folder / "press_jax.py", to="jax"))
-        return {
-            name: np.asarray(value)
-            for name, value in module.evaluate(**dict(zip(LENGTHS, given, strict=True))).items()
-        }
-
-
-def of_javascript(folder, written, given):
-    place = dx.compile(written, folder / "press.js", to="javascript")
-    lists = {name: column.tolist() for name, column in zip(LENGTHS, given, strict=True)}
-    return es_module(place, [["evaluate", lists]])[0]
-
-
 @pytest.mark.sampled
 @pytest.mark.parametrize(("branch", "way"), [(1, -1), (-1, 1)])
-@pytest.mark.parametrize("language", [of_numba, of_c, of_c_alone, of_octave, of_jax, of_javascript])
-def test_every_language_keeps_the_promise(language, branch, way, tmp_path):
-    least = np.finfo(float).tiny if language is of_jax else 0.0
-    confirm(language(tmp_path, scene(NAMES, way, branch), columns(branch)), branch, way, least)
+@pytest.mark.parametrize(("language", "libm"), [("c", False), *((language, True) for language in RUNNERS)])
+def test_every_language_keeps_the_promise(language, libm, branch, way, tmp_path):
+    least = np.finfo(float).tiny if language == "jax" else 0.0
+    module = compiled(language, tmp_path, scene(NAMES, way, branch), LENGTHS, libm=libm)
+    confirm(module(columns(branch)), branch, way, least)
 
 
 @pytest.mark.sampled
