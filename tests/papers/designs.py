@@ -13,7 +13,6 @@ from tests.papers import paper_a as A
 from tests.papers.loop import Motion
 
 CRANK, ROD, SPEED = 0.125, 0.35, 157.08  # m, m, rad/s: the worked numbers of Sec. III
-SHEET = A.Worksheet(SPEED, 0.0)
 EXACT = A.Worksheet(mpf(SPEED), mpf(0), mp)
 CASE = Motion(math.pi / 3, 0.0, CRANK, ROD, SPEED)  # test cases 1 and 2
 TURN = 2 * math.pi

@@ -3,7 +3,8 @@
 `misses` reads a string of a ledger, gives each of its names the value that the raw loop, the free bodies or a
 definition of the paper give it, and tells which sides are not what they must be: all sides equal where the
 form is right, and the wrong side's own hand-written value where a printed form is wrong. So a changed sign,
-digit or function in any of these strings shows.
+digit or function in any of these strings shows. `everywhere` proves an equation's verdict in all designs, by
+the loop to 30 digits and by the package to rounding.
 """
 
 import ast

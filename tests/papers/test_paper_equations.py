@@ -20,7 +20,6 @@ from tests.papers.designs import (
     CASE,
     DESIGNS,
     EXACT,
-    SHEET,
     SPEED,
     close,
     exact_point,
@@ -170,7 +169,7 @@ NUMBERS = {
     "A-eq19": signs_of_eq19,
     "A-listing-V_C": listing_of_V_C,
     "A-listing-a_C": lambda: (
-        case_2_as_printed() | {"case": mpf(three_digits(SHEET.corrected_a_C(*CASE[:4])))}
+        case_2_as_printed() | {"case": mpf(three_digits(EXACT.corrected_a_C(*CASE[:4])))}
     ),
     "B-eq9": least_s,
     "B-eq20": peaks_of_eq20,
