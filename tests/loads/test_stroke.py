@@ -329,3 +329,14 @@ def test_what_is_no_table_is_refused_by_name(given, message):
         dx.over_stroke(*columns, dead_centre=which)
     with pytest.raises(TypeError, match=r'^over_stroke: dead_centre is missing: dead_centre="outer" or'):
         dx.over_stroke(*columns)
+
+
+@pytest.mark.parametrize("options", [{"mu": 0.05}, {"wrt": "m_slider"}])
+def test_of_many_designs_those_without_the_dead_centre_do_not_start(options):
+    load = dx.over_stroke([0.0, 0.01], [-9.0, 0.0], dead_centre="inner")
+    start = {"torque": 1.0, "t_end": 0.01, "omega_start": 5.0, "I_crank": 0.1, "m_slider": 1.0, "F_Y": load}
+    many = dx.simulate(ec=[0.01, 0.03], AB=0.04, BC=0.064, **start, **options)
+    one = dx.simulate(ec=0.01, AB=0.04, BC=0.064, **start, **options)
+    assert many["status"].tolist() == [0, 6]
+    assert many["work"][0] == pytest.approx(one["work"], rel=1e-9)
+    assert np.isnan(many["theta"][1]).all()

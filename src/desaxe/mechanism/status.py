@@ -178,7 +178,7 @@ class SimulationStatus(Status):
     JAMS = 3, "the friction jams"
     FAILED = 4, "the integration failed"
     NO_INERTIA = 5, "the effective inertia vanishes at a dead centre"
-    NO_START = 6, "a bad input, or no mechanism at the start"
+    NO_START = 6, "a bad input, no mechanism at the start, or not the dead centre that a load is over"
 
 
 TABLES = (

@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 
 from ..evaluation.arrays import as_array, broadcast_shape, number_or_array
 from ..evaluation.evaluate import evaluate
+from ..loads.angles import zero_of
+from ..loads.load import OverY
 from ..mechanism.names import CENTRES, LENGTHS, LOADS
 from ..support.deadline import Deadline
 from ..support.progress import Portions, progress_bar
@@ -54,6 +56,9 @@ def simulate_each(
     size = int(np.prod(shape))
     still = {name: np.zeros(size) for name in varying}
     setup, status = setup_of({**still, **flat}, branch)
+    for load in varying.values():
+        if isinstance(load, OverY):
+            status[np.isnan(zero_of(load, [flat[n] for n in LENGTHS], branch))] = NO_START
     along = [f"{name}_wrt_{p}" for p in wrt for name in ("theta", "omega")]
     ends = [f"{name}_wrt_{p}" for p in wrt for name in ("t_last", "work")]
     histories = {n: np.full((size, t.size), np.nan) for n in ("theta", "omega", "alpha", *names, *along)}

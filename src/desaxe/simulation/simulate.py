@@ -135,9 +135,9 @@ def simulate(
     that repeat after at most four turns in the energy form; under a torque function, which numba compiles, by
     panels; under numbers where these do not serve, such as at an unstable equilibrium, by DOP853. All others,
     also those with `until` or wrt, run one after the other. Histories then have the shape (designs...,
-    times), 101 instants without `times`, NaN where a motion has ended. status (also 6: bad input, or no
-    mechanism at the start), energy_residual, work, t_last and method have the shape of the designs; there
-    are no events and no solution.
+    times), 101 instants without `times`, NaN where a motion has ended. status (also 6: bad input, no
+    mechanism at the start, or not the dead centre that a load is over), energy_residual, work, t_last and
+    method have the shape of the designs; there are no events and no solution.
 
     Equation: M_eff alpha + M_eff' omega^2/2 = torque - static torque - friction (paper C, section 3).
     Raises ValueError where no motion can start (no mechanism there, no inertia) and for a bad value.
