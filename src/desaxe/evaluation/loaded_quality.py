@@ -20,7 +20,7 @@ from ..loads.table import Table
 from ..mechanism.names import LENGTHS, sensitivity
 from ..runtime.request import several
 from .loaded import MOTION, evaluate_loaded, forces_at, numeric, plan_for
-from .quality import MOST_DIGITS, ROUNDED_ONCE, Quality, conditions_of, evaluate_quality
+from .quality import ROUNDED_ONCE, Quality, conditions_of, digits_of, evaluate_quality
 from .values import values
 
 Array = NDArray[Any]
@@ -66,10 +66,8 @@ def evaluate_loaded_quality(
     bound = bound.reshape(np.shape(found.value))
     value = evaluate_loaded(names, given, branch, accuracy, threads, None)
     moved = {p: conditions_of(value, numbers[p], slopes[slope]) for p, slope in totals.items()}
-    with np.errstate(all="ignore"):
-        digits = np.clip(-np.log10(np.where(bound == 0.0, 0.0, bound / np.abs(value))), 0.0, MOST_DIGITS)
-    plain = (float(x) if np.ndim(value) == 0 else np.array(x) for x in (bound, digits))
-    return Quality(value, {**found.conditions, **moved}, *plain)
+    plain = float(bound) if np.ndim(value) == 0 else np.array(bound)
+    return Quality(value, {**found.conditions, **moved}, plain, digits_of(value, bound, np.shape(value)))
 
 
 def _error_of(load: Load, numbers: Mapping[str, Any], branch: int, threads: int | None) -> Array:
@@ -82,14 +80,8 @@ def _error_of(load: Load, numbers: Mapping[str, Any], branch: int, threads: int 
     assert isinstance(load, OverY)
     lengths = {n: np.atleast_1d(numeric(n, numbers[n], ("quality",))) for n in LENGTHS}
     given = {**dict.fromkeys(MOTION), **lengths, "theta": theta}
-    places = evaluate_quality(
-        ["Y", *([load.centre] if isinstance(load, OverStroke) else [])],
-        given,
-        branch,
-        "standard",
-        threads,
-        None,
-    )
+    names = ["Y", *([load.centre] if isinstance(load, OverStroke) else [])]
+    places = evaluate_quality(names, given, branch, "standard", threads, None)
     motion = values(list(load.motion()), given, branch, threads=threads)
     x, speeds = load.along(motion), {n: numbers.get(n) for n in ("omega0", "omega", "alpha")}
     way = way_of({n: np.atleast_1d(np.asarray(v, float)) for n, v in speeds.items() if v is not None})

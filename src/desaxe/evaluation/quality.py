@@ -82,9 +82,8 @@ def _quality(name: str, given: Mapping[str, Any], rest: Mapping[str, Any]) -> Qu
         if gap:
             steps |= _steps_with_margin(arrays, by, np.asarray(found["margin"]))
         bound = np.abs(f) * ROUNDED_ONCE if name == "margin" else _bound(f, steps)
-        digits = np.clip(-np.log10(np.where(bound == 0.0, 0.0, bound / np.abs(f))), 0.0, MOST_DIGITS)
     plain = {p: _shaped(np.where(np.isnan(f), np.nan, c), shape) for p, c in conditions.items()}
-    return Quality(found[name], plain, _shaped(bound, shape), _shaped(digits, shape))
+    return Quality(found[name], plain, _shaped(bound, shape), digits_of(f, bound, shape))
 
 
 def _slope_names(name: str, needs: Sequence[str], state: bool) -> dict[str, str]:
@@ -103,6 +102,13 @@ def _slope_names(name: str, needs: Sequence[str], state: bool) -> dict[str, str]
             f"quality of {name}: not available, as its own derivatives are not derived; that of {base} is"
         ) from None
     return found
+
+
+def digits_of(f: Any, bound: Any, shape: tuple[int, ...]) -> Any:
+    """How many decimal digits of a value an error bound leaves, a float for one point."""
+    with np.errstate(all="ignore"):
+        lost = np.where(bound == 0.0, 0.0, bound / np.abs(f))
+        return _shaped(np.clip(-np.log10(lost), 0.0, MOST_DIGITS), shape)
 
 
 def conditions_of(f: Any, x: Any, slope: Any) -> Any:
