@@ -126,7 +126,7 @@ PLAIN, LOADED = ("a_C", None), pytest.param("F_C_Y", over_Y, marks=pytest.mark.t
 def test_pieces_of_a_reduced_axis_combine_to_the_whole(quantity, load, most, tmp_path, monkeypatch):
     inputs = {**EDGE, **MASSES, **({"F_Y": load()} if load else {})}
     whole = dx.grid(quantity, reduce=ALL, **inputs)
-    monkeypatch.setattr("desaxe.evaluation.fold.MOST", most)
+    monkeypatch.setattr("desaxe.evaluation.in_memory.MOST", most)
     found = dx.grid(quantity, reduce=ALL, **inputs)
     assert found.attrs == whole.attrs
     for name in whole.variables:
@@ -143,7 +143,7 @@ def test_a_function_over_theta_is_cut_along_it(monkeypatch):
     inputs = {**EDGE, **MASSES, "F_Y": dx.over_theta(lambda theta: 90.0 * np.cos(theta))}
     names = [f"F_C_Y_{kind}" for kind in ("absmax", "absmax_theta", "min", "skipped")]
     whole = dx.grid("F_C_Y", reduce={"theta": ["absmax", "min", "rms"]}, **inputs)
-    monkeypatch.setattr("desaxe.evaluation.fold.MOST", 7)
+    monkeypatch.setattr("desaxe.evaluation.in_memory.MOST", 7)
     found = dx.grid("F_C_Y", reduce={"theta": ["absmax", "min", "rms"]}, **inputs)
     for name in names:
         np.testing.assert_array_equal(found[name], whole[name])
@@ -156,14 +156,14 @@ def test_a_function_over_theta_is_cut_along_it(monkeypatch):
 )
 def test_what_does_not_combine_has_its_axes_whole(reduce, monkeypatch):
     whole = dx.grid("a_C", reduce=reduce, **EDGE, omega0=5.0)
-    monkeypatch.setattr("desaxe.evaluation.fold.MOST", 1)
+    monkeypatch.setattr("desaxe.evaluation.in_memory.MOST", 1)
     assert bits(dx.grid("a_C", reduce=reduce, **EDGE, omega0=5.0)) == bits(whole)
 
 
 @pytest.mark.thorough
 def test_a_long_reduction_fits_into_memory(monkeypatch):
     """Many designs behind one number: a few arrays of some of them at a time."""
-    monkeypatch.setattr("desaxe.evaluation.fold.MOST", 2**13, raising=False)
+    monkeypatch.setattr("desaxe.evaluation.in_memory.MOST", 2**13, raising=False)
     lengths = {"ec": np.linspace(0.0, 0.01, 512), "BC": np.linspace(0.3, 0.4, 512)}
     asked = {"theta": [0.5, 1.0], "AB": 0.1, **lengths, "reduce": {("theta", "ec", "BC"): ["max", "mean"]}}
     dx.grid("Y", **asked)  # compiles
@@ -177,7 +177,7 @@ def test_a_long_reduction_fits_into_memory(monkeypatch):
 
 
 def test_a_sweep_stopped_at_any_chunk_has_the_digits_of_the_grid(tmp_path, monkeypatch):
-    monkeypatch.setattr("desaxe.evaluation.fold.MOST", 2)
+    monkeypatch.setattr("desaxe.evaluation.in_memory.MOST", 2)
     inputs = {**EDGE, **MASSES, "F_Y": over_Y()}
     whole = bits(dx.grid("F_C_Y", reduce=ALL, **inputs))
     for stopped in (1, 2):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.evaluation.outer import outer_of
+from desaxe.evaluation.axes import outer_of
 from desaxe.evaluation.points import points_of
 from desaxe.evaluation.under import open_points
 from desaxe.loads.pieces import Place, piece_at

@@ -4,7 +4,7 @@ evaluate       numbers in, a float out; arrays in, arrays out
 arrays         inputs that broadcast, outputs and scratch
 loops          the loop that each input of a broadcast varies along
 grid           an outer product as a labelled dataset
-outer          its arguments, and axes joined to long loops
+axes           its arguments, and axes joined to long loops
 chunks         how a grid is cut
 plan           the steps of a grid, its blocks, its dataset
 points         a step: values of names by one kernel, loads included
@@ -14,7 +14,7 @@ labels         units and CF attributes
 quality        condition numbers and error bounds
 values         values of names from a dict of inputs: the body of `evaluate`
 function       a prepared callable of some inputs
-planned        repeated calls of one shape: a cache of checked calls
+call_cache     repeated calls of one shape: a cache of checked calls
 loaded         values under loads that vary with the motion
 under          loads in a kernel: its request, its tables, points that rounding leaves open
 under_request  the request of names under loads, and their tables
@@ -26,7 +26,7 @@ labelled       `evaluate` of labelled arrays
 dask_blocks    a function of many outputs over the chunks of Dask arrays
 in_units       labelled results in other units
 reductions     the argument `reduce=`, checked
-fold           reductions over several axes of arrays in memory
+in_memory      reductions over several axes of arrays in memory
 own_measure    a user's function of a design as a measure
 arcs           arcs of crank angles on which one piece of a load holds
 sides          on which side of a jump of a load samples are

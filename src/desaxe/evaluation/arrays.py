@@ -20,9 +20,9 @@ from ..runtime.vectorised import fill_by_arrays
 from ..support.forks import IMPORTS
 from ..support.memory import require
 from ..support.shown import shown
+from .call_cache import planned
 from .extremes import are_extreme, can_rescale, in_si, is_extreme, rescaled
 from .loops import Loops, loops_over, spread
-from .planned import planned
 
 Array = NDArray[Any]
 

@@ -10,9 +10,9 @@ from ..mechanism.inputs import Inputs
 from ..runtime.request import several, with_named_inputs
 from ..support.forks import IMPORTS
 from .arrays import outputs_for
+from .axes import outer_of
 from .evaluate import evaluate
 from .labelled import grid_by_index, has_named_index
-from .outer import outer_of
 from .plan import plan_of
 from .points import points_of
 from .reductions import names_reduced, reductions_of

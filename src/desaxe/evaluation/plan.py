@@ -21,9 +21,9 @@ from ..mechanism.names import LENGTHS
 from ..mechanism.own import Definition
 from ..runtime.compiled_only import compiled_only
 from ..support.extras import needed
+from .axes import Outer
 from .chunks import Slices, blocks_of, chunk_lengths, slices_of
 from .labels import Output, labelled, provenance, with_loads
-from .outer import Outer
 from .points import Points, points_of
 from .reduced import Reduced, reduced_of
 from .reductions import Reductions

@@ -24,10 +24,10 @@ from ..runtime.request import Request, request
 from ..runtime.threads import run_in_blocks
 from ..runtime.tiers import COMPILED, tier_of
 from .arrays import copied_back, dtype_of, fill, outputs_for, scratch_for
+from .axes import Outer, first_joined, join_from, require_inputs
 from .labels import Output, attributes
 from .loaded import evaluate_loaded
 from .loops import Loops
-from .outer import Outer, first_joined, join_from, require_inputs
 from .under import UnderLoads, in_kernel
 
 Array = NDArray[Any]

@@ -105,7 +105,7 @@ def _slope_names(name: str, needs: Sequence[str], state: bool) -> dict[str, str]
 
 
 def digits_of(f: Any, bound: Any, shape: tuple[int, ...]) -> Any:
-    """How many decimal digits of a value an error bound leaves, a float for one point."""
+    """Return the decimal digits that an error bound leaves of a value, a float for one point."""
     with np.errstate(all="ignore"):
         lost = np.where(bound == 0.0, 0.0, bound / np.abs(f))
         return _shaped(np.clip(-np.log10(lost), 0.0, MOST_DIGITS), shape)

@@ -18,9 +18,9 @@ from ..mechanism.own import Definition
 from ..runtime.kernels import KernelKey
 from ..runtime.threads import fill_reduced
 from ..runtime.tiers import COMPILED, tier_of
-from .fold import Field, combined, field_of, folded, pieces
+from .axes import Outer
+from .in_memory import Field, combined, field_of, folded, pieces
 from .labels import Output, attributes, input_attributes, side_attributes
-from .outer import Outer
 from .points import Points, points_of
 from .reductions import Chain, Reductions, chain_name, extremes_at_end, method_of
 from .sides import sides_of

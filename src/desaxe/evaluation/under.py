@@ -21,7 +21,7 @@ from ..runtime.kernels import KernelKey, key_of, plain_of
 from ..runtime.request import Request
 from ..runtime.threads import run_in_blocks
 from ..runtime.tiers import forced_tier
-from .outer import Outer, first_joined, join_from
+from .axes import Outer, first_joined, join_from
 from .under_request import LEAST, are_extreme_under, table_arrays, under_loads
 
 Array = NDArray[Any]

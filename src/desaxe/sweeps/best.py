@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..evaluation.axes import outer_of
 from ..evaluation.evaluate import evaluate
 from ..evaluation.labels import attributes, input_attributes, labelled, with_loads
-from ..evaluation.outer import outer_of
 from ..evaluation.plan import Plan, Step, computed, plan_of
 from ..evaluation.points import points_of
 from ..evaluation.reductions import ALLOWED, Reduction, kind_of, reductions_of

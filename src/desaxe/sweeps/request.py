@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from numpy.typing import NDArray
 
 from ..definitions.tables import text_of
-from ..evaluation.outer import Outer, outer_of
+from ..evaluation.axes import Outer, outer_of
 from ..evaluation.plan import Block, Plan, margin_of, plan_of
 from ..evaluation.reductions import Reductions, names_reduced, reductions_of
 from ..mechanism.program import digest

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...evaluation.outer import outer_of
+from ...evaluation.axes import outer_of
 from ...evaluation.plan import Plan, plan_of
 from ...support.progress import Steps
 from ..content import Content

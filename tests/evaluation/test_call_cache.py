@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.evaluation import arrays, planned
+from desaxe.evaluation import arrays, call_cache
 
 SIZES = {"AB": 0.125, "BC": 0.35, "omega0": 157.08}
 NAMES = ["V_C", "a_C", "status"]
@@ -16,13 +16,13 @@ def both(monkeypatch):
 
     Plans are made anew: one that refused a test's points takes no other test's either.
     """
-    monkeypatch.setattr(planned, "_CALLS", {})
+    monkeypatch.setattr(call_cache, "_CALLS", {})
 
     def run(names, **inputs):
         taken = []
 
         def watched(*call):
-            found = planned.planned(*call)
+            found = call_cache.planned(*call)
             taken.append(found is not None)
             return found
 
@@ -105,7 +105,7 @@ def test_memory_of_the_caller_is_filled_or_left_to_the_general_way(both, monkeyp
     taken = []
 
     def watched(*call):
-        taken.append(planned.planned(*call))
+        taken.append(call_cache.planned(*call))
         return taken[-1]
 
     monkeypatch.setattr(arrays, "planned", watched)
