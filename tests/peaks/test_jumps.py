@@ -194,7 +194,7 @@ def moved(draw, top, parameter):
 @pytest.mark.usefixtures("numpy")
 def test_the_gradient_moves_with_the_jump():
     checked = 0
-    for seed in range(cases(20, 200, 1000)):
+    for seed in range(cases(7, 200, 1000)):
         draw = Draw(30_000 + seed)
         draw.name, draw.kind, draw.theta = ("T_in", "F_C_Y", "N_C")[seed % 3], "max", (0.0, 2 * pi)
         found = dx.peak(draw.name, kind="max", theta=draw.theta, **draw.given)
