@@ -11,24 +11,13 @@ tables  parts one after the other, behind the places at which each begins and th
 
 from __future__ import annotations
 
-from math import inf, nan
+from math import inf
 from typing import TYPE_CHECKING
 
-from numpy import empty, int64, uint64
+from numpy import empty, int64
 
 if TYPE_CHECKING:
     from typing import Any
-
-    def score(kind: int, value: float) -> float:
-        """The objective: |value|, value or -value, to be maximised."""
-
-    def highest(
-        kind: int, width: float, per_width: float, value_a: float, value_b: float, a: float, b: float
-    ) -> float:
-        """At most how good an extremum between two nodes can be; NaN where none can be."""
-
-    def inverse(width: float) -> float:
-        """1 / width; 0 where nodes coincide."""
 
 
 def part_of(tables: Any, number: int) -> Any:
@@ -65,28 +54,6 @@ def nodes_of(count: Any, shared: Any, block: Any, tables: Any) -> Any:
     return found
 
 
-def node(nodes: Any, j: Any, i: Any) -> Any:
-    """A node of a design."""
-    return nodes[j, i]
-
-
-def bound(
-    kind: int, count: Any, nodes: Any, value: Any, slope: Any, best: Any, theta: Any, upper: Any
-) -> None:
-    """The best node of each design, and the bounds between nodes: NaN where no extremum is."""
-    for i in range(uint64(count)):
-        best[i], theta[i] = -inf, nan
-    for j in range(nodes.shape[0]):
-        here, row = nodes[j], value[j]
-        for i in range(uint64(count)):
-            new, place, before = score(kind, row[i]), here[i], theta[i]
-            better = new > best[i]
-            best[i] = new if better else best[i]
-            theta[i] = place if better else before
-    for j in range(1, nodes.shape[0]):
-        left, right, row = nodes[j - 1], nodes[j], upper[j]
-        value_a, value_b, slope_a, slope_b = value[j - 1], value[j], slope[j - 1], slope[j]
-        for i in range(uint64(count)):
-            width = right[i] - left[i]
-            top = highest(kind, width, inverse(width), value_a[i], value_b[i], slope_a[i], slope_b[i])
-            row[i] = top if width > 0.0 else nan
+def one(here: Any, i: Any) -> Any:
+    """The node of a design, of a row of nodes."""
+    return here[i]

@@ -80,9 +80,9 @@ def nodes_of(count: Any, shared: Any, block: Any, tables: Any) -> Any:
     return shared
 
 
-def node(nodes: Any, j: Any, i: Any) -> Any:
-    """A node of a design."""
-    return nodes[j]
+def one(here: Any, i: Any) -> Any:
+    """The node of a design, of those that share it."""
+    return here
 
 
 def inverse(width: float) -> float:
@@ -114,16 +114,17 @@ def bound(
     for j in range(nodes.shape[0]):
         here, row = nodes[j], value[j]
         for i in range(uint64(count)):
-            new = score(kind, row[i])
+            new, place, before = score(kind, row[i]), one(here, i), theta[i]
             better = new > best[i]
             best[i] = new if better else best[i]
-            theta[i] = here if better else theta[i]
+            theta[i] = place if better else before
     for j in range(1, nodes.shape[0]):
-        width = nodes[j] - nodes[j - 1]
-        per_width = inverse(width)
-        value_a, value_b, slope_a, slope_b, row = value[j - 1], value[j], slope[j - 1], slope[j], upper[j]
+        left, right, row = nodes[j - 1], nodes[j], upper[j]
+        value_a, value_b, slope_a, slope_b = value[j - 1], value[j], slope[j - 1], slope[j]
         for i in range(uint64(count)):
-            row[i] = highest(kind, width, per_width, value_a[i], value_b[i], slope_a[i], slope_b[i])
+            width = one(right, i) - one(left, i)
+            top = highest(kind, width, inverse(width), value_a[i], value_b[i], slope_a[i], slope_b[i])
+            row[i] = top if width > 0.0 else nan
 
 
 def candidates(count: Any, nodes: Any, upper: Any, best: Any, places: Any, owners: Any) -> int:
@@ -141,8 +142,8 @@ def interior(count: Any, nodes: Any, places: Any, owners: Any, slope: Any, theta
     """Three angles inside of each interval: even, or graded towards an end that is flat."""
     for c in range(count):
         j, i = places[c], owners[c]
-        low = node(nodes, j, i)
-        width = node(nodes, j + 1, i) - low
+        low = one(nodes[j], i)
+        width = one(nodes[j + 1], i) - low
         a, b = fabs(slope[j, i]), fabs(slope[j + 1, i])
         even[c] = 0 if a < FLAT * b or b < FLAT * a else 1
         if even[c] == 1:
@@ -162,9 +163,9 @@ def brackets(
     found = 0
     for c in range(count):
         j, i = places[c], owners[c]
-        low, before, last = node(nodes, j, i), slope[j, i], slope[j + 1, i]
+        low, before, last = one(nodes[j], i), slope[j, i], slope[j + 1, i]
         for k in range(4):
-            high = thetas[k, c] if k < 3 else node(nodes, j + 1, i)
+            high = thetas[k, c] if k < 3 else one(nodes[j + 1], i)
             after = slopes[k, c] if k < 3 else last
             if (before > 0.0) != (after > 0.0) and before == before and after == after:
                 roots[LOW, found], roots[HIGH, found] = low, high
