@@ -80,12 +80,8 @@ def test_machine_code_finds_what_numpy_finds_for_any_table(over, kind, both_ways
         alike += require_equal(found, by_numpy, np.nanmax(np.abs(by_numpy["value"]))).sum()
         part = {n: v[5:9] if isinstance(v, np.ndarray) else v for n, v in given.items()}
         again = peaks(monkeypatch, "compiled", "T_in", {**part, "threads": 1})
-        for key in ("theta", "side", "status"):
+        for key in ("value", "theta", "side", "status"):
             np.testing.assert_array_equal(again[key], found[key][5:9], err_msg=key)
-        # A value at a jump is that of `evaluate`, which answers one point by another tier than several.
-        at_jump = found["side"][5:9] != 0
-        np.testing.assert_array_equal(again["value"][~at_jump], found["value"][5:9][~at_jump])
-        np.testing.assert_allclose(again["value"], found["value"][5:9], rtol=1e-15)
     assert len(kept) == 1
     assert alike
 

@@ -28,17 +28,12 @@ KEPT = {
 
 
 class Jumps(NamedTuple):
-    """The jumps next to extrema: the designs, the first angle after each, the extremum's side, what keeps it.
-
-    value, slope   on that side
-    """
+    """The jumps next to extrema: designs, the first angle after each, the extremum's side, what keeps it."""
 
     rows: Rows
     starts: Array
     sides: NDArray[np.int8]
     kinds: NDArray[np.int8]
-    value: Array
-    slope: Array
 
 
 def at_jumps(
@@ -78,11 +73,9 @@ def _complete(values: Values, kind: int, jumps: Jumps, theta: Array, out: Array)
     turning = (jumps.kinds == TURNING) & values.designs.rubs
     if turning.any():
         there[turning] = _certain(values, rows[turning], there[turning], jumps.sides[turning])
-    first = np.where(jumps.sides > 0, jumps.starts, np.nextafter(jumps.starts, -inf))
-    theta[rows], out[1, rows] = there, jumps.slope
-    out[0, rows] = jumps.value + jumps.slope * (there - first)
-    moved = np.maximum(np.abs(there - first), np.abs(there - before))
-    far = (moved > ROUNDED * np.spacing(1.0 + np.abs(before))) | values.designs.rubs
+    theta[rows] = there
+    out[0, rows] += out[1, rows] * (there - before)
+    far = (np.abs(there - before) > ROUNDED * np.spacing(1.0 + np.abs(before))) | values.designs.rubs
     if far.any():
         rows = rows[far]
         new = np.array(values.at(len(out), rows, there[far], values.course.pieces(rows, before[far])))
@@ -110,9 +103,7 @@ def _jumps(values: Values, theta: Array) -> Jumps | None:
     apart = np.flatnonzero(~(np.abs(value[0] - value[1]) <= most))
     order = apart[np.lexsort((sides[apart], rows[apart]))]
     last = order[np.append(rows[order][1:] != rows[order][:-1], True)[: order.size]]
-    own = np.where(sides[last] > 0, value[1, last], value[0, last])
-    own_slope = np.where(sides[last] > 0, slope[1, last], slope[0, last])
-    return Jumps(rows[last], starts[last], sides[last], kinds[places[last]], own, own_slope)
+    return Jumps(rows[last], starts[last], sides[last], kinds[places[last]])
 
 
 def _nearest(values: Values, jumps: Jumps) -> Array:
