@@ -172,6 +172,8 @@ def first_edges(designs: Designs, tolerance: float) -> Array:
     free, period = designs.half[:, None] == 0.0, designs.period
     count = ceil(FIRST * tolerance ** (-1.0 / NODES)) * round(period / TURN)
     steps = np.arange(count + 1) / count
+    if free.all() and not designs.tables:
+        return start + period * steps
     edges = [start, np.where(free, start + period * steps, pi * steps - 0.5 * pi)]
     if designs.tables:
         edges.append(_meeting(designs, start, period))
