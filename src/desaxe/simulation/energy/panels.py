@@ -173,7 +173,7 @@ def first_edges(designs: Designs, tolerance: float) -> Array:
     count = ceil(FIRST * tolerance ** (-1.0 / NODES)) * round(period / TURN)
     steps = np.arange(count + 1) / count
     if free.all() and not designs.tables:
-        return start + period * steps
+        return np.asarray(start + period * steps)
     edges = [start, np.where(free, start + period * steps, pi * steps - 0.5 * pi)]
     if designs.tables:
         edges.append(_meeting(designs, start, period))
