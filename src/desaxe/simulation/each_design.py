@@ -82,16 +82,30 @@ def simulate_each(
             column_of[row] = found[name]
 
     motion = [histories[name] for name in ("theta", "omega", "alpha")]
-    if not wrt and method in (None, ENERGY) and how[2] == np.inf and tables_alone(varying, arrays["mu"]):
+    if (
+        method in (None, ENERGY)
+        and how[2] == np.inf
+        and "mu" not in wrt
+        and tables_alone(varying, arrays["mu"])
+    ):
         scalars = {n: float(array) if array.ndim == 0 else array for n, array in arrays.items() if n != "mu"}
         states = np.where(status == NO_START, NO_START, -1).astype(np.int8)
         told_numbers = np.full((size, 4), np.nan)
-        designs = designs_of({**scalars, **varying}, flat, setup, branch)
-        by_energy(designs, t, np.array(how), (*motion, states, told_numbers), threads, deadline)
+        designs = designs_of({**scalars, **varying}, flat, setup, branch)._replace(wrt=tuple(wrt))
+        slopes = [np.full((size, len(wrt), t.size), np.nan) for _ in range(2)]
+        slopes += [np.full((size, len(wrt)), np.nan) for _ in range(2)]
+        by_energy(designs, t, np.array(how), (*motion, states, told_numbers), threads, deadline, slopes)
         done = np.flatnonzero((states >= 0) & (states != NO_START))
         status[done], ways[done], rounded[done] = states[done], ENERGY, told_numbers[done, 3]
         for name, column in zip(("t_last", "energy_residual", "work"), told_numbers.T, strict=False):
             numbers[name][done] = column[done]
+        for k, p in enumerate(wrt):
+            for name, values in zip(("theta", "omega", "t_last", "work"), slopes, strict=True):
+                table = numbers if values.ndim == 2 else histories
+                table[f"{name}_wrt_{p}"][done] = values[done, k]
+        known = np.isfinite(slopes[0]).sum(axis=2) >= np.isfinite(motion[0]).sum(axis=1)[:, None]
+        known &= np.isfinite(slopes[3])
+        without += [row for row in done.tolist() if not known[row].all()]
         if names and done.size:
             state = dict(zip(("theta", "omega", "alpha"), (history[done] for history in motion), strict=True))
             inputs = {n: array[done, None] for n, array in flat.items() if n not in STARTS}

@@ -223,9 +223,18 @@ def designs_of(scalars: Mapping[str, Any], flat: Mapping[str, Array], setup: Arr
 
 
 def by_energy(
-    designs: Designs, t: Array, limits: Array, outs: Sequence[Any], threads: int | None, deadline: Deadline
+    designs: Designs,
+    t: Array,
+    limits: Array,
+    outs: Sequence[Any],
+    threads: int | None,
+    deadline: Deadline,
+    slopes: Sequence[Array] = (),
 ) -> None:
-    """Fill in the motions that have an energy form; the status of the others stays below 0."""
+    """Fill in the motions that have an energy form; the status of the others stays below 0.
+
+    slopes   where designs have parameters of derivatives: as `Histories`
+    """
     status, most = outs[3], limits[MOST_STEPS:].copy()
     rows = np.flatnonzero((status < 0) & served(designs))
     times, brief = np.append(t, limits[1]), np.minimum(most, BRIEF)
@@ -242,6 +251,8 @@ def by_energy(
         for out, values in zip(outs[:3], found[:3], strict=True):
             out[own[there]] = values[there, :-1]
         status[own[there]], outs[4][own[there], :BY_PANELS] = found.status[there], found.numbers[there]
+        for out, values in zip(slopes, found.by or (), strict=False):
+            out[own[there]] = values[there] if values.ndim == 2 else values[there, :, :-1]
         return unfinished
 
     if 0 < rows.size <= LONGEST_BLOCK:  # a thread of its own would take longer than short motions do

@@ -134,10 +134,11 @@ def simulate(
     arrays that broadcast like NumPy. Without friction they run in compiled code: under numbers and tables
     that repeat after at most four turns in the energy form; under a torque function, which numba compiles, by
     panels; under numbers where these do not serve, such as at an unstable equilibrium, by DOP853. All others,
-    also those with `until` or wrt, run one after the other. Histories then have the shape (designs...,
-    times), 101 instants without `times`, NaN where a motion has ended. status (also 6: bad input, no
-    mechanism at the start, or not the dead centre that a load is over), energy_residual, work, t_last and
-    method have the shape of the designs; there are no events and no solution.
+    also those with `until`, and with wrt where there is no energy form, run one after the other. Histories
+    then have the shape (designs..., times), 101 instants without `times`, NaN where a motion has ended.
+    status (also 6: bad input, no mechanism at the start, or not the dead centre that a load is over),
+    energy_residual, work, t_last and method have the shape of the designs; there are no events and no
+    solution.
 
     Equation: M_eff alpha + M_eff' omega^2/2 = torque - static torque - friction (paper C, section 3).
     Raises ValueError where no motion can start (no mechanism there, no inertia) and for a bad value.
@@ -164,8 +165,8 @@ def simulate(
     if method == ENERGY:
         options = {"max_step": max_step is not None, "atol": atol is not None, "until": bool(angles)}
         refuse({"torque": torque, "F_X": F_X, "F_Y": F_Y}, given["mu"], options)
-        if by or not several:
-            raise ValueError("method = 'energy': it is for many designs, without wrt=")
+        if "mu" in by or not several:
+            raise ValueError("method = 'energy': it is for many designs, and not for wrt = 'mu'")
     elif method == PANELS and (by or not several):
         raise ValueError("method = 'panels': it is for many designs, without wrt=")
     if several:

@@ -10,13 +10,21 @@ from ...compiler.languages.numba.module import numba_parts
 from ...runtime.modules import Native, native
 from ...support.panels import NODE, NODES, RUNNING, TO_COEFFICIENTS, WEIGHT, Array
 
-FILES = tuple(Path(__file__).with_name(name) for name in ("follow.py", "pieces.py"))
-_SIGNATURE = """row, rows = types.float64[::1], types.float64[:, ::1]
+FILES = tuple(Path(__file__).with_name(name) for name in ("follow.py", "pieces.py", "varied.py"))
+_MOTIONS = """row, rows = types.float64[::1], types.float64[:, ::1]
 signature = types.void(
     rows, rows, rows, rows, rows, rows, row, row, row, row, row, rows, rows, rows, rows, rows, rows,
     types.int8[::1], types.int8[:, ::1], rows
 )
 function = motions.py_func
+"""
+_VARIATIONS = """row, rows, blocks = types.float64[::1], types.float64[:, ::1], types.float64[:, :, ::1]
+signature = types.void(
+    rows, rows, rows, rows, rows, rows, blocks, blocks, blocks, types.float64[:, :, :, ::1], blocks, blocks,
+    rows, row, row, row, row, row, rows, rows, rows, rows, types.float64[:, :, :, ::1], blocks,
+    types.int8[::1], types.int8[:, ::1], rows
+)
+function = variations.py_func
 """
 
 
@@ -24,7 +32,14 @@ function = motions.py_func
 def kernel() -> Native:
     """The machine code, from memory, from disk, or compiled now."""
     docstring = "desaxe: motions in their energy form."
-    return native("energy", module_text(docstring, numba_parts([_SIGNATURE], *FILES)))
+    return native("energy", module_text(docstring, numba_parts([_MOTIONS], *FILES)))
+
+
+@cache
+def variations() -> Native:
+    """The same of their derivatives by parameters."""
+    docstring = "desaxe: motions in their energy form and their derivatives by parameters."
+    return native("energy_by", module_text(docstring, numba_parts([_VARIATIONS], *FILES)))
 
 
 def _means() -> Array:

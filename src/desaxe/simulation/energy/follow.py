@@ -19,7 +19,8 @@ most     pieces: an array of one, which another thread may set to 0
 tables   nodes; weights; columns by which values become Legendre coefficients, running integrals, and means
          of 2 s f(s) from 0 to xi
 kept     pieces: start, duration, x as c0 + c1 u + c2 u^2, kind, panel counted over turns, way, and the
-         coefficients of dt/du
+         coefficients of dt/du; where there is room, the part of the panel
+         (start, length, what lies beyond) and dt/du at the nodes
 numbers  end, x and energy there, instants reached, pieces kept, pieces
 """
 
@@ -248,6 +249,10 @@ def follow(
                 keep(kept[stored], start, duration, a, span, kind, half, middle)
                 kept[stored, 6], kept[stored, 7] = panel + panels * turn, way
                 combined(rows[0], tables[2], kept[stored, 8:])
+                if kept.shape[1] > 24:
+                    kept[stored, 24], kept[stored, 25], kept[stored, 26] = a, span, over
+                    for k in range(16):
+                        kept[stored, 27 + k] = rows[0, k]
                 while row < count and times[row] <= t:
                     which[row], since[row] = stored, times[row] - start
                     row += 1

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ...support.panels import NODES
 from ..residual import ROUNDED
 from ..result import FAILED, LIMIT
+from .by_parameters import Histories, Sensitivities, histories_of, sensitivities_of
 from .compiled import TABLES, kernel
 from .panels import Designs, Fields, fields_of, first_edges, halved
 
@@ -15,6 +16,7 @@ Array = NDArray[np.float64]
 PIECE = 24  # numbers of a piece: see `follow`
 TOO_WIDE, NOT_HERE = 10, 11  # statuses of `follow`
 ROUNDS = 14  # halvings of a panel
+RESOLVED = 4  # after so many what is left of derivatives by parameters is rounding
 LOST_DIGITS = 0.03  # of dtheta/dx at most: of angles so near to a limit angle
 FINEST, COARSEST = 3e-14, 1e-6  # how small the last terms of series must be at least and at most
 
@@ -30,6 +32,7 @@ class Found(NamedTuple):
     alpha: Array
     status: NDArray[np.int8]
     numbers: Array
+    by: Histories | None = None
 
 
 class Marched(NamedTuple):
@@ -40,6 +43,7 @@ class Marched(NamedTuple):
     status: NDArray[np.int8]
     numbers: Array
     start: dict[str, Array]
+    by: Sensitivities | None = None
 
 
 def follow_many(designs: Designs, times: Array, rtol: float, most: Array) -> Found:
@@ -47,7 +51,7 @@ def follow_many(designs: Designs, times: Array, rtol: float, most: Array) -> Fou
 
     most   pieces of a motion: an array, which another thread may set to 0
     """
-    x, speed, status, numbers, start = _marched(designs, times, rtol, most)
+    x, speed, status, numbers, start, by = _marched(designs, times, rtol, most)
     if (status >= TOO_WIDE).all():
         return Found(x, speed, speed, status, numbers[:, :4])
     limit, short = status == LIMIT, status == FAILED
@@ -88,25 +92,31 @@ def follow_many(designs: Designs, times: Array, rtol: float, most: Array) -> Fou
     scale[still] = 1.0
     rounded = np.where(still, np.inf, ROUNDED * numbers[:, 5] * (1.0 + heaviest / scale))
     told = np.stack([t_last, np.where(still, 0.0, off / scale), work[:, -1], rounded], axis=1)
-    return Found(theta, omega, alpha, status, told)
+    found = Found(theta, omega, alpha, status, told)
+    if by is None:
+        return found
+    motion = {"theta": theta, "omega": omega, "alpha": alpha, **at}
+    return found._replace(by=histories_of(designs, by, x, speed, motion, status))
 
 
 def _marched(designs: Designs, times: Array, rtol: float, most: Array) -> Marched:
     """The motions in their coordinates; designs whose panels are too wide again, on halves of them."""
     tolerance = min(max(rtol, FINEST), COARSEST)
     edges = first_edges(designs, tolerance)
-    found, bad = _tried(designs, fields_of(designs, edges), times, tolerance, most)
+    found, bad = _tried(designs, edges, times, tolerance, most, False)
     rows = np.flatnonzero(found.status == TOO_WIDE)
     edges, bad = edges[rows], bad[rows]
-    for _ in range(ROUNDS):
+    for halving in range(ROUNDS):
         if not rows.size:
             return found
         part, edges = designs.some(rows), halved(edges, bad)
-        answer, bad = _tried(part, fields_of(part, edges), times, tolerance, most)
+        answer, bad = _tried(part, edges, times, tolerance, most, halving >= RESOLVED)
         found.x[rows], found.speed[rows] = answer.x, answer.speed
         found.status[rows], found.numbers[rows] = answer.status, answer.numbers
         for name, values in answer.start.items():
             found.start[name][rows] = values
+        for own, values in zip(found.by or (), answer.by or (), strict=True):
+            own[rows] = values
         again = answer.status == TOO_WIDE
         rows, edges, bad = rows[again], edges[again], bad[again]
     found.status[rows] = NOT_HERE
@@ -114,9 +124,13 @@ def _marched(designs: Designs, times: Array, rtol: float, most: Array) -> Marche
 
 
 def _tried(
-    designs: Designs, fields: Fields, times: Array, tolerance: float, most: Array
+    designs: Designs, edges: Array, times: Array, tolerance: float, most: Array, last: bool
 ) -> tuple[Marched, NDArray[np.int8]]:
-    """The motions on these panels, and the panels that are too wide."""
+    """The motions on panels between these edges, and the panels that are too wide.
+
+    last   to take derivatives by parameters as resolved
+    """
+    fields = fields_of(designs, edges)
     count, start = len(fields.edges), fields.start
     begin = np.argmax(fields.edges == designs.coordinates(designs.theta0)[:, None], axis=1)
     start["way"] = way = _ways(designs, fields, begin)
@@ -131,7 +145,10 @@ def _tried(
     panels = fields.edges, fields.rough, fields.inertia, fields.push, fields.back
     outs = kept, x, speeds, status, bad, numbers
     kernel()(*panels, setup, times, np.array([tolerance, 0.0]), most, *TABLES, *outs)
-    return Marched(x, speeds, status, numbers, fields.start), bad
+    by = None
+    if designs.wrt:
+        by = sensitivities_of(designs, fields, setup, times, tolerance, most, status, bad, last)
+    return Marched(x, speeds, status, numbers, fields.start, by), bad
 
 
 def _ways(designs: Designs, fields: Fields, begin: NDArray[np.intp]) -> Array:

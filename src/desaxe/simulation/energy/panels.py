@@ -1,6 +1,6 @@
 """Inertia and torque of many designs at the nodes of panels, over the coordinate of their motion."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import ceil, pi
 from typing import Any, NamedTuple
 
@@ -29,6 +29,7 @@ class Designs(NamedTuple):
     torque, force  on crank and slider: arrays, or tables
     middle, half   of the arc between limit angles; half is 0 where the crank turns fully, middle NaN where no
                    inertia grows there
+    wrt            the parameters of derivatives
     """
 
     inputs: Mapping[str, Any]
@@ -39,13 +40,14 @@ class Designs(NamedTuple):
     omega_start: Array
     middle: Array
     half: Array
+    wrt: tuple[str, ...] = ()
 
     def some(self, rows: Any) -> "Designs":
         """The designs of some rows."""
         inputs = {name: v if isinstance(v, float) else v[rows] for name, v in self.inputs.items()}
         torque, force = (v if isinstance(v, Load) else v[rows] for v in (self.torque, self.force))
-        theta0, omega_start, middle, half = (column[rows] for column in self[4:])
-        return Designs(inputs, self.branch, torque, force, theta0, omega_start, middle, half)
+        theta0, omega_start, middle, half = (column[rows] for column in self[4:8])
+        return Designs(inputs, self.branch, torque, force, theta0, omega_start, middle, half, self.wrt)
 
     @property
     def tables(self) -> dict[str, Load]:
@@ -83,7 +85,7 @@ class Designs(NamedTuple):
         """A length of each design."""
         return np.broadcast_to(self.inputs[name], self.theta0.shape)
 
-    def values(self, theta: Array) -> dict[str, Array]:
+    def values(self, theta: Array, names: Sequence[str] = ()) -> dict[str, Array]:
         """The quantities of the designs at rest, each at angles of its own, which are two or more.
 
         Always by the same kernel: no digit hangs on the other designs.
@@ -94,8 +96,8 @@ class Designs(NamedTuple):
             theta = np.repeat(theta, 2, axis=0)
         state: dict[str, Any] = {"theta": theta, "omega": 0.0, "alpha": 0.0, **inputs}
         with compiled_only():
-            names = [*QUANTITIES, "Y_wrt_theta"] if isinstance(self.force, Load) else list(QUANTITIES)
-            found = evaluate(names, branch=self.branch, threads=1, **state)
+            known = [*QUANTITIES, "Y_wrt_theta"] if isinstance(self.force, Load) else list(QUANTITIES)
+            found = evaluate(list(names) or known, branch=self.branch, threads=1, **state)
         return {name: values[: len(self.theta0)] for name, values in found.items()}
 
     def place(self, x: Array) -> tuple[Array, Any]:
@@ -123,6 +125,7 @@ class Fields(NamedTuple):
     back    the torque on the way back
     rough   how exactly they are known: next to a limit angle a rounded angle has lost digits
     start   the quantities at the start
+    found   the quantities at the start and at all nodes
     """
 
     edges: Array
@@ -131,17 +134,24 @@ class Fields(NamedTuple):
     push: Array
     back: Array
     start: dict[str, Array]
+    found: dict[str, Array]
+
+
+def places_of(designs: Designs, edges: Array) -> tuple[Array, Array, Any]:
+    """The coordinates of the start and of all nodes, the angles there, and their slope."""
+    x = np.empty((len(edges), 1 + NODES * (edges.shape[1] - 1)))
+    x[:, 0] = designs.coordinates(designs.theta0)
+    x[:, 1:] = nodes_of(edges[:, :-1], edges[:, 1:]).reshape(len(edges), -1)
+    theta, slope = designs.place(x)
+    if theta is not x:
+        theta[:, 0] = designs.theta0
+    return x, theta, slope
 
 
 def fields_of(designs: Designs, edges: Array) -> Fields:
     """The fields of designs on panels."""
     count = len(edges)
-    x = np.empty((count, 1 + NODES * (edges.shape[1] - 1)))
-    x[:, 0] = designs.coordinates(designs.theta0)
-    x[:, 1:] = nodes_of(edges[:, :-1], edges[:, 1:]).reshape(count, -1)
-    theta, slope = designs.place(x)
-    if theta is not x:
-        theta[:, 0] = designs.theta0
+    _, theta, slope = places_of(designs, edges)
     found = designs.values(theta)
     start = {name: values[:, 0].copy() for name, values in found.items()}
     inertia, push = found["M_eff"], designs.push(theta, found, 1.0)
@@ -152,7 +162,7 @@ def fields_of(designs: Designs, edges: Array) -> Fields:
         rough, same = _rough(designs, edges), back is push
         inertia, push = inertia * slope * slope, push * slope
         back = push if same else back * slope
-    return Fields(edges, rough, np.ascontiguousarray(inertia), push, back, start)
+    return Fields(edges, rough, np.ascontiguousarray(inertia), push, back, start, found)
 
 
 def _rough(designs: Designs, edges: Array) -> Array:
