@@ -116,7 +116,7 @@ class Pushed:
         return np.asarray(push)
 
     def by(self, parameter: str) -> Any:
-        """Its slope by a parameter at a fixed crank angle."""
+        """The slope of the generalised torque by a parameter at a fixed crank angle."""
         if parameter in STARTS:
             return 1.0 if parameter == "torque" else 0.0
         found, push = self.found, -self.found[f"T_in_wrt_{parameter}"]
@@ -146,7 +146,7 @@ class Pushed:
 
 
 def _before(values: Array) -> tuple[Array, Array]:
-    """Of values at the start and at nodes: the jump before each panel, and the value where it begins."""
+    """The jump of values before each panel, and the value where it begins."""
     ends = values[:, 1:].reshape(len(values), -1, NODES) @ ENDS.T
     return ends[..., 0] - np.roll(ends[..., 1], 1, axis=1), ends[..., 0]
 

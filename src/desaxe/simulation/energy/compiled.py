@@ -37,7 +37,7 @@ def kernel() -> Native:
 
 @cache
 def variations() -> Native:
-    """The same of their derivatives by parameters."""
+    """The machine code of derivatives by parameters."""
     docstring = "desaxe: motions in their energy form and their derivatives by parameters."
     return native("energy_by", module_text(docstring, numba_parts([_VARIATIONS], *FILES)))
 

@@ -92,7 +92,7 @@ def panel_by(
     of_M: Any, of_Q: Any, M: Any, nodes: Any, half: float, way: float, scale: Any, tolerance: float,
     tables: Any, work: Any,
 ) -> bool:  # fmt: skip
-    """What a motion through a whole panel needs of each parameter; whether M_p and Q_p are resolved on it.
+    """Fill in what a motion through a whole panel needs; whether M_p and Q_p are resolved on it.
 
     work   the integral of Q_p up to each node and up to the end; M_p/M at the nodes in the way of the motion,
            and by how much e has grown there
@@ -179,7 +179,7 @@ def spread(piece: Any, M: Any, Q: Any, series_of: Any, tables: Any, rows: Any) -
 def lay_out(
     piece: Any, half: float, M: Any, Q: Any, bend: Any, tables: Any, series_of: Any, rows: Any, head: Any
 ) -> None:  # fmt: skip
-    """What all parameters share: rows 0, 1, 6, 7 of inertia, torque, M_x, dt/du at the nodes; and `head`.
+    """Fill in what all parameters share: inertia, torque, M_x, dt/du in rows 0, 1, 6, 7, and `head`.
 
     head   half the panel, x_u or the length away from a standstill, Q there; where on the panel it is valid
            that e has been, where the piece ends on it, and where the standstill is
