@@ -202,3 +202,14 @@ def test_what_a_module_cannot_hold_is_refused_by_name(tmp_path):
         dx.compile(scene(-3.0), tmp_path / "press", to="c", tables="arguments")
     with pytest.raises(TypeError, match="is no table"):
         dx.over_theta(np.sin, np.cos).arrays()
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_a_scene_without_open_inputs(form, tmp_path):
+    """A load over the stroke gives it a status of its own, which was folded to a number that is none."""
+    one, point = load("outer both ways", "kinked"), {"theta": 1.0, "omega0": 2.0}
+    lengths = {"ec": 0.01, "AB": 0.04, "BC": 0.064}
+    written = {"outputs": ["T_in"], "mechanism": lengths, "motion": point, "loads": {"F_Y": one}}
+    module = imported(dx.compile(written, tmp_path / "press_fixed.py", **options(form)))
+    found = module.run(*(map(np.array, one.arrays()) if form == "arguments" else ()))
+    assert found == {"T_in": pytest.approx(dx.evaluate("T_in", **lengths, **point, F_Y=one)), "status": 0}
