@@ -181,6 +181,7 @@ COMPLAINTS = {
     "no scene": (["run"], "required: SCENE (see desaxe run --help)"),
     "no such file": (["run", "missing.toml"], "missing.toml: No such file or directory"),
     "no such verdict": (["errata", "--verdict", "maybe"], "unknown verdict 'maybe'"),
+    "no such entry": (["errata", "A-eq99"], "no entry for 'A-eq99'"),
     "no such document": (["errata", "--document", "Z"], "unknown document 'Z'"),
     "two forms": (["errata", "--json", "--markdown"], "not allowed with argument"),
 }

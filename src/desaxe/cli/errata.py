@@ -48,6 +48,8 @@ def _errata(options: argparse.Namespace) -> int:
     from ..errata.search import matching
 
     found = matching(ledger.entries(options.document, options.verdict, options.wrong), options.words)
+    if options.words and not found and not options.json:
+        raise ValueError(f"no entry for {' '.join(options.words)!r}; `desaxe errata --all` lists them")
     picked = bool(options.verdict or options.wrong or options.words)
     chosen = picked or bool(options.document)
     width = shutil.get_terminal_size((100, 24)).columns
