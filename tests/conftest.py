@@ -56,6 +56,7 @@ def pytest_configure(config):
         config.option.loadscopereorder = False  # xdist's own order: the largest file first
     if config.getoption("--thorough"):
         os.environ.setdefault(THOROUGH, "1")
+    _cache.WAIT = 120.0  # a loaded machine compiles slowly for another worker, and a warning is an error here
     if hasattr(config, "workerinput"):
         return
     # Hundreds of processes import the same sources.
