@@ -390,7 +390,7 @@ def variations(
             since, bad[n], work, known, last, numbers[n],
         )  # fmt: skip
         reached, stored = int64(numbers[n, 3]), int64(numbers[n, 4])
-        if found >= 10:
+        if found >= 10 or (found == 4 and status[n] == 0):  # swings that the motion has left out
             status[n] = found
             continue
         if stored == 0:
