@@ -124,14 +124,16 @@ def pytest_collection_modifyitems(config, items):
         items[:] = [item for group in groups for item in group]
 
 
-def pytest_collectstart(collector):
-    if isinstance(collector, pytest.Session):
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection(session):
+    if not session.config.pluginmanager.hasplugin("dsession"):  # which collects nothing itself
         gc.disable()  # until all is collected
 
 
 def pytest_collection_finish():
     """Freeze what is there by now: half a million objects, which take 0.3 s to look through each time."""
     gc.freeze()
+    gc.set_threshold(20_000, 20, 20)
     gc.enable()
 
 
