@@ -191,3 +191,25 @@ def test_the_way_is_chosen_and_told():
         dx.simulate(t_end=0.1, method="energy", **{**designs, "torque": lambda t, theta, omega: 1.0 - omega})
     with pytest.raises(ValueError, match="method = 'energy': max_step= is for an integrator"):
         dx.simulate(t_end=0.1, method="energy", max_step=0.1, **designs)
+
+
+@pytest.mark.sampled
+def test_work_of_a_load_over_the_slider_up_to_limit_angles():
+    """The integral of the load from Y at the start to AB cos theta of one of the limit angles."""
+    places, force = np.linspace(-0.4, 0.4, 9), np.random.default_rng(2).uniform(-30.0, 30.0, 9)
+    designs = {**drawn(cases(40, 200, 2_000), 5), "torque": 0.0, "F_Y": dx.over_Y(places, force)}
+    found = dx.simulate(t_end=2.0, times=[2.0], **designs)
+    limit = (found["status"] == 2) & (found["method"] == "energy")
+    assert limit.sum() >= 3
+    AB, ec, BC, theta0 = (designs[name][limit] for name in ("AB", "ec", "BC", "theta0"))
+    sums = np.append(0.0, np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(places)))
+
+    def integral(Y):
+        k = np.clip(np.searchsorted(places, Y) - 1, 0, len(places) - 2)
+        return sums[k] + (Y - places[k]) * 0.5 * (force[k] + np.interp(Y, places, force))
+
+    sines = np.stack([ec - BC, ec + BC]) / AB
+    ends = np.sqrt(np.where(np.abs(sines) <= 1.0, 1.0 - sines**2, np.nan)) * AB
+    start = dx.evaluate("Y", theta=theta0, AB=AB, ec=ec, BC=BC)
+    ways = integral(np.nan_to_num(np.concatenate([ends, -ends]), nan=9.0)) - integral(start)
+    assert np.abs(ways - found["work"][limit]).min(axis=0).max() < 1e-9

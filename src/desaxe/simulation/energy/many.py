@@ -17,6 +17,7 @@ PIECE = 24  # numbers of a piece: see `follow`
 TOO_WIDE, NOT_HERE = 10, 11  # statuses of `follow`
 ROUNDS = 14  # halvings of a panel
 RESOLVED = 4  # after so many what is left of derivatives by parameters is rounding
+WITHIN = np.array([1e-13, 1e-9])  # rad: from a limit angle
 LOST_DIGITS = 0.03  # of dtheta/dx at most: of angles so near to a limit angle
 FINEST, COARSEST = 3e-14, 1e-6  # how small the last terms of series must be at least and at most
 
@@ -61,8 +62,9 @@ def follow_many(designs: Designs, times: Array, rtol: float, most: Array) -> Fou
     theta, slope = designs.place(x)
     at, omega = designs.values(theta), speed * slope
     inertia, slider = at["M_eff"], at["Y"]
-    # There S = 0, of which Y would keep half its digits only.
-    slider[limit, -1] = (designs.length("AB") * np.cos(theta[:, -1]))[limit]
+    if limit.any():
+        ends = _at_limits(designs.some(limit), theta[limit, -1])
+        slider[limit, -1], at["potential_energy"][limit, -1] = ends
     half_square = 0.5 * omega * omega
     with np.errstate(invalid="ignore"):
         push = designs.push(theta, at, np.where(omega == 0.0, start["way"][:, None], omega))
@@ -97,6 +99,20 @@ def follow_many(designs: Designs, times: Array, rtol: float, most: Array) -> Fou
         return found
     motion = {"theta": theta, "omega": omega, "alpha": alpha, **at}
     return found._replace(by=histories_of(designs, by, x, speed, motion, status))
+
+
+def _at_limits(designs: Designs, theta: Array) -> tuple[Array, Array]:
+    """Y and potential energy of designs at limit angles, where S = 0.
+
+    At the double next to such an angle Y keeps half of its digits, or is none. But for what the pin moves
+    the energy is linear in Y: that of an angle just within the motion is carried on to the true Y.
+    """
+    inward = np.copysign(1.0, np.nan_to_num(designs.middle) - theta)
+    near = designs.values(theta[:, None] + inward[:, None] * WITHIN)
+    known, energy = near["Y"], near["potential_energy"]
+    by_Y = (energy[:, 1] - energy[:, 0]) / (known[:, 1] - known[:, 0])
+    Y = designs.length("AB") * np.cos(theta)
+    return Y, energy[:, 0] + by_Y * (Y - known[:, 0])
 
 
 def _marched(designs: Designs, times: Array, rtol: float, most: Array) -> Marched:
