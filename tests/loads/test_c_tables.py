@@ -128,6 +128,14 @@ def test_no_table_leaves_the_state_and_null_is_none(kind, presses):
         assert np.isfinite(out[5])  # Y
 
 
+@pytest.mark.parametrize(("kind", "ways"), [("Y", 1), (ONE, 2)])
+def test_the_header_says_how_long_a_table_is(kind, ways, tmp_path):
+    place = dx.compile(written(kind), tmp_path / "press", to="c", tables="arguments")
+    said = " ".join((place / "press.h").read_text(encoding="utf-8").split())
+    assert f"c has room for {4 * ways}*(n + 1) numbers" in said
+    assert ("a NULL (inward, too)" in said) == (ways == 2)
+
+
 @pytest.mark.parametrize("kind", SOME)
 def test_tables_from_points_have_the_digits_of_python(kind, presses):
     press, rng = presses(kind), np.random.default_rng(7)

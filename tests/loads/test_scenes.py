@@ -91,7 +91,11 @@ def test_over_Y_and_objects_in_a_mapping():
 REFUSED = {
     '{ over_theta = "nowhere.csv" }': 'loads.F_Y.over_theta = "nowhere.csv": No such file',
     "{ over_theta = [[0, 1], [1, 2, 3]] }": "points such as",
-    "{ over_theta = [0, 1] }": "points such as",
+    "{ over_theta = [0, 1] }": "over_theta: point 1 has 1 number: expected points such as [[0, 0], [1.57",
+    '{ over_stroke = [[0, 1, 0], [5, 1, 0], [9, 1]], dead_centre = "outer" }': "point 3 has 2 numbers",
+    "{ over_Y = [[0, 1], [5, 1, 0], [6, 1], [7, 0, 0], [9, 0]] }": "over_Y: point 2 has 3 numbers, most 2",
+    "{ over_Y = [[0, -400, 1, 2], [5, -300, 0, 3]] }": "point 1 has 4 numbers: expected points such as [[0.2",
+    "{ over_Y = [] }": "loads.F_Y: over_Y: no points: expected points such as [[0.2",
     "{ over_theta = [[0, 1], [9, 2]] }": "the angles go over 9 rad",
     "{ over_theta = [[0, 1], [1, 2]], step = 3 }": "loads.F_Y.step = 3.0: it has no place beside over_theta",
     '{ start = 0, stop = 1, num = 3, kind = "linear" }': 'loads.F_Y.kind = "linear": it belongs to',

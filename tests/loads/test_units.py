@@ -129,10 +129,34 @@ def test_units_that_are_those_of_the_machine_are_no_doubt():
 def test_a_file_of_a_scene_in_other_units_says_its_own(tmp_path):
     (tmp_path / "press.csv").write_text("225, 0\n475, -2\n", encoding="utf-8")
     file = str(tmp_path / "press.csv")
-    with pytest.raises(SceneError, match=BOTH.format("over_Y")):
+    said = r'^scene: loads\.F_Y\.over_Y = ".*press\.csv": .*`Y \[mm\], outward \[kN\]`, or by Y = "mm"'
+    with pytest.raises(SceneError, match=said):
         dx.scene({**SCENE, "units": UNITS, "loads": {"F_Y": {"over_Y": file}}})
     told = dx.scene({**SCENE, "units": UNITS, "loads": {"F_Y": {"over_Y": file, "Y": "mm", "value": "kN"}}})
     assert told.inputs["F_Y"] == dx.over_Y(["225 mm", "475 mm"], ["0 kN", "-2 kN"])
+
+
+@pytest.mark.parametrize("over", ["over_theta", "over_Y", "over_stroke"])
+def test_the_heading_that_is_proposed_for_a_file_serves(over, tmp_path):
+    file, lines = tmp_path / "die.csv", "0.1, -4, 0\n2, -3, 0\n5, 0.5, 0\n"
+    load = {over: str(file), "kind": "linear"} | ({"dead_centre": "outer"} if over == "over_stroke" else {})
+    scene = {**SCENE, "units": UNITS, "loads": {"F_Y": load}}
+    file.write_text("place, force, back\n" + lines, encoding="utf-8")
+    with pytest.raises(SceneError, match=r"die\.csv") as told:
+        dx.scene(scene)
+    assert str(told.value).startswith(f"scene: loads.F_Y.{over} = ")
+    file.write_text(str(told.value).split("`")[1] + "\n" + lines, encoding="utf-8")
+    wanted = dx.scene(scene).inputs["F_Y"]
+    file.write_text("place, force, back\n" + lines, encoding="utf-8")
+    keys = str(told.value).split(" or by ")[1].removesuffix(" beside the file").split(", ")
+    load |= {key: unit.strip('"') for key, unit in (one.split(" = ") for one in keys)}
+    assert dx.scene(scene).inputs["F_Y"] == wanted
+
+
+def test_a_load_in_the_units_of_nothing_names_its_input_once():
+    load = dx.over_Y([0.2, 0.3], [-80, 0])
+    with pytest.raises(SceneError, match=r"^scene: loads\.F_Y: plain numbers of desaxe\.over_Y"):
+        dx.scene({**SCENE, "units": UNITS, "loads": {"F_Y": load}})
 
 
 def test_the_period_of_a_table_is_in_the_unit_of_its_angles():

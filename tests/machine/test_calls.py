@@ -1,6 +1,7 @@
 """Methods that are more than one formula: fits, prepared callables, plans, modules, syntheses, scenes."""
 
 import importlib.util
+import inspect
 import math
 
 import numpy as np
@@ -82,6 +83,18 @@ def test_plans_and_modules(tmp_path):
     assert point["a_C"] == pytest.approx(dx.evaluate("a_C", theta=1.0, **SI), rel=1e-12)
     assert PRESS.compile(tmp_path / "press", "a_C", to="c", theta=[0.0, 1.0]).is_dir()
     dx.compile(scene, path, check=True)
+
+
+def test_every_option_of_compile_is_one_of_the_machine(tmp_path):
+    options = inspect.signature(dx.compile).parameters
+    own = inspect.signature(dx.Machine.compile).parameters
+    for name in options.keys() - {"scene"}:
+        assert own[name] == options[name].replace(annotation=own[name].annotation)
+    press = PRESS.replace(F_Y=dx.over_stroke([0, 0.01], [-400, 0], dead_centre="outer"))
+    press.compile(tmp_path / "press.py", "T_in", theta=[0.0, 1.0], tables="arguments")
+    dx.compile(press.scene("T_in", theta=[0.0, 1.0]), tmp_path / "press.py", tables="arguments", check=True)
+    with pytest.raises(ValueError, match="tables = 1: it is one of frozen, arguments"):
+        press.compile(tmp_path / "press.py", "T_in", tables=1)
 
 
 @pytest.mark.thorough

@@ -50,6 +50,13 @@ def as_load(name: str, value: Any) -> Load:
     return FunctionOverTheta(value)
 
 
+def plain_units(name: str, load: Any, units: UnitSystem) -> dict[str, str]:
+    """Place or "value" -> the unit that plain numbers of a load could be meant in, where it is not SI."""
+    plain = getattr(load, "plain", ())
+    there = {place: units.of(name if place == "value" else place) for place in plain}
+    return {place: conversion.unit for place, conversion in there.items() if conversion.si != 1}
+
+
 def settled(name: str, load: Any, units: UnitSystem) -> Any:
     """A load as it enters a machine or a scene, in which it is in SI units from then on.
 
@@ -57,8 +64,7 @@ def settled(name: str, load: Any, units: UnitSystem) -> Any:
     """
     if not getattr(load, "plain", ()):
         return load
-    there = [units.of(name if place == "value" else place) for place in load.plain]
-    other = [conversion.unit for conversion in there if conversion.si != 1]
+    other = plain_units(name, load, units).values()
     if other:
         call = load.call if hasattr(load, "call") else f"over_{load.over}"
         texts = ", ".join(f'"... {unit}"' for unit in other)

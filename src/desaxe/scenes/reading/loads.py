@@ -6,7 +6,9 @@ from typing import Any
 
 from ...loads.load import Load
 from ...loads.motors import Motor
+from ...loads.resolve import plain_units
 from ...loads.tabulated import over_stroke, over_theta, over_Y
+from ...mechanism.unit_system import UnitSystem
 from ...support.extras import MissingExtraError
 from ..schema import Range, SceneError, Varying, shown
 from .values import Value, values_of
@@ -21,6 +23,11 @@ OWN = {
 }
 COLUMNS = {"over_theta": ("values",), "over_Y": WAYS, "over_stroke": WAYS}
 UNITS = {"over_theta": "theta", "over_Y": "Y", "over_stroke": "distance"}
+POINTS = {
+    "over_theta": "[[0, 0], [1.57, -400]]",
+    "over_Y": "[[0.2, 0], [0.37, -400]], or [[0.2, 0, 0], [0.37, -400, -50]] with the way inward",
+    "over_stroke": "[[0, -400], [0.005, 0]], or [[0, -400, 0], [0.005, 0, 0]] with the way inward",
+}
 MAKE: dict[str, Any] = {"over_theta": over_theta, "over_Y": over_Y, "over_stroke": over_stroke}
 
 
@@ -74,6 +81,25 @@ def load_of(key: str, written: Varying, folder: Path | None) -> Load:
         raise SceneError(f"{key}.{over} = {shown(source)}: {error.strerror or error}") from None
 
 
+def require_units_of_file(key: str, name: str, written: Varying, load: Any, units: UnitSystem) -> None:
+    """SceneError for plain numbers in a load's file, which are in SI units, in a scene in other ones."""
+    over = next((over for over in OWN if isinstance(getattr(written, over), str)), None)
+    needed = plain_units(name, load, units) if over and written.period is None else {}
+    if over is None or not needed:
+        return
+    force, place = needed.pop("value", ""), next(iter(needed.values()), "")
+    both = getattr(load, "inward", None) is not None
+    heads = (name,) if over == "over_theta" else WAYS if both else WAYS[:1]
+    heading = [(UNITS[over], place), *((head, force) for head in heads)]
+    told = ", ".join(f"{head} [{unit}]" if unit else head for head, unit in heading)
+    beside = ", ".join(f'{n} = "{unit}"' for n, unit in ((UNITS[over], place), ("value", force)) if unit)
+    raise SceneError(
+        f"{key}.{over} = {shown(getattr(written, over))}: its plain numbers would be in SI units, but those "
+        f"of the scene are not: name the units of its columns by the heading `{told}`, or by {beside} beside "
+        "the file"
+    )
+
+
 def file_of(name: str, folder: Path | None) -> Path:
     """The file of a table: beside the scene, else in the current directory."""
     beside = None if folder is None else folder / name
@@ -93,9 +119,7 @@ def _from_points(over: str, points: Sequence[Any], given: dict[str, Any]) -> Loa
     first, *others = COLUMNS[over]
     if first not in given:
         rows = [row if isinstance(row, tuple) else (row,) for row in points]
-        widths = {len(row) for row in rows}
-        if widths - {2, 3 if others else 2} or len(widths) != 1:
-            raise ValueError(f"expected points such as [[0, 0], [1.57, -400]], or {first} = [...] beside it")
+        _require_points(over, [len(row) for row in rows])
         points, *columns = (list(column) for column in zip(*rows, strict=True))
         given |= dict(zip((first, *others), columns, strict=False))
     if any(isinstance(point, tuple) for point in points):
@@ -105,6 +129,21 @@ def _from_points(over: str, points: Sequence[Any], given: dict[str, Any]) -> Loa
         (given["period"],) = _with_unit([given["period"]], units[0])
     made: Load = MAKE[over](_with_unit(points, units[0]), **given)
     return made
+
+
+def _require_points(over: str, widths: list[int]) -> None:
+    """ValueError for points of other than two numbers, or three with the way inward, all alike."""
+    first, *others = COLUMNS[over]
+    width = max(widths, key=widths.count, default=0)
+    odd = [index for index, own in enumerate(widths) if own != width]
+    if not odd and width in (2, 3 if others else 2):
+        return
+    wrong, rest = (odd[0], f", {'the others' if len(odd) == 1 else 'most'} {width}") if odd else (0, "")
+    said = "no points"
+    if widths:
+        said = f"point {wrong + 1} has {widths[wrong]} number{'' if widths[wrong] == 1 else 's'}{rest}"
+    example = f"{POINTS[over]}; or {first} = [...] beside a list of places"
+    raise ValueError(f"{over}: {said}: expected points such as {example}")
 
 
 def _one_of(key: str) -> str:

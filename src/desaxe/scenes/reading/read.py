@@ -22,7 +22,7 @@ from ...sweeps.layout import bytes_of
 from ..content import Content
 from ..parts.motor import on_motor
 from ..schema import SceneError, shown
-from .loads import varying, without_objects
+from .loads import require_units_of_file, varying, without_objects
 from .needs import SECTIONS, require_for_grid, require_known
 from .requested import checks_of, peak_of, picture_of
 from .units import slips_of, units_of, with_units
@@ -216,7 +216,9 @@ def _inputs(
         if isinstance(data[section][name], Load):
             found[name] = _settled(key, name, data[section][name], units)
         elif isinstance(written, schema.Varying):
-            found[name] = _settled(key, name, varying(key, name, written, folder), units)
+            load = varying(key, name, written, folder)
+            require_units_of_file(key, name, written, load, units)
+            found[name] = _settled(key, name, load, units)
         else:
             found[name] = values_of(key, name, written)
     return found
@@ -227,4 +229,4 @@ def _settled(key: str, name: str, load: Value, units: UnitSystem) -> Value:
     try:
         return cast(Value, settled(name, load, units))
     except ValueError as error:
-        raise SceneError(f"{key}: {error}") from None
+        raise SceneError(f"{key}: {str(error).removeprefix(f'{name}: ')}") from None

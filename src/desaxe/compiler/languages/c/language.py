@@ -12,7 +12,7 @@ from .functions import Lifted, lifted, static_function
 from .helpers import CPLUSPLUS, FREESTANDING, FREESTANDING_ATAN2, FREESTANDING_HYPOT, HELPERS, PRAGMAS
 from .single import in_single, of_format
 from .steps import HEADER, step_texts
-from .tables import TABLE_HEADER, checks, parameters, passed, table_function, table_signature
+from .tables import checks, parameters, passed, table_comment, table_function, table_signature
 
 STRIP = 128  # points of an array whose sines are computed ahead, on the stack
 
@@ -58,7 +58,7 @@ def _header(module: Module) -> str:
         f"void {name}_array(size_t n, const double *const in[], double *const out[]{more});",
     ]
     for table, one in module.open_tables.items():
-        functions += ["", *TABLE_HEADER.format(table=table).splitlines()]
+        functions += ["", *table_comment(table, one)]
         functions.append(f"{table_signature(name, table, one)};")
     for solver, given in module.solvers.items():
         functions += ["", *SOLVER_TEXTS[solver].format(name=name).splitlines()]

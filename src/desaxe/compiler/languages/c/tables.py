@@ -8,8 +8,9 @@ from .functions import PASSED, TABLE
 
 FOREVER = "(double)INFINITY"
 TABLE_HEADER = """\
-/* {table}_c from the values y at n points x: straight lines between them, or with steps != 0 each value up
-   to the next point. A period's first point does not stand again at its end. Returns the status. */"""
+/* {table}_c from the values {ways} at n points x: straight lines between them, or with steps != 0 each value
+   up to the next point. A period's first point does not stand again at its end. c has room for {room}
+   numbers. Returns the status: 4 with n < 2, a NULL{both} or what is no table. */"""
 
 
 def parameters(tables: Iterable[str]) -> str:
@@ -33,6 +34,13 @@ def checks(tables: Mapping[str, OpenTable]) -> list[str]:
             f"{name}_first = {name}_x[0];"
         )
     return rows
+
+
+def table_comment(name: str, table: OpenTable) -> list[str]:
+    """The comment on the function that fills a table, with the length of what it fills."""
+    both = table.ways > 1
+    said = {"ways": "y (outward) and inward" if both else "y", "both": " (inward, too)" if both else ""}
+    return TABLE_HEADER.format(table=name, room=f"{4 * table.ways}*(n + 1)", **said).splitlines()
 
 
 def table_signature(module: str, name: str, table: OpenTable) -> str:
