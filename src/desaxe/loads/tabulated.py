@@ -162,7 +162,7 @@ class MakeOverY(Maker):
 
 
 class MakeOverStroke(Maker):
-    """`over_stroke(distances, outward, inward=None, dead_centre="outer")`: a load over the stroke itself.
+    """`over_stroke(distances, outward, inward=None, *, dead_centre)`: a load over the stroke itself.
 
     The die of a press is hit a given way before bottom dead centre, whatever the design: the load is over the
     slider's distance from a dead centre of *this* design on *this* branch, and moves with it.
@@ -174,7 +174,7 @@ class MakeOverStroke(Maker):
     outward      the load where Y increases with time, at each distance
     inward       where it decreases; as outward without
     kind         "linear", "step" (a value holds towards larger distances), or "cubic" (extra `simulate`)
-    dead_centre  "outer", the one farthest from the crank, or "inner"
+    dead_centre  required: "outer", the one farthest from the crank, or "inner"
 
     Forces keep the sign of +Y. Beyond the distances the values at the ends hold. Derivatives by a length
     include how the dead centre moves: dF/dp = F'(d) sign (dY_dc/dp - Y_wrt_p). Where a design has no such
