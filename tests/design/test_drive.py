@@ -104,6 +104,39 @@ def test_gradients_by_differences(design):
             ), (figure, name)
 
 
+JUMPING = {
+    "over_stroke": dx.over_stroke([0.0, 0.008, 0.008], [-8e4, -8e4, 0.0], [0.0] * 3, dead_centre="outer"),
+    "over_Y": dx.over_Y([0.28, 0.32, 0.34], [-9e2, -4e4, -2e3], [0.0] * 3, "step"),
+}
+
+
+@pytest.mark.parametrize("mu", [0.0, 0.08])
+@pytest.mark.parametrize("omega0", [6.28, -6.28])
+@pytest.mark.parametrize("load", JUMPING)
+def test_gradients_where_a_jump_of_a_load_moves(load, omega0, mu):
+    """The jump moves with the lengths; the work of a constant force over the last 8 mm does not."""
+    design = {"AB": 0.06, "BC": 0.3, "ec": 0.015, "m_slider": 120.0, "omega0": omega0, "mu": mu}
+    call = {**design, "F_Y": JUMPING[load], "fluctuation": 0.1}
+    found = dx.drive(**call)
+    if not mu:
+        assert found["flywheel_torque"] == pytest.approx(found["torque_mean"], rel=1e-12)
+        if load == "over_stroke":
+            assert found["work_in"] - found["work_out"] == pytest.approx(8e4 * 0.008, rel=1e-12)
+            assert abs(found["gradient"]["power_mean"]["AB"]) < 1e-8
+    for name in ("AB", "ec", "BC"):
+        step = 2e-6
+        ends = [dx.drive(**{**call, name: design[name] + k * step}) for k in (-2, -1, 1, 2)]
+        for figure in ("torque_mean", "torque_rms", "work_in", "work_out", "power_mean", "flywheel_inertia",
+                       "flywheel_torque"):  # fmt: skip
+            far, near, after, last = (end[figure] for end in ends)
+            slope = (8.0 * (after - near) - (last - far)) / (12.0 * step)
+            small = 1e-6 * abs(found[figure]) / design["ec"]
+            assert found["gradient"][figure][name] == pytest.approx(slope, rel=1e-6, abs=small), (
+                figure,
+                name,
+            )
+
+
 @pytest.mark.parametrize("mu", [0.0, 0.15])
 @pytest.mark.parametrize("fluctuation", [0.03, 0.6])
 def test_a_simulated_turn_with_the_flywheel(mu, fluctuation):

@@ -34,7 +34,7 @@ from .slopes import Slopes
 Array = NDArray[np.float64]
 RESOLVED = 1e-9  # of a series: its last terms, at most
 HALVINGS = 10  # of a step of the motion, at most
-SHORT = 0.88  # of the last panel: where the inertia grows without bound, polynomials go on from there
+SHORT = 0.998  # of the last panel: where the inertia grows without bound, polynomials go on from there
 WELL_BEFORE = 0.1  # of q: so far from a limit angle nothing has lost its digits
 STARTS = ("theta0", "omega_start")
 

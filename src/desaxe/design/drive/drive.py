@@ -1,6 +1,6 @@
 """`drive`: torque, power, work, flywheel and starting torque required over a turn."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from math import copysign, inf, nan, sqrt
 from typing import Any
 
@@ -11,11 +11,10 @@ from ...peaks.peak import peak
 from ...runtime.request import as_number
 from ...support.panels import Array, Panels
 from ...support.shown import shown
-from ..turn.turn import JAMS, NoCycleError, Turn
+from ..turn.turn import CREEP, JAMS, NoCycleError, Turn
 from .inertia import flywheel_for
 from .result import FIGURES, Drive
 
-CREEP = 1e-100  # rad/s: friction acts, inertia does not; a torque below it is none
 STALLED = 3
 LEAST_FLUCTUATION = 1e-9
 SAME = 1e-9  # of an extreme value
@@ -148,18 +147,35 @@ def _over_a_turn(
         "work_out": turn.integral(np.where(driven, 0.0, -way * torque)),
         "power_mean": net / period,
     }
+    before, after = turn.ends(torque)[:, 1], np.roll(turn.ends(torque)[:, 0], -1)
+    moves = design.moves(turn.edges[1:])
+    rate = np.sqrt(design.numbers["omega0"] ** 2 + 2.0 * alpha * turn.edges[1:])
+
+    def moving(name: str, integrand: Callable[[Array], Array]) -> float:
+        """What jumps of the torque add to the derivative of an integral by an input that moves them."""
+        if name not in moves:
+            return 0.0
+        return float(((integrand(before) - integrand(after)) * moves[name]).sum())
+
     for name, slope in by.items():
         shorter = speed_by.get(name, 0.0) / speed**2 + 0.0 * speed  # what 1/speed loses
         longer = -turn.integral(shorter) + 0.0
-        by_mean = turn.integral(slope / speed - torque * shorter)
+        by_mean = turn.integral(slope / speed - torque * shorter) + moving(name, lambda T: T / rate)
         by_square = turn.integral(2.0 * torque * slope / speed - torque**2 * shorter)
+        by_square += moving(name, lambda T: T * T / rate)
+        by_net = turn.integral(slope) + moving(name, lambda T: T)
+        by_in, by_out = (
+            turn.integral(np.where(part, side * slope, 0.0))
+            + moving(name, lambda T, k=side: np.maximum(k * T, 0.0))
+            for part, side in ((driven, way), (~driven, -way))
+        )
         rows = {
             "period": longer,
             "torque_mean": (by_mean - mean * longer) / period,
             "torque_rms": (by_square - square * longer) / (2.0 * rms * period) if rms else 0.0,
-            "work_in": turn.integral(np.where(driven, way * slope, 0.0)),
-            "work_out": turn.integral(np.where(driven, 0.0, -way * slope)),
-            "power_mean": (way * turn.integral(slope) - net / period * longer) / period,
+            "work_in": by_in,
+            "work_out": by_out,
+            "power_mean": (way * by_net - net / period * longer) / period,
         }
         for figure, value in rows.items():
             slopes[figure][name] = value

@@ -11,7 +11,8 @@ the torque: with G(theta, z, alpha) + J alpha = T and alpha = z'/2, the change z
 
     z_p' = 2 (T_p - G_z z_p - G_p - J_p alpha)/(G_alpha + J),
 
-a linear equation that is solved for the three constants by which z_p is periodic and has its given values at
+a linear equation, in which z_p jumps by (z'_left - z'_right) times what it moves by where a jump of a load
+moves with a length. It is solved for the three constants by which z_p is periodic and has its given values at
 the fastest and the slowest angle.
 """
 
@@ -21,9 +22,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...support.panels import Array, Panels, resolved
+from ...support.panels import WEIGHT, Array, Panels, resolved
 from ...support.roots import root
-from ..turn.turn import Turn
+from ..turn.turn import CREEP, Turn
 
 ROUNDS = 60  # of corrections of the friction
 SETTLED = 1e-12  # of the inertia: what a correction may still change
@@ -85,7 +86,7 @@ def _store(design: Turn, fluctuation: float, before: State | None) -> State:
     motion = None if before is None else before.motion
 
     def loads(theta: Array) -> dict[str, Array]:
-        found = design.values(names, theta, omega0=0.0, mu=None)
+        found = design.values(names, theta, omega0=design.direction * CREEP, mu=None)
         if design.has_friction:
             rough = design.values(["T_in"], theta, motion)["T_in"]
             found["T_in"] = found["T_in"] + rough - design.values(["T_in"], theta, motion, mu=None)["T_in"]
@@ -150,23 +151,34 @@ def _gradient(design: Turn, fluctuation: float, state: State) -> dict[str, tuple
     growth = panels.running(flat["T_in_wrt_omega"] / omega / mass)
     last = panels.integral(flat["T_in_wrt_omega"] / omega / mass)
 
-    def response(forcing: Array) -> tuple[float, float, float]:
-        """z_p from 0 at the start: at the end, at the fastest and at the slowest angle."""
+    per_panel = np.cumsum((flat["T_in_wrt_omega"] / omega / mass @ WEIGHT) * panels.half[:, 0])
+    extremes = np.array([state.fastest, state.slowest])
+
+    def response(forcing: Array, jump: Any = 0.0) -> tuple[float, float, float]:
+        """z_p from 0, with jumps at ends of panels: at the end, the fastest and the slowest angle."""
         forced = np.exp(growth) * 2.0 * forcing / mass
-        inner = np.exp(-growth) * panels.running(forced)
-        fastest, slowest = panels.at(np.array([state.fastest, state.slowest]), inner)
-        return float(np.exp(-last) * panels.integral(forced)), float(fastest), float(slowest)
+        jumps = np.exp(per_panel) * jump
+        inner = np.exp(-growth) * (panels.running(forced) + (np.cumsum(jumps) - jumps)[:, None])
+        fastest, slowest = panels.at(extremes, inner)
+        return float(np.exp(-last) * (panels.integral(forced) + jumps.sum())), float(fastest), float(slowest)
 
     free = [1.0 - np.exp(-last), *panels.at(np.array([state.fastest, state.slowest]), np.exp(-growth))]
     free[0] = -free[0]
     columns = np.array([free, response(np.ones_like(alpha)), response(-alpha)]).T
     speed = design.numbers["omega0"]
     high, low = 1.0 + fluctuation / 2.0, 1.0 - fluctuation / 2.0
-    sides = {name: -np.array(response(-flat[f"T_in_wrt_{name}"])) for name in own}
+    ends, slopes = panels.ends(2.0 * alpha), panels.at(extremes, 2.0 * alpha)
+    jump, moves = ends[:, 1] - np.roll(ends[:, 0], -1), design.moves(panels.edges[1:])
+    extremes_move = design.moves(extremes)
+    sides = {}
+    for name in own:
+        found = np.array(response(-flat[f"T_in_wrt_{name}"], jump * moves.get(name, 0.0)))
+        found[1:] += slopes * extremes_move.get(name, 0.0)
+        sides[name] = -found
     sides["omega0"] = np.array([0.0, 2.0 * speed * high**2, 2.0 * speed * low**2])
     sides["fluctuation"] = np.array([0.0, speed**2 * high, -(speed**2) * low])
-    found = np.linalg.solve(columns, np.array(list(sides.values())).T)[1:]
-    return {name: (float(T), float(J)) for name, T, J in zip(sides, *found, strict=True)}
+    solved = np.linalg.solve(columns, np.array(list(sides.values())).T)[1:]
+    return {name: (float(T), float(J)) for name, T, J in zip(sides, *solved, strict=True)}
 
 
 def _torque(design: Turn, names: list[str], state: State) -> dict[str, Array]:

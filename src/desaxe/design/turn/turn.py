@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from ...evaluation.evaluate import evaluate
 from ...evaluation.extremes import check_range
 from ...evaluation.loaded import loads_of
-from ...loads.angles import kinks_between, turns_of
+from ...loads.angles import TURN, crossings, kinks_between, turns_of
+from ...loads.load import OverY
 from ...loads.resolve import VARIABLE
 from ...mechanism.closed.dead_centres import DEAD_CENTRES
 from ...mechanism.closed.functions import closed_form
@@ -32,6 +33,8 @@ from ...support.panels import Array, Panels, resolved
 LEAST, MOST = 128, 131072  # steps of a turn
 MOST_TURNS = 4  # after which the loads must repeat; two in a four-stroke engine
 CONVERGED = 1e-14  # of the largest coefficient: what halving the steps may change
+CREEP = 1e-100  # rad/s: friction and loads have their way, inertia does nothing; a torque below it is none
+NEAR = 1e-9  # rad: an edge is where a load jumps
 JAMS = int(PointStatus.NO_FORCE_BALANCE)
 Motion = Callable[[Array], dict[str, Array]]  # angles -> omega and alpha there
 
@@ -116,6 +119,24 @@ class Turn:
         """The angles at which pieces of a load meet."""
         lengths = [self.numbers[name] for name in LENGTHS]
         return kinks_between(self.loads.values(), *self.ends, lengths, self.branch, smooth=True)
+
+    def moves(self, angles: Array) -> dict[str, Array]:
+        """By how much each length moves angles [1/m] at which a load over the slider jumps; 0 elsewhere."""
+        lengths = {name: self.numbers[name] for name in LENGTHS}
+        sides = [np.array([length]) for length in lengths.values()]
+        found = {name: np.zeros(angles.shape) for name in LENGTHS}
+        for load in self.loads.values():
+            if not isinstance(load, OverY):
+                continue
+            gap = np.abs(np.subtract.outer(angles, crossings(load, load.jumps, sides, self.branch)[0])) % TURN
+            own = (np.minimum(gap, TURN - gap) < NEAR).any(-1)
+            at = evaluate(
+                load.motion(("theta", *LENGTHS)), theta=angles[own], branch=self.branch, omega0=1.0, **lengths
+            )
+            along = load.moved("theta", at)
+            for name in LENGTHS:  # at a dead centre the torque does not jump
+                found[name][own] = np.where(along == 0.0, 0.0, -load.moved(name, at) / along)
+        return found
 
     def breaks(self, motion: Motion | None = None, edges: Sequence[float] = (), **other: Any) -> list[float]:
         """The ends of the cycle, the angles at which the torque has a kink, and `edges`, in order."""
