@@ -1,6 +1,6 @@
 """`drive`: torque, power, work, flywheel and starting torque required over a turn."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from math import copysign, inf, nan, sqrt
 from typing import Any
 
@@ -148,25 +148,23 @@ def _over_a_turn(
         "power_mean": net / period,
     }
     before, after = turn.ends(torque)[:, 1], np.roll(turn.ends(torque)[:, 0], -1)
-    moves = design.moves(turn.edges[1:])
+    jump, moves = before - after, design.moves(turn.edges[1:])
     rate = np.sqrt(design.numbers["omega0"] ** 2 + 2.0 * alpha * turn.edges[1:])
 
-    def moving(name: str, integrand: Callable[[Array], Array]) -> float:
-        """What jumps of the torque add to the derivative of an integral by an input that moves them."""
-        if name not in moves:
-            return 0.0
-        return float(((integrand(before) - integrand(after)) * moves[name]).sum())
+    def moving(name: str, jump: Array) -> float:
+        """The derivative of an integral by an input that moves the jumps of what is integrated."""
+        return float((jump * moves[name]).sum()) if name in moves else 0.0
 
     for name, slope in by.items():
         shorter = speed_by.get(name, 0.0) / speed**2 + 0.0 * speed  # what 1/speed loses
         longer = -turn.integral(shorter) + 0.0
-        by_mean = turn.integral(slope / speed - torque * shorter) + moving(name, lambda T: T / rate)
+        by_mean = turn.integral(slope / speed - torque * shorter) + moving(name, jump / rate)
         by_square = turn.integral(2.0 * torque * slope / speed - torque**2 * shorter)
-        by_square += moving(name, lambda T: T * T / rate)
-        by_net = turn.integral(slope) + moving(name, lambda T: T)
+        by_square += moving(name, (before**2 - after**2) / rate)
+        by_net = turn.integral(slope) + moving(name, jump)
         by_in, by_out = (
             turn.integral(np.where(part, side * slope, 0.0))
-            + moving(name, lambda T, k=side: np.maximum(k * T, 0.0))
+            + moving(name, np.maximum(side * before, 0.0) - np.maximum(side * after, 0.0))
             for part, side in ((driven, way), (~driven, -way))
         )
         rows = {

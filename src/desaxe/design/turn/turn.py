@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from ...evaluation.evaluate import evaluate
 from ...evaluation.extremes import check_range
 from ...evaluation.loaded import loads_of
-from ...loads.angles import TURN, crossings, kinks_between, turns_of
-from ...loads.load import OverY
+from ...loads.angles import crossings, kinks_between, turns_of
+from ...loads.load import TURN, OverY
 from ...loads.resolve import VARIABLE
 from ...mechanism.closed.dead_centres import DEAD_CENTRES
 from ...mechanism.closed.functions import closed_form
@@ -122,7 +122,7 @@ class Turn:
 
     def moves(self, angles: Array) -> dict[str, Array]:
         """By how much each length moves angles [1/m] at which a load over the slider jumps; 0 elsewhere."""
-        lengths = {name: self.numbers[name] for name in LENGTHS}
+        lengths: dict[str, Any] = {name: self.numbers[name] for name in LENGTHS}
         sides = [np.array([length]) for length in lengths.values()]
         found = {name: np.zeros(angles.shape) for name in LENGTHS}
         for load in self.loads.values():
