@@ -30,6 +30,17 @@ def test_the_page_has_the_numbers_of_evaluate_and_saves_the_load(kind, visit, fo
     assert saved.inputs["F_Y"] == load
 
 
+@pytest.mark.thorough
+def test_the_working_stroke_of_a_press_is_in_the_picture(visit, folder):
+    die = dx.over_stroke([0.0, 0.008, 0.008], [-4e5, -4e5, 0.0], [0.0] * 3, dead_centre="outer")
+    press = {"AB": 0.06, "BC": 0.3, "ec": 0.015, "m_slider": 1.0, "omega0": 1.0, "F_Y": die}
+    page = visit(dx.explore(names=["T_in", "V_C"], path=folder / "press.html", **press))
+    curve = page.evaluate("desaxe.curve('T_in', desaxe.state.designs[0]).value")
+    shown = page.evaluate("document.getElementById('plot-0').layout.yaxis")
+    assert shown["autorange"] or shown["range"][1] > max(curve)
+    assert page.inner_text("#note-0") == ""
+
+
 NAMES = ["T_in", "T_in_wrt_theta", "T_in_wrt_ec", "T_in_wrt_BC", "N_C", "status"]
 UNDER = """(points) => points.map(([theta, added, ec, omega0]) => NAMES.map((name) => window.desaxe.valueAt(
   name, { ...window.desaxe.state.designs[0], F_Y: added, ec, omega0 }, theta)))""".replace(

@@ -90,6 +90,7 @@ def content(
             raise TypeError(f"explore: {name} is missing (needed: ec, AB, BC, and omega0 or omega)")
     wanted = [*shown, *((*KINEMATICS, *(FORCES * is_loaded(given))) if names is None else names)]
     groups = _grouped(wanted, given)
+    groups.setdefault("Y", ["Y"])  # of the drawing
     if is_loaded(given):
         groups |= {} if names is not None else {name: [name] for name in VALUES if name not in groups}
         given = {**given, **{name: 0.0 for name in CHANGED if name not in given}}

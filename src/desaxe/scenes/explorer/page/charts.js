@@ -117,7 +117,7 @@ function cursor(theta, look) {
 // curve ends, or at a very narrow peak next to a change point. Null where everything can be seen.
 function heightOf(curves) {
   const known = curves.map((value) => value.filter((v) => v !== null));
-  const seen = known.flatMap((values, k) => usual(values, values.length < curves[k].length ? 5 : 100));
+  const seen = known.flatMap((values, k) => (values.length < curves[k].length ? usual(values, 0.85, 5) : usual(values, 0.97, 100)));
   if (seen.length === known.flat().length) return null;
   const [low, high] = [Math.min(...seen, 0), Math.max(...seen, 0)], room = 0.08 * (high - low);
   return [low - room, high + room];
@@ -129,10 +129,11 @@ function drawable(value, [low, high]) {
   return value === null ? null : Math.max(low - far, Math.min(high + far, value));
 }
 
-// All values, unless one has many times the size of most: then those without such a size.
-function usual(values, times) {
+// All values, unless one has many times the size of most: then those without such a size. A press works
+// over some tenth of the turn: that is to be seen.
+function usual(values, share, times) {
   const sizes = values.map(Math.abs).sort((a, b) => a - b);
-  const most = sizes[Math.floor(sizes.length * 0.85)];
+  const most = sizes[Math.floor(sizes.length * share)];
   return sizes.length < 20 || sizes.at(-1) <= times * most ? values : values.filter((v) => Math.abs(v) <= 2.5 * most);
 }
 
