@@ -106,6 +106,24 @@ def test_next_to_rest(start):
         np.testing.assert_allclose(near[f"theta_wrt_{p}"], far[f"theta_wrt_{p}"], rtol=1e-3, atol=1e-3)
 
 
+def test_more_swings_than_a_brief_motion_has_pieces():
+    """The motion alone leaves out whole swings; its derivatives follow each, or none within max_steps."""
+    swing = machines(torque=0.0, g_Y=-9.81, omega_start=0.5, theta0=2.5)
+    call = {"t_end": 15.0, "times": [15.0]}
+    found = dx.simulate(**call, wrt=WRT, **swing)
+    assert set(found["method"]) == {"energy"}
+    for p in ("AB", "omega_start"):
+        ends = [dx.simulate(**call, rtol=3e-14, **{**swing, p: swing[p] + k * 1e-6}) for k in (-2, -1, 1, 2)]
+        far, near, after, last = (end["theta"] for end in ends)
+        slope = (8.0 * (after - near) - (last - far)) / 12e-6
+        np.testing.assert_allclose(found[f"theta_wrt_{p}"], slope, rtol=1e-5)
+    few = dx.simulate(**call, wrt=WRT, max_steps=100, **swing)
+    assert few["status"].tolist() == [4, 4]
+    assert (few["t_last"] <= 15.0).all()
+    assert np.isnan(few["theta_wrt_AB"]).all()
+    assert "sensitivities: NaN" in few["message"]
+
+
 def test_what_the_energy_form_does_not_differentiate():
     designs = machines(torque=1.0)
     assert set(dx.simulate(t_end=0.01, times=[0.01], wrt="mu", **designs)["method"]) == {"DOP853"}

@@ -295,7 +295,7 @@ def histories_of(
 
 def _energies(designs: Designs, motion: Mapping[str, Array], theta_p: Array, omega_p: Array) -> Array:
     """The derivatives of kinetic and potential energy at the last instant."""
-    theta = np.repeat(motion["theta"][:, -1:], 2, axis=1)
+    theta = np.repeat(np.nan_to_num(motion["theta"][:, -1:]), 2, axis=1)  # without an end none is read
     found = {name: values[:, 0] for name, values in designs.values(theta, names_of(designs)).items()}
     omega, inertia, bend = (motion[n][:, -1] for n in ("omega", "M_eff", "M_eff_wrt_theta"))
     rows = []

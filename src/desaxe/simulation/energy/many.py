@@ -57,7 +57,7 @@ def follow_many(designs: Designs, times: Array, rtol: float, most: Array) -> Fou
         return Found(x, speed, speed, status, numbers[:, :4])
     limit, short = status == LIMIT, status == FAILED
     ended = limit | short
-    t_last = np.where(ended, numbers[:, 0], times[-1])
+    t_last = np.where(ended, np.minimum(numbers[:, 0], times[-1]), times[-1])
     x[ended, -1] = numbers[ended, 1]
     theta, slope = designs.place(x)
     at, omega = designs.values(theta), speed * slope
