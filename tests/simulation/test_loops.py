@@ -15,8 +15,8 @@ from desaxe.simulation.energy import compiled as energy
 PANELS = {
     "still_at_nodes": ("0.1, 0.5, row, row, rows", {"div", "sqrt", "mul"}),
     "integrate": ("0.0, 0.5, rows, rows, int64(4), int64(5)", {"mul", "fmuladd"}),
-    "slowness": ("1.0, rows, rows", {"div", "sqrt"}),
-    "respond": ("0.1, rows, rows", {"div", "mul"}),
+    "slowness": ("1.0, rows", {"div", "sqrt"}),
+    "respond": ("0.1, rows", {"div", "mul"}),
 }
 PIECES = {
     "combined": ("row, rows, other", {"mul", "add"}),

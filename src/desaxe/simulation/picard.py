@@ -7,7 +7,7 @@ Away from standstills the crank angle is a good variable: the kinetic energy E a
 and M_eff, loads and gravity are known at the nodes of a panel before E is. Only the torque asks for t and
 omega there. Picard's iteration finds them: a sweep asks for the torque at all nodes and integrates twice, by
 products with a constant matrix. Loops over the nodes run in the lanes of a vector, each design by itself;
-they end at a length that is read from an array, for LLVM unrolls a short loop before it looks for vectors.
+such short loops are vectors where LLVM does not unroll them before (`short_loops` of a module).
 Gauss nodes make the end of a panel far more exact than its inside, by which its width is chosen.
 
 table    of `nodes`: a row for each node
@@ -94,14 +94,14 @@ def integrate(start: float, width: float, table: Any, room: Any, rate: Any, out:
             room[out, i] = mul_add(width, first + last, room[out, i])
 
 
-def powers(table: Any, room: Any) -> None:
+def powers(room: Any) -> None:
     """dE/dtheta at the nodes."""
     apart()
     for i in range(NODES):
         room[RATE, i] = room[TORQUE, i] + room[LOAD, i] - room[WEIGHT, i]
 
 
-def slowness(way: float, table: Any, room: Any) -> None:
+def slowness(way: float, room: Any) -> None:
     """dt/dtheta at the nodes, but for its sign, and the speed."""
     apart()
     for i in range(NODES):
@@ -112,22 +112,22 @@ def slowness(way: float, table: Any, room: Any) -> None:
 
 def course(t: float, energy: float, width: float, table: Any, room: Any) -> float:
     """Energies, speeds and instants at the nodes from the torque there; the least energy."""
-    powers(table, room)
+    powers(room)
     integrate(energy, width, table, room, int64(RATE), int64(ENERGY))
     least = inf
     for i in range(NODES):
         least = min(least, room[ENERGY, i])
     if least > 0.0:  # else NaN would slow down what follows
-        slowness(copysign(1.0, width), table, room)
+        slowness(copysign(1.0, width), room)
         integrate(t, abs(width), table, room, int64(SLOWNESS), int64(TIME))
     return least
 
 
-def ask(number: float, table: Any, room: Any) -> float:
+def ask(number: float, room: Any) -> float:
     """The torque at all nodes; by how much it has changed at most, NaN where it is none."""
     if not asked_at_nodes(number, room, int64(TIME), NODES):
         return nan
-    differ(table, room)
+    differ(room)
     most, none = 0.0, 0.0
     for i in range(NODES):
         change = abs(room[MISS, i])
@@ -136,7 +136,7 @@ def ask(number: float, table: Any, room: Any) -> float:
     return most + none
 
 
-def differ(table: Any, room: Any) -> None:
+def differ(room: Any) -> None:
     """The torque's change at the nodes, and the new one."""
     apart()
     for i in range(NODES):
@@ -154,20 +154,20 @@ def bend_of(number: float, room: Any) -> float:
 def correct(bend: float, width: float, table: Any, room: Any) -> None:
     """Foresee what the torque's change makes of the speed, and that again of the torque: Newton's method."""
     integrate(0.0, width, table, room, int64(MISS), int64(GAIN))
-    respond(bend, table, room)
+    respond(bend, room)
     integrate(0.0, width, table, room, int64(PART), int64(GAIN))
-    respond(bend, table, room)
-    foresee(table, room)
+    respond(bend, room)
+    foresee(room)
 
 
-def foresee(table: Any, room: Any) -> None:
+def foresee(room: Any) -> None:
     """Add to the torque what its last change makes of it."""
     apart()
     for i in range(NODES):
         room[TORQUE, i] += room[PART, i] - room[MISS, i]
 
 
-def respond(bend: float, table: Any, room: Any) -> None:
+def respond(bend: float, room: Any) -> None:
     """The torque's change by a gain of energy, besides that which is known."""
     apart()
     for i in range(NODES):
@@ -184,7 +184,7 @@ def sweep(
     for _ in range(SWEEPS):
         if not least > 0.0:
             return 0.0
-        change = ask(number, table, room) * abs(width) / least
+        change = ask(number, room) * abs(width) / least
         if not change < 0.7 * before:
             return 0.0 if not change < 1e-15 else least
         if change > 0.0:

@@ -126,7 +126,7 @@ class Turn:
         sides = [np.array([length]) for length in lengths.values()]
         found = {name: np.zeros(angles.shape) for name in LENGTHS}
         for load in self.loads.values():
-            if not isinstance(load, OverY):
+            if not isinstance(load, OverY) or not load.jumps:
                 continue
             gap = np.abs(np.subtract.outer(angles, crossings(load, load.jumps, sides, self.branch)[0])) % TURN
             own = (np.minimum(gap, TURN - gap) < NEAR).any(-1)
