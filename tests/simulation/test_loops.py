@@ -8,6 +8,7 @@ from desaxe.compiler.builder import module_text
 from desaxe.compiler.languages.numba.module import numba_parts
 from desaxe.mechanism.program import Variant
 from desaxe.runtime import compiled_text
+from desaxe.runtime.modules import native, path_of
 from desaxe.simulation import compiled
 from desaxe.simulation.compiled import Family
 from desaxe.simulation.energy import compiled as energy
@@ -56,3 +57,11 @@ def test_panels_in_time(name, monkeypatch):
 def test_pieces_in_energy_form(name, monkeypatch):
     given, wanted = PIECES[name]
     assert wanted <= vectors_of(text_of(name, given, [], energy.FILES, ""), monkeypatch)
+
+
+@pytest.mark.parametrize("name", ["kernel", "variations"])
+def test_the_energy_form_is_compiled_once_on_a_machine(name, monkeypatch):
+    texts = []
+    monkeypatch.setattr(energy, "native", lambda *text: texts.append(text) or native(*text))
+    getattr(energy, name).__wrapped__()
+    assert path_of(*texts[0]).exists()

@@ -335,7 +335,8 @@ def varied(
             speed = abs((kept[s, 3] + 2.0 * u * kept[s, 4]) / series(kept[s, 8:24], u))
             fastest = max(fastest, speed)
             slow = speed <= BARELY * fastest
-    ends[:, 0], ends[:, 1] = state[:, 0], state[:, 1]
+    for p in range(count):  # one array put into another can fail, and what can has no place on disk
+        ends[p, 0], ends[p, 1] = state[p, 0], state[p, 1]
     return fine
 
 
