@@ -9,7 +9,7 @@ import desaxe as dx
 from desaxe.runtime import kernels as _kernels
 from desaxe.runtime import tiers
 from desaxe.runtime.kernels import kernel_of
-from desaxe.scenes.parts.kernel import grid_kernel
+from desaxe.scenes.parts.grid import plan_of_grid
 from tests.example_scenes import COMPACTOR, SMALL
 
 pytestmark = pytest.mark.usefixtures("cold")
@@ -98,8 +98,8 @@ def test_counts_are_those_of_the_kernel(rods):
     """Where all designs have wide margins there is one form; else a loop says what it does instead."""
     scene = free(DESIGNS, "mechanism", "BC", rods)
     plan = dx.explain(scene)
-    found = grid_kernel(dx.scene(scene).content)
-    kernel = kernel_of(found.key)
+    (step, *_) = plan_of_grid(dx.scene(scene).content).steps
+    kernel = kernel_of(step.key)
     nests = [*(table.kernel for table in kernel.tables), kernel]
     lines = [line for nest in nests for level in nest.levels for line in level if line.op != "copy"]
     loops = [loop for loop in plan["loops"] if not loop["close"]]

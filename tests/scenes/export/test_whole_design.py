@@ -131,3 +131,13 @@ def test_a_scene_of_whole_designs_needs_no_angle(outputs):
         np.testing.assert_allclose(found[name], events[name], rtol=1e-14)
     assert [axis["name"] for axis in dx.explain(written)["axes"]] == ["ec"]
     assert math.isclose(dx.explain(written)["points"], 3)
+
+
+@pytest.mark.thorough
+def test_a_reduction_under_a_load_that_has_no_say(tmp_path):
+    """A stroke has no load, so its kernel is that of numbers alone, reduced."""
+    text = scene(["stroke"], ec=[0.0, 0.01, 0.02], AB=0.2, BC=[0.5, 0.6])
+    load = dx.over_theta([0.0, 1.0, 2.0], [-400.0, 200.0, -50.0], kind="linear")
+    read = dx.scene({**text, "reduce": {"ec": "max"}, "loads": {"F_Y": load}})
+    found = imported(dx.compile(read, tmp_path / "press.py")).run()
+    np.testing.assert_array_equal(found["stroke_max"], read.run().dataset.stroke_max)

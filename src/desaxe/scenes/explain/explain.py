@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import prod
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ...compiler.kernel import Kernel
 from ...compiler.passes.double_double import double_double
@@ -23,13 +23,13 @@ from ...mechanism.program import digest
 from ...mechanism.unit_system import UnitSystem
 from ...runtime.kernels import KernelKey, is_ready, kernel_of, source_of
 from ...runtime.modules import path_of
+from ...runtime.request import Request
 from ...runtime.specialise import specialise
 from ...runtime.threads import LEAST_BLOCK, available
 from ...runtime.tiers import BREAK_EVEN, COMPILED, forced_tier, tier_ahead
 from ...support.forks import IMPORTS
 from ..content import Content
 from ..parts.grid import plan_of_grid
-from ..parts.kernel import GridKernel
 from ..parts.stored import prepared_content
 from ..reading.values import Value
 from ..scene import Scene
@@ -44,6 +44,20 @@ PROMISES = {
     "standard": "at most 8 ulp x (1 + the sum of the condition numbers), wherever it can be assembled",
     "extended": "2 ulp, but for the last double inside a limit angle, with a floor of 2^-96 of the scale",
 }
+
+
+class GridKernel(NamedTuple):
+    """The kernel of a scene's grid: its request, its axes in loop order, its key."""
+
+    request: Request
+    axes: tuple[str, ...]
+    sizes: tuple[int, ...]
+    key: KernelKey
+
+    @property
+    def points(self) -> int:
+        """Points of the grid."""
+        return prod(self.sizes)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...mechanism.catalogue import of_design
+from ...mechanism.names import LENGTHS
+from ...runtime.request import request
+from ..content import Content
 from ..reading.spread import in_parts
 
 SPACED = '''def spaced(first, rest, step, num):
@@ -21,6 +25,25 @@ SPACED = '''def spaced(first, rest, step, num):
     more = (first - (value - of_total)) + (total - of_total)
     return value + (more + (lost + (k * step[2] + rest)))
 '''
+
+
+def axes_of(content: Content) -> list[str]:
+    """The axes of a scene in loop order: one that is reduced is the last; a grid has one before it."""
+    found = [name for name, value in content.inputs.items() if isinstance(value, tuple)]
+    if content.fused is None:
+        return found or [""]
+    rest = [name for name in found if name != content.fused.axis]
+    return [*(rest or [""]), content.fused.axis]
+
+
+def own_axes(content: Content, names: Iterable[str]) -> dict[str, list[str]]:
+    """The axes of each quantity of a whole design: lengths, and a speed whose sign it uses."""
+    axes = [name for name, value in content.inputs.items() if isinstance(value, tuple)]
+    found = {}
+    for name in filter(of_design, names):
+        asked = request((name,), dict(content.inputs), content.branch, content.accuracy)
+        found[name] = [axis for axis in axes if axis in (*LENGTHS, *asked.inputs)]
+    return found
 
 
 def axes_text(axes: Mapping[str, Sequence[float]]) -> str:

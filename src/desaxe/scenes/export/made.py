@@ -79,15 +79,6 @@ class UnderLoads(NamedTuple):
         return nest_of_two_forms(first, whole, test, len(self.asked.shown), axes, key.axes)
 
 
-def axes_of(content: Content) -> list[str]:
-    """The axes of a scene in loop order: one that is reduced is the last; a grid has one before it."""
-    found = [name for name, value in content.inputs.items() if isinstance(value, tuple)]
-    if content.fused is None:
-        return found or [""]
-    rest = [name for name in found if name != content.fused.axis]
-    return [*(rest or [""]), content.fused.axis]
-
-
 def limit_of(key: KernelKey) -> float:
     """The largest angle that the written-out sine and cosine reduce exactly."""
     return double_constants().limit if key.accuracy == "extended" else constants().limit

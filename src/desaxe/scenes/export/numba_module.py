@@ -1,10 +1,12 @@
 """A scene as a module of numba: one point in plain Python, arrays, the scene's grid and peaks."""
 
 import hashlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from textwrap import wrap
-from typing import Any, NamedTuple
+from typing import NamedTuple
+
+import numpy as np
 
 from ...compiler.builder import HELPERS, MATH, Parts, functions_of, module_text, renamed, with_sources
 from ...compiler.cost import cost_of
@@ -17,16 +19,16 @@ from ...compiler.languages.tables import columns_of, described, numbers_of
 from ...compiler.operations import OPERATIONS
 from ...loads.load import Load
 from ...loads.resolve import split
-from ...mechanism.catalogue import quantity
+from ...mechanism.catalogue import of_design, quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import ORDER
 from ...mechanism.program import digest
-from ...runtime.kernels import KernelKey
+from ...runtime.kernels import KernelKey, key_of
 from ...runtime.written import UNSEALED
 from ...support.version import version
-from ..parts.kernel import GridKernel, grid_kernel, own_axes
+from ..content import Content
 from ..scene import Scene
-from .axes import SPACED, WITH_AXES, axes_text, chosen_text
+from .axes import SPACED, WITH_AXES, axes_of, axes_text, chosen_text, own_axes
 from .entry_points import (
     AFFINITY,
     DOUBLES,
@@ -39,9 +41,9 @@ from .entry_points import (
 )
 from .first_call import COMPILED, LAZY, LAZY_REDUCED
 from .loaded import require_tables, table_text, tables_of
-from .made import Made, OfKey, UnderLoads, axes_of, limit_of
+from .made import Made, OfKey, UnderLoads, limit_of
 from .peaks import left_out_of_module, peak_texts
-from .portable import PLAIN, WITHOUT_VALUE, Form, asked_of, require_outputs
+from .portable import PLAIN, WITHOUT_VALUE, Asked, Form, asked_of, require_outputs
 
 WIDTH = 96
 
@@ -50,23 +52,15 @@ def text_of(scene: Scene, name: str = "my_kernels.py", form: Form = PLAIN) -> st
     """The text of the module of a scene."""
     content = scene.content
     require_outputs(scene)
-    numbers, loads = split(content.inputs)
-    require_tables(scene.name or "scene", loads)
-    found = grid_kernel(content)
-    anywhere = found.key.form._replace(wide_margins=False)  # the module takes other designs, too
-    key = _all_fixed(found.key._replace(form=anywhere), found, numbers, loads)
-    made: Made = OfKey()
-    order, shown = found.axes, found.request.shown
+    require_tables(scene.name or "scene", split(content.inputs)[1])
     names = (*content.outputs, *([] if content.reduction else ["status"]))
     asked = asked_of(content, names, form.open_tables)
+    shown, state = asked.shown, asked.request.form.state
     frozen, opened = tables_of(asked.loads, form.open_tables)
-    if asked.loads:
-        made, order, shown = UnderLoads(content, asked), tuple(axes_of(content)), asked.shown
-        places = tuple((n, order.index(n)) for n in sorted(order) if n)
-        kinds = content.fused.kinds if content.fused is not None else ()
-        key = key._replace(names=shown, axis_of=places, axes=len(order), reduce=kinds)
+    made: Made = UnderLoads(content, asked) if asked.loads else OfKey()
+    order = tuple(axes_of(content)) if asked.loads else _order(content, shown)
+    key = _key(content, asked, order)
     axes = {n: value for n in order if isinstance(value := content.inputs.get(n), tuple)}
-    state = found.request.form.state
     program = made.guarded(key, key.names)
     inputs = tuple(sorted(set(program.inputs) - set(numbers_of(opened)), key=ORDER.index))
     kernels = _kernels(made, key, inputs) if inputs else Kernels([], {}, (), {})
@@ -130,14 +124,26 @@ def _front(parts: Sequence[str]) -> Parts:
     return with_sources(parts, (), imports=IMPORTS)
 
 
-def _all_fixed(
-    key: KernelKey, found: GridKernel, inputs: Mapping[str, Any], loads: Iterable[str]
-) -> KernelKey:
-    """The key with every number of the scene folded in; loads that vary with the motion stay inputs."""
-    left = {*(n for n, value in inputs.items() if isinstance(value, tuple)), *loads}
-    numbers = {n: inputs.get(n, 0.0) for n in found.request.inputs if n not in left}
-    fixed = dict(key.fixed) | {n: float(value) for n, value in numbers.items()}
-    return key._replace(fixed=tuple(fixed.items()))
+def _order(content: Content, shown: Sequence[str]) -> tuple[str, ...]:
+    """The axes of the grid kernel in loop order; of a whole design those that its names have."""
+    order = axes_of(content)
+    if "theta" not in content.inputs and {n for n in shown if not of_design(n)} == {"status"}:
+        own = {axis for axes in own_axes(content, shown).values() for axis in axes}
+        order = [name for name in order if name in own] or [""]
+    return tuple(order)
+
+
+def _key(content: Content, asked: Asked, order: Sequence[str]) -> KernelKey:
+    """The key of the grid kernel, every number of the scene folded in; loads of the motion stay inputs."""
+    numbers = {n: value for n, value in asked.fixed if n in asked.request.inputs}
+    needed = content.inputs if asked.loads else asked.request.inputs
+    columns = {n: np.array(content.inputs[n]) for n in order if n in needed}
+    key = key_of(asked.request, numbers, columns, {n: order.index(n) for n in columns}, len(order))
+    anywhere = key.form._replace(wide_margins=False)  # the module takes other designs, too
+    fixed = tuple((dict(key.fixed) | numbers).items())
+    kinds = () if content.fused is None else content.fused.kinds
+    names = asked.shown if asked.loads else key.names
+    return key._replace(names=names, form=anywhere, fixed=fixed, reduce=kinds)
 
 
 def _scalars(

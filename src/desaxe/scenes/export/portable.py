@@ -27,9 +27,9 @@ from ...runtime.specialise import plain_form, specialise
 from ...runtime.written import UNSEALED
 from ...support.version import version
 from ..content import Content
-from ..parts.kernel import own_axes
 from ..scene import Scene
 from ..schema import SceneError
+from .axes import own_axes
 from .loaded import require_tables, tables_of
 from .motion import has_masses, motion_solver
 from .solvers import solvers
