@@ -11,6 +11,7 @@ compiled_text  a text through numba and LLVM to machine code
 machine_code   self-contained machine code, loaded without numba
 loader         LLVM as a loader, without the Python of llvmlite
 cache          the folder of compiled kernels
+generated      generated texts: files to write, or to compare with those that are there
 written        which files desaxe wrote, and may replace
 wide_margins   which designs may take the plain forms
 near_limit     undecided points, recomputed in double-double

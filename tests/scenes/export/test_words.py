@@ -15,7 +15,7 @@ from desaxe.compiler.languages.words import words_of
 from desaxe.compiler.program import RESERVED  # of expressions, whatever the language
 from desaxe.mechanism import own
 from desaxe.mechanism.catalogue import has
-from desaxe.scenes.export.compile import texts_of
+from desaxe.scenes.export.compile import generated
 from tests.compiler.languages.tools import (
     array_values,
     es_module,
@@ -91,7 +91,7 @@ def written(to, place):
     for more in SCENES.values():
         if to == "jax" and "accuracy" in more:
             continue
-        texts = texts_of(scene(**more), place / VALUES[to][1], to)
+        texts = generated(scene(**more), place / VALUES[to][1], to).texts
         found |= {word for text in texts.values() for word in re.findall(r"\b[A-Za-z]\w*", text)}
     return found
 
@@ -209,7 +209,7 @@ def test_the_table_has_all_that_a_module_imports_and_calls(to, tmp_path):
     for name, more in SCENES.items():
         if to == "jax" and "accuracy" in more:
             continue
-        (text,) = texts_of(scene(**more), tmp_path / "press.py", to).values()
+        (text,) = generated(scene(**more), tmp_path / "press.py", to).texts.values()
         table = symtable.symtable(text, "press", "exec")
         symbols = [symbol for scope in scopes(table) for symbol in scope.get_symbols()]
         local = {

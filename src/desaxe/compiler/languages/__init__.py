@@ -1,4 +1,4 @@
-"""Languages: each writes the same Module in its own way, behind one Protocol.
+"""Languages: each writes the same Module in its own way, behind one class.
 
 protocol    what is written (`Module`), and what a language must have (`Language`)
 shared      assignments as statements, comments

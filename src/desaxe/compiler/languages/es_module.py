@@ -3,7 +3,7 @@
 from ..operations import JAVASCRIPT_TABLES
 from ..text import with_short_temporaries
 from .javascript import HEADER, emit_javascript
-from .protocol import Module, Symbol
+from .protocol import Language, Module, Symbol
 from .shared import arrays_of, numbers, one_line, safe_name, with_safe_names
 from .tables import columns_of, described, numbers_of, period_of
 from .words import words_of
@@ -62,17 +62,12 @@ export function evaluate(inputs) {
 """
 
 
-class JavaScript:
+class JavaScript(Language):
     """An ES module; see this file's docstring."""
 
     name = "javascript"
     suffix = ".js"
-    second_order = False
-    own_functions = False
-    single = False
     open_tables = True
-    extended = True
-    loops = None
 
     def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
         """`name.js` and `name.d.ts`."""

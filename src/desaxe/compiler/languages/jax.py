@@ -11,7 +11,7 @@ from ..builder import HELPERS as SHARED
 from ..builder import functions_of
 from ..program import Program
 from ..text import INDENT, with_short_temporaries
-from .protocol import Module, Symbol
+from .protocol import Language, Module, Symbol
 from .shared import (
     arrays_of,
     called,
@@ -148,17 +148,13 @@ EVALUATE = '''def evaluate(*, {inputs}):
 '''
 
 
-class Jax:
+class Jax(Language):
     """A module over jax.numpy; see this file's docstring."""
 
     name = "jax"
     suffix = ".py"
     second_order = True
-    own_functions = False
-    single = False
-    open_tables = False
     extended = False  # products may be fused with sums
-    loops = None
 
     def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
         """`name.py`."""

@@ -6,7 +6,7 @@ become complex: the root of a negative number is NaN.
 
 from ..program import Program
 from ..text import with_short_temporaries
-from .protocol import Module
+from .protocol import Language, Module
 from .shared import arrays_of, numbers, one_line, safe_name, statements, with_helpers, with_safe_names
 from .tables import columns_of, described, period_of
 from .words import words_of
@@ -164,17 +164,12 @@ end
 }
 
 
-class Octave:
+class Octave(Language):
     """GNU Octave and MATLAB; see this file's docstring."""
 
     name = "octave"
     suffix = ".m"
-    second_order = False
-    own_functions = False
-    single = False
     open_tables = True
-    extended = True
-    loops = None
 
     def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
         """`name.m`."""

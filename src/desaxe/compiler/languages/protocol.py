@@ -1,12 +1,13 @@
-"""The interface of a language: the Module that it writes, and the Protocol that it implements.
+"""The interface of a language: the Module that it writes, and the class that it is.
 
 A `Module` says all that the emitters may know: names and units of arguments and results, Programs, and
 constants. It knows no mechanism. A language turns it into the texts of one or more files.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from math import inf
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from ..kernel import Kernel
 from ..operations import Content
@@ -106,22 +107,18 @@ class Module(NamedTuple):
         return [symbol.name for symbol in self.inputs if own is None or symbol.name in own]
 
 
-class Language(Protocol):
-    """A language: writes a Module as source files."""
+class Language(ABC):
+    """A language: writes a Module as source files; what it can besides, most cannot."""
 
     name: str
     suffix: str  # of the file that is called
-    second_order: bool  # whether `derivatives` and `values` are wanted
-    own_functions: bool  # whether the language can do without a library of elementary functions
-    single: bool  # whether the language is written in single precision, too
-    open_tables: bool  # whether tables can be arguments
-    extended: bool  # whether sums and products are rounded as they stand, which twice the digits want
+    second_order = False  # whether `derivatives` and `values` are wanted
+    own_functions = False  # whether the language can do without a library of elementary functions
+    single = False  # whether the language is written in single precision, too
+    open_tables = False  # whether tables can be arguments
+    extended = True  # whether sums and products are rounded as they stand, which twice the digits want
+    loops: Callable[[Kernel, str], str] | None = None  # writes a loop nest as a module
 
-    @property
-    def loops(self) -> Callable[[Kernel, str], str] | None:
-        """The function that writes a loop nest as a module; None where the language takes none."""
-        ...
-
+    @abstractmethod
     def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
         """File name -> text. `freestanding`: without a library of elementary functions."""
-        ...

@@ -12,7 +12,8 @@ from ...compiler.languages.shared import refuse_taken
 from ...compiler.languages.words import words_of
 from ...mechanism.keywords import with_known_keywords
 from ...mechanism.own import using
-from ...runtime.written import replacing_ours, require_place, sealed
+from ...runtime.generated import Generated
+from ...runtime.written import sealed
 from ...support.checks import yes_or_no
 from ...support.files import as_path
 from ...support.shown import printable, shown
@@ -20,7 +21,7 @@ from ..content import Content
 from ..scene import Scene
 from ..scene import scene as scene_of
 from ..schema import SceneError
-from .fmu.write import stale_fmu, write_fmu
+from .fmu.write import fmu_of
 from .numba_module import text_of
 from .peaks import left_out_of_module
 from .portable import PLAIN, Form, Order, left_out, module_of
@@ -81,23 +82,12 @@ def compile(
     place = as_path("path", path)
     yes_or_no(libm=libm, check=check, overwrite=overwrite, float=float)
     form = Form(not libm, float, are_open(tables))
-    given = scene if isinstance(scene, Scene) else scene_of(scene)
-    if to == "fmu":
-        require_fmu(place, form)
-        if not check:
-            return write_fmu(given, place, fmi, input, overwrite)
-    texts = {} if to == "fmu" else texts_of(given, place, to, form)
-    if check:
-        stale = stale_fmu(given, place, fmi, input) if to == "fmu" else differing(texts)
-        if stale:
-            names = ", ".join(Path(file).name for file in stale)
-            raise ValueError(f"{printable(place)}: not what the scene gives ({names}); write it again")
-        return place
-    for file in texts:
-        require_place(file, overwrite)
-    for file, text in texts.items():
-        with replacing_ours(file, overwrite) as staged:
-            staged.write_bytes(text.encode())
+    made = generated(scene if isinstance(scene, Scene) else scene_of(scene), place, to, form, fmi, input)
+    if not check:
+        made.write(overwrite)
+    elif stale := made.stale():
+        names = ", ".join(Path(name).name for name in stale)
+        raise ValueError(f"{printable(place)}: not what the scene gives ({names}); write it again")
     return place
 
 
@@ -127,13 +117,18 @@ def require_fmu(place: Path, form: Form) -> None:
     require_name(place.stem, place, words_of("c").modules)
 
 
-def texts_of(scene: Scene, place: Path, to: str = "numba", form: Form = PLAIN) -> dict[Path, str]:
-    """The files of a scene in a language, with their texts; nothing is written."""
+def generated(
+    scene: Scene, place: Path, to: str = "numba", form: Form = PLAIN, fmi: int = 3, drive: str = "torque"
+) -> Generated:
+    """The files of a scene in a language; nothing is written."""
     with using(scene.content.definitions):
-        return _texts_of(scene, place, to, form)
+        if to == "fmu":
+            require_fmu(place, form)
+            return fmu_of(scene, place, fmi, drive)
+        return _generated(scene, place, to, form)
 
 
-def _texts_of(scene: Scene, place: Path, to: str, form: Form) -> dict[Path, str]:
+def _generated(scene: Scene, place: Path, to: str, form: Form) -> Generated:
     language = language_of(to, "fmu")
     if form.freestanding and not language.own_functions:
         raise ValueError(
@@ -157,7 +152,7 @@ def _texts_of(scene: Scene, place: Path, to: str, form: Form) -> dict[Path, str]
     name = place.stem if is_file else place.name
     if language.loops is not None:
         _require_importable(place, words.modules)
-        return {place: sealed(text_of(scene, place.name, form))}
+        return Generated(place.parent, {place.name: sealed(text_of(scene, place.name, form))})
     require_name(name, place, words.modules)
     folder = place.parent if is_file else place
     source = Path(scene.name).name
@@ -165,17 +160,13 @@ def _texts_of(scene: Scene, place: Path, to: str, form: Form) -> dict[Path, str]
     if not source:
         said = f'desaxe.compile(scene, "{place.name}", to="{to}"{form.keywords})'
     module = module_of(scene, Order(to, name, said, language.second_order, form))
-    return {folder / file: sealed(text) for file, text in language.files(module, form.freestanding).items()}
+    texts = language.files(module, form.freestanding)
+    return Generated(folder, {file: sealed(text) for file, text in texts.items()})
 
 
 def lost_of(content: Content, to: str) -> list[str]:
     """The parts of a scene that its module in a language leaves out, by name."""
     return left_out(content) if language_of(to).loops is None else left_out_of_module(content)
-
-
-def differing(texts: Mapping[Path, str]) -> list[Path]:
-    """The files that are missing or have another text."""
-    return [f for f, text in texts.items() if not f.is_file() or f.read_bytes() != text.encode()]
 
 
 def require_name(name: str, place: Path, words: Container[str]) -> None:

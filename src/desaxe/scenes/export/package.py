@@ -8,7 +8,6 @@ module for arrays and as plain Python for a single point. The files say from whi
 import hashlib
 import json
 from collections.abc import Sequence
-from difflib import unified_diff
 from importlib.resources import files
 from keyword import iskeyword
 from pathlib import Path
@@ -28,8 +27,9 @@ from ...mechanism.inputs import INPUTS, LEAST
 from ...mechanism.names import FORCE_STATUS, STATUS, parts
 from ...mechanism.own import Definition, definitions, rows_of
 from ...mechanism.program import Variant, digest, program_of
+from ...runtime.generated import Generated
 from ...runtime.specialise import specialise
-from ...runtime.written import UNSEALED, is_ours, replacing_ours, require_ours, sealed
+from ...runtime.written import UNSEALED, is_ours, sealed
 from ...support.shown import printable
 from ...support.toml import read_toml
 from ...support.version import version
@@ -52,42 +52,24 @@ def write_package(source: Path, folder: Path, check: bool = False, overwrite: bo
     for a file of the package that was edited, unless `overwrite` is true.
     """
     texts = package_texts(source, folder.name)
-    if check:
-        return _differences(texts, folder)
-    if not folder.name.isidentifier() or iskeyword(folder.name) or folder.name in words_of("numba").modules:
-        raise ValueError(f"{printable(folder)}: Python cannot import a package of this name")
     there = [path.name for path in folder.iterdir()] if folder.is_dir() else []
     others = [name for name in there if name != "__pycache__" and name not in texts]
+    if check:
+        stale = Generated(folder, texts | dict.fromkeys(n for n in others if n.endswith(".py")))
+        return [f"{line}\n" for line in stale.diff()]
+    if not folder.name.isidentifier() or iskeyword(folder.name) or folder.name in words_of("numba").modules:
+        raise ValueError(f"{printable(folder)}: Python cannot import a package of this name")
     foreign = [name for name in others if not is_ours(folder / name)]
     if folder.exists() and (not folder.is_dir() or foreign):
         raise ValueError(
             f"{printable(folder)}: it has other things in it ({printable(', '.join(foreign[:3]))}); "
             "give a folder of its own"
         )
-    for name in texts:
-        require_ours(folder / name, overwrite)
-    folder.mkdir(parents=True, exist_ok=True)
-    for name in others:
-        (folder / name).unlink()
-    for name, text in texts.items():
-        with replacing_ours(folder / name, overwrite) as staged:
-            staged.write_bytes(text.encode())
+    Generated(folder, texts | dict.fromkeys(others)).write(overwrite)
     return []
 
 
-def _differences(texts: dict[str, str], folder: Path) -> list[str]:
-    """A unified diff between the package and the files in a folder."""
-    there = {path.name: path.read_text(encoding="utf-8") for path in sorted(folder.glob("*.py"))}
-    found: list[str] = []
-    for name in sorted({*texts, *there}):
-        old, new = there.get(name, ""), texts.get(name, "")
-        if old != new or (name in there) != (name in texts):
-            lines = unified_diff(old.splitlines(True), new.splitlines(True), f"there/{name}", f"new/{name}")
-            found += list(lines) or [f"{name} is {'not wanted' if name in there else 'missing'}\n"]
-    return found
-
-
-def package_texts(source: Path, name: str) -> dict[str, str]:
+def package_texts(source: Path, name: str) -> dict[str, str | None]:
     """Every file of the package by name, as text."""
     made = _read(source)
     known = {**definitions(), **{own.name: own for own in made}}

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from ...passes.trigonometry import Trigonometry, expand_trigonometry
 from ...passes.value_numbering import value_numbering
 from ...program import Line, Program
-from ..protocol import Module, Solver, Symbol
+from ..protocol import Language, Module, Solver, Symbol
 from ..shared import arrays_of, called, numbers, one_line, with_helpers
 from ..tables import described, numbers_of
 from .functions import Lifted, lifted, static_function
@@ -17,17 +17,14 @@ from .tables import checks, parameters, passed, table_comment, table_function, t
 STRIP = 128  # points of an array whose sines are computed ahead, on the stack
 
 
-class C:
+class C(Language):
     """C99, called by one point or by arrays; see the package."""
 
     name = "c"
     suffix = ".c"
-    second_order = False
     own_functions = True
     single = True
     open_tables = True
-    extended = True
-    loops = None
 
     def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
         """`name.h` and `name.c`."""

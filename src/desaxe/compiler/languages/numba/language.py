@@ -7,7 +7,7 @@ from ...builder import module_text
 from ...passes.guard import BAD_INPUT
 from ...program import Program, tables_in
 from ...text import INDENT, with_short_temporaries, write_lines
-from ..protocol import Module, OpenTable, Symbol
+from ..protocol import Language, Module, OpenTable, Symbol
 from ..shared import one_line, types_of
 from ..tables import columns_of, period_of
 from .module import CALLABLE, emit_numba, numba_parts
@@ -30,16 +30,12 @@ SCALAR = '''def scalar(function):
 '''
 
 
-class Numba:
+class Numba(Language):
     """Python that numba compiles; see the package."""
 
     name = "numba"
     suffix = ".py"
-    second_order = False
-    own_functions = False
-    single = False
     open_tables = True
-    extended = True
     loops = staticmethod(emit_numba)
 
     def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:

@@ -8,12 +8,13 @@ import sys
 import tempfile
 import warnings
 import zipfile
+from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
 
-from ....runtime.written import replacing_ours, require_ours, sealed
+from ....runtime.generated import Generated
+from ....runtime.written import replacing_ours, require_place, sealed
 from ....support.extras import needed
-from ....support.files import check_target, require_writable
 from ....support.shown import printable
 from ....support.version import version
 from ...content import Content
@@ -42,39 +43,46 @@ class FmuWarning(UserWarning):
     """An FMU without a binary."""
 
 
-def write_fmu(
-    scene: Scene, place: Path, fmi: int = 3, drive: str = "torque", overwrite: bool = False
-) -> Path:
-    """Write the FMU of a scene; with a warning, and without a binary, where no C compiler is."""
-    for file in (place,):
-        check_target(file)
-        require_ours(file, overwrite)
-        require_writable(file)
-    texts = texts_of_fmu(scene, place, fmi, drive)
-    contents = {name: text.encode() for name, text in texts.items()}
-    found = binary_of(texts[f"sources/{place.stem}.c"], place.stem, fmi)
-    if found is None:
-        warnings.warn(
-            f"{printable(place)}: no C compiler found ({', '.join(COMPILERS)}): an FMU of sources "
-            "alone, which the importing program compiles",
-            FmuWarning,
-            stacklevel=2,
-        )
-    else:
-        contents |= dict([found])
-    with replacing_ours(place, overwrite) as staged:
-        staged.write_bytes(_zipped(contents))
-    return place
+class Archive(Generated):
+    """The texts in an FMU; written, with a binary beside them where a C compiler is."""
+
+    def __init__(self, place: Path, texts: Mapping[str, str], fmi: int) -> None:
+        super().__init__(place, texts)
+        self.fmi = fmi
+
+    def there(self, name: str) -> bytes | None:
+        """The content of a file in the archive; None where there is none."""
+        if not zipfile.is_zipfile(self.folder):
+            return None
+        with zipfile.ZipFile(self.folder) as archive:
+            return archive.read(name) if name in archive.namelist() else None
+
+    def write(self, overwrite: bool) -> None:
+        """Write the archive; with a warning, and without a binary, where no C compiler is."""
+        require_place(self.folder, overwrite)
+        contents = {name: text.encode() for name, text in self.texts.items() if text}
+        found = binary_of(contents[f"sources/{self.folder.stem}.c"], self.folder.stem, self.fmi)
+        if found is None:
+            warnings.warn(
+                f"{printable(self.folder)}: no C compiler found ({', '.join(COMPILERS)}): an FMU of sources "
+                "alone, which the importing program compiles",
+                FmuWarning,
+                stacklevel=3,
+            )
+        else:
+            contents |= dict([found])
+        with replacing_ours(self.folder, overwrite) as staged:
+            staged.write_bytes(_zipped(contents))
+
+    def summary(self) -> list[str]:
+        """What is in the archive."""
+        with zipfile.ZipFile(self.folder) as archive:
+            return [f"{self.folder}: FMI {self.fmi}.0, {', '.join(archive.namelist())}"]
 
 
-def stale_fmu(scene: Scene, place: Path, fmi: int = 3, drive: str = "torque") -> list[str]:
-    """The names of the texts in an FMU that are missing or are not what the scene gives."""
-    texts = texts_of_fmu(scene, place, fmi, drive)
-    if not zipfile.is_zipfile(place):
-        return [*texts]
-    with zipfile.ZipFile(place) as archive:
-        there = {name: archive.read(name) for name in archive.namelist()}
-    return [name for name, text in texts.items() if there.get(name) != text.encode()]
+def fmu_of(scene: Scene, place: Path, fmi: int = 3, drive: str = "torque") -> Archive:
+    """The FMU of a scene; nothing is written."""
+    return Archive(place, texts_of_fmu(scene, place, fmi, drive), fmi)
 
 
 def texts_of_fmu(scene: Scene, place: Path, fmi: int = 3, drive: str = "torque") -> dict[str, str]:
@@ -145,7 +153,7 @@ def headers() -> Path:
     return Path(fmpy.__file__).parent / "c-code"
 
 
-def binary_of(source: str, name: str, fmi: int) -> tuple[str, bytes] | None:
+def binary_of(source: bytes, name: str, fmi: int) -> tuple[str, bytes] | None:
     """The name in the archive and the bytes of the library; None where there is no compiler."""
     compiler = next((path for path in map(shutil.which, COMPILERS) if path is not None), None)
     system, suffix = SYSTEMS.get(platform.system(), ("", ""))
@@ -155,7 +163,7 @@ def binary_of(source: str, name: str, fmi: int) -> tuple[str, bytes] | None:
         return None
     with tempfile.TemporaryDirectory() as place:
         file, made = Path(place) / f"{name}.c", Path(place) / f"{name}{suffix}"
-        file.write_text(source, encoding="utf-8")
+        file.write_bytes(source)
         command = [compiler, *FLAGS, f"-I{headers()}", str(file), "-o", str(made), "-lm"]
         done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
         if done.returncode != 0:
