@@ -39,13 +39,13 @@ class Generated:
             require_place(self.folder / name, overwrite)
         for name, text in self.texts.items():
             if text is None:
-                (self.folder / name).unlink()
+                (self.folder / name).unlink(missing_ok=True)
                 continue
             with replacing_ours(self.folder / name, overwrite) as staged:
                 staged.write_bytes(text.encode())
 
     def summary(self) -> list[str]:
-        """What was written, a line for each file."""
+        """A line for each file that was written."""
         return [
             f"{self.folder / name}: {len(text.splitlines())} lines"
             for name, text in self.texts.items()

@@ -75,7 +75,7 @@ class Archive(Generated):
             staged.write_bytes(_zipped(contents))
 
     def summary(self) -> list[str]:
-        """What is in the archive."""
+        """The names in the archive, in a line."""
         with zipfile.ZipFile(self.folder) as archive:
             return [f"{self.folder}: FMI {self.fmi}.0, {', '.join(archive.namelist())}"]
 
