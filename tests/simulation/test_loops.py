@@ -53,6 +53,10 @@ def test_panels_in_time(name, monkeypatch):
     assert wanted <= vectors_of(text, monkeypatch)
 
 
+def test_quantities_at_nodes(monkeypatch):
+    assert vectors_of(energy.quantities(FAMILY, False).text, monkeypatch) >= {"div", "sqrt", "mul", "fmuladd"}
+
+
 @pytest.mark.parametrize("name", PIECES)
 def test_pieces_in_energy_form(name, monkeypatch):
     given, wanted = PIECES[name]

@@ -61,7 +61,7 @@ def source_of(family: Family, given_torque: bool) -> str:
     inputs = _places(family)
     torque = "asked(number, t, theta, omega)" if given_torque else "number"
     parts = [
-        *(_function(name, program, inputs) for name, program in family.programs.items()),
+        *(of_row(name, program, inputs) for name, program in family.programs.items()),
         still_in_lanes(family),
         NJIT + function_text("torque", ("t", "theta", "omega", "number"), [f"return {torque}"]),
         *([] if given_torque else _without_panels()),
@@ -78,7 +78,7 @@ def _places(family: Family) -> dict[str, str]:
 def still_in_lanes(family: Family) -> str:
     """`still` for a loop of vectors."""
     program = for_loops(family.programs["still"], constants(), plain=True)
-    return _function("still_in_lanes", program, _places(family))
+    return of_row("still_in_lanes", program, _places(family))
 
 
 def _without_panels() -> list[str]:
@@ -88,7 +88,7 @@ def _without_panels() -> list[str]:
     return [f"{NJIT}{head}return -1.0\n" for head in heads]
 
 
-def _function(name: str, program: Program, places: Mapping[str, str]) -> str:
+def of_row(name: str, program: Program, places: Mapping[str, str]) -> str:
     """A program as a jitted function of angle, branch and the row of a design."""
     rows = [f"{i} = {places[i]}" for i in program.inputs if i in places]
     rows += write_lines(with_short_temporaries(program), "numba")

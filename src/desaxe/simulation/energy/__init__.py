@@ -2,8 +2,10 @@
 
 serves     where it serves
 panels     inertia and torque of designs at the nodes of panels
+at_angles  quantities of many designs at angles, in plain loops
 pieces     a piece of a motion between two kinks or standstills
 follow     one motion in plain loops: energy and time as integrals over panels
+course     speeds, accelerations and energies along motions, in plain loops
 varied     its derivatives by parameters in plain loops
 by_parameters   the derivatives of inertia, torque and start of many designs, and those of their motions
 compiled   the same, compiled, for every family of designs

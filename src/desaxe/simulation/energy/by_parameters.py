@@ -10,10 +10,10 @@ from ...loads.load import Load, OverTheta, OverY
 from ...mechanism.closed.dead_centres import DEAD_CENTRES
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.names import LENGTHS
-from ...support.panels import ENDS, NODES
+from ...support.panels import ENDS, NODES, nodes_of
 from ..result import FAILED, LIMIT
 from .compiled import TABLES, variations
-from .panels import Designs, Fields, places_of
+from .panels import Designs, Fields
 
 Array = NDArray[np.float64]
 STARTS = ("theta0", "omega_start", "torque")  # parameters that are no inputs of the mechanism
@@ -151,10 +151,21 @@ def _before(values: Array) -> tuple[Array, Array]:
     return ends[..., 0] - np.roll(ends[..., 1], 1, axis=1), ends[..., 0]
 
 
+def places_of(designs: Designs, edges: Array) -> tuple[Array, Array, Any]:
+    """The coordinates of the start and of all nodes, the angles there, and their slope."""
+    x = np.empty((len(edges), 1 + NODES * (edges.shape[1] - 1)))
+    x[:, 0] = designs.coordinates(designs.theta0)
+    x[:, 1:] = nodes_of(edges[:, :-1], edges[:, 1:]).reshape(len(edges), -1)
+    theta, slope = designs.place(x)
+    if theta is not x:
+        theta[:, 0] = designs.theta0
+    return x, theta, slope
+
+
 def derived_of(designs: Designs, fields: Fields) -> Derived:
     """The derivatives of the fields of designs."""
     x, theta, slope = places_of(designs, fields.edges)
-    found = {**fields.found, **designs.values(theta, names_of(designs))}
+    found = {**designs.values(theta), **designs.values(theta, names_of(designs))}
     count, nodes, rocks = len(x), x.shape[1] - 1, bool(designs.half.any())
     ways = [1.0, -1.0] if designs.turns_with_the_slider else [1.0]
     pushed = [Pushed(designs, theta, found, way) for way in ways]
@@ -172,7 +183,7 @@ def derived_of(designs: Designs, fields: Fields) -> Derived:
                 angle, share = arc.angle(sine), np.where(designs.half == 0.0, 0.0, arc.half / designs.half)
                 every[0] = (of_M + found["M_eff_wrt_theta"] * angle) * slope * slope
                 every[0] += 2.0 * fields.inertia * share[:, None]
-                for way, (own, pushes) in enumerate(zip(pushed, (fields.push, fields.back), strict=False)):
+                for way, (own, pushes) in enumerate(zip(pushed, fields.pushes, strict=False)):
                     every[1 + way] = (every[1 + way] + own.by_theta() * angle) * slope + pushes * share[
                         :, None
                     ]
@@ -233,7 +244,7 @@ def sensitivities_of(
     scale = np.stack([np.abs(v).max(axis=2, initial=0.0) for v in (own.inertia, own.push)], axis=2)
     if last:
         scale[:] = np.inf
-    panels = fields.edges, fields.rough, fields.inertia, fields.push, fields.back
+    panels = fields.edges, fields.rough, fields.inertia, *fields.pushes
     derived = own.bend, own.inertia, own.push, own.back, own.jumps, own.begin, scale
     how = np.array([tolerance, 1.0, tolerance, float(bool(designs.tables))])
     room, rows = ROOM, np.arange(count)

@@ -1,19 +1,28 @@
-"""The compiled loop over motions in their energy form, the same for every family of designs."""
+"""The compiled loops of the energy form: one of each family of designs, and those of all families."""
 
-from functools import cache
+from collections.abc import Mapping, Sequence
+from functools import cache, lru_cache
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...compiler.builder import module_text
-from ...compiler.languages.numba.module import numba_parts
+from ...compiler.builder import function_text, module_text
+from ...compiler.languages.numba.module import NJIT, numba_parts
+from ...compiler.lowering import for_loops
+from ...compiler.program import Program
+from ...mechanism.constants import constants
 from ...runtime.modules import Native, native
 from ...support.panels import NODE, NODES, RUNNING, TO_COEFFICIENTS, WEIGHT, Array
+from ..compiled import Family, of_row
 
 FILES = tuple(Path(__file__).with_name(name) for name in ("follow.py", "pieces.py", "varied.py"))
+OWN = tuple(Path(__file__).with_name(name) for name in ("at_angles.py", "course.py"))
+FIELDS = ("M_eff", "T_in")
+COURSE = (*FIELDS, "M_eff_wrt_theta", "Y", "potential_energy")
 _MOTIONS = """row, rows = types.float64[::1], types.float64[:, ::1]
 signature = types.void(
-    rows, rows, rows, rows, rows, rows, row, row, row, row, row, rows, rows, rows, rows, rows, rows,
+    rows, rows, types.float64[:, :, ::1], rows, row, row, row, row, row, rows, rows, rows, rows, rows, rows,
     types.int8[::1], types.int8[:, ::1], rows
 )
 function = motions.py_func
@@ -26,6 +35,75 @@ signature = types.void(
 )
 function = variations.py_func
 """
+
+
+_AT_ANGLES = """row, rows, blocks = types.float64[::1], types.float64[:, ::1], types.float64[:, :, ::1]
+signature = types.void(rows, rows, types.float64, types.float64, row, rows, rows, rows, blocks)
+function = at_angles.py_func
+"""
+_COURSES = """rows, blocks = types.float64[:, ::1], types.float64[:, :, ::1]
+signature = types.void(rows, rows, blocks, rows, rows, rows, rows, rows)
+function = courses.py_func
+"""
+
+
+class AtAngles(NamedTuple):
+    """The quantities of a family at angles: a text, the inputs of its rows, and names.
+
+    fields, course   at the nodes of panels, and along motions
+    """
+
+    text: str
+    inputs: tuple[str, ...]
+    fields: tuple[str, ...]
+    course: tuple[str, ...]
+
+
+@lru_cache(maxsize=256)
+def quantities(family: Family, loaded: bool) -> AtAngles:
+    """The loops over nodes and motions; loaded: by a table on the slider."""
+    fields = (*FIELDS, "Y", "Y_wrt_theta") if loaded else FIELDS
+    course = (*COURSE, "Y_wrt_theta") if loaded else COURSE
+    programs = {
+        which: for_loops(family.program(names, "omega", "alpha", "mu"), constants())
+        for which, names in (("fields", fields), ("course", course))
+    }
+    used = {name for program in programs.values() for name in program.inputs} - {"theta", "branch"}
+    inputs = tuple(sorted(used))
+    places = {name: f"p[{at}]" for at, name in enumerate(inputs)}
+    parts = []
+    for which, program in programs.items():
+        parts += [of_row(f"{which}_at", program, places), _in_lanes(which, program)]
+    docstring = f"desaxe: quantities at rest; p has {', '.join(inputs)}."
+    return AtAngles(module_text(docstring, numba_parts([*parts, _AT_ANGLES], *OWN)), inputs, fields, course)
+
+
+@lru_cache(maxsize=256)
+def at_angles(text: str) -> Native:
+    """The machine code of quantities at angles."""
+    return native("at_angles", text)
+
+
+def _in_lanes(which: str, program: Program) -> str:
+    """The loop over angles, whose length LLVM does not know."""
+    outs = ", ".join(f"out[{row}, k]" for row in range(len(program.outputs)))
+    call = f"    {outs} = {which}_at(theta[k], branch, p)"
+    loop = ["apart()", "for k in range(uint64(theta.shape[0])):", call]
+    return NJIT + function_text(f"{which}_in_lanes", ("theta", "branch", "p", "out"), loop)
+
+
+def rows_of(inputs: Sequence[str], values: Mapping[str, Any], count: int) -> Array:
+    """The inputs of designs, a row for each."""
+    rows = np.empty((count, len(inputs)))
+    for column, name in enumerate(inputs):
+        rows[:, column] = values[name]
+    return rows
+
+
+@cache
+def courses() -> Native:
+    """The machine code of histories."""
+    return native("courses", module_text("desaxe: histories of motions.", numba_parts([_COURSES], *OWN)))
 
 
 @cache

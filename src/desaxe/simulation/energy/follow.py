@@ -13,7 +13,7 @@ method. A piece whose series has not ended is cut.
 
 rough    how exactly M and Q are known on each panel, as a share of them
 setup    a row per design: E0, number of the edge at the start, way (-1 or 1), period or 0, 1 where Q does
-         not depend on the way
+         not depend on the way, the row of Q back
 how      tolerance, 1 to keep every piece
 most     pieces: an array of one, which another thread may set to 0
 tables   nodes; weights; columns by which values become Legendre coefficients, running integrals, and means
@@ -342,9 +342,7 @@ def invert(count: Any, which: Any, since: Any, kept: Any, x: Any, speed: Any, la
 def motions(
     edges: Any,
     rough: Any,
-    M: Any,
-    forth: Any,
-    back: Any,
+    fields: Any,
     setup: Any,
     times: Any,
     how: Any,
@@ -361,21 +359,26 @@ def motions(
     bad: Any,
     numbers: Any,
 ) -> None:
-    """Every design: x and its rate at all instants, NaN where the motion has ended; status and numbers."""
+    """Every design: x and its rate at all instants, NaN where the motion has ended; status and numbers.
+
+    x, speed   their first column, of the start, is left alone
+    """
     tables, count, panels = (nodes, weights, coefficients, running, mean), len(times), edges.shape[1] - 1
     which, since, lanes = empty(count, int64), empty(count), empty((21, count))
     work, known, last = empty((2, panels, 17)), empty((2, panels), int64), empty(19)
     for n in range(len(setup)):
-        x[n, :], speed[n, :] = nan, nan
+        place, rate, back = x[n, 1:], speed[n, 1:], int64(setup[n, 5])
+        for i in range(count):
+            place[i], rate[i] = nan, nan
         if status[n] > 0:
             continue
         numbers[n, 3] = 0.0
         status[n] = follow(
-            edges[n], rough[n], M[n], forth[n], back[n], setup[n], times, how, most, tables, kept, which,
-            since, bad[n], work, known, last, numbers[n],
+            edges[n], rough[n], fields[n, 0], fields[n, 1], fields[n, back], setup[n], times, how, most,
+            tables, kept, which, since, bad[n], work, known, last, numbers[n],
         )  # fmt: skip
         reached = int64(numbers[n, 3])
-        if status[n] < 10 and reached > 0 and not invert(reached, which, since, kept, x[n], speed[n], lanes):
+        if status[n] < 10 and reached > 0 and not invert(reached, which, since, kept, place, rate, lanes):
             status[n] = 11
         if status[n] == 0:
-            numbers[n, 2] = last[16] + last[17] * integral(last, (x[n, count - 1] - last[18]) / last[17])
+            numbers[n, 2] = last[16] + last[17] * integral(last, (place[count - 1] - last[18]) / last[17])

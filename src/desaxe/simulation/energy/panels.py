@@ -1,7 +1,7 @@
 """Inertia and torque of many designs at the nodes of panels, over the coordinate of their motion."""
 
 from collections.abc import Mapping, Sequence
-from math import ceil, pi
+from math import ceil, nan, pi
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,9 +10,13 @@ from numpy.typing import NDArray
 from ...evaluation.evaluate import evaluate
 from ...loads.angles import meeting_angles, turns_of, zero_of
 from ...loads.load import TURN, Load, OverTheta, OverY
+from ...mechanism.constants import constants
 from ...mechanism.names import LENGTHS
 from ...runtime.compiled_only import compiled_only
-from ...support.panels import NODE, NODES, nodes_of, padded
+from ...support.panels import NODE, NODES, padded
+from ..compiled import Family
+from ..model import fixed_zeros, form_of
+from .compiled import at_angles, quantities, rows_of
 
 Array = NDArray[np.float64]
 LOST = 2.0**-53  # of an angle: its rounding, in the last terms of a series
@@ -69,17 +73,44 @@ class Designs(NamedTuple):
         """True where the force depends on the direction of the slider."""
         return isinstance(self.force, OverY) and self.force.turns
 
-    def push(self, theta: Array, found: Mapping[str, Array], way: Any) -> Array:
-        """The generalised torque of all that acts, with what `values` finds at the angles."""
-        torque = self.torque(theta) if isinstance(self.torque, OverTheta) else self.torque[:, None]
-        push = torque - found["T_in"]
+    def add_tables(self, push: Array, theta: Array, Y: Array, Y_wrt_theta: Array, way: Any) -> None:
+        """Add what the loads that vary do to the torque that moves the crank."""
+        if isinstance(self.torque, OverTheta):
+            push += self.torque(theta)
         if isinstance(self.force, OverY):
             zero = zero_of(self.force, self.lengths, self.branch)[:, None]
-            along = self.force.along({"Y": found["Y"], self.force.centre: zero})
-            push += self.force(along, way * found["Y_wrt_theta"]) * found["Y_wrt_theta"]
+            along = self.force.along({"Y": Y, self.force.centre: zero})
+            push += self.force(along, way * Y_wrt_theta) * Y_wrt_theta
         elif isinstance(self.force, OverTheta):
-            push += self.force(theta) * found["Y_wrt_theta"]
-        return np.asarray(push)
+            push += self.force(theta) * Y_wrt_theta
+
+    @property
+    def loads(self) -> Array:
+        """Torque and force of each design, NaN where they are tables, and half of the arc."""
+        rows = np.empty((len(self.half), 3))
+        for column, load in enumerate((self.torque, self.force, self.half)):
+            rows[:, column] = nan if isinstance(load, Load) else load
+        return rows
+
+    def at_angles(self, x: Array, edges: Array | None = None) -> tuple[Array, Array]:
+        """The quantities of panels between edges, or of motions at coordinates, and the slopes of the angles.
+
+        x   coordinates behind the start; those of nodes are filled in; angles take their places
+        """
+        number = 0.0 if isinstance(self.torque, Load) else self.torque
+        setup = np.empty((len(x), 4))
+        for column, values in enumerate((self.theta0, self.middle, self.half, number)):
+            setup[:, column] = values
+        family = Family(form_of(self.inputs), fixed_zeros(self.inputs))
+        own = quantities(family, isinstance(self.force, Load))
+        count, names = len(x), own.course if edges is None else own.fields
+        panels = np.empty((count, 0)) if edges is None else edges
+        slope, values = np.empty(x.shape), np.empty((count, len(names), x.shape[1]))
+        rows = rows_of(own.inputs, self.inputs, count)
+        at_angles(own.text)(
+            rows, setup, float(self.branch), constants().limit, NODE, panels, x, slope, values
+        )
+        return values, slope
 
     def length(self, name: str) -> Array:
         """A length of each design."""
@@ -120,49 +151,48 @@ class Designs(NamedTuple):
 
 
 class Fields(NamedTuple):
-    """Edges of panels, and rows of the start and of all nodes: inertia and torque of the coordinate there.
+    """Edges of panels, and inertia and torque of the coordinate at the start and at all nodes.
 
-    back    the torque on the way back
-    rough   how exactly they are known: next to a limit angle a rounded angle has lost digits
-    start   the quantities at the start
-    found   the quantities at the start and at all nodes
+    rough    how exactly they are known: next to a limit angle a rounded angle has lost digits
+    values   of designs: rows of the inertia, the torque and, at `back`, that on the way back
     """
 
     edges: Array
     rough: Array
-    inertia: Array
-    push: Array
-    back: Array
-    start: dict[str, Array]
-    found: dict[str, Array]
+    values: Array
+    back: int
 
+    @property
+    def inertia(self) -> Array:
+        """The inertia of each design."""
+        return self.values[:, 0]
 
-def places_of(designs: Designs, edges: Array) -> tuple[Array, Array, Any]:
-    """The coordinates of the start and of all nodes, the angles there, and their slope."""
-    x = np.empty((len(edges), 1 + NODES * (edges.shape[1] - 1)))
-    x[:, 0] = designs.coordinates(designs.theta0)
-    x[:, 1:] = nodes_of(edges[:, :-1], edges[:, 1:]).reshape(len(edges), -1)
-    theta, slope = designs.place(x)
-    if theta is not x:
-        theta[:, 0] = designs.theta0
-    return x, theta, slope
+    @property
+    def pushes(self) -> tuple[Array, Array]:
+        """The torque on both ways."""
+        return self.values[:, 1], self.values[:, self.back]
 
 
 def fields_of(designs: Designs, edges: Array) -> Fields:
     """The fields of designs on panels."""
-    count = len(edges)
-    _, theta, slope = places_of(designs, edges)
-    found = designs.values(theta)
-    start = {name: values[:, 0].copy() for name, values in found.items()}
-    inertia, push = found["M_eff"], designs.push(theta, found, 1.0)
-    back = designs.push(theta, found, -1.0) if designs.turns_with_the_slider else push
-    start["push"], start["back"] = push[:, 0].copy(), back[:, 0].copy()
-    rough = np.zeros((count, edges.shape[1] - 1))
+    count, panels = len(edges), edges.shape[1] - 1
+    theta = np.empty((count, 1 + NODES * panels))
+    values, slope = designs.at_angles(theta, edges)
+    rough, back = np.zeros((count, panels)), 1
     if designs.half.any():
-        rough, same = _rough(designs, edges), back is push
-        inertia, push = inertia * slope * slope, push * slope
-        back = push if same else back * slope
-    return Fields(edges, rough, np.ascontiguousarray(inertia), push, back, start, found)
+        rough = _rough(designs, edges)
+    if isinstance(designs.force, Load):
+        back, (Y, speed) = 2, (values[:, 2].copy(), values[:, 3])
+        values[:, 2] = values[:, 1]
+        for row, way in ((1, 1.0), (2, -1.0)):
+            more = np.zeros(theta.shape)
+            designs.add_tables(more, theta, Y, speed, way)
+            values[:, row] += more * slope
+    elif designs.tables:
+        more = np.zeros(theta.shape)
+        designs.add_tables(more, theta, theta, theta, 1.0)
+        values[:, 1] += more * slope
+    return Fields(edges, rough, values, back)
 
 
 def _rough(designs: Designs, edges: Array) -> Array:
