@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from contextlib import nullcontext
 from functools import partial
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -51,22 +52,42 @@ class Checked(NamedTuple):
         return Checked(self.designs.part(rows), self.bad[rows], self.special[rows])
 
 
-class Work(NamedTuple):
-    """A name, the kind of its extremum, the searches for special designs and the usual ones, progress."""
-
-    name: str
-    kind: str
-    search: Search
-    usual: Search
-    told: Portions  # of the designs that are done
-
-
 class Plan(NamedTuple):
     """A request to search, the parameters of its gradient, and all inputs that it needs."""
 
     wanted: Request
     parameters: tuple[str, ...]
     needs: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """The quantity."""
+        return self.wanted.shown[0]
+
+
+class Sought(NamedTuple):
+    """The extreme values that are sought, of any designs: of what, of which kind, over which angles."""
+
+    plan: Plan
+    kind: str
+    branch: int
+    ends: tuple[float, float]
+    threads: int | None = None
+    loads: Mapping[str, Load] = MappingProxyType({})  # those that vary with the motion
+
+    @property
+    def numbers(self) -> list[str]:
+        """The inputs that are numbers or arrays."""
+        return [name for name in self.plan.needs if name not in self.loads]
+
+
+class Work(NamedTuple):
+    """What is sought, the searches for special designs and the usual ones, progress."""
+
+    sought: Sought
+    search: Search
+    usual: Search
+    told: Portions  # of the designs that are done
 
 
 MOST_PLANS = 1024
@@ -121,31 +142,21 @@ def search_of(plan: Plan, arrays: dict[str, Array], ends: tuple[float, float]) -
     return Search(name, plan.parameters, wanted.form, fixed, extended, far)
 
 
-def peaks_of_designs(
-    plan: Plan,
-    kind: str,
-    search: Search,
-    columns: dict[str, Array],
-    branch: int,
-    ends: tuple[float, float],
-    threads: int | None,
-    varying: Mapping[str, Load] | None = None,
-) -> dict[str, Any]:
-    """Value, angle, gradient and status of flat designs; `varying` are their loads that vary with theta."""
+def peaks_of_designs(sought: Sought, search: Search, columns: dict[str, Array]) -> dict[str, Any]:
+    """Value, angle, gradient and status of flat designs."""
+    plan = sought.plan
     kinks = "mu" in plan.parameters or has_kinks(plan.wanted.form.own)
-    loads = with_slopes(varying, *ends) if varying else {}
-    checked = _checked(Designs(columns, branch, ends, kinks, loads, plan.wanted.accuracy))
+    loads = with_slopes(sought.loads, *sought.ends) if sought.loads else {}
+    checked = _checked(Designs(columns, sought.branch, sought.ends, kinks, loads, plan.wanted.accuracy))
     size = checked.designs.size
     usual = search if loads else _in_form(search, checked)
-    name = plan.wanted.shown[0]
     with progress_bar(unit="designs") if size > LARGE else nullcontext() as watch:
-        work = Work(name, kind, search, usual, Portions(size, f"peaks of {name}", watch))
-        return _all(work, checked, threads)
+        return _all(Work(sought, search, usual, Portions(size, f"peaks of {plan.name}", watch)), checked)
 
 
-def _all(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
+def _all(work: Work, checked: Checked) -> dict[str, Any]:
     """The peaks of all designs; many that are alike, in parts."""
-    size, usual = checked.designs.size, work.usual
+    size, usual, threads = checked.designs.size, work.usual, work.sought.threads
     loads = checked.designs.loads
     if loads or size < 2 * LEAST_ALL_THROUGH or (checked.special & ~checked.bad).any():
         return _peaks(work, checked, threads)
@@ -171,7 +182,8 @@ def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:
 
 def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
     """Value, angle, gradient and status of some designs."""
-    name, kind, search, usual, told = work
+    sought, search, usual, told = work
+    name, kind = sought.plan.name, sought.kind
     designs, bad, own_nodes = checked
     columns = designs.columns
     out = np.empty((2 + len(search.parameters), designs.size))
@@ -248,10 +260,10 @@ def _in_form(search: Search, checked: Checked) -> Search:
 
     A second one, for a few that are not, would take longer to compile than it saves.
     """
-    columns, rows = checked.designs.columns, np.flatnonzero(~checked.special)
-    if not rows.size or search.extended or not all(name in columns for name in LENGTHS):
+    own, rows = checked.designs.lengths, np.flatnonzero(~checked.special)
+    if not rows.size or search.extended or not own:
         return search
-    lengths = {name: _at(columns[name], rows) for name in LENGTHS}
+    lengths = {name: _at(column, rows) for name, column in zip(LENGTHS, own, strict=True)}
     if all_have_wide_margins(search.form, **lengths) or have_wide_margins(lengths, search.form).all():
         return search._replace(form=search.form._replace(wide_margins=True))
     return search
@@ -278,8 +290,8 @@ def _checked(designs: Designs) -> Checked:
 
 def _classed(designs: Designs, rows: NDArray[np.intp], coarse: bool = False) -> Groups:
     """The designs by their classes, which share nodes; `coarse`: by few of them."""
-    lengths = [_at(designs.columns[n], rows) for n in LENGTHS if n in designs.columns]
-    numbers = np.zeros(rows.size, np.int16) if len(lengths) < 3 else classes(*lengths)
+    lengths = [_at(column, rows) for column in designs.lengths]
+    numbers = classes(*lengths) if lengths else np.zeros(rows.size, np.int16)
     if coarse:
         numbers = coarser(numbers)
     if rows.size == 1 or (numbers == numbers[0]).all():

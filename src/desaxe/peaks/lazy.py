@@ -9,13 +9,12 @@ from numpy.typing import NDArray
 from ..compiler.passes.guard import BAD_INPUT
 from ..evaluation.arrays import as_array, broadcast_shape
 from ..evaluation.dask_blocks import as_dask, is_lazy, numbered, outputs_of_blocks
-from ..loads.load import Load
 from ..mechanism.own import using
 from ..runtime.compiled_only import compiled_only
 from ..runtime.interpreted import are_good
 from ..runtime.request import as_number
 from ..support.extras import needed
-from .designs import Plan, peaks_of_designs, search_of
+from .designs import Sought, peaks_of_designs, search_of
 from .programs import Search
 
 Array = NDArray[Any]
@@ -25,20 +24,10 @@ GRADIENT = "gradient_"
 class PeakBlock(NamedTuple):
     """The peaks of a block of designs, from arrays of some inputs that broadcast; the others are numbers."""
 
-    plan: Plan
-    kind: str
+    sought: Sought
     search: Search
-    branch: int
-    ends: tuple[float, float]
     scalars: tuple[tuple[str, float], ...]
     names: tuple[str, ...]
-    threads: int = 1
-    loads: tuple[tuple[str, Load], ...] = ()
-
-    @property
-    def name(self) -> str:
-        """The quantity."""
-        return self.plan.wanted.shown[0]
 
     @property
     def outputs(self) -> dict[str, np.dtype[Any]]:
@@ -70,58 +59,37 @@ class PeakBlock(NamedTuple):
         columns = {name: np.resize(column, max(size, 2)) for name, column in flat.items()}
         columns |= {name: np.full(max(size, 2), value) for name, value in self.scalars}
         with using(self.search.form.own), compiled_only():
-            found = peaks_of_designs(
-                self.plan, self.kind, self.search, columns, self.branch, self.ends, self.threads,
-                dict(self.loads),
-            )  # fmt: skip
+            found = peaks_of_designs(self.sought, self.search, columns)
         return {**found, **{f"{GRADIENT}{n}": slope for n, slope in found["gradient"].items()}}
 
 
-def peak_block(
-    kind: str,
-    plan: Plan,
-    scalars: Mapping[str, float],
-    varying: tuple[str, ...],
-    branch: int,
-    ends: tuple[float, float],
-    threads: int | None,
-    loads: Mapping[str, Load],
-) -> PeakBlock:
+def peak_block(sought: Sought, scalars: Mapping[str, float], varying: tuple[str, ...]) -> PeakBlock:
     """The block of a request; an input of 0 is folded where it is a number."""
-    needs = [n for n in plan.needs if n not in loads]
-    shapes = {n: np.array(scalars[n]) if n in scalars else np.zeros(2) for n in needs}
-    search = search_of(plan, shapes, ends)
-    numbers, own = tuple(scalars.items()), tuple(loads.items())
-    return PeakBlock(plan, kind, search, branch, ends, numbers, varying, threads or 1, own)
+    shapes = {n: np.array(scalars[n]) if n in scalars else np.zeros(2) for n in sought.numbers}
+    search = search_of(sought.plan, shapes, sought.ends)
+    own = sought._replace(threads=sought.threads or 1, loads=dict(sought.loads))
+    return PeakBlock(own, search, tuple(scalars.items()), varying)
 
 
-def lazy_peak(
-    name: str,
-    kind: str,
-    plan: Plan,
-    given: Mapping[str, Any],
-    branch: int,
-    ends: tuple[float, float],
-    threads: int | None,
-    loads: Mapping[str, Load],
-) -> dict[str, Any]:
+def lazy_peak(sought: Sought, given: Mapping[str, Any]) -> dict[str, Any]:
     """The results of `peak` as Dask arrays."""
     with needed("Dask arrays"):
         from dask.base import tokenize
 
+    needs, shown = sought.plan.needs, sought.plan.wanted.shown[:1]
     scalars: dict[str, float] = {}
     arrays: dict[str, Any] = {}
-    for n in (n for n in plan.needs if n not in loads):
+    for n in sought.numbers:
         value = given.get(n)
-        number = None if is_lazy(value) else as_number(n, value, plan.needs, (name,))
+        number = None if is_lazy(value) else as_number(n, value, needs, shown)
         if number is not None:
             scalars[n] = number
         else:
-            arrays[n] = as_dask(n, value if is_lazy(value) else as_array(n, value, plan.needs, (name,)))
+            arrays[n] = as_dask(n, value if is_lazy(value) else as_array(n, value, needs, shown))
     broadcast_shape(arrays)
     arguments, along = numbered(arrays)
-    block = peak_block(kind, plan, scalars, tuple(arrays), branch, ends, threads, loads)
-    what = [load.identity for load in loads.values()]
+    block = peak_block(sought, scalars, tuple(arrays))
+    what = [load.identity for load in sought.loads.values()]
     token = tokenize(repr(block), what, *(array.name for array in arrays.values()))
     found = outputs_of_blocks(block.compute, arguments, along, block.outputs, token)
     gradient = {n: found.pop(f"{GRADIENT}{n}") for n in block.search.parameters}

@@ -28,7 +28,7 @@ from ..runtime.request import as_number, check_common
 from ..support.answer import Answer
 from ..support.forks import IMPORTS
 from ..support.shown import shown as shown_value
-from .designs import KINDS, Plan, peaks_of_designs, plan_of, search_of
+from .designs import KINDS, Plan, Sought, peaks_of_designs, plan_of, search_of
 from .nodes import Array
 
 MOST_TURNS = 1000  # of a range of crank angles
@@ -98,6 +98,7 @@ def peak(
     plan = plan_of(name, given, branch, accuracy)
     varying = {n: load for n, load in varying.items() if n in plan.parameters}
     ends = _range(_whole_period(varying) if theta is TURN else theta, name)
+    sought = Sought(plan, kind, int(branch), ends, threads, varying)
     _warn_of_columns(given, plan)
     if "omega0" in plan.needs and omega0 is None:
         given["omega0"] = 0.0 if "omega0" not in plan.parameters else None  # which only the status uses
@@ -109,16 +110,15 @@ def peak(
             with IMPORTS:
                 from .lazy import lazy_peak
 
-            lazy = lazy_peak(name, kind, plan, given, branch, ends, threads, varying)
-            return Answer(lazy, partial(units_of_extreme, name))
-    arrays = {n: as_array(n, given.get(n), plan.needs, (name,)) for n in plan.needs if n not in varying}
+            return Answer(lazy_peak(sought, given), partial(units_of_extreme, name))
+    arrays = {n: as_array(n, given.get(n), plan.needs, (name,)) for n in sought.numbers}
     shape = broadcast_shape(arrays)
     columns = {n: _flat(a, shape) for n, a in arrays.items()}
     search = search_of(plan, arrays, ends)
     powers = None
     if not varying and can_rescale(plan.wanted) and any(np.any(are_extreme(n, c)) for n, c in arrays.items()):
         columns, powers = rescaled(columns)
-    found = peaks_of_designs(plan, kind, search, columns, branch, ends, threads, varying)
+    found = peaks_of_designs(sought, search, columns)
     if powers is not None:
         _to_si(found, name, powers, omega is not None)
     return Answer(_shaped(found, shape), partial(units_of_extreme, name))

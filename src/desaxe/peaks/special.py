@@ -24,6 +24,7 @@ from .nodes import Array
 
 UNIFORM = 240  # nodes per turn
 GRADED = 2.0 ** -np.arange(1.0, 46.0)  # distances from a quarter or a limit angle, down to 3e-14
+AROUND = np.concatenate([-GRADED, [0.0], GRADED])
 NODES = 12  # times as many nodes as of designs that share them
 BLOCK = 1_024  # designs at a time, at most as many as a search by NumPy takes at once
 AT_KINK = 2.0**-40  # rad: an extremum so near to a kink is at the kink
@@ -51,6 +52,12 @@ class Designs(NamedTuple):
         """The number of designs."""
         return next(iter(self.columns.values())).size
 
+    @property
+    def lengths(self) -> list[Array]:
+        """ec, AB and BC of each design; nothing where the quantity does without some of them."""
+        known = all(name in self.columns for name in LENGTHS)
+        return [self.columns[name] for name in LENGTHS] if known else []
+
     def part(self, rows: Any) -> "Designs":
         """The designs of these rows."""
         return self._replace(columns={name: column[rows] for name, column in self.columns.items()})
@@ -77,8 +84,8 @@ def are_special(designs: Designs) -> NDArray[np.bool_]:
     """Mask of the designs that cannot turn fully, stall in the range or near it, or have friction."""
     columns = designs.columns
     special = np.full(designs.size, designs.rubs)
-    if all(name in columns for name in LENGTHS):
-        ec, AB, BC = (columns[name] for name in LENGTHS)
+    if designs.lengths:
+        ec, AB, BC = designs.lengths
         special |= ~(BC - AB - np.abs(ec) > MARGIN_ROUNDING * BC)
     if "alpha" in columns and "omega0" in columns:
         low, high = designs.theta
@@ -98,50 +105,34 @@ def own_nodes(designs: Designs) -> tuple[Array, list[tuple[int, float]]]:
     low, high = designs.theta
     turns = max(1.0, (high - low) / (2.0 * np.pi))
     first, last = int(np.floor(low / np.pi)) - 1, int(np.ceil(high / np.pi)) + 1
-    marks = [low, high, *(np.pi * (0.5 + k) for k in range(first, last))]
-    common = np.concatenate([np.linspace(low, high, int(UNIFORM * turns) + 1), *map(_around, marks)])
-    limits = _limit_angles(designs)
-    ends = [(row, angle) for row, angles in enumerate(limits) for angle in angles if low <= angle <= high]
-    if designs.rubs:
-        limits = [[*some, *more] for some, more in zip(limits, _dead_centres(designs), strict=True)]
-    width = max((len(angles) for angles in limits), default=0)
-    own = np.full((len(limits), width * (2 * GRADED.size + 1)), low)
-    for row, angles in enumerate(limits):
-        near = np.concatenate([_around(angle) for angle in angles]) if angles else np.empty(0)
-        own[row, : near.size] = near
-    both = np.concatenate([np.broadcast_to(common, (len(limits), common.size)), own], axis=1)
+    marks = np.array([low, high, *(np.pi * (0.5 + k) for k in range(first, last))])
+    common = np.append(np.linspace(low, high, int(UNIFORM * turns) + 1), marks[:, None] + AROUND)
+    own = _limit_angles(designs)
+    inside = np.argwhere((low <= own) & (own <= high)).tolist()
+    ends = [(row, float(own[row, k])) for row, k in inside]
+    lengths = designs.lengths
+    if designs.rubs and lengths:
+        own = np.append(own, repeated(dead_centres(lengths), low, high), axis=1)
+    width = int(np.isfinite(own).sum(axis=1).max(initial=0))
+    near = np.sort(own, axis=1)[:, :width, None] + AROUND
+    near = np.where(np.isnan(near), low, near).reshape(designs.size, -1)
+    both = np.append(np.broadcast_to(common, (designs.size, common.size)), near, axis=1)
     return np.sort(np.clip(both, low, high), axis=1), ends
 
 
-def _around(angle: float) -> Array:
-    return np.concatenate([angle - GRADED, [angle], angle + GRADED])
-
-
-def _limit_angles(designs: Designs) -> list[list[float]]:
-    """For each design the angles at which it stops being feasible, or stalls, in the range or near it."""
-    low, high = designs.theta
-    columns = designs.columns
-    found: list[list[float]] = [[] for _ in range(designs.size)]
-    lengths = [columns[n] for n in LENGTHS if n in columns]
-    if len(lengths) == 3:
+def _limit_angles(designs: Designs) -> Array:
+    """The angles at which designs stop being feasible, or stall, in the range or near it; NaN elsewhere."""
+    (low, high), columns, lengths = designs.theta, designs.columns, designs.lengths
+    found = np.empty((designs.size, 0))
+    if lengths:
         angles = limit_angles(lengths)
         whole = angles[:, 1:2] - angles[:, 0:1] == 2.0 * np.pi
-        every = repeated(np.where(whole, np.nan, angles), low, high)
-        found = [row[np.isfinite(row)].tolist() for row in every]
+        found = repeated(np.where(whole, np.nan, angles), low, high)
     if "alpha" in columns and "omega0" in columns:
         stops = _stall(columns["omega0"], columns["alpha"])
-        for row in np.flatnonzero((stops > low - REACH) & (stops < high + REACH)):
-            found[row].append(float(stops[row]))
+        near = (stops > low - REACH) & (stops < high + REACH)
+        found = np.append(found, np.where(near, stops, np.nan)[:, None], axis=1)
     return found
-
-
-def _dead_centres(designs: Designs) -> list[list[float]]:
-    """For each design the angles in the range at which crank and rod are in line, on either branch."""
-    low, high = designs.theta
-    if not all(name in designs.columns for name in LENGTHS):
-        return [[] for _ in range(designs.size)]
-    angles = repeated(dead_centres([designs.columns[n] for n in LENGTHS]), low, high)
-    return [row[np.isfinite(row)].tolist() for row in angles]
 
 
 # ---- what the extrema mean ------------------------------------------------------------------------
@@ -195,10 +186,9 @@ def complete(
 
 def _at_change_point(designs: Designs, found: Found) -> NDArray[np.bool_]:
     """True where a crank lies across its guide at a change point, in line with the rod: rates jump there."""
-    if any(name not in designs.columns for name in LENGTHS):
+    if not designs.lengths:
         return np.zeros(designs.size, bool)
-    lengths = [designs.columns[name] for name in LENGTHS]
-    upper, lower = closed_form(LIMITS, ("upper", "lower")).arrays(*lengths)
+    upper, lower = closed_form(LIMITS, ("upper", "lower")).arrays(*designs.lengths)
     margin = np.where(np.sin(found.theta) > 0.0, upper, lower)
     across: NDArray[np.bool_] = (margin == 0.0) & (np.abs(np.cos(found.theta)) < ACROSS)
     return across

@@ -14,7 +14,7 @@ from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
 from ..mechanism.own import Definition
 from ..mechanism.status import PeakStatus
-from ..peaks.designs import KINDS, plan_of
+from ..peaks.designs import KINDS, Sought, plan_of
 from ..peaks.lazy import GRADIENT, PeakBlock, peak_block
 
 Array = NDArray[Any]
@@ -53,7 +53,7 @@ class PeakStep(NamedTuple):
     @property
     def identity(self) -> str:
         """A text that tells the step from all others."""
-        return " ".join([repr(self), *(load.identity for _, load in self.block.loads)])
+        return " ".join([repr(self), *(load.identity for load in self.block.sought.loads.values())])
 
     @property
     def outputs(self) -> dict[str, Output]:
@@ -71,16 +71,16 @@ class PeakStep(NamedTuple):
         """The variables of a block, from the values along each of its dimensions."""
         grids = np.meshgrid(*(values[name] for name in self.dims), indexing="ij", sparse=True)
         arrays = dict(zip(self.dims, grids, strict=True))
-        block = self.block._replace(threads=threads or 1)
+        block = self.block._replace(sought=self.block.sought._replace(threads=threads or 1))
         found = block.compute(*(arrays[name] for name in block.names))
         return {self._variable(output): array for output, array in found.items()}
 
     def _variable(self, output: str) -> str:
-        stem = f"peak_{self.block.kind}_{self.block.name}"
+        stem = f"peak_{self.block.sought.kind}_{self.block.sought.plan.name}"
         return stem + ("" if output == "value" else f"_{output.replace(GRADIENT, 'wrt_', 1)}")
 
     def _attributes(self, output: str) -> dict[str, Any]:
-        name, kind = self.block.name, self.block.kind
+        name, kind = self.block.sought.plan.name, self.block.sought.kind
         if output == "value":
             own = attributes(name, self.state)
             return {**own, "long_name": f"{WORDS[kind]} over theta of {own['long_name']}"}
@@ -137,11 +137,11 @@ def _peak_step(one: PeakRequest, outer: Outer, branch: int, accuracy: Any) -> Pe
     given.pop("theta", None)
     plan = plan_of(one.name, {**given, **outer.loads}, branch, accuracy)
     loads = {n: load for n, load in outer.loads.items() if n in plan.parameters}
-    needs = [name for name in plan.needs if name not in loads]
+    sought = Sought(plan, one.kind, branch, one.theta, loads=loads)
+    needs = sought.numbers
     for name in needs:
         if name not in outer.axes:
             raise TypeError(f"peak of {one.name}: {name} is missing (needed: {', '.join(plan.needs)})")
     dims = tuple(name for name in outer.dimensions if name in needs)
     scalars = {name: float(outer.axes[name].reshape(-1)[0]) for name in needs if name not in dims}
-    block = peak_block(one.kind, plan, scalars, dims, branch, one.theta, 1, loads)
-    return PeakStep(block, dims, outer.given.get("omega") is not None)
+    return PeakStep(peak_block(sought, scalars, dims), dims, outer.given.get("omega") is not None)
