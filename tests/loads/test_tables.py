@@ -30,6 +30,16 @@ def test_a_table_repeats_after_its_period_whether_its_end_point_is_given_or_not(
     assert whole(1.0 + TURN) != pytest.approx(whole(1.0))
 
 
+@pytest.mark.parametrize("kind", ["cubic", "linear", "step"])
+def test_both_ends_of_a_period_alone_are_a_load_that_is_the_same_everywhere(kind):
+    load = dx.over_theta(["10 deg", "370 deg"], [5.0, 5.0], kind=kind)
+    assert len(load.arrays().knots) == 2  # which modules take: one is no table
+    assert set(load(np.linspace(-9.0, 9.0, 50)).tolist()) == {5.0}
+    machine = {"theta": 1.0, "ec": 0.01, "AB": 0.04, "BC": 0.1}
+    names = ["T_in", "T_in_wrt_theta"]
+    assert dx.evaluate(names, F_Y=load, **machine) == dx.evaluate(names, F_Y=5.0, **machine)
+
+
 def test_over_Y_holds_its_ends_and_may_be_given_downwards():
     up, down = dx.over_Y([0.1, 0.2, 0.4], [1.0, 3.0, 2.0]), dx.over_Y([0.4, 0.2, 0.1], [2.0, 3.0, 1.0])
     assert up == down

@@ -40,6 +40,8 @@ def table_over_theta(angles: Column, values: Column, kind: str, turn: Column) ->
                 "the load must repeat; leave the end point out, or give the period= after which it does"
             )
         x, y = x[:-1], y[:-1]
+        if len(x) == 1:  # both ends of a period alone: the same everywhere
+            x, y = [x[0], x[0] + 0.5 * period], 2 * y
     _warn_of_gap(x, kind, period)
     plain = ("theta",) * (angles.plain or turn.plain) + ("value",) * values.plain
     table = _finite(name, x, y, partial(periodic, x, y, kind, period))

@@ -82,7 +82,7 @@ class Sought(NamedTuple):
 
 
 class Work(NamedTuple):
-    """What is sought, the searches for special designs and the usual ones, progress."""
+    """A search of designs: the record of what is sought, the Programs for special and usual ones, progress."""
 
     sought: Sought
     search: Search
@@ -228,6 +228,9 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
     side = np.zeros(designs.size, np.int8)
     if loaded is not None:
         side = at_jumps(loaded, number, np.isin(status, special.USABLE) & np.isfinite(out[0]), theta, out)
+    if kind == "min" and not designs.rubs:
+        kinks = np.empty((designs.size, 0)) if loaded is None else loaded.course.kinks.angles
+        out[2:, special.stays_zero(designs, theta, out[0], out[1], kinks)] = 0.0
     value = np.abs(out[0]) if kind == "absmax" else out[0]
     gradient = dict(zip(search.parameters, out[2:], strict=True))
     return {"value": value, "theta": theta, "side": side, "gradient": gradient, "status": status}

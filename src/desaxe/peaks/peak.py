@@ -70,7 +70,8 @@ def peak(
     side      of a load's jump (int8): -1 where the value is the limit from smaller theta, 1 from larger
               theta, 0 where nothing jumps
     gradient  dict parameter -> exact derivative of the value (ec, AB, BC, omega0 or omega, alpha, as
-              far as the quantity depends on them), at a kink or jump with its own motion; NaN where the
+              far as the quantity depends on them), at a kink or jump with its own motion, 0 where the
+              smallest magnitude is 0; NaN where the
               value is not finite or is reached at a limit angle, or where friction turns round or
               begins to jam; by the lengths at a change point at which a rate jumps
     status    0 ok, 1 cannot be assembled anywhere in the range, 2 reached at a limit angle or change

@@ -34,6 +34,7 @@ JAMS, TWO_BALANCES = int(PeakStatus.NO_FORCE_BALANCE), int(PeakStatus.TWO_FORCE_
 USABLE = (0, JAMS, TWO_BALANCES)  # with one of these an extremum may have a gradient
 MARGIN_ROUNDING = 2.0**-50  # of BC: more than BC - AB - |ec| may lose to rounding
 FARTHER = 2.0**-20  # rad from a limit angle: unbounded quantities have grown from there on, in a wide arc
+TOUCHES = 2.0**-20  # rad from an extremum: where its tangent is 0 there, a magnitude is
 REACH = 1.0  # rad: a stall nearer to the range than this shapes what is in it
 
 
@@ -192,6 +193,20 @@ def _at_change_point(designs: Designs, found: Found) -> NDArray[np.bool_]:
     margin = np.where(np.sin(found.theta) > 0.0, upper, lower)
     across: NDArray[np.bool_] = (margin == 0.0) & (np.abs(np.cos(found.theta)) < ACROSS)
     return across
+
+
+def stays_zero(designs: Designs, theta: Array, value: Array, slope: Array, kinks: Array) -> NDArray[np.bool_]:
+    """True where the smallest value is a magnitude's 0 but for rounding, which moves and stays 0.
+
+    kinks   for each design angles at which a load has a kink, which may be at 0 too
+    """
+    low, high = designs.theta
+    turns = (high - low) / (2.0 * np.pi)
+    closed = turns == round(turns) and not np.any(designs.columns.get("alpha", 0.0))
+    inside = (theta != low) & (theta != high) | closed
+    at_kink = (np.abs(kinks - theta[:, None]) <= AT_KINK).any(axis=1)
+    found: NDArray[np.bool_] = inside & ~at_kink & (np.abs(value) < TOUCHES * np.abs(slope))
+    return found
 
 
 def score(kind: str, value: Array) -> Array:

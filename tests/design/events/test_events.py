@@ -350,3 +350,12 @@ def test_the_first_arrays_wait_for_no_compiler(cold, monkeypatch):
         assert (before == -after).all()
     one = dx.events(ec=float(ec[17]), AB=0.04, BC=0.064, omega0=2.0)
     assert found["V_outward"][17] == pytest.approx(one["V_outward"], rel=1e-14)
+
+
+@pytest.mark.parametrize("ec", [0.1, -0.1])
+def test_a_crank_that_does_not_turn_has_no_slower_stroke(ec):
+    one = dx.events(ec=ec, AB=0.2, BC=0.1)
+    many = dx.events(ec=np.array([ec, ec]), AB=[0.2, 0.04], BC=0.15)
+    assert (one["status"], one["slow_stroke"]) == (1, 0)
+    assert many["status"].tolist() == [1, 0]
+    assert many["slow_stroke"].tolist() == [0, round(math.copysign(1.0, ec))]

@@ -344,3 +344,10 @@ def test_so_has_an_enclosure():
     rod = {"AB": 0.06, "BC": 0.22, "theta": 1.0}
     found = dx.enclose("Y", ec=dx.plus_minus("12 mm", "0.1"), **rod)
     assert found == dx.enclose("Y", ec=dx.between("11.9 mm", "12.1 mm"), **rod)
+
+
+@pytest.mark.parametrize("seed", [0, 3])
+def test_one_seed_gives_one_answer(seed):
+    inputs = {"ec": plus_minus(0.02, 1e-4), "AB": plus_minus(0.04, 5e-5), "BC": 0.064}
+    one, other = (dx.tolerance("stroke", samples=20, sobol=16, seed=seed, **inputs) for _ in range(2))
+    assert one == other

@@ -38,7 +38,7 @@ def events_of_arrays(
     outputs = closed_form(DEAD_CENTRES, branch=float(branch)).arrays(ec, AB, BC, turning)
     found = DesignEvents(tuple(np.array(np.broadcast_to(output, shape)) for output in outputs))
     status = np.where(bad, 4, found.status).astype(np.int8)
-    slow = np.where(bad, 0, branch * turning * np.sign(np.nan_to_num(ec))).astype(np.int8)
+    slow = np.where(bad | (status == 1), 0, branch * turning * np.sign(np.nan_to_num(ec))).astype(np.int8)
     result: dict[str, Any] = {**found.values, "slow_stroke": slow, **found.places}
     gradient = found.gradient
     if with_velocities:

@@ -34,7 +34,7 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
     advance_angle               the angle [rad] that the crank turns while the slider moves outward
     return_angle                and while it moves inward; both together are 2 pi
     time_ratio                  the longer of both over the shorter, at constant speed; at least 1
-    slow_stroke                 which is the longer: +1 outward, -1 inward, 0 both the same
+    slow_stroke                 which is the longer: +1 outward, -1 inward, 0 both the same or none
     max_pressure_angle, min_transmission_angle   of the rod [rad], both at `theta_max_pressure_angle`
     min_pressure_angle, max_transmission_angle   both at `theta_min_pressure_angle` (one of two angles
                                                  where |ec| < AB)
@@ -68,7 +68,7 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
     e, crank, rod, omega = (float(value or 0.0) for value in numbers.values())
     lengths, forward = {"ec": e, "AB": crank, "BC": rod}, -1 if omega < 0.0 else 1
     found = DesignEvents(closed_form(DEAD_CENTRES, branch=float(branch)).point(e, crank, rod, float(forward)))
-    slow = int(branch) * forward * ((e > 0.0) - (e < 0.0))
+    slow = int(branch) * forward * ((e > 0.0) - (e < 0.0)) if found.status != 1 else 0
     result, gradient = {**found.values, "slow_stroke": slow, **found.places}, found.gradient
     parameters = (*LENGTHS, "omega0") if omega0 is not None else LENGTHS
     for name, direction in VELOCITIES.items():

@@ -32,6 +32,7 @@ PERCENTS = (0.135, 2.5, 50.0, 97.5, 99.865)
 BOXES = 2000  # of an enclosure
 MOST_CORNERED = 10  # inputs
 MOST_SAMPLES, MOST_BASE = 10**8, 2**20
+UNSEEDED = 2**32  # for a seed of 0, which SALib takes for none when it resamples
 MANY, SOME = 100_000, 10_000  # samples of a quantity at a point, and of a peak
 
 
@@ -260,7 +261,7 @@ def _sobol(function: SampledQuantity, rough: Sequence[Inexact], count: int, seed
     if len(names) == 1:
         return {names[0]: {"first": 1.0, "total": 1.0, "first_error": 0.0, "total_error": 0.0}}
     centred = (values - values.mean()) / (values.std() or 1.0)
-    found = analyse.analyze(problem, centred, calc_second_order=False, seed=seed)
+    found = analyse.analyze(problem, centred, calc_second_order=False, seed=seed or UNSEEDED)
     keys = {"first": "S1", "total": "ST", "first_error": "S1_conf", "total_error": "ST_conf"}
     return {n: {k: float(found[own][i]) for k, own in keys.items()} for i, n in enumerate(names)}
 
