@@ -82,7 +82,7 @@ class Sought(NamedTuple):
 
 
 class Work(NamedTuple):
-    """A search of designs: the record of what is sought, the Programs for special and usual ones, progress."""
+    """A search: the record of what is sought, the Programs for special and usual designs, progress."""
 
     sought: Sought
     search: Search
