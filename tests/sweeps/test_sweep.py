@@ -186,7 +186,7 @@ def test_what_others_add_to_a_store_is_left(whole, tmp_path):
 
 
 def test_chunks_without_a_value_are_written(tmp_path):
-    stored = dx.sweep("a_C", store=tmp_path / "empty.zarr", chunks={"ec": 1}, **INPUTS)
+    stored = dx.sweep(NAMES, store=tmp_path / "empty.zarr", chunks={"ec": 1}, **INPUTS)
     assert np.isnan(stored["a_C"].sel(ec=0.9)).all()
     assert (tmp_path / "empty.zarr" / "a_C" / "c" / "0" / "2" / "0").is_file()
 
@@ -232,7 +232,7 @@ def test_of_another_version_too(whole, monkeypatch):
 
 def test_overwrite_replaces_a_store_and_nothing_else(whole, tmp_path):
     root = tmp_path / "other.zarr"
-    dx.sweep("Y", store=root, **INPUTS)
+    dx.sweep(NAMES, store=root, **{**INPUTS, "omega0": 4.0})
     dx.sweep(NAMES, store=root, chunks=CHUNKS, overwrite=True, **INPUTS)
     assert files(root) == files(whole)
     (tmp_path / "mine").mkdir()
@@ -248,7 +248,7 @@ def test_a_second_sweep_refuses(whole):
 
 
 def test_the_margin_comes_beside_a_reduction():
-    found = dx.sweep(NAMES, reduce={"theta": "mean"}, **INPUTS)
+    found = dx.sweep("a_C", reduce={"theta": "absmax"}, **INPUTS)
     np.testing.assert_array_equal(found["margin"], dx.grid(NAMES, **INPUTS)["margin"])
 
 
