@@ -51,17 +51,17 @@ def test_blanks_around_equals(capsys):
 def test_the_best_designs_are_in_the_units_of_the_scene(tmp_path, capsys):
     text = """
 units = "mm, deg, rpm"
-outputs = ["V_C"]
-mechanism = { AB = 75, BC = 300, ec = [0, 15, 30] }
+outputs = ["a_C"]
+mechanism = { AB = 75, BC = [300, 310], ec = [0, 15, 280] }
 motion = { omega0 = 60, theta = { start = 0, stop = 360, num = 37 } }
 """
     (tmp_path / "press.toml").write_text(text, encoding="utf-8")
-    main(["sweep", f"{tmp_path}/press.toml", "--best", "1", "--by", "absmax:V_C", "--order", "smallest"])
+    main(["sweep", f"{tmp_path}/press.toml", "--best", "1", "--by", "absmax:a_C", "--order", "smallest"])
     head, _, row = capsys.readouterr().out.splitlines()
-    assert re.findall(r"(?:AB|omega0|V_C_absmax) \S+", head) == [
+    assert re.findall(r"(?:AB|omega0|a_C_absmax) \S+", head) == [
         "AB [mm]",
         "omega0 [rpm]",
-        "V_C_absmax [mm/s]",
+        "a_C_absmax [mm/s^2]",
     ]
     assert row.split()[1] == "75.0"
 

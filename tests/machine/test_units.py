@@ -145,10 +145,11 @@ def test_labelled_results_carry_their_units():
 
 
 def test_sweeps(tmp_path):
-    press = dx.Machine(ec=10, AB=50, BC=200, omega0=300, units="mm, deg, rpm")
-    found = press.sweep(["a_C"], store=tmp_path / "press.zarr", theta=[0, 60, 90], ec=[0, 10])
+    press = dx.Machine(AB=50, omega0=300, units="mm, deg, rpm")
+    axes = {"theta": [0, 60, 90], "ec": [0, 160], "BC": [200, 210]}
+    found = press.sweep(["V_C", "a_C"], store=tmp_path / "press.zarr", **axes)
     assert found.a_C.units == "mm/s^2"
-    wanted = press.grid(["a_C"], theta=[0, 60, 90], ec=[0, 10])
+    wanted = press.grid(["V_C", "a_C"], **axes)
     np.testing.assert_allclose(found.a_C, wanted.a_C, rtol=1e-12)
     assert found.theta.values.tolist() == [0.0, 60.0, 90.0]
 
@@ -407,9 +408,10 @@ def test_words_of_results_in_units():
 
 
 def test_best_designs_are_in_units():
-    found = PRESS.sweep("a_C", theta=[0, 90, 180], ec=[0, 10, 20], best=1, by="a_C", order="largest")
-    given = {**SI, "theta": [0.0, math.pi / 2, math.pi], "ec": [0.0, 0.01, 0.02]}
-    wanted = dx.sweep("a_C", **given, best=1, by="a_C", order="largest")
+    how = {"best": 1, "by": "a_C", "order": "largest"}
+    found = PRESS.sweep("a_C", theta=[0, 90, 180], ec=[0, 10, 160], BC=[200, 210], **how)
+    given = {**SI, "theta": [0.0, math.pi / 2, math.pi], "ec": [0.0, 0.01, 0.16], "BC": [0.2, 0.21]}
+    wanted = dx.sweep("a_C", **given, **how)
     assert found.ec.values == pytest.approx(1e3 * wanted.ec.values)
     assert found.ec.units == "mm"
 

@@ -13,7 +13,9 @@ import desaxe as dx
 from desaxe.scenes.stores import quiet_store
 from desaxe.sweeps import place, store
 
-INPUTS = {"theta": np.linspace(0.0, 6.0, 20), "ec": [-0.05, 0.0], "AB": 0.2, "BC": 0.5, "omega0": 3.0}
+INPUTS = {
+    "theta": np.linspace(0.0, 6.0, 20), "ec": [-0.05, 0.9], "AB": 0.2, "BC": [0.1, 0.5], "omega0": 3.0,
+}  # fmt: skip
 GRID = {"names": ["V_C", "a_C"], "chunks": {"theta": 8}}
 BEST = {"names": "a_C", "best": 2, "by": "a_C", "order": "largest"}
 
@@ -76,7 +78,7 @@ def test_damaged_digests_of_the_best_are_mended(stores, value, tmp_path):
 
 def test_a_pipe_in_the_place_of_a_store_s_files_is_not_waited_for(stores, tmp_path):
     whole, kind = stores["grid"]
-    for number, file in enumerate(("zarr.json", "a_C/zarr.json", "a_C/c/0/0", "theta/c/0")):
+    for number, file in enumerate(("zarr.json", "a_C/zarr.json", "a_C/c/0/0/0", "theta/c/0")):
         root = tmp_path / f"{number}.zarr"
         copytree(whole, root)
         (root / file).unlink()
