@@ -3,7 +3,7 @@
 Under loads a Program looks its forces up, and its derivatives are total ones (`mechanism/load_lines`).
 """
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from ...compiler.kernel import Kernel
 from ...compiler.lowering import Limits, guarded_for_loops, guarded_pairs, nest, nest_of_two_forms
@@ -19,32 +19,8 @@ from ..content import Content
 from .portable import Asked, asked_of
 
 
-class Made(Protocol):
-    """The Programs and the loop nests of a key."""
-
-    def guarded(self, key: KernelKey, names: tuple[str, ...]) -> Program:
-        """The program of names of a point, which says what of its inputs is bad, as array kernels do."""
-        ...
-
-    def kernel(self, key: KernelKey) -> Kernel:
-        """The loop nest of a key."""
-        ...
-
-
-class OfKey(NamedTuple):
-    """The Programs of numbers alone; the names of a key are those of the Program."""
-
-    def guarded(self, key: KernelKey, names: tuple[str, ...]) -> Program:
-        """The program of names of a point, which says what of its inputs is bad, as array kernels do."""
-        return _guarded(specialise(names, key.form, key.fixed, key.accuracy), key)
-
-    def kernel(self, key: KernelKey) -> Kernel:
-        """The loop nest of a key."""
-        return kernel_of(key)
-
-
-class UnderLoads(NamedTuple):
-    """The Programs under loads; the names of a key are those that a user wrote."""
+class Made(NamedTuple):
+    """A request of a scene as Programs and loop nests."""
 
     content: Content
     asked: Asked
@@ -61,6 +37,8 @@ class UnderLoads(NamedTuple):
 
     def kernel(self, key: KernelKey) -> Kernel:
         """The loop nest of a key."""
+        if not self.asked.loads:
+            return kernel_of(key._replace(names=self.asked.request.names))
         stable, axes = self.asked.stable(key.accuracy), dict(key.axis_of)
         valid = {f"{name}_valid" for name in self.asked.loads}
         varying = [name for name in stable.inputs if name in axes or name in valid]

@@ -41,7 +41,7 @@ from .entry_points import (
 )
 from .first_call import COMPILED, LAZY, LAZY_REDUCED
 from .loaded import require_tables, table_text, tables_of
-from .made import Made, OfKey, UnderLoads, limit_of
+from .made import Made, limit_of
 from .peaks import left_out_of_module, peak_texts
 from .portable import PLAIN, WITHOUT_VALUE, Asked, Form, asked_of, require_outputs
 
@@ -57,11 +57,10 @@ def text_of(scene: Scene, name: str = "my_kernels.py", form: Form = PLAIN) -> st
     asked = asked_of(content, names, form.open_tables)
     shown, state = asked.shown, asked.request.form.state
     frozen, opened = tables_of(asked.loads, form.open_tables)
-    made: Made = UnderLoads(content, asked) if asked.loads else OfKey()
-    order = tuple(axes_of(content)) if asked.loads else _order(content, shown)
+    made, order = Made(content, asked), _order(content, shown)
     key = _key(content, asked, order)
     axes = {n: value for n in order if isinstance(value := content.inputs.get(n), tuple)}
-    program = made.guarded(key, key.names)
+    program = made.guarded(key, shown)
     inputs = tuple(sorted(set(program.inputs) - set(numbers_of(opened)), key=ORDER.index))
     kernels = _kernels(made, key, inputs) if inputs else Kernels([], {}, (), {})
     peaks = peak_texts(content)
@@ -142,8 +141,7 @@ def _key(content: Content, asked: Asked, order: Sequence[str]) -> KernelKey:
     anywhere = key.form._replace(wide_margins=False)  # the module takes other designs, too
     fixed = tuple((dict(key.fixed) | numbers).items())
     kinds = () if content.fused is None else content.fused.kinds
-    names = asked.shown if asked.loads else key.names
-    return key._replace(names=names, form=anywhere, fixed=fixed, reduce=kinds)
+    return key._replace(names=asked.shown, form=anywhere, fixed=fixed, reduce=kinds)
 
 
 def _scalars(
@@ -156,10 +154,10 @@ def _scalars(
 ) -> Parts:
     """The functions of one output each; those of a whole design take its own inputs alone."""
     scalars = []
-    for name, law in zip(shown, key.names, strict=True):
+    for name in shown:
         row = quantity(name, key.form.state)
         taken = [n for n in inputs if n in own.get(name, inputs)]
-        scalars.append((Symbol(name, row.unit, row.meaning), made.guarded(key, (law,)), taken))
+        scalars.append((Symbol(name, row.unit, row.meaning), made.guarded(key, (name,)), taken))
     parts = numba_parts(scalar_parts(scalars, opened), jit=CALLABLE)
     return parts._replace(imports={**parts.imports, "isfinite": "numpy"})
 
