@@ -94,6 +94,7 @@ def test_a_report_shows_loads_in_the_machines_units(tmp_path):
         ("AB", "30 MM", "did you mean mm? it must"),
         ("m_rod", "3 KG", "unknown unit; did you mean kg? it must"),
         ("F_X", "3 NM", "unknown unit; it must"),
+        ("I_rod", "3 kgm2", "did you mean kg m2? it must"),
     ],
 )
 def test_units_in_wrong_letters(name, text, asked):
@@ -131,3 +132,55 @@ def test_proper_motors_are_no_slips():
         motor = PRESS.kloss("40 N m", "15 %", 1500, gear=5)
         dx.kloss(40.0, [0.1, 0.5], 377.0)
         PRESS.steady(torque=motor)
+
+
+@pytest.mark.parametrize(("text", "asked"), [("40 Nm", "N m"), ("4kNm", "kN m"), ("3 Nmm", "N mm")])
+def test_a_torque_without_its_blank(text, asked):
+    """To a unit library Nm is a nautical mile or a length."""
+    with pytest.raises(
+        ValueError, match=rf"torque = '{text}': .*did you mean {asked}\? it must be a quantity"
+    ):
+        PRESS.steady(torque=text)
+
+
+def test_a_load_shows_itself_in_the_units_of_its_machine():
+    press = PRESS.over_Y([150, 250], [-1, -2])
+    assert repr(press) == "<load over Y: 2 points, linear, -2 to -1 kN>"
+    assert press.told() == repr(dx.over_Y([0.15, 0.25], ["-1000 N", "-2000 N"]))
+    in_si = dx.over_Y(["150 mm", "250 mm"], ["-1 kN", "-2 kN"])
+    assert press.identity == in_si.identity
+    assert "0 to 1 kN" in repr(PRESS.over_theta([0, 90], [0, 1], "linear"))
+
+
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        (lambda: PRESS.over_Y(1, 2, 3, 4, 5), "over_Y() takes from 2 to 4 positional arguments but 5"),
+        (lambda: dx.over_Y.read(1, 2, 3, 4, 5), "over_Y.read() takes from 1 to 4 positional arguments but 5"),
+        (lambda: PRESS.kloss(1, 2, 3, 4, 5), "kloss() takes from 3 to 4 positional arguments but 5"),
+    ],
+)
+def test_arguments_of_a_maker_are_counted_without_it(call, told):
+    with pytest.raises(TypeError, match=re.escape(told)):
+        call()
+
+
+def test_threads_speak_the_units_of_the_call_that_they_make():
+    """A call of desaxe in a user's thread inside a machine's call takes SI units and speaks them."""
+    heard = []
+
+    def tell(call):
+        with pytest.raises(ValueError, match="AB") as found:
+            call()
+        heard.append(str(found.value))
+
+    def force(theta):
+        calls = [lambda: dx.evaluate("Y", theta=1.0, ec=0.0, AB=-0.05, BC=0.2), lambda: PRESS.replace(AB=-50)]
+        threads = [threading.Thread(target=tell, args=(call,)) for call in calls]
+        for thread in threads:
+            thread.start()
+            thread.join()
+        return 0.0 * theta
+
+    PRESS.evaluate("T_in", theta=1.0, F_Y=PRESS.over_theta(force))
+    assert ("AB = -0.05:" in heard[0], "AB = -50 mm:" in heard[1]) == (True, True), heard

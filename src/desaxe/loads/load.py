@@ -40,6 +40,7 @@ class Load(ABC):
     centre = ""  # the dead centre from which positions are measured: the name of its position
     unit: str | None = None
     plain: tuple[str, ...] = ()
+    shown_in: "Conversion | None" = None  # of the machine that made it
 
     @property
     def has_slope(self) -> bool:
@@ -64,7 +65,7 @@ class Load(ABC):
         """The load in a line; with a conversion in that unit."""
 
     def __repr__(self) -> str:
-        return self.told()
+        return self.told(self.shown_in)
 
 
 class OverTheta(Load):

@@ -12,7 +12,7 @@ from ..mechanism.unit_system import SI, Conversion, UnitSystem
 class Maker:
     """A call that makes a load or a motor, and perhaps its `read`, which takes it from a file.
 
-    units  of plain numbers: those of a machine, else SI
+    units  of plain numbers: those of a machine, else SI; a load shows itself in them
     """
 
     name: ClassVar[str]
@@ -39,10 +39,18 @@ class Maker:
 
 def _in_its_units(method: Callable[..., Any]) -> Callable[..., Any]:
     """The method, whose messages are in the units of its maker."""
+    most = method.__code__.co_argcount - 1  # Python would count the maker, too
+    least = most - len(method.__defaults__ or ())
 
     @wraps(method)
     def made(self: Maker, *args: Any, **named: Any) -> Any:
+        if len(args) > most:
+            told = f"takes from {least} to {most} positional arguments but {len(args)} were given"
+            raise TypeError(f"{method.__qualname__}() {told}")
         with speaking(self.units or SI):
-            return method(self, *args, **named)
+            found = method(self, *args, **named)
+        if self.units and hasattr(found, "told"):
+            object.__setattr__(found, "shown_in", self.units.of("F_Y"))
+        return found
 
     return made

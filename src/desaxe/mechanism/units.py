@@ -30,14 +30,15 @@ EXAMPLES = {
     "N": '"50 N"',
     "m/s^2": '"9.81 m/s^2"',
 }
-# Units whose letters people write in the wrong case, by SI unit.
+# Units whose letters people write in the wrong case, or without the blank, by SI unit.
 COMMON = {
     "m": ("mm", "cm", "m"),
     "rad": ("deg", "rad"),
     "rad/s": ("rpm",),
     "kg": ("kg", "g"),
     "N": ("kN", "N"),
-    "N*m": ("N m", "kN m"),
+    "N*m": ("N m", "kN m", "N mm"),
+    "kg*m^2": ("kg m^2", "kg m2", "kg mm^2", "kg mm2"),
     "W": ("kW", "W"),
     "J": ("kJ", "J"),
 }
@@ -147,8 +148,10 @@ def exact(name: str, text: str, unit: str) -> Fraction:
 
 
 def did_you_mean_unit(own: str, unit: str) -> str:
-    """The question "did you mean kN? " for a unit in wrong letters: kn is a knot; empty for any other."""
-    near = next((each for each in COMMON.get(unit, ()) if each.lower() == own.lower() and each != own), "")
+    """The question "did you mean kN? " for kn, which is a knot, or "N m" for Nm; empty for other units."""
+    letters = own.replace(" ", "").lower()
+    others = (each for each in COMMON.get(unit, ()) if each != own)
+    near = next((each for each in others if each.replace(" ", "").lower() == letters), "")
     return f"did you mean {near}? " if near else ""
 
 

@@ -112,7 +112,7 @@ def identity(
         "branch": int(branch),
         "accuracy": accuracy,
         "inputs": {name: _input(array) for name, array in outer.axes.items()}
-        | {name: {"load": repr(load), "sha256": load.identity} for name, load in outer.loads.items()},
+        | {name: {"load": load.told(), "sha256": load.identity} for name, load in outer.loads.items()},
     }
     if best is not None:
         request["best"], request["by"], request["order"] = best[0], list(best[1:3]), best[3]

@@ -45,4 +45,4 @@ def table_text(name: str, load: Load, table: Arrays) -> str:
     rows = []
     for end, column in zip("xc", table, strict=True):
         rows += [f"{name}_{end} = array([", *(f"    {row}" for row in numbers(column)), "])"]
-    return "\n".join([f"# {name}, a {repr(load).strip('<>')}: knots, and the cubics between them.", *rows])
+    return "\n".join([f"# {name}, a {load.told().strip('<>')}: knots, and the cubics between them.", *rows])

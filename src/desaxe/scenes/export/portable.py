@@ -186,7 +186,7 @@ def _facts(content: Content, asked: Asked, arguments: Iterable[str], order: Orde
     """Accuracy, frame, what is folded in and what is left out."""
     fixed = {n: value for n, value in asked.fixed if n in INPUTS}
     numbers = [f"{n} = {value!r} {INPUTS[n].unit}".removesuffix(" 1") for n, value in fixed.items()]
-    tables = [f"{n}, a {repr(load).strip('<>')}" for n, load in asked.loads.items()]
+    tables = [f"{n}, a {load.told().strip('<>')}" for n, load in asked.loads.items()]
     numbers += [] if asked.open else tables
     branch = dict(asked.fixed)["branch"]
     motion = "A given state" if asked.request.form.state else "Constant alpha"

@@ -132,7 +132,7 @@ def _facts(content: Content, drive: str) -> list[str]:
     return [
         "SI units and radians. Y points along the slider axis towards the slider,",
         f"theta turns from +Y towards +X; branch {content.branch:+d}; the input is {drive}.",
-        *(f"{name} is the input and {load!r}." for name, load in tables(content.inputs).items()),
+        *(f"{name} is the input and {load.told()}." for name, load in tables(content.inputs).items()),
         "A result that has no value is NaN.",
     ]
 
