@@ -7,7 +7,7 @@ from typing import Any
 from ...loads.load import Load, OverTheta
 from ...mechanism.catalogue import of_design, quantity
 from ...mechanism.inputs import INPUTS
-from ...mechanism.names import CENTRES, LENGTHS, STATUS, sensitivity
+from ...mechanism.names import CENTRES, LENGTHS, STATUS, parts, sensitivity
 from ...scenes import schema
 from ..content import Check, Claim, Peak, Picture
 from ..schema import SceneError, shown
@@ -46,6 +46,8 @@ def peak_of(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> P
     needed = require(
         f"{key}.quantity", [n for n in needs_of((name, slope), there) if n != "theta"], name, there
     )
+    if "omega" in parts(name)[1] and "omega" not in needed:  # V_C_wrt_omega: it has no effect
+        needed.append("omega")
     for n in over:
         if n not in needed:
             raise SceneError(f"{key}.over.{n}: {name} does not depend on it")
