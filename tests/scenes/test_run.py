@@ -159,7 +159,12 @@ def test_a_peak_of_a_derivative_by_a_speed_that_has_no_effect():
     """V_C_wrt_omega does not depend on omega, but only a given state has it."""
     state = {"omega": [10.0, 20.0], "alpha": 3.0, "theta": [0.0, 1.0]}
     peak = [{"quantity": "V_C_wrt_omega"}]
-    scene = {"outputs": ["V_C"], "mechanism": {"AB": 0.1, "BC": 0.3, "ec": 0.0}, "motion": state, "peak": peak}
+    scene = {
+        "outputs": ["V_C"],
+        "mechanism": {"AB": 0.1, "BC": 0.3, "ec": 0.0},
+        "motion": state,
+        "peak": peak,
+    }
     found = dx.scene(scene).run().peaks[0].dataset
     alone = dx.peak("V_C_wrt_omega", AB=0.1, BC=0.3, ec=0.0, omega=10.0, theta=(0.0, 1.0))["value"]
     assert found.value.values.tolist() == [alone, alone]
