@@ -13,7 +13,7 @@ from desaxe.mechanism.inputs import INPUTS, Inputs, names_in
 from desaxe.mechanism.names import LOADS, ORDER, PARAMETERS
 from desaxe.mechanism.program import Variant, program_of
 from desaxe.oracle import force_truth
-from desaxe.scenes.reading.needs import SECTIONS
+from desaxe.scenes.schema import SECTIONS
 
 ROOT = Path(__file__).resolve().parents[2]
 MOTION = {"theta", "omega0", "omega", "alpha"}
@@ -23,7 +23,6 @@ PLACES = {
     "src/desaxe/mechanism/inputs.py": lambda: Inputs.__annotations__,
     "src/desaxe/evaluation/evaluate.py": lambda: inspect.signature(dx.evaluate).parameters,
     "src/desaxe/simulation/simulate.py": lambda: {*inspect.signature(dx.simulate).parameters, *MOTION},
-    "src/desaxe/scenes/schema.py": lambda: {n for s in SECTIONS.values() for n in s.__struct_fields__},
     "derive/bodies.py": lambda: {*program_of(FORCES, Variant()).inputs, "omega"},
     "src/desaxe/oracle/force_truth.py": lambda: {*force_truth.PARAMETERS, *force_truth.STATE_PARAMETERS},
 }

@@ -12,9 +12,8 @@ from ..mechanism.inputs import INPUTS
 from ..mechanism.own import Definition
 from ..mechanism.unit_system import UnitSystem
 from ..mechanism.units import exact
-from ..scenes.reading.needs import SECTIONS
 from ..scenes.scene import scene
-from ..scenes.schema import SceneError
+from ..scenes.schema import SECTIONS, SceneError
 from ..support.files import check_target, write_text
 from .load_tables import load_table, motor_table
 

@@ -10,13 +10,13 @@ from ..evaluation.reductions import OTHERS
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import parts
 from ..mechanism.own import derived_names
-from .schema import SceneFile
+from .schema import SECTIONS, SceneFile
 
 
 def json_schema() -> dict[str, Any]:
     """The schema, from the same types that check a scene when it is read."""
     found: dict[str, Any] = _for_toml(msgspec.json.schema(SceneFile))
-    for section in ("Mechanism", "Motion", "Masses", "Loads"):
+    for section in map(str.capitalize, SECTIONS):
         for name, rule in found["$defs"][section]["properties"].items():
             if name in INPUTS:
                 row = INPUTS[name]

@@ -3,13 +3,23 @@
 import re
 from collections.abc import Iterator, Mapping
 from types import UnionType
-from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+from typing import (
+    TYPE_CHECKING,
+    Annotated,
+    Any,
+    Literal,
+    TypeAlias,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 import msgspec
 from msgspec import Meta, Struct
 
 from ..evaluation.reductions import ALLOWED
-from ..mechanism.inputs import INPUTS
+from ..mechanism.inputs import INPUTS, names_in
 from ..mechanism.spelling import did_you_mean
 from ..support.shown import shown as as_text
 
@@ -139,44 +149,37 @@ Reduced = Annotated[
 ]
 
 
-class Mechanism(Section, frozen=True):
-    """`[mechanism]`: crank, rod, eccentricity, and on which side of the crank pin the slider is."""
-
-    AB: Values | None = None
-    BC: Values | None = None
-    ec: Values | None = None
-    branch: Branch = 1
-
-
-class Motion(Section, frozen=True):
-    """`[motion]`: paper A's law (omega0, alpha) or a given state (omega, alpha), at crank angles theta."""
-
-    theta: Values | None = None
-    omega0: Values | None = None
-    omega: Values | None = None
-    alpha: Values | None = None
+def _of_inputs(name: str, meaning: str, first: tuple[str, ...] = (), *more: tuple[str, Any, Any]) -> Any:
+    """The section of a scene in which the inputs stand that name it; forces may vary with the motion."""
+    rows = [INPUTS[each] for each in dict.fromkeys((*first, *names_in(name)))]
+    fields = [(row.name, (Force if row.unit == "N" else Values) | None, None) for row in rows]
+    told = {"__doc__": f"`[{name}]`: {meaning}."}
+    options: Any = {"bases": (Section,), "namespace": told, "module": __name__, "frozen": True}
+    return msgspec.defstruct(name.capitalize(), [*fields, *more], **options)
 
 
-class Masses(Section, frozen=True):
-    """`[masses]`: masses, moments of inertia and centres of mass; halfway along the links without these."""
-
-    m_crank: Values | None = None
-    m_rod: Values | None = None
-    m_slider: Values | None = None
-    I_crank: Values | None = None
-    I_rod: Values | None = None
-    r_crank: Values | None = None
-    r_rod: Values | None = None
-
-
-class Loads(Section, frozen=True):
-    """`[loads]`: the force on the slider, gravity, and the friction of the guide."""
-
-    F_X: Force | None = None
-    F_Y: Force | None = None
-    g_X: Values | None = None
-    g_Y: Values | None = None
-    mu: Values | None = None
+if TYPE_CHECKING:
+    Mechanism: TypeAlias = Any
+    Motion: TypeAlias = Any
+    Masses: TypeAlias = Any
+    Loads: TypeAlias = Any
+else:
+    Mechanism = _of_inputs(
+        "mechanism",
+        "crank, rod, eccentricity, and on which side of the crank pin the slider is",
+        ("AB", "BC"),
+        ("branch", Branch, 1),
+    )
+    Motion = _of_inputs(
+        "motion",
+        "paper A's law (omega0, alpha) or a given state (omega, alpha), at crank angles theta",
+        ("theta", "omega0", "omega"),
+    )
+    Masses = _of_inputs(
+        "masses", "masses, moments of inertia and centres of mass; halfway along the links without these"
+    )
+    Loads = _of_inputs("loads", "the force on the slider, gravity, and the friction of the guide")
+SECTIONS: dict[str, Any] = {"mechanism": Mechanism, "motion": Motion, "masses": Masses, "loads": Loads}
 
 
 class KlossTable(Section, frozen=True):
@@ -375,19 +378,13 @@ def _fits(value: Any, kind: Any) -> bool:
     return True
 
 
-def _section_of(name: str) -> str:
-    """Tell the section of an input that stands elsewhere; empty for any other key."""
-    sections = {"mechanism": Mechanism, "motion": Motion, "masses": Masses, "loads": Loads}
-    homes = (key for key, kind in sections.items() if name in kind.__struct_fields__)
-    return next((f"{name} belongs in [{key}]" for key in homes if name in INPUTS), "")
-
-
 def _wrong_keys(value: Mapping[str, Any], struct: type[Struct], key: str) -> str | None:
     fields = msgspec.structs.fields(struct)
     names = tuple(field.name for field in fields)
     for name in value:
         if name not in names:
-            told = _section_of(str(name)) or hint(str(name), names)
+            home = INPUTS[name].section if name in INPUTS else ""
+            told = f"{name} belongs in [{home}]" if home else hint(str(name), names)
             return f"{_dotted(key, name)} = {shown(value[name])}: unknown key; {told}"
     for field in fields:
         if field.required and field.name not in value:

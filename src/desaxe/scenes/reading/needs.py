@@ -4,19 +4,13 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ...mechanism.catalogue import law_name, of_design, quantity
+from ...mechanism.inputs import INPUTS
 from ...mechanism.names import FORCE_STATUS, LENGTHS, LOADS, STATUS
 from ...mechanism.program import Variant, program_of
 from ...runtime.request import needs_no_speed
-from ...scenes import schema
 from ..schema import SceneError, shown
 from .values import Value
 
-SECTIONS: dict[str, type[schema.Section]] = {
-    "mechanism": schema.Mechanism,
-    "motion": schema.Motion,
-    "masses": schema.Masses,
-    "loads": schema.Loads,
-}
 OPTIONAL = ("alpha", *LOADS)  # 0 where they are not given, or half of a length
 
 
@@ -42,8 +36,7 @@ def require(key: str, needs: Iterable[str], what: str, inputs: Mapping[str, Any]
     """The needed inputs from those given; SceneError for a missing one."""
     for name in needs:
         if name not in inputs and name not in OPTIONAL:
-            section = next(s for s, table in SECTIONS.items() if name in table.__struct_fields__)
-            raise SceneError(f"{key}: {what} needs {section}.{name}, which is missing")
+            raise SceneError(f"{key}: {what} needs {INPUTS[name].section}.{name}, which is missing")
     return [name for name in needs if name in inputs]
 
 

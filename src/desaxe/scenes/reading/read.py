@@ -21,9 +21,9 @@ from ...support.toml import read_toml
 from ...sweeps.layout import bytes_of
 from ..content import Content
 from ..parts.motor import on_motor
-from ..schema import SceneError, shown
+from ..schema import SECTIONS, SceneError, shown
 from .loads import require_units_of_file, varying, without_objects
-from .needs import SECTIONS, require_for_grid, require_known
+from .needs import require_for_grid, require_known
 from .requested import checks_of, peak_of, picture_of
 from .units import slips_of, units_of, with_units
 from .values import Value, values_of

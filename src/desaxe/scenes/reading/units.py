@@ -11,8 +11,8 @@ from ...mechanism.inputs import INPUTS
 from ...mechanism.slips import slip
 from ...mechanism.unit_system import DIMENSIONS, SI, UnitSystem
 from ...support.quantity_text import split_quantity, with_unit_of
+from ..schema import SECTIONS
 
-SECTIONS = ("mechanism", "motion", "masses", "loads")
 ENDS = ("start", "stop", "step")
 # A load over a place, whose points may stand in the scene: the key of their unit, and what they are.
 TABLES = {"over_theta": "theta", "over_Y": "Y", "over_stroke": "distance"}
