@@ -12,8 +12,7 @@ from scipy.integrate import DOP853
 
 import desaxe as dx
 from desaxe.mechanism.program import Variant
-from desaxe.simulation import dop853 as compiled
-from desaxe.simulation import nodes
+from desaxe.simulation import motions, nodes, state
 from desaxe.simulation.compiled import Family, source_of
 from desaxe.simulation.coordinate import EDGE
 from tests.motions import true_end
@@ -227,16 +226,17 @@ def test_what_a_family_lacks_costs_nothing():
 def test_the_text_runs_uncompiled(monkeypatch):
     """A crank of 1 kg m^2 alone: theta = torque t^2/2."""
     crank = {"still": (1.0, 0.0, 0.0), "moving": (1.0, 0.0, 0.0, 0.0), "potential": 0.0}
-    for name, found in crank.items():
-        monkeypatch.setattr(compiled, name, lambda theta, branch, p, found=found: found, raising=False)
-    monkeypatch.setattr(compiled, "torque", lambda t, theta, omega, number: number, raising=False)
+    for module in (state, motions):
+        for name, found in crank.items():
+            monkeypatch.setattr(module, name, lambda theta, branch, p, found=found: found, raising=False)
+        monkeypatch.setattr(module, "torque", lambda t, theta, omega, number: number, raising=False)
     setup = np.array([[1.0, -math.inf, math.inf, 0.0, 3.0, 0.0, 0.5, 1.0, 0.0]])
     times, how = np.array([0.0, 0.3, 2.0]), np.array([1e-10, 2.0, math.inf, 1000.0, 0.0])
     tables = [getattr(DOP853, name) for name in ("A", "B", "C", "E3", "E5", "D", "A_EXTRA", "C_EXTRA")]
     tables.append(nodes.table())
     theta, omega, alpha = (np.empty((1, 3)) for _ in range(3))
     status, numbers = np.full(1, -1, np.int8), np.empty((1, 5))
-    compiled.designs(np.empty((1, 0)), setup, times, how, *tables, theta, omega, alpha, status, numbers)
+    motions.designs(np.empty((1, 0)), setup, times, how, *tables, theta, omega, alpha, status, numbers)
     np.testing.assert_allclose(theta[0], 0.5 + times + 1.5 * times**2, rtol=1e-13)
     np.testing.assert_allclose(omega[0], 1.0 + 3.0 * times, rtol=1e-13)
     assert (status[0], numbers[0, 0], alpha[0, 1]) == (0, 2.0, 3.0)
@@ -244,7 +244,7 @@ def test_the_text_runs_uncompiled(monkeypatch):
 
 
 def test_the_edge_is_the_same_in_both():
-    assert f"{EDGE:g}" in Path(compiled.__file__).read_text(encoding="utf-8")
+    assert f"{EDGE:g}" in Path(state.__file__).read_text(encoding="utf-8")
 
 
 @pytest.mark.thorough

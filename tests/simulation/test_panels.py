@@ -7,6 +7,7 @@ import pytest
 
 import desaxe as dx
 from benchmarks.integrators import designs, of_t_and_omega
+from desaxe.simulation import dense, motions, nodes, panel, picard, state, tableau
 from tests.effort import cases
 from tests.motions import true_end
 
@@ -88,3 +89,44 @@ def test_panels_are_for_many_designs(change):
     call = {"torque": wave, "t_end": 0.1, "AB": 0.05, "BC": 0.2, "ec": 0.0, "m_slider": 1.0, "I_crank": 0.1}
     with pytest.raises(ValueError, match="method = 'panels': it is for many designs, without wrt="):
         dx.simulate(method="panels", **{**call, **change, "derivative": lambda t, theta, omega: (0.0, 0.0)})
+
+
+def test_the_integrals_from_rest_are_exact_for_powers():
+    table, last = nodes.table(), nodes.NODES
+    s = table[:last, picard.PLACE]
+    for power in range(last):
+        energies = (2.0 * s ** (power + 1)) @ table[last:, :last]
+        np.testing.assert_allclose(energies, 2.0 / (power + 2) * s ** (power + 2), rtol=1e-10, atol=1e-16)
+
+
+def test_a_start_from_rest_takes_no_step_in_time(monkeypatch):
+    """A crank of 1 kg m^2 under 3 + t N m, in plain Python."""
+
+    def asked_at_nodes(number, room, first, count):
+        room[first + 3, :count] = number + room[first, :count]
+        return True
+
+    given = {
+        "still": lambda theta, branch, p: (1.0, 0.0, 0.0),
+        "moving": lambda theta, branch, p: (1.0, 0.0, 0.0, 0.0), "potential": lambda theta, branch, p: 0.0,
+        "torque": lambda t, theta, omega, number: number + t,
+        "apart": lambda: None, "mul_add": lambda a, b, c: a * b + c, "asked_at_nodes": asked_at_nodes,
+        "step": None,
+    }  # fmt: skip
+    for module in (motions, state, dense, panel, picard):
+        for name, value in {**given, "still_in_lanes": given["still"]}.items():
+            monkeypatch.setattr(module, name, value, raising=False)
+    setup = np.array([[1.0, -math.inf, math.inf, 0.0, 3.0, 0.0, 0.5, 0.0, 0.0]])
+    times, how = np.array([0.0, 1e-3, 0.3, 2.0]), np.array([1e-10, 2.0, math.inf, 1000.0, 1.0])
+    A, C, last = tableau.A, tableau.C, tableau.STAGES
+    tables = A, tableau.B, C, tableau.E3, tableau.E5, tableau.D, A[last + 1 :], C[last + 1 :], nodes.table()
+    histories, status, numbers = (
+        [np.empty((1, 4)) for _ in range(3)],
+        np.full(1, -1, np.int8),
+        np.empty((1, 5)),
+    )
+    motions.designs(np.empty((1, 0)), setup, times, how, *tables, *histories, status, numbers)
+    assert (status[0], numbers[0, 0]) == (0, 2.0)
+    np.testing.assert_allclose(histories[0][0], 0.5 + 1.5 * times**2 + times**3 / 6.0, rtol=1e-10)
+    np.testing.assert_allclose(histories[1][0], 3.0 * times + 0.5 * times**2, rtol=1e-9)
+    np.testing.assert_allclose(histories[2][0], 3.0 + times, rtol=1e-12)

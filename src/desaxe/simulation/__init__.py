@@ -12,10 +12,15 @@ many_designs  arrays of designs in one compiled call
 energy        motions with the crank angle as the independent variable
 each_design   arrays of designs under loads over the motion, one after the other
 stepper       the integrator of one motion
-dop853        the same for many designs, which numba compiles
+motions       motions of designs one after the other, which numba compiles
+state         their state, where it starts and what becomes of it
+dop853        one of their steps in time
+dense         over a step, and inside of it
 tableau       the coefficients of both
-picard        panels of the crank angle in between, where it does not rest
-nodes         the coefficients of the panels
+panel         panels of the crank angle in between, also from rest
+picard        what happens at their nodes
+inside_panel  the state inside of one
+nodes         their coefficients
 compiled      the module of a family of designs
 torque        a torque's function, compiled alone
 history       histories of angle, speed, quantities and energy

@@ -1,4 +1,4 @@
-"""The compiled module of a family of designs: its functions from the Program, and DOP853 behind them."""
+"""The compiled module of a family of designs: functions from the Program, panels and DOP853 behind them."""
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
@@ -16,7 +16,8 @@ from ..runtime.modules import Native, native
 from ..runtime.specialise import specialise
 from .model import MOVING, STILL, UNLOADED
 
-FILES = tuple(Path(__file__).with_name(name) for name in ("dop853.py", "picard.py"))
+_NAMES = "motions", "state", "dop853", "dense", "panel", "inside_panel", "picard"
+FILES = tuple(Path(__file__).with_name(f"{name}.py") for name in _NAMES)
 _SIGNATURE = """rows, row = types.float64[:, ::1], types.float64[::1]
 signature = types.void(
     rows, rows, row, row, rows, row, row, row, row, rows, rows, row, rows, rows, rows, rows, types.int8[::1],
@@ -83,9 +84,10 @@ def still_in_lanes(family: Family) -> str:
 
 def _without_panels() -> list[str]:
     """No panels where the torque is a number: such motions have an energy form, and compiling takes time."""
-    texts = functions_of(FILES[0]) | functions_of(FILES[1])
-    heads = (texts[name][: texts[name].index('"""')] for name in ("land", "tell_inside", "by_panel"))
-    return [f"{NJIT}{head}return -1.0\n" for head in heads]
+    texts = {name: text for file in FILES for name, text in functions_of(file).items()}
+    answers = {"by_panel": "-1.0", "over_panel": "end, row"}
+    heads = {name: texts[name][: texts[name].index('"""')] for name in answers}
+    return [f"{NJIT}{head}return {answers[name]}\n" for name, head in heads.items()]
 
 
 def of_row(name: str, program: Program, places: Mapping[str, str]) -> str:

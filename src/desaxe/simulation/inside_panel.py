@@ -1,0 +1,137 @@
+"""The inside of a panel: Legendre series of the time and the energy, histories, the end of the motion.
+
+Both are series in s (see `picard`).
+"""
+
+from __future__ import annotations
+
+from math import copysign, inf, sqrt
+from typing import TYPE_CHECKING
+
+from numpy import int64
+
+from .dop853 import NEXT, STALE, T_END, WISHED
+from .panel import panel
+from .picard import NODES, OF_ENERGY, OF_TIME, PACE, RATE, SERIES
+from .state import rates, tell
+
+if TYPE_CHECKING:
+    from typing import Any
+
+
+def expand(start: float, width: float, table: Any, room: Any, rate: Any, out: Any) -> None:
+    """The Legendre series of the integral of a rate over a panel."""
+    for k in range(NODES + 1):
+        room[out, k] = 0.0
+        for j in range(NODES):
+            room[out, k] += width * table[j, SERIES + k] * room[rate, j]
+    room[out, 0] += start
+
+
+def along(x: float, room: Any, row: Any) -> Any:
+    """A series and its derivative at the part x of a panel."""
+    at = 2.0 * x - 1.0
+    value, slope = room[row, 0] + room[row, 1] * at, room[row, 1]
+    before, now, slower, steep = 1.0, at, 0.0, 1.0
+    for n in range(1, NODES):
+        before, now, slower, steep = (
+            now,
+            ((2 * n + 1) * at * now - n * before) / (n + 1),
+            steep,
+            slower + (2 * n + 1) * now,
+        )
+        value += room[row, n + 1] * now
+        slope += room[row, n + 1] * steep
+    return value, 2.0 * slope
+
+
+def part_at(instant: float, x: float, room: Any) -> float:
+    """The part of a panel at which the time is given, by Newton's method; x is a guess."""
+    for _ in range(8):
+        now, slope = along(x, room, int64(OF_TIME))
+        step = (instant - now) / slope
+        x = min(max(x + step, 0.0), 1.0)
+        if not abs(step) > 1e-14:
+            break
+    return x
+
+
+def land(
+    t: float,
+    end: float,
+    t_end: float,
+    y: Any,
+    p: Any,
+    setup: Any,
+    rtol: float,
+    panels: Any,
+    room: Any,
+    memory: Any,
+    K: Any,
+    new: Any,
+) -> float:
+    """Make the series of a panel, shortened where it goes beyond the end of the motion; its end."""
+    width = memory[3]
+    expand(t, abs(width), panels, room, int64(PACE), int64(OF_TIME))
+    if end > t_end:
+        part = part_at(t_end, (t_end - t) / (end - t), room)
+        memory[3] = width * (part * part if y[1] == 0.0 else part)
+        end, _ = panel(t, y, memory[3], p, setup, rtol, panels, room, new)
+        rates(end, new, p, setup, K[1])
+        for i in range(3):
+            new[i] += (t_end - end) * K[1, i]
+        expand(t, abs(memory[3]), panels, room, int64(PACE), int64(OF_TIME))
+        end = t_end
+    expand(0.5 * y[1] * y[1], memory[3], panels, room, int64(RATE), int64(OF_ENERGY))
+    return end
+
+
+def tell_inside(
+    t: float,
+    end: float,
+    instant: float,
+    y: Any,
+    p: Any,
+    setup: Any,
+    room: Any,
+    memory: Any,
+    theta: Any,
+    omega: Any,
+    alpha: Any,
+    row: Any,
+) -> None:
+    """Angle, speed and acceleration at an instant inside of a panel, into the histories."""
+    x = part_at(instant, (instant - t) / (end - t), room)
+    energy, _ = along(x, room, int64(OF_ENERGY))
+    speed = copysign(sqrt(2.0 * max(energy, 0.0)), memory[3])
+    way = memory[3] * (x * x if y[1] == 0.0 else x)
+    tell(instant, y[0] + way, speed, p, setup, theta, omega, alpha, row)
+
+
+def over_panel(
+    t: float,
+    end: float,
+    y: Any,
+    new: Any,
+    times: Any,
+    row: Any,
+    p: Any,
+    setup: Any,
+    how: Any,
+    clock: Any,
+    panels: Any,
+    room: Any,
+    memory: Any,
+    K: Any,
+    theta: Any,
+    omega: Any,
+    alpha: Any,
+) -> Any:
+    """The histories inside of a panel, and its end, which is not behind that of the motion; the next row."""
+    if end > clock[T_END] or (row < len(times) and times[row] <= end):
+        end = land(t, end, clock[T_END], y, p, setup, how[0], panels, room, memory, K, new)
+    while row < len(times) and times[row] <= end:
+        tell_inside(t, end, times[row], y, p, setup, room, memory, theta, omega, alpha, row)
+        row += 1
+    clock[NEXT], clock[WISHED], clock[STALE] = 0.1 * (end - t), inf, 1.0
+    return end, row
