@@ -107,7 +107,7 @@ def test_next_to_rest(start):
 
 
 def test_more_swings_than_a_brief_motion_has_pieces():
-    """The motion alone leaves out whole swings; its derivatives follow each, or none within max_steps."""
+    """Whole swings are left out, with their derivatives, too: a hundred pieces are enough."""
     swing = machines(torque=0.0, g_Y=-9.81, omega_start=0.5, theta0=2.5)
     call = {"t_end": 15.0, "times": [15.0]}
     found = dx.simulate(**call, wrt=WRT, **swing)
@@ -117,7 +117,10 @@ def test_more_swings_than_a_brief_motion_has_pieces():
         far, near, after, last = (end["theta"] for end in ends)
         slope = (8.0 * (after - near) - (last - far)) / 12e-6
         np.testing.assert_allclose(found[f"theta_wrt_{p}"], slope, rtol=1e-5)
-    few = dx.simulate(**call, wrt=WRT, max_steps=100, **swing)
+    enough = dx.simulate(**call, wrt=WRT, max_steps=100, **swing)
+    assert enough["status"].tolist() == [0, 0]
+    np.testing.assert_array_equal(enough["theta_wrt_AB"], found["theta_wrt_AB"])
+    few = dx.simulate(**call, wrt=WRT, max_steps=3, **swing)
     assert few["status"].tolist() == [4, 4]
     assert (few["t_last"] <= 15.0).all()
     assert np.isnan(few["theta_wrt_AB"]).all()

@@ -6,6 +6,8 @@ at_angles  quantities of many designs at angles, in plain loops
 pieces     a piece of a motion between two kinks or standstills
 follow     one motion in plain loops: energy and time as integrals over panels
 course     speeds, accelerations and energies along motions, in plain loops
+through    derivatives of time and energy through whole panels and many turns, in plain loops
+partly     the same on other pieces, such as those next to a standstill
 varied     its derivatives by parameters in plain loops
 by_parameters   the derivatives of inertia, torque and start of many designs, and those of their motions
 compiled   the same, compiled, for every family of designs

@@ -1,6 +1,6 @@
 """The derivatives of inertia, torque and start of many designs by parameters, and those of their motions."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,14 +12,14 @@ from ...mechanism.closed.functions import closed_form
 from ...mechanism.names import LENGTHS
 from ...support.panels import ENDS, NODES, nodes_of
 from ..result import FAILED, LIMIT
-from .compiled import TABLES, variations
+from .compiled import TABLES, kernel, variations
 from .panels import Designs, Fields
 
 Array = NDArray[np.float64]
 STARTS = ("theta0", "omega_start", "torque")  # parameters that are no inputs of the mechanism
 DEAD = 1e-6  # of the crank: dY/dtheta next to a dead centre, where a load that jumps does no work
 PIECE = 43  # numbers of a piece: see `follow`
-ROOM, MORE_ROOM, FULL = 256, 8, 12  # pieces of a motion; the status of `follow` without room for more
+ROOM, MORE_ROOM, FULL = 64, 8, 12  # pieces of a motion; the status of `follow` without room for more
 ENERGIES = ("M_eff", "T_in", "potential_energy")
 
 
@@ -231,12 +231,12 @@ def _begin(designs: Designs, p: str, arc: Arcs, x: Array, found: Mapping[str, Ar
 
 def sensitivities_of(
     designs: Designs, fields: Fields, setup: Array, times: Array, tolerance: float, most: Array,
-    status: NDArray[np.int8], bad: NDArray[np.int8], last: bool,
+    outs: Sequence[Any], last: bool,
 ) -> Sensitivities:  # fmt: skip
-    """The derivatives of motions that have an energy form on these panels.
+    """Follow motions on these panels, and their derivatives.
 
-    status, bad   as `follow` fills them in: the status becomes that of too wide panels where they are
-    last          to take derivatives as resolved, whatever they look like
+    outs   as `follow` fills them in: the status is that of too wide panels where they are for derivatives
+    last   to take derivatives as resolved, whatever they look like
     """
     own = derived_of(designs, fields)
     count, parameters = own.begin.shape[:2]
@@ -244,19 +244,26 @@ def sensitivities_of(
     scale = np.stack([np.abs(v).max(axis=2, initial=0.0) for v in (own.inertia, own.push)], axis=2)
     if last:
         scale[:] = np.inf
-    panels = fields.edges, fields.rough, fields.inertia, *fields.pushes
-    derived = own.bend, own.inertia, own.push, own.back, own.jumps, own.begin, scale
-    how = np.array([tolerance, 1.0, tolerance, float(bool(designs.tables))])
-    room, rows = ROOM, np.arange(count)
-    while rows.size:
-        part = [np.ascontiguousarray(array[rows]) for array in (*panels, *derived, setup)]
-        answers = [array[rows] for array in (out, ends, status, bad)]
-        kept, numbers = np.empty((room, PIECE)), np.empty((rows.size, 6))
-        variations()(*part, times, how, most, *TABLES, kept, *answers, numbers)
-        full = answers[2] == FULL
-        out[rows[~full]], ends[rows[~full]] = answers[0][~full], answers[1][~full]
-        status[rows[~full]], bad[rows[~full]] = answers[2][~full], answers[3][~full]
-        rows, room = rows[full], room * MORE_ROOM
+    panels = fields.edges, fields.rough, np.ascontiguousarray(fields.inertia)
+    pushes = (np.ascontiguousarray(push) for push in fields.pushes)
+    derived = *panels, *pushes, own.bend, own.inertia, own.push, own.back, own.jumps, own.begin, scale
+    tables = bool(designs.tables)
+    how = np.array([tolerance, 2.0 if tables else 1.0, tolerance, float(tables)])
+    left, room = [slice(0, count)], ROOM + times.size
+    while left:
+        rows = left.pop()
+        size, (x, speeds, status, bad, numbers) = rows.stop - rows.start, (array[rows] for array in outs)
+        kept, where = np.empty((size, room, PIECE)), np.empty((size, 2, times.size))
+        followed = kept, np.empty((size, times.size), np.int64), where
+        begin = fields.edges[rows], fields.rough[rows], fields.values[rows], setup[rows], times, how, most
+        kernel()(*begin, *TABLES, *followed, x, speeds, status, bad, numbers)
+        given = *(array[rows] for array in derived), how, *TABLES, *followed
+        variations()(*given, out[rows], ends[rows], status, bad, numbers)
+        full = np.flatnonzero(status == FULL)
+        if full.size:  # each alone, with more room
+            status[full] = 0
+            left += [slice(rows.start + row, rows.start + row + 1) for row in full.tolist()]
+            room *= MORE_ROOM
     whole = np.concatenate([ends, own.potential], axis=2)
     whole[:, :, 2] += own.begin[:, :, 2]
     return Sensitivities(out, whole)

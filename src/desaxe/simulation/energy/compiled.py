@@ -16,21 +16,25 @@ from ...runtime.modules import Native, native
 from ...support.panels import NODE, NODES, RUNNING, TO_COEFFICIENTS, WEIGHT, Array
 from ..compiled import Family, of_row
 
-FILES = tuple(Path(__file__).with_name(name) for name in ("follow.py", "pieces.py", "varied.py"))
+FILES = tuple(
+    Path(__file__).with_name(name)
+    for name in ("follow.py", "pieces.py", "varied.py", "partly.py", "through.py")
+)
 OWN = tuple(Path(__file__).with_name(name) for name in ("at_angles.py", "course.py"))
 FIELDS = ("M_eff", "T_in")
 COURSE = (*FIELDS, "M_eff_wrt_theta", "Y", "potential_energy")
 _MOTIONS = """row, rows = types.float64[::1], types.float64[:, ::1]
 signature = types.void(
-    rows, rows, types.float64[:, :, ::1], rows, row, row, row, row, row, rows, rows, rows, rows, rows, rows,
-    types.int8[::1], types.int8[:, ::1], rows
+    rows, rows, types.float64[:, :, ::1], rows, row, row, row, row, row, rows, rows, rows,
+    types.float64[:, :, ::1], types.int64[:, ::1], types.float64[:, :, ::1], rows, rows, types.int8[::1],
+    types.int8[:, ::1], rows
 )
 function = motions.py_func
 """
 _VARIATIONS = """row, rows, blocks = types.float64[::1], types.float64[:, ::1], types.float64[:, :, ::1]
 signature = types.void(
     rows, rows, rows, rows, rows, rows, blocks, blocks, blocks, types.float64[:, :, :, ::1], blocks, blocks,
-    rows, row, row, row, row, row, rows, rows, rows, rows, types.float64[:, :, :, ::1], blocks,
+    row, row, row, rows, rows, rows, blocks, types.int64[:, ::1], blocks, types.float64[:, :, :, ::1], blocks,
     types.int8[::1], types.int8[:, ::1], rows
 )
 function = variations.py_func

@@ -14,13 +14,13 @@ method. A piece whose series has not ended is cut.
 rough    how exactly M and Q are known on each panel, as a share of them
 setup    a row per design: E0, number of the edge at the start, way (-1 or 1), period or 0, 1 where Q does
          not depend on the way, the row of Q back
-how      tolerance, 1 to keep every piece
+how      tolerance; 1 to keep all that happens, 2 with the series of every piece
 most     pieces: an array of one, which another thread may set to 0
 tables   nodes; weights; columns by which values become Legendre coefficients, running integrals, and means
          of 2 s f(s) from 0 to xi
 kept     pieces: start, duration, x as c0 + c1 u + c2 u^2, kind, panel counted over turns, way, and the
          coefficients of dt/du; where there is room, the part of the panel
-         (start, length, what lies beyond) and dt/du at the nodes
+         (start, length, what lies beyond) and dt/du at the nodes; or whole turns or swings: see `pass_by`
 numbers  end, x and energy there, instants reached, pieces kept, pieces
 """
 
@@ -73,6 +73,11 @@ def keep(
     place = a + (0.5 if kind == 0 else 0.0 if kind == 1 else 1.0) * span
     piece[0], piece[1], piece[2] = start, duration, middle + half * place + bend
     piece[3], piece[4], piece[5] = 0.5 * half * span, bend, kind
+
+
+def pass_by(row: Any, count: float, energy: float, kind: float, panel: float, way: float) -> None:
+    """Whole turns (kind 3) from a panel on with some energy, or swings (kind 4): their number."""
+    row[0], row[1], row[5], row[6], row[7] = count, energy, kind, panel, way
 
 
 def whole_turn(
@@ -136,12 +141,18 @@ def follow(
             panel = panels - 1 if panel < 0 else int64(0)
         if period != 0.0 and panel == (int64(0) if way > 0.0 else panels - 1):
             # As fast as the turn before, whose panels were whole pieces, or faster: its series end, too.
-            lasted, slowest = 1.01 * (t - began), 0.999 * proven
+            lasted, slowest, before, turns = 1.01 * (t - began), 0.999 * proven, energy, 0.0
+            counted = panel + panels * turn
             while smooth and energy >= slowest and t + lasted < times[row] and pieces + panels <= most[0]:
                 side = int64(0) if way > 0.0 else int64(1)
                 t, energy = whole_turn(edges, M, work[side], energy, way, t, tables, rows)
-                turn, pieces, largest = turn + way, pieces + panels, max(largest, energy)
-            smooth, began, proven = how[1] == 0.0, t, energy
+                turn, pieces, largest, turns = turn + way, pieces + panels, max(largest, energy), turns + 1.0
+            smooth, began, proven = True, t, energy
+            if how[1] > 0.0 and turns > 0.0:
+                if stored >= len(kept):
+                    return 12
+                pass_by(kept[stored], turns, before, 3.0, counted, way)
+                stored += 1
         half = 0.5 * (edges[panel + 1] - edges[panel])
         if half <= 0.0:
             panel += 1 if way > 0.0 else -1
@@ -248,7 +259,8 @@ def follow(
                     return 12
                 keep(kept[stored], start, duration, a, span, kind, half, middle)
                 kept[stored, 6], kept[stored, 7] = panel + panels * turn, way
-                combined(rows[0], tables[2], kept[stored, 8:])
+                if how[1] != 1.0 or kind != 0 or times[row] <= t:
+                    combined(rows[0], tables[2], kept[stored, 8:])
                 if kept.shape[1] > 24:
                     kept[stored, 24], kept[stored, 25], kept[stored, 26] = a, span, over
                     for k in range(16):
@@ -268,8 +280,14 @@ def follow(
         rest, inside = stopped, stopped
         if stopped:
             swing, last_stop = t - last_stop, t
-            if setup[4] > 0.0 and how[1] == 0.0 and swing > 0.0:
-                last_stop += 2.0 * swing * max(floor((times[row] - t) / (2.0 * swing)), 0.0)
+            if setup[4] > 0.0 and swing > 0.0:
+                swings = 2.0 * max(floor((times[row] - t) / (2.0 * swing)), 0.0)
+                if how[1] > 0.0 and swings > 0.0:
+                    if stored >= len(kept):
+                        return 12
+                    pass_by(kept[stored], swings, 0.0, 4.0, 0.0, way)
+                    stored += 1
+                last_stop += swings * swing
                 t = last_stop
             way, energy = -way, 0.0
         else:
@@ -353,6 +371,8 @@ def motions(
     running: Any,
     mean: Any,
     kept: Any,
+    which: Any,
+    where: Any,
     x: Any,
     speed: Any,
     status: Any,
@@ -361,12 +381,16 @@ def motions(
 ) -> None:
     """Every design: x and its rate at all instants, NaN where the motion has ended; status and numbers.
 
-    x, speed   their first column, of the start, is left alone
+    x, speed      their first column, of the start, is left alone
+    kept, which   pieces, and those of the instants: of each design, or room for one
+    where         u of the instants, and dt/du there
     """
     tables, count, panels = (nodes, weights, coefficients, running, mean), len(times), edges.shape[1] - 1
-    which, since, lanes = empty(count, int64), empty(count), empty((21, count))
+    since, lanes = empty(count), empty((21, count))
     work, known, last = empty((2, panels, 17)), empty((2, panels), int64), empty(19)
     for n in range(len(setup)):
+        room = n if len(kept) == len(setup) else 0
+        own, pieces = which[room], kept[room]
         place, rate, back = x[n, 1:], speed[n, 1:], int64(setup[n, 5])
         for i in range(count):
             place[i], rate[i] = nan, nan
@@ -375,10 +399,12 @@ def motions(
         numbers[n, 3] = 0.0
         status[n] = follow(
             edges[n], rough[n], fields[n, 0], fields[n, 1], fields[n, back], setup[n], times, how, most,
-            tables, kept, which, since, bad[n], work, known, last, numbers[n],
+            tables, pieces, own, since, bad[n], work, known, last, numbers[n],
         )  # fmt: skip
         reached = int64(numbers[n, 3])
-        if status[n] < 10 and reached > 0 and not invert(reached, which, since, kept, place, rate, lanes):
+        if status[n] < 10 and reached > 0 and not invert(reached, own, since, pieces, place, rate, lanes):
             status[n] = 11
+        for i in range(reached):
+            where[room, 0, i], where[room, 1, i] = lanes[16, i], lanes[18, i]
         if status[n] == 0:
             numbers[n, 2] = last[16] + last[17] * integral(last, (place[count - 1] - last[18]) / last[17])

@@ -128,15 +128,20 @@ def _tried(
     setup[:, 4], setup[:, 5] = 0.0 if designs.turns_with_the_slider else 1.0, fields.back
     starts = np.isfinite(energy) & (inertia > 0.0) & (np.abs(way) == 1.0)
     status = np.where(starts, 0, NOT_HERE).astype(np.int8)
-    bad, kept = np.zeros((count, fields.rough.shape[1]), np.int8), np.empty((times.size + 1, PIECE))
+    bad = np.zeros((count, fields.rough.shape[1]), np.int8)
     x, speeds, numbers = (np.empty((count, n)) for n in (1 + times.size, 1 + times.size, 6))
-    outs = kept, x, speeds, status, bad, numbers
-    how = np.array([tolerance, 0.0])
-    kernel()(fields.edges, fields.rough, fields.values, setup, times, how, most, *TABLES, *outs)
-    by = None
+    outs = x, speeds, status, bad, numbers
     if designs.wrt:
-        by = sensitivities_of(designs, fields, setup, times, tolerance, most, status, bad, last)
-    return Marched(x, speeds, status, numbers, way, by), bad
+        by = sensitivities_of(designs, fields, setup, times, tolerance, most, outs, last)
+        return Marched(x, speeds, status, numbers, way, by), bad
+    room = (
+        np.empty((1, times.size + 1, PIECE)),
+        np.empty((1, times.size), np.int64),
+        np.empty((1, 2, times.size)),
+    )
+    panels, how = (fields.edges, fields.rough, fields.values), np.array([tolerance, 0.0])
+    kernel()(*panels, setup, times, how, most, *TABLES, *room, *outs)
+    return Marched(x, speeds, status, numbers, way), bad
 
 
 def _ways(designs: Designs, fields: Fields, begin: NDArray[np.intp]) -> Array:
