@@ -137,6 +137,18 @@ def test_arrays_numbers_and_grids_agree_and_say_the_same_of_the_status():
     assert dx.evaluate(["T_in", "status"], theta=0.1, ec=0.024, **given)["status"] == 0
 
 
+@pytest.mark.parametrize("more", [{}, {"mu": 0.1}])
+def test_the_status_of_a_design_needs_no_angle(more):
+    load = dx.over_stroke(DISTANCES, OUTWARD, INWARD, dead_centre="inner")
+    ec, given = np.array([0.0, 0.024, 0.03]), {"AB": 0.04, "BC": 0.064, "omega0": 3.0, "F_Y": load, **more}
+    bare = {name: value for name, value in given.items() if name not in ("F_Y", "mu")}
+    wanted = dx.evaluate("status", ec=ec, **bare)
+    np.testing.assert_array_equal(dx.evaluate("status", ec=ec, **given), wanted)
+    assert [dx.evaluate("status", ec=own, **given) for own in ec.tolist()] == wanted.tolist()
+    found = dx.grid("status", ec=ec, out=np.empty(3, np.int8), **given)["status"]
+    np.testing.assert_array_equal(found, wanted)
+
+
 # ---- jumps: constant forces, arc by arc ----------------------------------------------------------------
 
 

@@ -236,6 +236,21 @@ def test_a_scene_of_a_machine_runs():
     assert float(values.T_in[1]) == pytest.approx(PRESS.evaluate("T_in", theta="60 deg"), rel=1e-13)
 
 
+def test_a_scene_of_a_machine_takes_other_inputs_as_a_grid_does(tmp_path):
+    """As `replace` takes them, in its units; with omega0 there is no omega."""
+    press = dx.Machine(ec="1 mm", AB="40 mm", BC="100 mm", omega="3 rad/s", units="mm")
+    load = press.over_Y([60.0, 150.0], [-10.0, 90.0])
+    for more in ({"ec": [0, 5]}, {"ec": ["0.5 cm", "5 mm"], "BC": 120}, {"omega0": 2.0}, {"F_Y": load}):
+        assert press.scene("Y", **more) == press.replace(**more).scene("Y")
+        press.to_scene(tmp_path / "press.toml", "Y", **more)
+        assert dx.scene(tmp_path / "press.toml") == press.scene("Y", **more)
+    found = press.scene("Y", ec=[0, 5], theta=[0.0, 1.0]).run().dataset
+    grid = press.grid("Y", ec=[0, 5], theta=[0.0, 1.0]).Y
+    np.testing.assert_array_equal(found.Y, grid.transpose(*found.Y.dims))
+    with pytest.raises(ValueError, match="AB = -1"):
+        press.scene("Y", AB=-1)
+
+
 @pytest.mark.parametrize(
     ("inputs", "error", "words"),
     [

@@ -8,8 +8,8 @@ import pytest
 import xarray as xr
 
 import desaxe as dx
-from desaxe.sweeps import best
-from desaxe.sweeps.kept import NAME, BestDesigns, Kept
+from desaxe.sweeps.kept import NAME, Kept
+from desaxe.sweeps.ranking import BestDesigns, Ranking
 from desaxe.sweeps.sweep import NotStoredError
 from tests.effort import cases
 from tests.ways import take_way
@@ -176,15 +176,15 @@ def test_a_search_that_was_stopped_goes_on(tmp_path, monkeypatch):
     monkeypatch.setattr("desaxe.sweeps.layout.REDUCED", (400, 400))
     whole, stopped = tmp_path / "whole.zarr", tmp_path / "stopped.zarr"
     dx.sweep(NAMES, best=5, by="a_C", order="largest", store=whole, threads=1, **INPUTS)
-    block, begun = best._best_of_block, []
+    take, begun = Ranking.take, []
 
-    def stop(task):
-        begun.append(task.number)
+    def stop(ranking, block, part, *rest):
+        begun.append(part.place)
         if len(begun) == 5:
             raise KeyboardInterrupt
-        return block(task)
+        return take(ranking, block, part, *rest)
 
-    monkeypatch.setattr(best, "_best_of_block", stop)
+    monkeypatch.setattr(Ranking, "take", stop)
     with pytest.raises(KeyboardInterrupt):
         dx.sweep(NAMES, best=5, by="a_C", order="largest", store=stopped, threads=1, **INPUTS)
     assert xr.open_zarr(stopped).attrs["state"] == "incomplete"

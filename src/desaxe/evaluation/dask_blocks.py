@@ -1,17 +1,33 @@
-"""A function of many outputs over the chunks of Dask arrays: one task a chunk, one more per output."""
+"""A task of many outputs over the chunks of Dask arrays: one task a chunk, one more per output."""
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..runtime.request import as_number
 from ..support.extras import needed
 from ..support.forks import IMPORTS
+from .arrays import as_array, broadcast_shape
 
 Array = NDArray[Any]
-Function = Callable[..., Mapping[str, Array]]
+
+
+class Task(Protocol):
+    """The work in each chunk; it pickles."""
+
+    @property
+    def identity(self) -> str:
+        """A text that tells the task from all others, in every process."""
+
+    @property
+    def dtypes(self) -> Mapping[str, np.dtype[Any]]:
+        """The outputs by name."""
+
+    def compute(self, *blocks: Array) -> Mapping[str, Array]:
+        """The outputs of a chunk, from a block of each argument."""
 
 
 def is_lazy(value: Any) -> bool:
@@ -31,16 +47,42 @@ def as_dask(name: str, value: Any) -> Any:
     return array
 
 
-def outputs_of_blocks(
-    function: Function,
-    arguments: Sequence[tuple[Any, tuple[int, ...]]],
-    along: tuple[int, ...],
-    outputs: Mapping[str, np.dtype[Any]],
-    token: str,
+def lazily(
+    made: Callable[[dict[str, float], tuple[str, ...]], Task],
+    inputs: Sequence[str],
+    given: Mapping[str, Any],
+    names: Sequence[str],
 ) -> dict[str, Any]:
-    """The outputs of a function of blocks, each a lazy array.
+    """The outputs of a task over inputs that broadcast, as Dask arrays; some of them are Dask arrays.
 
-    function   takes a block of each argument, gives a dict output -> array; it must pickle
+    made   the task, from the inputs that are numbers and the names of the others; loads that vary with the
+           motion are its own
+    """
+    with needed("Dask arrays"):
+        from dask.base import tokenize
+
+    scalars: dict[str, float] = {}
+    arrays: dict[str, Any] = {}
+    for name in (name for name in inputs if not callable(given.get(name))):
+        value = given.get(name)
+        number = None if is_lazy(value) else as_number(name, value, inputs, names)
+        if number is None:
+            array = value if is_lazy(value) else as_array(name, value, inputs, names)
+            arrays[name] = as_dask(name, array)
+        else:
+            scalars[name] = number
+    rank = len(broadcast_shape(arrays))
+    task = made(scalars, tuple(arrays))
+    token = tokenize(task.identity, *(array.name for array in arrays.values()))
+    arguments = [(array, tuple(range(rank - array.ndim, rank))) for array in arrays.values()]
+    return outputs_of_blocks(task, arguments, tuple(range(rank)), token)
+
+
+def outputs_of_blocks(
+    task: Task, arguments: Sequence[tuple[Any, tuple[int, ...]]], along: tuple[int, ...], token: str
+) -> dict[str, Any]:
+    """The outputs of a task over blocks, each a lazy array.
+
     arguments  Dask arrays, each with the numbers of its dimensions, which broadcast
     along      the numbers of the outputs' dimensions
     token      what the names of the arrays end in: the same for the same request, in every process
@@ -54,7 +96,7 @@ def outputs_of_blocks(
         # An outer product has more chunks than each of its arguments, of which Dask would warn.
         warnings.simplefilter("ignore", da.PerformanceWarning)
         blocks = da.blockwise(
-            function, along, *flat, dtype=object, concatenate=True,
+            task.compute, along, *flat, dtype=object, concatenate=True,
             name=f"desaxe-{token}", meta=np.empty(shape, object),
         )  # fmt: skip
     return {
@@ -62,14 +104,8 @@ def outputs_of_blocks(
             _output, along, blocks, along, name, None, dtype=dtype, name=f"{name}-{token}",
             meta=np.empty(shape, dtype),
         )
-        for name, dtype in outputs.items()
+        for name, dtype in task.dtypes.items()
     }  # fmt: skip
-
-
-def numbered(arrays: Mapping[str, Any]) -> tuple[list[tuple[Any, tuple[int, ...]]], tuple[int, ...]]:
-    """Dask arrays that broadcast like NumPy's with the numbers of their dimensions, and all numbers."""
-    rank = max(array.ndim for array in arrays.values())
-    return [(array, tuple(range(rank - array.ndim, rank))) for array in arrays.values()], tuple(range(rank))
 
 
 def _output(block: Any, name: str) -> Array:

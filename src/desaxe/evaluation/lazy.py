@@ -1,7 +1,8 @@
 """`grid(..., chunks=)`: the variables of a plan as lazy Dask arrays, one task a chunk and step."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
+import numpy as np
 from numpy.typing import NDArray
 
 from ..support.extras import needed
@@ -26,26 +27,33 @@ def lazy_values(plan: Plan, chunks: Any, threads: int | None) -> dict[str, Any]:
     lengths = chunk_lengths(chunks, plan.sizes, max(1, AUTO // max(plan.behind, 1)))
     axes, found = plan.outer.axes, dict[str, Any]()
     for step in plan.cut(longest(lengths)).all:
-        block = _Block(step, threads or 1)
-        token = tokenize(block, *(axes[name] for name in step.axes), lengths)
+        task = StepTask(step, threads or 1)
+        token = tokenize(task.identity, *(axes[name] for name in step.axes), lengths)
         columns = []
         for number, name in enumerate(step.axes):
             own = lengths.get(name, (axes[name].size,))  # a reduced axis is whole
             column = da.from_array(axes[name], chunks=(own,), name=f"{name}-{token}", inline_array=True)
             columns.append((column, (number,)))
-        dtypes = {name: output.dtype for name, output in step.outputs.items()}
-        found |= outputs_of_blocks(block, columns, tuple(range(len(step.dims))), dtypes, token)
+        found |= outputs_of_blocks(task, columns, tuple(range(len(step.dims))), token)
     return found
 
 
-class _Block:
-    """A step in a chunk, from the values of its axes: a function that pickles small."""
+class StepTask(NamedTuple):
+    """A step in a chunk, from the values of its axes."""
 
-    def __init__(self, step: Step, threads: int) -> None:
-        self.step, self.threads = step, threads
+    step: Step
+    threads: int
 
-    def __call__(self, *values: Array) -> dict[str, Array]:
+    @property
+    def identity(self) -> str:
+        """A text that tells the task from all others."""
+        return self.step.identity
+
+    @property
+    def dtypes(self) -> dict[str, np.dtype[Any]]:
+        """The outputs by name."""
+        return {name: output.dtype for name, output in self.step.outputs.items()}
+
+    def compute(self, *values: Array) -> dict[str, Array]:
+        """The outputs of a block."""
         return computed(self.step, dict(zip(self.step.axes, values, strict=True)), self.threads)
-
-    def __dask_tokenize__(self) -> Any:
-        return "desaxe.block", self.step.identity

@@ -1,6 +1,6 @@
 """Values under loads that vary with the motion: first the loads at each point, then the Program."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from math import prod
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -13,7 +13,7 @@ from ..loads.load import TURN, Load, OverY
 from ..loads.pieces import Place
 from ..loads.resolve import VARIABLE, Forces, Plan, plan_of, split, way_of
 from ..loads.tabulated import over_theta
-from ..mechanism.names import LENGTHS
+from ..mechanism.names import LENGTHS, STATUS
 from ..mechanism.spoken import spoken
 from ..runtime.request import as_number, check_common, several
 from ..support.forks import IMPORTS
@@ -105,8 +105,14 @@ def are_many(numbers: Mapping[str, Any]) -> bool:
 def plan_for(names: Sequence[str], given: Mapping[str, Any]) -> tuple[dict[str, Any], Plan]:
     """The inputs that are numbers, and the plan for names under the loads that are not."""
     numbers, loads = split({name: value for name, value in given.items() if value is not None})
-    rubs = "mu" in numbers and "theta" in numbers  # the status of a design has no friction
-    return numbers, plan_of(names, loads, "omega" in numbers, rubs)
+    return numbers, plan_at(names, loads, numbers)
+
+
+def plan_at(names: Sequence[str], loads: Mapping[str, Load], given: Container[str]) -> Plan:
+    """The plan for names under loads; without an angle, a status has no friction and no load."""
+    at_angle = "theta" in given
+    loads = loads if at_angle or tuple(names) != (STATUS,) else {}
+    return plan_of(names, loads, "omega" in given, "mu" in given and at_angle)
 
 
 def forces_at(

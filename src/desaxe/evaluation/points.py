@@ -16,7 +16,6 @@ from ..loads.load import Load, OverTheta, OverY
 from ..loads.pieces import Place
 from ..loads.resolve import Forces, way_of
 from ..loads.resolve import Plan as LoadPlan
-from ..loads.resolve import plan_of as plan_of_loads
 from ..mechanism.names import LENGTHS
 from ..mechanism.own import Definition, using
 from ..runtime.kernels import KernelKey, key_of
@@ -26,7 +25,7 @@ from ..runtime.tiers import COMPILED, tier_of
 from .arrays import copied_back, dtype_of, fill, outputs_for, scratch_for
 from .axes import Outer, first_joined, join_from, require_inputs
 from .labels import Output, attributes
-from .loaded import evaluate_loaded
+from .loaded import evaluate_loaded, plan_at
 from .loops import Loops
 from .under import UnderLoads, in_kernel
 
@@ -211,9 +210,7 @@ def points_of(
 ) -> Points:
     """The step of names over dimensions of a grid, checked; TypeError for what is missing."""
     given, axes = outer.given, outer.axes
-    state = given.get("omega") is not None
-    rubs = given.get("mu") is not None and "theta" in axes  # the status of a design has no friction
-    plan = plan_of_loads(names, outer.loads, state, rubs) if outer.loads else None
+    plan = plan_at(names, outer.loads, axes) if outer.loads else None
     if plan is None or not plan.loads:
         wanted = request(names, given, branch, accuracy)
         require_inputs(wanted, {*axes, *outer.loads})

@@ -202,7 +202,8 @@ class Machine(Mapping[str, Any]):
         outputs  names of quantities over the crank angle
         theta    the crank angles: a number, a list, or a range, by default that of a turn,
                  {"start": 0, "stop": "360 deg", "num": 721}
-        more     further keys of a scene, such as title="...", peak=[...], results={"data": "values.nc"}
+        more     other inputs, such as ec=["1 mm", "2 mm"], as `replace` takes them; further keys of a scene,
+                 such as title="...", peak=[...], results={"data": "values.nc"}
 
         Needs the extra `scene`. `press.scene("T_in").run()` computes it.
         """

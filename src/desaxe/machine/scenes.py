@@ -40,16 +40,16 @@ def inputs_of_scene(
     return inputs, found.content.units, found.content.definitions
 
 
-def scene_of(machine: Mapping[str, Any], outputs: Any, more: Mapping[str, Any]) -> Any:
+def scene_of(machine: Any, outputs: Any, more: Mapping[str, Any]) -> Any:
     """The scene of a machine; loads that vary with the motion are in it as they are."""
+    machine, more = _with_inputs(machine, more)
     return scene(_data(machine, outputs, more, split(machine)[1]))
 
 
-def write_scene(
-    machine: Mapping[str, Any], path: str | PathLike[str], outputs: Any, more: Mapping[str, Any]
-) -> Path:
+def write_scene(machine: Any, path: str | PathLike[str], outputs: Any, more: Mapping[str, Any]) -> Path:
     """Write the scene of a machine as TOML, once it is known to be right, and its long tables beside it."""
     place = Path(path)
+    machine, more = _with_inputs(machine, more)
     loads = split(machine)[1]
     scene(_data(machine, outputs, more, loads))
     tables = {name: load_table(name, load, place, _si_unit(machine, name)) for name, load in loads.items()}
@@ -63,6 +63,13 @@ def write_scene(
     data = _data(machine, outputs, more, {name: table.data for name, table in tables.items()})
     write_text(place, _toml(data))
     return place
+
+
+def _with_inputs(machine: Any, more: Mapping[str, Any]) -> tuple[Any, dict[str, Any]]:
+    """The machine with the inputs among further keys of its scene, and the other keys."""
+    own = {name: value for name, value in more.items() if name in INPUTS and name != "theta"}
+    rest = {name: value for name, value in more.items() if name not in own}
+    return (machine.replace(**own) if own else machine), rest
 
 
 def _si_unit(machine: Any, name: str) -> str | None:

@@ -1,19 +1,18 @@
 """`peak` of chunked designs: lazy Dask arrays, by the compiled search; and the block that a sweep runs."""
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..compiler.passes.guard import BAD_INPUT
-from ..evaluation.arrays import as_array, broadcast_shape
-from ..evaluation.dask_blocks import as_dask, is_lazy, numbered, outputs_of_blocks
+from ..evaluation.arrays import broadcast_shape
+from ..evaluation.dask_blocks import lazily
 from ..mechanism.own import using
 from ..runtime.compiled_only import compiled_only
 from ..runtime.interpreted import are_good
-from ..runtime.request import as_number
-from ..support.extras import needed
 from .designs import Sought, peaks_of_designs, search_of
 from .programs import Search
 
@@ -30,7 +29,12 @@ class PeakBlock(NamedTuple):
     names: tuple[str, ...]
 
     @property
-    def outputs(self) -> dict[str, np.dtype[Any]]:
+    def identity(self) -> str:
+        """A text that tells the block from all others, by what its loads are too."""
+        return " ".join([repr(self), *(load.identity for load in self.sought.loads.values())])
+
+    @property
+    def dtypes(self) -> dict[str, np.dtype[Any]]:
         """The names of the outputs, `gradient_<parameter>` among them, and their dtypes."""
         gradient = (f"{GRADIENT}{name}" for name in self.search.parameters)
         kinds = {**dict.fromkeys(("value", "theta"), np.float64), "side": np.int8}
@@ -45,7 +49,7 @@ class PeakBlock(NamedTuple):
         fine = np.logical_and.reduce([are_good(name, column) for name, column in flat.items()])
         outs = {
             name: np.full(fine.size, {"side": 0, "status": BAD_INPUT}.get(name, np.nan), dtype)
-            for name, dtype in self.outputs.items()
+            for name, dtype in self.dtypes.items()
         }
         rows = np.flatnonzero(fine)
         if rows.size:
@@ -73,25 +77,8 @@ def peak_block(sought: Sought, scalars: Mapping[str, float], varying: tuple[str,
 
 def lazy_peak(sought: Sought, given: Mapping[str, Any]) -> dict[str, Any]:
     """The results of `peak` as Dask arrays."""
-    with needed("Dask arrays"):
-        from dask.base import tokenize
-
-    needs, shown = sought.plan.needs, sought.plan.wanted.shown[:1]
-    scalars: dict[str, float] = {}
-    arrays: dict[str, Any] = {}
-    for n in sought.numbers:
-        value = given.get(n)
-        number = None if is_lazy(value) else as_number(n, value, needs, shown)
-        if number is not None:
-            scalars[n] = number
-        else:
-            arrays[n] = as_dask(n, value if is_lazy(value) else as_array(n, value, needs, shown))
-    broadcast_shape(arrays)
-    arguments, along = numbered(arrays)
-    block = peak_block(sought, scalars, tuple(arrays))
-    what = [load.identity for load in sought.loads.values()]
-    token = tokenize(repr(block), what, *(array.name for array in arrays.values()))
-    found = outputs_of_blocks(block.compute, arguments, along, block.outputs, token)
-    gradient = {n: found.pop(f"{GRADIENT}{n}") for n in block.search.parameters}
+    plan, given = sought.plan, {**given, **sought.loads}
+    found = lazily(partial(peak_block, sought), plan.needs, given, plan.wanted.shown[:1])
+    gradient = {n.removeprefix(GRADIENT): found.pop(n) for n in list(found) if n.startswith(GRADIENT)}
     first = {name: found.pop(name) for name in ("value", "theta", "side")}
     return {**first, "gradient": gradient, "status": found["status"]}

@@ -8,27 +8,17 @@ import hashlib
 import io
 import time
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..support.forks import IMPORTS
+from .ranking import BestDesigns
 
 Array = NDArray[Any]
 NAME = "search.state"  # gone when the store is finished
 PACE = 1.0  # seconds between two states
-
-
-class BestDesigns(NamedTuple):
-    """The best designs of some chunks: flat indices, values, angles, number of points without a value."""
-
-    places: NDArray[np.int64]
-    values: Array
-    theta: Array
-    skipped: Array
-    feasible: int
-    points: int
 
 
 class Kept:

@@ -53,14 +53,14 @@ class PeakStep(NamedTuple):
     @property
     def identity(self) -> str:
         """A text that tells the step from all others."""
-        return " ".join([repr(self), *(load.identity for load in self.block.sought.loads.values())])
+        return f"{self!r} {self.block.identity}"
 
     @property
     def outputs(self) -> dict[str, Output]:
         """The variables by name: their types and CF attributes."""
         return {
             self._variable(output): Output(dtype, self._attributes(output))
-            for output, dtype in self.block.outputs.items()
+            for output, dtype in self.block.dtypes.items()
         }
 
     def cut(self, lengths: Mapping[str, int]) -> "PeakStep":

@@ -3,18 +3,15 @@
 import json
 import os
 import shutil
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..evaluation.labels import import_xarray
 from ..support.files import remove_strays as remove_folders
 from ..support.files import require_writable
-from ..support.forks import IMPORTS
 from ..support.shown import printable
-from .best import BestSearch
 from .layout import size_text
 from .request import IDENTITY, Sweep, differences
 from .skeleton import INCOMPLETE, STATE, Compared, as_signed, compared, skeleton_of
@@ -60,12 +57,17 @@ def require_place(sweep: Sweep, root: Path, overwrite: bool, memory: int | None)
         changed = [] if kept is None else _changes(root, partial(_changed, kept, root))
     except ValueError as error:
         kept, changed = None, [str(error)]
-    _refuse_changed(root, changed, overwrite)
-    if kept is None or changed:
+    if changed and not overwrite:
+        several = "; ".join(changed[:SEVERAL]) + ("; ..." if len(changed) > SEVERAL else "")
+        raise FileExistsError(
+            f"{printable(root)}: changed since a sweep wrote it: {several}. overwrite=True replaces it"
+        )
+    if kept is not None and not changed:
+        return kept
+    if sweep.ranking is None:
         sweep.layout.require_memory(memory)
         require_room(sweep, root, sweep.plan.bytes)
-        return None
-    return kept
+    return None
 
 
 def _changes(root: Path, changes: Callable[[], list[str]]) -> list[str]:
@@ -76,17 +78,9 @@ def _changes(root: Path, changes: Callable[[], list[str]]) -> list[str]:
         return changes()
 
 
-def _refuse_changed(root: Path, changed: Sequence[str], overwrite: bool) -> None:
-    """FileExistsError for a store that says something else than its sweep."""
-    if changed and not overwrite:
-        several = "; ".join(changed[:SEVERAL]) + ("; ..." if len(changed) > SEVERAL else "")
-        raise FileExistsError(
-            f"{printable(root)}: changed since a sweep wrote it: {several}. overwrite=True replaces it"
-        )
-
-
 def _changed(sweep: Sweep, root: Path) -> list[str]:
-    return _compared(sweep, root).changed
+    """The changes of a store since its sweep wrote it; that of a search is signed, with what it found."""
+    return _compared(sweep, root).changed if sweep.ranking is None else as_signed(root)[1]
 
 
 def _compared(sweep: Sweep, root: Path) -> Compared:
@@ -103,35 +97,13 @@ def placed(sweep: Sweep, root: Path, overwrite: bool, memory: int | None) -> Swe
     """Create the store, or check that the existing one is of this sweep; return the sweep with its chunks."""
     kept = require_place(sweep, root, overwrite, memory)
     if kept is not None:
-        lost = _compared(kept, root).lost
+        lost = _compared(kept, root).lost if kept.ranking is None else {}
         with held(root) if lost else nullcontext():
             put(root, lost)
         return kept
     with free_for(root) as replace:
         create(root, skeleton_of(_labelled(sweep), sweep.layout.chunk), replace)
     return sweep
-
-
-def placed_search(search: BestSearch, root: Path, overwrite: bool) -> BestSearch:
-    """Create a store for the best designs, or check the existing one; return the search with its chunks."""
-    told = {**search.identity, CHUNKS: json.dumps(search.layout.chunk)}
-    there = kept_at(root, told, overwrite)
-    try:
-        kept = None if there is None else search._replace(layout=search.layout.cut(there.get(CHUNKS)))
-        changed = [] if kept is None else _changes(root, lambda: as_signed(root)[1])
-    except ValueError as error:
-        kept, changed = None, [str(error)]
-    _refuse_changed(root, changed, overwrite)
-    if kept is None or changed:
-        import_xarray()
-        with IMPORTS:
-            import xarray
-
-        empty = xarray.Dataset(attrs={**told, STATE: INCOMPLETE})
-        with free_for(root) as replace:
-            create(root, skeleton_of(empty, {}), replace)
-        return search
-    return kept
 
 
 def clear(root: Path) -> None:

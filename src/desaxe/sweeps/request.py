@@ -17,6 +17,7 @@ from ..runtime.request import several
 from ..support.version import version as desaxe_version
 from .layout import Layout, layout_of, table_of
 from .peak_step import PeakRequest, PeakStep, peak_requests, peak_steps
+from .ranking import Ranking
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -24,52 +25,65 @@ if TYPE_CHECKING:
 IDENTITY = ("request", "version", "digest")
 
 
+class Request(NamedTuple):
+    """The request of a sweep: names and inputs, and how they are computed, cut and reduced."""
+
+    names: str | Sequence[str]
+    inputs: Mapping[str, Any]
+    branch: int = 1
+    accuracy: Any = "standard"
+    threads: int | None = None
+    reduce: Any = None
+    peaks: Any = ()
+    chunks: Any = "auto"
+    memory: int | None = None
+
+
 class Sweep(NamedTuple):
     """A sweep that is ready to run.
 
     plan      what it computes
     layout    its dimensions and chunks
-    template  its Dataset with lazy variables, for names, dimensions and attributes
+    template  its Dataset with lazy variables, for names, dimensions and attributes; of a search it is empty
     identity  the attributes that tell whether a store is of the same sweep
+    ranking   what designs are ranked by, where the best are searched
+    others    the names that they have beside it
     """
 
     plan: Plan
     layout: Layout
     template: "xr.Dataset"
     identity: dict[str, str]
+    ranking: Ranking | None = None
+    others: tuple[str, ...] = ()
 
     def blocks(self) -> Iterator[Block]:
         """The chunks of the sweep, with what is computed in each."""
         return self.plan.cut(self.layout.chunk).blocks(self.layout.chunk)
 
 
-def sweep_of(
-    names: str | Sequence[str],
-    inputs: Mapping[str, Any],
-    chunks: Any,
-    memory: int | None,
-    branch: int,
-    accuracy: Any,
-    threads: int | None,
-    reduce: Any,
-    peaks: Any,
-) -> Sweep:
-    """The sweep of these arguments, checked; nothing is computed or written."""
-    if reduce is not None:
-        names = ((names,) if isinstance(names, str) else several(names)) + names_reduced(reduce)
-    outer = outer_of(names, inputs, branch, threads, always=reduce is None)
+def sweep_of(asked: Request) -> Sweep:
+    """The sweep of a request, checked; nothing is computed or written."""
+    names, branch, accuracy = asked.names, asked.branch, asked.accuracy
+    if asked.reduce is not None:
+        names = ((names,) if isinstance(names, str) else several(names)) + names_reduced(asked.reduce)
+    outer = outer_of(names, asked.inputs, branch, asked.threads, always=asked.reduce is None)
     for name in outer.dimensions:
         if not outer.axes[name].size:
             raise ValueError(f"{name}: a sweep needs at least one value of it")
     kept = accuracy_of(accuracy)
-    reductions = None if reduce is None else reductions_of(reduce, outer.dimensions, outer.names)
-    requests = peak_requests(peaks, outer)
+    reductions = reductions_asked(asked.reduce, outer)
+    requests = peak_requests(asked.peaks, outer)
     plan = _plan_of(outer, branch, accuracy, reductions, peak_steps(requests, outer, branch, accuracy))
     sizes, outputs = plan.sizes, ((s, o) for s in plan.all for o in s.outputs.values())
     stored = sum(output.dtype.itemsize for step, output in outputs if len(step.dims) == len(sizes))
-    layout = layout_of(chunks, sizes, stored, None if reduce is None else plan.behind, memory)
-    told = identity(outer, branch, kept, reductions, requests, [repr(s.own) for s in plan.all if s.own])
-    return Sweep(plan, layout, plan.empty(), told)
+    layout = layout_of(asked.chunks, sizes, stored, None if reductions is None else plan.behind, asked.memory)
+    return Sweep(plan, layout, plan.empty(), identity(plan, kept, requests))
+
+
+def reductions_asked(reduce: Any, outer: Outer) -> Reductions | None:
+    """The reductions that are asked for, checked."""
+    return None if reduce is None else reductions_of(reduce, outer.dimensions, outer.names)
 
 
 def _plan_of(
@@ -91,32 +105,32 @@ def _plan_of(
 
 
 def identity(
-    outer: Outer,
-    branch: int,
+    plan: Plan,
     accuracy: str,
-    reduction: Reductions | None,
-    peaks: Sequence[PeakRequest],
-    own: Sequence[str],
+    peaks: Sequence[PeakRequest] = (),
     best: tuple[int, str, str, str] | None = None,
+    names: Sequence[str] | None = None,
 ) -> dict[str, str]:
-    """The attributes that a store of this sweep has: no time, path or host is among them.
+    """The attributes that a store of this plan has: no time, path or host is among them.
 
-    `own` tells the definitions of quantities that are not the library's, `best` how many designs are
-    searched, by which quantity and kind, and which end is the best.
+    `best` tells how many designs are searched, by which quantity and kind, and which end is the best;
+    `names` are all that are asked for, where the plan has fewer.
     """
+    outer, names = plan.outer, plan.outer.names if names is None else names
+    texts = [repr(step.own) for step in plan.all if step.own]
     request = {
-        "names": list(outer.names),
-        "reduce": {} if reduction is None else reduction.plain(),
+        "names": list(names),
+        "reduce": {} if plan.reductions is None else plan.reductions.plain(),
         "peaks": [list(one) for one in peaks],
-        "definitions": [hashlib.sha256(text.encode()).hexdigest() for text in own],
-        "branch": int(branch),
+        "definitions": [hashlib.sha256(text.encode()).hexdigest() for text in texts],
+        "branch": int(plan.branch),
         "accuracy": accuracy,
         "inputs": {name: _input(array) for name, array in outer.axes.items()}
         | {name: {"load": load.told(), "sha256": load.identity} for name, load in outer.loads.items()},
     }
     if best is not None:
         request["best"], request["by"], request["order"] = best[0], list(best[1:3]), best[3]
-    own = text_of(outer.names)
+    own = text_of(names)
     if own:
         request["quantities"] = json.loads(own)
     version, program = versions()

@@ -1,8 +1,8 @@
 """A grid of any size, written chunk by chunk to a Zarr store in bounded memory; resumable."""
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, closing, contextmanager
 from importlib import import_module
 from os import PathLike
 from pathlib import Path
@@ -16,17 +16,17 @@ from ..support.files import as_path
 from ..support.progress import Count, Portions, Progress, progress_bar
 from ..support.shown import printable
 from . import store as zarr_store
-from .best import BestSearch, best_designs, search_for
+from .best import designs_of, search_of
 from .cluster import Crew, cluster, require_workers, run_all
 from .cluster import threads as thread_crew
 from .estimate import CHUNK, announcement, seconds_of
 from .kept import Kept
 from .layout import Layout, bytes_of
-from .place import CHUNKS, clear, free_at, placed, placed_search, require_room
-from .request import Sweep, sweep_of
+from .place import CHUNKS, clear, free_at, placed, require_room
+from .request import Request, Sweep, sweep_of
 from .skeleton import COMPLETE, STATE, as_signed
 from .store import attributes, held, open_store, remove_strays, set_state, sync_folders
-from .tasks import Task, compute, is_absent, run
+from .tasks import Done, InMemory, Sink, Stored, Task, is_absent, run
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -50,19 +50,39 @@ def stored_sweep(sweep: Sweep, store: str | PathLike[str], overwrite: bool, way:
     sweep = placed(sweep, root, overwrite, way.memory)
     with held(root):
         clear(root)
-        absent = _absent_bytes(sweep, root)
-        if absent:
-            sweep.layout.require_memory(way.memory)
-            require_room(sweep, root, absent)
-        with _counted(sweep.plan.points, way.watch) as count, _crew(sweep.layout, way) as crew:
-            if absent and way.tell is not None:
-                way.tell(_announcement(sweep, root, crew.size))
-            for done in run_all(crew, run, _tasks(sweep, root, _inner(crew, way)), ahead=_ahead(crew)):
-                count(done.points, done.computed)
-        remove_strays(root)  # of workers that were killed
-        sync_folders(root)
-        set_state(root, COMPLETE)
+        if sweep.ranking is None:
+            _fill(sweep, root, way)
+        else:
+            _fill_by_rank(sweep, root, way)
     return open_store(root)
+
+
+def _fill(sweep: Sweep, root: Path, way: Way) -> None:
+    """Compute the chunks that a store lacks."""
+    absent = _absent_bytes(sweep, root)
+    if absent:
+        sweep.layout.require_memory(way.memory)
+        require_room(sweep, root, absent)
+    with _counted(sweep.plan.points, way.watch) as count, _crew(sweep.layout, way) as crew:
+        if absent and way.tell is not None:
+            way.tell(_announcement(sweep, root, crew.size))
+        for _ in _done(sweep, Stored(str(root)), crew, way, count):
+            pass
+    remove_strays(root)  # of workers that were killed
+    sync_folders(root)
+    set_state(root, COMPLETE)
+
+
+def _fill_by_rank(search: Sweep, root: Path, way: Way) -> None:
+    """Search for the best designs, or go on with that, unless a store has them."""
+    there = attributes(root) or {}
+    if there.get(STATE) == COMPLETE and as_signed(root)[0]:
+        return
+    found = searched(search, way, root)
+    try:
+        zarr_store.write_whole(root, found.assign_attrs({CHUNKS: there[CHUNKS]}))
+    except OSError as error:
+        raise NotStoredError(root, error, found) from error
 
 
 def _announcement(sweep: Sweep, root: Path, cores: int) -> str:
@@ -107,49 +127,44 @@ def _ahead(crew: Crew) -> int:
     return crew.size if crew.size > 1 else 0
 
 
-def _tasks(sweep: Sweep, root: Path | None, inner: int) -> Iterator[Task]:
-    versions = sweep.identity["version"], sweep.identity["digest"]
-    for block in sweep.blocks():
-        yield Task(str(root), block.parts, block.values, sweep.plan.points_in(block), inner, *versions)
+def _done(
+    sweep: Sweep, sink: Sink, crew: Crew, way: Way, count: Count, before: Container[int] = ()
+) -> Iterator[Done]:
+    """The chunks of a sweep as they are done, counted; those of `before` are not done again."""
+    versions, inner = (sweep.identity["version"], sweep.identity["digest"]), _inner(crew, way)
+    tasks = (
+        Task(number, sink, block, sweep.plan.points_in(block), inner, *versions)
+        for number, block in enumerate(sweep.blocks())
+        if number not in before
+    )
+    for done in run_all(crew, run, tasks, ahead=_ahead(crew)):
+        count(done.points, done.computed)
+        yield done
 
 
-def unstored_sweep(sweep: Sweep, way: Way) -> "xr.Dataset":
+def swept(sweep: Sweep, way: Way) -> "xr.Dataset":
     """Run a sweep whose result fits into memory, a reduced one; its Dataset."""
     arrays = {str(n): np.empty(v.shape, v.dtype) for n, v in sweep.template.data_vars.items()}
     sweep.layout.require_memory(way.memory)
     with _counted(sweep.plan.points, way.watch) as count, _crew(sweep.layout, way) as crew:
-        tasks = _tasks(sweep, None, _inner(crew, way))
-        for done in run_all(crew, compute, tasks, ahead=_ahead(crew)):
-            for name, (region, values) in done.variables.items():
-                arrays[name][region] = values
-            count(done.points, True)
+        for done in _done(sweep, InMemory(), crew, way, count):
+            for region, found in done.found:
+                for name, values in found.items():
+                    arrays[name][region] = values
     return sweep.template.assign({n: sweep.template[n].copy(data=a) for n, a in arrays.items()})
 
 
-def best_sweep(
-    search: BestSearch, count: int, store: str | PathLike[str] | None, overwrite: bool, way: Way
-) -> "xr.Dataset":
-    """Run a search for the best designs, or resume the one whose store it is; the Dataset."""
-    if store is None:
-        return _searched(search, count, way, None)
-    root = Path(os.path.abspath(store))
-    search = placed_search(search, root, overwrite)
-    with held(root):
-        clear(root)
-        there = attributes(root) or {}
-        if there.get(STATE) != COMPLETE or not as_signed(root)[0]:
-            found = _searched(search, count, way, root)
-            try:
-                zarr_store.write_whole(root, found.assign_attrs({CHUNKS: there[CHUNKS]}))
-            except OSError as error:
-                raise NotStoredError(root, error, found) from error
-    return open_store(root)
-
-
-def _searched(search: BestSearch, count: int, way: Way, root: Path | None) -> "xr.Dataset":
-    with _counted(search.plan.points, way.watch) as told, _crew(search.layout, way) as crew:
-        kept = Kept(search.layout.chunks, root)
-        return best_designs(search, count, crew, told, _inner(crew, way), kept)
+def searched(search: Sweep, way: Way, root: Path | None = None) -> "xr.Dataset":
+    """The best designs, the best first; a search that was stopped goes on from the chunks that are kept."""
+    ranking, kept = search.ranking, Kept(search.layout.chunks, root)
+    assert ranking is not None
+    with _counted(search.plan.points, way.watch) as count, _crew(search.layout, way) as crew:
+        count(kept.points, False)
+        with closing(kept):
+            for done in _done(search, ranking, crew, way, count, set(np.flatnonzero(kept.done))):
+                kept.add(done.number, ranking.combine(kept.best, *done.found))
+    assert kept.best is not None
+    return designs_of(search, kept.best)
 
 
 class NotStoredError(OSError):
@@ -192,21 +207,20 @@ def run_sweep(
     if client is not None:
         require_workers(client)
     way = Way(room, client, threads, watch, tell)
+    asked = Request(names, inputs, branch, accuracy, threads, reduce, peaks, chunks, room)
     if best is not None or by is not None:
         count = _count(best, by)
         if peaks:
             raise TypeError("best= and peaks=: give one of them")
-        search = search_for(names, inputs, by, reduce, branch, accuracy, threads, room, count, order)
-        return best_sweep(search, count, store, overwrite, way)
+        search = search_of(asked, by, count, order)
+        return searched(search, way) if store is None else stored_sweep(search, store, overwrite, way)
     if order is not None:
         raise TypeError("order= belongs to best= and by=: which end of what they are ranked by is the best")
     store = store if store is None else as_path("store", store)
     if store is None and reduce is None and (names or not peaks):
         raise TypeError('sweep: store= is missing: where the grid goes, such as "press.zarr"')
-    made = sweep_of(names, inputs, chunks, room, branch, accuracy, threads, reduce, peaks)
-    if store is None:
-        return unstored_sweep(made, way)
-    return stored_sweep(made, store, overwrite, way)
+    made = sweep_of(asked)
+    return swept(made, way) if store is None else stored_sweep(made, store, overwrite, way)
 
 
 def _count(best: Any, by: Any) -> int:

@@ -1,12 +1,12 @@
-"""A chunk of a sweep as a task for a thread or for a worker on another machine."""
+"""A chunk of a sweep as a task for a thread or for a worker on another machine, and where its arrays go."""
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from numpy.typing import NDArray
 
-from ..evaluation.plan import Part, computed
+from ..evaluation.plan import Block, Part, computed
 from ..mechanism.program import digest
 from ..support.version import version as desaxe_version
 from .store import chunk_path, is_whole, write_chunk
@@ -14,12 +14,50 @@ from .store import chunk_path, is_whole, write_chunk
 Array = NDArray[Any]
 
 
-class Task(NamedTuple):
-    """A chunk to write: its parts, and the values along the dimensions that they need."""
+class Sink(Protocol):
+    """A place for the arrays of a sweep: a store, the memory of the caller, a ranking. It travels."""
+
+    def left(self, part: Part) -> list[str]:
+        """The outputs of a part that are to be computed."""
+
+    def take(self, block: Block, part: Part, arrays: dict[str, Array], points: int) -> Any:
+        """Take the outputs; what this returns goes back to the caller."""
+
+
+class Stored(NamedTuple):
+    """A store: it takes what it does not have, whole."""
 
     root: str
-    parts: tuple[Part, ...]
-    values: dict[str, Array]
+
+    def left(self, part: Part) -> list[str]:
+        """The outputs of a part that are not in the store."""
+        root = Path(self.root)
+        return [n for n in part.step.outputs if not is_whole(root, n, part.place, part.region)]
+
+    def take(self, block: Block, part: Part, arrays: dict[str, Array], points: int) -> None:
+        """Write the chunks."""
+        for name in list(arrays):
+            write_chunk(Path(self.root), name, part.region, arrays.pop(name))
+
+
+class InMemory(NamedTuple):
+    """The memory of the caller: arrays go back to it, with their regions."""
+
+    def left(self, part: Part) -> list[str]:
+        """The outputs of a part, all of them."""
+        return list(part.step.outputs)
+
+    def take(self, block: Block, part: Part, arrays: dict[str, Array], points: int) -> Any:
+        """Hand the arrays back."""
+        return part.region, arrays
+
+
+class Task(NamedTuple):
+    """A chunk: its number, its parts and the values that they need, and where its arrays go."""
+
+    number: int
+    sink: Sink
+    block: Block
     points: int
     threads: int
     version: str
@@ -40,40 +78,25 @@ def check_version(version: str, program: str) -> None:
 
 
 class Done(NamedTuple):
-    """A chunk that is in the store: its points, and whether it had to be computed."""
+    """A chunk that is done: its points, whether anything had to be computed, what its sink gave back."""
 
+    number: int
     points: int
     computed: bool
+    found: list[Any]
 
 
 def run(task: Task) -> Done:
-    """Compute and write what of a chunk is not in the store, whole."""
+    """Compute what of a chunk is left to do, and hand it to its sink."""
     check_version(task.version, task.digest)
-    root, anew = Path(task.root), False
-    for step, place, region in task.parts:
-        left = [name for name in step.outputs if not is_whole(root, name, place, region)]
+    found = []
+    for part in task.block.parts:
+        left = task.sink.left(part)
         if left:
-            arrays = computed(step, task.values, task.threads)
-            for name in left:
-                write_chunk(root, name, region, arrays.pop(name))
-            anew = True
-    return Done(task.points, anew)
-
-
-class Computed(NamedTuple):
-    """A chunk that is not stored: its points, and its variables with their regions."""
-
-    points: int
-    variables: dict[str, tuple[tuple[slice, ...], Array]]
-
-
-def compute(task: Task) -> Computed:
-    """Compute a chunk and hand it back."""
-    check_version(task.version, task.digest)
-    found: dict[str, tuple[tuple[slice, ...], Array]] = {}
-    for step, _, region in task.parts:
-        found |= {n: (region, a) for n, a in computed(step, task.values, task.threads).items()}
-    return Computed(task.points, found)
+            arrays = computed(part.step, task.block.values, task.threads)
+            arrays = {name: arrays.pop(name) for name in left}
+            found.append(task.sink.take(task.block, part, arrays, task.points))
+    return Done(task.number, task.points, bool(found), found)
 
 
 def is_absent(root: Path, parts: Sequence[Part]) -> bool:

@@ -28,9 +28,10 @@ from ...runtime.specialise import specialise
 from ...runtime.threads import LEAST_BLOCK, available
 from ...runtime.tiers import BREAK_EVEN, COMPILED, forced_tier, tier_ahead
 from ...support.forks import IMPORTS
+from ...sweeps.request import sweep_of
 from ..content import Content
 from ..parts.grid import plan_of_grid
-from ..parts.stored import prepared_content
+from ..parts.stored import request_of
 from ..reading.values import Value
 from ..scene import Scene
 from ..scene import scene as scene_of
@@ -141,7 +142,7 @@ def _sweep(content: Content) -> dict[str, Any] | None:
     """The chunks of a scene that goes to a store, what they take in memory, and the disk for all of them."""
     if content.store is None:
         return None
-    made = prepared_content(content)
+    made = sweep_of(request_of(content))
     layout = made.layout
     at_once = min(content.threads or available(), layout.at_once(content.memory), layout.chunks)
     return {
