@@ -3,9 +3,7 @@
 import inspect
 
 import numpy as np
-import pint_xarray
 import pytest
-import xarray as xr
 
 import desaxe as dx
 from desaxe.mechanism.inputs import INPUTS, Inputs
@@ -51,41 +49,6 @@ def test_status_of_friction_and_its_flags():
     assert (flags[1, 0] == "ok").all()
     assert flags[1, 1].tolist() == ["no_force_balance", "two_force_balances"]
     assert np.isnan(grid["T_in"].values[1, 1]).all()
-
-
-def test_netcdf_there_and_back(tmp_path):
-    grid = dx.grid(["a_C"], theta=THETA, ec=[0.0, 0.24], **MACHINE)
-    grid.to_netcdf(tmp_path / "grid.nc", engine="h5netcdf")
-    with xr.open_dataset(tmp_path / "grid.nc", engine="h5netcdf") as again:
-        xr.testing.assert_identical(again.load(), grid)
-
-
-def test_units_survive_pint():
-    grid = dx.grid(["a_C"], theta=THETA, ec=[0.0, 0.1], **MACHINE)
-    assert pint_xarray.unit_registry is not None
-    with_units = grid[["a_C"]].reset_coords(drop=True).pint.quantify()
-    assert with_units["a_C"].pint.to("km/h/s").pint.magnitude[0, 0] == pytest.approx(
-        3.6 * grid["a_C"].values[0, 0]
-    )
-
-
-def test_units_of_forces_and_energies_survive_pint():
-    names = ["T_in", "F_B_X", "power_in", "kinetic_energy", "M_eff", "m_rotating", "T_in_wrt_m_rod"]
-    masses = {"m_rod": [0.5, 1.0], "I_rod": 1e-4, "g_Y": -9.81, "mu": 0.1}
-    grid = dx.grid(names, theta=THETA, ec=0.1, **MACHINE, **masses)
-    with_units = grid.pint.quantify()
-    for name, unit, factor in (
-        ("T_in", "N*mm", 1e3),
-        ("F_B_X", "kN", 1e-3),
-        ("power_in", "kW", 1e-3),
-        ("kinetic_energy", "kJ", 1e-3),
-        ("M_eff", "kg*mm^2", 1e6),
-        ("m_rotating", "g", 1e3),
-        ("T_in_wrt_m_rod", "N*mm/g", 1.0),
-        ("I_rod", "kg*mm^2", 1e6),
-        ("mu", "percent", 100.0),
-    ):
-        np.testing.assert_allclose(with_units[name].pint.to(unit).pint.magnitude, factor * grid[name].values)
 
 
 def test_out_needs_no_labels():

@@ -7,7 +7,6 @@ import cf_xarray  # noqa: F401  the accessor .cf
 import numpy as np
 import pandas as pd
 import pint
-import pint_xarray
 import pytest
 import xarray as xr
 
@@ -119,10 +118,17 @@ def unchanged(again, grid):
 # ---- units -----------------------------------------------------------------------------------------
 
 
-def test_pint_there_and_back(grid):
+@pytest.fixture(scope="module")
+def units():
+    """The registry of the accessor .pint, which half a second goes into."""
+    from pint_xarray import unit_registry
+
+    return unit_registry
+
+
+def test_pint_there_and_back(grid, units):
     with_units = grid.pint.quantify()
-    assert with_units.a_C.pint.units == pint_xarray.unit_registry("m/s^2").units
-    units = pint_xarray.unit_registry
+    assert with_units.a_C.pint.units == units("m/s^2").units
     shown = with_units.pint.to({"theta": units.deg, "ec": units.mm, "a_C": "km/s^2"})
     bare = shown.pint.dequantify(format="~C")
     np.testing.assert_allclose(bare.theta, np.degrees(THETA), rtol=1e-15)
@@ -133,25 +139,50 @@ def test_pint_there_and_back(grid):
     assert plain.a_C.attrs["units"] == "m/s**2"
 
 
+@pytest.mark.usefixtures("units")
+def test_units_of_forces_and_energies_survive_pint():
+    names = ["T_in", "F_B_X", "power_in", "kinetic_energy", "M_eff", "m_rotating", "T_in_wrt_m_rod"]
+    masses = {"m_rod": [0.5, 1.0], "I_rod": 1e-4, "g_Y": -9.81, "mu": 0.1}
+    grid = dx.grid(names, theta=THETA, ec=0.1, **MACHINE, **masses)
+    with_units = grid.pint.quantify()
+    for name, unit, factor in (
+        ("T_in", "N*mm", 1e3),
+        ("F_B_X", "kN", 1e-3),
+        ("power_in", "kW", 1e-3),
+        ("kinetic_energy", "kJ", 1e-3),
+        ("M_eff", "kg*mm^2", 1e6),
+        ("m_rotating", "g", 1e3),
+        ("T_in_wrt_m_rod", "N*mm/g", 1.0),
+        ("I_rod", "kg*mm^2", 1e6),
+        ("mu", "percent", 100.0),
+    ):
+        np.testing.assert_allclose(with_units[name].pint.to(unit).pint.magnitude, factor * grid[name].values)
+
+
 DEGREES = np.array([0.0, 90.0, 180.0])
-REGISTRY = pint.UnitRegistry()
+
+
+@pytest.fixture(scope="module")
+def own_units():
+    return pint.UnitRegistry()
 
 
 @pytest.mark.parametrize(
     "theta",
     [
         ["0 deg", "90 deg", "180 deg"],
-        DEGREES * REGISTRY.deg,
-        DEGREES * pint_xarray.unit_registry.deg,
+        lambda own, units: DEGREES * own.deg,
+        lambda own, units: DEGREES * units.deg,
         xr.DataArray(DEGREES, dims="theta", attrs={"units": "deg"}),
-        xr.DataArray(DEGREES * REGISTRY.deg, dims="theta"),
+        lambda own, units: xr.DataArray(DEGREES * own.deg, dims="theta"),
         xr.DataArray(np.radians(DEGREES), dims="theta", attrs={"units": "rad"}),
         xr.DataArray(np.radians(DEGREES), dims="theta"),
     ],
     ids=["text", "pint", "pint-xarray", "units", "quantified", "radians", "bare"],
 )
-def test_units_at_the_border(theta):
-    found = dx.grid("a_C", theta=theta, ec="10 mm", AB=125 * REGISTRY.mm, BC="0.35 m", omega0="1500 rpm")
+def test_units_at_the_border(theta, units, own_units):
+    theta = theta(own_units, units) if callable(theta) else theta
+    found = dx.grid("a_C", theta=theta, ec="10 mm", AB=125 * own_units.mm, BC="0.35 m", omega0="1500 rpm")
     np.testing.assert_allclose(found.theta, np.radians(DEGREES), rtol=1e-15)
     assert found.theta.attrs["units"] == "rad"
     assert (found.ec.item(), found.AB.item(), found.BC.item()) == (0.01, 0.125, 0.35)
