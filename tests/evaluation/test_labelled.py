@@ -70,6 +70,11 @@ def test_dask_stays_lazy():
     np.testing.assert_allclose(found, dx.evaluate("a_C", theta=THETA, ec=EC, **MACHINE), rtol=1e-12)
 
 
+def test_a_variable_has_no_coordinates_and_broadcasts_by_position():
+    found = dx.evaluate(["a_C", "status"], theta=xr.Variable("k", ANGLES), ec=ECS[0], **MACHINE)
+    np.testing.assert_allclose(found["a_C"], dx.evaluate("a_C", theta=ANGLES, ec=ECS[0], **MACHINE), rtol=1e-12)
+
+
 def test_what_does_not_fit_is_refused():
     with pytest.raises(ValueError, match="theta"):
         dx.evaluate("a_C", theta=THETA, ec=0.0 * THETA[1:], **MACHINE)
