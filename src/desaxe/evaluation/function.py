@@ -11,12 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..loads.resolve import without_loads
-from ..mechanism.catalogue import has, law_name, quantity
+from ..mechanism.catalogue import has, inputs_of, law_name, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs
 from ..mechanism.names import LENGTHS, sensitivity
 from ..mechanism.own import Definition, Register, register, register_with, used_by
-from ..mechanism.program import Variant, program_of
 from ..runtime.any_stride import Bound, bind
 from ..runtime.kernels import STRUCTURAL_ZEROS, KernelKey, kernel_for
 from ..runtime.native_calls import point_caller, scalar_of, ufunc_of
@@ -176,7 +175,7 @@ class Function:
         state = "omega" in self.inputs or self.fixed.get("omega") is not None
         wanted = dict.fromkeys(self.names)
         for name in self.names:
-            needed = _needed(name, state, self._known)
+            needed = inputs_of(name, state, self._known)
             for parameter in self.inputs:
                 slope = sensitivity(name, parameter)
                 if has(slope, state, self._known):
@@ -219,13 +218,6 @@ def _again(
     return Function(
         (names,) if isinstance(names, str) else tuple(names), one, inputs, fixed, register_with(own)
     )
-
-
-def _needed(name: str, state: bool, known: Register) -> tuple[str, ...]:
-    """The inputs that a name depends on."""
-    law = (law_name(name) if state else name,)
-    inputs = program_of(law, Variant(own=used_by(law, known))).inputs
-    return tuple("omega" if state and given == "omega0" else given for given in inputs)
 
 
 def _constant_like(values: Any, constant: Any) -> Any:

@@ -12,7 +12,7 @@ from ..support.forks import IMPORTS
 from ..support.shown import shown
 from ..support.text_table import table
 from .names import LENGTHS, LOADS, PARAMETERS, WHOLE, joined, parts, sensitivity
-from .own import Register, Row, derived_names, leaves, register
+from .own import Register, Row, derived_names, leaves, register, used_by
 
 
 class Quantity(NamedTuple):
@@ -113,6 +113,16 @@ def law_name(name: str) -> str:
     """Translate a name of a given state into that of the law: omega becomes omega0."""
     base, parameters = parts(name)
     return joined(base, ("omega0" if p == "omega" else p for p in parameters))
+
+
+def inputs_of(name: str, state: bool = False, known: Register | None = None) -> tuple[str, ...]:
+    """The inputs that a name depends on, all centres of mass given."""
+    with IMPORTS:
+        from .program import Variant, program_of
+
+    law = (law_name(name) if state else name,)
+    inputs = program_of(law, Variant(own=used_by(law, known))).inputs
+    return tuple("omega" if state and given == "omega0" else given for given in inputs)
 
 
 def _unknown(name: str, state: bool, own: Register) -> str:

@@ -290,3 +290,15 @@ def test_bounds_within_which_nothing_turns_are_told_without_a_search(over, keep,
         found = dx.optimize(minimize=goal, over=over, keep=keep, BC=0.2, omega0=10.0)
         assert np.all(found["status"] == 1)
         assert told in found["message"]
+
+
+def test_where_an_objective_has_no_slope_nothing_is_called_an_optimum():
+    """As a peak has none where friction turns round: the search ended where it began, "inside of all limits"."""
+
+    def steep(design):
+        return abs(design["ec"] - 0.013) + abs(design["AB"] - 0.118), {"ec": math.nan, "AB": math.nan}
+
+    found = dx.optimize(minimize=steep, over={"ec": (-0.1, 0.1), "AB": (0.1, 0.13)}, starts=2, BC=0.35)
+    assert found["status"] == 4
+    assert "the optimality conditions hold to 1 only" in found["message"]
+    assert found["value"] < 1e-3  # without slopes, from the best of the scan

@@ -315,7 +315,22 @@ def test_bad_arguments(arguments, error, words):
         dx.tolerance("a_C", **{**POINT, **arguments})
 
 
+def test_an_input_that_a_quantity_does_not_depend_on_counts_for_nothing():
+    varied = POINT | {"m_slider": plus_minus(1.0, 0.1)}
+    with_mass = dx.tolerance("a_C", samples=200, sobol=0, **varied)
+    assert with_mass["gradient"].pop("m_slider") == with_mass["contributions"].pop("m_slider") == 0.0
+    without = dx.tolerance("a_C", samples=200, sobol=0, **POINT)
+    for key in ("value", "gradient", "contributions", "worst_case"):
+        assert with_mass[key] == without[key]
+    alone = {name: value for name, value in varied.items() if name in ("theta", "omega0")}
+    exact = dx.tolerance("a_C", ec=0.0, AB=0.125, BC=0.35, m_slider=plus_minus(1.0, 0.1), **alone)
+    assert exact["first_order"]["std"] == 0.0
+    assert exact["monte_carlo"]["std"] < 1e-12 * abs(exact["value"])  # that of equal numbers rounds
+
+
 def test_bad_names():
+    with pytest.raises(ValueError, match="T_in_wrt_ec: its derivative by ec is not derived"):
+        dx.tolerance("T_in_wrt_ec", m_slider=1.0, **POINT)
     with pytest.raises(ValueError, match="theta: stroke is of a whole turn"):
         dx.tolerance("stroke", theta=1.0, ec=plus_minus(0.1, 0.01), AB=0.1, BC=0.4)
     with pytest.raises(ValueError, match="unknown quantity 'a_D'"):

@@ -218,6 +218,9 @@ class LocalSearch:
         matrix = np.vstack([columns.T, weigh])
         solution, _ = nnls(matrix, np.append(np.zeros(n), 1.0))
         residual = float(np.linalg.norm(matrix @ solution - np.append(np.zeros(n), 1.0)))
+        counts = np.append(live, active)
+        if not np.isfinite(self.functions(z).slope[0][counts]).all():  # without slopes nothing is known
+            residual = 1.0
         found = solution[live.sum() :] * size * self.scale[0]
         many, some = int(active.sum()), int((active & self.equal).sum())
         multipliers = np.zeros(len(self.limits) + 2 * n)

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...evaluation.evaluate import evaluate
-from ...mechanism.catalogue import quantity
+from ...mechanism.catalogue import has
 from ...mechanism.names import sensitivity
 from ...mechanism.status import ToleranceStatus
 from ..measures import Measure, measured
@@ -29,6 +29,7 @@ class SampledQuantity(NamedTuple):
         """The values over samples; NaN where undefined."""
         if self.at_point:
             found = evaluate(str(self.measure), branch=self.branch, **self.fixed, **columns)
+            found = np.broadcast_to(found, len(next(iter(columns.values()))))  # of none of the columns, perhaps
         else:
             found = measured([self.measure], {**self.fixed, **columns}, self.branch)[self.measure].value
         return np.asarray(found, float)
@@ -36,10 +37,12 @@ class SampledQuantity(NamedTuple):
     def slopes(self, columns: Mapping[str, Any]) -> Array:
         """The exact first derivatives over samples, one column for each input that varies."""
         if self.at_point:
-            names = [sensitivity(str(self.measure), p) for p in self.varying]
-            found = evaluate(names, branch=self.branch, **self.fixed, **columns)
-            return np.stack([np.asarray(found[name]) for name in names], -1)
-        gradient = measured([self.measure], {**self.fixed, **columns}, self.branch)[self.measure].gradient
+            names = {p: sensitivity(str(self.measure), p) for p in self.varying}
+            names = {p: name for p, name in names.items() if has(name, self.state)}
+            found = evaluate([*names.values()], branch=self.branch, **self.fixed, **columns) if names else {}
+            gradient = {p: found[name] for p, name in names.items()}
+        else:
+            gradient = measured([self.measure], {**self.fixed, **columns}, self.branch)[self.measure].gradient
         size = len(next(iter(columns.values())))
         return np.stack([np.broadcast_to(gradient.get(p, 0.0), (size,)) for p in self.varying], -1)
 
@@ -48,7 +51,7 @@ class SampledQuantity(NamedTuple):
         n = len(self.varying)
         pairs = [(i, j) for i in range(n) for j in range(i, n)]
         names = [sensitivity(str(self.measure), self.varying[i], self.varying[j]) for i, j in pairs]
-        if not (self.at_point and derived(names, self.state)):
+        if not (self.at_point and all(has(name, self.state) for name in names)):
             return beside.bends(), False
         bends = np.empty((n, n))
         found = evaluate(names, branch=self.branch, **self.fixed, **centre)
@@ -101,13 +104,3 @@ class Beside(NamedTuple):
         if (missed > allowed + ROUNDING * np.abs(self.values).max()).any():
             return ToleranceStatus.JUMP
         return ToleranceStatus.KINK if np.isnan(bends).any() else ToleranceStatus.OK
-
-
-def derived(names: Sequence[str], state: bool) -> bool:
-    """True if all of these sensitivities are derived."""
-    try:
-        for name in names:
-            quantity(name, state)
-    except ValueError:
-        return False
-    return True

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...evaluation.loaded import loads_of
-from ...mechanism.catalogue import quantity
+from ...mechanism.catalogue import has, inputs_of, quantity
 from ...mechanism.keywords import with_known_keywords
 from ...mechanism.names import LENGTHS, sensitivity
 from ...mechanism.ranges import Between
@@ -20,7 +20,7 @@ from ...support.forks import IMPORTS, imported
 from ...support.progress import Steps, progress_bar
 from ...support.shown import shown
 from ..measures import checked, is_named
-from .function import Beside, SampledQuantity, derived
+from .function import Beside, SampledQuantity
 from .scatter import Tolerance
 from .uncertain import DISTRIBUTIONS, Array, Inexact, read
 
@@ -190,9 +190,10 @@ def _function(name: Any, given: Mapping[str, Any], branch: int) -> SampledQuanti
         raise ValueError("status is not a real number")
     if name == "margin":
         return SampledQuantity("margin", False, fixed, varying, branch)
-    names = [sensitivity(name, p) for p in varying]
-    if not derived(names, "omega" in given):
-        raise ValueError(f"tolerance of {name}: its derivatives are not derived")
+    state = "omega" in given
+    for p in varying:
+        if p in inputs_of(name, state) and not has(sensitivity(name, p), state):
+            raise ValueError(f"tolerance of {name}: its derivative by {p} is not derived")
     return SampledQuantity(name, True, fixed, varying, branch)
 
 
