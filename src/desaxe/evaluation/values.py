@@ -101,7 +101,7 @@ def _of_arrays(
             continue
         if type(value) is str:
             given = {**given, name: as_number(name, value, inputs, asked.shown)}
-        elif out is None and getattr(value, "dims", ()) and hasattr(value, "coords"):
+        elif out is None and bool(getattr(value, "dims", None)) and hasattr(value, "coords"):
             with IMPORTS:
                 from .labelled import evaluate_labelled
 

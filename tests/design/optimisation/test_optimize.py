@@ -293,7 +293,7 @@ def test_bounds_within_which_nothing_turns_are_told_without_a_search(over, keep,
 
 
 def test_where_an_objective_has_no_slope_nothing_is_called_an_optimum():
-    """As a peak has none where friction turns round: the search ended where it began, "inside of all limits"."""
+    """Such as a peak where friction turns round: the search ended where it began, "inside of all limits"."""
 
     def steep(design):
         return abs(design["ec"] - 0.013) + abs(design["AB"] - 0.118), {"ec": math.nan, "AB": math.nan}

@@ -1,6 +1,6 @@
 """A quantity as a function of the inputs that vary: values, exact slopes, second derivatives, smoothness."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,7 +29,7 @@ class SampledQuantity(NamedTuple):
         """The values over samples; NaN where undefined."""
         if self.at_point:
             found = evaluate(str(self.measure), branch=self.branch, **self.fixed, **columns)
-            found = np.broadcast_to(found, len(next(iter(columns.values()))))  # of none of the columns, perhaps
+            found = np.broadcast_to(found, len(next(iter(columns.values()))))
         else:
             found = measured([self.measure], {**self.fixed, **columns}, self.branch)[self.measure].value
         return np.asarray(found, float)
@@ -40,7 +40,7 @@ class SampledQuantity(NamedTuple):
             names = {p: sensitivity(str(self.measure), p) for p in self.varying}
             names = {p: name for p, name in names.items() if has(name, self.state)}
             found = evaluate([*names.values()], branch=self.branch, **self.fixed, **columns) if names else {}
-            gradient = {p: found[name] for p, name in names.items()}
+            gradient: Mapping[str, Any] = {p: found[name] for p, name in names.items()}
         else:
             gradient = measured([self.measure], {**self.fixed, **columns}, self.branch)[self.measure].gradient
         size = len(next(iter(columns.values())))
