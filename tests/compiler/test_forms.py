@@ -1,5 +1,7 @@
 """Two forms in one kernel: a point gets the one that its own test says, wherever it stands."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -16,8 +18,9 @@ TEST = Program(("y",), (Line("t", "abs", ("y",)), Line("fine", "lt", ("t", 1.0),
 BOTH = in_two_forms(PLAIN, STABLE, TEST)
 
 
-def kernel_for(axis_of, axes, place=hoist):
-    kernel = parted(place(BOTH, axis_of, axes), 2)
+@cache
+def kernel_for(x_axis, y_axis, place=hoist):
+    kernel = parted(place(BOTH, {"x": x_axis, "y": y_axis}, 1 + max(x_axis, y_axis)), 2)
     scope = {}
     exec(emit_numba(kernel, "two forms"), scope)
 
@@ -35,15 +38,10 @@ def test_equal_lines_are_computed_once():
     assert [line.op for line in validate(BOTH).lines].count("sin") == 1
 
 
-@pytest.fixture(scope="module")
-def flat():
-    return kernel_for({"x": 0, "y": 0}, 1)
-
-
 @pytest.mark.parametrize("size", [1, 7, 511, 512, 513, 3_000])
 @pytest.mark.parametrize("share", [0.0, 0.01, 0.5, 1.0])
-def test_each_point_has_the_form_that_its_test_says(size, share, flat):
-    kernel, run = flat
+def test_each_point_has_the_form_that_its_test_says(size, share):
+    kernel, run = kernel_for(0, 0)
     assert has_two_forms(kernel)
     rng = np.random.default_rng(size)
     x = rng.uniform(-3, 3, size)
@@ -56,7 +54,7 @@ def test_each_point_has_the_form_that_its_test_says(size, share, flat):
 
 @pytest.mark.parametrize("place", [hoist, tabulate])
 def test_a_test_of_an_outer_axis_picks_the_loop(place):
-    kernel, run = kernel_for({"y": 0, "x": 1}, 2, place)
+    kernel, run = kernel_for(1, 0, place)
     assert not has_two_forms(kernel)
     x, y = np.linspace(-3, 3, 40), np.array([0.5, 2.0, -0.1, np.nan])
     out, echo = np.empty((4, 40)), np.empty((4, 40))
@@ -66,8 +64,8 @@ def test_a_test_of_an_outer_axis_picks_the_loop(place):
 
 @pytest.mark.parametrize("place", [hoist, tabulate])
 def test_tables_and_blocks_go_together(place):
-    kernel, run = kernel_for({"x": 1, "y": 0}, 2, place)
-    other, again = kernel_for({"x": 0, "y": 1}, 2, place)
+    kernel, run = kernel_for(1, 0, place)
+    other, again = kernel_for(0, 1, place)
     assert has_two_forms(other)
     assert not has_two_forms(kernel)
     x, y = np.linspace(-3, 3, 9), np.linspace(-2, 2, 700)
@@ -96,14 +94,14 @@ FORMS = ("sin", "cos")
 
 
 def test_a_test_that_is_not_known_is_not_passed():
-    _, run = kernel_for({"x": 0, "y": 0}, 1)
+    _, run = kernel_for(0, 0)
     out, echo = np.zeros(3), np.zeros(3)
     run(np.zeros(3), np.array([0.5, np.nan, 0.25]), out, echo)
     assert np.array_equal(out, [0.5, np.nan, 0.25], equal_nan=True)
 
 
 def test_rooms_fit_on_the_stack():
-    kernel, _ = kernel_for({"x": 0, "y": 0}, 1)
+    kernel, _ = kernel_for(0, 0)
     assert block_of(kernel) == BIGGEST
     wide = kernel._replace(outputs=tuple(f"out{k}" for k in range(600)))
     assert 16 <= block_of(wide) < 64

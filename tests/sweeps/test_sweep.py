@@ -287,9 +287,8 @@ def test_what_the_disk_has_no_room_for_is_refused_with_figures(tmp_path, monkeyp
 
 def test_progress_counts_points(tmp_path):
     seen = []
-    dx.sweep(
-        "Y", store=tmp_path / "p.zarr", chunks=CHUNKS, progress=lambda *step: seen.append(step), **INPUTS
-    )
+    how = {"store": tmp_path / "p.zarr", "chunks": CHUNKS, "progress": lambda *step: seen.append(step)}
+    dx.sweep(NAMES, **how, **INPUTS)
     assert seen[-1] == (240, 240, "writing")
     assert len(seen) == 3
 
