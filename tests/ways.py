@@ -35,3 +35,8 @@ def close(found, wanted):
     """To 4 ulp of the largest value: a kernel's sine may differ from the C library's by one."""
     scale = np.nanmax(np.abs(wanted), initial=0.0)
     return np.allclose(found, wanted, rtol=0, atol=4 * EPSILON * scale, equal_nan=True)
+
+
+def bits(dataset):
+    """The bytes of all values; a NaN has no digits, and processors choose its sign."""
+    return {n: np.where(np.isnan(a.values), np.nan, a.values).tobytes() for n, a in dataset.variables.items()}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from tests.ways import take_way
+from tests.ways import bits, take_way
 
 # One angle is beyond what a kernel's own sine reduces: all blocks then take another kernel, or none.
 FAR = {"theta": [0.1, 1.0, 1e9, 2.0, 1e12, 3.0], "ec": [0.0, 0.01, 0.02], "AB": 0.1, "BC": [0.3, 0.4]}
@@ -22,11 +22,6 @@ CUTS = [{"theta": 1, "ec": 2}, {"theta": 5, "BC": 1}, {"ec": 1}, {}]
 @pytest.fixture(autouse=True)
 def _compiled(monkeypatch):
     take_way(monkeypatch, "compiled")
-
-
-def bits(dataset):
-    """The bytes of all values; a NaN has no digits, and processors choose its sign."""
-    return {n: np.where(np.isnan(a.values), np.nan, a.values).tobytes() for n, a in dataset.variables.items()}
 
 
 def over_theta():

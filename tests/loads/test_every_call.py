@@ -4,7 +4,6 @@ One table: each call x (number, over_theta, over_Y, over_stroke, function) x (sm
 on random machines, forwards and backwards, on both branches.
 """
 
-import importlib.util
 import random
 
 import numpy as np
@@ -14,6 +13,7 @@ from scipy.integrate import solve_ivp
 
 import desaxe as dx
 from desaxe.loads.function import FunctionOverTheta
+from tests.compiler.languages.tools import imported
 from tests.effort import cases
 from tests.loads.truth import DIGITS, LENGTHS, PLACES, SHAPES, TURN, Truth, drawn, given, slider
 
@@ -300,9 +300,7 @@ def compiled_module(truth, draw, folder):
             dx.compile(scene, folder / f"{name}.py")
         return
     dx.compile(scene, folder / f"{name}.py")
-    spec = importlib.util.spec_from_file_location(name, folder / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    module = imported(folder / f"{name}.py")
     right = [truth.torque(float(t)) for t in np.sort(theta)]
     near(module.evaluate(theta=np.sort(theta))["T_in"], right, **FAST)
     near(module.run()["T_in"], right, **FAST)

@@ -1,8 +1,6 @@
 """Loads that vary with the motion in scenes: files and points, grids, peaks, checks, plans."""
 
-import importlib.util
 import re
-import sys
 
 import jsonschema
 import numpy as np
@@ -11,6 +9,7 @@ import pytest
 import desaxe as dx
 from desaxe.scenes.json_schema import json_schema
 from desaxe.scenes.schema import SceneError
+from tests.compiler.languages.tools import imported
 
 SCENE = """
 outputs = ["T_in", "T_in_wrt_theta"]
@@ -115,10 +114,7 @@ def test_a_compiled_module_holds_the_table(tmp_path):
     scene = dx.scene(write(tmp_path, LOADS["points"]))
     path = dx.compile(scene, tmp_path / "press_kernels.py")
     assert "desaxe" not in "".join(line for line in path.read_text("utf-8").splitlines() if "import" in line)
-    spec = importlib.util.spec_from_file_location("press_kernels", path)
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["press_kernels"] = module
-    spec.loader.exec_module(module)
+    module = imported(path)
     right = scene.run().dataset
     found = module.run()
     for name in ("T_in", "T_in_wrt_theta", "status"):
@@ -169,9 +165,7 @@ def test_a_module_of_given_states_has_its_inputs_in_one_order(tmp_path):
             "loads": {"F_Y": force},
         })  # fmt: skip
         name = f"states_{count}"
-        spec = importlib.util.spec_from_file_location(name, dx.compile(scene, tmp_path / f"{name}.py"))
-        module = sys.modules[name] = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
+        module = imported(dx.compile(scene, tmp_path / f"{name}.py"))
         right, found = scene.run().dataset, module.run()
         axes = np.meshgrid(*module.AXES.values(), indexing="ij")
         points = module.evaluate(**dict(zip(module.AXES, axes, strict=True)))

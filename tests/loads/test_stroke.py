@@ -14,7 +14,7 @@ from desaxe.design.averages import average
 from tests.effort import cases
 from tests.papers import free_bodies, loop
 from tests.peaks import test_jumps as jumps
-from tests.peaks.pieces import FromCentre, closure_of
+from tests.peaks.pieces import FromCentre
 
 MOTION = {"omega0": 20.0, "alpha": 3.0}
 BODIES = {"m_crank": 0.3, "m_rod": 0.5, "m_slider": 0.8, "I_rod": 2e-4, "g_Y": -9.81}
@@ -194,27 +194,17 @@ def test_the_gradient_of_a_peak_at_a_jump_moves_with_the_dead_centre(digits):
         checked += 1
         scale = sum(abs(found["gradient"][p]) for p in LENGTHS)
         for parameter in LENGTHS:
-            right = moved(draw, top, parameter)
+            right = jumps.moved(draw, top, parameter, distance)
             assert found["gradient"][parameter] == pytest.approx(right, rel=1e-8, abs=1e-9 * scale)
     assert checked
 
 
-def moved(draw, top, parameter):
-    """The derivative of a limit at a distance from a dead centre, in mpmath."""
-    theta = top.arc.low if top.theta == top.ends[0] else top.arc.high
+def distance(draw, design, theta):
+    """From a dead centre."""
     sign = 1 if draw.loads["F_Y"].dead_centre == "outer" else -1
-
-    def distance(p, t):
-        design = draw.design | {parameter: p}
-        ec, AB, BC = (mpmath.mpf(design[n]) for n in LENGTHS)
-        centre = draw.branch * mpmath.sqrt((BC + sign * AB) ** 2 - ec**2)
-        return centre - closure_of(design, draw.branch)(t)[0]
-
-    by, own = (mpmath.diff(distance, (draw.design[parameter], theta), n) for n in ((1, 0), (0, 1)))
-    names = [f"{draw.name}_wrt_{p}" for p in (parameter, "theta")]
-    here = {**draw.design, **top.arc.forces, "branch": draw.branch, "theta": top.theta}
-    partial, slope = dx.evaluate(names, **here).values()
-    return partial - slope * float(by / own)
+    ec, AB, BC = (mpmath.mpf(design[n]) for n in LENGTHS)
+    centre = draw.branch * mpmath.sqrt((BC + sign * AB) ** 2 - ec**2)
+    return centre - jumps.position(draw, design, theta)
 
 
 # ---- every call ----------------------------------------------------------------------------------------

@@ -1,6 +1,5 @@
 """Methods that are more than one formula: fits, prepared callables, plans, modules, syntheses, scenes."""
 
-import importlib.util
 import inspect
 import math
 
@@ -9,6 +8,7 @@ import pytest
 
 import desaxe as dx
 from desaxe.mechanism.units import registry
+from tests.compiler.languages.tools import imported
 
 SI = {"ec": 0.01, "AB": 0.05, "BC": 0.2, "omega0": 30.0, "m_slider": 4.0}
 PRESS = dx.Machine(SI)
@@ -76,9 +76,7 @@ def test_plans_and_modules(tmp_path):
     scene = PRESS.scene("a_C", theta=[0.0, 1.0])
     assert PRESS.explain("a_C", theta=[0.0, 1.0]).data["loops"] == dx.explain(scene).data["loops"]
     path = PRESS.compile(tmp_path / "press_kernels.py", "a_C", theta=[0.0, 1.0])
-    spec = importlib.util.spec_from_file_location("press_kernels", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    module = imported(path)
     point = dict(zip(module.OUTPUTS, module.point(1.0), strict=True))
     assert point["a_C"] == pytest.approx(dx.evaluate("a_C", theta=1.0, **SI), rel=1e-12)
     assert PRESS.compile(tmp_path / "press", "a_C", to="c", theta=[0.0, 1.0]).is_dir()

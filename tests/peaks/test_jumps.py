@@ -173,17 +173,18 @@ def test_in_arrays_in_every_tier(way):
         in_arrays(seed)
 
 
-def moved(draw, top, parameter):
-    """The derivative of a limit at a position that moves, in mpmath: partial, and slope times dtheta/dp."""
+def position(draw, design, theta):
+    return closure_of(design, draw.branch)(theta)[0]
+
+
+def moved(draw, top, parameter, place=position):
+    """The derivative of a limit at a place that moves, in mpmath: partial, and slope times dtheta/dp."""
     theta = top.arc.low if top.theta == top.ends[0] else top.arc.high
 
-    def Y(p, t):
-        return closure_of(draw.design | {parameter: p}, draw.branch)(t)[0]
+    def there(p, t):
+        return place(draw, draw.design | {parameter: p}, t)
 
-    by, own = (
-        mpmath.diff(Y, (draw.design[parameter], theta), (1, 0)),
-        mpmath.diff(Y, (draw.design[parameter], theta), (0, 1)),
-    )
+    by, own = (mpmath.diff(there, (draw.design[parameter], theta), n) for n in ((1, 0), (0, 1)))
     names = [f"{draw.name}_wrt_{p}" for p in (parameter, "theta")]
     here = {**draw.design, **top.arc.forces, "branch": draw.branch, "theta": top.theta}
     partial, slope = dx.evaluate(names, **here).values()

@@ -17,7 +17,7 @@ SHARE = 0.875
 SIDES = [f"transmission_angle_wrt_{p}" for p in ("theta", "ec", "AB", "BC")]
 
 
-def edges(count=60):
+def edges(count):
     """Designs on both sides of the edges, where |ec| is near AB too, at angles of all kinds."""
     rng = random.Random(7)
     for _ in range(count):
@@ -34,17 +34,7 @@ def edges(count=60):
         }  # fmt: skip
 
 
-@pytest.mark.thorough
-def test_the_promise_holds_across_the_edge(monkeypatch):
-    take_way(monkeypatch, "compiled")
-    rows, names = list(edges()), [*NAMES, *SIDES]
-    for row, by_kernel in zip(rows, compiled(names, rows), strict=True):
-        plain = dx.evaluate(names, **row)
-        for values in (plain, by_kernel):
-            assert not {name: values[name] for name in names if not is_kept(name, values[name], row)}, row
-
-
-def eccentric_as_crank(count=60):
+def eccentric_as_crank(count):
     """Roomy designs with |ec| = AB or nearly, about the quarter at which the crank pin meets the axis."""
     rng = random.Random(11)
     for _ in range(count):
@@ -60,10 +50,18 @@ def eccentric_as_crank(count=60):
         }  # fmt: skip
 
 
+POINTS = {
+    "across the edge": (edges, 60, [*NAMES, *SIDES]),
+    "where the pin meets the axis": (eccentric_as_crank, cases(20, 60), ["a_C", "alpha_BC", *SIDES]),
+}
+
+
 @pytest.mark.thorough
-def test_the_side_of_the_axis_is_known_where_the_pin_meets_it(monkeypatch):
+@pytest.mark.parametrize("where", POINTS)
+def test_the_promise_holds(where, monkeypatch):
     take_way(monkeypatch, "compiled")
-    rows, names = list(eccentric_as_crank(cases(20, 60))), ["a_C", "alpha_BC", *SIDES]
+    draw, count, names = POINTS[where]
+    rows = list(draw(count))
     for row, by_kernel in zip(rows, compiled(names, rows), strict=True):
         plain = dx.evaluate(names, **row)
         for values in (plain, by_kernel):

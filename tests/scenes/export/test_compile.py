@@ -16,6 +16,7 @@ import desaxe as dx
 from desaxe.scenes.export.numba_module import text_of
 from desaxe.scenes.schema import SceneError
 from desaxe.support.locks import locked
+from tests.compiler.languages.tools import imported
 from tests.example_scenes import COMPACTOR, SMALL
 
 TURN = {"start": 0, "stop": "360 deg", "num": 121}
@@ -156,28 +157,17 @@ def test_arrays_are_those_of_evaluate(name, alone, monkeypatch):
 
 
 @pytest.mark.thorough
-@pytest.mark.thorough
 @pytest.mark.parametrize("name", SCENES)
 def test_one_point_is_that_of_evaluate(name, alone):
+    """And one function for each output, in the order of INPUTS, for the @njit functions of others."""
     names = list(alone[name]["number"])
     one = {n: v[0] for n, v in points_of(SCENES[name]).items()}
     wanted = dx.evaluate(names, **{**inputs_of(SCENES[name]), **one})
     # A module has the stable form alone for its points.
-    found = [float.fromhex(text) for text in alone[name]["point"]]
-    np.testing.assert_allclose(found, [float(wanted[n]) for n in names], rtol=1e-14)
+    for way in ("point", "scalars"):
+        found = [float.fromhex(text) for text in alone[name][way]]
+        np.testing.assert_allclose(found, [float(wanted[n]) for n in names], rtol=1e-14)
     assert [alone[name]["number"][n] for n in names] == [[text] for text in alone[name]["point"]]
-
-
-@pytest.mark.thorough
-@pytest.mark.parametrize("name", SCENES)
-def test_scalars_are_those_of_evaluate(name, alone):
-    """One function for each output, in the order of INPUTS, compiled for the @njit functions of others."""
-    names = list(alone[name]["number"])
-    one = {n: v[0] for n, v in points_of(SCENES[name]).items()}
-    inputs = {**inputs_of(SCENES[name]), **one}
-    wanted = dx.evaluate(names, **inputs)
-    found = [float.fromhex(text) for text in alone[name]["scalars"]]
-    np.testing.assert_allclose(found, [float(wanted[n]) for n in names], rtol=1e-14)
 
 
 def test_a_function_of_ones_own_calls_them(tmp_path):
@@ -195,17 +185,6 @@ def test_a_function_of_ones_own_calls_them(tmp_path):
     assert module.INPUTS == ("theta", "m_slider")
     assert work(0.5, 0.3) == pytest.approx(sum(wanted), rel=1e-13)
     assert np.isnan(a(np.inf, 0.5))
-
-
-def imported(place):
-    """A written module."""
-    import importlib.util
-
-    spec = importlib.util.spec_from_file_location(place.stem, place)
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[place.stem] = module
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.mark.parametrize(
@@ -334,14 +313,7 @@ def test_fixed_values_are_folded_in(tmp_path):
 
 
 def test_an_angle_beyond_reach_is_refused(tmp_path):
-    sys.path.insert(0, str(tmp_path))
-    try:
-        dx.compile(SCENES["one_axis"], tmp_path / "kernels_reach.py")
-        import importlib
-
-        module = importlib.import_module("kernels_reach")
-    finally:
-        sys.path.remove(str(tmp_path))
+    module = imported(dx.compile(SCENES["one_axis"], tmp_path / "kernels_reach.py"))
     with pytest.raises(ValueError, match="take whole turns off"):
         module.evaluate(np.array([1.0, 1e12]))
     found = module.evaluate(np.array([1.0, np.nan, np.inf]))
