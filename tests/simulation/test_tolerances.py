@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from benchmarks.tolerances import HIGHEST, KINDS, LOWEST, cranks, errors
+from benchmarks.tolerances import HIGHEST, KINDS, LOWEST, cranks, errors, of_all
 from tests.effort import cases
 
 POWERS = (6, 8, 10, 12)
@@ -24,6 +24,30 @@ def test_whatever_drives_the_motion(kind):
     for power in POWERS:
         rtol = 10.0**-power
         assert errors(kind, count, rtol, seed=6).max() <= HIGHEST * rtol
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize(
+    ("kind", "way"),
+    [("number", "energy"), *((kind, "panels") for kind in ("of t, theta, omega", "of theta", "of t, fast"))],
+)
+def test_whatever_way_the_motion_goes(kind, way):
+    count = cases(100, 100, 1_000)
+    for power in POWERS:
+        rtol = 10.0**-power
+        worst = errors(kind, count, rtol, seed=5, way=way).max()
+        assert (LOWEST if count == 1_000 else LOWEST / 10.0) * rtol <= worst <= HIGHEST * rtol
+
+
+@pytest.mark.thorough
+def test_a_panel_is_shortened_at_the_end_of_a_motion_though_its_part_is_less_smooth():
+    drawn = cranks(1_000, np.random.default_rng(5))
+    row = {name: np.broadcast_to(values, 1_000)[837:838] for name, values in drawn.items()}
+    call = {"torque": of_all, "t_end": 1.0, "times": [1.0], **row}
+    truth, found = (dx.simulate(rtol=rtol, **call) for rtol in (3e-14, 1e-6))
+    assert found["method"] == ["panels"]
+    for name in ("theta", "omega"):
+        np.testing.assert_allclose(found[name], truth[name], rtol=HIGHEST * 1e-6)
 
 
 def test_a_step_ends_at_each_knot_of_a_table():

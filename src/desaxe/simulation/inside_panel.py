@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from numpy import int64
 
 from .dop853 import NEXT, STALE, T_END, WISHED
-from .panel import panel
+from .panel import WAIT, panel
 from .picard import NODES, OF_ENERGY, OF_TIME, PACE, RATE, SERIES
 from .state import rates, tell
 
@@ -70,13 +70,18 @@ def land(
     K: Any,
     new: Any,
 ) -> float:
-    """Make the series of a panel, shortened where it goes beyond the end of the motion; its end."""
+    """Make the series of a panel, shortened where it goes beyond the end of the motion; its end.
+
+    A part of a panel may be less smooth than the whole; one that cannot be shortened ends where it starts.
+    """
     width = memory[3]
     expand(t, abs(width), panels, room, int64(PACE), int64(OF_TIME))
     if end > t_end:
         part = part_at(t_end, (t_end - t) / (end - t), room)
         memory[3] = width * (part * part if y[1] == 0.0 else part)
-        end, _ = panel(t, y, memory[3], p, setup, rtol, panels, room, new)
+        end, _ = panel(t, y, memory[3], p, setup, rtol, inf, panels, room, new)
+        if not end > t:
+            return t
         rates(end, new, p, setup, K[1])
         for i in range(3):
             new[i] += (t_end - end) * K[1, i]
@@ -127,9 +132,15 @@ def over_panel(
     omega: Any,
     alpha: Any,
 ) -> Any:
-    """The histories inside of a panel, and its end, which is not behind that of the motion; the next row."""
+    """The histories inside of a panel, and its end, which is not behind that of the motion; the next row.
+
+    Its end is its start where steps in time go on.
+    """
     if end > clock[T_END] or (row < len(times) and times[row] <= end):
         end = land(t, end, clock[T_END], y, p, setup, how[0], panels, room, memory, K, new)
+    if not end > t:
+        memory[1] = WAIT
+        return end, row
     while row < len(times) and times[row] <= end:
         tell_inside(t, end, times[row], y, p, setup, room, memory, theta, omega, alpha, row)
         row += 1

@@ -79,6 +79,7 @@ def follow(
             end, row = over_panel(
                 t, end, y, new, times, row, p, setup, how, clock, panels, room, memory, K, theta, omega, alpha
             )
+        if end > t:
             made += 1
             for i in range(16):
                 least = min(least, 1.0 / room[MOBILITY, i])

@@ -79,9 +79,21 @@ def jumps(outside: float, room: Any, at: Any, way: Any) -> bool:
 
 
 def panel(
-    t: float, y: Any, width: float, p: Any, setup: Any, rtol: float, table: Any, room: Any, new: Any
+    t: float,
+    y: Any,
+    width: float,
+    p: Any,
+    setup: Any,
+    rtol: float,
+    too_wide: float,
+    table: Any,
+    room: Any,
+    new: Any,
 ) -> Any:
-    """The state and the time at the end of a panel, the error inside of it as a multiple of rtol."""
+    """The state and the time at the end of a panel, the error inside of it as a multiple of rtol.
+
+    The time stays as it is where there is none, and where the error with the first torques is too wide.
+    """
     energy = 0.5 * y[1] * y[1]
     furnish(energy == 0.0, table, room)
     still_at_nodes(y[0], width, p, setup, room)
@@ -93,7 +105,7 @@ def panel(
     if not least > 0.0:
         return t, inf
     error = error_inside(width, least, table, room) / (INSIDE * rtol)
-    if not error < TOO_WIDE:  # the torque will not mend that
+    if not error < too_wide:  # the torque will not mend that
         return t, error
     least = sweep(t, energy, least, width, setup[4], rtol, table, room)
     if not least > 0.0:
@@ -134,7 +146,7 @@ def by_panel(
         if width < max(LEAST, 1.5 * memory[2]) or way == 0.0:
             break
         memory[3] = copysign(width, way)
-        end, error = panel(t, y, memory[3], p, setup, how[0], table, room, new)
+        end, error = panel(t, y, memory[3], p, setup, how[0], TOO_WIDE, table, room, new)
         factor = min(2.0, max(0.25, (AIM / error) ** 0.0625)) if error > 0.0 else 2.0
         if error <= 1.0 and end - t <= longest:
             memory[0] = min(width * factor, WIDEST)

@@ -198,7 +198,7 @@ def sweep(
             return 0.0
         change = ask(number, room) * abs(width) / least
         if not change < 0.7 * before:
-            return 0.0 if not change < 1e-15 else least
+            return least if change < max(1e-15, 0.01 * rtol) else 0.0
         if change > 0.0:
             correct(bend, width, table, room)
             least = course(t, energy, width, table, room)
