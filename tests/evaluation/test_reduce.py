@@ -7,7 +7,7 @@ import pytest
 
 import desaxe as dx
 from desaxe.compiler.languages.numba.reductions import LONGEST
-from desaxe.evaluation import plan
+from desaxe.evaluation import kinds, plan
 from desaxe.evaluation.points import Points
 from desaxe.runtime import kernels as _kernels
 
@@ -262,3 +262,16 @@ def test_in_units_every_result_is_that_of_its_quantity():
     in_metres = dx.grid("Y", theta=TURN[::40], AB=0.125, BC=0.35, ec=0.01).Y
     assert found.Y_std.units == found.Y_at_60_deg.units == "mm"
     assert float(found.Y_std) == pytest.approx(1000.0 * float(in_metres.std()), rel=1e-12)
+
+
+def test_a_new_kind_of_reduction_is_one_row(monkeypatch):
+    row = kinds.Average("range", lambda rows, counts: np.nanmax(rows, -1) - np.nanmin(rows, -1))
+    monkeypatch.setitem(kinds.OTHERS, "range", row)
+    monkeypatch.setattr(kinds, "NAMES", (*kinds.NAMES, "range"))
+    inputs = {"theta": np.linspace(0.0, 6.0, 13), "ec": [0.0, 0.02], "AB": 0.1, "BC": 0.3, "omega0": 5.0}
+    values = dx.grid("a_C", **inputs).a_C
+    found = dx.grid("a_C", reduce={"theta": "range"}, **inputs).a_C_range
+    np.testing.assert_array_equal(found, values.max("theta") - values.min("theta"))
+    assert found.attrs["cell_methods"] == "theta: range"
+    with pytest.raises(ValueError, match="reduce: 'rang': did you mean range"):
+        dx.grid("a_C", reduce={"theta": "rang"}, **inputs)

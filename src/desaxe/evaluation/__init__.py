@@ -26,6 +26,7 @@ labelled       `evaluate` of labelled arrays
 dask_blocks    a function of many outputs over the chunks of Dask arrays
 in_units       labelled results in other units
 reductions     the argument `reduce=`, checked
+kinds          the kinds of reductions: a row for each
 in_memory      reductions over several axes of arrays in memory
 own_measure    a user's function of a design as a measure
 arcs           arcs of crank angles on which one piece of a load holds

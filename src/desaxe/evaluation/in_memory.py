@@ -5,7 +5,6 @@ many points as it was made of, so that a mean over two axes is that of all their
 pieces of an axis combines to that of the whole in the same way.
 """
 
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from math import prod
 from typing import Any, NamedTuple
@@ -13,9 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiler.languages.numba.reductions import EXTREMES
-from ..support.forks import imported
-from .reductions import percent_of
+from .kinds import Extreme, average, kind_called, place
 
 Array = NDArray[Any]
 PIECE = "piece"  # the dimension of pieces that are combined
@@ -54,9 +51,10 @@ def folded(field: Field, axes: Sequence[str], kind: str, coordinates: Mapping[st
 
     values, counts = rows(field.values), rows(field.counts)
     total = counts.sum(axis=-1)
-    if kind not in EXTREMES:
-        return Field(rest, np.where(total > 0, average(kind, values, counts), np.nan), total, {})
-    at = place(kind, values, counts > 0)
+    taken_of = kind_called(kind)
+    if not isinstance(taken_of, Extreme):
+        return Field(rest, np.where(total > 0, average(taken_of, values, counts), np.nan), total, {})
+    at = place(taken_of, values, counts > 0)
     here = np.maximum(at, 0)[..., None]
 
     def taken(array: Array) -> Array:
@@ -70,7 +68,7 @@ def folded(field: Field, axes: Sequence[str], kind: str, coordinates: Mapping[st
         for axis, number in zip(axes, index, strict=True)
     }
     places = {name: taken(rows(array)) for name, array in field.places.items()}
-    return Field(rest, taken(np.abs(values) if kind == "absmax" else values), total, {**places, **own})
+    return Field(rest, taken(taken_of.result(values)), total, {**places, **own})
 
 
 def pieces(values: Mapping[str, Array], axes: Sequence[str]) -> Iterator[Mapping[str, Array]]:
@@ -97,41 +95,3 @@ def combined(parts: Sequence[Field], kind: str) -> Field:
     whole = Field((*first.dims, PIECE), values, counts, places)
     found = folded(whole, (PIECE,), kind, {PIECE: np.arange(float(len(parts)))})
     return found._replace(places={name: found.places[name] for name in first.places})
-
-
-def place(kind: str, rows: Array, good: Array) -> Array:
-    """The index of the extreme of each row, the first of equals; -1 where nothing is good."""
-    if not rows.shape[-1]:
-        return np.full(rows.shape[:-1], -1)
-    turned: Array = np.abs(rows) if kind == "absmax" else -rows if kind == "min" else rows
-    # Before the first -inf that is a number there may be one that stands for a NaN.
-    found = np.argmax(np.where(good, turned, -np.inf) + np.where(good, 0.0, -np.inf), axis=-1)
-    found = np.where(np.take_along_axis(good, found[..., None], -1)[..., 0], found, np.argmax(good, axis=-1))
-    return np.where(good.any(axis=-1), found, -1)
-
-
-def average(kind: str, rows: Array, counts: Array) -> Array:
-    """A mean, rms, standard deviation (of all points, divided by their number) or percentile of each row."""
-    if not rows.shape[-1]:
-        return np.full(rows.shape[:-1], np.nan)
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore", RuntimeWarning)  # a row without a number is NaN
-        if kind == "mean":
-            return _mean(rows, counts)
-        if kind == "rms":
-            return _scaled_root(rows, counts)
-        if kind == "std":
-            return _scaled_root(rows - _mean(rows, counts)[..., None], counts)
-        imported("numpy.ma")  # by `nanpercentile`
-        return np.asarray(np.nanpercentile(rows, percent_of(kind), axis=-1))
-
-
-def _mean(rows: Array, counts: Array) -> Array:
-    return np.asarray(np.where(counts > 0, rows * counts, 0.0).sum(axis=-1) / counts.sum(axis=-1))
-
-
-def _scaled_root(rows: Array, counts: Array) -> Array:
-    """The root of the mean square, of any scale: a power of two brings the squares into range."""
-    largest = np.nanmax(np.where(np.isinf(rows), np.nan, np.abs(rows)), axis=-1, keepdims=True)
-    factor = np.ldexp(1.0, -np.frexp(np.where(largest > 0.0, largest, 1.0))[1].clip(-1000, 1000))
-    return np.asarray(np.sqrt(_mean((rows * factor) ** 2, counts)) / factor[..., 0])

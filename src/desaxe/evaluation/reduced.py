@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiler.languages.numba.reductions import EXTREMES, KINDS, outputs_of
+from ..compiler.languages.numba.reductions import KINDS, outputs_of
 from ..mechanism.catalogue import quantity
 from ..mechanism.own import Definition
 from ..runtime.kernels import KernelKey
@@ -20,9 +20,10 @@ from ..runtime.threads import fill_reduced
 from ..runtime.tiers import COMPILED, tier_of
 from .axes import Outer
 from .in_memory import Field, combined, field_of, folded, pieces
+from .kinds import EXTREMES, kind_called
 from .labels import Output, attributes, input_attributes, side_attributes
 from .points import Points, points_of
-from .reductions import Chain, Reductions, chain_name, extremes_at_end, method_of
+from .reductions import Chain, Reductions, chain_name, extremes_at_end
 from .sides import sides_of
 from .under import UnderLoads, each_point, region_of
 
@@ -102,7 +103,7 @@ class Reduced(NamedTuple):
     def _outputs(self, name: str, chain: Chain) -> dict[str, Output]:
         """The result of a chain, where it is, and on which side of a jump."""
         variable = chain_name(name, chain)
-        method = " ".join(": ".join((*axes, method_of(kind))) for axes, kind in chain)
+        method = " ".join(": ".join((*axes, kind_called(kind).method)) for axes, kind in chain)
         found = {variable: Output(FLOAT, {**attributes(name, self.state), "cell_methods": method})}
         for axis in extremes_at_end(chain):
             about = input_attributes(axis)
@@ -160,7 +161,7 @@ class Reduced(NamedTuple):
         """The values of a block, along the outermost reduced axis in memory cut where all kinds combine."""
         chains = [chain for name in self.names for chain in self.reductions.chains(name)]
         stored = [name for name in self.reductions.axes if self.key is None or name != of.dims[-1]]
-        combine = all(len(chain) == 1 and chain[0][1] in KINDS for chain in chains)
+        combine = all(len(chain) == 1 and kind_called(chain[0][1]).combines for chain in chains)
         return pieces(values, stored if combine else ())
 
     def _chained(

@@ -11,18 +11,16 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ..compiler.languages.numba.reductions import EXTREMES, KINDS
+from ..compiler.languages.numba.reductions import KINDS
 from ..mechanism.catalogue import of_design
 from ..mechanism.spelling import did_you_mean
 from ..runtime.request import as_number
 from ..support.shown import shown
+from .kinds import ALLOWED, EXTREMES, kind_of
 from .own_measure import OwnMeasure
 
 Chain = Sequence[tuple[tuple[str, ...], str]]  # axes and what is taken of them, one after the other
 NO_STATUS = "a status has no largest or mean: leave it out; each name has a count of skipped points"
-OTHERS = ("std", "median")  # kinds that no kernel computes on the way, beside percentiles
-METHODS = {**KINDS, "std": "standard_deviation", "median": "median"}  # as CF's `cell_methods` say them
-ALLOWED = f"{', '.join((*KINDS, *OTHERS))}, and percentiles such as p95"
 EXAMPLE = '{"theta": "absmax"}'
 
 
@@ -177,31 +175,6 @@ def names_reduced(asked: Any) -> tuple[str, ...]:
             if isinstance(measure, tuple):
                 found[measure[-1]] = None
     return tuple(found)
-
-
-def kind_of(kind: Any) -> str:
-    """A kind as it is called: "max", "std", "p95"."""
-    if isinstance(kind, (tuple, list)) and len(kind) == 2 and kind[0] == "percentile":
-        kind = f"p{kind[1]:g}" if isinstance(kind[1], (int, float)) else f"p{kind[1]}"
-    if kind in KINDS or kind in OTHERS:
-        return str(kind)
-    if isinstance(kind, str) and re.fullmatch(r"p\d+(\.\d+)?", kind):
-        if float(kind[1:]) > 100.0:
-            raise ValueError(f"reduce: {kind!r}: a percentile is from p0 to p100")
-        return f"p{float(kind[1:]):g}"
-    raise ValueError(
-        f"reduce: {shown(kind)}: {did_you_mean(str(kind)[:40], (*KINDS, *OTHERS))}allowed: {ALLOWED}"
-    )
-
-
-def method_of(kind: str) -> str:
-    """A kind as CF's `cell_methods` say it."""
-    return METHODS.get(kind) or f"percentile_{kind[1:]}"
-
-
-def percent_of(kind: str) -> float:
-    """The percentage of a percentile."""
-    return 50.0 if kind == "median" else float(kind[1:])
 
 
 def _entries(asked: Any) -> Mapping[Any, Any]:

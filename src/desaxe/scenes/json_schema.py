@@ -5,8 +5,7 @@ from typing import Any
 
 import msgspec
 
-from ..compiler.languages.numba.reductions import KINDS
-from ..evaluation.reductions import OTHERS
+from ..evaluation.kinds import NAMES
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import parts
 from ..mechanism.own import derived_names
@@ -45,7 +44,7 @@ def _for_toml(rule: Any) -> Any:
     if found.get("description") == "the name of a quantity":
         found["anyOf"] = [{"enum": _base_quantities()}, {"pattern": "^[A-Za-z][A-Za-z0-9_]*$"}]
     if found.get("description", "").startswith("one of max, min"):
-        kind = {"anyOf": [{"enum": [*KINDS, *OTHERS]}, {"pattern": r"^p\d+(\.\d+)?$"}]}
+        kind = {"anyOf": [{"enum": [*NAMES]}, {"pattern": r"^p\d+(\.\d+)?$"}]}
         one = {"anyOf": [*kind["anyOf"], {"type": "array", "minItems": 2, "maxItems": 3}]}
         found["anyOf"] = [*kind["anyOf"], {"type": "array", "items": one, "minItems": 1}]
     return found

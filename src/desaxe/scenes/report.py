@@ -12,8 +12,9 @@ from ..mechanism.catalogue import quantity
 from ..mechanism.status import PeakStatus
 from ..mechanism.unit_system import UnitSystem
 from ..support.text_table import table as text_table
+from ..sweeps.peak_step import WORDS
 from .content import Content, Peak
-from .parts.extremes import SIDEWAYS, WORDS, ClaimResult, PeakResult, groups_of, peaks_in_units
+from .parts.extremes import SIDEWAYS, ClaimResult, PeakResult, groups_of, peaks_in_units
 from .parts.motor import MotorResult
 from .parts.turning import FeasibilityResult
 from .run import CheckResult, Run

@@ -6,10 +6,11 @@ import numpy as np
 
 from ..evaluation.axes import outer_of
 from ..evaluation.evaluate import evaluate
+from ..evaluation.kinds import ALLOWED, EXTREMES, kind_of
 from ..evaluation.labels import attributes, import_xarray, input_attributes, labelled, with_loads
 from ..evaluation.plan import Plan, plan_of
 from ..evaluation.points import points_of
-from ..evaluation.reductions import ALLOWED, Reduction, kind_of
+from ..evaluation.reductions import Reduction
 from ..mechanism.catalogue import has
 from ..mechanism.spelling import did_you_mean
 from ..runtime.accuracy import accuracy_of
@@ -24,7 +25,6 @@ from .request import Request, Sweep, identity, reductions_asked
 if TYPE_CHECKING:
     import xarray as xr
 
-EXTREMES = ("max", "min", "absmax")
 ORDERS = ("smallest", "largest")
 # Kinds of which one end is the better one by itself, or was never the other: their default.
 DEFAULTS = {"min": "smallest", "mean": "largest", "median": "largest"}
@@ -32,7 +32,7 @@ DEFAULTS = {"min": "smallest", "mean": "largest", "median": "largest"}
 
 def _kind_and_order(name: str, kind: str | None, order: Any, reduction: Reduction | None) -> tuple[str, str]:
     """The kind that designs are ranked by, and which end is the best; the first allowed kind by default."""
-    known = EXTREMES if reduction is None else reduction.kinds
+    known = tuple(EXTREMES) if reduction is None else reduction.kinds
     if kind is not None and kind not in known:
         raise ValueError(f"by: {kind!r}: {did_you_mean(kind, known)}allowed: {', '.join(known)}")
     end = DEFAULTS.get(str(kind)) if order is None else order
@@ -70,7 +70,7 @@ def search_of(asked: Request, by: Any, count: int, order: str | None) -> Sweep:
     wanted = dict.fromkeys(((names,) if isinstance(names, str) else several(names)) + (name,))
     outer = outer_of(tuple(wanted), asked.inputs, branch, asked.threads, always=False)
     if reduce is None and "theta" in outer.dimensions:
-        reduce = {"theta": kind or EXTREMES[0]}
+        reduce = {"theta": kind or "max"}
     reductions = reductions_asked(reduce, outer)
     reduction = None if reductions is None else reductions.along
     if reductions is not None and reduction is None:

@@ -85,20 +85,26 @@ class PeakStep(NamedTuple):
             own = attributes(name, self.state)
             return {**own, "long_name": f"{WORDS[kind]} over theta of {own['long_name']}"}
         if output.startswith(GRADIENT):
-            p = output.removeprefix(GRADIENT)
-            return {"units": _slope_unit(name, p, self.state), "long_name": f"derivative of the peak by {p}"}
-        return {
-            "theta": {"units": "rad", "long_name": "crank angle of the peak"},
-            "side": side_attributes(),
-            "status": {"long_name": STATUS},
-        }[output]
+            return slope_attributes(name, output.removeprefix(GRADIENT), self.state)
+        return attributes_beside()[output]
 
 
-def _slope_unit(name: str, parameter: str, state: bool) -> str:
+def attributes_beside() -> dict[str, dict[str, Any]]:
+    """CF attributes of what comes beside the value of a peak, but for its derivatives."""
+    return {
+        "theta": {"units": "rad", "long_name": "crank angle of the peak"},
+        "side": side_attributes(),
+        "status": {"long_name": STATUS},
+    }
+
+
+def slope_attributes(name: str, parameter: str, state: bool) -> dict[str, str]:
+    """CF attributes of the derivative of a peak by a parameter."""
     try:
-        return quantity(sensitivity(name, parameter), state).unit
+        unit = quantity(sensitivity(name, parameter), state).unit
     except ValueError:  # a derivative that only a peak has
-        return f"{quantity(name, state).unit}/({INPUTS[parameter].unit})"
+        unit = f"{quantity(name, state).unit}/({INPUTS[parameter].unit})"
+    return {"units": unit, "long_name": f"derivative of the peak by {parameter}"}
 
 
 def peak_requests(peaks: Any, outer: Outer) -> tuple[PeakRequest, ...]:

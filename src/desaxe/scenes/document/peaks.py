@@ -10,9 +10,10 @@ from ...mechanism.catalogue import quantity
 from ...mechanism.status import PeakStatus
 from ...mechanism.unit_system import UnitSystem
 from ...support.progress import Steps
+from ...sweeps.peak_step import WORDS
 from .. import schema
 from ..content import Content
-from ..parts.extremes import WORDS, PeakResult, peaks_in_units, peaks_of
+from ..parts.extremes import PeakResult, peaks_in_units, peaks_of
 from ..reading.requested import peak_of
 from ..report import remarks
 from ..schema import SceneError

@@ -24,8 +24,9 @@ from ...peaks.compiled import SEARCH, texts_of
 from ...peaks.designs import KINDS, Plan, plan_of, search_of
 from ...peaks.nodes import FINEST, graded
 from ...peaks.programs import Search, programs_of
+from ...sweeps.peak_step import WORDS
 from ..content import Content, Peak
-from ..parts.extremes import WORDS, columns_of, group_names
+from ..parts.extremes import columns_of, group_names
 from .axes import rule_of
 from .portable import left_out
 

@@ -13,18 +13,16 @@ from ...evaluation.labels import (
     CONVENTIONS,
     import_xarray,
     input_attributes,
-    side_attributes,
     source,
     tell_loads,
 )
 from ...mechanism.catalogue import quantity
-from ...mechanism.inputs import INPUTS
 from ...mechanism.names import sensitivity
-from ...mechanism.status import PeakStatus
 from ...mechanism.unit_system import UnitSystem
 from ...peaks.peak import peak
 from ...support.forks import IMPORTS
 from ...support.progress import Steps
+from ...sweeps.peak_step import WORDS, attributes_beside, slope_attributes
 from ..content import Claim, Content, Peak
 from ..reading.values import Value
 
@@ -33,8 +31,6 @@ if TYPE_CHECKING:
 
 DESIGNS = 1_000  # designs of a peak between two reports of progress
 SIDEWAYS = ("ec", "F_X", "g_X")  # change sign where the mechanism is mirrored at the Y axis
-STATUS = "; ".join(f"{status:d} {status.words}" for status in PeakStatus)
-WORDS = {"absmax": "largest magnitude", "max": "maximum", "min": "minimum"}
 
 
 class ClaimResult(NamedTuple):
@@ -148,11 +144,9 @@ def _labelled(one: Peak, content: Content, arrays: Mapping[str, NDArray[Any]]) -
     slopes = [name for name in arrays if name.startswith("value_wrt_")]
     attributes = {
         "value": _peak_attributes(one, state),
-        "theta": {"units": "rad", "long_name": "crank angle of the peak"},
-        "side": side_attributes(),
-        "status": {"long_name": STATUS},
+        **attributes_beside(),
         "increase": {"units": "percent", "long_name": "increase over the baseline"},
-        **{name: _slope_attributes(one, name.removeprefix("value_wrt_"), state) for name in slopes},
+        **{name: slope_attributes(one.quantity, name.removeprefix("value_wrt_"), state) for name in slopes},
     }
     data = {name: (tuple(one.axes), array, attributes[name]) for name, array in arrays.items()}
     axes = {name: (name, list(values), input_attributes(name)) for name, values in one.axes.items()}
@@ -165,14 +159,6 @@ def _labelled(one: Peak, content: Content, arrays: Mapping[str, NDArray[Any]]) -
 def _peak_attributes(one: Peak, state: bool) -> dict[str, str]:
     known = quantity(one.quantity, state)
     return {"units": known.unit, "long_name": f"{WORDS[one.kind]} of {one.quantity}, {known.meaning}"}
-
-
-def _slope_attributes(one: Peak, parameter: str, state: bool) -> dict[str, str]:
-    try:
-        unit = quantity(sensitivity(one.quantity, parameter), state).unit
-    except ValueError:  # a derivative that only a peak has
-        unit = f"{quantity(one.quantity, state).unit}/({INPUTS[parameter].unit})"
-    return {"units": unit, "long_name": f"derivative of the peak by {parameter}"}
 
 
 def columns_of(inputs: Mapping[str, Value]) -> dict[str, NDArray[np.float64]]:
