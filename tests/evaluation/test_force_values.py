@@ -6,6 +6,7 @@ inputs: a force is a sum of what masses, loads and motion cause, which may nearl
 
 import math
 import random
+from functools import partial
 
 import numpy as np
 import pytest
@@ -20,11 +21,11 @@ from desaxe.oracle.force_truth import (
     force_names,
     truth_all,
 )
-from desaxe.oracle.truth import relative_error
 from tests.effort import cases
+from tests.evaluation import test_values as values_of
 from tests.points import draw
 
-PROMISE = 8 * 2.0**-52
+misses = partial(values_of.misses, truth_all=truth_all, conditions=partial(conditions, others=OTHERS))
 CENTRES = ("r_crank", "r_rod")
 WORDS = {0: 5, 1: 0, 2: 6}  # how many balances of forces there are -> status
 
@@ -54,20 +55,6 @@ def points(geometry, kind, count):
 
 def names_for(point):
     return force_names(STATE_PARAMETERS if "omega" in point else PARAMETERS)
-
-
-def is_right(name, value, exact, point):
-    if math.isinf(exact):
-        return math.isnan(value) or value == exact
-    error = relative_error(value, exact)
-    return error <= 1e-13 or error <= PROMISE * (1 + conditions(name, others=OTHERS, **point))
-
-
-def misses(values, point):
-    """The names whose values are not right, with values and truth."""
-    exact = truth_all(values, **point)
-    wrong = (name for name, value in values.items() if not is_right(name, value, exact[name], point))
-    return {name: (values[name], float(exact[name])) for name in wrong}
 
 
 KINDS = ("smooth", "friction", "default_centres", "loads alone")

@@ -23,7 +23,7 @@ def names_for(point):
     return all_names(STATE if "omega" in point else LAW)
 
 
-def is_right(name, value, exact, point):
+def is_right(name, value, exact, point, conditions):
     """True if a value is within its bound of the truth; an infinite limit at rest may be NaN."""
     if math.isinf(exact):
         return math.isnan(value) or value == exact
@@ -31,10 +31,10 @@ def is_right(name, value, exact, point):
     return error <= 1e-13 or error <= PROMISE * (1 + conditions(name, **point))
 
 
-def misses(values, point):
+def misses(values, point, truth_all=truth_all, conditions=conditions):
     """The names whose values are not right, with values and truth."""
     exact = truth_all(values, **point)
-    wrong = (name for name, value in values.items() if not is_right(name, value, exact[name], point))
+    wrong = (n for n, value in values.items() if not is_right(n, value, exact[n], point, conditions))
     return {name: (values[name], float(exact[name])) for name in wrong}
 
 
