@@ -22,6 +22,8 @@ PANELS = {
 PIECES = {
     "combined": ("row, rows, other", {"mul", "add"}),
     "ordered": ("row, other, 0.1, True, rows[0], rows[1]", {"add"}),
+    "add_factors": ("0.5, 0.1, 1.0, row, other, rows[0], rows[1], rows[2], rows[3]", {"div", "sqrt", "mul"}),
+    "add_lanes_of": ("row, other, rows[0], rows[1], 0.1, rows[2]", {"mul", "add"}),
     "rates": ("int64(0), 0.5, row, rows[0], rows[1], other", {"div", "sqrt"}),
 }
 FAMILY = Family(Variant(True, ("r_crank", "r_rod")), ())

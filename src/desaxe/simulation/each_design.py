@@ -105,7 +105,7 @@ def simulate_each(
                 table[f"{name}_wrt_{p}"][done] = values[done, k]
         known = np.isfinite(slopes[0]).sum(axis=2) >= np.isfinite(motion[0]).sum(axis=1)[:, None]
         known &= np.isfinite(slopes[3])
-        without += [row for row in done.tolist() if not known[row].all()]
+        without += done[~known[done].all(axis=1)].tolist()
         if names and done.size:
             state = dict(zip(("theta", "omega", "alpha"), (history[done] for history in motion), strict=True))
             inputs = {n: array[done, None] for n, array in flat.items() if n not in STARTS}

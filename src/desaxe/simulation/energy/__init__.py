@@ -9,7 +9,9 @@ course     speeds, accelerations and energies along motions, in plain loops
 through    derivatives of time and energy through whole panels and many turns, in plain loops
 partly     the same on other pieces, such as those next to a standstill
 varied     its derivatives by parameters in plain loops
-by_parameters   the derivatives of inertia, torque and start of many designs, and those of their motions
+pushed     the derivatives of torque, load and limit angles of many designs by parameters
+by_parameters   those of their fields and starts, and the motions with them
+along      the derivatives of histories, ends and work
 compiled   the same, compiled, for every family of designs
 many       many designs, as histories
 """

@@ -1,4 +1,4 @@
-"""The derivatives of inertia, torque and start of many designs by parameters, and those of their motions."""
+"""Derivatives of motions by parameters: those of their fields and their start, and the compiled loops."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
@@ -6,59 +6,25 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...loads.load import Load, OverTheta, OverY
-from ...mechanism.closed.dead_centres import DEAD_CENTRES
-from ...mechanism.closed.functions import closed_form
-from ...mechanism.names import LENGTHS
-from ...support.panels import ENDS, NODES, nodes_of
-from ..result import FAILED, LIMIT
+from ...support.panels import ENDS, NODES
 from .compiled import TABLES, kernel, variations
-from .panels import Designs, Fields
+from .panels import STARTS, Designs, Fields
+from .pushed import Pushed, arcs
 
 Array = NDArray[np.float64]
-STARTS = ("theta0", "omega_start", "torque")  # parameters that are no inputs of the mechanism
-DEAD = 1e-6  # of the crank: dY/dtheta next to a dead centre, where a load that jumps does no work
 PIECE = 43  # numbers of a piece: see `follow`
 ROOM, MORE_ROOM, FULL = 64, 8, 12  # pieces of a motion; the status of `follow` without room for more
-ENERGIES = ("M_eff", "T_in", "potential_energy")
-
-
-class Arcs(NamedTuple):
-    """The slopes by a parameter of middle and half of the arc between limit angles; 0 where there is none."""
-
-    middle: Array
-    half: Array
-
-    def angle(self, sine: Array) -> Array:
-        """The slope of the crank angle at a fixed coordinate, whose sine is given."""
-        return self.middle[:, None] + self.half[:, None] * sine
-
-
-def arcs(designs: Designs, parameter: str) -> Arcs:
-    """The slopes of the arcs: at a limit ec + AB sin(theta) = BC or -BC."""
-    if parameter not in LENGTHS or not designs.half.any():
-        return Arcs(np.zeros(len(designs.theta0)), np.zeros(len(designs.theta0)))
-    ec, AB, _ = designs.lengths
-    slopes = []
-    for theta in (designs.middle - designs.half, designs.middle + designs.half):
-        side, sine = np.copysign(1.0, ec + AB * np.sin(theta)), np.sin(theta)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            moved: Array = {"ec": -np.ones_like(sine), "AB": -sine, "BC": side}[parameter]
-            slope = moved / (AB * np.cos(theta))
-        slopes.append(np.where(designs.half == 0.0, 0.0, slope))
-    return Arcs(0.5 * (slopes[0] + slopes[1]), 0.5 * (slopes[1] - slopes[0]))
+NONE = -1  # the row of a derivative that is 0
 
 
 class Derived(NamedTuple):
-    """Derivatives of fields at a fixed coordinate: rows of designs and parameters (see `varied`).
+    """Derivatives of fields at a fixed coordinate, in rows of the fields (see `varied`).
 
-    potential  energy at the start and, last, at the limit angle of each way
+    rows        a row per parameter: that of M_p, of Q_p forth and of Q_p back
+    potential   energy of designs by parameters at the start and, last, at the limit angle of each way
     """
 
-    bend: Array
-    inertia: Array
-    push: Array
-    back: Array
+    rows: NDArray[np.int64]
     jumps: Array
     begin: Array
     potential: Array
@@ -75,133 +41,75 @@ class Sensitivities(NamedTuple):
     ends: Array
 
 
-def names_of(designs: Designs) -> list[str]:
-    """The derivatives that are needed."""
-    inputs = [p for p in designs.wrt if p not in STARTS]
-    names = [f"{name}_wrt_{p}" for name in ENERGIES for p in inputs]
-    names += ["T_in_wrt_theta", "potential_energy_wrt_theta"]
-    if isinstance(designs.force, Load):
-        names += ["Y_wrt_theta_theta", *(f"Y_wrt{by}{p}" for p in LENGTHS for by in ("_", "_theta_"))]
-    return names
-
-
-class Pushed:
-    """Torque and load of designs at angles, their slopes, and what they do at their jumps."""
-
-    def __init__(self, designs: Designs, theta: Array, found: Mapping[str, Array], way: float) -> None:
-        self.designs, self.found, self.force = designs, found, designs.force
-        self.torque, self.torque_slope = np.zeros(theta.shape), np.zeros(theta.shape)
-        self.load, self.load_slope = self.torque, self.torque
-        if isinstance(designs.torque, OverTheta):
-            self.torque, self.torque_slope = (np.asarray(v) for v in designs.torque.both(theta))
-        if isinstance(self.force, OverTheta):
-            self.load, self.load_slope = (np.asarray(v) for v in self.force.both(theta))
-        elif isinstance(self.force, OverY):
-            self.motion = dict(found)
-            if self.force.centre:
-                names = self.force.centre, *(f"{self.force.centre}_wrt_{p}" for p in LENGTHS)
-                form = closed_form(DEAD_CENTRES, names, branch=float(designs.branch))
-                zeros = form.arrays(*designs.lengths)
-                self.motion |= {n: values[:, None] for n, values in zip(names, zeros, strict=True)}
-            self.load, slope = self.force.both(self.force.along(self.motion), way * found["Y_wrt_theta"])
-            self.slope = slope
-            self.load_slope = slope * self.force.moved("theta", self.motion)
-
-    def by_theta(self) -> Array:
-        """The slope of the generalised torque by the crank angle."""
-        found = self.found
-        push = self.torque_slope - found["T_in_wrt_theta"]
-        if isinstance(self.force, Load):
-            push = push + self.load_slope * found["Y_wrt_theta"] + self.load * found["Y_wrt_theta_theta"]
-        return np.asarray(push)
-
-    def by(self, parameter: str) -> Any:
-        """The slope of the generalised torque by a parameter at a fixed crank angle."""
-        if parameter in STARTS:
-            return 1.0 if parameter == "torque" else 0.0
-        found, push = self.found, -self.found[f"T_in_wrt_{parameter}"]
-        if isinstance(self.force, Load) and parameter in LENGTHS:
-            push = push + self.load * found[f"Y_wrt_theta_{parameter}"]
-            if isinstance(self.force, OverY):
-                push += self.slope * self.force.moved(parameter, self.motion) * found["Y_wrt_theta"]
-        return push
-
-    def jumps(self, parameter: str, angle: Array) -> Array:
-        """By how much the energy's slope jumps before each panel; angle: that of the crank angle."""
-        found = self.found
-        jumps = _before(self.torque)[0] * _before(angle)[1]
-        if isinstance(self.force, OverTheta):
-            jumps += _before(self.load)[0] * _before(found["Y_wrt_theta"] * angle)[1]
-        elif isinstance(self.force, OverY):
-            moved = np.zeros(angle.shape)
-            if parameter in LENGTHS:
-                moved = found[f"Y_wrt_{parameter}"] + found["Y_wrt_theta"] * angle
-                if self.force.centre:
-                    moved = moved - self.motion[f"{self.force.centre}_wrt_{parameter}"]
-            step, _ = _before(self.load)
-            _, speed = _before(found["Y_wrt_theta"])
-            dead = np.abs(speed) < DEAD * self.designs.length("AB")[:, None]
-            jumps += np.where(dead, 0.0, step * _before(moved)[1])
-        return jumps
-
-
-def _before(values: Array) -> tuple[Array, Array]:
-    """The jump of values before each panel, and the value where it begins."""
-    ends = values[:, 1:].reshape(len(values), -1, NODES) @ ENDS.T
-    return ends[..., 0] - np.roll(ends[..., 1], 1, axis=1), ends[..., 0]
-
-
-def places_of(designs: Designs, edges: Array) -> tuple[Array, Array, Any]:
-    """The coordinates of the start and of all nodes, the angles there, and their slope."""
-    x = np.empty((len(edges), 1 + NODES * (edges.shape[1] - 1)))
-    x[:, 0] = designs.coordinates(designs.theta0)
-    x[:, 1:] = nodes_of(edges[:, :-1], edges[:, 1:]).reshape(len(edges), -1)
-    theta, slope = designs.place(x)
-    if theta is not x:
-        theta[:, 0] = designs.theta0
-    return x, theta, slope
-
-
 def derived_of(designs: Designs, fields: Fields) -> Derived:
-    """The derivatives of the fields of designs."""
-    x, theta, slope = places_of(designs, fields.edges)
-    found = {**designs.values(theta), **designs.values(theta, names_of(designs))}
-    count, nodes, rocks = len(x), x.shape[1] - 1, bool(designs.half.any())
-    ways = [1.0, -1.0] if designs.turns_with_the_slider else [1.0]
-    pushed = [Pushed(designs, theta, found, way) for way in ways]
-    shape = count, len(designs.wrt), nodes
-    inertia, begin = np.empty(shape), np.empty((*shape[:2], 5))
-    push, potential = [np.empty(shape) for _ in ways], np.zeros((*shape[:2], 3))
-    jumps = np.zeros((count, 2, len(designs.wrt), nodes // NODES))
-    none, sine = np.zeros((1, nodes + 1)), np.sin(x) if rocks else x
+    """The derivatives of the fields of designs, which take the places of those at a fixed angle."""
+    known, wrt = fields.at.known, designs.wrt
+    count, panels = fields.rough.shape
+    rows, free = _rows(designs, fields), bool(designs.half.any())
+    jumps, potential = np.zeros((count, 2, len(wrt), panels)), np.zeros((count, len(wrt), 3))
+    for k, p in enumerate(wrt):
+        if p not in STARTS:
+            potential[:, k, 0] = known[f"potential_energy_wrt_{p}"][:, 0]
+        elif p == "theta0":
+            potential[:, k, 0] = known["potential_energy_wrt_theta"][:, 0]
+    begin = _begin(designs, known)
+    if free or designs.tables:
+        _to_coordinates(designs, fields, rows, jumps, potential)
+    else:
+        values = fields.at.values
+        for k, p in enumerate(wrt):
+            if p == "torque":
+                values[:, rows[k, 1]] = 1.0
+            elif p not in STARTS:
+                np.negative(values[:, rows[k, 1]], out=values[:, rows[k, 1]])
+    return Derived(rows, jumps, begin, potential)
+
+
+def _rows(designs: Designs, fields: Fields) -> NDArray[np.int64]:
+    """The rows of `Derived`; those on the way back are others where loads are tables."""
+    names, more, loaded = fields.at.names, fields.more, fields.back != 1
+    rows = np.full((len(designs.wrt), 3), NONE, np.int64)
+    for k, p in enumerate(designs.wrt):
+        if p not in STARTS:
+            rows[k] = names.index(f"M_eff_wrt_{p}"), *(names.index(f"T_in_wrt_{p}"),) * 2
+        elif p == "torque":
+            rows[k, 1:] = more + loaded * len(designs.wrt)
+        if loaded and rows[k, 1] != NONE:
+            rows[k, 2] = more + k
+    return rows
+
+
+def _to_coordinates(
+    designs: Designs, fields: Fields, rows: NDArray[np.int64], jumps: Array, potential: Array
+) -> None:
+    """Put the derivatives at a fixed coordinate, of which limit angles move, in the place of the others."""
+    known, values, slope = fields.at.known, fields.at.values, fields.at.slope
+    ways = [1.0, -1.0] if fields.back != 1 else [1.0]
+    pushed = [Pushed(designs, fields.theta, known, way) for way in ways]
+    half, middle = designs.half[:, None], np.nan_to_num(designs.middle)[:, None]
+    rocks, none = half != 0.0, np.zeros((1, 1))
     with np.errstate(divide="ignore", invalid="ignore"):
+        sine = np.where(rocks, (fields.theta - middle) / half, 0.0)
         for k, p in enumerate(designs.wrt):
-            arc, angle = arcs(designs, p), none
-            of_M = found.get(f"M_eff_wrt_{p}", none)
-            every = [of_M, *(own.by(p) + none for own in pushed)]
-            if rocks:
-                angle, share = arc.angle(sine), np.where(designs.half == 0.0, 0.0, arc.half / designs.half)
-                every[0] = (of_M + found["M_eff_wrt_theta"] * angle) * slope * slope
-                every[0] += 2.0 * fields.inertia * share[:, None]
-                for way, (own, pushes) in enumerate(zip(pushed, fields.pushes, strict=False)):
-                    every[1 + way] = (every[1 + way] + own.by_theta() * angle) * slope + pushes * share[
-                        :, None
-                    ]
-                potential[:, k, 1:] = _at_limits(found, p, angle, np.diff(fields.edges) > 0.0)
-            for column, values in zip((inertia, *push), every, strict=True):
-                column[:, k] = values[:, 1:]
-            for way, own in enumerate(pushed if designs.tables else ()):
-                jumps[:, way, k] = own.jumps(p, np.broadcast_to(angle, theta.shape))
-            begin[:, k] = _begin(designs, p, arc, x[:, 0], found).T
-            by_p, by_theta = found.get(f"potential_energy_wrt_{p}", none), found["potential_energy_wrt_theta"]
-            potential[:, k, 0] = by_p[:, 0] + by_theta[:, 0] * float(p == "theta0")
-        bend = found["M_eff_wrt_theta"]
-        if rocks:
-            turn = np.where(designs.half[:, None] == 0.0, 0.0, np.tan(x))
-            bend = bend * slope**3 - 2.0 * fields.inertia * turn
-    if len(ways) == 1:
-        jumps[:, 1] = jumps[:, 0]
-    return Derived(np.ascontiguousarray(bend), inertia, push[0], push[-1], jumps, begin, potential)
+            arc = arcs(designs, p)
+            angle, share = arc.angle(sine), np.where(rocks, arc.half[:, None] / half, 0.0)
+            if p not in STARTS and rocks.any():
+                potential[:, k, 1:] = _at_limits(known, p, angle, np.diff(fields.edges) > 0.0)
+            of_M = known.get(f"M_eff_wrt_{p}", none) + known["M_eff_wrt_theta"] * angle
+            of_Q = [
+                (own.by(p) + own.by_theta() * angle) * slope + push * share
+                for own, push in zip(pushed, fields.pushes, strict=False)
+            ]
+            for way in (0, 1) if designs.tables else ():
+                jumps[:, way, k] = pushed[way % len(ways)].jumps(p, np.broadcast_to(angle, slope.shape))
+            if rows[k, 0] != NONE:
+                values[:, rows[k, 0]] = of_M * slope * slope + 2.0 * fields.inertia * share
+            for way, own_Q in enumerate(of_Q):
+                if rows[k, 1 + way] != NONE:
+                    values[:, rows[k, 1 + way]] = own_Q
+        bend = known["M_eff_wrt_theta"]
+        turn = np.where(rocks, -half * sine / slope, 0.0)  # the slope of the slope, of the slope
+        bend[:] = np.where(rocks, bend * slope**3 + 2.0 * fields.inertia * turn, bend)
 
 
 def _at_limits(found: Mapping[str, Array], p: str, angle: Array, wide: NDArray[np.bool_]) -> Array:
@@ -215,18 +123,29 @@ def _at_limits(found: Mapping[str, Array], p: str, angle: Array, wide: NDArray[n
     return np.stack([panels[rows, first] @ ENDS[0], panels[rows, last] @ ENDS[1]], axis=1)
 
 
-def _begin(designs: Designs, p: str, arc: Arcs, x: Array, found: Mapping[str, Array]) -> Array:
-    """The rows of `begin` (see `varied`), of one parameter."""
-    half, omega = designs.half, designs.omega_start
-    theta_p, omega_p = float(p == "theta0"), float(p == "omega_start")
-    by = np.broadcast_to(found.get(f"M_eff_wrt_{p}", 0.0), found["M_eff"].shape)[:, 0]
-    of_M = by + found["M_eff_wrt_theta"][:, 0] * theta_p
-    energy = 0.5 * omega * omega * of_M + found["M_eff"][:, 0] * omega * omega_p
+def _begin(designs: Designs, known: Mapping[str, Array]) -> Array:
+    """The rows of `begin` (see `varied`), of designs and parameters."""
+    half, omega, wrt = designs.half[:, None], designs.omega_start[:, None], designs.wrt
+    theta_p, omega_p = (np.array([float(p == name) for p in wrt]) for name in STARTS[:2])
+    of_M = np.zeros((len(half), len(wrt)))
+    for k, p in enumerate(wrt):
+        if p not in STARTS:
+            of_M[:, k] = known[f"M_eff_wrt_{p}"][:, 0]
+    of_M += known["M_eff_wrt_theta"][:, :1] * theta_p
+    begin = np.zeros((*of_M.shape, 5))
+    begin[..., 2] = 0.5 * omega * omega * of_M + known["M_eff"][:, :1] * omega * omega_p
+    if not half.any():
+        begin[..., 0], begin[..., 1], begin[..., 3] = theta_p, omega_p, omega
+        return begin
+    x = designs.coordinates(designs.theta0)[:, None]
+    own = [arcs(designs, p) for p in wrt]
+    middles, halves = (np.stack([arc[part] for arc in own], axis=1) for part in (0, 1))
     slope = np.where(half == 0.0, 1.0, half * np.cos(x))
-    place = (theta_p - arc.middle - arc.half * np.sin(x)) / slope
-    steeper = arc.half * np.cos(x) - half * np.sin(x) * place
-    speed = omega / slope
-    return np.stack([place, (omega_p - steeper * speed) / slope, energy, speed, np.zeros(len(x))])
+    begin[..., 0] = (theta_p - middles - halves * np.sin(x)) / slope
+    steeper = halves * np.cos(x) - half * np.sin(x) * begin[..., 0]
+    begin[..., 3] = omega / slope
+    begin[..., 1] = (omega_p - steeper * begin[..., 3]) / slope
+    return begin
 
 
 def sensitivities_of(
@@ -238,26 +157,21 @@ def sensitivities_of(
     outs   as `follow` fills them in: the status is that of too wide panels where they are for derivatives
     last   to take derivatives as resolved, whatever they look like
     """
-    own = derived_of(designs, fields)
+    own, values = derived_of(designs, fields), fields.at.values
     count, parameters = own.begin.shape[:2]
     out, ends = np.empty((count, parameters, 3, times.size)), np.empty((count, parameters, 2))
-    scale = np.stack([np.abs(v).max(axis=2, initial=0.0) for v in (own.inertia, own.push)], axis=2)
-    if last:
-        scale[:] = np.inf
-    panels = fields.edges, fields.rough, np.ascontiguousarray(fields.inertia)
-    pushes = (np.ascontiguousarray(push) for push in fields.pushes)
-    derived = *panels, *pushes, own.bend, own.inertia, own.push, own.back, own.jumps, own.begin, scale
-    tables = bool(designs.tables)
-    how = np.array([tolerance, 2.0 if tables else 1.0, tolerance, float(tables)])
+    tables, bend = bool(designs.tables), fields.at.names.index("M_eff_wrt_theta")
+    keep = 2.0 if tables else 1.0
+    how = np.array([tolerance, keep, tolerance, tables, last, bend, fields.back], np.float64)
     left, room = [slice(0, count)], ROOM + times.size
     while left:
         rows = left.pop()
         size, (x, speeds, status, bad, numbers) = rows.stop - rows.start, (array[rows] for array in outs)
         kept, where = np.empty((size, room, PIECE)), np.empty((size, 2, times.size))
         followed = kept, np.empty((size, times.size), np.int64), where
-        begin = fields.edges[rows], fields.rough[rows], fields.values[rows], setup[rows], times, how, most
-        kernel()(*begin, *TABLES, *followed, x, speeds, status, bad, numbers)
-        given = *(array[rows] for array in derived), how, *TABLES, *followed
+        panels = fields.edges[rows], fields.rough[rows], values[rows]
+        kernel()(*panels, setup[rows], times, how, most, *TABLES, *followed, x, speeds, status, bad, numbers)
+        given = *panels, own.rows, own.jumps[rows], own.begin[rows], how, *TABLES, *followed
         variations()(*given, out[rows], ends[rows], status, bad, numbers)
         full = np.flatnonzero(status == FULL)
         if full.size:  # each alone, with more room
@@ -267,59 +181,3 @@ def sensitivities_of(
     whole = np.concatenate([ends, own.potential], axis=2)
     whole[:, :, 2] += own.begin[:, :, 2]
     return Sensitivities(out, whole)
-
-
-class Histories(NamedTuple):
-    """The derivatives of histories, of the end and of the work: designs, parameters, instants."""
-
-    theta: Array
-    omega: Array
-    t_last: Array
-    work: Array
-
-
-def histories_of(
-    designs: Designs, own: Sensitivities, x: Array, speed: Array, motion: Mapping[str, Array],
-    status: NDArray[np.int8],
-) -> Histories:  # fmt: skip
-    """The derivatives of motions whose coordinates and their rates are given.
-
-    motion   theta, omega, alpha and, at the angles, M_eff and M_eff_wrt_theta
-    """
-    place, rate, tau = (own.out[:, :, k] for k in range(3))
-    if designs.half.any():
-        theta, omega = np.empty(place.shape), np.empty(place.shape)
-        half = np.where(designs.half == 0.0, 0.0, designs.half)[:, None]
-        sine, cosine = np.sin(x), np.cos(x)
-        slope = np.where(half == 0.0, 1.0, half * cosine)
-        for k, p in enumerate(designs.wrt):
-            arc = arcs(designs, p)
-            theta[:, k] = arc.angle(sine) + slope * place[:, k]
-            moved = place[:, k] + speed * tau[:, k]
-            steeper = arc.half[:, None] * cosine - half * sine * moved
-            omega[:, k] = steeper * speed + slope * rate[:, k]
-    else:
-        theta, omega = place, rate
-    omega = omega - motion["alpha"][:, None] * tau
-    limit = status == LIMIT
-    t_last = np.where(limit[:, None], own.ends[..., 0], 0.0)
-    t_last[status == FAILED] = np.nan
-    work = _energies(designs, motion, theta[..., -1], omega[..., -1])
-    far = np.where(x[:, -1:] > 0.0, own.ends[..., 4], own.ends[..., 3])
-    work = np.where(limit[:, None], own.ends[..., 1] + far, work) - own.ends[..., 2]
-    work[status == FAILED] = np.nan
-    return Histories(theta, omega, t_last, work)
-
-
-def _energies(designs: Designs, motion: Mapping[str, Array], theta_p: Array, omega_p: Array) -> Array:
-    """The derivatives of kinetic and potential energy at the last instant."""
-    theta = np.repeat(np.nan_to_num(motion["theta"][:, -1:]), 2, axis=1)  # without an end none is read
-    found = {name: values[:, 0] for name, values in designs.values(theta, names_of(designs)).items()}
-    omega, inertia, bend = (motion[n][:, -1] for n in ("omega", "M_eff", "M_eff_wrt_theta"))
-    rows = []
-    for k, p in enumerate(designs.wrt):
-        of_M = found.get(f"M_eff_wrt_{p}", 0.0) + bend * theta_p[:, k]
-        of_V = found.get(f"potential_energy_wrt_{p}", 0.0)
-        of_V = of_V + found["potential_energy_wrt_theta"] * theta_p[:, k]
-        rows.append(inertia * omega * omega_p[:, k] + 0.5 * omega * omega * of_M + of_V)
-    return np.stack(rows, axis=1)

@@ -12,6 +12,7 @@ from ...compiler.languages.numba.module import NJIT, numba_parts
 from ...compiler.lowering import for_loops
 from ...compiler.program import Program
 from ...mechanism.constants import constants
+from ...mechanism.names import LENGTHS
 from ...runtime.modules import Native, native
 from ...support.panels import NODE, NODES, RUNNING, TO_COEFFICIENTS, WEIGHT, Array
 from ..compiled import Family, of_row
@@ -33,8 +34,8 @@ function = motions.py_func
 """
 _VARIATIONS = """row, rows, blocks = types.float64[::1], types.float64[:, ::1], types.float64[:, :, ::1]
 signature = types.void(
-    rows, rows, rows, rows, rows, rows, blocks, blocks, blocks, types.float64[:, :, :, ::1], blocks, blocks,
-    row, row, row, rows, rows, rows, blocks, types.int64[:, ::1], blocks, types.float64[:, :, :, ::1], blocks,
+    rows, rows, blocks, types.int64[:, ::1], types.float64[:, :, :, ::1], blocks, row, row, row, rows, rows,
+    rows, blocks, types.int64[:, ::1], blocks, types.float64[:, :, :, ::1], blocks,
     types.int8[::1], types.int8[:, ::1], rows
 )
 function = variations.py_func
@@ -64,10 +65,18 @@ class AtAngles(NamedTuple):
 
 
 @lru_cache(maxsize=256)
-def quantities(family: Family, loaded: bool) -> AtAngles:
-    """The loops over nodes and motions; loaded: by a table on the slider."""
+def quantities(family: Family, loaded: bool, wrt: tuple[str, ...] | None = None) -> AtAngles:
+    """The loops over nodes and motions; loaded: by a table on the slider; wrt: inputs to differentiate by."""
     fields = (*FIELDS, "Y", "Y_wrt_theta") if loaded else FIELDS
     course = (*COURSE, "Y_wrt_theta") if loaded else COURSE
+    if wrt is not None:
+        more = tuple(f"{name}_wrt_{p}" for p in wrt for name in ("M_eff", "potential_energy"))
+        more = (*more, "potential_energy_wrt_theta")
+        slopes = *(f"T_in_wrt_{p}" for p in ("theta", *wrt)), "M_eff_wrt_theta"
+        fields, course = (*fields, *more, *slopes), (*course, *more)
+        if loaded:
+            moved = (f"Y_wrt{by}{p}" for p in LENGTHS for by in ("_", "_theta_"))
+            fields = (*fields, "Y_wrt_theta_theta", *moved)
     programs = {
         which: for_loops(family.program(names, "omega", "alpha", "mu"), constants())
         for which, names in (("fields", fields), ("course", course))

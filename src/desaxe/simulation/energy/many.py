@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from ...support.panels import NODES
 from ..result import FAILED, LIMIT
-from .by_parameters import Histories, Sensitivities, histories_of, sensitivities_of
+from .along import Histories, Motion, histories_of
+from .by_parameters import Sensitivities, sensitivities_of
 from .compiled import TABLES, courses, kernel
 from .panels import Designs, Fields, fields_of, first_edges, halved
 
@@ -57,12 +58,13 @@ def follow_many(designs: Designs, times: Array, rtol: float, most: Array) -> Fou
     ended = limit | (status == FAILED)
     x[ended, -1] = numbers[ended, 1]
     theta, rate = x if by is None else x.copy(), omega.copy() if by is not None else omega
-    at, slope = designs.at_angles(theta)
+    places = designs.at_angles(theta)
+    at, slope = places.values, places.slope
     if limit.any():
         at[limit, 3:5, -1] = _at_limits(designs.some(limit), theta[limit, -1])
     if designs.tables:
-        ways = np.where(omega == 0.0, way[:, None], omega * slope)
-        designs.add_tables(at[:, 1], theta, at[:, 3], at[:, -1], ways)
+        ways, known = np.where(omega == 0.0, way[:, None], omega * slope), places.known
+        designs.add_tables(at[:, 1], theta, at[:, 3], known.get("Y_wrt_theta", theta), ways)
     omega[:, 0] = designs.omega_start
     alpha, told = np.empty(x.shape), np.empty((len(x), 4))
     courses()(theta, slope, at, designs.loads, numbers, omega, alpha, told)
@@ -70,9 +72,8 @@ def follow_many(designs: Designs, times: Array, rtol: float, most: Array) -> Fou
     found = Found(theta[:, 1:], omega[:, 1:], alpha[:, 1:], status, told)
     if by is None:
         return found
-    motion = {"theta": theta[:, 1:], "omega": omega[:, 1:], "alpha": alpha[:, 1:], "M_eff": at[:, 0, 1:]}
-    motion["M_eff_wrt_theta"] = at[:, 2, 1:]
-    return found._replace(by=histories_of(designs, by, x[:, 1:], rate[:, 1:], motion, status))
+    motion = Motion(x[:, 1:], rate[:, 1:], omega[:, 1:], alpha[:, 1:], status, places)
+    return found._replace(by=histories_of(designs, by, motion))
 
 
 def _at_limits(designs: Designs, theta: Array) -> Array:
@@ -139,7 +140,7 @@ def _tried(
         np.empty((1, times.size), np.int64),
         np.empty((1, 2, times.size)),
     )
-    panels, how = (fields.edges, fields.rough, fields.values), np.array([tolerance, 0.0])
+    panels, how = (fields.edges, fields.rough, fields.at.values), np.array([tolerance, 0.0])
     kernel()(*panels, setup, times, how, most, *TABLES, *room, *outs)
     return Marched(x, speeds, status, numbers, way), bad
 

@@ -21,6 +21,7 @@ from .compiled import at_angles, quantities, rows_of
 Array = NDArray[np.float64]
 LOST = 2.0**-53  # of an angle: its rounding, in the last terms of a series
 SAME = 1e-12  # rad: edges that are no farther apart are one
+STARTS = ("theta0", "omega_start", "torque")  # parameters that are no inputs of the mechanism
 MOST_TURNS = 4  # after which loads must repeat
 FIRST = 1.65  # times 1/tolerance^(1/16): panels of a turn, or between limit angles, that most designs need
 # All from one kernel: few compilations.
@@ -92,25 +93,26 @@ class Designs(NamedTuple):
             rows[:, column] = nan if isinstance(load, Load) else load
         return rows
 
-    def at_angles(self, x: Array, edges: Array | None = None) -> tuple[Array, Array]:
-        """The quantities of panels between edges, or of motions at coordinates, and the slopes of the angles.
+    def at_angles(self, x: Array, edges: Array | None = None, more: int = 0) -> "AtPlaces":
+        """The quantities of panels between edges, or of motions at coordinates.
 
-        x   coordinates behind the start; those of nodes are filled in; angles take their places
+        x      coordinates behind the start; those of nodes are filled in; angles take their places
+        more   so many empty rows at the end
         """
         number = 0.0 if isinstance(self.torque, Load) else self.torque
         setup = np.empty((len(x), 4))
         for column, values in enumerate((self.theta0, self.middle, self.half, number)):
             setup[:, column] = values
         family = Family(form_of(self.inputs), fixed_zeros(self.inputs))
-        own = quantities(family, isinstance(self.force, Load))
+        wrt = tuple(p for p in self.wrt if p not in STARTS) if self.wrt else None
+        own = quantities(family, isinstance(self.force, Load), wrt)
         count, names = len(x), own.course if edges is None else own.fields
         panels = np.empty((count, 0)) if edges is None else edges
-        slope, values = np.empty(x.shape), np.empty((count, len(names), x.shape[1]))
+        slope, values = np.empty(x.shape), np.empty((count, len(names) + more, x.shape[1]))
         rows = rows_of(own.inputs, self.inputs, count)
-        at_angles(own.text)(
-            rows, setup, float(self.branch), constants().limit, NODE, panels, x, slope, values
-        )
-        return values, slope
+        given = rows, setup, float(self.branch), constants().limit, NODE, panels
+        at_angles(own.text)(*given, x, slope, values)
+        return AtPlaces(names, values, slope)
 
     def length(self, name: str) -> Array:
         """A length of each design."""
@@ -150,49 +152,72 @@ class Designs(NamedTuple):
         return np.where(half == 0.0, theta, np.where(before, -quarter, quarter))
 
 
+class AtPlaces(NamedTuple):
+    """Quantities of designs at angles, a row for each, and the slopes of the angles by the coordinate.
+
+    Instead of T_in there is the torque that is left to move the crank.
+    """
+
+    names: tuple[str, ...]
+    values: Array
+    slope: Array
+
+    @property
+    def known(self) -> dict[str, Array]:
+        """The quantities by name."""
+        return {name: self.values[:, row] for row, name in enumerate(self.names)}
+
+
 class Fields(NamedTuple):
     """Edges of panels, and inertia and torque of the coordinate at the start and at all nodes.
 
-    rough    how exactly they are known: next to a limit angle a rounded angle has lost digits
-    values   of designs: rows of the inertia, the torque and, at `back`, that on the way back
+    rough   how exactly they are known: next to a limit angle a rounded angle has lost digits
+    theta   the angles
+    at      quantities there, the first two of the coordinate
+    back    the row of the torque on the way back
+    more    the first row that is free
     """
 
     edges: Array
     rough: Array
-    values: Array
+    theta: Array
+    at: AtPlaces
     back: int
+    more: int
 
     @property
     def inertia(self) -> Array:
         """The inertia of each design."""
-        return self.values[:, 0]
+        return self.at.values[:, 0]
 
     @property
     def pushes(self) -> tuple[Array, Array]:
         """The torque on both ways."""
-        return self.values[:, 1], self.values[:, self.back]
+        return self.at.values[:, 1], self.at.values[:, self.back]
 
 
 def fields_of(designs: Designs, edges: Array) -> Fields:
-    """The fields of designs on panels."""
+    """The fields of designs on panels, and of derivatives by the angle, of which some become others."""
     count, panels = len(edges), edges.shape[1] - 1
     theta = np.empty((count, 1 + NODES * panels))
-    values, slope = designs.at_angles(theta, edges)
-    rough, back = np.zeros((count, panels)), 1
+    loaded = isinstance(designs.force, Load)
+    free = len(designs.wrt) * loaded + ("torque" in designs.wrt)
+    at = designs.at_angles(theta, edges, loaded + free)
+    values, slope, known = at.values, at.slope, at.known
+    rough, more = np.zeros((count, panels)), len(at.names)
     if designs.half.any():
         rough = _rough(designs, edges)
-    if isinstance(designs.force, Load):
-        back, (Y, speed) = 2, (values[:, 2].copy(), values[:, 3])
-        values[:, 2] = values[:, 1]
-        for row, way in ((1, 1.0), (2, -1.0)):
-            more = np.zeros(theta.shape)
-            designs.add_tables(more, theta, Y, speed, way)
-            values[:, row] += more * slope
+    if loaded:
+        values[:, more] = values[:, 1]
+        for row, way in ((1, 1.0), (more, -1.0)):
+            own = np.zeros(theta.shape)
+            designs.add_tables(own, theta, known["Y"], known["Y_wrt_theta"], way)
+            values[:, row] += own * slope
     elif designs.tables:
-        more = np.zeros(theta.shape)
-        designs.add_tables(more, theta, theta, theta, 1.0)
-        values[:, 1] += more * slope
-    return Fields(edges, rough, values, back)
+        own = np.zeros(theta.shape)
+        designs.add_tables(own, theta, theta, theta, 1.0)
+        values[:, 1] += own * slope
+    return Fields(edges, rough, theta, at, more if loaded else 1, more + loaded)
 
 
 def _rough(designs: Designs, edges: Array) -> Array:

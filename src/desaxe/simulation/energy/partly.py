@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from .pieces import apart
 
 
+SHORT, STEP = 3e-6, 1e-3  # of a panel: a short piece, and a step by which Q's slope is found
+
+
 def in_order(values: Any, forwards: bool, out: Any) -> None:
     """Values at the nodes of a panel in the way of the motion."""
     apart()
@@ -42,19 +45,21 @@ def in_motion(
 
 
 def near_rest(
-    far: float, shift: float, pushed: float, nodes: Any, of_M: Any, mean: Any, M: Any, Q: Any, bend: Any,
+    head: Any, short: bool, shift: float, nodes: Any, of_M: Any, mean: Any, M: Any, Q: Any, bend: Any,
     rate: Any, out: Any,
 ) -> None:  # fmt: skip
     """dt/du L at the nodes of a piece with a standstill.
 
-    far     its length, away from there
+    short   so short that Q is a line: its differences would be rounding, and count as much as it is short
     shift   of the standstill
-    pushed  Q there; mean: of Q_p, as E/xi^2 is one of Q
+    mean    of Q_p, as E/xi^2 is one of Q
     """
     apart()
+    far, pushed, slope = head[1], head[2], head[6] * head[1] / head[0]
     for k in range(16):
         xi = 0.5 + 0.5 * nodes[k]
-        grown = far * mean[k] + shift * ((Q[k] - pushed) / (xi * xi) - Q[k])
+        steeper = slope if short else (Q[k] - pushed) / (xi * xi)
+        grown = far * mean[k] + shift * (steeper - Q[k])
         inertia = of_M[k] + bend[k] * shift * (1.0 - xi * xi)
         share = 2.0 * rate[k] * rate[k] / (far * far)
         out[k] = rate[k] * (0.5 * (inertia - grown * share) / M[k] - shift / far)
@@ -101,7 +106,7 @@ def lay_out(
     """Fill in what all parameters share: inertia, torque, M_x, dt/du in rows 0, 1, 6, 7, and `head`.
 
     head   half the panel, x_u or the length away from a standstill, Q there; where on the panel it is valid
-           that e has been, where the piece ends on it, and where the standstill is
+           that e has been, where the piece ends on it, and where the standstill is; the slope of Q there
     """
     a, span, over, kind = piece[24], piece[25], piece[26], int64(piece[5])
     head[0], head[1], head[2] = half, 0.5 * half * span, 0.0
@@ -117,6 +122,7 @@ def lay_out(
     in_order(piece[27:43], kind != 2, rows[7])
     if kind != 0:
         head[2] = at_place(series_of[1], basis[2], 2)
+        head[6] = (series(series_of[1], head[5] + STEP) - series(series_of[1], head[5] - STEP)) / (2.0 * STEP)
 
 
 def begun(kind: Any, head: Any, start: Any, series_of: Any, state: Any) -> None:
@@ -161,8 +167,9 @@ def shares(
         state[2] = -(state[1] + half * (rest - first)) / head[2]
     combined(own[1], tables[4], own[6])
     near_rest(
-        head[1], state[2], head[2], tables[0], own[0], own[6], rows[0], rows[1], rows[6], rows[7], own[7]
-    )
+        head, abs(piece[25]) < SHORT, state[2], tables[0], own[0], own[6], rows[0], rows[1], rows[6], rows[7],
+        own[7],
+    )  # fmt: skip
     in_order(own[7], kind == 1, f)
     state[1] = -head[2] * state[2] + half * (last - rest)
 

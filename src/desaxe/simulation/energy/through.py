@@ -47,16 +47,17 @@ def grown(push: Any, half: float, way: float, tables: Any, own: Any) -> None:
 
 
 def prepare_panel(
-    of_M: Any, of_Q: Any, M: Any, Q: Any, nodes: Any, half: float, way: float, scale: Any, tolerance: float,
+    fields: Any, by: Any, M: Any, Q: Any, start: Any, half: float, way: float, scale: Any, tolerance: float,
     tables: Any, work: Any,
 ) -> bool:  # fmt: skip
     """Fill in what a motion through a whole panel needs; whether M_p and Q_p are resolved on it."""
-    fine, count = True, len(of_M)
+    fine, count, side = True, len(by), 1 if way > 0.0 else 2
     grown(Q, half, way, tables, work[count])
     for k in range(16):
         work[count, 17 + k] = M[k if way > 0.0 else 15 - k]
     for p in range(count):
-        inertia, push, own = of_M[p, nodes : nodes + 16], of_Q[p, nodes : nodes + 16], work[p]
+        own = work[p]
+        inertia, push = fields[by[p, 0], start : start + 16], fields[by[p, side], start : start + 16]
         if scale[p, 1] != 0.0:
             grown(push, half, way, tables, own)
             fine = fine and tail(push, tables[2]) <= tolerance * scale[p, 1]

@@ -9,10 +9,12 @@ A piece between fixed places keeps x at u. The time until u changes by tau, that
 the integral of dt/du L; so x at a fixed time by x_p - x' tau. Where Q jumps at an edge of panels that moves
 with the parameter, e jumps. Swings that are left out are as long as the one before them.
 
-by      M_p, Q_p forth, Q_p back at a fixed x: rows of parameters at the nodes of panels
+fields  rows of M, Q and others at the start and the nodes of panels
+by      rows of parameters: the rows of M_p, Q_p forth and Q_p back at a fixed x, -1 where they are 0
 jumps   of e at the edge before each panel, forth and back
 begin   rows of parameters: x_p, x'_p, e at the place of the start, and x' there
-scale   rows of parameters: the largest M_p and Q_p
+how     as for `follow`, and: tolerance of the derivatives; 1 under tables; 1 to take all as resolved; the
+        rows of M_x and of Q back
 kept    what `follow` keeps
 out     rows of parameters at instants: x_p, x'_p + x'' tau, tau
 ends    rows of parameters: tau and e where the panels end
@@ -20,7 +22,7 @@ ends    rows of parameters: tau and e where the panels end
 
 from __future__ import annotations
 
-from math import nan, sqrt
+from math import inf, nan, sqrt
 from typing import TYPE_CHECKING
 
 from numpy import empty, int64, zeros
@@ -60,13 +62,24 @@ def keep_whole(work: Any, rows: Any, state: Any, columns: Any, f: Any, slots: An
         slots[p, 16], slots[p, 17] = state[p, 0], 0.0
 
 
+def largest(fields: Any, by: Any, whatever: bool, scale: Any) -> None:
+    """Rows of parameters: the largest M_p and Q_p, 0 for none; infinite where they count as resolved."""
+    for p in range(len(by)):
+        for k in range(2):
+            most = 0.0
+            for node in range(1, fields.shape[1] if by[p, k] >= 0 else 1):
+                most = max(most, abs(fields[by[p, k], node]))
+            scale[p, k] = inf if whatever and most > 0.0 else most
+
+
 def keep_part(
-    piece: Any, head: Any, of_M: Any, of_Q: Any, nodes: Any, scale: Any, first: bool, begin: Any, tables: Any,
+    piece: Any, head: Any, fields: Any, by: Any, start: Any, scale: Any, first: bool, begin: Any, tables: Any,
     basis: Any, rows: Any, own: Any, series_of: Any, state: Any, holds: Any, f: Any, slots: Any,
 ) -> None:  # fmt: skip
     """Go through another piece with all parameters; where it holds instants, keep the same of it."""
+    side = 1 if piece[7] > 0.0 else 2
     for p in range(len(state)):
-        inertia, push = of_M[p, nodes : nodes + 16], of_Q[p, nodes : nodes + 16]
+        inertia, push = fields[by[p, 0], start : start + 16], fields[by[p, side], start : start + 16]
         shares(piece, head, inertia, push, scale[p], tables, basis, rows, own, state[p], f)
         begin[p, 4] = 1.0 if first else 0.0
         tau = times_by(piece, head, f, begin[p], series_of, state[p], tables)
@@ -89,9 +102,8 @@ def leave_out(swings: float, stops: Any, state: Any) -> None:
 
 
 def varied(
-    edges: Any, rough: Any, M: Any, forth: Any, back: Any, bend: Any, of_M: Any, of_forth: Any, of_back: Any,
-    jumps: Any, begin: Any, scale: Any, how: Any, tables: Any, kept: Any, stored: Any, which: Any, work: Any,
-    slots: Any, at: Any, ends: Any, bad: Any,
+    edges: Any, rough: Any, fields: Any, by: Any, jumps: Any, begin: Any, how: Any, tables: Any, kept: Any,
+    stored: Any, which: Any, work: Any, slots: Any, at: Any, ends: Any, bad: Any,
 ) -> bool:  # fmt: skip
     """The derivatives on all pieces; whether those of the fields are resolved on their panels.
 
@@ -102,8 +114,10 @@ def varied(
     count, panels, fine = len(begin), len(edges) - 1, True
     rows, own, series_of, basis = empty((8, 16)), empty((10, 16)), zeros((4, 16)), empty((4, 17, 16))
     whole_turns = empty((panels, 3, 16))
-    state, head, f, known = empty((count, 3)), empty(6), empty(16), zeros((2, panels), int64)
-    lanes, stops, entry = zeros((count, 16)), zeros((count, 2)), empty(count)
+    state, head, f, known = empty((count, 3)), empty(7), empty(16), zeros((2, panels), int64)
+    lanes, stops, entry, scale = zeros((count, 16)), zeros((count, 2)), empty(count), empty((count, 2))
+    largest(fields, by, how[4] > 0.0, scale)
+    M, bend = fields[0], fields[int64(how[5])]
     row, slot, before, fastest, slow = int64(0), int64(0), int64(kept[0, 6]), 0.0, False
     for s in range(stored):
         counted, way, kind = int64(kept[s, 6]), kept[s, 7], int64(kept[s, 5])
@@ -119,17 +133,15 @@ def varied(
             before, slow = counted + int64(way) * (int64(kept[s, 0]) * panels - 1), False
             continue
         panel = counted % panels
-        start, nodes, half = 1 + 16 * panel, 16 * panel, 0.5 * (edges[panel + 1] - edges[panel])
-        Q, of_Q = forth[start : start + 16], of_forth
-        if way < 0.0:
-            Q, of_Q = back[start : start + 16], of_back
+        start, half = 1 + 16 * panel, 0.5 * (edges[panel + 1] - edges[panel])
+        Q = fields[1 if way > 0.0 else int64(how[6]), start : start + 16]
         if how[3] > 0.0:
             crossed(state, jumps[side], before, counted, way, slow)
         before, inertia = counted, M[start : start + 16]
         if known[side, panel] == 0:
             known[side, panel], least = 1, COARSER * max(how[2], rough[panel])
             if not prepare_panel(
-                of_M, of_Q, inertia, Q, nodes, half, way, scale, least, tables, work[side, panel]
+                fields, by, inertia, Q, start, half, way, scale, least, tables, work[side, panel]
             ):
                 bad[panel], fine = 1, False
         whole, holds = kind == 0 and kept[s, 25] == 2.0 * way, row < len(which) and which[row] == s
@@ -146,7 +158,7 @@ def varied(
             through(work[side, panel], rows[2], rows[3], state, lanes)
         else:
             keep_part(
-                kept[s], head, of_M, of_Q, nodes, scale, s == 0, begin, tables, basis, rows, own, series_of,
+                kept[s], head, fields, by, start, scale, s == 0, begin, tables, basis, rows, own, series_of,
                 state, holds, f, slots[slot],
             )  # fmt: skip
             if kind == 2 and kept[s, 26] == 0.0:
@@ -201,10 +213,9 @@ def instants_by(
 
 
 def variations(
-    edges: Any, rough: Any, M: Any, forth: Any, back: Any, bend: Any, of_M: Any, of_forth: Any, of_back: Any,
-    jumps: Any, begin: Any, scale: Any, how: Any, nodes: Any, weights: Any, coefficients: Any,
-    running: Any, mean: Any, kept: Any, which: Any, where: Any, out: Any, ends: Any, status: Any, bad: Any,
-    numbers: Any,
+    edges: Any, rough: Any, fields: Any, by: Any, jumps: Any, begin: Any, how: Any, nodes: Any, weights: Any,
+    coefficients: Any, running: Any, mean: Any, kept: Any, which: Any, where: Any, out: Any, ends: Any,
+    status: Any, bad: Any, numbers: Any,
 ) -> None:  # fmt: skip
     """The derivatives of every design that `motions` has followed; the status becomes 10 on wide panels."""
     tables, count, panels = (nodes, weights, coefficients, running, mean), out.shape[3], edges.shape[1] - 1
@@ -217,9 +228,8 @@ def variations(
         if status[n] >= 10 or stored == 0:
             continue
         if not varied(
-            edges[n], rough[n], M[n], forth[n], back[n], bend[n], of_M[n], of_forth[n], of_back[n], jumps[n],
-            begin[n], scale[n], how, tables, kept[n], stored, which[n, :reached], work, slots, at, ends[n],
-            bad[n],
+            edges[n], rough[n], fields[n], by, jumps[n], begin[n], how, tables, kept[n], stored,
+            which[n, :reached], work, slots, at, ends[n], bad[n],
         ):  # fmt: skip
             status[n] = 10
         elif reached > 0:
