@@ -219,7 +219,7 @@ def test_text_is_the_double_of_the_si_number(text, number):
 
 @cache
 def registry(kind=float):
-    """A registry of somebody's own, which takes half a second."""
+    """A user's registry of units, made once: it takes half a second."""
     return pint.UnitRegistry(non_int_type=kind)
 
 

@@ -402,7 +402,7 @@ int main(void) {
 
 
 def started(place, folder):
-    """How many of a thousand random presses start, under sanitizers that find nothing."""
+    """Count the random presses of a thousand that start, under sanitizers that find nothing."""
     with zipfile.ZipFile(place) as archive:
         (folder / "press.c").write_bytes(archive.read("sources/press.c"))
     (folder / "main.c").write_text(DRIVER, encoding="utf-8")
