@@ -167,7 +167,8 @@ def test_the_period_of_a_table_is_in_the_unit_of_its_angles():
 
 def test_a_load_says_the_ranges_of_both_ways():
     there_and_back = PRESS.over_Y([200, 300], [-80, 0], [0.0, 0.4], kind="linear")
-    assert repr(there_and_back) == "<load over Y: 2 points, linear, -80000 to 0 N, inward 0 to 400 N>"
+    assert repr(there_and_back) == "<load over Y: 2 points, linear, -80 to 0 kN, inward 0 to 0.4 kN>"
+    assert there_and_back.told() == "<load over Y: 2 points, linear, -80000 to 0 N, inward 0 to 400 N>"
     assert repr(dx.over_Y([0.2, 0.3], [-80, 0], kind="linear")) == "<load over Y: 2 points, linear, -80 to 0>"
 
 

@@ -50,15 +50,23 @@ def axes_text(axes: Mapping[str, Sequence[float]]) -> str:
     """`AXES`, and the function that spreads their values."""
     rows = ["# The scene's axes, the outermost first.", "AXES = {"]
     for name, values in axes.items():
-        rule = rule_of(values)
-        if rule:
-            rows.append(f'    "{name}": {rule},')
-            continue
-        rows.append(f'    "{name}": array([')
-        rows += [f"        {row}" for row in wrap(", ".join(map(repr, values)) + ",", 90)]
-        rows.append("    ]),")
+        rows += axis_rows(name, values, "    ", 90)
     text = "\n".join([*rows, "}"])
     return f"{SPACED}\n\n{text}" if "spaced(" in text else text
+
+
+def axis_rows(name: str, values: Sequence[float], indent: str, width: int) -> list[str]:
+    """The entry of an axis in a table: its rule, or its values in rows of a width."""
+    rule = rule_of(values)
+    if rule:
+        return [f'{indent}"{name}": {rule},']
+    rows = [f"{indent}    {row}" for row in number_rows(values, width)]
+    return [f'{indent}"{name}": array([', *rows, f"{indent}]),"]
+
+
+def number_rows(values: Sequence[float], width: int) -> list[str]:
+    """Numbers as rows of an array in a text."""
+    return wrap(", ".join(map(repr, values)) + ",", width)
 
 
 WITH_AXES = '''def with_axes(axes, given):

@@ -27,7 +27,7 @@ from ...peaks.programs import Search, programs_of
 from ...sweeps.peak_step import WORDS
 from ..content import Content, Peak
 from ..parts.extremes import columns_of, group_names
-from .axes import rule_of
+from .axes import axis_rows, number_rows
 from .portable import left_out
 
 ROW, ROWS = "types.float64[::1]", "types.float64[:, ::1]"
@@ -168,23 +168,16 @@ def _search_parts(search: Search, prefix: str) -> Parts:
 
 
 def _nodes_text() -> str:
-    numbers = wrap(", ".join(map(repr, graded(FINEST))) + ",", 90)
-    return NODES.format(rows="\n".join(f"    {row}" for row in numbers))
+    return NODES.format(rows="\n".join(f"    {row}" for row in number_rows(graded(FINEST), 90)))
 
 
 def _table_rows(one: Found, prefix: str) -> list[str]:
     """The row of a peak in PEAKS."""
     slots = {n: 2 + k for k, n in enumerate(one.search.parameters)}
     slopes = {f"value_wrt_{n}": slots.get(n, 0) for n in one.peak.sensitivities}
-    axes = []
+    axes: list[str] = []
     for name, values in one.peak.axes.items():
-        rule = rule_of(values)
-        if rule:
-            axes.append(f'            "{name}": {rule},')
-            continue
-        axes += [f'            "{name}": array([']
-        axes += [f"                {row}" for row in wrap(", ".join(map(repr, values)) + ",", 80)]
-        axes += ["            ]),"]
+        axes += axis_rows(name, values, " " * 12, 80)
     return [
         f'    "{one.name}": {{',
         f'        "search": {prefix}, "signature": {prefix}_signature, "kind": {KINDS.index(one.peak.kind)},',

@@ -41,7 +41,7 @@ def position_names(loads: Mapping[str, Load]) -> tuple[str, ...]:
 def loads_text(loads: Mapping[str, Load], place: Mapping[str, int]) -> str:
     """The C of the loads, or of none."""
     if not loads:
-        return _file("no_loads.c")
+        return file_text("no_loads.c")
     rows, angles, known = [], 1, position_names(loads)
     lines: list[str] = []
     for force, load in loads.items():
@@ -49,21 +49,21 @@ def loads_text(loads: Mapping[str, Load], place: Mapping[str, int]) -> str:
         over_Y = int(isinstance(load, OverY))
         centre = known.index(load.centre) if isinstance(load, OverStroke) else 0
         angles = max(angles, (4 if centre else 2) * len(places) + 4 if over_Y else len(places))
-        lines.append(_list(f"double {force}_PLACES[]", map(repr, places)))
-        lines.append(_list(f"double {force}_ROWS[][4]", map(_braces, outward)))
-        lines += [_list(f"double {force}_INWARD[][4]", map(_braces, inward))] if inward else []
-        lines.append(_list(f"int {force}_KINKS[]", map(str, [*kinks, 0])))
+        lines.append(array_text(f"double {force}_PLACES[]", map(repr, places)))
+        lines.append(array_text(f"double {force}_ROWS[][4]", map(_braces, outward)))
+        lines += [array_text(f"double {force}_INWARD[][4]", map(_braces, inward))] if inward else []
+        lines.append(array_text(f"int {force}_KINKS[]", map(str, [*kinks, 0])))
         own = f"{force}_INWARD" if inward else "NULL"
         rows.append(
             f"{{{place[force]}, {over_Y}, {centre}, {len(places)}, {len(kinks)}, {period!r}, {force}_PLACES, "
             f"{force}_ROWS, {own}, {force}_KINKS}}"
         )
-    lines.append(_list("Load LOADS[N_LOADS]", rows))
+    lines.append(array_text("Load LOADS[N_LOADS]", rows))
     turning = sum(isinstance(load, OverY) and load.inward is not None for load in loads.values())
     sizes = {"N_LOADS": len(loads), "TURNING_LOADS": turning, "N_ANGLES": angles, "N_POSITION": len(known)}
     sizes["OUTER"] = known.index("Y_outer") if "Y_outer" in known else -1
     head = "\n".join(f"#define {name} {size}" for name, size in sizes.items())
-    return f"{head}\n\n{_file('loads.c').replace('/*TABLES*/', chr(10).join(lines))}"
+    return f"{head}\n\n{file_text('loads.c').replace('/*TABLES*/', chr(10).join(lines))}"
 
 
 def _arrays(load: Load) -> tuple[float, Sequence[float], Sequence[Row], Sequence[Row], list[int]]:
@@ -85,9 +85,11 @@ def _braces(row: Row) -> str:
     return "{" + ", ".join(map(repr, row)) + "}"
 
 
-def _list(head: str, items: Iterable[str]) -> str:
+def array_text(head: str, items: Iterable[str]) -> str:
+    """A constant array of C."""
     return f"static const {head} = {{\n" + "".join(f"  {item},\n" for item in items) + "};"
 
 
-def _file(name: str) -> str:
+def file_text(name: str) -> str:
+    """The text of a file beside this one."""
     return files(__package__).joinpath(name).read_text(encoding="utf-8")

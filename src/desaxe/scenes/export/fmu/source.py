@@ -1,7 +1,6 @@
 """The C source of an FMU: the Programs as functions of one array, tables, and the files beside this one."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from importlib.resources import files
+from collections.abc import Mapping, Sequence
 
 from ....compiler.languages.c.functions import lifted, static_function
 from ....compiler.languages.c.helpers import HELPERS, PRAGMAS
@@ -12,7 +11,7 @@ from ....mechanism.constants import constants
 from ....mechanism.inputs import INPUTS
 from ....mechanism.status import PointStatus
 from ....simulation.tableau import E3, E5, STAGES, A
-from .loads import loads_text
+from .loads import array_text, file_text, loads_text
 from .programs import TORQUE, Programs
 from .variables import NOMINAL, Variables
 
@@ -33,11 +32,7 @@ def source_text(head: Sequence[str], table: Variables, made: Programs, fmi: int,
         *functions,
         "\n".join(_tables(table, made, fmi, token)) + "\n",
         loads_text(made.loads, table.place),
-        *(
-            files(__package__).joinpath(name).read_text(encoding="utf-8")
-            for name in ("model.c", "interface.c")
-        ),
-        files(__package__).joinpath(f"fmi{fmi}.c").read_text(encoding="utf-8"),
+        *map(file_text, ("model.c", "interface.c", f"fmi{fmi}.c")),
     ]
     return "\n".join(parts)
 
@@ -108,25 +103,21 @@ def _tables(table: Variables, made: Programs, fmi: int, token: str) -> list[str]
         f"#define TOKEN {quoted(token)}",
         f"typedef fmi{fmi}ValueReference Place;",
         "typedef void (*Callback)(void);",
-        _array("static const double START[N_VALUES]", [repr(row.start or 0.0) for row in table.rows]),
-        _array("static const int OUTPUTS[N_OUTPUTS + 1]", [*(str(place[n]) for n in table.outputs), "0"]),
-        _array("static const int SLOPES[N_SLOPES + 1][2]", [*slopes, "{0, 0}"]),
+        array_text("double START[N_VALUES]", [repr(row.start or 0.0) for row in table.rows]),
+        array_text("int OUTPUTS[N_OUTPUTS + 1]", [*(str(place[n]) for n in table.outputs), "0"]),
+        array_text("int SLOPES[N_SLOPES + 1][2]", [*slopes, "{0, 0}"]),
         "typedef struct {\n  int place;\n  double least;\n  const char *name, *limit;\n} Check;",
-        _array("static const Check CHECKS[N_CHECKS]", [_check(*check) for check in checks]),
-        _array("static const char *const REASONS[]", [quoted(one.words) for one in PointStatus]),
-        _array(
-            "static const double A[12][12]",
+        array_text("Check CHECKS[N_CHECKS]", [_check(*check) for check in checks]),
+        array_text("char *const REASONS[]", [quoted(one.words) for one in PointStatus]),
+        array_text(
+            "double A[12][12]",
             ["{" + ", ".join(map(repr, A[s, :12].tolist())) + "}" for s in range(1, 13)],
         ),
-        _array(f"static const double E3[{STAGES + 1}]", map(repr, E3.tolist())),
-        _array(f"static const double E5[{STAGES + 1}]", map(repr, E5.tolist())),
+        array_text(f"double E3[{STAGES + 1}]", map(repr, E3.tolist())),
+        array_text(f"double E5[{STAGES + 1}]", map(repr, E5.tolist())),
     ]
 
 
 def _check(place: int, least: float | None, name: str, limit: str) -> str:
     bound = "-(double)INFINITY" if least is None else repr(least)
     return f"{{{place}, {bound}, {quoted(name)}, {quoted(limit)}}}"
-
-
-def _array(head: str, items: Iterable[str]) -> str:
-    return f"{head} = {{\n" + "".join(f"  {item},\n" for item in items) + "};"
