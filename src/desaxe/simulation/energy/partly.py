@@ -165,7 +165,10 @@ def shares(
     rest = at_place(own[9], basis[3], 2)
     if kind == 2 or piece[26] != 0.0:
         state[2] = -(state[1] + half * (rest - first)) / head[2]
-    combined(own[1], tables[4], own[6])
+    if scale[1] != 0.0:
+        combined(own[1], tables[4], own[6])
+    else:
+        own[6, :] = 0.0
     near_rest(
         head, abs(piece[25]) < SHORT, state[2], tables[0], own[0], own[6], rows[0], rows[1], rows[6], rows[7],
         own[7],

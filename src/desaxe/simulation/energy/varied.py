@@ -68,7 +68,9 @@ def largest(fields: Any, by: Any, whatever: bool, scale: Any) -> None:
         for k in range(2):
             most = 0.0
             for node in range(1, fields.shape[1] if by[p, k] >= 0 else 1):
-                most = max(most, abs(fields[by[p, k], node]))
+                size = abs(fields[by[p, k], node])
+                if size > most:
+                    most = size
             scale[p, k] = inf if whatever and most > 0.0 else most
 
 
