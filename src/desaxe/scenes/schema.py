@@ -396,14 +396,14 @@ def _parts(value: Any, kind: Any, key: str) -> Iterator[tuple[Any, Any, str]]:
     """The parts of a table or list, each with its type and key; a list is counted from 1."""
     if isinstance(value, Mapping):
         struct = _member(kind, lambda part: isinstance(part, type) and issubclass(part, Struct))
-        table = _member(kind, lambda part: get_origin(part) is dict)
+        table = _member(kind, lambda part: _origin(part) is dict)
         hints = get_type_hints(struct, include_extras=True) if struct else {}
         for name, part in value.items():
             part_kind = hints[name] if struct else get_args(table)[1] if table else None
             if part_kind is not None:
                 yield part, part_kind, _dotted(key, name)
     elif isinstance(value, list):
-        sequence = _member(kind, lambda part: get_origin(part) is tuple)
+        sequence = _member(kind, lambda part: _origin(part) is tuple)
         kinds = get_args(sequence) if sequence else ()
         if kinds and (kinds[-1] is Ellipsis or len(kinds) == len(value)):
             for index, part in enumerate(value):
@@ -418,6 +418,11 @@ def _member(kind: Any, wanted: Any) -> Any:
     if get_origin(kind) in (Union, UnionType):
         return next((found for part in get_args(kind) if (found := _member(part, wanted))), None)
     return kind if wanted(kind) else None
+
+
+def _origin(kind: Any) -> Any:
+    """The origin of a type, as a value that a type checker takes for no type."""
+    return get_origin(kind)
 
 
 def _allowed(kind: Any) -> str:
