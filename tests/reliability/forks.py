@@ -22,6 +22,8 @@ FIRST_CALLS = {
     'I_crank=0.01, t_end=0.1, AB=0.125, BC=0.35, ec=offsets[:50])["theta"]',
     "simulate many under a function": "dx.simulate(torque=lambda t, theta, omega: 1.0 - 0.01 * omega, "
     'I_crank=0.01, t_end=0.1, AB=0.125, BC=0.35, ec=offsets[:50])["theta"]',
+    "sensitivities of many": 'dx.simulate(torque=1.0, wrt=["ec", "torque"], t_end=0.1, I_crank=0.01, '
+    'AB=0.125, BC=0.35, ec=offsets[:50])["theta_wrt_ec"]',
     "peak under a load": 'dx.peak("T_in", ec=offsets, F_Y=dx.over_theta([0.0, 2.0, 4.0], [1.0, 2.0, 1.0]), '
     'threads=2, **others)["value"]',
     "function": 'dx.function("a_C", **design)(theta)',

@@ -137,6 +137,19 @@ def calls() -> dict[str, Call]:
                 "mu",
             ),
         ),
+        "simulate sensitivities": Call(
+            dx.simulate,
+            (),
+            {
+                "torque": 1.0,
+                "t_end": 0.01,
+                "I_crank": 0.1,
+                **LENGTHS,
+                "ec": [0.0, 0.01],
+                "wrt": ["ec", "torque"],
+            },
+            ("theta0", "omega_start", "rtol", "method", "times", "derivative", "max_steps", "mu", "threads"),
+        ),
         "optimize": Call(
             dx.optimize,
             (),
@@ -337,6 +350,7 @@ def verdict_of(what: str, run: Callable[[], Any], value: Any, names: Sequence[st
             warnings.simplefilter("error")
             for kind in (dx.UnitWarning, dx.LoadWarning):  # which say what they are about
                 warnings.simplefilter("ignore", kind)
+            warnings.filterwarnings("ignore", ".* goes with the next version", DeprecationWarning)
             run()
     except _Late:
         return Verdict(HUNG, told)
