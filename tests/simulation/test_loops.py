@@ -15,9 +15,9 @@ from desaxe.simulation.energy import compiled as energy
 
 PANELS = {
     "still_at_nodes": ("0.1, 0.5, row, row, rows", {"div", "sqrt", "mul"}),
-    "integrate": ("0.0, 0.5, rows, rows, int64(4), int64(5)", {"mul", "fmuladd"}),
+    "integrate": ("0.0, 0.5, rows, int64(0), rows, int64(16), int64(17)", {"mul", "fmuladd"}),
     "slowness": ("1.0, rows", {"div", "sqrt"}),
-    "respond": ("0.1, rows", {"div", "mul"}),
+    "respond": ("0.1, rows", {"mul", "add"}),
 }
 PIECES = {
     "combined": ("row, rows, other", {"mul", "add"}),
