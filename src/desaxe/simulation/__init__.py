@@ -6,10 +6,10 @@ model         a design as functions of its state
 coordinate    the coordinate in which a motion is smooth everywhere
 equations     the equations of motion
 friction      guide friction, which depends on the acceleration that it changes
-one_design    one motion, step by step, with its events
+one_design    one motion by the integrator, step by step, with its events
 events        what happens inside a step
 many_designs  arrays of designs in one compiled call
-energy        motions with the crank angle as the independent variable
+energy        motions with the crank angle as the independent variable, where time does not enter
 each_design   arrays of designs under loads over the motion, one after the other
 stepper       the integrator of one motion
 motions       motions of designs one after the other, which numba compiles
@@ -24,7 +24,7 @@ nodes         their coefficients
 compiled      the module of a family of designs
 torque        a torque's function, compiled alone
 history       histories of angle, speed, quantities and energy
-sensitivities  derivatives of a motion by parameters
+sensitivities  derivatives of an integrated motion by parameters
 variational   the linear equations that they obey
 rubbing_slopes  the derivatives of the torque that friction takes
 work          the derivative of the work

@@ -13,13 +13,13 @@ from ..loads.load import OverY
 from ..mechanism.names import CENTRES, LENGTHS, LOADS
 from ..support.deadline import Deadline
 from ..support.progress import Portions, progress_bar
-from .energy.serves import ENERGY, INTEGRATOR, no_energy_form, tables_alone
+from .energy.serves import ENERGY, INTEGRATOR, no_energy_form, some_of, tables_alone
 from .many_designs import SAMPLES, STARTS, by_energy, designs_of, message, setup_of
 from .residual import TELLS, told_of
 from .result import NO_START, SENSITIVITIES, Simulation
 
 Array = NDArray[np.float64]
-OneDesign = Callable[[Mapping[str, Any], Mapping[str, Any], Array], Simulation]
+OneDesign = Callable[[Mapping[str, Any], Mapping[str, Any], Array, str | None], Simulation]
 
 
 def simulate_each(
@@ -35,10 +35,12 @@ def simulate_each(
     threads: int | None,
     deadline: Deadline,
     method: str | None,
+    together: bool,
 ) -> Simulation:
     """The motions in the shape of the designs, as `simulate_many` gives them.
 
-    run   simulates one design, from its inputs, its starts and the instants
+    run        simulates one design, from its inputs, its starts, the instants and the method
+    together   whether those that have an energy form are followed at once, up to the last instant
     """
     varying = {n: value for n, value in {**given, **starts}.items() if callable(value)}
     arrays = {
@@ -70,7 +72,7 @@ def simulate_each(
     def follow(row: int) -> None:
         design = {name: values[row].item() for name, values in flat.items()} | varying
         inputs = {name: design.get(name) for name in given}
-        found = run(inputs, {name: design[name] for name in starts}, t)
+        found = run(inputs, {name: design[name] for name in starts}, t, way)
         count = len(found["t"])
         for name, history in histories.items():
             history[row, :count] = found[name]
@@ -82,12 +84,15 @@ def simulate_each(
             column_of[row] = found[name]
 
     motion = [histories[name] for name in ("theta", "omega", "alpha")]
-    if (
-        method in (None, ENERGY)
+    together = (
+        together
+        and method in (None, ENERGY)
         and how[2] == np.inf
         and "mu" not in wrt
         and tables_alone(varying, arrays["mu"])
-    ):
+    )
+    way = INTEGRATOR if together else method
+    if together:
         scalars = {n: float(array) if array.ndim == 0 else array for n, array in arrays.items() if n != "mu"}
         states = np.where(status == NO_START, NO_START, -1).astype(np.int8)
         told_numbers = np.full((size, 4), np.nan)
@@ -114,7 +119,7 @@ def simulate_each(
             for name, values in evaluate(list(names), **everything).items():
                 histories[name][done] = values
         if method == ENERGY and (states < 0).any():
-            raise ValueError(no_energy_form(np.flatnonzero(states < 0), size))
+            raise ValueError(no_energy_form(some_of(np.flatnonzero(states < 0), size)))
     rows = np.flatnonzero((status != NO_START) & (ways == "")).tolist()
     with progress_bar(unit="designs") as watch:
         told = Portions(len(rows), "motions", watch)

@@ -1,6 +1,6 @@
 """Events inside a step of the integration: angles passed, standstills, kinks of friction."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from math import ceil, copysign, floor, inf
 from typing import Any, NamedTuple
@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..mechanism.spoken import named, spoken
 from ..support import roots
 from .checks import SMALL
 from .coordinate import TURN
@@ -66,14 +67,20 @@ class Samples(NamedTuple):
     y: Array
 
 
-def marks_of(model: Model, until: tuple[float, ...]) -> list[Mark]:
+def angles_of(model: Model, until: Sequence[float]) -> list[Mark]:
+    """The angles that end a motion, and the dead centres."""
+    centres = model.dead_centres().items()
+    return [
+        *(Mark("angle", angle, status=DONE) for angle in until),
+        *(Mark("dead centre", angle, which, TURN) for which, angle in centres),
+    ]
+
+
+def marks_of(model: Model, until: Sequence[float]) -> list[Mark]:
     """All angles to watch for."""
-    marks = [Mark("angle", angle, status=DONE) for angle in until]
-    vanishing = model.vanishing()
-    for which, angle in model.dead_centres().items():
-        marks.append(Mark("dead centre", angle, which, TURN))
-        if which in vanishing:  # its two sides, so near that nothing is lost
-            marks += [Mark("no inertia", angle + s * SMALL, which, TURN, NO_INERTIA) for s in (-1.0, 1.0)]
+    marks = angles_of(model, until)
+    for which, angle in model.vanishing().items():  # its two sides, so near that nothing is lost
+        marks += [Mark("no inertia", angle + s * SMALL, which, TURN, NO_INERTIA) for s in (-1.0, 1.0)]
     first, last = model.coordinate.first, model.coordinate.last
     if first > -inf:
         marks += [Mark("limit", first, "first", status=LIMIT), Mark("limit", last, "last", status=LIMIT)]
@@ -185,3 +192,36 @@ def root(function: Callable[..., float], a: float, b: float, *more: float) -> fl
     if at_a * at_b >= 0.0:
         return a if abs(at_a) < abs(at_b) else b
     return roots.root(lambda t: function(t, *more), a, b)
+
+
+# ---- in words -------------------------------------------------------------------------------------
+
+
+def time_of(t: float) -> str:
+    """An instant with its unit."""
+    return spoken("t", t, ".6g", says_unit=True)
+
+
+def angle_of(theta: float) -> str:
+    """A crank angle with its unit."""
+    return spoken("theta", theta, ".6g", says_unit=True)
+
+
+def words_of(mark: Mark, t: float) -> str:
+    """The message of a motion that ends at a mark."""
+    if mark.status == DONE:
+        return f"reached the angle {angle_of(mark.angle)} at t = {time_of(t)}"
+    if mark.status == LIMIT:
+        told = f"reached the limit angle {angle_of(mark.angle)} (S = 0) at t = {time_of(t)}"
+        return f"{told}: beyond it there is no mechanism, or, at a change point, either branch"
+    return (
+        f"the effective inertia vanishes at the {mark.which} dead centre: without m_crank and I_crank the "
+        f"crank has no speed there (M_eff -> 0); stopped {angle_of(SMALL)} before it at t = {time_of(t)}"
+    )
+
+
+def failure(t: float, theta: float, omega: float, reason: str) -> str:
+    """The message of a motion that could not be followed to its end."""
+    speed = spoken("omega", omega, ".6g")
+    where = f"at t = {time_of(t)}, {named('theta', theta, '.6g')}, omega = {speed}"
+    return f"the integration failed {where}: {reason}"

@@ -1,6 +1,6 @@
 """From the pieces of a motion to its histories: angle, speed, acceleration, quantities, energy."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import copysign, nan
 from typing import Any, NamedTuple
 
@@ -20,24 +20,56 @@ Array = NDArray[np.float64]
 SAMPLES = 1001  # instants of the histories by default
 
 
-def result_of(run: Run, names: Sequence[str], times: Any, given: Mapping[str, Any]) -> Simulation:
-    """The result of a motion."""
-    t = np.linspace(0.0, run.t, SAMPLES) if times is None else times[times <= run.t]
-    theta, omega, alpha = _histories(run, t)
-    result = Simulation(t=t, theta=theta, omega=omega, alpha=alpha)
+class Ended(NamedTuple):
+    """The facts of a motion besides its histories.
+
+    residual, rounded   the energy residual, and that of rounding alone
+    states              angle and speed at instants
+    """
+
+    t: float
+    status: int
+    message: str
+    events: list[Event]
+    method: str
+    rtol: float
+    residual: float
+    rounded: float
+    work: float
+    states: Callable[[Array], tuple[Array, Array]]
+
+
+def result_of(
+    t: Array, histories: Sequence[Array], ended: Ended, names: Sequence[str], given: Mapping[str, Any]
+) -> Simulation:
+    """The result of a motion; histories: angle, speed and acceleration; given: its inputs, for `names`."""
+    motion: dict[str, Any] = dict(zip(("theta", "omega", "alpha"), histories, strict=True))
+    result = Simulation({"t": t, **motion})
     if names:
-        loads = {name: _along(given[name], t, theta, omega) for name in ("F_X", "F_Y") if name in given}
-        result |= evaluate(list(names), theta=theta, omega=omega, alpha=alpha, **{**given, **loads})
-    result["events"] = run.events
-    result["status"], result["message"] = run.status, run.message
+        result |= evaluate(list(names), **motion, **given)
+    told = told_of(ended.residual, ended.rounded, ended.rtol, ended.method)
+    return Simulation(
+        result, events=ended.events, status=ended.status, message=ended.message + told,
+        energy_residual=ended.residual, work=ended.work, t_last=ended.t, method=ended.method,
+        solution=Solution(ended.states, ended.t),
+    )  # fmt: skip
+
+
+def instants_of(times: Any, end: float) -> Array:
+    """The instants of histories, up to the end of a motion."""
+    return np.asarray(np.linspace(0.0, end, SAMPLES) if times is None else times[times <= end])
+
+
+def integrated(run: Run, names: Sequence[str], times: Any, given: Mapping[str, Any]) -> Simulation:
+    """The result of a motion of the integrator."""
+    t = instants_of(times, run.t)
+    motion = Motion(run.model, run.pieces, run.events, run.status, run.t)
+    theta, omega, alpha = motion.histories(t)
+    loads = {name: _along(given[name], t, theta, omega) for name in ("F_X", "F_Y") if name in given}
     accepted = run.accepted[:-1] if run.status == LIMIT else run.accepted  # there Y has half its digits
-    residual, rounded = energy_residual(run.model, accepted)
-    result["energy_residual"] = residual
-    result["message"] += told_of(residual, rounded, run.tolerance.rtol, run.tolerance.method)
-    result["work"], result["t_last"] = float(run.y[W]), run.t
-    result["method"] = run.tolerance.method
-    result["solution"] = Solution(run)
-    return result
+    residual, how = energy_residual(run.model, accepted), run.tolerance
+    told = run.t, run.status, run.message, run.events, how.method, how.rtol, *residual, float(run.y[W])
+    return result_of(t, (theta, omega, alpha), Ended(*told, motion.states), names, {**given, **loads})
 
 
 class Motion(NamedTuple):
@@ -49,42 +81,46 @@ class Motion(NamedTuple):
     status: int
     t: float
 
+    def histories(self, t: Array, without_alpha: bool = False) -> tuple[Array, Array, Array]:
+        """Angle, speed and acceleration at many instants."""
+        theta, omega, alpha = (np.full(t.shape, nan) for _ in range(3))
+        which = np.searchsorted([piece.stop for piece in self.pieces[:-1]], t)
+        for number in sorted(set(which.tolist())):
+            piece = self.pieces[number]
+            rows = np.flatnonzero(which == number)
+            for row, (q, v, _) in zip(rows.tolist(), piece.state(t[rows]).T.tolist(), strict=True):
+                state = state_of(self.model, q, v)
+                theta[row], omega[row] = state.theta, state.omega
+                if not without_alpha:
+                    alpha[row] = _acceleration(piece.law, float(t[row]), state)
+        if self.events and self.events[-1].t == self.t and self.status != FAILED:
+            _set_end(self, t, theta, omega, alpha)
+        return theta, omega, alpha
+
+    def states(self, t: Array) -> tuple[Array, Array]:
+        """Angle and speed at many instants."""
+        theta, omega, _ = self.histories(t, without_alpha=True)
+        return theta, omega
+
 
 class Solution:
     """The motion at any instant: callable t [s] -> dict of theta [rad] and omega [rad/s]."""
 
-    def __init__(self, run: Run) -> None:
-        self.run = Motion(run.model, run.pieces, run.events, run.status, run.t)
+    def __init__(self, states: Callable[[Array], tuple[Array, Array]], t_last: float) -> None:
+        self.states, self.t_last = states, t_last
 
     def __call__(self, t: Any) -> dict[str, Any]:
         """Angle and speed; t may be an array."""
         instants = np.asarray(t, dtype=np.float64)
-        if not ((instants >= 0.0) & (instants <= self.run.t)).all():
-            raise ValueError(f"solution: t must be from 0 to {self.run.t:.17g}, where the motion ends")
-        theta, omega, _ = _histories(self.run, instants.reshape(-1), without_alpha=True)
+        if not ((instants >= 0.0) & (instants <= self.t_last)).all():
+            raise ValueError(f"solution: t must be from 0 to {self.t_last:.17g}, where the motion ends")
+        theta, omega = self.states(instants.reshape(-1))
         if not instants.ndim:
             return {"theta": float(theta[0]), "omega": float(omega[0])}
         return {"theta": theta.reshape(instants.shape), "omega": omega.reshape(instants.shape)}
 
     def __repr__(self) -> str:
-        return f"solution(t) -> theta, omega; t from 0 to {self.run.t:.6g} s"
-
-
-def _histories(run: Run | Motion, t: Array, without_alpha: bool = False) -> tuple[Array, Array, Array]:
-    """Angle, speed and acceleration at many instants."""
-    theta, omega, alpha = (np.full(t.shape, nan) for _ in range(3))
-    which = np.searchsorted([piece.stop for piece in run.pieces[:-1]], t)
-    for number in sorted(set(which.tolist())):
-        piece = run.pieces[number]
-        rows = np.flatnonzero(which == number)
-        for row, (q, v, _) in zip(rows.tolist(), piece.state(t[rows]).T.tolist(), strict=True):
-            state = state_of(run.model, q, v)
-            theta[row], omega[row] = state.theta, state.omega
-            if not without_alpha:
-                alpha[row] = _acceleration(piece.law, float(t[row]), state)
-    if run.events and run.events[-1].t == run.t and run.status != FAILED:
-        _set_end(run, t, theta, omega, alpha)
-    return theta, omega, alpha
+        return f"solution(t) -> theta, omega; t from 0 to {self.t_last:.6g} s"
 
 
 def _acceleration(law: Law, t: float, state: State) -> float:
@@ -93,7 +129,7 @@ def _acceleration(law: Law, t: float, state: State) -> float:
     return law.alpha(t, state.theta, -0.0) if alpha < 0.0 and not state.omega else alpha
 
 
-def _set_end(run: Run | Motion, t: Array, theta: Array, omega: Array, alpha: Array) -> None:
+def _set_end(run: Motion, t: Array, theta: Array, omega: Array, alpha: Array) -> None:
     """Set the end of the histories to the event that ends the motion, not to the interpolant.
 
     At a limit angle itself M_eff is infinite: there theta'' = -half sin(q) q'^2. What rests

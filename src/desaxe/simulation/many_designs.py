@@ -25,7 +25,7 @@ from .compiled import Family, kernel_of
 from .coordinate import TURN, arc_around, inside
 from .energy.many import NOT_HERE, follow_many
 from .energy.panels import Designs
-from .energy.serves import ENERGY, INTEGRATOR, PANELS, no_energy_form, served
+from .energy.serves import ENERGY, INTEGRATOR, PANELS, no_energy_form, served, some_of
 from .model import fixed_zeros, form_of
 from .residual import told_of
 from .result import DONE, FAILED, NO_START, WORDS, Simulation
@@ -90,7 +90,7 @@ def simulate_many(
         by_energy(designs_of(scalars, flat, setup, branch), t, limits, outs, threads, deadline)
         ways[(status >= 0) & (status != NO_START)] = ENERGY
         if method == ENERGY and (status < 0).any():
-            raise ValueError(no_energy_form(np.flatnonzero(status < 0), status.size))
+            raise ValueError(no_energy_form(some_of(np.flatnonzero(status < 0), status.size)))
     left = np.flatnonzero(status < 0)
     if left.size:
         own = tuple(out[left] for out in outs)

@@ -7,10 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanism.spoken import named, spoken
 from ..support.deadline import Deadline
 from ..support.extras import needed
-from .checks import LEAST_RTOL, SMALL
+from .checks import LEAST_RTOL
 from .coordinate import TURN
 from .equations import Law, Resting, Smooth, State, state_of
 from .events import (
@@ -25,13 +24,17 @@ from .events import (
     Q,
     Step,
     V,
+    angle_of,
     events_in,
+    failure,
     marks_of,
     root,
+    time_of,
+    words_of,
 )
 from .friction import Contact, Rubbing, breaks_away, contact, hold, side_ahead, ways_to_start
 from .model import Model
-from .result import DONE, FAILED, JAMS, LIMIT, REST, Event
+from .result import DONE, FAILED, JAMS, REST, Event
 from .stepper import Dop853
 
 Array = NDArray[np.float64]
@@ -190,7 +193,7 @@ class Run:
         state = self.state
         which = "no forces balance" if solutions == 0 else "two sets of forces balance"
         self.tell(JAMMED.kind, state, which)
-        where = f"at t = {_time(self.t)}, theta = {_angle(state.theta)}"
+        where = f"at t = {time_of(self.t)}, theta = {angle_of(state.theta)}"
         self.stop(JAMS, f"the friction jams {where}: {which}")
 
     # ---- at rest --------------------------------------------------------------------------------
@@ -212,13 +215,13 @@ class Run:
         """Wait for the torque or load to break the crank away."""
         start, self.next_step = self.t, None
         if self.model.drive.steady:
-            self.stop(REST, f"at rest from t = {_time(start)} on: the torque cannot move the crank there")
+            self.stop(REST, f"at rest from t = {time_of(start)} on: the torque cannot move the crank there")
             return
         moves = breaks_away(self.model, theta, branch, start, self.t_end)
         self.t = self.t_end if moves is None else moves
         self._keep_still(start)
         if moves is None:
-            self.stop(DONE, f"reached t_end = {_time(self.t_end)}, at rest from t = {_time(start)} on")
+            self.stop(DONE, f"reached t_end = {time_of(self.t_end)}, at rest from t = {time_of(start)} on")
         else:
             self.tell("break-away", self.state)
 
@@ -267,7 +270,7 @@ class Run:
                 return
             self._accept(Piece(step.t, step.end, step.inside, law), solver.y.copy())
             self.left = inf
-        self.stop(DONE, f"reached t_end = {_time(self.t_end)}")
+        self.stop(DONE, f"reached t_end = {time_of(self.t_end)}")
 
     def _accept(self, piece: Piece, y: Array) -> None:
         self.pieces.append(piece)
@@ -285,9 +288,7 @@ class Run:
             if mark.kind == "limit" and abs(mark.angle - state.theta) < AT_LIMIT:
                 self._tell_end(Found(self.t, mark, Q, float(self.y[Q])))
                 return
-        speed = spoken("omega", state.omega, ".6g")
-        where = f"at t = {_time(self.t)}, {named('theta', state.theta, '.6g')}, omega = {speed}"
-        self.stop(FAILED, f"the integration failed {where}: {reason}")
+        self.stop(FAILED, failure(self.t, state.theta, state.omega, reason))
 
     def _meet_all(self, step: Step) -> bool:
         """Record the events of a step; return True if one of them cuts the motion."""
@@ -354,7 +355,7 @@ class Run:
         limit = mark.kind == "limit"
         self._tell_of(found, State(mark.angle, self._speed_at_limit(), 1.0) if limit else self.state)
         if mark.status != NEVER:
-            self.stop(mark.status, _words(mark, found.t))
+            self.stop(mark.status, words_of(mark, found.t))
 
     def _chatters(self) -> bool:
         """True if the crank chatters at standstill, due to a torque that jumps with the sign of its speed."""
@@ -364,7 +365,7 @@ class Run:
             return False
         self.stop(
             FAILED,
-            f"the crank chatters at standstill from t = {_time(last[0].t)} on: torque or load jumps where "
+            f"the crank chatters at standstill from t = {time_of(last[0].t)} on: torque or load jumps where "
             "omega changes its sign; let it change over a small range of omega",
         )
         return True
@@ -412,23 +413,3 @@ class Run:
             solver.step()
         y: Array = solver.y.copy()
         return y
-
-
-def _time(t: float) -> str:
-    return spoken("t", t, ".6g", says_unit=True)
-
-
-def _angle(theta: float) -> str:
-    return spoken("theta", theta, ".6g", says_unit=True)
-
-
-def _words(mark: Mark, t: float) -> str:
-    if mark.status == DONE:
-        return f"reached the angle {_angle(mark.angle)} at t = {_time(t)}"
-    if mark.status == LIMIT:
-        told = f"reached the limit angle {_angle(mark.angle)} (S = 0) at t = {_time(t)}"
-        return f"{told}: beyond it there is no mechanism, or, at a change point, either branch"
-    return (
-        f"the effective inertia vanishes at the {mark.which} dead centre: without m_crank and I_crank the "
-        f"crank has no speed there (M_eff -> 0); stopped {_angle(SMALL)} before it at t = {_time(t)}"
-    )

@@ -29,9 +29,11 @@ from .checks import (
     scalar,
 )
 from .each_design import simulate_each
-from .energy.serves import ENERGY, INTEGRATOR, PANELS, refuse
+from .energy.alone import result_alone
+from .energy.motion import design_of, motion_of
+from .energy.serves import ENERGY, INTEGRATOR, PANELS, no_energy_form, refuse, tables_alone
 from .held import Held
-from .history import result_of
+from .history import instants_of, integrated
 from .many_designs import is_array, simulate_many
 from .model import Load, Model
 from .one_design import Run, Tolerance
@@ -93,10 +95,10 @@ def simulate(
                  atol of a step, for the angle [rad], sqrt(kinetic energy) and work, is by default rtol times
                  0.03 rad (by SciPy 0.001) and a hundredth of the energy that start and loads suggest
     method       "energy": the crank angle is the independent variable, energy and time are integrals over it;
-                 the default for many designs where torque and loads are numbers or tables. "panels": the same
-                 with the torque found by iteration, while a crank that turns fully is not near rest; the
-                 default for many designs under a function. Else DOP853, the default for all other motions, or
-                 by SciPy (extra `simulate`) RK45, RK23, Radau, BDF, LSODA
+                 the default where torque and loads are numbers or tables, without friction. "panels": so, the
+                 torque found by iteration, while a crank that turns fully is not near rest; the default for
+                 many designs under a function. Else DOP853, the default for all other motions, or by SciPy
+                 (extra `simulate`) RK45, RK23, Radau, BDF, LSODA
     times        instants of the histories [s]; by default 1001 from start to end
     until        crank angle or angles [rad]: the first that is reached ends the motion
     wrt          parameters by which the motion is differentiated: inputs of the mechanism that are numbers,
@@ -104,7 +106,7 @@ def simulate(
     derivative   for wrt, of a torque that is a function: one of the same arguments that returns dT/dtheta
                  and dT/domega; and dT/dt, without which the instants of "break-away" have no derivative
     max_step     longest step [s] of an integrator, for loads that act briefly
-    max_steps    more steps than this are a failure
+    max_steps    more steps than this, in the energy form pieces of panels, are a failure
     timeout      seconds of computing, None for no limit: then one motion ends with status 4 and what there is
                  of it, and many designs with a TimeoutError
     threads      for many designs: how many threads share them, all there are without
@@ -163,10 +165,8 @@ def simulate(
     slopes = Slopes(torque, derivative) if by else None
     several = any(map(is_array, (*given.values(), *starts.values())))
     if method == ENERGY:
-        options = {"max_step": max_step is not None, "atol": atol is not None, "until": bool(angles)}
+        options = {"max_step=": max_step is not None, "atol=": atol is not None, "wrt = 'mu'": "mu" in by}
         refuse({"torque": torque, "F_X": F_X, "F_Y": F_Y}, given["mu"], options)
-        if "mu" in by or not several:
-            raise ValueError("method = 'energy': it is for many designs, and not for wrt = 'mu'")
     elif method == PANELS and (by or not several):
         raise ValueError("method = 'panels': it is for many designs, without wrt=")
     if several:
@@ -178,18 +178,20 @@ def simulate(
                     "method = 'panels': it is for loads that are numbers, without mu, until=, wrt="
                 )
 
-            def one(inputs: Mapping[str, Any], begin: Mapping[str, Any], t: Any) -> Simulation:
+            def one(
+                inputs: Mapping[str, Any], begin: Mapping[str, Any], t: Any, way: str | None
+            ) -> Simulation:
                 deadline.check()
                 return simulate(
                     **inputs, **begin, t_end=end, names=wanted, branch=branch, rtol=rtol, times=t,
                     max_step=None if longest == inf else longest, max_steps=max_steps,
-                    timeout=deadline.left(), wrt=by, derivative=derivative, until=angles or None,
+                    timeout=deadline.left(), wrt=by, derivative=derivative, until=angles or None, method=way,
                 )  # fmt: skip
 
             how = (rtol, end, longest, max_steps)
-            way = INTEGRATOR if angles else method
+            ways = method, not angles
             return simulate_each(
-                one, given, starts, int(branch), wanted, by, instants, end, how, threads, deadline, way
+                one, given, starts, int(branch), wanted, by, instants, end, how, threads, deadline, *ways
             )
         how = (rtol, end, longest, max_steps)
         return simulate_many(given, starts, int(branch), wanted, instants, how, threads, deadline, method)
@@ -197,6 +199,20 @@ def simulate(
     drive = drive_of(torque, given["F_X"], given["F_Y"], deadline)
     values = design_values(given)
     model = model_of(values, int(branch), start[0], drive)
+    known: dict[str, Any] = {**values, "branch": int(branch)}
+    loads = {name: value for name in ("F_X", "F_Y") if callable(value := given[name])}
+    tables = tables_alone({**loads, **({"torque": torque} if callable(torque) else {})}, model.mu)
+    if method in (None, ENERGY) and tables and longest == inf and atol is None and "mu" not in by:
+        pushes = torque if callable(torque) else drive.torque(0.0, *start)
+        designs = design_of(values, model, pushes, loads.get("F_Y", values["F_Y"]), start)
+        asked = np.append(instants_of(instants, end), end)
+        motion = motion_of(model, designs._replace(wrt=by), angles, asked, rtol, max_steps, deadline)
+        how_told = wanted, instants, {**known, **loads}
+        result = None if motion is None else result_alone(motion, *how_told)
+        if result is not None:
+            return result
+    if method == ENERGY:
+        raise ValueError(no_energy_form("this design has"))
     energy = energy_scale(model, *start, end)
     size = np.array([1.0, sqrt(energy), energy])
     by_method = read_method(method or INTEGRATOR)
@@ -205,14 +221,14 @@ def simulate(
     run = Run(model, np.array([model.coordinate.q(start[0]), v, 0.0]), end, angles, tolerance, deadline)
     with np.errstate(all="ignore"):  # values beyond every double end the motion with a status
         run.to_the_end()
-    shown = {**values, "branch": branch, "F_X": drive.F_X, "F_Y": drive.F_Y}
-    result = result_of(run, wanted, instants, shown)
+    result = integrated(run, wanted, instants, {**known, "F_X": drive.F_X, "F_Y": drive.F_Y})
     if slopes is not None:
         with IMPORTS:
             from .sensitivities import add_sensitivities
 
-        held = {name: load.load for name in ("F_X", "F_Y") if isinstance(load := shown[name], Held)}
-        add_sensitivities(result, run, by, {**values, "branch": int(branch), **held}, slopes)
+        own = {"F_X": drive.F_X, "F_Y": drive.F_Y}
+        held = {name: load.load for name, load in own.items() if isinstance(load, Held)}
+        add_sensitivities(result, run, by, {**known, **held}, slopes)
     return result
 
 

@@ -3,6 +3,9 @@
 serves     where it serves
 panels     inertia and torque of designs at the nodes of panels
 at_angles  quantities of many designs at angles, in plain loops
+motion     the motion of one design up to its end, with its events
+path       the pieces of that motion: when it passes angles and stands still
+alone      the result of one design, with the derivatives of its events, end and work
 pieces     a piece of a motion between two kinks or standstills
 follow     one motion in plain loops: energy and time as integrals over panels
 course     speeds, accelerations and energies along motions, in plain loops

@@ -64,9 +64,8 @@ class AtAngles(NamedTuple):
     course: tuple[str, ...]
 
 
-@lru_cache(maxsize=256)
-def quantities(family: Family, loaded: bool, wrt: tuple[str, ...] | None = None) -> AtAngles:
-    """The loops over nodes and motions; loaded: by a table on the slider; wrt: inputs to differentiate by."""
+def names_of(loaded: bool, wrt: tuple[str, ...] | None) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The quantities at nodes and along motions; loaded: by a table on the slider; wrt: inputs."""
     fields = (*FIELDS, "Y", "Y_wrt_theta") if loaded else FIELDS
     course = (*COURSE, "Y_wrt_theta") if loaded else COURSE
     if wrt is not None:
@@ -77,6 +76,13 @@ def quantities(family: Family, loaded: bool, wrt: tuple[str, ...] | None = None)
         if loaded:
             moved = (f"Y_wrt{by}{p}" for p in LENGTHS for by in ("_", "_theta_"))
             fields = (*fields, "Y_wrt_theta_theta", *moved)
+    return fields, course
+
+
+@lru_cache(maxsize=256)
+def quantities(family: Family, loaded: bool, wrt: tuple[str, ...] | None = None) -> AtAngles:
+    """The loops over nodes and motions: see `names_of`."""
+    fields, course = names_of(loaded, wrt)
     programs = {
         which: for_loops(family.program(names, "omega", "alpha", "mu"), constants())
         for which, names in (("fields", fields), ("course", course))

@@ -14,7 +14,7 @@ method. A piece whose series has not ended is cut.
 rough    how exactly M and Q are known on each panel, as a share of them
 setup    a row per design: E0, number of the edge at the start, way (-1 or 1), period or 0, 1 where Q does
          not depend on the way, the row of Q back
-how      tolerance; 1 to keep all that happens, 2 with the series of every piece
+how      tolerance; 1 to keep all that happens, 2 with the series of every piece, 3 with every turn and swing
 most     pieces: an array of one, which another thread may set to 0
 tables   nodes; weights; columns by which values become Legendre coefficients, running integrals, and means
          of 2 s f(s) from 0 to xi
@@ -56,6 +56,7 @@ if TYPE_CHECKING:
 
 SLOW = 0.1  # of the energy at one end of a piece: so little at the other may be next to one
 NEAR = 0.01  # of a piece: next to it
+SAME = 1e-13  # of half a panel: a standstill so little beyond its end is there
 CLOSE = 1e-7  # of u: the step of Newton's method after this one is rounding
 
 
@@ -147,7 +148,7 @@ def follow(
                 side = int64(0) if way > 0.0 else int64(1)
                 t, energy = whole_turn(edges, M, work[side], energy, way, t, tables, rows)
                 turn, pieces, largest, turns = turn + way, pieces + panels, max(largest, energy), turns + 1.0
-            smooth, began, proven = True, t, energy
+            smooth, began, proven = how[1] != 3.0, t, energy
             if how[1] > 0.0 and turns > 0.0:
                 if stored >= len(kept):
                     return 12
@@ -228,6 +229,7 @@ def follow(
                 continue
             if few and last and final < first and out <= -NEAR * half * series(q, way) * span:
                 near = rest_near(q, half, out, way)
+                near = 0.0 if abs(near) < SAME else near
                 top = put(parts, top, a, span + near, 2.0, near)
                 continue
             scale = half * abs(span) * (0.5 if kind == 0 else 1.0)
@@ -280,7 +282,7 @@ def follow(
         rest, inside = stopped, stopped
         if stopped:
             swing, last_stop = t - last_stop, t
-            if setup[4] > 0.0 and swing > 0.0:
+            if setup[4] > 0.0 and how[1] != 3.0 and swing > 0.0:
                 swings = 2.0 * max(floor((times[row] - t) / (2.0 * swing)), 0.0)
                 if how[1] > 0.0 and swings > 0.0:
                     if stored >= len(kept):

@@ -46,12 +46,16 @@ class Marched(NamedTuple):
     by: Sensitivities | None = None
 
 
-def follow_many(designs: Designs, times: Array, rtol: float, most: Array) -> Found:
+def follow_many(
+    designs: Designs, times: Array, rtol: float, most: Array, kept: Array | None = None
+) -> Found:  # fmt: skip
     """The motions up to the last instant. Status NOT_HERE: the energy form does not serve.
 
     most   pieces of a motion: an array, which another thread may set to 0
+    kept   of one design, without wrt: room for all of its pieces, as `follow` keeps them; if it is too
+           little, status 12
     """
-    x, omega, status, numbers, way, by = _marched(designs, times, rtol, most)
+    x, omega, status, numbers, way, by = _marched(designs, times, rtol, most, kept)
     if (status >= TOO_WIDE).all():
         return Found(x[:, 1:], omega[:, 1:], omega[:, 1:], status, numbers[:, :4])
     limit = status == LIMIT
@@ -90,18 +94,20 @@ def _at_limits(designs: Designs, theta: Array) -> Array:
     return np.stack([Y, energy[:, 0] + by_Y * (Y - known[:, 0])], axis=1)
 
 
-def _marched(designs: Designs, times: Array, rtol: float, most: Array) -> Marched:
+def _marched(
+    designs: Designs, times: Array, rtol: float, most: Array, kept: Array | None
+) -> Marched:  # fmt: skip
     """The motions in their coordinates; designs whose panels are too wide again, on halves of them."""
     tolerance = min(max(rtol, FINEST), COARSEST)
     edges = first_edges(designs, tolerance)
-    found, bad = _tried(designs, edges, times, tolerance, most, False)
+    found, bad = _tried(designs, edges, times, tolerance, most, kept, False)
     rows = np.flatnonzero(found.status == TOO_WIDE)
     edges, bad = edges[rows], bad[rows]
     for halving in range(ROUNDS):
         if not rows.size:
             return found
         part, edges = designs.some(rows), halved(edges, bad)
-        answer, bad = _tried(part, edges, times, tolerance, most, halving >= RESOLVED)
+        answer, bad = _tried(part, edges, times, tolerance, most, kept, halving >= RESOLVED)
         found.x[rows], found.speed[rows] = answer.x, answer.speed
         found.status[rows], found.numbers[rows] = answer.status, answer.numbers
         for own, values in zip(found.by or (), answer.by or (), strict=True):
@@ -113,8 +119,9 @@ def _marched(designs: Designs, times: Array, rtol: float, most: Array) -> Marche
 
 
 def _tried(
-    designs: Designs, edges: Array, times: Array, tolerance: float, most: Array, last: bool
-) -> tuple[Marched, NDArray[np.int8]]:
+    designs: Designs, edges: Array, times: Array, tolerance: float, most: Array, kept: Array | None,
+    last: bool,
+) -> tuple[Marched, NDArray[np.int8]]:  # fmt: skip
     """The motions on panels between these edges, and the panels that are too wide.
 
     last   to take derivatives by parameters as resolved
@@ -135,12 +142,11 @@ def _tried(
     if designs.wrt:
         by = sensitivities_of(designs, fields, setup, times, tolerance, most, outs, last)
         return Marched(x, speeds, status, numbers, way, by), bad
-    room = (
-        np.empty((1, times.size + 1, PIECE)),
-        np.empty((1, times.size), np.int64),
-        np.empty((1, 2, times.size)),
-    )
+    pieces = np.empty((times.size + 1, PIECE)) if kept is None else kept
+    pieces[:, 0] = np.nan  # of a row without a piece
+    room = pieces[None], np.empty((1, times.size), np.int64), np.empty((1, 2, times.size))
     panels, how = (fields.edges, fields.rough, fields.at.values), np.array([tolerance, 0.0])
+    how[1] = 0.0 if kept is None else 3.0
     kernel()(*panels, setup, times, how, most, *TABLES, *room, *outs)
     return Marched(x, speeds, status, numbers, way), bad
 

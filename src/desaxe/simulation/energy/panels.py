@@ -1,6 +1,7 @@
 """Inertia and torque of many designs at the nodes of panels, over the coordinate of their motion."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from math import ceil, nan, pi
 from typing import Any, NamedTuple
 
@@ -12,11 +13,11 @@ from ...loads.angles import meeting_angles, turns_of, zero_of
 from ...loads.load import TURN, Load, OverTheta, OverY
 from ...mechanism.constants import constants
 from ...mechanism.names import LENGTHS
-from ...runtime.compiled_only import compiled_only
-from ...support.panels import NODE, NODES, padded
+from ...runtime.compiled_only import compiled_only, is_uncompiled
+from ...support.panels import NODE, NODES, nodes_of, padded
 from ..compiled import Family
 from ..model import fixed_zeros, form_of
-from .compiled import at_angles, quantities, rows_of
+from .compiled import at_angles, names_of, quantities, rows_of
 
 Array = NDArray[np.float64]
 LOST = 2.0**-53  # of an angle: its rounding, in the last terms of a series
@@ -99,20 +100,40 @@ class Designs(NamedTuple):
         x      coordinates behind the start; those of nodes are filled in; angles take their places
         more   so many empty rows at the end
         """
+        wrt = tuple(p for p in self.wrt if p not in STARTS) if self.wrt else None
+        loaded = isinstance(self.force, Load)
+        names = names_of(loaded, wrt)[edges is None]
+        slope, values = np.empty(x.shape), np.empty((len(x), len(names) + more, x.shape[1]))
+        if is_uncompiled():
+            self._by_arrays(names, edges, x, slope, values)
+            return AtPlaces(names, values, slope)
         number = 0.0 if isinstance(self.torque, Load) else self.torque
         setup = np.empty((len(x), 4))
-        for column, values in enumerate((self.theta0, self.middle, self.half, number)):
-            setup[:, column] = values
+        for column, own_values in enumerate((self.theta0, self.middle, self.half, number)):
+            setup[:, column] = own_values
         family = Family(form_of(self.inputs), fixed_zeros(self.inputs))
-        wrt = tuple(p for p in self.wrt if p not in STARTS) if self.wrt else None
-        own = quantities(family, isinstance(self.force, Load), wrt)
-        count, names = len(x), own.course if edges is None else own.fields
-        panels = np.empty((count, 0)) if edges is None else edges
-        slope, values = np.empty(x.shape), np.empty((count, len(names) + more, x.shape[1]))
-        rows = rows_of(own.inputs, self.inputs, count)
+        own = quantities(family, loaded, wrt)
+        panels = np.empty((len(x), 0)) if edges is None else edges
+        rows = rows_of(own.inputs, self.inputs, len(x))
         given = rows, setup, float(self.branch), constants().limit, NODE, panels
         at_angles(own.text)(*given, x, slope, values)
         return AtPlaces(names, values, slope)
+
+    def _by_arrays(
+        self, names: Sequence[str], edges: Array | None, x: Array, slope: Array, values: Array
+    ) -> None:
+        """Fill in the same by NumPy, for one design: nothing is compiled for a family of designs."""
+        if edges is not None:
+            x[:, 1:] = nodes_of(edges[:, :-1], edges[:, 1:]).reshape(len(x), -1)
+        x[:, 1:], slope[:, 1:] = self.place(x[:, 1:])
+        x[:, 0], slope[:, 0] = self.theta0, 1.0
+        found = self.values(x, names)
+        for row, name in enumerate(names):
+            values[:, row] = found[name]
+        values[:, 1] = (0.0 if isinstance(self.torque, Load) else self.torque[:, None]) - values[:, 1]
+        if edges is not None:
+            values[:, 0] *= slope * slope
+            values[:, 1] *= slope
 
     def length(self, name: str) -> Array:
         """A length of each design."""
@@ -121,14 +142,15 @@ class Designs(NamedTuple):
     def values(self, theta: Array, names: Sequence[str] = ()) -> dict[str, Array]:
         """The quantities of the designs at rest, each at angles of its own, which are two or more.
 
-        Always by the same kernel: no digit hangs on the other designs.
+        Always by the same kernel: no digit hangs on the other designs; one that is alone by NumPy.
         """
         inputs = {name: v if isinstance(v, float) else v[:, None] for name, v in self.inputs.items()}
-        if len(theta) == 1:  # of one row alone its inputs would be numbers of another kernel
+        alone = is_uncompiled()
+        if len(theta) == 1 and not alone:  # of one row its inputs would be numbers of another kernel
             inputs = {n: v if isinstance(v, float) else np.repeat(v, 2, axis=0) for n, v in inputs.items()}
             theta = np.repeat(theta, 2, axis=0)
         state: dict[str, Any] = {"theta": theta, "omega": 0.0, "alpha": 0.0, **inputs}
-        with compiled_only():
+        with nullcontext() if alone else compiled_only():
             known = [*QUANTITIES, "Y_wrt_theta"] if isinstance(self.force, Load) else list(QUANTITIES)
             found = evaluate(list(names) or known, branch=self.branch, threads=1, **state)
         return {name: values[: len(self.theta0)] for name, values in found.items()}

@@ -49,17 +49,21 @@ def refuse(varying: Mapping[str, Any], mu: Any, options: Mapping[str, bool]) -> 
     if not tables_alone({n: v for n, v in varying.items() if callable(v)}, mu):
         _refuse(f"the loads do not repeat after {MOST_TURNS} turns")
     if given:
-        _refuse(f"{given[0]}= is for an integrator")
+        _refuse(f"{given[0]} is for an integrator")
 
 
 def _refuse(why: str) -> None:
     raise ValueError(f"method = 'energy': {why}; without method= the integrator follows")
 
 
-def no_energy_form(rows: Any, count: int) -> str:
+def no_energy_form(designs: str) -> str:
     """The message for designs that the energy form has given up."""
     return (
-        f"method = 'energy': {rows.size} of {count} designs, the first of them number {rows[0]}, have no "
-        "energy form that ends: they approach an equilibrium, have no inertia at some angle, or a limit "
-        "angle without mass on rod or slider"
+        f"method = 'energy': {designs} no energy form that ends: an equilibrium that is approached, no "
+        "inertia at some angle, or a limit angle without mass on rod or slider"
     )
+
+
+def some_of(rows: Any, count: int) -> str:
+    """Designs among many, in words."""
+    return f"{rows.size} of {count} designs, the first of them number {rows[0]}, have"
