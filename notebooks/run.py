@@ -6,8 +6,11 @@ Needs the extra `notebooks`: python -m pip install "desaxe[notebooks]".
 import sys
 from pathlib import Path
 
-import nbformat
-from nbclient import NotebookClient
+try:
+    import nbformat
+    from nbclient import NotebookClient
+except ModuleNotFoundError as error:
+    sys.exit(f'{error}: python -m pip install "desaxe[notebooks]", in a clone -e ".[notebooks]"')
 
 FOLDER = Path(__file__).parent
 

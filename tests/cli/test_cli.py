@@ -154,6 +154,11 @@ COMPLAINTS = {
         ["point", "a_C", "rod=3"],
         "no input is called 'rod', did you mean BC? There are",
     ),
+    "blanks around the sign": (
+        ["point", "a_C", "theta", "=", "60deg"],
+        "=: an input and its value are one word, such as theta=60deg",
+    ),
+    "no value": (["point", "a_C", "theta="], "theta=: an input and its value are one word"),
     "a unit apart": (
         ["point", "a_C", "ec=10", "mm"],
         "ec=10 mm: a value and its unit are one word, ec=10mm or",
@@ -411,6 +416,7 @@ def test_a_bare_install_says_what_to_install(words, module, told):
 def test_doctor(capsys):
     assert main(["doctor"]) == 0
     out = capsys.readouterr().out
+    assert f"place        {Path(dx.__file__).parent}\n" in out
     assert max(len(line) for line in out.splitlines() if "/" not in line) <= 100
     for word in ("numba", "llvmlite", "xarray", "folder", "threads", "freshness", "vectorised", "sin, cos"):
         assert f"\n  {word} " in out

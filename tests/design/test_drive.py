@@ -161,6 +161,7 @@ def test_the_flywheel_of_flywheel():
     found = dx.drive(fluctuation=0.02, **PRESS)
     with pytest.warns(DeprecationWarning, match="drive"):
         assert found["flywheel_inertia"] == dx.flywheel(fluctuation=0.02, **PRESS)["inertia"]
+    assert dx.drive(fluctuation="2 %", **PRESS) == found
     heavy = dx.drive(fluctuation=0.02, **PRESS, I_crank=100.0)
     assert heavy["flywheel_inertia"] == 0.0
     assert set(heavy["gradient"]["flywheel_inertia"].values()) == {0.0}
@@ -220,6 +221,9 @@ def test_status():
     [
         ({"fluctuation": 0}, ValueError, "fluctuation = 0"),
         ({"fluctuation": 2.5}, ValueError, "fluctuation = 2.5"),
+        ({"fluctuation": "250 %"}, ValueError, "fluctuation = '250 %': it must be a number above 0"),
+        ({"fluctuation": "2 mm"}, ValueError, "fluctuation = '2 mm'"),
+        ({"fluctuation": [0.1]}, ValueError, "fluctuation = "),
         ({"omega0": 0.0}, ValueError, "omega0 = 0"),
         ({"omega0": None}, TypeError, "omega0 is missing"),
         ({"AB": [0.1, 0.2]}, TypeError, r"AB = \[0.1, 0.2\]: drive expects one number"),

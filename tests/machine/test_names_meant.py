@@ -15,6 +15,8 @@ PRESS = dx.Machine(ec=0.01, AB=0.05, BC=0.2, m_slider=4.0)
         ("mslider", "did you mean m_slider?"),
         ("eccentricity", "did you mean ec?"),
         ("mcrank", "did you mean m_crank, which is not given?"),
+        ("stroke", "it is a quantity, which machine.evaluate('stroke') gives"),
+        ("omega", "did you mean omega, which is not given?"),
         ("zzz", "it has ec, AB, BC, m_slider"),
     ],
 )
@@ -31,6 +33,8 @@ def test_an_input(name, words):
     [
         ("evalute", "; did you mean evaluate?"),
         ("AB", "; its inputs are machine['AB'] and so on"),
+        ("stroke", "; it is a quantity, which machine.evaluate('stroke') gives"),
+        ("T_in", "; it is a quantity, which machine.evaluate('T_in', theta=...) gives"),
         ("qqqq", ""),
     ],
 )

@@ -8,6 +8,7 @@ import warnings
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from matplotlib.figure import Figure
 
@@ -291,6 +292,8 @@ def test_units_of_a_scene_that_are_none():
         ({"AB": 0.125, "units": "mm"}, 'AB = 0.125 mm, write AB = "0.125 m"'),
         ({"g_Y": -9.81, "units": "mm"}, '"-9.81 m/s^2"'),
         ({"mu": 12}, "write mu = 0.12"),
+        ({"BC": "300"}, 'BC = 300 m, write BC = "300 mm"'),
+        ({"AB": " 0.125", "units": "mm"}, 'AB = 0.125 mm, write AB = "0.125 m"'),
     ],
 )
 def test_slips_of_a_machine(inputs, words):
@@ -454,3 +457,30 @@ def test_a_bad_number_is_told_in_the_units_it_was_given_in():
         machine.evaluate("V_C", theta=float("nan"))
     with pytest.raises(ValueError, match=r"^mu = -1: it must be"):
         machine.replace(mu=-1)
+
+
+def test_a_list_where_one_number_is_wanted_is_told_in_the_units_of_the_machine():
+    machine = dx.Machine(units="mm, deg, rpm", ec=10, AB=40, BC=164, omega0=60, m_slider=3)
+    with pytest.raises(TypeError, match=r"^ec = \(0, 15\) mm: drive expects one number"):
+        machine.drive(ec=[0, 15])
+
+
+@pytest.mark.parametrize("kind", [np.array, lambda texts: np.array(texts, dtype=object)])
+def test_an_array_of_texts_is_in_the_units_that_they_name(kind):
+    machine = dx.Machine(units="mm, deg, rpm", ec=10, AB=40, BC=164, omega0=60)
+    wanted = machine.evaluate("V_C", theta=[0.0, 60.0, 90.0])
+    found = machine.evaluate("V_C", theta=kind(["0 deg", f"{math.pi / 3!r} rad", "90"]))
+    np.testing.assert_allclose(found, wanted, rtol=1e-13)
+    with pytest.raises(TypeError, match=r"^theta: expected real numbers, got an array of object"):
+        machine.evaluate("V_C", theta=pd.Series(["0 deg", "90"]))
+
+
+def test_a_unit_in_wrong_letters_is_asked_about():
+    with pytest.raises(ValueError, match="'KN' is not a known unit; did you mean kN\\? expected units"):
+        dx.Machine(AB=75, BC=300, units="mm, KN")
+
+
+def test_a_result_is_no_name_of_a_tornado():
+    machine = dx.Machine(ec=0.01, AB=0.05, BC=0.2)
+    with pytest.raises(TypeError, match=r"got a dict; a result is drawn by desaxe\.plot\.tornado"):
+        machine.plot.tornado({"value": 1.0})

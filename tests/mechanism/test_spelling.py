@@ -32,6 +32,8 @@ CALLS = {
         ("evaluate", "eccentricity", "ec"),
         ("evaluate", "ab", "AB"),
         ("evaluate", "speed", "omega0"),
+        ("evaluate", "n", "omega0"),
+        ("evaluate", "m", "m_slider"),
         ("evaluate", "Theta", "theta"),
         ("evaluate", "acuracy", "accuracy"),
         ("grid", "eccentricity", "ec"),

@@ -67,7 +67,7 @@ def examine() -> Examination:
     """Examine the installation; problems are reported, never raised."""
     loop_lines, usable = _loops()
     parts = {
-        "desaxe": [_row("version", _version("desaxe")), _row("place", str(Path(__file__).parent))],
+        "desaxe": [_row("version", _version("desaxe")), _row("place", str(Path(__file__).parents[1]))],
         "runtime": [_row("python", _python()), *(_row(name, _version(name)) for name in RUNTIME)],
         "optional": [_row(name, _optional(name)) for name in OPTIONAL],
         "kernels on disk": _cache(),

@@ -60,7 +60,7 @@ def _point(options: argparse.Namespace) -> int:
 
     names, inputs = names_and_inputs(options.words)
     values: dict[str, Any] = evaluate(names, **inputs)
-    warn_of_slips({name: _plain_number(text) for name, text in inputs.items()})
+    warn_of_slips(inputs)
     rows = {name: quantity(name, "omega" in inputs) for name in names}
     status = _status(values, inputs)
     worth = _qualities(names, inputs) if options.quality else {}
@@ -84,14 +84,6 @@ def _point(options: argparse.Namespace) -> int:
         for parameter, condition in its.conditions.items():
             print(f"  1 % of {parameter:8} changes it by {condition:.3g} %")
     return 0
-
-
-def _plain_number(text: Any) -> Any:
-    """The number of a text without a unit; any other text as it is."""
-    try:
-        return float(text)
-    except ValueError:
-        return text
 
 
 def _qualities(names: list[str], inputs: dict[str, Any]) -> dict[str, Any]:

@@ -22,6 +22,8 @@ def names_and_inputs(words: Sequence[str]) -> tuple[list[str], dict[str, Any]]:
         if not equals:
             _refuse_parted(before, word)
             names += [name for name in word.split(",") if name]
+        elif not (key and value):
+            raise UsageError(f"{word}: an input and its value are one word, such as theta=60deg")
         elif key == "branch":
             inputs[key] = _branch(value)
         elif key not in INPUTS:

@@ -51,6 +51,9 @@ def converted(system: UnitSystem, name: str, value: Any) -> Any:
     if isinstance(value, (tuple, list)):
         parts = [converted(system, name, part) for part in value]
         return type(value)(*parts) if hasattr(value, "_fields") else type(value)(parts)
+    if getattr(getattr(value, "dtype", None), "kind", "") in "OUT" and hasattr(value, "tolist"):
+        # a Series keeps its index: of texts it is refused by its reader, which names the input
+        return value if hasattr(value, "iloc") else converted(system, name, value.tolist())
     if callable(value):
         return settled(name, value, system)
     if "units" in getattr(value, "attrs", {}):

@@ -32,6 +32,8 @@ class NoInputError(KeyError):
 
     def __str__(self) -> str:
         name, machine = self.args
+        if told := _as_quantity(name):
+            return f"a machine has no input {name!r}; {told}"
         near = _meant(name, machine) or _meant(name, INPUTS)
         given = "" if near in machine else ", which is not given"
         hint = f"did you mean {near}{given}?" if near else f"it has {', '.join(machine)}"
@@ -42,9 +44,25 @@ class NoAttributeError(AttributeError):
     """A machine has no such method; the message names the nearest one."""
 
     def __str__(self) -> str:
+        if told := _as_quantity(self.name):
+            return f"a machine has no method {self.name!r}; {told}"
         near = _meant(self.name, (name for name in dir(self.obj) if name[0] != "_"))
         there = f"; its inputs are machine[{self.name!r}] and so on" if self.name in INPUTS else ""
         return f"a machine has no method {self.name!r}" + (f"; did you mean {near}?" if near else there)
+
+
+def _as_quantity(name: Any) -> str:
+    """How to get a quantity that was taken for an input or a method; empty for any other name."""
+    with IMPORTS:
+        from ..mechanism.catalogue import has
+
+    if not isinstance(name, str) or name in INPUTS or not has(name):
+        return ""
+    with IMPORTS:
+        from ..mechanism.program import program_of
+
+    at = ", theta=..." if "theta" in program_of((name,)).inputs else ""
+    return f"it is a quantity, which machine.evaluate({name!r}{at}) gives"
 
 
 def _meant(word: Any, allowed: Iterable[str]) -> str:

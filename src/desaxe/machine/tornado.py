@@ -26,6 +26,11 @@ def tornado(
     machine: Any, name: str, changes: Mapping[str, Any] | None, kind: str, ax: Any, inputs: Mapping[str, Any]
 ) -> plot.Picture:
     """Draw what changes do to a peak, to the value at an angle, or to a quantity of the whole design."""
+    if not isinstance(name, str):
+        raise TypeError(
+            f"plot.tornado: expected the name of a quantity, got a {type(name).__name__}; a result is drawn "
+            "by desaxe.plot.tornado(result, changes)"
+        )
     others = dict(inputs)
     theta = others.pop("theta", None)
     values, spread = _split(machine.units, others)

@@ -34,7 +34,7 @@ def read(row: Input, value: Any, caller: str, expected: str = "a number") -> flo
     """The number in the row's unit; TypeError that says what the caller expects for anything else."""
     number = number_of(row, value)
     if number is None:
-        raise TypeError(f"{row.name} = {shown(value)}: {caller} expects {expected}")
+        raise TypeError(f"{named(row.name, value)}: {caller} expects {expected}")
     return number
 
 

@@ -11,6 +11,7 @@ from math import isclose, pi
 from types import MappingProxyType
 from typing import Any
 
+from ..support.quantity_text import plain_number
 from .ranges import Between, PlusMinus
 from .unit_system import SI, UnitSystem
 
@@ -106,7 +107,8 @@ def _alone(written: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 
 
 def slip(name: str, value: Any, units: UnitSystem = SI) -> str:
-    """The warning about a number that is almost surely a slip; empty for texts, arrays, plausible numbers."""
+    """The warning about a number, or a text without a unit, that is almost surely a slip; else empty."""
+    value = plain_number(value) if isinstance(value, str) else value
     if (
         isinstance(value, bool)
         or not isinstance(value, (int, float))

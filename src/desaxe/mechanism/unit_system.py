@@ -8,7 +8,7 @@ length that is named, per second; a quantity may have a unit of its own. A sensi
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from math import isfinite
@@ -234,19 +234,24 @@ def _dimension_of(unit: str) -> str:
             _si_of(name, unit, si)
         except ValueError as error:
             if "unknown unit" in str(error) or "it must be a number" in str(error):
+                meant = _meant(unit, DIMENSIONS.values())
                 raise ValueError(
-                    f'units: {shown(unit)} is not a known unit; expected units such as "mm, deg, rpm"'
+                    f'units: {shown(unit)} is not a known unit; {meant}expected units such as "mm, deg, rpm"'
                 ) from None
         else:
             fitting.append(name)
-    others = (si for name, si in DIMENSIONS.items() if name not in fitting)
-    meant = "".join(did_you_mean_unit(unit, si) for si in others)
+    meant = _meant(unit, (si for name, si in DIMENSIONS.items() if name not in fitting))
     if meant:  # kn is a knot
         raise ValueError(f"units: {shown(unit)}: {meant}".rstrip())
     if not fitting:
         raise ValueError(f"units: {shown(unit)} is none of {', '.join(DIMENSIONS)}")
     product = re.search(r"[^\W\d_][ *.·][^\W\d_]", unit) is not None
     return fitting[-1] if len(fitting) > 1 and not product else fitting[0]
+
+
+def _meant(unit: str, dimensions: Iterable[str]) -> str:
+    """The question for the unit of these dimensions, by their SI units, whose letters it has; else empty."""
+    return "".join(dict.fromkeys(did_you_mean_unit(unit, si) for si in dimensions))
 
 
 def _si_of(name: str, unit: str, si: str) -> Fraction:

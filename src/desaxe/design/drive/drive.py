@@ -6,7 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from ...mechanism.inputs import Input
 from ...mechanism.keywords import with_known_keywords
+from ...mechanism.read import number_of
 from ...peaks.peak import peak
 from ...runtime.request import as_number
 from ...support.panels import Array, Panels
@@ -16,7 +18,9 @@ from .inertia import flywheel_for
 from .result import FIGURES, Drive
 
 STALLED = 3
-LEAST_FLUCTUATION = 1e-9
+FLUCTUATION = Input(
+    "fluctuation", "1", "", 1e-9, "a number above 0, at least 1e-09, and below 2, where the crank stops"
+)
 SAME = 1e-9  # of an extreme value
 DIFFERENTIATED = tuple(name for name in FIGURES if not name.startswith("theta_"))
 
@@ -25,7 +29,8 @@ DIFFERENTIATED = tuple(name for name in FIGURES if not name.startswith("theta_")
 def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, **inputs: Any) -> Drive:
     """Torque, power, work, flywheel and starting torque that one turn of a design requires.
 
-    fluctuation  (fastest - slowest)/mean speed that a flywheel is to keep under a constant torque
+    fluctuation  (fastest - slowest)/mean speed that a flywheel is to keep under a constant torque: 0.1 or
+                 "10 %"
     reverse      True: the starting torque is that for either way of turning
     inputs       of one design with masses and loads, as in `evaluate`. omega0 is the speed of the crank; with
                  alpha it is that at theta = 0, and the turn is the first one. F_X and F_Y may vary
@@ -64,7 +69,7 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
         >>> [round(found[name], 3) for name in ("torque_mean", "torque_peak", "flywheel_inertia")]
         [0.323, 26.468, 1.845]
     """
-    check_fluctuation(fluctuation)
+    required = fluctuation_of(fluctuation)
     design = design_of("drive", inputs, branch)
     status = _status(design)
     found: dict[str, Any] = dict.fromkeys(FIGURES, nan)
@@ -74,7 +79,7 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
         if status in (0, 2):
             _over_a_turn(design, found, slopes, course)
             if "alpha" not in design.numbers:
-                _flywheel(design, float(fluctuation), found, slopes, course)
+                _flywheel(design, required, found, slopes, course)
             _starting(design, reverse, found, slopes)
     except NoCycleError as error:
         status, course = error.status, {}
@@ -85,7 +90,7 @@ def drive(*, fluctuation: float = 0.03, reverse: bool = False, branch: int = 1, 
             gradient.update(dict.fromkeys(lost, nan))
     figures = {name: float(value) for name, value in found.items()}
     gradients = {name: {by: float(slope) for by, slope in own.items()} for name, own in slopes.items()}
-    about = {"fluctuation": float(fluctuation), "gradient": gradients, "status": status}
+    about = {"fluctuation": required, "gradient": gradients, "status": status}
     return Drive({**figures, **about}, {**design.numbers, **design.loads}, design.branch, course)
 
 
@@ -99,15 +104,12 @@ def design_of(caller: str, inputs: Mapping[str, Any], branch: int) -> Turn:
     return design
 
 
-def check_fluctuation(fluctuation: Any) -> None:
-    """ValueError for a fluctuation of speed that no flywheel keeps."""
-    if isinstance(fluctuation, bool) or not (
-        isinstance(fluctuation, (int, float)) and LEAST_FLUCTUATION <= fluctuation < 2.0
-    ):
-        raise ValueError(
-            f"fluctuation = {shown(fluctuation)}: a number above 0, at least {LEAST_FLUCTUATION:g}, "
-            "and below 2, where the crank stops"
-        )
+def fluctuation_of(given: Any) -> float:
+    """A fluctuation of speed that a flywheel can keep, 0.1 or "10 %"; ValueError for any other."""
+    number = number_of(FLUCTUATION, given)
+    if number is None or number >= 2.0:
+        raise ValueError(f"fluctuation = {shown(given)}: it must be {FLUCTUATION.limit}")
+    return number
 
 
 def _status(design: Turn) -> int:

@@ -8,7 +8,7 @@ from ...peaks.peak import peak
 from ...support.answer import Answer
 from ...support.deprecation import deprecated
 from ..turn.turn import cannot_turn
-from .drive import check_fluctuation, design_of
+from .drive import design_of, fluctuation_of
 from .inertia import flywheel_for
 
 
@@ -36,7 +36,7 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
     Raises as `drive` does, and ValueError where the crank cannot turn fully or friction jams.
     """
     deprecated("flywheel(...)", "drive(fluctuation=...)")
-    check_fluctuation(fluctuation)
+    required = fluctuation_of(fluctuation)
     design = design_of("flywheel", inputs, branch)
     if design.margin < 0.0:
         raise cannot_turn("flywheel", design)
@@ -47,9 +47,9 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
     energy = over.extreme(stored, 1.0)[0] - over.extreme(stored, -1.0)[0]
     given: dict[str, Any] = {**design.numbers, **design.loads, "branch": design.branch, "theta": design.ends}
     high, low = (peak("T_in", kind=kind, **given) for kind in ("max", "min"))
-    wheel = flywheel_for(design, float(fluctuation))
+    wheel = flywheel_for(design, required)
     if wheel is None:
-        raise ValueError(f"flywheel: no inertia was found for fluctuation = {fluctuation:g}")
+        raise ValueError(f"flywheel: no inertia was found for fluctuation = {required:g}")
     found = {
         "mean_torque": mean,
         "max_torque": high["value"],
@@ -59,7 +59,7 @@ def flywheel(*, fluctuation: float, branch: int = 1, **inputs: Any) -> dict[str,
         "ripple": high["value"] - low["value"],
         "energy_fluctuation": energy,
         "inertia": wheel.inertia,
-        "inertia_first_order": energy / (fluctuation * design.numbers["omega0"] ** 2),
+        "inertia_first_order": energy / (required * design.numbers["omega0"] ** 2),
         "fluctuation_without": wheel.without,
         "theta_fastest": wheel.fastest % design.angle,
         "theta_slowest": wheel.slowest % design.angle,
