@@ -52,7 +52,7 @@ class NoAttributeError(AttributeError):
 
 
 def _as_quantity(name: Any) -> str:
-    """How to get a quantity that was taken for an input or a method; empty for any other name."""
+    """The hint for a quantity that was taken for an input or a method; empty for any other name."""
     with IMPORTS:
         from ..mechanism.catalogue import has
 
