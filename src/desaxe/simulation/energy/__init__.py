@@ -2,6 +2,7 @@
 
 serves     where it serves
 panels     inertia and torque of designs at the nodes of panels
+instants   where motions are at instants, in plain loops
 at_angles  quantities of many designs at angles, in plain loops
 motion     the motion of one design up to its end, with its events
 path       the pieces of that motion: when it passes angles and stands still

@@ -19,7 +19,7 @@ from ..compiled import Family, of_row
 
 FILES = tuple(
     Path(__file__).with_name(name)
-    for name in ("follow.py", "pieces.py", "varied.py", "partly.py", "through.py")
+    for name in ("follow.py", "instants.py", "pieces.py", "varied.py", "partly.py", "through.py")
 )
 OWN = tuple(Path(__file__).with_name(name) for name in ("at_angles.py", "course.py"))
 FIELDS = ("M_eff", "T_in")
