@@ -1,4 +1,4 @@
-"""Where motions are at instants, in plain loops: times on a piece are series of u, by Newton's method."""
+"""The places of motions at instants, in plain loops: times on a piece, series of u, by Newton's method."""
 
 from __future__ import annotations
 
