@@ -14,7 +14,6 @@ from desaxe.mechanism.names import parts
 from desaxe.mechanism.status import TABLES
 from desaxe.scenes import schema
 from desaxe.scenes.explain.explain import Plan
-from desaxe.scenes.reading.needs import SECTIONS
 from desaxe.scenes.scene import Scene, SceneResult
 from desaxe.simulation.result import Event, Simulation
 
@@ -106,9 +105,9 @@ def _verbatim(text):
 
 def scene():
     """The keys of a scene file, from the types that check it."""
-    top = _keys(schema.SceneFile, leave=(*SECTIONS, "check", "peak", "picture", "results", "quantities"))
+    top = _keys(schema.SceneFile, leave=(*schema.SECTIONS, "check", "peak", "picture", "results", "quantities"))
     tables = [
-        *((f"[{name}]", table) for name, table in SECTIONS.items()),
+        *((f"[{name}]", table) for name, table in schema.SECTIONS.items()),
         ("[[check]]", schema.CheckTable), ("[[peak]]", schema.PeakTable),
         ("[[peak.claim]]", schema.ClaimTable), ("[[picture]]", schema.PictureTable),
         ("[results]", schema.Results), ("[quantities.NAME]", schema.QuantityTable),

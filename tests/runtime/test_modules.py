@@ -59,7 +59,7 @@ def test_the_same_bits_without_numba(kept):
     assert numba == "True"
     files = {path.suffix for path in folder.iterdir()}
     assert files == {".code", ".lock"}
-    assert len(list(folder.glob("*.code"))) == 12
+    assert len(list(folder.glob("*.code"))) == 13
     assert answers(folder, "blocked") == (found, "False")
 
 
