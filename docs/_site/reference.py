@@ -105,7 +105,8 @@ def _verbatim(text):
 
 def scene():
     """The keys of a scene file, from the types that check it."""
-    top = _keys(schema.SceneFile, leave=(*schema.SECTIONS, "check", "peak", "picture", "results", "quantities"))
+    others = ("check", "peak", "picture", "results", "quantities")
+    top = _keys(schema.SceneFile, leave=(*schema.SECTIONS, *others))
     tables = [
         *((f"[{name}]", table) for name, table in schema.SECTIONS.items()),
         ("[[check]]", schema.CheckTable), ("[[peak]]", schema.PeakTable),
