@@ -206,9 +206,10 @@ def simulate(
         pushes = torque if callable(torque) else drive.torque(0.0, *start)
         designs = design_of(values, model, pushes, loads.get("F_Y", values["F_Y"]), start)
         asked = np.append(instants_of(instants, end), end)
-        motion = motion_of(model, designs._replace(wrt=by), angles, asked, rtol, max_steps, deadline)
         how_told = wanted, instants, {**known, **loads}
-        result = None if motion is None else result_alone(motion, *how_told)
+        with np.errstate(all="ignore"):  # values beyond every double: the integrator tells
+            motion = motion_of(model, designs._replace(wrt=by), angles, asked, rtol, max_steps, deadline)
+            result = None if motion is None else result_alone(motion, *how_told)
         if result is not None:
             return result
     if method == ENERGY:

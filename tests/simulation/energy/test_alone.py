@@ -164,3 +164,43 @@ def test_a_machine_speaks_its_units():
     at = ours["solution"](0.5 * plain["t_last"])
     wanted = plain["solution"](0.5 * plain["t_last"])
     assert at["theta"] == pytest.approx(math.degrees(wanted["theta"]), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        {"t_end": 1e-9},
+        {"t_end": 1e-3, "theta0": 4.0},
+        {"t_end": 1e-3, "theta0": 1e5},
+        {"t_end": 1.0, "ec": 0.25, "omega_start": 3.0, "rtol": 1e-12},
+    ],
+)
+def test_rounding_is_not_told_as_an_energy_residual(call):
+    """An angle that hardly moves, or next to a limit angle, has few digits: a smaller rtol is of no use."""
+    found = dx.simulate(**{**MACHINE, "torque": 1.0, **call})
+    assert found["method"] == "energy"
+    assert "energy_residual" not in found["message"]
+
+
+def test_a_late_motion_is_told_as_far_as_it_was_followed():
+    """Its panels may be too wide, which is known at its end: what was found before counts."""
+    wide = {**MACHINE, "BC": 0.3, "ec": 0.02, "m_slider": 0.4}
+    late = dx.simulate(torque=10.0, t_end=1e4, timeout=0.3, max_steps=10**8, **wide)
+    assert late["status"] == 4
+    assert late["t_last"] > 0.1
+    assert "after 0 steps" not in late["message"]
+
+
+def test_speeds_beyond_every_double_end_with_a_status():
+    assert dx.simulate(torque=1.0, t_end=1e-3, omega_start=1e200, **MACHINE)["status"] == 4
+
+
+@pytest.mark.parametrize("theta0", [0.1, 4.0, 1e5])
+@pytest.mark.parametrize("ec", [0.02, 0.25])
+def test_histories_begin_as_the_motion_does(theta0, ec):
+    start = {"theta0": -theta0 if ec > 0.1 and theta0 < 1e5 else theta0, "omega_start": 0.3}
+    for torque in (1.0, -0.7):
+        found = dx.simulate(**{**MACHINE, "ec": ec, "torque": torque, "t_end": 1e-3, **start})
+        assert found["method"] == "energy"
+        assert (found["theta"][0], found["omega"][0]) == tuple(start.values())
+        assert found["solution"](0.0) == {"theta": start["theta0"], "omega": 0.3}

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 LOST_DIGITS = 0.03  # of dtheta/dx at most: of angles so near to a limit angle
 ROUNDED = 2e-17  # see `residual`
+ANGLE = 2.2e-16  # of an angle and of a radian: how it is rounded
 
 
 def accelerations(slope: Any, at: Any, omega: Any, alpha: Any) -> None:
@@ -36,12 +37,20 @@ def work_until(k: Any, theta: Any, at: Any, loads: Any, gained: float) -> float:
     return float(work)
 
 
-def energies(theta: Any, slope: Any, at: Any, loads: Any, numbers: Any, omega: Any, told: Any) -> None:
+def angle_rounded(theta: float, inertia: float, alpha: float, load: float, Y: float) -> float:
+    """Return the energy error that the rounding of theta and Y makes."""
+    wide, push = ANGLE * (1.0 + abs(theta)) * abs(inertia * alpha), ANGLE * abs(load * Y)
+    return (wide if wide <= inf else 0.0) + (push if push <= inf else 0.0)
+
+
+def energies(
+    theta: Any, slope: Any, at: Any, loads: Any, numbers: Any, omega: Any, alpha: Any, told: Any
+) -> None:
     """The work of a motion and its energy residual."""
     first = 0.5 * at[0, 0] * omega[0] * omega[0]
     initial, last = first + at[4, 0], len(omega) - 1
     largest, heaviest, off, turned, before = first, abs(initial), 0.0, 0.0, 0.0
-    work, tables = 0.0, loads[0] != loads[0] or loads[1] != loads[1]
+    work, tables, bits = 0.0, loads[0] != loads[0] or loads[1] != loads[1], 0.0
     for k in range(1, len(omega)):
         kinetic = 0.5 * at[0, k] * omega[k] * omega[k]
         energy = kinetic + at[4, k]
@@ -53,13 +62,14 @@ def energies(theta: Any, slope: Any, at: Any, loads: Any, numbers: Any, omega: A
             # Next to a limit angle M_eff has lost the digits that would tell.
             if abs(slope[k]) >= LOST_DIGITS * loads[2] and work == work:
                 off = max(off, abs(energy - work - initial))
+                bits = max(bits, angle_rounded(theta[k], at[0, k], alpha[k], loads[1], at[3, k]))
         if abs(work - before) <= inf:
             turned += abs(work - before)
         before = work
     scale = max(largest, turned)
     moves = scale > 0.0
     told[1], told[2] = off / scale if moves else 0.0, work
-    told[3] = ROUNDED * numbers[5] * (1.0 + heaviest / scale) if moves else inf
+    told[3] = ROUNDED * numbers[5] * (1.0 + heaviest / scale) + bits / scale if moves else inf
 
 
 def courses(
@@ -68,4 +78,4 @@ def courses(
     """All designs; the first column is the start."""
     for n in range(len(theta)):
         accelerations(slope[n], at[n], omega[n], alpha[n])
-        energies(theta[n], slope[n], at[n], loads[n], numbers[n], omega[n], told[n])
+        energies(theta[n], slope[n], at[n], loads[n], numbers[n], omega[n], alpha[n], told[n])

@@ -72,6 +72,8 @@ def follow_many(
     omega[:, 0] = designs.omega_start
     alpha, told = np.empty(x.shape), np.empty((len(x), 4))
     courses()(theta, slope, at, designs.loads, numbers, omega, alpha, told)
+    begin = 1 + np.flatnonzero(times == 0.0)  # there pieces have rounded the start
+    theta[:, begin], omega[:, begin] = theta[:, :1], omega[:, :1]
     told[:, 0] = np.where(ended, np.minimum(numbers[:, 0], times[-1]), times[-1])
     found = Found(theta[:, 1:], omega[:, 1:], alpha[:, 1:], status, told)
     if by is None:

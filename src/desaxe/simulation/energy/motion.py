@@ -163,6 +163,8 @@ def _path(
         except TimeoutError:
             if not done:
                 raise
+            # Stopped on finer panels it may have begun again.
+            done[0] = max((path, found), done[0], key=lambda each: len(each[0].pieces))
             late = f"not done within timeout = {deadline.seconds:g} s, after {len(done[0][0].pieces)} steps"
     return (*done[0], late)
 
