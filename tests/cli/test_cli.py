@@ -16,7 +16,7 @@ from desaxe.mechanism.inputs import INPUTS
 
 COMPACTOR = str(Path(__file__).parents[2] / "examples" / "compactor.toml")
 POINT = ["theta=60deg", "ec=10mm", "AB=125mm", "BC=300mm", "omega0=1500rpm"]
-COMMANDS = (
+COMMANDS = [
     "point",
     "scene",
     "run",
@@ -28,24 +28,29 @@ COMMANDS = (
     "errata",
     "audit",
     "doctor",
-)
+]
 
 
-def test_point(capsys):
-    assert main(["point", "a_C", *POINT]) == 0
-    out, err = capsys.readouterr()
+@pytest.fixture
+def told(capsys):
+    """The output of a command line that succeeds."""
+
+    def run(*words):
+        assert main([*words]) == 0
+        out, err = capsys.readouterr()
+        assert err == ""
+        return out
+
+    return run
+
+
+def test_point(told):
+    out = told("point", "a_C", *POINT)
     name, value, unit, meaning = re.fullmatch(r"(\S+) = (\S+) (\S+) +(.*)\n", out).groups()
     point = {"theta": "60 deg", "ec": 0.01, "AB": 0.125, "BC": 0.3, "omega0": "1500 rpm"}
     assert (name, unit, meaning) == ("a_C", "m/s^2", "acceleration of the slider")
     assert float(value) == pytest.approx(dx.evaluate("a_C", **point), rel=1e-15)
-    assert err == ""
-
-
-def test_blanks_around_equals(capsys):
-    main(["point", "a_C", *POINT])
-    main(["point", "a_C", *(word.replace("=", " = ") for word in POINT)])
-    first, second = capsys.readouterr().out.splitlines()
-    assert first == second
+    assert told("point", "a_C", *(word.replace("=", " = ") for word in POINT)) == out
 
 
 def test_the_best_designs_are_in_the_units_of_the_scene(tmp_path, capsys):
@@ -58,69 +63,58 @@ motion = { omega0 = 60, theta = { start = 0, stop = 360, num = 37 } }
     (tmp_path / "press.toml").write_text(text, encoding="utf-8")
     main(["sweep", f"{tmp_path}/press.toml", "--best", "1", "--by", "absmax:a_C", "--order", "smallest"])
     head, _, row = capsys.readouterr().out.splitlines()
-    assert re.findall(r"(?:AB|omega0|a_C_absmax) \S+", head) == [
-        "AB [mm]",
-        "omega0 [rpm]",
-        "a_C_absmax [mm/s^2]",
-    ]
+    units = "AB [mm], omega0 [rpm], a_C_absmax [mm/s^2]"
+    assert ", ".join(re.findall(r"(?:AB|omega0|a_C_absmax) \S+", head)) == units
     assert row.split()[1] == "75.0"
 
 
-def test_point_with_several_names(capsys):
-    assert main(["point", "V_C,a_C", *POINT, "a_C_wrt_ec"]) == 0
-    lines = capsys.readouterr().out.splitlines()
+def test_point_with_several_names(told):
+    lines = told("point", "V_C,a_C", *POINT, "a_C_wrt_ec").splitlines()
     assert [line.split()[0] for line in lines] == ["V_C", "a_C", "a_C_wrt_ec"]
     starts = {re.search(r" {3}\w", line).start() for line in lines}
     assert len(starts) == 1
 
 
-def test_point_needs_only_what_is_needed(capsys):
-    assert main(["point", "margin", "ec=220mm", "AB=.125", "BC=0.35"]) == 0
-    assert capsys.readouterr().out.startswith("margin = 0.00499999999999")
+def test_point_needs_only_what_is_needed(told):
+    found = told("point", "margin", "ec=220mm", "AB=.125", "BC=0.35")
+    assert found.startswith("margin = 0.00499999999999")
 
 
-def test_point_tells_the_status_in_words(capsys):
-    assert main(["point", "a_C", "theta=90deg", "ec=.23", "AB=.125", "BC=.35", "omega0=1"]) == 0
-    out = capsys.readouterr().out
+STUCK = ["theta=90deg", "ec=.23", "AB=.125", "BC=.35", "omega0=1"]
+
+
+def test_point_tells_the_status_in_words(told):
+    out = told("point", "a_C", *STUCK)
     assert out.startswith("a_C = nan m/s^2")
     assert out.endswith("status 1: cannot be assembled here\n")
-    assert main(["point", "status", "theta=90deg", "ec=.23", "AB=.125", "BC=.35", "omega0=1"]) == 0
-    assert capsys.readouterr().out.startswith("status = 1   ")
+    assert told("point", "status", *STUCK).startswith("status = 1   ")
 
 
-def test_point_in_json(capsys):
-    assert main(["point", "a_C", *POINT, "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
+def test_point_in_json(told):
+    found = json.loads(told("point", "a_C", *POINT, "--json"))
     assert found["a_C"]["unit"] == "m/s^2"
     assert found["a_C"]["value"] == pytest.approx(-810.4, abs=0.05)
-    assert main(["point", "a_C", "theta=90deg", "ec=.23", "AB=.125", "BC=.35", "omega0=1", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
+    found = json.loads(told("point", "a_C", *STUCK, "--json"))
     assert found["a_C"]["value"] is None
     assert found["status"] == "cannot be assembled here"
 
 
-def test_options_of_point_stand_anywhere(capsys):
-    texts = set()
-    for place in range(len(POINT) + 2):
-        words = ["a_C", *POINT]
-        words.insert(place, "--json")
-        assert main(["point", *words]) == 0
-        texts.add(capsys.readouterr().out)
+def test_options_of_point_stand_anywhere(told):
+    words = ["a_C", *POINT]
+    texts = {told("point", *words[:place], "--json", *words[place:]) for place in range(len(words) + 1)}
     assert len(texts) == 1
 
 
-def test_point_with_branch_and_state(capsys):
+def test_point_with_branch_and_state(told):
     where = ["theta=1", "ec=0.01", "AB=0.125", "BC=0.3", "branch=-1"]
-    assert main(["point", "a_C", *where, "omega=3", "alpha=2rad/s2"]) == 0
-    value = float(capsys.readouterr().out.split()[2])
+    value = float(told("point", "a_C", *where, "omega=3", "alpha=2rad/s2").split()[2])
     point = {"theta": 1.0, "ec": 0.01, "AB": 0.125, "BC": 0.3, "omega": 3.0, "alpha": 2.0, "branch": -1}
     assert value == dx.evaluate("a_C", **point)
 
 
-def test_point_with_masses_and_loads(capsys):
+def test_point_with_masses_and_loads(told):
     loads = ["m_rod=0.5kg", "I_rod=80.6 kg mm2", "r_rod=10cm", "F_Y=-50N", "g_X=9.81m/s2", "mu=0.1"]
-    assert main(["point", "T_in", *POINT, *loads]) == 0
-    name, _, value, unit, *_ = capsys.readouterr().out.split()
+    name, _, value, unit, *_ = told("point", "T_in", *POINT, *loads).split()
     point = {"theta": "60 deg", "ec": 0.01, "AB": 0.125, "BC": 0.3, "omega0": "1500 rpm"}
     loads = {"m_rod": 0.5, "I_rod": 80.6e-6, "r_rod": 0.1, "F_Y": -50.0, "g_X": 9.81, "mu": 0.1}
     assert (name, unit) == ("T_in", "N*m")
@@ -131,75 +125,60 @@ def test_point_with_masses_and_loads(capsys):
     ("speed", "status"),
     [("60rpm", "6: friction: two balances of forces"), ("-60rpm", "5: friction jams: no balance of forces")],
 )
-def test_point_tells_what_friction_does(speed, status, capsys):
+def test_point_tells_what_friction_does(speed, status, told):
     design = ["theta=90deg", "ec=20mm", "AB=40mm", "BC=64mm", f"omega0={speed}", "m_slider=1kg"]
-    assert main(["point", "T_in", *design, "mu=1.5"]) == 0
-    assert capsys.readouterr().out.endswith(f"status {status}\n")
-    assert main(["point", "T_in", *design]) == 0
-    assert "status" not in capsys.readouterr().out
+    assert told("point", "T_in", *design, "mu=1.5").endswith(f"status {status}\n")
+    assert "status" not in told("point", "T_in", *design)
 
 
-def test_list_of_names(capsys):
-    assert main(["point", "--list"]) == 0
-    lines = capsys.readouterr().out.splitlines()
+def test_list_of_names(told):
+    lines = told("point", "--list").splitlines()
     assert len(lines) == len(dx.quantities())
     assert any(line.startswith("a_C ") and "acceleration of the slider (A (19))" in line for line in lines)
 
 
+# A command line -> what is said of it; POINT stands for a good point.
 COMPLAINTS = {
-    "no name": (["point"], "which quantity?"),
-    "no such name": (["point", "aC", *POINT], "unknown quantity 'aC'; did you mean a_C?"),
-    "no such input": (["point", "a_C", "CD=3"], "CD=3: no input is called 'CD', there are theta, ec"),
-    "input of another name": (
-        ["point", "a_C", "rod=3"],
-        "no input is called 'rod', did you mean BC? There are",
-    ),
-    "blanks around the sign": (
-        ["point", "a_C", "theta", "=", "60deg"],
-        "=: an input and its value are one word, such as theta=60deg",
-    ),
-    "no value": (["point", "a_C", "theta="], "theta=: an input and its value are one word"),
-    "a unit apart": (
-        ["point", "a_C", "ec=10", "mm"],
-        "ec=10 mm: a value and its unit are one word, ec=10mm or",
-    ),
-    "a name after a number": (
-        ["point", "a_C", "theta=60", "a_c"],
-        "unknown quantity 'a_c'; did you mean a_C",
-    ),
-    "module without its ending": (["compile", COMPACTOR, "-o", "kern"], "but kern.py, for example"),
-    "module of no name": (["compile", COMPACTOR, "-o", "my-k.py"], "my-k.py: Python cannot import a module"),
-    "input twice": (["point", "a_C", *POINT, "ec=3"], "ec=3: ec is given twice"),
-    "missing input": (["point", "a_C", *POINT[:-1]], "a_C: omega0 is missing"),
-    "bad value": (["point", "a_C", "AB=-1", *POINT[:2], *POINT[3:]], "it must be a finite length >= 0"),
-    "list": (["point", "Y", "theta=[1,2]"], "theta=[1,2]: it must be a number"),
-    "decimal comma": (["point", "Y", "theta=1,5"], "theta=1,5: it must be a number"),
-    "unit of another kind": (["point", "Y", "theta=1kg", *POINT[1:]], "it must be a quantity in rad"),
-    "force in kilograms": (["point", "T_in", *POINT, "m_rod=1", "F_Y=5kg"], 'in N, such as "50 N"'),
-    "mass of a force": (["point", "T_in", *POINT, "m_rod=5N"], "it must be a quantity in kg"),
-    "negative mass": (["point", "T_in", *POINT, "m_rod=-5kg"], "it must be a finite mass >= 0"),
-    "friction with a unit": (["point", "T_in", *POINT, "m_rod=1", "mu=0.1N"], "a plain number, such as 0.1"),
-    "no such branch": (["point", "Y", "branch=2"], "branch=2: it is 1 or -1"),
-    "no such option": (["point", "--exact"], "unrecognized arguments: --exact"),
-    "no such command": (["frobnicate"], "invalid choice: 'frobnicate'"),
-    "almost a command": (["pont"], "'pont' (did you mean point? choose from"),
-    "no scene": (["run"], "required: SCENE (see desaxe run --help)"),
-    "no such file": (["run", "missing.toml"], "missing.toml: No such file or directory"),
-    "no such verdict": (["errata", "--verdict", "maybe"], "unknown verdict 'maybe'"),
-    "no such entry": (["errata", "A-eq99"], "no entry for 'A-eq99'"),
-    "no such document": (["errata", "--document", "Z"], "unknown document 'Z'"),
-    "two forms": (["errata", "--json", "--markdown"], "not allowed with argument"),
+    "point": "which quantity?",
+    "point aC POINT": "unknown quantity 'aC'; did you mean a_C?",
+    "point a_C CD=3": "CD=3: no input is called 'CD', there are theta, ec",
+    "point a_C rod=3": "no input is called 'rod', did you mean BC? There are",
+    "point a_C theta = 60deg": "=: an input and its value are one word, such as theta=60deg",
+    "point a_C theta=": "theta=: an input and its value are one word",
+    "point a_C ec=10 mm": "ec=10 mm: a value and its unit are one word, ec=10mm or",
+    "point a_C theta=60 a_c": "unknown quantity 'a_c'; did you mean a_C",
+    "compile SCENE -o kern": "but kern.py, for example",
+    "compile SCENE -o my-k.py": "my-k.py: Python cannot import a module",
+    "point a_C POINT ec=3": "ec=3: ec is given twice",
+    "point a_C theta=60deg ec=10mm AB=125mm BC=300mm": "a_C: omega0 is missing",
+    "point a_C AB=-1 theta=60deg ec=10mm BC=300mm omega0=1": "it must be a finite length >= 0",
+    "point Y theta=[1,2]": "theta=[1,2]: it must be a number",
+    "point Y theta=1,5": "theta=1,5: it must be a number",
+    "point Y theta=1kg ec=10mm AB=125mm BC=300mm": "it must be a quantity in rad",
+    "point T_in POINT m_rod=1 F_Y=5kg": 'in N, such as "50 N"',
+    "point T_in POINT m_rod=5N": "it must be a quantity in kg",
+    "point T_in POINT m_rod=-5kg": "it must be a finite mass >= 0",
+    "point T_in POINT m_rod=1 mu=0.1N": "a plain number, such as 0.1",
+    "point Y branch=2": "branch=2: it is 1 or -1",
+    "point --exact": "unrecognized arguments: --exact",
+    "frobnicate": "invalid choice: 'frobnicate'",
+    "pont": "'pont' (did you mean point? choose from",
+    "run": "required: SCENE (see desaxe run --help)",
+    "run missing.toml": "missing.toml: No such file or directory",
+    "errata --verdict maybe": "unknown verdict 'maybe'",
+    "errata A-eq99": "no entry for 'A-eq99'",
+    "errata --document Z": "unknown document 'Z'",
+    "errata --json --markdown": "not allowed with argument",
 }
 
 
-@pytest.mark.parametrize("complaint", COMPLAINTS)
-def test_complaint(complaint, capsys):
-    words, message = COMPLAINTS[complaint]
-    assert main(words) == 2
+@pytest.mark.parametrize("line", COMPLAINTS)
+def test_complaint(line, capsys):
+    assert main(line.replace("POINT", " ".join(POINT)).replace("SCENE", COMPACTOR).split()) == 2
     out, err = capsys.readouterr()
     assert out == ""
     assert err.startswith("desaxe: error: ")
-    assert message in err
+    assert COMPLAINTS[line] in err
     assert err.count("\n") == 1
 
 
@@ -223,18 +202,14 @@ def test_scene_that_is_fine(tmp_path, capsys):
     assert "did you mean" in capsys.readouterr().err
 
 
-def test_explain(capsys):
-    assert main(["explain", COMPACTOR]) == 0
-    text = capsys.readouterr().out
-    assert text == f"{dx.explain(COMPACTOR)}\n"
-    assert main(["explain", COMPACTOR, "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["operations"]["per_point"] > 0
+def test_explain(told):
+    assert told("explain", COMPACTOR) == f"{dx.explain(COMPACTOR)}\n"
+    assert json.loads(told("explain", COMPACTOR, "--json"))["operations"]["per_point"] > 0
 
 
-def test_compile(tmp_path, capsys):
+def test_compile(tmp_path, told):
     place = tmp_path / "kernels.py"
-    assert main(["compile", COMPACTOR, "-o", str(place)]) == 0
-    out = capsys.readouterr().out
+    out = told("compile", COMPACTOR, "-o", str(place))
     text = place.read_text(encoding="utf-8")
     assert out == f"{place}: {len(text.splitlines())} lines\n"
     compile(text, "kernels.py", "exec")
@@ -242,62 +217,51 @@ def test_compile(tmp_path, capsys):
     assert place.stat().st_mode == (tmp_path / "new").stat().st_mode
 
 
-def test_run(tmp_path, monkeypatch, capsys):
+def test_run(tmp_path, monkeypatch, told):
     monkeypatch.chdir(tmp_path)
-    assert main(["run", COMPACTOR]) == 0
-    out, err = capsys.readouterr()
+    out = told("run", COMPACTOR)
     for text in ("29.5 rad/s", "-20.2 m/s", "-7740 rad/s2", "-994 m/s2"):
         assert out.count(text) == 2
     assert "Written\n  out/compactor.nc" in out.replace(os.sep, "/")
     assert (tmp_path / "out" / "compactor.nc").exists()
-    assert err == ""
 
 
 @pytest.mark.parametrize("command", [(), *((name,) for name in COMMANDS)])
-def test_help(command, capsys):
-    assert main([*command, "--help"]) == 0
-    out, err = capsys.readouterr()
+def test_help(command, told):
+    out = told(*command, "--help")
     assert out.startswith("usage: ")
     assert max(map(len, out.splitlines())) <= 100
-    assert err == ""
 
 
-def test_help_of_derive_calls_itself_by_its_name(capsys):
-    assert main(["derive", "--help"]) == 0
-    out = capsys.readouterr().out
+def test_help_of_derive_calls_itself_by_its_name(told):
+    out = told("derive", "--help")
     assert out.startswith("usage: desaxe derive [-h] [--check] [--report]")
     assert "python -m" not in out
 
 
-def test_a_name_that_is_a_unit_too_may_follow_a_number(capsys):
-    assert main(["point", "theta=60deg", "s", *POINT[1:]]) == 0
-    assert capsys.readouterr().out.startswith("s = ")
+def test_a_name_that_is_a_unit_too_may_follow_a_number(told):
+    assert told("point", "theta=60deg", "s", *POINT[1:]).startswith("s = ")
 
 
-def test_help_has_signs_and_examples(capsys):
-    main(["point", "--help"])
-    out = capsys.readouterr().out
+def test_help_has_signs_and_examples(told):
+    out = told("point", "--help")
     assert "V_C and a_C are positive along +Y" in out
     assert "desaxe point a_C theta=60deg ec=10mm AB=125mm BC=300mm omega0=1500rpm" in out
     assert "5 friction jams" in out
 
 
 @pytest.mark.parametrize("command", ["point", "run"])
-def test_help_names_all_inputs(command, capsys):
-    main([command, "--help"])
-    words = set(re.findall(r"\w+", capsys.readouterr().out))
-    assert words >= set(INPUTS)
+def test_help_names_all_inputs(command, told):
+    assert set(re.findall(r"\w+", told(command, "--help"))) >= set(INPUTS)
 
 
-def test_no_command_gives_help(capsys):
-    assert main([]) == 0
-    out = capsys.readouterr().out
+def test_no_command_gives_help(told):
+    out = told()
     assert all(f"    {command} " in out for command in COMMANDS)
 
 
-def test_version(capsys):
-    assert main(["--version"]) == 0
-    assert capsys.readouterr().out == f"desaxe {dx.__version__}\n"
+def test_version(told):
+    assert told("--version") == f"desaxe {dx.__version__}\n"
 
 
 def test_derive_hands_its_options_on(monkeypatch):
@@ -314,13 +278,21 @@ def test_derive_hands_its_options_on(monkeypatch):
     assert given == [["--check", "-o", "x"]]
 
 
-def test_interruption_is_no_traceback(monkeypatch, capsys):
+@pytest.mark.parametrize(
+    ("stopped", "code", "line"),
+    [
+        (KeyboardInterrupt(), 130, "desaxe: interrupted"),
+        (KeyboardInterrupt("a.zarr: 2 of 3"), 130, "desaxe: interrupted: a.zarr: 2 of 3"),
+        (command.Terminated("a.zarr: 2 of 3"), 143, "desaxe: terminated: a.zarr: 2 of 3"),
+    ],
+)
+def test_interruption_is_no_traceback(monkeypatch, capsys, stopped, code, line):
     def interrupted(words):
-        raise KeyboardInterrupt
+        raise stopped
 
     monkeypatch.setattr(command, "_run", interrupted)
-    assert main(["doctor"]) == 130
-    assert capsys.readouterr().err == "desaxe: interrupted\n"
+    assert main(["point"]) == code
+    assert capsys.readouterr().err == f"{line}\n"
 
 
 # ---- real processes ------------------------------------------------------------------------------

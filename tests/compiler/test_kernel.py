@@ -14,7 +14,6 @@ from tests.effort import cases
 
 AXES = 3
 GRID = {"BC": 0, "ec": 1, "theta": 2, "AB": None, "omega0": None, "alpha": None, "branch": None}
-KINEMATICS = ("Y", "V_C", "a_C")
 
 
 def level_of(kernel):
@@ -27,72 +26,27 @@ def placements():
 
 @pytest.mark.sampled
 @given(programs(), placements())
-@settings(max_examples=cases(15, 75), deadline=None)
-def test_every_line_is_in_the_outermost_loop_possible(program, axis_of):
-    kernel = hoist(program, axis_of, AXES)
-    program = Program(program.inputs, sum(kernel.levels, ()), program.outputs, {})
-    for name, needs in depends_on(program).items():
-        if name not in program.inputs:
-            axes = [axis_of[n] for n in needs if axis_of[n] is not None]
-            assert level_of(kernel)[name] == max(axes, default=-1) + 1
-
-
-@pytest.mark.sampled
-@given(programs(), placements())
-@settings(max_examples=cases(15, 50), deadline=None)
-def test_no_line_is_lost_or_doubled(program, axis_of):
-    kernel = hoist(program, axis_of, AXES)
-    assert sorted(line.op for lines in kernel.levels for line in lines) == sorted(
-        line.op for line in program.lines
-    )
-    assert len(level_of(kernel)) == len(program.lines)
-
-
-@pytest.mark.sampled
-@given(programs(), placements())
-@settings(max_examples=cases(15, 50), deadline=None)
-def test_a_line_comes_after_what_it_uses(program, axis_of):
-    kernel = hoist(program, axis_of, AXES)
-    known = set(program.inputs)
-    for line in sum(kernel.levels, ()):
+@settings(max_examples=cases(25, 150), deadline=None)
+def test_each_line_stands_once_after_what_it_uses_in_the_outermost_loop_possible(program, axis_of):
+    levels = hoist(program, axis_of, AXES).levels
+    lines, known = sum(levels, ()), set(program.inputs)
+    assert sorted(line.op for line in lines) == sorted(line.op for line in program.lines)
+    for line in lines:
         assert known.issuperset(names_in(line.args))
+        assert line.name not in known
         known.add(line.name)
-
-
-def kernel_of(*names, **axis_of):
-    program = committed(*names)
-    placed = GRID | axis_of
-    return hoist(program, {name: placed[name] for name in program.inputs}, AXES)
-
-
-def test_what_needs_only_the_angle_stays_out_of_the_inner_loops():
-    kernel = kernel_of(*KINEMATICS, theta=0, ec=1, BC=2)
-    levels = level_of(kernel)
-    assert {levels[name] for name in ("sin_theta", "cos_theta", "abs_sin", "eps", "omega", "turn")} <= {0, 1}
-    assert not {"sin", "cos"} & {line.op for line in (*kernel.levels[2], *kernel.levels[3])}
-
-
-def test_the_inner_loop_uses_its_axis():
-    kernel = kernel_of(*KINEMATICS, theta=0, ec=1, BC=2)
-    needs = depends_on(Program(tuple(kernel.inputs), sum(kernel.levels, ()), (), {}))
-    assert all("BC" in needs[line.name] for line in kernel.levels[3])
-
-
-def test_what_needs_no_axis_runs_once():
-    levels = level_of(kernel_of(*KINEMATICS))
-    assert levels["turn"] == 0
-
-
-def test_the_margin_of_a_design_is_outside_the_angles():
-    levels = level_of(kernel_of("margin", "Y"))
-    assert levels["margin"] == 2
-    assert levels["sin_theta"] == 3
+    needs = depends_on(Program(program.inputs, lines, program.outputs, {}))
+    for depth, level in enumerate(levels):
+        for line in level:
+            axes = [axis_of[name] for name in needs[line.name] if axis_of[name] is not None]
+            assert max(axes, default=-1) + 1 == depth
 
 
 def test_types_and_notes_come_along():
-    kernel = kernel_of("Y", "status")
+    program = committed("Y", "status")
+    kernel = hoist(program, {name: GRID[name] for name in program.inputs}, AXES)
     assert kernel.types["status"] == "i64"
-    assert kernel.notes == committed("Y", "status").notes
+    assert kernel.notes == program.notes
 
 
 LINES = (

@@ -2,7 +2,6 @@
 
 import itertools
 import math
-import subprocess
 
 import mpmath
 import numpy as np
@@ -10,19 +9,17 @@ import pytest
 
 from desaxe.compiler.builder import module_text, with_sources
 from desaxe.compiler.interpret import run_exactly, run_in_doubles
+from desaxe.compiler.languages import language_of
 from desaxe.compiler.languages.arrays import compile_arrays
-from desaxe.compiler.languages.c import C
-from desaxe.compiler.languages.jax import Jax
-from desaxe.compiler.languages.octave import Octave
-from desaxe.compiler.languages.protocol import Forms, Module, Symbol
 from desaxe.compiler.languages.python import compile_python
 from desaxe.compiler.passes.differentiate import with_derivatives
 from desaxe.compiler.passes.double_double import double_double
 from desaxe.compiler.passes.fold import fold_constants
 from desaxe.compiler.passes.value_numbering import value_numbering
 from desaxe.compiler.program import Line, Program, ProgramError, TableName, tables_in, validate
-from desaxe.mechanism.constants import constants, double_constants
-from tests.compiler.languages.tools import jax_in_doubles, tool
+from desaxe.mechanism.constants import double_constants
+from tests.compiler.languages.modules import module, written
+from tests.compiler.languages.runners import RUNNERS, caller
 
 KNOTS = (0.25, 0.5, 1.75, 1.75, 3.0)  # a place given twice is a jump
 ROWS = tuple(np.random.default_rng(3).integers(-8, 9, 4 * 2 * (len(KNOTS) + 1)).astype(float).tolist())
@@ -101,68 +98,18 @@ def test_numba():
     assert scope["look"](math.nan, 1.0, np.array(KNOTS), np.array(ROWS))[0] == 0.0
 
 
-def module(name):
-    """A module of the program, whose values are its outputs; the status is 0."""
-    lines = (*LINES, Line("status", "copy", (0,), "i64"))
-    program = Program(("x", "way"), lines, ("p", "v", "d", "status"), {})
-    symbols = [Symbol(n, "1", n) for n in ("x", "way", "p", "v", "d")]
-    values = {n: Program(("x", "way"), LINES, (n,), {}) for n in ("p", "v", "d")}
-    values = {n: validate(value_numbering(program)) for n, program in values.items()}
-    return Module(
-        name, ("Lookups.",), tuple(symbols[:2]), tuple(symbols[2:]), Forms(3, program), constants(),
-        {n: {} for n in values}, values, tables={"F": (KNOTS, ROWS)},
-    )  # fmt: skip
-
-
-def test_c(tmp_path):
-    for freestanding in (False, True):
-        for name, text in C().files(module("looks"), freestanding).items():
-            (tmp_path / name).write_text(text)
-        rows = ", ".join(f"{{{x.hex()}, {way}}}" for x, way in POINTS)
-        (tmp_path / "main.c").write_text(
-            '#include "looks.h"\n#include <stdio.h>\nstatic const double in[][2] = {' + rows + "};\n"
-            "int main(void) { double out[3]; "
-            f"for (int k = 0; k < {len(POINTS)}; k++) {{ looks_point(in[k], out);"
-            ' printf("%a %a %a\\n", out[0], out[1], out[2]); } return 0; }\n'
-        )
-        flags = [
-            "-std=c99",
-            "-O2",
-            "-Wall",
-            "-Wextra",
-            "-Werror",
-            "-Wno-unused-function",
-            "-ffp-contract=off",
-            "-fsanitize=undefined",
-        ]
-        files = ["looks.c", "main.c", "-o", "run", *([] if freestanding else ["-lm"])]
-        subprocess.run([tool("gcc"), *flags, *files], cwd=tmp_path, check=True)
-        told = subprocess.run(["./run"], cwd=tmp_path, check=True, capture_output=True, text=True).stdout
-        found = [[float.fromhex(word) for word in line.split()] for line in told.splitlines()]
-        assert found == [in_doubles(PROGRAM, point) for point in POINTS]
-
-
-def test_octave(tmp_path):
-    (tmp_path / "looks.m").write_text(Octave().files(module("looks"))["looks.m"])
-    x, way = (" ".join(map(repr, column)) for column in zip(*POINTS, strict=True))
-    code = f"[p, v, d] = looks([{x}], [{way}]); printf('%.17g %.17g %.17g\\n', [p; v; d]);"
-    code += "[p, v, d] = looks(0.3, 1); disp(size(v)); p = looks(NaN, -1); disp(p);"
-    run = [tool("octave-cli"), "--eval", code]
-    told = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True, check=True).stdout
-    *lines, size, odd = told.strip().splitlines()
-    found = [list(map(float, line.split())) for line in lines]
-    np.testing.assert_allclose(found, [in_doubles(PROGRAM, p) for p in POINTS], rtol=1e-14, atol=1e-13)
-    assert (size.split(), odd.split()) == (["1", "1"], [str(len(KNOTS) + 1)])
-
-
-def test_jax():
-    scope = {}
-    x, way = np.array(POINTS).T
-    with jax_in_doubles():
-        exec(Jax().files(module("looks"))["looks.py"], scope)
-        found = scope["evaluate"](x=x, way=way)
-        rows = np.array([found[n] for n in ("p", "v", "d")]).T
-    np.testing.assert_allclose(rows, [in_doubles(PROGRAM, p) for p in POINTS], rtol=1e-14, atol=1e-13)
+@pytest.mark.parametrize("language", [name for name in RUNNERS if name != "numba"])
+def test_every_other_language_looks_up_as_the_interpreter(language, tmp_path):
+    """C to the last bit."""
+    made = module(PROGRAM)._replace(tables={"F": (KNOTS, ROWS)})
+    place = written(language_of(language), made, tmp_path)
+    nothing = () if language == "jax" else ((math.nan, 1.0), (math.nan, -1.0))  # XLA finds a piece
+    points = [*POINTS, *nothing]
+    columns = [column.copy() for column in np.array(points).T]
+    found = caller(language, place, PROGRAM.inputs, PROGRAM.outputs)(columns)
+    rows = np.array([found[name] for name in PROGRAM.outputs]).T
+    rtol, atol = (0, 0) if language == "c" else (1e-14, 1e-13)
+    np.testing.assert_allclose(rows, [in_doubles(PROGRAM, p) for p in points], rtol=rtol, atol=atol)
 
 
 def test_passes_keep_lookups_or_refuse_them_by_name():

@@ -1,6 +1,5 @@
 """The text form: what is written reads back as the same program, in few parentheses but enough."""
 
-import ast
 import math
 
 import pytest
@@ -166,9 +165,3 @@ def test_a_name_is_not_found_inside_another():
 def test_what_is_no_operation_cannot_be_read(text):
     with pytest.raises(ProgramError):
         read_function(f"def f(x, y, z):\n    out = {text}\n    return out\n")
-
-
-def test_the_text_is_python():
-    (function,) = ast.parse(write_function(program_of_nested(GOLDEN[0][0]), "f", "It.")).body
-    assert isinstance(function, ast.FunctionDef)
-    assert ast.get_docstring(function) == "It."

@@ -49,11 +49,3 @@ def test_optimize_takes_them_and_functions():
         assert best["value"] > 0
     finally:
         dx.undefine(own)
-
-
-@pytest.mark.parametrize(("wrong", "error"), [(("at", "60 mm", "Y"), ValueError), (("rms", "Q"), ValueError)])
-def test_wrong_measures(wrong, error):
-    with pytest.raises(error, match=r"60 mm|unknown quantity"):
-        dx.optimize(minimize=wrong, over={"ec": (0, 0.1)}, **MACHINE)
-    with pytest.raises(TypeError, match="must give"):
-        dx.optimize(minimize=lambda design: 3.0, over={"ec": (0, 0.1)}, **MACHINE)

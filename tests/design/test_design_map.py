@@ -54,14 +54,3 @@ def test_labels(plane):
 def test_there_and_back(plane, tmp_path):
     plane.to_netcdf(tmp_path / "map.nc", engine="h5netcdf")
     xr.testing.assert_identical(xr.load_dataset(tmp_path / "map.nc", engine="h5netcdf"), plane)
-
-
-def test_bad_arguments():
-    with pytest.raises(TypeError, match="design_map: BC is missing"):
-        dx.design_map("stroke", ec=0.0, AB=0.1)
-    with pytest.raises(ValueError, match="ec: a map takes numbers and 1-d arrays"):
-        dx.design_map("stroke", ec=np.zeros((2, 2)), AB=0.1, BC=0.3)
-    with pytest.raises(ValueError, match="did you mean 'stroke'"):
-        dx.design_map("strokes", ec=ECS, AB=0.1, BC=0.3)
-    with pytest.raises(TypeError, match="no input 'theta'"):
-        dx.design_map("stroke", ec=ECS, AB=0.1, BC=0.3, theta=0.0)

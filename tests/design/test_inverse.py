@@ -62,20 +62,6 @@ def test_shapes():
     )
 
 
-@pytest.mark.parametrize(
-    ("arguments", "error", "words"),
-    [
-        ({"Y": math.inf}, ValueError, "Y = inf: it must be a finite number"),
-        ({"BC": 0.0}, ValueError, "BC = 0.0"),
-        ({"branch": 2}, ValueError, "branch = 2"),
-        ({"a_C": 1.0}, TypeError, "V_C is missing"),
-    ],
-)
-def test_bad_arguments(arguments, error, words):
-    with pytest.raises(error, match=words):
-        dx.inverse(**{"Y": 0.3, **LENGTHS, **arguments})
-
-
 def test_units_of_arrays():
     """A labelled array says its unit, and so may each text of a list."""
     lengths = {"ec": 0.01, "AB": 0.05, "BC": 0.2}

@@ -11,7 +11,7 @@ import pytest
 
 import desaxe as dx
 from desaxe.mechanism.units import in_si
-from tests.ways import POINT, SIZES, close, columns, take_way
+from tests.ways import POINT, SIZES, columns
 
 # ---- status and bad elements ---------------------------------------------------------------------
 
@@ -84,17 +84,6 @@ def test_a_bad_element_disturbs_no_other(way, name):
     assert all(np.array_equal(np.delete(before[q], 2), np.delete(after[q], 2)) for q in ASKED)
     assert np.isnan(after["V_C"][2])
     assert after["status"][2] == 4
-
-
-@pytest.mark.parametrize("name", INPUTS)
-def test_both_ways_agree_on_a_bad_element(monkeypatch, name):
-    inputs = all_columns()
-    inputs[name][2] = BAD[name]
-    found = []
-    for way in ("plain", "compiled"):
-        take_way(monkeypatch, way)
-        found.append(dx.evaluate(ASKED, **inputs))
-    assert all(close(found[0][q], found[1][q]) for q in ASKED)
 
 
 def test_a_bad_speed_is_nan_itself(way):

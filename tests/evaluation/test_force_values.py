@@ -176,14 +176,6 @@ def test_a_bad_load_is_refused(name, value, limit):
     assert (found["status"].tolist(), np.isnan(found["T_in"]).tolist()) == ([4, 0], [True, False])
 
 
-def test_statics_of_massless_links_needs_no_speed():
-    still = {"theta": 1.0, "ec": 0.02, "AB": 0.125, "BC": 0.35}
-    torque = dx.evaluate("T_in", **still, F_Y=-50.0)
-    assert torque == pytest.approx(50.0 * dx.evaluate("Y_wrt_theta", **still), rel=1e-15)
-    with pytest.raises(TypeError, match="T_in: omega0 is missing"):
-        dx.evaluate("T_in", **still, F_Y=-50.0, m_rod=0.1)
-
-
 def test_a_centre_of_mass_that_is_not_given_is_halfway_and_moves_with_its_link():
     given = LAW_OF_MOTION | MACHINE
     names = ["T_in", "T_in_wrt_BC", "T_in_wrt_r_rod"]
@@ -193,20 +185,6 @@ def test_a_centre_of_mass_that_is_not_given_is_halfway_and_moves_with_its_link()
     moved = held["T_in_wrt_BC"] + held["T_in_wrt_r_rod"] / 2
     assert free["T_in_wrt_BC"] == pytest.approx(moved, rel=1e-13)
     assert free["T_in_wrt_BC"] != pytest.approx(held["T_in_wrt_BC"], rel=1e-3)
-
-
-def test_a_grid_and_a_peak_of_a_torque():
-    theta = np.linspace(0, 2 * math.pi, 721)
-    given = MACHINE | {"omega0": 50.0}
-    curve = dx.grid("T_in", theta=theta, **given | {"m_slider": [0.5, 0.9]})
-    assert curve.T_in.dims == ("theta", "m_slider")
-    assert (curve.T_in.units, curve.m_slider.units, curve.F_Y.units) == ("N*m", "kg", "N")
-    top = dx.peak("T_in", kind="max", **given | {"m_slider": np.array([0.5, 0.9])})
-    assert np.all(top["value"] >= curve.T_in.max("theta"))
-    np.testing.assert_allclose(top["value"], curve.T_in.max("theta"), rtol=1e-3)
-    step = 1e-6
-    near = [dx.peak("T_in", kind="max", **given | {"m_slider": 0.9 + d})["value"] for d in (-step, step)]
-    assert top["gradient"]["m_slider"][1] == pytest.approx((near[1] - near[0]) / (2 * step), rel=1e-7)
 
 
 def test_an_input_that_there_is_not():

@@ -61,13 +61,6 @@ def test_out_needs_no_labels():
         dx.grid("a_C", theta=THETA, ec=[0.0, 0.1], out=np.empty((2, 7)), **MACHINE)
 
 
-@pytest.mark.parametrize("threads", [1, 2, 3])
-def test_threads_change_nothing(threads):
-    theta, ec = np.linspace(0, 6, 400), np.linspace(0, 0.2, 300)
-    one = dx.grid("a_C", theta=theta, ec=ec, threads=1, **MACHINE)["a_C"].values
-    np.testing.assert_array_equal(dx.grid("a_C", theta=theta, ec=ec, threads=threads, **MACHINE)["a_C"], one)
-
-
 def test_numbers_alone_and_an_empty_axis():
     assert dx.grid("a_C", theta=1.0, ec=0.1, **MACHINE)["a_C"].shape == ()
     assert dx.grid("a_C", theta=[], ec=0.1, **MACHINE)["a_C"].shape == (0,)

@@ -113,3 +113,9 @@ def test_series_of_one_index_vary_together_in_a_grid(load):
 def test_a_series_without_a_name_of_its_index_is_an_axis():
     found = dx.grid("a_C", theta=ANGLES, ec=pd.Series(ECS), **MACHINE)
     assert found.a_C.dims == ("theta", "ec")
+
+
+def test_an_unknown_input_beside_series_with_an_index_is_named():
+    ec = pd.Series([0.0, 0.1], pd.Index(["a", "b"], name="design"))
+    with pytest.raises(TypeError, match=r"grid\(\) has no input 'thta'"):
+        dx.grid("a_C", thta=1.0, ec=ec, **MACHINE)

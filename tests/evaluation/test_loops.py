@@ -20,36 +20,26 @@ def values(name, *shape):
     return np.random.default_rng(len(shape) + ord(name[0])).uniform(low, high, shape)
 
 
-PATTERNS = {
-    "designs by angles": {"ec": (9, 1), "AB": (9, 1), "BC": (9, 1), "theta": (70,)},
-    "angles by designs": {"theta": (9, 1), "ec": (70,), "AB": (70,)},
-    "three axes": {"ec": (4, 1, 1), "BC": (5, 1), "theta": (70,)},
-    "designs in a table": {"ec": (4, 5, 1), "AB": (4, 5, 1), "theta": (70,)},
-    "axes of length one": {"ec": (1, 9, 1, 1), "theta": (1, 1, 1, 70), "BC": (1, 1)},
+PATTERNS = {  # shapes of the inputs, and the sizes of the loops
+    "designs by angles": ({"ec": (9, 1), "AB": (9, 1), "BC": (9, 1), "theta": (70,)}, (9, 70)),
+    "angles by designs": ({"theta": (9, 1), "ec": (70,), "AB": (70,)}, (9, 70)),
+    "three axes": ({"ec": (4, 1, 1), "BC": (5, 1), "theta": (70,)}, (4, 5, 70)),
+    "designs in a table": ({"ec": (4, 5, 1), "AB": (4, 5, 1), "theta": (70,)}, (20, 70)),
+    "axes of length one": ({"ec": (1, 9, 1, 1), "theta": (1, 1, 1, 70), "BC": (1, 1)}, (9, 70)),
 }
-NESTS = {
-    "designs by angles": (9, 70),
-    "angles by designs": (9, 70),
-    "three axes": (4, 5, 70),
-    "designs in a table": (20, 70),
-    "axes of length one": (9, 70),
-}
-
-
-FIRST = ("designs by angles", "designs in a table")  # each is a kernel to compile
-PARAMETERS = [pytest.param(p, marks=() if p in FIRST else pytest.mark.thorough) for p in PATTERNS]
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("pattern", PARAMETERS)
+@pytest.mark.parametrize("pattern", PATTERNS)
 def test_a_nest_has_the_values_of_one_loop(pattern, way, monkeypatch):
+    shapes, nest = PATTERNS[pattern]
     inputs = {"ec": 0.01, "AB": 0.15, "BC": 0.4, "omega0": 3.0}
-    inputs |= {name: values(name, *shape) for name, shape in PATTERNS[pattern].items()}
+    inputs |= {name: values(name, *shape) for name, shape in shapes.items()}
     flat = dx.evaluate(NAMES, **inputs)
     monkeypatch.setattr(_axes, "NESTED", 0)
     arrays = {name: value for name, value in inputs.items() if np.size(value) > 1}
     shape = np.broadcast_shapes(*(value.shape for value in arrays.values()))
-    assert loops_over(arrays, shape).sizes == NESTS[pattern]
+    assert loops_over(arrays, shape).sizes == nest
     nested = dx.evaluate(NAMES, **inputs)
     for name in NAMES:
         assert nested[name].shape == shape

@@ -75,15 +75,3 @@ def test_a_kernel_is_as_right_as_a_point(kind, part, monkeypatch):
     for index, point in enumerate(points):
         values = {name: float(column[index]) for name, column in answers.items()}
         assert not misses(values, point), point
-
-
-def test_an_array_agrees_with_its_elements():
-    points = list(draw("generic", 20))
-    columns = {name: np.array([point[name] for point in points]).reshape(4, 5) for name in LAW}
-    names = names_for(points[0])
-    answers = dx.evaluate(names, **columns)
-    singles = [dx.evaluate(names, **point) for point in points]
-    for name in names:
-        expected = np.reshape([single[name] for single in singles], (4, 5))
-        np.testing.assert_allclose(answers[name], expected, rtol=1e-11, err_msg=name)
-        assert dx.evaluate(name, **points[0]) == pytest.approx(singles[0][name], rel=1e-11)

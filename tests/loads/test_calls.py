@@ -96,9 +96,13 @@ def test_a_four_stroke_load_repeats_after_two_turns():
         dx.harmonics("T_in", F_Y=load, **machine)
 
 
+STEPS = dx.over_Y([0.02, 0.05, 0.08, 0.1], [-900, -200, -50, -30], [-90, -40, -15, -3], kind="step")
+DIE = dx.over_stroke([0.0, 0.008, 0.008], [-8e3, -8e3, 0.0], [0.0, 0.0, 0.0], dead_centre="outer")
+
+
+@pytest.mark.parametrize("steps", [STEPS, DIE], ids=["Y", "stroke"])
 @pytest.mark.parametrize("measure", [("rms", "T_in"), ("mean", "N_C"), ("rms", "F_C_Y")])
-def test_averages_and_their_gradients_across_jumps_that_move(measure):
-    steps = dx.over_Y([0.02, 0.05, 0.08, 0.1], [-900, -200, -50, -30], [-90, -40, -15, -3], kind="step")
+def test_averages_and_their_gradients_across_jumps_that_move(measure, steps):
     machine = {"AB": 0.04, "BC": 0.064, "m_slider": 0.8, "omega0": 50.0, "F_Y": steps}
 
     def at(ec):
@@ -136,18 +140,3 @@ def test_a_load_that_opposes_either_way_holds_a_crank_at_rest(mu):
     given = BODIES | {"mu": mu, "F_Y": 30.0, "omega0": 1e-9}
     needed = dx.evaluate("T_in", theta=start.theta, **given)  # inward, against +30 N
     assert 5.0 * (start.t - 1.0) == pytest.approx(needed, rel=1e-6)
-
-
-@pytest.mark.parametrize("kind", LOADS)
-def test_calls_about_the_motion_alone_ignore_loads(kind):
-    """A machine with loads is good for each of them, and they answer what they answer without."""
-    asked = {"inverse": {"Y": 0.06}, "events": {}, "feasibility": {}}
-    machine = dx.Machine(**BODIES, omega0=3.0, F_Y=LOADS[kind])
-    for call, more in asked.items():
-        bare = getattr(dx, call)(ec=0.01, AB=0.04, BC=0.064, **more)
-        if call == "events":
-            bare = dx.events(ec=0.01, AB=0.04, BC=0.064, omega0=3.0)
-        for found in (getattr(dx, call)(**machine, **more), getattr(machine, call)(**more)):
-            assert repr(found) == repr(bare), call
-    needed = {"stroke": 0.082, "time_ratio": 1.1, "BC": 0.064}
-    assert repr(dx.synthesize(**needed, F_Y=LOADS[kind])) == repr(dx.synthesize(**needed))

@@ -311,7 +311,10 @@ def calls_without_loads(truth, draw, folder):
     inputs, load = given(truth), truth.force.load
     lengths = {n: truth.design[n] for n in LENGTHS} | {"branch": truth.branch}
     assert dict(dx.events(**inputs)) == dict(dx.events(**lengths, omega0=truth.design["omega0"]))
+    machine = dx.Machine(**inputs)
+    assert repr(machine.events()) == repr(dx.events(**machine)) == repr(dx.events(**inputs))
     only = without(lengths, "branch")
+    assert machine.feasibility() == dx.feasibility(**only)
     assert dx.feasibility(F_Y=load, **only) == dx.feasibility(**only)
     Y = slider(1.0, truth.design, truth.branch)[0]
     near(dx.inverse(Y=Y, F_Y=load, **lengths)["theta"], dx.inverse(Y=Y, **lengths)["theta"], **FAST)

@@ -155,7 +155,8 @@ def test_every_point_that_rounding_may_decide_is_found():
 
 
 def _angles(load, lengths):
-    from desaxe.loads.angles import crossings, dead_centres
+    from desaxe.loads.angles import crossings
+    from desaxe.mechanism.closed.angles import dead_centres
 
     found = np.append(crossings(load, load.jumps, lengths, 1), dead_centres(lengths))
     return found[np.isfinite(found)].tolist()

@@ -2,7 +2,7 @@
 
 import math
 import pickle
-from itertools import pairwise, product
+from itertools import pairwise
 
 import mpmath
 import numpy as np
@@ -10,56 +10,13 @@ import pytest
 from mpmath import mp, mpf
 
 import desaxe as dx
-from desaxe.design.averages import average
 from tests.effort import cases
-from tests.papers import free_bodies, loop
 from tests.peaks import test_jumps as jumps
 from tests.peaks.pieces import FromCentre
 
-MOTION = {"omega0": 20.0, "alpha": 3.0}
-BODIES = {"m_crank": 0.3, "m_rod": 0.5, "m_slider": 0.8, "I_rod": 2e-4, "g_Y": -9.81}
 PRESS = {"ec": 0.01, "AB": 0.04, "BC": 0.064}
 LENGTHS = ("ec", "AB", "BC")
 DISTANCES, OUTWARD, INWARD = (0.0, 0.02, 0.035, 0.06), (-900.0, -300.0, -80.0, 20.0), (10.0, -70.0, 30.0, 0.0)
-
-
-def dead_centre(motion, which):
-    """The slider's position with crank and rod in line: where its raw loop closure turns round."""
-    ec, AB, BC = (mpf(getattr(motion, n)) for n in LENGTHS)
-    angle = mp.asin(-ec / (AB + BC)) if which == "outer" else mp.pi - mp.asin(ec / (BC - AB))
-    return loop.slider(motion._replace(theta=angle))[1]
-
-
-def force(motion, which):
-    """The load of that instant, from the slider's position in the raw loop closure."""
-    Y, V = loop.slider(motion)[1], loop.rate(lambda t: loop.slider(motion, t)[1], 1)
-    distance = abs(dead_centre(motion, which) - Y)
-    values = OUTWARD if V > 0 else INWARD
-    i = min(int(np.searchsorted(DISTANCES, float(distance), side="right")), len(DISTANCES) - 1) - 1
-    share = min((distance - mpf(DISTANCES[i])) / (mpf(DISTANCES[i + 1]) - mpf(DISTANCES[i])), mpf(1))
-    return values[i] + share * (mpf(values[i + 1]) - values[i])
-
-
-def solved(which, **changed):
-    motion = loop.Motion(**{"theta": 0.0, **PRESS, **MOTION, **changed})
-    return free_bodies.solve(motion, free_bodies.Bodies(F_Y=force(motion, which), **BODIES))
-
-
-@pytest.mark.parametrize(("which", "theta"), [*product(("outer", "inner"), (0.6, 2.1, 4.4, 5.9))])
-def test_forces_and_total_derivatives_are_those_of_the_free_bodies(which, theta):
-    load = dx.over_stroke(DISTANCES, OUTWARD, INWARD, dead_centre=which)
-    names = [
-        f"{name}{by}" for name in ("T_in", "N_C") for by in ("", *(f"_wrt_{p}" for p in ("theta", *LENGTHS)))
-    ]
-    found = dx.evaluate(names, theta=theta, F_Y=load, **PRESS, **MOTION, **BODIES)
-    with mp.workdps(2 * loop.DIGITS):
-        right, h = solved(which, theta=theta), mpf(10) ** -12
-        for p, value in {"theta": theta, **PRESS}.items():
-            ahead, behind = (solved(which, **{"theta": theta, p: mpf(value) + s * h}) for s in (1, -1))
-            for name in ("T_in", "N_C"):
-                slope = (ahead[name] - behind[name]) / (2 * h)
-                assert abs(found[name] - right[name]) <= 1e-12 * abs(right[name])
-                assert abs(found[f"{name}_wrt_{p}"] - slope) <= 1e-11 * abs(slope)
 
 
 # ---- at any design: the forces of a number -------------------------------------------------------------
@@ -116,7 +73,8 @@ def test_any_design_has_the_forces_of_its_own_distance():
     assert min(seen.values()) >= 10
 
 
-def test_arrays_numbers_and_grids_agree_and_say_the_same_of_the_status():
+def test_arrays_numbers_and_grids_agree_and_say_the_same_of_the_status(monkeypatch):
+    monkeypatch.setenv("DESAXE_TIER", "numpy")  # kernels: test_in_kernel
     load = dx.over_stroke(DISTANCES, OUTWARD, INWARD, dead_centre="inner")
     ec, theta = np.array([0.0, 0.01, 0.024, 0.03]), np.linspace(0.0, 0.5, 5)  # 0.024: a change point
     names = ["T_in", "T_in_wrt_ec", "T_in_wrt_theta", "V_C", "status"]
@@ -211,8 +169,6 @@ def distance(draw, design, theta):
 
 STILL = {**PRESS, "omega0": 5.0, "m_slider": 2.0}
 DIE = dx.over_stroke([0.0, 0.008, 0.008], [-8e3, -8e3, 0.0], [0.0, 0.0, 0.0], dead_centre="outer")
-Y_DIE = dx.events(**PRESS)["Y_outer"] - 0.008
-FIXED = dx.over_Y([Y_DIE - 0.01, Y_DIE], [0.0, -8e3], [0.0, 0.0], kind="step")  # the same for this design
 
 
 def test_a_distance_given_twice_is_a_jump_and_the_value_there_is_that_of_the_side_ahead():
@@ -241,32 +197,10 @@ def test_an_angle_given_twice_is_one_jump_in_every_call():
     assert twice.nodes(0.5, 1.5, smooth=True) == twice.nodes(0.5, 1.5, smooth=False) == [1.0]
 
 
-def test_drive_simulate_and_averages_are_those_of_the_load_at_this_design():
-    for call in (
-        lambda F: [dx.drive(F_Y=F, **STILL)[n] for n in ("torque_mean", "torque_rms", "torque_peak")],
-        lambda F: dx.simulate(torque=30.0, t_end=0.4, omega_start=5.0, I_crank=1.0, F_Y=F, **PRESS)["omega"][
-            -1
-        ],
-        lambda F: dx.peak("T_in", F_Y=F, **STILL)["value"],
-        lambda F: dx.harmonics("T_in", orders=3, F_Y=F, **STILL)["amplitude"],
-    ):
-        np.testing.assert_allclose(call(DIE), call(FIXED), rtol=1e-9)
-
-
 def test_simulate_refuses_a_design_without_the_dead_centre():
     load = dx.over_stroke([0.0, 0.01], [-1.0, 0.0], dead_centre="inner")
     with pytest.raises(ValueError, match="no inner dead centre"):
         dx.simulate(torque=1.0, t_end=0.01, F_Y=load, m_slider=1.0, ec=0.03, AB=0.04, BC=0.064)
-
-
-@pytest.mark.parametrize("measure", ["mean", "rms"])
-def test_the_slope_of_an_average_includes_the_dead_centre(measure):
-    design = {"AB": 0.04, "BC": 0.064, "omega0": 5.0, "F_Y": DIE}
-    h = 1e-5
-    given = {**design, "ec": 0.01}
-    slope = average(measure, "T_in", given, 1)[1]["ec"]
-    ahead, behind = (average(measure, "T_in", {**given, "ec": 0.01 + s * h}, 1)[0] for s in (1, -1))
-    assert slope == pytest.approx((ahead - behind) / (2 * h), rel=1e-5, abs=1e-6)
 
 
 def test_machines_scenes_and_files_read_it(tmp_path):
@@ -333,7 +267,9 @@ def test_what_is_no_table_is_refused_by_name(given, message):
         dx.over_stroke(*columns)
 
 
-@pytest.mark.parametrize("options", [{"mu": 0.05}, {"wrt": "m_slider"}])
+@pytest.mark.parametrize(
+    "options", [{"mu": 0.05}, pytest.param({"wrt": "m_slider"}, marks=pytest.mark.thorough)]
+)
 def test_of_many_designs_those_without_the_dead_centre_do_not_start(options):
     load = dx.over_stroke([0.0, 0.01], [-9.0, 0.0], dead_centre="inner")
     start = {"torque": 1.0, "t_end": 0.01, "omega_start": 5.0, "I_crank": 0.1, "m_slider": 1.0, "F_Y": load}

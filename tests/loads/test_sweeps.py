@@ -58,14 +58,6 @@ def test_reductions_best_designs_and_peaks_follow_the_load():
     np.testing.assert_allclose(spread.T_in_p95, whole.quantile(0.95, ["theta", "ec"]), rtol=1e-12)
 
 
-def test_where_only_numbers_make_sense_a_load_is_refused_by_name():
-    machine = {"ec": 0.01, "AB": 0.04, "BC": 0.064, "omega0": 50.0, "F_Y": LOADS["linear"]}
-    with pytest.raises(TypeError, match=r"F_Y: function takes numbers, .* give F_Y among inputs="):
-        dx.function("T_in", **machine)
-    with pytest.raises(TypeError, match=r"F_Y: enclose takes numbers, .* F_Y = \(low, high\)"):
-        dx.enclose("T_in", theta=(0.0, 1.0), **machine)
-
-
 @pytest.mark.thorough
 def test_what_travels_to_a_worker_needs_no_definitions_there(tmp_path):
     """Own quantities under a load: the steps of a sweep in a process that knows neither."""

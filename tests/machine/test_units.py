@@ -478,6 +478,15 @@ def test_an_array_of_texts_is_in_the_units_that_they_name(kind):
 def test_a_unit_in_wrong_letters_is_asked_about():
     with pytest.raises(ValueError, match="'KN' is not a known unit; did you mean kN\\? expected units"):
         dx.Machine(AB=75, BC=300, units="mm, KN")
+    with pytest.raises(ValueError, match='commas stand between units, as in "mm, deg, rpm"'):
+        dx.Machine(AB=75, BC=300, units="mm deg rpm")
+
+
+def test_units_misspelt_are_asked_about():
+    with pytest.raises(TypeError, match="has no input 'unit'; did you mean units\\?"):
+        dx.Machine(AB=75, BC=300, unit="mm")
+    with pytest.raises(TypeError, match="has no input 'units'; there are"):
+        dx.Machine({"AB": 75, "units": "mm"})
 
 
 def test_a_result_is_no_name_of_a_tornado():

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
+from desaxe.evaluation.values import values
 from desaxe.peaks.loaded import Values
 
 MACHINE = {"AB": 0.1, "BC": 0.35, "omega0": 30.0, "m_slider": 2.0, "m_rod": 1.0}
@@ -60,3 +61,29 @@ def test_blocks_of_few_designs_change_nothing(monkeypatch):
     cut = dx.peak("T_in", ec=ec, F_Y=LOADS["Y"], **MACHINE)
     np.testing.assert_allclose(cut["value"], whole["value"], rtol=1e-14)
     np.testing.assert_array_equal(cut["side"], whole["side"])
+
+
+@pytest.mark.parametrize(
+    "load",
+    [
+        dx.over_theta([1.5, 3.1, 4.9], [170.0, 470.0, 330.0], kind="linear"),
+        dx.over_stroke([0.0, 0.05, 0.05, 0.2], [-460.0, 0.0, 360.0, 90.0], dead_centre="outer"),
+        dx.over_Y([0.2, 0.4], [300.0, 460.0], [-420.0, -280.0]),
+    ],
+)
+def test_no_value_with_friction_is_that_of_a_dead_centre(load, monkeypatch):
+    """There rounding chose between friction of either way and none: peaks were up to 100 % off."""
+    away = []
+
+    def watched(names, inputs, *more):
+        theta, ec, AB, BC = (inputs[name] for name in ("theta", "ec", "AB", "BC"))
+        dead = np.stack([-np.arcsin(ec / (AB + BC)), np.pi - np.arcsin(ec / (BC - AB))])
+        away.append(np.abs(2.0 * np.sin(0.5 * (theta - dead))).min())
+        return values(names, inputs, *more)
+
+    monkeypatch.setattr("desaxe.peaks.loaded.values", watched)
+    ec = np.linspace(-0.05, 0.06, 12)
+    for name, kind in (("F_C_Y", "min"), ("F_friction", "max")):
+        found = dx.peak(name, kind=kind, ec=ec, mu=0.17, g_Y=-9.81, F_Y=load, **MACHINE)
+        assert np.isfinite(found["value"]).all()
+    assert 4e-15 < min(away) < 1e-12

@@ -53,3 +53,9 @@ def test_each_of_many_designs_has_its_curve():
     assert list(one.plot())[3:] == ["theta_wrt_theta0", "omega_wrt_theta0"]
     with pytest.raises(ValueError, match="over='t'"):
         dx.plot.curves(found, "omega")
+
+
+def test_an_axis_does_not_magnify_the_rounding_of_a_level_history():
+    found = dx.simulate(torque=1.2, t_end=0.05, names=["T_in"], **DESIGN)
+    low, high = found.plot().axes[3].get_ylim()
+    assert (low, high) == pytest.approx((1.14, 1.26), rel=1e-9)

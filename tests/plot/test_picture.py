@@ -65,6 +65,8 @@ def test_a_picture_is_its_artists():
         _ = one.no_such_thing
     with pytest.raises(ValueError, match="expected 2 Axes, one for each of Y, V_C; got 1"):
         PRESS.plot(["Y", "V_C"], ax=Figure().add_subplot())
+    with pytest.raises(TypeError, match="names = 60: expected the name of a quantity"):
+        PRESS.plot.polar(60)
 
 
 def test_titles_tell_what_matters():

@@ -118,7 +118,7 @@ WORKS = {
     "I_crank=0.01, m_slider=1.0, AB=0.125, BC=0.35, ec=np.linspace(0.0, 0.1, 20_000))",
     "panels": "dx.simulate(torque=lambda t, theta, omega: 1.0 - 0.01 * omega, t_end=50.0, I_crank=0.01, "
     "m_slider=1.0, AB=0.125, BC=0.35, ec=np.linspace(0.0, 0.1, 20_000))",
-    "sensitivities": 'dx.simulate(torque=1.0, wrt=["ec", "torque"], t_end=3.0, I_crank=0.01, '
+    "sensitivities": 'dx.simulate(torque=1.0, wrt=["ec", "torque"], t_end=100.0, I_crank=0.01, '
     "m_slider=1.0, AB=0.125, BC=0.35, ec=np.linspace(0.0, 0.1, 20_000))",
     "peaks under a load": 'dx.peak("T_in", ec=np.linspace(0, 0.2, 200_000), AB=0.125, BC=0.35, omega0=1.0, '
     "F_Y=dx.over_theta([0.0, 2.0, 4.0], [1.0, 2.0, 1.0]))",

@@ -16,7 +16,6 @@ RUNS_TEXT = {
     "src/desaxe/runtime/wide_margins.py",
     "src/desaxe/runtime/compiled_text.py",
     "src/desaxe/runtime/native_calls.py",
-    "src/desaxe/scenes/export/axes.py",
     "src/desaxe/peaks/by_arrays.py",
     "src/desaxe/peaks/compiled.py",
     "src/desaxe/cli/doctor.py",

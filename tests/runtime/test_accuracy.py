@@ -14,7 +14,6 @@ from desaxe.oracle.truth import LAW, all_names, truth_all, ulp_error
 from desaxe.runtime.accuracy import ACCURACIES, accuracy_of
 from tests.effort import cases
 from tests.evaluation.test_stress import bodies
-from tests.points import draw
 
 NAMES = [
     name
@@ -22,7 +21,6 @@ NAMES = [
     if name.partition("_wrt_")[0] in ("Y", "V_C", "a_C", "omega_BC", "alpha_BC")
     and name.partition("_wrt_")[2] in ("", *LAW)
 ]
-KINDS = ("generic", "branch -1", "long crank", "very long crank", "concentric", "slowing down", "from rest")
 # Powers of AB + BC or AB, and of the speed, in the scale of a quantity.
 DEGREES = {"Y": (1, 0), "V_C": (1, 1), "a_C": (1, 2), "omega_BC": (0, 1), "alpha_BC": (0, 2)}
 
@@ -62,33 +60,9 @@ def broken(names, point):
     return [name for name in names if not is_exact(name, values[name], exact[name], point)]
 
 
-def change_points(count):
-    """On the change point, and next to it: margins of both signs, angles down to 1e-9 from it."""
-    rng = np.random.default_rng(5)
-    for number in range(count):
-        ec = float(rng.choice([-0.375, 0.375]))
-        margin = 0.0 if number % 3 == 0 else float(rng.choice([-1, 1])) * 2.0 ** -int(rng.integers(20, 51))
-        away = float(rng.choice([-1, 1])) * 10.0 ** rng.uniform(-9, -1)
-        point = {"theta": math.copysign(math.pi / 2, ec) + away, "ec": ec, "AB": 0.25, "BC": 0.625 + margin}
-        yield point | {"omega0": 50.0, "alpha": float(rng.choice([0.0, 3.0]))}
-
-
-@pytest.mark.sampled
-@pytest.mark.parametrize("kind", KINDS)
-def test_extended_is_exact_to_the_last_digit(kind):
-    for point in draw(kind, cases(8, 25)):
-        assert not broken(NAMES, point), point
-
-
-@pytest.mark.sampled
-def test_extended_is_exact_next_to_the_change_point():
-    for point in change_points(cases(20, 60)):
-        assert not broken(NAMES, point), point
-
-
-@pytest.mark.parametrize("draw_points", [lambda: list(draw("generic", 40)), lambda: list(change_points(40))])
-def test_a_kernel_is_as_exact(draw_points):
-    rows = draw_points()
+@pytest.mark.parametrize("family", ["generic", "change_point", "near_change_point"])
+def test_a_kernel_is_as_exact(family):
+    rows = [row for row in points(family, 40) if row["branch"] == 1]
     columns = {name: np.tile([row[name] for row in rows], 60) for name in LAW}
     answers = dx.evaluate(["Y", "V_C", "a_C", "a_C_wrt_ec"], accuracy="extended", **columns)
     for index, row in enumerate(rows):

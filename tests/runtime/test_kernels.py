@@ -22,16 +22,6 @@ from tests.ways import POINT, SIZES, close, columns, take_way
 # ---- both ways, threads, far angles, a state -----------------------------------------------------
 
 
-@pytest.mark.parametrize("size", [tiers.BREAK_EVEN - 1, tiers.BREAK_EVEN])
-def test_both_ways_give_the_same(monkeypatch, size):
-    theta, ec = columns(size)
-    found = []
-    for way in ("plain", "compiled"):
-        take_way(monkeypatch, way)
-        found.append(dx.evaluate(["Y", "V_C", "status"], theta=theta, ec=ec, **SIZES))
-    assert all(close(found[0][name], found[1][name]) for name in found[0])
-
-
 def test_points_asked_for_again_and_again_are_compiled(monkeypatch):
     asked = []
     monkeypatch.setattr(tiers, "_ASKED", Counter())

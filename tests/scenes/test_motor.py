@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
+from desaxe.cli.command import main
 from desaxe.scenes.scene import SceneError
 
 KLOSS = {"breakdown_torque": 40, "breakdown_slip": 0.15, "synchronous_speed": 1500, "gear": 12}
@@ -81,14 +82,12 @@ def test_a_machine_writes_the_motor_into_its_scene(tmp_path):
 
 
 def test_the_page_has_table_and_picture(tmp_path, capsys):
-    from desaxe.scenes.command import run_scene
-
     place = tmp_path / "press.toml"
     place.write_text(
         'title = "Press"\n[mechanism]\nAB = 0.05\nBC = 0.2\nec = 0.01\n[masses]\nm_slider = 20\nI_crank = 2\n'
         '[steady]\ntorque = { over_omega = [["0 rpm", 300], ["130 rpm", -100]] }\n'
     )
-    assert run_scene(str(place), False, str(tmp_path / "press.md")) == 0
+    assert main(["run", str(place), "--report", str(tmp_path / "press.md")]) == 0
     assert "Steady state" in capsys.readouterr().out
     page = (tmp_path / "press.md").read_text()
     assert "## Steady state" in page

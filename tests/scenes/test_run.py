@@ -265,12 +265,6 @@ def test_test_cases_of_paper_a(compactor, text):
     assert line.endswith("agrees")
 
 
-def test_checks(compactor):
-    found = {result.check.quantity: result for result in compactor[1].checks}
-    assert found["a_C"].computed == pytest.approx(-993.6, abs=0.05)
-    assert all(result.agrees for result in found.values())
-
-
 def test_peaks(compactor):
     absolute, largest, velocity = (found.dataset for found in compactor[1].peaks)
     theta = np.linspace(0, 2 * np.pi, 20001)
@@ -378,12 +372,6 @@ def test_data_file_holds_everything(compactor):
             again = dataset.rename({f"peak_{name}": name for name in found.dataset.dims})
             xarray.testing.assert_equal(again.load(), found.dataset)
             assert dataset.attrs["quantity"] == found.peak.quantity
-
-
-def test_data_file_opens_as_a_tree(compactor):
-    with xarray.open_datatree(compactor[0] / "out" / "compactor.nc", engine="h5netcdf") as tree:
-        assert set(tree.children) == {"peak_absmax_a_C", "peak_max_a_C", "peak_absmax_V_C"}
-        assert tree["a_C"].sel(ec=0.03).shape == (721,)
 
 
 def test_report_fits_a_terminal(compactor):

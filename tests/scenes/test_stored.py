@@ -1,5 +1,8 @@
 """Scenes whose values are swept into a store."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -79,3 +82,20 @@ def test_peaks_of_other_designs_are_for_a_scene_of_their_own():
         dx.sweep({**SCENE, "peak": [{"quantity": "a_C", "over": {"ec": [0.0, 0.2]}}]}, store="b.zarr")
     with pytest.raises(TypeError, match="a scene has its own inputs"):
         dx.sweep(SCENE, store="b.zarr", theta=1.0)
+
+
+def test_a_scene_without_a_store_needs_no_zarr():
+    scene = {key: value for key, value in SCENE.items() if key != "results"}
+    code = f"""import sys
+sys.modules["zarr"] = None
+import desaxe as dx
+scene = dx.scene({scene!r})
+dx.explain(scene), dx.compile(scene, "press.py")
+assert scene.run().peaks[0].dataset["value"].size
+try:
+    dx.sweep(scene, store="press.zarr")
+except ImportError as error:
+    print(error)
+"""
+    run = subprocess.run([sys.executable, "-c", code], check=False, capture_output=True, text=True)
+    assert run.stdout.strip().endswith("a sweep needs zarr: python -m pip install 'desaxe[zarr]'"), run.stderr

@@ -198,11 +198,19 @@ def test_designs_that_rub_or_stop_at_an_angle_are_each_alone(more):
         ({"m_slider": [-1.0] * 4}, ValueError, "m_slider: every value is bad"),
         ({"threads": 0}, ValueError, "threads = 0: a whole number, at least 1"),
         ({"BC": None}, TypeError, "BC is missing"),
+        ({"BC": None, "mu": 0.1}, TypeError, "BC is missing"),
+        ({"m_slider": [], "mu": 0.1}, ValueError, "an empty array"),
     ],
 )
 def test_what_is_refused(change, error, message):
     with pytest.raises(error, match=re.escape(message)):
         dx.simulate(**{"torque": 0.25, "t_end": 1.0, **PRESS, "ec": ECS, **change})
+
+
+def test_friction_of_none_counts_as_designs():
+    found = dx.simulate(**{"torque": 0.25, "t_end": 0.1, "times": [0.1], **PRESS, "mu": [0.0, 0.0]})
+    assert found["theta"].shape == (2, 1)
+    assert found["status"].shape == (2,)
 
 
 # ---- the compiled module -------------------------------------------------------------------------

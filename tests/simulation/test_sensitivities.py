@@ -238,6 +238,16 @@ def test_the_work_up_to_a_limit_angle_is_that_of_where_it_starts(kind):
     assert found["work_wrt_theta0"] == pytest.approx(-0.25 - there * slope, abs=1e-6)
 
 
+def test_the_work_where_a_torque_jumps_just_before_a_limit_angle():
+    """At .7956 rad: the integrator's last panel starts with the jump; the energy form has no such panel."""
+    torque = dx.over_theta([-1.0, 0.78, 1.5], [0.25, 3.0, 0.25], kind="step")
+    call = {"t_end": 1.0, "theta0": 0.3, "omega_start": 9.0, "wrt": ["AB", "theta0"], **ROCKER}
+    ours, theirs = (dx.simulate(torque=torque, method=m, **call) for m in ("DOP853", "energy"))
+    assert ours["status"] == theirs["status"] == 2
+    for p in call["wrt"]:
+        assert ours[f"work_wrt_{p}"] == pytest.approx(theirs[f"work_wrt_{p}"], rel=1e-5)
+
+
 def test_an_angle_that_is_only_touched_has_no_derivative():
     swing = {"torque": 0.0, "theta0": math.pi - 2.5, "rtol": 1e-12, **CRANK}
     free = dx.simulate(t_end=1.0, **swing)

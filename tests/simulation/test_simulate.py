@@ -160,6 +160,14 @@ def test_the_first_angle_that_is_reached_ends_the_motion():
     assert "angle 5 rad" in found["message"]
 
 
+@pytest.mark.parametrize("method", ["energy", "DOP853"])
+def test_numbers_of_a_motion_are_plain_floats(method):
+    found = dx.simulate(torque=0.25, t_end=10.0, until=5.0, method=method, **PRESS)
+    numbers = [found["t_last"], found["work"], found["energy_residual"]]
+    numbers += [number for event in found["events"] for number in event[1:4]]
+    assert {type(number) for number in numbers} == {float}
+
+
 def test_an_angle_that_is_passed_within_a_turning_back_counts():
     """The crank turns round just behind the angle."""
     swing = dx.simulate(torque=0.0, t_end=2.0, theta0=1.0, g_Y=-9.81, **CRANK)

@@ -185,7 +185,9 @@ def test_a_search_that_was_stopped_goes_on(tmp_path, monkeypatch):
         return take(ranking, block, part, *rest)
 
     monkeypatch.setattr(Ranking, "take", stop)
-    with pytest.raises(KeyboardInterrupt):
+    with pytest.raises(
+        KeyboardInterrupt, match=r"stopped\.zarr: \d+ of [\d,]+ chunks are kept; the same sweep"
+    ):
         dx.sweep(NAMES, best=5, by="a_C", order="largest", store=stopped, threads=1, **INPUTS)
     assert xr.open_zarr(stopped).attrs["state"] == "incomplete"
     first, begun[:] = begun[:2], range(5, 50)  # others may have been done at that moment

@@ -213,6 +213,22 @@ def test_killed_at_any_chunk_it_goes_on(whole, tmp_path):
     assert os.listdir(tmp_path) == [root.name]
 
 
+def test_an_interrupt_says_what_is_kept_and_how_to_go_on(whole, tmp_path):
+    root = tmp_path / "stopped.zarr"
+
+    def interrupt(done, points, what):
+        if done > points // 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        dx.sweep(NAMES, store=root, chunks=CHUNKS, threads=1, progress=interrupt, **INPUTS)
+    kept = len(list(root.glob("a_C/c/*/*/*")))
+    assert str(stopped.value) == f"{root}: {kept} of 3 chunks are kept; the same sweep goes on from there"
+    assert kept
+    dx.sweep(NAMES, store=root, **INPUTS)
+    assert files(root) == files(whole)
+
+
 def test_a_store_of_another_sweep_is_refused_with_what_differs(whole):
     before = files(whole)
     with pytest.raises(FileExistsError, match=r"AB is 0\.2 there and 0\.3 here"):

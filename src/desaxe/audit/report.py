@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 
 from ..oracle.families import FAMILIES
+from ..support.template import file_text
 from ..support.text_table import table as text_table
 from .contenders import NAMES
 from .errors import TOP, ULPS, Statistics
@@ -12,24 +13,6 @@ PICTURE = "accuracy.png"
 PLAIN = "in plain ulp"
 CLEARLY = 0.95  # a time is shorter only if by this much: the rest is noise
 
-READING = """\
-**Time** is that of one generic point in a long array, on one core, as a multiple of that of
-`accuracy="standard"`; the best of several rounds, in which the contenders alternate.
-
-**Share of the promise.** `standard` promises 8 ulp x (1 + the sum of the value's condition numbers): the
-change of the value by the last digits of the inputs is not counted. 1 is the whole bound, 0.01 a hundredth
-of it, 1000 three digits lost that the inputs do have. Values whose bound leaves no digit are left out.
-
-**Plain ulp.** The error in units of the value's last bit, whatever its condition: 0.5 is correctly rounded,
-`extended` promises 2. Even an exact formula, evaluated in doubles, loses here as much as the inputs' last
-digits change the value. Errors below 2^-96 of the value's scale count as half an ulp at most; exact zeros
-have no ulp and are left out.
-
-50 digits are not enough for the textbook's formula everywhere.
-
-`none` is the top of either scale: no digit is right, or the result is no number where a value exists.
-"""
-
 
 def report(found: Audit) -> str:
     """The whole page."""
@@ -37,7 +20,7 @@ def report(found: Audit) -> str:
         "# Accuracy and time, measured",
         f"![Worst error over time, for every contender]({PICTURE})",
         _made(found),
-        READING.rstrip(),
+        file_text(__package__, "reading.txt").rstrip(),
         "## Overview",
         overview(found),
         "\n".join(_dominated(found)),

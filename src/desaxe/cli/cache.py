@@ -6,21 +6,10 @@ from typing import Any
 
 from .parser import add_command
 
-_CACHE = """\
-Compiled kernels are kept in $DESAXE_CACHE_DIR, or in the user's cache folder, for the next process: machine
-code, each file with a digest, readable by its owner alone. The least recently used leave when the folder
-grows beyond its limit ($DESAXE_CACHE_MB, 256 by default). Whatever is removed is compiled anew when needed.
-
-examples:
-  desaxe cache             where it is and what is in it
-  desaxe cache verify      exit code 1 where a file is damaged, or may have been written by another user
-  desaxe cache trim        remove what is damaged, of another machine or version, or beyond the limit
-  desaxe cache clear       remove all of it"""
-
 
 def add_cache(commands: Any) -> None:
     """Add `desaxe cache`."""
-    parser = add_command(commands, "cache", "the folder of compiled kernels", _CACHE, _cache)
+    parser = add_command(commands, "cache", "the folder of compiled kernels", _cache)
     parser.add_argument(
         "action",
         nargs="?",

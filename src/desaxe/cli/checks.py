@@ -12,21 +12,10 @@ from ..support.extras import explained
 from ..support.shown import in_brief, printable
 from .parser import Parser, add_command
 
-_DERIVE = """\
-The same command as `python -m derive` from the repository root.
-
-examples:
-  desaxe derive --check      is generated/ fresh?
-  desaxe derive --report     operations before and after each pass, per quantity
-  desaxe derive --quantities mine.toml -o my_kernels/ [--check]
-                             a package of your own quantities; no SymPy is needed"""
-
 
 def add_derive(commands: Any) -> None:
     """Add `desaxe derive`."""
-    add_command(
-        commands, "derive", "derive the formulas again with SymPy and write generated/", _DERIVE, lambda _: 0
-    )
+    add_command(commands, "derive", "derive the formulas again with SymPy and write generated/", lambda _: 0)
 
 
 def derive(words: list[str]) -> int:
@@ -71,20 +60,9 @@ def _own(words: list[str]) -> int:
     return 0
 
 
-_AUDIT = """\
-Every accuracy of desaxe beside NumPy, numba, mpmath and (if installed) heyoka on the textbook's
-formula, at generic points and in families of points where formulas lose their digits. The truth is
-the loop closure in ball arithmetic. It takes a minute or two; the points are the same every time.
-Needs the extras `rigorous`, `derive` and, for the picture, `plot`.
-
-examples:
-  desaxe audit --quick        fewer points, half a minute at most
-  desaxe audit -o report      writes report/accuracy.md and report/accuracy.png too"""
-
-
 def add_audit(commands: Any) -> None:
     """Add `desaxe audit`."""
-    parser = add_command(commands, "audit", "time and error of every accuracy, measured here", _AUDIT, _audit)
+    parser = add_command(commands, "audit", "time and error of every accuracy, measured here", _audit)
     parser.add_argument("--quick", action="store_true", help="fewer points")
     parser.add_argument(
         "-o", metavar="FOLDER", dest="folder", help="write accuracy.md and accuracy.png there"
@@ -98,20 +76,12 @@ def _audit(options: argparse.Namespace) -> int:
     return command(options.quick, options.folder, options.overwrite)
 
 
-_DOCTOR = """\
-Exit code: 0 if desaxe is usable, else 1. Compiles one small kernel, which takes a second.
-
-example:
-  desaxe doctor"""
-
-
 def add_doctor(commands: Any) -> None:
     """Add `desaxe doctor`."""
     add_command(
         commands,
         "doctor",
         "versions, cache, threads, and whether loops vectorise on this CPU",
-        _DOCTOR,
         _doctor,
     )
 

@@ -31,7 +31,7 @@ LONGEST = 2_000  # characters of an error
 INTERRUPTED, TERMINATED = 130, 143  # as a shell reports them
 
 
-class Terminated(BaseException):
+class Terminated(KeyboardInterrupt):
     """The process received SIGTERM: it stops as after Ctrl-C and leaves no half-written file."""
 
 
@@ -68,12 +68,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # whoever read our output has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
-    except KeyboardInterrupt:
-        print("desaxe: interrupted", file=sys.stderr)
-        return _leave(INTERRUPTED)
-    except Terminated:
-        print("desaxe: terminated", file=sys.stderr)
-        return _leave(TERMINATED)
+    except KeyboardInterrupt as stopped:
+        how, code = (
+            ("terminated", TERMINATED) if isinstance(stopped, Terminated) else ("interrupted", INTERRUPTED)
+        )
+        print(": ".join(map(str, (f"desaxe: {how}", *stopped.args))), file=sys.stderr)
+        return _leave(code)
     except (UsageError, MissingExtraError, ValueError, TypeError, OSError, MemoryError) as error:
         print(f"desaxe: error: {_one_line(error)}", file=sys.stderr)
         return 2

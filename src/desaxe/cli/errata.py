@@ -7,23 +7,11 @@ from typing import Any
 
 from .parser import add_command
 
-_ERRATA = """\
-examples:
-  desaxe errata                    what whoever uses the papers must know
-  desaxe errata B-eq17             an entry; eq20 is equation 20 of every paper
-  desaxe errata --paper B          the worst of a paper, then all of its entries
-  desaxe errata --all              every entry
-  desaxe errata stroke --paper B   entries of paper B that speak of the stroke
-  desaxe errata --wrong --paper A  what is wrong in one paper
-  desaxe errata --verdict sign     those with a wrong sign
-  desaxe errata --equations        only the wrong numbered equations, a line each
-  desaxe errata --markdown         the selected entries as a page in Markdown"""
-
 
 def add_errata(commands: Any) -> None:
     """Add `desaxe errata`."""
     parser = add_command(
-        commands, "errata", "the papers' printed equations and numbers, with verdicts", _ERRATA, _errata
+        commands, "errata", "the papers' printed equations and numbers, with verdicts", _errata
     )
     parser.add_argument(
         "words", metavar="WORD", nargs="*", help="an id, an equation (eq20), or words to find"

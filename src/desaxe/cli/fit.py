@@ -9,22 +9,10 @@ from typing import Any
 from .parser import add_command
 from .words import UsageError
 
-_FIT = """\
-DATA is a CSV file whose heading names its columns: theta [deg] or t [s], and the measured
-quantities, such as `a_C [m/s2]`. Other columns are left alone, an empty cell is a missing sample.
-
-A parameter to be found starts from the scene's number or from the one given, or lies in a range.
-All other inputs are the scene's numbers.
-
-examples:
-  desaxe fit press.toml run.csv --over AB BC ec=0mm --sigma a_C=5
-  desaxe fit press.toml run.csv --over BC=340mm:360mm --nuisance theta_offset a_C_bias --loss huber
-  desaxe fit press.toml run.csv --over AB BC --sigma a_C=5 --picture fit.png --json"""
-
 
 def add_fit(commands: Any) -> None:
     """Add `desaxe fit`."""
-    parser = add_command(commands, "fit", "parameters of a machine from measurements", _FIT, _fit)
+    parser = add_command(commands, "fit", "parameters of a machine from measurements", _fit)
     parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
     parser.add_argument("data", metavar="DATA", help="path of a CSV file")
     parser.add_argument(

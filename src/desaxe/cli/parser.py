@@ -2,10 +2,11 @@
 
 import argparse
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NoReturn
 
 from ..mechanism.spelling import did_you_mean
+from ..support.template import file_text, filled
 from .words import UsageError
 
 SIGNS = """\
@@ -17,7 +18,15 @@ SEE = "see docs/choose.md: which call for which question"
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser that reports an error in one line."""
+    """A parser that reports an error in one line, and reads its longer help when it is asked for."""
+
+    more: Callable[[], str] | None = None
+
+    def format_help(self) -> str:
+        """The help, with the text of a sub-command."""
+        if self.more is not None:
+            self.epilog = f"{self.more().rstrip()}\n\n{SEE}"
+        return super().format_help()
 
     def error(self, message: str) -> NoReturn:
         """Raise UsageError with the message, and the choice that is similar to a wrong one."""
@@ -42,15 +51,19 @@ class Version(argparse.Action):
 
 
 def add_command(
-    commands: Any, name: str, what: str, more: str, run: Callable[[argparse.Namespace], int]
+    commands: Any,
+    name: str,
+    what: str,
+    run: Callable[[argparse.Namespace], int],
+    facts: Callable[[], Mapping[str, str | Sequence[str]]] = dict,
 ) -> Any:
-    """Add a sub-command with its one-line help and a longer text with examples."""
+    """Add a sub-command with its one-line help, the longer one of `help/NAME.txt` with these facts."""
     parser = commands.add_parser(
         name,
         help=what,
         description=f"{what[0].upper()}{what[1:]}.",
-        epilog=f"{more.rstrip()}\n\n{SEE}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.set_defaults(run=run)
+    parser.more = lambda: filled(file_text(__package__, "help", f"{name}.txt"), **facts())
     return parser

@@ -11,43 +11,20 @@ from ..support.text_table import table
 from .parser import SIGNS, add_command
 from .words import names_and_inputs
 
-_POINT = f"""\
-inputs (SI units and radians, or any unit written behind the number):
-  theta    crank angle            theta=60deg  theta=1.047
-  ec       eccentricity           ec=10mm      either sign
-  AB, BC   crank, connecting rod  AB=125mm     BC=0.35
-  omega0   crank speed at theta=0 omega0=1500rpm; omega^2 = omega0^2 + 2 alpha theta
-  alpha    crank acceleration     alpha=10     0 by default
-  omega    speed at this instant, instead of omega0
-  branch   1 (default) or -1: on which side of the crank pin the slider is
-
-masses and loads, for forces, torques and energies; 0 by default, but r_crank = AB/2, r_rod = BC/2:
-{"".join(f"  {name:8} {INPUTS[name].meaning}" + chr(10) for name in LOADS)}
-  m_rod=0.5kg  I_rod="80.6 kg mm2"  F_Y=-50N  g_X=-9.81m/s2  mu=0.1
-
-Where a value is NaN the status says why: 1 cannot be assembled here, 2 change point, 3 stalled,
-5 friction jams (no balance of forces), 6 friction has two balances of forces.
-
-{SIGNS}
-
-examples:
-  desaxe point a_C theta=60deg ec=10mm AB=125mm BC=300mm omega0=1500rpm
-  desaxe point V_C,a_C,a_C_wrt_ec theta=60deg ec=0 AB=.125 BC=.35 omega0=157.08
-  desaxe point T_in,N_C theta=60deg ec=10mm AB=125mm BC=0.3 omega0=0 F_Y=-50N
-  desaxe point margin ec=220mm AB=125mm BC=350mm --json
-  desaxe point V_C theta=1 ec=0 AB=.125 BC=.35 omega0=157 --quality     with conditions and digits
-  desaxe point --list                        all names, with units and meanings"""
-
 
 def add_point(commands: Any) -> None:
     """Add `desaxe point`."""
-    parser = add_command(commands, "point", "values at one crank angle of one design", _POINT, _point)
+    parser = add_command(commands, "point", "values at one crank angle of one design", _point, _facts)
     parser.add_argument(
         "words", nargs="*", metavar="NAME | INPUT=VALUE", help="quantities (V_C a_C, or V_C,a_C) and inputs"
     )
     parser.add_argument("--json", action="store_true", help="print JSON")
     parser.add_argument("--list", action="store_true", help="print all quantities with units and meanings")
     parser.add_argument("--quality", action="store_true", help="print conditions and digits as well")
+
+
+def _facts() -> dict[str, str | list[str]]:
+    return {"LOADS": [f"{name:8} {INPUTS[name].meaning}" for name in LOADS], "SIGNS": SIGNS}
 
 
 def _point(options: argparse.Namespace) -> int:

@@ -10,46 +10,10 @@ from ..support.shown import printable
 from .parser import add_command
 from .words import UsageError
 
-_RUN = """\
-A scene is a TOML file. It is data only: nothing in it is executed. Its keys:
-
-  title, accuracy, threads, outputs = ["V_C", "a_C"] (over the grid of all lists and ranges)
-  [units]         length = "mm", angle = "deg", ...: of plain numbers, report, pictures and files;
-                  or units = "mm, deg, rpm"
-  [reduce]        theta = "absmax" (max, min, absmax, mean, rms, or a list of these): of each output
-                  over this axis, without storing the grid
-  [mechanism]     AB, BC, ec, branch
-  [motion]        theta, omega0 or omega, alpha
-  [masses]        MASSES
-  [loads]         LOADS
-                  each a number (SI), "125 mm", a list, or { start = , stop = , num = or step = }
-  [[check]]       printed = { a_C = "-994 m/s2" }, at = { theta = "60 deg" }, source, title, digits
-  [[peak]]        quantity, kind (absmax, max or min), over = { ec = [0, "50 mm"] },
-                  theta = [from, to], baseline = { ec = 0 }, sensitivities = ["ec", "m_rod"], title
-  [[peak.claim]]  at = { ec = "150 mm" }, increase = "33 %", source
-  [[picture]]     file, quantity, over = "theta", family = { ec = [0, "50 mm"] }, at, title
-  [results]       data = "out/values.nc" (NetCDF; the peaks are groups in it), .zarr, .csv,
-                  .xlsx (Excel) or .npz;
-                  or store = "press.zarr" with chunks = { theta = 1000 }, memory = "200 MB";
-                  order = "smallest" or "largest": the best of `desaxe sweep --best`
-
-`desaxe scene --schema > scene.schema.json` and a first line `#:schema scene.schema.json` let
-editors complete and check these keys. Files are written relative to the current directory; what
-desaxe wrote itself is replaced, another file only with --overwrite. All places are looked at before
-anything is computed. Pictures and values need the extras `plot` and `labelled`.
-
-examples:
-  desaxe run examples/compactor.toml
-  desaxe run examples/feeder.toml
-  desaxe run my_press.toml > report.txt
-  desaxe run my_press.toml --report press.html --tolerance ec=0.1mm""".replace(
-    "MASSES", ", ".join(names_in("masses"))
-).replace("LOADS", ", ".join(names_in("loads")))
-
 
 def add_run(commands: Any) -> None:
     """Add `desaxe run`."""
-    parser = add_command(commands, "run", "run a scene: values, peaks, checks, pictures", _RUN, _scene)
+    parser = add_command(commands, "run", "run a scene: values, peaks, checks, pictures", _scene, _inputs)
     parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
     parser.add_argument(
         "--report", metavar="FILE", dest="page", help="write a report to hand on: one page, .html or .md"
@@ -62,6 +26,10 @@ def add_run(commands: Any) -> None:
         help='a tolerance for the report, such as "ec=0.1 mm"; as often as needed',
     )
     add_overwrite(parser)
+
+
+def _inputs() -> dict[str, str]:
+    return {section.upper(): ", ".join(names_in(section)) for section in ("masses", "loads")}
 
 
 def add_overwrite(parser: argparse.ArgumentParser) -> None:
@@ -80,19 +48,18 @@ def _scene(options: argparse.Namespace) -> int:
             raise UsageError(f'--tolerance {printable(name)}: expected INPUT=HALF, such as "ec=0.1 mm"')
     if pairs and options.page is None:
         raise UsageError("--tolerance is for the report: give --report FILE")
+    if options.page is None:
+        return run_scene(options.scene, options.overwrite)
+    from ..scenes.run_page import RunPage
+
     tolerances = {name.strip(): half.strip() for name, _, half in pairs}
-    return run_scene(options.scene, options.overwrite, options.page, tolerances)
-
-
-_SCENE = """\
-examples:
-  desaxe scene my_press.toml                     prints what is wrong with it, or nothing
-  desaxe scene --schema > scene.schema.json      for editors: #:schema scene.schema.json"""
+    page = RunPage(options.page, options.scene, tolerances, options.overwrite)
+    return run_scene(options.scene, options.overwrite, page)
 
 
 def add_scene(commands: Any) -> None:
     """Add `desaxe scene`."""
-    parser = add_command(commands, "scene", "check a scene file without running it", _SCENE, _check_scene)
+    parser = add_command(commands, "scene", "check a scene file without running it", _check_scene)
     parser.add_argument("scene", metavar="SCENE", nargs="?", help="path of a TOML file")
     parser.add_argument("--schema", action="store_true", help="print the JSON schema of scene files")
 
@@ -112,20 +79,9 @@ def _check_scene(options: argparse.Namespace) -> int:
     return 0
 
 
-_EXPLAIN = """\
-What a run will do, without doing it: what is skipped and why, operations at each point after each
-pass, what runs in which loop, whether it is compiled, expected time and memory.
-
-examples:
-  desaxe explain examples/compactor.toml
-  desaxe explain my_press.toml --json"""
-
-
 def add_explain(commands: Any) -> None:
     """Add `desaxe explain`."""
-    parser = add_command(
-        commands, "explain", "the plan of a scene, as a database explains a query", _EXPLAIN, _explain
-    )
+    parser = add_command(commands, "explain", "the plan of a scene, as a database explains a query", _explain)
     parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
     parser.add_argument("--json", action="store_true", help="print JSON")
 
@@ -138,27 +94,9 @@ def _explain(options: argparse.Namespace) -> int:
     return 0
 
 
-_COMPILE = """\
-Writes source code of its own, which needs nothing of desaxe. What the scene gives as a number
-is folded in; its lists and ranges are the arguments.
-
-  numba       FILE.py: `point(...)`, `evaluate(...)`, `run()`; it needs NumPy and numba
-  c           FOLDER/name.h and name.c, C99, named as the folder
-  octave      name.m, for GNU Octave and MATLAB
-  jax         a Python module over jax.numpy, with exact derivatives
-  javascript  an ES module and its types
-  fmu         NAME.fmu, a Functional Mock-up Unit with its sources (extra fmu)
-
-examples:
-  desaxe compile my_press.toml -o my_kernels.py
-  desaxe compile my_press.toml --to fmu -o press.fmu
-  desaxe compile my_press.toml --to c -o press
-  desaxe compile my_press.toml --to c -o press --check"""
-
-
 def add_compile(commands: Any) -> None:
     """Add `desaxe compile`."""
-    parser = add_command(commands, "compile", "write a scene as source code of its own", _COMPILE, _compile)
+    parser = add_command(commands, "compile", "write a scene as source code of its own", _compile, _languages)
     parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
     parser.add_argument("-o", metavar="PLACE", dest="place", required=True, help="the file, or its folder")
     parser.add_argument("--to", metavar="LANGUAGE", default="numba", help="language (default: numba)")
@@ -184,6 +122,12 @@ def add_compile(commands: Any) -> None:
     add_overwrite(parser)
 
 
+def _languages() -> dict[str, list[str]]:
+    from ..compiler.languages import languages
+
+    return {"LANGUAGES": [f"{one.name:11} {one.about}" for one in languages()]}
+
+
 def _compile(options: argparse.Namespace) -> int:
     from ..scenes.export.command import run_compile
     from ..scenes.export.portable import Form
@@ -195,19 +139,10 @@ def _compile(options: argparse.Namespace) -> int:
     )  # fmt: skip
 
 
-_EXPLORE = """\
-One HTML file that needs no network: open it in a browser, or send it to somebody.
-Needs the extra `explore`.
-
-examples:
-  desaxe explore examples/compactor.toml
-  desaxe explore examples/feeder.toml -o feeder.html --names T_in,F_shaking_Y"""
-
-
 def add_explore(commands: Any) -> None:
     """Add `desaxe explore`."""
     what = "write an interactive HTML page of the designs of a scene"
-    parser = add_command(commands, "explore", what, _EXPLORE, _explore)
+    parser = add_command(commands, "explore", what, _explore)
     parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
     parser.add_argument(
         "-o", metavar="FILE", dest="file", default="explorer.html", help="the page (default: explorer.html)"

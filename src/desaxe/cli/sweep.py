@@ -11,26 +11,10 @@ from ..support.shown import printable
 from .parser import add_command
 from .words import UsageError
 
-_SWEEP = """\
-Writes the grid of a scene chunk by chunk, so that it need not fit into memory. Stopped at any
-moment, the same command goes on where it stopped. `xarray.open_zarr` reads the store.
-
-With --workers N the chunks are computed by N processes here; with --scheduler by those of a Dask
-cluster, which see the same folder:
-
-  dask scheduler                              on one machine
-  dask worker tcp://HOST:8786 --nthreads 1    on each, as often as it has cores
-  desaxe sweep my_press.toml -o press.zarr --scheduler tcp://HOST:8786
-
-examples:
-  desaxe sweep my_press.toml -o press.zarr --memory "500 MB"
-  desaxe sweep my_press.toml -o press.zarr --chunks theta=1000 --workers 2
-  desaxe sweep my_press.toml --best 10 --by absmax:a_C --order smallest"""
-
 
 def add_sweep(commands: Any) -> None:
     """Add `desaxe sweep`."""
-    parser = add_command(commands, "sweep", "a grid of any size into a Zarr store, resumable", _SWEEP, _sweep)
+    parser = add_command(commands, "sweep", "a grid of any size into a Zarr store, resumable", _sweep)
     parser.add_argument("scene", metavar="SCENE", help="path of a TOML file")
     parser.add_argument(
         "-o", metavar="STORE", dest="store", help="path of the store (default: that of [results])"

@@ -188,90 +188,9 @@ OPERATIONS: dict[str, Operation] = dict(
     ]
 )  # fmt: skip
 
-# `helpers` in JavaScript, whose arithmetic is that of IEEE 754 as it stands. It has no fused
-# multiply-add, so that Dekker's product stays, and no copysign.
-JAVASCRIPT_HELPERS = {
-    "copysign": """function copysign(size, sign) {
-  return sign < 0 || Object.is(sign, -0) ? -fabs(size) : fabs(size);
-}
-""",
-    "two_sum_error": """function two_sum_error(a, b) {
-  const total = a + b, of_b = total - a;
-  return (a - (total - of_b)) + (b - of_b);
-}
-""",
-    "two_product_error": """function two_product_error(a, b) {
-  const product = a * b;
-  let wide = 134217729 * a;
-  const a_high = wide - (wide - a), a_low = a - a_high;
-  wide = 134217729 * b;
-  const b_high = wide - (wide - b), b_low = b - b_high;
-  return a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low) + 0;
-}
-""",
-    "hypot": """function hypot(a, b) {
-  const p = fabs(a), q = fabs(b), most = p < q ? q : p, least = p < q ? p : q;
-  return least > 0 && most < Infinity ? most * sqrt(1 + (least / most) * (least / most)) : most + least;
-}
-""",
-    "rounding": """function rounding(a) {
-  return 4.440892098500626e-16 * fabs(a);
-}
-""",
-    "power_of_two": """function power_of_two(a) {
-  const least = 1.0261342003245941e-289, most = 9.7453140114e+288;
-  const size = a < most ? (least < a ? a : least) : most, wide = 9007199254740992 * size;
-  const step = (wide + size) - wide;
-  return step > 0 ? step : size;
-}
-""",
-    "mul_add": """function mul_add(a, b, c) {
-  return a * b + c;
-}
-""",
-    "extended_only": """function extended_only(a) {
-  return false;
-}
-""",
-    "rotated_sin": """function rotated_sin(sine, cosine, quarters) {
-  const turn = quarters - 4 * floor(quarters / 4);
-  const value = turn % 2 === 1 ? cosine : sine;
-  return turn >= 2 ? -value : value;
-}
-""",
-    "rotated_cos": """function rotated_cos(sine, cosine, quarters) {
-  const turn = quarters - 4 * floor(quarters / 4), next = quarters + 1;
-  const value = turn % 2 === 1 ? sine : cosine;
-  return next - 4 * floor(next / 4) >= 2 ? -value : value;
-}
-""",
-}
 MATH_NAMES = (
     "atan2", "copysign", "cos", "exp", "fabs", "floor", "inf", "log", "nan", "pow", "sin", "sqrt",
 )  # fmt: skip
-
-# `helpers` of tables, for modules that have some.
-JAVASCRIPT_TABLES = {
-    "lookup_piece": """function lookup_piece(x, knots, way) {
-  let low = 0, high = knots.length;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (knots[middle] <= x) low = middle + 1; else high = middle;
-  }
-  return low + (way < 0 ? knots.length + 1 : 0);
-}
-""",
-    "lookup": """function lookup(x, knots, rows, piece) {
-  const at = piece % (knots.length + 1), s = x - knots[at > 0 ? at - 1 : 0], k = 4 * piece;
-  return rows[k] + s * (rows[k + 1] + s * (rows[k + 2] + s * rows[k + 3]));
-}
-""",
-    "lookup_slope": """function lookup_slope(x, knots, rows, piece) {
-  const at = piece % (knots.length + 1), s = x - knots[at > 0 ? at - 1 : 0], k = 4 * piece;
-  return rows[k + 1] + s * (2 * rows[k + 2] + s * (3 * rows[k + 3]));
-}
-""",
-}
 
 TYPES = {"f": "f64", "b": "bool", "i": "i64", "t": "table"}
 

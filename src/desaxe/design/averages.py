@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
-from ..loads.angles import crossings, dead_centres, meeting_angles, repeated, turns_of
+from ..loads.angles import crossings, meeting_angles, turns_of
 from ..loads.load import Load, OverY
 from ..mechanism.catalogue import has
+from ..mechanism.closed.angles import dead_centres, repeated
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS, sensitivity
 from ..runtime.request import as_number

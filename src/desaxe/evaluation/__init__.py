@@ -5,10 +5,11 @@ arrays         inputs that broadcast, outputs and scratch
 loops          the loop that each input of a broadcast varies along
 grid           an outer product as a labelled dataset
 axes           its arguments, and axes joined to long loops
-chunks         how a grid is cut
+chunks         how a grid, or a reduced axis, is cut
 plan           the steps of a grid, its blocks, its dataset
 points         a step: values of names by one kernel, loads included
-reduced        a step: the largest, the mean, ... along axes, without storing the grid
+reduced        a step: the largest, the mean, ... along axes; which kernel reduces, and how pieces combine
+measures       steps: a name at one place of a reduced axis, a function of the design
 lazy           a plan as Dask arrays
 labels         units and CF attributes
 quality        condition numbers and error bounds
@@ -27,7 +28,7 @@ dask_blocks    a function of many outputs over the chunks of Dask arrays
 in_units       labelled results in other units
 reductions     the argument `reduce=`, checked
 kinds          the kinds of reductions: a row for each
-in_memory      reductions over several axes of arrays in memory
+in_memory      kinds of arrays in memory over several axes, and of pieces
 own_measure    a user's function of a design as a measure
 arcs           arcs of crank angles on which one piece of a load holds
 sides          on which side of a jump of a load samples are

@@ -21,6 +21,7 @@ from .loops import spread
 
 Array = NDArray[Any]
 ALWAYS = ("status", "margin")
+ARGUMENTS = (*INPUTS, "branch", "accuracy", "threads", "out", "reduce", "chunks")  # of a grid, by name
 LONG_ENOUGH = 1_000  # points of the innermost loop: a shorter one costs as much to start as to run
 
 
@@ -82,7 +83,7 @@ def outer_of(
 ) -> Outer:
     """Check the arguments of a grid; `always`: it has `status` and `margin` too."""
     wanted = (names,) if isinstance(names, str) else several(names)
-    check_inputs("grid", inputs, (*INPUTS, "branch", "accuracy", "threads", "out", "reduce", "chunks"))
+    check_inputs("grid", inputs, ARGUMENTS)
     inputs, loads = split_axes(inputs)
     given = _given(wanted, inputs, loads)
     check_common(given, branch, threads)

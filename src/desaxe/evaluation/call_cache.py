@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..mechanism.constants import limit_of
 from ..mechanism.inputs import is_good
 from ..mechanism.names import LENGTHS
 from ..runtime.any_stride import data_of, loop
@@ -24,7 +25,6 @@ from ..runtime.wide_margins import of_numbers
 from ..support.memory import require
 from .extremes import LEAST, is_extreme
 from .extremes import MOST as LARGEST
-from .repair import limit_of
 
 Array = NDArray[Any]
 FLOAT, STATUS = np.dtype(np.float64), np.dtype(np.int8)

@@ -8,7 +8,7 @@ from ..mechanism.keywords import check_inputs
 from ..mechanism.names import LOADS
 from ..support.answer import Answer
 from ..support.forks import IMPORTS
-from .values import values
+from .values import of_any_arrays, values
 
 
 def evaluate(
@@ -102,7 +102,7 @@ def evaluate(
             from .quality import evaluate_quality
 
         return evaluate_quality(names, given, branch, accuracy, threads, out)
-    found = values_of(names, given, branch, accuracy, threads, out)
+    found = values_of(names, given, branch, accuracy, threads, out, of_any_arrays)
     if type(found) is dict:
         found = Values(found)
         found.inputs = {name: value for name, value in given.items() if value is not None}

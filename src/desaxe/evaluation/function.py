@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..loads.resolve import without_loads
 from ..mechanism.catalogue import has, inputs_of, law_name, quantity
+from ..mechanism.constants import limit_of
 from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs
 from ..mechanism.names import LENGTHS, sensitivity
@@ -26,7 +27,7 @@ from ..support.computed import computed_once
 from ..support.forks import IMPORTS
 from ..support.interrupts import import_whole
 from ..support.shown import shown as as_shown
-from .repair import limit_of, repair_for
+from .repair import repair_for
 
 Array = NDArray[Any]
 INPUTS_OF_FUNCTION = ("inputs", *INPUTS, "branch", "accuracy")

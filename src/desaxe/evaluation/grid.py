@@ -1,21 +1,22 @@
 """`grid`: the outer product of its arguments, as a labelled xarray.Dataset."""
 
 from collections.abc import Mapping, Sequence
-from functools import partial
 from typing import TYPE_CHECKING, Any, Unpack, overload
 
 from numpy.typing import NDArray
 
 from ..mechanism.inputs import Inputs
+from ..mechanism.keywords import check_inputs
 from ..runtime.request import several, with_named_inputs
 from ..support.forks import IMPORTS
 from .arrays import outputs_for
-from .axes import outer_of
-from .evaluate import evaluate
+from .axes import ARGUMENTS, outer_of
 from .labelled import grid_by_index, has_named_index
+from .loaded import evaluate_loaded
 from .plan import plan_of
 from .points import points_of
 from .reductions import names_reduced, reductions_of
+from .values import of_labelled_arrays, values
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -95,7 +96,17 @@ def grid(
     if any(map(has_named_index, inputs.values())):
         _refuse_with_series(reduce=reduce, chunks=chunks, out=out)
         wanted = (names,) if isinstance(names, str) else several(names)
-        each = partial(evaluate, branch=branch, accuracy=accuracy, threads=threads)
+        check_inputs("grid", inputs, ARGUMENTS)
+
+        def each(own: list[str], given: dict[str, Any]) -> dict[str, Any]:
+            loaded = any(map(callable, given.values()))
+            found: dict[str, Any] = (
+                evaluate_loaded(own, given, branch, accuracy, threads)
+                if loaded
+                else values(own, given, branch, accuracy, threads, None, of_labelled_arrays)
+            )
+            return found
+
         return grid_by_index(each, wanted, inputs, branch, accuracy)
     if out is not None:
         _refuse_with_out(reduce=reduce, chunks=chunks)

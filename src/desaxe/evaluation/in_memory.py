@@ -5,7 +5,7 @@ many points as it was made of, so that a mean over two axes is that of all their
 pieces of an axis combines to that of the whole in the same way.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from math import prod
 from typing import Any, NamedTuple
 
@@ -16,7 +16,6 @@ from .kinds import Extreme, average, kind_called, place
 
 Array = NDArray[Any]
 PIECE = "piece"  # the dimension of pieces that are combined
-MOST = 2**20  # numbers that are in memory behind each point of the result, where pieces combine
 
 
 class Field(NamedTuple):
@@ -69,20 +68,6 @@ def folded(field: Field, axes: Sequence[str], kind: str, coordinates: Mapping[st
     }
     places = {name: taken(rows(array)) for name, array in field.places.items()}
     return Field(rest, taken(taken_of.result(values)), total, {**places, **own})
-
-
-def pieces(values: Mapping[str, Array], axes: Sequence[str]) -> Iterator[Mapping[str, Array]]:
-    """Yield the values of pieces along the first of some axes; without axes, the whole.
-
-    Their lengths depend on these axes alone, so that sums have one order however a grid is cut.
-    """
-    if not axes:
-        yield values
-        return
-    cut, *rest = axes
-    length = max(1, MOST // max(1, prod(values[name].size for name in rest)))
-    for start in range(0, max(1, values[cut].size), length):
-        yield {**values, cut: values[cut][start : start + length]}
 
 
 def combined(parts: Sequence[Field], kind: str) -> Field:

@@ -85,8 +85,9 @@ def grid_by_index(
     present = {name: value for name, value in inputs.items() if value is not None}
     arrays = {name: _array(name, value, names) for name, value in present.items() if not callable(value)}
     given = {**present, **{name: array for name, array in arrays.items() if array.ndim}}
-    lengths = {name: given[name] for name in LENGTHS if name in given}
-    found = evaluate(list(names), **given) | evaluate(["status"], **given) | evaluate(["margin"], **lengths)
+    lengths = {name: given.get(name) for name in (*LENGTHS, "omega0", "omega")}
+    given = {**dict.fromkeys(("theta", *lengths)), "alpha": 0.0, **given}
+    found = evaluate(list(names), given) | evaluate(["status"], given) | evaluate(["margin"], lengths)
     told = {name: array.assign_attrs(input_attributes(name)) for name, array in arrays.items()}
     about = provenance(names, {name: array.values for name, array in arrays.items()}, branch, accuracy)
     return xarray.Dataset(found, attrs=about).assign_coords(told)

@@ -1,6 +1,6 @@
 """Values under loads that vary with the motion: first the loads at each point, then the Program."""
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from math import prod
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..loads.function import FunctionOverTheta
-from ..loads.load import TURN, Load, OverY
+from ..loads.load import Load, OverY
 from ..loads.pieces import Place
 from ..loads.resolve import VARIABLE, Forces, Plan, plan_of, split, way_of
 from ..loads.tabulated import over_theta
+from ..mechanism.closed import TURN
 from ..mechanism.names import LENGTHS, STATUS
 from ..mechanism.spoken import spoken
 from ..runtime.request import as_number, check_common, several
@@ -33,7 +34,8 @@ def evaluate_loaded(
     branch: int,
     accuracy: str | float,
     threads: int | None,
-    out: Any,
+    out: Any = None,
+    of_arrays: Callable[..., dict[str, Any]] | None = None,
 ) -> Any:
     """`evaluate` where F_X or F_Y varies with the motion; derivatives are total ones."""
     wanted = (names,) if isinstance(names, str) else several(names)
@@ -41,26 +43,38 @@ def evaluate_loaded(
     if out is None and any(map(is_labelled, given.values())):
 
         def run(plain: dict[str, Any]) -> dict[str, Any]:
-            found: dict[str, Any] = evaluate_loaded(wanted, plain, branch, accuracy, threads, None)
-            return found
+            return values_under_loads(wanted, plain, branch, accuracy, threads, None, of_arrays)
 
         labelled = evaluate_labelled(run, wanted, given)
         return labelled[names] if isinstance(names, str) else labelled
-    numbers, plan = plan_for(wanted, given)
-    loaded, given = given, {**dict.fromkeys(MOTION), **numbers}
-    if not plan.loads:
-        return values(names, given, branch, accuracy, threads, out)
-    found = None
-    if accuracy == "standard" and are_many(numbers):
-        found = _by_kernel(plan, loaded, numbers, branch, threads)
-    if found is None:
-        found = _totals(plan, given, numbers, branch, accuracy, threads)
-    if out is not None:
-        found = _put(found, out)
+    found = values_under_loads(wanted, given, branch, accuracy, threads, out, of_arrays)
     return found[names] if isinstance(names, str) else found
 
 
-def _totals(
+def values_under_loads(
+    names: Sequence[str],
+    given: Mapping[str, Any],
+    branch: int,
+    accuracy: str | float = "standard",
+    threads: int | None = None,
+    out: Any = None,
+    of_arrays: Callable[..., dict[str, Any]] | None = None,
+) -> dict[str, Any]:
+    """The values by name, under loads or without; see `values` for `of_arrays`."""
+    numbers, plan = plan_for(names, given)
+    loaded, given = given, {**dict.fromkeys(MOTION), **numbers}
+    found: dict[str, Any] | None = None
+    if not plan.loads:
+        found = values(list(names), given, branch, accuracy, threads, out, of_arrays)
+        return found
+    if accuracy == "standard" and are_many(numbers):
+        found = _by_kernel(plan, loaded, numbers, branch, threads)
+    if found is None:
+        found = totals_at(plan, given, numbers, branch, accuracy, threads)
+    return found if out is None else _put(found, out)
+
+
+def totals_at(
     plan: Plan,
     given: Mapping[str, Any],
     numbers: Mapping[str, Any],
@@ -91,7 +105,7 @@ def _by_kernel(
         shape = next(iter(found.values())).shape
         own = {n: np.broadcast_to(numeric(n, v, plan.shown), shape) for n, v in numbers.items()}
         some = {name: array.reshape(-1)[places] for name, array in own.items()}
-        again = _totals(plan, {**dict.fromkeys(MOTION), **some}, some, branch, "standard", threads)
+        again = totals_at(plan, {**dict.fromkeys(MOTION), **some}, some, branch, "standard", threads)
         for name in plan.shown:
             found[name].reshape(-1)[places] = again[name]
     return found

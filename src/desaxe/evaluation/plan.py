@@ -6,13 +6,15 @@
         for part in block.parts:
             computed(part.step, block.values, threads)
 
-A step is `Points` (values by one kernel, loads included) or `Reduced` (what is taken of axes); a sweep adds
-peaks. It tells its outputs, their types and attributes, and what it needs; it has no arrays and travels.
+A step is `Points` (values by one kernel, loads included), `Reduced` (what is taken of axes), `AtPlace` or
+`OfDesign`; a sweep adds peaks. It tells its outputs, their types and attributes, what it needs, and how
+pieces of a reduced axis combine; the plan alone decides where a grid or such an axis is cut. A step has no
+arrays and travels.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import prod
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +24,7 @@ from ..mechanism.own import Definition
 from ..runtime.compiled_only import compiled_only
 from ..support.extras import needed
 from .axes import Outer
-from .chunks import Slices, blocks_of, chunk_lengths, slices_of
+from .chunks import Slices, blocks_of, chunk_lengths, pieces, slices_of
 from .labels import Output, labelled, provenance, with_loads
 from .points import Points, points_of
 from .reduced import Reduced, reduced_of
@@ -63,6 +65,22 @@ class Step(Protocol):
 
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
         """The outputs of a block by name, from the values along each of its `axes`."""
+
+
+@runtime_checkable
+class Reducing(Protocol):
+    """A step that takes something of whole axes: which it holds in memory, and how their pieces combine."""
+
+    def held(self) -> tuple[str, ...]:
+        """The reduced axes whose points are in memory behind each number of the outputs."""
+
+    def combines(self) -> bool:
+        """True if the outputs follow from those of pieces of these axes."""
+
+    def combine(
+        self, parts: Sequence[Mapping[str, Array]], found: Sequence[dict[str, Array]]
+    ) -> dict[str, Array]:
+        """The outputs of a block from those of its pieces, in their order, and the values of these."""
 
 
 class Part(NamedTuple):
@@ -170,7 +188,7 @@ class Plan(NamedTuple):
         if whole:
             before()
             axes = self.outer.axes
-            return {n: a for step in self.all for n, a in step.compute(axes, threads).items()}
+            return {n: a for step in self.all for n, a in _of_pieces(step, axes, threads).items()}
         return self._by_blocks(threads, lengths, before)
 
     def _by_blocks(
@@ -192,8 +210,7 @@ class Plan(NamedTuple):
 
     def _in_memory(self) -> dict[str, int]:
         """The lengths of blocks that fit into memory before they are reduced; the whole without that."""
-        stored = any(isinstance(step, Reduced) and not step.fused for step in self.steps)
-        if not stored:
+        if not any(isinstance(step, Reducing) and step.held() for step in self.steps):
             return {name: max(1, size) for name, size in self.sizes.items()}
         return longest(chunk_lengths("auto", self.sizes, max(1, POINTS // max(self.behind, 1))))
 
@@ -223,8 +240,8 @@ class Plan(NamedTuple):
             found = labelled(shown, kept, branch, self.accuracy)
         else:
             found = labelled({}, kept, branch)
-            (step,) = self.steps
-            accuracy = step.of.wanted.accuracy if isinstance(step, Reduced) and step.of else "standard"
+            step, *_ = self.steps
+            accuracy = step.of.wanted.accuracy if isinstance(step, Reduced) else "standard"
             found.attrs |= provenance(own, kept, branch, accuracy, of=outer.names)
             found = found.assign(own)
         found = with_loads(found, outer.loads if self.steps else {})
@@ -234,8 +251,10 @@ class Plan(NamedTuple):
 def plan_of(outer: Outer, branch: int, accuracy: Any, reductions: Reductions | None = None) -> Plan:
     """The plan of a grid, or of what is taken of it; it chooses all kernels, and runs nothing."""
     if reductions is not None:
-        step = reduced_of(outer, branch, accuracy, reductions)
-        return Plan(outer, branch, accuracy, (step,), step.dims, reductions)
+        dims = tuple(name for name in outer.dimensions if name not in reductions.axes)
+        return Plan(
+            outer, branch, accuracy, reduced_of(outer, branch, accuracy, reductions), dims, reductions
+        )
     groups = outer.groups()
     steps = tuple(points_of(names, outer, along, branch, accuracy) for names, along in groups)
     return Plan(outer, branch, accuracy, steps, tuple(outer.dimensions))
@@ -251,7 +270,16 @@ def margin_of(outer: Outer, branch: int, accuracy: Any, dims: Sequence[str]) -> 
 def computed(step: Step, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
     """The outputs of a step in a block, by compiled code however small the block is."""
     with compiled_only():
+        return _of_pieces(step, values, threads)
+
+
+def _of_pieces(step: Step, values: Mapping[str, Array], threads: int | None) -> dict[str, Array]:
+    """The outputs of a step in a block; axes that it holds in memory are cut where that changes nothing."""
+    if not isinstance(step, Reducing):
         return step.compute(values, threads)
+    parts = [*pieces(values, step.held() if step.combines() else ())]
+    found = [step.compute(part, threads) for part in parts]
+    return found[0] if len(found) == 1 else step.combine(parts, found)
 
 
 def longest(lengths: Mapping[str, Sequence[int]]) -> dict[str, int]:

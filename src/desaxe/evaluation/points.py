@@ -25,7 +25,7 @@ from ..runtime.tiers import COMPILED, tier_of
 from .arrays import copied_back, dtype_of, fill, outputs_for, scratch_for
 from .axes import Outer, first_joined, join_from, require_inputs
 from .labels import Output, attributes
-from .loaded import evaluate_loaded, plan_at
+from .loaded import MOTION, plan_at, totals_at
 from .loops import Loops
 from .under import UnderLoads, in_kernel
 
@@ -120,14 +120,12 @@ class Points(NamedTuple):
         return places
 
     def at(self, points: Mapping[str, Array]) -> dict[str, Array]:
-        """The values at points, whose inputs are columns of one length."""
-        loads = {} if self.loads is None else self.loads.loads
-        given = {**dict(self.numbers), **points, **loads}
+        """The values under loads at points, whose inputs are columns of one length."""
+        assert self.loads is not None
+        numbers = {**dict(self.numbers), **points}
+        given = {**dict.fromkeys(MOTION), **numbers}
         with using(self.own):
-            found: dict[str, Array] = evaluate_loaded(
-                self.names, given, self.branch, self.wanted.accuracy, 1, None
-            )
-        return found
+            return totals_at(self.loads, given, numbers, self.branch, self.wanted.accuracy, 1)
 
     @property
     def _flat(self) -> bool:

@@ -1,11 +1,13 @@
-"""Reductions of a grid (largest, mean, ...) along some of its axes: a step of a plan.
+"""Reductions of a grid (largest, mean, ...) along some of its axes: steps of a plan.
 
-Where a kernel knows the first kinds, it reduces one axis on the way, and the grid is never stored; the rest
-is folded in memory, piece by piece of a long axis. A reduced axis is whole in every block of a plan, so that
-a sum has one order.
+    steps = reduced_of(outer, branch, accuracy, reductions)   # the kinds of all names, then each measure
+
+Which kernel a reduction compiles is decided here, in `_kernel_of`. Where one knows the first kinds, it takes
+one axis on the way, and the grid is never stored; the rest is folded in memory. Where all kinds combine, what
+is taken of pieces of an axis is merged; of others (std, percentiles, one kind after another) axes are whole.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from math import prod
 from typing import Any, NamedTuple
 
@@ -13,15 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiler.languages.numba.reductions import KINDS, outputs_of
-from ..mechanism.catalogue import quantity
 from ..mechanism.own import Definition
 from ..runtime.kernels import KernelKey
 from ..runtime.threads import fill_reduced
 from ..runtime.tiers import COMPILED, tier_of
 from .axes import Outer
-from .in_memory import Field, combined, field_of, folded, pieces
+from .in_memory import Field, combined, field_of, folded
 from .kinds import EXTREMES, kind_called
 from .labels import Output, attributes, input_attributes, side_attributes
+from .measures import AtPlace, OfDesign
 from .points import Points, points_of
 from .reductions import Chain, Reductions, chain_name, extremes_at_end
 from .sides import sides_of
@@ -32,28 +34,20 @@ FLOAT = np.dtype(np.float64)
 
 
 class Reduced(NamedTuple):
-    """Reductions of names over the axes that are left.
+    """Kinds of names over the axes that are left.
 
     names       those of which a kind is taken
     dims        the axes that are left
     reductions  what is taken
-    numbers     the inputs that are numbers
-    state       whether omega is given instead of omega0
     of          the values of `names`; the last of its axes is the one that a kernel reduces
     key         that kernel, if there is one
-    at          for each `At` the values of its name
-    slopes      the parameters by which functions of a design give derivatives
     """
 
     names: tuple[str, ...]
     dims: tuple[str, ...]
     reductions: Reductions
-    numbers: tuple[tuple[str, float], ...]
-    state: bool
-    of: Points | None
+    of: Points
     key: KernelKey | None
-    at: tuple[Points, ...]
-    slopes: tuple[tuple[str, ...], ...]
 
     @property
     def axes(self) -> tuple[str, ...]:
@@ -63,23 +57,25 @@ class Reduced(NamedTuple):
     @property
     def own(self) -> tuple[Definition, ...]:
         """The definitions that it needs."""
-        return () if self.of is None else self.of.own
+        return self.of.own
 
     @property
     def identity(self) -> str:
         """A text that tells the step from all others, by what its loads are too."""
-        steps = [*([] if self.of is None else [self.of]), *self.at]
-        return " ".join([repr(self), *(step.identity for step in steps)])
+        return f"{self!r} {self.of.identity}"
 
     @property
-    def values(self) -> Points:
-        """The step that the main kernel belongs to: the values of the names, or those at a place."""
-        return self.of or self.at[0]
+    def _chains(self) -> list[tuple[str, Chain]]:
+        """Each name with the kinds that are taken of it, one after the other."""
+        return [(name, chain) for name in self.names for chain in self.reductions.chains(name)]
 
-    @property
-    def fused(self) -> bool:
-        """True if the kernel leaves nothing to fold."""
-        return self.key is not None and self.reductions.alone is not None
+    def held(self) -> tuple[str, ...]:
+        """The reduced axes whose points are in memory: those that no kernel reduces on the way."""
+        return tuple(name for name in self.reductions.axes if self.key is None or name != self.of.dims[-1])
+
+    def combines(self) -> bool:
+        """True if all that is taken follows from what is taken of pieces."""
+        return all(len(chain) == 1 and kind_called(chain[0][1]).combines for _, chain in self._chains)
 
     @property
     def outputs(self) -> dict[str, Output]:
@@ -91,20 +87,15 @@ class Reduced(NamedTuple):
                 found |= self._outputs(name, chain)
             words = f"points along {along} without a {name} (infeasible, stalled, bad)"
             found[f"{name}_skipped"] = Output(np.dtype(np.int64), {"units": "1", "long_name": words})
-        for one in self.reductions.at:
-            words = f"{quantity(one.name, self.state).meaning} at {self.reductions.axes[0]} = {one.text}"
-            found[one.variable] = Output(FLOAT, {**attributes(one.name, self.state), "long_name": words})
-        for function, slopes in zip(self.reductions.functions, self.slopes, strict=True):
-            found[function.name] = Output(FLOAT, {"long_name": f"{function.name} of the design"})
-            names = [f"{function.name}_wrt_{p}" for p in slopes]
-            found |= {name: Output(FLOAT, {"long_name": name}) for name in names}
         return found
 
     def _outputs(self, name: str, chain: Chain) -> dict[str, Output]:
         """The result of a chain, where it is, and on which side of a jump."""
         variable = chain_name(name, chain)
         method = " ".join(": ".join((*axes, kind_called(kind).method)) for axes, kind in chain)
-        found = {variable: Output(FLOAT, {**attributes(name, self.state), "cell_methods": method})}
+        found = {
+            variable: Output(FLOAT, {**attributes(name, self.of.wanted.form.state), "cell_methods": method})
+        }
         for axis in extremes_at_end(chain):
             about = input_attributes(axis)
             words = f"{about['long_name']} of the {variable.removeprefix(f'{name}_')} of {name}"
@@ -115,54 +106,55 @@ class Reduced(NamedTuple):
 
     def _has_side(self, chain: Chain) -> bool:
         """True if the result of a chain is a sample over theta under loads that may jump."""
-        return self.of is not None and self.of.loads is not None and "theta" in extremes_at_end(chain)
+        return self.of.loads is not None and "theta" in extremes_at_end(chain)
 
     def cut(self, lengths: Mapping[str, int]) -> "Reduced":
         """Prepare the step for blocks of these lengths."""
-        of = None if self.of is None else self.of.cut(lengths)
-        at = tuple(one.cut({**lengths, self.reductions.axes[0]: 1}) for one in self.at)
-        return self._replace(of=of, at=at)
+        return self._replace(of=self.of.cut(lengths))
 
     def compute(self, values: Mapping[str, Array], threads: int | None = 1) -> dict[str, Array]:
         """The outputs of a block by name, from the values along each of its `axes`."""
-        found: dict[str, Array] = {}
-        if self.of is not None:
-            found |= self._kinds(self.of, values, threads)
-        for one, points in zip(self.reductions.at, self.at, strict=True):
-            columns = {**values, self.reductions.axes[0]: np.array([one.place])}
-            found[one.variable] = points.compute(columns, threads)[one.name][..., 0]
-        for function, slopes in zip(self.reductions.functions, self.slopes, strict=True):
-            grids = np.meshgrid(*(values[name] for name in self.dims), indexing="ij")
-            shape = tuple(values[name].size for name in self.dims)
-            value, gradient = function({**dict(self.numbers), **dict(zip(self.dims, grids, strict=True))})
-            found[function.name] = np.array(np.broadcast_to(value, shape))
-            for p in slopes:
-                found[f"{function.name}_wrt_{p}"] = np.array(np.broadcast_to(gradient.get(p, 0.0), shape))
-        return found
+        compiled = self.key is not None and tier_of(self.key, self._points(values, self.of.dims)) == COMPILED
+        fields, counts = self._chained(self.of, values, compiled, threads)
+        total = self._points(values, self.reductions.axes)
+        return self._named(fields, {name: total - count for name, count in counts.items()}, values)
 
-    def _kinds(self, of: Points, values: Mapping[str, Array], threads: int | None) -> dict[str, Array]:
-        """All kinds of all names; those of a cut axis are combined from its pieces."""
+    def combine(
+        self, parts: Sequence[Mapping[str, Array]], found: Sequence[dict[str, Array]]
+    ) -> dict[str, Array]:
+        """The outputs of a block from those of its pieces, in their order: sums go piece by piece."""
+        totals = [self._points(part, self.reductions.axes) for part in parts]
+        fields: dict[str, Field] = {}
+        for name, chain in self._chains:
+            variable, skipped, axes = chain_name(name, chain), f"{name}_skipped", extremes_at_end(chain)
+            own = [
+                Field(
+                    self.dims, one[variable], total - one[skipped], {n: one[f"{variable}_{n}"] for n in axes}
+                )
+                for total, one in zip(totals, found, strict=True)
+            ]
+            fields[variable] = combined(own, chain[-1][1])
+        skipped_of = {name: np.sum([one[f"{name}_skipped"] for one in found], axis=0) for name in self.names}
+        return self._named(fields, skipped_of, parts[0])
+
+    @staticmethod
+    def _points(values: Mapping[str, Array], axes: Sequence[str]) -> int:
+        return prod(values[axis].size for axis in axes)
+
+    def _named(
+        self, fields: Mapping[str, Field], skipped: Mapping[str, Array], values: Mapping[str, Array]
+    ) -> dict[str, Array]:
+        """The outputs by name, with the places of extremes and their sides of jumps."""
         found: dict[str, Array] = {}
-        whole = prod(values[name].size for name in of.dims)
-        compiled = self.key is not None and tier_of(self.key, whole) == COMPILED
-        parts = [self._chained(of, part, compiled, threads) for part in self._pieces(of, values)]
-        total = prod(values[axis].size for axis in self.reductions.axes)
-        for name, chain in ((n, chain) for n in self.names for chain in self.reductions.chains(n)):
+        for name, chain in self._chains:
             variable = chain_name(name, chain)
-            field = combined([fields[variable] for fields, _ in parts], chain[-1][1])
+            field = fields[variable]
             found[variable] = field.values
             found |= {f"{variable}_{axis}": field.places[axis] for axis in extremes_at_end(chain)}
             if self._has_side(chain):
-                found[f"{variable}_side"] = self._side(of, name, variable, field, values)
-            found[f"{name}_skipped"] = total - np.sum([counts[name] for _, counts in parts], axis=0)
+                found[f"{variable}_side"] = self._side(self.of, name, field, values)
+            found[f"{name}_skipped"] = skipped[name]
         return found
-
-    def _pieces(self, of: Points, values: Mapping[str, Array]) -> Iterator[Mapping[str, Array]]:
-        """The values of a block, along the outermost reduced axis in memory cut where all kinds combine."""
-        chains = [chain for name in self.names for chain in self.reductions.chains(name)]
-        stored = [name for name in self.reductions.axes if self.key is None or name != of.dims[-1]]
-        combine = all(len(chain) == 1 and kind_called(chain[0][1]).combines for chain in chains)
-        return pieces(values, stored if combine else ())
 
     def _chained(
         self, of: Points, values: Mapping[str, Array], compiled: bool, threads: int | None
@@ -171,7 +163,7 @@ class Reduced(NamedTuple):
         found: dict[str, Field] = {}
         counts: dict[str, Array] = {}
         firsts = self._firsts(of, values, compiled, threads)
-        for name, chain in ((n, chain) for n in self.names for chain in self.reductions.chains(n)):
+        for name, chain in self._chains:
             (axes, kind), *rest = chain
             first = firsts[name, kind]
             field = folded(first, [axis for axis in axes if axis in first.dims], kind, values)
@@ -200,7 +192,6 @@ class Reduced(NamedTuple):
         self, key: KernelKey, values: Mapping[str, Array], threads: int | None
     ) -> dict[tuple[str, str], Field]:
         """The values by name and kind, reduced along the last axis by the kernel."""
-        assert self.of is not None
         rest, along = self.of.dims[:-1], self.of.dims[-1]
         shape, axis = tuple(values[name].size for name in rest), values[along]
         outs = {name: np.empty(shape or (1,), kind) for name, kind in outputs_of(self.names, key.reduce)}
@@ -246,7 +237,7 @@ class Reduced(NamedTuple):
                 for axis, places in new.places.items():
                     field.places[axis][region] = places
 
-    def _side(self, of: Points, name: str, variable: str, field: Field, values: Mapping[str, Array]) -> Array:
+    def _side(self, of: Points, name: str, field: Field, values: Mapping[str, Array]) -> Array:
         """The sides of jumps on which extremes over theta are; 0 where other inputs were averaged."""
         shape = field.values.shape
         grids = np.meshgrid(*(values[axis] for axis in self.dims), indexing="ij")
@@ -257,25 +248,29 @@ class Reduced(NamedTuple):
         return sides_of(name, of, flat).reshape(shape)
 
 
-def reduced_of(outer: Outer, branch: int, accuracy: Any, reductions: Reductions) -> Reduced:
-    """The step of a grid and what is taken of it, checked."""
+def reduced_of(
+    outer: Outer, branch: int, accuracy: Any, reductions: Reductions
+) -> tuple[Reduced | AtPlace | OfDesign, ...]:
+    """The steps of what is taken of a grid, checked: the kinds of all names, then each measure."""
     dims = tuple(name for name in outer.dimensions if name not in reductions.axes)
     names = tuple(name for name in outer.names if reductions.chains(name))
-    numbers = tuple((name, float(array)) for name, array in outer.axes.items() if not array.ndim)
-    state = outer.given.get("omega") is not None
-    of, key = None, None
+    steps: list[Reduced | AtPlace | OfDesign] = []
     if names:
-        of, key = _values_of(names, dims, outer, branch, accuracy, reductions)
-    at = []
+        of, key = _kernel_of(names, dims, outer, branch, accuracy, reductions)
+        steps.append(Reduced(names, dims, reductions, of, key))
     for one in reductions.at:
-        there = outer._replace(axes={**outer.axes, reductions.axes[0]: np.array([one.place])})
-        at.append(points_of((one.name,), there, (*dims, reductions.axes[0]), branch, accuracy))
+        axis = reductions.axes[0]
+        there = outer._replace(axes={**outer.axes, axis: np.array([one.place])})
+        steps.append(AtPlace(dims, axis, one, points_of((one.name,), there, (*dims, axis), branch, accuracy)))
+    numbers = tuple((name, float(array)) for name, array in outer.axes.items() if not array.ndim)
     first = {**dict(numbers), **{n: outer.axes[n][:1] for n in dims}}
-    slopes = tuple(tuple(function(first)[1]) for function in reductions.functions)
-    return Reduced(names, dims, reductions, numbers, state, of, key, tuple(at), slopes)
+    steps += [
+        OfDesign(dims, function, numbers, tuple(function(first)[1])) for function in reductions.functions
+    ]
+    return tuple(steps)
 
 
-def _values_of(
+def _kernel_of(
     names: Sequence[str],
     dims: Sequence[str],
     outer: Outer,

@@ -7,18 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanism.constants import constants, double_constants
+from ..mechanism.constants import limit_of
 from ..mechanism.names import STATUSES
 from ..runtime.any_stride import Repair
 from ..runtime.kernels import KernelKey, has_near_limit, kernel_for
 from ..runtime.near_limit import decide
 
 Array = NDArray[Any]
-
-
-def limit_of(accuracy: str) -> float:
-    """The largest angle that the written-out sine and cosine of an accuracy reduce exactly."""
-    return double_constants().limit if accuracy == "extended" else constants().limit
 
 
 def repair_for(

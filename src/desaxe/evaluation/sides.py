@@ -1,15 +1,17 @@
 """On which side of a jump of a load samples are, from their values and those at the doubles next to them."""
 
 from collections.abc import Mapping
-from math import inf, pi
+from math import inf
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..loads.angles import crossings, dead_centres
+from ..loads.angles import crossings
 from ..loads.load import Load, OverTheta, OverY
 from ..loads.table import SAME
+from ..mechanism.closed import TURN
+from ..mechanism.closed.angles import dead_centres
 from ..mechanism.names import LENGTHS
 from .points import Points
 
@@ -49,7 +51,7 @@ def _near(load: Load, points: Mapping[str, Array], branch: int) -> NDArray[np.bo
     lengths = [points[n] for n in LENGTHS]
     angles = [crossings(load, load.jumps, lengths, branch), *([dead_centres(lengths)] if load.turns else [])]
     away = theta[:, None] - np.concatenate(angles, axis=1)
-    away -= 2.0 * pi * np.round(away / (2.0 * pi))
+    away -= TURN * np.round(away / TURN)
     near: NDArray[np.bool_] = (np.abs(away) <= NEAR * (1.0 + np.abs(theta[:, None]))).any(axis=1)
     return near
 

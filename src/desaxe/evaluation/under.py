@@ -12,10 +12,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..loads.angles import crossings, dead_centres
-from ..loads.load import TURN, Load, OverTheta, OverY
+from ..loads.angles import crossings
+from ..loads.load import Load, OverTheta, OverY
 from ..loads.pieces import Place, piece_at
 from ..loads.resolve import Plan, way_of
+from ..mechanism.closed import TURN
+from ..mechanism.closed.angles import dead_centres
 from ..mechanism.names import LENGTHS, STATUSES
 from ..runtime.kernels import KernelKey, key_of, plain_of
 from ..runtime.request import Request

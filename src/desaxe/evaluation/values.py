@@ -24,8 +24,12 @@ def values(
     accuracy: Any = "standard",
     threads: int | None = None,
     out: Any = None,
+    of_arrays: Callable[..., dict[str, Any]] | None = None,
 ) -> Any:
-    """The value of one name, or a dict name -> value; see `evaluate`. Inputs that are None are not given."""
+    """The value of one name, or a dict name -> value; see `evaluate`. Inputs that are None are not given.
+
+    of_arrays   what answers for arrays: without, those that broadcast by position; `of_any_arrays` for others
+    """
     wanted = (names,) if isinstance(names, str) else several(names)
     omega, speed_given = given.get("omega"), given.get("omega0") is not None
     if threads is not None or (omega is not None and speed_given) or type(branch) is not int:
@@ -53,7 +57,7 @@ def values(
             elif type(value) is not float or not is_good(name, value):
                 value = as_number(name, value, point.inputs, wanted)
             if value is None:  # not a number: an array
-                answers = _of_arrays(asked, point.inputs, given, threads, out)
+                answers = (of_arrays or _of_arrays)(asked, point.inputs, given, threads, out)
                 return answers[names] if isinstance(names, str) else answers
             extreme = extreme or is_extreme(name, value)
         numbers.append(value)
@@ -93,7 +97,27 @@ def _evaluate_arrays() -> Callable[..., dict[str, Any]]:
 def _of_arrays(
     asked: Request, inputs: Sequence[str], given: Mapping[str, Any], threads: int | None, out: Any
 ) -> dict[str, Any]:
-    """The values for arrays; lazy ones if an input is a Dask array."""
+    """The values for arrays, which broadcast by position."""
+    return _evaluate_arrays()(asked, given, threads, out)
+
+
+def of_labelled_arrays(
+    asked: Request, inputs: Sequence[str], given: Mapping[str, Any], threads: int | None, out: Any
+) -> dict[str, Any]:
+    """The values for arrays of which some are labelled: these broadcast by their dimensions."""
+    with IMPORTS:
+        from .labelled import evaluate_labelled
+
+    def run(plain: dict[str, Any]) -> dict[str, Any]:
+        return _of_arrays(asked, inputs, plain, threads, out)
+
+    return evaluate_labelled(run, asked.shown, {name: given.get(name) for name in inputs})
+
+
+def of_any_arrays(
+    asked: Request, inputs: Sequence[str], given: Mapping[str, Any], threads: int | None, out: Any
+) -> dict[str, Any]:
+    """The values for arrays of any kind: labelled ones by their dimensions, lazily if one is a Dask array."""
     evaluate_arrays = _evaluate_arrays()
     for name in inputs:
         value = given.get(name)
@@ -106,7 +130,7 @@ def _of_arrays(
                 from .labelled import evaluate_labelled
 
             def run(plain: dict[str, Any]) -> dict[str, Any]:
-                return _of_arrays(asked, inputs, plain, threads, None)
+                return of_any_arrays(asked, inputs, plain, threads, None)
 
             return evaluate_labelled(run, asked.shown, {name: given.get(name) for name in inputs})
         elif hasattr(value, "__dask_graph__"):

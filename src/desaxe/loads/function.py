@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import Any
 
+from ..mechanism.closed import TURN
 from ..mechanism.spoken import named
 from ..support.forks import IMPORTS
-from .load import TURN, OverTheta
+from .load import OverTheta
 from .table import SAME
 
 SAMPLES = 1024  # of a function, by which it is distinguished from others

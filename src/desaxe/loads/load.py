@@ -9,9 +9,10 @@ from bisect import bisect_left
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from hashlib import sha256
-from math import ceil, floor, inf, nan, pi
+from math import ceil, floor, inf, nan
 from typing import TYPE_CHECKING, Any
 
+from ..mechanism.closed import TURN
 from ..support.computed import computed_once
 from ..support.forks import IMPORTS
 from .table import Arrays, Table, arrays_of, described, polynomial
@@ -19,7 +20,6 @@ from .table import Arrays, Table, arrays_of, described, polynomial
 if TYPE_CHECKING:
     from ..mechanism.unit_system import Conversion
 
-TURN = 2.0 * pi
 MOST_RANGES = 16  # of angles, of which a table remembers the nodes
 POSITION = ("Y", "Y_wrt_theta", "Y_wrt_theta_theta")  # which piece holds: the position, and the way
 

@@ -6,13 +6,14 @@ from os import PathLike
 from typing import Any
 from warnings import warn
 
+from ..mechanism.closed import TURN
 from ..mechanism.slips import LARGEST, UnitWarning
 from ..mechanism.spoken import spoken
 from ..mechanism.unit_system import Conversion, UnitSystem
 from ..support.shown import printable, shown
 from .columns import Column, column_of, column_of_file, rows_of, unit_of_column
 from .function import FunctionOverTheta
-from .load import TURN, Load
+from .load import Load
 from .made import table_over_stroke, table_over_theta, table_over_Y
 from .maker import Maker
 
@@ -29,7 +30,8 @@ class MakeOverTheta(Maker):
     angles  ascending crank angles [rad], or texts with units; within one period. The end of the period may
             repeat the first point
     values  the load [SI units of the input that it is given for], or texts with units
-    kind    "cubic" (a periodic cubic spline), "linear", or "step" (each value holds to the right)
+    kind    "cubic" (a periodic cubic spline, which may go beyond its points), "linear", or "step" (each value
+            holds to the right); "cubic" without
     period  after which it repeats [rad]; two turns for a four-stroke engine
 
     `machine.over_theta` is the same in the units of a machine: its plain angles, forces and periods, and the
@@ -131,7 +133,8 @@ class MakeOverY(Maker):
     positions  of the slider along Y [m], ascending or descending, or texts with units
     outward    the load where Y increases with time, at each position
     inward     where it decreases; as outward without
-    kind       "linear", "step" (a value holds towards larger Y), or "cubic" (a spline, extra `simulate`)
+    kind       "linear", "step" (a value holds towards larger Y), or "cubic" (a spline, extra `simulate`);
+               "linear" without
 
     Beyond the positions the values at the ends hold. Where the crank stands still it counts as turning
     forwards, or the way that a given alpha starts it. `over_Y.read("indicator.csv", Y="mm", value="N")`
@@ -173,7 +176,8 @@ class MakeOverStroke(Maker):
                  in a linear table is a jump
     outward      the load where Y increases with time, at each distance
     inward       where it decreases; as outward without
-    kind         "linear", "step" (a value holds towards larger distances), or "cubic" (extra `simulate`)
+    kind         "linear", "step" (a value holds towards larger distances), or "cubic" (extra `simulate`);
+                 "linear" without
     dead_centre  required: "outer", the one farthest from the crank, or "inner"
 
     Forces keep the sign of +Y. Beyond the distances the values at the ends hold. Derivatives by a length

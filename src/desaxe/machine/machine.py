@@ -9,7 +9,7 @@ from ..loads.motors import MakeKloss, MakeOverOmega
 from ..loads.resolve import settled
 from ..loads.tabulated import MakeOverStroke, MakeOverTheta, MakeOverY
 from ..mechanism.inputs import INPUTS, is_good
-from ..mechanism.keywords import check_inputs
+from ..mechanism.keywords import unknown_input
 from ..mechanism.own import Definition
 from ..mechanism.slips import warn_of_slips
 from ..mechanism.spoken import named, speaking
@@ -377,7 +377,10 @@ def _checked_inputs(si: Mapping[str, Any]) -> dict[str, Any]:
         raise TypeError(
             "Machine: theta is where the crank is: give it to a call, machine.evaluate(..., theta=)"
         )
-    check_inputs("Machine", si, [name for name in (*INPUTS, "branch") if name != "theta"])
+    allowed = [name for name in (*INPUTS, "branch") if name != "theta"]
+    for name in si:
+        if name not in allowed:
+            raise unknown_input("Machine", name, [*allowed, *({"units"} - {name})])
     branch = si.get("branch", 1)
     check_common(si, branch)
     found = {name: _checked(name, si[name]) for name in INPUTS if si.get(name) is not None}

@@ -9,6 +9,7 @@ import numpy as np
 from .. import plot
 from ..mechanism.own import using
 from ..plot.mechanism import label_lengths
+from ..runtime.request import several
 from .arguments import in_si
 from .tornado import tornado
 
@@ -44,7 +45,7 @@ class Plots:
         self, name: str | tuple[str, str], *, family: str | None = None, ax: Any = None, **inputs: Any
     ) -> Any:
         """Draw a quantity, or the magnitude of a vector, in polar coordinates: see `desaxe.plot.polar`."""
-        names = [name] if isinstance(name, str) else list(name)
+        names = [name] if isinstance(name, str) else list(several(name))
         return plot.polar(self._over_theta(names, inputs), name, family=family, ax=ax)
 
     def mechanism(self, theta: Any = "60 deg", *, ax: Any = None) -> Any:

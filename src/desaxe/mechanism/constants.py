@@ -29,3 +29,8 @@ def double_constants() -> "DoubleTrigonometry":
         from ..compiler.passes.double_angles import DoubleTrigonometry
 
     return DoubleTrigonometry(**imported("desaxe.generated.trigonometry").DOUBLE)
+
+
+def limit_of(accuracy: str) -> float:
+    """The largest angle that the written-out sine and cosine of an accuracy reduce exactly."""
+    return double_constants().limit if accuracy == "extended" else constants().limit

@@ -244,7 +244,8 @@ def _dimension_of(unit: str) -> str:
     if meant:  # kn is a knot
         raise ValueError(f"units: {shown(unit)}: {meant}".rstrip())
     if not fitting:
-        raise ValueError(f"units: {shown(unit)} is none of {', '.join(DIMENSIONS)}")
+        apart = '; commas stand between units, as in "mm, deg, rpm"' if " " in unit.strip() else ""
+        raise ValueError(f"units: {shown(unit)} is none of {', '.join(DIMENSIONS)}{apart}")
     product = re.search(r"[^\W\d_][ *.·][^\W\d_]", unit) is not None
     return fitting[-1] if len(fitting) > 1 and not product else fitting[0]
 

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.arcs import Arcs, arcs_of, meeting_in_turn
-from ..loads.angles import dead_centres, meeting_and_bent, repeated
+from ..loads.angles import meeting_and_bent
 from ..loads.load import Load, OverTheta, OverY
-from ..mechanism.names import LENGTHS
+from ..mechanism.closed.angles import dead_centres, repeated
 from .nodes import Array
 from .special import Designs
 
@@ -39,23 +39,27 @@ class Course(NamedTuple):
     kinks  where a load is not smooth; every dead centre under a load over Y
     jumps  the first angle after each jump
     arcs   those of the loads over Y that jump
+    turns  the dead centres, at which friction jumps; those of `jumps` first, which are exact
     """
 
     nodes: Array
     kinks: Marks
     jumps: Marks
     arcs: Mapping[str, Arcs]
+    turns: Array
 
     def pieces(self, rows: NDArray[np.intp], theta: Array) -> dict[str, NDArray[np.intp]]:
         """The pieces to hold at angles of the designs `rows`."""
         return {name: arcs.at(rows, theta) for name, arcs in self.arcs.items()}
 
     def aside(self, rows: NDArray[np.intp], theta: Array) -> Array:
-        """The angles of the designs `rows`, moved off jumps at dead centres, where friction jumps too."""
-        for turn in self.jumps.of(TURNING)[rows].T:
-            room = ROUNDED * np.spacing(1.0 + np.abs(theta))
-            near = np.abs(theta - turn) < room
-            theta = np.where(near, turn + np.where(theta >= turn, room, -room), theta)
+        """The angles of the designs `rows`, moved off dead centres, where friction jumps."""
+        room = ROUNDED * np.spacing(1.0 + np.abs(theta))
+        for turns in self.turns.T:
+            apart = theta - turns[rows]
+            near = np.abs(apart) < room
+            if near.any():
+                theta = np.where(near, turns[rows] + np.where(apart >= 0.0, room, -room), theta)
         return theta
 
 
@@ -63,11 +67,11 @@ def course_of(designs: Designs) -> Course:
     """The loads of designs over their range of angles."""
     low, high = designs.theta
     over_Y = {name: load for name, load in designs.loads.items() if isinstance(load, OverY)}
-    lengths = [designs.columns[n] for n in LENGTHS] if over_Y else []
-    dead = dead_centres(lengths) if over_Y else np.empty((0, 0))
+    lengths = designs.lengths if over_Y or designs.rubs else []
+    dead = dead_centres(lengths) if lengths else np.empty((designs.size, 0))
     met = {name: meeting_and_bent(load, lengths, designs.branch) for name, load in over_Y.items()}
     arcs = _arcs(designs, {name: every for name, (every, _) in met.items()}, dead)
-    turning = repeated(dead, low, high) if over_Y else dead
+    turning = repeated(dead, low, high) if lengths else dead
     parts = [
         _over_Y(over_Y[name], arcs.get(name), designs, *met[name], turning)
         if name in met
@@ -80,7 +84,7 @@ def course_of(designs: Designs) -> Course:
     some[0] = True
     nodes = nodes[:, some]
     kinks, jumps = (_marks([mark for part in parts for mark in part[k]], designs.size) for k in (1, 2))
-    return Course(nodes, kinks, jumps, arcs)
+    return Course(nodes, kinks, jumps, arcs, np.append(jumps.of(TURNING), turning, axis=1))
 
 
 class _Part(NamedTuple):

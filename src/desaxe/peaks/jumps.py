@@ -73,12 +73,14 @@ def _complete(values: Values, kind: int, jumps: Jumps, theta: Array, out: Array)
     turning = (jumps.kinds == TURNING) & values.designs.rubs
     if turning.any():
         there[turning] = _certain(values, rows[turning], there[turning], jumps.sides[turning])
+    # There one Program is certain of the side; another one may round to the other side, or to none.
+    aside = there + np.where(turning, jumps.sides * ROUNDED * np.spacing(1.0 + np.abs(there)), 0.0)
     theta[rows] = there
     out[0, rows] += out[1, rows] * (there - before)
     far = (np.abs(there - before) > ROUNDED * np.spacing(1.0 + np.abs(before))) | values.designs.rubs
     if far.any():
         rows = rows[far]
-        new = np.array(values.at(len(out), rows, there[far], values.course.pieces(rows, before[far])))
+        new = np.array(values.at(len(out), rows, aside[far], values.course.pieces(rows, before[far])))
         out[:2, rows] = new[:2]
         out[2:, rows] = np.where((kind == 0) & (new[0] < 0.0), -new[2:], new[2:])
 

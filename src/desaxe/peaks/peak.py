@@ -21,6 +21,7 @@ from ..loads.load import Load, LoadWarning, OverTheta
 from ..loads.resolve import VARIABLE
 from ..mechanism.answer_units import units_of_extreme
 from ..mechanism.catalogue import quantity
+from ..mechanism.closed import TURN
 from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs
 from ..mechanism.spoken import named
@@ -32,7 +33,7 @@ from .designs import KINDS, Plan, Sought, peaks_of_designs, plan_of, search_of
 from .nodes import Array
 
 MOST_TURNS = 1000  # of a range of crank angles
-TURN = (0.0, 2.0 * np.pi)
+ONE_TURN = (0.0, TURN)
 MANY = 60  # values of a load: more are no designs that anybody compares
 INPUTS_OF_PEAK = (*INPUTS, "branch", "kind", "accuracy", "threads")
 
@@ -48,7 +49,7 @@ def peak(
     omega: Any = None,
     branch: int = 1,
     kind: str = "absmax",
-    theta: tuple[float, float] = TURN,
+    theta: tuple[float, float] = ONE_TURN,
     accuracy: str | float = "standard",
     threads: int | None = None,
     **loads: Any,
@@ -98,7 +99,7 @@ def peak(
     _, varying = loads_of(given)
     plan = plan_of(name, given, branch, accuracy)
     varying = {n: load for n, load in varying.items() if n in plan.parameters}
-    ends = _range(_whole_period(varying) if theta is TURN else theta, name)
+    ends = _range(_whole_period(varying) if theta is ONE_TURN else theta, name)
     sought = Sought(plan, kind, int(branch), ends, threads, varying)
     _warn_of_columns(given, plan)
     if "omega0" in plan.needs and omega0 is None:
@@ -142,8 +143,8 @@ def _range(theta: Any, name: str) -> tuple[float, float]:
     low, high = (as_number("theta", end, ("theta",), (name,)) for end in (first, last))
     if low is None or high is None or low > high:
         raise ValueError(f"{named('theta', (first, last))}: two angles, the lower one first")
-    if high - low > MOST_TURNS * 2.0 * np.pi:
-        turns = (high - low) / (2.0 * np.pi)
+    if high - low > MOST_TURNS * TURN:
+        turns = (high - low) / TURN
         raise ValueError(
             f"{named('theta', (low, high), 'g')}: {turns:.3g} turns are too many, at most {MOST_TURNS}"
         )
@@ -153,7 +154,7 @@ def _range(theta: Any, name: str) -> tuple[float, float]:
 def _whole_period(loads: Mapping[str, Load]) -> tuple[float, float]:
     """One turn, or the longest period of a load."""
     periods = [load.period for load in loads.values() if isinstance(load, OverTheta)]
-    return 0.0, max([TURN[1], *periods])
+    return 0.0, max([TURN, *periods])
 
 
 def _warn_of_columns(given: Mapping[str, Any], plan: "Plan") -> None:

@@ -11,11 +11,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.evaluate import evaluate
-from ..loads.angles import dead_centres, limit_angles, repeated
+from ..evaluation.loaded import MOTION, values_under_loads
 from ..loads.load import Load
 from ..loads.pieces import Place
 from ..loads.resolve import way_of
+from ..mechanism.closed import TURN
+from ..mechanism.closed.angles import dead_centres, limit_angles, repeated
 from ..mechanism.closed.functions import closed_form
 from ..mechanism.closed.limits import LIMITS
 from ..mechanism.names import LENGTHS
@@ -76,9 +77,8 @@ class Designs(NamedTuple):
     def values(self, names: tuple[str, ...], rows: NDArray[np.intp], theta: Array) -> dict[str, Any]:
         """Values of names by their name, for the designs `rows` at one angle each."""
         inputs: dict[str, Any] = {name: column[rows] for name, column in self.columns.items()}
-        inputs |= self.loads
-        found: dict[str, Any] = evaluate(list(names), theta=theta, branch=self.branch, **inputs)
-        return found
+        given = {**dict.fromkeys(MOTION), "alpha": 0.0, **inputs, **self.loads, "theta": theta}
+        return values_under_loads(list(names), given, self.branch)
 
 
 def are_special(designs: Designs) -> NDArray[np.bool_]:
@@ -104,7 +104,7 @@ def _stall(omega0: Array, alpha: Array) -> Array:
 def own_nodes(designs: Designs) -> tuple[Array, list[tuple[int, float]]]:
     """Crank angles for each design, ascending, and its limit angles inside the range."""
     low, high = designs.theta
-    turns = max(1.0, (high - low) / (2.0 * np.pi))
+    turns = max(1.0, (high - low) / TURN)
     first, last = int(np.floor(low / np.pi)) - 1, int(np.ceil(high / np.pi)) + 1
     marks = np.array([low, high, *(np.pi * (0.5 + k) for k in range(first, last))])
     common = np.append(np.linspace(low, high, int(UNIFORM * turns) + 1), marks[:, None] + AROUND)
@@ -127,7 +127,7 @@ def _limit_angles(designs: Designs) -> Array:
     found = np.empty((designs.size, 0))
     if lengths:
         angles = limit_angles(lengths)
-        whole = angles[:, 1:2] - angles[:, 0:1] == 2.0 * np.pi
+        whole = angles[:, 1:2] - angles[:, 0:1] == TURN
         found = repeated(np.where(whole, np.nan, angles), low, high)
     if "alpha" in columns and "omega0" in columns:
         stops = _stall(columns["omega0"], columns["alpha"])
@@ -201,7 +201,7 @@ def stays_zero(designs: Designs, theta: Array, value: Array, slope: Array, kinks
     kinks   for each design angles at which a load has a kink, which may be at 0 too
     """
     low, high = designs.theta
-    turns = (high - low) / (2.0 * np.pi)
+    turns = (high - low) / TURN
     closed = turns == round(turns) and not np.any(designs.columns.get("alpha", 0.0))
     inside = (theta != low) & (theta != high) | closed
     at_kink = (np.abs(kinks - theta[:, None]) <= AT_KINK).any(axis=1)

@@ -9,7 +9,17 @@ from ..support.extras import needed
 from .from_dict import as_dataset
 from .jumps import with_jumps
 from .picture import Picture
-from .shared import chosen, drawn, finish_axis, label_of, mark_gaps, room_at_jumps, shown, worth_showing
+from .shared import (
+    around_level,
+    chosen,
+    drawn,
+    finish_axis,
+    label_of,
+    mark_gaps,
+    room_at_jumps,
+    shown,
+    worth_showing,
+)
 from .titles import title_of
 
 if TYPE_CHECKING:
@@ -64,7 +74,8 @@ def draw(ax: "Axes", array: "xr.DataArray", over: str, beside: bool | None) -> "
     room_at_jumps(ax, shown(array[over]), array.values)
     ax.set_ylabel(label_of(array))
     mark_gaps(ax, lines)
-    limits = worth_showing([np.asarray(line.get_ydata(), dtype=np.float64) for line in lines])
+    values = [np.asarray(line.get_ydata(), dtype=np.float64) for line in lines]
+    limits = worth_showing(values) or around_level(values)
     if limits is not None:
         ax.set_ylim(*limits)
     ax.grid(True, color="0.9", linewidth=0.8)

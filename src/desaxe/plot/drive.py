@@ -61,8 +61,10 @@ def _torque(ax: "Axes", result: Any) -> "dict[str, Line2D]":
     ax.annotate(told, (place, top), (-8 if left else 8, 5), textcoords="offset points", va="center",
                 ha="right" if left else "left", fontsize="small")  # fmt: skip
     ax.set_ylabel(f"torque of the drive, T_in [{result.unit('T_in')}]")
+    inputs = [raised(one)[1:-1] for one in result.design().split(", ")]
+    design = ", ".join(one.replace(" ", "\u00a0") if len(one) < TITLE // 2 else one for one in inputs)
     ax.set_title(
-        f"{textwrap.fill(result.design().replace('*', ' '), TITLE)}\n"
+        f"{textwrap.fill(design, TITLE)}\n"
         f"mean {result['torque_mean']:.4g} {result.unit('torque_mean')}, rms {result['torque_rms']:.4g} "
         f"{result.unit('torque_rms')}, mean power {result['power_mean']:.4g} {result.unit('power_mean')}",
         loc="left", fontsize="medium",

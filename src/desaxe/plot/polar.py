@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..runtime.request import several
 from ..support.extras import needed
 from ..support.forks import IMPORTS
 from .jumps import with_jumps
@@ -40,7 +41,7 @@ def polar(
     """
     with needed("plot.polar"):
         from matplotlib.figure import Figure
-    names = [name] if isinstance(name, str) else list(name)
+    names = [name] if isinstance(name, str) else list(several(name))
     parts = [with_jumps(dataset, chosen(dataset, part, "theta", family), "theta") for part in names]
     array = parts[0] if isinstance(name, str) else _magnitude(parts)
     beside = ax is None

@@ -142,6 +142,16 @@ def worth_showing(curves: Sequence[NDArray[np.float64]]) -> tuple[float, float] 
     return float(low - room), float(high + room)
 
 
+def around_level(curves: Sequence[NDArray[np.float64]]) -> tuple[float, float] | None:
+    """The range to show for curves that are level but for rounding, which no axis magnifies; else None."""
+    every = np.concatenate([values[np.isfinite(values)] for values in curves])
+    level = float(np.abs(every).max(initial=0.0))
+    if not level or np.ptp(every) > 1e-9 * level:
+        return None
+    middle = float(every[0])
+    return middle - 0.05 * level, middle + 0.05 * level
+
+
 def unit_of(array: "xr.DataArray") -> str:
     """The unit for a label: degrees for an input that is an angle, m/s^2 with a raised 2, N m."""
     unit = str(array.attrs.get("units", ""))

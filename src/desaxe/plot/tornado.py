@@ -152,4 +152,4 @@ def _text(parameter: str, change: Any, system: UnitSystem) -> str:
     if not isinstance(change, (int, float)):
         return str(change)
     unit = system.of(parameter).unit
-    return f"{abs(change):.4g}" + (f" {unit.replace('*', ' ')}" if unit != "1" else "")
+    return f"{abs(change):.4g}" + (f" {raised(unit)[1:-1]}" if unit != "1" else "")

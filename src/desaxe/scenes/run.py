@@ -1,6 +1,7 @@
 """Running a scene: first all that it computes, then the files; one that fails takes nothing else with it."""
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -35,7 +36,8 @@ class CheckResult(NamedTuple):
     agrees: bool
 
 
-class Run(NamedTuple):
+@dataclass(frozen=True)
+class Run:
     """The results of a run; `failures` lists the files that could not be written, with reasons."""
 
     dataset: "xr.Dataset | None"
@@ -96,7 +98,7 @@ def write_files(content: Content, found: Run, steps: Steps, shown_in: UnitSystem
         except FAILURES as error:
             failures.append(failure(name, error))
     steps.next("")
-    return found._replace(files=tuple(files), failures=tuple(failures))
+    return replace(found, files=tuple(files), failures=tuple(failures))
 
 
 def _jobs(

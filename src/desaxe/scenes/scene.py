@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..mechanism.own import change, using
 from ..mechanism.spoken import speaking
@@ -12,22 +12,16 @@ from ..mechanism.unit_system import SI, UnitSystem
 from ..support.progress import Progress
 from ..support.shown import printable
 from .content import Content
-from .parts.extremes import PeakResult
-from .parts.motor import MotorResult
-from .parts.turning import FeasibilityResult
 from .reading.read import plain_data, read
 from .reading.units import units_written
 from .reading.values import Value
 from .report import report
-from .run import CheckResult, Run, compute, steps_of, write_files
+from .run import Run, compute, steps_of, write_files
 from .schema import SceneError as SceneError
 
-if TYPE_CHECKING:
-    import xarray as xr
 
-
-@dataclass(frozen=True)
-class SceneResult:
+@dataclass(frozen=True, kw_only=True)
+class SceneResult(Run):
     """The results of a scene; printed, they are the report.
 
     dataset      the outputs over the grid of all inputs, labelled, with `status` and `margin`; None
@@ -43,20 +37,10 @@ class SceneResult:
     """
 
     scene: "Scene"
-    dataset: "xr.Dataset | None"
-    peaks: tuple[PeakResult, ...]
-    checks: tuple[CheckResult, ...]
-    feasibility: FeasibilityResult | None
-    files: "tuple[Path, ...]"
-    failures: tuple[str, ...] = ()
-    steady: MotorResult | None = None
 
     def report(self) -> str:
         """The text that `desaxe run` prints."""
-        run = Run(
-            self.dataset, self.checks, self.peaks, self.feasibility, self.files, self.failures, self.steady
-        )
-        return report(self.scene.content, run, self.scene.shown_in)
+        return report(self.scene.content, self, self.scene.shown_in)
 
     def __str__(self) -> str:
         return self.report()
@@ -114,10 +98,7 @@ class Scene:
         with using(self.content.definitions), speaking(self.shown_in):
             found = compute(self.content, steps, overwrite)
             found = write_files(self.content, found, steps, self.shown_in, overwrite)
-        result = SceneResult(
-            self, found.dataset, found.peaks, found.checks, found.feasibility, found.files, found.failures,
-            found.steady,
-        )  # fmt: skip
+        result = SceneResult(scene=self, **vars(found))
         if found.failures:
             raise NotWrittenError(result)
         return result

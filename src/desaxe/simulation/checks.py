@@ -11,6 +11,7 @@ from ..loads.load import Load as LoadOverMotion
 from ..loads.motors import Motor
 from ..loads.resolve import as_load, names_of, takes
 from ..mechanism.catalogue import quantity
+from ..mechanism.closed import TURN
 from ..mechanism.closed.limits import theta_intervals
 from ..mechanism.inputs import INPUTS, Input
 from ..mechanism.names import CENTRES, LENGTHS, LOADS, MASSES
@@ -21,7 +22,7 @@ from ..runtime.request import several
 from ..support.checks import real_number
 from ..support.deadline import Deadline
 from ..support.shown import shown
-from .coordinate import FREE, TURN, Coordinate, arc_around, inside
+from .coordinate import FREE, Coordinate, arc_around, inside
 from .held import Held
 from .model import Drive, Load, Model
 

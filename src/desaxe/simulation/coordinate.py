@@ -10,10 +10,10 @@ theta = middle + half sin(q), that is a smooth passage through q = pi/2: dtheta/
 from math import asin, copysign, cos, inf, nextafter, pi, sin, sqrt
 from typing import NamedTuple
 
+from ..mechanism.closed import TURN
 from ..mechanism.closed.functions import closed_form
 from ..mechanism.closed.limits import LIMITS, theta_intervals
 
-TURN = 2.0 * pi
 EDGE = 1e-13  # rad: a bounded motion goes on, for the integrator, with what holds just before the limit
 
 

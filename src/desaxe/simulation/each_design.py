@@ -6,16 +6,25 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.arrays import as_array, broadcast_shape, number_or_array
 from ..evaluation.evaluate import evaluate
 from ..loads.angles import zero_of
 from ..loads.load import OverY
-from ..mechanism.names import CENTRES, LENGTHS, LOADS
+from ..mechanism.names import LENGTHS
 from ..support.deadline import Deadline
 from ..support.progress import Portions, progress_bar
 from .energy.serves import ENERGY, INTEGRATOR, no_energy_form, some_of, tables_alone
-from .many_designs import SAMPLES, STARTS, by_energy, designs_of, message, setup_of
-from .residual import TELLS, told_of
+from .many_designs import (
+    MOTION,
+    NUMBERS,
+    SAMPLES,
+    STARTS,
+    arrays_of,
+    by_energy,
+    designs_of,
+    result_of,
+    setup_of,
+)  # fmt: skip
+from .residual import TELLS
 from .result import NO_START, SENSITIVITIES, Simulation
 
 Array = NDArray[np.float64]
@@ -43,17 +52,7 @@ def simulate_each(
     together   whether those that have an energy form are followed at once, up to the last instant
     """
     varying = {n: value for n, value in {**given, **starts}.items() if callable(value)}
-    arrays = {
-        n: as_array(n, 0.0 if value is None else value, LENGTHS, ("simulate",))
-        for n in (*LENGTHS, *LOADS)
-        if n not in varying and ((value := given.get(n)) is not None or n not in CENTRES)
-    }
-    arrays |= {n: number_or_array(STARTS[n], value) for n, value in starts.items() if n not in varying}
-    empty = next((name for name, array in arrays.items() if not array.size), None)
-    if empty is not None:
-        raise ValueError(f"{empty}: an empty array; expected at least one design")
-    shape = broadcast_shape(arrays)
-    flat = {name: np.broadcast_to(array, shape).reshape(-1) for name, array in arrays.items()}
+    arrays, flat, shape = arrays_of(given, starts)
     t = np.linspace(0.0, end, SAMPLES) if times is None else times
     size = int(np.prod(shape))
     still = {name: np.zeros(size) for name in varying}
@@ -63,8 +62,8 @@ def simulate_each(
             status[np.isnan(zero_of(load, [flat[n] for n in LENGTHS], branch))] = NO_START
     along = [f"{name}_wrt_{p}" for p in wrt for name in ("theta", "omega")]
     ends = [f"{name}_wrt_{p}" for p in wrt for name in ("t_last", "work")]
-    histories = {n: np.full((size, t.size), np.nan) for n in ("theta", "omega", "alpha", *names, *along)}
-    numbers = {name: np.full(size, np.nan) for name in ("t_last", "energy_residual", "work", *ends)}
+    histories = {n: np.full((size, t.size), np.nan) for n in (*MOTION, *names, *along)}
+    numbers = {name: np.full(size, np.nan) for name in (*NUMBERS, *ends)}
     ways = np.full(size, "", "U6")
     rounded = np.full(size, np.inf)  # or 0 where the residual of a design is told
     without = []  # designs of which a derivative does not exist
@@ -83,7 +82,7 @@ def simulate_each(
         for name, column_of in numbers.items():
             column_of[row] = found[name]
 
-    motion = [histories[name] for name in ("theta", "omega", "alpha")]
+    motion = [histories[name] for name in MOTION]
     together = (
         together
         and method in (None, ENERGY)
@@ -102,7 +101,7 @@ def simulate_each(
         by_energy(designs, t, np.array(how), (*motion, states, told_numbers), threads, deadline, slopes)
         done = np.flatnonzero((states >= 0) & (states != NO_START))
         status[done], ways[done], rounded[done] = states[done], ENERGY, told_numbers[done, 3]
-        for name, column in zip(("t_last", "energy_residual", "work"), told_numbers.T, strict=False):
+        for name, column in zip(NUMBERS, told_numbers.T, strict=False):
             numbers[name][done] = column[done]
         for k, p in enumerate(wrt):
             for name, values in zip(("theta", "omega", "t_last", "work"), slopes, strict=True):
@@ -112,7 +111,7 @@ def simulate_each(
         known &= np.isfinite(slopes[3])
         without += done[~known[done].all(axis=1)].tolist()
         if names and done.size:
-            state = dict(zip(("theta", "omega", "alpha"), (history[done] for history in motion), strict=True))
+            state = dict(zip(MOTION, (history[done] for history in motion), strict=True))
             inputs = {n: array[done, None] for n, array in flat.items() if n not in STARTS}
             forces = {n: load for n, load in varying.items() if n not in STARTS}
             everything: dict[str, Any] = {"branch": branch, **state, **inputs, **forces}
@@ -126,12 +125,5 @@ def simulate_each(
         for row in rows:
             follow(row)
             told.add(1)
-    result = Simulation({"t": t, **{name: h.reshape(*shape, t.size) for name, h in histories.items()}})
-    result["status"] = status.reshape(shape)
-    result["message"] = message(status) + told_of(
-        numbers["energy_residual"], rounded, how[0], np.where(ways == ENERGY, ENERGY, INTEGRATOR)
-    )
-    result["method"] = ways.reshape(shape)
-    if without:
-        result["message"] += f"{SENSITIVITIES}NaN in {len(without)} of {size} designs, where there are none"
-    return Simulation({**result, **{name: values.reshape(shape) for name, values in numbers.items()}})
+    note = f"{SENSITIVITIES}NaN in {len(without)} of {size} designs, where there are none" if without else ""
+    return result_of(shape, t, histories, numbers, status, ways, rounded, how[0], note)

@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..mechanism.closed import TURN
 from ..mechanism.spoken import named, spoken
 from ..support import roots
 from .checks import SMALL
-from .coordinate import TURN
 from .equations import Law, state_of
 from .friction import JAMS_AT, Contact, Rubbing
 from .model import Model

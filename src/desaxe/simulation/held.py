@@ -6,16 +6,17 @@ load is that of the angle and the way of turning.
 """
 
 from collections.abc import Callable
-from math import copysign, inf, isnan, nextafter, pi
+from math import copysign, inf, isnan, nextafter
 
 import numpy as np
 
-from ..loads.angles import crossings, dead_centres, zero_of
+from ..loads.angles import crossings, zero_of
 from ..loads.function import FunctionOverTheta
 from ..loads.load import Load, OverTheta, OverY, TableOverTheta
 from ..loads.table import polynomial
+from ..mechanism.closed import TURN
+from ..mechanism.closed.angles import dead_centres
 
-TURN = 2.0 * pi
 AHEAD = 1e-9  # rad: which piece of a table follows an angle
 AHEAD_OF_Y = 1e-6  # rad: so far from a dead centre the slider has left its position
 

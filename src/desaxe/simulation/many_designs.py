@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..evaluation.arrays import as_array, broadcast_shape, number_or_array
 from ..evaluation.evaluate import evaluate
 from ..loads.load import Load
+from ..mechanism.closed import TURN
 from ..mechanism.closed.limits import theta_intervals
 from ..mechanism.inputs import LEAST, Input
 from ..mechanism.names import CENTRES, LENGTHS, LOADS
@@ -22,7 +23,7 @@ from ..support.progress import Portions, progress_bar
 from . import nodes, tableau
 from .checks import grows
 from .compiled import Family, kernel_of
-from .coordinate import TURN, arc_around, inside
+from .coordinate import arc_around, inside
 from .energy.many import NOT_HERE, follow_many
 from .energy.panels import Designs
 from .energy.serves import ENERGY, INTEGRATOR, PANELS, no_energy_form, served, some_of
@@ -32,6 +33,7 @@ from .result import DONE, FAILED, NO_START, WORDS, Simulation
 from .torque import compiled
 
 Array = NDArray[np.float64]
+MOTION, NUMBERS = ("theta", "omega", "alpha"), ("t_last", "energy_residual", "work")
 SAMPLES = 101  # instants of the histories by default
 LONGEST_PART = 64  # designs in one native call, that threads share the work evenly
 BRIEF = 500.0  # pieces of motions that run at once
@@ -66,20 +68,13 @@ def simulate_many(
     method: str | None,
 ) -> Simulation:
     """The motions; how: relative tolerance, t_end, longest step, most steps."""
-    arrays = _arrays(given) | {
-        name: number_or_array(STARTS[name], 0.0 if callable(value) else value)
-        for name, value in starts.items()
-    }
-    empty = next((name for name, array in arrays.items() if not array.size), None)
-    if empty is not None:
-        raise ValueError(f"{empty}: an empty array; expected at least one design")
-    shape = broadcast_shape(arrays)
+    arrays, flat, shape = arrays_of(given, starts)
+    del arrays["mu"], flat["mu"]  # designs with friction run one after the other
     torque = compiled(starts["torque"]) if callable(starts["torque"]) else None
     scalars = {name: float(array) if array.ndim == 0 else array for name, array in arrays.items()}
     family = Family(form_of(given_centres(given)), fixed_zeros(scalars))
-    flat = {name: np.broadcast_to(array, shape).reshape(-1) for name, array in arrays.items()}
     t = np.linspace(0.0, how[1], SAMPLES) if times is None else times
-    setup, status = setup_of(flat, branch)
+    setup, status = setup_of(flat | ({} if torque is None else {"torque": 0.0 * flat["theta0"]}), branch)
     rows = np.stack([flat[name] for name in family.inputs], axis=1)
     outs = (
         *(np.full((status.size, t.size), np.nan) for _ in range(3)), status, np.full((status.size, 5), np.nan)
@@ -108,7 +103,14 @@ def simulate_many(
         for out, part in zip(outs, own, strict=True):
             out[left] = part
         ways[left[own[-1][:, BY_PANELS] > 0.0]] = PANELS
-    return _result(arrays, shape, t, (*outs, ways), names, branch, how[0])
+    histories: dict[str, Any] = {
+        name: out.reshape(*shape, t.size) for name, out in zip(MOTION, outs[:3], strict=True)
+    }
+    if names:
+        inputs: dict[str, Any] = {n: array[..., None] for n, array in arrays.items() if n not in STARTS}
+        histories |= evaluate(list(names), branch=branch, **histories, **inputs)
+    numbers = dict(zip(NUMBERS, outs[4].T, strict=False))
+    return result_of(shape, t, histories, numbers, status, ways, outs[4][:, 3], how[0])
 
 
 def given_centres(given: Mapping[str, Any]) -> dict[str, Any]:
@@ -116,18 +118,22 @@ def given_centres(given: Mapping[str, Any]) -> dict[str, Any]:
     return {name: given[name] for name in CENTRES if given.get(name) is not None}
 
 
-def _arrays(given: Mapping[str, Any]) -> dict[str, Array]:
-    """The inputs of the mechanism as arrays; those that are not given are 0."""
-    arrays = {}
-    for name in (*LENGTHS, *LOADS):
-        value = given.get(name)
-        if value is None and name in LOADS:
-            if name in CENTRES:
-                continue
-            value = 0.0
-        arrays[name] = as_array(name, value, LENGTHS, ("simulate",))
-    del arrays["mu"]  # designs with friction run one after the other
-    return arrays
+def arrays_of(
+    given: Mapping[str, Any], starts: Mapping[str, Any]
+) -> tuple[dict[str, Array], dict[str, Array], tuple[int, ...]]:
+    """The inputs that are no functions: as arrays, as rows with a value for each design; their shape."""
+    arrays = {
+        name: as_array(name, 0.0 if value is None and name in LOADS else value, LENGTHS, ("simulate",))
+        for name in (*LENGTHS, *LOADS)
+        if not callable(value := given.get(name)) and (value is not None or name not in CENTRES)
+    }
+    arrays |= {n: number_or_array(STARTS[n], value) for n, value in starts.items() if not callable(value)}
+    empty = next((name for name, array in arrays.items() if not array.size), None)
+    if empty is not None:
+        raise ValueError(f"{empty}: an empty array; expected at least one design")
+    shape = broadcast_shape(arrays)
+    flat = {name: np.broadcast_to(array, shape).reshape(-1) for name, array in arrays.items()}
+    return arrays, flat, shape
 
 
 def setup_of(flat: Mapping[str, Array], branch: int) -> tuple[Array, NDArray[np.int8]]:
@@ -265,31 +271,23 @@ def by_energy(
         _in_parts(block, stop, rows.size, LONGEST_BLOCK, threads, deadline)
 
 
-def _result(
-    arrays: Mapping[str, Array],
+def result_of(
     shape: tuple[int, ...],
     t: Array,
-    outs: Sequence[Any],
-    names: Sequence[str],
-    branch: int,
+    histories: Mapping[str, Array],
+    numbers: Mapping[str, Array],
+    status: NDArray[np.int8],
+    ways: Any,
+    rounded: Array,
     rtol: float,
+    note: str = "",
 ) -> Simulation:
-    """The result in the shape of the designs."""
-    *histories, status, numbers, ways = outs
-    theta, omega, alpha = (history.reshape(*shape, t.size) for history in histories)
-    result = Simulation(t=t, theta=theta, omega=omega, alpha=alpha)
-    if names:
-        inputs: dict[str, Any] = {
-            name: array[..., None] for name, array in arrays.items() if name not in STARTS
-        }
-        result |= evaluate(list(names), theta=theta, omega=omega, alpha=alpha, branch=branch, **inputs)
-    result["status"] = status.reshape(shape)
-    result["message"] = message(status) + told_of(
-        numbers[:, 1], numbers[:, 3], rtol, np.where(ways == "", INTEGRATOR, ways)
-    )
+    """The result in the shape of the designs, from a row or a number of each; note: the message's end."""
+    result = Simulation({"t": t, **{name: rows.reshape(*shape, t.size) for name, rows in histories.items()}})
+    told = told_of(numbers["energy_residual"], rounded, rtol, np.where(ways == "", INTEGRATOR, ways))
+    result["status"], result["message"] = status.reshape(shape), message(status) + told + note
     result["method"] = ways.reshape(shape)
-    end, residual, work = (numbers[:, k].reshape(shape) for k in range(3))
-    return Simulation(result, t_last=end, energy_residual=residual, work=work)
+    return Simulation({**result, **{name: values.reshape(shape) for name, values in numbers.items()}})
 
 
 def message(status: NDArray[np.int8]) -> str:

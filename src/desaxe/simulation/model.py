@@ -4,13 +4,14 @@ from collections.abc import Callable, Mapping, Sequence
 from math import isnan
 from typing import Any, NamedTuple
 
+from ..mechanism.closed import TURN
 from ..mechanism.closed.dead_centres import DEAD_CENTRES
 from ..mechanism.closed.functions import closed_form
 from ..mechanism.names import CENTRES, LENGTHS
 from ..mechanism.program import Variant
 from ..runtime.kernels import STRUCTURAL_ZEROS
 from ..runtime.point import Point, point_of
-from .coordinate import TURN, Coordinate
+from .coordinate import Coordinate
 from .held import Held
 
 Values = tuple[float, ...]

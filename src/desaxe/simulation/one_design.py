@@ -7,10 +7,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..mechanism.closed import TURN
 from ..support.deadline import Deadline
 from ..support.extras import needed
 from .checks import LEAST_RTOL
-from .coordinate import TURN
 from .equations import Law, Resting, Smooth, State, state_of
 from .events import (
     JAMMED,
@@ -274,7 +274,7 @@ class Run:
 
     def _accept(self, piece: Piece, y: Array) -> None:
         self.pieces.append(piece)
-        self.t, self.y = piece.stop, y
+        self.t, self.y = float(piece.stop), y
         self.accepted.append((self.t, y))
 
     def _fail(self, law: Law, reason: str) -> None:
@@ -329,7 +329,7 @@ class Run:
         theta = mark.angle if mark.kind in ("limit", "angle") else theta
         omega = 0.0 if mark is STANDSTILL else state.omega
         which = "" if mark.kind == "limit" else mark.which
-        self.events.append(Event(mark.kind, found.t, theta, omega, which))
+        self.events.append(Event(mark.kind, float(found.t), theta, omega, which))
 
     def _cut_at(self, now: list[Found], step: Step) -> None:
         """End this stretch at events of one instant: what ends the motion leads, then an angle."""

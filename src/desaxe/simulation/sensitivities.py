@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .cuts import TOUCHED
+from .history import add_slopes
 from .one_design import Run
-from .result import FAILED, JAMS, SENSITIVITIES, Event, Simulation
+from .result import FAILED, JAMS, Event, Simulation
 from .slopes import Slopes
 from .variational import Variations
 from .work import of_work
@@ -33,17 +34,7 @@ def add_sensitivities(
     finally:
         for held in run.model.drive.held:
             held.release()
-    for k, p in enumerate(wrt):
-        result[f"theta_wrt_{p}"], result[f"omega_wrt_{p}"] = theta[:, k].copy(), omega[:, k].copy()
-        result[f"t_last_wrt_{p}"], result[f"work_wrt_{p}"] = float(ended[k]), float(work[k])
-    result["events"] = [
-        event._replace(wrt=dict(zip(wrt, slopes_of.tolist(), strict=True)))
-        for event, slopes_of in zip(run.events, of_events, strict=True)
-    ]
-    if not found.cuts.notes and not (np.isfinite(theta).all() and np.isfinite([ended, work]).all()):
-        found.cuts.notes.append("NaN where the forces have no derivatives, or none is known")
-    if found.cuts.notes:
-        result["message"] += SENSITIVITIES + "; ".join(dict.fromkeys(found.cuts.notes))
+    add_slopes(result, wrt, (theta.T, omega.T, ended, work), of_events, found.cuts.notes)
 
 
 def of_event(own: Variations, event: Event) -> Array:

@@ -51,7 +51,9 @@ def _to_limit(own: Variations, of_end: Array) -> Array:
     They are evaluated where the last panel starts; from there on torque, load and friction do work. At the
     limit the slider stands at AB cos(theta).
     """
-    begin, model = own.at(own.pieces[-1], float(own.course.start[-1])), own.run.model
+    model = own.run.model
+    # Behind the start of the panel, at which a load may jump, and omega_p with it.
+    begin = own.at(own.pieces[-1], float(np.nextafter(own.course.start[-1], np.inf)))
     along = own.last_panel
     x, v = _course(own, along)
     by_theta, by_omega = own.slopes.at(along.t, along.theta, along.omega)

@@ -20,5 +20,6 @@ answer         results: dicts with a readable repr
 computed       properties that are computed once
 recent         a cache of the most recently used values
 shown          a value in a message, shortened
+template       text files of the package, with places for values
 toml           untrusted TOML files, read with limits on size and depth
 """

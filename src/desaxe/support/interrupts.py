@@ -20,6 +20,7 @@ from .forks import IMPORTS, imported
 
 T = TypeVar("T")
 
+LATE = 0.05  # seconds: how late an interrupt is heard at most
 _NAME = "desaxe-work"
 
 
@@ -42,10 +43,10 @@ def put_off() -> Iterator[None]:
     signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
     try:
         yield
-    finally:
+    finally:  # also where the block raises: what it raises may be caught
         signal.signal(signal.SIGINT, signal.default_int_handler)
-    if came:
-        raise KeyboardInterrupt
+        if came:
+            raise KeyboardInterrupt
 
 
 def import_whole(name: str) -> ModuleType:
@@ -65,37 +66,61 @@ def finished(work: Callable[[], T]) -> T:
 
 
 def stopped_early(work: Callable[[], T], stop: Callable[[], object], deadline: Deadline) -> T:
-    """Run compiled work, which `stop` ends soon, called at an interrupt and when the time is over."""
+    """Run compiled work, which `stop` ends soon, called at an interrupt and when the time is over.
+
+    At an interrupt the work ends behind the caller: it may be compiling still.
+    """
     at_work = _Work(work)
     try:
         return at_work.answer(deadline)
+    except TimeoutError:
+        stop()
+        at_work.is_over()
+        raise
     except BaseException:
         stop()
-        at_work.thread.join()
         raise
 
 
 class _Work(Generic[T]):
-    """Work in a thread of its own, which starts at once."""
+    """Work in a thread of its own.
+
+    Its end is told by a lock, which one waits for in short turns. A signal that comes on the way into a wait,
+    or to another thread, does not wake it: Python raises the interrupt when the wait is over. `Thread.join`
+    has no turns, and (Python 3.11) calls a thread over that an interrupted caller waited for.
+    """
 
     def __init__(self, work: Callable[[], T]) -> None:
         self._found: list[T] = []
         self._error: list[BaseException] = []
-        self.thread = threading.Thread(target=copy_context().run, args=(self._run, work), name=_NAME)
-        with put_off():
-            self.thread.start()
+        self._at_work = threading.Lock()
+        self._thread = threading.Thread(target=copy_context().run, args=(self._run, work), name=_NAME)
 
     def _run(self, work: Callable[[], T]) -> None:
         try:
             self._found.append(work())
         except BaseException as raised:
             self._error.append(raised)
+        finally:
+            self._at_work.release()
+
+    def is_over(self, deadline: Deadline | None = None) -> bool:
+        """Wait for the end of the work, or of the time: False."""
+        left = deadline.left() if deadline else None
+        while left is None or left > 0.0:
+            if self._at_work.acquire(timeout=LATE if left is None else min(left, LATE)):
+                return True
+            left = deadline.left() if deadline else None
+        return False
 
     def answer(self, deadline: Deadline | None = None) -> T:
-        """Return what the work returns, or raise what it raises; TimeoutError when the time is over."""
-        self.thread.join(deadline.left() if deadline else None)
+        """Begin, and return what the work returns or raise what it raises; TimeoutError when time is up."""
+        self._at_work.acquire()
+        with put_off():
+            self._thread.start()
+        over = self.is_over(deadline)
         if self._error:
             raise self._error[0]
-        if deadline and not self._found:
+        if deadline and not over:
             raise deadline.error()
         return self._found[0]

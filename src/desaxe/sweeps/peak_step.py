@@ -1,7 +1,6 @@
 """Peaks of the designs of a sweep, beside its grid: refined over the crank angle, with their gradients."""
 
 from collections.abc import Mapping, Sequence
-from math import pi
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 from ..evaluation.axes import Outer
 from ..evaluation.labels import Output, attributes, side_attributes
 from ..mechanism.catalogue import quantity
+from ..mechanism.closed import TURN
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
 from ..mechanism.own import Definition
@@ -121,7 +121,7 @@ def peak_requests(peaks: Any, outer: Outer) -> tuple[PeakRequest, ...]:
         peaks = dict.fromkeys(given, "absmax")
     angles = outer.axes.get("theta", np.empty(0)).reshape(-1)
     whole = angles[np.isfinite(angles)]
-    ends = (float(whole.min()), float(whole.max())) if whole.size > 1 else (0.0, 2.0 * pi)
+    ends = (float(whole.min()), float(whole.max())) if whole.size > 1 else (0.0, TURN)
     found = []
     for name, kinds in peaks.items():
         for kind in (kinds,) if isinstance(kinds, str) else tuple(kinds):

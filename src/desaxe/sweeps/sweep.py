@@ -48,13 +48,26 @@ def stored_sweep(sweep: Sweep, store: str | PathLike[str], overwrite: bool, way:
     """Run a sweep into a store, or resume one that was stopped; return the opened Dataset."""
     root = Path(os.path.abspath(store))
     sweep = placed(sweep, root, overwrite, way.memory)
-    with held(root):
+    with held(root), _resumable(sweep, root):
         clear(root)
         if sweep.ranking is None:
             _fill(sweep, root, way)
         else:
             _fill_by_rank(sweep, root, way)
     return open_store(root)
+
+
+@contextmanager
+def _resumable(sweep: Sweep, root: Path) -> Iterator[None]:
+    """Say in an interrupt how much of the sweep is kept, and how it goes on."""
+    try:
+        yield
+    except KeyboardInterrupt as stopped:
+        total = sweep.layout.chunks
+        kept = total - _absent(sweep, root) if sweep.ranking is None else int(Kept(total, root).done.sum())
+        words = f"{kept:,} of {total:,} chunks are kept; the same sweep goes on from there"
+        stopped.args = (f"{printable(root)}: {words}",)
+        raise
 
 
 def _fill(sweep: Sweep, root: Path, way: Way) -> None:
@@ -177,8 +190,12 @@ class NotStoredError(OSError):
 
 def _absent_bytes(sweep: Sweep, root: Path) -> int:
     """Bytes of the chunks that are not in the store, before they are compressed."""
-    absent = sum(is_absent(root, block.parts) for block in sweep.blocks())
-    return -(-sweep.plan.bytes * absent // sweep.layout.chunks)
+    return -(-sweep.plan.bytes * _absent(sweep, root) // sweep.layout.chunks)
+
+
+def _absent(sweep: Sweep, root: Path) -> int:
+    """The number of chunks that are not in the store."""
+    return sum(is_absent(root, block.parts) for block in sweep.blocks())
 
 
 def run_sweep(

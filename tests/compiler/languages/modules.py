@@ -25,6 +25,14 @@ def module(program, name="made"):
     )  # fmt: skip
 
 
+def written(language, program, folder, *options):
+    """The main file of a module, or of a program's; it is written with the others into a folder."""
+    made = program if isinstance(program, Module) else module(program)
+    for file, text in language.files(made, *options).items():
+        (folder / file).write_text(text, encoding="utf-8")
+    return folder / f"{made.name}{language.suffix}"
+
+
 def wrong_names(answers, point, ulps=2.0):
     """The names of the coverage set that are not what the exact interpretation says."""
     with mpmath.workdps(30):

@@ -5,19 +5,16 @@ import re
 from desaxe.compiler.languages.es_module import JavaScript
 from desaxe.compiler.program import Line, Program
 from tests.compiler.coverage_set import NAMES, POINTS, coverage
-from tests.compiler.languages.modules import module, wrong_names
+from tests.compiler.languages.modules import module, written
 from tests.compiler.languages.tools import es_module, node, run
 
 
-def test_the_coverage_set_against_exact(tmp_path):
-    for file, text in JavaScript().files(module(coverage())).items():
-        (tmp_path / file).write_text(text, encoding="utf-8")
-    calls = [["evaluate", point] for point in POINTS]
-    calls += [["evaluate", {name: [point[name] for point in POINTS] for name in coverage().inputs}]]
-    *ones, together = es_module(tmp_path / "made.js", calls)
-    for place, (point, answers) in enumerate(zip(POINTS, ones, strict=True)):
-        assert not wrong_names(answers, point), point
-        assert answers == {name: together[name][place] for name in NAMES}
+def test_points_have_the_answers_of_arrays(tmp_path):
+    place = written(JavaScript(), coverage(), tmp_path)
+    columns = {name: [point[name] for point in POINTS] for name in coverage().inputs}
+    *ones, together = es_module(place, [["evaluate", given] for given in (*POINTS, columns)])
+    for index, answers in enumerate(ones):
+        assert answers == {name: together[name][index] for name in NAMES}
 
 
 GIVEN = ['"1"', "true", "null", "[1]", "{}", "new String('1')", "1n", "Symbol('x')"]

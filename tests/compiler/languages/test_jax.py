@@ -1,29 +1,26 @@
-"""The jax column: each operation, each way to nest two, as it stands and compiled by XLA."""
+"""jax: compiled by XLA, and where there is no derivative."""
 
 import pytest
 
 from desaxe.compiler.languages.jax import Jax
 from tests.compiler.coverage_set import NAMES, POINTS, coverage
-from tests.compiler.languages.modules import module, wrong_names
+from tests.compiler.languages.modules import written, wrong_names
 from tests.compiler.languages.tools import imported, jax_in_doubles
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    place = tmp_path_factory.mktemp("jax") / "made.py"
-    place.write_text(Jax().files(module(coverage()))["made.py"], encoding="utf-8")
     with jax_in_doubles():
-        yield imported(place)
+        yield imported(written(Jax(), coverage(), tmp_path_factory.mktemp("jax")))
 
 
 @pytest.mark.thorough
-def test_the_coverage_set_against_exact(made):
+def test_the_coverage_set_compiled_by_xla(made):
     import jax
 
     compiled = jax.jit(made.evaluate)
     for point in POINTS:
-        for evaluate in (made.evaluate, compiled):
-            assert not wrong_names({n: float(v) for n, v in evaluate(**point).items()}, point), point
+        assert not wrong_names({n: float(v) for n, v in compiled(**point).items()}, point), point
 
 
 def test_what_has_no_derivative_says_so(made):

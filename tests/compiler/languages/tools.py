@@ -47,22 +47,21 @@ def library(source, compiler="gcc", options=("-O0",), libm=True):
 
 
 def pointer(array):
-    """A C pointer to an array's numbers."""
-    return array.ctypes.data_as(POINTER)
+    """A C pointer to an array's numbers, doubles or floats."""
+    return array.ctypes.data_as(ctypes.POINTER(np.ctypeslib.as_ctypes_type(array.dtype)))
 
 
 def array_values(loaded, name, columns, count):
     """The outputs of `name_array`."""
-    size = columns[0].size
-    outs = [np.full(size, 7.0) for _ in range(count)]
-    ins = (POINTER * len(columns))(*map(pointer, columns))
-    getattr(loaded, f"{name}_array")(ctypes.c_size_t(size), ins, (POINTER * count)(*map(pointer, outs)))
+    outs = [np.full_like(columns[0], 7.0) for _ in range(count)]
+    groups = [(type(pointer(group[0])) * len(group))(*map(pointer, group)) for group in (columns, outs)]
+    getattr(loaded, f"{name}_array")(ctypes.c_size_t(columns[0].size), *groups)
     return outs
 
 
-def point_values(loaded, name, row, count):
+def point_values(loaded, name, row, count, kind=float):
     """The status and the outputs of `name_point`."""
-    given, out = np.array(row, float), np.full(max(count, 1), 7.0)
+    given, out = np.array(row, kind), np.full(max(count, 1), 7.0, kind)
     status = getattr(loaded, f"{name}_point")(pointer(given), pointer(out))
     return status, out[:count].tolist()
 

@@ -1,15 +1,12 @@
 """Binding: an input becomes a constant; overlaying: a program's lines take the place of others."""
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from desaxe.compiler.passes.bind import assume, bind_constants, overlay
 from desaxe.compiler.passes.slicing import keep_outputs
 from desaxe.compiler.program import Line, Note, Program, validate
 from desaxe.mechanism.program import Variant, program_of
-from tests.compiler.programs import POINT, committed, exactly, points, programs, same
-from tests.effort import cases
+from tests.compiler.programs import POINT, committed, exactly, same
 
 PROGRAM = Program(("x", "y"), (Line("u", "add", ("x", "y")), Line("v", "mul", ("u", "x"))), ("v",), {})
 
@@ -22,22 +19,6 @@ def test_a_bound_input_becomes_a_constant():
 
 def test_binding_what_is_no_input_changes_nothing():
     assert bind_constants(PROGRAM, {"omega": 1.0}) == PROGRAM
-
-
-@pytest.mark.sampled
-@given(programs(), points(), st.sampled_from("xyz"))
-@settings(max_examples=cases(15, 75), deadline=None)
-def test_a_bound_program_means_the_program_at_that_value(program, point, name):
-    bound = validate(bind_constants(program, {name: point[name]}))
-    assert same(exactly(bound, point), exactly(program, point))
-
-
-@pytest.mark.sampled
-@given(programs(), points())
-@settings(max_examples=cases(15, 50), deadline=None)
-def test_binding_twice_is_binding_once(program, point):
-    once = bind_constants(program, point)
-    assert bind_constants(once, point) == once
 
 
 def test_the_committed_program_bound_on_a_branch():

@@ -2,27 +2,18 @@
 
 import math
 
-import mpmath
 import pytest
-from hypothesis import assume, given, settings
 
-from desaxe.compiler.interpret import run_exactly, run_in_doubles
 from desaxe.compiler.operations import OPERATIONS
 from desaxe.compiler.passes.bind import bind_constants
 from desaxe.compiler.passes.fold import fold_constants
-from desaxe.compiler.program import Line, Program, validate
+from desaxe.compiler.program import Line, Program
 from tests.compiler.programs import (
-    NO_JUMPS,
     POINT,
     committed,
-    exactly,
     in_doubles,
-    points,
     program_of_nested,
-    programs,
-    same,
 )
-from tests.effort import cases
 
 LESS = ("lt", "x", "y")
 FOLDED = [
@@ -95,63 +86,7 @@ def test_inputs_of_a_vanished_term_are_gone():
     assert fold_constants(program_of_nested(("add", "x", ("mul", 0.0, "y")))).inputs == ("x",)
 
 
-@pytest.mark.sampled
-@given(programs())
-@settings(max_examples=cases(20, 100), deadline=None)
-def test_the_result_is_valid_and_final(program):
-    once = validate(fold_constants(program))
-    assert fold_constants(once) == once
-
-
-@pytest.mark.sampled
-@given(programs(ops=NO_JUMPS), points())
-@settings(max_examples=cases(30, 150), deadline=None)
-def test_the_exact_meaning_is_unchanged(program, point):
-    """Where no line rounds, so that computing a constant in doubles is exact."""
-    with mpmath.workdps(50):
-        doubles, exact = run_in_doubles(program, point), run_exactly(program, mpmath.mp, point)
-    assume(all(doubles[line.name] == exact[line.name] for line in program.lines))
-    assert same(exactly(fold_constants(program), point), exactly(program, point))
-
-
-@pytest.mark.sampled
-@given(programs(ops=NO_JUMPS), points())
-@settings(max_examples=cases(30, 150), deadline=None)
-def test_no_bit_changes_where_all_is_finite(program, point):
-    """The sign of a zero may."""
-    scope = run_in_doubles(program, point)
-    assume(all(math.isfinite(scope[line.name]) for line in program.lines))
-    assert same(in_doubles(fold_constants(program), point), in_doubles(program, point))
-
-
-NAMES = (
-    "Y",
-    "phi",
-    "V_C",
-    "a_C",
-    "j_C",
-    "alpha_BC",
-    "a_C_wrt_ec",
-    "omega_BC_wrt_AB",
-    "V_C_wrt_theta",
-    "status",
-)
 SCENES = [{}, {"ec": 0.0}, {"alpha": 0.0}, {"ec": 0.0, "alpha": 0.0, "branch": 1.0}, {"branch": -1.0}]
-
-
-@pytest.mark.parametrize("fixed", SCENES)
-def test_the_committed_program_keeps_its_meaning(fixed):
-    program = committed(*NAMES)
-    point = POINT | fixed
-    folded = validate(fold_constants(bind_constants(program, fixed)))
-    found, wanted = exactly(folded, point), exactly(program, point)
-    assert all(abs(found[name] - wanted[name]) <= 1e-45 * abs(wanted[name]) for name in NAMES)
-
-
-@pytest.mark.parametrize("fixed", SCENES[1:4])
-def test_the_committed_program_loses_lines(fixed):
-    program = committed(*NAMES)
-    assert len(fold_constants(bind_constants(program, fixed)).lines) < len(program.lines)
 
 
 @pytest.mark.parametrize("fixed", SCENES)

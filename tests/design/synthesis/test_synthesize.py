@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 import desaxe as dx
@@ -21,6 +21,7 @@ def has(design, stroke, ratio, rel=1e-13):
     return found
 
 
+@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])  # a busy machine
 @given(AB=st.floats(0.05, 0.95), share=st.floats(0.01, 0.99), side=st.sampled_from([1, -1]))
 def test_there_and_back(AB, share, side):
     """A design's own stroke, time ratio and third wish lead back to it."""
@@ -131,24 +132,6 @@ def test_no_time_ratio_of_three():
     assert "below 3" in answer["message"]
     (low, high) = dx.synthesize(stroke=0.1, time_ratio=2.999, BC=0.05001)["limits"]["BC"]
     assert high / low < 1.001
-
-
-@pytest.mark.parametrize(
-    ("arguments", "error", "words"),
-    [
-        ({"AB": 0.1}, TypeError, "expected just one of BC, AB, max_pressure_angle, peak_a_C, got BC and AB"),
-        ({"BC": None}, TypeError, "got none"),
-        ({"time_ratio": 0.9}, ValueError, "time_ratio = 0.9: the longer over the shorter"),
-        ({"stroke": -1}, ValueError, "stroke = -1: it must be finite and more than 0"),
-        ({"BC": None, "max_pressure_angle": "100 deg"}, ValueError, "at most pi/2"),
-        ({"BC": None, "peak_a_C": 10}, TypeError, "omega0 is missing"),
-        ({"slow_stroke": 0}, ValueError, "slow_stroke = 0"),
-        ({"stroke": "1 kg"}, ValueError, "stroke = '1 kg'"),
-    ],
-)
-def test_bad_arguments(arguments, error, words):
-    with pytest.raises(error, match=words):
-        dx.synthesize(**{"stroke": 0.1, "time_ratio": 1.2, "BC": 0.1, **arguments})
 
 
 def test_numbers_load_nothing():

@@ -9,7 +9,6 @@ import desaxe as dx
 from tests.scenes.explorer.browser import started
 
 COMPACTOR = {"AB": "125 mm", "BC": "350 mm", "omega0": "1500 rpm"}
-FEEDER = "examples/feeder.toml"
 # In the place of the plotting library, which takes most of the time of a page: it checks what it is to draw.
 DRAWS_NOTHING = """window.Plotly = {
   relayout() {},

@@ -1,19 +1,17 @@
 """The numbers of the page are those of `dx.evaluate`, to 1e-13 x (1 + condition number)."""
 
-import itertools
 import math
 import random
 
 import pytest
 
 import desaxe as dx
+from desaxe.oracle.families import points
 from desaxe.oracle.force_truth import OTHERS, conditions
 from tests.points import draw
 
 BOUND = 1e-13
-QUARTER = math.pi / 2
 MOTION = {"omega0": 157.0, "alpha": -3.0}
-BACKWARDS, STEADY = {"omega0": -60.0, "alpha": 40.0}, {"omega0": -157.0, "alpha": 0.0}
 BODIES = {
     "m_crank": 0.2, "m_rod": 0.5, "m_slider": 0.8, "I_crank": 3e-5, "I_rod": 2e-4, "r_rod": 0.1,
     "F_X": 20.0, "F_Y": -50.0, "g_Y": -9.81,
@@ -31,21 +29,10 @@ def generic(kind, count):
         yield {"alpha": 0.0, **point}
 
 
-def change_points(branch, motions):
-    """At the change point, next to it, and where the rod is a little longer or too short."""
-    turning = itertools.cycle(motions)
-    for side, k, power in itertools.product((1, -1), range(1, 10, 2), (None, 20, 35, 50)):
-        for away in (10.0**-k, -(10.0**-k)):
-            AB, ec = 0.125, side * 0.2249999940395355
-            BC = AB + abs(ec) if power is None else (AB + abs(ec)) * (1 + away * 2.0**-power / abs(away))
-            yield {
-                "theta": side * QUARTER + away,
-                "ec": ec,
-                "AB": AB,
-                "BC": BC,
-                **next(turning),
-                "branch": branch,
-            }
+def change_points(branch):
+    """At the change point and next to it, the rod a little longer or shorter."""
+    rows = [*points("change_point", 40), *points("near_change_point", 80)]
+    return [row for row in rows if row["branch"] == branch]
 
 
 def with_bodies(count):
@@ -64,8 +51,8 @@ CASES = {
     "at a steady speed": lambda: list(generic("steady", 40)),
     "backwards": lambda: list(generic("backwards", 40)),
     "slowing down": lambda: list(generic("slowing down", 40)),
-    "next to a change point": lambda: list(change_points(1, [MOTION, BACKWARDS, STEADY])),
-    "next to it on the other branch": lambda: list(change_points(-1, [BACKWARDS, MOTION])),
+    "next to a change point": lambda: change_points(1),
+    "next to it on the other branch": lambda: change_points(-1),
     "forces": lambda: list(with_bodies(30)),
 }
 
@@ -77,19 +64,19 @@ USUAL = ("generic", "the other branch", "next to a change point", "forces")
     "case", [c if c in USUAL else pytest.param(c, marks=pytest.mark.thorough) for c in CASES]
 )
 def test_values_and_sensitivities(case, numbers_of, tmp_path):
-    points = CASES[case]()
-    inputs = {name: value for name, value in points[0].items() if name not in ("theta", "branch")}
-    page = numbers_of(dx.explore(path=tmp_path / "page.html", branch=points[0]["branch"], **inputs))
+    rows = CASES[case]()
+    inputs = {name: value for name, value in rows[0].items() if name not in ("theta", "branch")}
+    page = numbers_of(dx.explore(path=tmp_path / "page.html", branch=rows[0]["branch"], **inputs))
     names = page.evaluate("Object.keys(desaxe.content.quantities)")
-    found = page.evaluate(VALUES, points)
+    found = page.evaluate(VALUES, rows)
     wrong = []
-    for point, row in zip(points, found, strict=True):
+    for point, row in zip(rows, found, strict=True):
         wanted = dx.evaluate(names, **point)
         for name, text in zip(names, row, strict=True):
             if not agrees(name, float(text.replace("Infinity", "inf")), wanted[name], point):
                 wrong.append((name, text, wanted[name], point))
     assert not wrong
-    assert len(points) > 25
+    assert len(rows) > 25
     assert len(names) > 100
 
 

@@ -1,9 +1,9 @@
 """Compiled modules: they run without desaxe, give what desaxe gives, and are the same every time."""
 
 import ast
-import json
 import math
 import os
+import pickle
 import re
 import subprocess
 import sys
@@ -60,32 +60,24 @@ ALLOWED = {
     "__future__", "concurrent.futures", "math", "os", "threading", "typing", "numba", "numba.core",
     "numba.extending", "numpy",
 }  # fmt: skip
-# Runs in a process of its own, where importing desaxe fails; prints every value as hex.
+# Runs in a process of its own, where importing desaxe fails.
 ALONE = """
-import importlib, json, sys
+import importlib, pickle, sys
 sys.modules["desaxe"] = None
 sys.path.insert(0, sys.argv[1])
-import numpy as np
 found = {}
-def text(values):
-    flat = np.asarray(values, dtype=float).reshape(-1)
-    return [float(v).hex() for v in flat]
-for name, points in json.loads(sys.stdin.read()).items():
+for name, points in pickle.load(sys.stdin.buffer).items():
     module = importlib.import_module("kernels_" + name)
     assert not getattr(module, "COMPILED", None)  # before the first call
-    arrays = {n: np.array(v) for n, v in points.items()}
     number = {n: v[0] for n, v in points.items()}
     found[name] = {
-        "run": {n: text(v) for n, v in module.run(threads=1).items()} if points else
-               {n: text(v) for n, v in module.run().items()},
-        "shapes": {n: np.shape(v) for n, v in module.run().items()},
-        "arrays": {n: text(v) for n, v in module.evaluate(**arrays).items()},
-        "point": text(module.point(**number)),
-        "number": {n: text(v) for n, v in module.evaluate(**number).items()},
-        "doc": module.__doc__,
-        "scalars": text([getattr(module, n)(*(number[i] for i in module.INPUTS)) for n in module.OUTPUTS]),
+        "run": module.run(threads=1) if points else module.run(),
+        "arrays": module.evaluate(**points),
+        "point": list(module.point(**number)),
+        "number": module.evaluate(**number),
+        "scalars": [getattr(module, n)(*(number[i] for i in module.INPUTS)) for n in module.OUTPUTS],
     }
-print(json.dumps(found))
+pickle.dump(found, sys.stdout.buffer)
 """
 
 
@@ -93,7 +85,7 @@ def points_of(scene):
     """Sixty random points for every input that the scene leaves open."""
     rng = np.random.default_rng(5)
     axes = {n: v for n, v in dx.scene(scene).inputs.items() if isinstance(v, tuple)}
-    return {name: rng.uniform(min(v), max(v), 60).tolist() for name, v in axes.items()}
+    return {name: rng.uniform(min(v), max(v), 60) for name, v in axes.items()}
 
 
 @pytest.fixture(scope="module")
@@ -101,17 +93,17 @@ def alone():
     """The results of every module in a process without desaxe, shared by the workers of a test run."""
     folder = Path(os.environ["DESAXE_CACHE_DIR"]) / "modules"
     folder.mkdir(exist_ok=True)
-    kept = folder / "found.json"
+    kept = folder / "found"
     with locked(kept.with_suffix(".lock"), 600.0, "another worker makes the modules"):
         if not kept.exists():
             for name, scene in SCENES.items():
                 dx.compile(scene, folder / f"kernels_{name}.py")
-            words = json.dumps({name: points_of(scene) for name, scene in SCENES.items()})
+            points = pickle.dumps({name: points_of(scene) for name, scene in SCENES.items()})
             command = [sys.executable, "-W", "error", "-c", ALONE, str(folder)]
-            done = subprocess.run(command, input=words, capture_output=True, text=True, check=False)
-            assert done.returncode == 0, done.stderr
-            kept.write_text(done.stdout, encoding="utf-8")
-    return json.loads(kept.read_text(encoding="utf-8"))
+            done = subprocess.run(command, input=points, capture_output=True, check=False)
+            assert done.returncode == 0, done.stderr.decode()
+            kept.write_bytes(done.stdout)
+    return pickle.loads(kept.read_bytes())
 
 
 def same(name, found, wanted):
@@ -122,10 +114,6 @@ def same(name, found, wanted):
         np.testing.assert_array_equal(found, wanted)
 
 
-def numbers(texts):
-    return np.array([float.fromhex(text) for text in texts])
-
-
 def inputs_of(scene):
     content = dx.scene(scene).content
     fixed = {n: v for n, v in content.inputs.items() if isinstance(v, float)}
@@ -134,40 +122,23 @@ def inputs_of(scene):
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("name", SCENES)
-def test_run_is_the_scene(name, alone, monkeypatch):
-    monkeypatch.setenv("DESAXE_TIER", "compiled" if points_of(SCENES[name]) else "interpreted")
+def test_a_module_alone_gives_what_desaxe_gives(name, alone, monkeypatch):
+    """A run, arrays, a point, and one function for each output, for the @njit functions of others."""
+    points, found = points_of(SCENES[name]), alone[name]
+    monkeypatch.setenv("DESAXE_TIER", "compiled" if points else "interpreted")
     dataset = dx.scene(SCENES[name]).run().dataset
-    found = alone[name]["run"]
-    assert set(found) == set(dataset.data_vars) - {"margin"}
-    for output, texts in found.items():
-        assert tuple(alone[name]["shapes"][output]) == dataset[output].shape
-        same(name, numbers(texts), dataset[output].values.reshape(-1))
-
-
-@pytest.mark.thorough
-@pytest.mark.parametrize("name", [name for name in SCENES if name != "no_axis"])
-def test_arrays_are_those_of_evaluate(name, alone, monkeypatch):
-    monkeypatch.setenv("DESAXE_TIER", "compiled")
-    points = points_of(SCENES[name])
-    names = list(alone[name]["arrays"])
-    arrays = {n: np.array(v) for n, v in points.items()}
-    wanted = dx.evaluate(names, **{**inputs_of(SCENES[name]), **arrays})
+    assert set(found["run"]) == set(dataset.data_vars) - {"margin"}
+    for output, values in found["run"].items():
+        assert np.shape(values) == dataset[output].shape
+        same(name, values, dataset[output])
+    names, fixed = list(found["number"]), inputs_of(SCENES[name])
+    many = dx.evaluate(names, **fixed, **points)
+    one = dx.evaluate(names, **fixed, **{n: v[0] for n, v in points.items()})
     for output in names:
-        same(name, numbers(alone[name]["arrays"][output]), wanted[output])
-
-
-@pytest.mark.thorough
-@pytest.mark.parametrize("name", SCENES)
-def test_one_point_is_that_of_evaluate(name, alone):
-    """And one function for each output, in the order of INPUTS, for the @njit functions of others."""
-    names = list(alone[name]["number"])
-    one = {n: v[0] for n, v in points_of(SCENES[name]).items()}
-    wanted = dx.evaluate(names, **{**inputs_of(SCENES[name]), **one})
-    # A module has the stable form alone for its points.
-    for way in ("point", "scalars"):
-        found = [float.fromhex(text) for text in alone[name][way]]
-        np.testing.assert_allclose(found, [float(wanted[n]) for n in names], rtol=1e-14)
-    assert [alone[name]["number"][n] for n in names] == [[text] for text in alone[name]["point"]]
+        same(name, found["arrays"][output], many[output])
+    for way in ("point", "scalars"):  # a module has the stable form alone for its points
+        np.testing.assert_allclose(found[way], [float(one[n]) for n in names], rtol=1e-14)
+    assert [float(found["number"][n]) for n in names] == found["point"]
 
 
 def test_a_function_of_ones_own_calls_them(tmp_path):
@@ -283,8 +254,11 @@ def test_only_numpy_and_numba_are_imported(tmp_path):
 
 
 def test_ruff_finds_nothing_undefined_or_unused(tmp_path):
+    """In modules of numba and of jax."""
     for name, scene in {**SCENES, "searched": SEARCHED}.items():
         dx.compile(scene, tmp_path / f"{name}.py")
+    for name in ("grid", "state", "forces"):
+        dx.compile(SCENES[name], tmp_path / f"{name}_jax.py", to="jax")
     command = [sys.executable, "-m", "ruff", "check", "--isolated", "--select", "F", str(tmp_path)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout
@@ -417,7 +391,7 @@ def test_every_bad_input_is_status_4(scene, tmp_path):
     """NaN, an infinity, a length below zero: of a point, a number and an element, as `evaluate` says."""
     module = imported(dx.compile(scene, tmp_path / "press.py"))
     (output,) = scene["outputs"]
-    good = {name: value[0] for name, value in points_of(scene).items()}
+    good = {name: float(value[0]) for name, value in points_of(scene).items()}
     place = list(module.OUTPUTS).index("status")
     for name in module.INPUTS:
         for value in (math.nan, math.inf, -math.inf, *([-0.1] if name in ("AB", "BC", "m_slider") else [])):

@@ -21,7 +21,6 @@ LENGTHS = {"ec": 0.01, "AB": 0.04, "BC": 0.1}
 MASSES = {"m_slider": 0.4, "m_rod": 0.2, "I_crank": 2e-3}
 LOADS = {"F_Y": -20.0, "g_Y": -9.81}
 OUTPUTS = ("V_C", "a_C", "T_in", "N_C", "kinetic_energy", "a_C_wrt_ec", "N_C_wrt_AB", "status")
-DRIVEN = {"torque": 1.5, "omega": 7.0}
 
 
 def content(branch=1, **more):
@@ -48,6 +47,14 @@ def made(tmp_path_factory):
         return str(place)
 
     return one
+
+
+def simulated(place, kind, stop, step, output, **start):
+    """The results of fmpy's importer."""
+    return fmpy.simulate_fmu(
+        place, fmi_type=kind, start_values=start, stop_time=stop, output_interval=step, output=output,
+        relative_tolerance=1e-10, early_return_allowed=True,
+    )  # fmt: skip
 
 
 CASES = [(fmi, drive) for fmi in (3, 2) for drive in ("torque", "omega")]
@@ -131,10 +138,7 @@ def test_fmpy_finds_no_problem(fmi, drive, made):
 @pytest.mark.parametrize("fmi", [3, 2])
 def test_the_motion_is_that_of_simulate(fmi, kind, made):
     names = ["theta", "omega", *OUTPUTS[:5]]
-    found = fmpy.simulate_fmu(
-        made(fmi, "torque"), fmi_type=kind, start_values={"torque": 1.5}, stop_time=0.1, output_interval=0.01,
-        relative_tolerance=1e-10, output=[*names, "status"],
-    )  # fmt: skip
+    found = simulated(made(fmi, "torque"), kind, 0.1, 0.01, [*names, "status"], torque=1.5)
     times = found["time"]
     fixed = {**LENGTHS, **MASSES, **LOADS}
     wanted = dx.simulate(
@@ -150,10 +154,8 @@ def test_the_motion_is_that_of_simulate(fmi, kind, made):
 @pytest.mark.parametrize("fmi", [3, 2])
 def test_a_given_speed(fmi, kind, made):
     """The outputs are those of `evaluate` at the angle that the speed has led to."""
-    found = fmpy.simulate_fmu(
-        made(fmi, "omega"), fmi_type=kind, start_values={"omega": 7.0, "theta0": 1.0}, stop_time=0.5,
-        output_interval=0.05, output=["theta", *OUTPUTS[:5]],
-    )  # fmt: skip
+    names = ["theta", *OUTPUTS[:5]]
+    found = simulated(made(fmi, "omega"), kind, 0.5, 0.05, names, omega=7.0, theta0=1.0)
     theta = 1.0 + 7.0 * found["time"]
     np.testing.assert_allclose(found["theta"], theta, rtol=1e-12)
     wanted = dx.evaluate(
@@ -258,10 +260,7 @@ def test_a_limit_angle_ends_the_simulation(fmi, kind, made):
     given = {**MASSES, **LOADS, "AB": 0.04, "BC": 0.045, "ec": 0.02}
     wanted = dx.simulate(torque=1.0, t_end=1.0, theta0=0.0, omega_start=8.0, **given)
     assert wanted["status"] == 2
-    found = fmpy.simulate_fmu(
-        made(fmi, "torque"), fmi_type=kind, start_values=values, stop_time=1.0, output_interval=0.01,
-        relative_tolerance=1e-9, output=["theta"], early_return_allowed=True,
-    )  # fmt: skip
+    found = simulated(made(fmi, "torque"), kind, 1.0, 0.01, ["theta"], **values)
     assert found["time"][-1] == pytest.approx(wanted["t"][-1], abs=1e-4)
     assert found["theta"][-1] == pytest.approx(wanted["theta"][-1], abs=1e-6)
 
@@ -272,10 +271,7 @@ def test_friction_holds_the_crank(kind, made):
     given = {**LENGTHS, **MASSES, "g_Y": -9.81, "mu": 0.3, "F_X": 30.0, "F_Y": 4.0}
     wanted = dx.simulate(torque=0.0, t_end=0.5, theta0=1.0, omega_start=8.0, **given)
     assert wanted["status"] == 1
-    found = fmpy.simulate_fmu(
-        made(3, "torque"), fmi_type=kind, start_values=values, stop_time=0.5, output_interval=0.01,
-        relative_tolerance=1e-9, output=["theta", "omega", "der(omega)"],
-    )  # fmt: skip
+    found = simulated(made(3, "torque"), kind, 0.5, 0.01, ["theta", "omega", "der(omega)"], **values)
     assert found["omega"][-1] == 0.0
     assert found["der(omega)"][-1] == 0.0
     assert found["theta"][-1] == pytest.approx(wanted["theta"][-1], abs=1e-6)

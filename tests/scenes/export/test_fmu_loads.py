@@ -13,9 +13,9 @@ from desaxe.oracle.force_truth import truth as force_truth
 from desaxe.oracle.truth import truth
 from tests.effort import cases
 from tests.scenes.export import test_fmu
-from tests.scenes.export.test_fmu import LENGTHS, MASSES, Instance, content, started, validate
+from tests.scenes.export.test_fmu import LENGTHS, MASSES, Instance, content, simulated, started, validate
 
-fmpy = pytest.importorskip("fmpy")
+pytest.importorskip("fmpy")
 
 OUTPUTS = ["V_C", "a_C", "T_in", "N_C", "kinetic_energy"]
 TURN = [[0.4, -5], [1.0, -40], [2.0, 10], [4.0, 0]]
@@ -81,10 +81,8 @@ FIRST = ("linear", "cubic", "both ways", "steps over Y", "inner")  # each is a m
 )
 def test_co_simulation_is_exact_across_kinks(name, torque, omega, made):
     """Over many turns, forwards, and backwards from a start that turns forwards."""
-    found = fmpy.simulate_fmu(
-        made(name), fmi_type="CoSimulation", start_values={"torque": torque, "omega_start": omega},
-        stop_time=0.4, output_interval=0.02, output=["theta", "omega"],
-    )  # fmt: skip
+    start = {"torque": torque, "omega_start": omega}
+    found = simulated(made(name), "CoSimulation", 0.4, 0.02, ["theta", "omega"], **start)
     wanted = moved(name, torque, omega, 0.4, times=found["time"])
     assert abs(wanted["theta"][-1]) > 30
     for each in ("theta", "omega"):
@@ -173,10 +171,8 @@ def test_model_exchange_without_tables_over_a_long_run(tmp_path):
 
 @pytest.mark.parametrize("name", ["linear", "over Y"])
 def test_a_given_speed_has_the_load_of_the_angle(name, made):
-    found = fmpy.simulate_fmu(
-        made(name, input="omega"), fmi_type="CoSimulation", start_values={"omega": 7.0, "theta0": 0.1},
-        stop_time=2.0, output_interval=0.05, output=["theta", "T_in", "N_C"],
-    )  # fmt: skip
+    place, names = made(name, input="omega"), ["theta", "T_in", "N_C"]
+    found = simulated(place, "CoSimulation", 2.0, 0.05, names, omega=7.0, theta0=0.1)
     given = {**LENGTHS, **MASSES, "g_Y": -9.81, "F_Y": load_of(name)}
     wanted = dx.evaluate(["T_in", "N_C"], theta=found["theta"], omega=7.0, alpha=0.0, **given)
     for each in ("T_in", "N_C"):
@@ -246,10 +242,8 @@ def test_a_crank_that_neither_way_of_the_slider_lets_go_stays_at_rest(tmp_path):
     against = {"over_Y": [[0.08, -30, 30], [0.13, -30, 30]]}
     place = dx.compile(content(outputs=["V_C"], loads={"F_Y": against}), tmp_path / "press.fmu", to="fmu")
     for kind in ("CoSimulation", "ModelExchange"):
-        found = fmpy.simulate_fmu(
-            str(place), fmi_type=kind, start_values={"omega_start": 0.5, "theta0": 1.0, "torque": 0.0},
-            stop_time=0.2, output_interval=0.01, relative_tolerance=1e-9, output=["theta", "omega"],
-        )  # fmt: skip
+        start = {"omega_start": 0.5, "theta0": 1.0, "torque": 0.0}
+        found = simulated(str(place), kind, 0.2, 0.01, ["theta", "omega"], **start)
         assert found["omega"][-1] == 0.0
         assert 1.0 < found["theta"][-1] < 1.1
 

@@ -18,37 +18,23 @@ from desaxe.compiler.program import Line, Program
 from desaxe.mechanism.constants import single_constants
 from desaxe.oracle import force_truth
 from desaxe.oracle.truth import conditions, truth
-from tests.compiler.languages.modules import module
-from tests.compiler.languages.tools import library
+from tests.compiler.languages.modules import module, written
+from tests.compiler.languages.tools import array_values, library, point_values, pointer
 from tests.effort import cases
 from tests.scenes.export import single
 from tests.scenes.export.stress import INPUTS, NAMES, scene
 
 BUILDS = (("gcc", ("-O3", "-march=native"), True), ("clang", ("-O0",), False))
-FLOAT, POINTER = ctypes.c_float, ctypes.POINTER(ctypes.c_float)
-
-
-def pointer(array):
-    assert array.dtype == np.float32
-    return array.ctypes.data_as(POINTER)
+FLOAT = ctypes.c_float
 
 
 def floats(*values):
     return np.array(values, np.float32)
 
 
-def arrays(loaded, columns, count):
-    """The outputs of `press_array`."""
-    outs = [np.full(columns[0].size, 7.0, np.float32) for _ in range(count)]
-    given = [(POINTER * len(group))(*map(pointer, group)) for group in (columns, outs)]
-    loaded.press_array(ctypes.c_size_t(columns[0].size), *given)
-    return outs
-
-
 def point(loaded, row, count, name="press"):
     """The status and the outputs of `press_point`."""
-    given, out = floats(*row), np.full(count, 7.0, np.float32)
-    return getattr(loaded, f"{name}_point")(pointer(given), pointer(out)), out.tolist()
+    return point_values(loaded, name, row, count, np.float32)
 
 
 def build(content, folder, compiler="gcc", options=("-O2",), libm=True):
@@ -63,7 +49,7 @@ def test_the_promise_is_kept(how, branch, tmp_path):
     """Error in float ulp over 1 + condition: 8, where 64 are promised; a point has the bits of an array."""
     each = cases(2, 12, 400)
     loaded, columns = build(scene(branch), tmp_path, *how), single.columns(branch, each)
-    found = arrays(loaded, columns, len(NAMES))
+    found = array_values(loaded, "press", columns, len(NAMES))
     errors = [*single.errors(dict(zip(NAMES, found, strict=True)), branch, each)]
     assert len(errors) > 2 * columns[0].size
     assert not [error for error in errors if not error[3] < single.LIMIT]
@@ -124,9 +110,7 @@ def test_next_to_quarter_turns_sine_and_cosine_keep_their_digits(libm, tmp_path)
     lines = tuple(Line(op, op, ("x",)) for op in ("sin", "cos", "sqrt"))
     program = Program(("x",), lines, ("sin", "cos", "sqrt"), {})
     made = module(program)._replace(single=True, constants=single_constants())
-    for file, text in C().files(made, not libm).items():
-        (tmp_path / file).write_text(text, encoding="utf-8")
-    loaded = library(tmp_path / "made.c", libm=libm)
+    loaded = library(written(C(), made, tmp_path, not libm), libm=libm)
     with mpmath.workdps(60):
         for quarter in range(-64, 65):
             for step in range(-2, 3):
@@ -137,26 +121,6 @@ def test_next_to_quarter_turns_sine_and_cosine_keep_their_digits(libm, tmp_path)
                 exact = mpmath.sin(float(angle)), mpmath.cos(float(angle))
                 for value, wanted in zip(values, exact, strict=False):
                     assert value == wanted or single.ulps(value, wanted) < 2
-
-
-def test_functions_of_its_own_are_those_of_libm(tmp_path):
-    """Roots and whole numbers to the last bit, an angle to 4 ulp."""
-    ops = (("sqrt", "x"), ("floor", "x"), ("copysign", "x", "y"), ("atan2", "x", "y"), ("hypot", "x", "y"))
-    lines = tuple(Line(f"r{op}", op, args) for op, *args in ops)
-    program = Program(("x", "y"), lines, tuple(line.name for line in lines), {})
-    made = module(program)._replace(single=True, constants=single_constants())
-    for file, text in C().files(made, True).items():
-        (tmp_path / file).write_text(text, encoding="utf-8")
-    loaded, rng = library(tmp_path / "made.c", libm=False), random.Random(3)
-    special = [0.0, -0.0, 1e-45, -1e-40, 0.3, -0.7, 1.0, 8388607.5, 3.4e38, math.inf, -math.inf, math.nan]
-    drawn = [rng.choice((-1, 1)) * 10 ** rng.uniform(-37, 37) for _ in range(400)]
-    pairs = [*((x, y) for x in special for y in special), *zip(drawn, drawn[::-1], strict=True)]
-    for x, y in np.array(pairs, np.float32):
-        with np.errstate(all="ignore"):
-            wanted = [np.sqrt(x), np.floor(x), np.copysign(x, y), np.arctan2(x, y), np.hypot(x, y)]
-        _, found = point(loaded, [x, y], 5, "made")
-        np.testing.assert_array_equal(found[:3], wanted[:3])
-        np.testing.assert_array_max_ulp(floats(*found[3:]), floats(*wanted[3:]), 4)
 
 
 def test_angles_of_the_solvers(tmp_path):
@@ -193,16 +157,7 @@ def test_steps_follow_the_motion(tmp_path):
         "loads": {"F_X": 30, "F_Y": 4, "mu": 0.3},
     }  # fmt: skip
     loaded = build(content, tmp_path)
-    given = {
-        "ec": 0.01,
-        "AB": 0.04,
-        "BC": 0.1,
-        "m_slider": 0.4,
-        "I_crank": 2e-3,
-        "F_X": 30.0,
-        "F_Y": 4.0,
-        "mu": 0.3,
-    }
+    given = {"ec": 0.01, "AB": 0.04, "BC": 0.1, **content["masses"], **content["loads"]}
     wanted = dx.simulate(torque=0.0, t_end=0.5, theta0=1.0, omega_start=8.0, **given)
     assert wanted["status"] == 1
     row, theta, omega = pointer(floats(0, 0.1, 0)), FLOAT(1.0), FLOAT(8.0)
@@ -214,22 +169,6 @@ def test_steps_follow_the_motion(tmp_path):
     assert loaded.press_alpha(FLOAT(9.0), theta, FLOAT(20.0), row, ctypes.byref(alpha)) == 0
     there = {**given, "theta": theta.value, "omega": 20.0}
     assert dx.evaluate("T_in", alpha=alpha.value, **there) == pytest.approx(9.0, abs=1e-4)
-
-
-def test_status(tmp_path):
-    good = {"theta": 1.0, "ec": 0.02, "AB": 0.04, "BC": 0.064, "omega0": 10.0, "alpha": 1.0}
-    trials = [
-        ({}, 0), ({"BC": 0.01}, 1), ({"theta": -100.0}, 3), ({"theta": math.nan}, 4), ({"BC": 0.0}, 4),
-        ({"BC": math.inf}, 4), ({"AB": -0.04}, 4), ({"theta": 100.0, "omega0": 150.0}, 0),
-    ]  # fmt: skip
-    for libm in (True, False):
-        loaded = build(scene(), tmp_path / str(libm), libm=libm)
-        for change, status in trials:
-            got, values = point(loaded, [(good | change)[name] for name in INPUTS], len(NAMES))
-            assert got == status
-            assert status == 0 or math.isnan(values[NAMES.index("V_C")])
-        far = point(loaded, [(good | {"theta": 1e6})[name] for name in INPUTS], len(NAMES))[0]
-        assert far == (0 if libm else 4)
 
 
 def test_folding_is_that_of_single_precision():

@@ -10,7 +10,7 @@ import pytest
 import desaxe as dx
 from desaxe.mechanism.closed.dead_centres import SENSITIVITIES
 from desaxe.mechanism.names import LENGTHS, WHOLE
-from tests.compiler.languages.runners import RUNNERS, compiled
+from tests.compiler.languages.runners import RUNNERS, SLOW, compiled
 from tests.compiler.languages.tools import es_module, imported, jax_in_doubles
 from tests.effort import cases
 from tests.mechanism.closed.test_closed_forms import check
@@ -19,6 +19,7 @@ from tests.mechanism.closed.truth import design, truths
 NAMES = (*WHOLE, *SENSITIVITIES)
 OTHER = {"advance_angle": "return_angle", "return_angle": "advance_angle"}
 TWO = [0.1, 0.2]
+LANGUAGES = [("c", False), *((language, True) for language in RUNNERS)]
 
 
 def scene(names, way=1, branch=1, **axes):
@@ -57,7 +58,10 @@ def columns(branch):
 
 @pytest.mark.sampled
 @pytest.mark.parametrize(("branch", "way"), [(1, -1), (-1, 1)])
-@pytest.mark.parametrize(("language", "libm"), [("c", False), *((language, True) for language in RUNNERS)])
+@pytest.mark.parametrize(
+    ("language", "libm"),
+    [pytest.param(*case, marks=pytest.mark.thorough if case[0] in SLOW else ()) for case in LANGUAGES],
+)
 def test_every_language_keeps_the_promise(language, libm, branch, way, tmp_path):
     least = np.finfo(float).tiny if language == "jax" else 0.0
     module = compiled(language, tmp_path, scene(NAMES, way, branch), LENGTHS, libm=libm)

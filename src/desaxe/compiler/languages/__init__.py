@@ -6,7 +6,7 @@ tables      tables that are arguments: their names and their layout
 words       names that a language, or what it writes, keeps for itself
 c/          C99: a header and a source, no allocation, no global state
 jax         Python over jax.numpy, with derivatives by name
-octave      one vectorised function for GNU Octave and MATLAB
+octave      one vectorised function for GNU Octave and MATLAB; octave.m has what spellings call
 es_module   a JavaScript module and its types
 javascript  one JavaScript function, for the explorer and for the module
 python      plain Python over `math`, for single points

@@ -1,65 +1,16 @@
 """A JavaScript module (ES2015) and its types: `import { evaluate, a_C } from "./name.js"`."""
 
-from ..operations import JAVASCRIPT_TABLES
+from ...support.template import file_text
 from ..text import with_short_temporaries
-from .javascript import HEADER, emit_javascript
+from .javascript import HEADER, TABLES, emit_javascript
 from .protocol import Language, Module, Symbol
 from .shared import arrays_of, numbers, one_line, safe_name, with_safe_names
 from .tables import columns_of, described, numbers_of, period_of
 from .words import words_of
 
 WORDS = words_of("javascript").lines
-CHECKED = """\
-/** The numbers of all tables, then their arrays. */
-function valuesOf(tables) {
-  return [...tables.flatMap((one) => one.slice(0, 2)), ...tables.flatMap((one) => one.slice(2))];
-}
-
-/** 0, or NaN where something is no table, and then zeros in its place; the first knot; both arrays. */
-function checkedTable(x, c, ways, period) {
-  if (!x || !c || x.length === undefined || c.length === undefined) throw new TypeError("a table is missing");
-  const n = x.length;
-  let good = n >= 2 && c.length >= 4 * ways * (n + 1) && x[n - 1] - x[0] < period;
-  for (let k = 0; good && k < n; k++) {
-    good = Number.isFinite(x[k]) && (k < 1 || x[k - 1] <= x[k]) && (k < 2 || x[k - 2] < x[k]);
-  }
-  for (let k = 0; good && k < 4 * ways * (n + 1); k++) good = Number.isFinite(c[k]);
-  return good ? [0, x[0], x, c] : [NaN, 0, [0, 1], new Array(24).fill(0)];
-}
-"""
-EVALUATE = """\
-/** A number as it is; text, which would be read as one, and anything else is refused. */
-function number(name, value) {
-  if (typeof value === "number") return value;
-  const shown = typeof value === "string" ? JSON.stringify(value) : String(value);
-  throw new TypeError(`${name} = ${shown}: expected numbers in SI units`);
-}
-
-/** All outputs by name; numbers, or arrays of one length (a number goes with every element). */
-export function evaluate(inputs) {
-  const isArray = (value) => Array.isArray(value) || (ArrayBuffer.isView(value) && "length" in value);
-  for (const name of INPUTS) {
-    if (inputs[name] === undefined) throw new TypeError(`${name} is missing (needed: ${INPUTS})`);
-    if (!isArray(inputs[name])) number(name, inputs[name]);
-  }
-  const given = INPUTS.map((name) => inputs[name]);
-  const tables = TABLES;
-  const lengths = given.filter(isArray).map((value) => value.length);
-  if (!lengths.length) {
-    const found = values(...given, ...tables);
-    return Object.fromEntries(OUTPUTS.map((name, place) => [name, found[place]]));
-  }
-  if (lengths.some((length) => length !== lengths[0])) throw new RangeError("arrays must have one length");
-  const arrays = OUTPUTS.map(() => new Float64Array(lengths[0]));
-  for (let k = 0; k < lengths[0]; k++) {
-    const point = given.map((value, place) => (isArray(value) ? number(INPUTS[place], value[k]) : value));
-    values(...point, ...tables).forEach((one, place) => {
-      arrays[place][k] = one;
-    });
-  }
-  return Object.fromEntries(OUTPUTS.map((name, place) => [name, arrays[place]]));
-}
-"""
+CHECKED = file_text(__package__, "es_module_tables.js")
+EVALUATE = file_text(__package__, "es_module.js")
 
 
 class JavaScript(Language):
@@ -67,6 +18,7 @@ class JavaScript(Language):
 
     name = "javascript"
     suffix = ".js"
+    about = "an ES module and its types"
     open_tables = True
 
     def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:
@@ -88,7 +40,7 @@ def _source(module: Module) -> str:
         [
             _comment(module),
             HEADER,
-            *(JAVASCRIPT_TABLES.values() if module.tables or module.open_tables else ()),
+            *([TABLES] if module.tables or module.open_tables else []),
             *([CHECKED] if module.open_tables else []),
             *_content(module),
             f"export const INPUTS = {_list(module.inputs)};",

@@ -4,16 +4,15 @@ JavaScript numbers are doubles, and its arithmetic is that of IEEE 754: the same
 order give the same digits as plain Python, up to the last bit of a sine or cosine.
 """
 
-from ..operations import JAVASCRIPT_HELPERS
+from ...support.template import file_text
 from ..program import Program
 from ..text import with_short_temporaries, write_lines
 
 INDENT = "  "
-# Names that the readable text has and JavaScript has not, and the helpers. Once on a page is enough.
-HEADER = (
-    "const { atan2, cos, exp, floor, log, pow, sin, sqrt, abs: fabs } = Math;\n"
-    "const nan = NaN, inf = Infinity, True = true, False = false;\n\n"
-) + "\n".join(JAVASCRIPT_HELPERS.values())
+# Names that the readable text has and JavaScript has not, and the helpers, once on a page: it has no copysign
+# and no fused multiply-add, so that Dekker's product stays.
+HEADER = file_text(__package__, "javascript.js")
+TABLES = file_text(__package__, "javascript_tables.js")  # the helpers of tables, for modules that have some
 
 
 def emit_javascript(program: Program, name: str = "point") -> str:

@@ -153,6 +153,7 @@ class Jax(Language):
 
     name = "jax"
     suffix = ".py"
+    about = "a Python module over jax.numpy, with exact derivatives"
     second_order = True
     extended = False  # products may be fused with sums
 

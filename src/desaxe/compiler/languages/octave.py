@@ -4,164 +4,26 @@ Arrays broadcast as they do there. What a select does not take must be computed 
 become complex: the root of a negative number is NaN.
 """
 
+from ...support.template import file_text
 from ..program import Program
 from ..text import with_short_temporaries
 from .protocol import Language, Module
-from .shared import arrays_of, numbers, one_line, safe_name, statements, with_helpers, with_safe_names
+from .shared import (
+    arrays_of,
+    functions_in,
+    numbers,
+    one_line,
+    safe_name,
+    statements,
+    with_helpers,
+    with_safe_names,
+)
 from .tables import columns_of, described, period_of
 from .words import words_of
 
 WORDS = {"nan": "NaN", "inf": "Inf", "True": "true", "False": "false"}
 RESERVED = words_of("octave").lines
-HELPERS = {
-    "numbers": """function x = numbers(name, x)
-  % The numbers of an input in doubles; text, which would be read as its codes, is refused.
-  if ~(isnumeric(x) || islogical(x)) || ~isreal(x)
-    error('%s: expected real numbers in SI units', name);
-  end
-  x = double(x);
-end
-""",
-    "checked_table": """function [valid, first, x, c] = checked_table(x, c, ways, period)
-  % 0, or NaN where something is no table, and then zeros in its place; the first knot.
-  x = reshape(numbers('knots', x), 1, []);
-  c = reshape(numbers('coefficients', c), 1, []);
-  valid = 0;
-  n = numel(x);
-  if n < 2 || numel(c) < 4 * ways * (n + 1) || ~all(isfinite(x)) || ~all(isfinite(c)) ...
-      || any(diff(x) < 0) || ~all(x(1:end - 2) < x(3:end)) || x(end) - x(1) >= period
-    valid = NaN;
-    x = [0, 1];
-    c = zeros(1, 24);
-  end
-  first = x(1);
-end
-""",
-    "select": """function x = select(c, a, b)
-  % a where c holds, else b.
-  whole = ones(size(c)) .* ones(size(a)) .* ones(size(b));
-  x = b .* whole;
-  a = a .* whole;
-  c = c & (whole == 1);
-  x(c) = a(c);
-end
-""",
-    "root": """function x = root(a)
-  % The square root, NaN below zero.
-  a(a < 0) = NaN;
-  x = sqrt(a);
-end
-""",
-    "logarithm": """function x = logarithm(a)
-  % The natural logarithm, NaN below zero.
-  a(a < 0) = NaN;
-  x = log(a);
-end
-""",
-    "power_of": """function x = power_of(a, b)
-  % a to the power b, NaN where that is no real number.
-  whole = ones(size(a)) .* ones(size(b));
-  a = a .* whole;
-  a(a < 0 & (b .* whole) ~= fix(b .* whole)) = NaN;
-  x = a .^ b;
-end
-""",
-    "copysign": """function x = copysign(a, b)
-  % The size of a with the sign of b, be it that of a zero.
-  minus = b < 0 | (b == 0 & 1 ./ b < 0);
-  x = abs(a) .* (1 - 2 * minus);
-end
-""",
-    "two_sum_error": """function x = two_sum_error(a, b)
-  % What rounding took from a + b, exactly (Knuth).
-  total = a + b;
-  of_b = total - a;
-  x = (a - (total - of_b)) + (b - of_b);
-end
-""",
-    "two_product_error": """function x = two_product_error(a, b)
-  % What rounding took from a .* b, exactly (Dekker).
-  product = a .* b;
-  wide = 134217729 * a;
-  a_high = wide - (wide - a);
-  a_low = a - a_high;
-  wide = 134217729 * b;
-  b_high = wide - (wide - b);
-  b_low = b - b_high;
-  x = a_low .* b_low - (((product - a_high .* b_high) - a_low .* b_high) - a_high .* b_low) + 0;
-end
-""",
-    "mul_add": """function x = mul_add(a, b, c)
-  x = a .* b + c;
-end
-""",
-    "extended_only": """function x = extended_only(a)
-  % Whether to take a form that only twice the digits tell from the other: not here.
-  x = a & false;
-end
-""",
-    "rounding": """function x = rounding(a)
-  % What rounding may take from a number of this size in four operations.
-  x = 4.440892098500626e-16 * abs(a);
-end
-""",
-    "power_of_two": """function x = power_of_two(a)
-  % The power of two that is not below a size (Rump), from 2^-960 to 2^960.
-  x = max(min(a, 2 ^ 960), 2 ^ -960);
-  step = (2 ^ 53 * x + x) - 2 ^ 53 * x;
-  x(step > 0) = step(step > 0);
-end
-""",
-    "lookup_piece": """function piece = lookup_piece(x, knots, way)
-  % The number of the piece of a table at x; those of the way back follow. Of NaN it is the first.
-  x = x .* ones(size(way));
-  low = zeros(size(x));
-  high = low + numel(knots);
-  while any(low(:) < high(:))
-    middle = floor((low + high) / 2);
-    at = reshape(knots(min(middle, numel(knots) - 1) + 1), size(x));
-    right = low < high & at <= x;
-    high(~right) = middle(~right);
-    low(right) = middle(right) + 1;
-  end
-  piece = low + (way < 0) .* (numel(knots) + 1);
-end
-""",
-    "looked_up": """function y = looked_up(x, knots, rows, piece)
-  % The value of a piece of a table at x, beyond its ends too.
-  [s, a, b, c, d] = row_of(x, knots, rows, piece);
-  y = a + s .* (b + s .* (c + s .* d));
-end
-""",
-    "looked_up_slope": """function y = looked_up_slope(x, knots, rows, piece)
-  % The slope of a piece of a table at x, beyond its ends too.
-  [s, a, b, c, d] = row_of(x, knots, rows, piece);
-  y = b + s .* (2 * c + s .* (3 * d));
-end
-""",
-    "row_of": """function [s, a, b, c, d] = row_of(x, knots, rows, piece)
-  % The distance from the left knot of a piece, and its coefficients.
-  at = mod(piece, numel(knots) + 1);
-  s = x - reshape(knots(max(at - 1, 0) + 1), size(piece));
-  a = reshape(rows(4 * piece + 1), size(piece));
-  b = reshape(rows(4 * piece + 2), size(piece));
-  c = reshape(rows(4 * piece + 3), size(piece));
-  d = reshape(rows(4 * piece + 4), size(piece));
-end
-""",
-    "rotated_sin": """function x = rotated_sin(sine, cosine, quarters)
-  % The sine of an angle and whole quarter turns, from the angle's own.
-  x = select(mod(quarters, 2) == 1, cosine, sine);
-  x = select(mod(quarters, 4) >= 2, -x, x);
-end
-""",
-    "rotated_cos": """function x = rotated_cos(sine, cosine, quarters)
-  % The cosine of an angle and whole quarter turns, from the angle's own.
-  x = select(mod(quarters, 2) == 1, sine, cosine);
-  x = select(mod(quarters + 1, 4) >= 2, -x, x);
-end
-""",
-}
+HELPERS = functions_in(file_text(__package__, "octave.m"))
 
 
 class Octave(Language):
@@ -169,6 +31,7 @@ class Octave(Language):
 
     name = "octave"
     suffix = ".m"
+    about = "name.m, for GNU Octave and MATLAB"
     open_tables = True
 
     def files(self, module: Module, freestanding: bool = False) -> dict[str, str]:

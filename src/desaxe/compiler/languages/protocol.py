@@ -112,6 +112,7 @@ class Language(ABC):
 
     name: str
     suffix: str  # of the file that is called
+    about: str  # what is written, for `desaxe compile --help`
     second_order = False  # whether `derivatives` and `values` are wanted
     own_functions = False  # whether the language can do without a library of elementary functions
     single = False  # whether the language is written in single precision, too

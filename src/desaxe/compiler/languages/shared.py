@@ -75,6 +75,15 @@ def called(text: str, names: Iterable[str]) -> list[str]:
     return [name for name in names if re.search(rf"\b{name}\(", code)]
 
 
+def functions_in(text: str) -> dict[str, str]:
+    """Name -> text of each function of a file, a blank line between two."""
+    blocks = [f"{block}\n" for block in text.rstrip("\n").split("\n\n")]
+    return {_DEFINED.search(block)[1]: block for block in blocks}  # type: ignore[index]
+
+
+_DEFINED = re.compile(r"^(?:static|function)\b.*?(\w+)\(", re.MULTILINE)
+
+
 def with_helpers(text: str, helpers: Mapping[str, str]) -> list[str]:
     """The sources of the helpers that a text calls, and of those that they call, in their order."""
     wanted: set[str] = set()

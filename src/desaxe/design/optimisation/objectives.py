@@ -74,7 +74,13 @@ def _check_mapping(name: str, given: Any, example: str) -> None:
 
 def _pair(name: str, bounds: Any) -> tuple[float, float]:
     try:
-        low, high = (_number(name, end) for end in bounds)
+        first, last = bounds
+    except (TypeError, ValueError) as error:
+        raise type(error)(
+            f"over: {named(name, bounds)}: expected two finite bounds, the lower one first"
+        ) from None
+    try:
+        low, high = _number(name, first), _number(name, last)
     except (TypeError, ValueError) as error:
         raise type(error)(f"over: {named(name, bounds)}: expected two finite bounds ({error})") from None
     if not low < high:

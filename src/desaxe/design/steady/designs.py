@@ -18,8 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...evaluation.evaluate import evaluate
-from ...loads.angles import dead_centres, meeting_angles
+from ...loads.angles import meeting_angles
 from ...loads.load import Load
+from ...mechanism.closed.angles import dead_centres
 from ...mechanism.names import LENGTHS
 from ...runtime.compiled_only import uncompiled
 from ...support.panels import padded

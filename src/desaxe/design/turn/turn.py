@@ -16,8 +16,9 @@ from ...evaluation.evaluate import evaluate
 from ...evaluation.extremes import check_range
 from ...evaluation.loaded import loads_of
 from ...loads.angles import crossings, kinks_between, turns_of
-from ...loads.load import TURN, OverY
+from ...loads.load import OverY
 from ...loads.resolve import VARIABLE
+from ...mechanism.closed import TURN
 from ...mechanism.closed.dead_centres import DEAD_CENTRES
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.inputs import INPUTS

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from math import pi
 from typing import Any
 
+from . import TURN
 from .functions import closed_form
 
 LIMITS = f'''def limits(ec, AB, BC):
@@ -47,7 +48,7 @@ LIMITS = f'''def limits(ec, AB, BC):
     return first_start, first_end, second_start, second_end, status, margin, link_margin
 '''
 ANGLES = ("first_start", "first_end", "second_start", "second_end")
-WHOLE_TURN = [(0.0, 2.0 * pi)]  # the feasible angles of a design that turns fully
+WHOLE_TURN = [(0.0, TURN)]  # the feasible angles of a design that turns fully
 CHANGE_POINT_ULPS = 4  # |margin| within this number of ulp of BC is called a change-point design
 
 

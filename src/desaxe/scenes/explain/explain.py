@@ -295,7 +295,7 @@ def _cached(key: KernelKey) -> tuple[str, str]:
 
 def _memory(plan: Planned, found: GridKernel) -> dict[str, int]:
     """Bytes of the result, and of what the grid would have taken where it is reduced."""
-    result = plan._replace(steps=plan.steps[:1]).bytes
+    result = plan._replace(steps=plan.steps[: None if plan.reductions else 1]).bytes
     grid = sum(1 if name in STATUSES else 8 for name in found.key.names) * found.points
     inputs = 8 * max(1, sum(plan.outer.axes[name].size for name in plan.outer.dimensions))
     return {"result": result, "grid": result if plan.reductions is None else grid, "inputs": inputs}

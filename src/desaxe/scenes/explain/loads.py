@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from math import log2
 from typing import NamedTuple
 
+from ...evaluation.measures import AtPlace
 from ...evaluation.plan import Plan
 from ...evaluation.points import Points
 from ...evaluation.reduced import Reduced
@@ -25,8 +26,8 @@ class LoadCost(NamedTuple):
 def points_of(plan: Plan) -> Points:
     """The step of the values, reduced or not."""
     (step, *_) = plan.steps
-    assert isinstance(step, (Points, Reduced))
-    return step.values if isinstance(step, Reduced) else step
+    assert isinstance(step, (Points, Reduced, AtPlace))
+    return step if isinstance(step, Points) else step.of
 
 
 def load_costs(plan: Plan, points: int, compiled: bool) -> list[LoadCost]:

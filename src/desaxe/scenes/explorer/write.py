@@ -3,7 +3,6 @@
 import json
 import re
 from html import escape
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -15,12 +14,12 @@ from ...mechanism.status import PointStatus
 from ...mechanism.unit_system import DIMENSIONS, UnitSystem
 from ...runtime.written import UNSEALED, replacing_ours, sealed
 from ...support.extras import needed
+from ...support.template import file_text, filled
 from .content import PageContent, left_out_text
 
 # In the order in which they build on each other.
 SCRIPTS = ("numbers", "designs", "words", "mechanism", "charts", "controls", "files", "main")
 _COMMENT = re.compile(r"^\s*//.*\n", re.MULTILINE)  # of a line of its own: the page has none to read
-_PLACE = re.compile(r"@@(\w+)@@")
 
 
 def write_page(content: PageContent, path: Path, overwrite: bool = False) -> Path:
@@ -34,20 +33,21 @@ def page(content: PageContent) -> str:
     """The text of the page."""
     with needed("desaxe explore"):
         from plotly.offline import get_plotlyjs
-    parts_of_page = {
-        "checksum": UNSEALED,
-        "title": escape(content.title),
-        "style": _asset("style.css"),
-        "plotly": get_plotlyjs(),
-        "content": json.dumps(_data(content), ensure_ascii=False).replace("<", "\\u003c"),
-        "program": _program(content),
-        "scripts": _COMMENT.sub("", "\n".join(_asset(f"{name}.js") for name in SCRIPTS)),
-    }
-    return sealed(_PLACE.sub(lambda found: parts_of_page[found[1]], _asset("page.html")))
+    page = filled(
+        _asset("page.html"),
+        CHECKSUM=UNSEALED,
+        TITLE=escape(content.title),
+        STYLE=_asset("style.css"),
+        PLOTLY=get_plotlyjs(),
+        CONTENT=json.dumps(_data(content), ensure_ascii=False).replace("<", "\\u003c"),
+        PROGRAM=_program(content),
+        SCRIPTS=_COMMENT.sub("", "\n".join(_asset(f"{name}.js") for name in SCRIPTS)),
+    )
+    return sealed(page)
 
 
 def _asset(name: str) -> str:
-    return (files(__package__) / "page" / name).read_text(encoding="utf-8")
+    return file_text(__package__, "page", name)
 
 
 def _program(content: PageContent) -> str:

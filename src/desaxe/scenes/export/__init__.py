@@ -10,7 +10,8 @@ motion        the crank's acceleration under a torque
 entry_points  the functions that people call in the Python module
 peaks         the scene's peaks in the Python module
 axes          the scene's lists and ranges
-first_call    how its loops are compiled
+functions     functions behind these, which go along as they stand
+texts/        other functions, with places for what depends on the scene
 made          its Programs and loop nests, with or without loads
 loaded        loads that vary with the motion: their tables
 package       `desaxe derive --quantities`: a package of a user's own quantities

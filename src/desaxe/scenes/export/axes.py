@@ -3,28 +3,16 @@
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from textwrap import wrap
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...mechanism.catalogue import of_design
 from ...mechanism.names import LENGTHS
 from ...runtime.request import request
+from ...support.template import file_text, filled
 from ..content import Content
 from ..reading.spread import in_parts
-
-SPACED = '''def spaced(first, rest, step, num):
-    """num values from first + rest on, correctly rounded; step is in parts, whose products are exact."""
-    k = arange(num, dtype=float64)
-    wide, narrow = k * step[0], k * step[1]
-    total = wide + narrow
-    lost = narrow - (total - wide)
-    value = first + total
-    of_total = value - first
-    more = (first - (value - of_total)) + (total - of_total)
-    return value + (more + (lost + (k * step[2] + rest)))
-'''
+from .functions import spaced
 
 
 def axes_of(content: Content) -> list[str]:
@@ -47,12 +35,9 @@ def own_axes(content: Content, names: Iterable[str]) -> dict[str, list[str]]:
 
 
 def axes_text(axes: Mapping[str, Sequence[float]]) -> str:
-    """`AXES`, and the function that spreads their values."""
-    rows = ["# The scene's axes, the outermost first.", "AXES = {"]
-    for name, values in axes.items():
-        rows += axis_rows(name, values, "    ", 90)
-    text = "\n".join([*rows, "}"])
-    return f"{SPACED}\n\n{text}" if "spaced(" in text else text
+    """`AXES`: the axes of the scene."""
+    rows = [row for name, values in axes.items() for row in axis_rows(name, values, "    ", 90)]
+    return "\n".join(["# The scene's axes, the outermost first.", "AXES = {", *rows, "}"])
 
 
 def axis_rows(name: str, values: Sequence[float], indent: str, width: int) -> list[str]:
@@ -69,33 +54,18 @@ def number_rows(values: Sequence[float], width: int) -> list[str]:
     return wrap(", ".join(map(repr, values)) + ",", width)
 
 
-WITH_AXES = '''def with_axes(axes, given):
-    """The axes of the scene, with those that are given in their places: 1-d arrays in the same order."""
-    axes = dict(axes)
-    for name, values in given.items():
-        if values is not None:
-            (numbers,) = doubles(**{name: values})
-            if numbers.ndim > 1:
-                raise ValueError(f"{name}: expected a number or one dimension, got the shape {numbers.shape}")
-            axes[name] = ascontiguousarray(numbers.reshape(-1))
-    return axes
-'''
-CHOSEN = '''def chosen(**given):
-    """The axes of a run."""
-    axes = with_axes(AXES, given)
-'''
-REACH = """    theta = axes["theta"]
-    if (abs(theta[isfinite(theta)]) > LIMIT).any():
-        raise ValueError("theta: at most ROUNDED rad in magnitude; take whole turns off")
-"""
-
-
 def chosen_text(axes: Iterable[str], limit: float | None) -> str:
     """`chosen`: the axes of a run; angles are checked against the largest one that is reduced exactly."""
-    check = ""
+    check = []
     if limit is not None and "theta" in axes:
-        check = REACH.replace("LIMIT", repr(limit)).replace("ROUNDED", f"{limit:.0f}")
-    return CHOSEN + check + "    return axes\n"
+        reach = text_file("chosen_reach")
+        check = filled(reach, LIMIT=repr(limit), ROUNDED=f"{limit:.0f}").splitlines()
+    return filled(text_file("chosen"), CHECK=check)
+
+
+def text_file(name: str) -> str:
+    """The text of a function with places for what depends on the scene."""
+    return file_text(__package__, "texts", f"{name}.txt")
 
 
 def arguments_of(axes: Iterable[str]) -> str:
@@ -104,8 +74,8 @@ def arguments_of(axes: Iterable[str]) -> str:
 
 
 def taken_from(axes: Iterable[str]) -> str:
-    """The line that looks up the axes."""
-    return f"    axes = chosen({', '.join(f'{name}={name}' for name in axes)})"
+    """The call that looks up the axes."""
+    return f"chosen({', '.join(f'{name}={name}' for name in axes)})"
 
 
 def rule_of(values: Sequence[float]) -> str:
@@ -119,13 +89,7 @@ def rule_of(values: Sequence[float]) -> str:
     if start is None or stop is None:
         start, stop = Fraction(values[0]), Fraction(values[-1])
     first, rest, step = in_parts(start, (stop - start) / (len(values) - 1))
-    if not np.array_equal(array, _spaced(first, rest, step, len(values))):
+    exact = spaced(first, rest, step, len(values))  # type: ignore[no-untyped-call]
+    if not np.array_equal(array, exact):
         return ""
     return f"spaced({first!r}, {rest!r}, {step!r}, {len(values)})"
-
-
-def _spaced(first: float, rest: float, step: tuple[float, float, float], num: int) -> NDArray[np.float64]:
-    scope: dict[str, Any] = {"arange": np.arange, "float64": np.float64}
-    exec(SPACED, scope)
-    found: NDArray[np.float64] = scope["spaced"](first, rest, step, num)
-    return found

@@ -10,41 +10,16 @@ from ...compiler.program import Program
 from ...compiler.text import with_short_temporaries, write_lines
 from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS
-from .axes import arguments_of, taken_from
+from ...support.template import filled
+from .axes import arguments_of, taken_from, text_file
 
 Tables = Mapping[str, OpenTable]
 
-THREADS = '''def in_blocks(block, length, points, threads):
-    """Call block(start, stop) for as many parts of an axis as there are threads that pay."""
-    cores = len(sched_getaffinity(0)) if sched_getaffinity else cpu_count() or 1
-    count = max(1, min(threads or cores, points // 20_000, length))
-    edges = [length * k // count for k in range(count + 1)]
-    if count == 1:
-        return block(0, length)
-    with ThreadPoolExecutor(count) as pool:
-        list(pool.map(block, edges[:-1], edges[1:]))
-'''
 AFFINITY = """try:
     from os import sched_getaffinity
 except ImportError:  # not on this system
     sched_getaffinity = None
 """
-DOUBLES = '''def doubles(**inputs):
-    """The inputs in doubles; text, which may carry a unit, is refused."""
-    held = {name: asarray(given) for name, given in inputs.items()}
-    for name, numbers in held.items():
-        if numbers.dtype.kind in "US":
-            raise TypeError(f"{name} = {inputs[name]!r}: expected numbers in SI units, not text")
-    return [asarray(numbers, float64) for numbers in held.values()]
-'''
-
-
-TAKEN = '''def taken_table(x, c, ways, period):
-    """What the code takes of a table: two numbers, knots, coefficients; zeros where something is none."""
-    x, c = (ascontiguousarray(column).reshape(-1) for column in doubles(knots=x, coefficients=c))
-    valid, first = checked_table(x, c, ways, period)
-    return (valid, first, x, c) if valid == 0.0 else (valid, 0.0, arange(2.0), zeros(24))
-'''
 
 
 def taking(tables: Mapping[str, OpenTable]) -> list[str]:
@@ -86,30 +61,28 @@ def point_function(
     program: Program, inputs: Sequence[str], shown: Sequence[str], state: bool, tables: Tables
 ) -> str:
     """`point(...)` in plain math, with the helpers that it calls."""
-    body = write_lines(with_short_temporaries(program), "python")
-    returned = ", ".join(program.outputs)
     told = [*described(inputs, state), "", "Gives:", *described(shown, state)]
     types = ", ".join(f"type({name})" for name in inputs)
     check = [f"if str in ({types},):", f"    {_doubles(inputs)}  # says what is wrong"]
-    lines = [
-        f"def point({', '.join([*inputs, *columns_of(tables)])}):",
-        *indented(docstring("One point in plain Python, nothing compiled: numbers in, a tuple out.", told)),
-        *indented(check if inputs else []),
-        *indented(taking(tables)),
-        *indented(body),
-        f"    return ({returned},)",
-        "",
-    ]
-    return "\n".join(lines)
+    return filled(
+        text_file("point"),
+        GIVEN=", ".join([*inputs, *columns_of(tables)]),
+        DOCSTRING=docstring("One point in plain Python, nothing compiled: numbers in, a tuple out.", told),
+        CHECK=check if inputs else [],
+        TABLES=taking(tables),
+        BODY=write_lines(with_short_temporaries(program), "python"),
+        RETURNED=", ".join(program.outputs),
+    )
 
 
 def _doubles(inputs: Iterable[str]) -> str:
     return f"doubles({', '.join(f'{name}={name}' for name in inputs)})"
 
 
-def indented(lines: Iterable[str]) -> list[str]:
-    """The lines one level in."""
-    return [f"    {line}" if line else "" for line in lines]
+def fixed_functions(columns: Sequence[str]) -> list[str]:
+    """`evaluate` and `run` where every input is fixed."""
+    given = ", ".join(columns)
+    return filled(text_file("fixed"), GIVEN=given).split("\n\n\n")
 
 
 def evaluate_function(
@@ -129,47 +102,20 @@ def evaluate_function(
         "no value is NaN" + (", and `status` tells why." if "status" in shown else "."),
         "`threads`: how many share the work, all cores without; the answer is the same.",
     ]
-    if not inputs:
-        return "\n".join(
-            [
-                f"def evaluate({', '.join(columns)}):",
-                *indented(docstring("The values; every input is fixed.", [])),
-                f"    return dict(zip(OUTPUTS, point({', '.join(columns)}), strict=True))",
-                "",
-            ]
-        )
-    head = ", ".join([*inputs, *columns])
-    of_point = ", ".join(["*(float(a) for a in arrays)", *columns])
     more = [*(name for name, axis in kernel.items() if axis is None), *columns]
-    of_kernel = ", ".join(["*(a[start:stop] for a in flat)", *more, "*(a[start:stop] for a in places)"])
-    check = []
+    check = ""
     if limit is not None and "theta" in inputs:
-        place = f"arrays[{inputs.index('theta')}]"
-        check = [
-            f"    reach = max(-{place}.min(initial=0.0), {place}.max(initial=0.0))",
-            f"    if not reach <= {limit!r} and (abs({place}[isfinite({place})]) > {limit!r}).any():",
-            f'        raise ValueError("theta: at most {limit:.0f} rad in magnitude; take whole turns off")',
-        ]
-    return "\n".join(
-        [
-            f"def evaluate({head}, threads=None):",
-            *indented(docstring(f"{', '.join(shown)} at points of your own.", told)),
-            f"    arrays = broadcast_arrays(*{_doubles(inputs)})",
-            *check,
-            "    if not arrays[0].ndim:",
-            f"        return dict(zip(OUTPUTS, point({of_point}), strict=True))",
-            *indented(taking(tables)),
-            "    flat = [ascontiguousarray(a).reshape(-1) for a in arrays]",
-            "    out = {name: empty(arrays[0].shape, kind) for name, kind in OUTPUTS.items()}",
-            "    places = [place.reshape(-1) for place in out.values()]",
-            "",
-            "    def block(start, stop):",
-            f"        point_kernel({of_kernel})",
-            "",
-            "    in_blocks(block, flat[0].size, flat[0].size, threads)",
-            "    return out",
-            "",
-        ]
+        theta = f"arrays[{inputs.index('theta')}]"
+        check = filled(text_file("reach"), THETA=theta, LIMIT=repr(limit), ROUNDED=f"{limit:.0f}")
+    return filled(
+        text_file("evaluate"),
+        GIVEN=", ".join([*inputs, *columns]),
+        DOCSTRING=docstring(f"{', '.join(shown)} at points of your own.", told),
+        DOUBLES=_doubles(inputs),
+        CHECK=check.splitlines(),
+        OF_POINT=", ".join(["*(float(a) for a in arrays)", *columns]),
+        TABLES=taking(tables),
+        OF_KERNEL=", ".join(["*(a[start:stop] for a in flat)", *more, "*(a[start:stop] for a in places)"]),
     )
 
 
@@ -185,35 +131,24 @@ def run_function(
     `own_axes` are those of quantities of a whole design, which have no others.
     """
     others = {n: tuple(k for k, a in enumerate(axes) if a not in own) for n, own in own_axes.items()}
-    left = [
-        f'    out["{name}"] = fmax.reduce(out["{name}"], axis={places}, initial=nan)  # the same everywhere'
-        for name, places in others.items()
-        if places
-    ]
     told = [
         "A dict of arrays, one dimension per axis: " + " x ".join(axes) + ".",
         *(f"{name} has {' x '.join(own_axes[name]) or 'none'} alone." for name in others if others[name]),
         "An axis that is given takes the place of the scene's.",
     ]
     kernel = "point_kernel" if len(axes) == 1 else "grid_kernel"
-    given = ", ".join([*call_of(inputs, tables), "*(a[start:stop] for a in out.values())"])
-    return "\n".join(
-        [
-            f"def run({', '.join([*columns_of(tables), arguments_of(axes)])}):",
-            *indented(docstring(f"{', '.join(names)} over the scene's axes.", told)),
-            taken_from(axes),
-            *indented(taking(tables)),
-            "    shape = tuple(axis.size for axis in axes.values())",
-            "    out = {name: empty(shape, kind) for name, kind in OUTPUTS.items()}",
-            "",
-            "    def block(start, stop):",
-            f"        {kernel}({given})",
-            "",
-            "    in_blocks(block, shape[0], prod(shape), threads)",
-            *left,
-            "    return out",
-            "",
-        ]
+    return filled(
+        text_file("run"),
+        GIVEN=", ".join([*columns_of(tables), arguments_of(axes)]),
+        DOCSTRING=docstring(f"{', '.join(names)} over the scene's axes.", told),
+        CHOSEN=taken_from(axes),
+        TABLES=taking(tables),
+        KERNEL=f"{kernel}({', '.join([*call_of(inputs, tables), '*(a[start:stop] for a in out.values())'])})",
+        LEFT=[
+            f'out["{name}"] = fmax.reduce(out["{name}"], axis={places}, initial=nan)  # the same everywhere'
+            for name, places in others.items()
+            if places
+        ],
     )
 
 
@@ -226,41 +161,32 @@ def run_reduced_function(
     tables: Tables,
 ) -> str:
     """`run()` of a scene with a reduction: the last axis is reduced, the grid is not stored."""
-    last = axes[-1]
-    rest = [axis for axis in axes[:-1] if axis]
+    last, rest, free = axes[-1], [axis for axis in axes[:-1] if axis], [axis for axis in axes if axis]
     told = [
         f"A dict of arrays over {' x '.join(rest) or 'nothing'}: for each name "
         + ", ".join(f"`_{kind}`, {KINDS[kind].replace('_', ' ')}" for kind in kinds)
         + f"; `_<extreme>_{last}`, where it is; `_skipped`, how many points along {last} have no value.",
     ]
-    outs = outputs_of(own, kinds)
-    shown = outputs_of(names, kinds)
-    given = call_of(inputs, tables)
-    lines = [
-        f"def run({', '.join([*columns_of(tables), arguments_of([axis for axis in axes if axis])])}):",
-        *indented(docstring(f"{', '.join(names)} over the scene's axes, {last} reduced.", told)),
-        taken_from([axis for axis in axes if axis]),
-        *indented(taking(tables)),
-        f"    shape = tuple(axes[name].size for name in {tuple(rest)!r}) or (1,)",
-        f'    length = axes["{last}"].size',
-        "    places = [",
-        *(f"        empty(shape, {kind})," for _, kind in outs),
-        "    ]",
-        "",
-        "    def block(start, stop):",
-        f"        reduced({', '.join([*given, 'length', '*(a[start:stop] for a in places)'])})",
-        "",
-        "    in_blocks(block, shape[0], prod(shape) * length, threads)",
-        f'    at = append(axes["{last}"], nan)  # -1: nowhere',
-    ]
-    if not rest:
-        lines.append("    places = [place[0] for place in places]")
-    lines.append("    return {")
-    for index, (name, kind) in enumerate(shown):
-        if name.endswith("_count") and kind == "int64":
-            lines.append(f'        "{name.removesuffix("_count")}_skipped": length - places[{index}],')
-        elif kind == "int64":
-            lines.append(f'        "{name.removesuffix("_place")}_{last}": at[places[{index}]],')
-        else:
-            lines.append(f'        "{name}": places[{index}],')
-    return "\n".join([*lines, "    }", ""])
+    given = [*call_of(inputs, tables), "length", "*(a[start:stop] for a in places)"]
+    return filled(
+        text_file("run_reduced"),
+        GIVEN=", ".join([*columns_of(tables), arguments_of(free)]),
+        DOCSTRING=docstring(f"{', '.join(names)} over the scene's axes, {last} reduced.", told),
+        CHOSEN=taken_from(free),
+        TABLES=taking(tables),
+        REST=repr(tuple(rest)),
+        LAST=last,
+        PLACES=[f"empty(shape, {kind})," for _, kind in outputs_of(own, kinds)],
+        KERNEL=f"reduced({', '.join(given)})",
+        SINGLE=[] if rest else ["places = [place[0] for place in places]"],
+        RESULTS=[_result(index, *row, last) for index, row in enumerate(outputs_of(names, kinds))],
+    )
+
+
+def _result(index: int, name: str, kind: str, last: str) -> str:
+    """The entry of a reduced value, of its place, or of how many points have none."""
+    if name.endswith("_count") and kind == "int64":
+        return f'"{name.removesuffix("_count")}_skipped": length - places[{index}],'
+    if kind == "int64":
+        return f'"{name.removesuffix("_place")}_{last}": at[places[{index}]],'
+    return f'"{name}": places[{index}],'

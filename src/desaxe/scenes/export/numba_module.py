@@ -28,24 +28,22 @@ from ...runtime.written import UNSEALED
 from ...support.version import version
 from ..content import Content
 from ..scene import Scene
-from .axes import SPACED, WITH_AXES, axes_of, axes_text, chosen_text, own_axes
+from .axes import axes_of, axes_text, chosen_text, own_axes, text_file
 from .entry_points import (
     AFFINITY,
-    DOUBLES,
-    TAKEN,
-    THREADS,
     evaluate_function,
+    fixed_functions,
     point_function,
     run_function,
     run_reduced_function,
 )
-from .first_call import COMPILED, LAZY, LAZY_REDUCED
 from .loaded import require_tables, table_text, tables_of
 from .made import Made, limit_of
 from .peaks import left_out_of_module, peak_texts
 from .portable import PLAIN, WITHOUT_VALUE, Asked, Form, asked_of, require_outputs
 
 WIDTH = 96
+FUNCTIONS = Path(__file__).with_name("functions.py")
 
 
 def text_of(scene: Scene, name: str = "my_kernels.py", form: Form = PLAIN) -> str:
@@ -66,7 +64,7 @@ def text_of(scene: Scene, name: str = "my_kernels.py", form: Form = PLAIN) -> st
     peaks = peak_texts(content)
     scalars = _scalars(made, key, shown, inputs, own_axes(content, shown), opened)
     groups = [
-        with_sources([point_function(program, inputs, shown, state, opened)]),
+        with_sources([point_function(program, inputs, shown, state, opened)], (HELPERS, FUNCTIONS)),
         *map(
             _compiled,
             [
@@ -78,24 +76,18 @@ def text_of(scene: Scene, name: str = "my_kernels.py", form: Form = PLAIN) -> st
     ]
     compiles = bool(inputs or peaks.searches or opened)
     limit = None if key.far else limit_of(key)
-    calls = [THREADS] if compiles else []
-    calls += [WITH_AXES] if axes or peaks.functions else []
-    calls.append(evaluate_function(inputs, shown, state, limit, kernels.of_points, opened))
-    calls += [axes_text(axes), chosen_text(axes, limit)] if axes else []
-    if not inputs:
-        given = ", ".join(columns_of(opened))
+    calls = [] if inputs else fixed_functions(columns_of(opened))
+    if inputs:
+        calls.append(evaluate_function(inputs, shown, state, limit, kernels.of_points, opened))
+        calls += [axes_text(axes), chosen_text(axes, limit)] if axes else []
         calls.append(
-            f'def run({given}):\n    """The values; every input is fixed."""\n    return evaluate({given})'
+            run_function(shown, list(axes), kernels.inputs, own_axes(content, shown), opened)
+            if content.fused is None
+            else run_reduced_function(shown, key.reduce, order, kernels.inputs, kernels.outputs, opened)
         )
-    elif content.fused is None:
-        calls.append(run_function(shown, list(axes), kernels.inputs, own_axes(content, shown), opened))
-    else:
-        calls.append(run_reduced_function(shown, key.reduce, order, kernels.inputs, kernels.outputs, opened))
     calls += peaks.functions
-    if "spaced(" in "".join(peaks.functions) and not any("def spaced" in call for call in calls):
-        calls.insert(0, SPACED)
-    tables = [*([AFFINITY, DOUBLES, COMPILED] if compiles else [])]
-    tables += [CHECKED, TAKEN] if opened else []
+    tables = [AFFINITY, text_file("compiled")] if compiles else []
+    tables += [CHECKED] if opened else []
     tables += [table_text(n, asked.loads[n], each) for n, each in frozen.items()]
     tables += [f"INPUTS = {inputs!r}", _outputs(shown), _fixed(key)]
     command = f"desaxe compile {Path(scene.name).name} -o {name}{form.options}"
@@ -119,8 +111,8 @@ IMPORTS = {
 
 
 def _front(parts: Sequence[str]) -> Parts:
-    """Parts that call nothing of real files."""
-    return with_sources(parts, (), imports=IMPORTS)
+    """Parts that people call, and the functions behind them."""
+    return with_sources(parts, (FUNCTIONS,), imports=IMPORTS)
 
 
 def _order(content: Content, shown: Sequence[str]) -> tuple[str, ...]:
@@ -162,6 +154,10 @@ def _scalars(
     return parts._replace(imports={**parts.imports, "isfinite": "numpy"})
 
 
+# The tails of the inner loops and of the whole.
+REDUCED = 'kernel = njit(error_model="numpy")(loops)\n', text_file("reduced")
+
+
 class Kernels(NamedTuple):
     """The array kernel and the grid kernel, one where they are the same; what the latter takes and gives.
 
@@ -180,11 +176,11 @@ def _kernels(made: Made, key: KernelKey, inputs: tuple[str, ...]) -> Kernels:
     numbers = {name: axis for name, axis in kernel.inputs.items() if axis is None}
     of_points = {name: kernel.inputs[name] for name in inputs} | numbers
     kernel = kernel._replace(inputs=of_points)
-    parts = [_named("point", [*loops_parts(kernel), LAZY])]
+    parts = [_named("point", [*loops_parts(kernel), text_file("kernel")])]
     if key.axes > 1:
         kernel = made.kernel(key)
-        reduced = key.reduce and reduced_parts(kernel, key.reduce, LAZY_REDUCED)
-        parts.append(_named("grid", reduced or [*loops_parts(kernel), LAZY]))
+        reduced = key.reduce and reduced_parts(kernel, key.reduce, REDUCED)
+        parts.append(_named("grid", reduced or [*loops_parts(kernel), text_file("kernel")]))
     return Kernels(parts, kernel.inputs, kernel.outputs, of_points)
 
 

@@ -8,7 +8,6 @@ module for arrays and as plain Python for a single point. The files say from whi
 import hashlib
 import json
 from collections.abc import Sequence
-from importlib.resources import files
 from keyword import iskeyword
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -31,6 +30,7 @@ from ...runtime.generated import Generated
 from ...runtime.specialise import specialise
 from ...runtime.written import UNSEALED, is_ours, sealed
 from ...support.shown import printable
+from ...support.template import file_text, filled
 from ...support.toml import read_toml
 from ...support.version import version
 
@@ -94,18 +94,16 @@ def package_texts(source: Path, name: str) -> dict[str, str | None]:
         where[part.file] = {
             "names": shown, "inputs": program.inputs, "needs": _needs(part, made), "state": part.state,
         }  # fmt: skip
-    template = files(__package__).joinpath("package_front.txt").read_text(encoding="utf-8")
-    facts = {
-        "BANNER": banner,
-        "DIGEST": repr(mark),
-        "PARTS": _literal(where),
-        "LEAST": repr({n: LEAST[n] for n in LEAST}),
-        "LIMITS": repr({n: row.limit for n, row in INPUTS.items()}),
-        "REACH": repr(constants().limit),
-    }
-    for key, value in facts.items():
-        template = template.replace(f"@{key}@", value)
-    return {name: sealed(text) for name, text in {"__init__.py": template, **texts}.items()}
+    front = filled(
+        file_text(__package__, "texts", "package.txt"),
+        BANNER=banner,
+        DIGEST=repr(mark),
+        PARTS=_literal(where),
+        LEAST=repr({n: LEAST[n] for n in LEAST}),
+        LIMITS=repr({n: row.limit for n, row in INPUTS.items()}),
+        REACH=repr(constants().limit),
+    )
+    return {name: sealed(text) for name, text in {"__init__.py": front, **texts}.items()}
 
 
 def _read(source: Path) -> tuple[Definition, ...]:

@@ -24,68 +24,16 @@ from ...peaks.compiled import SEARCH, texts_of
 from ...peaks.designs import KINDS, Plan, plan_of, search_of
 from ...peaks.nodes import FINEST, graded
 from ...peaks.programs import Search, programs_of
+from ...support.template import filled
 from ...sweeps.peak_step import WORDS
 from ..content import Content, Peak
 from ..parts.extremes import columns_of, group_names
-from .axes import axis_rows, number_rows
+from .axes import arguments_of, axis_rows, number_rows, text_file
 from .portable import left_out
 
 ROW, ROWS = "types.float64[::1]", "types.float64[:, ::1]"
 INDICES = "types.int64[::1]"
 OWN = ("sweep", "points", "finish", "search", "WORK")  # of each search
-NODES = '''# Distances of nodes from a quarter turn: denser towards it, for narrow peaks at a change point.
-DISTANCES = array([
-{rows}
-])
-
-
-def nodes_between(low, high):
-    """The crank angles at which a search begins, both ends included."""
-    quarters = pi * (arange(low // pi - 1.0, high // pi + 2.0) + 0.5)
-    near = quarters[:, None] + append(DISTANCES, -DISTANCES)
-    return unique(append(near[(near >= low) & (near <= high)], [low, high]))
-'''
-EXTREMUM = '''def require_turning(columns, low, high):
-    """ValueError for designs that stall or cannot turn fully: their extremes need more than this search."""
-    good = columns["BC"] - columns["AB"] - abs(columns["ec"]) > 0.0
-    if "alpha" in columns and "omega0" in columns:
-        square, twice = columns["omega0"] ** 2, 2.0 * columns["alpha"]
-        good &= (square + twice * (low - 1.0) > 0.0) & (square + twice * (high + 1.0) > 0.0)
-    if not good.all():
-        design = {name: float(column[~good][0]) for name, column in columns.items()}
-        raise ValueError(f"{design}: it stalls or cannot turn fully, which needs desaxe.peak")
-
-
-def extremum(one, given, threads):
-    """The peaks of all designs: of the scene's axes, with those that are given in their places."""
-    axes = with_axes(one["axes"], given)
-    shape = tuple(axis.size for axis in axes.values())
-    size = prod(shape)
-    columns = {name: empty(size) for name in (*axes, *one["fixed"])}
-    for place, (name, axis) in enumerate(axes.items()):
-        along = axis.reshape([-1 if k == place else 1 for k in range(len(shape))])
-        columns[name][:] = broadcast_to(along, shape).reshape(-1)
-    for name, value in one["fixed"].items():
-        columns[name][:] = value
-    low, high = one["theta"]
-    require_turning(columns, low, high)
-    table = empty((len(one["inputs"]), size))
-    for row, name in zip(table, one["inputs"], strict=True):
-        row[:] = columns[name]
-    nodes = nodes_between(low, high)
-    order, edges = arange(size), array([0, nodes.size])
-    theta, out = empty(size), empty((one["rows"], size))
-    search = compiled(one["search"], one["signature"])
-
-    def block(start, stop):
-        search(table, order, array([start, stop]), nodes, edges, empty(0), one["kind"], theta, out)
-
-    in_blocks(block, size, 1_000 * size, threads)
-    value = abs(out[0]) if one["kind"] == 0 else out[0]
-    found = {"value": value, "theta": theta, "status": where(isfinite(value), 0, 4).astype(int8)}
-    found |= {name: out[row] if row else 0.0 * value for name, row in one["slopes"].items()}
-    return {name: column.reshape(shape) for name, column in found.items()}
-'''
 
 
 class Found(NamedTuple):
@@ -147,8 +95,8 @@ def peak_texts(content: Content) -> PeakTexts:
     for one in found:
         searches.setdefault(one.search, f"search{len(searches)}")
     sources = [_search_parts(search, prefix) for search, prefix in searches.items()]
-    rows = [row for one in found for row in _table_rows(one, searches[one.search])]
-    functions = [_nodes_text(), EXTREMUM, "\n".join(["PEAKS = {", *rows, "}"])] if found else []
+    rows = [_table_row(one, searches[one.search]) for one in found]
+    functions = [_nodes_text(), "".join(["PEAKS = {\n", *rows, "}"])] if found else []
     state = "omega" in content.inputs
     functions += [_function(one, state) for one in found]
     lines = [f"{one.name}(): {_meaning(one, state)}" for one in found]
@@ -168,28 +116,25 @@ def _search_parts(search: Search, prefix: str) -> Parts:
 
 
 def _nodes_text() -> str:
-    return NODES.format(rows="\n".join(f"    {row}" for row in number_rows(graded(FINEST), 90)))
+    return filled(text_file("nodes"), DISTANCES=number_rows(graded(FINEST), 90))
 
 
-def _table_rows(one: Found, prefix: str) -> list[str]:
+def _table_row(one: Found, prefix: str) -> str:
     """The row of a peak in PEAKS."""
     slots = {n: 2 + k for k, n in enumerate(one.search.parameters)}
     slopes = {f"value_wrt_{n}": slots.get(n, 0) for n in one.peak.sensitivities}
-    axes: list[str] = []
-    for name, values in one.peak.axes.items():
-        axes += axis_rows(name, values, " " * 12, 80)
-    return [
-        f'    "{one.name}": {{',
-        f'        "search": {prefix}, "signature": {prefix}_signature, "kind": {KINDS.index(one.peak.kind)},',
-        f'        "theta": {tuple(map(float, one.peak.theta))!r}, "rows": {2 + len(slots)},',
-        f'        "inputs": {programs_of(one.search, True).inputs!r},',
-        f'        "fixed": {one.fixed!r},',
-        f'        "slopes": {slopes!r},',
-        '        "axes": {',
-        *axes,
-        "        },",
-        "    },",
-    ]
+    return filled(
+        text_file("peak_row"),
+        NAME=one.name,
+        SEARCH=prefix,
+        KIND=str(KINDS.index(one.peak.kind)),
+        THETA=repr(tuple(map(float, one.peak.theta))),
+        ROWS=str(2 + len(slots)),
+        INPUTS=repr(programs_of(one.search, True).inputs),
+        FIXED=repr(one.fixed),
+        SLOPES=repr(slopes),
+        AXES=[row for name, values in one.peak.axes.items() for row in axis_rows(name, values, "", 80)],
+    )
 
 
 def _meaning(one: Found, state: bool) -> str:
@@ -202,7 +147,6 @@ def _meaning(one: Found, state: bool) -> str:
 
 def _function(one: Found, state: bool) -> str:
     axes = list(one.peak.axes)
-    head = ", ".join(["*", *(f"{name}=None" for name in axes), "threads=None"])
     slopes = ", ".join(f"`value_wrt_{name}`" for name in one.peak.sensitivities)
     over = " x ".join(f"{name} [{INPUTS[name].unit}]" for name in axes) or "nothing"
     told = (
@@ -210,18 +154,14 @@ def _function(one: Found, state: bool) -> str:
         f"input){', exact derivatives ' if slopes else ''}{slopes}. An axis that is given takes the place of "
         "the scene's. Raises ValueError for a design that stalls or cannot turn fully."
     )
-    lines = [f"    {row}" for row in wrap(re.sub(r"\s+", " ", told), 92)]
-    given = ", ".join(f'"{name}": {name}' for name in axes)
     title = _meaning(one, state)
-    return "\n".join(
-        [
-            f"def {one.name}({head}):",
-            f'    """{title[0].upper()}{title[1:]}.',
-            "",
-            *lines,
-            '    """',
-            f'    return extremum(PEAKS["{one.name}"], {{{given}}}, threads)',
-        ]
+    lines = wrap(re.sub(r"\s+", " ", told), 92)
+    return filled(
+        text_file("peak"),
+        NAME=one.name,
+        GIVEN=arguments_of(axes),
+        DOCSTRING=[f'"""{title[0].upper()}{title[1:]}.', "", *lines, '"""'],
+        AXES=", ".join(f'"{name}": {name}' for name in axes),
     )
 
 

@@ -1,13 +1,14 @@
-"""A scene as a sweep: its grid and peaks in a Zarr store."""
+"""A scene as a sweep: its grid and peaks in a Zarr store.
+
+What runs sweeps needs Zarr and is imported where one is run: scenes without a store do without it.
+"""
 
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...sweeps.peak_step import PeakRequest
-from ...sweeps.place import require_place
 from ...sweeps.request import Request, sweep_of
-from ...sweeps.sweep import run_sweep
 from ..content import Content
 from ..schema import SceneError
 from .grid import arrays_of
@@ -39,6 +40,8 @@ def request_of(content: Content) -> Request:
 
 def require_store(content: Content, overwrite: bool) -> None:
     """Fail at the start where the sweep of a scene may not go to its store, or has no room."""
+    from ...sweeps.place import require_place
+
     assert content.store is not None
     require_place(
         sweep_of(request_of(content)), Path(os.path.abspath(content.store)), overwrite, content.memory
@@ -47,6 +50,8 @@ def require_store(content: Content, overwrite: bool) -> None:
 
 def sweep_content(content: Content, **options: Any) -> "xr.Dataset":
     """Run the sweep of a scene with options of `run_sweep`; those that are not given come from the scene."""
+    from ...sweeps.sweep import run_sweep
+
     asked = request_of(content)._asdict()
     whole = options.get("best") is None
     own = {"store": content.store if whole else None, "order": None if whole else content.order}

@@ -11,8 +11,8 @@ from ...mechanism.closed.dead_centres import DEAD_CENTRES
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.names import LENGTHS
 from ...runtime.compiled_only import uncompiled
-from ..history import Ended, instants_of, result_of
-from ..result import FAILED, LIMIT, SENSITIVITIES, Event, Simulation
+from ..history import Ended, add_slopes, instants_of, result_of
+from ..result import FAILED, LIMIT, Event, Simulation
 from .many import Found
 from .motion import Motion
 from .panels import Designs
@@ -66,19 +66,8 @@ def _add_slopes(result: Simulation, motion: Motion, found: Found) -> None:
         for k, p in enumerate(wrt):
             found.by.theta[0, k, ends] = arcs(motion.designs, p).angle(far)[0]
             found.by.omega[0, k, ends] = -motion.alpha * ended[k]
-    for k, p in enumerate(wrt):
-        result[f"theta_wrt_{p}"] = found.by.theta[0, k, :size].copy()
-        result[f"omega_wrt_{p}"] = found.by.omega[0, k, :size].copy()
-        result[f"t_last_wrt_{p}"], result[f"work_wrt_{p}"] = float(ended[k]), float(work[k])
-    result["events"] = [
-        event._replace(wrt=dict(zip(wrt, slopes.tolist(), strict=True)))
-        for event, slopes in zip(motion.events, events, strict=True)
-    ]
-    known = np.isfinite(found.by.theta[0, :, :size]).all() and np.isfinite([ended, work]).all()
-    if not notes and not known:
-        notes.append("NaN where the forces have no derivatives, or none is known")
-    if notes:
-        result["message"] += SENSITIVITIES + "; ".join(dict.fromkeys(notes))
+    histories = (history[0, :, :size] for history in (found.by.theta, found.by.omega))
+    add_slopes(result, wrt, (*histories, ended, work), events, notes)
 
 
 def _of_events(motion: Motion, found: Found, fastest: float, notes: list[str]) -> list[Array]:

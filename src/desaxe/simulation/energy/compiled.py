@@ -19,14 +19,16 @@ from ..compiled import Family, of_row
 
 FILES = tuple(
     Path(__file__).with_name(name)
-    for name in ("follow.py", "instants.py", "pieces.py", "varied.py", "partly.py", "through.py")
+    for name in ("follow.py", "instants.py", "pieces.py", "varied.py", "partly.py", "through.py", "turns.py")
 )
 OWN = tuple(Path(__file__).with_name(name) for name in ("at_angles.py", "course.py"))
 FIELDS = ("M_eff", "T_in")
+BLOCK = 8  # nodes among the turns of a block
+MACLAURIN = (-1.0 / 24.0, 7.0 / 5760.0, -31.0 / 967680.0)  # by powers of the squared step
 COURSE = (*FIELDS, "M_eff_wrt_theta", "Y", "potential_energy")
 _MOTIONS = """row, rows = types.float64[::1], types.float64[:, ::1]
 signature = types.void(
-    rows, rows, types.float64[:, :, ::1], rows, row, row, row, row, row, rows, rows, rows,
+    rows, rows, types.float64[:, :, ::1], rows, row, row, row, row, row, rows, rows, rows, rows,
     types.float64[:, :, ::1], types.int64[:, ::1], types.float64[:, :, ::1], rows, rows, types.int8[::1],
     types.int8[:, ::1], rows
 )
@@ -35,7 +37,7 @@ function = motions.py_func
 _VARIATIONS = """row, rows, blocks = types.float64[::1], types.float64[:, ::1], types.float64[:, :, ::1]
 signature = types.void(
     rows, rows, blocks, types.int64[:, ::1], types.float64[:, :, :, ::1], blocks, row, row, row, rows, rows,
-    rows, blocks, types.int64[:, ::1], blocks, types.float64[:, :, :, ::1], blocks,
+    rows, rows, blocks, types.int64[:, ::1], blocks, types.float64[:, :, :, ::1], blocks,
     types.int8[::1], types.int8[:, ::1], rows
 )
 function = variations.py_func
@@ -147,7 +149,23 @@ def _means() -> Array:
     return np.asarray(np.einsum("m,kmj->kj", WEIGHT * share, basis))
 
 
+def _blocks() -> Array:
+    """Nodes among the turns of a block and their weights (see `turns`), by Euler and Maclaurin's formula.
+
+    The sum over a block is that of its midpoints, which is the integral but for slopes at both ends.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(BLOCK)
+    bases = np.linalg.inv(np.polynomial.legendre.legvander(nodes, BLOCK - 1))
+    rows = [nodes, 0.5 * weights]
+    for power, share in enumerate(MACLAURIN, 1):
+        slopes = np.polynomial.legendre.legder(bases, 2 * power - 1)
+        ends = np.polynomial.legendre.legvander(np.array([-1.0, 1.0]), len(slopes) - 1) @ slopes
+        rows.append(0.5 * share * 4.0**power * (ends[1] - ends[0]))
+    return np.asarray(rows)
+
+
 # By columns: see `follow`.
 TABLES = tuple(
-    np.ascontiguousarray(table) for table in (NODE, WEIGHT, TO_COEFFICIENTS.T, RUNNING.T, _means().T)
+    np.ascontiguousarray(table)
+    for table in (NODE, WEIGHT, TO_COEFFICIENTS.T, RUNNING.T, _means().T, _blocks())
 )

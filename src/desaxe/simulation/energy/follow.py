@@ -48,6 +48,7 @@ from .pieces import (
     standstill,
     tail,
 )
+from .turns import turns_before
 
 if TYPE_CHECKING:
     from typing import Any
@@ -55,6 +56,7 @@ if TYPE_CHECKING:
 
 SLOW = 0.1  # of the energy at one end of a piece: so little at the other may be next to one
 NEAR = 0.01  # of a piece: next to it
+MANY = 100.0  # turns: they pass by at once where no panel must be cut
 SAME = 1e-13  # of half a panel: a standstill so little beyond its end is there
 
 
@@ -79,21 +81,13 @@ def pass_by(row: Any, count: float, energy: float, kind: float, panel: float, wa
     row[0], row[1], row[5], row[6], row[7] = count, energy, kind, panel, way
 
 
-def whole_turn(
-    edges: Any, M: Any, work: Any, energy: float, way: float, t: float, tables: Any, rows: Any
-) -> Any:
-    """Time and energy after a turn whose panels are whole pieces, by the sums of `follow`."""
-    panels = len(edges) - 1
-    for i in range(panels):
-        panel = i if way > 0.0 else panels - 1 - i
-        half = 0.5 * (edges[panel + 1] - edges[panel])
-        if half > 0.0:
-            done, nodes = work[panel], 1 + 16 * panel
-            left = energy - (0.0 if way > 0.0 else done[16])
-            ordered(M[nodes : nodes + 16], done, left, way > 0.0, rows[1], rows[2])
-            t += rates(int64(0), half, tables[1], rows[1], rows[2], rows[0])
-            energy = left + (done[16] if way > 0.0 else 0.0)
-    return t, energy
+def too_wide(known: Any, bad: Any) -> bool:
+    """Mark panels that had to be cut though the energy hardly changes on them; whether there are any."""
+    found = False
+    for panel in range(len(known)):
+        if known[panel] == 2:
+            bad[panel], found = 1, True
+    return found
 
 
 def follow(
@@ -128,8 +122,8 @@ def follow(
     row, stored, pieces = int64(0), int64(0), int64(0)
     rest, inside, marked, count = energy == 0.0, False, False, len(times)
     panels = len(edges) - 1
-    smooth, began, proven = False, 0.0, 0.0  # of this turn: whole pieces so far, its start, its first energy
-    known[:] = 0
+    smooth = False  # whether this turn's pieces have been whole panels so far
+    began, known[:] = 0.0, 0
     while True:
         if panel < 0 or panel >= panels:
             if period == 0.0:
@@ -138,25 +132,29 @@ def follow(
                 return 10 if marked else 2
             turn += way
             panel = panels - 1 if panel < 0 else int64(0)
+        side = int64(0) if way > 0.0 else int64(1)
         if period != 0.0 and panel == (int64(0) if way > 0.0 else panels - 1):
-            # As fast as the turn before, whose panels were whole pieces, or faster: its series end, too.
-            lasted, slowest, before, turns = 1.01 * (t - began), 0.999 * proven, energy, 0.0
-            counted = panel + panels * turn
-            while smooth and energy >= slowest and t + lasted < times[row] and pieces + panels <= most[0]:
-                side = int64(0) if way > 0.0 else int64(1)
-                t, energy = whole_turn(edges, M, work[side], energy, way, t, tables, rows)
-                turn, pieces, largest, turns = turn + way, pieces + panels, max(largest, energy), turns + 1.0
-            smooth, began, proven = how[1] != 3.0, t, energy
-            if how[1] > 0.0 and turns > 0.0:
-                if stored >= len(kept):
-                    return 12
-                pass_by(kept[stored], turns, before, 3.0, counted, way)
-                stored += 1
+            if smooth:
+                passed, turns, gain, looked, deepest = turns_before(
+                    times[row] - t, edges, M, work[side], energy, way, 1e-15 * largest,
+                    0.5 * tolerance, (most[0] - pieces) / panels, tables, rows,
+                )  # fmt: skip
+                pieces += int64(looked) * panels
+                if how[1] > 0.0 and turns > 0.0:
+                    if stored >= len(kept):
+                        return 12
+                    pass_by(kept[stored], turns, energy, 3.0, panel + panels * turn, way)
+                    kept[stored, 2], kept[stored, 3] = gain, deepest
+                    stored += 1
+                t, turn, energy = t + passed, turn + way * turns, energy + turns * gain
+                largest = max(largest, energy)
+            elif how[1] != 3.0 and times[count - 1] - t > MANY * (t - began) and too_wide(known[side], bad):
+                return 10
+            smooth, began = how[1] != 3.0, t
         half = 0.5 * (edges[panel + 1] - edges[panel])
         if half <= 0.0:
             panel += 1 if way > 0.0 else -1
             continue
-        side = int64(0) if way > 0.0 else int64(1)
         nodes = 1 + 16 * panel  # the first of the panel's in a row
         inertia, done = M[nodes : nodes + 16], work[side, panel]
         Q = forth[nodes : nodes + 16] if way > 0.0 else back[nodes : nodes + 16]
@@ -236,6 +234,8 @@ def follow(
             if kind == 0:
                 noise = 2e-15 * largest / lowest(rows[2])
             if not tail(rows[0], tables[2]) <= 0.5 * max(tolerance, noise) * duration:
+                if kind == 0 and span == 2.0 * way and lowest(rows[2]) > 0.5 * largest:
+                    known[side, panel] = 2
                 cut = (0.5 if kind == 0 else 0.25 if kind == 1 else 0.75) * span
                 if kind != 0 and abs(over) >= 0.25 * abs(span):
                     return 10 if marked else 11
@@ -309,6 +309,7 @@ def motions(
     coefficients: Any,
     running: Any,
     mean: Any,
+    blocks: Any,
     kept: Any,
     which: Any,
     where: Any,
@@ -324,7 +325,11 @@ def motions(
     kept, which   pieces, and those of the instants: of each design, or room for one
     where         u of the instants, and dt/du there
     """
-    tables, count, panels = (nodes, weights, coefficients, running, mean), len(times), edges.shape[1] - 1
+    tables, count, panels = (
+        (nodes, weights, coefficients, running, mean, blocks),
+        len(times),
+        edges.shape[1] - 1,
+    )
     since, lanes = empty(count), empty((21, count))
     work, known, last = empty((2, panels, 17)), empty((2, panels), int64), empty(19)
     for n in range(len(setup)):

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from ...evaluation.evaluate import evaluate
 from ...loads.angles import meeting_angles, turns_of, zero_of
-from ...loads.load import TURN, Load, OverTheta, OverY
+from ...loads.load import Load, OverTheta, OverY
+from ...mechanism.closed import TURN
 from ...mechanism.constants import constants
 from ...mechanism.names import LENGTHS
 from ...runtime.compiled_only import compiled_only, is_uncompiled

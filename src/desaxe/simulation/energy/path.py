@@ -6,7 +6,7 @@ import numpy as np
 from numpy.polynomial.legendre import legval, legvander
 from numpy.typing import NDArray
 
-from ...loads.load import TURN
+from ...mechanism.closed import TURN
 from ...support.panels import NODES
 from ..result import FAILED
 from .many import Found, follow_many

@@ -16,9 +16,8 @@ from __future__ import annotations
 from math import sqrt
 from typing import TYPE_CHECKING
 
-from numpy import int64
-
 from .pieces import combined, tail
+from .turns import in_block, node_of
 
 if TYPE_CHECKING:
     from typing import Any
@@ -119,23 +118,38 @@ def settle(state: Any, lanes: Any) -> None:
         state[p, 0] += a + b
 
 
+def add_turn(
+    share: float, energy: float, turn: float, way: float, edges: Any, work: Any, weights: Any, sums: Any
+) -> None:
+    """Add the factors of a turn that stands for several, after some others."""
+    panels, count = len(edges) - 1, work.shape[1] - 1
+    for i in range(panels):
+        panel = i if way > 0.0 else panels - 1 - i
+        half, own, to = 0.5 * (edges[panel + 1] - edges[panel]), work[panel, count], sums[panel]
+        if half > 0.0:
+            add_factors(half * share, energy, turn, weights, own[17:33], own[33:49], to[0], to[1], to[2])
+            energy += own[16]
+
+
 def through_turns(
-    turns: float, energy: float, way: float, edges: Any, work: Any, jumps: Any, weights: Any, sums: Any,
-    entry: Any, state: Any, lanes: Any,
+    passed: Any, way: float, edges: Any, work: Any, jumps: Any, tables: Any, sums: Any, entry: Any,
+    state: Any, lanes: Any,
 ) -> None:  # fmt: skip
     """Go through whole turns with all parameters, each of which begins with some e.
 
-    jumps   of e before each panel
+    passed   their number, the energy before, its gain in a turn, how much lower it is within one
+    jumps    of e before each panel
     """
+    turns, energy, gain, deepest = passed[0], passed[1], passed[2], passed[3]
     count, panels = len(state), len(edges) - 1
     sums[:, :, :] = 0.0
-    for turn in range(int64(turns)):
-        for i in range(panels):
-            panel = i if way > 0.0 else panels - 1 - i
-            half, own, to = 0.5 * (edges[panel + 1] - edges[panel]), work[panel, count], sums[panel]
-            if half > 0.0:
-                add_factors(half, energy, float(turn), weights, own[17:33], own[33:49], to[0], to[1], to[2])
-                energy += own[16]
+    done = 0.0
+    while done < turns:
+        start, size = energy + done * gain, in_block(turns - done, energy + done * gain + deepest, gain)
+        for j in range(1 if size == 1.0 else tables[5].shape[1]):
+            place, share = (0.0, 1.0) if size == 1.0 else node_of(tables[5], j, size)
+            add_turn(share, start + place * gain, done + place, way, edges, work, tables[1], sums)
+        done += size
     for p in range(count):
         entry[p] = state[p, 1]
     later = 0.0
@@ -148,6 +162,6 @@ def through_turns(
         for k in range(16):
             later += sums[panel, 2, k]
     for p in range(count):
-        gain = state[p, 1] - entry[p]
-        state[p, 0] -= gain * later
-        state[p, 1] = entry[p] + turns * gain
+        more = state[p, 1] - entry[p]
+        state[p, 0] -= more * later
+        state[p, 1] = entry[p] + turns * more

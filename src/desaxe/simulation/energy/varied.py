@@ -129,8 +129,7 @@ def varied(
             continue
         if kind == 3:
             through_turns(
-                kept[s, 0], kept[s, 1], way, edges, work[side], jumps[side], tables[1], whole_turns, entry,
-                state, lanes,
+                kept[s, :4], way, edges, work[side], jumps[side], tables, whole_turns, entry, state, lanes
             )  # fmt: skip
             before, slow = counted + int64(way) * (int64(kept[s, 0]) * panels - 1), False
             continue
@@ -216,11 +215,15 @@ def instants_by(
 
 def variations(
     edges: Any, rough: Any, fields: Any, by: Any, jumps: Any, begin: Any, how: Any, nodes: Any, weights: Any,
-    coefficients: Any, running: Any, mean: Any, kept: Any, which: Any, where: Any, out: Any, ends: Any,
-    status: Any, bad: Any, numbers: Any,
+    coefficients: Any, running: Any, mean: Any, blocks: Any, kept: Any, which: Any, where: Any, out: Any,
+    ends: Any, status: Any, bad: Any, numbers: Any,
 ) -> None:  # fmt: skip
     """The derivatives of every design that `motions` has followed; the status becomes 10 on wide panels."""
-    tables, count, panels = (nodes, weights, coefficients, running, mean), out.shape[3], edges.shape[1] - 1
+    tables, count, panels = (
+        (nodes, weights, coefficients, running, mean, blocks),
+        out.shape[3],
+        edges.shape[1] - 1,
+    )
     parameters = begin.shape[1]
     lanes, at, polynomials = empty((3, count)), empty(count, int64), empty((2, 17, count))
     slots, work = empty((count + 1, parameters, 18)), empty((2, panels, parameters + 1, 49))

@@ -5,7 +5,8 @@ functions  a Program as a static function, and the calls between them
 steps      the motion under a torque, step by step
 tables     tables that are arguments: parameters, checks, and a table from points
 single     the texts in single precision
-helpers    what the spellings call, and elementary functions for where there is no libm
+helpers    what the spellings call, and elementary functions for where there is no libm: the .c files here
+motion/    the C of `steps`
 """
 
 from .language import C

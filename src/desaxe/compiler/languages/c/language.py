@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+from ....support.template import filled
 from ...passes.trigonometry import Trigonometry, expand_trigonometry
 from ...passes.value_numbering import value_numbering
 from ...program import Line, Program
@@ -22,6 +23,7 @@ class C(Language):
 
     name = "c"
     suffix = ".c"
+    about = "FOLDER/name.h and name.c, C99, named as the folder"
     own_functions = True
     single = True
     open_tables = True
@@ -61,7 +63,7 @@ def _header(module: Module) -> str:
         functions += ["", *SOLVER_TEXTS[solver].format(name=name).splitlines()]
         functions.append(f"{_signature(name, solver, given)};")
     if module.motion is not None:
-        functions += ["", *HEADER.format(name=name, more=more).rstrip().splitlines()]
+        functions += ["", *filled(HEADER, NAME=name, MORE=more).rstrip().splitlines()]
     tables = [
         "/* Names and SI units, in order; NULL at the end. */",
         *(f"extern const char *const {name}_{table}[];" for table in _tables(module)),

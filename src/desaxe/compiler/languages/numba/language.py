@@ -35,6 +35,7 @@ class Numba(Language):
 
     name = "numba"
     suffix = ".py"
+    about = "FILE.py: `point(...)`, `evaluate(...)`, `run()`; it needs NumPy and numba"
     open_tables = True
     loops = staticmethod(emit_numba)
 

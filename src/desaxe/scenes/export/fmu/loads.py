@@ -1,7 +1,6 @@
 """Loads that vary with the motion in an FMU: their tables as C arrays, which no parameter changes."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from importlib.resources import files
 from typing import Any
 
 from ....loads.load import Load, OverY, TableOverTheta
@@ -9,6 +8,7 @@ from ....loads.resolve import plan_of
 from ....loads.stroke import OverStroke
 from ....loads.table import Row
 from ....mechanism.names import LENGTHS, sensitivity
+from ....support.template import file_text
 from ...schema import SceneError
 
 
@@ -41,7 +41,7 @@ def position_names(loads: Mapping[str, Load]) -> tuple[str, ...]:
 def loads_text(loads: Mapping[str, Load], place: Mapping[str, int]) -> str:
     """The C of the loads, or of none."""
     if not loads:
-        return file_text("no_loads.c")
+        return file_text(__package__, "no_loads.c")
     rows, angles, known = [], 1, position_names(loads)
     lines: list[str] = []
     for force, load in loads.items():
@@ -63,7 +63,7 @@ def loads_text(loads: Mapping[str, Load], place: Mapping[str, int]) -> str:
     sizes = {"N_LOADS": len(loads), "TURNING_LOADS": turning, "N_ANGLES": angles, "N_POSITION": len(known)}
     sizes["OUTER"] = known.index("Y_outer") if "Y_outer" in known else -1
     head = "\n".join(f"#define {name} {size}" for name, size in sizes.items())
-    return f"{head}\n\n{file_text('loads.c').replace('/*TABLES*/', chr(10).join(lines))}"
+    return f"{head}\n\n{file_text(__package__, 'loads.c').replace('/*TABLES*/', chr(10).join(lines))}"
 
 
 def _arrays(load: Load) -> tuple[float, Sequence[float], Sequence[Row], Sequence[Row], list[int]]:
@@ -88,8 +88,3 @@ def _braces(row: Row) -> str:
 def array_text(head: str, items: Iterable[str]) -> str:
     """A constant array of C."""
     return f"static const {head} = {{\n" + "".join(f"  {item},\n" for item in items) + "};"
-
-
-def file_text(name: str) -> str:
-    """The text of a file beside this one."""
-    return files(__package__).joinpath(name).read_text(encoding="utf-8")

@@ -11,7 +11,8 @@ from ....mechanism.constants import constants
 from ....mechanism.inputs import INPUTS
 from ....mechanism.status import PointStatus
 from ....simulation.tableau import E3, E5, STAGES, A
-from .loads import array_text, file_text, loads_text
+from ....support.template import file_text
+from .loads import array_text, loads_text
 from .programs import TORQUE, Programs
 from .variables import NOMINAL, Variables
 
@@ -32,7 +33,7 @@ def source_text(head: Sequence[str], table: Variables, made: Programs, fmi: int,
         *functions,
         "\n".join(_tables(table, made, fmi, token)) + "\n",
         loads_text(made.loads, table.place),
-        *map(file_text, ("model.c", "interface.c", f"fmi{fmi}.c")),
+        *(file_text(__package__, name) for name in ("model.c", "interface.c", f"fmi{fmi}.c")),
     ]
     return "\n".join(parts)
 

@@ -1,0 +1,3 @@
+#if defined(__cplusplus)
+#define restrict __restrict
+#endif
