@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...sweeps.peak_step import PeakRequest
 from ...sweeps.request import Request, sweep_of
+from ...support.forks import IMPORTS
 from ..content import Content
 from ..schema import SceneError
 from .grid import arrays_of
@@ -40,7 +41,8 @@ def request_of(content: Content) -> Request:
 
 def require_store(content: Content, overwrite: bool) -> None:
     """Fail at the start where the sweep of a scene may not go to its store, or has no room."""
-    from ...sweeps.place import require_place
+    with IMPORTS:
+        from ...sweeps.place import require_place
 
     assert content.store is not None
     require_place(
@@ -50,7 +52,8 @@ def require_store(content: Content, overwrite: bool) -> None:
 
 def sweep_content(content: Content, **options: Any) -> "xr.Dataset":
     """Run the sweep of a scene with options of `run_sweep`; those that are not given come from the scene."""
-    from ...sweeps.sweep import run_sweep
+    with IMPORTS:
+        from ...sweeps.sweep import run_sweep
 
     asked = request_of(content)._asdict()
     whole = options.get("best") is None
