@@ -13,12 +13,12 @@ from desaxe.mechanism.inputs import INPUTS
 from desaxe.mechanism.names import parts
 from desaxe.mechanism.status import TABLES
 from desaxe.scenes import schema
-from desaxe.scenes.explain.explain import Plan
+from desaxe.scenes.explain.explain import RunPlan
 from desaxe.scenes.scene import Scene, SceneResult
 from desaxe.simulation.result import Event, Simulation
 
 # What the functions give, where it is not a float, an array, a plain dict or a Dataset.
-RETURNED = (Quality, Quantity, EquationText, Simulation, Event, Scene, SceneResult, Plan)
+RETURNED = (Quality, Quantity, EquationText, Simulation, Event, Scene, SceneResult, RunPlan)
 
 
 def summary():

@@ -5,7 +5,7 @@ import time
 import pytest
 
 import desaxe as dx
-from desaxe.definitions.grammar import Source, parse
+from desaxe.definitions.grammar import DefinitionText, parse
 from desaxe.mechanism.own import definitions
 
 REFUSED = {
@@ -125,7 +125,7 @@ def test_constants_have_units_without_a_unit_library():
     ],
 )  # fmt: skip
 def test_precedence(text, tree):
-    assert shape(parse(Source("own", text))) == tree
+    assert shape(parse(DefinitionText("own", text))) == tree
 
 
 def shape(node):

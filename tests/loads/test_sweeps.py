@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.sweeps.request import Request, sweep_of
+from desaxe.sweeps.request import SweepRequest, sweep_of
 
 ANGLES, POINTS = np.linspace(0.0, 2 * np.pi, 25), [-400.0, 200.0, -50.0, 20.0]
 MACHINE = {"AB": 0.04, "BC": np.array([0.064, 0.07]), "m_slider": 0.8, "omega0": 50.0}
@@ -64,7 +64,7 @@ def test_what_travels_to_a_worker_needs_no_definitions_there(tmp_path):
     theta, name = ANGLES[1:-1], dx.define("shoe", "0.08 * abs(N_C * V_C)", unit="W")
     inputs = {"theta": theta, "ec": EC, "F_Y": LOADS["linear"], **MACHINE}
     try:
-        made = sweep_of(Request(name, inputs, reduce={"theta": "p95"}, peaks=name))
+        made = sweep_of(SweepRequest(name, inputs, reduce={"theta": "p95"}, peaks=name))
         right = dx.grid(name, reduce={"theta": "p95"}, **inputs).shoe_p95.values
         designs = {"ec": EC[:, None], "F_Y": LOADS["linear"], **MACHINE}
         top = dx.peak(name, theta=(theta[0], theta[-1]), **designs)["value"]

@@ -71,7 +71,7 @@ def test_where_no_search_is_stored_no_text_of_one_is_written(tmp_path, monkeypat
 def test_designs_far_from_any_change_point_are_searched_at_few_angles():
     given = designs(500, 7, narrowest=1.0)
     some = np.flatnonzero(given["BC"] - given["AB"] - np.abs(given["ec"]) > 0.5 * given["AB"])
-    plan = plans.Designs(given | {"omega0": np.full(500, 7.0)}, 1, (0.0, 2 * np.pi), False)
+    plan = plans.SearchedDesigns(given | {"omega0": np.full(500, 7.0)}, 1, (0.0, 2 * np.pi), False)
     starts = np.diff(plans._classed(plan, some, coarse=True).node_starts)
     assert starts.size == 1
     assert starts.max() < 32

@@ -5,7 +5,7 @@ import pytest
 
 import desaxe as dx
 from desaxe.evaluation.values import values
-from desaxe.peaks.loaded import Values
+from desaxe.peaks.loaded import ValuesUnderLoads
 
 MACHINE = {"AB": 0.1, "BC": 0.35, "omega0": 30.0, "m_slider": 2.0, "m_rod": 1.0}
 LOADS = {
@@ -23,13 +23,13 @@ def nobody_waits_for_a_compiler(monkeypatch):
 @pytest.mark.parametrize("over", LOADS)
 def test_the_steps_of_a_search_are_those_of_one_design(over, monkeypatch):
     calls = []
-    at = Values.at
+    at = ValuesUnderLoads.at
 
     def counted(self, *args, **more):
         calls.append(1)
         return at(self, *args, **more)
 
-    monkeypatch.setattr(Values, "at", counted)
+    monkeypatch.setattr(ValuesUnderLoads, "at", counted)
     found = dx.peak("T_in", ec=np.linspace(-0.05, 0.05, 24), F_Y=LOADS[over], **MACHINE)
     assert found["status"].tolist() == [0] * 24
     assert len(calls) < 20

@@ -10,7 +10,7 @@ from desaxe.mechanism.program import Variant
 from desaxe.runtime import compiled_text
 from desaxe.runtime.modules import native, path_of
 from desaxe.simulation import compiled
-from desaxe.simulation.compiled import Family
+from desaxe.simulation.compiled import DesignFamily
 from desaxe.simulation.energy import compiled as energy
 
 PANELS = {
@@ -26,7 +26,7 @@ PIECES = {
     "add_lanes_of": ("row, other, rows[0], rows[1], 0.1, rows[2]", {"mul", "add"}),
     "rates": ("int64(0), 0.5, row, rows[0], rows[1], other", {"div", "sqrt"}),
 }
-FAMILY = Family(Variant(True, ("r_crank", "r_rod")), ())
+FAMILY = DesignFamily(Variant(True, ("r_crank", "r_rod")), ())
 
 
 def vectors_of(text, monkeypatch):

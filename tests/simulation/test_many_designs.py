@@ -13,7 +13,7 @@ from scipy.integrate import DOP853
 import desaxe as dx
 from desaxe.mechanism.program import Variant
 from desaxe.simulation import motions, nodes, state
-from desaxe.simulation.compiled import Family, source_of
+from desaxe.simulation.compiled import DesignFamily, source_of
 from desaxe.simulation.coordinate import EDGE
 from tests.motions import true_end
 from tests.simulation.test_simulate import CRANK, LOADED, PRESS, ROCKER
@@ -217,7 +217,7 @@ def test_friction_of_none_counts_as_designs():
 
 
 def test_the_text_stands_alone():
-    tree = ast.parse(source_of(Family(Variant(True, ("r_crank", "r_rod")), ()), False))
+    tree = ast.parse(source_of(DesignFamily(Variant(True, ("r_crank", "r_rod")), ()), False))
     modules = {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
     assert modules == {"__future__", "math", "numba", "numba.extending", "numpy", "typing"}
     assert not [node for node in ast.walk(tree) if isinstance(node, ast.Import)]
@@ -226,7 +226,7 @@ def test_the_text_stands_alone():
 def test_what_a_family_lacks_costs_nothing():
     """Without gravity nothing computes a weight."""
     zeros = tuple((name, 0.0) for name in ("g_X", "g_Y"))
-    full, light = (source_of(Family(Variant(True), fixed), False) for fixed in ((), zeros))
+    full, light = (source_of(DesignFamily(Variant(True), fixed), False) for fixed in ((), zeros))
     assert "g_Y" in full
     assert "g_Y" not in light
 

@@ -28,7 +28,7 @@ class Kernel(NamedTuple):
     outputs: tuple[str, ...]
     types: Mapping[str, str]
     notes: Mapping[str, Note]
-    tables: tuple["Table", ...] = ()
+    tables: tuple["AxisTable", ...] = ()
     close: "StableBranch | None" = None
     given: tuple[str, ...] = ()
 
@@ -48,7 +48,7 @@ class StableBranch(NamedTuple):
     undecided: str | None = None
 
 
-class Table(NamedTuple):
+class AxisTable(NamedTuple):
     """Values over some of the axes of a kernel, computed before its loops by loops of their own."""
 
     along: tuple[int, ...]
@@ -124,7 +124,7 @@ def tabulate(program: Program, axis_of: Mapping[str, int | None], axes: int) -> 
         own = keep_outputs(program, names)
         places = {axis: place for place, axis in enumerate(order)}
         inside = {name: None if (on := axis_of[name]) is None else places[on] for name in own.inputs}
-        tables.append(Table(order, _placed(own, inside, len(order))))
+        tables.append(AxisTable(order, _placed(own, inside, len(order))))
         along_of.update(dict.fromkeys(names, along))
         lines = tuple(line for line in main.lines if line.name not in names)
         main = drop_unused(main._replace(inputs=(*main.inputs, *names), lines=lines))

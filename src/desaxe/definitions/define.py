@@ -12,7 +12,7 @@ from ..mechanism.own import Definition, change, derived_names, register, rows_of
 from ..mechanism.spelling import did_you_mean
 from ..support.shown import shown
 from .dimensions import NONE, Checker, Dimension, dimension_of, unit_from
-from .grammar import ARITY, Node, Source, parse
+from .grammar import ARITY, DefinitionText, Node, parse
 from .lines import value_text
 from .units import constant_value
 
@@ -53,7 +53,7 @@ def define(name: str, expression: str, unit: str | None = None, meaning: str = "
     the first. Returns the name. Raises ValueError or TypeError that points at the place for a name that is
     taken, an unknown name, a dimension that does not fit, or anything that is no expression.
     """
-    entry = Entry(name, expression, unit, meaning, constants)
+    entry = GivenDefinition(name, expression, unit, meaning, constants)
     change(lambda known: with_definitions(known, [made_definition(entry, known)]))
     return name
 
@@ -73,7 +73,7 @@ def _without(name: str, known: Mapping[str, Definition]) -> dict[str, Definition
     return {key: own for key, own in known.items() if key != name}
 
 
-class Entry(NamedTuple):
+class GivenDefinition(NamedTuple):
     """The arguments of one definition, unchecked."""
 
     name: str
@@ -92,7 +92,9 @@ def with_definitions(known: Mapping[str, Definition], new: Iterable[Definition])
     replaced = [definition.name for definition in new if definition.name in known]
     for other in known.values() if replaced else ():
         if other.name not in replaced and any(parts(used)[0] in replaced for used in other.uses):
-            entry = Entry(other.name, other.expression, other.unit, other.meaning, dict(other.constants))
+            entry = GivenDefinition(
+                other.name, other.expression, other.unit, other.meaning, dict(other.constants)
+            )
             result[other.name] = made_definition(entry, result)
     return result
 
@@ -118,13 +120,13 @@ def _own_uses(definition: Definition, known: Mapping[str, Definition]) -> list[s
 # ---- checks ---------------------------------------------------------------------------------------
 
 
-def made_definition(entry: Entry, known: Mapping[str, Definition]) -> Definition:
+def made_definition(entry: GivenDefinition, known: Mapping[str, Definition]) -> Definition:
     """Check a definition and compile its expression."""
     _check_name(entry.name)
     meaning = _checked_text(entry.name, "meaning", entry.meaning, LONGEST_MEANING)
     if not isinstance(entry.expression, str):
         raise TypeError(f"{entry.name}: the expression is a text, got {type(entry.expression).__name__}")
-    source = Source(entry.name, entry.expression)
+    source = DefinitionText(entry.name, entry.expression)
     tree = parse(source)
     values = {name: _constant(entry.name, name, value) for name, value in entry.constants.items()}
     dimensions = {name: dimension for name, (_, dimension) in values.items()}
@@ -190,7 +192,11 @@ def _kept(value: Any) -> str | float:
 
 
 def _names_used(
-    source: Source, tree: Node, own: str, numbers: Mapping[str, float], known: Mapping[str, Definition]
+    source: DefinitionText,
+    tree: Node,
+    own: str,
+    numbers: Mapping[str, float],
+    known: Mapping[str, Definition],
 ) -> tuple[str, ...]:
     """The quantities and inputs of a tree, in order; ValueError that marks the first unknown name."""
     found: dict[str, None] = {}
@@ -240,7 +246,7 @@ def _dimension(name: str, known: Mapping[str, Definition]) -> Dimension:
     return dimension_of(unit_of(row[0] if row else INPUTS[name].unit))
 
 
-def _unit(source: Source, unit: str | None, found: Dimension) -> str:
+def _unit(source: DefinitionText, unit: str | None, found: Dimension) -> str:
     """The unit, checked against the dimension of the expression."""
     if unit is None:
         derived = unit_from(found)

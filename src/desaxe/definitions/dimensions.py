@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple, NoReturn
 
 from ..mechanism.dimensions import Unit, unit_text
-from .grammar import COMPARISONS, Node, Source
+from .grammar import COMPARISONS, DefinitionText, Node
 
 LARGEST_POWER = 64
 SIMPLEST = 1000  # the largest denominator of a power
@@ -51,7 +51,9 @@ def unit_from(dimension: Dimension) -> str | None:
 class Checker:
     """Finds the dimension of a tree; `known` maps names to dimensions, `numbers` has the constants."""
 
-    def __init__(self, source: Source, known: Mapping[str, Dimension], numbers: Mapping[str, float]) -> None:
+    def __init__(
+        self, source: DefinitionText, known: Mapping[str, Dimension], numbers: Mapping[str, float]
+    ) -> None:
         self.source = source
         self.known = known
         self.numbers = numbers

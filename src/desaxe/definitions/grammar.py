@@ -60,7 +60,7 @@ class Token(NamedTuple):
         return self.at + len(self.text)
 
 
-class Source(NamedTuple):
+class DefinitionText(NamedTuple):
     """The name that is defined and its text, for errors."""
 
     name: str
@@ -80,12 +80,12 @@ class Source(NamedTuple):
         return text if len(text) <= 40 else f"{text[:37]}..."
 
 
-def parse(source: Source) -> Node:
+def parse(source: DefinitionText) -> Node:
     """Parse a text; ValueError that marks the position of a syntax error."""
     return _Parser(source, _tokens(source)).whole()
 
 
-def _tokens(source: Source) -> list[Token]:
+def _tokens(source: DefinitionText) -> list[Token]:
     text = source.text
     if len(text) > LONGEST:
         source.refuse(LONGEST, LONGEST + 1, f"{len(text)} characters; an expression has at most {LONGEST}")
@@ -120,7 +120,7 @@ _HINTS = {
 class _Parser:
     """Reads the tokens from left to right."""
 
-    def __init__(self, source: Source, tokens: Sequence[Token]) -> None:
+    def __init__(self, source: DefinitionText, tokens: Sequence[Token]) -> None:
         self.source = source
         self.tokens = tokens
         self.place = 0

@@ -238,7 +238,7 @@ def _defined(function: BoxedQuantity, box: Box) -> bool | None:
     return False if found.values == (None,) else None if found.flags & PARTLY else True
 
 
-class Node(NamedTuple):
+class BoundedBox(NamedTuple):
     """A box, the upper bound of the quantity in it, and the influence of each input."""
 
     upper: float
@@ -257,7 +257,7 @@ class Bisection:
 
     def largest(self, sign: int) -> float:
         """An upper bound within the tolerance, or as tight as the limit of boxes allows."""
-        heap: list[tuple[float, int, int, Node]] = []
+        heap: list[tuple[float, int, int, BoundedBox]] = []
         pieces: tuple[Box, ...] = (self.function.whole,)
         depth, end, bound = 0, self.count + self.limit, -inf
         while pieces:
@@ -284,7 +284,7 @@ class Bisection:
         step = self.rtol * (high - low)
         return round(bound / step) * step if low < high and isfinite(bound / step) else bound
 
-    def _pieces(self, node: Node) -> tuple[Box, ...]:
+    def _pieces(self, node: BoundedBox) -> tuple[Box, ...]:
         finest = 0.0 if isfinite(node.upper) else FINEST
         return _halves(self.function, node.box, node.weights, finest)
 
@@ -295,7 +295,7 @@ class Bisection:
         margin = max(self.rtol * (high - low), 2 * LAST_BIT * abs(best), SMALLEST)
         return best + margin if isfinite(best) else -inf
 
-    def _look(self, sign: int, box: Box) -> Node | None:
+    def _look(self, sign: int, box: Box) -> BoundedBox | None:
         """Bound the quantity over a box; None if it is defined nowhere in it."""
         while True:
             self.deadline.check()
@@ -307,7 +307,7 @@ class Bisection:
             smooth = not found.flags and all(slope is not None and slope.is_finite() for slope in slopes)
             if not smooth or all(low == high for low, high in box):
                 upper = min(_up(sign * value), self._at_centre(sign, box)[1])
-                return Node(upper, box, _sizes(self.function, box))
+                return BoundedBox(upper, box, _sizes(self.function, box))
             smaller = tuple(_end(ends, sign * slope) for ends, slope in zip(box, slopes, strict=True))
             if smaller == box:
                 return self._centred(sign, box, value, slopes)
@@ -322,13 +322,13 @@ class Bisection:
         self.inner = min(low, _up(value)), max(high, _down(value))
         return value, _up(sign * value) if all(low == high for low, high in box) else inf
 
-    def _centred(self, sign: int, box: Box, value: Any, slopes: list[Any]) -> Node:
+    def _centred(self, sign: int, box: Box, value: Any, slopes: list[Any]) -> BoundedBox:
         """The better one of the program's own bound and the mean-value form."""
         centre, upper = self._at_centre(sign, box)
         swings = [slope * (ball(ends) - _middle(ends)) for ends, slope in zip(box, slopes, strict=True)]
         if centre is not None:
             upper = min(upper, _up(sign * sum(swings, centre)))
-        return Node(min(upper, _up(sign * value)), box, tuple(float(abs(x).upper()) for x in swings))
+        return BoundedBox(min(upper, _up(sign * value)), box, tuple(float(abs(x).upper()) for x in swings))
 
 
 def _end(ends: Interval, slope: Any) -> Interval:

@@ -15,7 +15,7 @@ from .arrays import as_array, broadcast_shape
 Array = NDArray[Any]
 
 
-class Task(Protocol):
+class ChunkTask(Protocol):
     """The work in each chunk; it pickles."""
 
     @property
@@ -48,7 +48,7 @@ def as_dask(name: str, value: Any) -> Any:
 
 
 def lazily(
-    made: Callable[[dict[str, float], tuple[str, ...]], Task],
+    made: Callable[[dict[str, float], tuple[str, ...]], ChunkTask],
     inputs: Sequence[str],
     given: Mapping[str, Any],
     names: Sequence[str],
@@ -79,7 +79,7 @@ def lazily(
 
 
 def outputs_of_blocks(
-    task: Task, arguments: Sequence[tuple[Any, tuple[int, ...]]], along: tuple[int, ...], token: str
+    task: ChunkTask, arguments: Sequence[tuple[Any, tuple[int, ...]]], along: tuple[int, ...], token: str
 ) -> dict[str, Any]:
     """The outputs of a task over blocks, each a lazy array.
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..loads.function import FunctionOverTheta
 from ..loads.load import Load, OverY
 from ..loads.pieces import Place
-from ..loads.resolve import VARIABLE, Forces, Plan, plan_of, split, way_of
+from ..loads.resolve import VARIABLE, Forces, LoadPlan, plan_of, split, way_of
 from ..loads.tabulated import over_theta
 from ..mechanism.closed import TURN
 from ..mechanism.names import LENGTHS, STATUS
@@ -75,7 +75,7 @@ def values_under_loads(
 
 
 def totals_at(
-    plan: Plan,
+    plan: LoadPlan,
     given: Mapping[str, Any],
     numbers: Mapping[str, Any],
     branch: int,
@@ -89,7 +89,7 @@ def totals_at(
 
 
 def _by_kernel(
-    plan: Plan, given: Mapping[str, Any], numbers: Mapping[str, Any], branch: int, threads: int | None
+    plan: LoadPlan, given: Mapping[str, Any], numbers: Mapping[str, Any], branch: int, threads: int | None
 ) -> dict[str, Any] | None:
     """The totals at many points by one kernel; None where it is not one, or not ready."""
     with IMPORTS:
@@ -116,13 +116,13 @@ def are_many(numbers: Mapping[str, Any]) -> bool:
     return prod(value.size for value in numbers.values() if type(value) is np.ndarray) >= MANY
 
 
-def plan_for(names: Sequence[str], given: Mapping[str, Any]) -> tuple[dict[str, Any], Plan]:
+def plan_for(names: Sequence[str], given: Mapping[str, Any]) -> tuple[dict[str, Any], LoadPlan]:
     """The inputs that are numbers, and the plan for names under the loads that are not."""
     numbers, loads = split({name: value for name, value in given.items() if value is not None})
     return numbers, plan_at(names, loads, numbers)
 
 
-def plan_at(names: Sequence[str], loads: Mapping[str, Load], given: Container[str]) -> Plan:
+def plan_at(names: Sequence[str], loads: Mapping[str, Load], given: Container[str]) -> LoadPlan:
     """The plan for names under loads; without an angle, a status has no friction and no load."""
     at_angle = "theta" in given
     loads = loads if at_angle or tuple(names) != (STATUS,) else {}
@@ -130,7 +130,7 @@ def plan_at(names: Sequence[str], loads: Mapping[str, Load], given: Container[st
 
 
 def forces_at(
-    plan: Plan,
+    plan: LoadPlan,
     numbers: Mapping[str, Any],
     branch: int,
     accuracy: str | float,
@@ -204,10 +204,10 @@ def labelled_load(name: str, array: Any, theta: Any = None) -> Load:
     except ValueError as error:
         if theta is None or not np.array_equal(x, as_array("theta", theta, ("theta",), (name,))):
             raise ValueError(f"{name}: {error}") from None
-        return FunctionOverTheta(Samples(x, y).at)
+        return FunctionOverTheta(SampledLoad(x, y).at)
 
 
-class Samples(NamedTuple):
+class SampledLoad(NamedTuple):
     """A load that is known only at samples of the crank angle."""
 
     angles: Array

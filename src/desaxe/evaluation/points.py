@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from ..loads.load import Load, OverTheta, OverY
 from ..loads.pieces import Place
-from ..loads.resolve import Forces, way_of
-from ..loads.resolve import Plan as LoadPlan
+from ..loads.resolve import Forces, LoadPlan, way_of
 from ..mechanism.names import LENGTHS
 from ..mechanism.own import Definition, using
 from ..runtime.kernels import KernelKey, key_of

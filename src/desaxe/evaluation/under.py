@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..loads.angles import crossings
 from ..loads.load import Load, OverTheta, OverY
 from ..loads.pieces import Place, piece_at
-from ..loads.resolve import Plan, way_of
+from ..loads.resolve import LoadPlan, way_of
 from ..mechanism.closed import TURN
 from ..mechanism.closed.angles import dead_centres
 from ..mechanism.names import LENGTHS, STATUSES
@@ -53,7 +53,7 @@ class UnderLoads(NamedTuple):
     key: KernelKey
     first: int
     branch: int
-    plan: Plan
+    plan: LoadPlan
 
     def cut(self, lengths: Mapping[str, int]) -> "UnderLoads":
         """Prepare for blocks of these lengths: short axes are joined to one long loop."""
@@ -138,7 +138,7 @@ class UnderLoads(NamedTuple):
 
 
 def in_kernel(
-    plan: Plan, outer: Outer, along: Sequence[str], branch: int, accuracy: Any
+    plan: LoadPlan, outer: Outer, along: Sequence[str], branch: int, accuracy: Any
 ) -> UnderLoads | None:
     """The kernel of a plan's names over dimensions of a grid; None where it takes more than one."""
     given, axes = outer.given, outer.axes

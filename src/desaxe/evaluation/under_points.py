@@ -13,7 +13,7 @@ import numpy as np
 
 from ..loads.load import Load, OverTheta, OverY, TableOverTheta
 from ..loads.pieces import FLAT, NEAR, Place
-from ..loads.resolve import Plan
+from ..loads.resolve import LoadPlan
 from ..mechanism.names import LENGTHS
 from ..runtime.kernels import KernelKey, key_of, plain_of
 from ..runtime.request import Request
@@ -28,7 +28,7 @@ PART = 2**15  # points of which the motion is in the cache
 
 
 def points_under_loads(
-    plan: Plan, kept: Sequence[str], numbers: Mapping[str, Any], branch: int, threads: int | None
+    plan: LoadPlan, kept: Sequence[str], numbers: Mapping[str, Any], branch: int, threads: int | None
 ) -> tuple[dict[str, Array], Array | None] | None:
     """Totals at all points, and the places of those that rounding leaves open; None without a kernel.
 

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from ..loads.lines import line_of, totals_of
 from ..loads.load import Load, OverTheta, OverY
-from ..loads.resolve import Plan
-from ..mechanism.load_lines import LoadLines, Under, Way
+from ..loads.resolve import LoadPlan
+from ..mechanism.load_lines import LoadLines, TurningSense, Under
 from ..runtime.request import Request, request
 from .extremes import MOST, are_extreme
 
@@ -18,7 +18,7 @@ Array = NDArray[Any]
 LEAST = 10_000  # points: of fewer, to look for those that rounding decides takes what the kernel saves
 
 
-def under_loads(plan: Plan, given: Mapping[str, Any], branch: int, accuracy: Any) -> Request:
+def under_loads(plan: LoadPlan, given: Mapping[str, Any], branch: int, accuracy: Any) -> Request:
     """The request of a plan's totals, whose variant names the loads; those over theta are columns."""
     every = tuple(dict.fromkeys((*plan.names, *plan.motion)))
     asked = request(every, {**given, **dict.fromkeys(plan.loads, 1.0)}, branch, accuracy)
@@ -32,11 +32,11 @@ def under_loads(plan: Plan, given: Mapping[str, Any], branch: int, accuracy: Any
     return Request(plan.shown, own, asked.form._replace(under=under), asked.fixed, asked.accuracy)
 
 
-def _way(given: Mapping[str, Any]) -> Way:
+def _way(given: Mapping[str, Any]) -> TurningSense:
     """The inputs that tell the way of turning."""
     speeds = [name for name in ("omega", "omega0") if given.get(name) is not None]
     start = "alpha" if speeds == ["omega"] and given.get("alpha") is not None else 0.0
-    return Way(speeds[0] if speeds else 1.0, start)
+    return TurningSense(speeds[0] if speeds else 1.0, start)
 
 
 def table_arrays(loads: Mapping[str, Load]) -> dict[str, Array]:

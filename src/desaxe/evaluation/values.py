@@ -10,7 +10,7 @@ from typing import Any
 from ..mechanism.inputs import is_good
 from ..mechanism.own import register
 from ..runtime.accuracy import accuracy_of
-from ..runtime.point import Point, point_of
+from ..runtime.point import PointFunction, point_of
 from ..runtime.request import Request, as_number, check_common, is_steady, request, several, standstill
 from ..support.forks import IMPORTS
 from ..support.interrupts import import_whole
@@ -67,7 +67,7 @@ def values(
     return answer[0] if isinstance(names, str) else dict(zip(wanted, answer, strict=True))
 
 
-def _extreme(asked: Request, point: Point, numbers: Sequence[float]) -> Sequence[Any]:
+def _extreme(asked: Request, point: PointFunction, numbers: Sequence[float]) -> Sequence[Any]:
     """The answer of a point near the ends of the double range."""
     if not can_rescale(asked):
         return point.function(*numbers)
@@ -78,7 +78,7 @@ def _extreme(asked: Request, point: Point, numbers: Sequence[float]) -> Sequence
 
 
 MOST_KNOWN = 1024  # requests that are remembered
-_KNOWN: dict[tuple[Any, ...], tuple[Request, Point]] = {}
+_KNOWN: dict[tuple[Any, ...], tuple[Request, PointFunction]] = {}
 
 
 _ARRAY: list[type] = [object]  # NumPy's type of array, when it is known

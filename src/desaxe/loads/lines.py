@@ -2,7 +2,7 @@
 
 from ..mechanism.load_lines import LoadLines, Total
 from .load import Load, OverY, TableOverTheta
-from .resolve import Plan
+from .resolve import LoadPlan
 
 
 def line_of(name: str, load: Load, is_open: bool = False) -> LoadLines:
@@ -19,7 +19,7 @@ def line_of(name: str, load: Load, is_open: bool = False) -> LoadLines:
     return LoadLines(name, "")
 
 
-def totals_of(plan: Plan) -> tuple[Total, ...]:
+def totals_of(plan: LoadPlan) -> tuple[Total, ...]:
     """The outputs of a plan, with the terms of each derivative that come through a load."""
     return tuple(
         Total(name, plan.forces_of.get(name, ()), tuple((*term,) for term in plan.terms.get(name, ())))

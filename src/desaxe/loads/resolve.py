@@ -147,7 +147,7 @@ class Forces(NamedTuple):
     status: dict[str, Any]
 
 
-class Plan(NamedTuple):
+class LoadPlan(NamedTuple):
     """A plan to evaluate names under loads that vary with the motion."""
 
     shown: tuple[str, ...]
@@ -203,12 +203,12 @@ class Plan(NamedTuple):
 
 
 MOST_PLANS = 1024
-_PLANS: dict[Any, tuple[Plan, tuple[str, ...]]] = {}  # without their loads, whose names follow
+_PLANS: dict[Any, tuple[LoadPlan, tuple[str, ...]]] = {}  # without their loads, whose names follow
 
 
 def plan_of(
     names: Sequence[str], loads: Mapping[str, Load], state: bool, mu: bool, known: Register | None = None
-) -> Plan:
+) -> LoadPlan:
     """The plan for names; ValueError for one that needs what is not known of a load.
 
     state   whether omega is given instead of omega0
@@ -229,7 +229,7 @@ def plan_of(
 
 def _new_plan(
     names: Sequence[str], loads: Mapping[str, Load], state: bool, mu: bool, known: Register
-) -> Plan:
+) -> LoadPlan:
     terms: dict[str, tuple[Term, ...]] = {}
     used: dict[str, Load] = {}
     forces_of: dict[str, tuple[str, ...]] = {}
@@ -253,7 +253,7 @@ def _new_plan(
             motion |= dict.fromkeys(load.motion(sorted({t.parameter for t in every if t.force == force})))
     more = (term.slope for term in every)
     wanted = tuple(dict.fromkeys((*names, *more)))
-    return Plan(tuple(names), wanted, terms, used, tuple(motion), forces_of)
+    return LoadPlan(tuple(names), wanted, terms, used, tuple(motion), forces_of)
 
 
 @lru_cache(maxsize=1024)

@@ -10,7 +10,7 @@ from ..loads.load import Load
 from ..mechanism.names import LOADS
 from ..mechanism.own import using
 from ..mechanism.slips import warn_of_slips
-from ..scenes.document.content import Asked, document_of, require_drawing
+from ..scenes.document.content import DocumentContext, document_of, require_drawing
 from ..scenes.document.spread import read_tolerances
 from ..scenes.document.write import require_document, write_document
 from ..scenes.run import compute
@@ -45,7 +45,7 @@ def write_report(
         with using(content.definitions):
             found = compute(content, Steps(0, None), overwrite)
     told = tuple(str(one.message) for one in heard if one.category.__module__.startswith("desaxe."))
-    asked = Asked(_command(machine, place, outputs, tolerances, more), told, halves, fluctuation)
+    asked = DocumentContext(_command(machine, place, outputs, tolerances, more), told, halves, fluctuation)
     with using(content.definitions):
         return write_document(document_of(content, found, scene.shown_in, asked), place, overwrite)
 

@@ -46,7 +46,7 @@ class Total(NamedTuple):
     terms: tuple[tuple[str, str, str], ...] = ()
 
 
-class Way(NamedTuple):
+class TurningSense(NamedTuple):
     """The inputs, or numbers, that say which way the crank turns: a speed, and what starts one at rest."""
 
     speed: Argument
@@ -54,7 +54,11 @@ class Way(NamedTuple):
 
 
 def with_totals(
-    program: Program, names: Mapping[str, str], loads: Sequence[LoadLines], totals: Sequence[Total], way: Way
+    program: Program,
+    names: Mapping[str, str],
+    loads: Sequence[LoadLines],
+    totals: Sequence[Total],
+    way: TurningSense,
 ) -> Program:
     """The program of these totals, whose loads are looked up.
 
@@ -83,19 +87,19 @@ class Under(NamedTuple):
     names: tuple[tuple[str, str], ...]
     loads: tuple[LoadLines, ...]
     totals: tuple[Total, ...]
-    way: Way
+    way: TurningSense
 
     def added_to(self, program: Program, fixed: Mapping[str, float]) -> Program:
         """The program of the totals, from that of `names`; some inputs are fixed."""
         names = dict(zip((shown for shown, _ in self.names), program.outputs, strict=True))
-        way = Way(*(fixed.get(one, one) if isinstance(one, str) else one for one in self.way))
+        way = TurningSense(*(fixed.get(one, one) if isinstance(one, str) else one for one in self.way))
         return with_totals(program, names, self.loads, self.totals, way)
 
 
 class _Writer:
     """Appends lines: those that no load changes, the loads, the others, the totals."""
 
-    def __init__(self, program: Program, names: Mapping[str, str], way: Way) -> None:
+    def __init__(self, program: Program, names: Mapping[str, str], way: TurningSense) -> None:
         self.names, self.way = names, way
         self.notes = dict(program.notes)
         self.types = {line.name: line.type for line in program.lines}

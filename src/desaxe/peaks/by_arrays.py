@@ -17,13 +17,13 @@ import numpy as np
 from ..compiler.languages.arrays import compile_arrays
 from ..compiler.program import Program
 from .nodes import Array
-from .programs import Programs
+from .programs import SearchPrograms
 from .search import AFTER, BEFORE, DIP, FIFTH, FIRST, FLAT, HIGH, LOW, THETA, TIE, WIDTH
 
 Function = Callable[..., None]
 
 
-def functions_of(programs: Programs) -> tuple[Function, Function, Function]:
+def functions_of(programs: SearchPrograms) -> tuple[Function, Function, Function]:
     """`sweep`, `points` and `finish` of `search`, for its designs and angles in arrays."""
     curve, told = (_over(program, programs.inputs) for program in (programs.curve, programs.finish))
 

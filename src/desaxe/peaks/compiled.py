@@ -23,7 +23,7 @@ from . import columns
 from . import search as loops
 from .by_arrays import functions_of, whole_blocks
 from .nodes import Array
-from .programs import Programs, Search, programs_of
+from .programs import Search, SearchPrograms, programs_of
 
 Function = Callable[..., object]
 
@@ -52,7 +52,7 @@ def source_of(search: Search) -> str:
     return module_text(docstring, numba_parts([*texts_of(programs, "numba"), SIGNATURE], *files))
 
 
-def texts_of(programs: Programs, column: str) -> list[str]:
+def texts_of(programs: SearchPrograms, column: str) -> list[str]:
     """`sweep`, `points` and `finish`, and the rows that `sweep` keeps."""
     own = programs.tables, programs.held, programs.own_nodes
     rows = peaks.Rows(programs.inputs, column, "theta", *own)
@@ -81,7 +81,7 @@ class Tables(NamedTuple):
     rows: Array
 
 
-class Kernel(NamedTuple):
+class SearchKernel(NamedTuple):
     """The function of a search; `coarse` if each group of designs costs more than their nodes."""
 
     function: Function
@@ -122,10 +122,10 @@ def run(
     run_parts(part, order.size, threads, LEAST_PART, LONGEST_PART)
 
 
-STORE = Store("search", source_of, lambda _, function: Kernel(function), MOST_LOADED)
+STORE = Store("search", source_of, lambda _, function: SearchKernel(function), MOST_LOADED)
 
 
-def kernel_for(search: Search, designs: int) -> Kernel:
+def kernel_for(search: Search, designs: int) -> SearchKernel:
     """The search, compiled if this number of designs would take longer than compiling."""
     if forced_tier() == INTERPRETED:
         return _plain(search)
@@ -146,23 +146,23 @@ _on_disk = lru_cache(maxsize=1024)(STORE.is_on_disk)  # once for all: calls must
 
 
 @lru_cache(maxsize=1024)
-def _plain(search: Search) -> Kernel:
+def _plain(search: Search) -> SearchKernel:
     """The search as plain Python, design by design."""
-    return Kernel(_search_with(_scope(search, texts_of(programs_of(search, False), "python"))))
+    return SearchKernel(_search_with(_scope(search, texts_of(programs_of(search, False), "python"))))
 
 
 @lru_cache(maxsize=1024)
-def _by_arrays(search: Search) -> Kernel:
+def _by_arrays(search: Search) -> SearchKernel:
     """The search in NumPy, many designs at once: no call waits for a compiler."""
     functions = dict(zip(FUNCTIONS, functions_of(programs_of(search, False)), strict=True))
     scope = whole_blocks(SEARCH, {"WORK": 1, "BLOCK": BLOCK, **functions})
-    return Kernel(_quiet(scope["search"]), coarse=True)
+    return SearchKernel(_quiet(scope["search"]), coarse=True)
 
 
 @lru_cache(maxsize=1024)
-def _by_loops(search: Search) -> Kernel:
+def _by_loops(search: Search) -> SearchKernel:
     """The search of a few designs: what it calls by NumPy, over many nodes; its own loops as they stand."""
-    return Kernel(search_with(*functions_of(programs_of(search, False))))
+    return SearchKernel(search_with(*functions_of(programs_of(search, False))))
 
 
 @lru_cache(maxsize=1024)

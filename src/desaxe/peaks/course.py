@@ -12,7 +12,7 @@ from ..loads.angles import meeting_and_bent
 from ..loads.load import Load, OverTheta, OverY
 from ..mechanism.closed.angles import dead_centres, repeated
 from .nodes import Array
-from .special import Designs
+from .special import SearchedDesigns
 
 # What keeps a kink where it is: the angle, a position, a dead centre, the distance from one.
 FIXED, CROSSING, TURNING, FROM_OUTER, FROM_INNER = range(5)
@@ -63,7 +63,7 @@ class Course(NamedTuple):
         return theta
 
 
-def course_of(designs: Designs) -> Course:
+def course_of(designs: SearchedDesigns) -> Course:
     """The loads of designs over their range of angles."""
     low, high = designs.theta
     over_Y = {name: load for name, load in designs.loads.items() if isinstance(load, OverY)}
@@ -95,7 +95,7 @@ class _Part(NamedTuple):
     jumps: list[tuple[Array, int]]
 
 
-def _over_theta(load: Load, designs: Designs) -> _Part:
+def _over_theta(load: Load, designs: SearchedDesigns) -> _Part:
     low, high = designs.theta
     assert isinstance(load, OverTheta)
     own = _jumps_over_theta(load, low, high)
@@ -111,7 +111,7 @@ def _jumps_over_theta(load: OverTheta, low: float, high: float) -> Array:
 
 
 def _over_Y(
-    load: OverY, arcs: Arcs | None, designs: Designs, every: Array, bent: Array, turning: Array
+    load: OverY, arcs: Arcs | None, designs: SearchedDesigns, every: Array, bent: Array, turning: Array
 ) -> _Part:
     crossing, own = KIND_OF[load.centre], repeated(bent, *designs.theta)
     kinks = [(own, crossing), (turning, TURNING)]
@@ -125,7 +125,7 @@ def _over_Y(
     return _Part(np.append(arcs.starts, before, axis=1), kinks, jumps)
 
 
-def _arcs(designs: Designs, met: Mapping[str, Array], dead: Array) -> dict[str, Arcs]:
+def _arcs(designs: SearchedDesigns, met: Mapping[str, Array], dead: Array) -> dict[str, Arcs]:
     """The arcs of the loads over Y that jump; of designs with NaN among their inputs those of others."""
     clean = {name: np.where(np.isnan(column), 1.0, column) for name, column in designs.columns.items()}
     arcs = {
@@ -138,7 +138,7 @@ def _arcs(designs: Designs, met: Mapping[str, Array], dead: Array) -> dict[str, 
     return arcs
 
 
-def _part_jumps(designs: Designs, arcs: dict[str, Arcs]) -> None:
+def _part_jumps(designs: SearchedDesigns, arcs: dict[str, Arcs]) -> None:
     """Let arcs begin exactly where another load jumps at the same angle, as far as rounding tells."""
     for name, own in arcs.items():
         others = [np.full((designs.size, 1), np.nan)]

@@ -28,10 +28,10 @@ from .compiled import LONGEST_PART, Groups, is_compiled, kernel_for, run
 from .course import course_of
 from .differences import with_slopes
 from .jumps import at_jumps
-from .loaded import Values, with_nodes
+from .loaded import ValuesUnderLoads, with_nodes
 from .nodes import Array, classes, coarser, shared_nodes
 from .programs import Search, needs_own, programs_of
-from .special import Designs
+from .special import SearchedDesigns
 from .under import search_under, tables_under, with_own
 
 KINDS = ("absmax", "max", "min")
@@ -43,7 +43,7 @@ LEAST_ALL_THROUGH = 16_384
 class Checked(NamedTuple):
     """Designs whose invalid inputs are NaN, where those are, and which designs have nodes of their own."""
 
-    designs: Designs
+    designs: SearchedDesigns
     bad: NDArray[np.bool_]
     special: NDArray[np.bool_]
 
@@ -52,7 +52,7 @@ class Checked(NamedTuple):
         return Checked(self.designs.part(rows), self.bad[rows], self.special[rows])
 
 
-class Plan(NamedTuple):
+class PeakPlan(NamedTuple):
     """A request to search, the parameters of its gradient, and all inputs that it needs."""
 
     wanted: Request
@@ -68,7 +68,7 @@ class Plan(NamedTuple):
 class Sought(NamedTuple):
     """The extreme values that are sought, of any designs: of what, of which kind, over which angles."""
 
-    plan: Plan
+    plan: PeakPlan
     kind: str
     branch: int
     ends: tuple[float, float]
@@ -91,10 +91,10 @@ class Work(NamedTuple):
 
 
 MOST_PLANS = 1024
-_PLANS: dict[Any, Plan] = {}
+_PLANS: dict[Any, PeakPlan] = {}
 
 
-def plan_of(name: str, given: dict[str, Any], branch: int, accuracy: Any) -> Plan:
+def plan_of(name: str, given: dict[str, Any], branch: int, accuracy: Any) -> PeakPlan:
     """The plan of a request, which depends on its names only."""
     shown = frozenset(n for n, value in given.items() if value is not None)
     if type(accuracy) is not str or accuracy != "standard":
@@ -109,7 +109,7 @@ def plan_of(name: str, given: dict[str, Any], branch: int, accuracy: Any) -> Pla
     return plan
 
 
-def _new_plan(name: str, given: dict[str, Any], branch: int, accuracy: Any, known: Register) -> Plan:
+def _new_plan(name: str, given: dict[str, Any], branch: int, accuracy: Any, known: Register) -> PeakPlan:
     if name == STATUS or of_design(name, known):
         raise ValueError(f"{name} has no peak over theta")
     state = given["omega"] is not None
@@ -124,10 +124,10 @@ def _new_plan(name: str, given: dict[str, Any], branch: int, accuracy: Any, know
         given["mu"] = None  # what friction does matters to forces only
     told = request((STATUS,), {**given, "theta": 0.0}, branch, accuracy, known).inputs
     needs = (*parameters, *(n for n in told if n not in (*parameters, "theta")))
-    return Plan(wanted, parameters, needs)
+    return PeakPlan(wanted, parameters, needs)
 
 
-def search_of(plan: Plan, arrays: dict[str, Array], ends: tuple[float, float]) -> Search:
+def search_of(plan: PeakPlan, arrays: dict[str, Array], ends: tuple[float, float]) -> Search:
     """The search to compile; a scalar input of 0 is folded unless the gradient needs it."""
     wanted = plan.wanted
     name = wanted.names[0]
@@ -147,7 +147,9 @@ def peaks_of_designs(sought: Sought, search: Search, columns: dict[str, Array]) 
     plan = sought.plan
     kinks = "mu" in plan.parameters or has_kinks(plan.wanted.form.own)
     loads = with_slopes(sought.loads, *sought.ends) if sought.loads else {}
-    checked = _checked(Designs(columns, sought.branch, sought.ends, kinks, loads, plan.wanted.accuracy))
+    checked = _checked(
+        SearchedDesigns(columns, sought.branch, sought.ends, kinks, loads, plan.wanted.accuracy)
+    )
     size = checked.designs.size
     usual = search if loads else _in_form(search, checked)
     with progress_bar(unit="designs") if size > LARGE else nullcontext() as watch:
@@ -191,7 +193,7 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
     status = np.zeros(designs.size, np.int8)
     number = KINDS.index(kind)
     rows = np.flatnonzero(~own_nodes)
-    loaded = Values(name, search, designs, course_of(designs), told) if designs.loads else None
+    loaded = ValuesUnderLoads(name, search, designs, course_of(designs), told) if designs.loads else None
     under = _compiled_under(loaded, checked, rows.size) if rows.size and loaded is not None else None
     if under is not None and loaded is not None:
         tables = tables_under(under, designs, loaded.course)
@@ -218,7 +220,7 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
             cost = special.NODES * rows.size if rows.size > 1 else 1  # one alone: its loops as they stand
             run(search, columns, cost, partial(_each, part, nodes), number, theta, out, threads)
             told.add(part.size)
-        found = special.Found(out[0, part], theta[part], out[1, part], status[part])
+        found = special.SearchResult(out[0, part], theta[part], out[1, part], status[part])
         marks = () if loaded is None else (loaded.course.kinks, loaded.course.jumps)
         at = (mark.angles[part] for mark in marks)
         usable = special.complete(name, kind, some, nodes, limits, found, search.parameters, *at)
@@ -236,7 +238,7 @@ def _peaks(work: Work, checked: Checked, threads: int | None) -> dict[str, Any]:
     return {"value": value, "theta": theta, "side": side, "gradient": gradient, "status": status}
 
 
-def _compiled_under(loaded: Values, checked: Checked, count: int) -> Search | None:
+def _compiled_under(loaded: ValuesUnderLoads, checked: Checked, count: int) -> Search | None:
     """The compiled search for `count` designs under loads; None where NumPy searches."""
     if not loaded.derived:
         return None
@@ -245,7 +247,9 @@ def _compiled_under(loaded: Values, checked: Checked, count: int) -> Search | No
     return search if search is not None and is_compiled(search, count) else None
 
 
-def _classed_with(designs: Designs, rows: NDArray[np.intp], nodes: Array, coarse: bool = False) -> Groups:
+def _classed_with(
+    designs: SearchedDesigns, rows: NDArray[np.intp], nodes: Array, coarse: bool = False
+) -> Groups:
     """The designs by their classes, with the nodes of a load that all share."""
     return with_own(_classed(designs, rows, coarse), nodes)
 
@@ -277,7 +281,7 @@ def _at(column: Array, rows: NDArray[np.intp]) -> Array:
     return column if rows.size == column.size else column[rows]
 
 
-def _checked(designs: Designs) -> Checked:
+def _checked(designs: SearchedDesigns) -> Checked:
     """The designs with NaN for invalid values, which would give a finite, wrong result."""
     bad = np.zeros(designs.size, np.bool_)
     columns = dict(designs.columns)
@@ -291,7 +295,7 @@ def _checked(designs: Designs) -> Checked:
     return Checked(designs, bad, special.are_special(designs))
 
 
-def _classed(designs: Designs, rows: NDArray[np.intp], coarse: bool = False) -> Groups:
+def _classed(designs: SearchedDesigns, rows: NDArray[np.intp], coarse: bool = False) -> Groups:
     """The designs by their classes, which share nodes; `coarse`: by few of them."""
     lengths = [_at(column, rows) for column in designs.lengths]
     numbers = classes(*lengths) if lengths else np.zeros(rows.size, np.int16)

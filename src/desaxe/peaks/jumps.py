@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..mechanism.names import LENGTHS, sensitivity
 from .course import BESIDE, CROSSING, FROM_INNER, FROM_OUTER, ROUNDED, TURNING
-from .loaded import Rows, Values
+from .loaded import Rows, ValuesUnderLoads
 from .nodes import Array
 from .special import AT_KINK
 
@@ -37,7 +37,7 @@ class Jumps(NamedTuple):
 
 
 def at_jumps(
-    values: Values, kind: int, usable: NDArray[np.bool_], theta: Array, out: Array
+    values: ValuesUnderLoads, kind: int, usable: NDArray[np.bool_], theta: Array, out: Array
 ) -> NDArray[np.int8]:
     """The side of each extremum: -1 or 1 where it is a limit at a jump, else 0.
 
@@ -63,7 +63,7 @@ def at_jumps(
     return side
 
 
-def _complete(values: Values, kind: int, jumps: Jumps, theta: Array, out: Array) -> None:
+def _complete(values: ValuesUnderLoads, kind: int, jumps: Jumps, theta: Array, out: Array) -> None:
     """The nearest double to each jump, with value, slope and gradient there.
 
     The search ends next to it: of so few doubles the slope tells what they change, and no gradient changes.
@@ -85,7 +85,7 @@ def _complete(values: Values, kind: int, jumps: Jumps, theta: Array, out: Array)
         out[2:, rows] = np.where((kind == 0) & (new[0] < 0.0), -new[2:], new[2:])
 
 
-def _jumps(values: Values, theta: Array) -> Jumps | None:
+def _jumps(values: ValuesUnderLoads, theta: Array) -> Jumps | None:
     """The jumps next to extrema; of an angle between two the one before it."""
     angles, kinds = values.course.jumps
     with np.errstate(invalid="ignore"):
@@ -108,7 +108,7 @@ def _jumps(values: Values, theta: Array) -> Jumps | None:
     return Jumps(rows[last], starts[last], sides[last], kinds[places[last]])
 
 
-def _nearest(values: Values, jumps: Jumps) -> Array:
+def _nearest(values: ValuesUnderLoads, jumps: Jumps) -> Array:
     """The doubles that are nearest to jumps on their sides."""
     rows, starts, after = jumps.rows, jumps.starts, jumps.sides > 0
     first, last = np.full((2, rows.size), np.nan)
@@ -122,7 +122,7 @@ def _nearest(values: Values, jumps: Jumps) -> Array:
     return np.where(np.isnan(first), np.where(after, starts, np.nextafter(starts, -inf)), nearest)
 
 
-def _certain(values: Values, rows: Rows, theta: Array, side: Array) -> Array:
+def _certain(values: ValuesUnderLoads, rows: Rows, theta: Array, side: Array) -> Array:
     """The nearest angles to dead centres from which on rounding takes the friction of their own side."""
     steps = np.arange(ROUNDED + 1.0) * np.spacing(np.abs(theta) + 1.0)[:, None]
     angles = theta[:, None] + side[:, None] * steps
@@ -135,7 +135,7 @@ def _certain(values: Values, rows: Rows, theta: Array, side: Array) -> Array:
     return np.asarray(found)
 
 
-def _move(values: Values, kind: int, what: int, rows: Rows, theta: Array, out: Array) -> None:
+def _move(values: ValuesUnderLoads, kind: int, what: int, rows: Rows, theta: Array, out: Array) -> None:
     """Complete gradients of extrema at kinks, where a quantity of the motion keeps its value."""
     parameters = values.search.parameters
     if not rows.size:

@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 
 from ..evaluation.loaded import MOTION, forces_at, plan_for
 from ..evaluation.values import values
-from ..loads.resolve import Forces, Plan
+from ..loads.resolve import Forces, LoadPlan
 from ..mechanism.names import parts, sensitivity
 from ..support.progress import Portions
 from .compiled import NO_TABLES, Groups, plain_finish, search_by_rows
 from .course import Course
 from .nodes import Array
 from .programs import Search, needs_own, programs_of
-from .special import Designs
+from .special import SearchedDesigns
 
 Rows = NDArray[np.intp]
 
@@ -43,20 +43,22 @@ def with_nodes(groups: Groups, own: Array) -> Iterator[tuple[Rows, Array]]:
         yield rows, np.sort(np.append(nodes, own[rows], axis=1), axis=1)
 
 
-class Values:
+class ValuesUnderLoads:
     """A quantity, its slope over theta and its gradient, for designs under loads.
 
     Its methods are the functions that a search calls (declared in `search`), whose only input is the
     design's number.
     """
 
-    def __init__(self, name: str, search: Search, designs: Designs, course: Course, told: Portions) -> None:
+    def __init__(
+        self, name: str, search: Search, designs: SearchedDesigns, course: Course, told: Portions
+    ) -> None:
         self.designs, self.course, self.search, self.told = designs, course, search, told
         self.curve = [name, sensitivity(name, "theta")]
         self.all = [*self.curve, *(sensitivity(name, p) for p in search.parameters)]
         self.bad = np.isnan(np.array(list(designs.columns.values()))).any(axis=0)
         self.derived = not needs_own(search.name, ("theta", *search.parameters))
-        self.plans: dict[int, Plan] = {}
+        self.plans: dict[int, LoadPlan] = {}
 
     def run(self, rows: Rows, nodes: Array, kind: int, theta: Array, out: Array) -> None:
         """Search designs with a row of nodes each; `theta` and `out` are filled at these designs."""
@@ -110,7 +112,9 @@ class Values:
             out[place] += fixed[2 + self.search.parameters.index(force)] * slope
         return list(out)
 
-    def _forces(self, names: list[str], inputs: dict[str, Any], held: dict[str, Rows]) -> tuple[Plan, Forces]:
+    def _forces(
+        self, names: list[str], inputs: dict[str, Any], held: dict[str, Rows]
+    ) -> tuple[LoadPlan, Forces]:
         if len(names) not in self.plans:
             self.plans[len(names)] = plan_for(names, {**inputs, **self.designs.loads})[1]
         plan = self.plans[len(names)]

@@ -29,7 +29,7 @@ from ..runtime.request import as_number, check_common
 from ..support.answer import Answer
 from ..support.forks import IMPORTS
 from ..support.shown import shown as shown_value
-from .designs import KINDS, Plan, Sought, peaks_of_designs, plan_of, search_of
+from .designs import KINDS, PeakPlan, Sought, peaks_of_designs, plan_of, search_of
 from .nodes import Array
 
 MOST_TURNS = 1000  # of a range of crank angles
@@ -157,7 +157,7 @@ def _whole_period(loads: Mapping[str, Load]) -> tuple[float, float]:
     return 0.0, max([TURN, *periods])
 
 
-def _warn_of_columns(given: Mapping[str, Any], plan: "Plan") -> None:
+def _warn_of_columns(given: Mapping[str, Any], plan: "PeakPlan") -> None:
     """A long array of loads and no other array are hardly designs: more likely a load over theta."""
     shapes = {n: np.shape(getattr(given.get(n), "magnitude", given.get(n, 0.0))) for n in plan.needs}
     arrays = {n: shape for n, shape in shapes.items() if shape}

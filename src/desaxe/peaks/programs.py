@@ -34,7 +34,7 @@ class Search(NamedTuple):
     held: tuple[str, ...] = ()  # loads that jump: the angle tells which of their pieces holds
 
 
-class Programs(NamedTuple):
+class SearchPrograms(NamedTuple):
     """The bodies of the loops, and the inputs that differ from design to design."""
 
     curve: Program  # value and slope
@@ -56,7 +56,7 @@ def _by(name: str, parameter: str) -> str:
 
 
 @lru_cache(maxsize=1024)
-def programs_of(search: Search, written_out: bool) -> Programs:
+def programs_of(search: Search, written_out: bool) -> SearchPrograms:
     """The programs of a search; for numba with sine and cosine written out."""
     whole, outputs = _whole(search)
     value, slope, *gradient = outputs
@@ -80,7 +80,9 @@ def programs_of(search: Search, written_out: bool) -> Programs:
     inputs = tuple(name for name in whole.inputs if name in used and name != "theta")
     loads = search.form.under.loads if search.form.under is not None else ()
     over = {load.force: load.over for load in loads}
-    return Programs(*programs, inputs, tuple(over), search.held, not {"theta"}.issuperset(over.values()))
+    return SearchPrograms(
+        *programs, inputs, tuple(over), search.held, not {"theta"}.issuperset(over.values())
+    )
 
 
 @lru_cache(maxsize=1024)

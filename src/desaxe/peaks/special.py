@@ -39,7 +39,7 @@ TOUCHES = 2.0**-20  # rad from an extremum: where its tangent is 0 there, a magn
 REACH = 1.0  # rad: a stall nearer to the range than this shapes what is in it
 
 
-class Designs(NamedTuple):
+class SearchedDesigns(NamedTuple):
     """Flat arrays of the inputs of some designs, what is fixed for all, and the range of theta."""
 
     columns: dict[str, Array]
@@ -60,7 +60,7 @@ class Designs(NamedTuple):
         known = all(name in self.columns for name in LENGTHS)
         return [self.columns[name] for name in LENGTHS] if known else []
 
-    def part(self, rows: Any) -> "Designs":
+    def part(self, rows: Any) -> "SearchedDesigns":
         """The designs of these rows."""
         return self._replace(columns={name: column[rows] for name, column in self.columns.items()})
 
@@ -81,7 +81,7 @@ class Designs(NamedTuple):
         return values_under_loads(list(names), given, self.branch)
 
 
-def are_special(designs: Designs) -> NDArray[np.bool_]:
+def are_special(designs: SearchedDesigns) -> NDArray[np.bool_]:
     """Mask of the designs that cannot turn fully, stall in the range or near it, or have friction."""
     columns = designs.columns
     special = np.full(designs.size, designs.rubs)
@@ -101,7 +101,7 @@ def _stall(omega0: Array, alpha: Array) -> Array:
         return -(omega0 * omega0) / (2.0 * alpha)
 
 
-def own_nodes(designs: Designs) -> tuple[Array, list[tuple[int, float]]]:
+def own_nodes(designs: SearchedDesigns) -> tuple[Array, list[tuple[int, float]]]:
     """Crank angles for each design, ascending, and its limit angles inside the range."""
     low, high = designs.theta
     turns = max(1.0, (high - low) / TURN)
@@ -121,7 +121,7 @@ def own_nodes(designs: Designs) -> tuple[Array, list[tuple[int, float]]]:
     return np.sort(np.clip(both, low, high), axis=1), ends
 
 
-def _limit_angles(designs: Designs) -> Array:
+def _limit_angles(designs: SearchedDesigns) -> Array:
     """The angles at which designs stop being feasible, or stall, in the range or near it; NaN elsewhere."""
     (low, high), columns, lengths = designs.theta, designs.columns, designs.lengths
     found = np.empty((designs.size, 0))
@@ -139,7 +139,7 @@ def _limit_angles(designs: Designs) -> Array:
 # ---- what the extrema mean ------------------------------------------------------------------------
 
 
-class Found(NamedTuple):
+class SearchResult(NamedTuple):
     """The results of a search for some designs, to be completed in place."""
 
     value: Array
@@ -151,10 +151,10 @@ class Found(NamedTuple):
 def complete(
     name: str,
     kind: str,
-    designs: Designs,
+    designs: SearchedDesigns,
     nodes: Array,
     ends: list[tuple[int, float]],
-    found: Found,
+    found: SearchResult,
     parameters: tuple[str, ...],
     kinks: Array | None = None,
     jumps: Array | None = None,
@@ -185,7 +185,7 @@ def complete(
     return usable | (fixed & np.isfinite(found.value) & ~moved_by)
 
 
-def _at_change_point(designs: Designs, found: Found) -> NDArray[np.bool_]:
+def _at_change_point(designs: SearchedDesigns, found: SearchResult) -> NDArray[np.bool_]:
     """True where a crank lies across its guide at a change point, in line with the rod: rates jump there."""
     if not designs.lengths:
         return np.zeros(designs.size, bool)
@@ -195,7 +195,9 @@ def _at_change_point(designs: Designs, found: Found) -> NDArray[np.bool_]:
     return across
 
 
-def stays_zero(designs: Designs, theta: Array, value: Array, slope: Array, kinks: Array) -> NDArray[np.bool_]:
+def stays_zero(
+    designs: SearchedDesigns, theta: Array, value: Array, slope: Array, kinks: Array
+) -> NDArray[np.bool_]:
     """True where the smallest value is a magnitude's 0 but for rounding, which moves and stays 0.
 
     kinks   for each design angles at which a load has a kink, which may be at 0 too
@@ -218,10 +220,10 @@ def score(kind: str, value: Array) -> Array:
 def _at_force_limits(
     name: str,
     kind: str,
-    designs: Designs,
+    designs: SearchedDesigns,
     nodes: Array,
     swept: dict[str, Any],
-    found: Found,
+    found: SearchResult,
     jumps: Array | None,
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Let the last angles with exactly one force balance take part in the search.
@@ -262,7 +264,9 @@ def _status(status: NDArray[np.int8]) -> NDArray[np.int8]:
     return found
 
 
-def _mark_limits(kind: str, found: Found, value: Array, nodes: Array, ends: list[tuple[int, float]]) -> None:
+def _mark_limits(
+    kind: str, found: SearchResult, value: Array, nodes: Array, ends: list[tuple[int, float]]
+) -> None:
     """An extremum at a limit angle has status 2; what has no bound there is infinite."""
     for row, end in ends:
         usable = ~np.isnan(value[row])
@@ -291,7 +295,7 @@ def _grows(nodes: Array, value: Array, end: float, last: float, reference: float
     return bool(abs(last) > 16.0 * abs(farther))
 
 
-def _turn(designs: Designs, found: Found, nodes: Array, value: Array) -> NDArray[np.bool_]:
+def _turn(designs: SearchedDesigns, found: SearchResult, nodes: Array, value: Array) -> NDArray[np.bool_]:
     """Mask of the extrema at a kink or jump whose angle moves with the design."""
     if not designs.rubs:
         return np.zeros(designs.size, np.bool_)

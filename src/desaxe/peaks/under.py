@@ -19,10 +19,12 @@ from .compiled import Groups, Tables
 from .course import Course
 from .nodes import Array
 from .programs import Search
-from .special import Designs
+from .special import SearchedDesigns
 
 
-def search_under(search: Search, names: Sequence[str], designs: Designs, course: Course) -> Search | None:
+def search_under(
+    search: Search, names: Sequence[str], designs: SearchedDesigns, course: Course
+) -> Search | None:
     """The search of total derivatives under tables; None under a function, which nothing compiles.
 
     names   the quantity, its slope over theta, its gradient
@@ -43,7 +45,7 @@ def _line(load: LoadLines, held: bool) -> LoadLines:
     return load._replace(over=load.over or "theta", period=0.0, ways=load.ways and not held)
 
 
-def tables_under(search: Search, designs: Designs, course: Course) -> Tables:
+def tables_under(search: Search, designs: SearchedDesigns, course: Course) -> Tables:
     """The tables of a search, and the rows of its designs."""
     assert search.form.under is not None
     loads = [designs.loads[load.force] for load in search.form.under.loads]

@@ -174,7 +174,7 @@ def locked(path: Path) -> Iterator[None]:
 # ---- upkeep ------------------------------------------------------------------------------------------
 
 
-class Entry(NamedTuple):
+class CachedFile(NamedTuple):
     """A file of the folder: its path, its size [bytes], when it was last used [s since 1970]."""
 
     path: Path
@@ -182,7 +182,7 @@ class Entry(NamedTuple):
     used: float
 
 
-def entries(path: Path) -> list[Entry]:
+def entries(path: Path) -> list[CachedFile]:
     """The files that we keep in a folder, the least recently used first."""
     found = []
     with suppress(OSError), os.scandir(path) as there:
@@ -190,7 +190,7 @@ def entries(path: Path) -> list[Entry]:
             with suppress(OSError):
                 about = one.stat(follow_symlinks=False)
                 if OURS.fullmatch(one.name) and stat.S_ISREG(about.st_mode):
-                    found.append(Entry(Path(one.path), about.st_size, about.st_mtime))
+                    found.append(CachedFile(Path(one.path), about.st_size, about.st_mtime))
     return sorted(found, key=lambda entry: (entry.used, entry.path))
 
 

@@ -16,7 +16,7 @@ from .specialise import plain_form, specialise
 Function = Callable[..., tuple[Any, ...]]
 
 
-class Point(NamedTuple):
+class PointFunction(NamedTuple):
     """A request ready for single points: its function and the inputs that it takes, in order."""
 
     function: Function
@@ -30,25 +30,25 @@ class Point(NamedTuple):
 @lru_cache(maxsize=1024)
 def point_of(
     names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...], accuracy: str = "standard"
-) -> Point:
+) -> PointFunction:
     """The function of a request at single points, with its inputs in order."""
     program = specialise(names, form, fixed, accuracy)
     if accuracy != "extended":
-        return Point(_by_margin(names, form, fixed), program.inputs)
+        return PointFunction(_by_margin(names, form, fixed), program.inputs)
     with IMPORTS:
         from ..compiler.passes.double_double import double_double
 
     program = double_double(program, double_constants())
     function = compile_python(program)
     if "theta" not in program.inputs:
-        return Point(function, program.inputs)
+        return PointFunction(function, program.inputs)
     place = program.inputs.index("theta")
 
     def checked(*values: float) -> tuple[Any, ...]:
         check_angle(accuracy, values[place])
         return function(*values)
 
-    return Point(checked, program.inputs)
+    return PointFunction(checked, program.inputs)
 
 
 def _by_margin(names: tuple[str, ...], form: Variant, fixed: tuple[tuple[str, float], ...]) -> Function:

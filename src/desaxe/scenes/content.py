@@ -47,7 +47,7 @@ class Peak(NamedTuple):
     loads: Mapping[str, Load] = MappingProxyType({})  # that vary with the motion
 
 
-class Picture(NamedTuple):
+class PictureRequest(NamedTuple):
     """A family of curves and the file it goes to."""
 
     title: str
@@ -77,7 +77,7 @@ class Content(NamedTuple):
     inputs: dict[str, Value]
     checks: tuple[Check, ...]
     peaks: tuple[Peak, ...]
-    pictures: tuple[Picture, ...]
+    pictures: tuple[PictureRequest, ...]
     data: str | None
     reduction: Reductions | None = None
     threads: int | None = None

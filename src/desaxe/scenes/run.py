@@ -11,7 +11,7 @@ from ..evaluation.in_units import in_units
 from ..mechanism.unit_system import UnitSystem
 from ..support.progress import Progress, Steps
 from ..support.shown import printable
-from .content import Check, Content, Peak, Picture
+from .content import Check, Content, Peak, PictureRequest
 from .parts.extremes import PeakResult, batches, groups_of, peaks_in_units, peaks_of
 from .parts.grid import blocks_of, values_of_grid
 from .parts.motor import MotorResult, steady_of
@@ -121,7 +121,7 @@ def _jobs(
     return jobs
 
 
-def _drawn(picture: Picture, content: Content, shown_in: UnitSystem, overwrite: bool) -> list[Path]:
+def _drawn(picture: PictureRequest, content: Content, shown_in: UnitSystem, overwrite: bool) -> list[Path]:
     return [draw(picture, content, shown_in, overwrite)]
 
 

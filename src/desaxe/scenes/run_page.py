@@ -7,7 +7,7 @@ from os.path import abspath
 from pathlib import Path
 
 from ..support.shown import printable
-from .document.content import Asked, document_of, require_drawing
+from .document.content import DocumentContext, document_of, require_drawing
 from .document.spread import read_tolerances
 from .document.write import require_document, write_document
 from .run import FAILURES, Run, failure
@@ -26,7 +26,7 @@ class RunPage:
         self.name, self.tolerances, self.overwrite = name, tolerances, overwrite
         words = ["desaxe", "run", source, "--report", name]
         words += [word for input, half in tolerances.items() for word in ("--tolerance", f"{input}={half}")]
-        self.asked = Asked(shlex.join([*words, *["--overwrite"] * overwrite]))
+        self.asked = DocumentContext(shlex.join([*words, *["--overwrite"] * overwrite]))
 
     def require(self, scene: Scene, heard: list[str]) -> None:
         """ValueError or OSError for a place or a tolerance that is bad."""

@@ -58,11 +58,11 @@ Accuracy = Annotated[str | float, Meta(description='"standard", "extended", or a
 Angles = Annotated[tuple[Number, Number], Meta(description='two angles such as ["0 deg", "360 deg"]')]
 
 
-class Section(Struct, frozen=True, forbid_unknown_fields=True):
+class SceneSection(Struct, frozen=True, forbid_unknown_fields=True):
     """A table of the scene file."""
 
 
-class Range(Section, frozen=True):
+class Range(SceneSection, frozen=True):
     """Evenly spaced values, both ends included: by number (`num`) or by distance (`step`)."""
 
     start: Number
@@ -98,7 +98,7 @@ DeadCentre = Annotated[
 ]
 
 
-class Varying(Section, frozen=True):
+class Varying(SceneSection, frozen=True):
     """A range of values, or a load over the motion: over the angle, over Y, or from a dead centre."""
 
     start: Number | None = None
@@ -154,7 +154,7 @@ def _of_inputs(name: str, meaning: str, first: tuple[str, ...] = (), *more: tupl
     rows = [INPUTS[each] for each in dict.fromkeys((*first, *names_in(name)))]
     fields = [(row.name, (Force if row.unit == "N" else Values) | None, None) for row in rows]
     told = {"__doc__": f"`[{name}]`: {meaning}."}
-    options: Any = {"bases": (Section,), "namespace": told, "module": __name__, "frozen": True}
+    options: Any = {"bases": (SceneSection,), "namespace": told, "module": __name__, "frozen": True}
     return msgspec.defstruct(name.capitalize(), [*fields, *more], **options)
 
 
@@ -182,7 +182,7 @@ else:
 SECTIONS: dict[str, Any] = {"mechanism": Mechanism, "motion": Motion, "masses": Masses, "loads": Loads}
 
 
-class KlossTable(Section, frozen=True):
+class KlossTable(SceneSection, frozen=True):
     """An induction motor by Kloss's formula; see `desaxe.kloss`."""
 
     breakdown_torque: Number
@@ -191,7 +191,7 @@ class KlossTable(Section, frozen=True):
     gear: Number = 1.0
 
 
-class MotorTable(Section, frozen=True):
+class MotorTable(SceneSection, frozen=True):
     """A motor: a file or points of its torque over the crank's speed, or Kloss's formula."""
 
     over_omega: MotorPoints | None = None
@@ -207,7 +207,7 @@ _MOTOR = (
 )
 
 
-class SteadyTable(Section, frozen=True):
+class SteadyTable(SceneSection, frozen=True):
     """`[steady]`: the steady state of the machine on its motor; see `desaxe.steady`."""
 
     torque: Annotated[float | str | MotorTable, Meta(description=_MOTOR)]
@@ -215,7 +215,7 @@ class SteadyTable(Section, frozen=True):
     fluctuation: Numbers | None = None
 
 
-class CheckTable(Section, frozen=True):
+class CheckTable(SceneSection, frozen=True):
     """`[[check]]`: printed values, shown next to the computed ones."""
 
     printed: Annotated[
@@ -227,7 +227,7 @@ class CheckTable(Section, frozen=True):
     source: Text = "printed"
 
 
-class ClaimTable(Section, frozen=True):
+class ClaimTable(SceneSection, frozen=True):
     """`[[peak.claim]]`: a claim about the peak of one design."""
 
     at: Design
@@ -235,7 +235,7 @@ class ClaimTable(Section, frozen=True):
     source: Text = "printed"
 
 
-class PeakTable(Section, frozen=True):
+class PeakTable(SceneSection, frozen=True):
     """`[[peak]]`: the refined extremum of a quantity over the crank angle, for many designs."""
 
     quantity: Name
@@ -248,7 +248,7 @@ class PeakTable(Section, frozen=True):
     title: Text = ""
 
 
-class PictureTable(Section, frozen=True):
+class PictureTable(SceneSection, frozen=True):
     """`[[picture]]`: a quantity over one input, one curve for each value of another."""
 
     file: File
@@ -259,7 +259,7 @@ class PictureTable(Section, frozen=True):
     title: Text = ""
 
 
-class Results(Section, frozen=True):
+class Results(SceneSection, frozen=True):
     """`[results]`: where the labelled values go: .nc (NetCDF), .zarr, .csv, .xlsx or .npz (NumPy).
 
     With `store`, a folder such as "press.zarr", they are swept into it chunk by chunk and need not fit
@@ -273,7 +273,7 @@ class Results(Section, frozen=True):
     order: Order | None = None
 
 
-class QuantityTable(Section, frozen=True):
+class QuantityTable(SceneSection, frozen=True):
     """`[quantities.NAME]`: a quantity of your own; see `desaxe.define`."""
 
     expression: Text
@@ -284,7 +284,7 @@ class QuantityTable(Section, frozen=True):
     ] = {}
 
 
-class SceneFile(Section, frozen=True):
+class SceneFile(SceneSection, frozen=True):
     """A scene as it is written."""
 
     title: Text = ""

@@ -24,7 +24,7 @@ from ..support.deadline import Deadline
 from ..support.shown import shown
 from .coordinate import FREE, Coordinate, arc_around, inside
 from .held import Held
-from .model import Drive, Load, Model
+from .model import Actuation, Load, Model
 
 METHODS = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
 OWN = {"t", "theta", "omega", "alpha", "status"}  # keys of the result that no name may take
@@ -130,7 +130,7 @@ def load(name: str, value: Any, unit: str, deadline: Deadline) -> Load:
     return checked
 
 
-def drive_of(torque: Any, F_X: Any, F_Y: Any, deadline: Deadline) -> Drive:
+def drive_of(torque: Any, F_X: Any, F_Y: Any, deadline: Deadline) -> Actuation:
     """Torque and forces; what is not given is 0. Functions are called within the time of a simulation."""
     forces = (0.0 if F_X is None else F_X, 0.0 if F_Y is None else F_Y)
     three = (
@@ -139,10 +139,10 @@ def drive_of(torque: Any, F_X: Any, F_Y: Any, deadline: Deadline) -> Drive:
         load("F_Y", forces[1], "N", deadline),
     )
     steady = not any(map(callable, (torque, *forces)))
-    return Drive(*three, steady, tuple(one for one in three if isinstance(one, Held)))
+    return Actuation(*three, steady, tuple(one for one in three if isinstance(one, Held)))
 
 
-def model_of(values: Mapping[str, float], branch: int, theta0: float, drive: Drive) -> Model:
+def model_of(values: Mapping[str, float], branch: int, theta0: float, drive: Actuation) -> Model:
     """The model of a design in the coordinate of its motion; ValueError if it cannot start at theta0."""
     lengths = tuple(values[name] for name in LENGTHS)
     arc = arc_around(theta0, *lengths)

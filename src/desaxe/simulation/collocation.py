@@ -53,7 +53,7 @@ def solve(h: Array, a: Array, b: Array, c: Array) -> Local:
     return Local(h, found)
 
 
-class Course(NamedTuple):
+class Trajectories(NamedTuple):
     """x and x' of every column on consecutive panels, each from its start."""
 
     start: Array

@@ -28,7 +28,7 @@ short_loops = True
 """
 
 
-class Family(NamedTuple):
+class DesignFamily(NamedTuple):
     """A family of designs: the variant of the program, and the inputs that are 0 in all of them."""
 
     form: Variant
@@ -57,7 +57,7 @@ class Family(NamedTuple):
 
 
 @lru_cache(maxsize=1024)
-def source_of(family: Family, given_torque: bool) -> str:
+def source_of(family: DesignFamily, given_torque: bool) -> str:
     """The text of the module."""
     inputs = _places(family)
     torque = "asked(number, t, theta, omega)" if given_torque else "number"
@@ -72,11 +72,11 @@ def source_of(family: Family, given_torque: bool) -> str:
     return module_text(docstring, numba_parts(parts, *FILES))
 
 
-def _places(family: Family) -> dict[str, str]:
+def _places(family: DesignFamily) -> dict[str, str]:
     return {name: f"p[{at}]" for at, name in enumerate(family.inputs)}
 
 
-def still_in_lanes(family: Family) -> str:
+def still_in_lanes(family: DesignFamily) -> str:
     """`still` for a loop of vectors."""
     program = for_loops(family.programs["still"], constants(), plain=True)
     return of_row("still_in_lanes", program, _places(family))
@@ -100,6 +100,6 @@ def of_row(name: str, program: Program, places: Mapping[str, str]) -> str:
 
 
 @lru_cache(maxsize=32)
-def kernel_of(family: Family, given_torque: bool) -> Native:
+def kernel_of(family: DesignFamily, given_torque: bool) -> Native:
     """The compiled loop over designs, from memory, from disk, or compiled now."""
     return native("designs", source_of(family, given_torque))

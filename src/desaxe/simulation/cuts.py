@@ -17,7 +17,7 @@ from ..mechanism.names import LENGTHS
 from .equations import Resting, State, state_of
 from .events import Q, V
 from .held import Held
-from .one_design import Piece, Run
+from .one_design import MotionRun, Piece
 
 Array = NDArray[np.float64]
 SAME = 1e-9  # of the accelerations: a jump by less is rounding
@@ -31,7 +31,7 @@ class Cuts:
     values  quantities of the design at an angle
     """
 
-    def __init__(self, run: Run, wrt: Sequence[str], values: Values) -> None:
+    def __init__(self, run: MotionRun, wrt: Sequence[str], values: Values) -> None:
         self.run, self.wrt, self.values = run, wrt, values
         self.model = run.model
         self.notes: list[str] = []

@@ -41,7 +41,7 @@ LOST = Mark("normal force", 0.0)  # it changes its side: no event to report, but
 JAMMED = Mark("friction jams", 0.0, status=JAMS)
 
 
-class Step(NamedTuple):
+class IntegrationStep(NamedTuple):
     """A step just made: its law, start, state there, interpolant and end."""
 
     law: Law
@@ -51,7 +51,7 @@ class Step(NamedTuple):
     end: float
 
 
-class Found(NamedTuple):
+class Crossing(NamedTuple):
     """An event inside a step: when, what, and the coordinate with the value that it has there."""
 
     t: float
@@ -91,8 +91,8 @@ def marks_of(model: Model, until: Sequence[float]) -> list[Mark]:
 
 
 def events_in(
-    step: Step, model: Model, marks: list[Mark], left: float, heed: Callable[[], None]
-) -> list[Found]:
+    step: IntegrationStep, model: Model, marks: list[Mark], left: float, heed: Callable[[], None]
+) -> list[Crossing]:
     """All events of a step, in order; `left` is the angle that the stretch started from.
 
     `heed` is called for each passage: it raises where the time for the simulation is over.
@@ -101,7 +101,7 @@ def events_in(
     stops = _changes(step, V, samples)
     if stops:  # what lies beyond one may be reached twice
         samples = _sampled(step, sorted([*samples.t, *stops]))
-    found = [Found(stop, STANDSTILL, V) for stop in stops]
+    found = [Crossing(stop, STANDSTILL, V) for stop in stops]
     thetas = [model.coordinate.place(q)[0] for q in samples.y[:, Q].tolist()]
     for mark in marks:
         for passage in _passages(step, model, mark, samples, thetas, left):
@@ -114,13 +114,13 @@ def events_in(
     return sorted(found, key=lambda event: event.t)
 
 
-def _sampled(step: Step, instants: list[float]) -> Samples:
+def _sampled(step: IntegrationStep, instants: list[float]) -> Samples:
     return Samples(instants, step.inside(np.array(instants)).T)
 
 
 def _passages(
-    step: Step, model: Model, mark: Mark, samples: Samples, thetas: list[float], left: float
-) -> Iterator[Found]:
+    step: IntegrationStep, model: Model, mark: Mark, samples: Samples, thetas: list[float], left: float
+) -> Iterator[Crossing]:
     """The events at which the crank passes an angle; a limit angle is detected in the coordinate."""
     coordinate = model.coordinate
     limit = mark.kind == "limit"
@@ -132,10 +132,10 @@ def _passages(
                 continue
             q = angle if limit else coordinate.q(angle)
             t = root(lambda t, there: float(step.inside(t)[Q]) - there, *times, q)
-            yield Found(t, mark, Q, q)
+            yield Crossing(t, mark, Q, q)
 
 
-def _just_ahead(step: Step, model: Model, mark: Mark) -> Iterator[Found]:
+def _just_ahead(step: IntegrationStep, model: Model, mark: Mark) -> Iterator[Crossing]:
     """A limit angle so close ahead of a step that none can start there: it is read off the interpolant."""
     end = model.coordinate.ends[mark.which == "last"]
     before, now = (float(step.inside(t)[Q]) for t in (step.end - 1e-3 * (step.end - step.t), step.end))
@@ -144,7 +144,7 @@ def _just_ahead(step: Step, model: Model, mark: Mark) -> Iterator[Found]:
         return
     far = step.end + 2e-3 * (step.end - step.t) * gap / (now - before)
     if (end - float(step.inside(far)[Q])) * gap < 0.0:
-        yield Found(root(lambda t: float(step.inside(t)[Q]) - end, step.end, far), mark, Q, end)
+        yield Crossing(root(lambda t: float(step.inside(t)[Q]) - end, step.end, far), mark, Q, end)
 
 
 def _between(a: float, b: float, angle: float, every: float) -> list[float]:
@@ -156,13 +156,13 @@ def _between(a: float, b: float, angle: float, every: float) -> list[float]:
     return [value for value in (angle + every * k for k in counts) if value != a]
 
 
-def _changes(step: Step, place: int, samples: Samples) -> list[float]:
+def _changes(step: IntegrationStep, place: int, samples: Samples) -> list[float]:
     """The events at which a coordinate changes its sign."""
     pairs = zip(pairwise(samples.y[:, place].tolist()), pairwise(samples.t), strict=True)
     return [root(lambda t: float(step.inside(t)[place]), *times) for (a, b), times in pairs if a * b < 0.0]
 
 
-def _kinks(step: Step, law: Rubbing, model: Model, samples: Samples) -> Iterator[Found]:
+def _kinks(step: IntegrationStep, law: Rubbing, model: Model, samples: Samples) -> Iterator[Crossing]:
     """The first event at which the normal force changes sign or the friction jams."""
 
     def guide(t: float) -> Contact:
@@ -178,11 +178,11 @@ def _kinks(step: Step, law: Rubbing, model: Model, samples: Samples) -> Iterator
     for (a, b), times in zip(pairwise(contacts), pairwise(samples.t), strict=True):
         if law.pressed * b.normal_free < -b.noise:
             within = law.pressed * a.normal_free > 0.0
-            yield Found(root(lambda t: guide(t).normal_free, *times) if within else times[0], LOST)
+            yield Crossing(root(lambda t: guide(t).normal_free, *times) if within else times[0], LOST)
             return
         for way in (1.0, -1.0):
             if way * law.pressed * b.wedge > JAMS_AT >= way * law.pressed * a.wedge:
-                yield Found(root(beyond, *times, way), JAMMED)
+                yield Crossing(root(beyond, *times, way), JAMMED)
                 return
 
 

@@ -12,7 +12,7 @@ from .equations import Law, State, state_of
 from .events import Q, W
 from .held import Held
 from .model import Model
-from .one_design import Piece, Run
+from .one_design import MotionRun, Piece
 from .residual import energy_residual, told_of
 from .result import FAILED, LIMIT, REST, SENSITIVITIES, Event, Simulation
 
@@ -86,7 +86,7 @@ def instants_of(times: Any, end: float) -> Array:
     return np.asarray(np.linspace(0.0, end, SAMPLES) if times is None else times[times <= end])
 
 
-def integrated(run: Run, names: Sequence[str], times: Any, given: Mapping[str, Any]) -> Simulation:
+def integrated(run: MotionRun, names: Sequence[str], times: Any, given: Mapping[str, Any]) -> Simulation:
     """The result of a motion of the integrator."""
     t = instants_of(times, run.t)
     motion = Motion(run.model, run.pieces, run.events, run.status, run.t)

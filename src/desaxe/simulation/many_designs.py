@@ -22,7 +22,7 @@ from ..support.interrupts import stopped_early
 from ..support.progress import Portions, progress_bar
 from . import nodes, tableau
 from .checks import grows
-from .compiled import Family, kernel_of
+from .compiled import DesignFamily, kernel_of
 from .coordinate import arc_around, inside
 from .energy.many import NOT_HERE, follow_many
 from .energy.panels import Designs
@@ -72,7 +72,7 @@ def simulate_many(
     del arrays["mu"], flat["mu"]  # designs with friction run one after the other
     torque = compiled(starts["torque"]) if callable(starts["torque"]) else None
     scalars = {name: float(array) if array.ndim == 0 else array for name, array in arrays.items()}
-    family = Family(form_of(given_centres(given)), fixed_zeros(scalars))
+    family = DesignFamily(form_of(given_centres(given)), fixed_zeros(scalars))
     t = np.linspace(0.0, how[1], SAMPLES) if times is None else times
     setup, status = setup_of(flat | ({} if torque is None else {"torque": 0.0 * flat["theta0"]}), branch)
     rows = np.stack([flat[name] for name in family.inputs], axis=1)

@@ -10,7 +10,7 @@ from ..mechanism.closed.functions import closed_form
 from ..mechanism.names import CENTRES, LENGTHS
 from ..mechanism.program import Variant
 from ..runtime.kernels import STRUCTURAL_ZEROS
-from ..runtime.point import Point, point_of
+from ..runtime.point import PointFunction, point_of
 from .coordinate import Coordinate
 from .held import Held
 
@@ -25,7 +25,7 @@ CONTACT = ("N_C", "N_C_wrt_alpha", "lean")
 UNLOADED = ("omega", "alpha", "mu", "F_X", "F_Y")
 
 
-class Drive(NamedTuple):
+class Actuation(NamedTuple):
     """The torque [N m] and the forces on the slider [N] that drive the mechanism."""
 
     torque: Load
@@ -43,7 +43,7 @@ class Model:
     """One design: its inputs, functions and drive."""
 
     def __init__(
-        self, values: Mapping[str, float], branch: int, coordinate: Coordinate, drive: Drive
+        self, values: Mapping[str, float], branch: int, coordinate: Coordinate, drive: Actuation
     ) -> None:
         self.values, self.coordinate, self.drive = values, coordinate, drive
         self.mu = values["mu"]
@@ -65,7 +65,7 @@ class Model:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A pickle has the design but not what drives it, which may be any function."""
-        return Model, (self.values, int(self.sign), self.coordinate, Drive(_gone, _gone, _gone, False))
+        return Model, (self.values, int(self.sign), self.coordinate, Actuation(_gone, _gone, _gone, False))
 
     @property
     def lengths(self) -> tuple[float, ...]:
@@ -109,7 +109,7 @@ def fixed_zeros(values: Mapping[str, Any]) -> tuple[tuple[str, float], ...]:
     )
 
 
-def bound(point: Point, values: Mapping[str, float], free: Sequence[str]) -> Function:
+def bound(point: PointFunction, values: Mapping[str, float], free: Sequence[str]) -> Function:
     """The point function with a design put in; what is left are the `free` inputs, in their order."""
     row = [values.get(name, 0.0) for name in point.inputs]
     places = [(point.inputs.index(name), at) for at, name in enumerate(free) if name in point.inputs]

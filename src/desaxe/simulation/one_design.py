@@ -19,10 +19,10 @@ from .events import (
     NEVER,
     SHORT,
     STANDSTILL,
-    Found,
+    Crossing,
+    IntegrationStep,
     Mark,
     Q,
-    Step,
     V,
     angle_of,
     events_in,
@@ -45,7 +45,7 @@ ROUNDING = 1e-16  # of an angle
 CHATTER = 20  # standstills in a row, all within a millionth of the time
 
 
-class Tolerance(NamedTuple):
+class StepControl(NamedTuple):
     """The control of the integration: method, tolerances, sizes of (q, v, W), limits of steps."""
 
     method: str
@@ -65,7 +65,7 @@ class Piece(NamedTuple):
     law: Law
 
 
-class Constant:
+class AtRest:
     """The state of a crank that rests."""
 
     def __init__(self, y: Array) -> None:
@@ -76,7 +76,7 @@ class Constant:
         return np.multiply.outer(self.y, np.ones(np.shape(t)))
 
 
-class Run:
+class MotionRun:
     """One motion, from its start to its end."""
 
     def __init__(
@@ -85,7 +85,7 @@ class Run:
         y: Array,
         t_end: float,
         until: tuple[float, ...],
-        tolerance: Tolerance,
+        tolerance: StepControl,
         deadline: Deadline,
     ) -> None:
         self.model, self.t_end, self.tolerance, self.deadline = model, t_end, tolerance, deadline
@@ -103,7 +103,7 @@ class Run:
         self.pressed: float | None = None  # the side of the guide after a change of side
         self.marks = marks_of(model, until)
 
-    def to_the_end(self) -> "Run":
+    def to_the_end(self) -> "MotionRun":
         """Run until the end time, or what comes before it."""
         while self.status == NEVER:
             try:
@@ -226,7 +226,7 @@ class Run:
             self.tell("break-away", self.state)
 
     def _keep_still(self, start: float) -> None:
-        self.pieces.append(Piece(start, self.t, Constant(self.y), Resting()))
+        self.pieces.append(Piece(start, self.t, AtRest(self.y), Resting()))
         self.accepted.append((self.t, self.y))
 
     # ---- in motion ----------------------------------------------------------------------------
@@ -261,7 +261,7 @@ class Run:
                 self._late()
                 return
             self.next_step = solver.t - self.t
-            step = Step(law, self.t, self.y, solver.dense_output(), solver.t)
+            step = IntegrationStep(law, self.t, self.y, solver.dense_output(), solver.t)
             turns = abs(float(solver.y[Q]) - float(self.y[Q])) / TURN
             if not turns <= MOST_TURNS:
                 self._fail(law, f"{turns:.3g} turns in one step, at most {MOST_TURNS}: give max_step=")
@@ -286,11 +286,11 @@ class Run:
                 return
         for mark in self.marks:
             if mark.kind == "limit" and abs(mark.angle - state.theta) < AT_LIMIT:
-                self._tell_end(Found(self.t, mark, Q, float(self.y[Q])))
+                self._tell_end(Crossing(self.t, mark, Q, float(self.y[Q])))
                 return
         self.stop(FAILED, failure(self.t, state.theta, state.omega, reason))
 
-    def _meet_all(self, step: Step) -> bool:
+    def _meet_all(self, step: IntegrationStep) -> bool:
         """Record the events of a step; return True if one of them cuts the motion."""
         found = events_in(step, self.model, self.marks, self.left, self.deadline.check)
         events = [event for event in found if event.t <= self.t_end]
@@ -315,12 +315,12 @@ class Run:
         turned = mark is STANDSTILL and any(held.turns_with_the_slider for held in self.model.drive.held)
         return mark.status != NEVER or mark.kind == KINK or turned
 
-    def _note(self, found: Found, step: Step) -> None:
+    def _note(self, found: Crossing, step: IntegrationStep) -> None:
         """Record an event that does not cut the motion."""
         y = step.inside(found.t)
         self._tell_of(found, state_of(self.model, float(y[Q]), float(y[V])))
 
-    def _tell_of(self, found: Found, state: State) -> None:
+    def _tell_of(self, found: Crossing, state: State) -> None:
         """Record an event with its exact angle, or with exactly zero speed."""
         mark = found.mark
         if mark.kind == KINK:
@@ -331,7 +331,7 @@ class Run:
         which = "" if mark.kind == "limit" else mark.which
         self.events.append(Event(mark.kind, float(found.t), theta, omega, which))
 
-    def _cut_at(self, now: list[Found], step: Step) -> None:
+    def _cut_at(self, now: list[Crossing], step: IntegrationStep) -> None:
         """End this stretch at events of one instant: what ends the motion leads, then an angle."""
         leader = min(now, key=lambda event: (event.mark.status == NEVER, event.place < 0))
         t, y = self._cut(leader, step)
@@ -349,7 +349,7 @@ class Run:
         elif leader.mark is not LOST:
             self._tell_end(leader._replace(t=t))
 
-    def _tell_end(self, found: Found) -> None:
+    def _tell_end(self, found: Crossing) -> None:
         """Record the event at which a stretch ends, and stop if the motion ends with it."""
         mark = found.mark
         limit = mark.kind == "limit"
@@ -374,7 +374,7 @@ class Run:
         """0 with a massive rod or slider; else the crank runs into the limit."""
         return 0.0 if self.model.coordinate.half else self.state.omega
 
-    def _cut(self, found: Found, step: Step) -> tuple[float, Array]:
+    def _cut(self, found: Crossing, step: IntegrationStep) -> tuple[float, Array]:
         """The instant of an event and the state there, integrated to, not interpolated."""
         if found.mark.kind == "limit":
             return self._cut_at_limit(found, step)
@@ -389,7 +389,7 @@ class Run:
         y[found.place] = found.value
         return t, y
 
-    def _cut_at_limit(self, found: Found, step: Step) -> tuple[float, Array]:
+    def _cut_at_limit(self, found: Crossing, step: IntegrationStep) -> tuple[float, Array]:
         """Cut at a limit angle, next to which S and the rates lose their digits.
 
         Integrated to a little before it; the interpolant tells what is left.
@@ -404,7 +404,7 @@ class Run:
         y[Q] = found.value
         return t, y
 
-    def _step_to(self, step: Step, t: float) -> Array:
+    def _step_to(self, step: IntegrationStep, t: float) -> Array:
         """The state at an instant inside a step."""
         if t - step.t <= 1e-15 * abs(t):
             return step.y.copy()

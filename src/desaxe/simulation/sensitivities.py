@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from .cuts import TOUCHED
 from .history import add_slopes
-from .one_design import Run
+from .one_design import MotionRun
 from .result import FAILED, JAMS, Event, Simulation
-from .slopes import Slopes
+from .slopes import TorqueSlopes
 from .variational import Variations
 from .work import of_work
 
@@ -21,7 +21,7 @@ ENDS = ("angle", "standstill", "limit", "no inertia")
 
 
 def add_sensitivities(
-    result: Simulation, run: Run, wrt: Sequence[str], given: Mapping[str, Any], slopes: Slopes
+    result: Simulation, run: MotionRun, wrt: Sequence[str], given: Mapping[str, Any], slopes: TorqueSlopes
 ) -> None:
     """Add theta_wrt_<p>, omega_wrt_<p>, t_last_wrt_<p> and work_wrt_<p>, and `wrt` of each event."""
     try:

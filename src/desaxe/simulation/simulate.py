@@ -36,9 +36,9 @@ from .held import Held
 from .history import instants_of, integrated
 from .many_designs import is_array, simulate_many
 from .model import Load, Model
-from .one_design import Run, Tolerance
+from .one_design import MotionRun, StepControl
 from .result import Simulation
-from .slopes import Slopes
+from .slopes import TorqueSlopes
 
 LEAST_ATOL = 1e-100  # with none at all a state of 0 would have no scale
 
@@ -162,7 +162,7 @@ def simulate(
     instants, angles, rtol = read_times(times, end), read_until(until), read_rtol(rtol)
     starts = {"theta0": theta0, "omega_start": omega_start, "torque": torque}
     by = read_wrt(wrt, {**given, **starts})
-    slopes = Slopes(torque, derivative) if by else None
+    slopes = TorqueSlopes(torque, derivative) if by else None
     several = any(map(is_array, (*given.values(), *starts.values())))
     if method == ENERGY:
         options = {"max_step=": max_step is not None, "atol=": atol is not None, "wrt = 'mu'": "mu" in by}
@@ -217,9 +217,9 @@ def simulate(
     energy = energy_scale(model, *start, end)
     size = np.array([1.0, sqrt(energy), energy])
     by_method = read_method(method or INTEGRATOR)
-    tolerance = Tolerance(by_method, rtol, _atol(atol, rtol, size, by_method), size, longest, max_steps)
+    tolerance = StepControl(by_method, rtol, _atol(atol, rtol, size, by_method), size, longest, max_steps)
     v = start[1] * sqrt(model.inertia(start[0]))
-    run = Run(model, np.array([model.coordinate.q(start[0]), v, 0.0]), end, angles, tolerance, deadline)
+    run = MotionRun(model, np.array([model.coordinate.q(start[0]), v, 0.0]), end, angles, tolerance, deadline)
     with np.errstate(all="ignore"):  # values beyond every double end the motion with a status
         run.to_the_end()
     result = integrated(run, wanted, instants, {**known, "F_X": drive.F_X, "F_Y": drive.F_Y})

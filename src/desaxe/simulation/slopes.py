@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 ROLES = ("t", "theta", "omega")
 
 
-class Slopes:
+class TorqueSlopes:
     """dT/dtheta and dT/domega along a motion; TypeError for a function whose derivative is not given."""
 
     def __init__(self, torque: Any, derivative: Callable[..., Any] | None) -> None:

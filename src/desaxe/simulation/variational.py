@@ -21,15 +21,15 @@ from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
 from ..runtime.compiled_only import uncompiled
-from .collocation import NODES, ONCE, PLACES, SERIES, TWICE, Course, Local, solve
+from .collocation import NODES, ONCE, PLACES, SERIES, TWICE, Local, Trajectories, solve
 from .cuts import Cuts
 from .equations import Resting, state_of
 from .events import Q
 from .friction import Rubbing
-from .one_design import Piece, Run
+from .one_design import MotionRun, Piece
 from .result import LIMIT
 from .rubbing_slopes import Signs, rubbing_slopes
-from .slopes import Slopes
+from .slopes import TorqueSlopes
 
 Array = NDArray[np.float64]
 RESOLVED = 1e-9  # of a series: its last terms, at most
@@ -55,7 +55,9 @@ class Variations:
     slopes  of the torque
     """
 
-    def __init__(self, run: Run, wrt: Sequence[str], given: Mapping[str, Any], slopes: Slopes) -> None:
+    def __init__(
+        self, run: MotionRun, wrt: Sequence[str], given: Mapping[str, Any], slopes: TorqueSlopes
+    ) -> None:
         self.run, self.wrt, self.given, self.slopes = run, tuple(wrt), given, slopes
         self.inputs = [p for p in wrt if p not in (*STARTS, "torque")]
         self.cuts = Cuts(run, self.wrt, self.values)
@@ -149,7 +151,7 @@ class Variations:
 
     # ---- from the start to the end ------------------------------------------------------------
 
-    def _joined(self, piece: Array, start: Array, local: Local) -> Course:
+    def _joined(self, piece: Array, start: Array, local: Local) -> Trajectories:
         """The course of theta_p and omega_p through all pieces."""
         x, v = (np.array([float(p == own) for p in self.wrt]) for own in STARTS)
         rows: list[tuple[float, float, Array, Array, Array]] = []
@@ -166,7 +168,7 @@ class Variations:
                 own = series[:, 2:] + series[:, :1] * x + series[:, 1:2] * y
                 rows.append((start[row], h, x, y, own))
                 x, v = x + y + _END_TWICE @ own, (y + _END_ONCE @ own) / h
-        return Course(*(np.array(column) for column in zip(*rows, strict=True)))
+        return Trajectories(*(np.array(column) for column in zip(*rows, strict=True)))
 
     # ---- along the motion ----------------------------------------------------------------------
 

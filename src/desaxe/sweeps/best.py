@@ -20,7 +20,7 @@ from ..support.forks import IMPORTS
 from ..support.shown import shown
 from .layout import layout_of
 from .ranking import BestDesigns, Ranking
-from .request import Request, Sweep, identity, reductions_asked
+from .request import Sweep, SweepRequest, identity, reductions_asked
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -63,7 +63,7 @@ def _named(by: Any, reduce: Any) -> tuple[str, str | None]:
         raise ValueError(str(error).replace("reduce", "by", 1)) from None
 
 
-def search_of(asked: Request, by: Any, count: int, order: str | None) -> Sweep:
+def search_of(asked: SweepRequest, by: Any, count: int, order: str | None) -> Sweep:
     """The search for `count` designs, checked; over an axis theta a design is ranked by its extreme."""
     names, branch, accuracy, reduce = asked.names, asked.branch, asked.accuracy, asked.reduce
     name, kind = _named(by, reduce)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 IDENTITY = ("request", "version", "digest")
 
 
-class Request(NamedTuple):
+class SweepRequest(NamedTuple):
     """The request of a sweep: names and inputs, and how they are computed, cut and reduced."""
 
     names: str | Sequence[str]
@@ -62,7 +62,7 @@ class Sweep(NamedTuple):
         return self.plan.cut(self.layout.chunk).blocks(self.layout.chunk)
 
 
-def sweep_of(asked: Request) -> Sweep:
+def sweep_of(asked: SweepRequest) -> Sweep:
     """The sweep of a request, checked; nothing is computed or written."""
     names, branch, accuracy = asked.names, asked.branch, asked.accuracy
     if asked.reduce is not None:

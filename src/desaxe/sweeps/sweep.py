@@ -23,7 +23,7 @@ from .estimate import CHUNK, announcement, seconds_of
 from .kept import Kept
 from .layout import Layout, bytes_of
 from .place import CHUNKS, clear, free_at, placed, require_room
-from .request import Request, Sweep, sweep_of
+from .request import Sweep, SweepRequest, sweep_of
 from .skeleton import COMPLETE, STATE, as_signed
 from .store import attributes, held, open_store, remove_strays, set_state, sync_folders
 from .tasks import Done, InMemory, Sink, Stored, Task, is_absent, run
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 Tell = Callable[[str], None]
 
 
-class Way(NamedTuple):
+class RunOptions(NamedTuple):
     """The options of a run: memory for chunks in flight, Dask client or threads, callbacks."""
 
     memory: int | None
@@ -44,7 +44,7 @@ class Way(NamedTuple):
     tell: Tell | None
 
 
-def stored_sweep(sweep: Sweep, store: str | PathLike[str], overwrite: bool, way: Way) -> "xr.Dataset":
+def stored_sweep(sweep: Sweep, store: str | PathLike[str], overwrite: bool, way: RunOptions) -> "xr.Dataset":
     """Run a sweep into a store, or resume one that was stopped; return the opened Dataset."""
     root = Path(os.path.abspath(store))
     sweep = placed(sweep, root, overwrite, way.memory)
@@ -70,7 +70,7 @@ def _resumable(sweep: Sweep, root: Path) -> Iterator[None]:
         raise
 
 
-def _fill(sweep: Sweep, root: Path, way: Way) -> None:
+def _fill(sweep: Sweep, root: Path, way: RunOptions) -> None:
     """Compute the chunks that a store lacks."""
     absent = _absent_bytes(sweep, root)
     if absent:
@@ -86,7 +86,7 @@ def _fill(sweep: Sweep, root: Path, way: Way) -> None:
     set_state(root, COMPLETE)
 
 
-def _fill_by_rank(search: Sweep, root: Path, way: Way) -> None:
+def _fill_by_rank(search: Sweep, root: Path, way: RunOptions) -> None:
     """Search for the best designs, or go on with that, unless a store has them."""
     there = attributes(root) or {}
     if there.get(STATE) == COMPLETE and as_signed(root)[0]:
@@ -106,14 +106,14 @@ def _announcement(sweep: Sweep, root: Path, cores: int) -> str:
     return announcement(plan.points, variables, plan.bytes, sweep.layout, seconds, free_at(root))
 
 
-def _crew(layout: Layout, way: Way) -> AbstractContextManager[Crew]:
+def _crew(layout: Layout, way: RunOptions) -> AbstractContextManager[Crew]:
     if way.client is not None:
         return cluster(way.client)
     at_once = layout.at_once(way.memory)
     return thread_crew(min(way.threads or available(), at_once, max(1, layout.chunks)))
 
 
-def _inner(crew: Crew, way: Way) -> int:
+def _inner(crew: Crew, way: RunOptions) -> int:
     """Threads of each kernel, so that all cores work where few chunks fit into memory."""
     return 1 if way.client is not None else max(1, (way.threads or available()) // crew.size)
 
@@ -141,7 +141,7 @@ def _ahead(crew: Crew) -> int:
 
 
 def _done(
-    sweep: Sweep, sink: Sink, crew: Crew, way: Way, count: Count, before: Container[int] = ()
+    sweep: Sweep, sink: Sink, crew: Crew, way: RunOptions, count: Count, before: Container[int] = ()
 ) -> Iterator[Done]:
     """The chunks of a sweep as they are done, counted; those of `before` are not done again."""
     versions, inner = (sweep.identity["version"], sweep.identity["digest"]), _inner(crew, way)
@@ -155,7 +155,7 @@ def _done(
         yield done
 
 
-def swept(sweep: Sweep, way: Way) -> "xr.Dataset":
+def swept(sweep: Sweep, way: RunOptions) -> "xr.Dataset":
     """Run a sweep whose result fits into memory, a reduced one; its Dataset."""
     arrays = {str(n): np.empty(v.shape, v.dtype) for n, v in sweep.template.data_vars.items()}
     sweep.layout.require_memory(way.memory)
@@ -167,7 +167,7 @@ def swept(sweep: Sweep, way: Way) -> "xr.Dataset":
     return sweep.template.assign({n: sweep.template[n].copy(data=a) for n, a in arrays.items()})
 
 
-def searched(search: Sweep, way: Way, root: Path | None = None) -> "xr.Dataset":
+def searched(search: Sweep, way: RunOptions, root: Path | None = None) -> "xr.Dataset":
     """The best designs, the best first; a search that was stopped goes on from the chunks that are kept."""
     ranking, kept = search.ranking, Kept(search.layout.chunks, root)
     assert ranking is not None
@@ -223,8 +223,8 @@ def run_sweep(
     room = bytes_of(memory)
     if client is not None:
         require_workers(client)
-    way = Way(room, client, threads, watch, tell)
-    asked = Request(names, inputs, branch, accuracy, threads, reduce, peaks, chunks, room)
+    way = RunOptions(room, client, threads, watch, tell)
+    asked = SweepRequest(names, inputs, branch, accuracy, threads, reduce, peaks, chunks, room)
     if best is not None or by is not None:
         count = _count(best, by)
         if peaks:

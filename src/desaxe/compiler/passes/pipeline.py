@@ -20,7 +20,7 @@ class Pass(NamedTuple):
     run: Callable[[Program], Program]
 
 
-class Step(NamedTuple):
+class PassCost(NamedTuple):
     """The name of a pass and the cost of the program after it."""
 
     name: str
@@ -45,13 +45,13 @@ def optimise(program: Program, fixed: Mapping[str, float] | None = None, single:
 
 def optimise_in_steps(
     program: Program, fixed: Mapping[str, float] | None = None, without: Collection[str] = ()
-) -> tuple[Program, list[Step]]:
+) -> tuple[Program, list[PassCost]]:
     """The program after every pass that is not switched off; the cost after each."""
     unknown = set(without) - {step.name for step in PASSES}
     if unknown:
         raise ValueError(f"no pass {', '.join(sorted(unknown))}: {', '.join(step.name for step in PASSES)}")
     stages = list(_stages(program, fixed or {}, without))
-    return stages[-1][1], [Step(name, cost_of(stage)) for name, stage in stages]
+    return stages[-1][1], [PassCost(name, cost_of(stage)) for name, stage in stages]
 
 
 def _stages(

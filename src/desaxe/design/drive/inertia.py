@@ -47,7 +47,7 @@ class Flywheel(NamedTuple):
     without: float
 
 
-class State(NamedTuple):
+class FlywheelMotion(NamedTuple):
     """The motion with a flywheel, on panels: `omega`, `alpha`; where it is fastest and slowest."""
 
     panels: Panels
@@ -80,7 +80,7 @@ def flywheel_for(design: Turn, fluctuation: float) -> Flywheel | None:
     return Flywheel(state.inertia, state.torque, inertia, torque, state.panels.x.ravel(), omega, *places)
 
 
-def _store(design: Turn, fluctuation: float, before: State | None) -> State:
+def _store(design: Turn, fluctuation: float, before: FlywheelMotion | None) -> FlywheelMotion:
     """One iteration: the flywheel under the loads and the friction of the previous motion."""
     names = ["T_in", "M_eff", "M_eff_wrt_theta"]
     motion = None if before is None else before.motion
@@ -111,7 +111,7 @@ def _store(design: Turn, fluctuation: float, before: State | None) -> State:
         "omega": design.direction * np.sqrt(z),
         "alpha": (drive - load - 0.5 * slope * z) / inertia,
     }
-    return State(Panels(panels.edges, values), J, drive, fastest, slowest, without)
+    return FlywheelMotion(Panels(panels.edges, values), J, drive, fastest, slowest, without)
 
 
 def storing(panels: Panels, work: Array, M: Array, speed: Any, share: Any) -> tuple[Any, Any, Any, Any]:
@@ -138,7 +138,7 @@ def _without(inertia: Callable[[float], float], fluctuation: float, J: float) ->
     return root(inertia, low, high) if inertia(high) < 0.0 else inf
 
 
-def _gradient(design: Turn, fluctuation: float, state: State) -> dict[str, tuple[float, float]]:
+def _gradient(design: Turn, fluctuation: float, state: FlywheelMotion) -> dict[str, tuple[float, float]]:
     """The derivatives of torque and inertia by parameters and fluctuation; see the head of this file."""
     own = [name for name in design.parameters if name != "omega0"]
     if not state.inertia:  # none is needed, and a little more or less of anything changes nothing
@@ -181,6 +181,6 @@ def _gradient(design: Turn, fluctuation: float, state: State) -> dict[str, tuple
     return {name: (float(T), float(J)) for name, T, J in zip(sides, *solved, strict=True)}
 
 
-def _torque(design: Turn, names: list[str], state: State) -> dict[str, Array]:
+def _torque(design: Turn, names: list[str], state: FlywheelMotion) -> dict[str, Array]:
     """The derivatives of the torque along the motion."""
     return design.values(names, state.panels.x.ravel(), state.motion)

@@ -15,7 +15,7 @@ from ...support.checks import whole_number
 from ...support.forks import IMPORTS
 from ...support.shown import shown
 from .data import MOST, Array, Data, read_data
-from .model import Model
+from .model import FittedModel
 from .result import DONE, OPEN, STOPPED, WORDS, Fit
 from .solve import solve
 from .spread import LOSSES, inflation, spread_of
@@ -89,7 +89,7 @@ def fit(
             f"fit: {read.size} samples for {len(unknowns)} unknowns: at least as many are needed"
         )
     given = _sigmas(sigma, read)
-    model = Model(read, unknowns, fixed, branch, given or dict.fromkeys(read.measured, 1.0))
+    model = FittedModel(read, unknowns, fixed, branch, given or dict.fromkeys(read.measured, 1.0))
     if not given:
         _set_sigma(model, loss, seed)
     found = solve(model, loss, seed, absolute=bool(given))
@@ -121,7 +121,7 @@ def _sigma(name: str, value: Any, samples: Array) -> float:
     return found
 
 
-def _set_sigma(model: Model, loss: str, seed: int) -> None:
+def _set_sigma(model: FittedModel, loss: str, seed: int) -> None:
     """Set sigma to the scatter of the residuals, robustly: a robust loss needs a scale."""
     (name,) = model.sigma
     model.sigma[name] = float(np.nanstd(model.data.measured[name])) or 1.0
@@ -133,7 +133,7 @@ def _set_sigma(model: Model, loss: str, seed: int) -> None:
 
 
 @np.errstate(all="ignore")  # what is not fixed by the data is infinite or NaN
-def _result(model: Model, found: Any, loss: str, absolute: bool) -> Fit:
+def _result(model: FittedModel, found: Any, loss: str, absolute: bool) -> Fit:
     residuals, jacobian = model.residuals(found.x), model.jacobian(found.x)
     sizes = np.array(
         [abs(x) if abs(x) > 1e-6 * u.scale else u.scale for x, u in zip(found.x, model.unknowns, strict=True)]
@@ -202,7 +202,7 @@ def _student(freedom: int) -> float:
     return float(stdtrit(freedom, 0.975)) if freedom else np.inf
 
 
-def _at_bound(model: Model, x: Any) -> dict[str, str]:
+def _at_bound(model: FittedModel, x: Any) -> dict[str, str]:
     found = {}
     for value, u in zip(x, model.unknowns, strict=True):
         if value - u.low <= EDGE * u.scale:

@@ -24,7 +24,7 @@ from .unknowns import OFFSET, Unknown
 Array = NDArray[np.float64]
 
 
-class Model:
+class FittedModel:
     """Values and derivatives of the measured quantities at the unknowns' values."""
 
     def __init__(

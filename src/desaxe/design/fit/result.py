@@ -12,7 +12,7 @@ from ...mechanism.unit_system import SI, UnitSystem
 from ...support.answer import Answer
 from ...support.extras import needed
 from ...support.text_table import table
-from .model import Model
+from .model import FittedModel
 
 DONE, STOPPED, OPEN = map(int, FitStatus)
 WORDS = {int(status): status.words for status in FitStatus}
@@ -21,7 +21,7 @@ WORDS = {int(status): status.words for status in FitStatus}
 class Fit(Answer):
     """The result of `fit`; see there for its keys. `system` is that of its numbers, report and plot."""
 
-    def __init__(self, found: dict[str, Any], model: Model) -> None:
+    def __init__(self, found: dict[str, Any], model: FittedModel) -> None:
         super().__init__(found, _units_of(found, model))
         self._found, self._model = found, model
 
@@ -123,7 +123,7 @@ class Fit(Answer):
         return figure
 
 
-def _unit_of(name: str, model: Model) -> Of:
+def _unit_of(name: str, model: FittedModel) -> Of:
     """The unit of an unknown or a quantity: a bias is in the unit of its quantity, a scale in none."""
     measured = model.data.measured
     if any(name == f"{q}_scale" for q in measured):
@@ -131,7 +131,7 @@ def _unit_of(name: str, model: Model) -> Of:
     return unit_of(next((q for q in measured if name == f"{q}_bias"), name))
 
 
-def _units_of(found: dict[str, Any], model: Model) -> dict[str, Any]:
+def _units_of(found: dict[str, Any], model: FittedModel) -> dict[str, Any]:
     """The units of a result; relative directions, correlations and words have none."""
     own = {name: _unit_of(name, model) for name in found["names"]}
     return {

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ...mechanism.spoken import named
 from ...support.extras import needed
-from .model import Model
+from .model import FittedModel
 from .unknowns import starts_of
 
 Array = NDArray[np.float64]
@@ -18,7 +18,7 @@ EVALUATIONS = 300
 
 
 @np.errstate(all="ignore")  # squares beyond every double are no better than other bad fits
-def solve(model: Model, loss: str, seed: int, absolute: bool = False) -> Any:
+def solve(model: FittedModel, loss: str, seed: int, absolute: bool = False) -> Any:
     """SciPy's result at the best optimum. ValueError where no start is feasible.
 
     Where sigma is known and the given start leads to residuals of that size, no other start is tried.
@@ -47,7 +47,7 @@ def solve(model: Model, loss: str, seed: int, absolute: bool = False) -> Any:
     return _best(runs)
 
 
-def _run(model: Model, start: Array, options: dict[str, Any]) -> list[Any]:
+def _run(model: FittedModel, start: Array, options: dict[str, Any]) -> list[Any]:
     """SciPy's result from a start; none where it meets derivatives beyond every double."""
     with needed("fit", "design"):
         from scipy.optimize import least_squares

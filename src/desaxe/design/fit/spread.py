@@ -15,14 +15,14 @@ OPEN = 1e-9  # of the largest singular value
 SMALL = 1e-4  # weights below this are left out of a direction
 
 
-class Spread(NamedTuple):
+class Uncertainty(NamedTuple):
     """The covariance of the unknowns, and each open direction as name -> relative weight."""
 
     covariance: Array
     unidentified: list[dict[str, float]]
 
 
-def spread_of(jacobian: Array, sizes: Array, names: Sequence[str], variance: float) -> Spread:
+def spread_of(jacobian: Array, sizes: Array, names: Sequence[str], variance: float) -> Uncertainty:
     """The spread of estimates whose residuals have this variance; infinite along open directions."""
     few = len(jacobian) < len(names)  # samples: then open directions are among the further rows
     _, singular, rows = np.linalg.svd(jacobian * sizes, full_matrices=few)
@@ -39,7 +39,7 @@ def spread_of(jacobian: Array, sizes: Array, names: Sequence[str], variance: flo
         directions.append(weights)
     covariance[loose, :] = covariance[:, loose] = np.nan
     covariance[loose, loose] = np.inf
-    return Spread(covariance, directions)
+    return Uncertainty(covariance, directions)
 
 
 def _sparse(rows: Array) -> Array:

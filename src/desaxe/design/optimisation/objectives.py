@@ -16,7 +16,7 @@ from ...support.deadline import Deadline
 from ...support.shown import shown
 from ..measures import Measure, checked, is_named, text_of
 from .kinks import sides_of
-from .problem import EQUAL, LOWER, UPPER, Limit, Piece, Space
+from .problem import EQUAL, LOWER, UPPER, Limit, SmoothTerm, Space
 
 
 class Goal(NamedTuple):
@@ -139,9 +139,9 @@ def upper_limits(key: Any, measure: Measure, bound: float) -> list[Limit]:
     return [Limit(key, part, -sign, sign * bound, UPPER) for part, sign in sides.parts]
 
 
-def problems(goal: Goal) -> list[list[Piece]]:
+def problems(goal: Goal) -> list[list[SmoothTerm]]:
     """The minimax problems of a goal, whose best optimum counts; each is a list of pieces."""
     sides = sides_of(goal.measure)
-    pieces = [Piece(part, -goal.sense * sign) for part, sign in sides.parts]
+    pieces = [SmoothTerm(part, -goal.sense * sign) for part, sign in sides.parts]
     together = sides.largest == (goal.sense < 0)
     return [pieces] if together else [[piece] for piece in pieces]

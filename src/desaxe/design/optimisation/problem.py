@@ -24,7 +24,7 @@ class Limit(NamedTuple):
     side: str
 
 
-class Piece(NamedTuple):
+class SmoothTerm(NamedTuple):
     """One of the smooth functions, sign * measure, whose maximum is minimised."""
 
     measure: Any  # a measure, or a function of designs

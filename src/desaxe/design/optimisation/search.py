@@ -18,7 +18,7 @@ from scipy.optimize import minimize, nnls, root
 from scipy.stats import qmc
 
 from ...support.forks import IMPORTS
-from .problem import EQUAL, LOWER, Array, Functions, Limit, Piece, Space
+from .problem import EQUAL, LOWER, Array, Functions, Limit, SmoothTerm, Space
 
 SCAN = 7  # 2^7 designs are looked at first
 NEAR = 1e-6  # of its scale: a limit that is so near is active
@@ -45,7 +45,9 @@ class Candidate(NamedTuple):
 class LocalSearch:
     """The search of one problem: minimise the largest piece within the limits."""
 
-    def __init__(self, space: Space, pieces: Sequence[Piece], limits: Sequence[Limit], seed: int) -> None:
+    def __init__(
+        self, space: Space, pieces: Sequence[SmoothTerm], limits: Sequence[Limit], seed: int
+    ) -> None:
         self.space, self.pieces, self.limits, self.seed = space, tuple(pieces), tuple(limits), seed
         rows = [(p.measure, p.sign, 0.0) for p in pieces] + [(c.measure, c.sign, c.bound) for c in limits]
         self.functions = Functions(space, rows)

@@ -24,7 +24,7 @@ from ...mechanism.closed.angles import dead_centres
 from ...mechanism.names import LENGTHS
 from ...runtime.compiled_only import uncompiled
 from ...support.panels import padded
-from .source import Source
+from .source import TorqueSource
 
 Array = NDArray[Any]
 CREEP = 1e-100  # rad/s: loads know the way of turning, inertia does not act
@@ -34,7 +34,7 @@ MANY = 50_000  # points, for which compiling pays
 NOTHING = 1e-12  # of the inertia elsewhere
 
 
-class Designs(NamedTuple):
+class DesignRows(NamedTuple):
     """Rows of designs.
 
     numbers   inputs of the mechanism: a number for all, or an array with one for each
@@ -46,13 +46,13 @@ class Designs(NamedTuple):
     numbers: Mapping[str, Any]
     loads: Mapping[str, Load]
     branch: int
-    source: Source
+    source: TorqueSource
     motor: Mapping[str, Any]
     J: Array
     way: Array
     turns: int
 
-    def rows(self, index: Array) -> "Designs":
+    def rows(self, index: Array) -> "DesignRows":
         """Some of the designs."""
 
         def picked(values: Mapping[str, Any]) -> dict[str, Any]:
@@ -130,7 +130,7 @@ class Designs(NamedTuple):
         return np.concatenate([starts, every[:, -1:]], axis=1)
 
 
-def vanishing(designs: Designs) -> Array:
+def vanishing(designs: DesignRows) -> Array:
     """True for designs without any inertia at a dead centre."""
     x = np.nan_to_num(dead_centres(designs.lengths()))
     there = designs.values(["M_eff"], x)["M_eff"] + designs.J[:, None]
@@ -138,7 +138,7 @@ def vanishing(designs: Designs) -> Array:
     return np.asarray((there <= NOTHING * between).any(1))
 
 
-class Course(NamedTuple):
+class Coefficients(NamedTuple):
     """The coefficients of the equation at places x: they do not depend on the speed.
 
     inertia, slope   M_eff + J, and its derivative by theta
@@ -153,12 +153,12 @@ class Course(NamedTuple):
     load: Array
     guide: tuple[Array, ...] | None
 
-    def part(self, at: tuple[Any, ...]) -> "Course":
+    def part(self, at: tuple[Any, ...]) -> "Coefficients":
         """The course at some of its places, with another axis of starts."""
         guide = None if self.guide is None else tuple(v[at][:, None] for v in self.guide)
         four = (v[at][:, None] for v in (self.theta, self.inertia, self.slope, self.load))
         theta, inertia, slope, load = four
-        return Course(theta, np.reshape(self.way, (-1, 1)), inertia, slope, load, guide)
+        return Coefficients(theta, np.reshape(self.way, (-1, 1)), inertia, slope, load, guide)
 
 
 def picked(fields: Any, rows: Array) -> Any:
@@ -172,7 +172,7 @@ def picked(fields: Any, rows: Array) -> Any:
     return type(fields)(*map(of, fields))
 
 
-def course_of(designs: Designs, x: Array) -> Course:
+def course_of(designs: DesignRows, x: Array) -> Coefficients:
     """The course of designs at places x: an array with a row for each."""
     way = designs.each(designs.way, x.ndim)
     still = {"omega": way * CREEP, "alpha": 0.0}
@@ -193,7 +193,7 @@ def course_of(designs: Designs, x: Array) -> Course:
         arm = mu * np.abs(travel) * way
         lean = designs.branch * np.tan(found["phi"]) * mu * np.sign(travel) * way
         guide = (found["N_C"], a, b, lean - arm * b, arm)
-    return Course(designs.theta(x), way, inertia, slope, found["T_in"], guide)
+    return Coefficients(designs.theta(x), way, inertia, slope, found["T_in"], guide)
 
 
 class Rate(NamedTuple):
@@ -207,7 +207,7 @@ class Rate(NamedTuple):
     wedge: Array | None = None
 
 
-def rate(course: Course, source: Source, row: Mapping[str, Any], E: Array) -> Rate:
+def rate(course: Coefficients, source: TorqueSource, row: Mapping[str, Any], E: Array) -> Rate:
     """The equation at an energy; NaN where that is not positive."""
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         square = 2.0 * E / course.inertia

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ...support.panels import WEIGHT
 from .orbit import Orbit
-from .slopes import NEAR, Slopes
+from .slopes import NEAR, OrbitSlopes
 
 Array = NDArray[Any]
 KEYS = ("period", "omega_mean", "fluctuation", "power_mean")  # that have derivatives
@@ -21,7 +21,7 @@ class Figures(NamedTuple):
     gradient: dict[str, dict[str, Array]]
 
 
-def figures_of(orbit: Orbit, slopes: Slopes | None) -> Figures:
+def figures_of(orbit: Orbit, slopes: OrbitSlopes | None) -> Figures:
     """The results of orbits; without slopes no derivatives."""
     mesh, designs, omega = orbit.mesh, orbit.designs, orbit.rate.omega
     way, speed = designs.way, np.abs(omega)
@@ -62,7 +62,7 @@ def figures_of(orbit: Orbit, slopes: Slopes | None) -> Figures:
 class _Speeds:
     """The derivatives of speeds at places: fixed ones, or where a load jumps, which move with it."""
 
-    def __init__(self, orbit: Orbit, slopes: Slopes, places: Array) -> None:
+    def __init__(self, orbit: Orbit, slopes: OrbitSlopes, places: Array) -> None:
         mesh = orbit.mesh
         gap = np.abs(mesh.edges[:, None, :] - places[..., None])
         edge = np.take_along_axis(mesh.edges, gap.argmin(-1), 1)

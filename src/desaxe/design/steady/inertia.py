@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ...support.panels import Panels
 from ..drive.inertia import storing
-from .designs import Designs, course_of
+from .designs import DesignRows, course_of
 from .states import States, main_of, states_of
 
 Array = NDArray[Any]
@@ -20,7 +20,7 @@ DOUBLED = 40  # times that a heavier wheel is tried
 class Wheel:
     """The fluctuation of designs over the inertia of their flywheels."""
 
-    def __init__(self, designs: Designs) -> None:
+    def __init__(self, designs: DesignRows) -> None:
         self.designs = designs
 
     def at(self, J: Array) -> tuple[States, Array, Array, Array]:
@@ -35,7 +35,7 @@ class Wheel:
         return states, main, shown, slope
 
 
-def with_flywheels(designs: Designs, wanted: Array) -> Designs:
+def with_flywheels(designs: DesignRows, wanted: Array) -> DesignRows:
     """The designs with the smallest flywheels that keep their required fluctuations."""
     wheel, low = Wheel(designs), np.zeros(designs.size)
     *_, there, _ = wheel.at(low)
@@ -63,7 +63,7 @@ def with_flywheels(designs: Designs, wanted: Array) -> Designs:
     return designs._replace(J=J)
 
 
-def _estimate(designs: Designs, wanted: Array) -> Array:
+def _estimate(designs: DesignRows, wanted: Array) -> Array:
     """The flywheel under a constant torque at a speed of the motor, twice that: a generous one."""
     panels = Panels(designs.edges())
     course = course_of(designs, panels.x)

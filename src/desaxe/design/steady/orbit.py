@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...support.panels import TO_COEFFICIENTS, Panels, padded
-from .designs import Course, Designs, Rate, course_of, picked, rate
+from .designs import Coefficients, DesignRows, Rate, course_of, picked, rate
 from .linear import Linear
 
 Array = NDArray[Any]
@@ -31,11 +31,11 @@ SHRINK = 0.8  # of the energy: what a step may take
 class Orbit(NamedTuple):
     """Periodic motions of designs: the energy at the start and its slope at the nodes."""
 
-    designs: Designs
+    designs: DesignRows
     mesh: Panels
     E0: Array
     F: Array
-    course: Course
+    course: Coefficients
     rate: Rate
     log_multiplier: Array
     good: Array  # where Newton's method settled
@@ -54,9 +54,9 @@ def energy(mesh: Panels, E0: Array, F: Array) -> Array:
 class _Lanes(NamedTuple):
     """Designs that Newton's method has not settled yet, their edges and courses."""
 
-    designs: Designs
+    designs: DesignRows
     edges: Array
-    course: Course
+    course: Coefficients
 
     def rows(self, index: Array) -> "_Lanes":
         return _Lanes(self.designs.rows(index), self.edges[index], picked(self.course, index))
@@ -75,7 +75,7 @@ class _Lanes(NamedTuple):
         return E0 + share * start, F, np.abs(wanted).max((1, 2))
 
 
-def newton(designs: Designs, mesh: Panels, E0: Array, F: Array, rough: bool = False) -> Orbit:
+def newton(designs: DesignRows, mesh: Panels, E0: Array, F: Array, rough: bool = False) -> Orbit:
     """The periodic motion near a guess; a rough one shows where it switches."""
     course = course_of(designs, mesh.x)
     left, lanes = np.arange(len(E0)), _Lanes(designs, mesh.edges, course)

@@ -10,7 +10,7 @@ from ...mechanism.answer_units import units_by_name
 from ...mechanism.unit_system import SI
 from ...support.answer import Answer
 from ...support.forks import IMPORTS
-from .designs import Designs
+from .designs import DesignRows
 from .figures import KEYS, STEPS
 from .source import source_of
 from .states import States, main_of
@@ -20,7 +20,7 @@ Array = NDArray[Any]
 NUMBERS = ("period", "omega_mean", "fluctuation", "power_mean", "work", "multiplier")
 CURVE, POINTS = 1.25, 400  # times the highest speed, of the motor's curve
 COURSE = ("theta", "omega", "T_motor")
-Part = tuple[Array, Designs, States, bool]  # whether the flywheel was looked for
+Part = tuple[Array, DesignRows, States, bool]  # whether the flywheel was looked for
 
 
 class Steady(Answer):
@@ -68,7 +68,7 @@ def _units(found: Mapping[str, Any]) -> dict[str, Any]:
     return {**units, "others": units}
 
 
-def _empty(count: int, designs: Designs) -> dict[str, Any]:
+def _empty(count: int, designs: DesignRows) -> dict[str, Any]:
     """Rows of designs with bad inputs."""
     steps = STEPS * designs.turns + 1
     nothing = {name: np.full((count, steps), np.nan) for name in COURSE}
@@ -81,7 +81,7 @@ def _empty(count: int, designs: Designs) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _fill(found: dict[str, Any], index: Array, designs: Designs, states: States, wheel: bool) -> None:
+def _fill(found: dict[str, Any], index: Array, designs: DesignRows, states: States, wheel: bool) -> None:
     """The results of some designs."""
     main = main_of(states, designs.size)
     there = np.flatnonzero(main >= 0)

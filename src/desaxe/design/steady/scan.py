@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .designs import INSIDE, Course, Designs, course_of, picked, rate
+from .designs import INSIDE, Coefficients, DesignRows, course_of, picked, rate
 
 Array = NDArray[Any]
 PLACES = np.array([INSIDE, 0.25, 0.5, 0.75, 1.0 - INSIDE])  # of a panel: two steps
@@ -27,7 +27,7 @@ SERIES = 1e-2  # below it they are series
 class Turns:
     """The turns of designs from any energies: the gain over a period, NaN where the crank stops."""
 
-    def __init__(self, designs: Designs, edges: Array) -> None:
+    def __init__(self, designs: DesignRows, edges: Array) -> None:
         self.designs, self.edges = designs, edges
         self.width = np.diff(edges)
         x = edges[:, :-1, None] + self.width[..., None] * PLACES
@@ -58,7 +58,7 @@ class Turns:
                         path.append(W)
         return W
 
-    def _step(self, courses: list[Course], h: Array, E: Array) -> Array:
+    def _step(self, courses: list[Coefficients], h: Array, E: Array) -> Array:
         """The change of E over a step."""
         source, row = self.designs.source, self.row
         start = rate(courses[0], source, row, E)
@@ -123,7 +123,7 @@ class Scan(NamedTuple):
         return Brackets(design, low + (high - low) * below / (below - above), low, high, below > 0.0)
 
 
-def scan(designs: Designs, edges: Array) -> Scan:
+def scan(designs: DesignRows, edges: Array) -> Scan:
     """The gains of all starts that are needed to see every change of sign."""
     turns = Turns(designs, edges)
     speeds = np.maximum(designs.source.speeds(designs.motor) * designs.way[:, None], 0.0)

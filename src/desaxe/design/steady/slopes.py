@@ -19,7 +19,7 @@ from ...loads.load import OverY
 from ...mechanism.names import LENGTHS
 from ...runtime.request import request
 from ...support.computed import computed_once
-from .designs import Designs
+from .designs import DesignRows
 from .linear import Linear
 from .orbit import Orbit
 
@@ -31,14 +31,14 @@ NEAR = 1e-9  # rad: an edge is where a load has a kink
 FLAT = 1e-6  # of the crank: Y_wrt_theta at a dead centre
 
 
-def parameters(designs: Designs) -> tuple[str, ...]:
+def parameters(designs: DesignRows) -> tuple[str, ...]:
     """The inputs of the mechanism by which the torque has derivatives."""
     everything = {**designs.numbers, **designs.loads, "omega": 1.0, "alpha": 1.0}
     asked = request(("T_in",), everything, designs.branch, "standard")
     return tuple(n for n in asked.inputs if n not in ("theta", "omega", "alpha") and n in designs.numbers)
 
 
-class Slopes:
+class OrbitSlopes:
     """The derivatives of omega^2 along orbits, by parameter: at the nodes and at the start."""
 
     def __init__(self, orbit: Orbit) -> None:
@@ -101,7 +101,7 @@ class Slopes:
         return found
 
 
-def moves(designs: Designs, load: OverY, x: Array) -> dict[str, Array]:
+def moves(designs: DesignRows, load: OverY, x: Array) -> dict[str, Array]:
     """By how much each length moves the angles at which a load over the slider has a kink; 0 elsewhere."""
     places = designs.kinks(load)
     gap = np.abs(x[..., None] - places[:, None, :])

@@ -25,7 +25,7 @@ INSTANTS = (0.0, 0.371)  # s: a function of time is not the same at both
 SPEEDS = np.outer([-1.0, 1.0], np.geomspace(1e-2, 1e5, 141))
 
 
-class Source(ABC):
+class TorqueSource(ABC):
     """The torque of a call.
 
     numbers   its parameters, by which there are derivatives
@@ -54,7 +54,7 @@ class Source(ABC):
         return np.ravel(SPEEDS)
 
 
-class Constant(Source):
+class ConstantTorque(TorqueSource):
     """A number, or one for each design."""
 
     varies = False
@@ -71,7 +71,7 @@ class Constant(Source):
         return {"torque": np.ones_like(omega)}
 
 
-class OverAngle(Source):
+class OverAngle(TorqueSource):
     """A load over theta."""
 
     varies = False
@@ -84,7 +84,7 @@ class OverAngle(Source):
         return np.broadcast_to(self.over(theta), omega.shape) + 0.0 * omega, 0.0 * omega
 
 
-class OfMotor(Source):
+class OfMotor(TorqueSource):
     """A motor: a table or Kloss's formula."""
 
     def __init__(self, motor: Motor) -> None:
@@ -107,7 +107,7 @@ class OfMotor(Source):
         return self.motor.speeds(row)
 
 
-class OfFunction(Source):
+class OfFunction(TorqueSource):
     """A function of omega, (theta, omega) or (t, theta, omega), of which time must not matter."""
 
     def __init__(self, function: Callable[..., Any], roles: tuple[str, ...]) -> None:
@@ -174,7 +174,7 @@ class OfFunction(Source):
                 )
 
 
-def source_of(torque: Any) -> Source:
+def source_of(torque: Any) -> TorqueSource:
     """The source that `torque=` stands for."""
     if isinstance(torque, Motor):
         return OfMotor(torque)
@@ -184,7 +184,7 @@ def source_of(torque: Any) -> Source:
             raise TypeError(f"torque = {load!r}: a torque over theta or omega is expected")
         return OverAngle(load)
     if not callable(torque):
-        return Constant(number_or_array(Input("torque", "N*m", ""), torque))
+        return ConstantTorque(number_or_array(Input("torque", "N*m", ""), torque))
     roles = roles_of(torque)
     if roles is None:
         raise TypeError(

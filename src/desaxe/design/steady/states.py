@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...support.panels import NODE, Panels
-from .designs import Designs, picked, vanishing
+from .designs import DesignRows, picked, vanishing
 from .figures import Figures, course_at_steps, figures_of
 from .orbit import PANELS, Orbit, astray, besides, moved, newton, switches, unresolved
 from .scan import Brackets, Scan, Turns, scan
-from .slopes import Slopes
+from .slopes import OrbitSlopes
 
 Array = NDArray[Any]
 JAMS_AT = 1.0 - 1e-6  # of the wedge K: as in simulation/friction.py
@@ -34,7 +34,7 @@ class States(NamedTuple):
     scan: Scan
 
 
-def states_of(designs: Designs, gradient: bool) -> States:
+def states_of(designs: DesignRows, gradient: bool) -> States:
     """All steady states of designs."""
     edges = designs.edges()
     scanned = scan(designs, edges)
@@ -77,7 +77,7 @@ def _settle(solved: "_Solved", edges: Array, turns: Turns, found: Brackets, lane
 class _Solved:
     """The results of lanes, filled as their panels resolve them."""
 
-    def __init__(self, lanes: Designs, gradient: bool) -> None:
+    def __init__(self, lanes: DesignRows, gradient: bool) -> None:
         self.lanes, self.with_gradient = lanes, gradient
         self.good, self.jams = np.zeros(lanes.size, bool), np.zeros(lanes.size, bool)
         self.E0 = np.full(lanes.size, np.nan)
@@ -110,17 +110,17 @@ class _Solved:
         """Take the motions whose derivatives are polynomials, too; the panels on which others are not."""
         slopes, bad = None, np.zeros(orbit.F.shape[:-1], bool)
         if self.with_gradient:
-            slopes = Slopes(orbit)
+            slopes = OrbitSlopes(orbit)
             bad = unresolved(orbit, tuple(slopes.forcing[name] for name in slopes.names))
             bad &= ~jammed(orbit)[:, None] & (orbit.mesh.edges.shape[1] <= PANELS)
         if bad.any():
             done = np.flatnonzero(~bad.any(1))
             index, orbit = index[done], _rows(orbit, done)
-            slopes = Slopes(orbit) if len(done) else None
+            slopes = OrbitSlopes(orbit) if len(done) else None
         self._take(index, orbit, slopes)
         return bad
 
-    def _take(self, index: Array, orbit: Orbit, slopes: Slopes | None) -> None:
+    def _take(self, index: Array, orbit: Orbit, slopes: OrbitSlopes | None) -> None:
         if not len(index):
             return
         figures = figures_of(orbit, slopes)

@@ -17,10 +17,10 @@ from ...mechanism.spoken import UNITS, named
 from ...runtime.interpreted import are_good
 from ...runtime.request import as_number, check_common
 from ...support.shown import shown
-from .designs import Designs
+from .designs import DesignRows
 from .inertia import with_flywheels
 from .result import Steady, result_of
-from .source import Source, source_of
+from .source import TorqueSource, source_of
 from .states import states_of
 
 Array = NDArray[Any]
@@ -107,8 +107,8 @@ def _flat(array: Array, shape: tuple[int, ...]) -> Array:
 
 
 def _designs(
-    source: Source, flywheel: Any, fluctuation: Any, branch: int, inputs: Mapping[str, Any]
-) -> tuple[tuple[int, ...], Designs, NDArray[np.bool_]]:
+    source: TorqueSource, flywheel: Any, fluctuation: Any, branch: int, inputs: Mapping[str, Any]
+) -> tuple[tuple[int, ...], DesignRows, NDArray[np.bool_]]:
     """The shape of the designs, these in rows, and which of them have a bad input."""
     given = {name: value for name, value in inputs.items() if value is not None}
     check_inputs("steady", given, [*OWN, *(n for n in INPUTS if n != "theta")])
@@ -151,14 +151,14 @@ def _designs(
     turning: dict[str, Any] = dict(loads)
     if source.load is not None:
         turning["torque"] = source.load
-    designs = Designs(
+    designs = DesignRows(
         count, rows(arrays), loads, int(branch), source, rows(motor), _flat(J, shape),
         _flat(np.asarray(way, float), shape), turns_of("steady", turning, MOST_TURNS),
     )  # fmt: skip
     return shape, designs, _bad(designs)
 
 
-def _bad(designs: Designs) -> NDArray[np.bool_]:
+def _bad(designs: DesignRows) -> NDArray[np.bool_]:
     """True for designs with a bad input."""
     bad = np.zeros(designs.size, bool)
     for name, value in designs.numbers.items():

@@ -5,7 +5,7 @@ from math import degrees
 import numpy as np
 
 from ...mechanism.spoken import spoken
-from .designs import Designs, vanishing
+from .designs import DesignRows, vanishing
 from .scan import Scan
 from .states import States
 
@@ -14,7 +14,7 @@ SIMPSON = np.array([1.0, 4.0, 2.0, 4.0, 1.0]) / 12.0  # at the places of a panel
 BALANCED = 1e-9  # of the work over a period: what of it counts as none
 
 
-def why_none(designs: Designs, states: States, k: int) -> str:
+def why_none(designs: DesignRows, states: States, k: int) -> str:
     """The message of a design without a stable steady state."""
     scan = states.scan
     gains, starts = scan.gains[k], scan.starts[k]
@@ -63,7 +63,7 @@ def _energy(work: float, form: str = ".6g") -> str:
     return spoken("work", work, form, says_unit=True)
 
 
-def _stall(designs: Designs, scan: Scan, k: int) -> str:
+def _stall(designs: DesignRows, scan: Scan, k: int) -> str:
     """The angle where the crank stops, in the fastest turn that it does not finish."""
     gains, starts = scan.gains[k], scan.starts[k]
     stopped = np.flatnonzero(np.isnan(gains) & (starts > 0.0))
@@ -87,7 +87,7 @@ def _work(scan: Scan, k: int) -> float:
     return float((np.abs(scan.turns.course.load[k]).mean(-1) * scan.turns.width[k]).sum())
 
 
-def _driven(designs: Designs, scan: Scan, k: int, gain: float) -> str:
+def _driven(designs: DesignRows, scan: Scan, k: int, gain: float) -> str:
     """That the loads drive the crank, where they do a share of what a period gains."""
     work = -float(designs.way[k] * (scan.turns.course.load[k] @ SIMPSON * scan.turns.width[k]).sum())
     if work <= SHARE * gain:
@@ -95,7 +95,7 @@ def _driven(designs: Designs, scan: Scan, k: int, gain: float) -> str:
     return f"; the loads themselves drive the crank, {_energy(work, '.4g')} a period: check their signs"
 
 
-def _of_number(designs: Designs, scan: Scan, k: int) -> str:
+def _of_number(designs: DesignRows, scan: Scan, k: int) -> str:
     """A torque that does not depend on the speed gains the same at every one."""
     gain = float(np.nanmedian(scan.gains[k]))
     if abs(gain) <= BALANCED * _work(scan, k):

@@ -23,7 +23,7 @@ from .spread import spread
 TITLE = "Offset slider-crank"
 
 
-class Asked(NamedTuple):
+class DocumentContext(NamedTuple):
     """The content of a document beside its scene: the command, warnings so far, tolerances [SI]."""
 
     command: str
@@ -39,7 +39,7 @@ def require_drawing() -> None:
             import_module(module)
 
 
-def document_of(content: Content, run: Run, units: UnitSystem, asked: Asked) -> Document:
+def document_of(content: Content, run: Run, units: UnitSystem, asked: DocumentContext) -> Document:
     """The document of a scene's results, in these units."""
     with warnings.catch_warnings(record=True) as heard:
         warnings.simplefilter("always")

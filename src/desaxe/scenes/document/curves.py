@@ -11,7 +11,7 @@ from ...mechanism.unit_system import UnitSystem
 from ...support.forks import IMPORTS
 from ..content import Content
 from ..parts.pictures import drawn
-from .parts import Block, Section, Table, Text, cell, image_of, thinned
+from .parts import Block, Section, Text, TextTable, cell, image_of, thinned
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -50,7 +50,7 @@ def _of_outputs(dataset: "xr.Dataset") -> list[Block]:
             (n, cell(float(a)), *(str(a.attrs.get(key, "")) for key in ("units", "long_name")))
             for n, a in one.items()
         ]
-        blocks.append(Table(("quantity", "value", "unit", "meaning"), rows))
+        blocks.append(TextTable(("quantity", "value", "unit", "meaning"), rows))
     kinds: dict[tuple[str, ...], list[str]] = {}
     for name in names:
         if name not in one:

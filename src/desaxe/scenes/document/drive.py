@@ -8,7 +8,7 @@ from ...mechanism.names import LOADS
 from ...mechanism.status import DriveStatus
 from ...mechanism.unit_system import UnitSystem
 from ..content import Content
-from .parts import Block, Section, Table, Text, designs_of, image_of
+from .parts import Block, Section, Text, TextTable, designs_of, image_of
 
 
 def drive(content: Content, units: UnitSystem, fluctuation: float) -> Section | None:
@@ -36,4 +36,4 @@ def drive(content: Content, units: UnitSystem, fluctuation: float) -> Section | 
     rows = [(name, *(column[name] for column in columns)) for name in columns[0]]
     words, first = found[0]
     picture = image_of(first.plot().figure, f"Torque of the drive over a turn, {words}")
-    return Section("Drive", [Table(("", *(words for words, _ in found)), rows), picture, *blocks])
+    return Section("Drive", [TextTable(("", *(words for words, _ in found)), rows), picture, *blocks])

@@ -5,7 +5,7 @@ from html import escape
 
 from ...runtime.written import UNSEALED, sealed
 from ...support.template import file_text, filled
-from .parts import Block, Document, Image, Lines, Table, Text
+from .parts import Block, Document, Image, Lines, Text, TextTable
 
 
 def html(document: Document) -> str:
@@ -38,7 +38,7 @@ def _block(block: Block) -> str:
     return _table(block)
 
 
-def _table(table: Table) -> str:
+def _table(table: TextTable) -> str:
     head = "".join(f"<th>{escape(cell)}</th>" for cell in table.heads)
     rows = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in table.rows]
     body = "\n".join(f"<tr>{row}</tr>" for row in rows)

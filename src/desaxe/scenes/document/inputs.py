@@ -15,7 +15,7 @@ from ...mechanism.unit_system import UnitSystem
 from ...support.forks import IMPORTS
 from ..content import Content
 from ..reading.values import Value
-from .parts import Block, Section, Table, cell, designs_of, image_of, in_unit, unit_of, with_unit
+from .parts import Block, Section, TextTable, cell, designs_of, image_of, in_unit, unit_of, with_unit
 
 LISTED, POINTS = 6, 24  # values of a list, points of a load, that are all shown
 OF_TURN = {
@@ -34,12 +34,12 @@ def inputs(content: Content, units: UnitSystem) -> Section:
         content.branch == -1
     )
     rows += [("accuracy", content.accuracy, "", "of all values")] * (content.accuracy != "standard")
-    blocks: list[Block] = [Table(("input", "value", "unit", "meaning"), rows)]
+    blocks: list[Block] = [TextTable(("input", "value", "unit", "meaning"), rows)]
     for name, value in content.inputs.items():
         blocks += _points(name, value, units)
     own = [(one.name, one.expression, one.unit, one.meaning) for one in content.definitions]
     if own:
-        blocks.append(Table(("quantity", "expression", "unit", "meaning"), own))
+        blocks.append(TextTable(("quantity", "expression", "unit", "meaning"), own))
     return Section("Inputs", blocks)
 
 
@@ -73,7 +73,7 @@ def _points(name: str, load: Value, units: UnitSystem) -> Iterator[Block]:
         head, over = f"distance from Y_{load.dead_centre}", "Y"
     heads = [f"{head} [{unit_of(units, over)}]", *(f"{n} [{unit_of(units, name)}]" for n in tables)]
     columns = [t.values for t in tables.values()]
-    yield Table(
+    yield TextTable(
         heads,
         [
             (in_unit(units, over, knot), *(in_unit(units, name, column[k]) for column in columns))
@@ -100,7 +100,7 @@ def mechanism(content: Content, units: UnitSystem) -> Section | None:
     columns = [_geometry({n: one.inputs[n] for n in LENGTHS}, content.branch, units) for one in designs]
     rows = [(name, *(column[name] for column in columns)) for name in columns[0]]
     heads = ("", *(one.words or "this design" for one in designs))
-    return Section("Mechanism", [image_of(picture.figure, words), Table(heads, rows)])
+    return Section("Mechanism", [image_of(picture.figure, words), TextTable(heads, rows)])
 
 
 def _angle(lengths: dict[str, Any], branch: int) -> float:

@@ -9,7 +9,7 @@ from ...plot.steady import steady as picture_of
 from ..content import Content
 from ..parts.motor import MotorResult
 from ..report import steady_remarks, steady_rows
-from .parts import Block, Lines, Section, Table, Text, image_of
+from .parts import Block, Lines, Section, Text, TextTable, image_of
 
 
 def motor(content: Content, found: MotorResult | None, units: UnitSystem) -> Section | None:
@@ -18,7 +18,7 @@ def motor(content: Content, found: MotorResult | None, units: UnitSystem) -> Sec
         return None
     names, heads, *rows = steady_rows(found, content, units)
     titles = [f"{name} [{unit}]" if unit else name for name, unit in zip(names, heads, strict=True)]
-    blocks: list[Block] = [Text(f"On {found.asked.torque!r}."), Table(titles, rows)]
+    blocks: list[Block] = [Text(f"On {found.asked.torque!r}."), TextTable(titles, rows)]
     told = steady_remarks(found)
     blocks += [Lines("\n".join(told))] if told else []
     first: dict[str, Any] = {n: v[0] for n, v in found.asked.axes.items()}

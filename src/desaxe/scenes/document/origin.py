@@ -5,7 +5,7 @@ from datetime import datetime
 from importlib.metadata import version
 
 from ...evaluation.labels import source
-from .parts import Lines, Section, Table, Text
+from .parts import Lines, Section, Text, TextTable
 
 PACKAGES = ("numpy", "numba")
 
@@ -21,4 +21,4 @@ def origin(command: str) -> Section:
     rows = [("desaxe", source().removeprefix("desaxe ")), ("Python", python)]
     rows += [(name, version(name)) for name in PACKAGES]
     rows.append(("made", f"{datetime.now().astimezone():%Y-%m-%d %H:%M %z}"))
-    return Section("Origin", [Table(("", "version"), rows), Text("Made by:"), Lines(command)])
+    return Section("Origin", [TextTable(("", "version"), rows), Text("Made by:"), Lines(command)])

@@ -28,7 +28,7 @@ class Lines(NamedTuple):
     text: str
 
 
-class Table(NamedTuple):
+class TextTable(NamedTuple):
     """Rows of cells under their headings."""
 
     heads: Sequence[str]
@@ -43,7 +43,7 @@ class Image(NamedTuple):
     data: bytes
 
 
-Block = Text | Lines | Table | Image
+Block = Text | Lines | TextTable | Image
 
 
 class Section(NamedTuple):

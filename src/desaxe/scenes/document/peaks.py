@@ -17,7 +17,7 @@ from ..parts.extremes import PeakResult, peaks_in_units, peaks_of
 from ..reading.requested import peak_of
 from ..report import remarks
 from ..schema import SceneError
-from .parts import MOST, Block, Section, Table, Text, axes_of, cell, thinned
+from .parts import MOST, Block, Section, Text, TextTable, axes_of, cell, thinned
 
 DESIGNS, ROWS = 1000, 24  # that are searched for peaks nobody named, that are listed
 SIDES = {-1: "-1, before it", 0: "0, no jump", 1: "+1, after it"}
@@ -58,7 +58,7 @@ def _blocks(found: PeakResult, units: UnitSystem) -> list[Block]:
         few = thinned(places)
         heads = ("derivative by", "unit", *(_called(found, place) or "this design" for place in few))
         rows = [_slopes(dataset[name], few) for name in slopes]
-        blocks.append(Table(heads, rows))
+        blocks.append(TextTable(heads, rows))
     told = [line.strip() for line in remarks(found)]
     told += [f"Derivatives of {MOST} of {len(places)} designs are shown"] * (len(places) > MOST)
     return [*blocks, *(Text(words) for words in told)]
@@ -70,7 +70,7 @@ def _slopes(slope: Any, places: list[Any]) -> list[str]:
     return [parameter, unit, *(cell(float(slope.values[place])) for place in places)]
 
 
-def _values(found: PeakResult, units: UnitSystem, places: list[Any]) -> Table:
+def _values(found: PeakResult, units: UnitSystem, places: list[Any]) -> TextTable:
     one, dataset = found.peak, found.dataset
     angle = units.of("theta").unit
     scale = degrees(1.0) if angle == "rad" else 1.0
@@ -86,7 +86,7 @@ def _values(found: PeakResult, units: UnitSystem, places: list[Any]) -> Table:
             cell(scale * float(dataset["theta"].values[place])),
         ]
         rows.append([*row, SIDES[int(dataset["side"].values[place])], f"{status:d} {status.words}"])
-    return Table([head.replace(" [1]", "") for head in heads], rows)
+    return TextTable([head.replace(" [1]", "") for head in heads], rows)
 
 
 def _called(found: PeakResult, place: tuple[int, ...]) -> str:

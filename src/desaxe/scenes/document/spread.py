@@ -15,7 +15,7 @@ from ...support.quantity_text import with_unit_of
 from ...support.shown import shown
 from ..content import Content
 from .curves import ALWAYS
-from .parts import NONE, Block, Section, Table, Text, designs_of, in_unit, unit_of, with_unit
+from .parts import NONE, Block, Section, Text, TextTable, designs_of, in_unit, unit_of, with_unit
 
 SAMPLES = 1000  # of a Monte Carlo: its standard deviation is good to 2 %
 HEADS = ("quantity", "nominal", "unit", "standard deviation", "worst case", "driven by")
@@ -63,7 +63,7 @@ def spread(content: Content, units: UnitSystem, tolerances: Mapping[str, float])
             blocks.append(
                 Text(f"{words}: status {found['status']}, {ToleranceStatus(found['status']).words}")
             )
-    return Section("Tolerances", [blocks[0], *([Table(HEADS, rows)] if rows else []), *blocks[1:]])
+    return Section("Tolerances", [blocks[0], *([TextTable(HEADS, rows)] if rows else []), *blocks[1:]])
 
 
 def _row(words: str, name: str, found: Mapping[str, Any], units: UnitSystem) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from ...compiler.kernel import Kernel
 from ...compiler.passes.double_double import double_double
-from ...evaluation.plan import Plan as Planned
+from ...evaluation.plan import Plan
 from ...evaluation.reduced import Reduced
 from ...loads.load import Load
 from ...mechanism.catalogue import quantity
@@ -62,7 +62,7 @@ class GridKernel(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Plan:
+class RunPlan:
     """A plan as data (`plan["loops"]`, `plan.as_dict()`); printed, it is text.
 
     Keys: `title, outputs, accuracy, promise, motion, inputs, points, designs, steps` (operations at each
@@ -95,7 +95,7 @@ class Plan:
 
 
 @with_known_keywords
-def explain(scene: Scene | str | PathLike[str] | Mapping[str, Any]) -> Plan:
+def explain(scene: Scene | str | PathLike[str] | Mapping[str, Any]) -> RunPlan:
     """The plan of a scene (or of a path or mapping that describes one), without running it.
 
         print(dx.explain("examples/compactor.toml"))
@@ -110,7 +110,7 @@ def explain(scene: Scene | str | PathLike[str] | Mapping[str, Any]) -> Plan:
         return _plan_of(content)
 
 
-def _plan_of(content: Content) -> Plan:
+def _plan_of(content: Content) -> RunPlan:
     data: dict[str, Any] = {
         "title": content.title,
         "outputs": [_output(name, content) for name in content.outputs],
@@ -135,7 +135,9 @@ def _plan_of(content: Content) -> Plan:
         "later": sum(cost.later for cost in costs),
     }
     results = content.data if content.store is None else content.store
-    return Plan(data | {"also": work_besides(content), "results": results, "sweep": stored, "total": total})
+    return RunPlan(
+        data | {"also": work_besides(content), "results": results, "sweep": stored, "total": total}
+    )
 
 
 def _sweep(content: Content) -> dict[str, Any] | None:
@@ -159,7 +161,7 @@ def _existing(path: Path) -> Path:
     return next(parent for parent in path.absolute().parents if parent.exists())
 
 
-def _cells(plan: Planned | None) -> int:
+def _cells(plan: Plan | None) -> int:
     """Numbers of a table of the results: a row for each point, a column for each axis and variable."""
     if plan is None:
         return 0
@@ -190,7 +192,7 @@ def _input(name: str, value: Value, units: UnitSystem) -> dict[str, Any]:
     return {**row, "value": own.shown(value)}
 
 
-def _grid(content: Content, plan: Planned) -> dict[str, Any]:
+def _grid(content: Content, plan: Plan) -> dict[str, Any]:
     """The grid of the outputs: its passes, its loops, how it runs."""
     found = _kernel_of(plan)
     compiled = tier_ahead(found.key, found.points) == COMPILED
@@ -214,7 +216,7 @@ def _grid(content: Content, plan: Planned) -> dict[str, Any]:
     }
 
 
-def _kernel_of(plan: Planned) -> GridKernel:
+def _kernel_of(plan: Plan) -> GridKernel:
     """The kernel of a plan, with its loops: axes joined to one have a name together."""
     (step, *_) = plan.steps
     points = points_of(plan)
@@ -227,7 +229,7 @@ def _kernel_of(plan: Planned) -> GridKernel:
     return GridKernel(of.wanted, axes, (*sizes[:first], prod(sizes[first:])), key)
 
 
-def _reduction(plan: Planned, key: KernelKey) -> dict[str, Any] | None:
+def _reduction(plan: Plan, key: KernelKey) -> dict[str, Any] | None:
     taken = plan.reductions
     if taken is None:
         return None
@@ -293,7 +295,7 @@ def _cached(key: KernelKey) -> tuple[str, str]:
     return ("disk" if path.exists() else "no"), str(path)
 
 
-def _memory(plan: Planned, found: GridKernel) -> dict[str, int]:
+def _memory(plan: Plan, found: GridKernel) -> dict[str, int]:
     """Bytes of the result, and of what the grid would have taken where it is reduced."""
     result = plan._replace(steps=plan.steps[: None if plan.reductions else 1]).bytes
     grid = sum(1 if name in STATUSES else 8 for name in found.key.names) * found.points

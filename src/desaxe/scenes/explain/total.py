@@ -26,7 +26,7 @@ FILE = 0.05  # s to open one
 CHECK = 2e-3  # s for a printed value
 
 
-class Cost(NamedTuple):
+class RunTime(NamedTuple):
     """Seconds of a part of a run: of the first run, and of later ones, which find compiled code on disk."""
 
     what: str
@@ -34,55 +34,55 @@ class Cost(NamedTuple):
     later: float
 
 
-def costs_of(content: Content, run: Mapping[str, Any] | None, cells: int, stored: int) -> list[Cost]:
+def costs_of(content: Content, run: Mapping[str, Any] | None, cells: int, stored: int) -> list[RunTime]:
     """The parts of a run that take time.
 
     run     how the grid runs, None where there is none
     cells   numbers of the labelled result
     stored  bytes of a store, 0 without one
     """
-    costs = [Cost("start", STARTUP, STARTUP)]
+    costs = [RunTime("start", STARTUP, STARTUP)]
     if run is not None:
         seconds, compiled = run["seconds"], run["way"] == "compiled"
         later = min(seconds["before_the_first"], estimate.LOAD) if compiled else 0.0
         work = seconds["expected"]
-        costs.append(Cost("grid", seconds["before_the_first"] + work, later + work))
+        costs.append(RunTime("grid", seconds["before_the_first"] + work, later + work))
     quantities: set[str] = set()
     for peak in content.peaks:
         costs.append(_peak(peak, peak.quantity in quantities, content.store is not None))
         quantities.add(peak.quantity)
     if content.steady is not None:
         time = STEADY_START + STEADY * prod(len(values) for values in content.steady.axes.values())
-        costs.append(Cost("steady state", time, time))
+        costs.append(RunTime("steady state", time, time))
     if content.checks:
         time = CHECK * len(content.checks)
-        costs.append(Cost("printed values", time, time))
+        costs.append(RunTime("printed values", time, time))
     if content.store is not None:
         time = STORING * stored / (run["threads"] if run is not None else 1)
-        costs.append(Cost(f"store {content.store}", time, time))
+        costs.append(RunTime(f"store {content.store}", time, time))
     if content.data is not None:
         costs.append(_file(content.data, cells))
     if content.pictures:
         time = DRAWING + PICTURE * len(content.pictures)
-        costs.append(Cost("pictures", time, time))
+        costs.append(RunTime("pictures", time, time))
     return costs
 
 
-def _peak(peak: Peak, known: bool, stored: bool) -> Cost:
+def _peak(peak: Peak, known: bool, stored: bool) -> RunTime:
     """A peak: many compile the search of the quantity; fewer run in NumPy."""
     designs = prod(len(values) for values in peak.axes.values()) + len(peak.claims) + bool(peak.baseline)
     what = f"{peak.kind} of {peak.quantity}"
     if designs < BREAK_EVEN and not stored:
         time = NUMPY_START + NUMPY_PEAK * designs
-        return Cost(what, time, time)
+        return RunTime(what, time, time)
     work = PEAK * designs
-    return Cost(what, work + (0.0 if known else PEAK_COMPILE), work + (0.0 if known else estimate.LOAD))
+    return RunTime(what, work + (0.0 if known else PEAK_COMPILE), work + (0.0 if known else estimate.LOAD))
 
 
-def _file(name: str, cells: int) -> Cost:
+def _file(name: str, cells: int) -> RunTime:
     suffix = Path(name).suffix
     time = FILE + (CELL * cells if suffix == ".csv" else FILES[suffix] * 8 * cells)
-    return Cost(name, time, time)
+    return RunTime(name, time, time)
 
 
 def work_besides(content: Content) -> list[dict[str, Any]]:

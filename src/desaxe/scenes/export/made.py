@@ -16,14 +16,14 @@ from ...mechanism.names import LENGTHS
 from ...runtime.kernels import KernelKey, kernel_of
 from ...runtime.specialise import specialise
 from ..content import Content
-from .portable import Asked, asked_of
+from .portable import PortableRequest, asked_of
 
 
 class Made(NamedTuple):
     """A request of a scene as Programs and loop nests."""
 
     content: Content
-    asked: Asked
+    asked: PortableRequest
 
     @property
     def given(self) -> tuple[str, ...]:

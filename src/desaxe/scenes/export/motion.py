@@ -17,7 +17,7 @@ from ...loads.lines import line_of, totals_of
 from ...loads.load import Load
 from ...loads.resolve import plan_of
 from ...mechanism.inputs import LEAST
-from ...mechanism.load_lines import Total, Way, with_totals
+from ...mechanism.load_lines import Total, TurningSense, with_totals
 from ...mechanism.names import CENTRES, LENGTHS, LOADS, MASSES, STATUS
 from ...mechanism.program import Variant
 from ...runtime.specialise import specialise
@@ -102,7 +102,7 @@ def _base(
     lines = [line_of(name, load, open_tables) for name, load in plan.loads.items()]
     of_all = {total.name: total for total in totals_of(plan)}
     totals = [of_all.get(name, Total(name)) for name in names]
-    return with_totals(base, dict(zip(every, base.outputs, strict=True)), lines, totals, Way("way"))
+    return with_totals(base, dict(zip(every, base.outputs, strict=True)), lines, totals, TurningSense("way"))
 
 
 def motion_solver(

@@ -40,7 +40,7 @@ from .entry_points import (
 from .loaded import require_tables, table_text, tables_of
 from .made import Made, limit_of
 from .peaks import left_out_of_module, peak_texts
-from .portable import PLAIN, WITHOUT_VALUE, Asked, Form, asked_of, require_outputs
+from .portable import PLAIN, WITHOUT_VALUE, Form, PortableRequest, asked_of, require_outputs
 
 WIDTH = 96
 FUNCTIONS = Path(__file__).with_name("functions.py")
@@ -124,7 +124,7 @@ def _order(content: Content, shown: Sequence[str]) -> tuple[str, ...]:
     return tuple(order)
 
 
-def _key(content: Content, asked: Asked, order: Sequence[str]) -> KernelKey:
+def _key(content: Content, asked: PortableRequest, order: Sequence[str]) -> KernelKey:
     """The key of the grid kernel, every number of the scene folded in; loads of the motion stay inputs."""
     numbers = {n: value for n, value in asked.fixed if n in asked.request.inputs}
     needed = content.inputs if asked.loads else asked.request.inputs

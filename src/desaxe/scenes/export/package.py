@@ -37,7 +37,7 @@ from ...support.version import version
 FACTS = ("status", "margin")
 
 
-class Part(NamedTuple):
+class PackagedFile(NamedTuple):
     """The names of one file: one quantity, one order of derivatives, law or given state."""
 
     file: str
@@ -81,7 +81,7 @@ def package_texts(source: Path, name: str) -> dict[str, str | None]:
         f"derivation {digest()[:16]}, {UNSEALED}."
     )
     table: dict[str, tuple[str, str, str]] = {}
-    listing: list[Part] = []
+    listing: list[PackagedFile] = []
     for own in made:
         table |= rows_of(own, known)
         listing += _parts(own, known)
@@ -120,7 +120,7 @@ def _read(source: Path) -> tuple[Definition, ...]:
         raise type(error)(f"{printable(source)}: {error}") from None
 
 
-def _parts(own: Definition, known: dict[str, Definition]) -> list[Part]:
+def _parts(own: Definition, known: dict[str, Definition]) -> list[PackagedFile]:
     found = []
     names = tuple(rows_of(own, known))
     for order in (0, 1, 2):
@@ -128,11 +128,11 @@ def _parts(own: Definition, known: dict[str, Definition]) -> list[Part]:
         for state in (False, True):
             if some and not (state and "omega0" in own.uses):
                 motion = "state" if state else "law"
-                found.append(Part(f"{own.name}_{order}_{motion}", some, state))
+                found.append(PackagedFile(f"{own.name}_{order}_{motion}", some, state))
     return found
 
 
-def _part_program(part: Part, made: Sequence[Definition]) -> tuple[Program, tuple[str, ...]]:
+def _part_program(part: PackagedFile, made: Sequence[Definition]) -> tuple[Program, tuple[str, ...]]:
     """The program of a part with its status, and the public names of its outputs."""
     used = program_of(part.names, Variant(own=tuple(made))).inputs
     status = FORCE_STATUS if "mu" in used else STATUS
@@ -142,12 +142,12 @@ def _part_program(part: Part, made: Sequence[Definition]) -> tuple[Program, tupl
     return program, (*shown, *FACTS)
 
 
-def _needs(part: Part, made: Sequence[Definition]) -> tuple[str, ...]:
+def _needs(part: PackagedFile, made: Sequence[Definition]) -> tuple[str, ...]:
     """The inputs of the names themselves; the status may have more."""
     return specialise(part.names, Variant(part.state, own=tuple(made)), ()).inputs
 
 
-def _kernel(banner: str, part: Part, program: Program) -> str:
+def _kernel(banner: str, part: PackagedFile, program: Program) -> str:
     varying = [name for name in program.inputs if name != "branch"]
     limits = Limits(LEAST, {"theta": constants().limit})
     lines = guarded_for_loops(program, varying, limits, constants())

@@ -21,7 +21,7 @@ from ...mechanism.names import LENGTHS
 from ...mechanism.own_lines import has_kinks
 from ...peaks import special
 from ...peaks.compiled import SEARCH, texts_of
-from ...peaks.designs import KINDS, Plan, plan_of, search_of
+from ...peaks.designs import KINDS, PeakPlan, plan_of, search_of
 from ...peaks.nodes import FINEST, graded
 from ...peaks.programs import Search, programs_of
 from ...support.template import filled
@@ -36,7 +36,7 @@ INDICES = "types.int64[::1]"
 OWN = ("sweep", "points", "finish", "search", "WORK")  # of each search
 
 
-class Found(NamedTuple):
+class ExportedPeak(NamedTuple):
     """A peak that a module can have: its function's name, the search, the inputs that are numbers."""
 
     name: str
@@ -53,7 +53,7 @@ class PeakTexts(NamedTuple):
     lines: list[str]
 
 
-def carried(content: Content) -> list[Found]:
+def carried(content: Content) -> list[ExportedPeak]:
     """The peaks of a scene that a module has."""
     if any(callable(value) for value in content.inputs.values()):
         return []  # a module under loads has their tables in its calls
@@ -61,7 +61,7 @@ def carried(content: Content) -> list[Found]:
     return [found for name, one in named if (found := _found(name, one, content)) is not None]
 
 
-def _found(name: str, one: Peak, content: Content) -> Found | None:
+def _found(name: str, one: Peak, content: Content) -> ExportedPeak | None:
     """The search of a peak; None for one that needs nodes of its own."""
     if one.loads:
         return None
@@ -79,13 +79,13 @@ def _found(name: str, one: Peak, content: Content) -> Found | None:
     fixed = {
         n: float(given[n]) for n in dict.fromkeys(used) if n not in one.axes and given.get(n) is not None
     }
-    return Found(name, one, search, fixed)
+    return ExportedPeak(name, one, search, fixed)
 
 
-def _special(plan: Plan, one: Peak, content: Content) -> bool:
+def _special(plan: PeakPlan, one: Peak, content: Content) -> bool:
     """True if a design of the scene stalls or cannot turn fully."""
     columns = columns_of({**one.axes, **one.fixed})
-    return bool(special.are_special(special.Designs(columns, content.branch, one.theta, False)).any())
+    return bool(special.are_special(special.SearchedDesigns(columns, content.branch, one.theta, False)).any())
 
 
 def peak_texts(content: Content) -> PeakTexts:
@@ -119,7 +119,7 @@ def _nodes_text() -> str:
     return filled(text_file("nodes"), DISTANCES=number_rows(graded(FINEST), 90))
 
 
-def _table_row(one: Found, prefix: str) -> str:
+def _table_row(one: ExportedPeak, prefix: str) -> str:
     """The row of a peak in PEAKS."""
     slots = {n: 2 + k for k, n in enumerate(one.search.parameters)}
     slopes = {f"value_wrt_{n}": slots.get(n, 0) for n in one.peak.sensitivities}
@@ -137,7 +137,7 @@ def _table_row(one: Found, prefix: str) -> str:
     )
 
 
-def _meaning(one: Found, state: bool) -> str:
+def _meaning(one: ExportedPeak, state: bool) -> str:
     row = quantity(one.peak.quantity, state)
     low, high = one.peak.theta
     return (
@@ -145,7 +145,7 @@ def _meaning(one: Found, state: bool) -> str:
     )
 
 
-def _function(one: Found, state: bool) -> str:
+def _function(one: ExportedPeak, state: bool) -> str:
     axes = list(one.peak.axes)
     slopes = ", ".join(f"`value_wrt_{name}`" for name in one.peak.sensitivities)
     over = " x ".join(f"{name} [{INPUTS[name].unit}]" for name in axes) or "nothing"

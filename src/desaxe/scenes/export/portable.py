@@ -18,7 +18,7 @@ from ...loads.resolve import plan_of, split
 from ...mechanism.catalogue import law_name, quantities, quantity
 from ...mechanism.constants import constants, double_constants, single_constants
 from ...mechanism.inputs import INPUTS, LEAST
-from ...mechanism.load_lines import Total, Way, with_totals
+from ...mechanism.load_lines import Total, TurningSense, with_totals
 from ...mechanism.names import LENGTHS, ORDER, sensitivity
 from ...mechanism.program import digest
 from ...mechanism.status import PointStatus
@@ -81,7 +81,7 @@ class Order(NamedTuple):
     form: Form = PLAIN
 
 
-class Asked(NamedTuple):
+class PortableRequest(NamedTuple):
     """A request of a scene, its fixed inputs, and its loads that vary with the motion.
 
     shown   the names whose values are wanted; the request has what their totals are made of, too
@@ -93,7 +93,7 @@ class Asked(NamedTuple):
     shown: tuple[str, ...]
     loads: Mapping[str, Load] = MappingProxyType({})
     totals: tuple[Total, ...] = ()
-    way: Way = Way(1.0)
+    way: TurningSense = TurningSense(1.0)
     open: bool = False
 
     def stable(self, accuracy: str) -> Program:
@@ -182,7 +182,9 @@ def heading(scene: Scene, command: str) -> tuple[str, ...]:
     )
 
 
-def _facts(content: Content, asked: Asked, arguments: Iterable[str], order: Order) -> tuple[str, ...]:
+def _facts(
+    content: Content, asked: PortableRequest, arguments: Iterable[str], order: Order
+) -> tuple[str, ...]:
     """Accuracy, frame, what is folded in and what is left out."""
     fixed = {n: value for n, value in asked.fixed if n in INPUTS}
     numbers = [f"{n} = {value!r} {INPUTS[n].unit}".removesuffix(" 1") for n, value in fixed.items()]
@@ -216,7 +218,7 @@ def _reach(asked: Request, order: Order) -> float:
     return double_constants().limit if asked.accuracy == "extended" else constants().limit
 
 
-def asked_of(content: Content, names: Iterable[str], open_tables: bool = False) -> Asked:
+def asked_of(content: Content, names: Iterable[str], open_tables: bool = False) -> PortableRequest:
     """The request of a scene for names; an absent input without effect is 0."""
     shown = tuple(dict.fromkeys(names))
     given, loads = split(content.inputs)
@@ -228,20 +230,20 @@ def asked_of(content: Content, names: Iterable[str], open_tables: bool = False) 
     values = {n: given.get(n, 0.0) for n in asked.inputs if n not in plan.loads}
     fixed = dict(asked.fixed) | {n: value for n, value in values.items() if not isinstance(value, tuple)}
     if not plan.loads:
-        return Asked(asked, tuple(fixed.items()), shown)
+        return PortableRequest(asked, tuple(fixed.items()), shown)
     totals = totals_of(plan)
-    return Asked(asked, tuple(fixed.items()), shown, plan.loads, totals, _way(given), open_tables)
+    return PortableRequest(asked, tuple(fixed.items()), shown, plan.loads, totals, _way(given), open_tables)
 
 
-def _way(given: Mapping[str, Any]) -> Way:
+def _way(given: Mapping[str, Any]) -> TurningSense:
     """The speed that tells the way of turning: numbers as they are, open inputs by their names."""
     own = {n: n if isinstance(value, tuple) else value for n, value in given.items()}
     if "omega" in own:
-        return Way(own["omega"], own.get("alpha", 0.0))
-    return Way(own["omega0"])
+        return TurningSense(own["omega"], own.get("alpha", 0.0))
+    return TurningSense(own["omega0"])
 
 
-def _forms(asked: Asked, order: Order) -> Forms:
+def _forms(asked: PortableRequest, order: Order) -> Forms:
     """The Programs of the names, the status among them, in the forms that the accuracy has."""
     kept = asked.request.accuracy
     status = asked.shown.index("status")

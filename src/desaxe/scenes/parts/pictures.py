@@ -8,11 +8,11 @@ from ...evaluation.in_units import in_units
 from ...mechanism.unit_system import UnitSystem
 from ...runtime.written import replacing_ours
 from ...support.forks import IMPORTS
-from ..content import Content, Picture
+from ..content import Content, PictureRequest
 from .grid import arrays_of
 
 
-def draw(picture: Picture, content: Content, shown_in: UnitSystem, overwrite: bool) -> Path:
+def draw(picture: PictureRequest, content: Content, shown_in: UnitSystem, overwrite: bool) -> Path:
     """Draw the curves of a picture, in the units shown, into its file; return its path."""
     axes, path = drawn(picture, content, shown_in), Path(picture.file)
     with IMPORTS:
@@ -22,7 +22,7 @@ def draw(picture: Picture, content: Content, shown_in: UnitSystem, overwrite: bo
     return path
 
 
-def drawn(picture: Picture, content: Content, shown_in: UnitSystem) -> Any:
+def drawn(picture: PictureRequest, content: Content, shown_in: UnitSystem) -> Any:
     """The curves of a picture, in the units shown; returns the Axes."""
     with IMPORTS:
         from ...plot import curves

@@ -7,9 +7,9 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...sweeps.peak_step import PeakRequest
-from ...sweeps.request import Request, sweep_of
 from ...support.forks import IMPORTS
+from ...sweeps.peak_step import PeakRequest
+from ...sweeps.request import SweepRequest, sweep_of
 from ..content import Content
 from ..schema import SceneError
 from .grid import arrays_of
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def request_of(content: Content) -> Request:
+def request_of(content: Content) -> SweepRequest:
     """The request of a scene's sweep; SceneError where its peaks are of other designs."""
     if not (content.outputs or content.peaks):
         raise SceneError("there is nothing to sweep: give outputs = [...] or [[peak]]")
@@ -33,7 +33,7 @@ def request_of(content: Content) -> Request:
                     "sweep these in a scene of their own"
                 )
     peaks = tuple(PeakRequest(peak.quantity, peak.kind, peak.theta) for peak in content.peaks)
-    return Request(
+    return SweepRequest(
         list(content.outputs), arrays_of(inputs), content.branch, content.accuracy, content.threads,
         content.reduction, peaks, "auto" if content.chunks is None else content.chunks, content.memory,
     )  # fmt: skip

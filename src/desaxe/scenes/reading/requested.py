@@ -9,7 +9,7 @@ from ...mechanism.catalogue import of_design, quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import CENTRES, LENGTHS, STATUS, parts, sensitivity
 from ...scenes import schema
-from ..content import Check, Claim, Peak, Picture
+from ..content import Check, Claim, Peak, PictureRequest
 from ..schema import SceneError, shown
 from .needs import OPTIONAL, needs_of, require, require_for_grid, require_known, single, with_others
 from .printed import read_percentage, read_printed
@@ -150,7 +150,7 @@ def _claim(
     return Claim(claim.source, at, design, read_percentage(f"{key}.increase", claim.increase))
 
 
-def picture_of(key: str, table: schema.PictureTable, inputs: Mapping[str, Value]) -> Picture:
+def picture_of(key: str, table: schema.PictureTable, inputs: Mapping[str, Value]) -> PictureRequest:
     """The curves of a [[picture]]."""
     name = table.quantity
     only_inputs(f"{key}.family", table.family)
@@ -171,6 +171,6 @@ def picture_of(key: str, table: schema.PictureTable, inputs: Mapping[str, Value]
     member = next(iter(family), None)
     curves = [n for n in (member, table.over) if n is not None]
     fixed = single(key, [n for n in needed if n not in curves], there)
-    return Picture(
+    return PictureRequest(
         table.title, table.file, name, table.over, member, {**{n: there[n] for n in curves}, **fixed}
     )

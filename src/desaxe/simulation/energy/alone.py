@@ -13,8 +13,8 @@ from ...mechanism.names import LENGTHS
 from ...runtime.compiled_only import uncompiled
 from ..history import Ended, add_slopes, instants_of, result_of
 from ..result import FAILED, LIMIT, Event, Simulation
-from .many import Found
-from .motion import Motion
+from .many import FollowedMotions
+from .motion import MotionOverAngle
 from .panels import Designs
 from .pushed import arcs
 from .serves import ENERGY
@@ -25,7 +25,7 @@ BEFORE = 1e-13  # of the motion's time, or an instant's last bits: so much ahead
 
 
 def result_alone(
-    motion: Motion, names: Sequence[str], times: Any, given: Mapping[str, Any]
+    motion: MotionOverAngle, names: Sequence[str], times: Any, given: Mapping[str, Any]
 ) -> Simulation | None:
     """The result of a motion, with its derivatives; None where the energy form does not resolve those.
 
@@ -45,7 +45,7 @@ def result_alone(
     return result
 
 
-def _add_slopes(result: Simulation, motion: Motion, found: Found) -> None:
+def _add_slopes(result: Simulation, motion: MotionOverAngle, found: FollowedMotions) -> None:
     """Add theta_wrt_<p>, omega_wrt_<p>, t_last_wrt_<p> and work_wrt_<p>, and `wrt` of each event."""
     assert found.by is not None
     notes: list[str] = []
@@ -70,7 +70,9 @@ def _add_slopes(result: Simulation, motion: Motion, found: Found) -> None:
     add_slopes(result, wrt, (*histories, ended, work), events, notes)
 
 
-def _of_events(motion: Motion, found: Found, fastest: float, notes: list[str]) -> list[Array]:
+def _of_events(
+    motion: MotionOverAngle, found: FollowedMotions, fastest: float, notes: list[str]
+) -> list[Array]:
     """dt/dp of each event, from the side that it is met from."""
     assert found.by is not None
     t = np.array([event.t for event in motion.events if event.kind != "limit"])
@@ -104,7 +106,7 @@ def _shift(designs: Designs, event: Event) -> Array:
     return np.array([moved.get(p, 0.0) for p in designs.wrt])
 
 
-def _power(designs: Designs, found: Found) -> float:
+def _power(designs: Designs, found: FollowedMotions) -> float:
     """The power of torque and loads at the end: of both energies."""
     theta, omega, alpha = found.theta[:, -1:], found.omega[0, -1], found.alpha[0, -1]
     names = "M_eff", "M_eff_wrt_theta", "potential_energy_wrt_theta"

@@ -13,7 +13,7 @@ from .pushed import arcs
 Array = NDArray[np.float64]
 
 
-class Motion(NamedTuple):
+class MotionAlong(NamedTuple):
     """Coordinates, their rates and the motion at instants; `at` has the start besides."""
 
     x: Array
@@ -33,7 +33,7 @@ class Histories(NamedTuple):
     work: Array
 
 
-def histories_of(designs: Designs, own: Sensitivities, motion: Motion) -> Histories:
+def histories_of(designs: Designs, own: Sensitivities, motion: MotionAlong) -> Histories:
     """The derivatives of motions."""
     theta, rate, tau = (own.out[:, :, k] for k in range(3))
     omega, x, speed = rate, motion.x, motion.rate
@@ -58,7 +58,7 @@ def histories_of(designs: Designs, own: Sensitivities, motion: Motion) -> Histor
     return Histories(theta, omega, t_last, work)
 
 
-def _energies(designs: Designs, motion: Motion, theta_p: Array, omega_p: Array) -> Array:
+def _energies(designs: Designs, motion: MotionAlong, theta_p: Array, omega_p: Array) -> Array:
     """The derivatives of kinetic and potential energy at the last instant."""
     found = {name: values[:, -1] for name, values in motion.at.known.items()}
     omega, rows = motion.omega[:, -1], []

@@ -15,7 +15,7 @@ from ...mechanism.constants import constants
 from ...mechanism.names import LENGTHS
 from ...runtime.modules import Native, native
 from ...support.panels import NODE, NODES, RUNNING, TO_COEFFICIENTS, WEIGHT, Array
-from ..compiled import Family, of_row
+from ..compiled import DesignFamily, of_row
 
 FILES = tuple(
     Path(__file__).with_name(name)
@@ -82,7 +82,7 @@ def names_of(loaded: bool, wrt: tuple[str, ...] | None) -> tuple[tuple[str, ...]
 
 
 @lru_cache(maxsize=256)
-def quantities(family: Family, loaded: bool, wrt: tuple[str, ...] | None = None) -> AtAngles:
+def quantities(family: DesignFamily, loaded: bool, wrt: tuple[str, ...] | None = None) -> AtAngles:
     """The loops over nodes and motions: see `names_of`."""
     fields, course = names_of(loaded, wrt)
     programs = {

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ...support.panels import NODES
 from ..result import FAILED, LIMIT
-from .along import Histories, Motion, histories_of
+from .along import Histories, MotionAlong, histories_of
 from .by_parameters import Sensitivities, sensitivities_of
 from .compiled import TABLES, courses, kernel
 from .panels import Designs, Fields, fields_of, first_edges, halved
@@ -21,7 +21,7 @@ WITHIN = np.array([1e-13, 1e-9])  # rad: from a limit angle
 FINEST, COARSEST = 3e-14, 1e-6  # how small the last terms of series must be at least and at most
 
 
-class Found(NamedTuple):
+class FollowedMotions(NamedTuple):
     """Motions at instants, the last of which is their end.
 
     numbers   end, largest energy residual, work, and the residual that rounding makes
@@ -48,7 +48,7 @@ class Marched(NamedTuple):
 
 def follow_many(
     designs: Designs, times: Array, rtol: float, most: Array, kept: Array | None = None
-) -> Found:  # fmt: skip
+) -> FollowedMotions:  # fmt: skip
     """The motions up to the last instant. Status NOT_HERE: the energy form does not serve.
 
     most   pieces of a motion: an array, which another thread may set to 0
@@ -57,7 +57,7 @@ def follow_many(
     """
     x, omega, status, numbers, way, by = _marched(designs, times, rtol, most, kept)
     if (status >= TOO_WIDE).all():
-        return Found(x[:, 1:], omega[:, 1:], omega[:, 1:], status, numbers[:, :4])
+        return FollowedMotions(x[:, 1:], omega[:, 1:], omega[:, 1:], status, numbers[:, :4])
     limit = status == LIMIT
     ended = limit | (status == FAILED)
     x[ended, -1] = numbers[ended, 1]
@@ -75,10 +75,10 @@ def follow_many(
     begin = 1 + np.flatnonzero(times == 0.0)  # there pieces have rounded the start
     theta[:, begin], omega[:, begin] = theta[:, :1], omega[:, :1]
     told[:, 0] = np.where(ended, np.minimum(numbers[:, 0], times[-1]), times[-1])
-    found = Found(theta[:, 1:], omega[:, 1:], alpha[:, 1:], status, told)
+    found = FollowedMotions(theta[:, 1:], omega[:, 1:], alpha[:, 1:], status, told)
     if by is None:
         return found
-    motion = Motion(x[:, 1:], rate[:, 1:], omega[:, 1:], alpha[:, 1:], status, places)
+    motion = MotionAlong(x[:, 1:], rate[:, 1:], omega[:, 1:], alpha[:, 1:], status, places)
     return found._replace(by=histories_of(designs, by, motion))
 
 

@@ -15,7 +15,7 @@ from ...support.interrupts import stopped_early
 from ..events import NEAR, STANDSTILL, Mark, angles_of, failure, time_of, words_of
 from ..model import Model
 from ..result import DONE, FAILED, LIMIT, Event
-from .many import TOO_WIDE, Found, follow_many
+from .many import TOO_WIDE, FollowedMotions, follow_many
 from .panels import Designs
 from .path import Path, path_of
 from .serves import served
@@ -25,14 +25,14 @@ BRIEF = 500.0  # pieces of a motion that stays in the thread of the caller
 SAME = 1e-12  # of an instant: events so close together are one
 
 
-class Asked(NamedTuple):
+class Instants(NamedTuple):
     """Instants, which ascend, and the motion there; the last one is how far it is followed."""
 
     times: Array
-    found: Found
+    found: FollowedMotions
 
 
-class Motion(NamedTuple):
+class MotionOverAngle(NamedTuple):
     """A motion over the crank angle and its end at the instant t.
 
     reach   how far it is followed: a limit angle is met before
@@ -45,14 +45,14 @@ class Motion(NamedTuple):
     rtol: float
     reach: float
     long: bool
-    asked: Asked | None
+    asked: Instants | None
     t: float
     status: int
     message: str
     events: list[Event]
     alpha: float = nan
 
-    def found(self, t: Array) -> Found:
+    def found(self, t: Array) -> FollowedMotions:
         """The motion at instants, which ascend, and behind them at its end."""
         if self.asked and t.size < self.asked.times.size and np.array_equal(self.asked.times[: t.size], t):
             found = self.asked.found
@@ -72,10 +72,10 @@ class Motion(NamedTuple):
         theta[order], omega[order] = found.theta[0, : t.size], found.omega[0, : t.size]
         return theta, omega
 
-    def _followed(self, times: Array) -> Found:
+    def _followed(self, times: Array) -> FollowedMotions:
         most = np.array([np.inf])
 
-        def work() -> Found:
+        def work() -> FollowedMotions:
             with uncompiled():
                 return follow_many(self.designs, times, self.rtol, most)
 
@@ -85,7 +85,7 @@ class Motion(NamedTuple):
 def motion_of(
     model: Model, designs: Designs, until: Sequence[float], times: Array, rtol: float, most: int,
     deadline: Deadline,
-) -> Motion | None:  # fmt: skip
+) -> MotionOverAngle | None:  # fmt: skip
     """The motion of one design up to the last instant; None where it has no energy form that ends.
 
     times   at which it will be asked for
@@ -99,9 +99,9 @@ def motion_of(
         return None
     events = _events(path, angles_of(model, until), path.t if path.status else t_end)
     long = len(path.pieces) > BRIEF
-    known = None if asked.size == 1 or long else Asked(asked, found)
+    known = None if asked.size == 1 or long else Instants(asked, found)
     message = f"reached t_end = {time_of(t_end)}"
-    motion = Motion(designs, rtol, t_end, long, known, t_end, DONE, message, [])
+    motion = MotionOverAngle(designs, rtol, t_end, long, known, t_end, DONE, message, [])
     last = next((k for k, (_, mark) in enumerate(events) if mark.status == DONE), None)
     if last is not None:
         return _up_to_event(motion, events, last)
@@ -122,7 +122,7 @@ def motion_of(
     return motion._replace(events=told)
 
 
-def _up_to_event(motion: Motion, events: Sequence[tuple[Event, Mark]], last: int) -> Motion:
+def _up_to_event(motion: MotionOverAngle, events: Sequence[tuple[Event, Mark]], last: int) -> MotionOverAngle:
     """The motion that ends with one of its events; others of the same instant come before."""
     event, mark = events[last]
     others = (other for other, _ in (*events[:last], *events[last + 1 :]))
@@ -149,14 +149,14 @@ def design_of(
 
 def _path(
     designs: Designs, times: Array, rtol: float, most: float, deadline: Deadline
-) -> tuple[Path, Found, str]:
+) -> tuple[Path, FollowedMotions, str]:
     """The pieces up to the last instant, and why they end before it if the time is over."""
     brief, several = np.array([min(most, BRIEF)]), np.array([most])
     with uncompiled():
         path, found = path_of(designs, times, rtol, brief)
         if path.status != FAILED or brief[0] == most:
             return path, found, ""
-        done: list[tuple[Path, Found]] = []
+        done: list[tuple[Path, FollowedMotions]] = []
         late = ""
         try:
             _heeded(lambda: done.append(path_of(designs, times, rtol, several)), several, deadline)

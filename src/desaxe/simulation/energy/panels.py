@@ -16,7 +16,7 @@ from ...mechanism.constants import constants
 from ...mechanism.names import LENGTHS
 from ...runtime.compiled_only import compiled_only, is_uncompiled
 from ...support.panels import NODE, NODES, nodes_of, padded
-from ..compiled import Family
+from ..compiled import DesignFamily
 from ..model import fixed_zeros, form_of
 from .compiled import at_angles, names_of, quantities, rows_of
 
@@ -112,7 +112,7 @@ class Designs(NamedTuple):
         setup = np.empty((len(x), 4))
         for column, own_values in enumerate((self.theta0, self.middle, self.half, number)):
             setup[:, column] = own_values
-        family = Family(form_of(self.inputs), fixed_zeros(self.inputs))
+        family = DesignFamily(form_of(self.inputs), fixed_zeros(self.inputs))
         own = quantities(family, loaded, wrt)
         panels = np.empty((len(x), 0)) if edges is None else edges
         rows = rows_of(own.inputs, self.inputs, len(x))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ...mechanism.closed import TURN
 from ...support.panels import NODES
 from ..result import FAILED
-from .many import Found, follow_many
+from .many import FollowedMotions, follow_many
 from .panels import Designs
 
 Array = NDArray[np.float64]
@@ -110,7 +110,7 @@ class Path(NamedTuple):
         return Places(row, t, theta, self._rate(row, u) * np.ravel(slope))
 
 
-def path_of(designs: Designs, times: Array, rtol: float, most: Array) -> tuple[Path, Found]:
+def path_of(designs: Designs, times: Array, rtol: float, most: Array) -> tuple[Path, FollowedMotions]:
     """The motion up to the last instant, or to what comes before it; most: as for `follow_many`."""
     room, largest = ROOM, int(most[0]) + 1
     while True:

@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 DEAD = 1e-6  # of the crank: dY/dtheta next to a dead centre, where a load that jumps does no work
 
 
-class Arcs(NamedTuple):
+class ArcSlopes(NamedTuple):
     """The slopes by a parameter of middle and half of the arc between limit angles; 0 where there is none."""
 
     middle: Array
@@ -28,10 +28,10 @@ class Arcs(NamedTuple):
         return self.middle[:, None] + self.half[:, None] * sine
 
 
-def arcs(designs: Designs, parameter: str) -> Arcs:
+def arcs(designs: Designs, parameter: str) -> ArcSlopes:
     """The slopes of the arcs: at a limit ec + AB sin(theta) = BC or -BC."""
     if parameter not in LENGTHS or not designs.half.any():
-        return Arcs(np.zeros(len(designs.theta0)), np.zeros(len(designs.theta0)))
+        return ArcSlopes(np.zeros(len(designs.theta0)), np.zeros(len(designs.theta0)))
     ec, AB, _ = designs.lengths
     slopes = []
     for theta in (designs.middle - designs.half, designs.middle + designs.half):
@@ -40,7 +40,7 @@ def arcs(designs: Designs, parameter: str) -> Arcs:
             moved: Array = {"ec": -np.ones_like(sine), "AB": -sine, "BC": side}[parameter]
             slope = moved / (AB * np.cos(theta))
         slopes.append(np.where(designs.half == 0.0, 0.0, slope))
-    return Arcs(0.5 * (slopes[0] + slopes[1]), 0.5 * (slopes[1] - slopes[0]))
+    return ArcSlopes(0.5 * (slopes[0] + slopes[1]), 0.5 * (slopes[1] - slopes[0]))
 
 
 class Pushed:
