@@ -71,7 +71,7 @@ def test_answers_of_functions_are_in_si_units(tmp_path):
     np.testing.assert_allclose(np.array(rows, float), np.array([theta, found["a_C"], found["V_C"]]).T, 1e-14)
     assert numbers(path, "numbers")["omega0"] == (3, "rad/s")
     peak = dx.to_excel(dx.peak("a_C", ec=[0.0, 0.01], AB=0.05, BC=0.2, omega0=3), tmp_path / "b.xlsx")
-    assert "gradient BC [m/s^2/m]" in sheets(peak)["values"][0]
+    assert "gradient BC [1/s^2]" in sheets(peak)["values"][0]
     said = dx.to_excel({"a_C": 5.0}, tmp_path / "c.xlsx", units="mm, deg, rpm")
     assert numbers(said)["a_C"] == (5, "mm/s^2")
 

@@ -65,7 +65,7 @@ MISTAKES = {
     "masses.m_rod = true": '"0.5 kg"',
     "loads.mu = -0.1": "a finite number >= 0",
     'loads.F_Y = ["5 kg"]': ('loads.F_Y #1 = "5 kg"', 'in N, such as "50 N"'),
-    'masses.I_rod = "1 kg m"': 'in kg*m^2, such as "80.6 kg mm2"',
+    'masses.I_rod = "1 kg m"': 'in kg m^2, such as "80.6 kg mm2"',
     'loads.mu = "1 N"': "a plain number, such as 0.1",
     'masses.m_rod = {start = "1 kg", stop = 0, step = "-0.3 kg"}': (
         'masses.m_rod.step = "-0.3 kg"', "whole number of steps",

@@ -192,7 +192,7 @@ def test_designs_that_rub_or_stop_at_an_angle_are_each_alone(more):
         ({"atol": 1e-9}, ValueError, "atol= is for one design at a time"),
         ({"method": "Radau"}, ValueError, "method= is for one design at a time"),
         ({"torque": [1.0, 2.0]}, ValueError, "the shapes do not broadcast together"),
-        ({"torque": ["3 N"] * 4}, ValueError, "torque = '3 N': it must be a quantity in N*m"),
+        ({"torque": ["3 N"] * 4}, ValueError, "torque = '3 N': it must be a quantity in N m"),
         ({"torque": [None] * 4}, TypeError, "torque: expected real numbers"),
         ({"omega_start": math.inf}, ValueError, "omega_start = inf: it must be a finite number"),
         ({"m_slider": [-1.0] * 4}, ValueError, "m_slider: every value is bad"),

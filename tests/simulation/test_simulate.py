@@ -438,7 +438,7 @@ def test_units():
     [
         ({"t_end": 0.0}, ValueError, "t_end = 0.0: it must be a finite time > 0"),
         ({"t_end": math.inf}, ValueError, "t_end = inf"),
-        ({"torque": "3 N"}, ValueError, "torque = '3 N': it must be a quantity in N*m"),
+        ({"torque": "3 N"}, ValueError, "torque = '3 N': it must be a quantity in N m"),
         ({"torque": None}, TypeError, "torque = None: simulate expects a finite number"),
         ({"torque": math.nan}, ValueError, "torque = nan"),
         ({"torque": lambda t, theta: 0.0}, TypeError, "torque: expected a function of (t, theta, omega)"),

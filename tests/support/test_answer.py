@@ -1,11 +1,13 @@
 """Answers: dicts to every caller, readable on a screen."""
 
 import pickle
+import re
 
 import numpy as np
 import pytest
 
 import desaxe as dx
+from desaxe.support import quantity_text
 from desaxe.support.answer import Answer
 
 SIZES = {"ec": 0.1, "AB": 0.125, "BC": 0.35}
@@ -36,6 +38,44 @@ def test_numbers_have_six_digits():
 def test_arrays_are_shown_by_their_range():
     many = np.append(np.arange(9.0), np.nan)
     assert repr(Answer(a=many, few=many[:2])) == "a    10 float64 0 .. 8, 1 nan\nfew  [0, 1]"
+
+
+def test_numbers_are_shown_with_their_units():
+    press = dx.Machine(ec=15, AB=75, BC=300, omega0=60, m_slider=4, units="mm, deg, rpm")
+    shown = repr(press.events())
+    assert re.search(r"^stroke +150.2 mm$", shown, re.M)
+    assert re.search(r"^    theta_outer +{ec: .*} deg/mm$", shown, re.M)
+    assert re.search(r"^time_ratio +[0-9.]+$", shown, re.M)
+    assert re.search(r"^value +[-0-9.]+ N m$", repr(press.peak("T_in")), re.M)
+    assert re.search(
+        r"^a_C +10 float64 .* \.\. .* mm/s\^2$", repr(press.evaluate(["a_C"], theta=range(10))), re.M
+    )
+    motion = press.replace(omega0=None, I_crank=1).simulate(torque=9, t_end="100 ms", until=2)
+    assert re.search(r"^  theta .* from 0 to 2 deg$", repr(motion), re.M)
+    assert re.search(r"^  t = [0-9.]+ s: .*, theta = 2 deg, omega = [0-9.]+ rpm$", repr(motion), re.M)
+
+
+def test_what_has_no_value_is_shown_with_the_reason():
+    bad = {"ec": 0.1, "AB": 0.3, "BC": 0.35}
+    assert re.search(r"^stroke +nan$", repr(dx.events(**bad)), re.M)
+    assert repr(dx.events(**bad)).endswith("1: the crank does not turn fully")
+    assert repr(dx.drive(omega0=1.0, **bad)).endswith("1: the crank cannot turn fully")
+    many = dx.events(ec=[0.0, 0.1], AB=0.3, BC=0.35)
+    assert repr(many).endswith("[0, 1] (1: the crank does not turn fully)")
+    point = dx.evaluate(["Y", "status"], theta=1.5, ec=0.1, AB=0.3, BC=0.35)
+    assert repr(point) == "Y       nan\nstatus  1: cannot be assembled here"
+
+
+@pytest.mark.parametrize(
+    ("unit", "by", "quotient"),
+    [
+        ("N*m", ["m"], "N"), ("N m", ["mm"], "N*m/mm"), ("mm", ["mm"], "1"), ("m/s^2", ["rad/s"], "m/s/rad"),
+        ("m", ["m", "rad"], "1/rad"), ("1", ["m", "m"], "1/m^2"), ("s", ["rad/s^2"], "s^3/rad"),
+        ("standard_gravity", ["mm"], "standard_gravity/mm"), ("kg m^2", ["%"], "kg*m^2/%"),
+    ],
+)  # fmt: skip
+def test_units_of_derivatives_are_reduced(unit, by, quotient):
+    assert quantity_text.quotient(unit, by) == quotient
 
 
 def test_an_answer_of_evaluate_knows_what_it_was_asked_for():

@@ -7,6 +7,7 @@ from typing import Any
 
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LOADS
+from ..support.quantity_text import printed, with_unit
 from ..support.text_table import table
 from .parser import SIGNS, add_command
 from .words import names_and_inputs
@@ -49,10 +50,7 @@ def _point(options: argparse.Namespace) -> int:
         }
         print(json.dumps({**found, **({"status": PointStatus(status).words} if status else {})}, indent=2))
         return 0
-    texts = [
-        (f"{name} = {values[name]!r} {'' if row.unit == '1' else row.unit}".rstrip(), row.meaning)
-        for name, row in rows.items()
-    ]
+    texts = [(with_unit(f"{name} = {values[name]!r}", row.unit), row.meaning) for name, row in rows.items()]
     print("\n".join(table(texts, gap="   ")))
     if status:
         print(f"status {status}: {PointStatus(status).words}")
@@ -76,7 +74,10 @@ def _list() -> int:
 
     rows = quantities().values()
     sources = [f" ({row.source})" if row.source else "" for row in rows]
-    cells = [(row.name, row.unit, row.meaning + source) for row, source in zip(rows, sources, strict=True)]
+    cells = [
+        (row.name, printed(row.unit) or "1", row.meaning + source)
+        for row, source in zip(rows, sources, strict=True)
+    ]
     print("\n".join(table(cells)))
     return 0
 

@@ -15,6 +15,7 @@ from ..mechanism.keywords import check_inputs, with_known_keywords
 from ..mechanism.names import LENGTHS, sensitivity
 from ..runtime.request import check_common
 from ..support.forks import IMPORTS
+from ..support.quantity_text import quotient
 from .feasibility.arrays import KINDS, of_arrays
 from .measures import Measure, checked, measured, text_of
 
@@ -119,10 +120,7 @@ def _slope_unit(measure: Measure, parameter: str) -> str:
             return quantity(sensitivity(measure[-1], parameter)).unit
         except ValueError:
             pass
-    unit, by = str(unit_of(measure)), INPUTS[parameter].unit
-    if unit == by:
-        return "1"
-    return f"{unit}/({by})" if "/" in by or "*" in by else f"{unit}/{by}"
+    return quotient(unit_of(measure), [INPUTS[parameter].unit])
 
 
 def _meaning(measure: Measure) -> str:

@@ -70,7 +70,7 @@ def inverse(
         if V_C is not None:
             _add_rates(result, arrays, lengths, branch, shape, status == DEAD_CENTRE)
     result["status"] = _status(status, arrays, shape)
-    return Answer(result, units_by_name)
+    return Answer(result, units_by_name, InverseStatus)
 
 
 def _input(name: str, value: Any) -> Array:

@@ -25,6 +25,7 @@ from ..mechanism.keywords import check_inputs, with_known_keywords
 from ..mechanism.names import sensitivity
 from ..mechanism.ranges import Between, PlusMinus, ends_of, refuse_bare_pair
 from ..mechanism.spoken import named
+from ..mechanism.status import EnclosureStatus
 from ..runtime.request import Request, as_number, check_common, request
 from ..runtime.specialise import specialise
 from ..support.answer import Answer
@@ -106,7 +107,7 @@ def enclose(
     function = _function(name, given, branch)
     with ctx.workprec(BITS):
         found = _range(function, rtol, boxes, deadline)
-    return Answer(found, dict.fromkeys(("lower", "upper", "inner"), unit_of(name)))
+    return Answer(found, dict.fromkeys(("lower", "upper", "inner"), unit_of(name)), EnclosureStatus)
 
 
 # ---- the quantity over boxes ----------------------------------------------------------------------

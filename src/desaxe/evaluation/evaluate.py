@@ -117,8 +117,17 @@ def _units(found: Any) -> Any:
     return units_by_name(found)
 
 
+def _code(code: int) -> Any:
+    """The status of a point."""
+    with IMPORTS:
+        from ..mechanism.status import PointStatus
+
+    return PointStatus(code)
+
+
 class Values(Answer):
     """Values by the names of their quantities, made as fast as a dict is."""
 
     __init__ = dict.__init__
     _units = staticmethod(_units)
+    codes = staticmethod(_code)

@@ -12,6 +12,7 @@ from ..loads.load import Load
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS, LOADS
 from ..mechanism.unit_system import UnitSystem
+from ..support.quantity_text import with_unit
 from ..support.text_table import table
 
 _ORDER = ("AB", "BC", "ec", "omega0", "omega", "alpha", *LOADS)
@@ -50,12 +51,8 @@ def _value(value: Any, unit: str) -> str:
     if hasattr(value, "tolist"):
         numbers = value.tolist()
         text = f"{numbers[0]:.6g} ... {numbers[-1]:.6g}"
-        return f"{text} {_spaced(unit)}".rstrip() + f" ({len(numbers)} values)"
-    return f"{value:.6g} {_spaced(unit)}".rstrip()
-
-
-def _spaced(unit: str) -> str:
-    return "" if unit == "1" else unit.replace("*", " ")
+        return f"{with_unit(text, unit)} ({len(numbers)} values)"
+    return with_unit(f"{value:.6g}", unit)
 
 
 def _geometry(machine: Any) -> list[tuple[str, str, str]]:

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from ..support.forks import IMPORTS
+from ..support.quantity_text import printed
 from ..support.shown import shown
 from ..support.text_table import table
 from .names import LENGTHS, LOADS, PARAMETERS, WHOLE, joined, parts, sensitivity
@@ -60,7 +61,8 @@ class Catalogue(Mapping[str, Quantity]):
         return isinstance(name, str) and has(name)
 
     def __repr__(self) -> str:
-        return "\n".join(table([("name", "unit", "meaning", "source"), *(row[:4] for row in self.values())]))
+        rows = ((name, printed(unit) or "1", *more) for name, unit, *more in self.values())
+        return "\n".join(table([("name", "unit", "meaning", "source"), *rows]))
 
 
 def _names(known: Register | None = None) -> Mapping[str, Row]:

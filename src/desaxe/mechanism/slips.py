@@ -11,7 +11,7 @@ from math import isclose, pi
 from types import MappingProxyType
 from typing import Any
 
-from ..support.quantity_text import plain_number
+from ..support.quantity_text import plain_number, with_unit
 from .ranges import Between, PlusMinus
 from .unit_system import SI, UnitSystem
 
@@ -129,7 +129,7 @@ def slip(name: str, value: Any, units: UnitSystem = SI) -> str:
     earth = 9.81 if value > 0 else -9.81
     remedy = '"{number:.6g} m"' if in_metres else REMEDIES[name]
     remedy = remedy.format(number=value, earth=earth, hundredth=value / 100)
-    return f"{name} = {value:.6g} {conversion.unit}".removesuffix(" 1") + f", write {name} = {remedy}"
+    return with_unit(f"{name} = {value:.6g}", conversion.unit) + f", write {name} = {remedy}"
 
 
 def _is_share_of_turn(angle: float) -> bool:

@@ -6,6 +6,7 @@ from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any
 
 from ..support.forks import IMPORTS
+from ..support.quantity_text import with_unit
 from ..support.shown import shown
 
 if TYPE_CHECKING:
@@ -36,21 +37,21 @@ def spoken(name: Any, value: Any, form: str = "", says_unit: bool = False) -> st
 
     conversion = conversion_of(unit_of(name), UNITS.get() or SI)
     plain = conversion.si == 1
-    unit = conversion.unit.replace("*", " ") if says_unit or not plain else "1"
+    unit = conversion.unit if says_unit or not plain else "1"
 
     if plain and not form:
-        return f"{shown(value)} {unit}".removesuffix(" 1")
+        return with_unit(shown(value), unit)
 
     def text(number: Any) -> str:
         return f"{conversion.shown(float(number)):{form or '.15g'}}"
 
     if hasattr(value, "ndim") and value.ndim:
-        return f"{shown(conversion.shown(value))} {unit}".removesuffix(" 1")
+        return with_unit(shown(conversion.shown(value)), unit)
     parts = value if isinstance(value, (tuple, list)) else (value,)
     if not all(isinstance(part, (int, float)) or hasattr(part, "is_integer") for part in parts):
         return shown(value)
     told = text(value) if parts is not value else f"({', '.join(map(text, parts))})"
-    return told if unit == "1" else f"{told} {unit}"
+    return with_unit(told, unit)
 
 
 def named(name: str, value: Any, form: str = "") -> str:

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from ..support.computed import computed_once
 from ..support.forks import IMPORTS
-from ..support.quantity_text import spelled
+from ..support.quantity_text import quotient, spelled
 from ..support.shown import shown
 from .catalogue import quantity
 from .inputs import INPUTS
@@ -84,8 +84,7 @@ class Conversion(NamedTuple):
         si = self.si
         for other in others:
             si /= other.si
-        below = [f"({other.unit})" if re.search("[/* ]", other.unit) else other.unit for other in others]
-        return Conversion("/".join([self.unit, *(unit for unit in below if unit != "1")]), si)
+        return Conversion(quotient(self.unit, [other.unit for other in others]), si)
 
 
 class UnitSystem:

@@ -13,7 +13,7 @@ from typing import Any
 
 from ..support.extras import MissingExtraError, explained
 from ..support.interrupts import import_whole
-from ..support.quantity_text import plain_number, quantity_text, split_quantity
+from ..support.quantity_text import plain_number, printed, quantity_text, split_quantity
 from ..support.shown import shown
 from .inputs import INPUTS
 
@@ -173,4 +173,4 @@ def _wanted(unit: str) -> str:
     if unit == "1":
         return "it must be a plain number, such as 0.1"
     example = EXAMPLES.get(unit)
-    return f"it must be a quantity in {unit}" + (f", such as {example}" if example else "")
+    return f"it must be a quantity in {printed(unit)}" + (f", such as {example}" if example else "")

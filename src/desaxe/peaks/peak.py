@@ -25,6 +25,7 @@ from ..mechanism.closed import TURN
 from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs
 from ..mechanism.spoken import named
+from ..mechanism.status import PeakStatus
 from ..runtime.request import as_number, check_common
 from ..support.answer import Answer
 from ..support.forks import IMPORTS
@@ -112,7 +113,7 @@ def peak(
             with IMPORTS:
                 from .lazy import lazy_peak
 
-            return Answer(lazy_peak(sought, given), partial(units_of_extreme, name))
+            return Answer(lazy_peak(sought, given), partial(units_of_extreme, name), PeakStatus)
     arrays = {n: as_array(n, given.get(n), plan.needs, (name,)) for n in sought.numbers}
     shape = broadcast_shape(arrays)
     columns = {n: _flat(a, shape) for n, a in arrays.items()}
@@ -123,7 +124,7 @@ def peak(
     found = peaks_of_designs(sought, search, columns)
     if powers is not None:
         _to_si(found, name, powers, omega is not None)
-    return Answer(_shaped(found, shape), partial(units_of_extreme, name))
+    return Answer(_shaped(found, shape), partial(units_of_extreme, name), PeakStatus)
 
 
 def _to_si(found: dict[str, Any], name: str, powers: Powers, state: bool) -> None:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..mechanism.unit_system import SI
 from ..support.extras import needed
+from ..support.quantity_text import printed
 from .picture import Picture
 from .shared import BLUE, ORANGE
 
@@ -32,7 +33,7 @@ def steady(result: Any, *, ax: "Axes | None" = None) -> Picture:
         raise ValueError(f"this machine has no steady state to draw: {result['message']}")
     units = result.system or SI
     names = {"omega": "speed of the crank", "T_motor": "torque of the motor"}
-    labels = {name: f"{words} [{units.of(name).unit.replace('*', ' ')}]" for name, words in names.items()}
+    labels = {name: f"{words} [{printed(units.of(name).unit)}]" for name, words in names.items()}
     lines: dict[str, Any] = {}
     if ax is None:
         axes = list(Figure(figsize=SIZE, layout="constrained").subplots(3))

@@ -11,6 +11,7 @@ from ..evaluation.in_units import in_units
 from ..mechanism.catalogue import quantity
 from ..mechanism.status import PeakStatus
 from ..mechanism.unit_system import UnitSystem
+from ..support.quantity_text import with_unit
 from ..support.text_table import table as text_table
 from ..sweeps.peak_step import WORDS
 from .content import Content, Peak
@@ -214,7 +215,7 @@ def _design(inputs: dict[str, float], units: UnitSystem) -> str:
 def _with_unit(name: str, value: float, units: UnitSystem) -> str:
     """An input with its unit, in the units of the scene."""
     conversion = units.of(name)
-    return f"{number(conversion.shown(value))} {conversion.unit}".removesuffix(" 1")
+    return with_unit(number(conversion.shown(value)), conversion.unit)
 
 
 # ---- the steady state ----------------------------------------------------------------------------

@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..mechanism.answer_units import slopes_of, unit_of, units_of
 from ..mechanism.status import SimulationStatus
-from ..support.answer import Answer
+from ..support.answer import Answer, text_of
 from ..support.forks import IMPORTS
+from ..support.quantity_text import with_unit
 
 if TYPE_CHECKING:
     from ..evaluation.in_units import Shown
@@ -50,13 +51,13 @@ class Simulation(Answer):
             self["solution"] = lambda t: shown.entry(solution(to_si(t)), units)
 
     def __repr__(self) -> str:
+        units = self.units
         lines = [f"simulation: {self['message']}"]
         for name, value in self.items():
-            if name in ("message", "events", "solution"):
-                continue
-            lines.append(f"  {name:16} {_shown(value)}")
+            if name not in ("message", "events", "solution"):
+                lines.append(f"  {name:16} {_shown(value, units.get(name, ''))}")
         events = self.get("events", [])
-        lines += [f"  {_event(event)}" for event in events[:12]]
+        lines += [f"  {_event(event, units.get('events', {}))}" for event in events[:12]]
         if len(events) > 12:
             lines.append(f"  ... {len(events) - 12} more events")
         return "\n".join(lines)
@@ -82,22 +83,22 @@ def _units(found: Mapping[str, Any]) -> dict[str, Any]:
     return {**units, "events": {**units_of(("t", "theta", "omega")), "wrt": slopes_of("t", by)}}
 
 
-def _shown(value: Any) -> str:
-    if isinstance(value, str):
-        return value
+def _shown(value: Any, unit: str) -> str:
     shape = getattr(value, "shape", ())
     if shape and value.dtype.kind == "U":
         return f"{shape}  {', '.join(sorted(set(value.reshape(-1).tolist()) - {''}))}"
     if not shape:
-        return f"{value:.6g}"
+        return text_of(value, unit)
     known = value[value == value]  # no NaN
     if not known.size:
         return f"{shape}"
-    return (
-        f"{shape}  {value.flat[0]:.6g} ... {value.flat[-1]:.6g}, from {known.min():.6g} to {known.max():.6g}"
-    )
+    first, last, low, high = value.flat[0], value.flat[-1], known.min(), known.max()
+    return with_unit(f"{shape}  {first:.6g} ... {last:.6g}, from {low:.6g} to {high:.6g}", unit)
 
 
-def _event(event: Event) -> str:
+def _event(event: Event, units: Mapping[str, Any]) -> str:
     which = f" ({event.which})" if event.which else ""
-    return f"t = {event.t:.6g} s: {event.kind}{which}, theta = {event.theta:.6g}, omega = {event.omega:.6g}"
+    t, theta, omega = (
+        f"{name} = {text_of(getattr(event, name), units.get(name, ''))}" for name in ("t", "theta", "omega")
+    )
+    return f"{t}: {event.kind}{which}, {theta}, {omega}"

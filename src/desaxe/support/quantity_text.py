@@ -5,12 +5,14 @@ take for something else ("1,5 rad" for 15 rad).
 """
 
 import re
+from collections.abc import Sequence
 
 _NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 _TERM = r"[^\W\d_]+(?:_[^\W\d_]+)*(?:(?:\^|\*\*)?-?[1-9])?|%|\u00b0"
 _UNIT = rf"(?:{_TERM})(?:\s*[*/]\s*(?:{_TERM})|\s+(?:{_TERM}))*"
 PLUS_MINUS = re.compile(r"\u00b1|\+-|\+/-")  # between a value and its tolerance
 _PER_TIME = re.compile(rf"\s*{_NUMBER}\s*1?\s*/\s*(?:s|sec|min|h|hour|minute|second)\s*")
+_FACTOR = re.compile(r"(/?)\s*([^\W\d]+|%|\u00b0)(?:\^(-?[0-9]+))?")
 _FORM = re.compile(rf"\s*({_NUMBER})\s*({_UNIT})?\s*")
 
 
@@ -41,6 +43,31 @@ def with_unit_of(other: object, text: object) -> object:
 def spelled(unit: str) -> str:
     """A unit in the spelling of the catalogue: m/s^2 for m/s2."""
     return re.sub(r"([^\W\d_])(?:\*\*)?(-?[1-9])(?![0-9])", r"\1^\2", unit)
+
+
+def printed(unit: str) -> str:
+    """A unit as it is printed after a number: N m for N*m, nothing for a plain number."""
+    return "" if unit == "1" else unit.replace("*", " ")
+
+
+def with_unit(number: str, unit: str) -> str:
+    """The text of a number and its unit."""
+    return f"{number} {printed(unit)}".rstrip()
+
+
+def quotient(unit: str, others: Sequence[str]) -> str:
+    """The unit of a derivative, reduced: of N*m by m it is N, of m/s^2 by rad/s m/s/rad."""
+    powers: dict[str, int] = {}
+    for text, way in ((unit, 1), *((other, -1) for other in others)):
+        for slash, name, power in _FACTOR.findall(text):
+            powers[name] = powers.get(name, 0) + way * (-1 if slash else 1) * int(power or 1)
+    above = [_raised(name, power) for name, power in powers.items() if power > 0]
+    below = [_raised(name, -power) for name, power in powers.items() if power < 0]
+    return "/".join(["*".join(above) or "1", *below])
+
+
+def _raised(name: str, power: int) -> str:
+    return name if power == 1 else f"{name}^{power}"
 
 
 def quantity_text(text: str) -> str:

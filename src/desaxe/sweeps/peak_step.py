@@ -16,6 +16,7 @@ from ..mechanism.own import Definition
 from ..mechanism.status import PeakStatus
 from ..peaks.designs import KINDS, Sought, plan_of
 from ..peaks.lazy import GRADIENT, PeakBlock, peak_block
+from ..support.quantity_text import quotient
 
 Array = NDArray[Any]
 WORDS = {"absmax": "largest magnitude", "max": "maximum", "min": "minimum"}
@@ -103,7 +104,7 @@ def slope_attributes(name: str, parameter: str, state: bool) -> dict[str, str]:
     try:
         unit = quantity(sensitivity(name, parameter), state).unit
     except ValueError:  # a derivative that only a peak has
-        unit = f"{quantity(name, state).unit}/({INPUTS[parameter].unit})"
+        unit = quotient(quantity(name, state).unit, [INPUTS[parameter].unit])
     return {"units": unit, "long_name": f"derivative of the peak by {parameter}"}
 
 

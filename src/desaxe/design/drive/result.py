@@ -11,14 +11,13 @@ from ...mechanism.status import DriveStatus
 from ...mechanism.unit_system import SI, Conversion, UnitSystem
 from ...support.answer import Answer
 from ...support.forks import IMPORTS
+from ...support.quantity_text import printed, with_unit
 from ..turn.turn import MOST_TURNS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...evaluation.in_units import Shown
-
-STATUS = {int(status): status.words for status in DriveStatus if status}
 
 
 class Drive(Answer):
@@ -28,6 +27,8 @@ class Drive(Answer):
     arrays over the turn: `theta`, `T_in`, `power_in` and, with the flywheel, `theta_of_speed` and `speed`.
     `system` is the unit system of all but `inputs`.
     """
+
+    codes = DriveStatus
 
     def __init__(
         self,
@@ -54,7 +55,7 @@ class Drive(Answer):
             f"  {self.design()}",
         ]
         if self["status"]:
-            lines.append(f"  status {self['status']}: {STATUS[self['status']]}")
+            lines.append(f"  status {self['status']}: {DriveStatus(self['status']).words}")
         if not isnan(self["torque_mean"]):
             lines += [f"  {label:17} {value}" for label, value in self.rows()]
         return "\n".join(lines)
@@ -81,12 +82,12 @@ class Drive(Answer):
             if isinstance(value, Load):
                 told.append(f"{name}: {value.told(conversion)}".replace("<", "").replace(">", ""))
                 continue
-            told.append(f"{name} = {conversion.shown(value):.6g} {conversion.unit}".removesuffix(" 1"))
+            told.append(with_unit(f"{name} = {conversion.shown(value):.6g}", conversion.unit))
         return ", ".join(told)
 
     def unit(self, name: str) -> str:
         """The unit of a figure or of an array of `course`, as a label has it."""
-        return _conversion(self._system, name).unit.replace("*", " ")
+        return printed(_conversion(self._system, name).unit)
 
     def rows(self) -> list[tuple[str, str]]:
         """The figures as text, each with its name."""

@@ -8,6 +8,7 @@ from ...mechanism.answer_units import units_by_name
 from ...mechanism.closed.dead_centres import DEAD_CENTRES
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.names import LENGTHS
+from ...mechanism.status import TurnStatus
 from ...runtime.request import as_number, check_common, with_known_inputs
 from ...support.answer import Answer
 from ...support.forks import IMPORTS
@@ -64,7 +65,8 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
         with IMPORTS:
             from .arrays import events_of_arrays
 
-        return Answer(events_of_arrays(given, int(branch), omega0 is not None), units_by_name)
+        found_of = events_of_arrays(given, int(branch), omega0 is not None)
+        return Answer(found_of, units_by_name, TurnStatus)
     e, crank, rod, omega = (float(value or 0.0) for value in numbers.values())
     lengths, forward = {"ec": e, "AB": crank, "BC": rod}, -1 if omega < 0.0 else 1
     found = DesignEvents(closed_form(DEAD_CENTRES, branch=float(branch)).point(e, crank, rod, float(forward)))
@@ -79,7 +81,7 @@ def events(*, ec: Any, AB: Any, BC: Any, branch: int = 1, omega0: Any = None) ->
             value, theta, slopes = _velocity(ends, side, int(branch), omega, lengths, found.status == 2)
         result |= {name: value, f"theta_{name}": theta}
         gradient[name] = {p: slopes[p] for p in parameters}
-    return Answer({**result, "gradient": gradient, "status": found.status}, units_by_name)
+    return Answer({**result, "gradient": gradient, "status": found.status}, units_by_name, TurnStatus)
 
 
 def _velocity(

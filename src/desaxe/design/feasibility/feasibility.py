@@ -7,6 +7,7 @@ from typing import Any
 from ...mechanism.answer_units import slopes_of, units_of
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.closed.limits import CHANGE_POINT_ULPS, LIMITS, in_intervals
+from ...mechanism.status import TurnStatus
 from ...runtime.request import as_number, with_known_inputs
 from ...support.answer import Answer
 from ...support.forks import IMPORTS
@@ -43,7 +44,7 @@ def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
     given = {"ec": ec, "AB": AB, "BC": BC}
     lengths = {name: as_number(name, value, tuple(given), ("feasibility",)) for name, value in given.items()}
     if None in lengths.values():
-        return Answer(_of_arrays(given), _units)
+        return Answer(_of_arrays(given), _units, TurnStatus)
     ec, AB, BC = lengths.values()
     *angles, status, _, link_margin = closed_form(LIMITS).point(ec, AB, BC)
     margin = fsum((BC, -AB, -abs(ec)))  # rounded once, ties too
@@ -60,7 +61,7 @@ def feasibility(*, ec: Any, AB: Any, BC: Any) -> dict[str, Any]:
         "grashof": link_margin >= 0.0,
         "status": status,
     }
-    return Answer(found, _units)
+    return Answer(found, _units, TurnStatus)
 
 
 def _units(found: Mapping[str, Any]) -> dict[str, Any]:

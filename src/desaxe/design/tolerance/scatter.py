@@ -6,9 +6,9 @@ from typing import Any
 from ...mechanism.answer_units import slopes_of, unit_of
 from ...mechanism.status import ToleranceStatus
 from ...support.answer import Answer
+from ...support.quantity_text import with_unit
 
 SCATTER = ("mean", "std", "mean_error", "std_error", "least", "largest", "percentiles")
-WORDS = {int(status): status.words for status in ToleranceStatus if status}
 SHOWN = 4  # inputs in the line of what drives the scatter
 LEAST = 0.005  # of the variance: a smaller share is not listed
 
@@ -18,6 +18,8 @@ class Tolerance(Answer):
 
     `name` is that of the quantity or measure.
     """
+
+    codes = ToleranceStatus
 
     def __init__(self, found: Mapping[str, Any], name: Any) -> None:
         super().__init__(found, _units(name, found))
@@ -30,13 +32,13 @@ class Tolerance(Answer):
 
     def __repr__(self) -> str:
         drawn, first = self["monte_carlo"], self["first_order"]
-        unit = "" if self.unit in ("", "1") else f" {self.unit}"
+        unit = with_unit("", self.unit)
         ends = list(drawn["percentiles"].values())
         spread = f"{self.name} scatters by a standard deviation of {drawn['std']:.4g}{unit}"
         spread += f" ({first['std']:.4g} by derivatives)"
         if ends:
             spread += f", 95 % lie in {ends[1]:.6g} ... {ends[3]:.6g}"
-        told = f"; status {self['status']}: {WORDS[self['status']]}" if self["status"] else ""
+        told = f"; status {self['status']}: {ToleranceStatus(self['status']).words}" if self["status"] else ""
         return "\n".join(
             [
                 f"{self.name} is {self['value']:.6g}{unit} with every input at its mean{told}",

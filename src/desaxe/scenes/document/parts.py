@@ -7,6 +7,7 @@ from math import degrees, isnan
 from typing import Any, NamedTuple
 
 from ...mechanism.unit_system import UnitSystem
+from ...support.quantity_text import printed
 from ..content import Content
 from ..reading.values import Value
 from ..report import number
@@ -79,7 +80,7 @@ def cell(value: float) -> str:
 def unit_of(units: UnitSystem, name: str) -> str:
     """The unit of a name as a table has it; angles in radians are shown in degrees."""
     unit = units.of(name).unit
-    return {"1": "", "rad": "deg"}.get(unit, unit.replace("*", " "))
+    return "deg" if unit == "rad" else printed(unit)
 
 
 def in_unit(units: UnitSystem, name: str, value: float) -> str:

@@ -10,6 +10,7 @@ from ...mechanism.catalogue import quantity
 from ...mechanism.status import PeakStatus
 from ...mechanism.unit_system import UnitSystem
 from ...support.progress import Steps
+from ...support.quantity_text import with_unit
 from ...sweeps.peak_step import WORDS
 from .. import schema
 from ..content import Content
@@ -93,7 +94,7 @@ def _called(found: PeakResult, place: tuple[int, ...]) -> str:
     """A design by the inputs in which it differs from the others."""
     dataset = found.dataset
     return ", ".join(
-        f"{n} = {cell(float(dataset[n].values[k]))} {_unit(dataset[n])}".removesuffix(" 1")
+        with_unit(f"{n} = {cell(float(dataset[n].values[k]))}", dataset[n].attrs["units"])
         for n, k in zip(found.peak.axes, place, strict=True)
     )
 
