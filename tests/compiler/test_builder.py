@@ -11,8 +11,8 @@ import desaxe
 from desaxe.compiler.builder import HELPERS, module_text, source_of, with_sources
 from desaxe.compiler.languages.numba.module import FILES
 from desaxe.peaks.compiled import SEARCH
-from desaxe.runtime.any_stride import LOOP
-from desaxe.simulation.compiled import FILES as MOTIONS
+from desaxe.runtime.native.any_stride import LOOP
+from desaxe.simulation.loops.compiled import FILES as MOTIONS
 
 SOURCE = '''"""Some functions."""
 

@@ -7,8 +7,9 @@ import pytest
 
 import desaxe as dx
 from desaxe.compiler.languages.numba.reductions import LONGEST
-from desaxe.evaluation import kinds, plan
+from desaxe.evaluation import plan
 from desaxe.evaluation.points import Points
+from desaxe.evaluation.reductions import kinds
 from desaxe.runtime import kernels as _kernels
 
 MACHINE = {"AB": 0.125, "omega0": 157.08}

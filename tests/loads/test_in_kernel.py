@@ -8,7 +8,7 @@ import pytest
 import desaxe as dx
 from desaxe.evaluation.axes import outer_of
 from desaxe.evaluation.points import points_of
-from desaxe.evaluation.under import open_points
+from desaxe.evaluation.under_loads.kernel import open_points
 from desaxe.loads.pieces import Place, piece_at
 from desaxe.runtime.kernels import source_of
 
@@ -24,7 +24,7 @@ def step_of(load, names=("T_in",), **inputs):
 
 @pytest.fixture(autouse=True)
 def kernels_whatever_the_size(monkeypatch):
-    monkeypatch.setattr("desaxe.evaluation.under.LEAST", 0)
+    monkeypatch.setattr("desaxe.evaluation.under_loads.kernel.LEAST", 0)
 
 
 def hit(row, column):

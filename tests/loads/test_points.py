@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.evaluation import loaded
+from desaxe.evaluation.under_loads import loaded
 from tests.effort import cases
 
 DESIGN = {"AB": 0.1, "BC": 0.35, "m_slider": 2.0, "omega0": -30.0}
@@ -40,7 +40,7 @@ def next_to_jumps(load, ec):
 def test_a_kernel_has_the_values_of_few_points(name, monkeypatch):
     monkeypatch.setenv("DESAXE_TIER", "compiled")
     monkeypatch.setattr(loaded, "MANY", 500)
-    monkeypatch.setattr("desaxe.evaluation.under_points.LEAST", 500)
+    monkeypatch.setattr("desaxe.evaluation.under_loads.points.LEAST", 500)
     load, rng = LOADS[name], np.random.default_rng(5)
     names = [*NAMES, "status"]
     for _ in range(cases(1, 2, 100)):
@@ -68,7 +68,7 @@ def test_a_kernel_has_the_values_of_few_points(name, monkeypatch):
 
 def test_shapes_and_out_are_those_of_few_points(monkeypatch):
     monkeypatch.setattr(loaded, "MANY", 50)
-    monkeypatch.setattr("desaxe.evaluation.under_points.LEAST", 50)
+    monkeypatch.setattr("desaxe.evaluation.under_loads.points.LEAST", 50)
     theta, ec = np.linspace(0.0, 6.0, 12)[:, None], np.array([-0.05, 0.0, 0.3, 0.0, 0.01])
     load = LOADS["lines over Y"]
     monkeypatch.setattr(loaded, "_by_kernel", lambda *given: pytest.fail("two forms are no one kernel"))

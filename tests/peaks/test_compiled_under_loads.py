@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.evaluation.arcs import arcs_of
+from desaxe.evaluation.under_loads.arcs import arcs_of
 from desaxe.loads.pieces import Place, first_doubles, piece_at, settled_pieces
 from desaxe.peaks import compiled
 from tests.effort import cases

@@ -45,7 +45,7 @@ CALLS = {
 # The lower half: the rooms under `loads`, own quantities, and the loader of machine code.
 LOWER = re.compile(
     r"desaxe\.(support|compiler|oracle|errata|mechanism|definitions"
-    r"|runtime\.(any_stride|cache|compiled_text|loader|machine_code|modules|native_calls))\b"
+    r"|runtime\.(cache|native))\b"
 )
 NAMED = {  # a word that nothing else is called -> where it counts
     "an input": ("I_crank", ("src", "derive")),

@@ -150,7 +150,7 @@ def test_the_compiler_imports_nothing_that_must_be_installed():
 
 
 # Sources of functions whose text goes into numba modules: they are read, never imported.
-COPIED = ("desaxe.compiler.languages.numba.sources", "desaxe.runtime.strided_loop")
+COPIED = ("desaxe.compiler.languages.numba.sources", "desaxe.runtime.native.strided_loop")
 
 
 def test_nobody_imports_what_is_copied():

@@ -14,8 +14,8 @@ ROOT = Path(__file__).resolve().parents[2]
 # Every place that runs a text as code; what it runs was written by our compiler from its own Program.
 RUNS_TEXT = {
     "src/desaxe/runtime/wide_margins.py",
-    "src/desaxe/runtime/compiled_text.py",
-    "src/desaxe/runtime/native_calls.py",
+    "src/desaxe/runtime/native/compiled_text.py",
+    "src/desaxe/runtime/native/native_calls.py",
     "src/desaxe/peaks/by_arrays.py",
     "src/desaxe/peaks/compiled.py",
     "src/desaxe/cli/doctor.py",

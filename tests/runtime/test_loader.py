@@ -6,9 +6,9 @@ from ctypes import CFUNCTYPE, c_int64
 
 import pytest
 
-from desaxe.runtime.compiled_text import compile_text
-from desaxe.runtime.loader import KNOWN, _Binding, _Direct
-from desaxe.runtime.machine_code import ENTRY, outside
+from desaxe.runtime.native.compiled_text import compile_text
+from desaxe.runtime.native.loader import KNOWN, _Binding, _Direct
+from desaxe.runtime.native.machine_code import ENTRY, outside
 
 TEXT = """
 from numba import njit, types
@@ -41,7 +41,7 @@ def test_a_process_that_loads_imports_no_compiler(code, tmp_path):
     (tmp_path / "code").write_bytes(code)
     script = (
         "import sys; from ctypes import CFUNCTYPE, c_int64\n"
-        "from desaxe.runtime.machine_code import Code, load, machine\n"
+        "from desaxe.runtime.native.machine_code import Code, load, machine\n"
         f"loaded = load(Code((-2,), (8,), open({str(tmp_path / 'code')!r}, 'rb').read()))\n"
         "print(CFUNCTYPE(c_int64, c_int64)(loaded.address)(20), machine().startswith('llvmlite'))\n"
         "print(*(name for name in ('numba', 'numpy', 'llvmlite.binding') if name in sys.modules))\n"

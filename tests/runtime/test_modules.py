@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 
-from desaxe.runtime import modules
+from desaxe.runtime.native import modules
 
 ANSWERS = """
 import sys

@@ -7,11 +7,11 @@ import pytest
 from desaxe.compiler.builder import module_text
 from desaxe.compiler.languages.numba.module import numba_parts
 from desaxe.mechanism.program import Variant
-from desaxe.runtime import compiled_text
-from desaxe.runtime.modules import native, path_of
-from desaxe.simulation import compiled
-from desaxe.simulation.compiled import DesignFamily
-from desaxe.simulation.energy import compiled as energy
+from desaxe.runtime.native import compiled_text
+from desaxe.runtime.native.modules import native, path_of
+from desaxe.simulation.energy.loops import compiled as energy
+from desaxe.simulation.loops import compiled
+from desaxe.simulation.loops.compiled import DesignFamily
 
 PANELS = {
     "still_at_nodes": ("0.1, 0.5, row, row, rows", {"div", "sqrt", "mul"}),

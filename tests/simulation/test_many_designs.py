@@ -12,9 +12,9 @@ from scipy.integrate import DOP853
 
 import desaxe as dx
 from desaxe.mechanism.program import Variant
-from desaxe.simulation import motions, nodes, state
-from desaxe.simulation.compiled import DesignFamily, source_of
 from desaxe.simulation.coordinate import EDGE
+from desaxe.simulation.loops import motions, nodes, state
+from desaxe.simulation.loops.compiled import DesignFamily, source_of
 from tests.motions import true_end
 from tests.simulation.test_simulate import CRANK, LOADED, PRESS, ROCKER
 

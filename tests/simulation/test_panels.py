@@ -7,7 +7,7 @@ import pytest
 
 import desaxe as dx
 from benchmarks.integrators import designs, of_t_and_omega
-from desaxe.simulation import dense, motions, nodes, panel, picard, state, tableau
+from desaxe.simulation.loops import dense, motions, nodes, panel, picard, state, tableau
 from tests.effort import cases
 from tests.motions import true_end
 

@@ -9,8 +9,8 @@ import pytest
 from numba import njit
 
 import desaxe as dx
-from desaxe.runtime import compiled_text
-from desaxe.simulation.torque import compiled
+from desaxe.runtime.native import compiled_text
+from desaxe.simulation.loops.torque import compiled
 
 CRANKS = {"AB": np.array([0.05, 0.06]), "BC": 0.2, "ec": 0.01, "m_slider": 1.0, "I_crank": 0.01}
 

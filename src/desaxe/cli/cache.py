@@ -45,7 +45,7 @@ def _list(folder: Any) -> int:
 
 
 def _verify(folder: Any) -> int:
-    from ..runtime.modules import faults
+    from ..runtime.native.modules import faults
 
     found = faults(folder)
     for path, why in found.items():
@@ -56,7 +56,7 @@ def _verify(folder: Any) -> int:
 
 def _trim(folder: Any) -> int:
     from ..runtime import cache
-    from ..runtime.modules import faults
+    from ..runtime.native.modules import faults
 
     removed = [*faults(folder)]
     for path in removed:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..evaluation.evaluate import evaluate
-from ..evaluation.own_measure import OwnMeasure
+from ..evaluation.reductions.own_measure import OwnMeasure
 from ..mechanism.catalogue import has, of_design, quantities, quantity
 from ..mechanism.closed.limits import margin_of
 from ..mechanism.names import LENGTHS, WHOLE, parts, sensitivity

@@ -16,8 +16,8 @@ from ..mechanism.names import LENGTHS, STATUS
 from ..mechanism.program import program_of
 from ..runtime.request import Request, check_common, several, standstill
 from .arrays import as_array
-from .loaded import split_axes
 from .loops import spread
+from .under_loads.loaded import split_axes
 
 Array = NDArray[Any]
 ALWAYS = ("status", "margin")

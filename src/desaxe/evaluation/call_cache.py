@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from ..mechanism.constants import limit_of
 from ..mechanism.inputs import is_good
 from ..mechanism.names import LENGTHS
-from ..runtime.any_stride import data_of, loop
 from ..runtime.kernels import is_ready, kernel_for, key_of, tells_unsafe
+from ..runtime.native.any_stride import data_of, loop
 from ..runtime.request import Request
 from ..runtime.specialise import plain_form
 from ..runtime.threads import LONGEST_BLOCK, least_of, run_parts

@@ -92,8 +92,8 @@ def evaluate(
         given.update((name, load) for name, load in zip(LOADS, loads, strict=True) if load is not None)
         if any(map(callable, loads)):
             with IMPORTS:
-                from .loaded import evaluate_loaded as values_of
-                from .loaded_quality import evaluate_loaded_quality
+                from .under_loads.loaded import evaluate_loaded as values_of
+                from .under_loads.quality import evaluate_loaded_quality
 
             if quality:
                 return evaluate_loaded_quality(names, given, branch, accuracy, threads, out)

@@ -17,9 +17,9 @@ from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs
 from ..mechanism.names import LENGTHS, sensitivity
 from ..mechanism.own import Definition, Register, register, register_with, used_by
-from ..runtime.any_stride import Bound, bind
 from ..runtime.kernels import STRUCTURAL_ZEROS, KernelKey, kernel_for
-from ..runtime.native_calls import point_caller, scalar_of, ufunc_of
+from ..runtime.native.any_stride import Bound, bind
+from ..runtime.native.native_calls import point_caller, scalar_of, ufunc_of
 from ..runtime.request import Request, as_number, check_common, request, several, standstill
 from ..runtime.specialise import plain_form
 from ..runtime.wide_margins import all_have_wide_margins

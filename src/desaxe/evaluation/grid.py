@@ -12,10 +12,10 @@ from ..support.forks import IMPORTS
 from .arrays import outputs_for
 from .axes import ARGUMENTS, outer_of
 from .labelled import grid_by_index, has_named_index
-from .loaded import evaluate_loaded
 from .plan import plan_of
 from .points import points_of
-from .reductions import names_reduced, reductions_of
+from .reductions.argument import names_reduced, reductions_of
+from .under_loads.loaded import evaluate_loaded
 from .values import of_labelled_arrays, values
 
 if TYPE_CHECKING:

@@ -27,8 +27,8 @@ from .axes import Outer
 from .chunks import Slices, blocks_of, chunk_lengths, pieces, slices_of
 from .labels import Output, labelled, provenance, with_loads
 from .points import Points, points_of
-from .reduced import Reduced, reduced_of
-from .reductions import Reductions
+from .reductions.argument import Reductions
+from .reductions.reduced import Reduced, reduced_of
 
 if TYPE_CHECKING:
     import xarray as xr

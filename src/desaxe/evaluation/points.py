@@ -24,9 +24,9 @@ from ..runtime.tiers import COMPILED, tier_of
 from .arrays import copied_back, dtype_of, fill, outputs_for, scratch_for
 from .axes import Outer, first_joined, join_from, require_inputs
 from .labels import Output, attributes
-from .loaded import MOTION, plan_at, totals_at
 from .loops import Loops
-from .under import UnderLoads, in_kernel
+from .under_loads.kernel import UnderLoads, in_kernel
+from .under_loads.loaded import MOTION, plan_at, totals_at
 
 Array = NDArray[Any]
 

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from ..mechanism.constants import limit_of
 from ..mechanism.names import STATUSES
-from ..runtime.any_stride import Repair
 from ..runtime.kernels import KernelKey, has_near_limit, kernel_for
+from ..runtime.native.any_stride import Repair
 from ..runtime.near_limit import decide
 
 Array = NDArray[Any]

@@ -16,7 +16,7 @@ from ..compiler.builder import module_text, rebound
 from ..compiler.languages.numba import peaks
 from ..compiler.languages.numba.module import numba_parts
 from ..compiler.languages.python import SCOPE
-from ..runtime.modules import Store
+from ..runtime.native.modules import Store
 from ..runtime.threads import run_parts
 from ..runtime.tiers import INTERPRETED, NUMPY, forced_tier
 from . import columns

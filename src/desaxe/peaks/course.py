@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.arcs import Arcs, arcs_of, meeting_in_turn
+from ..evaluation.under_loads.arcs import Arcs, arcs_of, meeting_in_turn
 from ..loads.angles import meeting_and_bent
 from ..loads.load import Load, OverTheta, OverY
 from ..mechanism.closed.angles import dead_centres, repeated

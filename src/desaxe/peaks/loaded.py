@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.loaded import MOTION, forces_at, plan_for
+from ..evaluation.under_loads.loaded import MOTION, forces_at, plan_for
 from ..evaluation.values import values
 from ..loads.resolve import Forces, LoadPlan
 from ..mechanism.names import parts, sensitivity

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ..evaluation.arrays import as_array, broadcast_shape
 from ..evaluation.extremes import Powers, are_extreme, can_rescale, rescaled, scaled, shift
-from ..evaluation.loaded import loads_of
+from ..evaluation.under_loads.loaded import loads_of
 from ..loads.load import Load, LoadWarning, OverTheta
 from ..loads.resolve import VARIABLE
 from ..mechanism.answer_units import units_of_extreme

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ..evaluation.loaded import MOTION, plan_for
-from ..evaluation.under_request import under_loads
+from ..evaluation.under_loads.loaded import MOTION, plan_for
+from ..evaluation.under_loads.request import under_loads
 from ..loads.load import Load, OverY, TableOverTheta
 from ..mechanism.load_lines import LoadLines
 from .compiled import Groups, Tables

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.arcs import arcs_of
 from ..evaluation.evaluate import evaluate
 from ..evaluation.labels import known_loads
+from ..evaluation.under_loads.arcs import arcs_of
 from ..loads.load import Load, OverTheta, OverY
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS

@@ -6,10 +6,6 @@ specialise     the Program of a request, after all passes
 point          a function of floats for single points
 interpreted    few points in plain Python
 kernels        compiled loops for arrays
-modules        text -> digest -> lock -> file -> machine code, for kernels, peaks and simulation
-compiled_text  a text through numba and LLVM to machine code
-machine_code   self-contained machine code, loaded without numba
-loader         LLVM as a loader, without the Python of llvmlite
 cache          the folder of compiled kernels
 generated      generated texts: files to write, or to compare with those that are there
 written        which files desaxe wrote, and may replace
@@ -18,8 +14,6 @@ near_limit     undecided points, recomputed in double-double
 threads        blocks of an array shared by threads
 tiers          plain Python, NumPy or compiled code for a request
 vectorised     Programs in NumPy, for the first call of a request
-any_stride     a kernel over arrays of any stride: the inner loop of a ufunc
-strided_loop   that loop, whose text numba compiles
-native_calls   a kernel as a ufunc, a C function, a function for numba
 compiled_only  a block in which compiled code is required
+native         machine code: made once by numba, stored, loaded by LLVM alone
 """

@@ -19,7 +19,7 @@ from ..mechanism.names import LENGTHS, LOADS
 from ..mechanism.program import Variant
 from ..support.forks import IMPORTS
 from .accuracy import check_angle
-from .modules import Native, Store
+from .native.modules import Native, Store
 from .request import Request
 from .specialise import plain_form, specialise
 

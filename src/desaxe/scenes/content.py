@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from ..evaluation.reductions import Reduction, Reductions
+from ..evaluation.reductions.argument import Reduction, Reductions
 from ..loads.load import Load
 from ..mechanism.own import Definition
 from ..mechanism.unit_system import SI, UnitSystem

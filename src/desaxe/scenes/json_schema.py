@@ -5,7 +5,7 @@ from typing import Any
 
 import msgspec
 
-from ..evaluation.kinds import NAMES
+from ..evaluation.reductions.kinds import NAMES
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import parts
 from ..mechanism.own import derived_names

@@ -18,7 +18,7 @@ from typing import (
 import msgspec
 from msgspec import Meta, Struct
 
-from ..evaluation.kinds import ALLOWED
+from ..evaluation.reductions.kinds import ALLOWED
 from ..mechanism.inputs import INPUTS, names_in
 from ..mechanism.spelling import did_you_mean
 from ..support.shown import shown as as_text

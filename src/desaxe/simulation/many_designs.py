@@ -20,17 +20,17 @@ from ..runtime.threads import run_parts
 from ..support.deadline import Deadline
 from ..support.interrupts import stopped_early
 from ..support.progress import Portions, progress_bar
-from . import nodes, tableau
 from .checks import grows
-from .compiled import DesignFamily, kernel_of
 from .coordinate import arc_around, inside
 from .energy.many import NOT_HERE, follow_many
 from .energy.panels import Designs
 from .energy.serves import ENERGY, INTEGRATOR, PANELS, no_energy_form, served, some_of
+from .loops import nodes, tableau
+from .loops.compiled import DesignFamily, kernel_of
+from .loops.torque import compiled
 from .model import fixed_zeros, form_of
 from .residual import told_of
 from .result import DONE, FAILED, NO_START, WORDS, Simulation
-from .torque import compiled
 
 Array = NDArray[np.float64]
 MOTION, NUMBERS = ("theta", "omega", "alpha"), ("t_last", "energy_residual", "work")

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..evaluation.arrays import as_array
-from ..evaluation.loaded import with_labelled
+from ..evaluation.under_loads.loaded import with_labelled
 from ..loads.load import Load as LoadOverMotion
 from ..loads.motors import Motor
 from ..mechanism.inputs import TINY
@@ -28,6 +28,7 @@ from .checks import (
     read_wrt,
     scalar,
 )
+from .derivatives.slopes import TorqueSlopes
 from .each_design import simulate_each
 from .energy.alone import result_alone
 from .energy.motion import design_of, motion_of
@@ -38,7 +39,6 @@ from .many_designs import is_array, simulate_many
 from .model import Load, Model
 from .one_design import MotionRun, StepControl
 from .result import Simulation
-from .slopes import TorqueSlopes
 
 LEAST_ATOL = 1e-100  # with none at all a state of 0 would have no scale
 
@@ -225,7 +225,7 @@ def simulate(
     result = integrated(run, wanted, instants, {**known, "F_X": drive.F_X, "F_Y": drive.F_Y})
     if slopes is not None:
         with IMPORTS:
-            from .sensitivities import add_sensitivities
+            from .derivatives.sensitivities import add_sensitivities
 
         own = {"F_X": drive.F_X, "F_Y": drive.F_Y}
         held = {name: load.load for name, load in own.items() if isinstance(load, Held)}

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .dop853 import share_of
-from .tableau import E3, E5, EXTENDED, STAGES, A, B, C, D
+from .loops.dop853 import share_of
+from .loops.tableau import E3, E5, EXTENDED, STAGES, A, B, C, D
 
 Array = NDArray[np.float64]
 Rate = Callable[[float, Any], Any]

@@ -6,11 +6,11 @@ import numpy as np
 
 from ..evaluation.axes import outer_of
 from ..evaluation.evaluate import evaluate
-from ..evaluation.kinds import ALLOWED, EXTREMES, kind_of
 from ..evaluation.labels import attributes, import_xarray, input_attributes, labelled, with_loads
 from ..evaluation.plan import Plan, plan_of
 from ..evaluation.points import points_of
-from ..evaluation.reductions import Reduction
+from ..evaluation.reductions.argument import Reduction
+from ..evaluation.reductions.kinds import ALLOWED, EXTREMES, kind_of
 from ..mechanism.catalogue import has
 from ..mechanism.spelling import did_you_mean
 from ..runtime.accuracy import accuracy_of

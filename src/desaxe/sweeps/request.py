@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..definitions.tables import text_of
 from ..evaluation.axes import Outer, outer_of
 from ..evaluation.plan import Block, Plan, margin_of, plan_of
-from ..evaluation.reductions import Reductions, names_reduced, reductions_of
+from ..evaluation.reductions.argument import Reductions, names_reduced, reductions_of
 from ..mechanism.program import digest
 from ..runtime.accuracy import accuracy_of
 from ..runtime.request import several

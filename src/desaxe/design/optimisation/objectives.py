@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...evaluation.loaded import loads_of
+from ...evaluation.under_loads.loaded import loads_of
 from ...mechanism.answer_units import unit_of
 from ...mechanism.inputs import INPUTS, Input
 from ...mechanism.keywords import check_inputs

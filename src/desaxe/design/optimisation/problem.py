@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...evaluation.own_measure import OwnMeasure
+from ...evaluation.reductions.own_measure import OwnMeasure
 from ...support.deadline import Deadline
 from ..measures import measured
 

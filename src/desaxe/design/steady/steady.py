@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...evaluation.arrays import array_of, as_array, broadcast_shape
-from ...evaluation.loaded import loads_of
+from ...evaluation.under_loads.loaded import loads_of
 from ...loads.angles import turns_of
 from ...mechanism.inputs import INPUTS, Input
 from ...mechanism.keywords import check_inputs, with_known_keywords

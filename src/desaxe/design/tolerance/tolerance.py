@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...evaluation.loaded import loads_of
+from ...evaluation.under_loads.loaded import loads_of
 from ...mechanism.catalogue import has, inputs_of, quantity
 from ...mechanism.keywords import with_known_keywords
 from ...mechanism.names import LENGTHS, sensitivity

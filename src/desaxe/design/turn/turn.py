@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...evaluation.evaluate import evaluate
 from ...evaluation.extremes import check_range
-from ...evaluation.loaded import loads_of
+from ...evaluation.under_loads.loaded import loads_of
 from ...loads.angles import crossings, kinks_between, turns_of
 from ...loads.load import OverY
 from ...loads.resolve import VARIABLE

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from ...compiler.kernel import Kernel
 from ...compiler.passes.double_double import double_double
 from ...evaluation.plan import Plan
-from ...evaluation.reduced import Reduced
+from ...evaluation.reductions.reduced import Reduced
 from ...loads.load import Load
 from ...mechanism.catalogue import quantity
 from ...mechanism.constants import double_constants
@@ -22,7 +22,7 @@ from ...mechanism.own import using
 from ...mechanism.program import digest
 from ...mechanism.unit_system import UnitSystem
 from ...runtime.kernels import KernelKey, is_ready, kernel_of, source_of
-from ...runtime.modules import path_of
+from ...runtime.native.modules import path_of
 from ...runtime.request import Request
 from ...runtime.specialise import specialise
 from ...runtime.threads import LEAST_BLOCK, available

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from math import log2
 from typing import NamedTuple
 
-from ...evaluation.measures import AtPlace
 from ...evaluation.plan import Plan
 from ...evaluation.points import Points
-from ...evaluation.reduced import Reduced
+from ...evaluation.reductions.measures import AtPlace
+from ...evaluation.reductions.reduced import Reduced
 from ...loads.load import Load, OverTheta, OverY, TableOverTheta
 
 LOOKUP, HALVING = 2e-9, 0.8e-9  # s in a kernel, in a pass of its own, and for each halving of the table

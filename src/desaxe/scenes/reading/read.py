@@ -8,7 +8,7 @@ from typing import Any, cast
 
 from ...definitions.tables import read_definitions, redefine
 from ...evaluation.chunks import chunk_lengths
-from ...evaluation.reductions import NO_STATUS, Reductions, names_reduced, reductions_of
+from ...evaluation.reductions.argument import NO_STATUS, Reductions, names_reduced, reductions_of
 from ...loads.load import Load
 from ...loads.resolve import settled
 from ...mechanism.inputs import INPUTS

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...support.panels import ENDS, NODES
-from .compiled import TABLES, kernel, variations
+from .loops.compiled import TABLES, kernel, variations
 from .panels import STARTS, Designs, Fields
 from .pushed import Pushed, arcs
 

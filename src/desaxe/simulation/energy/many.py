@@ -9,7 +9,7 @@ from ...support.panels import NODES
 from ..result import FAILED, LIMIT
 from .along import Histories, MotionAlong, histories_of
 from .by_parameters import Sensitivities, sensitivities_of
-from .compiled import TABLES, courses, kernel
+from .loops.compiled import TABLES, courses, kernel
 from .panels import Designs, Fields, fields_of, first_edges, halved
 
 Array = NDArray[np.float64]

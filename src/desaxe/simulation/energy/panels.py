@@ -16,9 +16,9 @@ from ...mechanism.constants import constants
 from ...mechanism.names import LENGTHS
 from ...runtime.compiled_only import compiled_only, is_uncompiled
 from ...support.panels import NODE, NODES, nodes_of, padded
-from ..compiled import DesignFamily
+from ..loops.compiled import DesignFamily
 from ..model import fixed_zeros, form_of
-from .compiled import at_angles, names_of, quantities, rows_of
+from .loops.compiled import at_angles, names_of, quantities, rows_of
 
 Array = NDArray[np.float64]
 LOST = 2.0**-53  # of an angle: its rounding, in the last terms of a series

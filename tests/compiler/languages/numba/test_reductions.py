@@ -6,7 +6,7 @@ import pytest
 from desaxe.compiler.kernel import tabulate
 from desaxe.compiler.languages.numba.reductions import KINDS, LONGEST, SCRATCH, emit_reduced, outputs_of
 from desaxe.compiler.program import Line, Note, Program
-from desaxe.runtime.modules import native_here
+from desaxe.runtime.native.modules import native_here
 
 # f = a x + b: over a, b (designs) and x (reduced).
 PROGRAM = Program(

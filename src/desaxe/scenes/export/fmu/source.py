@@ -10,7 +10,7 @@ from ....compiler.program import Program
 from ....mechanism.constants import constants
 from ....mechanism.inputs import INPUTS
 from ....mechanism.status import PointStatus
-from ....simulation.tableau import E3, E5, STAGES, A
+from ....simulation.loops.tableau import E3, E5, STAGES, A
 from ....support.template import file_text
 from .loads import array_text, loads_text
 from .programs import TORQUE, Programs

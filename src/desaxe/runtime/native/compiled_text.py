@@ -5,7 +5,7 @@ from functools import cache
 from importlib.util import find_spec
 from typing import Any
 
-from ..support.forks import IMPORTS, imported
+from ...support.forks import IMPORTS, imported
 from .machine_code import DOUBLE, ENTRY, NO_MEMORY, WHOLE, Code, Loaded, outside
 
 NAME = "desaxe_native"  # of the module of a text

@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..loads.lines import line_of, totals_of
-from ..loads.load import Load, OverTheta, OverY
-from ..loads.resolve import LoadPlan
-from ..mechanism.load_lines import LoadLines, TurningSense, Under
-from ..runtime.request import Request, request
-from .extremes import MOST, are_extreme
+from ...loads.lines import line_of, totals_of
+from ...loads.load import Load, OverTheta, OverY
+from ...loads.resolve import LoadPlan
+from ...mechanism.load_lines import LoadLines, TurningSense, Under
+from ...runtime.request import Request, request
+from ..extremes import MOST, are_extreme
 
 Array = NDArray[Any]
 

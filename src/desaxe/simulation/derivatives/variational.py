@@ -19,15 +19,15 @@ import numpy as np
 from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 
-from ..evaluation.evaluate import evaluate
-from ..runtime.compiled_only import uncompiled
+from ...evaluation.evaluate import evaluate
+from ...runtime.compiled_only import uncompiled
+from ..equations import Resting, state_of
+from ..events import Q
+from ..friction import Rubbing
+from ..one_design import MotionRun, Piece
+from ..result import LIMIT
 from .collocation import NODES, ONCE, PLACES, SERIES, TWICE, Local, Trajectories, solve
 from .cuts import Cuts
-from .equations import Resting, state_of
-from .events import Q
-from .friction import Rubbing
-from .one_design import MotionRun, Piece
-from .result import LIMIT
 from .rubbing_slopes import Signs, rubbing_slopes
 from .slopes import TorqueSlopes
 

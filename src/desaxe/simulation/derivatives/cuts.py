@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..loads.load import OverY
-from ..mechanism.names import LENGTHS
-from .equations import Resting, State, state_of
-from .events import Q, V
-from .held import Held
-from .one_design import MotionRun, Piece
+from ...loads.load import OverY
+from ...mechanism.names import LENGTHS
+from ..equations import Resting, State, state_of
+from ..events import Q, V
+from ..held import Held
+from ..one_design import MotionRun, Piece
 
 Array = NDArray[np.float64]
 SAME = 1e-9  # of the accelerations: a jump by less is rounding

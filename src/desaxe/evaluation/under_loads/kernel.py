@@ -12,19 +12,19 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..loads.angles import crossings
-from ..loads.load import Load, OverTheta, OverY
-from ..loads.pieces import Place, piece_at
-from ..loads.resolve import LoadPlan, way_of
-from ..mechanism.closed import TURN
-from ..mechanism.closed.angles import dead_centres
-from ..mechanism.names import LENGTHS, STATUSES
-from ..runtime.kernels import KernelKey, key_of, plain_of
-from ..runtime.request import Request
-from ..runtime.threads import run_in_blocks
-from ..runtime.tiers import forced_tier
-from .axes import Outer, first_joined, join_from
-from .under_request import LEAST, are_extreme_under, table_arrays, under_loads
+from ...loads.angles import crossings
+from ...loads.load import Load, OverTheta, OverY
+from ...loads.pieces import Place, piece_at
+from ...loads.resolve import LoadPlan, way_of
+from ...mechanism.closed import TURN
+from ...mechanism.closed.angles import dead_centres
+from ...mechanism.names import LENGTHS, STATUSES
+from ...runtime.kernels import KernelKey, key_of, plain_of
+from ...runtime.request import Request
+from ...runtime.threads import run_in_blocks
+from ...runtime.tiers import forced_tier
+from ..axes import Outer, first_joined, join_from
+from .request import LEAST, are_extreme_under, table_arrays, under_loads
 
 Array = NDArray[Any]
 Region = tuple[slice, ...]

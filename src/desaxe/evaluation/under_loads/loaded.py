@@ -8,19 +8,19 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..loads.function import FunctionOverTheta
-from ..loads.load import Load, OverY
-from ..loads.pieces import Place
-from ..loads.resolve import VARIABLE, Forces, LoadPlan, plan_of, split, way_of
-from ..loads.tabulated import over_theta
-from ..mechanism.closed import TURN
-from ..mechanism.names import LENGTHS, STATUS
-from ..mechanism.spoken import spoken
-from ..runtime.request import as_number, check_common, several
-from ..support.forks import IMPORTS
-from .arrays import as_array, outputs_for
-from .labelled import evaluate_labelled, is_labelled
-from .values import values
+from ...loads.function import FunctionOverTheta
+from ...loads.load import Load, OverY
+from ...loads.pieces import Place
+from ...loads.resolve import VARIABLE, Forces, LoadPlan, plan_of, split, way_of
+from ...loads.tabulated import over_theta
+from ...mechanism.closed import TURN
+from ...mechanism.names import LENGTHS, STATUS
+from ...mechanism.spoken import spoken
+from ...runtime.request import as_number, check_common, several
+from ...support.forks import IMPORTS
+from ..arrays import as_array, outputs_for
+from ..labelled import evaluate_labelled, is_labelled
+from ..values import values
 
 Array = NDArray[Any]
 MOTION = ("theta", *LENGTHS, "omega0", "alpha", "omega")  # inputs that every request has, if only as None
@@ -93,7 +93,7 @@ def _by_kernel(
 ) -> dict[str, Any] | None:
     """The totals at many points by one kernel; None where it is not one, or not ready."""
     with IMPORTS:
-        from .under_points import motion_of_jumps, points_under_loads
+        from .points import motion_of_jumps, points_under_loads
 
     more = [name for name in motion_of_jumps(plan.loads) if name not in plan.shown]
     every = plan_for((*plan.shown, *more), given)[1] if more else plan

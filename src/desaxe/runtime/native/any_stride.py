@@ -19,8 +19,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..compiler.builder import module_text
-from ..compiler.languages.numba.module import numba_parts
+from ...compiler.builder import module_text
+from ...compiler.languages.numba.module import numba_parts
 from .modules import Native, native
 
 LOOP = Path(__file__).with_name("strided_loop.py")

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..history import add_slopes
+from ..one_design import MotionRun
+from ..result import FAILED, JAMS, Event, Simulation
 from .cuts import TOUCHED
-from .history import add_slopes
-from .one_design import MotionRun
-from .result import FAILED, JAMS, Event, Simulation
 from .slopes import TorqueSlopes
 from .variational import Variations
 from .work import of_work

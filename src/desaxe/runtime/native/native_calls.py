@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any, NamedTuple
 
-from ..support.forks import IMPORTS, imported
+from ...support.forks import IMPORTS, imported
 from .any_stride import Bound
 from .loader import LLVM
 

@@ -12,16 +12,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..loads.load import Load, OverY, TableOverTheta
-from ..loads.pieces import Place, ahead, pieces_at
-from ..loads.resolve import way_of
-from ..loads.stroke import OverStroke
-from ..loads.table import Table
-from ..mechanism.names import LENGTHS, sensitivity
-from ..runtime.request import several
+from ...loads.load import Load, OverY, TableOverTheta
+from ...loads.pieces import Place, ahead, pieces_at
+from ...loads.resolve import way_of
+from ...loads.stroke import OverStroke
+from ...loads.table import Table
+from ...mechanism.names import LENGTHS, sensitivity
+from ...runtime.request import several
+from ..quality import ROUNDED_ONCE, Quality, conditions_of, digits_of, evaluate_quality
+from ..values import values
 from .loaded import MOTION, evaluate_loaded, forces_at, numeric, plan_for
-from .quality import ROUNDED_ONCE, Quality, conditions_of, digits_of, evaluate_quality
-from .values import values
 
 Array = NDArray[Any]
 ROUNDINGS = 8.0  # of a cubic and its distance from a knot

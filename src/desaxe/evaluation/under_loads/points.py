@@ -11,18 +11,18 @@ from typing import Any
 
 import numpy as np
 
-from ..loads.load import Load, OverTheta, OverY, TableOverTheta
-from ..loads.pieces import FLAT, NEAR, Place
-from ..loads.resolve import LoadPlan
-from ..mechanism.names import LENGTHS
-from ..runtime.kernels import KernelKey, key_of, plain_of
-from ..runtime.request import Request
-from ..runtime.threads import least_of, run_in_blocks, run_parts
-from ..runtime.tiers import COMPILED, tier_of
-from ..runtime.wide_margins import all_have_wide_margins
-from .arrays import as_array, broadcast_shape, dtype_of
-from .loops import Loops, loops_over
-from .under_request import LEAST, Array, are_extreme_under, table_arrays, under_loads
+from ...loads.load import Load, OverTheta, OverY, TableOverTheta
+from ...loads.pieces import FLAT, NEAR, Place
+from ...loads.resolve import LoadPlan
+from ...mechanism.names import LENGTHS
+from ...runtime.kernels import KernelKey, key_of, plain_of
+from ...runtime.request import Request
+from ...runtime.threads import least_of, run_in_blocks, run_parts
+from ...runtime.tiers import COMPILED, tier_of
+from ...runtime.wide_margins import all_have_wide_margins
+from ..arrays import as_array, broadcast_shape, dtype_of
+from ..loops import Loops, loops_over
+from .request import LEAST, Array, are_extreme_under, table_arrays, under_loads
 
 PART = 2**15  # points of which the motion is in the cache
 

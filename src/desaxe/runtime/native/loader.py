@@ -15,7 +15,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Protocol
 
-from ..support.forks import IMPORTS, ForkSafeLock
+from ...support.forks import IMPORTS, ForkSafeLock
 
 KNOWN = ("0.50.",)  # versions of llvmlite with these prototypes
 _FILES = {"darwin": "libllvmlite.dylib", "win32": "llvmlite.dll"}

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..loads.load import Load, OverTheta
-from ..loads.motors import Motor
-from ..loads.resolve import as_load, roles_of
-from ..support.checks import real_number
-from ..support.shown import shown
+from ...loads.load import Load, OverTheta
+from ...loads.motors import Motor
+from ...loads.resolve import as_load, roles_of
+from ...support.checks import real_number
+from ...support.shown import shown
 
 Array = NDArray[np.float64]
 ROLES = ("t", "theta", "omega")

@@ -11,11 +11,11 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ..compiler.languages.numba.reductions import KINDS
-from ..mechanism.catalogue import of_design
-from ..mechanism.spelling import did_you_mean
-from ..runtime.request import as_number
-from ..support.shown import shown
+from ...compiler.languages.numba.reductions import KINDS
+from ...mechanism.catalogue import of_design
+from ...mechanism.spelling import did_you_mean
+from ...runtime.request import as_number
+from ...support.shown import shown
 from .kinds import ALLOWED, EXTREMES, kind_of
 from .own_measure import OwnMeasure
 

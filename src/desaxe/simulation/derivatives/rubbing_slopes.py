@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanism.names import LENGTHS
+from ...mechanism.names import LENGTHS
 
 Array = NDArray[np.float64]
 

@@ -13,17 +13,17 @@ from typing import Any
 
 import numpy as np
 
-from ..compiler.builder import function_text, module_text
-from ..compiler.languages.numba.module import NJIT, numba_parts
-from ..compiler.lowering import for_loops
-from ..compiler.program import Line, Program
-from ..compiler.text import with_short_temporaries, write_lines
-from ..loads.resolve import names_of, takes
-from ..mechanism.constants import constants
-from ..runtime.modules import Native, native_here
-from ..support.forks import IMPORTS, ForkSafeLock
-from ..support.interrupts import finished
-from .checks import check_signature
+from ...compiler.builder import function_text, module_text
+from ...compiler.languages.numba.module import NJIT, numba_parts
+from ...compiler.lowering import for_loops
+from ...compiler.program import Line, Program
+from ...compiler.text import with_short_temporaries, write_lines
+from ...loads.resolve import names_of, takes
+from ...mechanism.constants import constants
+from ...runtime.native.modules import Native, native_here
+from ...support.forks import IMPORTS, ForkSafeLock
+from ...support.interrupts import finished
+from ..checks import check_signature
 
 _LOCK = ForkSafeLock()
 _LARGEST = 2.0**45  # rad: beyond, a written-out sine is NaN, and the C library's is asked

@@ -15,11 +15,11 @@ from ctypes import CFUNCTYPE, c_char_p, c_int64
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from ..support import private
-from ..support.forks import IMPORTS, ForkSafeLock
-from ..support.interrupts import finished
-from ..support.recent import Recent
-from . import cache as _cache
+from ...support import private
+from ...support.forks import IMPORTS, ForkSafeLock
+from ...support.interrupts import finished
+from ...support.recent import Recent
+from .. import cache as _cache
 from .machine_code import DOUBLE, NO_MEMORY, Code, Loaded, load, machine
 
 SUFFIX = ".code"

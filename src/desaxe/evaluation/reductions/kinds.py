@@ -13,10 +13,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiler.languages.numba.reductions import KINDS
-from ..mechanism.spelling import did_you_mean
-from ..support.forks import imported
-from ..support.shown import shown
+from ...compiler.languages.numba.reductions import KINDS
+from ...mechanism.spelling import did_you_mean
+from ...support.forks import imported
+from ...support.shown import shown
 
 Array = NDArray[Any]
 

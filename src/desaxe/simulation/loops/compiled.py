@@ -5,16 +5,16 @@ from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
-from ..compiler.builder import function_text, functions_of, module_text
-from ..compiler.languages.numba.module import NJIT, numba_parts
-from ..compiler.lowering import for_loops
-from ..compiler.program import Program
-from ..compiler.text import with_short_temporaries, write_lines
-from ..mechanism.constants import constants
-from ..mechanism.program import Variant
-from ..runtime.modules import Native, native
-from ..runtime.specialise import specialise
-from .model import MOVING, STILL, UNLOADED
+from ...compiler.builder import function_text, functions_of, module_text
+from ...compiler.languages.numba.module import NJIT, numba_parts
+from ...compiler.lowering import for_loops
+from ...compiler.program import Program
+from ...compiler.text import with_short_temporaries, write_lines
+from ...mechanism.constants import constants
+from ...mechanism.program import Variant
+from ...runtime.native.modules import Native, native
+from ...runtime.specialise import specialise
+from ..model import MOVING, STILL, UNLOADED
 
 _NAMES = "motions", "state", "dop853", "dense", "panel", "inside_panel", "picard"
 FILES = tuple(Path(__file__).with_name(f"{name}.py") for name in _NAMES)

@@ -7,15 +7,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...compiler.builder import function_text, module_text
-from ...compiler.languages.numba.module import NJIT, numba_parts
-from ...compiler.lowering import for_loops
-from ...compiler.program import Program
-from ...mechanism.constants import constants
-from ...mechanism.names import LENGTHS
-from ...runtime.modules import Native, native
-from ...support.panels import NODE, NODES, RUNNING, TO_COEFFICIENTS, WEIGHT, Array
-from ..compiled import DesignFamily, of_row
+from ....compiler.builder import function_text, module_text
+from ....compiler.languages.numba.module import NJIT, numba_parts
+from ....compiler.lowering import for_loops
+from ....compiler.program import Program
+from ....mechanism.constants import constants
+from ....mechanism.names import LENGTHS
+from ....runtime.native.modules import Native, native
+from ....support.panels import NODE, NODES, RUNNING, TO_COEFFICIENTS, WEIGHT, Array
+from ...loops.compiled import DesignFamily, of_row
 
 FILES = tuple(
     Path(__file__).with_name(name)

@@ -14,20 +14,20 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiler.languages.numba.reductions import KINDS, outputs_of
-from ..mechanism.own import Definition
-from ..runtime.kernels import KernelKey
-from ..runtime.threads import fill_reduced
-from ..runtime.tiers import COMPILED, tier_of
-from .axes import Outer
+from ...compiler.languages.numba.reductions import KINDS, outputs_of
+from ...mechanism.own import Definition
+from ...runtime.kernels import KernelKey
+from ...runtime.threads import fill_reduced
+from ...runtime.tiers import COMPILED, tier_of
+from ..axes import Outer
+from ..labels import Output, attributes, input_attributes, side_attributes
+from ..points import Points, points_of
+from ..under_loads.kernel import UnderLoads, each_point, region_of
+from ..under_loads.sides import sides_of
+from .argument import Chain, Reductions, chain_name, extremes_at_end
 from .in_memory import Field, combined, field_of, folded
 from .kinds import EXTREMES, kind_called
-from .labels import Output, attributes, input_attributes, side_attributes
 from .measures import AtPlace, OfDesign
-from .points import Points, points_of
-from .reductions import Chain, Reductions, chain_name, extremes_at_end
-from .sides import sides_of
-from .under import UnderLoads, each_point, region_of
 
 Array = NDArray[Any]
 FLOAT = np.dtype(np.float64)

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..loads.angles import crossings
-from ..loads.load import Load, OverTheta, OverY
-from ..loads.table import SAME
-from ..mechanism.closed import TURN
-from ..mechanism.closed.angles import dead_centres
-from ..mechanism.names import LENGTHS
-from .points import Points
+from ...loads.angles import crossings
+from ...loads.load import Load, OverTheta, OverY
+from ...loads.table import SAME
+from ...mechanism.closed import TURN
+from ...mechanism.closed.angles import dead_centres
+from ...mechanism.names import LENGTHS
+from ..points import Points
 
 Array = NDArray[Any]
 NEAR = 1e-11  # of 1 + theta: more than what is rounded of the angle of a jump

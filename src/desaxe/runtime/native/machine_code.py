@@ -17,7 +17,7 @@ from contextlib import suppress
 from functools import cache
 from typing import Any, NamedTuple
 
-from ..support.forks import IMPORTS
+from ...support.forks import IMPORTS
 from .loader import LLVM, loader
 
 ENTRY = "desaxe_entry"

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from ..loads.load import OverTheta, OverY
-from ..mechanism.names import LENGTHS
+from ...loads.load import OverTheta, OverY
+from ...mechanism.names import LENGTHS
 from .collocation import NODES, ONCE, PLACES, SERIES
 from .variational import Along, Variations
 

@@ -9,12 +9,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanism.catalogue import quantity
-from ..mechanism.own import Definition
-from .labels import Output, attributes
+from ...mechanism.catalogue import quantity
+from ...mechanism.own import Definition
+from ..labels import Output, attributes
+from ..points import Points
+from .argument import At
 from .own_measure import OwnMeasure
-from .points import Points
-from .reductions import At
 
 Array = NDArray[Any]
 FLOAT = np.dtype(np.float64)

@@ -1,0 +1,10 @@
+"""Machine code: made once by numba, stored, loaded by LLVM alone.
+
+modules        text -> digest -> lock -> file -> machine code, for kernels, peaks and simulation
+compiled_text  a text through numba and LLVM to machine code
+machine_code   self-contained machine code, loaded without numba
+loader         LLVM as a loader, without the Python of llvmlite
+any_stride     a kernel over arrays of any stride: the inner loop of a ufunc
+strided_loop   that loop, whose text numba compiles
+native_calls   a kernel as a ufunc, a C function, a function for numba
+"""

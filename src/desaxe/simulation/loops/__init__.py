@@ -1,0 +1,14 @@
+"""Motions by DOP853 and by panels, in plain loops whose text numba compiles.
+
+motions       motions of designs one after the other, which numba compiles
+state         their state, where it starts and what becomes of it
+dop853        one of their steps in time
+dense         over a step, and inside of it
+tableau       the coefficients of both
+panel         panels of the crank angle in between, also from rest
+picard        what happens at their nodes
+inside_panel  the state inside of one
+nodes         their coefficients
+compiled      the module of a family of designs
+torque        a torque's function, compiled alone
+"""
