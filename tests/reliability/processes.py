@@ -185,7 +185,8 @@ def a_lock_for_ever(folder: Path, random: Random) -> Verdict:
     """Another process holds the lock of a kernel: a warning after some seconds, then work without it."""
     program = f"""{START}
 import fcntl
-from desaxe.runtime import cache, modules
+from desaxe.runtime import cache
+from desaxe.runtime.native import modules
 cache.WAIT = 1.0
 path_of = modules.path_of
 def held(kind, text):
