@@ -12,12 +12,6 @@ NAME = "desaxe_native"  # of the module of a text
 # A text that sets it to True has loops of a few rounds that should run in vectors: LLVM unrolls such loops
 # before it looks for vectors.
 SHORT_LOOPS = "short_loops"
-# numba's passes for closures, comprehensions, generators, literals of the user's and array expressions.
-UNUSED = {
-    "WithLifting", "InlineClosureLikes", "RewriteDynamicRaises", "MakeFunctionToJitFunction", "LiteralUnroll",
-    "LiteralPropagationSubPipelinePass", "FindLiterallyCalls", "InlineInlinables", "InlineOverloads",
-    "NopythonRewrites", "DumpParforDiagnostics",
-}  # fmt: skip
 # What numba's runtime would do for our texts. A view of another shape is only taken of contiguous arrays.
 _SUPPORT = """
 declare ptr @PyMem_RawMalloc(i64)
@@ -102,8 +96,10 @@ def compile_text(text: str, title: str, scope: Mapping[str, Any]) -> Code | Load
     )
     lock = imported("numba.core.compiler_lock").global_compiler_lock
     _load_arrays()
+    with IMPORTS:
+        from .parts import Parts, link_parts, searched_once
     namespace = {"__name__": NAME, **scope}
-    with lock:
+    with lock, searched_once():
         exec(compile(text, f"<desaxe {title}>", "exec"), namespace)
         target, flags = registry.cpu_target, compiler.Flags()
         options = {"nopython": True, "error_model": "numpy", "nogil": True}
@@ -111,7 +107,7 @@ def compile_text(text: str, title: str, scope: Mapping[str, Any]) -> Code | Load
         target.options.parse_as_flags(flags, options | wrappers)
         flags.no_compile = True  # numba's own copy would never be called
         given, answer = sigutils.normalize_signature(namespace["signature"])
-        parts = _Parts(target)
+        parts = Parts(target)
         for helper in namespace.values():
             if getattr(helper, "__module__", None) == NAME and hasattr(helper, "_compiler"):
                 helper._compiler.targetdescr = parts
@@ -120,7 +116,7 @@ def compile_text(text: str, title: str, scope: Mapping[str, Any]) -> Code | Load
         function = namespace["function"]
         made = compiler.compile_extra(*context, function, given, answer, flags, {}, None, parts.pipeline)
         library = made.library
-        _link_parts(library)
+        link_parts(library)
         ranks = tuple(
             kind.ndim if isinstance(kind, types.Array) else DOUBLE if kind == types.float64 else WHOLE
             for kind in given
@@ -149,58 +145,6 @@ def _load_arrays() -> None:
         imported("numba.np.arraymath")
     finally:
         linalg.ensure_blas = imports_it
-
-
-class _Parts:
-    """numba's target for the functions of a text, which are optimised once and all together.
-
-    By itself numba optimises and translates each function, and again in every one that calls it.
-    """
-
-    def __init__(self, target: Any) -> None:
-        codegen = imported("numba.core.codegen")
-        library = type("Part", (codegen.CPUCodeLibrary,), _PART)
-        own = {"_library_class": library, "set_env": lambda self, name, env: None}
-        made = codegen.JITCPUCodegen.__new__(type("PartCodegen", (codegen.JITCPUCodegen,), own))
-        vars(made).update(vars(target.target_context.codegen()))
-        self.options, self.typing_context = target.options, target.typing_context
-        self.target_context = target.target_context.subtarget(_internal_codegen=made)
-        compiler = imported("numba.core.compiler")
-        self.pipeline = type("PartCompiler", (compiler.CompilerBase,), {"define_pipelines": _pipelines})
-
-
-def _pipelines(compiler: Any) -> list[Any]:
-    """numba's passes but for those that look for what no text of ours has."""
-    builder = imported("numba.core.compiler").DefaultPassBuilder
-    every = builder.define_nopython_pipeline(compiler.state)
-    every.passes = [one for one in every.passes if one[0].__name__ not in UNUSED]
-    every.finalize()
-    return [every]
-
-
-def _as_it_is(library: Any) -> None:
-    library._finalized = True
-
-
-# How a part differs from numba's libraries: it is linked once, by `_link_parts`, and never called by itself.
-_PART = {
-    "_optimize_functions": lambda self, module: None,
-    "finalize": _as_it_is,
-    "get_pointer_to_function": lambda self, name: 0,
-}
-
-
-def _link_parts(library: Any) -> None:
-    """Link everything that a part calls, directly or not, into its module."""
-    met, left = {library}, [library]
-    while left:
-        for other in left.pop()._linking_libraries:
-            if other not in met:
-                met.add(other)
-                part = other.codegen is library.codegen
-                module = other._final_module if part else other._get_module_for_linking()
-                library._final_module.link_in(module, preserve=not part)
-                left += [other] if part else []
 
 
 def _entry(name: str, given: tuple[Any, ...], ranks: tuple[int, ...]) -> str:
