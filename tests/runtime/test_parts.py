@@ -1,4 +1,4 @@
-"""What our target of numba does in its own way: numbers of arrays, variables of two types, types of calls."""
+"""Our target of numba: numbers of arrays, variables of two types, types of calls."""
 
 import numpy as np
 from numba import types

@@ -97,7 +97,7 @@ def compile_text(text: str, title: str, scope: Mapping[str, Any]) -> Code | Load
     lock = imported("numba.core.compiler_lock").global_compiler_lock
     _load_arrays()
     with IMPORTS:
-        from .parts import Parts, link_parts, searched_once
+        from .parts import PartTarget, link_parts, searched_once
     namespace = {"__name__": NAME, **scope}
     with lock, searched_once():
         exec(compile(text, f"<desaxe {title}>", "exec"), namespace)
@@ -107,7 +107,7 @@ def compile_text(text: str, title: str, scope: Mapping[str, Any]) -> Code | Load
         target.options.parse_as_flags(flags, options | wrappers)
         flags.no_compile = True  # numba's own copy would never be called
         given, answer = sigutils.normalize_signature(namespace["signature"])
-        parts = Parts(target)
+        parts = PartTarget(target)
         for helper in namespace.values():
             if getattr(helper, "__module__", None) == NAME and hasattr(helper, "_compiler"):
                 helper._compiler.targetdescr = parts

@@ -27,7 +27,7 @@ UNUSED = {
 }  # fmt: skip
 
 
-class Parts:
+class PartTarget:
     """numba's target, but for what is defined here."""
 
     def __init__(self, target: Any) -> None:
@@ -87,7 +87,7 @@ class _Context(CPUContext):
         return own or super().get_function(fn, sig, _firstcall)
 
     def _item(self, signature: Any) -> Callable[..., Any] | None:
-        """How to read or write a number of an array; None for a part of it."""
+        """Return what reads or writes a number of an array; None for a part of it."""
         array, index = signature.args[:2]
         kinds: Any = index if isinstance(index, types.BaseTuple) else (index,)
         whole = isinstance(array, types.Array) and len(kinds) == array.ndim
