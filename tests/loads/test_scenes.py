@@ -67,7 +67,7 @@ def test_a_scene_gives_what_the_calls_give(kind, tmp_path):
     peak = dx.peak("T_in", ec=np.array([0.0, 0.01]), F_Y=scene.inputs["F_Y"], **DESIGN)
     np.testing.assert_allclose(found.peaks[0].dataset.value, peak["value"], rtol=1e-14)
     assert found.checks[0].agrees
-    assert "load over theta" in str(dx.explain(scene))
+    assert "F_Y: over theta, " in str(dx.explain(scene))
 
 
 def test_over_Y_and_objects_in_a_mapping():

@@ -439,7 +439,7 @@ def test_units():
         ({"t_end": 0.0}, ValueError, "t_end = 0.0: it must be a finite time > 0"),
         ({"t_end": math.inf}, ValueError, "t_end = inf"),
         ({"torque": "3 N"}, ValueError, "torque = '3 N': it must be a quantity in N m"),
-        ({"torque": None}, TypeError, "torque = None: simulate expects a finite number"),
+        ({"torque": None}, TypeError, "torque is missing: simulate expects a finite number or a"),
         ({"torque": math.nan}, ValueError, "torque = nan"),
         ({"torque": lambda t, theta: 0.0}, TypeError, "torque: expected a function of (t, theta, omega)"),
         ({"torque": lambda t, theta, omega: math.nan}, ValueError, "torque gave nan at t = 0"),

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..mechanism.inputs import INPUTS
 from ..mechanism.spelling import did_you_mean
 
 Slices = dict[str, slice]
@@ -28,7 +29,8 @@ def chunk_lengths(chunks: Any, sizes: Mapping[str, int], points: int) -> dict[st
             if name not in sizes:
                 known = ", ".join(sizes) or "none"
                 raise ValueError(
-                    f"chunks: {name!r} is not a dimension of this grid; "
+                    f"chunks: {name!r} is not a dimension of this grid"
+                    f"{' (it is a number, or reduced)' if name in INPUTS else ''}; "
                     f"{did_you_mean(str(name), list(sizes))}dimensions: {known}"
                 )
         wanted = {name: chunks.get(name, -1) for name in sizes}

@@ -144,7 +144,9 @@ def with_loads(dataset: "xr.Dataset", loads: Mapping[str, Any]) -> "xr.Dataset":
     over_theta = {name: load for name, load in loads.items() if load.over == "theta"}
     if over_theta and "theta" in dataset.dims:
         theta = dataset["theta"]
-        columns = {n: (theta.dims, load(theta.values), input_attributes(n)) for n, load in over_theta.items()}
+        columns = {
+            n: (theta.dims, load.value(theta.values), input_attributes(n)) for n, load in over_theta.items()
+        }
         dataset = dataset.assign_coords(columns)
     return tell_loads(dataset, loads)
 

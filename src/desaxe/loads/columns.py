@@ -26,6 +26,13 @@ class Column(NamedTuple):
     plain: bool = False
 
 
+def places_and_values(places: Any, values: Any) -> tuple[Any, Any]:
+    """The places and values that are given; of a Series alone its index and its values."""
+    if values is None and hasattr(places, "iloc") and getattr(places, "ndim", 0) == 1:
+        return places.index, places
+    return places, values
+
+
 def column_of(what: str, given: Any, units: tuple[str, ...], own: Conversion | None) -> Column:
     """Finite numbers in SI units, plain ones from `own`; their unit is one of `units`."""
     said = given.attrs.get("units") if hasattr(given, "dims") else None
@@ -38,9 +45,13 @@ def column_of(what: str, given: Any, units: tuple[str, ...], own: Conversion | N
         return Column(_finite(what, found.tolist()), unit)
     if isinstance(given, UNORDERED) or not hasattr(given, "__iter__"):
         raise TypeError(f"{what} = {shown(given)}: expected a list or array of numbers")
-    if getattr(given, "ndim", 1) != 1:
-        raise ValueError(f"{what}: expected a 1-d array, got the shape {given.shape}")
-    elements = given.tolist() if hasattr(given, "tolist") else given
+    elements = given.tolist() if hasattr(given, "tolist") else list(given)
+    if any(isinstance(row, (list, tuple)) or getattr(row, "ndim", 0) for row in elements):
+        call = what.partition(":")[0]
+        raise TypeError(
+            f"{what} = {shown(given)}: expected a list or array of numbers, of one dimension; each column is "
+            f"an argument of its own, as in desaxe.{call}(*zip(*rows))"
+        )
     every = [_with_unit(what, value, units) for value in elements]
     numbers = _finite(what, [number for _, number in every])
     told = next((unit for unit, _ in reversed(every) if unit is not None), None)

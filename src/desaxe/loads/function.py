@@ -60,7 +60,7 @@ class FunctionOverTheta(OverTheta):
 
     def _content(self) -> str:
         angles = [self.every * k / SAMPLES for k in range(SAMPLES)]
-        return f"{[self(angle) for angle in angles]} {self.angles} {self.every}"
+        return f"{[self.value(angle) for angle in angles]} {self.angles} {self.every}"
 
     def told(self, conversion: Any = None) -> str:
         """The function's name in a line."""

@@ -6,7 +6,7 @@ way the slider goes. It stands wherever F_X or F_Y does, compares by its content
 
 from abc import ABC, abstractmethod
 from bisect import bisect_left
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from hashlib import sha256
 from math import ceil, floor, inf, nan
@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING, Any
 from ..mechanism.closed import TURN
 from ..support.computed import computed_once
 from ..support.forks import IMPORTS
-from .table import Arrays, Table, arrays_of, described, polynomial
+from .table import Arrays, Table, arrays_of, polynomial
+from .words import told
 
 if TYPE_CHECKING:
-    from ..mechanism.unit_system import Conversion
+    from ..mechanism.unit_system import Conversion, UnitSystem
 
 MOST_RANGES = 16  # of angles, of which a table remembers the nodes
 POSITION = ("Y", "Y_wrt_theta", "Y_wrt_theta_theta")  # which piece holds: the position, and the way
@@ -40,7 +41,7 @@ class Load(ABC):
     centre = ""  # the dead centre from which positions are measured: the name of its position
     unit: str | None = None
     plain: tuple[str, ...] = ()
-    shown_in: "Conversion | None" = None  # of the machine that made it
+    shown_in: "UnitSystem | None" = None  # of the machine that made it, in which it is called and shown
 
     @property
     def has_slope(self) -> bool:
@@ -60,12 +61,26 @@ class Load(ABC):
         """The arrays of a table, as modules that `compile(..., tables="arguments")` wrote take them."""
         raise TypeError(f"{self!r} is no table")
 
+    tables: tuple[Table, ...] = ()  # one, or one for each way of the slider; none of a function
+
     @abstractmethod
     def told(self, conversion: "Conversion | None" = None) -> str:
         """The load in a line; with a conversion in that unit."""
 
     def __repr__(self) -> str:
-        return self.told(self.shown_in)
+        return self.told(None if self.shown_in is None else self.values_in(self.shown_in))
+
+    def values_in(self, units: "UnitSystem") -> "Conversion":
+        """The conversion of its values, forces or torques."""
+        return units.of("T_in" if self.unit == "N*m" else "F_Y")
+
+    def _in_its_units(self, value: Callable[[Any], Any], place: Any) -> Any:
+        """A value in SI units by a place, in the units of the machine that made the load."""
+        units = self.shown_in
+        if units is None:
+            return value(place)
+        si = units.of("theta" if self.over == "theta" else "Y").to_si(place)
+        return self.values_in(units).shown(value(si))
 
 
 class OverTheta(Load):
@@ -77,7 +92,11 @@ class OverTheta(Load):
         """The angle after which the load, or the nodes of a function, repeat [rad]."""
 
     def __call__(self, theta: Any) -> Any:
-        """The load at crank angles [rad]: a number or an array."""
+        """The load at crank angles, in the units of the machine that made it, else in SI units."""
+        return self._in_its_units(self.value, _plain(theta))
+
+    def value(self, theta: Any) -> Any:
+        """The load at crank angles [rad], in SI units."""
         return self.both(_plain(theta))[0]
 
     @abstractmethod
@@ -119,6 +138,11 @@ class TableOverTheta(OverTheta):
         """The arrays of the table, as modules that `compile(..., tables="arguments")` wrote take them."""
         return arrays_of(self.table)
 
+    @property
+    def tables(self) -> tuple[Table, ...]:  # type: ignore[override]
+        """The table."""
+        return (self.table,)
+
     @computed_once
     def largest(self) -> float:
         """The largest magnitude at a knot."""
@@ -152,7 +176,7 @@ class TableOverTheta(OverTheta):
 
     def told(self, conversion: "Conversion | None" = None) -> str:
         """The table in a line; with a conversion in that unit."""
-        return f"<load over theta: {described((self.table,), self.kind, self.unit, conversion)}>"
+        return told("theta", self.tables, self.kind, self.unit, conversion)
 
 
 @dataclass(frozen=True, repr=False)
@@ -167,6 +191,7 @@ class OverY(Load):
 
     over = "Y"
     parameters = ("theta", "ec", "AB", "BC")
+    place = "Y"  # that it is over, in words
     rises = 1.0  # the way of the slider in which the table is gone through upwards
 
     @property
@@ -179,8 +204,9 @@ class OverY(Load):
         return arrays_of(self.outward, self.outward if self.inward is None else self.inward)
 
     @property
-    def _ways(self) -> list[Table]:
-        return [self.outward] if self.inward is None else [self.outward, self.inward]
+    def tables(self) -> tuple[Table, ...]:  # type: ignore[override]
+        """The table outward and, where there is one, inward."""
+        return (self.outward,) if self.inward is None else (self.outward, self.inward)
 
     def motion(self, parameters: Iterable[str] = ()) -> tuple[str, ...]:
         """The names of the motion from which the load and its derivatives by these parameters follow."""
@@ -195,7 +221,14 @@ class OverY(Load):
         return motion[f"Y_wrt_{parameter}"]
 
     def __call__(self, Y: Any, way: Any = 1.0) -> Any:
-        """The load at positions [m] of a slider that goes outward, or inward where `way` is negative."""
+        """The load at positions of a slider that goes outward, or inward where `way` is negative.
+
+        That of a machine takes and gives the machine's units, any other SI units.
+        """
+        return self._in_its_units(lambda si: self.value(si, way), _plain(Y))
+
+    def value(self, Y: Any, way: Any = 1.0) -> Any:
+        """The load at positions [m] on the way of a slider, in SI units."""
         return self.both(_plain(Y), _plain(way))[0]
 
     def both(self, Y: Any, way: Any) -> tuple[Any, Any]:
@@ -257,8 +290,8 @@ class OverY(Load):
 
         edges = np.array(self._edges)
         origins = np.concatenate([edges[1:2], edges[1:-1]])
-        rows = [row for table in self._ways for row in table.rows]
-        return edges, np.tile(origins, len(self._ways)), np.array(rows).T
+        rows = [row for table in self.tables for row in table.rows]
+        return edges, np.tile(origins, len(self.tables)), np.array(rows).T
 
     def __getstate__(self) -> dict[str, Any]:
         """The state without the arrays, which are rebuilt when needed."""
@@ -267,7 +300,7 @@ class OverY(Load):
     @computed_once
     def largest(self) -> float:
         """The largest magnitude at a knot."""
-        return max(abs(row[0]) for table in self._ways for row in table.rows)
+        return max(abs(row[0]) for table in self.tables for row in table.rows)
 
     @computed_once
     def turns(self) -> bool:
@@ -282,18 +315,18 @@ class OverY(Load):
     @property
     def jumps(self) -> list[float]:
         """The positions at which the load jumps."""
-        return sorted({x for table in self._ways for x in table.jumps})
+        return sorted({x for table in self.tables for x in table.jumps})
 
     def positions(self, smooth: bool) -> list[float]:
         """The positions at which the load is not smooth; with `smooth`, at which its pieces meet too."""
-        return sorted({x for table in self._ways for x in (table.knots if smooth else table.kinks)})
+        return sorted({x for table in self.tables for x in (table.knots if smooth else table.kinks)})
 
     def _content(self) -> str:
         return f"{self.outward!r} {self.inward!r}"
 
     def told(self, conversion: "Conversion | None" = None) -> str:
         """The table in a line; with a conversion in that unit."""
-        return f"<load over Y: {described((self.outward, self.inward), self.kind, self.unit, conversion)}>"
+        return told(self.place, self.tables, self.kind, self.unit, conversion)
 
 
 def _plain(x: Any) -> Any:

@@ -125,7 +125,10 @@ def _check(name: str, places: str, x: list[float], columns: Sequence[list[float]
         if len(column) != len(x):
             raise ValueError(f"{name}: {len(x)} {places} and {len(column)} values; expected as many of both")
     if len(x) < 2:
-        raise ValueError(f"{name}: {len(x)} of the {places}; expected at least two points")
+        raise ValueError(
+            f"{name}: the number of {places} is {len(x)}, expected at least two points; a load that is the "
+            "same everywhere is a number, F_Y=-600"
+        )
 
 
 def _require_order(name: str, places: str, order: str, x: Sequence[float], kind: str) -> None:

@@ -50,7 +50,7 @@ def _in_its_units(method: Callable[..., Any]) -> Callable[..., Any]:
         with speaking(self.units or SI):
             found = method(self, *args, **named)
         if self.units and hasattr(found, "told"):
-            object.__setattr__(found, "shown_in", self.units.of("F_Y"))
+            object.__setattr__(found, "shown_in", self.units)
         return found
 
     return made

@@ -31,6 +31,11 @@ class OverStroke(OverY):
         """The name of the dead centre's position."""
         return f"Y_{self.dead_centre}"
 
+    @property
+    def place(self) -> str:  # type: ignore[override]
+        """The distance that the load is over, in words."""
+        return f"the distance from the {self.dead_centre} dead centre"
+
     def motion(self, parameters: Iterable[str] = ()) -> tuple[str, ...]:
         """The names of the motion from which the load and its derivatives by these parameters follow."""
         parameters = tuple(parameters)
@@ -72,11 +77,6 @@ class OverStroke(OverY):
 
     def _content(self) -> str:
         return f"{self.dead_centre} {super()._content()}"
-
-    def told(self, conversion: Any = None) -> str:
-        """The table in a line; with a conversion in that unit."""
-        place = f"over the distance from the {self.dead_centre} dead centre"
-        return super().told(conversion).replace("over Y", place)
 
 
 def _finite_or_nan(x: float) -> float:

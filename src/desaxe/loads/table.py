@@ -8,7 +8,7 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import chain, pairwise
-from math import floor, inf, nan, nextafter
+from math import copysign, floor, inf, nan, nextafter, sqrt
 from typing import Any, NamedTuple
 
 from ..support.computed import computed_once
@@ -111,6 +111,15 @@ class Table:
         return any(a == b for a, b in pairwise(self.knots))
 
     @computed_once
+    def range(self) -> tuple[float, float]:
+        """The least and the largest value anywhere, between the knots too."""
+        found = list(self.values)
+        ends = (*self.knots[1:], self.knots[0] + self.period) if self.period is not None else self.knots[1:]
+        for row, left, right in zip(self.rows[1:], self.knots, ends, strict=False):
+            found += [polynomial(row, s)[0] for s in _flat_points(row) if 0.0 < s < right - left]
+        return min(found), max(found)
+
+    @computed_once
     def kinks(self) -> tuple[float, ...]:
         """The knots at which the value jumps or the derivative does."""
         return tuple(dict.fromkeys(x for x, jump, kink in self._changes() if jump or kink))
@@ -152,6 +161,17 @@ def polynomial(row: Any, s: Any) -> tuple[Any, Any]:
     """A cubic and its derivative."""
     c0, c1, c2, c3 = row
     return c0 + s * (c1 + s * (c2 + s * c3)), c1 + s * (2.0 * c2 + s * (3.0 * c3))
+
+
+def _flat_points(row: Row) -> list[float]:
+    """The distances at which the derivative of a cubic is 0."""
+    _, c1, c2, c3 = row
+    a, half = 3.0 * c3, c2
+    square = half * half - a * c1
+    if square < 0.0 or (a == 0.0 and half == 0.0):
+        return []
+    q = -(half + copysign(sqrt(square), half))
+    return [x / y for x, y in ((q, a), (c1, q)) if y != 0.0]
 
 
 def periodic(x: Sequence[float], y: Sequence[float], kind: str, period: float) -> Table:
@@ -260,16 +280,3 @@ def _slopes(x: Sequence[float], y: Sequence[float]) -> list[float]:
         from scipy.interpolate import CubicSpline
     found: list[float] = CubicSpline(x, y)(x, 1).tolist()
     return found
-
-
-def described(ways: Sequence[Table | None], kind: str, unit: str | None, conversion: Any = None) -> str:
-    """The tables of a load, one or one for each way, in a line; with a conversion in that unit."""
-    tables = [way for way in ways if way is not None]
-    if conversion is not None and conversion.si != 1:
-        unit = conversion.unit
-    ranges = []
-    for way in tables:
-        ends = min(way.values), max(way.values)
-        low, high = ends if conversion is None else map(conversion.shown, ends)
-        ranges.append(f"{low:g} to {high:g}" + (f" {unit}" if unit else ""))
-    return f"{len(tables[0].knots)} points, {kind}, {', inward '.join(ranges)}"

@@ -11,7 +11,7 @@ from ..mechanism.slips import LARGEST, UnitWarning
 from ..mechanism.spoken import spoken
 from ..mechanism.unit_system import Conversion, UnitSystem
 from ..support.shown import printable, shown
-from .columns import Column, column_of, column_of_file, rows_of, unit_of_column
+from .columns import Column, column_of, column_of_file, places_and_values, rows_of, unit_of_column
 from .function import FunctionOverTheta
 from .load import Load
 from .made import table_over_stroke, table_over_theta, table_over_Y
@@ -28,7 +28,7 @@ class MakeOverTheta(Maker):
         dx.peak("T_in", F_Y=press, ec=0.01, AB=0.04, BC=0.064)
 
     angles  ascending crank angles [rad], or texts with units; within one period. The end of the period may
-            repeat the first point
+            repeat the first point. A Series alone gives both: its index, its values
     values  the load [SI units of the input that it is given for], or texts with units
     kind    "cubic" (a periodic cubic spline, which may go beyond its points), "linear", or "step" (each value
             holds to the right); "cubic" without
@@ -77,10 +77,11 @@ class MakeOverTheta(Maker):
                 angles, derivative = _in_units_of(self.units, angles, derivative)
             return FunctionOverTheta(angles, derivative, tuple(places), turn.values[0])
         if derivative is not None or len(nodes):
-            raise TypeError(f"{name}: derivative= and nodes= belong to a function; a table knows its own")
+            raise TypeError(f"{name}: derivative= and nodes= belong to a function; a table has its own")
+        angles, values = places_and_values(angles, values)
+        x = column_of(f"{name}: angles", angles, ("rad",), self.unit("theta"))
         if values is None:
             raise TypeError(f"{name}: values is missing (angles and values, or a function of theta)")
-        x = column_of(f"{name}: angles", angles, ("rad",), self.unit("theta"))
         y = column_of(f"{name}: values", values, ("N", "N*m"), _force(self.units))
         return table_over_theta(x, y, kind, turn)
 
@@ -146,7 +147,7 @@ class MakeOverY(Maker):
     name = "over_Y"
     takes = "positions, outward, inward=None"
 
-    def __call__(self, positions: Any, outward: Any, inward: Any = None, kind: str = "linear") -> Load:
+    def __call__(self, positions: Any, outward: Any = None, inward: Any = None, kind: str = "linear") -> Load:
         """A load over the slider's position; see `help(desaxe.over_Y)`."""
         return table_over_Y(*_columns("over_Y", "positions", positions, outward, inward, self.units), kind)
 
@@ -195,7 +196,7 @@ class MakeOverStroke(Maker):
     def __call__(
         self,
         distances: Any,
-        outward: Any,
+        outward: Any = None,
         inward: Any = None,
         kind: str = "linear",
         *,
@@ -234,6 +235,7 @@ def _columns(
     name: str, places: str, x: Any, outward: Any, inward: Any, units: UnitSystem | None
 ) -> tuple[Column, list[Column]]:
     """Positions or distances, and the values for each way."""
+    x, outward = places_and_values(x, outward)
     at = column_of(f"{name}: {places}", x, ("m",), _unit(units, "Y"))
     farthest = max(at.values, key=abs, default=0.0)
     if at.plain and isinstance(x, (list, tuple)) and abs(farthest) > FARTHEST:
@@ -243,6 +245,8 @@ def _columns(
             UnitWarning,
             stacklevel=5,
         )
+    if outward is None:
+        raise TypeError(f"{name}: outward is missing: the load at each of the {places}")
     ways = [("outward", outward), *([] if inward is None else [("inward", inward)])]
     return at, [column_of(f"{name}: {way}", values, ("N",), _force(units)) for way, values in ways]
 

@@ -81,8 +81,8 @@ class Machine(Mapping[str, Any]):
         press.replace(ec="12 mm").events()["stroke"]
 
     inputs  as in `evaluate`, all but theta: numbers, texts with units, pint quantities, loads, and arrays of
-            one dimension for families of designs. Or a mapping of these, or a scene as a mapping
-            (`Machine.read` takes the path of one). What is not given has no effect
+            one dimension for families of designs. Or a mapping of these, `units` among them, or a scene as a
+            mapping (`Machine.read` takes the path of one). What is not given has no effect
     branch  +1 or -1
     units   the units of plain numbers, here and in the methods, and of results, pictures, reports, exports:
             "mm, deg, rpm", or a mapping of dimensions and quantities to units, {"length": "mm"}. Only
@@ -118,6 +118,9 @@ class Machine(Mapping[str, Any]):
         made: tuple[Definition, ...] = ()
         if is_scene(given):
             given, own, made = inputs_of_scene(given)
+            units = own if units is None else units
+        elif "units" in given:
+            own = given.pop("units")
             units = own if units is None else units
         elif isinstance(source, Machine):
             units, made = source.units if units is None else units, source.definitions

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 
 from .. import plot
+from ..loads.load import Load
+from ..loads.resolve import as_load
 from ..mechanism.own import using
 from ..plot.mechanism import label_lengths
 from ..runtime.request import several
@@ -54,6 +56,18 @@ class Plots:
         sketch = plot.mechanism(theta=in_si(self._machine.units, "theta", theta), ax=ax, **lengths)
         label_lengths(sketch.axes, self._machine.units.of("ec"))
         return sketch
+
+    def load(self, load: Any = "F_Y", *, ax: Any = None) -> Any:
+        """Draw a load over the crank angle or the slider's place: see `desaxe.plot.load`.
+
+        load  of `over_theta`, `over_Y` or `over_stroke`, or "F_X" or "F_Y" for that of the machine
+        """
+        found = self._machine[load] if isinstance(load, str) else load
+        if not callable(found):
+            raise TypeError(f"plot.load: {load} is a number, which does not vary with the motion")
+        return plot.load(
+            found if isinstance(found, Load) else as_load("F_Y", found), ax=ax, units=self._machine.units
+        )
 
     def animate(
         self, name: str | None = None, *, frames: int = 60, seconds: float = 3.0, ax: Any = None

@@ -9,6 +9,7 @@ from ..design.events.events import events
 from ..design.feasibility.feasibility import feasibility
 from ..evaluation.evaluate import evaluate
 from ..loads.load import Load
+from ..loads.words import brief
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS, LOADS
 from ..mechanism.unit_system import UnitSystem
@@ -41,7 +42,7 @@ def _input(units: UnitSystem, name: str, value: Any) -> str:
     if name == "branch":
         return _value(value, "")
     conversion = units.of(name)
-    return value.told(conversion) if isinstance(value, Load) else _value(value, conversion.unit)
+    return brief(value, conversion) if isinstance(value, Load) else _value(value, conversion.unit)
 
 
 def _value(value: Any, unit: str) -> str:

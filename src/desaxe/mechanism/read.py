@@ -33,6 +33,8 @@ def number_of(row: Input, value: Any) -> float | None:
 def read(row: Input, value: Any, caller: str, expected: str = "a number") -> float:
     """The number in the row's unit; TypeError that says what the caller expects for anything else."""
     number = number_of(row, value)
+    if value is None:
+        raise TypeError(f"{row.name} is missing: {caller} expects {expected}")
     if number is None:
         raise TypeError(f"{named(row.name, value)}: {caller} expects {expected}")
     return number

@@ -50,7 +50,7 @@ class Differences(NamedTuple):
             return self._between(theta)
         total = np.zeros(theta.shape)
         for steps, weight in STENCIL:
-            ahead, behind = (self.load(theta + side * steps * STEP) for side in (1.0, -1.0))
+            ahead, behind = (self.load.value(theta + side * steps * STEP) for side in (1.0, -1.0))
             total += weight * (ahead - behind)
         return total / STEP
 
@@ -60,6 +60,6 @@ class Differences(NamedTuple):
         low, high = np.array(self.nodes)[after - 1], np.nextafter(self.nodes, -inf)[after]
         step = np.minimum(STEP, 0.125 * (high - low))
         centre = np.clip(theta, low + 4.0 * step, high - 4.0 * step)
-        found = self.load(np.clip(centre + PLACES.reshape(-1, *[1] * theta.ndim) * step, low, high))
+        found = self.load.value(np.clip(centre + PLACES.reshape(-1, *[1] * theta.ndim) * step, low, high))
         powers = ((theta - centre) / step) ** np.arange(8.0).reshape(-1, *[1] * theta.ndim)
         return (np.tensordot(BY_POWERS, found, axes=1) * powers).sum(axis=0) / step

@@ -8,6 +8,7 @@ tornado     what a change of each input does, by exact sensitivities
 mechanism   crank, rod and slider to scale at a crank angle
 drive       drive torque over a turn, and the speed with its flywheel
 motion      histories of the motion that a torque causes, with its events
+load        a load over the crank angle or the slider's position, with its points
 steady      speed and torque of a machine on its motor, and the working loop on its curve
 animate     the same as it turns, beside a quantity's curve
 save        a figure or animation to a file
@@ -25,6 +26,7 @@ from .animate import animate as animate
 from .curves import curves as curves
 from .design_map import design_map as design_map
 from .drive import drive as drive
+from .load import load as load
 from .mechanism import mechanism as mechanism
 from .motion import motion as motion
 from .panels import panels as panels
@@ -40,6 +42,7 @@ __all__ = [
     "curves",
     "design_map",
     "drive",
+    "load",
     "mechanism",
     "motion",
     "panels",

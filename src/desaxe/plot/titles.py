@@ -5,6 +5,7 @@ import textwrap
 from collections.abc import Collection, Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from ..loads.words import without_points
 from ..mechanism.catalogue import has, law_name
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import CENTRES, LOADS
@@ -43,8 +44,8 @@ def _loads(dataset: "xr.Dataset", needs: Collection[str]) -> Iterator[str]:
     """The loads that vary with the motion; what a table says of one without a unit is in newtons."""
     for name, words in _VARYING.findall(str(dataset.attrs.get("loads", ""))):
         if name in needs:
-            ways = words.split(", inward ")
-            plain = re.search(r" to \S*[0-9]$", words) is not None
+            ways = without_points(words).split(", inward ")
+            plain = re.search(r" to \S*[0-9]$", ways[-1]) is not None
             unit = f" {INPUTS[name].unit}" if plain else ""
             yield f"{name} " + ", inward ".join(f"{way}{unit}" for way in ways)
 

@@ -105,7 +105,7 @@ def _takes_theta_and_omega(torque: Callable[..., Any]) -> bool:
 def load(name: str, value: Any, unit: str, deadline: Deadline) -> Load:
     """A torque or force as a function of (t, theta, omega), checked wherever it is called."""
     if not callable(value):
-        number = scalar(name, value, unit)
+        number = scalar(name, value, unit, limit="a finite number or a function")
         return lambda t, theta, omega: number
     if name == "torque" and (by_speed := over_speed(value)) is not None:
         value = by_speed

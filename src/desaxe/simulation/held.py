@@ -38,9 +38,9 @@ class Held:
             return self._piece(theta)
         if isinstance(self.load, OverY):
             _, slope = self.place(theta)
-            return float(self.load(self._along(self.load, theta), slope * copysign(1.0, omega)))
+            return float(self.load.value(self._along(self.load, theta), slope * copysign(1.0, omega)))
         assert isinstance(self.load, OverTheta)
-        return float(self.load(theta))
+        return float(self.load.value(theta))
 
     def stand(self, place: Place, lengths: tuple[float, ...], branch: int) -> None:
         """Stand in a design; ValueError where it has not the dead centre that a load is measured from."""
@@ -111,4 +111,4 @@ def _piece_of_function(load: FunctionOverTheta, ahead: float) -> Callable[[float
     nodes = load.nodes(ahead - 2.0 * load.period, ahead + 2.0 * load.period, smooth=False)
     low = max(node for node in nodes if node <= ahead)
     high = nextafter(min(node for node in nodes if node > ahead), -inf)
-    return lambda theta: float(load(min(max(theta, low), high)))
+    return lambda theta: float(load.value(min(max(theta, low), high)))

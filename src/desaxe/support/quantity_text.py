@@ -24,8 +24,17 @@ def split_quantity(text: str, example: str = '"125 mm"') -> tuple[str, str]:
             'a rate "per time" does not say of what: write turns or an angle, such as "120 turn/min"'
         )
     if match is None:
-        raise ValueError(f"it must be a number, or a number with a unit such as {example}")
+        raise ValueError(f"it must be a number, or a number with a unit such as {example}{_hint(text)}")
     return match[1], match[2] or ""
+
+
+def _hint(text: str) -> str:
+    """The remedy for a text that is no quantity; empty for one whose mistake is unknown."""
+    if re.search(r"[0-9],[0-9]", text):
+        return "; a decimal point is a point, not a comma"
+    if re.search(r"[0-9\w]\s*[-+*/(]\s*[0-9\w(]", text):
+        return "; a text is not computed: give the number itself, as math.pi / 2 is"
+    return ""
 
 
 def with_unit_of(other: object, text: object) -> object:

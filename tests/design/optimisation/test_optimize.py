@@ -265,3 +265,9 @@ def test_where_an_objective_has_no_slope_nothing_is_called_an_optimum():
     assert found["status"] == 4
     assert "the optimality conditions hold to 1 only" in found["message"]
     assert found["value"] < 1e-3  # without slopes, from the best of the scan
+
+
+def test_an_optimum_on_a_bound_that_does_not_hold_it_back_is_not_inside():
+    found = dx.optimize(minimize="time_ratio", over={"ec": (0, 0.1)}, AB=0.075, BC=0.3)
+    assert found["message"] == "optimum at ec = 0 m, on the bound of ec (lower), which does not hold it back"
+    assert found["active"] == {}

@@ -13,7 +13,7 @@ from ...mechanism.spoken import spoken
 from ..measures import Measure, checked, text_of
 from .objectives import Goal
 from .problem import EQUAL, LOWER, UPPER, Limit, Space
-from .search import Candidate, LocalSearch
+from .search import NEAR, Candidate, LocalSearch
 
 FOUND, NONE, UNBOUNDED, EDGE, UNSURE = range(5)
 SATISFIED = 1e-7  # of its scale: a limit that is broken by less is kept
@@ -51,7 +51,7 @@ def result_of(goal: Goal, space: Space, found: Candidate, search: LocalSearch, g
         "active": active,
         "multipliers": multipliers,
         "status": status,
-        "message": _message(status, goal, design, found, search, active),
+        "message": _message(status, goal, space, design, found, search, active),
         "residual": found.residual,
     }
 
@@ -82,6 +82,7 @@ def _named(space: Space, found: Candidate, search: LocalSearch) -> tuple[dict[An
 def _message(
     status: int,
     goal: Goal,
+    space: Space,
     design: dict[str, float],
     found: Candidate,
     search: LocalSearch,
@@ -105,8 +106,19 @@ def _message(
     names = {key: key if isinstance(key, str) else text_of(key) for key in active}
     held = ", ".join(f"{names[key]} ({side})" for key, side in active.items())
     kink = ", at a kink, where two peaks share the extreme value" if found.kink else ""
-    rest = f", held back by {held}" if held else ", inside of all limits"
+    rest = f", held back by {held}" if held else _inside(space, found.z)
     return f"optimum at {where}{kink}{rest}"
+
+
+def _inside(space: Space, z: Any) -> str:
+    """The place of an optimum that no limit holds back: inside of them, or just on a bound."""
+    sides = ((LOWER, z <= NEAR), (UPPER, z >= 1.0 - NEAR))
+    touched = [
+        f"{name} ({side})" for side, on in sides for name, is_on in zip(space.names, on, strict=True) if is_on
+    ]
+    if not touched:
+        return ", inside of all limits"
+    return f", on the bound of {', '.join(touched)}, which does not hold it back"
 
 
 def _number(name: Any, value: float, form: str = ".3g") -> str:

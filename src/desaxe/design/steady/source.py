@@ -23,6 +23,10 @@ WEIGHTS = {1: 4.0 / 5.0, 2: -1.0 / 5.0, 3: 4.0 / 105.0, 4: -1.0 / 280.0}
 STEP = 1e-3  # of the speed
 INSTANTS = (0.0, 0.371)  # s: a function of time is not the same at both
 SPEEDS = np.outer([-1.0, 1.0], np.geomspace(1e-2, 1e5, 141))
+EXPECTED = (
+    "expected a number, a motor (desaxe.kloss, desaxe.over_omega), a load over theta, or a function of omega "
+    "or of (theta, omega)"
+)
 
 
 class TorqueSource(ABC):
@@ -176,6 +180,8 @@ class OfFunction(TorqueSource):
 
 def source_of(torque: Any) -> TorqueSource:
     """The source that `torque=` stands for."""
+    if torque is None:
+        raise TypeError(f"torque is missing: {EXPECTED}")
     if isinstance(torque, Motor):
         return OfMotor(torque)
     if isinstance(torque, Load):
@@ -187,10 +193,7 @@ def source_of(torque: Any) -> TorqueSource:
         return ConstantTorque(number_or_array(Input("torque", "N*m", ""), torque))
     roles = roles_of(torque)
     if roles is None:
-        raise TypeError(
-            f"torque = {shown(torque)}: expected a number, a motor (desaxe.kloss, desaxe.over_omega), a load "
-            f"over theta, or a function of omega or of (theta, omega); this one takes {signature(torque)}"
-        )
+        raise TypeError(f"torque = {shown(torque)}: {EXPECTED}; this one takes {signature(torque)}")
     if roles == ("theta",):
         return source_of(as_load("torque", torque))
     found = OfFunction(torque, roles)

@@ -14,6 +14,7 @@ from ...compiler.passes.double_double import double_double
 from ...evaluation.plan import Plan
 from ...evaluation.reductions.reduced import Reduced
 from ...loads.load import Load
+from ...loads.words import brief
 from ...mechanism.catalogue import quantity
 from ...mechanism.constants import double_constants
 from ...mechanism.keywords import with_known_keywords
@@ -188,7 +189,7 @@ def _input(name: str, value: Value, units: UnitSystem) -> dict[str, Any]:
     if isinstance(value, tuple):
         return {**row, "values": len(value), "from": own.shown(value[0]), "to": own.shown(value[-1])}
     if isinstance(value, Load):
-        return {**row, "load": value.told(own)}
+        return {**row, "load": brief(value, own)}
     return {**row, "value": own.shown(value)}
 
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from textwrap import wrap
 from typing import Any
 
+from ...support.quantity_text import printed, with_unit
 from ..report import number, table
 
 WIDTH = 96
@@ -24,7 +25,7 @@ def _asked(plan: Mapping[str, Any]) -> str:
     """The requested names and the axes of the grid."""
     lines = ["Asked for"]
     if plan["outputs"]:
-        rows = [[out["name"], _unit(out["unit"]), out["meaning"]] for out in plan["outputs"]]
+        rows = [[out["name"], printed(out["unit"]), out["meaning"]] for out in plan["outputs"]]
         lines += [_cut(line) for line in table(rows, "l")]
         taken = plan["reduction"]
         if taken:
@@ -45,13 +46,9 @@ def _asked(plan: Mapping[str, Any]) -> str:
         lines += _wrapped("loads", [f"{a['name']}: {a['load']}" for a in plan["inputs"] if "load" in a])
     if fixed:
         lines += _wrapped(
-            "fixed", [f"{a['name']} = {number(a['value'])} {_unit(a['unit'])}".rstrip() for a in fixed]
+            "fixed", [with_unit(f"{a['name']} = {number(a['value'])}", a["unit"]) for a in fixed]
         )
     return "\n".join(lines)
-
-
-def _unit(unit: str) -> str:
-    return "" if unit == "1" else unit
 
 
 def _cut(line: str) -> str:

@@ -114,13 +114,13 @@ def _load(own: Variations, theta: float, Y: float) -> float:
     """F_Y at an angle of the last panel, where the slider is at Y."""
     load = own.given["F_Y"]
     if not isinstance(load, OverY):
-        return float(load(theta) if callable(load) else load)
+        return float(load.value(theta) if callable(load) else load)
     motion = {"Y": Y}
     if load.centre:
         motion[load.centre] = float(own.values((load.centre,), theta)[load.centre])
     last = own.last_panel
     way = own.values(("V_C",), last.theta, last.omega)["V_C"][0, -1]
-    return float(load(load.along(motion), float(way)))
+    return float(load.value(load.along(motion), float(way)))
 
 
 def _shifts(own: Variations, along: Along) -> tuple[Array, Array]:

@@ -79,13 +79,13 @@ class Designs(NamedTuple):
     def add_tables(self, push: Array, theta: Array, Y: Array, Y_wrt_theta: Array, way: Any) -> None:
         """Add what the loads that vary do to the torque that moves the crank."""
         if isinstance(self.torque, OverTheta):
-            push += self.torque(theta)
+            push += self.torque.value(theta)
         if isinstance(self.force, OverY):
             zero = zero_of(self.force, self.lengths, self.branch)[:, None]
             along = self.force.along({"Y": Y, self.force.centre: zero})
-            push += self.force(along, way * Y_wrt_theta) * Y_wrt_theta
+            push += self.force.value(along, way * Y_wrt_theta) * Y_wrt_theta
         elif isinstance(self.force, OverTheta):
-            push += self.force(theta) * Y_wrt_theta
+            push += self.force.value(theta) * Y_wrt_theta
 
     @property
     def loads(self) -> Array:

@@ -1,0 +1,38 @@
+"""Loads in words: in a line, and shorter in a cell of a table."""
+
+import re
+from collections.abc import Sequence
+from typing import Any
+
+from ..support.quantity_text import with_unit
+from .table import Table
+
+
+def told(place: str, ways: Sequence[Table], kind: str, unit: str | None, conversion: Any = None) -> str:
+    """A table in a line: kind and range of its curve, and that of its points where the curve goes beyond."""
+    if conversion is not None and conversion.si != 1:
+        unit = conversion.unit
+    ranges = ", inward ".join(_range(way, unit or "1", conversion) for way in ways)
+    return f"<load over {place}: {len(ways[0].knots)} points, {kind}, {ranges}>"
+
+
+def _range(way: Table, unit: str, conversion: Any) -> str:
+    curve, points = (
+        " to ".join(f"{end if conversion is None else conversion.shown(end):g}" for end in ends)
+        for ends in (way.range, (min(way.values), max(way.values)))
+    )
+    return with_unit(curve, unit) + (f" (points {points})" if points != curve else "")
+
+
+def brief(load: Any, conversion: Any) -> str:
+    """A load in a few words, with the range of both ways together."""
+    if not load.tables:
+        words: str = load.told()
+        return words[1:-1].removeprefix("load ")
+    ends = [conversion.shown(end) for table in load.tables for end in table.range]
+    return f"over {load.over}, " + with_unit(f"{min(ends):.4g} to {max(ends):.4g}", conversion.unit)
+
+
+def without_points(words: str) -> str:
+    """The words of a load without the range of its points."""
+    return re.sub(r" \(points .*?\)", "", words)
