@@ -19,7 +19,7 @@ def fill(a, i, b, c):
     x = x + 0.5  # of another type now
     k = uint64(1)
     b[0], b[i], b[k] = x, row[i, 2], made[k, 2] + a[0, k, 1] + c[-1, 2]
-    b[3] = a[-1, i][0] + floor(x) + made.shape[1]
+    b[(3,)] = a[-1, i][(0,)] + floor(x) + made.shape[1]
     return int64(x > 2.0)
 
 def function(a, i, b, c):
@@ -32,7 +32,7 @@ signature = types.int64(
 
 
 def test_numbers_of_arrays_are_those_of_numpy():
-    """From the end, by whole numbers without a sign, in any layout, of any type."""
+    """From the end, by whole numbers without a sign, by one in a tuple, in any layout, of any type."""
     before = types.BaseFunction.get_call_type
     function = Native(_ready(compile_text(TEXT, "a test", {})))
     assert types.BaseFunction.get_call_type is before

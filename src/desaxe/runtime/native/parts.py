@@ -99,7 +99,7 @@ class _Context(CPUContext):
             data, shape, strides = (model.get(builder, values[0], n) for n in ("data", "shape", "strides"))
             lengths = unpack_tuple(builder, shape)
             steps = unpack_tuple(builder, strides) if layout == "A" else ()
-            given = unpack_tuple(builder, values[1]) if len(kinds) > 1 else values[1:2]
+            given = unpack_tuple(builder, values[1]) if kinds is index else values[1:2]
             places = [
                 i if _is_from_start(i) else fix_integer_index(self, builder, kind, i, length)
                 for kind, i, length in zip(kinds, given, lengths, strict=True)
