@@ -1,6 +1,8 @@
 """From a text to machine code: numba compiles it, LLVM optimises all of its functions at once."""
 
-from collections.abc import Mapping
+import gc
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from functools import cache
 from importlib.util import find_spec
 from typing import Any
@@ -83,6 +85,19 @@ define double @numba_nextafter(double %x, double %y) {
 """
 
 
+@contextmanager
+def _collected_later() -> Iterator[None]:
+    """Pause the collector of garbage: it would go through numba's many objects again and again."""
+    collects = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collects:
+            gc.enable()
+
+
+@_collected_later()
 def compile_text(text: str, title: str, scope: Mapping[str, Any]) -> Code | Loaded:
     """Compile a text that defines `function` and `signature`; loaded at once if it is not self-contained.
 

@@ -115,7 +115,8 @@ def follow(
     The status: 0 there, 2 at an end of the panels, 4 too many pieces, 10 some panels are marked as too wide,
     11 no energy form, 12 no room for more pieces.
     """
-    rows, more, m, q, parts = empty((7, 16)), empty((7, 16)), empty(16), empty(16), empty((128, 4))
+    rows, more, parts, series_of = empty((7, 16)), empty((7, 16)), empty((128, 4)), empty((2, 16))
+    m, q = series_of[0], series_of[1]
     tolerance, energy, way, period = how[0], setup[0], setup[2], setup[3]
     t, turn, largest, last_stop, begin, room = 0.0, 0.0, energy, nan, 0.0, 0.0
     panel: Any = int64(setup[1]) - (1 if way < 0.0 else 0)
@@ -330,8 +331,9 @@ def motions(
         len(times),
         edges.shape[1] - 1,
     )
-    since, lanes = empty(count), empty((21, count))
-    work, known, last = empty((2, panels, 17)), empty((2, panels), int64), empty(19)
+    # Rows of two axes: each number of axes is a function more to compile.
+    lanes, work, known = empty((22, count)), empty((2, panels, 17)), empty((2, panels))
+    since, last = lanes[21], empty((1, 19))[0]
     for n in range(len(setup)):
         room = n if len(kept) == len(setup) else 0
         own, pieces = which[room], kept[room]
