@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.cli import command, doctor, main
+from desaxe.cli import cache, command, doctor, main
 from desaxe.mechanism.inputs import INPUTS
 
 COMPACTOR = str(Path(__file__).parents[2] / "examples" / "compactor.toml")
@@ -438,3 +438,12 @@ def test_doctor_reads_machine_code(assembly, found):
     assert loop.doubles == doubles
     assert loop.library_calls == calls
     assert loop.vectorised is (doubles > 1)
+
+
+def test_the_cache_is_listed_without_its_locks(tmp_path, capsys):
+    for ending in ("code", "lock"):
+        (tmp_path / f"kernel_{'0' * 40}.{ending}").touch()
+    cache._list(tmp_path)
+    text = capsys.readouterr().out
+    assert ".lock" not in text
+    assert "1 files, " in text

@@ -84,3 +84,33 @@ def test_a_series_alone_gives_places_and_values():
 def test_what_is_no_table_is_told_with_the_remedy(make, message):
     with pytest.raises((TypeError, ValueError), match=message):
         make()
+
+
+def test_forces_without_a_mass_or_a_load_are_told():
+    design = {"theta": 1.0, "ec": 0.0, "AB": 0.1, "BC": 0.3, "omega0": 3.0}
+    with pytest.warns(dx.LoadWarning, match="^T_in: 0, since neither a mass nor a load is given"):
+        assert dx.evaluate("T_in", **design) == 0.0
+    with pytest.warns(dx.LoadWarning, match="^F_A, T_in: 0"):
+        dx.evaluate(["a_C", "F_A", "T_in", "T_in_wrt_ec"], **{**design, "theta": np.array([1.0, 2.0])})
+    assert dx.evaluate("V_C", **{**design, "theta": 0.0}) == 0.0
+    assert dx.evaluate("T_in", m_slider=0.0, **design) == 0.0
+    assert dx.evaluate(["T_in", "V_C"], F_Y=-10.0, **{**design, "theta": 0.0})["T_in"] == 0.0
+
+
+@pytest.mark.parametrize(
+    "load", [DIE, SPLINE, PRESS.over_stroke([0, 8, 8], [-80, -80, 0], dead_centre="outer")]
+)
+def test_a_scene_has_the_points_of_a_load_in_the_units_of_the_machine(load, tmp_path):
+    path = PRESS.replace(F_Y=load).to_scene(tmp_path / "press.toml")
+    written = path.read_text()
+    assert 'value = "kN"' in written
+    assert 'theta = "deg"' in written or ' = "mm"' in written.partition("[loads]")[2]
+    assert "-4.0]" in written or "-80.0" in written
+    assert dx.Machine.read(path)["F_Y"] == load
+
+
+def test_points_that_have_no_double_in_the_unit_stay_in_si_units(tmp_path):
+    load = PRESS.over_Y([200 + k / 7 for k in range(40)], [k / 3 for k in range(40)])
+    path = PRESS.replace(F_Y=load).to_scene(tmp_path / "press.toml")
+    assert dx.Machine.read(path)["F_Y"] == load
+    assert (tmp_path / "press_F_Y.csv").exists()

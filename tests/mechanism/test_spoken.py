@@ -155,7 +155,7 @@ def test_a_load_shows_itself_in_the_units_of_its_machine():
 @pytest.mark.parametrize(
     ("call", "told"),
     [
-        (lambda: PRESS.over_Y(1, 2, 3, 4, 5), "over_Y() takes from 2 to 4 positional arguments but 5"),
+        (lambda: PRESS.over_Y(1, 2, 3, 4, 5), "over_Y() takes from 1 to 4 positional arguments but 5"),
         (lambda: dx.over_Y.read(1, 2, 3, 4, 5), "over_Y.read() takes from 1 to 4 positional arguments but 5"),
         (lambda: PRESS.kloss(1, 2, 3, 4, 5), "kloss() takes from 3 to 4 positional arguments but 5"),
     ],

@@ -150,3 +150,8 @@ def test_titles_of_results_that_know_less():
     assert title(dx.plot.tornado(peak, {"ec": 1e-3}, title="by drawing 7")) == "by drawing 7"
     values = dx.evaluate(["T_in"], theta=np.linspace(0, 6, 7), **dx.Machine(LOADED))
     assert "F_Y over theta" in title(dx.plot.curves(values, "T_in"))
+
+
+def test_a_drive_says_the_fluctuation_of_its_flywheel():
+    title = LOADED.drive(fluctuation=0.1).plot().axes[1].get_title(loc="left")
+    assert title.endswith("under a constant torque, fluctuation 10 %")

@@ -257,6 +257,18 @@ def test_long_works_show_progress(monkeypatch, place, call, shown):
     assert all(0 <= done < total for done, total, _ in told)
 
 
+def test_a_scene_that_is_run_in_python_shows_its_progress(monkeypatch):
+    told = []
+
+    @contextmanager
+    def bar():
+        yield lambda done, total, what: told.append(what)
+
+    monkeypatch.setattr("desaxe.scenes.scene.progress_bar", bar)
+    dx.Machine(ec=0.0, AB=0.1, BC=0.3).scene("Y", theta=[0.0, 1.0]).run()
+    assert told == ["values", ""]
+
+
 @pytest.mark.parametrize("text", ["29.5 rad/s", "-20.2 m/s", "-7740 rad/s2", "-994 m/s2"])
 def test_test_cases_of_paper_a(compactor, text):
     """Printed and computed stand side by side, and agree."""

@@ -35,7 +35,7 @@ def _cache(options: argparse.Namespace) -> int:
 def _list(folder: Any) -> int:
     from ..runtime import cache
 
-    found = cache.entries(folder)
+    found = [entry for entry in cache.entries(folder) if entry.path.suffix != ".lock"]
     for entry in reversed(found):
         used = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.used))
         print(f"{used}  {entry.size / 1e3:9.1f} kB  {entry.path.name}")

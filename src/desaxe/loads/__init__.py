@@ -3,6 +3,7 @@
 load       the loads: over theta or Y, from a table
 function   a user's function of theta as a load
 table      tables as piecewise cubics
+absent     a warning where forces are asked for and nothing acts
 words      a load in words
 columns    numbers with or without units, from lists, arrays and files
 made       loads made of columns, checked

@@ -1,11 +1,15 @@
 """Loads that vary with the motion as the data of a scene: points in it, or a CSV file beside it."""
 
+from collections.abc import Sequence
+from fractions import Fraction
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..loads.load import Load, OverY, TableOverTheta
 from ..loads.motors import ROWS, Kloss, OverOmega
 from ..loads.stroke import OverStroke
+from ..mechanism.inputs import INPUTS
+from ..mechanism.unit_system import SI, Conversion, UnitSystem
 
 INLINE = 24  # points that stand in the scene itself
 
@@ -18,35 +22,58 @@ class LoadTable(NamedTuple):
     text: str = ""
 
 
-def load_table(name: str, load: Load, scene: Path, unit: str | None = None) -> LoadTable:
+def load_table(name: str, load: Load, scene: Path, units: UnitSystem = SI) -> LoadTable:
     """The table of a load for a scene at this path; TypeError for a load that is a function.
 
-    Points are in SI units with all their digits, so that the load that is read equals this one.
-    unit   of its plain values, where the scene names another one
+    Points are in the units of the scene where these stand for the same doubles, else in SI units with all
+    their digits, so that the load that is read equals this one.
     """
+    more: dict[str, Any] = {"kind": load.kind} if isinstance(load, (TableOverTheta, OverY)) else {}
     if isinstance(load, TableOverTheta):
-        columns = [load.table.knots, load.table.values]
-        more: dict[str, Any] = {"kind": load.kind, "period": load.period}
-        over, along, heads = "over_theta", {"theta": "rad"}, ["theta [rad]", name]
+        over, first, place, si = "over_theta", "theta", "theta", "rad"
+        heads = [name]
     elif isinstance(load, OverY):
-        ways = [load.outward] if load.inward is None else [load.outward, load.inward]
-        columns = [load.outward.knots, *(table.values for table in ways)]
-        more = {"kind": load.kind}
-        over, along, first = "over_Y", {"Y": "m"}, "Y [m]"
+        over, first, place, si = "over_Y", "Y", "Y", "m"
         if isinstance(load, OverStroke):
-            over, along, first = "over_stroke", {"distance": "m"}, "distance [m]"
+            over, first = "over_stroke", "distance"
             more["dead_centre"] = load.dead_centre
-        heads = [first, *(f"{name} {way}" for way in ("outward", "inward")[: len(ways)])]
+        heads = [f"{name} {way}" for way in ("outward", "inward")[: len(load.tables)]]
     else:
         raise TypeError(f"{name}: a function is not data, and cannot stand in a scene file; give a table")
-    unit = load.unit or unit
-    more |= along | ({"value": unit} if unit is not None else {})
-    rows = list(zip(*columns, strict=True))
+    period = [load.period] if isinstance(load, TableOverTheta) else []
+    (places, own_period), along = _in_unit([load.tables[0].knots, period], units.of(place), si)
+    ways, unit = [list(table.values) for table in load.tables], load.unit
+    if unit is not None or units.of(name).si != 1:
+        ways, unit = _in_unit(ways, units.of(name), unit or INPUTS[name].unit)
+    if own_period:
+        more["period"] = own_period[0] if along == si else f"{own_period[0]!r} {along}"
+    more |= {first: along} | ({"value": unit} if unit is not None else {})
+    rows = list(zip(places, *ways, strict=True))
     if len(rows) <= INLINE:
         return LoadTable({over: [list(row) for row in rows], **more})
     file = scene.with_name(f"{scene.stem}_{name}.csv")
-    lines = [",".join(heads), *(",".join(map(repr, row)) for row in rows)]
+    lines = [",".join([f"{first} [{along}]", *heads]), *(",".join(map(repr, row)) for row in rows)]
     return LoadTable({over: file.name, **more}, file, "\n".join(lines) + "\n")
+
+
+def _in_unit(
+    columns: Sequence[Sequence[float]], conversion: Conversion, si: str
+) -> tuple[list[list[float]], str]:
+    """Columns of SI numbers in another unit, and that unit; as they are where it has no such doubles."""
+    if conversion.si != 1:
+        shown = [[_written(x, conversion) for x in column] for column in columns]
+        if all(x is not None for column in shown for x in column):
+            return shown, conversion.unit  # type: ignore[return-value]
+    return [list(column) for column in columns], si
+
+
+def _written(value: float, conversion: Conversion) -> float | None:
+    """The shortest of some numbers that are read as this double; None without one."""
+    for digits in (15, 17):
+        number = float(f"{conversion.shown(value):.{digits}g}")
+        if float(Fraction(repr(number)) * conversion.si) == value:
+            return number
+    return None
 
 
 def motor_table(motor: Any) -> Any:

@@ -52,7 +52,7 @@ def write_scene(machine: Any, path: str | PathLike[str], outputs: Any, more: Map
     machine, more = _with_inputs(machine, more)
     loads = split(machine)[1]
     scene(_data(machine, outputs, more, loads))
-    tables = {name: load_table(name, load, place, _si_unit(machine, name)) for name, load in loads.items()}
+    tables = {name: load_table(name, load, place, machine.units) for name, load in loads.items()}
     for file in (place, *(table.file for table in tables.values() if table.file is not None)):
         check_target(file)
     for table in tables.values():
@@ -70,11 +70,6 @@ def _with_inputs(machine: Any, more: Mapping[str, Any]) -> tuple[Any, dict[str, 
     own = {name: value for name, value in more.items() if name in INPUTS and name != "theta"}
     rest = {name: value for name, value in more.items() if name not in own}
     return (machine.replace(**own) if own else machine), rest
-
-
-def _si_unit(machine: Any, name: str) -> str | None:
-    """The SI unit of a load whose plain numbers mean another one in the machine's scene."""
-    return None if machine.units.of(name).si == 1 else INPUTS[name].unit
 
 
 def _data(machine: Any, outputs: Any, more: Mapping[str, Any], loads: Mapping[str, Any]) -> dict[str, Any]:

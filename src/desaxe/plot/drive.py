@@ -80,8 +80,8 @@ def _speed(ax: "Axes", result: Any) -> "Line2D":
     ax.set_ylabel(f"speed of the crank [{unit}]")
     inertia = f"{result['flywheel_inertia']:.4g} {raised(result.unit('flywheel_inertia'))[1:-1]}"
     ax.set_title(
-        f"with a flywheel of {inertia} "
-        "under a constant torque",
+        f"with a flywheel of {inertia} under a constant torque, "
+        f"fluctuation {100 * result['fluctuation']:.3g} %",
         loc="left", fontsize="medium",
     )  # fmt: skip
     return curve

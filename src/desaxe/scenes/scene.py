@@ -1,6 +1,7 @@
 """`scene`: a mechanism, its motion and its outputs, from a TOML file or a mapping."""
 
 from collections.abc import Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import Any
 from ..mechanism.own import change, using
 from ..mechanism.spoken import speaking
 from ..mechanism.unit_system import SI, UnitSystem
-from ..support.progress import Progress
+from ..support.progress import Progress, progress_bar
 from ..support.shown import printable
 from .content import Content
 from .reading.read import plain_data, read
@@ -87,15 +88,17 @@ class Scene:
     def run(self, progress: Progress | None = None, *, overwrite: bool = False) -> SceneResult:
         """Compute everything, write the files that the scene names, and return it.
 
-        `progress(done, total, what)` is called before each step. Paths are relative to the current
+        `progress(done, total, what)` is called before each step; without, a long run on a terminal shows a
+        progress bar. Paths are relative to the current
         directory. A file that desaxe wrote is replaced; another one, or one that was changed since, only
         with `overwrite`. Needs the extra `labelled`, and `plot` where the scene has pictures.
 
         Raises FileExistsError, ValueError or OSError, before anything is computed, for a place that
         cannot be written; NotWrittenError, which has the result, where writing failed after all.
         """
-        steps = steps_of(self.content, progress)
-        with using(self.content.definitions), speaking(self.shown_in):
+        meter = progress_bar() if progress is None else nullcontext(progress)
+        with meter as watch, using(self.content.definitions), speaking(self.shown_in):
+            steps = steps_of(self.content, watch)
             found = compute(self.content, steps, overwrite)
             found = write_files(self.content, found, steps, self.shown_in, overwrite)
         result = SceneResult(scene=self, **vars(found))
