@@ -4,6 +4,7 @@ import textwrap
 from math import degrees, isfinite
 from typing import TYPE_CHECKING, Any
 
+from ..loads.words import without_points
 from ..support.extras import needed
 from ..support.forks import IMPORTS
 from .picture import Picture
@@ -61,7 +62,7 @@ def _torque(ax: "Axes", result: Any) -> "dict[str, Line2D]":
     ax.annotate(told, (place, top), (-8 if left else 8, 5), textcoords="offset points", va="center",
                 ha="right" if left else "left", fontsize="small")  # fmt: skip
     ax.set_ylabel(f"torque of the drive, T_in [{result.unit('T_in')}]")
-    inputs = [raised(one)[1:-1] for one in result.design().split(", ")]
+    inputs = [raised(one)[1:-1] for one in without_points(result.design()).split(", ")]
     design = ", ".join(one.replace(" ", "\u00a0") if len(one) < TITLE // 2 else one for one in inputs)
     ax.set_title(
         f"{textwrap.fill(design, TITLE)}\n"
