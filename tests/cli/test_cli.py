@@ -121,6 +121,13 @@ def test_point_with_masses_and_loads(told):
     assert float(value) == pytest.approx(dx.evaluate("T_in", **point, **loads), rel=1e-15)
 
 
+def test_forces_without_a_mass_or_a_load_are_told(told):
+    with pytest.warns(dx.LoadWarning, match="^T_in: 0, since neither a mass nor a load is given"):
+        told("point", "T_in,V_C", "T_in_wrt_ec", *POINT)
+    told("point", "T_in", *POINT, "m_slider=0")
+    told("point", "V_C", *POINT)
+
+
 @pytest.mark.parametrize(
     ("speed", "status"),
     [("60rpm", "6: friction: two balances of forces"), ("-60rpm", "5: friction jams: no balance of forces")],

@@ -201,7 +201,6 @@ def test_a_load_over_the_angle():
     assert found["work_out"] == pytest.approx(stroke, rel=1e-10)
 
 
-@pytest.mark.filterwarnings("ignore:.*neither a mass nor a load")
 def test_status():
     lengths = {"omega0": 3.0, "m_slider": 1.0}
     stuck = dx.drive(ec=0.1, AB=0.2, BC=0.25, **lengths)

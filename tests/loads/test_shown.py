@@ -86,17 +86,6 @@ def test_what_is_no_table_is_told_with_the_remedy(make, message):
         make()
 
 
-def test_forces_without_a_mass_or_a_load_are_told():
-    design = {"theta": 1.0, "ec": 0.0, "AB": 0.1, "BC": 0.3, "omega0": 3.0}
-    with pytest.warns(dx.LoadWarning, match="^T_in: 0, since neither a mass nor a load is given"):
-        assert dx.evaluate("T_in", **design) == 0.0
-    with pytest.warns(dx.LoadWarning, match="^F_A, T_in: 0"):
-        dx.evaluate(["a_C", "F_A", "T_in", "T_in_wrt_ec"], **{**design, "theta": np.array([1.0, 2.0])})
-    assert dx.evaluate("V_C", **{**design, "theta": 0.0}) == 0.0
-    assert dx.evaluate("T_in", m_slider=0.0, **design) == 0.0
-    assert dx.evaluate(["T_in", "V_C"], F_Y=-10.0, **{**design, "theta": 0.0})["T_in"] == 0.0
-
-
 @pytest.mark.parametrize(
     "load", [DIE, SPLINE, PRESS.over_stroke([0, 8, 8], [-80, -80, 0], dead_centre="outer")]
 )

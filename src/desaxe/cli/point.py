@@ -32,6 +32,7 @@ def _point(options: argparse.Namespace) -> int:
     if options.list:
         return _list()
     from ..evaluation.evaluate import evaluate
+    from ..loads.absent import warn_that_nothing_acts
     from ..mechanism.catalogue import quantity
     from ..mechanism.slips import warn_of_slips
     from ..mechanism.status import PointStatus
@@ -39,6 +40,7 @@ def _point(options: argparse.Namespace) -> int:
     names, inputs = names_and_inputs(options.words)
     values: dict[str, Any] = evaluate(names, **inputs)
     warn_of_slips(inputs)
+    warn_that_nothing_acts(names, inputs)
     rows = {name: quantity(name, "omega" in inputs) for name in names}
     status = _status(values, inputs)
     worth = _qualities(names, inputs) if options.quality else {}

@@ -1,7 +1,6 @@
 """`evaluate`: numbers in, a float out; arrays in, arrays out."""
 
 from collections.abc import Callable, Sequence
-from math import nan
 from typing import Any
 
 from ..mechanism.inputs import INPUTS
@@ -79,8 +78,7 @@ def evaluate(
     carry its unit: "10 mm", or a pint quantity. An infeasible point gives NaN; ask for `status` to learn
     why: 0 ok, 1 cannot be assembled here, 2 at a change point, 3 stalled, 4 bad input (an array's element
     only), and, for forces or with mu, 5 friction jams (no forces balance) or 6 two sets of
-    forces balance. Raises ValueError for an unknown name or a bad value, TypeError for a missing input. Warns
-    (LoadWarning) of forces that are 0 for want of any mass or load.
+    forces balance. Raises ValueError for an unknown name or a bad value, TypeError for a missing input.
 
     See docs/choose.md: which call for which question.
     """
@@ -105,24 +103,10 @@ def evaluate(
 
         return evaluate_quality(names, given, branch, accuracy, threads, out)
     found = values_of(names, given, branch, accuracy, threads, out, of_any_arrays)
-    if absent and F_X is F_Y is None and _vanishes(found):
-        with IMPORTS:
-            from ..loads.absent import warn_that_nothing_acts
-
-        warn_that_nothing_acts(names, stacklevel=2)
     if type(found) is dict:
         found = Values(found)
         found.inputs = {name: value for name, value in given.items() if value is not None}
     return found
-
-
-def _vanishes(found: Any) -> bool:
-    """True for results of which a number, or the first of an array, is 0."""
-    if type(found) is dict:
-        return any(map(_vanishes, found.values()))
-    if type(found) is not float:
-        found = found.flat[0] if hasattr(found, "flat") and found.size else nan
-    return bool(found == 0.0)
 
 
 def _units(found: Any) -> Any:

@@ -152,7 +152,6 @@ def test_extremes_between_the_steps():
     assert 2 * (ratio - 1) / (ratio + 1) == pytest.approx(0.02, rel=1e-9)
 
 
-@pytest.mark.filterwarnings("ignore:.*neither a mass nor a load")
 def test_a_mechanism_without_masses():
     """No inertia: a load stops it or flings it round, and without a load nothing happens."""
     lengths = {"ec": 0, "AB": 0.05, "BC": 0.2, "omega0": 100.0}
