@@ -9,13 +9,13 @@ numba text       files in which a string that is no docstring has a word of TEXT
 strippers        functions with a string such as ": Any" or " -> int", which take annotations out of a text
 naming X         files where X stands as a word: what adding such an input, option or language touches
 
-                                              e3c2201       1f1810a       40d5a93         91c9d51
-code lines of src and derive; of .js   30,809; 923   32,421; 923   33,440; 920      42,460; 1,066
+                                              e3c2201       1f1810a       40d5a93         df265d9
+code lines of src and derive; of .js   30,809; 923   32,421; 923   33,440; 920      42,889; 1,066
 files of more than 300 lines                15            14            13                     18
-grid(reduce=): passed, of the middle    93; 38       104; 44       110; 47                118; 50
-a scene's run                          154; 87       168; 96      174; 100               206; 123
-peak                                    98; 37       111; 45       110; 47                118; 48
-evaluate                                77; 25        84; 29        89; 31                 99; 35
+grid(reduce=): passed, of the middle    93; 38       104; 44       110; 47                120; 51
+a scene's run                          154; 87       168; 96      174; 100               208; 124
+peak                                    98; 37       111; 45       110; 47                120; 49
+evaluate                                77; 25        84; 29        89; 31                101; 36
 numba text; stubs.py; strippers       11; 2; 2      12; 2; 2       7; 0; 0                6; 0; 0
 an input; an option; a language      14; 5; 11     14; 5; 14      9; 5; 16              11; 4; 17
 

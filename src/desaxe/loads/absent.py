@@ -4,10 +4,11 @@ from collections.abc import Iterable, Sequence
 from warnings import warn
 
 from ..mechanism.catalogue import inputs_of
-from ..mechanism.names import parts
+from ..mechanism.inputs import INPUTS
+from ..mechanism.names import LOADS, parts
 from .load import LoadWarning
 
-ACTING = {"m_crank", "m_rod", "m_slider", "I_crank", "I_rod", "F_X", "F_Y"}
+ACTING = {name for name in LOADS if INPUTS[name].unit in ("kg", "kg*m^2", "N")}
 
 
 def warn_that_nothing_acts(names: Sequence[str], given: Iterable[str]) -> None:
