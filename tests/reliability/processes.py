@@ -124,7 +124,9 @@ WORKS = {
     "F_Y=dx.over_theta([0.0, 2.0, 4.0], [1.0, 2.0, 1.0]))",
     "first imports": 'dx.grid("a_C", theta=[0.0, 1.0], ec="1 mm", AB=0.125, BC=0.35, omega0=1.0)',
 }
+# A job in the background of a shell is started with SIGINT ignored, and so is what it starts.
 INTERRUPTED = """
+signal.signal(signal.SIGINT, signal.default_int_handler)
 print("ready", flush=True)
 begun = True
 try:
