@@ -290,6 +290,27 @@ def test_pictures(tmp_path):
     assert "T_in" in press.plot.drive(fluctuation=0.02)
 
 
+@pytest.mark.parametrize(("periods", "turns"), [((720.0,), 2), ((720.0, 1080.0), 6), ((120.0, 360.0), 1)])
+def test_peaks_curves_and_scenes_cover_the_cycle_of_the_loads(tmp_path, periods, turns):
+    """The work of the last turn is the largest: its peak is among the torques at every half degree."""
+    engine = dx.Machine(ec=5, AB=40, BC=130, omega0=1500, m_slider=0.5, units="mm, rpm, deg")
+    shares = [0.0, 0.7, 0.9, 1.0]
+    loads = [engine.over_theta(np.array(shares) * p, [0, -10, -4000, 0], "linear", p) for p in periods]
+    engine = engine.replace(**dict(zip(("F_Y", "F_X"), loads, strict=False)), mu=0.1)
+    theta = np.linspace(0.0, 360.0 * turns, 720 * turns + 1)
+    torque = np.abs(engine.evaluate("T_in", theta=theta)).max()
+    assert engine.peak("T_in")["value"] == pytest.approx(torque, rel=1e-3)
+    (line,) = engine.plot("T_in")
+    assert line.axes.get_xlim() == (0.0, 360.0 * turns)
+    assert np.abs(line.get_ydata()).max() == pytest.approx(torque, rel=1e-3)
+    run = engine.scene(["T_in"], peak=[{"quantity": "T_in"}]).run()
+    assert run.dataset.theta.values[-1] == 360.0 * turns
+    assert float(run.peaks[0].dataset["value"]) == pytest.approx(torque, rel=1e-3)
+    page = engine.report(tmp_path / "engine.md").read_text()
+    assert page.count(f"(theta from 0 to {360 * turns} deg)") == 5
+    assert f"Torque of the drive over {'a turn' if turns == 1 else f'{turns} turns'}" in page or turns > 4
+
+
 def test_the_explorer(tmp_path):
     path = PRESS.explore(tmp_path / "page.html", title="a press")
     assert "a press" in path.read_text(encoding="utf-8")

@@ -15,6 +15,7 @@ from .load import Load, OverTheta, OverY, TableOverTheta
 from .stroke import OverStroke
 
 Array = NDArray[np.float64]
+MOST_TURNS = 60  # of a cycle
 
 
 def crossings(load: OverY, places: Sequence[float], lengths: Sequence[Array], branch: int) -> Array:
@@ -86,6 +87,16 @@ def turns_of(caller: str, loads: Mapping[str, Load], most: int) -> int:
             )
         turns = turns * own // gcd(turns, own)
     return turns
+
+
+def cycle(loads: Mapping[str, Load]) -> float:
+    """The angle [rad] after which crank and loads repeat together; the longest period where they do not."""
+    longest = max([TURN, *(load.period for load in loads.values() if isinstance(load, OverTheta))])
+    try:
+        turns = TURN * turns_of("a cycle", loads, MOST_TURNS)
+    except ValueError:
+        return longest
+    return longest if longest > turns * (1.0 + 1e-9) else turns
 
 
 def _repeats(load: OverTheta, angle: float) -> bool:

@@ -222,7 +222,7 @@ class Machine(Mapping[str, Any]):
 
         outputs  names of quantities over the crank angle
         theta    the crank angles: a number, a list, or a range, by default that of a turn,
-                 {"start": 0, "stop": "360 deg", "num": 721}
+                 {"start": 0, "stop": "360 deg", "num": 721}, or of those after which the loads repeat
         more     other inputs, such as ec=["1 mm", "2 mm"], as `replace` takes them; further keys of a scene,
                  such as title="...", peak=[...], results={"data": "values.nc"}
 

@@ -1,21 +1,22 @@
 """Pictures of a machine: `machine.plot("a_C")`, and those of `desaxe.plot` with its inputs filled in."""
 
 from collections.abc import Mapping, Sequence
-from math import pi
 from typing import Any
 
 import numpy as np
 
 from .. import plot
+from ..loads.angles import cycle
 from ..loads.load import Load
-from ..loads.resolve import as_load
+from ..loads.resolve import as_load, split
+from ..mechanism.closed import TURN
 from ..mechanism.own import using
 from ..plot.mechanism import label_lengths
 from ..runtime.request import several
 from .arguments import in_si
 from .tornado import tornado
 
-ANGLES = 721  # of a turn
+STEPS = 720  # of a turn
 
 
 class Plots:
@@ -35,7 +36,7 @@ class Plots:
         """Draw quantities over the crank angle: see `desaxe.plot.curves`, for several `desaxe.plot.panels`.
 
         names   a quantity, or several that are drawn one above the other
-        inputs  theta= for other angles than a turn; of a list of another input each value has its curve
+        inputs  theta= for other angles than a turn, or than the turns after which the loads repeat; of a list of another input each value has its curve
         """
         dataset = self._over_theta(names, inputs)
         with using(self._machine.definitions):
@@ -120,8 +121,6 @@ class Plots:
         """The quantities over the crank angle, labelled, in the units of the machine."""
         if "theta" in inputs:
             return self._machine.grid(names, **inputs)
-        return self._machine.grid(names, **inputs, theta=self._machine.units.of("theta").shown(_turn()))
-
-
-def _turn() -> Any:
-    return np.linspace(0.0, 2.0 * pi, ANGLES)
+        end = cycle(split({**self._machine, **inputs})[1])
+        angles = np.linspace(0.0, end, round(STEPS * end / TURN) + 1)
+        return self._machine.grid(names, **inputs, theta=self._machine.units.of("theta").shown(angles))

@@ -7,7 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from ..definitions.tables import tables_of
+from ..loads.angles import cycle
 from ..loads.resolve import split
+from ..mechanism.closed import TURN
 from ..mechanism.inputs import INPUTS
 from ..mechanism.own import Definition
 from ..mechanism.unit_system import UnitSystem
@@ -17,7 +19,6 @@ from ..scenes.schema import SECTIONS, SceneError
 from ..support.files import check_target, write_text
 from .load_tables import load_table, motor_table
 
-ANGLES = {"start": 0, "stop": "360 deg", "num": 721}
 
 
 def is_scene(source: Mapping[str, Any]) -> bool:
@@ -75,7 +76,7 @@ def _with_inputs(machine: Any, more: Mapping[str, Any]) -> tuple[Any, dict[str, 
 def _data(machine: Any, outputs: Any, more: Mapping[str, Any], loads: Mapping[str, Any]) -> dict[str, Any]:
     """The scene as data; inputs are texts with units that stand for the same doubles, `loads` as they are."""
     other = dict(more)
-    theta = other.pop("theta", ANGLES)
+    theta = other.pop("theta") if "theta" in other else _angles(machine)
     data: dict[str, Any] = {"title": other.pop("title", "")} if "title" in other else {}
     data["outputs"] = [outputs] if isinstance(outputs, str) else list(outputs)
     if machine.units:
@@ -92,6 +93,12 @@ def _data(machine: Any, outputs: Any, more: Mapping[str, Any], loads: Mapping[st
             data[section] = values
     own = {**tables_of(machine.definitions), **other.pop("quantities", {})}
     return {**data, **({"quantities": own} if own else {}), **other}
+
+
+def _angles(machine: Any) -> dict[str, Any]:
+    """Every half degree of a cycle."""
+    steps = round(720.0 * cycle(split(machine)[1]) / TURN)
+    return {"start": 0, "stop": f"{steps / 2:g} deg", "num": steps + 1}
 
 
 def _written(machine: Any, name: str) -> Any:

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from ..evaluation.arrays import as_array, broadcast_shape
 from ..evaluation.extremes import Powers, are_extreme, can_rescale, rescaled, scaled, shift
 from ..evaluation.under_loads.loaded import loads_of
-from ..loads.load import Load, LoadWarning, OverTheta
+from ..loads.angles import cycle
+from ..loads.load import LoadWarning
 from ..loads.resolve import VARIABLE
 from ..mechanism.answer_units import units_of_extreme
 from ..mechanism.catalogue import quantity
@@ -58,7 +59,7 @@ def peak(
     """The extreme value of a quantity over the crank angle; designs broadcast like NumPy.
 
     kind    "absmax" (the largest magnitude), "max" or "min"
-    theta   range of crank angles [rad]; its ends count. By default a turn, or the period of a longer load
+    theta   range of crank angles [rad]; its ends count. By default a turn, or those after which the loads repeat
     threads the number that share the work, by default all that pay; the result is the same
     others  as in `evaluate`, masses and loads among them. F_X and F_Y may vary with the motion; at a jump
             both one-sided limits count, at an end of the range that from within and the value itself.
@@ -100,7 +101,7 @@ def peak(
     _, varying = loads_of(given)
     plan = plan_of(name, given, branch, accuracy)
     varying = {n: load for n, load in varying.items() if n in plan.parameters}
-    ends = _range(_whole_period(varying) if theta is ONE_TURN else theta, name)
+    ends = _range((0.0, cycle(varying)) if theta is ONE_TURN else theta, name)
     sought = Sought(plan, kind, int(branch), ends, threads, varying)
     _warn_of_columns(given, plan)
     if "omega0" in plan.needs and omega0 is None:
@@ -150,12 +151,6 @@ def _range(theta: Any, name: str) -> tuple[float, float]:
             f"{named('theta', (low, high), 'g')}: {turns:.3g} turns are too many, at most {MOST_TURNS}"
         )
     return low, high
-
-
-def _whole_period(loads: Mapping[str, Load]) -> tuple[float, float]:
-    """One turn, or the longest period of a load."""
-    periods = [load.period for load in loads.values() if isinstance(load, OverTheta)]
-    return 0.0, max([TURN, *periods])
 
 
 def _warn_of_columns(given: Mapping[str, Any], plan: "PeakPlan") -> None:

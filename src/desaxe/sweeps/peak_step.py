@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from ..evaluation.axes import Outer
 from ..evaluation.labels import Output, attributes, side_attributes
+from ..loads.angles import cycle
 from ..mechanism.catalogue import quantity
-from ..mechanism.closed import TURN
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
 from ..mechanism.own import Definition
@@ -111,7 +111,7 @@ def slope_attributes(name: str, parameter: str, state: bool) -> dict[str, str]:
 def peak_requests(peaks: Any, outer: Outer) -> tuple[PeakRequest, ...]:
     """The requested peaks, from a name, several names, or a dict name -> kind or kinds.
 
-    They are taken over the range of the crank angles of the sweep, one turn where that is no axis.
+    They are taken over the range of the crank angles of the sweep, a cycle of the loads where that is no axis.
     """
     if isinstance(peaks, str):
         peaks = (peaks,)
@@ -122,7 +122,7 @@ def peak_requests(peaks: Any, outer: Outer) -> tuple[PeakRequest, ...]:
         peaks = dict.fromkeys(given, "absmax")
     angles = outer.axes.get("theta", np.empty(0)).reshape(-1)
     whole = angles[np.isfinite(angles)]
-    ends = (float(whole.min()), float(whole.max())) if whole.size > 1 else (0.0, TURN)
+    ends = (float(whole.min()), float(whole.max())) if whole.size > 1 else (0.0, cycle(outer.loads))
     found = []
     for name, kinds in peaks.items():
         for kind in (kinds,) if isinstance(kinds, str) else tuple(kinds):

@@ -35,5 +35,6 @@ def drive(content: Content, units: UnitSystem, fluctuation: float) -> Section | 
     columns = [dict(result.rows()) for _, result in found]
     rows = [(name, *(column[name] for column in columns)) for name in columns[0]]
     words, first = found[0]
-    picture = image_of(first.plot().figure, f"Torque of the drive over a turn, {words}")
+    cycle = "a turn" if first.turns == 1 else f"{first.turns} turns"
+    picture = image_of(first.plot().figure, f"Torque of the drive over {cycle}, {words}")
     return Section("Drive", [TextTable(("", *(words for words, _ in found)), rows), picture, *blocks])

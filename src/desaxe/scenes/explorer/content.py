@@ -4,11 +4,11 @@ A quantity and its first sensitivities are one Program, cut to them: the page co
 """
 
 from collections.abc import Iterable, Mapping
-from math import pi
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ...compiler.languages.javascript import emit_javascript
+from ...loads.angles import cycle
 from ...loads.load import Load, OverY, TableOverTheta
 from ...loads.resolve import plan_of, split
 from ...mechanism.catalogue import Quantity, law_name, quantities, quantity
@@ -98,7 +98,7 @@ def content(
     motion = _motion(groups.values(), given, branch, loads)
     designs = _designs(given)
     left = {n: out for n, value in given.items() if n != "theta" and (out := _left_out(n, value, designs))}
-    return PageContent(title, branch, _angles(given), designs, shown, functions, left, named, loads, motion)
+    return PageContent(title, branch, _angles(given, cycle(loads)), designs, shown, functions, left, named, loads, motion)
 
 
 def _tables(inputs: Mapping[str, Any]) -> dict[str, TableOverTheta | OverY]:
@@ -197,15 +197,15 @@ def _request(names: tuple[str, ...], given: Mapping[str, Value], branch: int) ->
     return request(names, dict.fromkeys(given, 1.0) | {"theta": 1.0}, branch, "standard")
 
 
-def _angles(given: Mapping[str, Value]) -> tuple[float, float]:
-    """The range of the crank angle: that of the scene, else one turn; one without its last angle is whole."""
+def _angles(given: Mapping[str, Value], cycle: float) -> tuple[float, float]:
+    """The range of the crank angle: that of the scene, else a cycle; one without its last angle is whole."""
     theta = given.get("theta")
     if not isinstance(theta, tuple) or len(set(theta)) < 2:
-        return (0.0, 2.0 * pi)
+        return (0.0, cycle)
     low, high = min(theta), max(theta)
-    missing = low + 2.0 * pi - high
+    missing = low + cycle - high
     step = (high - low) / (len(theta) - 1)
-    return (low, low + 2.0 * pi) if 0.0 < missing <= 1.001 * step else (low, high)
+    return (low, low + cycle) if 0.0 < missing <= 1.001 * step else (low, high)
 
 
 def _designs(given: Mapping[str, Value]) -> tuple[dict[str, float], ...]:

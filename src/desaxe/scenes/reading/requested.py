@@ -1,10 +1,10 @@
 """[[check]], [[peak]] and [[picture]] of a scene as what they ask for."""
 
 from collections.abc import Iterable, Mapping
-from math import pi
 from typing import Any
 
-from ...loads.load import Load, OverTheta
+from ...loads.angles import cycle
+from ...loads.load import Load
 from ...mechanism.catalogue import of_design, quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import CENTRES, LENGTHS, STATUS, parts, sensitivity
@@ -112,7 +112,7 @@ def _slope(key: str, name: str, state: bool) -> str:
 
 
 def _angles(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> tuple[float, float]:
-    """The range of theta: that of the peak, else that of the motion, else one turn."""
+    """The range of theta: that of the peak, else that of the motion, else a cycle of the loads."""
     if table.theta is not None:
         low, high = (number_of(f"{key}.theta #{i}", "theta", part) for i, part in enumerate(table.theta, 1))
         if low > high:
@@ -121,7 +121,7 @@ def _angles(key: str, table: schema.PeakTable, inputs: Mapping[str, Value]) -> t
     theta = inputs.get("theta")
     if isinstance(theta, tuple) and len(theta) > 1:
         return min(theta), max(theta)
-    return 0.0, max([2.0 * pi, *(load.period for load in inputs.values() if isinstance(load, OverTheta))])
+    return 0.0, cycle({n: value for n, value in inputs.items() if isinstance(value, Load)})
 
 
 def _other_design(
