@@ -15,6 +15,7 @@ from desaxe.mechanism.names import CENTRES, LOADS, PARAMETERS, WHOLE, parts, sen
 from .closed import whole_design
 from .dynamics import FORCES, LUMPS, centres_sheet
 from .freeze import freeze
+from .groups import FRAME
 from .motion import state_sheet
 from .polynomials import double_trigonometry, single_trigonometry, trigonometry
 from .quantities import FACTS, QUANTITIES, SECOND_ORDER, build_sheet
@@ -123,7 +124,7 @@ def _keep_needs(sheet: Sheet, name: str, base: str) -> None:
     """
     wanted, own = set(sheet.ordered((base,))), set(sheet.ordered((name,)))
     if base in FORCES and base not in LUMPS:
-        wanted.add("D")
+        wanted |= {"D"} if base not in FRAME else {"D", "N_C"}
     lost = [KEEPS[what] for what in KEEPS if what in wanted and what not in own and KEEPS[what] not in own]
     equation = sheet.equations[name]
     if lost and name not in FACTS:

@@ -3,7 +3,8 @@
 import copy
 from pathlib import Path
 
-COMPACTOR = Path(__file__).parents[1] / "examples" / "compactor.toml"
+EXAMPLES = Path(__file__).parents[1] / "examples"
+COMPACTOR, FEEDER = EXAMPLES / "compactor.toml", EXAMPLES / "feeder.toml"
 
 SMALL = {
     "title": "small",

@@ -96,7 +96,11 @@ def test_point_in_json(told):
     assert found["a_C"]["value"] == pytest.approx(-810.4, abs=0.05)
     found = json.loads(told("point", "a_C", *STUCK, "--json"))
     assert found["a_C"]["value"] is None
-    assert found["status"] == "cannot be assembled here"
+    told_of = {"value": 1, "unit": "1", "meaning": "cannot be assembled here"}
+    assert found["status"] == told_of
+    assert json.loads(told("point", "status", *STUCK, "--json")) == {"status": told_of}
+    fine = json.loads(told("point", "a_C", "status", *POINT, "--json"))
+    assert fine["status"] == {"value": 0, "unit": "1", "meaning": "ok"}
 
 
 def test_options_of_point_stand_anywhere(told):

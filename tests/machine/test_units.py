@@ -136,6 +136,17 @@ def test_labelled_results_carry_their_units():
     reduced = PRESS.grid("a_C", theta=np.arange(360.0), ec=[0, 10], reduce={"theta": "absmax"})
     assert reduced.a_C_absmax.units == "mm/s^2"
     assert reduced.a_C_absmax_theta.units == "deg"
+    axes = {"theta": np.arange(0.0, 360.0, 5.0), "ec": [0.0, 10.0]}
+    slopes = PRESS.grid(["T_in_wrt_ec", "a_C_wrt_ec"], **axes)
+    both = PRESS.grid(["T_in_wrt_ec", "a_C_wrt_ec"], **axes, reduce={("theta", "ec"): "absmax"})
+    for name in ("T_in_wrt_ec", "a_C_wrt_ec"):
+        values = slopes[name]
+        row, column = np.unravel_index(np.abs(values.values).argmax(), values.shape)
+        for axis, index in (("theta", row), ("ec", column)):
+            position = both[f"{name}_absmax_{axis}"]
+            assert position.units == PRESS.units.of(axis).unit
+            assert float(position) == pytest.approx(axes[axis][index], rel=1e-15)
+        assert both[f"{name}_absmax"].units == values.units
     designs = PRESS.design_map(["stroke", ("absmax", "a_C")], ec=[0, 10], derivatives=True)
     assert designs.stroke.units == "mm"
     assert designs.absmax_a_C.units == "mm/s^2"

@@ -103,6 +103,17 @@ def test_over_a_mass_and_a_long_label():
     assert line.axes.get_ylabel() == "force of the mechanism on the frame along X,\nF_shaking_X [N]"
 
 
+def test_a_derivative_by_the_speed_of_a_state_under_a_step():
+    """It is that of the inertia, which knows no step: (T_in(2 w) - T_in(w)) / 3 is w^2 times a constant."""
+    press = {**PRESS, "ec": 0.01, "alpha": 0.0, "F_Y": dx.over_theta([0.0, 1.0], [-100.0, -3000.0], "step")}
+    del press["omega0"]
+    (line,) = curves(dx.grid("T_in_wrt_omega", omega=30.0, **press), "T_in_wrt_omega")
+    theta, values = np.radians(line.get_xdata()), line.get_ydata()
+    slow, fast = (dx.evaluate("T_in", omega=w, **{**press, "theta": theta, "F_Y": 0.0}) for w in (30.0, 60.0))
+    assert theta.size > THETA.size
+    np.testing.assert_allclose(values, 2.0 * (fast - slow) / 3.0 / 30.0, rtol=1e-9, atol=1e-12)
+
+
 @pytest.mark.parametrize("draw", [curves, polar])
 def test_friction_that_jams_does_not_squash_the_rest(draw):
     jammed = dx.grid("T_in", ec=0.02, mu=[1.0, 1.5], **{**PRESS, "theta": np.linspace(0, 2 * np.pi, 20_001)})

@@ -113,6 +113,20 @@ def test_peaks_have_angle_side_and_gradient(page):
         assert any(row[0] == name and row[-1] == f"{slope + 0.0:.6g}" for row in page.rows if row), name
 
 
+def test_equal_peaks_and_slopes_of_either_sign(tmp_path):
+    """At ec = 0 the peak is shared by theta and -theta, as dx.peak at a small ec of either sign tells."""
+    inline = PRESS.replace(ec=0)
+    page = Page(
+        inline.report(tmp_path / "p.html", "a_C", theta=FEW, peak=[{"quantity": "V_C"}] * 2).read_text()
+    )
+    slope = abs(dx.peak("V_C", **{**inline, "ec": 1e-12})["gradient"]["ec"])
+    rows = [row for row in page.rows if row[:1] == ["ec"] and row[-1].startswith("+-")]
+    assert len(rows) == 2
+    for row in rows:
+        assert float(row[-1].removeprefix("+-")) == pytest.approx(slope, rel=1e-5)
+    assert " ".join(page.words).count("+-: at ec = 0 the peak is at theta and at -theta") == 2
+
+
 def test_drive_and_origin(page):
     drive = LOADED.drive()
     assert page.under("torque, rms") == [f"{drive['torque_rms']:.6g} N m"]

@@ -83,3 +83,6 @@ def test_an_answer_of_evaluate_knows_what_it_was_asked_for():
     found = dx.evaluate(["V_C"], theta=theta, omega0=1.0, **SIZES)
     assert found.inputs["theta"] is theta
     assert pickle.loads(pickle.dumps(found)).inputs["ec"] == 0.1
+    for loads in ({}, {"m_slider": 1.0, "F_Y": dx.over_Y([0.2, 0.4], [1.0, 2.0])}):
+        still = dx.evaluate(["Y", "status"], theta=theta, **SIZES, **loads)
+        assert list(still.inputs) == ["theta", *SIZES, *loads]

@@ -50,7 +50,10 @@ def _point(options: argparse.Namespace) -> int:
             | (_json_quality(worth[name]) if name in worth else {})
             for name, row in rows.items()
         }
-        print(json.dumps({**found, **({"status": PointStatus(status).words} if status else {})}, indent=2))
+        if status or "status" in names:
+            row = quantity("status")
+            found["status"] = {"value": status, "unit": row.unit, "meaning": PointStatus(status).words}
+        print(json.dumps(found, indent=2))
         return 0
     texts = [(with_unit(f"{name} = {values[name]!r}", row.unit), row.meaning) for name, row in rows.items()]
     print("\n".join(table(texts, gap="   ")))

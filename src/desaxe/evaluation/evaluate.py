@@ -10,6 +10,8 @@ from ..support.answer import Answer
 from ..support.forks import IMPORTS
 from .values import of_any_arrays, values
 
+STEADY = 0.0  # the default of alpha; an alpha of 0 in a call is another object
+
 
 def evaluate(
     names: str | Sequence[str],
@@ -19,7 +21,7 @@ def evaluate(
     AB: Any = None,
     BC: Any = None,
     omega0: Any = None,
-    alpha: Any = 0.0,
+    alpha: Any = STEADY,
     omega: Any = None,
     m_crank: Any = None,
     m_rod: Any = None,
@@ -105,7 +107,7 @@ def evaluate(
     found = values_of(names, given, branch, accuracy, threads, out, of_any_arrays)
     if type(found) is dict:
         found = Values(found)
-        found.inputs = {name: value for name, value in given.items() if value is not None}
+        found.inputs = {n: value for n, value in given.items() if value is not None and value is not STEADY}
     return found
 
 

@@ -1,10 +1,11 @@
 """Results in other units than SI: labelled ones, answers, numbers."""
 
 import copy
+import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..compiler.languages.numba.reductions import KINDS
+from ..compiler.languages.numba.reductions import EXTREMES, KINDS
 from ..mechanism.answer_units import conversion_of
 from ..mechanism.inputs import INPUTS
 from ..mechanism.unit_system import SI, Conversion, UnitSystem
@@ -15,6 +16,8 @@ from ..support.forks import IMPORTS
 if TYPE_CHECKING:
     import xarray as xr
 
+# An extreme's position along an axis: a_C_absmax_theta, T_in_wrt_ec_max_min_AB, peak_min_a_C_theta.
+_ALONG = re.compile(rf"(?:_(?:{'|'.join(EXTREMES)})|^peak_.*)_({'|'.join(INPUTS)})$")
 FLAGS = ("status", "can_turn", "kind")
 
 
@@ -151,6 +154,9 @@ def _scene_of(before: "xr.Dataset", after: "xr.Dataset") -> str:
 
 def conversion_of_variable(units: UnitSystem, name: str, unit: str) -> Conversion:
     """The conversion of a variable with this SI unit: that of the quantity that its name is about."""
+    along = _ALONG.search(name)
+    if along and INPUTS[along[1]].unit == unit:
+        return units.of(along[1])
     stripped = [name.removeprefix(f"{kind}_") for kind in KINDS]
     words = name.split("_")  # a_C_max_mean, Y_at_60_deg
     stripped += ["_".join(words[:count]) for count in range(len(words) - 1, 0, -1)]

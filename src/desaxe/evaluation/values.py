@@ -40,7 +40,7 @@ def values(
     now = register()
     key = *key, accuracy, given.get("theta") is None, speed_given, now
     if not speed_given and omega is None and "status" in wanted:
-        given["omega0"] = standstill(wanted, given, now)
+        given = {**given, "omega0": standstill(wanted, given, now)}
     known = _KNOWN.get(key)
     if known is None:
         if len(_KNOWN) > MOST_KNOWN:

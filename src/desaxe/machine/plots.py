@@ -36,7 +36,8 @@ class Plots:
         """Draw quantities over the crank angle: see `desaxe.plot.curves`, for several `desaxe.plot.panels`.
 
         names   a quantity, or several that are drawn one above the other
-        inputs  theta= for other angles than a turn, or than the turns after which the loads repeat; of a list of another input each value has its curve
+        inputs  theta= for other angles than those of a turn, or of the turns until the loads repeat; of a
+                list of another input each value has its curve
         """
         dataset = self._over_theta(names, inputs)
         with using(self._machine.definitions):

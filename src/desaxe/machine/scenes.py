@@ -20,7 +20,6 @@ from ..support.files import check_target, write_text
 from .load_tables import load_table, motor_table
 
 
-
 def is_scene(source: Mapping[str, Any]) -> bool:
     """True for a scene as a mapping: it has sections."""
     return any(isinstance(source.get(section), Mapping) for section in SECTIONS)

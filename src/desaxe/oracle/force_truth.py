@@ -245,8 +245,10 @@ def _touched(at: Point, bits: int) -> dict[str, Jet] | None:
 
 @lru_cache(maxsize=256)
 def _shaking(at: Point, bits: int) -> dict[str, Jet] | None:
-    """Shaking force and moment; without friction, which acts between the links and the frame only."""
-    mechanism = _mechanism(at, bits)
+    """Shaking force and moment, to which friction adds nothing; empty unless there is one force balance."""
+    mechanism, balances = _mechanism(at, bits), _balances(at, bits)
+    if balances is not None and len(balances) != 1:
+        return {}
     with precision(bits):
         balance = mechanism and _solve(_equations(mechanism, 0), at.still)
         if not mechanism or not balance:

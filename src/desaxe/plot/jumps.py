@@ -40,7 +40,8 @@ def with_jumps(dataset: "xr.Dataset", array: "xr.DataArray", over: str) -> "xr.D
         return array
     wide: dict[str, Any] = {n: v[:, None] if v.ndim else v for n, v in given.items()}
     found = evaluate(name, theta=angles, branch=branch, **wide, **loads)
-    found = np.broadcast_to(found, (*array.shape[:-1], angles.size)) * _factor(quantity(name).unit, unit)
+    si = quantity(name, "omega" in given).unit
+    found = np.broadcast_to(found, (*array.shape[:-1], angles.size)) * _factor(si, unit)
     angles = np.clip(angles, samples.min(), samples.max())
     theta = np.append(array["theta"].values, angles * _factor("rad", str(array["theta"].attrs["units"])))
     order = np.argsort(theta, kind="stable")

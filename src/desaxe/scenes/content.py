@@ -1,6 +1,7 @@
 """The content of a scene, checked and in SI units."""
 
 from collections.abc import Mapping
+from hashlib import sha256
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -88,6 +89,12 @@ class Content(NamedTuple):
     definitions: tuple[Definition, ...] = ()
     order: str | None = None
     steady: OnMotor | None = None
+
+    @property
+    def digest(self) -> str:
+        """A digest of every number, those of tables too."""
+        loads = [load.identity for load in self.inputs.values() if isinstance(load, Load)]
+        return sha256(repr((self, *loads) if loads else self).encode()).hexdigest()
 
     @property
     def fused(self) -> Reduction | None:

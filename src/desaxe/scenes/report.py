@@ -1,9 +1,10 @@
 """The report of a scene as text for a terminal, at most 100 columns wide."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import degrees, isfinite, isnan, pi
 from pathlib import Path
 from textwrap import fill
+from typing import Any
 
 import numpy as np
 
@@ -146,7 +147,7 @@ def _peak_rows(found: PeakResult, units: UnitSystem) -> list[list[str]]:
         row += [number(dataset["value"].values[index]), f"{scale * dataset['theta'].values[index]:.3f}"]
         row += [f"{dataset['side'].values[index]:+d}".replace("+0", "0")] if side else []
         row += [_percent(float(dataset["increase"].values[index]))] if base else []
-        row += [_slope(found, name, index) for name in slopes]
+        row += [slope_text(found, dataset[f"value_wrt_{name}"], index) for name in slopes]
         rows.append(row)
     return rows
 
@@ -157,11 +158,14 @@ def _percent(value: float) -> str:
     return "-" if isnan(value) else f"{value:{form}} %"
 
 
-def _slope(found: PeakResult, name: str, index: tuple[int, ...]) -> str:
+def slope_text(
+    found: PeakResult, slope: Any, index: tuple[int, ...], text: Callable[[float], str] = number
+) -> str:
     """A sensitivity; of either sign by what points to the side where two angles share the peak."""
-    value = found.dataset[f"value_wrt_{name}"].values[index]
-    both = value != 0.0 and name in SIDEWAYS and found.mirrored[index]
-    return f"+-{number(abs(value))}" if both else number(value)
+    value = float(slope.values[index])
+    sideways = str(slope.name).removeprefix("value_wrt_") in SIDEWAYS
+    both = value != 0.0 and sideways and found.mirrored[index]
+    return f"+-{text(abs(value))}" if both else text(value)
 
 
 def _thinned(indices: list[tuple[int, ...]]) -> list[tuple[int, ...]]:

@@ -111,7 +111,7 @@ def slope_attributes(name: str, parameter: str, state: bool) -> dict[str, str]:
 def peak_requests(peaks: Any, outer: Outer) -> tuple[PeakRequest, ...]:
     """The requested peaks, from a name, several names, or a dict name -> kind or kinds.
 
-    They are taken over the range of the crank angles of the sweep, a cycle of the loads where that is no axis.
+    They are taken over the range of the crank angles of the sweep; where theta is no axis, over a cycle.
     """
     if isinstance(peaks, str):
         peaks = (peaks,)

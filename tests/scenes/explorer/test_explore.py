@@ -8,6 +8,7 @@ import pytest
 
 import desaxe as dx
 from desaxe.cli.command import main
+from tests.example_scenes import COMPACTOR, FEEDER
 from tests.scenes.explorer.browser import browser_path
 
 SIZES = {"ec": 0.0, "AB": 0.125, "BC": 0.35, "omega0": 157.0}
@@ -35,12 +36,12 @@ def test_a_page_stays_small(tmp_path):
     """Beside the plotting library."""
     from plotly.offline import get_plotlyjs
 
-    path = dx.explore("examples/feeder.toml", tmp_path / "page.html")
+    path = dx.explore(FEEDER, tmp_path / "page.html")
     assert path.stat().st_size - len(get_plotlyjs().encode()) < 250_000
 
 
 def test_a_scene_brings_its_designs_and_its_names(tmp_path):
-    page = content_of(dx.explore("examples/compactor.toml", tmp_path / "a.html"))
+    page = content_of(dx.explore(COMPACTOR, tmp_path / "a.html"))
     assert [design["ec"] for design in page["designs"]] == [0.0, 0.08, 0.15, 0.23]
     assert page["shown"][:2] == ["V_C", "a_C"]
     assert page["title"].startswith("Paper A")
@@ -132,7 +133,7 @@ def test_errors_name_the_culprit(inputs, kind, message, tmp_path):
 
 def test_the_command(tmp_path, capsys):
     target = tmp_path / "deep" / "page.html"
-    assert main(["explore", "examples/compactor.toml", "-o", str(target), "--names", "s,phi"]) == 0
+    assert main(["explore", str(COMPACTOR), "-o", str(target), "--names", "s,phi"]) == 0
     assert capsys.readouterr().out == f"{target}\n"
     assert {"s", "phi", "a_C"} <= set(content_of(target)["functions"])
 

@@ -7,6 +7,7 @@ import math
 import pytest
 
 import desaxe as dx
+from tests.example_scenes import FEEDER
 from tests.scenes.explorer.page import (
     MINUS,
     NONE,
@@ -141,9 +142,9 @@ def test_the_scene_runs(visit, several_designs, tmp_path):
 
 @pytest.mark.thorough
 def test_the_scene_of_a_feeder_comes_back(visit, folder, tmp_path):
-    page = visit(dx.explore("examples/feeder.toml", folder / "feeder.html"))
+    page = visit(dx.explore(FEEDER, folder / "feeder.html"))
     saved(page, "#save-scene").save_as(tmp_path / "scene.toml")
-    again, before = dx.scene(tmp_path / "scene.toml"), dx.scene("examples/feeder.toml")
+    again, before = dx.scene(tmp_path / "scene.toml"), dx.scene(FEEDER)
     assert {n: v for n, v in again.inputs.items() if n not in ("theta", "alpha")} == {
         n: v for n, v in before.inputs.items() if n != "theta"
     }
@@ -153,6 +154,32 @@ def test_the_scene_of_a_feeder_comes_back(visit, folder, tmp_path):
     settle(page)
     wanted = dx.evaluate("T_in", theta=page.evaluate("desaxe.state.theta"), **design(page))
     assert reading(page, "T_in")[0] == pytest.approx(wanted, rel=1e-7)
+
+
+@pytest.mark.parametrize("where", ["scene", "session"])
+def test_the_saved_scene_has_the_quantities_of_the_user(where, numbers_of, folder, tmp_path):
+    own = {"shoe": {"expression": "f * abs(N_C * V_C)", "unit": "W", "meaning": 'a "shoe"'}}
+    own["both"] = {"expression": "shoe + power_in", "unit": "W"}
+    machine = {"ec": 0.01, "AB": 0.125, "BC": 0.35, "omega0": 150.0, "m_slider": 0.8}
+    if where == "scene":
+        own["shoe"]["constants"] = {"f": 0.08}
+        sections = {"mechanism": ("ec", "AB", "BC"), "motion": ("omega0",), "masses": ("m_slider",)}
+        scene = {section: {n: machine[n] for n in names} for section, names in sections.items()}
+        scene["motion"]["theta"] = [0.0, 6.0]
+        path = dx.explore({**scene, "outputs": ["both"], "quantities": own}, folder / "of_scene.html")
+    else:
+        dx.define("shoe", **own["shoe"], f=0.08)
+        dx.define("both", **own["both"])
+        path = dx.explore(path=folder / "of_session.html", names=["both"], **machine)
+        dx.undefine("both")
+        dx.undefine("shoe")
+    text = numbers_of(path).evaluate("desaxe.state.shown = ['both'], desaxe.sceneText()")
+    (tmp_path / "saved.toml").write_text(text, encoding="utf-8")
+    values = dx.scene(tmp_path / "saved.toml").run().dataset.both
+    found = dx.evaluate(["N_C", "V_C", "power_in"], theta=values.theta.values, **machine)
+    assert values.values == pytest.approx(
+        0.08 * abs(found["N_C"] * found["V_C"]) + found["power_in"], rel=1e-12
+    )
 
 
 @pytest.mark.thorough

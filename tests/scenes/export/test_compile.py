@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
+from desaxe.scenes.export.fmu.write import texts_of_fmu
 from desaxe.scenes.export.numba_module import text_of
 from desaxe.scenes.schema import SceneError
 from desaxe.support.locks import locked
@@ -275,6 +276,24 @@ def test_bytes_depend_on_the_scene_alone(tmp_path):
         subprocess.run([sys.executable, "-c", code, str(COMPACTOR), str(place)], env=environment, check=True)
         texts.add(place.read_bytes())
     assert len(texts) == 1
+
+
+@pytest.mark.parametrize("to", ["numba", "c", "octave", "javascript", "fmu"])
+def test_every_number_of_a_table_is_in_the_digest(to, tmp_path):
+    """Two tables of one range: a host that caches by the token of an FMU must not take one for the other."""
+    suffix, digests = ".py" if to == "numba" else "", set()
+    for middle in (-100.0, -100.00000000000001):
+        load = dx.over_theta([0.0, 1.0, 3.0], [-500.0, middle, 0.0])
+        scene = dx.scene({**SMALL, "outputs": ["T_in"], "masses": {"m_slider": 1.0}, "loads": {"F_Y": load}})
+        if to == "fmu":
+            text = texts_of_fmu(scene, tmp_path / "press.fmu")["modelDescription.xml"]
+        else:
+            path = dx.compile(scene, tmp_path / f"{middle}" / f"press{suffix}", to=to)
+            text = "".join(
+                p.read_text(encoding="utf-8") for p in sorted(path.parent.rglob("*")) if p.is_file()
+            )
+        digests |= set(re.findall(r'scene ([0-9a-f]{16})|Token="\{(.*?)\}', text))
+    assert len(digests) == 2
 
 
 def test_fixed_values_are_folded_in(tmp_path):

@@ -16,7 +16,7 @@ from .. import schema
 from ..content import Content
 from ..parts.extremes import PeakResult, peaks_in_units, peaks_of
 from ..reading.requested import peak_of
-from ..report import remarks
+from ..report import remarks, slope_text
 from ..schema import SceneError
 from .parts import MOST, Block, Section, Text, TextTable, axes_of, cell, thinned
 
@@ -27,9 +27,11 @@ SIDES = {-1: "-1, before it", 0: "0, no jump", 1: "+1, after it"}
 def peaks(content: Content, found: tuple[PeakResult, ...], units: UnitSystem) -> Section | None:
     """The peaks of the scene, and those of its other outputs; None without any."""
     blocks: list[Block] = []
-    for one in (*found, *_others(content)):
-        dataset = one.dataset if content.units and one in found else peaks_in_units(one, units)
+    for one in found:
+        dataset = one.dataset if content.units else peaks_in_units(one, units)
         blocks += _blocks(one._replace(dataset=dataset), units)
+    for one in _others(content):
+        blocks += _blocks(one._replace(dataset=peaks_in_units(one, units)), units)
     return Section("Peaks", blocks) if blocks else None
 
 
@@ -58,17 +60,17 @@ def _blocks(found: PeakResult, units: UnitSystem) -> list[Block]:
     if slopes:
         few = thinned(places)
         heads = ("derivative by", "unit", *(_called(found, place) or "this design" for place in few))
-        rows = [_slopes(dataset[name], few) for name in slopes]
+        rows = [_slopes(found, dataset[name], few) for name in slopes]
         blocks.append(TextTable(heads, rows))
     told = [line.strip() for line in remarks(found)]
     told += [f"Derivatives of {MOST} of {len(places)} designs are shown"] * (len(places) > MOST)
     return [*blocks, *(Text(words) for words in told)]
 
 
-def _slopes(slope: Any, places: list[Any]) -> list[str]:
+def _slopes(found: PeakResult, slope: Any, places: list[Any]) -> list[str]:
     """A derivative of the peaks of these designs."""
     parameter, unit = str(slope.name).removeprefix("value_wrt_"), _unit(slope)
-    return [parameter, unit, *(cell(float(slope.values[place])) for place in places)]
+    return [parameter, unit, *(slope_text(found, slope, place, cell) for place in places)]
 
 
 def _values(found: PeakResult, units: UnitSystem, places: list[Any]) -> TextTable:

@@ -14,7 +14,7 @@ from ...loads.resolve import plan_of, split
 from ...mechanism.catalogue import Quantity, law_name, quantities, quantity
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import CENTRES, LOADS, PARAMETERS, joined, parts
-from ...mechanism.own import Definition, using
+from ...mechanism.own import Definition, used_by, using
 from ...mechanism.program import program_of
 from ...mechanism.unit_system import SI, UnitSystem
 from ...runtime.request import Request, request
@@ -64,7 +64,7 @@ class PageContent(NamedTuple):
     motion: PageFunction | None = None  # that loads over Y or the stroke follow
     units: UnitSystem = SI
     fields: UnitSystem = SI
-    definitions: tuple[Definition, ...] = ()  # of the scene
+    definitions: tuple[Definition, ...] = ()  # that the quantities use
 
     @property
     def quantities(self) -> list[Quantity]:
@@ -98,7 +98,10 @@ def content(
     motion = _motion(groups.values(), given, branch, loads)
     designs = _designs(given)
     left = {n: out for n, value in given.items() if n != "theta" and (out := _left_out(n, value, designs))}
-    return PageContent(title, branch, _angles(given, cycle(loads)), designs, shown, functions, left, named, loads, motion)
+    theta, own = _angles(given, cycle(loads)), used_by(groups)
+    return PageContent(
+        title, branch, theta, designs, shown, functions, left, named, loads, motion, definitions=own
+    )
 
 
 def _tables(inputs: Mapping[str, Any]) -> dict[str, TableOverTheta | OverY]:

@@ -110,7 +110,7 @@ def _of_scene(source: Any, names: Iterable[str] | None) -> PageContent:
         if is_loaded(inputs):
             shown = forces_first(shown, "omega" in inputs)
         found = content(title, inside.branch, inputs, shown or START, names)
-    return found._replace(units=inside.units, fields=known.shown_in, definitions=inside.definitions)
+    return found._replace(units=inside.units, fields=known.shown_in)
 
 
 def _value(name: str, given: Any) -> Value:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ...compiler.languages.javascript import HEADER
+from ...definitions.tables import tables_of
 from ...loads.load import OverY, TableOverTheta
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import parts
@@ -19,7 +20,8 @@ from .content import PageContent, left_out_text
 
 # In the order in which they build on each other.
 SCRIPTS = ("numbers", "designs", "words", "mechanism", "charts", "controls", "files", "main")
-_COMMENT = re.compile(r"^\s*//.*\n", re.MULTILINE)  # of a line of its own: the page has none to read
+# A page repeats its lines for each quantity; what they mean stands in generated/program.py.
+_COMMENT = re.compile(r"^\s*//.*\n|(?<=;) // .*", re.MULTILINE)
 
 
 def write_page(content: PageContent, path: Path, overwrite: bool = False) -> Path:
@@ -54,7 +56,7 @@ def _program(content: PageContent) -> str:
     """The emitted functions, and a table of them."""
     functions = [*content.functions, *([content.motion] if content.motion else [])]
     table = [f"  {f.quantity}: of_{f.quantity}," for f in functions]
-    sources = "\n".join(function.source for function in functions)
+    sources = _COMMENT.sub("", "\n".join(function.source for function in functions))
     return "\n".join([HEADER, sources, "const FUNCTIONS = {", *table, "};"])
 
 
@@ -90,6 +92,7 @@ def _data(content: PageContent) -> dict[str, Any]:
         "loads": {name: _load(load) for name, load in content.loads.items()},
         "motion": content.motion and {"names": content.motion.names, "inputs": content.motion.inputs},
         "quantities": {row.name: _about(row.name, row.unit, row.meaning) for row in content.quantities},
+        "definitions": tables_of(content.definitions),
         "status": {str(int(status)): status.words for status in PointStatus},
     }
 

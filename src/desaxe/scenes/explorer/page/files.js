@@ -51,6 +51,11 @@ function sceneText() {
       lines.push(`theta = { start = ${from}, stop = ${to}, num = ${SAMPLES} }`);
     }
   }
+  for (const [name, table] of Object.entries(CONTENT.definitions)) {
+    const constants = Object.entries(table.constants ?? {}).map(([constant, value]) => `${constant} = ${value}`);
+    const texts = ["expression", "unit", "meaning"].map((key) => `${key} = ${JSON.stringify(table[key])}`);
+    lines.push("", `[quantities.${name}]`, ...texts, ...(constants.length ? [`constants = { ${constants.join(", ")} }`] : []));
+  }
   return lines.join("\n") + "\n";
 }
 
