@@ -1,12 +1,14 @@
 """Invalid expressions are refused at once, with a mark below the error."""
 
+import math
+import random
 import time
 
 import pytest
 
 import desaxe as dx
-from desaxe.definitions.grammar import DefinitionText, parse
 from desaxe.mechanism.own import definitions
+from tests.definitions.expressions import defined
 
 REFUSED = {
     "": "empty", "V_C +": "too early", "(V_C": "too early", "V_C)": "unexpected", "a.b": "attributes",
@@ -23,7 +25,10 @@ REFUSED = {
     "atan2(V_C)": "takes 2 arguments, got 1", "eval(V_C)": "unknown function 'eval'",
     "status + 1": "not a real number", "2 * pi": "constant", "own * 2": "defined by itself",
     "own_wrt_ec": "defined by itself", "V_C^2": r"a power is \*\*", "V_C // 2": "unexpected",
-    "1_0 * V_C": "unexpected", "sqrt(V_C)": "not an integer",
+    "1_0 * V_C": "unexpected", "sqrt(V_C)": "not an integer", "V_C(2)": "unknown function 'V_C'",
+    "max(*V_C)": "unexpected", "max(V_C, )": "unexpected", "(V_C, V_C)": "unexpected ','",
+    "2(V_C)": "unexpected",
+    "not V_C": "unexpected 'V_C'", "lambda": "unknown name 'lambda'", "V_C Y": "unexpected 'Y'",
 }  # fmt: skip
 
 
@@ -116,19 +121,31 @@ def test_constants_have_units_without_a_unit_library():
             dx.undefine("own")
 
 
-@pytest.mark.parametrize(
-    ("text", "tree"),
-    [
-        ("-a**2", "neg(**(a,2))"), ("a**-b", "**(a,neg(b))"), ("a**b**c", "**(a,**(b,c))"),
-        ("a-b-c", "-(-(a,b),c)"),
-        ("a/b*c", "*(/(a,b),c)"), ("--a", "a"), ("a*-b", "*(a,neg(b))"), ("a+b*c", "+(a,*(b,c))"),
-    ],
+LEAVES = ("1", "2.5", ".5", "3.", "4e-1", "phi", "theta", "pi", "k")
+FORMS = (
+    "{}+{}", "{} - {}", "{}*-{}", "{}\n/ (2 + abs({}))", "({} )", "-{}", "+--{}", "-sin({})**2",
+    "2**-sin({})**3", "abs({})**.5", "hypot({}, {})", "min({},{}, 1)", "where({} <= {}, {}, 0)",
+    "k - {} - (({}) - {})",
 )  # fmt: skip
-def test_precedence(text, tree):
-    assert shape(parse(DefinitionText("own", text))) == tree
 
 
-def shape(node):
-    if not node.parts:
-        return node.name or f"{node.number:g}"
-    return f"{node.op}({','.join(map(shape, node.parts))})"
+def expression(chance, depth):
+    """A random text in which Python's own arithmetic has no pole."""
+    form = chance.choice(FORMS) if depth else chance.choice(LEAVES)
+    return form.format(*(expression(chance, depth - 1) for _ in range(form.count("{}"))))
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_arithmetic_means_what_it_means_in_python(seed):
+    text = f"0*phi + k*({expression(random.Random(seed), 3)})"
+    with defined("own", text, k=0.7):
+        found = dx.evaluate(["own", "phi"], theta=1.1, ec=0.01, AB=0.125, BC=0.35)
+    scope = {"phi": found["phi"], "theta": 1.1, "k": 0.7, "abs": abs, "min": min, "hypot": math.hypot}
+    scope |= {"sin": math.sin, "pi": math.pi, "where": lambda test, yes, no: yes if test else no}
+    assert found["own"] == pytest.approx(eval(text.replace("\n", ""), scope), rel=1e-13, abs=1e-13), text
+
+
+def test_a_constant_may_be_a_word_of_python_and_a_number_have_zeros_before_it():
+    with defined("own", "lambda * Y + 007 * is*Y", **{"lambda": 0.5, "is": 1}):
+        found = dx.evaluate(["own", "Y"], theta=1.1, ec=0.01, AB=0.125, BC=0.35)
+    assert found["own"] == 7.5 * found["Y"]

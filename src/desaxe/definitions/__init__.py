@@ -1,9 +1,9 @@
-"""User-defined quantities: `define`, `undefine`, and their parser and checks.
+"""User-defined quantities: `define`, `undefine`, and the checks of their expressions.
 
-grammar     the text of an expression as a tree; nothing is ever evaluated as Python
-dimensions  the dimension of every part of a tree; both sides of a sum agree
+expression  the text of an expression as a tree; nothing is ever evaluated as Python
+lowering    a tree as lines of the Program, with the dimension of each part; both sides of a sum agree
+dimension   exponents of m, s and kg
 units       constants such as "1 mm" as SI numbers, without a unit library
-lines       a tree as lines of the Program
 define      the calls
 tables      definitions in files: `[quantities.NAME]`
 """

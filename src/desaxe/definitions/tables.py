@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ..mechanism.own import Definition, change, register, used_by
-from .define import GivenDefinition, made_definition, with_definitions
+from .define import DefinitionInputs, compiled, with_definitions
 
 KEYS = ("expression", "unit", "meaning", "constants")
 
@@ -27,7 +27,7 @@ def read_definitions(tables: Mapping[str, Any]) -> tuple[Definition, ...]:
         # The definitions that use no other pending one; a circle leaves none, and the first reports it.
         ready = [n for n, entry in waiting.items() if not _mentions(entry.expression, waiting, n)]
         for name in ready or [next(iter(waiting))]:
-            made[name] = made_definition(waiting.pop(name), {**known, **made})
+            made[name] = compiled(waiting.pop(name), {**known, **made})
     return tuple(made.values())
 
 
@@ -37,7 +37,7 @@ def _mentions(expression: str, names: Mapping[str, Any], own: str) -> bool:
     return any(name in words for name in names if name != own)
 
 
-def _entry(name: str, table: Any) -> GivenDefinition:
+def _entry(name: str, table: Any) -> DefinitionInputs:
     if not isinstance(table, Mapping):
         raise ValueError(f"quantities.{name} = {table!r}: expected a table with an expression")
     wrong = [key for key in table if key not in KEYS]
@@ -50,7 +50,7 @@ def _entry(name: str, table: Any) -> GivenDefinition:
         raise ValueError(
             f"quantities.{name}.constants = {constants!r}: expected a table such as {{f = 0.08}}"
         )
-    return GivenDefinition(name, expression, table.get("unit"), table.get("meaning", ""), dict(constants))
+    return DefinitionInputs(name, expression, table.get("unit"), table.get("meaning", ""), dict(constants))
 
 
 def tables_of(made: Iterable[Definition]) -> dict[str, dict[str, Any]]:
