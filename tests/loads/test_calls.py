@@ -126,6 +126,53 @@ def test_averages_and_drive_go_over_all_turns_of_a_load():
         dx.drive(**machine)
 
 
+LIGHT = {"ec": 0.01, "AB": 0.04, "BC": 0.064, "omega0": 50.0}
+
+
+def test_a_function_has_its_period_in_every_call_over_a_cycle():
+    """Massless: T_in = -F_Y dY/dtheta, and the flywheel stores the largest work less the smallest."""
+    load = dx.over_theta(lambda theta: 800.0 * np.cos(theta / 2) - 300.0 * np.sin(theta), period=2 * TURN)
+    machine = {**LIGHT, "F_Y": load}
+
+    def torque(theta):
+        u = 0.01 + 0.04 * np.sin(theta)
+        return load(theta) * (0.04 * np.sin(theta) + u * 0.04 * np.cos(theta) / np.sqrt(0.064**2 - u**2))
+
+    mean, square = (
+        quad(lambda t, n=n: torque(t) ** n, 0.0, 2 * TURN, epsabs=1e-12, limit=200)[0] / (2 * TURN)
+        for n in (1, 2)
+    )
+    motor = dx.drive(fluctuation=0.05, **machine)
+    assert motor["torque_mean"] == pytest.approx(mean, rel=1e-12)
+    assert motor["torque_rms"] == pytest.approx(square**0.5, rel=1e-12)
+    theta = np.linspace(0.0, 2 * TURN, 20_001)
+    rate = mean - torque(theta)
+    work = np.append(0.0, np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(theta)))
+    assert motor["flywheel_inertia"] == pytest.approx(np.ptp(work) / (0.05 * 50.0**2), rel=1e-6)
+    del machine["AB"]
+    best = dx.optimize(minimize=("rms", "T_in"), over={"AB": (0.04, 0.04 + 1e-9)}, starts=1, **machine)
+    assert best["value"] == pytest.approx(square**0.5, rel=1e-6)
+
+
+CYCLES = {
+    "drive": dx.drive,
+    "harmonics": lambda **inputs: dx.harmonics("T_in", **inputs),
+    "mean": lambda **inputs: dx.design_map([("mean", "T_in")], **{**inputs, "ec": [0.0, 0.01]}),
+    "rms": lambda **inputs: dx.optimize(minimize=("rms", "T_in"), over={"m_rod": (0.0, 0.1)}, **inputs),
+    "steady": lambda omega0, **inputs: dx.steady(torque=dx.kloss(9, 0.2, 100), **inputs),
+}
+
+
+@pytest.mark.parametrize("name", CYCLES)
+@pytest.mark.parametrize(
+    "function",
+    [lambda theta: 9.0 * theta, lambda theta: 90.0 * (theta < 3.0), lambda theta: np.cos(theta / 2)],
+)
+def test_a_function_that_does_not_repeat_is_refused_where_a_cycle_is_requested(name, function):
+    with pytest.raises(ValueError, match=r"F_Y: .* the load must repeat; this function does not after 6\.28"):
+        CYCLES[name](**{**LIGHT, "m_slider": 1.0, "F_Y": function})
+
+
 @pytest.mark.parametrize("mu", [0.0, 0.1])
 def test_a_load_that_opposes_either_way_holds_a_crank_at_rest(mu):
     """It stops, stays, and breaks away once the torque is that of the load (and of friction)."""

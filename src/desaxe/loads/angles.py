@@ -11,7 +11,7 @@ from ..mechanism.closed.angles import dead_centres, passages, repeated
 from ..mechanism.closed.dead_centres import DEAD_CENTRES
 from ..mechanism.closed.functions import closed_form
 from ..mechanism.spoken import spoken
-from .load import Load, OverTheta, OverY, TableOverTheta
+from .load import Load, OverTheta, OverY
 from .stroke import OverStroke
 
 Array = NDArray[np.float64]
@@ -80,10 +80,16 @@ def turns_of(caller: str, loads: Mapping[str, Load], most: int) -> int:
         if not isinstance(load, OverTheta):
             continue
         own = next((n for n in range(1, most + 1) if _repeats(load, n * TURN)), None)
-        if own is None:
+        if own is None or not load.is_periodic:
+            period = spoken("theta", load.period, ".6g", True)
+            reason = f"its period is {period}"
+            if not load.is_periodic:
+                reason = (
+                    f"this function does not after {period}: over_theta(function, period=...) sets its period"
+                )
             raise ValueError(
                 f"{name}: {caller} is over {'a turn' if most == 1 else f'at most {most} turns'}, after which "
-                f"the load must repeat; its period is {spoken('theta', load.period, '.6g', True)}"
+                f"the load must repeat; {reason}"
             )
         turns = turns * own // gcd(turns, own)
     return turns
@@ -100,9 +106,9 @@ def cycle(loads: Mapping[str, Load]) -> float:
 
 
 def _repeats(load: OverTheta, angle: float) -> bool:
-    """True where a table repeats after an angle; a function is taken to."""
+    """True where an angle is a whole number of periods of a load."""
     periods = angle / load.period
-    return not isinstance(load, TableOverTheta) or abs(periods - round(periods)) < 1e-9
+    return round(periods) > 0 and abs(periods - round(periods)) < 1e-9
 
 
 def meeting_angles(loads: Iterable[Load], high: float, lengths: Sequence[Array], branch: int) -> Array:

@@ -7,6 +7,7 @@ from typing import Any
 
 from ..mechanism.closed import TURN
 from ..mechanism.spoken import named
+from ..support.computed import computed_once
 from ..support.forks import IMPORTS
 from .load import OverTheta
 from .table import SAME
@@ -14,6 +15,11 @@ from .table import SAME
 SAMPLES = 1024  # of a function, by which it is distinguished from others
 ROUNDED = 8  # last bits of an angle: so far from its node a user's function may jump
 BESIDE = 1e-9  # rad: more than these are
+PROBES, GOLDEN = (
+    128,
+    0.6180339887498949,
+)  # angles of a period at which values are compared, none at a round one
+REPEATED = 1e-9  # of the largest value: what rounding of angles may change
 
 
 @dataclass(frozen=True, repr=False)
@@ -27,8 +33,18 @@ class FunctionOverTheta(OverTheta):
 
     @property
     def period(self) -> float:
-        """The angle after which the nodes repeat [rad]."""
+        """The angle after which the nodes, and a periodic function, repeat [rad]."""
         return self.every
+
+    @computed_once
+    def is_periodic(self) -> bool:
+        """True where the function has the same values a period earlier and later, but for rounding."""
+        with IMPORTS:
+            import numpy as np
+
+        angles = self.every * ((np.arange(PROBES) + 0.5) * GOLDEN % 1.0)
+        values = called(self.function, angles + self.every * np.array([[-1.0], [0.0], [1.0]]), "the load")
+        return bool(np.ptp(values, axis=0).max() <= REPEATED * np.abs(values).max())
 
     @property
     def has_slope(self) -> bool:

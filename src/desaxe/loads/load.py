@@ -89,7 +89,12 @@ class OverTheta(Load):
     @property
     @abstractmethod
     def period(self) -> float:
-        """The angle after which the load, or the nodes of a function, repeat [rad]."""
+        """The angle after which the load repeats [rad]."""
+
+    @property
+    def is_periodic(self) -> bool:
+        """True where the load repeats after its period, as every table does."""
+        return True
 
     def __call__(self, theta: Any) -> Any:
         """The load at crank angles, in the units of the machine that made it, else in SI units."""

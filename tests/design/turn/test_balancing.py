@@ -167,7 +167,7 @@ def test_a_mechanism_without_masses():
 
 def test_a_load_may_be_a_function_of_one_angle():
     def load(theta):
-        return -50.0 * math.cos(theta) if theta < 3.0 else 0.0
+        return -50.0 * math.cos(theta) if theta % (2 * math.pi) < 3.0 else 0.0
 
     of_arrays = flywheel(fluctuation=0.02, F_Y=np.vectorize(load), **PRESS)
     assert flywheel(fluctuation=0.02, F_Y=load, **PRESS) == pytest.approx(of_arrays, rel=1e-12)
