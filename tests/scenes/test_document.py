@@ -127,6 +127,17 @@ def test_equal_peaks_and_slopes_of_either_sign(tmp_path):
     assert " ".join(page.words).count("+-: at ec = 0 the peak is at theta and at -theta") == 2
 
 
+def test_what_stays_in_the_frame_is_named_beside_derivatives_by_lengths(tmp_path):
+    for load, named in (
+        (PRESS.over_Y([200, 250], [0, -50]), 2),
+        (PRESS.over_stroke([0, 9], [-50, 0], dead_centre="outer"), 0),
+    ):
+        page = PRESS.replace(F_Y=load).report(
+            tmp_path / "a.md", ["T_in", "N_C", "a_C"], theta=FEW, overwrite=True
+        )
+        assert page.read_text().count("over Y stays where it is") == named
+
+
 def test_drive_and_origin(page):
     drive = LOADED.drive()
     assert page.under("torque, rms") == [f"{drive['torque_rms']:.6g} N m"]

@@ -126,8 +126,9 @@ class MakeOverTheta(Maker):
 class MakeOverY(Maker):
     """`over_Y(positions, outward, inward=None)`: a load over the slider's position, for F_X and F_Y.
 
-    A press or a compressor is given by its stroke: the load follows the slider, so that sensitivities by
-    theta and by every length include dF/dY dY/dp.
+    For what is fixed in the frame, as a cylinder: the load follows the slider, so that sensitivities by
+    theta and by every length include dF/dY dY/dp. A die that is set to the end of the stroke, whatever the
+    lengths, is `over_stroke`.
 
         gas = dx.over_Y(["30 mm", "50 mm", "100 mm"], outward=[-900, -200, -50], inward=[-900, -400, -150])
 

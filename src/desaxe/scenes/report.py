@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from ..evaluation.in_units import in_units
+from ..loads.load import OverY
 from ..mechanism.catalogue import quantity
+from ..mechanism.names import LENGTHS
 from ..mechanism.status import PeakStatus
 from ..mechanism.unit_system import UnitSystem
 from ..support.quantity_text import with_unit
@@ -193,6 +195,11 @@ def remarks(found: PeakResult) -> list[str]:
         )
     if found.dataset["side"].values.any():
         lines.append(SIDE)
+    fixed = [n for n, load in found.peak.loads.items() if isinstance(load, OverY) and not load.centre]
+    if fixed and any(name in LENGTHS for name in found.peak.sensitivities):
+        lines.append(
+            f"  d/d length: {' and '.join(fixed)} over Y stays where it is, over_stroke moves with the stroke"
+        )
     if status.size > ROWS:
         lines.append(f"  {ROWS} of {status.size} designs are shown")
     return lines
