@@ -10,7 +10,7 @@ from desaxe.compiler.passes.trigonometry import Trigonometry
 from desaxe.compiler.passes.value_numbering import value_numbering
 from desaxe.compiler.program import Program, renamed, validate
 from desaxe.mechanism.closed.dead_centres import SENSITIVITIES
-from desaxe.mechanism.names import CENTRES, LOADS, PARAMETERS, WHOLE, parts, sensitivity
+from desaxe.mechanism.names import CENTRES, LOADS, PARAMETERS, WHOLE, parts, per, sensitivity
 
 from .closed import whole_design
 from .dynamics import FORCES, LUMPS, centres_sheet
@@ -141,7 +141,7 @@ def _define_constant(sheet: Sheet, name: str, base: str, value: sp.Expr) -> None
         raise ValueError(f"{base} has no unit")
     by = parts(name)[1]
     what = f"derivative of {base} by {', '.join(by)}" if value else f"0: {base} does not depend on it"
-    sheet.define(name, value, unit=unit.over(*by), meaning=what)
+    sheet.define(name, value, unit=per(unit, *by), meaning=what)
 
 
 def _finished(program: Program) -> Program:

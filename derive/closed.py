@@ -17,8 +17,9 @@ from desaxe.compiler.operations import OPERATIONS
 from desaxe.compiler.program import Note, Program
 from desaxe.compiler.text import read_function
 from desaxe.mechanism.closed.dead_centres import DEAD_CENTRES
-from desaxe.mechanism.dimensions import unit_of, unit_text
-from desaxe.mechanism.names import LENGTHS, WHOLE, parts, sensitivity
+from desaxe.mechanism.names import LENGTHS, WHOLE, parts, per, sensitivity
+from desaxe.units.dimensions import unit_text
+from desaxe.units.parse import coherent_unit
 
 ec, AB, BC = (sp.Symbol(name, real=True) for name in LENGTHS)
 # Designs of each sector: of a turning crank, |ec| < AB and |ec| > AB; of a crank longer than the rod.
@@ -30,7 +31,7 @@ def whole_design() -> Program:
     program = prove(read_function(DEAD_CENTRES))
     notes = dict(program.notes)
     for name, length in product(WHOLE, LENGTHS):
-        unit = unit_text(unit_of(notes[name].unit).over(length))
+        unit = unit_text(per(coherent_unit(notes[name].unit), length))
         notes[sensitivity(name, length)] = Note(unit, f"derivative of {name} by {length}")
     return program._replace(notes=notes)
 

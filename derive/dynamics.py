@@ -13,7 +13,8 @@ which has N0's sign; none above (the friction jams) and two below.
 
 import sympy as sp
 
-from desaxe.mechanism.dimensions import (
+from desaxe.mechanism.names import CENTRES, PARAMETERS, parts, per, sensitivity
+from desaxe.units.dimensions import (
     ENERGY,
     FORCE,
     INERTIA,
@@ -26,7 +27,6 @@ from desaxe.mechanism.dimensions import (
     TORQUE,
     Unit,
 )
-from desaxe.mechanism.names import CENTRES, PARAMETERS, parts, sensitivity
 
 from . import bodies
 from .loop import AB, BC, branch, ec
@@ -67,7 +67,7 @@ def resolve_ratio(sheet: Sheet, name: str) -> Equation | None:
     if base == "inv_S":
         expression = -sec_phi * inv_S**2 if parameters == ("BC",) else inv_S * tan_phi * by_phi
     unit = Unit(m=-1) if base == "inv_S" else NONE
-    return Equation(expression, unit.over(*parameters), f"derivative of {base} by {parameters[0]}")
+    return Equation(expression, per(unit, *parameters), f"derivative of {base} by {parameters[0]}")
 
 
 def centres_sheet() -> Sheet:
@@ -100,7 +100,7 @@ def _define_lumps(sheet: Sheet) -> None:
     _define_share(sheet, "m_at_C", m_rod, r_rod, BC, "the rod's mass at C", "B (33)")
     sheet.define("m_at_B", m_rod * ((BC - r_rod) / BC), unit=MASS, meaning="the rod's mass at B",
                  source="B (32)")  # fmt: skip
-    sheet.define(sensitivity("m_at_B", "BC"), -symbol(sensitivity("m_at_C", "BC")), unit=MASS.over("BC"),
+    sheet.define(sensitivity("m_at_B", "BC"), -symbol(sensitivity("m_at_C", "BC")), unit=per(MASS, "BC"),
                  meaning="derivative of m_at_B by BC")  # fmt: skip
     rows = (
         ("m_rotating", m_at_B + symbol("m_crank_at_B"), MASS, "rotating mass, as if at the crank pin",
@@ -124,7 +124,7 @@ def _define_share(
     sheet.define(name, mass * (centre / length), unit=MASS, meaning=meaning, source=source)
     moved = symbol(sensitivity(centre.name, length.name)) * length - centre
     by_length = sensitivity(name, length.name)
-    sheet.define(by_length, mass * moved / length**2, unit=MASS.over(length.name),
+    sheet.define(by_length, mass * moved / length**2, unit=per(MASS, length.name),
                  meaning=f"derivative of {name} by {length}")  # fmt: skip
 
 
@@ -214,7 +214,7 @@ def _define_magnitudes(sheet: Sheet) -> None:
     by_alpha = (sheet.derivative(name, "alpha") for name in ("F_friction", "V_C"))
     forces, speeds = by_alpha
     rubbed = select(eq(F_friction, 0), 0, F_friction * speeds)
-    sheet.define(sensitivity("P_friction", "alpha"), -(forces * V_C + rubbed), unit=POWER.over("alpha"),
+    sheet.define(sensitivity("P_friction", "alpha"), -(forces * V_C + rubbed), unit=per(POWER, "alpha"),
                  meaning="derivative of P_friction by alpha")  # fmt: skip
 
 

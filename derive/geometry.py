@@ -6,8 +6,8 @@ Y = AB cos(theta) + branch S is the solved loop. Lengths are differentiated firs
 
 import sympy as sp
 
-from desaxe.mechanism.dimensions import LENGTH
-from desaxe.mechanism.names import parts
+from desaxe.mechanism.names import parts, per
+from desaxe.units.dimensions import LENGTH
 
 from .folded import slider_rate
 from .loop import AB, BC, ec, slider, solved
@@ -37,7 +37,7 @@ def resolve_geometry(sheet: Sheet, name: str) -> Equation | None:
         expression = sp.factor_terms(expression)
         if base == "Y" and not lengths:
             expression = slider_rate(turns, expression)
-    return Equation(expression, unit.over(*parameters), f"derivative of {base} by {', '.join(parameters)}")
+    return Equation(expression, per(unit, *parameters), f"derivative of {base} by {', '.join(parameters)}")
 
 
 def _rod_functions(expression: sp.Expr) -> list[tuple[sp.Symbol, RodFunction]]:

@@ -14,8 +14,8 @@ from itertools import combinations_with_replacement
 
 import sympy as sp
 
-from desaxe.mechanism.dimensions import ANGULAR_SPEED, NONE, Unit
-from desaxe.mechanism.names import sensitivity
+from desaxe.mechanism.names import per, sensitivity
+from desaxe.units.dimensions import ANGULAR_SPEED, NONE, Unit
 
 from .loop import theta
 from .sheet import Sheet, symbol
@@ -115,13 +115,13 @@ def define_speed_by_alpha(sheet: Sheet, name: str, by_theta: sp.Symbol) -> None:
     per_turn = sheet.define(f"{name}_per_theta", by_theta * symbol("inv_omega"))
     meaning = f"derivative of {name} by alpha"
     sheet.define(
-        f"{name}_wrt_alpha", per_turn * theta, unit=unit.over("alpha"), meaning=meaning, differentiate=plain
+        f"{name}_wrt_alpha", per_turn * theta, unit=per(unit, "alpha"), meaning=meaning, differentiate=plain
     )
 
 
 def _define_rate(sheet: Sheet, name: str, parameters: tuple[str, ...], value: sp.Expr | int) -> None:
     meaning = f"derivative of {name} by {', '.join(parameters)}"
-    sheet.define(sensitivity(name, *parameters), value, unit=UNITS[name].over(*parameters), meaning=meaning)
+    sheet.define(sensitivity(name, *parameters), value, unit=per(UNITS[name], *parameters), meaning=meaning)
 
 
 def _omega_rates() -> dict[tuple[str, ...], sp.Expr]:

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import sympy as sp
 
-from desaxe.mechanism.dimensions import (
+from desaxe.units.dimensions import (
     ACCELERATION,
     ANGLE,
     ANGULAR_ACCELERATION,

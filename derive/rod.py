@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from desaxe.mechanism.dimensions import ANGLE, LENGTH, Unit
+from desaxe.mechanism.names import per
+from desaxe.units.dimensions import ANGLE, LENGTH, Unit
 
 from .loop import BC, r, rod_partials, u
 from .sheet import Equation, Sheet, symbol
@@ -40,7 +41,7 @@ class RodFunction(NamedTuple):
     @property
     def unit(self) -> Unit:
         """Unit of the function; u and BC are lengths."""
-        return UNITS[self.function].over(*["BC"] * len(self.by), *["theta"] * self.turns)
+        return per(UNITS[self.function], *["BC"] * len(self.by), *["theta"] * self.turns)
 
     @property
     def meaning(self) -> str:

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import sympy as sp
 
 from desaxe.compiler.program import Note
-from desaxe.mechanism.dimensions import Unit, unit_text
-from desaxe.mechanism.names import sensitivity
+from desaxe.mechanism.names import per, sensitivity
+from desaxe.units.dimensions import Unit, unit_text
 
 
 class Equation(NamedTuple):
@@ -90,7 +90,7 @@ class Sheet:
             expression = self.chain_rule(name, parameter)
             if expression.is_number:
                 return expression
-            unit = equation.unit.over(parameter) if equation.unit is not None else None
+            unit = per(equation.unit, parameter) if equation.unit is not None else None
             self.equations[new] = Equation(expression, unit, f"derivative of {name} by {parameter}")
         return symbol(new)
 

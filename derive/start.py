@@ -11,7 +11,8 @@ d(a_C)/d(alpha), because Y'' = -AB c - branch (u phi'' + AB c phi').
 
 import sympy as sp
 
-from desaxe.mechanism.dimensions import LENGTH, NONE
+from desaxe.mechanism.names import per
+from desaxe.units.dimensions import LENGTH, NONE
 
 from .loop import AB, BC, branch, ec, r, theta, u
 from .sheet import Sheet, symbol
@@ -89,7 +90,7 @@ def define_start(sheet: Sheet) -> None:
         sheet.define(
             f"{name}_wrt_alpha",
             select(near_start, start, plain),
-            unit=unit.over("alpha"),
+            unit=per(unit, "alpha"),
             meaning=f"derivative of {name} by alpha",
             differentiate=plain,
         )

@@ -95,7 +95,7 @@ PUBLIC = {
     "plus_minus": "desaxe.mechanism.ranges",
     "equation": "desaxe.derive.equation",
 }
-MODULES = {"plot": "desaxe.plot", "status": "desaxe.mechanism.status", "units": "desaxe.mechanism.units"}
+MODULES = {"plot": "desaxe.plot", "status": "desaxe.mechanism.status", "units": "desaxe.units"}
 
 __all__ = [
     "LoadWarning",

@@ -11,7 +11,7 @@ from desaxe.compiler.text import with_short_temporaries, write_lines
 from desaxe.derive.freeze import freeze
 from desaxe.derive.sheet import Sheet, symbol
 from desaxe.derive.stable import le, lt, select
-from desaxe.mechanism.dimensions import LENGTH
+from desaxe.units.dimensions import LENGTH
 
 x, y, z = map(symbol, "xyz")
 INPUTS = ("x", "y", "z")

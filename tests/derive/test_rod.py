@@ -8,7 +8,7 @@ import sympy as sp
 
 from desaxe.derive.quantities import build_sheet
 from desaxe.derive.rod import RodFunction, read_rod_function, resolve_rod
-from desaxe.mechanism.dimensions import Unit
+from desaxe.units.dimensions import Unit
 
 DIGITS = 60
 AT = {"theta": "1.1", "ec": "0.02", "AB": "0.125", "BC": "0.35"}

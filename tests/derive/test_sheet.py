@@ -4,8 +4,8 @@ import pytest
 import sympy as sp
 
 from desaxe.derive.sheet import Equation, Sheet, symbol
-from desaxe.mechanism.dimensions import LENGTH, Unit
 from desaxe.mechanism.names import PARAMETERS, sensitivity
+from desaxe.units.dimensions import LENGTH, Unit
 
 theta, ec, AB = map(symbol, ("theta", "ec", "AB"))
 a, b, c = map(symbol, "abc")

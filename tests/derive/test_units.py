@@ -7,19 +7,11 @@ from functools import cache
 import pytest
 
 from desaxe.compiler.interpret import run_in_doubles
-from desaxe.mechanism.dimensions import (
-    ANGLE,
-    ENERGY,
-    FORCE,
-    JERK,
-    NONE,
-    PARAMETER_UNITS,
-    POWER,
-    TORQUE,
-    Unit,
-    unit_text,
-)
+from desaxe.mechanism.inputs import INPUTS
+from desaxe.mechanism.names import per
 from desaxe.mechanism.program import _text
+from desaxe.units.dimensions import ANGLE, ENERGY, FORCE, JERK, NONE, POWER, TORQUE, Unit, unit_text
+from desaxe.units.parse import coherent_unit
 
 POINT = {"theta": 1.1, "ec": 0.02, "AB": 0.125, "BC": 0.35, "omega0": 157.0, "alpha": -3.0, "branch": 1.0}
 POINT |= {"m_crank": 1.5, "m_rod": 0.7, "m_slider": 0.9, "I_crank": 0.02, "I_rod": 0.01, "mu": 0.2}
@@ -100,18 +92,18 @@ def test_the_state_has_the_units_of_the_law():
         (Unit(-1, -2, -1), "1/m/s^2/rad"),
         (Unit(1, 2, 0), "m*s^2"),
         (TORQUE, "N*m"),
-        (TORQUE.over("theta"), "N*m/rad"),
-        (TORQUE.over("m_rod"), "m^2/s^2"),
-        (TORQUE.over("alpha"), "kg*m^2/rad"),
-        (FORCE.over("BC"), "N/m"),
+        (per(TORQUE, "theta"), "N*m/rad"),
+        (per(TORQUE, "m_rod"), "m^2/s^2"),
+        (per(TORQUE, "alpha"), "kg*m^2/rad"),
+        (per(FORCE, "BC"), "N/m"),
         (ENERGY, "J"),
-        (POWER.over("ec"), "N/s"),
+        (per(POWER, "ec"), "N/s"),
     ],
 )
 def test_the_text_of_a_unit(unit, text):
     assert unit_text(unit) == text
 
 
-@pytest.mark.parametrize("parameter", PARAMETER_UNITS)
+@pytest.mark.parametrize("parameter", INPUTS)
 def test_a_derivative_is_over_the_unit_of_its_parameter(parameter):
-    assert PARAMETER_UNITS[parameter].over(parameter) == NONE
+    assert per(coherent_unit(INPUTS[parameter].unit), parameter) == NONE

@@ -10,7 +10,7 @@ import pint
 import pytest
 
 import desaxe as dx
-from desaxe.mechanism.units import in_si
+from desaxe.mechanism.read import in_si
 from tests.ways import POINT, SIZES, columns
 
 # ---- status and bad elements ---------------------------------------------------------------------

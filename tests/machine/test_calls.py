@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.mechanism.units import registry
+from desaxe.units.pint_units import registry
 from tests.compiler.languages.tools import imported
 
 SI = {"ec": 0.01, "AB": 0.05, "BC": 0.2, "omega0": 30.0, "m_slider": 4.0}

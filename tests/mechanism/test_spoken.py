@@ -7,8 +7,8 @@ import warnings
 import pytest
 
 import desaxe as dx
+from desaxe.mechanism.quantity_units import UnitSystem
 from desaxe.mechanism.spoken import named, speaking, spoken
-from desaxe.mechanism.unit_system import UnitSystem
 
 UNITS = UnitSystem.read("mm, deg, rpm, kN")
 PRESS = dx.Machine(units="mm, deg, rpm, kN", ec=10, AB=50, BC=200, omega0=300, m_slider=4, I_crank=0.1)
@@ -103,7 +103,7 @@ def test_units_in_wrong_letters(name, text, asked):
 
 
 def test_a_knot_is_no_force_of_a_machine():
-    with pytest.raises(ValueError, match="'kn': did you mean kN"):
+    with pytest.raises(ValueError, match="'kn' is not a known unit; did you mean kN"):
         dx.Machine(units="mm, kn", AB=50)
     assert dx.Machine(units="knot", AB=1).units.units == {"velocity": "knot"}
     assert dx.Machine(units="RPM", AB=1).units.units == {"angular speed": "RPM"}

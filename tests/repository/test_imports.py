@@ -46,6 +46,9 @@ def test_a_kernel_loads_numba_once_and_no_sympy(monkeypatch, tmp_path):
     assert loaded_by(code) == {"numpy"}
 
 
-def test_a_unit_loads_pint():
-    with_unit = POINT.replace("ec=0.01", "ec='10 mm'")
-    assert "pint" in loaded_by(f"import desaxe\ndesaxe.evaluate('a_C', {with_unit})")
+@pytest.mark.parametrize(
+    ("text", "loads"), [("'10 mm'", False), ("'10 kg mm^2/g/m'", False), ("'0.4 thou'", True)]
+)
+def test_only_a_unit_beyond_the_table_loads_pint(text, loads):
+    with_unit = POINT.replace("ec=0.01", f"ec={text}")
+    assert ("pint" in loaded_by(f"import desaxe\ndesaxe.evaluate('a_C', {with_unit})")) is loads

@@ -10,7 +10,7 @@ import pytest
 import desaxe as dx
 from desaxe.scenes.reading.printed import read_percentage, read_printed
 from desaxe.scenes.schema import SceneError
-from desaxe.support.quantity_text import quantity_text
+from desaxe.units.text import quantity_text
 from tests.example_scenes import COMPACTOR, SMALL, changed
 
 # ---- mistakes ------------------------------------------------------------------------------------

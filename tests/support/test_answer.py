@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import desaxe as dx
-from desaxe.support import quantity_text
 from desaxe.support.answer import Answer
+from desaxe.units.text import quotient as quotient_of
 
 SIZES = {"ec": 0.1, "AB": 0.125, "BC": 0.35}
 CALLS = {
@@ -75,7 +75,7 @@ def test_what_has_no_value_is_shown_with_the_reason():
     ],
 )  # fmt: skip
 def test_units_of_derivatives_are_reduced(unit, by, quotient):
-    assert quantity_text.quotient(unit, by) == quotient
+    assert quotient_of(unit, by) == quotient
 
 
 def test_an_answer_of_evaluate_knows_what_it_was_asked_for():

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LOADS
-from ..support.quantity_text import printed, with_unit
+from ..support.shown import printed, with_unit
 from ..support.text_table import table
 from .parser import SIGNS, add_command
 from .words import names_and_inputs

@@ -53,7 +53,7 @@ def _refuse_parted(before: str, word: str) -> None:
     key, equals, value = before.partition("=")
     if not equals or word in quantities():
         return
-    from ..mechanism.units import in_si
+    from ..mechanism.read import in_si
 
     try:
         float(value)
@@ -66,7 +66,7 @@ def _refuse_parted(before: str, word: str) -> None:
 
 
 def _quantity(word: str, text: str) -> str:
-    from ..support.quantity_text import quantity_text
+    from ..units.text import quantity_text
 
     try:
         return quantity_text(text)

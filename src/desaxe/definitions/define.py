@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 from ..compiler.passes.pipeline import optimise
 from ..compiler.program import RESERVED, Line, Note, Program
 from ..compiler.text import write_function
-from ..mechanism.dimensions import unit_of
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import INTERNAL, parts
 from ..mechanism.own import Definition, change, closure, derived_names, register, rows_of
 from ..mechanism.spelling import did_you_mean
 from ..support.shown import shown
+from ..units.parse import coherent_unit
 from .dimension import NONE, dimension_of
 from .expression import FUNCTIONS, ExpressionText, Token, parse
 from .lowering import Lowering, Value
@@ -209,7 +209,7 @@ def _uses(
             everything = (*derived_names(), *INPUTS, *known, *constants)
             hint = did_you_mean(name, everything).strip() if len(name) <= LONGEST_NAME else ""
             source.refuse(*word.span(), f"unknown name {shown(name)}{'; ' * bool(hint)}{hint}")
-        uses[name] = Value(name, dimension_of(unit_of(unit)))
+        uses[name] = Value(name, dimension_of(coherent_unit(unit)))
     if not uses:
         source.refuse_all("a constant: it uses no quantity and no input")
     return uses
@@ -233,7 +233,7 @@ def _unit(source: ExpressionText, unit: str | None, value: Value) -> str:
         return derived
     text = _checked_text(source.name, "unit", unit, 40)
     try:
-        requested = dimension_of(unit_of(text))
+        requested = dimension_of(coherent_unit(text))
     except ValueError as error:
         raise ValueError(f"{source.name}: {error}") from None
     if requested != dimension:

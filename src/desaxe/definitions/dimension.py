@@ -3,7 +3,7 @@
 from fractions import Fraction
 from typing import NamedTuple
 
-from ..mechanism.dimensions import Unit, unit_text
+from ..units.dimensions import Unit, unit_text
 
 _NAMED = {(2, -3, 1): "W", (2, -2, 1): "N*m", (1, -2, 1): "N"}
 

@@ -8,14 +8,14 @@ import numpy as np
 from ..evaluation.arrays import as_array
 from ..evaluation.labels import STATUS_FLAGS, import_xarray, input_attributes, provenance, with_loads
 from ..loads.resolve import split
-from ..mechanism.answer_units import unit_of
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs, with_known_keywords
 from ..mechanism.names import LENGTHS, sensitivity
+from ..mechanism.quantity_units import unit_of
 from ..runtime.request import check_common
 from ..support.forks import IMPORTS
-from ..support.quantity_text import quotient
+from ..units.text import quotient
 from .feasibility.arrays import KINDS, of_arrays
 from .measures import Measure, checked, measured, text_of
 

@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 from ..evaluation.arrays import as_array, broadcast_shape, number_or_array
 from ..evaluation.evaluate import evaluate
-from ..mechanism.answer_units import units_by_name
 from ..mechanism.closed.functions import closed_form
 from ..mechanism.closed.inverse import INVERSE
 from ..mechanism.inputs import INPUTS, Input
 from ..mechanism.names import LENGTHS
+from ..mechanism.quantity_units import units_by_name
 from ..mechanism.status import InverseStatus
 from ..runtime.request import check_common, with_known_inputs
 from ..support.answer import Answer

@@ -18,11 +18,11 @@ from flint import arb, ctx
 from ..compiler.passes.differentiate import with_derivatives
 from ..compiler.program import Program
 from ..loads.resolve import without_loads
-from ..mechanism.answer_units import unit_of
 from ..mechanism.catalogue import has, quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs, with_known_keywords
 from ..mechanism.names import sensitivity
+from ..mechanism.quantity_units import unit_of
 from ..mechanism.ranges import Between, PlusMinus, ends_of, refuse_bare_pair
 from ..mechanism.spoken import named
 from ..mechanism.status import EnclosureStatus
@@ -31,8 +31,8 @@ from ..runtime.specialise import specialise
 from ..support.answer import Answer
 from ..support.checks import real_number, whole_number
 from ..support.deadline import Deadline
-from ..support.quantity_text import PLUS_MINUS
 from ..support.shown import shown
+from ..units.text import PLUS_MINUS
 from .balls import BITS, PARTLY, Enclosure, Interval, ball, enclosures
 
 Box = tuple[Interval, ...]  # of the inputs that vary

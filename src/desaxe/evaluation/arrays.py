@@ -78,12 +78,12 @@ def array_of(row: Input, value: Any) -> Array:
     name = row.name
     if hasattr(value, "dims"):
         with IMPORTS:
-            from ..mechanism.units import unlabelled
+            from ..mechanism.read import unlabelled
 
         value = unlabelled(name, value, row.unit)
     if isinstance(value, str) or hasattr(value, "magnitude"):
         with IMPORTS:
-            from ..mechanism.units import in_unit
+            from ..units.parse import in_unit
 
         value = in_unit(name, value, row.unit)
     if hasattr(value, "mask") and np.ma.is_masked(value):  # who has one has imported them
@@ -94,7 +94,7 @@ def array_of(row: Input, value: Any) -> Array:
         raise TypeError(f"{name} = {shown(value)}: expected a number or an array of numbers") from None
     if array.dtype.kind == "U":
         with IMPORTS:
-            from ..mechanism.units import in_unit
+            from ..units.parse import in_unit
 
         texts = array.reshape(-1).tolist()
         array = np.array([in_unit(name, text, row.unit) for text in texts]).reshape(array.shape)

@@ -114,7 +114,7 @@ def evaluate(
 def _units(found: Any) -> Any:
     """The units of an answer, when they are first asked for."""
     with IMPORTS:
-        from ..mechanism.answer_units import units_by_name
+        from ..mechanism.quantity_units import units_by_name
 
     return units_by_name(found)
 

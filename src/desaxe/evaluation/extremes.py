@@ -9,12 +9,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..mechanism.catalogue import quantity
-from ..mechanism.dimensions import unit_of
 from ..mechanism.inputs import INPUTS, SAFE
 from ..mechanism.names import LENGTHS
 from ..mechanism.spoken import named
 from ..runtime.request import Request
 from ..support.forks import IMPORTS
+from ..units.parse import coherent_unit
 
 LEAST, MOST = SAFE
 SPEEDS = {"omega0": 1, "omega": 1, "alpha": 2, "g_X": 2, "g_Y": 2}  # -> its power of 1/time
@@ -90,13 +90,13 @@ def in_si(names: Sequence[str], values: Sequence[Any], powers: Powers, state: bo
 
 
 def _powers(name: str) -> tuple[int, int, int]:
-    unit = unit_of(INPUTS[name].unit)
+    unit = coherent_unit(INPUTS[name].unit)
     return unit.m, unit.s, unit.kg
 
 
 def shift(unit: str, powers: Powers) -> Any:
     """The power of two by which numbers in an SI unit are multiplied."""
-    exponents = unit_of(unit)
+    exponents = coherent_unit(unit)
     return exponents.m * powers[0] + exponents.s * powers[1] + exponents.kg * powers[2]
 
 

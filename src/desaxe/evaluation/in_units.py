@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..compiler.languages.numba.reductions import EXTREMES, KINDS
-from ..mechanism.answer_units import conversion_of
 from ..mechanism.inputs import INPUTS
-from ..mechanism.unit_system import SI, Conversion, UnitSystem
-from ..mechanism.units import registry
+from ..mechanism.quantity_units import SI, UnitSystem, conversion_of
 from ..support.answer import Answer
 from ..support.forks import IMPORTS
+from ..units.pint_units import registry
+from ..units.system import Conversion
 
 if TYPE_CHECKING:
     import xarray as xr

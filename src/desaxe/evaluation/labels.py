@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from ..definitions.tables import text_of
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
+from ..mechanism.quantity_units import SI, UnitSystem
 from ..mechanism.status import PointStatus
-from ..mechanism.unit_system import SI, UnitSystem
 from ..support.extras import explained
 from ..support.forks import IMPORTS
 from ..support.interrupts import finished, import_whole

@@ -7,11 +7,12 @@ from math import inf, isfinite
 from os import PathLike
 from typing import Any, NamedTuple
 
-from ..mechanism.unit_system import Conversion
-from ..mechanism.units import in_unit, registry
 from ..support.files import as_path, read_bytes
-from ..support.quantity_text import plain_number, spelled
 from ..support.shown import printable, shown
+from ..units.parse import in_unit
+from ..units.pint_units import registry
+from ..units.system import Conversion
+from ..units.text import plain_number, spelled
 
 UNORDERED = (str, bytes, bytearray, memoryview, Set, Mapping)  # or no numbers, though they can be iterated
 MOST_BYTES = 100_000_000  # of a file

@@ -19,7 +19,8 @@ from .table import Arrays, Table, arrays_of, polynomial
 from .words import told
 
 if TYPE_CHECKING:
-    from ..mechanism.unit_system import Conversion, UnitSystem
+    from ..mechanism.quantity_units import UnitSystem
+    from ..units.system import Conversion
 
 MOST_RANGES = 16  # of angles, of which a table remembers the nodes
 POSITION = ("Y", "Y_wrt_theta", "Y_wrt_theta_theta")  # which piece holds: the position, and the way

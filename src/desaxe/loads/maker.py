@@ -5,8 +5,9 @@ from functools import wraps
 from typing import Any, ClassVar
 
 from ..mechanism.keywords import with_known_keywords
+from ..mechanism.quantity_units import SI, UnitSystem
 from ..mechanism.spoken import speaking
-from ..mechanism.unit_system import SI, Conversion, UnitSystem
+from ..units.system import Conversion
 
 
 class Maker:

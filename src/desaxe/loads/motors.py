@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanism.inputs import TINY, Input
+from ..mechanism.quantity_units import SI, UnitSystem
 from ..mechanism.read import number_of
 from ..mechanism.slips import warn_of_slips
 from ..mechanism.spoken import UNITS, named, speaking, spoken
-from ..mechanism.unit_system import SI, UnitSystem
 from ..support.shown import printable, shown
 from .columns import Column, column_of, column_of_file, rows_of, unit_of_column
 from .maker import Maker

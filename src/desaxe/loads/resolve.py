@@ -24,7 +24,7 @@ from ..mechanism.inputs import INPUTS
 from ..mechanism.names import STATUS, parts, sensitivity
 from ..mechanism.own import Definition, Register, register, used_by
 from ..mechanism.program import Variant, program_of
-from ..mechanism.unit_system import UnitSystem
+from ..mechanism.quantity_units import UnitSystem
 from ..support.forks import IMPORTS
 from .function import FunctionOverTheta
 from .load import Load, OverTheta, OverY

@@ -7,10 +7,11 @@ from typing import Any
 from warnings import warn
 
 from ..mechanism.closed import TURN
+from ..mechanism.quantity_units import UnitSystem
 from ..mechanism.slips import LARGEST, UnitWarning
 from ..mechanism.spoken import spoken
-from ..mechanism.unit_system import Conversion, UnitSystem
 from ..support.shown import printable, shown
+from ..units.system import Conversion
 from .columns import Column, column_of, column_of_file, places_and_values, rows_of, unit_of_column
 from .function import FunctionOverTheta
 from .load import Load

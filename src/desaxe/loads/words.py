@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
-from ..support.quantity_text import with_unit
+from ..support.shown import with_unit
 from .table import Table
 
 

@@ -7,9 +7,9 @@ from typing import Any
 from ..loads.resolve import settled
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import WHOLE
-from ..mechanism.unit_system import OTHERS, UnitSystem
+from ..mechanism.quantity_units import OTHERS, UnitSystem
 from ..support.forks import IMPORTS
-from ..support.quantity_text import PLUS_MINUS, with_unit_of
+from ..units.text import PLUS_MINUS, with_unit_of
 
 # Arguments that carry no unit of their own name: what they are about is said by their keys.
 BY_KEY = ("over", "keep", "changes", "sigma", "data")

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..evaluation.in_units import Shown, in_units
-from ..mechanism.answer_units import units_by_name
-from ..mechanism.unit_system import SI, UnitSystem
+from ..mechanism.quantity_units import SI, UnitSystem, units_by_name
 from ..runtime.written import replacing_ours
 from ..scenes.stores.tables import heading
 from ..scenes.stores.workbook import Sheet, require_room, sheets_of, write_workbook

@@ -5,7 +5,7 @@ from typing import Any
 
 from ..evaluation.arrays import as_array
 from ..evaluation.in_units import Shown
-from ..mechanism.answer_units import unit_of
+from ..mechanism.quantity_units import unit_of
 from ..mechanism.spoken import speaking
 
 

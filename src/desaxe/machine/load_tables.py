@@ -9,7 +9,8 @@ from ..loads.load import Load, OverY, TableOverTheta
 from ..loads.motors import ROWS, Kloss, OverOmega
 from ..loads.stroke import OverStroke
 from ..mechanism.inputs import INPUTS
-from ..mechanism.unit_system import SI, Conversion, UnitSystem
+from ..mechanism.quantity_units import SI, UnitSystem
+from ..units.system import Conversion
 
 INLINE = 24  # points that stand in the scene itself
 

@@ -11,9 +11,9 @@ from ..loads.tabulated import MakeOverStroke, MakeOverTheta, MakeOverY
 from ..mechanism.inputs import INPUTS, is_good
 from ..mechanism.keywords import unknown_input
 from ..mechanism.own import Definition
+from ..mechanism.quantity_units import SI, UnitSystem
 from ..mechanism.slips import warn_of_slips
 from ..mechanism.spoken import named, speaking
-from ..mechanism.unit_system import SI, UnitSystem
 from ..runtime.request import MachineSpeed, as_number, check_common
 from ..support.forks import IMPORTS
 from .arguments import in_si

@@ -7,7 +7,7 @@ from ..evaluation.evaluate import Values
 from ..evaluation.in_units import Shown, in_units
 from ..evaluation.labels import loads_text, tell_loads
 from ..loads.load import Load
-from ..mechanism.answer_units import unit_of, units_by_name
+from ..mechanism.quantity_units import unit_of, units_by_name
 from ..support.answer import Answer
 
 

@@ -12,11 +12,11 @@ from ..loads.resolve import split
 from ..mechanism.closed import TURN
 from ..mechanism.inputs import INPUTS
 from ..mechanism.own import Definition
-from ..mechanism.unit_system import UnitSystem
-from ..mechanism.units import exact
+from ..mechanism.quantity_units import UnitSystem
 from ..scenes.scene import scene
 from ..scenes.schema import SECTIONS, SceneError
 from ..support.files import check_target, write_text
+from ..units.parse import exact
 from .load_tables import load_table, motor_table
 
 

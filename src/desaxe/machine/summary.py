@@ -12,8 +12,8 @@ from ..loads.load import Load
 from ..loads.words import brief
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS, LOADS
-from ..mechanism.unit_system import UnitSystem
-from ..support.quantity_text import with_unit
+from ..mechanism.quantity_units import UnitSystem
+from ..support.shown import with_unit
 from ..support.text_table import table
 
 _ORDER = ("AB", "BC", "ec", "omega0", "omega", "alpha", *LOADS)

@@ -14,7 +14,7 @@ from ..mechanism.ranges import Between, PlusMinus
 from ..plot.from_dict import as_dataset
 from ..plot.titles import title_of
 from ..plot.tornado import value_text
-from ..support.quantity_text import PLUS_MINUS
+from ..units.text import PLUS_MINUS
 from .arguments import in_si
 
 WORDS = {"absmax": "largest magnitude", "max": "maximum", "min": "minimum"}

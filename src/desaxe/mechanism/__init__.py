@@ -1,9 +1,8 @@
-"""The slider-crank by name: inputs, quantities, units, status codes, the committed program.
+"""The slider-crank by name: inputs, quantities, status codes, the committed program.
 
-names         names of sensitivities, and the lists of parameters
+names         names of sensitivities, and the lists of parameters; units of derivatives
 inputs        the inputs: meaning, unit, limits
 catalogue     the quantities and sensitivities: unit, meaning, source
-units         text and pint quantities as SI numbers
 read          one reader of numbers, with or without a unit
 keywords      unknown keywords, refused with the one that was meant
 spelling      the name that was meant by one that does not exist
@@ -11,9 +10,7 @@ program       the committed Program, sliced to some names, and its variants
 constants     coefficients of the written-out sine and cosine
 closed        closed forms of the geometry as Programs: limit angles, dead centres, the inverse
 status        the status codes of every call, with their words
-dimensions    units as exponents of m, s, rad and kg
-unit_system   the units of plain numbers in inputs and results
-answer_units  units of the numbers of answers, for any unit system
+quantity_units  units of inputs, quantities and their derivatives, in SI and in any system
 spoken        numbers in messages, in the units of the machine or scene whose call it is
 ranges        `between` and `plus_minus`: inputs with a range or tolerance
 slips         plain numbers that are almost surely in another unit

@@ -9,8 +9,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from ..support.forks import IMPORTS
-from ..support.quantity_text import printed
-from ..support.shown import shown
+from ..support.shown import printed, shown
 from ..support.text_table import table
 from .names import LENGTHS, LOADS, PARAMETERS, WHOLE, joined, parts, sensitivity
 from .own import Register, Row, derived_names, leaves, register, used_by

@@ -5,8 +5,13 @@ taken apart and put together here and nowhere else.
 """
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
+from ..support.forks import IMPORTS
 from .inputs import INPUTS, names_in
+
+if TYPE_CHECKING:
+    from ..units.dimensions import Unit
 
 # Geometry and motion; then the bodies and what acts on them, which only forces and energies need.
 LENGTHS = ("ec", "AB", "BC")
@@ -63,3 +68,13 @@ def joined(base: str, parameters: Iterable[str]) -> str:
     """A quantity and parameters, in the order given, as one name."""
     wrt = "_".join(parameters)
     return f"{base}{_JOINT}{wrt}" if wrt else base
+
+
+def per(unit: "Unit", *parameters: str) -> "Unit":
+    """The unit of a derivative by these parameters."""
+    with IMPORTS:
+        from ..units.parse import coherent_unit
+
+    for parameter in parameters:
+        unit = unit.times(coherent_unit(INPUTS[parameter].unit), -1)
+    return unit

@@ -18,7 +18,7 @@ from typing import NamedTuple
 from ..compiler.text import ProgramText
 from ..support.forks import IMPORTS, ForkSafeLock, imported
 from .inputs import INPUTS
-from .names import CENTRES, LOADS, PARAMETERS, joined, parts, sensitivity
+from .names import CENTRES, LOADS, PARAMETERS, joined, parts, per, sensitivity
 
 LENGTH_OF = dict(zip(CENTRES, ("AB", "BC"), strict=True))
 Row = tuple[str, str, str]  # unit, meaning, source
@@ -152,10 +152,12 @@ def rows_of(definition: Definition, known: Mapping[str, Definition]) -> dict[str
 def derivative_row(name: str, unit: str, parameters: tuple[str, ...]) -> Row:
     """Unit and meaning of a derivative of a quantity with a unit."""
     with IMPORTS:
-        from .dimensions import unit_of, unit_text
+        from ..units.dimensions import unit_text
+        from ..units.parse import coherent_unit
 
     *before, last = parameters
-    return unit_text(unit_of(unit).over(*parameters)), f"derivative of {joined(name, before)} by {last}", ""
+    text = unit_text(per(coherent_unit(unit), *parameters))
+    return text, f"derivative of {joined(name, before)} by {last}", ""
 
 
 def depends(leaf: str, parameter: str) -> bool:

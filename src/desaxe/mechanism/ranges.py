@@ -8,11 +8,12 @@ plus_minus("10 mm", "0.1 mm") has the ends of between("9.9 mm", "10.1 mm").
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from ..support.quantity_text import with_unit_of
 from ..support.shown import shown
+from ..units.parse import exact, rounded
+from ..units.text import with_unit_of
 from .inputs import INPUTS
+from .read import in_si
 from .spoken import named
-from .units import exact, in_si, rounded
 
 
 class PlusMinus(NamedTuple):

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..support.forks import IMPORTS
 from ..support.shown import shown
-from .inputs import Input
+from .inputs import INPUTS, Input
 from .spoken import named
 
 
@@ -16,7 +16,7 @@ def number_of(row: Input, value: Any) -> float | None:
     """The number in the row's unit; None for an array or anything else, ValueError beyond its limit."""
     if isinstance(value, str) or hasattr(value, "magnitude"):
         with IMPORTS:
-            from .units import in_unit
+            from ..units.parse import in_unit
 
         value = in_unit(row.name, value, row.unit)
     if isinstance(value, bool) or not (isinstance(value, (int, float)) or is_numpy_number(value)):
@@ -44,3 +44,22 @@ def is_numpy_number(value: Any) -> bool:
     """True for a NumPy real scalar such as np.float32(1); not for a 0-d array or a time span."""
     kind = getattr(getattr(value, "dtype", None), "kind", "")
     return getattr(value, "shape", None) == () and hasattr(value, "is_integer") and kind in "fiu"
+
+
+def in_si(name: str, value: Any) -> Any:
+    """The magnitude of a text or pint quantity in the SI unit of an input; errors name both."""
+    with IMPORTS:
+        from ..units.parse import in_unit
+
+    return in_unit(name, value, INPUTS[name].unit)
+
+
+def unlabelled(name: str, array: Any, si: str) -> Any:
+    """The values of a labelled array in an SI unit, from the unit of its attribute `units`."""
+    unit = str(array.attrs.get("units", si))
+    if unit == si or hasattr(array.data, "magnitude"):
+        return array.data
+    with IMPORTS:
+        from ..units.system import conversion
+
+    return conversion(name, unit, si).to_si(array.values)

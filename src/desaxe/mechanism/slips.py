@@ -11,9 +11,10 @@ from math import isclose, pi
 from types import MappingProxyType
 from typing import Any
 
-from ..support.quantity_text import plain_number, with_unit
+from ..support.shown import with_unit
+from ..units.text import plain_number
+from .quantity_units import SI, UnitSystem
 from .ranges import Between, PlusMinus
-from .unit_system import SI, UnitSystem
 
 SIZES = ("ec", "AB", "BC", "r_crank", "r_rod")
 LARGEST = {

@@ -6,11 +6,10 @@ from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any
 
 from ..support.forks import IMPORTS
-from ..support.quantity_text import with_unit
-from ..support.shown import shown
+from ..support.shown import shown, with_unit
 
 if TYPE_CHECKING:
-    from .unit_system import UnitSystem
+    from .quantity_units import UnitSystem
 
 UNITS: "ContextVar[UnitSystem | None]" = ContextVar("UNITS", default=None)
 
@@ -32,8 +31,7 @@ def spoken(name: Any, value: Any, form: str = "", says_unit: bool = False) -> st
     says_unit  True: in SI units, too, its unit follows; other units always do
     """
     with IMPORTS:
-        from .answer_units import conversion_of, unit_of
-        from .unit_system import SI
+        from .quantity_units import SI, conversion_of, unit_of
 
     conversion = conversion_of(unit_of(name), UNITS.get() or SI)
     plain = conversion.si == 1

@@ -20,11 +20,11 @@ from ..evaluation.under_loads.loaded import loads_of
 from ..loads.angles import cycle
 from ..loads.load import LoadWarning
 from ..loads.resolve import VARIABLE
-from ..mechanism.answer_units import units_of_extreme
 from ..mechanism.catalogue import quantity
 from ..mechanism.closed import TURN
 from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs
+from ..mechanism.quantity_units import units_of_extreme
 from ..mechanism.spoken import named
 from ..mechanism.status import PeakStatus
 from ..runtime.request import as_number, check_common

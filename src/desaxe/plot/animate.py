@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..mechanism.names import LENGTHS
-from ..mechanism.unit_system import UnitSystem
+from ..mechanism.quantity_units import UnitSystem
 from ..support.extras import needed
 from ..support.forks import IMPORTS
 from .curves import curves

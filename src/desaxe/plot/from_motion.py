@@ -6,7 +6,7 @@ import numpy as np
 
 from ..evaluation.labels import attributes, import_xarray
 from ..mechanism.inputs import INPUTS
-from ..mechanism.unit_system import SI
+from ..mechanism.quantity_units import SI
 from ..support.forks import IMPORTS
 
 if TYPE_CHECKING:

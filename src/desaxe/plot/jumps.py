@@ -13,7 +13,7 @@ from ..evaluation.under_loads.arcs import arcs_of
 from ..loads.load import Load, OverTheta, OverY
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
-from ..mechanism.units import registry
+from ..units.pint_units import registry
 from .shared import input_in_si
 
 if TYPE_CHECKING:

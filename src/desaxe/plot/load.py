@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from ..loads.load import Load, OverTheta, OverY
 from ..mechanism.closed import TURN
-from ..mechanism.unit_system import SI, UnitSystem
+from ..mechanism.quantity_units import SI, UnitSystem
 from ..support.extras import needed
-from ..support.quantity_text import printed
+from ..support.shown import printed
 from .picture import Picture
 from .shared import BLUE, ORANGE
 

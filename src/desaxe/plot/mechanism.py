@@ -10,10 +10,10 @@ from ..evaluation.evaluate import evaluate
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import LENGTHS
 from ..mechanism.read import read
-from ..mechanism.unit_system import Conversion
 from ..runtime.request import check_common, with_known_inputs
 from ..support.extras import needed
 from ..support.forks import IMPORTS
+from ..units.system import Conversion
 from .picture import Picture
 from .shared import BLUE, ORANGE
 

@@ -3,9 +3,9 @@
 from math import degrees, isfinite
 from typing import TYPE_CHECKING, Any
 
-from ..mechanism.unit_system import SI
+from ..mechanism.quantity_units import SI
 from ..support.extras import needed
-from ..support.quantity_text import printed
+from ..support.shown import printed
 from .picture import Picture
 from .shared import BLUE, ORANGE
 

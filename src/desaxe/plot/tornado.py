@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 from ..mechanism.catalogue import quantity
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import sensitivity
+from ..mechanism.quantity_units import UnitSystem
 from ..mechanism.read import number_of, read
-from ..mechanism.unit_system import UnitSystem
 from ..support.extras import needed
 from ..support.shown import shown
 from .picture import Picture

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from ..evaluation.reductions.argument import Reduction, Reductions
 from ..loads.load import Load
 from ..mechanism.own import Definition
-from ..mechanism.unit_system import SI, UnitSystem
+from ..mechanism.quantity_units import SI, UnitSystem
 from .reading.printed import Printed
 from .reading.values import Value
 

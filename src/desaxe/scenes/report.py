@@ -12,9 +12,9 @@ from ..evaluation.in_units import in_units
 from ..loads.load import OverY
 from ..mechanism.catalogue import quantity
 from ..mechanism.names import LENGTHS
+from ..mechanism.quantity_units import UnitSystem
 from ..mechanism.status import PeakStatus
-from ..mechanism.unit_system import UnitSystem
-from ..support.quantity_text import with_unit
+from ..support.shown import with_unit
 from ..support.text_table import table as text_table
 from ..sweeps.peak_step import WORDS
 from .content import Content, Peak

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..evaluation.evaluate import evaluate
 from ..evaluation.in_units import in_units
-from ..mechanism.unit_system import UnitSystem
+from ..mechanism.quantity_units import UnitSystem
 from ..support.progress import Progress, Steps
 from ..support.shown import printable
 from .content import Check, Content, Peak, PictureRequest

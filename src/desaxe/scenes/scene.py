@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from ..mechanism.own import change, using
+from ..mechanism.quantity_units import SI, UnitSystem
 from ..mechanism.spoken import speaking
-from ..mechanism.unit_system import SI, UnitSystem
 from ..support.progress import Progress, progress_bar
 from ..support.shown import printable
 from .content import Content

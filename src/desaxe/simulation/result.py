@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..mechanism.answer_units import slopes_of, unit_of, units_of
+from ..mechanism.quantity_units import slopes_of, unit_of, units_of
 from ..mechanism.status import SimulationStatus
 from ..support.answer import Answer, text_of
 from ..support.forks import IMPORTS
-from ..support.quantity_text import with_unit
+from ..support.shown import with_unit
 
 if TYPE_CHECKING:
     from ..evaluation.in_units import Shown

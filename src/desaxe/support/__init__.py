@@ -6,7 +6,6 @@ locks          a lock across processes
 roots          one root of a function
 panels         functions as polynomials on panels: integrals, roots, extremes
 progress       how far long work is, and a bar on the terminal
-quantity_text  a number with its unit as text
 version        the version of this installation
 deprecation    what is kept for one version, with a warning
 private        files and folders that only this user can have written
@@ -19,7 +18,7 @@ text_table     tables as text, in even columns
 answer         results: dicts with a readable repr
 computed       properties that are computed once
 recent         a cache of the most recently used values
-shown          a value in a message, shortened
+shown          a value in a message, shortened; a number with its unit
 template       text files of the package, with places for values
 toml           untrusted TOML files, read with limits on size and depth
 """

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
-from .quantity_text import with_unit
+from .shown import with_unit
 
 DIGITS = 6  # shown of a number; the answer itself has all
 FEW = 6  # values of an array that are all shown

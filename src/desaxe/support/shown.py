@@ -28,6 +28,16 @@ def _is_long(value: Any) -> bool:
     return isinstance(value, (str, bytes, list, tuple)) and len(value) > 3 * LONGEST
 
 
+def printed(unit: str) -> str:
+    """A unit as it is printed after a number: N m for N*m, nothing for a plain number."""
+    return "" if unit == "1" else unit.replace("*", " ")
+
+
+def with_unit(number: str, unit: str) -> str:
+    """The text of a number and its unit."""
+    return f"{number} {printed(unit)}".rstrip()
+
+
 def in_brief(found: list[str], most: int = 30) -> str:
     """The first lines of some differences, as text, and how many lines are left out."""
     lines = "".join(found).splitlines(True)

@@ -16,7 +16,7 @@ from ..mechanism.own import Definition
 from ..mechanism.status import PeakStatus
 from ..peaks.designs import KINDS, Sought, plan_of
 from ..peaks.lazy import GRADIENT, PeakBlock, peak_block
-from ..support.quantity_text import quotient
+from ..units.text import quotient
 
 Array = NDArray[Any]
 WORDS = {"absmax": "largest magnitude", "max": "maximum", "min": "minimum"}

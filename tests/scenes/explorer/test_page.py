@@ -5,7 +5,7 @@ import math
 import pytest
 
 import desaxe as dx
-from desaxe.mechanism.units import in_si
+from desaxe.mechanism.read import in_si
 from tests.scenes.explorer.page import MINUS, design, reading, settle, verdict
 
 

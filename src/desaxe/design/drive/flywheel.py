@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from ...mechanism.answer_units import units_by_name
 from ...mechanism.keywords import with_known_keywords
+from ...mechanism.quantity_units import units_by_name
 from ...peaks.peak import peak
 from ...support.answer import Answer
 from ...support.deprecation import deprecated

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 from ...loads.angles import turns_of
 from ...loads.load import Load
-from ...mechanism.answer_units import units_by_name
+from ...mechanism.quantity_units import SI, UnitSystem, units_by_name
 from ...mechanism.status import DriveStatus
-from ...mechanism.unit_system import SI, Conversion, UnitSystem
 from ...support.answer import Answer
 from ...support.forks import IMPORTS
-from ...support.quantity_text import printed, with_unit
+from ...support.shown import printed, with_unit
+from ...units.system import Conversion
 from ..turn.turn import MOST_TURNS
 
 if TYPE_CHECKING:

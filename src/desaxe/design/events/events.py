@@ -4,10 +4,10 @@ from math import copysign, inf, nan, pi
 from typing import Any
 
 from ...evaluation.evaluate import evaluate
-from ...mechanism.answer_units import units_by_name
 from ...mechanism.closed.dead_centres import DEAD_CENTRES
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.names import LENGTHS
+from ...mechanism.quantity_units import units_by_name
 from ...mechanism.status import TurnStatus
 from ...runtime.request import as_number, check_common, with_known_inputs
 from ...support.answer import Answer

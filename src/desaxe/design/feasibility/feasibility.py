@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from math import fsum, ulp
 from typing import Any
 
-from ...mechanism.answer_units import slopes_of, units_of
 from ...mechanism.closed.functions import closed_form
 from ...mechanism.closed.limits import CHANGE_POINT_ULPS, LIMITS, in_intervals
+from ...mechanism.quantity_units import slopes_of, units_of
 from ...mechanism.status import TurnStatus
 from ...runtime.request import as_number, with_known_inputs
 from ...support.answer import Answer

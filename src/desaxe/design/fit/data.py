@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from ...mechanism.catalogue import quantity
 from ...mechanism.inputs import INPUTS
-from ...mechanism.units import in_unit, registry
 from ...support.extras import MissingExtraError
 from ...support.files import read_bytes
-from ...support.quantity_text import plain_number, spelled
 from ...support.shown import printable, shown
+from ...units.parse import in_unit
+from ...units.pint_units import registry
+from ...units.text import plain_number, spelled
 
 Array = NDArray[np.float64]
 MOST = 1e100  # of samples and unknowns: squares of residuals and derivatives must not overflow, nor vanish

@@ -5,10 +5,9 @@ from typing import Any
 import numpy as np
 
 from ...evaluation.in_units import Shown, in_units
-from ...mechanism.answer_units import Of, conversion_of, unit_of
 from ...mechanism.catalogue import quantity
+from ...mechanism.quantity_units import SI, Of, UnitSystem, conversion_of, unit_of
 from ...mechanism.status import FitStatus
-from ...mechanism.unit_system import SI, UnitSystem
 from ...support.answer import Answer
 from ...support.extras import needed
 from ...support.text_table import table

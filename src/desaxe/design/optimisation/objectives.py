@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...evaluation.under_loads.loaded import loads_of
-from ...mechanism.answer_units import unit_of
 from ...mechanism.inputs import INPUTS, Input
 from ...mechanism.keywords import check_inputs
 from ...mechanism.names import LENGTHS
+from ...mechanism.quantity_units import unit_of
 from ...mechanism.read import read
 from ...mechanism.spoken import named, spoken
 from ...support.deadline import Deadline

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from ...mechanism.answer_units import slopes_of, unit_of, units_by_name
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LENGTHS
+from ...mechanism.quantity_units import slopes_of, unit_of, units_by_name
 from ...mechanism.spoken import spoken
 from ..measures import Measure, checked, text_of
 from .objectives import Goal

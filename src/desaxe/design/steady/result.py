@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...mechanism.answer_units import units_by_name
-from ...mechanism.unit_system import SI
+from ...mechanism.quantity_units import SI, units_by_name
 from ...support.answer import Answer
 from ...support.forks import IMPORTS
 from .designs import DesignRows

@@ -19,9 +19,9 @@ from itertools import pairwise
 from math import asin, cos, inf, isclose, pi, sin, sqrt
 from typing import Any
 
-from ...mechanism.answer_units import units_of
 from ...mechanism.inputs import INPUTS, TINY, Input
 from ...mechanism.names import LENGTHS
+from ...mechanism.quantity_units import units_of
 from ...mechanism.read import read
 from ...mechanism.spoken import spoken
 from ...runtime.request import as_number, with_known_inputs

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from typing import Any
 
-from ...mechanism.answer_units import slopes_of, unit_of
+from ...mechanism.quantity_units import slopes_of, unit_of
 from ...mechanism.status import ToleranceStatus
 from ...support.answer import Answer
-from ...support.quantity_text import with_unit
+from ...support.shown import with_unit
 
 SCATTER = ("mean", "std", "mean_error", "std_error", "least", "largest", "percentiles")
 SHOWN = 4  # inputs in the line of what drives the scatter

@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 
 from ...mechanism.inputs import INPUTS
 from ...mechanism.ranges import Between, PlusMinus, middle_of, refuse_bare_pair
+from ...mechanism.read import in_si
 from ...mechanism.read import read as read_number
 from ...mechanism.spoken import spoken
-from ...mechanism.units import in_si
 from ...support.extras import needed
-from ...support.quantity_text import PLUS_MINUS, with_unit_of
+from ...units.text import PLUS_MINUS, with_unit_of
 
 Array = NDArray[np.float64]
 DISTRIBUTIONS = ("normal", "uniform")

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from ...evaluation.extremes import check_range
-from ...mechanism.answer_units import unit_of, units_of
 from ...mechanism.inputs import TINY, Input
 from ...mechanism.keywords import with_known_keywords
+from ...mechanism.quantity_units import unit_of, units_of
 from ...mechanism.read import read
 from ...support.answer import Answer
 from ...support.panels import RESOLVED, resolved

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...mechanism.answer_units import unit_of
 from ...mechanism.catalogue import quantity
 from ...mechanism.keywords import with_known_keywords
+from ...mechanism.quantity_units import unit_of
 from ...support.answer import Answer
 from ...support.checks import whole_number
 from ...support.panels import RESOLVED, WEIGHT

@@ -6,7 +6,7 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import NamedTuple
 
-from ...mechanism.unit_system import UnitSystem
+from ...mechanism.quantity_units import UnitSystem
 from ...support.extras import needed
 from ..content import Content
 from ..report import checks_report, feasibility_report

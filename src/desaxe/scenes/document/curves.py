@@ -6,8 +6,8 @@ import numpy as np
 
 from ...evaluation.in_units import in_units
 from ...mechanism.names import STATUSES
+from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.status import PointStatus
-from ...mechanism.unit_system import UnitSystem
 from ...support.forks import IMPORTS
 from ..content import Content
 from ..parts.pictures import drawn

@@ -5,8 +5,8 @@ from typing import Any
 from ...design.drive.drive import drive as drive_of
 from ...evaluation.in_units import in_units
 from ...mechanism.names import LOADS
+from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.status import DriveStatus
-from ...mechanism.unit_system import UnitSystem
 from ..content import Content
 from .parts import Block, Section, Text, TextTable, designs_of, image_of
 

@@ -11,7 +11,7 @@ from ...loads.load import Load, OverY, TableOverTheta
 from ...loads.stroke import OverStroke
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LENGTHS
-from ...mechanism.unit_system import UnitSystem
+from ...mechanism.quantity_units import UnitSystem
 from ...support.forks import IMPORTS
 from ..content import Content
 from ..reading.values import Value

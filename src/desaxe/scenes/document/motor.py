@@ -4,7 +4,7 @@ from typing import Any
 
 from ...design.steady.steady import steady
 from ...evaluation.in_units import in_units
-from ...mechanism.unit_system import UnitSystem
+from ...mechanism.quantity_units import UnitSystem
 from ...plot.steady import steady as picture_of
 from ..content import Content
 from ..parts.motor import MotorResult

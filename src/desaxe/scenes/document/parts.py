@@ -6,8 +6,8 @@ from itertools import product
 from math import degrees, isnan
 from typing import Any, NamedTuple
 
-from ...mechanism.unit_system import UnitSystem
-from ...support.quantity_text import printed
+from ...mechanism.quantity_units import UnitSystem
+from ...support.shown import printed
 from ..content import Content
 from ..reading.values import Value
 from ..report import number

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from ...mechanism.catalogue import quantity
+from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.status import PeakStatus
-from ...mechanism.unit_system import UnitSystem
 from ...support.progress import Steps
-from ...support.quantity_text import with_unit
+from ...support.shown import with_unit
 from ...sweeps.peak_step import WORDS
 from .. import schema
 from ..content import Content

@@ -7,12 +7,12 @@ from typing import Any
 from ...design.tolerance.tolerance import tolerance
 from ...mechanism.catalogue import of_design
 from ...mechanism.inputs import INPUTS
+from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.ranges import PlusMinus
 from ...mechanism.read import read
 from ...mechanism.status import ToleranceStatus
-from ...mechanism.unit_system import UnitSystem
-from ...support.quantity_text import with_unit_of
 from ...support.shown import shown
+from ...units.text import with_unit_of
 from ..content import Content
 from .curves import ALWAYS
 from .parts import NONE, Block, Section, Text, TextTable, designs_of, in_unit, unit_of, with_unit

@@ -21,7 +21,7 @@ from ...mechanism.keywords import with_known_keywords
 from ...mechanism.names import STATUSES
 from ...mechanism.own import using
 from ...mechanism.program import digest
-from ...mechanism.unit_system import UnitSystem
+from ...mechanism.quantity_units import UnitSystem
 from ...runtime.kernels import KernelKey, is_ready, kernel_of, source_of
 from ...runtime.native.modules import path_of
 from ...runtime.request import Request

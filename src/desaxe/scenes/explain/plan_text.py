@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from textwrap import wrap
 from typing import Any
 
-from ...support.quantity_text import printed, with_unit
+from ...support.shown import printed, with_unit
 from ..report import number, table
 
 WIDTH = 96

@@ -16,7 +16,7 @@ from ...mechanism.inputs import INPUTS
 from ...mechanism.names import CENTRES, LOADS, PARAMETERS, joined, parts
 from ...mechanism.own import Definition, used_by, using
 from ...mechanism.program import program_of
-from ...mechanism.unit_system import SI, UnitSystem
+from ...mechanism.quantity_units import SI, UnitSystem
 from ...runtime.request import Request, request
 from ...runtime.specialise import specialise
 

@@ -11,7 +11,7 @@ from ...mechanism.inputs import INPUTS
 from ...mechanism.keywords import check_inputs, with_known_keywords
 from ...mechanism.names import LOADS
 from ...mechanism.own import using
-from ...mechanism.unit_system import UnitSystem
+from ...mechanism.quantity_units import UnitSystem
 from ...runtime.request import as_number, check_common, several
 from ...runtime.written import require_place
 from ...support.forks import IMPORTS

@@ -11,11 +11,12 @@ from ...definitions.tables import tables_of
 from ...loads.load import OverY, TableOverTheta
 from ...mechanism.inputs import INPUTS
 from ...mechanism.names import parts
+from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.status import PointStatus
-from ...mechanism.unit_system import DIMENSIONS, UnitSystem
 from ...runtime.written import UNSEALED, replacing_ours, sealed
 from ...support.extras import needed
 from ...support.template import file_text, filled
+from ...units.system import DIMENSIONS
 from .content import PageContent, left_out_text
 
 # In the order in which they build on each other.

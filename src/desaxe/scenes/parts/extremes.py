@@ -18,7 +18,7 @@ from ...evaluation.labels import (
 )
 from ...mechanism.catalogue import quantity
 from ...mechanism.names import sensitivity
-from ...mechanism.unit_system import UnitSystem
+from ...mechanism.quantity_units import UnitSystem
 from ...peaks.peak import peak
 from ...support.forks import IMPORTS
 from ...support.progress import Steps

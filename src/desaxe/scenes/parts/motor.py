@@ -14,8 +14,8 @@ from ...loads.motors import MakeKloss, MakeOverOmega, Motor, over_omega
 from ...loads.resolve import settled
 from ...mechanism.inputs import Input
 from ...mechanism.names import LENGTHS
+from ...mechanism.quantity_units import OTHERS, UnitSystem
 from ...mechanism.status import SteadyStatus
-from ...mechanism.unit_system import OTHERS, UnitSystem
 from ...scenes import schema
 from ...support.extras import MissingExtraError
 from ...support.forks import IMPORTS

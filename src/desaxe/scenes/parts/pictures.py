@@ -5,7 +5,7 @@ from typing import Any
 
 from ...evaluation.grid import grid
 from ...evaluation.in_units import in_units
-from ...mechanism.unit_system import UnitSystem
+from ...mechanism.quantity_units import UnitSystem
 from ...runtime.written import replacing_ours
 from ...support.forks import IMPORTS
 from ..content import Content, PictureRequest

@@ -8,7 +8,7 @@ from ...loads.load import Load
 from ...loads.motors import Motor
 from ...loads.resolve import plain_units
 from ...loads.tabulated import over_stroke, over_theta, over_Y
-from ...mechanism.unit_system import UnitSystem
+from ...mechanism.quantity_units import UnitSystem
 from ...support.extras import MissingExtraError
 from ..schema import Range, SceneError, Varying, shown
 from .values import Value, values_of

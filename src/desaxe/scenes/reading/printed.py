@@ -4,7 +4,7 @@ from decimal import ROUND_HALF_EVEN, Context, Decimal
 from typing import NamedTuple
 
 from ...support.forks import IMPORTS
-from ...support.quantity_text import spelled, split_quantity
+from ...units.text import spelled, split_quantity
 from ..schema import SceneError, shown
 
 MOST_DIGITS = 15  # in front of the point; a larger number is written as a power of ten
@@ -72,7 +72,7 @@ def _factor(complaint: str, unit: str, si: str) -> float:
     if spelled(unit).replace(" ", "") == si or unit == "%":
         return 1.0
     with IMPORTS:
-        from ...mechanism.units import registry
+        from ...units.pint_units import registry
 
     units = registry()
     try:

@@ -13,8 +13,8 @@ from ...loads.load import Load
 from ...loads.resolve import settled
 from ...mechanism.inputs import INPUTS
 from ...mechanism.own import Definition, using
+from ...mechanism.quantity_units import UnitSystem
 from ...mechanism.slips import UnitWarning, slips_of_forces
-from ...mechanism.unit_system import UnitSystem
 from ...runtime.accuracy import accuracy_of
 from ...scenes import schema
 from ...support.toml import read_toml

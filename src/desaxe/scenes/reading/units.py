@@ -8,9 +8,10 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from ...mechanism.inputs import INPUTS
+from ...mechanism.quantity_units import SI, UnitSystem
 from ...mechanism.slips import slip
-from ...mechanism.unit_system import DIMENSIONS, SI, UnitSystem
-from ...support.quantity_text import split_quantity, with_unit_of
+from ...units.system import DIMENSIONS
+from ...units.text import split_quantity, with_unit_of
 from ..schema import SECTIONS
 
 ENDS = ("start", "stop", "step")

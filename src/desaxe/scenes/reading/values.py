@@ -8,8 +8,8 @@ from math import floor
 from ...loads.load import Load
 from ...mechanism.inputs import INPUTS, Input
 from ...mechanism.read import read
-from ...mechanism.units import exact
 from ...scenes import schema
+from ...units.parse import exact
 from ..schema import SceneError, shown
 from .spread import MOST, spread
 

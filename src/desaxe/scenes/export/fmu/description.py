@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 from xml.etree import ElementTree
 
-from ....mechanism.dimensions import unit_of
+from ....units.parse import coherent_unit
 from .programs import TORQUE, Programs
 from .variables import NOMINAL, Variable, Variables
 
@@ -172,7 +172,7 @@ def _role(row: Variable) -> dict[str, str]:
 def _units(root: Any, table: Variables) -> None:
     group = ElementTree.SubElement(root, "UnitDefinitions")
     for unit in dict.fromkeys(row.unit for row in table.rows if row.unit != "1"):
-        powers = {base: str(power) for base, power in unit_of(unit).exponents.items()}
+        powers = {base: str(power) for base, power in coherent_unit(unit).exponents.items()}
         ElementTree.SubElement(ElementTree.SubElement(group, "Unit", name=unit), "BaseUnit", powers)
 
 

@@ -1,4 +1,4 @@
-"""A number with its unit as text: its form is checked here, before any unit library reads it.
+"""A number with its unit as text.
 
 Nothing but a number and a unit passes: no sums, lists or decimal commas, which a unit library may
 take for something else ("1,5 rad" for 15 rad).
@@ -7,34 +7,42 @@ take for something else ("1,5 rad" for 15 rad).
 import re
 from collections.abc import Sequence
 
+from .dimensions import product
+
 _NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
-_TERM = r"[^\W\d_]+(?:_[^\W\d_]+)*(?:(?:\^|\*\*)?-?[1-9])?|%|\u00b0"
-_UNIT = rf"(?:{_TERM})(?:\s*[*/]\s*(?:{_TERM})|\s+(?:{_TERM}))*"
+_FACTOR = r"(?:[^\W\d_]+(?:_[^\W\d_]+)*(?:(?:\^|\*\*)?-?[1-9])?|%|\u00b0)"
+_UNIT = rf"(?:1?\s*/\s*)?{_FACTOR}(?:\s*[*/\u00b7]\s*{_FACTOR}|\s+{_FACTOR})*"
+_FORM, _UNIT_ALONE = re.compile(rf"\s*({_NUMBER})\s*({_UNIT})?\s*"), re.compile(rf"\s*{_UNIT}\s*")
+_TERM = re.compile(r"(/?)\s*([^\W\d]+|%|\u00b0)(?:\^(-?[0-9]+))?")
 PLUS_MINUS = re.compile(r"\u00b1|\+-|\+/-")  # between a value and its tolerance
-_PER_TIME = re.compile(rf"\s*{_NUMBER}\s*1?\s*/\s*(?:s|sec|min|h|hour|minute|second)\s*")
-_FACTOR = re.compile(r"(/?)\s*([^\W\d]+|%|\u00b0)(?:\^(-?[0-9]+))?")
-_FORM = re.compile(rf"\s*({_NUMBER})\s*({_UNIT})?\s*")
+_SUPERSCRIPTS = str.maketrans("\u00b2\u00b3", "23")
 
 
 def split_quantity(text: str, example: str = '"125 mm"') -> tuple[str, str]:
     """The number and the unit (may be empty) of a text; ValueError where it is anything else."""
     match = _FORM.fullmatch(text)
-    if match is None and _PER_TIME.fullmatch(text):
-        raise ValueError(
-            'a rate "per time" does not say of what: write turns or an angle, such as "120 turn/min"'
-        )
     if match is None:
-        raise ValueError(f"it must be a number, or a number with a unit such as {example}{_hint(text)}")
+        raise ValueError(f"it must be a number, or a number with a unit such as {example}{_remedy(text)}")
     return match[1], match[2] or ""
 
 
-def _hint(text: str) -> str:
+def _remedy(text: str) -> str:
     """The remedy for a text that is no quantity; empty for one whose mistake is unknown."""
     if re.search(r"[0-9],[0-9]", text):
         return "; a decimal point is a point, not a comma"
     if re.search(r"[0-9\w]\s*[-+*/(]\s*[0-9\w(]", text):
         return "; a text is not computed: give the number itself, as math.pi / 2 is"
     return ""
+
+
+def terms_of(unit: str) -> list[tuple[str, int]]:
+    """The names and powers of a unit, `kg m2/s^2`, with a division for one term each; ValueError for none."""
+    text = spelled(unit)
+    if text.strip() == "1":
+        return []
+    if _UNIT_ALONE.fullmatch(text) is None:
+        raise ValueError("unknown unit")
+    return [(name, (-1 if slash else 1) * int(power or 1)) for slash, name, power in _TERM.findall(text)]
 
 
 def with_unit_of(other: object, text: object) -> object:
@@ -51,36 +59,20 @@ def with_unit_of(other: object, text: object) -> object:
 
 def spelled(unit: str) -> str:
     """A unit in the spelling of the catalogue: m/s^2 for m/s2."""
-    return re.sub(r"([^\W\d_])(?:\*\*)?(-?[1-9])(?![0-9])", r"\1^\2", unit)
-
-
-def printed(unit: str) -> str:
-    """A unit as it is printed after a number: N m for N*m, nothing for a plain number."""
-    return "" if unit == "1" else unit.replace("*", " ")
-
-
-def with_unit(number: str, unit: str) -> str:
-    """The text of a number and its unit."""
-    return f"{number} {printed(unit)}".rstrip()
+    return re.sub(r"([^\W\d_])(?:\*\*)?(-?[1-9])(?![0-9])", r"\1^\2", unit.translate(_SUPERSCRIPTS))
 
 
 def quotient(unit: str, others: Sequence[str]) -> str:
     """The unit of a derivative, reduced: of N*m by m it is N, of m/s^2 by rad/s m/s/rad."""
     powers: dict[str, int] = {}
-    for text, way in ((unit, 1), *((other, -1) for other in others)):
-        for slash, name, power in _FACTOR.findall(text):
-            powers[name] = powers.get(name, 0) + way * (-1 if slash else 1) * int(power or 1)
-    above = [_raised(name, power) for name, power in powers.items() if power > 0]
-    below = [_raised(name, -power) for name, power in powers.items() if power < 0]
-    return "/".join(["*".join(above) or "1", *below])
-
-
-def _raised(name: str, power: int) -> str:
-    return name if power == 1 else f"{name}^{power}"
+    for text, sign in ((unit, 1), *((other, -1) for other in others)):
+        for name, power in terms_of(text):
+            powers[name] = powers.get(name, 0) + sign * power
+    return product(powers)
 
 
 def quantity_text(text: str) -> str:
-    """A number with its unit as the unit library reads it; ValueError where it is anything else."""
+    """A number with its unit in the spelling of the catalogue; ValueError where it is anything else."""
     number, unit = split_quantity(text)
     return f"{number} {spelled(unit)}".rstrip()
 

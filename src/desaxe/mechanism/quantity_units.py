@@ -1,0 +1,223 @@
+"""Units of inputs, quantities, measures and their derivatives, in SI and in any system of units.
+
+    UnitSystem.read("mm, deg, rpm")
+    UnitSystem.read({"length": "mm", "torque": "kN m", "a_C": "standard_gravity"})
+
+A dimension that is not named stays in SI units and radians. Velocities, accelerations and jerks follow the
+length that is named, per second; a quantity may have a unit of its own. A sensitivity is a quotient of units.
+"""
+
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from typing import Any
+
+from ..support.computed import computed_once
+from ..units.system import DIMENSIONS, Conversion, conversions_by_unit, read_units, size_in
+from .catalogue import quantity
+from .inputs import INPUTS
+from .names import parts
+from .own import register
+
+PLAIN = Conversion("1")
+# Units of inputs and results that are no quantities of the catalogue.
+OTHERS = {
+    **dict.fromkeys(("V_outward", "V_inward"), "m/s"),
+    **dict.fromkeys(("theta0", "until", "phase", "angle", "theta_intervals"), "rad"),
+    **dict.fromkeys(("omega_start", "omega_mean", "synchronous_speed"), "rad/s"),
+    **dict.fromkeys(("t", "t_end", "t_last", "times", "max_step", "period"), "s"),
+    **dict.fromkeys(
+        (
+            "torque", "torque_mean", "torque_rms", "torque_peak", "starting_torque", "flywheel_torque",
+            "T_motor", "breakdown_torque", "mean_torque", "max_torque", "min_torque", "ripple",
+        ),
+        "N*m",
+    ),
+    **dict.fromkeys(("work", "work_in", "work_out", "energy_fluctuation"), "J"),
+    **dict.fromkeys(("power_mean", "power_peak"), "W"),
+    **dict.fromkeys(("inertia", "inertia_first_order", "flywheel_inertia"), "kg*m^2"),
+    **dict.fromkeys(("breakdown_slip", "gear"), "1"),
+    "radius": "m",
+    "mass": "kg",
+    "product": "kg*m",
+    "peak_a_C": "m/s^2",
+}  # fmt: skip
+
+
+class UnitSystem:
+    """Units by dimension and by quantity; all others are SI.
+
+    Sensitivities are quotients of them, or in SI units too where `quotients` is False.
+    """
+
+    def __init__(self, units: Mapping[str, str], quotients: bool = True) -> None:
+        self.units = dict(units)
+        self.quotients = quotients
+        self.remembered: dict[tuple[str, str], Conversion] = {}  # by name and parameter
+
+    @classmethod
+    def read(cls, units: "str | Mapping[str, str] | UnitSystem | None") -> "UnitSystem":
+        """Read a unit system from a text such as "mm, deg, rpm" or a mapping; ValueError for any other."""
+        return units if isinstance(units, UnitSystem) else cls(read_units(units, si_unit))
+
+    def __bool__(self) -> bool:
+        return bool(self.units)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, UnitSystem) and self.units == other.units
+
+    def __hash__(self) -> int:
+        return hash(frozenset(self.units.items()))
+
+    def __repr__(self) -> str:
+        if all(name in DIMENSIONS for name in self.units):
+            return repr(", ".join(self.units.values()))
+        return repr(self.units)
+
+    def of_unit(self, si: str) -> Conversion:
+        """The conversion of values in this SI unit."""
+        return self._by_unit.get(si) or Conversion(si)
+
+    def of(self, name: str) -> Conversion:
+        """The conversion of a quantity, sensitivity, input or measure of a design."""
+        if name in self._by_name:
+            return self._by_name[name]
+        base, by = parts(name)
+        if by and not self.quotients:
+            return Conversion(si_unit(name))
+        if by:
+            result = self.of(base).per([self.of(parameter) for parameter in by])
+            return Conversion(_simplified(name, result.unit)) if result.si == 1 else result
+        return self.of_unit(si_unit(name))
+
+    def find(self, name: str) -> Conversion | None:
+        """The conversion of a name; None where it has no unit."""
+        try:
+            return self.of(name)
+        except ValueError:
+            return None
+
+    def slope(self, name: str | Conversion, by: str) -> Conversion:
+        """The conversion of a derivative by an input."""
+        return (self.of(name) if isinstance(name, str) else name).per([self.of(by)])
+
+    @computed_once
+    def _by_name(self) -> dict[str, Conversion]:
+        """The conversions of quantities with units of their own."""
+        return {
+            name: Conversion(unit, size_in(name, unit, si_unit(name)))
+            for name, unit in self.units.items()
+            if name not in DIMENSIONS
+        }
+
+    @computed_once
+    def _by_unit(self) -> dict[str, Conversion]:
+        return conversions_by_unit(self.units)
+
+
+SI = UnitSystem({})
+
+
+def si_unit(name: str) -> str:
+    """The SI unit of a quantity, input or measure; ValueError for another name."""
+    if name in INPUTS:
+        return INPUTS[name].unit
+    if name in OTHERS:
+        return OTHERS[name]
+    if name.startswith("theta_"):
+        return "rad"
+    try:
+        return quantity(name, "omega" in parts(name)[1]).unit
+    except ValueError as error:
+        there = ", ".join(DIMENSIONS)
+        raise ValueError(
+            f"units: {name!r} is neither a dimension ({there}) nor a quantity: {error}"
+        ) from None
+
+
+def _simplified(name: str, quotient: str) -> str:
+    """The SI unit of a sensitivity, as the catalogue writes it, if no choice of units changes it."""
+    try:
+        return si_unit(name)
+    except ValueError:
+        return quotient
+
+
+class Of(str):
+    """The SI unit of a quantity, an input or a measure, or of its derivative by another one."""
+
+    name: str = ""
+    by: str = ""
+
+
+def unit_of(name: Any, by: Any = "") -> Of:
+    """The unit of a name, or of a measure such as ("absmax", "a_C"); "1" where there is none."""
+    told = [part[-1] if isinstance(part, (tuple, list)) else part for part in (name, by)]
+    return (_unit_of if register().rows else _remembered_unit)(
+        *(p if isinstance(p, str) else "" for p in told)
+    )
+
+
+def _unit_of(name: str, by: str) -> Of:
+    unit = Of(_conversion(SI, name, by).unit)
+    unit.name, unit.by = name, by
+    return unit
+
+
+_remembered_unit = lru_cache(maxsize=4096)(_unit_of)  # where no quantity of a user's own can change it
+
+
+def units_of(names: Iterable[str]) -> dict[str, Of]:
+    """The units of answers whose keys are the names of what they are."""
+    return {name: unit_of(name) for name in names}
+
+
+def units_by_name(found: Mapping[Any, Any]) -> dict[Any, Any]:
+    """The units of an answer whose keys are the names of what they are, those of `gradient` too."""
+    known = [key for key in found if isinstance(key, str) and _has_unit(key)]
+    units: dict[Any, Any] = units_of(known)
+    if "gradient" in found:
+        units["gradient"] = {name: slopes_of(name, slopes) for name, slopes in found["gradient"].items()}
+    return units
+
+
+def _has_unit(key: str) -> bool:
+    return (_is_known if register().rows else _remembered_to_be_known)(key)
+
+
+def _is_known(key: str) -> bool:
+    return key != "status" and SI.find(key) is not None
+
+
+_remembered_to_be_known = lru_cache(maxsize=4096)(_is_known)
+
+
+def units_of_extreme(name: str, found: Mapping[Any, Any]) -> dict[str, Any]:
+    """The units of an extreme value of a quantity, where it is reached, and its gradient."""
+    return {
+        "value": unit_of(name),
+        "theta": unit_of("theta"),
+        "gradient": slopes_of(name, found["gradient"]),
+    }
+
+
+def slopes_of(name: Any, parameters: Iterable[Any]) -> dict[Any, Of]:
+    """The units of the derivatives of a quantity by some parameters."""
+    return {parameter: unit_of(name, parameter) for parameter in parameters}
+
+
+def conversion_of(unit: str, system: UnitSystem) -> Conversion:
+    """The conversion of numbers in this SI unit; that of the quantity itself where the unit knows it."""
+    if not isinstance(unit, Of):
+        return system.of_unit(unit)
+    if register().rows:
+        return _conversion(system, unit.name, unit.by)
+    known = system.remembered.get((unit.name, unit.by))
+    if known is None:
+        known = system.remembered[unit.name, unit.by] = _conversion(system, unit.name, unit.by)
+    return known
+
+
+def _conversion(system: UnitSystem, name: str, by: str) -> Conversion:
+    own = system.find(name) if name else None
+    per = system.find(by) if by else None
+    return (own or PLAIN) if per is None else (own or PLAIN).per([per])

@@ -1,0 +1,63 @@
+"""Units as exponents of m, s, rad and kg."""
+
+from typing import NamedTuple
+
+
+class Unit(NamedTuple):
+    """A coherent SI unit as exponents: `Unit(1, -2)` is m/s^2; `name` is its special name, such as W."""
+
+    m: int = 0
+    s: int = 0
+    rad: int = 0
+    kg: int = 0
+    name: str = ""
+
+    @property
+    def exponents(self) -> dict[str, int]:
+        """The exponents that are not 0, by base unit."""
+        return {base: power for base, power in self._asdict().items() if base != "name" and power}
+
+    def times(self, other: "Unit", power: int = 1) -> "Unit":
+        """The product with a power of another unit."""
+        m, s, rad, kg = (a + power * b for a, b in zip(self[:4], other[:4], strict=True))
+        return Unit(m, s, rad, kg)
+
+
+NONE = Unit()
+ANGLE = Unit(rad=1)
+LENGTH = Unit(m=1)
+TIME = Unit(s=1)
+SPEED = Unit(1, -1)
+ACCELERATION = Unit(1, -2)
+JERK = Unit(1, -3)
+ANGULAR_SPEED = Unit(0, -1, 1)
+ANGULAR_ACCELERATION = Unit(0, -2, 1)
+PER_TIME = Unit(s=-1)
+PER_TIME2 = Unit(s=-2)
+MASS = Unit(kg=1)
+MASS_MOMENT = Unit(1, kg=1)
+INERTIA = Unit(2, kg=1)
+FORCE = Unit(1, -2, kg=1)
+TORQUE = Unit(2, -2, kg=1)
+ENERGY = Unit(2, -2, kg=1, name="J")
+POWER = Unit(2, -3, kg=1, name="W")
+PRESSURE = Unit(-1, -2, kg=1, name="Pa")
+
+
+def unit_text(unit: Unit) -> str:
+    """A unit as text for pint and UDUNITS: `m/s^2/rad`, `N*m`, `1`."""
+    powers = {"N": 0, "kg": 0, "m": 0, "s": 0, "rad": 0, **unit.exponents}
+    if powers["kg"] == 1 and powers["s"] <= -2:  # a force is in it
+        powers.update(N=1, kg=0, m=powers["m"] - 1, s=powers["s"] + 2)
+    return unit.name or product(powers)
+
+
+def product(powers: dict[str, int]) -> str:
+    """The text of powers of names: `N*m/rad`, `1/s^2`."""
+    above = [_power(name, power) for name, power in powers.items() if power > 0]
+    below = [_power(name, -power) for name, power in powers.items() if power < 0]
+    return "/".join(["*".join(above) or "1", *below])
+
+
+def _power(name: str, power: int) -> str:
+    return name if power == 1 else f"{name}^{power}"
