@@ -1,4 +1,4 @@
-"""Plans: operations after each pass, loops, skipped lines, and estimates against the facts."""
+"""Plans: operations after each pass, loops, skipped lines, memory, against the facts."""
 
 import json
 
@@ -51,7 +51,7 @@ def free(scene, section, name, value):
 def test_concentric_at_constant_speed():
     plan = dx.explain(CONCENTRIC)
     assert plan["run"]["way"] == "plain Python"
-    assert steps(plan) == {"derivation": 2683, "slice": 89, "fold": 62, "plain": 23}
+    assert steps(plan) == {"derivation": 2702, "slice": 89, "fold": 62, "plain": 23}
     assert plan["operations"] == {"straight": 23, "per_point": 23.0, "total": 23 * 721}
     saved = {one["what"]: one["saved"] for one in plan["skipped"]}
     assert saved == {"branch = +1": 1, "alpha = 0": 14, "ec = 0": 1}
@@ -60,7 +60,7 @@ def test_concentric_at_constant_speed():
 def test_concentric_with_a_rod_hardly_longer_than_the_crank():
     """Then nothing may cancel: the stable form."""
     plan = dx.explain(free(CONCENTRIC, "mechanism", "BC", 0.1251))
-    assert steps(plan) == {"derivation": 2683, "slice": 89, "fold": 62}
+    assert steps(plan) == {"derivation": 2702, "slice": 89, "fold": 62}
     saved = {one["what"]: one["saved"] for one in plan["skipped"]}
     assert saved == {"branch = +1": 2, "alpha = 0": 14, "ec = 0": 11}
 
@@ -141,11 +141,9 @@ def test_what_is_cached(reduce):
     scene = {**DESIGNS, "outputs": ["Y_wrt_BC"], "reduce": reduce}
     plan = dx.explain(scene)
     assert plan["run"]["cached"] == "no"
-    assert plan["run"]["seconds"]["before_the_first"] > 0.0
     dx.scene(scene).run()
     after = dx.explain(scene)
     assert after["run"]["cached"] == "memory"
-    assert after["run"]["seconds"]["before_the_first"] == 0.0
     _kernels.STORE.clear()
     assert dx.explain(scene)["run"]["cached"] == "disk"
 
@@ -209,8 +207,8 @@ Skipped
 
 Operations at each point after each pass
   pass         operations   saved
-  derivation         2683           every line of the derivation
-  slice                89    2594   only the lines that the requested names need
+  derivation         2702           every line of the derivation
+  slice                89    2613   only the lines that the requested names need
   fold                 62      27   fixed inputs folded in; terms with a factor 0 vanish
   plain                23      39   every design has wide margins: shorter forms
 
@@ -222,19 +220,13 @@ Loops, from outside in
 Execution
   kernel   none: plain Python over math, nothing is compiled, numba is not imported
   why      1 point; below 2,000 a compilation does not pay
-  time     about 2.9 us (2.9 us a point)
   memory   9 bytes of results, 8 bytes of inputs
-  results  returned, not written to a file
-
-Time of a run, in a new process
-             first run    later runs
-  start          1.2 s         1.2 s
-  grid          2.9 us        2.9 us
-  in all   about 1.2 s   about 1.2 s"""
+  results  returned, not written to a file"""
     )
 
 
-def test_the_sum_holds_all_that_runs(tmp_path, monkeypatch, cold):
+@pytest.mark.parametrize("data", ["values.csv", "values.xlsx", "values.nc"])
+def test_work_besides_the_grid_and_the_store(data, tmp_path, monkeypatch, cold):
     monkeypatch.chdir(tmp_path)
     scene = {
         "outputs": ["V_C", "a_C"],
@@ -242,14 +234,13 @@ def test_the_sum_holds_all_that_runs(tmp_path, monkeypatch, cold):
         "motion": {"theta": {"start": 0.0, "stop": 6.0, "num": 7001}, "omega0": 157.08},
         "peak": [{"quantity": "a_C"}],
         "picture": [{"file": "a.png", "quantity": "a_C", "at": {"ec": 0.1}}],
-        "results": {"data": "values.csv"},
+        "results": {"data": data},
     }
-    total = dx.explain(scene)["total"]
-    parts = {part["what"]: part for part in total["parts"]}
-    assert list(parts) == ["start", "grid", "absmax of a_C", "values.csv", "pictures"]
-    assert parts["values.csv"]["later"] > 20.0  # 84 million numbers
-    assert parts["absmax of a_C"]["first"] == parts["absmax of a_C"]["later"] > 0.0  # 2,001 designs: by NumPy
-    assert total["first"] == sum(part["first"] for part in total["parts"]) > total["later"]
+    plan = dx.explain(scene)
+    assert [(work["what"], work["count"]) for work in plan["also"]] == [
+        ("absmax of a_C", 2001), ("picture of a_C", 7001),
+    ]  # fmt: skip
+    assert f"results  {data}" in str(plan)
     stored = dx.explain({**scene, "results": {"store": "v.zarr", "chunks": {"ec": 100}, "memory": "200 MB"}})
     assert stored["sweep"]["chunks"] == 21
     assert stored["sweep"]["chunk"] == {"ec": 100, "theta": 7001}
@@ -308,7 +299,7 @@ def test_under_a_load_the_kernel_is_the_one_that_runs(load, tmp_path, monkeypatc
 
 @pytest.mark.parametrize("load", UNDER)
 def test_the_cost_of_a_load_is_told(load):
-    """Over theta once for each angle, over Y at each point; the time of that is part of the whole."""
+    """Over theta once for each angle, over Y at each point."""
     scene = {
         "outputs": ["T_in"],
         "mechanism": {"AB": 0.125, "BC": 0.35, "ec": [0.0, 0.05]},
@@ -318,7 +309,6 @@ def test_the_cost_of_a_load_is_told(load):
     plan, bare = dx.explain({**scene, "loads": {"F_Y": UNDER[load]}}), dx.explain(scene)
     (cost,) = plan["loads"]
     assert (cost["name"], cost["lookups"]) == ("F_Y", {"over theta": 13_000, "over Y": 26_000}[load])
-    assert plan["run"]["seconds"]["one_core"] >= bare["run"]["seconds"]["one_core"] + cost["seconds"]
     assert f"F_Y is looked up {cost['lookups']:,} times" in str(plan)
     assert "no requested name depends on it" not in str(plan)
     assert bare["loads"] == []

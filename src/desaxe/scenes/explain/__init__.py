@@ -3,8 +3,7 @@
 explain   the plan of a scene, as data
 steps     what was skipped and why, and what each pass saved
 loops     operations per loop of a kernel
-loads     how often a load is looked up, where, and its time
-estimate  time and memory, from the operations' costs
+loads     how often a load is looked up, and where
 plan_text the plan as text
-total     time of a whole run, the first and later ones
+besides   peaks, pictures and checks
 """

@@ -36,11 +36,10 @@ from ..parts.stored import request_of
 from ..reading.values import Value
 from ..scene import Scene
 from ..scene import scene as scene_of
-from . import estimate
+from .besides import work_besides
 from .loads import load_costs, points_of
 from .loops import LoopCost, loops_of
 from .steps import skipped_of, steps_of
-from .total import costs_of, work_besides
 
 PROMISES = {
     "standard": "at most 8 ulp x (1 + the sum of the condition numbers), wherever it can be assembled",
@@ -68,10 +67,9 @@ class RunPlan:
 
     Keys: `title, outputs, accuracy, promise, motion, inputs, points, designs, steps` (operations at each
     point after every pass), `skipped, loops, operations` (at each point, in all loops together), `run`
-    (how: in plain Python or compiled, and what is cached), `time, memory, also` (peaks, pictures, ...),
-    `results`, `sweep` (of a store: its chunks, memory, disk), `total` (seconds of a first run and of later
-    ones, part by part). `operations` and `loops` are None where no outputs are asked for. Inputs and outputs
-    are in the units that the scene names, and in SI units without.
+    (how: in plain Python or compiled, and what is cached), `memory, also` (peaks, pictures, ...), `results`,
+    `sweep` (of a store: its chunks, memory, disk). `operations` and `loops` are None where no outputs are
+    asked for. Inputs and outputs are in the units that the scene names, and in SI units without.
     """
 
     data: Mapping[str, Any]
@@ -128,17 +126,8 @@ def _plan_of(content: Content) -> RunPlan:
         if plan is None
         else _grid(content, plan)
     )
-    stored = _sweep(content)
-    costs = costs_of(content, data["run"], _cells(plan), stored["disk"] if stored else 0)
-    total = {
-        "parts": [cost._asdict() for cost in costs],
-        "first": sum(cost.first for cost in costs),
-        "later": sum(cost.later for cost in costs),
-    }
     results = content.data if content.store is None else content.store
-    return RunPlan(
-        data | {"also": work_besides(content), "results": results, "sweep": stored, "total": total}
-    )
+    return RunPlan(data | {"also": work_besides(content), "results": results, "sweep": _sweep(content)})
 
 
 def _sweep(content: Content) -> dict[str, Any] | None:
@@ -160,13 +149,6 @@ def _sweep(content: Content) -> dict[str, Any] | None:
 
 def _existing(path: Path) -> Path:
     return next(parent for parent in path.absolute().parents if parent.exists())
-
-
-def _cells(plan: Plan | None) -> int:
-    """Numbers of a table of the results: a row for each point, a column for each axis and variable."""
-    if plan is None:
-        return 0
-    return prod(plan.sizes.values()) * (len(plan.sizes) + sum(len(step.outputs) for step in plan.steps))
 
 
 def _output(name: str, content: Content) -> dict[str, str]:
@@ -212,7 +194,7 @@ def _grid(content: Content, plan: Plan) -> dict[str, Any]:
         "operations": {"straight": straight, "per_point": total / found.points, "total": total},
         "reduction": _reduction(plan, found.key),
         "loads": [load._asdict() for load in loads],
-        "run": _run(content, found, loops, compiled, sum(load.seconds or 0.0 for load in loads)),
+        "run": _run(content, found, compiled),
         "memory": _memory(plan, found),
     }
 
@@ -256,18 +238,10 @@ def _loop(loop: LoopCost, points: int) -> dict[str, Any]:
     return {**row, "along": list(loop.along), "values": list(loop.values), "per_point": loop.work / points}
 
 
-def _run(
-    content: Content, found: GridKernel, loops: list[LoopCost], compiled: bool, loads: float
-) -> dict[str, Any]:
-    """The execution of the grid: tier, threads, estimated times; `loads` is the time of their lookups."""
-    points = found.points
+def _run(content: Content, found: GridKernel, compiled: bool) -> dict[str, Any]:
+    """The execution of the grid: tier, threads, what is cached."""
     cached, path = _cached(found.key)
-    plain = estimate.plain_time(sum(loop.operations for loop in loops), points) + loads
-    outs = sum(name not in STATUSES for name in found.key.names)
-    one = estimate.loops_time(loops, 0 if found.key.reduce else points * outs) + loads
-    length = found.sizes[0]
-    threads = max(1, min(content.threads or available(), points // LEAST_BLOCK, length))
-    first = {"memory": 0.0, "disk": estimate.LOAD}.get(cached, estimate.IMPORT + estimate.compile_time(loops))
+    threads = max(1, min(content.threads or available(), found.points // LEAST_BLOCK, found.sizes[0]))
     return {
         "way": "compiled" if compiled else "plain Python",
         "tier": tier_ahead(found.key, found.points),
@@ -278,13 +252,6 @@ def _run(
         "threads": threads if compiled else 1,
         "cached": cached,
         "module": path,
-        "seconds": {
-            "plain": plain,
-            "one_core": one,
-            "expected": one / threads if compiled else plain,
-            "before_the_first": first if compiled else 0.0,
-            "per_point": one / points if compiled else plain / points,
-        },
     }
 
 

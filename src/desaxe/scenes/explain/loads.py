@@ -1,7 +1,6 @@
-"""The cost of a load: how often its table is looked up, where, and how long that takes."""
+"""The cost of a load: how often its table is looked up, and where."""
 
 from collections.abc import Mapping
-from math import log2
 from typing import NamedTuple
 
 from ...evaluation.plan import Plan
@@ -10,17 +9,13 @@ from ...evaluation.reductions.measures import AtPlace
 from ...evaluation.reductions.reduced import Reduced
 from ...loads.load import Load, OverTheta, OverY, TableOverTheta
 
-LOOKUP, HALVING = 2e-9, 0.8e-9  # s in a kernel, in a pass of its own, and for each halving of the table
-IN_NUMPY = 60e-9  # s, with the motion that the place follows from
-
 
 class LoadCost(NamedTuple):
-    """A load, how often it is looked up, where, and the time of that on one core; None for a function's."""
+    """A load, how often it is looked up, and where."""
 
     name: str
     lookups: int
     where: str
-    seconds: float | None
 
 
 def points_of(plan: Plan) -> Points:
@@ -43,10 +38,9 @@ def _cost(
     if isinstance(load, OverTheta):
         angles = sizes.get("theta", 1)
         if not isinstance(load, TableOverTheta):
-            return LoadCost(name, angles, "a Python function, called with all angles", None)
-        return LoadCost(name, angles, "once for each angle", angles * IN_NUMPY)
+            return LoadCost(name, angles, "a Python function, called with all angles")
+        return LoadCost(name, angles, "once for each angle")
     assert isinstance(load, OverY)
     if step.inside is None or not compiled:
-        return LoadCost(name, points, "at each point, by NumPy", points * IN_NUMPY)
-    each = LOOKUP + HALVING * log2(len(load.outward.knots))
-    return LoadCost(name, points, "at each point, in a pass of the kernel", points * each)
+        return LoadCost(name, points, "at each point, by NumPy")
+    return LoadCost(name, points, "at each point, in a pass of the kernel")

@@ -6,7 +6,6 @@ from math import prod
 from typing import NamedTuple
 
 from ...compiler.kernel import Kernel
-from ...compiler.operations import OPERATIONS
 from ...compiler.program import Line
 
 
@@ -14,15 +13,14 @@ class LoopCost(NamedTuple):
     """A loop body: its operations and how often it runs.
 
     `along` are the axes that it runs over, the outermost first; a `table` runs before the main loops
-    and keeps what they read. `cost` is the operations' throughput in additions. A `close` one runs in the
-    innermost loop instead of what the plain form has there, for the designs whose margins are not wide.
+    and keeps what they read. A `close` one runs in the innermost loop instead of what the plain form has
+    there, for the designs whose margins are not wide.
     """
 
     table: bool
     along: tuple[str, ...]
     runs: int
     operations: int
-    cost: float
     kinds: Mapping[str, int]
     values: tuple[str, ...]
     close: bool = False
@@ -56,6 +54,5 @@ def _nest(kernel: Kernel, axes: Sequence[str], sizes: Sequence[int], table: bool
 
 def _loop(lines: Sequence[Line], table: bool, along: tuple[str, ...], runs: int, kernel: Kernel) -> LoopCost:
     kinds = Counter(line.op for line in lines if line.op != "copy")
-    cost = sum(OPERATIONS[op].cost * count for op, count in kinds.items())
     values = tuple(line.name for line in lines if line.name in kernel.notes or line.name in kernel.outputs)
-    return LoopCost(table, along, runs, kinds.total(), cost, dict(sorted(kinds.items())), values)
+    return LoopCost(table, along, runs, kinds.total(), dict(sorted(kinds.items())), values)

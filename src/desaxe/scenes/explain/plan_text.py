@@ -17,7 +17,6 @@ def plan_text(plan: Mapping[str, Any]) -> str:
         parts += [_skipped(plan), _passes(plan), _loops(plan), _how(plan)]
     parts += [_also(plan)] if plan["also"] else []
     parts += [_sweep(plan)] if plan["sweep"] is not None else []
-    parts.append(_total(plan))
     return "\n\n".join(part for part in parts if part)
 
 
@@ -135,8 +134,8 @@ def _values(loop: Mapping[str, Any]) -> str:
 
 
 def _how(plan: Mapping[str, Any]) -> str:
-    """The section on execution: tier, time, memory."""
-    run, seconds = plan["run"], plan["run"]["seconds"]
+    """The section on execution: tier, memory."""
+    run = plan["run"]
     lines = ["Execution"]
     points = f"{plan['points']:,} point{'s' if plan['points'] != 1 else ''}"
     forced = f"{points}; DESAXE_TIER = {run['forced']}" if run["forced"] else ""
@@ -163,12 +162,6 @@ def _how(plan: Mapping[str, Any]) -> str:
     if run["far_angles"]:
         lines.append("  angles   some are so large that sine and cosine are those of the C library (slower)")
     lines += [row for load in plan["loads"] for row in _wrapped("load", [_load(load)])]
-    per = f"{_time(seconds['per_point'])} a point" + (" and core" if run["way"] == "compiled" else "")
-    lines.append(f"  time     about {_time(seconds['expected'])} ({per})")
-    if seconds["before_the_first"]:
-        lines.append(
-            f"           and {_time(seconds['before_the_first'])} before the first result of a process"
-        )
     memory = plan["memory"]
     kept = f"  memory   {_bytes(memory['result'])} of results, {_bytes(memory['inputs'])} of inputs"
     if memory["grid"] != memory["result"]:
@@ -181,15 +174,7 @@ def _how(plan: Mapping[str, Any]) -> str:
 def _load(load: Mapping[str, Any]) -> str:
     """The cost of a load."""
     times = f"{load['lookups']:,} time{'s' if load['lookups'] > 1 else ''}"
-    took = "" if load["seconds"] is None else f": about {_time(load['seconds'])} on one core"
-    return f"{load['name']} is looked up {times}, {load['where']}{took}"
-
-
-def _time(seconds: float) -> str:
-    for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
-        if seconds >= size:
-            return f"{seconds / size:.2g} {unit}" if seconds < 100 * size else f"{seconds / size:.0f} {unit}"
-    return f"{seconds * 1e9:.2g} ns"
+    return f"{load['name']} is looked up {times}, {load['where']}"
 
 
 def _bytes(count: int) -> str:
@@ -214,12 +199,3 @@ def _sweep(plan: Mapping[str, Any]) -> str:
         f"  disk     at most {_bytes(one['disk'])}; {_bytes(one['free'])} are free",
     ]
     return "\n".join(["Store", *map(_cut, rows)])
-
-
-def _total(plan: Mapping[str, Any]) -> str:
-    """Seconds of each part of a run, the first one and later ones apart."""
-    total = plan["total"]
-    rows = [["", "first run", "later runs"]]
-    rows += [[part["what"], _time(part["first"]), _time(part["later"])] for part in total["parts"]]
-    rows.append(["in all", f"about {_time(total['first'])}", f"about {_time(total['later'])}"])
-    return "\n".join(["Time of a run, in a new process", *table(rows, "lr")])
