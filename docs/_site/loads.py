@@ -14,7 +14,7 @@ KINDS = {
     "`over_theta`": dx.over_theta([0.0, 2.0, 4.0], [0.0, -50.0, 0.0]),
     "`over_Y`": dx.over_Y([0.15, 0.2, 0.25], [0.0, -50.0, -50.0], [0.0, 0.0, 0.0]),
     "`over_stroke`": dx.over_stroke([0.0, 0.01, 0.02], [-50.0, -50.0, 0.0], dead_centre="outer"),
-    "function of theta": np.sin,
+    "function of theta": lambda theta: 2.0 * np.sin(theta),
 }
 MOTOR = dx.kloss(20.0, 0.2, 40.0)
 ROUGH = {**DESIGN, "ec": dx.plus_minus(0.01, 1e-4)}

@@ -143,7 +143,7 @@ TABLE = [  # a call and what is good for it; what is changed, the error and its 
     ((dx.steady,), MOTOR, [
         ({"torque": None}, TypeError, "torque"),
         ({"torque": "many"}, (TypeError, ValueError), "torque"),
-        ({"torque": lambda a, b, c, d: 1.0}, TypeError, "function of omega"),
+        ({"torque": lambda speed: 1.0}, TypeError, "omega, Y, s, V_C, but <lambda> has speed"),
         ({"torque": lambda t, theta, omega: t}, ValueError, "changes with t"),
         ({"torque": lambda omega: NAN}, ValueError, "finite"),
         ({"flywheel_inertia": -1.0}, ValueError, "flywheel_inertia = -1.0"),

@@ -24,7 +24,7 @@ LOADED = {"m_slider": 2.0, "mu": 0.05}
             ["T_in"],
             {**LOADED, "F_Y": dx.over_Y([0.2, 0.3, 0.4], outward=[0.0, -9.0, -9.0], inward=[0.0] * 3)},
         ),
-        (["T_in"], {**LOADED, "F_Y": np.sin}),
+        (["T_in"], {**LOADED, "F_Y": dx.over_theta(np.sin)}),
     ],
 )
 def test_dimensions_broadcast_by_name(names, inputs):
@@ -87,7 +87,9 @@ def test_what_does_not_fit_is_refused():
         dx.evaluate("a_C", theta=THETA, ec=EC, quality=True, **MACHINE)
 
 
-@pytest.mark.parametrize("load", [None, np.sin, dx.over_theta([0.0, 2.0, 4.0], [0.0, -500.0, 0.0])])
+@pytest.mark.parametrize(
+    "load", [None, dx.over_theta(np.sin), dx.over_theta([0.0, 2.0, 4.0], [0.0, -500.0, 0.0])]
+)
 def test_series_of_one_index_vary_together_in_a_grid(load):
     designs = pd.Index(["first", "second"], name="design")
     ec, AB = pd.Series([0.0, 0.1], designs), pd.Series([0.12, 0.1], designs)

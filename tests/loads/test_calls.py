@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
 
 import desaxe as dx
 from desaxe.design.measures import measured
@@ -55,15 +55,41 @@ def test_the_motion_keeps_its_energy_and_its_torque_across_jumps(kind, mu):
     )  # the torque that this motion needs is the one given
 
 
-def test_one_parameter_is_theta_and_three_are_t_theta_omega():
-    given = {**BODIES, "t_end": 0.05, "omega_start": 30.0}
-    one = dx.simulate(torque=lambda theta: 8.0 + np.cos(theta), **given)
-    three = dx.simulate(torque=lambda t, theta, omega: 8.0 + np.cos(theta), **given)
-    np.testing.assert_array_equal(one["omega"], three["omega"])
-    with pytest.raises(
-        TypeError, match=r"torque: expected a function of \(t, theta, omega\), of \(theta, omega\)"
-    ):
-        dx.simulate(torque=lambda t, theta: 0.0, **given)
+BY_NAME = {
+    "t": (lambda t: 5.0 + t, lambda t, x, v, Y, s, V: 5.0 + t),
+    "swapped": (
+        lambda omega, theta: 5.0 + np.cos(theta) - omega,
+        lambda t, x, v, Y, s, V: 5.0 + np.cos(x) - v,
+    ),
+    "a default": (lambda theta, omega=9.0: omega - np.cos(theta), lambda t, x, v, Y, s, V: 9.0 - np.cos(x)),
+    "by name alone": (lambda *, V_C, t: 5.0 + t - 9.0 * V_C, lambda t, x, v, Y, s, V: 5.0 + t - 9.0 * V),
+    "the slider": (lambda s, Y: 5.0 - 70.0 * s + Y, lambda t, x, v, Y, s, V: 5.0 - 70.0 * s + Y),
+}
+
+
+@pytest.mark.parametrize(("torque", "meant"), BY_NAME.values(), ids=BY_NAME)
+@pytest.mark.parametrize("loaded", ["torque", "F_Y"])
+def test_a_function_is_called_by_the_names_of_its_arguments(torque, meant, loaded):
+    """Against SciPy on a crank with a slider without mass: I alpha = T + F_Y dY/dtheta."""
+    ec, AB, BC, inertia = 0.01, 0.04, 0.064, 0.05
+
+    def slider(x, v):
+        root = np.sqrt(BC**2 - (ec + AB * np.sin(x)) ** 2)
+        slope = -AB * np.sin(x) - (ec + AB * np.sin(x)) * AB * np.cos(x) / root
+        Y = AB * np.cos(x) + root
+        return Y, np.sqrt((AB + BC) ** 2 - ec**2) - Y, slope
+
+    def rate(t, y):
+        Y, s, slope = slider(*y)
+        value = meant(t, *y, Y, s, slope * y[1])
+        return y[1], (value if loaded == "torque" else 2.0 + value * slope) / inertia
+
+    truth = solve_ivp(rate, (0.0, 0.5), [0.3, 1.0], method="DOP853", rtol=1e-12, atol=1e-12).y[1, -1]
+    call = {"torque": 2.0, "t_end": 0.5, "theta0": 0.3, "omega_start": 1.0, "ec": ec, "AB": AB, "BC": BC}
+    call[loaded] = torque
+    assert dx.simulate(**call, I_crank=inertia)["omega"][-1] == pytest.approx(truth, rel=1e-8)
+    many = dx.simulate(**call, I_crank=[inertia, 2.0 * inertia])
+    assert many["omega"][0, -1] == pytest.approx(truth, rel=1e-8)
 
 
 def test_harmonics_across_jumps_are_integrals():

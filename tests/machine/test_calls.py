@@ -137,7 +137,7 @@ def test_loads_are_written_and_read(load, units, tmp_path):
 
 
 def test_a_function_is_no_data(tmp_path):
-    press = PRESS.replace(F_Y=math.sin)
+    press = PRESS.replace(F_Y=lambda theta: 2.0 * math.sin(theta))
     with pytest.raises(TypeError, match="F_Y: a function is not data"):
         press.to_scene(tmp_path / "press.toml")
     assert not list(tmp_path.iterdir())

@@ -57,12 +57,18 @@ REFUSED = {
     "complex peak": (lambda: peak(ec=1j), ["ec", "1j", "real"]),
     "complex inverse": (lambda: dx.inverse(Y=1j, **LENGTHS), ["Y", "1j", "real"]),
     "no torque": (lambda: dx.simulate(**{**SIMULATED, "torque": []}), ["torque", "empty"]),
-    "text torque": (lambda: dx.simulate(**{**SIMULATED, "torque": lambda t, a, w: "1"}), ["torque", "'1'"]),
+    "text torque": (
+        lambda: dx.simulate(**{**SIMULATED, "torque": lambda t, theta, omega: "1"}),
+        ["torque", "'1'"],
+    ),
     "complex torque": (
-        lambda: dx.simulate(**{**SIMULATED, "torque": lambda t, a, w: np.complex128(1j)}),
+        lambda: dx.simulate(**{**SIMULATED, "torque": lambda t, theta, omega: np.complex128(1j)}),
         ["torque", "1j"],
     ),
-    "NaN torque": (lambda: dx.simulate(**{**SIMULATED, "torque": lambda t, a, w: nan}), ["torque", "nan"]),
+    "NaN torque": (
+        lambda: dx.simulate(**{**SIMULATED, "torque": lambda t, theta, omega: nan}),
+        ["torque", "nan"],
+    ),
     "a huge length": (lambda: dx.Machine(**{**MACHINE, "ec": HUGE}), ["ec", "bits"]),
     "a huge angle": (lambda: dx.Machine(**MACHINE).evaluate("a_C", theta=HUGE), ["theta", "bits"]),
     "a huge period": (lambda: dx.over_theta([0.0, 1.0], [0.0, 1.0], period=HUGE), ["period", "bits"]),

@@ -158,7 +158,7 @@ def test_a_torque_function(torque):
     [
         (lambda t, theta, omega: dx.evaluate("Y", theta=theta, ec=0.0, AB=1.0, BC=2.0), "cannot"),
         (lambda t, theta, omega: (t, theta), "torque: the function gives"),
-        (lambda t, theta: 0.0, "torque: expected a function of (t, theta, omega)"),
+        (lambda t, x: 0.0, "names of its arguments, t, theta, omega, Y, s, V_C, but <lambda> has x"),
     ],
 )
 def test_a_torque_that_numba_cannot_compile(torque, message):

@@ -441,7 +441,7 @@ def test_units():
         ({"torque": "3 N"}, ValueError, "torque = '3 N': it must be a quantity in N m"),
         ({"torque": None}, TypeError, "torque is missing: simulate expects a finite number or a"),
         ({"torque": math.nan}, ValueError, "torque = nan"),
-        ({"torque": lambda t, theta: 0.0}, TypeError, "torque: expected a function of (t, theta, omega)"),
+        ({"torque": lambda t, x: 0.0}, TypeError, "torque: a function is called by the names"),
         ({"torque": lambda t, theta, omega: math.nan}, ValueError, "torque gave nan at t = 0"),
         ({"torque": lambda t, theta, omega: "much"}, TypeError, "torque gave 'much' at t = 0"),
         ({"F_Y": lambda t, theta, omega: math.inf}, ValueError, "F_Y gave inf at t = 0"),

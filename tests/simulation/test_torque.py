@@ -3,6 +3,7 @@
 import math
 from ctypes import CFUNCTYPE, c_int64
 from math import sin
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -81,6 +82,37 @@ def test_a_new_function_is_compiled_alone(monkeypatch):
     dx.simulate(torque=lambda t, theta, omega: 1.1 - 0.01 * omega, t_end=0.1, **CRANKS)
     assert len(lengths) == 1
     assert lengths[0] < 4_000
+
+
+FACTOR, TABLE, FACTORS = 1.0, np.array([1.0, 2.0]), (1.0, 2.0)
+CONFIG = ModuleType("config")
+
+
+def reading():
+    """Functions that read a number in many ways, and how to change it."""
+    cell, held = 1.0, TABLE.copy()
+
+    def set_cell(x):
+        nonlocal cell
+        cell = x
+
+    yield "global", lambda omega: 4.0 * FACTOR - omega, lambda x: globals().update(FACTOR=x)
+    yield "tuple", lambda omega: 4.0 * FACTORS[0] - omega, lambda x: globals().update(FACTORS=(x, 2.0))
+    yield "cell", lambda omega: 4.0 * cell - omega, set_cell
+    yield "array", lambda omega: 4.0 * held[0] - omega, lambda x: held.__setitem__(0, x)
+    yield "module", lambda omega: 4.0 * CONFIG.factor - omega, lambda x: setattr(CONFIG, "factor", x)
+
+
+@pytest.mark.parametrize(("torque", "put"), [pytest.param(*both, id=name) for name, *both in reading()])
+def test_a_function_reads_what_there_is_at_each_call(torque, put):
+    """Against 4 k (1 - exp(-t/I)): a balanced crank, T = 4 k - omega."""
+    cranks = {"AB": 0.05, "BC": 0.2, "ec": 0.0, "I_crank": np.array([0.1, 1.0])}
+    for k in (1.0, 2.0, 1.0):
+        put(k)
+        right = 4.0 * k * (1.0 - np.exp(-0.5 / cranks["I_crank"]))
+        omega = dx.simulate(torque=torque, t_end=0.5, **cranks)["omega"]
+        np.testing.assert_allclose(omega[:, -1], right, rtol=1e-8)
+        assert dx.steady(torque=torque, **cranks)["omega_mean"][0] == pytest.approx(4.0 * k, rel=1e-9)
 
 
 def test_a_function_that_raises_ends_its_own_motions_only():

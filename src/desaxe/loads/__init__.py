@@ -1,6 +1,7 @@
 """Loads over the crank angle or the slider's position: tables, files and functions.
 
 load       the loads: over theta or Y, from a table
+arguments  which arguments a user's function is called with, by their names
 function   a user's function of theta as a load
 table      tables as piecewise cubics
 absent     a warning where forces are asked for and nothing acts

@@ -11,6 +11,7 @@ from ..mechanism.closed.angles import dead_centres, passages, repeated
 from ..mechanism.closed.dead_centres import DEAD_CENTRES
 from ..mechanism.closed.functions import closed_form
 from ..mechanism.spoken import spoken
+from .function import naming
 from .load import Load, OverTheta, OverY
 from .stroke import OverStroke
 
@@ -80,10 +81,12 @@ def turns_of(caller: str, loads: Mapping[str, Load], most: int) -> int:
         if not isinstance(load, OverTheta):
             continue
         own = next((n for n in range(1, most + 1) if _repeats(load, n * TURN)), None)
-        if own is None or not load.is_periodic:
+        with naming(name):
+            periodic = load.is_periodic
+        if own is None or not periodic:
             period = spoken("theta", load.period, ".6g", True)
             reason = f"its period is {period}"
-            if not load.is_periodic:
+            if not periodic:
                 reason = (
                     f"this function does not after {period}: over_theta(function, period=...) sets its period"
                 )

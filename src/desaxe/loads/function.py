@@ -1,6 +1,7 @@
 """A user's function of the crank angle as a load."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from math import isfinite
 from typing import Any
@@ -130,3 +131,14 @@ def _one(function: Callable[[Any], Any], theta: float, what: str) -> float:
             f"{what}: the function gave {number} at {named('theta', theta, 'g')}: it must be finite"
         )
     return number
+
+
+@contextmanager
+def naming(name: str) -> Iterator[None]:
+    """Errors of a user's function name the input that it is given for."""
+    try:
+        yield
+    except (TypeError, ValueError) as error:
+        if not str(error).startswith("the load"):
+            raise
+        raise type(error)(f"{name}: {str(error).removeprefix('the load: ')}") from error.__cause__

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import inf
 from os import PathLike
 from typing import Any, ClassVar
@@ -62,9 +62,18 @@ class Motor(ABC):
         """Speeds between which the torque has no turn that matters, the last far beyond all of them."""
 
     def __call__(self, omega: Any) -> Any:
-        """The torque at a speed: a number or an array."""
+        """The torque at a speed, in the units of the machine or scene that it was made for, else in SI."""
+        units = self.units or SI
+        return units.of("torque").shown(self.value(units.of("omega").to_si(omega)))
+
+    def value(self, omega: Any) -> Any:
+        """The torque at a speed [rad/s]: a number or an array."""
         torque = self.both(np.asarray(omega, float), self.numbers)[0]
         return float(torque) if np.ndim(torque) == 0 else torque
+
+    def of_design(self, row: Mapping[str, float]) -> "Motor":
+        """The motor of one design, of those that its parameters are arrays of."""
+        return self
 
     def __repr__(self) -> str:
         with speaking(UNITS.get() or self.units or SI):
@@ -123,6 +132,10 @@ class Kloss(Motor):
     def numbers(self) -> Mapping[str, Any]:
         """The four parameters."""
         return {row.name: getattr(self, row.name) for row in ROWS}
+
+    def of_design(self, row: Mapping[str, float]) -> Motor:
+        """The motor with these numbers."""
+        return replace(self, **dict[str, Any](row))
 
     def both(self, omega: Any, row: Mapping[str, Any]) -> tuple[Any, Any]:
         """The torque and its derivative by the speed."""

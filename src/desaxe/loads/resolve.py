@@ -11,10 +11,9 @@ q by a parameter p that the load F depends on is the Program's own, at a fixed l
     plan.totals(values, forces)                # names -> values, with total derivatives
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from inspect import signature
 from math import nan
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -26,28 +25,24 @@ from ..mechanism.own import Definition, Register, register, used_by
 from ..mechanism.program import Variant, program_of
 from ..mechanism.quantity_units import UnitSystem
 from ..support.forks import IMPORTS
-from .function import FunctionOverTheta
+from .arguments import arguments_of, by_position
+from .function import FunctionOverTheta, naming
 from .load import Load, OverTheta, OverY
 from .pieces import Place, ahead, pieces_at
 from .stroke import NONE, OverStroke
 
 VARIABLE = ("F_X", "F_Y")  # inputs that may vary with the motion
-ROLES = {1: ("omega",), 2: ("theta", "omega"), 3: ("t", "theta", "omega")}  # of a torque's parameters
 
 
 def as_load(name: str, value: Any) -> Load:
-    """The load that a callable stands for: a plain function of one parameter is one over theta."""
+    """The load that a callable stands for: a plain function of theta is one over theta."""
     if isinstance(value, Load):
         wanted = "N*m" if name == "torque" else INPUTS[name].unit
         if value.unit not in (None, wanted):
             raise ValueError(f"{name}: the load is in {value.unit}, expected {wanted}")
         return value
-    if not takes(value, 1):
-        raise TypeError(
-            f"{name}: a load is a number, desaxe.over_theta(...), over_Y(...), over_stroke(...) or a "
-            f"function of theta alone; this function takes {signature(value)}"
-        )
-    return FunctionOverTheta(value)
+    arguments_of(name, value, ("theta",))
+    return FunctionOverTheta(by_position(value))
 
 
 def plain_units(name: str, load: Any, units: UnitSystem) -> dict[str, str]:
@@ -74,38 +69,6 @@ def settled(name: str, load: Any, units: UnitSystem) -> Any:
             f"in the scene), or desaxe.{call}(...) of texts with units, {texts}"
         )
     return replace(load, plain=())
-
-
-def takes(function: Callable[..., Any], count: int) -> bool:
-    """True if a function accepts `count` numbers; a built-in without a signature is taken to accept one."""
-    try:
-        signature(function).bind(*[0.0] * count)
-    except TypeError:
-        return False
-    except ValueError:
-        return count == getattr(function, "nin", 1)
-    return True
-
-
-def names_of(function: Callable[..., Any]) -> tuple[str, ...]:
-    """The parameters of a function; none of a built-in without a signature."""
-    try:
-        return tuple(signature(function).parameters)
-    except ValueError:
-        return ()
-
-
-def roles_of(function: Callable[..., Any]) -> tuple[str, ...] | None:
-    """The roles of a torque's parameters: omega, (theta, omega), (t, theta, omega), or theta by that name."""
-    try:
-        every = signature(function).parameters.values()
-    except ValueError:  # a built-in
-        return ("omega",)
-    places = [p for p in every if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
-    count = max(1, sum(p.default is p.empty for p in places))
-    if count == 1 and places and places[0].name == "theta":
-        return ("theta",)
-    return ROLES.get(count) if takes(function, count) else None
 
 
 def split(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Load]]:
@@ -170,7 +133,8 @@ class LoadPlan(NamedTuple):
         wanted = {(t.force, t.parameter) for terms in self.terms.values() for t in terms}
         for name, load in self.loads.items():
             if isinstance(load, OverTheta):
-                value, slope = _named(name, load, place.theta)
+                with naming(name):
+                    value, slope = load.both(place.theta)
                 known = {"theta": slope}
             else:
                 assert isinstance(load, OverY)
@@ -300,16 +264,6 @@ def way_of(given: Mapping[str, Any]) -> Any:
         import numpy as np
 
     return speed if alpha is None else np.where(np.equal(speed, 0.0), alpha, speed)
-
-
-def _named(name: str, load: OverTheta, theta: Any) -> tuple[Any, Any]:
-    """A load over theta and its derivative; errors of a user's function name the input."""
-    try:
-        return load.both(theta)
-    except (TypeError, ValueError) as error:
-        if isinstance(load, FunctionOverTheta) and str(error).startswith("the "):
-            raise type(error)(f"{name}: {str(error).removeprefix('the load: ')}") from error.__cause__
-        raise
 
 
 def _finite_or_zero(value: Any) -> Any:

@@ -1,15 +1,15 @@
 """The arguments of `simulate`, read and checked: errors name the argument, the value and the limit."""
 
-from collections.abc import Callable, Mapping
-from inspect import signature
+from collections.abc import Mapping
 from math import inf, isfinite, isnan, nan, pi
 from typing import Any
 
 import numpy as np
 
+from ..loads.arguments import ARGUMENTS, arguments_of
 from ..loads.load import Load as LoadOverMotion
 from ..loads.motors import Motor
-from ..loads.resolve import as_load, names_of, takes
+from ..loads.resolve import as_load
 from ..mechanism.catalogue import quantity
 from ..mechanism.closed import TURN
 from ..mechanism.closed.limits import theta_intervals
@@ -19,14 +19,14 @@ from ..mechanism.read import read
 from ..mechanism.spelling import did_you_mean
 from ..mechanism.spoken import named, spoken
 from ..runtime.request import several
-from ..support.checks import real_number
 from ..support.deadline import Deadline
 from ..support.shown import shown
 from .coordinate import FREE, Coordinate, arc_around, inside
-from .held import Held
+from .held import Held, UserLoad
 from .model import Actuation, Load, Model
 
 METHODS = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
+TIME_AND_CRANK = ("t", "theta", "omega")
 OWN = {"t", "theta", "omega", "alpha", "status"}  # keys of the result that no name may take
 LEAST_RTOL = 3e-14
 SMALL = 1e-4  # rad: so near to a dead centre without inertia no motion is followed
@@ -72,34 +72,11 @@ def check_names(names: Any) -> tuple[str, ...]:
     return wanted
 
 
-def check_signature(name: str, value: Callable[..., Any]) -> None:
-    """A load that varies is a function of (t, theta, omega), or of theta alone."""
-    if not (takes(value, 3) or takes(value, 1) or (name == "torque" and _takes_theta_and_omega(value))):
-        raise TypeError(
-            f"{name}: expected a function of (t, theta, omega), "
-            + ("of (theta, omega), of omega or of theta" if name == "torque" else "or of theta alone")
-            + f", got one of {signature(value)}"
-        )
-
-
-def over_speed(torque: Any) -> Callable[[float, float, float], Any] | None:
-    """A motor, or a function of omega by that name or of (theta, omega), as one of (t, theta, omega)."""
-    if isinstance(torque, Motor):
-        if any(map(np.ndim, torque.numbers.values())):
-            raise TypeError("torque: simulate takes a motor of numbers, not of arrays; give one at a time")
-        return lambda t, theta, omega: torque(omega)
-    if not callable(torque) or isinstance(torque, LoadOverMotion):
-        return None
-    if not takes(torque, 3) and _takes_theta_and_omega(torque):
-        return lambda t, theta, omega: torque(theta, omega)
-    if not takes(torque, 3) and takes(torque, 1) and list(names_of(torque))[:1] == ["omega"]:
-        return lambda t, theta, omega: torque(omega)
-    return None
-
-
-def _takes_theta_and_omega(torque: Callable[..., Any]) -> bool:
-    """True for a function of two parameters, of which the first is not the time."""
-    return takes(torque, 2) and names_of(torque)[:1] != ("t",)
+def follows_the_slider(torque: Any) -> bool:
+    """True for a user's function that is called with the slider's position or speed."""
+    if not callable(torque) or isinstance(torque, (LoadOverMotion, Motor)):
+        return False
+    return not set(arguments_of("torque", torque, ARGUMENTS)) <= set(TIME_AND_CRANK)
 
 
 def load(name: str, value: Any, unit: str, deadline: Deadline) -> Load:
@@ -107,27 +84,14 @@ def load(name: str, value: Any, unit: str, deadline: Deadline) -> Load:
     if not callable(value):
         number = scalar(name, value, unit, limit="a finite number or a function")
         return lambda t, theta, omega: number
-    if name == "torque" and (by_speed := over_speed(value)) is not None:
-        value = by_speed
-    check_signature(name, value)
-    if isinstance(value, LoadOverMotion) or not takes(value, 3):
+    if isinstance(value, Motor):
+        return lambda t, theta, omega: float(value.value(omega))
+    if isinstance(value, LoadOverMotion):
         return Held(as_load(name, value))
-
-    def checked(t: float, theta: float, omega: float) -> float:
-        deadline.check()
-        found = value(t, theta, omega)
-        try:
-            number = found if type(found) is float else real_number(name, found)
-        except (TypeError, ValueError):
-            raise TypeError(f"{name} gave {shown(found)} at t = {t:g}: expected a number in {unit}") from None
-        if not isfinite(number) and isfinite(theta) and isfinite(omega):
-            raise ValueError(
-                f"{name} gave {number} at {named('t', t, 'g')}, {named('theta', theta, 'g')}, "
-                f"{named('omega', omega, 'g')}: it must be a finite number in {unit}"
-            )
-        return number
-
-    return checked
+    arguments = arguments_of(name, value, ARGUMENTS)
+    if arguments == ("theta",):
+        return Held(as_load(name, value))
+    return UserLoad(name, value, arguments, unit, deadline)
 
 
 def drive_of(torque: Any, F_X: Any, F_Y: Any, deadline: Deadline) -> Actuation:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..evaluation.evaluate import evaluate
 from ..loads.angles import zero_of
 from ..loads.load import OverY
+from ..loads.motors import Motor
 from ..mechanism.names import LENGTHS
 from ..support.deadline import Deadline
 from ..support.progress import Portions, progress_bar
@@ -52,11 +53,13 @@ def simulate_each(
     together   whether those that have an energy form are followed at once, up to the last instant
     """
     varying = {n: value for n, value in {**given, **starts}.items() if callable(value)}
-    arrays, flat, shape = arrays_of(given, starts)
+    motor = starts["torque"] if isinstance(starts["torque"], Motor) else None
+    arrays, flat, shape = arrays_of(given, starts, {} if motor is None else motor.numbers)
     t = np.linspace(0.0, end, SAMPLES) if times is None else times
     size = int(np.prod(shape))
     still = {name: np.zeros(size) for name in varying}
     setup, status = setup_of({**still, **flat}, branch)
+    of_motor = {} if motor is None else {name: flat.pop(name) for name in motor.numbers}
     for load in varying.values():
         if isinstance(load, OverY):
             status[np.isnan(zero_of(load, [flat[n] for n in LENGTHS], branch))] = NO_START
@@ -70,6 +73,8 @@ def simulate_each(
 
     def follow(row: int) -> None:
         design = {name: values[row].item() for name, values in flat.items()} | varying
+        if motor is not None:
+            design["torque"] = motor.of_design({n: values[row].item() for n, values in of_motor.items()})
         inputs = {name: design.get(name) for name in given}
         found = run(inputs, {name: design[name] for name in starts}, t, way)
         count = len(found["t"])

@@ -6,16 +6,22 @@ load is that of the angle and the way of turning.
 """
 
 from collections.abc import Callable
-from math import copysign, inf, isnan, nextafter
+from math import copysign, inf, isfinite, isnan, nextafter
+from typing import Any
 
 import numpy as np
 
 from ..loads.angles import crossings, zero_of
+from ..loads.arguments import by_position
 from ..loads.function import FunctionOverTheta
 from ..loads.load import Load, OverTheta, OverY, TableOverTheta
 from ..loads.table import polynomial
 from ..mechanism.closed import TURN
 from ..mechanism.closed.angles import dead_centres
+from ..mechanism.spoken import named
+from ..support.checks import real_number
+from ..support.deadline import Deadline
+from ..support.shown import shown
 
 AHEAD = 1e-9  # rad: which piece of a table follows an angle
 AHEAD_OF_Y = 1e-6  # rad: so far from a dead centre the slider has left its position
@@ -97,6 +103,53 @@ class Held:
         if self.turns_with_the_slider:
             angles = np.append(angles, dead_centres(sides))
         return [(angle, TURN) for angle in angles[np.isfinite(angles)].tolist()]
+
+
+class UserLoad:
+    """A user's function as one of (t, theta, omega), checked wherever it is called."""
+
+    def __init__(
+        self,
+        name: str,
+        function: Callable[..., Any],
+        arguments: tuple[str, ...],
+        unit: str,
+        deadline: Deadline,
+    ) -> None:
+        self.name, self.function, self.unit, self.deadline = name, by_position(function), unit, deadline
+        self.arguments = arguments
+        self.slider: Place | None = None  # Y, s and Y_wrt_theta
+
+    @property
+    def follows_the_slider(self) -> bool:
+        """True where the function is called with the slider's position or speed."""
+        return not {"Y", "s", "V_C"}.isdisjoint(self.arguments)
+
+    def stand(self, slider: Place) -> None:
+        """Stand in a design, whose slider the function follows."""
+        self.slider = slider
+
+    def __call__(self, t: float, theta: float, omega: float) -> float:
+        """The load now."""
+        self.deadline.check()
+        now = {"t": t, "theta": theta, "omega": omega}
+        if self.slider is not None:
+            now["Y"], now["s"], slope = self.slider(theta)
+            now["V_C"] = slope * omega
+        passed = [now[argument] for argument in self.arguments]
+        value = self.function(*passed)
+        try:
+            number = value if type(value) is float else real_number(self.name, value)
+        except (TypeError, ValueError):
+            raise TypeError(
+                f"{self.name} gave {shown(value)} at t = {t:g}: expected a number in {self.unit}"
+            ) from None
+        if not isfinite(number) and all(map(isfinite, passed)):
+            where = ", ".join(named(argument, x, "g") for argument, x in (now | {"t": t}).items())
+            raise ValueError(
+                f"{self.name} gave {number} at {where}: it must be a finite number in {self.unit}"
+            )
+        return number
 
 
 def _piece_of_table(load: TableOverTheta, ahead: float) -> Callable[[float], float]:

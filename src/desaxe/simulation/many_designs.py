@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from math import isfinite
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -119,15 +120,19 @@ def given_centres(given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def arrays_of(
-    given: Mapping[str, Any], starts: Mapping[str, Any]
+    given: Mapping[str, Any], starts: Mapping[str, Any], motor: Mapping[str, Any] = MappingProxyType({})
 ) -> tuple[dict[str, Array], dict[str, Array], tuple[int, ...]]:
-    """The inputs that are no functions: as arrays, as rows with a value for each design; their shape."""
+    """The inputs that are no functions: as arrays, as rows with a value for each design; their shape.
+
+    motor   the parameters of a motor
+    """
     arrays = {
         name: as_array(name, 0.0 if value is None and name in LOADS else value, LENGTHS, ("simulate",))
         for name in (*LENGTHS, *LOADS)
         if not callable(value := given.get(name)) and (value is not None or name not in CENTRES)
     }
     arrays |= {n: number_or_array(STARTS[n], value) for n, value in starts.items() if not callable(value)}
+    arrays |= {name: np.asarray(value, float) for name, value in motor.items()}
     empty = next((name for name, array in arrays.items() if not array.size), None)
     if empty is not None:
         raise ValueError(f"{empty}: an empty array; expected at least one design")

@@ -12,7 +12,7 @@ from ..mechanism.program import Variant
 from ..runtime.kernels import STRUCTURAL_ZEROS
 from ..runtime.point import PointFunction, point_of
 from .coordinate import Coordinate
-from .held import Held
+from .held import Held, UserLoad
 
 Values = tuple[float, ...]
 Function = Callable[..., Values]
@@ -62,6 +62,11 @@ class Model:
         position = function(("Y", "Y_wrt_theta"), ("theta", "branch"))
         for held in drive.held:
             held.stand(lambda theta: position(theta, self.sign), self.lengths, branch)
+        following = [load for load in drive[:3] if isinstance(load, UserLoad) and load.follows_the_slider]
+        if following:
+            slider = function(("Y", "s", "Y_wrt_theta"), ("theta", "branch"))
+            for load in following:
+                load.stand(lambda theta: slider(theta, self.sign))
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A pickle has the design but not what drives it, which may be any function."""

@@ -20,6 +20,7 @@ from .checks import (
     check_names,
     design_values,
     drive_of,
+    follows_the_slider,
     model_of,
     read_method,
     read_rtol,
@@ -81,9 +82,9 @@ def simulate(
 ) -> Simulation:
     """The motion of the crank under a torque.
 
-    torque       on the crank [N m], positive like theta: a number, a function of (t, theta, omega), of
-                 (theta, omega), of theta alone or of omega by that name, `over_theta`, or a motor,
-                 `over_omega` or `kloss`
+    torque       on the crank [N m], positive like theta: a number, `over_theta`, a motor, `over_omega` or
+                 `kloss`, or a function, called by the names of its arguments: t, theta, omega, and of the
+                 slider Y, s, V_C, in any order; an argument with a default keeps it
     t_end        how long to follow the motion [s]
     theta0, omega_start   crank angle [rad] and speed [rad/s] at t = 0; the speed of a Machine is its own
     AB, BC, ec, branch, masses, centres of mass, gravity, mu   as in `evaluate`
@@ -103,7 +104,7 @@ def simulate(
     until        crank angle or angles [rad]: the first that is reached ends the motion
     wrt          parameters by which the motion is differentiated: inputs of the mechanism that are numbers,
                  "theta0", "omega_start", "torque" where it is a number
-    derivative   for wrt, of a torque that is a function: one of the same arguments that returns dT/dtheta
+    derivative   for wrt, of a torque that is a function: one of t, theta, omega that returns dT/dtheta
                  and dT/domega; and dT/dt, without which the instants of "break-away" have no derivative
     max_step     longest step [s] of an integrator, for loads that act briefly
     max_steps    more steps than this, in the energy form pieces of panels, are a failure
@@ -132,10 +133,11 @@ def simulate(
     error, across jumps of loads, standstills and friction, too. They are NaN where there are none, and
     `message` says so: at an angle or a standstill that is only touched, and after a jump there.
 
-    Many designs at once: lengths, masses, constant loads, theta0, omega_start and a constant torque may be
-    arrays that broadcast like NumPy. Without friction they run in compiled code: under numbers and tables
-    that repeat after at most four turns in the energy form; under a torque function, which numba compiles, by
-    panels; under numbers where these do not serve, such as at an unstable equilibrium, by DOP853. All others,
+    Many designs at once: lengths, masses, constant loads, theta0, omega_start, a constant torque and the
+    numbers of `kloss` may be arrays that broadcast like NumPy. Without friction they run in compiled code:
+    under numbers and tables that repeat after at most four turns in the energy form; under a torque function,
+    which numba compiles, by panels; under numbers where these do not serve, such as at an unstable
+    equilibrium, by DOP853. All others,
     also those with `until`, and with wrt where there is no energy form, run one after the other. Histories
     then have the shape (designs..., times), 101 instants without `times`, NaN where a motion has ended.
     status (also 6: bad input, no mechanism at the start, or not the dead centre that a load is over),
@@ -163,7 +165,8 @@ def simulate(
     starts = {"theta0": theta0, "omega_start": omega_start, "torque": torque}
     by = read_wrt(wrt, {**given, **starts})
     slopes = TorqueSlopes(torque, derivative) if by else None
-    several = any(map(is_array, (*given.values(), *starts.values())))
+    motors = torque.numbers.values() if isinstance(torque, Motor) else ()
+    several = any(map(is_array, (*given.values(), *starts.values(), *motors)))
     if method == ENERGY:
         options = {"max_step=": max_step is not None, "atol=": atol is not None, "wrt = 'mu'": "mu" in by}
         refuse({"torque": torque, "F_X": F_X, "F_Y": F_Y}, given["mu"], options)
@@ -172,7 +175,8 @@ def simulate(
     if several:
         _check_many(method, atol)
         varying = any(map(callable, (given["F_X"], given["F_Y"])))
-        if by or angles or varying or isinstance(torque, (LoadOverMotion, Motor)) or _rubs(given["mu"]):
+        alone = isinstance(torque, (LoadOverMotion, Motor)) or follows_the_slider(torque)
+        if by or angles or varying or alone or _rubs(given["mu"]):
             if method == PANELS:
                 raise ValueError(
                     "method = 'panels': it is for loads that are numbers, without mu, until=, wrt="

@@ -313,7 +313,7 @@ def test_motors_of_a_machine_are_in_its_units():
     by, own = (one["gradient"]["omega_mean"]["AB"] for one in (found, plain))
     assert by == pytest.approx(own * 30 / pi / 1000, rel=1e-9)
     table = press.over_omega([0, 100, 200], [30, 40, 0], "smooth")
-    assert table(100 * pi / 30) == pytest.approx(40.0, rel=1e-12)
+    assert table(100) == pytest.approx(40.0, rel=1e-12)
     with pytest.raises(ValueError, match=r"machine\.kloss"):
         press.steady(torque=dx.kloss(40.0, 0.15, 157.08, 12))
 
@@ -343,6 +343,49 @@ def test_simulate_takes_motors():
     for torque in (table, line):  # a kernel each
         many = dx.simulate(torque=torque, **{**start, "I_crank": [2.0, 3.0]})
         np.testing.assert_allclose(many["omega"][0], plain["omega"], rtol=1e-9)
+
+
+def test_simulate_takes_motors_of_arrays():
+    motor = dx.kloss([30.0, 40.0], 0.15, 157.08, gear=[[12.0], [9.0]])
+    call = {"t_end": 0.3, **PRESS, "I_crank": [2.0, 3.0]}
+    many = dx.simulate(torque=motor, **call)
+    assert many["omega"].shape[:2] == (2, 2)
+    for row, gear in enumerate((12.0, 9.0)):
+        for column, (most, inertia) in enumerate(((30.0, 2.0), (40.0, 3.0))):
+            alone = dx.simulate(
+                torque=dx.kloss(most, 0.15, 157.08, gear), **{**call, "I_crank": inertia}, times=many["t"]
+            )
+            np.testing.assert_allclose(many["omega"][row, column], alone["omega"], rtol=1e-12)
+
+
+@pytest.mark.parametrize("units", ["m, deg, rpm", ""])
+def test_a_torque_over_theta_of_a_machine_is_that_in_si(units):
+    press = dx.Machine(units=units, ec=0.0, AB=0.05, BC=0.2, m_slider=2.0, I_crank=0.5, mu=0.1)
+    turn = 360.0 if units else 2 * pi
+    made = press.over_theta(np.linspace(0, turn, 13)[:-1], 8.0 + np.sin(np.linspace(0, 2 * pi, 13)[:-1]))
+    plain = dx.over_theta(np.linspace(0, 2 * pi, 13)[:-1], 8.0 + np.sin(np.linspace(0, 2 * pi, 13)[:-1]))
+    right = dx.steady(torque=plain, ec=0.0, AB=0.05, BC=0.2, m_slider=2.0, I_crank=0.5, mu=0.1)["omega_mean"]
+    found = press.steady(torque=made)["omega_mean"] * (pi / 30 if units else 1.0)
+    assert found == pytest.approx(right, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["F_Y", "torque"])
+def test_a_function_knows_its_period(name):
+    """A load of a four-stroke engine as a function is that as a table, and a turn is not its period."""
+    size = 300.0 if name == "F_Y" else 100.0
+
+    def function(theta):
+        return size * (1.0 + np.cos(0.5 * theta) ** 3)
+
+    angles = np.linspace(0.0, 4 * pi, 97)[:-1]
+    call = {"torque": MOTOR, **PRESS, "mu": 0.1}
+    loads = [dx.over_theta(function, period=4 * pi), dx.over_theta(angles, function(angles), period=4 * pi)]
+    exact, table = (dx.steady(**{**call, name: load}) for load in loads)
+    assert exact["theta"][-1] == pytest.approx(4 * pi)
+    for key in KEYS:
+        assert exact[key] == pytest.approx(table[key], rel=1e-4)
+    with pytest.raises(ValueError, match=f"{name}: steady is over at most 4 turns"):
+        dx.steady(**{**call, name: dx.over_theta(function)})
 
 
 HALF_WAY = ([0.0, 0.06, 0.06, 0.1], [0.0, 0.0, -9e3, -9e3], [0.0] * 4)

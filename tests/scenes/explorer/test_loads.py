@@ -83,4 +83,4 @@ def test_a_load_that_follows_the_slider(kind, numbers_of, folder):
 
 def test_a_function_is_refused(folder):
     with pytest.raises(TypeError, match=r"explore: F_Y = .* a page holds numbers and tables, no functions"):
-        dx.explore(path=folder / "none.html", F_Y=np.sin, **PRESS)
+        dx.explore(path=folder / "none.html", F_Y=lambda theta: 2.0 * np.sin(theta), **PRESS)

@@ -2,20 +2,19 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from inspect import signature
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...evaluation.arrays import number_or_array
+from ...loads.arguments import arguments_of, by_position
 from ...loads.load import Load, OverTheta
 from ...loads.motors import Motor
-from ...loads.resolve import as_load, roles_of
+from ...loads.resolve import as_load
 from ...mechanism.inputs import Input
 from ...mechanism.spoken import named
 from ...support.forks import IMPORTS
-from ...support.shown import shown
 
 Array = NDArray[Any]
 # Central differences of order 8 of a user's function over the speed, which has no derivative of its own.
@@ -24,8 +23,8 @@ STEP = 1e-3  # of the speed
 INSTANTS = (0.0, 0.371)  # s: a function of time is not the same at both
 SPEEDS = np.outer([-1.0, 1.0], np.geomspace(1e-2, 1e5, 141))
 EXPECTED = (
-    "expected a number, a motor (desaxe.kloss, desaxe.over_omega), a load over theta, or a function of omega "
-    "or of (theta, omega)"
+    "expected a number, a motor (desaxe.kloss, desaxe.over_omega), a load over theta, or a function of theta "
+    "and omega"
 )
 
 
@@ -85,7 +84,7 @@ class OverAngle(TorqueSource):
 
     def both(self, theta: Array, omega: Array, row: Mapping[str, Any]) -> tuple[Array, Array]:
         """The load."""
-        return np.broadcast_to(self.over(theta), omega.shape) + 0.0 * omega, 0.0 * omega
+        return np.broadcast_to(self.over.value(theta), omega.shape) + 0.0 * omega, 0.0 * omega
 
 
 class OfMotor(TorqueSource):
@@ -112,12 +111,12 @@ class OfMotor(TorqueSource):
 
 
 class OfFunction(TorqueSource):
-    """A function of omega, (theta, omega) or (t, theta, omega), of which time must not matter."""
+    """A function of t, theta and omega, of which time must not matter."""
 
     def __init__(self, function: Callable[..., Any], roles: tuple[str, ...]) -> None:
         self.of_speed_alone = roles == ("omega",)
         self.roles, self.name = roles, getattr(function, "__name__", type(function).__name__)
-        self.function, self.takes_arrays = function, True
+        self.function, self.takes_arrays = by_position(function), True
         if hasattr(function, "py_func"):  # compiled by numba: for one point, which may branch
             with IMPORTS:
                 import numba
@@ -173,8 +172,7 @@ class OfFunction(TorqueSource):
             one, other = (self._value(theta, omega, t) for t in INSTANTS)
             if (one != other).any():
                 raise ValueError(
-                    "torque: a function of (t, theta, omega) that changes with t has no steady state; "
-                    "give one of (theta, omega)"
+                    "torque: a function that changes with t has no steady state; give one of theta and omega"
                 )
 
 
@@ -191,9 +189,7 @@ def source_of(torque: Any) -> TorqueSource:
         return OverAngle(load)
     if not callable(torque):
         return ConstantTorque(number_or_array(Input("torque", "N*m", ""), torque))
-    roles = roles_of(torque)
-    if roles is None:
-        raise TypeError(f"torque = {shown(torque)}: {EXPECTED}; this one takes {signature(torque)}")
+    roles = arguments_of("torque", torque, ("t", "theta", "omega"))
     if roles == ("theta",):
         return source_of(as_load("torque", torque))
     found = OfFunction(torque, roles)

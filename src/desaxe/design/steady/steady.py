@@ -38,7 +38,7 @@ def steady(
     """The steady state of a machine on its motor: the periodic motion that it settles into.
 
     torque            of the motor on the crank [N m], positive like theta: `kloss`, `over_omega`, a function
-                      (numba may have compiled it) of omega, of (theta, omega), or of theta by that name,
+                      (numba may have compiled it) of theta and omega, by the names of its arguments,
                       `over_theta`, or a number, which fixes a speed only where the guide has friction
     flywheel_inertia  added to the crank [kg m2]
     fluctuation       the smallest flywheel that keeps this one is found instead

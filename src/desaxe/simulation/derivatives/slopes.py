@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...loads.arguments import arguments_of, by_position
 from ...loads.load import Load, OverTheta
 from ...loads.motors import Motor
-from ...loads.resolve import as_load, roles_of
+from ...loads.resolve import as_load
 from ...support.checks import real_number
 from ...support.shown import shown
 
@@ -39,13 +40,13 @@ class TorqueSlopes:
             raise TypeError(
                 "derivative: it is for a torque that is a function; tables and motors know theirs"
             )
-        roles = roles_of(derivative) if callable(derivative) else None
-        if roles is None:
+        if not callable(derivative):
             raise TypeError(
                 f"derivative = {shown(derivative)}: expected a function of the arguments of torque that "
                 "returns dT/dtheta and dT/domega"
             )
-        return roles
+        self.derivative = by_position(derivative)
+        return arguments_of("derivative", derivative, ROLES)
 
     def at(self, t: Array, theta: Array, omega: Array) -> tuple[Array, Array]:
         """Both derivatives at these instants."""
@@ -65,7 +66,8 @@ class TorqueSlopes:
         """dT/dt at an instant, if the derivative tells it as a third number; else NaN."""
         if "t" not in self.roles:
             return 0.0
-        told = self._told((t, theta, omega))
+        now = {"t": t, "theta": theta, "omega": omega}
+        told = self._told(tuple(now[role] for role in self.roles))
         return told[2] if len(told) > 2 else nan
 
     def _told(self, row: tuple[float, ...]) -> list[float]:

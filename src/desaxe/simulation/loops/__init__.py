@@ -11,4 +11,5 @@ inside_panel  the state inside of one
 nodes         their coefficients
 compiled      the module of a family of designs
 torque        a torque's function, compiled alone
+values_read   what such a function reads besides its arguments
 """

@@ -7,7 +7,9 @@ sine and cosine are written out where they can be, for then its loop runs in the
 import math
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from dataclasses import dataclass, field
 from functools import lru_cache
+from inspect import signature
 from types import CellType, FunctionType, ModuleType
 from typing import Any
 
@@ -18,26 +20,46 @@ from ...compiler.languages.numba.module import NJIT, numba_parts
 from ...compiler.lowering import for_loops
 from ...compiler.program import Line, Program
 from ...compiler.text import with_short_temporaries, write_lines
-from ...loads.resolve import names_of, takes
+from ...loads.arguments import arguments_of
 from ...mechanism.constants import constants
 from ...runtime.native.modules import Native, native_here
 from ...support.forks import IMPORTS, ForkSafeLock
 from ...support.interrupts import finished
-from ..checks import check_signature
+from ..checks import TIME_AND_CRANK
+from .values_read import values_read
 
 _LOCK = ForkSafeLock()
 _LARGEST = 2.0**45  # rad: beyond, a written-out sine is NaN, and the C library's is asked
-_CALL = "put(rows, uint64(3 * apart + i), {}(get(rows, uint64(i)), get(rows, uint64(apart + i)), {}))"
-_SPEED = "get(rows, uint64(2 * apart + i))"
+_CALL = "put(rows, uint64(3 * apart + i), {}({}))"
+_COLUMNS = {name: f"get(rows, uint64({k} * apart + i))" for k, name in enumerate(TIME_AND_CRANK)}
 _SIGNATURE = """signature = types.int64(types.int64, types.int64, types.int64)
 function = torques
 """
 
 
-@lru_cache(maxsize=32)
-def compiled(torque: Callable[..., Any]) -> Native:
-    """The machine code of a function (see `sources.given`); TypeError where numba cannot compile it."""
+@dataclass(frozen=True)
+class _Frozen:
+    """A function with the values that it reads now, by which it is remembered."""
 
+    values: tuple[Any, ...]
+    torque: Callable[..., Any] = field(compare=False)
+
+
+def compiled(torque: Callable[..., Any]) -> Native:
+    """The machine code of a function (see `sources.given`); TypeError where numba cannot compile it.
+
+    Numba freezes the values of globals and closure cells: the code is made anew where they have changed.
+    """
+    values = values_read(torque)
+    return _made(torque) if values is None else _remembered(_Frozen(values, torque))
+
+
+@lru_cache(maxsize=32)
+def _remembered(frozen: _Frozen) -> Native:
+    return _made(frozen.torque)
+
+
+def _made(torque: Callable[..., Any]) -> Native:
     def made() -> Native:
         with _LOCK:
             return _compiled(torque)
@@ -51,9 +73,9 @@ def _compiled(torque: Callable[..., Any]) -> Native:
         from numba.core.errors import NumbaError
 
     plain = getattr(torque, "py_func", torque)
-    check_signature("torque", plain)
+    arguments = arguments_of("torque", plain, TIME_AND_CRANK)
     try:
-        fast = _fast(torque, plain)
+        fast = _fast(torque, arguments)
     except (NumbaError, TypeError) as error:
         told = str(error).strip().splitlines()
         why = next((line for line in told if line.strip() and "pipeline" not in line), "")
@@ -62,49 +84,43 @@ def _compiled(torque: Callable[..., Any]) -> Native:
             f"{why.strip()}; use numbers and math in it, or simulate one design at a time"
         ) from None
     scope: dict[str, Any] = {"given": fast}
-    parts, body = list[str](), ["rows = room_at(place)", *_loop("given")]
+    parts, body = list[str](), ["rows = room_at(place)", *_loop("given", arguments)]
     if not isinstance(torque, Dispatcher) and _with_sines(plain, {"sin": None, "cos": None}) is not None:
 
         def with_sines(sine: Any, cosine: Any) -> Any:
             """The function with these; the given one where they do not suit it."""
             with suppress(NumbaError, TypeError):
-                return _fast(_with_sines(plain, {"sin": sine, "cos": cosine}), plain)
+                return _fast(_with_sines(plain, {"sin": sine, "cos": cosine}), arguments)
             return fast
 
         scope["with_sines"] = with_sines
         parts = [_written("sin"), _written("cos"), "in_lanes = with_sines(written_sin, written_cos)\n"]
-        body = ["rows = room_at(place)", *_loop("in_lanes"), "none = 0.0", "for i in range(count):"]
+        body = ["rows = room_at(place)", *_loop("in_lanes", arguments), "none = 0.0"]
+        body += ["for i in range(count):"]
         body += ["    none += 0.0 * get(rows, uint64(3 * apart + i))", "if none != none:"]
-        body += [f"    {row}" for row in _loop("given")]
+        body += [f"    {row}" for row in _loop("given", arguments)]
     text = function_text("torques", ("place", "apart", "count"), [*body, "return 0"])
     return native_here(module_text("desaxe: a torque.", numba_parts([*parts, text, _SIGNATURE])), scope)
 
 
-def _loop(name: str) -> list[str]:
+def _loop(name: str, arguments: tuple[str, ...]) -> list[str]:
     """The lines of a loop over the nodes."""
-    return ["for i in range(count):", "    " + _CALL.format(name, _SPEED)]
+    passed = ", ".join(_COLUMNS[argument] for argument in arguments)
+    return ["for i in range(count):", "    " + _CALL.format(name, passed)]
 
 
-def _fast(torque: Any, plain: Callable[..., Any]) -> Any:
-    """A function of t, theta and omega, compiled for numbers."""
+def _fast(torque: Any, arguments: tuple[str, ...]) -> Any:
+    """A function of these arguments, compiled for numbers."""
     with IMPORTS:
         from numba import float64, njit
         from numba.core.dispatcher import Dispatcher
-        from numba.core.types import Float, Integer
+        from numba.core.types import Float, Integer, Omitted
 
     fast: Any = torque if isinstance(torque, Dispatcher) else njit(error_model="numpy")(torque)
-    if not takes(plain, 3):
-        own = fast
-        of_speed = names_of(plain)[:1] == ("omega",)
-        fast = njit(error_model="numpy")(
-            (lambda t, theta, omega: own(theta, omega))
-            if takes(plain, 2)
-            else (lambda t, theta, omega: own(omega))
-            if of_speed
-            else (lambda t, theta, omega: own(theta))
-        )
-    fast.compile((float64, float64, float64))
-    result = fast.overloads[(float64, float64, float64)].signature.return_type
+    others = [p.default for p in signature(fast).parameters.values()][len(arguments) :]
+    types = (*(float64,) * len(arguments), *map(Omitted, others))
+    fast.compile(types)
+    result = fast.overloads[types].signature.return_type
     if not isinstance(result, (Float, Integer)):
         raise TypeError(f"torque: the function gives {result}, expected a number in N*m")
     return fast
