@@ -2,7 +2,7 @@
 
 import argparse
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -50,13 +50,16 @@ def _fit(options: argparse.Namespace) -> int:
         require_place(Path(options.picture), options.overwrite)
     whole = scene(options.scene)
     known = whole.content
-    numbers: dict[str, Any] = {
-        name: value for name, value in known.inputs.items() if isinstance(value, (int, float))
-    }
-    over = dict(_unknown(word, numbers) for word in options.over)
+    over = dict(_unknown(word, known.inputs) for word in options.over)
     fixed: dict[str, Any] = {
-        name: value for name, value in numbers.items() if name not in over and name != "theta"
+        name: value for name, value in known.inputs.items() if name not in over and name != "theta"
     }
+    for name, value in fixed.items():
+        if isinstance(value, tuple):
+            raise UsageError(
+                f"{name}: the scene has {len(value)} values of it, and a fit is of one machine: "
+                f"--over {name}=LOW:HIGH"
+            )
     sigma = dict(_pair("--sigma", word) for word in options.sigma) or None
     found = fit(options.data, over, sigma, options.nuisance, options.loss, branch=known.branch, **fixed)
     told = in_units(found, whole.shown_in)  # JSON is in SI units
@@ -69,15 +72,15 @@ def _fit(options: argparse.Namespace) -> int:
     return 0
 
 
-def _unknown(word: str, numbers: dict[str, Any]) -> tuple[str, Any]:
+def _unknown(word: str, inputs: Mapping[str, Any]) -> tuple[str, Any]:
     """Parse NAME, NAME=START or NAME=LOW:HIGH into a name and its value for `fit`."""
     name, equals, value = word.partition("=")
     if not equals:
-        if name not in numbers:
+        if not isinstance(inputs.get(name), (int, float)):
             raise UsageError(
                 f"--over {name}: the scene has no number for it; give {name}=START or {name}=LOW:HIGH"
             )
-        return name, numbers[name]
+        return name, inputs[name]
     low, colon, high = value.partition(":")
     return (name, (low, high)) if colon else (name, value)
 

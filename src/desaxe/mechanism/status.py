@@ -162,7 +162,7 @@ class FitStatus(Status):
     """
 
     CONVERGED = 0, "converged"
-    STOPPED = 1, "stopped at the limit of evaluations"
+    STOPPED = 1, "not converged: other starts or ranges in over= may help"
     OPEN = 2, "the data leave a combination of the unknowns open"
 
 

@@ -1,5 +1,6 @@
 """Fits of synthetic measurements: what is recovered, how surely, and what the data leave open."""
 
+import json
 import math
 import pickle
 import random
@@ -219,3 +220,70 @@ def test_what_python_alone_reads_as_a_number_is_no_sample(odd, tmp_path):
     for column in (["1", odd, "3"], [b"1", b"2", b"3"], np.array([1.0, odd, 3.0], dtype=object)):
         with pytest.raises(TypeError, match="data: a_C: expected real numbers"):
             fitted({"theta": [1.0, 2.0, 3.0], "a_C": column})
+
+
+STARTS = {"exact": (0.04, 0.13, 0.01), "far": (0.05, 0.09, 0.0), "long": (0.03, 0.18, 0.02)}
+
+
+@pytest.mark.parametrize("loss", ["linear", "cauchy"])
+@pytest.mark.parametrize("start", STARTS)
+def test_a_bias_is_solved_for_at_each_step(start, loss):
+    """Whatever the start; the samples are those of the loop closure, shifted."""
+    lengths = dict(zip(("AB", "BC", "ec"), (0.04, 0.13, 0.01), strict=True))
+    theta = np.radians(np.arange(0.0, 355.0, 6.0))
+    Y = 0.04 * np.cos(theta) + np.sqrt(0.13**2 - (0.01 + 0.04 * np.sin(theta)) ** 2)
+    over = dict(zip(lengths, STARTS[start], strict=True))
+    found = dx.fit({"theta": theta, "Y": Y - 0.17}, over=over, nuisance="Y_bias", loss=loss)
+    assert found["status"] == 0
+    assert found["value"] == pytest.approx({**lengths, "Y_bias": -0.17}, abs=1e-12)
+    speed = dx.evaluate("V_C", theta=theta, omega0=10.0, **lengths)  # of which a scale hides the size
+    data = {"theta": theta, "Y": Y, "V_C": 1.5 * speed + 0.2}
+    sigma = {"Y": 1e-4, "V_C": 1e-3}
+    found = dx.fit(data, over=over, sigma=sigma, nuisance=("V_C_scale", "V_C_bias"), loss=loss, omega0=10.0)
+    expected = {**lengths, "V_C_scale": 1.5, "V_C_bias": 0.2}
+    assert found["value"] == pytest.approx(expected, abs=1e-9)
+
+
+def test_converged_only_where_the_gradient_is_small():
+    """The best fit of these samples is beyond the limit of assembling: the search ends at a slope."""
+    data = {"theta": THETA, "Y": 0.04 * np.cos(THETA) + 0.03 * np.cos(2.0 * THETA)}
+    found = dx.fit(data, over={"AB": 0.04, "BC": 0.06}, ec=0.0, nuisance="Y_bias")
+    assert (found["status"], found["at_bound"]) == (1, {})
+    assert "not converged" in found.report()
+    bounded = dx.fit(data, over={"AB": 0.04, "BC": (0.06, 0.09)}, ec=0.0, nuisance="Y_bias")
+    assert (bounded["status"], bounded["at_bound"]) == (0, {"BC": "low"})
+
+
+SCENE = """outputs = ["T_in"]
+[mechanism]
+ec = "10 mm"
+AB = "50 mm"
+BC = "200 mm"
+branch = -1
+[motion]
+theta = 1
+omega0 = 10
+[masses]
+m_slider = 3
+[loads]
+mu = {mu}
+F_Y = {{ over_theta = [[0, 10], [90, -300], [200, 50], [300, 0]], theta = "deg", kind = "linear" }}
+"""
+
+
+def test_a_scene_gives_all_of_its_machine(tmp_path, capsys):
+    """The load, the friction and the branch too: samples of a slider of 4 kg."""
+    knots = np.radians([0.0, 90.0, 200.0, 300.0])
+    load = dx.over_theta(knots, [10.0, -300.0, 50.0, 0.0], kind="linear")
+    inputs = {"ec": 0.01, "AB": 0.05, "BC": 0.2, "omega0": 10.0, "mu": 0.1, "F_Y": load, "branch": -1}
+    samples = dx.evaluate("T_in", theta=THETA, m_slider=4.0, **inputs)
+    scene, path = tmp_path / "press.toml", tmp_path / "run.csv"
+    rows = zip(THETA.tolist(), samples.tolist(), strict=True)
+    path.write_text("\n".join(["theta,T_in", *(f"{a!r},{b!r}" for a, b in rows)]), encoding="utf-8")
+    scene.write_text(SCENE.format(mu=0.1), encoding="utf-8")
+    assert main(["fit", str(scene), str(path), "--over", "m_slider", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["status"], found["value"]["m_slider"]) == (0, pytest.approx(4.0, rel=1e-12))
+    scene.write_text(SCENE.format(mu=[0.1, 0.2]), encoding="utf-8")
+    assert main(["fit", str(scene), str(path), "--over", "m_slider"]) == 2
+    assert "mu: the scene has 2 values" in capsys.readouterr().err

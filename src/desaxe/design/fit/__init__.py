@@ -1,10 +1,11 @@
 """The parameters of a machine from measurements.
 
-fit      the public call
-data     measurements: mappings, tables, labelled arrays, CSV files
-unknowns parameters and nuisances: starts, bounds, scales
-model    residuals and their exact Jacobian
-solve    the search from several starts
-spread   covariance, and the directions that the data leave open
-result   what was found: numbers, prediction bands, report, plot
+fit         the public call
+data        measurements: mappings, tables, labelled arrays, CSV files
+unknowns    parameters and nuisances: starts, bounds, scales
+model       residuals and their exact Jacobian
+projection  biases and scales, which are linear: solved for at each step
+solve       the search from several starts
+spread      covariance, the directions that the data leave open, and the scaled gradient
+result      what was found: numbers, prediction bands, report, plot
 """

@@ -17,14 +17,16 @@ from ...support.shown import shown
 from .data import MOST, Array, Data, read_data
 from .model import FittedModel
 from .result import DONE, OPEN, STOPPED, WORDS, Fit
-from .solve import solve
-from .spread import LOSSES, inflation, spread_of
+from .solve import Solution, solve
+from .spread import LOSSES, inflation, offset_of, spread_of, weights_of
 from .unknowns import unknowns_of
 
 NORMAL = 1.959963984540054  # two-sided 95 % of the normal distribution
 MAD = 1.4826  # standard deviations in a median absolute deviation, of the normal distribution
 UNLIKELY = 1e-6  # a chi-square that chance exceeds less often is told
 EDGE = 1e-9  # of an unknown's size: a bound that is met
+SMALL = 1e-3  # standard errors, Bates and Watts' bound: a smaller Gauss-Newton step is convergence
+ROUNDING = 16.0 * np.finfo(float).eps  # of the values of the model
 
 
 @with_known_keywords
@@ -66,11 +68,13 @@ def fit(
     evaluations        of the model, all starts together
     chi_square         sum of the squares of residual/sigma over the degrees of freedom, where sigma is given:
                        about 1 if the model holds
-    status, message    0 converged, 1 stopped at the limit of evaluations, 2 a combination left open;
-                       `message` says too where residuals are far beyond sigma
+    status, message    0 converged: the scaled gradient is small, a further step is less than 0.001 standard
+                       errors; 1 not converged, 2 a combination left open; `message` says too where residuals
+                       are far beyond sigma
 
-    SciPy's trust region reflective least squares with the exact Jacobian; a step to a design that cannot be
-    assembled at every sample is shortened. Raises ValueError for data that are empty or fewer than the
+    SciPy's trust region reflective least squares with the exact Jacobian; biases and scales are solved for
+    at each step (variable projection), and need no start. A step to a design that cannot be assembled at
+    every sample is shortened. Raises ValueError for data that are empty or fewer than the
     unknowns, and where no start can be assembled; TypeError for a missing input. Needs the extra `design`.
 
     See docs/choose.md: which call for which question.
@@ -90,9 +94,8 @@ def fit(
         )
     given = _sigmas(sigma, read)
     model = FittedModel(read, unknowns, fixed, branch, given or dict.fromkeys(read.measured, 1.0))
-    if not given:
-        _set_sigma(model, loss, seed)
-    found = solve(model, loss, seed, absolute=bool(given))
+    before = None if given else _set_sigma(model, loss, seed)
+    found = solve(model, loss, seed, absolute=bool(given), before=before)
     return _result(model, found, loss, absolute=bool(given))
 
 
@@ -121,19 +124,23 @@ def _sigma(name: str, value: Any, samples: Array) -> float:
     return found
 
 
-def _set_sigma(model: FittedModel, loss: str, seed: int) -> None:
-    """Set sigma to the scatter of the residuals, robustly: a robust loss needs a scale."""
+def _set_sigma(model: FittedModel, loss: str, seed: int) -> Solution:
+    """Set sigma to the scatter of the residuals, robustly: a robust loss needs a scale; the last solution."""
     (name,) = model.sigma
     model.sigma[name] = float(np.nanstd(model.data.measured[name])) or 1.0
-    for _ in range(1 if loss == "linear" else 3):
-        rest = solve(model, "linear" if loss == "linear" else "soft_l1", seed).fun * model.sigma[name]
+    robust, before = loss != "linear", None
+    for _ in range(3 if robust else 1):
+        before = solve(model, "soft_l1" if robust else loss, seed, before=before)
+        rest = before.residuals * model.sigma[name]
         scatter = MAD * float(np.median(np.abs(rest - np.median(rest))))
         floor = np.finfo(float).eps * float(np.nanmax(np.abs(model.data.measured[name])))
         model.sigma[name] = max(scatter, floor, np.finfo(float).tiny)
+    assert before is not None
+    return before
 
 
 @np.errstate(all="ignore")  # what is not fixed by the data is infinite or NaN
-def _result(model: FittedModel, found: Any, loss: str, absolute: bool) -> Fit:
+def _result(model: FittedModel, found: Solution, loss: str, absolute: bool) -> Fit:
     residuals, jacobian = model.residuals(found.x), model.jacobian(found.x)
     sizes = np.array(
         [abs(x) if abs(x) > 1e-6 * u.scale else u.scale for x, u in zip(found.x, model.unknowns, strict=True)]
@@ -148,7 +155,8 @@ def _result(model: FittedModel, found: Any, loss: str, absolute: bool) -> Fit:
     np.fill_diagonal(correlation, 1.0)
     quantile = NORMAL if absolute else _student(freedom)
     values, slopes = model.quantities(found.x)
-    status = OPEN if spread.unidentified else STOPPED if found.status == 0 else DONE
+    converged = _has_converged(model, found.x, residuals, jacobian, loss)
+    status = STOPPED if not converged else OPEN if spread.unidentified else DONE
     total = float(residuals @ residuals) if absolute else np.nan
     by_name = dict(zip(model.names, found.x.tolist(), strict=True))
     return Fit(
@@ -173,6 +181,20 @@ def _result(model: FittedModel, found: Any, loss: str, absolute: bool) -> Fit:
         },
         model,
     )
+
+
+def _has_converged(model: FittedModel, x: Array, residuals: Array, jacobian: Array, loss: str) -> bool:
+    """True if the scaled gradient is small; unknowns that a bound keeps from going on do not count."""
+    root = np.sqrt(weights_of(residuals, loss))
+    rows, rest = jacobian * root[:, None], residuals * root
+    sizes = np.linalg.norm(rows, axis=0)
+    parts = float((sizes * np.abs(x)).max()) / np.sqrt(rest.size)
+    values = max(float(np.nanmax(np.abs(v))) / model.sigma[q] for q, v in model.data.measured.items())
+    least = max(1.0, ROUNDING / SMALL * max(parts, values))
+    low, high = (np.array([getattr(u, end) for u in model.unknowns]) for end in ("low", "high"))
+    way = np.where(rest @ rows > 0.0, x - low, high - x)  # to the bound that the gradient leads to
+    free = way * sizes > SMALL * max(least, float(np.linalg.norm(rest)) / np.sqrt(rest.size))
+    return offset_of(rows[:, free], rest, least) <= SMALL
 
 
 def _far_beyond(residuals: Array, freedom: int, loss: str) -> str:

@@ -1,6 +1,6 @@
 """The search: SciPy's trust region from several starts, with the exact Jacobian, among feasible designs."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ...mechanism.spoken import named
 from ...support.extras import needed
 from .model import FittedModel
+from .projection import ProjectedModel
 from .unknowns import starts_of
 
 Array = NDArray[np.float64]
@@ -15,52 +16,67 @@ STARTS = 17  # points whose cost is looked at
 RUNS = 3  # of those, the best are followed
 TOLERANCE = 1e-13
 EVALUATIONS = 300
+REDESCENDING = ("cauchy", "arctan")
+
+
+class Solution(NamedTuple):
+    """All unknowns at an optimum, the residuals there, its cost, and how often the model was evaluated."""
+
+    x: Array
+    residuals: Array
+    cost: float
+    evaluations: int
 
 
 @np.errstate(all="ignore")  # squares beyond every double are no better than other bad fits
-def solve(model: FittedModel, loss: str, seed: int, absolute: bool = False) -> Any:
-    """SciPy's result at the best optimum. ValueError where no start is feasible.
+def solve(
+    model: FittedModel, loss: str, seed: int, absolute: bool = False, before: Solution | None = None
+) -> Solution:
+    """The best optimum. ValueError where no start is feasible.
 
-    Where sigma is known and the given start leads to residuals of that size, no other start is tried.
+    Where sigma is known and the first start leads to residuals of that size, no other start is tried; nor is
+    one after a solution with another sigma or loss.
     """
+    unknowns = [unknown for unknown in model.unknowns if not unknown.linear]
+    projected = ProjectedModel(model, loss)
+    points = starts_of(unknowns, STARTS, seed) if before is None else before.x[None, ~projected.linear]
+    runs = []
+    if np.isfinite(_cost(projected.residuals(points[0]), loss)):
+        runs += _run(model, loss, points[0])
+    if not (runs and (len(points) == 1 or (absolute and _is_good(runs[0].residuals)))):
+        costs = np.array([_cost(projected.residuals(point), loss) for point in points[1:]])
+        order = np.argsort(costs, kind="stable")[:RUNS]
+        runs += [run for k in order if np.isfinite(costs[k]) for run in _run(model, loss, points[1 + k])]
+    if not runs:
+        values = zip(unknowns, points[0], strict=True)
+        where = ", ".join(f"{named(unknown.name, value, 'g')}" for unknown, value in values)
+        raise ValueError(f"fit: the mechanism cannot be assembled at every sample at the start: {where}")
+    evaluations = sum(run.evaluations for run in (*runs, *([before] if before else [])))
+    return min(runs, key=lambda run: run.cost)._replace(evaluations=evaluations)
+
+
+def _run(model: FittedModel, loss: str, start: Array) -> list[Solution]:
+    """The optimum from a start; none where the search meets derivatives beyond every double.
+
+    A loss with many minima is searched from the optimum of soft_l1.
+    """
+    with needed("fit", "design"):
+        from scipy.optimize import least_squares
+    unknowns, evaluations = [unknown for unknown in model.unknowns if not unknown.linear], 0
     options: dict[str, Any] = {
-        "bounds": ([u.low for u in model.unknowns], [u.high for u in model.unknowns]),
-        "x_scale": [u.scale for u in model.unknowns],
-        "jac": model.jacobian,
-        "loss": loss,
+        "bounds": ([u.low for u in unknowns], [u.high for u in unknowns]),
+        "x_scale": [u.scale for u in unknowns],
         "max_nfev": EVALUATIONS,
         **dict.fromkeys(("ftol", "xtol", "gtol"), TOLERANCE),
     }
-    points = starts_of(model.unknowns, STARTS, seed)
-    runs = []
-    if np.isfinite(_cost(model.residuals(points[0]), loss)):
-        runs += _run(model, points[0], options)
-        if runs and (len(points) == 1 or (absolute and _is_good(runs[0].fun))):
-            return _best(runs)
-    costs = np.array([_cost(model.residuals(point), loss) for point in points[1:]])
-    order = np.argsort(costs, kind="stable")[:RUNS]
-    runs += [run for k in order if np.isfinite(costs[k]) for run in _run(model, points[1 + k], options)]
-    if not runs:
-        values = zip(model.names, points[0], strict=True)
-        where = ", ".join(f"{named(name, value, 'g')}" for name, value in values)
-        raise ValueError(f"fit: the mechanism cannot be assembled at every sample at the start: {where}")
-    return _best(runs)
-
-
-def _run(model: FittedModel, start: Array, options: dict[str, Any]) -> list[Any]:
-    """SciPy's result from a start; none where it meets derivatives beyond every double."""
-    with needed("fit", "design"):
-        from scipy.optimize import least_squares
-    try:
-        return [least_squares(model.residuals, start, **options)]
-    except (ValueError, np.linalg.LinAlgError):
-        return []
-
-
-def _best(runs: list[Any]) -> Any:
-    best = min(runs, key=lambda run: run.cost)
-    best.evaluations = sum(run.nfev for run in runs)
-    return best
+    for stage in ("soft_l1", loss) if loss in REDESCENDING else (loss,):
+        projected = ProjectedModel(model, stage)
+        try:
+            run = least_squares(projected.residuals, start, projected.jacobian, loss=stage, **options)
+        except (ValueError, np.linalg.LinAlgError):
+            return []
+        start, evaluations = run.x, evaluations + run.nfev
+    return [Solution(projected.full(run.x), run.fun, run.cost, evaluations)]
 
 
 def _is_good(residuals: Array) -> bool:

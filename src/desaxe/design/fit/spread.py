@@ -69,6 +69,24 @@ def inflation(residuals: Array, loss: str) -> float:
     return float(np.mean(psi * psi) / np.mean(slope) ** 2)
 
 
+def weights_of(residuals: Array, loss: str) -> Array:
+    """The weight rho' that a loss gives the square of each residual."""
+    return np.ones_like(residuals) if loss == "linear" else np.asarray(_RHO[loss](residuals * residuals)[0])
+
+
+def offset_of(jacobian: Array, residuals: Array, least: float) -> float:
+    """The scaled gradient, Bates and Watts' relative offset: the next Gauss-Newton step in standard errors.
+
+    These are from the residuals beside the tangent plane, or from `least` where they are smaller.
+    """
+    sizes = np.linalg.norm(jacobian, axis=0)
+    left, singular, _ = np.linalg.svd(jacobian[:, sizes > 0.0] / sizes[sizes > 0.0], full_matrices=False)
+    plane = left[:, singular > OPEN * singular.max(initial=0.0)]
+    along = plane.T @ residuals
+    beside = np.linalg.norm(residuals - plane @ along) / np.sqrt(max(residuals.size - along.size, 1))
+    return float(np.linalg.norm(along) / np.sqrt(max(along.size, 1)) / max(beside, least))
+
+
 def _huber(z: Array) -> tuple[Array, Array]:
     outside = z > 1.0
     root = np.sqrt(np.where(outside, z, 1.0))

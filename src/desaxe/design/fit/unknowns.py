@@ -18,7 +18,10 @@ OFFSET = "theta_offset"
 
 
 class Unknown(NamedTuple):
-    """One unknown: its start, its bounds, the size of a relevant change, and whether a range was given."""
+    """One unknown: its start, its bounds, the size of a relevant change.
+
+    `ranged`: a range was requested; `linear`: the measurements are a linear function of it.
+    """
 
     name: str
     start: float
@@ -26,6 +29,7 @@ class Unknown(NamedTuple):
     high: float
     scale: float
     ranged: bool = False
+    linear: bool = False
 
 
 def unknowns_of(
@@ -86,7 +90,8 @@ def _nuisance(name: str, data: Data) -> Unknown:
         of = name.removesuffix(f"_{kind}")
         if of != name and of in data.measured:
             size = float(np.nanstd(data.measured[of])) or 1.0
-            return Unknown(name, *((0.0, -inf, inf, size) if kind == "bias" else (1.0, -inf, inf, 1.0)))
+            start, scale = (0.0, size) if kind == "bias" else (1.0, 1.0)
+            return Unknown(name, start, -inf, inf, scale, linear=True)
     known = [OFFSET, *(f"{q}_{kind}" for q in data.measured for kind in ("bias", "scale"))]
     raise ValueError(f"nuisance: {name!r}; {did_you_mean(str(name), known)}there are {', '.join(known)}")
 
