@@ -116,6 +116,7 @@ class OptimizeStatus(Status):
     UNBOUNDED = 2, "the objective grows without bound towards the limit of turning"
     AT_LIMIT = 3, "the best is at the limit of turning, nearly reached by the design returned"
     UNSETTLED = 4, "the search did not settle"
+    NO_VALUE = 5, "the objective has no finite value at any design that was looked at"
 
 
 class SynthesisStatus(Status):

@@ -271,3 +271,73 @@ def test_an_optimum_on_a_bound_that_does_not_hold_it_back_is_not_inside():
     found = dx.optimize(minimize="time_ratio", over={"ec": (0, 0.1)}, AB=0.075, BC=0.3)
     assert found["message"] == "optimum at ec = 0 m, on the bound of ec (lower), which does not hold it back"
     assert found["active"] == {}
+
+
+@pytest.mark.parametrize(
+    ("goal", "over", "keep", "expected"),
+    [
+        ("maximize", {"AB": (0.249999, 0.2499995)}, {}, {"status": 0, "AB": 0.2499995}),
+        ("minimize", {"AB": (0.2, 0.25)}, {"margin": (None, 1e-6)}, {"status": 0, "AB": 0.25 - 1.1e-6}),
+        ("maximize", {"AB": (0.25 - 2e-13, 0.25 - 1.9e-13)}, {"margin": (0, None)}, {"status": 1}),
+    ],
+)
+def test_designs_of_a_tiny_margin(goal, over, keep, expected):
+    """The stroke grows with the crank; no message says that a design misses a limit that it keeps."""
+    ec = 1e-7 if expected["status"] == 0 else 0.0
+    found = dx.optimize(**{goal: "stroke"}, over=over, keep=keep, BC=0.25, ec=ec)
+    assert {name: found[name] for name in expected} == pytest.approx(expected, abs=1e-12)
+    assert "by -" not in found["message"]
+
+
+def finite(low, high):
+    """(ec - 0.02)^2 between two eccentricities, NaN below and infinite above."""
+
+    def square(design):
+        ec = design["ec"]
+        value = math.nan if ec < low else math.inf if ec > high else (ec - 0.02) ** 2
+        return value, {"ec": 2.0 * (ec - 0.02)}
+
+    return square
+
+
+@pytest.mark.parametrize(
+    ("goal", "low", "high", "status", "ec", "words"),
+    [
+        ("minimize", 0.0, 0.05, 0, 0.02, "inside of all limits; square has no finite value at 65 of 131"),
+        ("maximize", 0.0, 0.05, 0, 0.05, "at the edge of the designs where square is finite"),
+        ("minimize", 0.05, 1.0, 0, 0.05, "at the edge of the designs where square is finite"),
+        ("maximize", 0.05, 1.0, 0, 0.1, "held back by ec (upper); square has no finite value at"),
+        ("minimize", 1.0, 2.0, 5, None, "square has no finite value at any of the 131 designs"),
+        ("maximize", -2.0, -1.0, 5, None, "square has no finite value at any of the 131 designs"),
+    ],
+)
+def test_an_objective_without_a_value_is_no_design(goal, low, high, status, ec, words):
+    found = dx.optimize(**{goal: finite(low, high)}, over={"ec": (0, 0.1)}, AB=0.1, BC=0.3)
+    assert found["status"] == status
+    assert words in found["message"]
+    assert "two peaks" not in found["message"]
+    if ec is None:
+        assert np.isnan(found["value"])
+        return
+    assert found["ec"] == pytest.approx(ec, abs=1e-8)
+    assert found["value"] == pytest.approx((found["ec"] - 0.02) ** 2, abs=1e-15)
+
+
+def test_a_function_as_an_active_limit_and_as_one_of_several_objectives():
+    """By itself in `active`, `multipliers` and `value`, against the closed form of the time ratio."""
+
+    def double(design):
+        return 2.0 * design["ec"], {"ec": 2.0}
+
+    def ratio(ec):
+        advance = math.pi + math.asin(ec / 0.2) - math.asin(ec / 0.4)
+        return advance / (2.0 * math.pi - advance)
+
+    problem = {"maximize": "time_ratio", "over": {"ec": (0, 0.1)}, "AB": 0.1, "BC": 0.3}
+    found = dx.optimize(keep={double: (None, 0.1)}, **problem)
+    assert (found["status"], found["active"]) == (0, {double: "upper"})
+    gain = (ratio(0.05 + 1e-6) - ratio(0.05 - 1e-6)) / 4e-6
+    assert found["multipliers"][double] == pytest.approx(gain, rel=1e-8)
+    assert "held back by double (upper)" in found["message"]
+    front = dx.optimize(minimize=double, points=3, **problem)
+    assert front["value"][double] == pytest.approx(2.0 * front["ec"], abs=1e-12)

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...evaluation.reductions.own_measure import OwnMeasure
 from ...evaluation.under_loads.loaded import loads_of
 from ...mechanism.inputs import INPUTS, Input
 from ...mechanism.keywords import check_inputs
@@ -24,6 +25,11 @@ class Goal(NamedTuple):
 
     measure: Measure
     sense: int
+
+    @property
+    def key(self) -> Any:
+        """The measure as results are keyed by it: a function is itself."""
+        return self.measure.function if isinstance(self.measure, OwnMeasure) else self.measure
 
 
 def goals_of(maximize: Any, minimize: Any) -> list[Goal]:

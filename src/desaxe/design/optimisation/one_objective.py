@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 
 from .objectives import Goal, lower_limits, problems
-from .optimum import SATISFIED, SETTLED, none_turns, result_of
+from .optimum import SETTLED, none_turns, result_of
 from .problem import UPPER, Array, Limit, Space
-from .search import Candidate, LocalSearch
+from .search import SATISFIED, Candidate, LocalSearch
 
 EDGES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # of the rod: how near to the limit of turning the search goes
 GROWS = 0.2  # the power of the margin from which growth towards the limit is no rounding
@@ -27,6 +27,8 @@ def solved(goal: Goal, space: Space, limits: list[Limit], starts: int, seed: int
         # After the first time the best is followed towards the edge.
         best = _best(goal, space, [*limits, *implied], 0 if places else starts, seed, places)
         found, search = best
+        if found.violation > SATISFIED and _misses_implied(found, search):
+            continue  # a margin that is smaller yet may keep all limits
         at_edge = any(c.key is None and m for c, m in zip(search.limits, found.multipliers, strict=False))
         history.append((edge, abs(found.value)))
         if found.violation > SATISFIED or not at_edge or _power(history) > GROWS:
@@ -57,6 +59,12 @@ def _best(
         found, search = min(*candidates, (nearest, search), (search.run(nearest.z), search), key=_rank)
     found = search.polished(found)
     return (search.probed(found) if found.residual > SETTLED else found), search
+
+
+def _misses_implied(found: Candidate, search: LocalSearch) -> bool:
+    """True if the design breaks the margin that is implied."""
+    value = search.scaled(found.z)[0][search.count :]
+    return any(limit.key is None and v < 0.0 for limit, v in zip(search.limits, value, strict=True))
 
 
 def _rank(candidate: tuple[Candidate, LocalSearch]) -> tuple[float, float]:

@@ -59,7 +59,9 @@ def optimize(
                  the extreme value
     status       0 an optimum; 1 no design keeps the limits; 2 no optimum: the objective grows without
                  bound towards the limit of turning; 3 the best is at that limit itself, and nearly
-                 reached by the design returned; 4 the search did not settle
+                 reached by the design returned; 4 the search did not settle; 5 the objective has no finite
+                 value at any design that was looked at. NaN and infinity are no design: they are left out,
+                 and the message says so
     message      the same in words
     residual     of the optimality conditions, relative
 

@@ -10,13 +10,14 @@ from ...mechanism.inputs import INPUTS
 from ...mechanism.names import LENGTHS
 from ...mechanism.quantity_units import slopes_of, unit_of, units_by_name
 from ...mechanism.spoken import spoken
+from ...mechanism.status import OptimizeStatus
+from ..averages import AVERAGES
 from ..measures import Measure, checked, text_of
 from .objectives import Goal
 from .problem import EQUAL, LOWER, UPPER, Limit, Space
-from .search import NEAR, Candidate, LocalSearch
+from .search import NEAR, SATISFIED, Candidate, LocalSearch
 
-FOUND, NONE, UNBOUNDED, EDGE, UNSURE = range(5)
-SATISFIED = 1e-7  # of its scale: a limit that is broken by less is kept
+FOUND, NONE, UNBOUNDED, EDGE, UNSURE, NO_VALUE = map(int, OptimizeStatus)
 SETTLED = 1e-4  # residual of the optimality conditions
 
 
@@ -30,6 +31,8 @@ def result_of(goal: Goal, space: Space, found: Candidate, search: LocalSearch, g
     status = FOUND
     if found.violation > SATISFIED:
         status = NONE
+    elif not np.isfinite(found.value):
+        status = NO_VALUE
     elif edge:
         status = UNBOUNDED if grows else EDGE
     elif found.residual > SETTLED and not found.kink:
@@ -41,9 +44,9 @@ def result_of(goal: Goal, space: Space, found: Candidate, search: LocalSearch, g
     if status == UNBOUNDED:
         value = goal.sense * np.inf
         multipliers = dict.fromkeys(multipliers, np.nan)
-    if status == NONE:
+    if status in (NONE, NO_VALUE):
         value = np.nan
-    if status == NONE or found.kink:
+    if status in (NONE, NO_VALUE) or found.kink:
         multipliers = dict.fromkeys(multipliers, np.nan)
     return {
         **design,
@@ -93,6 +96,8 @@ def _message(
     limit = "margin = BC - AB - |ec| = 0"
     if status == NONE:
         return f"no design in over= keeps all limits: {_missed(found, search)} at the nearest, {where}"
+    if status == NO_VALUE:
+        return f"{what} has no finite value at any of the {len(search.places)} designs that were looked at"
     if status == UNBOUNDED:
         told = f"no optimum: {what} grows without bound towards the limit of turning, {limit}, as near "
         keep = f"; keep a margin, such as keep={{'margin': ('{_number('margin', 0.005)}', None)}}"
@@ -103,11 +108,27 @@ def _message(
     if status == UNSURE:
         unsure = f", where the optimality conditions hold to {found.residual:.1g} only: more starts= may help"
         return f"the search ended at {where}{unsure}"
-    names = {key: key if isinstance(key, str) else text_of(key) for key in active}
+    names = {key: key if key in INPUTS else text_of(checked(key)) for key in active}
     held = ", ".join(f"{names[key]} ({side})" for key, side in active.items())
-    kink = ", at a kink, where two peaks share the extreme value" if found.kink else ""
     rest = f", held back by {held}" if held else _inside(space, found.z)
-    return f"optimum at {where}{kink}{rest}"
+    return f"optimum at {where}{_kink(goal, found)}{rest}{_left_out(what, search)}"
+
+
+def _kink(goal: Goal, found: Candidate) -> str:
+    """Why the derivatives do not vanish at an optimum, as text."""
+    if found.edge:
+        return f", at the edge of the designs where {text_of(goal.measure)} is finite"
+    if not found.kink:
+        return ""
+    peaks = isinstance(goal.measure, tuple) and goal.measure[0] not in AVERAGES
+    return ", at a kink" + (", where two peaks share the extreme value" if peaks else "")
+
+
+def _left_out(what: str, search: LocalSearch) -> str:
+    """How many designs of the scan keep the limits and have no finite objective, as text."""
+    lost = int(search.without_value(search.places).sum())
+    share = f"{lost} of {len(search.places)} designs that were looked at"
+    return f"; {what} has no finite value at {share}, which are left out" if lost else ""
 
 
 def _inside(space: Space, z: Any) -> str:
@@ -164,19 +185,23 @@ def _misses_turning(short: float) -> str:
 def _missed(found: Candidate, search: LocalSearch) -> str:
     """The most violated limit, and the violation, as text."""
     value = search.scaled(found.z)[0][search.count :]
-    worst = int(np.argmax(np.where(search.equal, np.abs(value), -value)))
-    limit = search.limits[worst]
-    short = abs(float(value[worst] * search.scale[search.count + worst]))
-    if limit.key is None:  # the implied one, which is kept with a little to spare
-        return _misses_turning(short - limit.bound)
-    return _misses(checked(limit.key), limit.side, short)
+    wrong = np.where(search.equal, np.abs(value), -value)
+    short = wrong * search.scale[search.count :]
+    for k in np.argsort(-wrong):
+        limit = search.limits[k]
+        if limit.key is not None and short[k] > 0.0:
+            return _misses(checked(limit.key), limit.side, float(short[k]))
+        if limit.key is None and short[k] > limit.bound:  # implied, and kept with a little to spare
+            return _misses_turning(float(short[k] - limit.bound))
+    least = min(limit.bound for limit in search.limits if limit.key is None)
+    return f"the margin, above 0, is less than {_number('margin', least)}"
 
 
 def units_of_optimum(goals: list[Goal], found: Mapping[str, Any]) -> dict[Any, Any]:
     """The units of the design, of the objectives, and of what they gain by relaxing a limit."""
-    values = {goal.measure: unit_of(goal.measure) for goal in goals}
+    values = {goal.key: unit_of(goal.measure) for goal in goals}
     units = units_by_name({key: value for key, value in found.items() if key in INPUTS})
     if isinstance(found["value"], Mapping):
         return {**units, "value": values}
     gains = slopes_of(goals[0].measure, found["multipliers"])
-    return {**units, "value": values[goals[0].measure], "multipliers": gains}
+    return {**units, "value": values[goals[0].key], "multipliers": gains}

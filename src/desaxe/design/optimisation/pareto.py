@@ -44,7 +44,7 @@ def front(
     kept = [found[row] for row in rows]
     return {
         **{name: np.array([result[name] for result in kept]) for name in space.names},
-        "value": {goal.measure: values[rows, k] for k, goal in enumerate(goals)},
+        "value": {goal.key: values[rows, k] for k, goal in enumerate(goals)},
         "status": np.array([result["status"] for result in kept], np.int8),
         "residual": np.array([result["residual"] for result in kept]),
         "message": f"{len(rows)} design{'s' if len(rows) > 1 else ''} on the Pareto front",
@@ -72,7 +72,7 @@ def _none(goals: list[Goal], space: Space, result: dict[str, Any]) -> dict[str, 
     nothing = np.empty(0)
     return {
         **dict.fromkeys(space.names, nothing),
-        "value": {goal.measure: nothing for goal in goals},
+        "value": {goal.key: nothing for goal in goals},
         "status": np.full(1, result["status"] or NONE, np.int8),
         "residual": nothing,
         "message": result["message"],

@@ -25,6 +25,7 @@ NEAR = 1e-6  # of its scale: a limit that is so near is active
 CLOSE = 0.01  # of its scale: a margin that makes the functions steep
 PROBES = 400  # of a search without derivatives
 BROKEN = 1e-8  # of its scale: how far that may break a limit
+SATISFIED = 1e-7  # of its scale: a limit that is broken by less is kept
 LEVEL = 1e-6  # scaled slopes below this are none
 STEPS = 100
 FLAT = 1e-10  # of the scale: a smaller gain ends a run
@@ -35,11 +36,12 @@ class Candidate(NamedTuple):
     """A candidate for the optimum, in the variables from 0 to 1."""
 
     z: Array
-    value: float  # of the largest piece
+    value: float  # of the largest piece; infinite where one is not finite
     violation: float  # of the limits, in their scales
     residual: float  # of the optimality conditions, relative
     multipliers: Array  # of the limits, then of the lower and upper ends of the variables
     kink: bool = False  # not settled, and yet nothing better is near
+    edge: bool = False  # a neighbour keeps the limits and has no finite objective
 
 
 class LocalSearch:
@@ -83,7 +85,7 @@ class LocalSearch:
         """The best points of the scan, at some distance from each other."""
         value = self.scanned[:, : self.count].max(axis=1)
         violation = self._violation(self.scanned[:, self.count :])
-        value = np.where(np.isfinite(value), value, WORST)
+        value = np.where(np.isfinite(value), value, np.inf)
         order = np.lexsort((value, np.round(violation, 9)))
         chosen: list[Array] = []
         for place in self.places[order]:
@@ -113,6 +115,12 @@ class LocalSearch:
         wrong = np.where(np.isnan(limits), WORST, wrong)
         total: Array = wrong.max(axis=-1) if wrong.shape[-1] else np.zeros(wrong.shape[:-1])
         return total
+
+    def without_value(self, z: Array) -> Array:
+        """Flags of the designs that keep the limits and have no finite objective."""
+        found = self.functions(z).value / self.scale
+        lost = ~np.isfinite(found[:, : self.count]).all(axis=1)
+        return np.asarray(lost & (self._violation(found[:, self.count :]) <= SATISFIED))
 
     # ---- one run ----------------------------------------------------------------------------------
 
@@ -184,7 +192,10 @@ class LocalSearch:
         other = self.judged(np.clip(answer.x, 0.0, 1.0))
         better = other.violation <= BROKEN and other.value < found.value
         gain = (found.value - other.value) / self.scale[0] if better else 0.0
-        return (other if better else found)._replace(kink=bool(gain <= BROKEN))
+        best = other if better else found
+        beside = np.vstack([np.eye(best.z.size), -np.eye(best.z.size)]) * NEAR
+        edge = self.without_value(np.clip(best.z + beside, 0.0, 1.0)).any()
+        return best._replace(kink=bool(gain <= BROKEN), edge=bool(edge))
 
     def nearest(self, found: Candidate) -> Candidate:
         """The design that breaks the limits least, found without derivatives from the best of the scan."""
@@ -232,7 +243,9 @@ class LocalSearch:
         multipliers[: len(own)] = own / self.scale[m:]
         multipliers[len(own) :][at_end] = found[many + some :]
         violation = float(self._violation(limits))
-        return Candidate(z, float(largest * self.scale[0]), violation, residual, multipliers)
+        finite = np.isfinite(self.functions(z).value[0][:m]).all()
+        top = float(largest * self.scale[0]) if finite else np.inf
+        return Candidate(z, top, violation, residual, multipliers)
 
     def polished(self, found: Candidate) -> Candidate:
         """The optimality conditions with these limits active, solved for the last digits."""
@@ -274,7 +287,7 @@ class LocalSearch:
     def _better(self, found: Candidate, z: Array) -> Candidate:
         other = self.judged(z)
         worth = other.violation <= max(found.violation, 1e-9) and other.residual <= max(found.residual, 1e-9)
-        return other if worth else found
+        return other if worth and np.isfinite(other.value) else found
 
 
 def _parameters(function: Any) -> Any:
