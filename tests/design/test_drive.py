@@ -104,6 +104,19 @@ def test_gradients_by_differences(design):
             ), (figure, name)
 
 
+@pytest.mark.parametrize("mu", [0.0, 0.15])
+def test_a_flywheel_is_less_by_what_the_crank_has(mu):
+    """The crank turns about A: a flywheel may replace I_crank + m_crank r_crank^2, with the same torque."""
+    crank = {"m_crank": 3.0, "r_crank": 0.02, "I_crank": 0.01}
+    for omitted in ((), ("I_crank",)):
+        design = {n: v for n, v in {**PRESS, **crank, "mu": mu, "g_Y": 0.0}.items() if n not in omitted}
+        slopes = dx.drive(fluctuation=0.05, **design)["gradient"]
+        expected = {"m_crank": -(0.02**2), "r_crank": -2.0 * 3.0 * 0.02, "I_crank": -1.0}
+        for name in crank.keys() - {*omitted}:
+            assert slopes["flywheel_inertia"][name] == pytest.approx(expected[name], rel=1e-9)
+            assert slopes["flywheel_torque"][name] == pytest.approx(0.0, abs=1e-9)
+
+
 LONG = pytest.mark.thorough
 JUMPING = {
     "over_stroke": dx.over_stroke([0.0, 0.008, 0.008], [-8e4, -8e4, 0.0], [0.0] * 3, dead_centre="outer"),

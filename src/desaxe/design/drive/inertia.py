@@ -140,7 +140,7 @@ def _without(inertia: Callable[[float], float], fluctuation: float, J: float) ->
 
 def _gradient(design: Turn, fluctuation: float, state: FlywheelMotion) -> dict[str, tuple[float, float]]:
     """The derivatives of torque and inertia by parameters and fluctuation; see the head of this file."""
-    own = [name for name in design.parameters if name != "omega0"]
+    own = design.moving_parameters
     if not state.inertia:  # none is needed, and a little more or less of anything changes nothing
         return dict.fromkeys((*own, "omega0", "fluctuation"), (nan, 0.0))
     names = ["T_in_wrt_omega", "T_in_wrt_alpha", *(f"T_in_wrt_{name}" for name in own)]

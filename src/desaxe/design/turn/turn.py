@@ -69,7 +69,17 @@ class Turn:
     @computed_once
     def parameters(self) -> tuple[str, ...]:
         """The inputs that are numbers and matter to the torque."""
-        asked = request(("T_in",), {**self.numbers, **self.loads}, self.branch, "standard")
+        return self._parameters(self.numbers)
+
+    @computed_once
+    def moving_parameters(self) -> tuple[str, ...]:
+        """The inputs that are numbers and matter to the torque where the speed varies; not the speed itself."""
+        state = {"omega": 1.0, "alpha": 1.0}
+        numbers = {n: value for n, value in self.numbers.items() if n != "omega0"}
+        return tuple(n for n in self._parameters({**numbers, **state}) if n not in state)
+
+    def _parameters(self, numbers: Mapping[str, float]) -> tuple[str, ...]:
+        asked = request(("T_in",), {**numbers, **self.loads}, self.branch, "standard")
         return tuple(n for n in asked.inputs if n != "theta" and n not in self.loads)
 
     @property
