@@ -56,6 +56,11 @@ def converted(system: UnitSystem, name: str, value: Any) -> Any:
         return value if hasattr(value, "iloc") else converted(system, name, value.tolist())
     if callable(value):
         return settled(name, value, system)
+    if hasattr(value, "ppf"):
+        with IMPORTS:
+            from ..design.tolerance.uncertain import DistributionInSI
+
+        return DistributionInSI(value, system.of(name))
     if "units" in getattr(value, "attrs", {}):
         return value
     plain = isinstance(value, (int, float)) or hasattr(value, "dtype")

@@ -292,3 +292,38 @@ def test_an_input_that_a_quantity_does_not_depend_on_counts_for_nothing():
     exact = dx.tolerance("a_C", ec=0.0, AB=0.125, BC=0.35, m_slider=plus_minus(1.0, 0.1), **alone)
     assert exact["first_order"]["std"] == 0.0
     assert exact["monte_carlo"]["std"] < 1e-12 * abs(exact["value"])  # that of equal numbers rounds
+
+
+@pytest.mark.parametrize(
+    ("name", "shape", "unit"),
+    [("theta", stats.norm(60, 1), math.pi / 180), ("omega0", stats.gamma(4.0, 280, 10), math.pi / 30)],
+)
+def test_distributions_are_in_the_units_of_the_machine(name, shape, unit):
+    """Against the loop closure in mm; the numbers of a distribution are degrees, or rpm."""
+    machine = dx.Machine(ec=10, AB=50, BC=200, omega0=300, units="mm, deg, rpm")
+    found = machine.tolerance("V_C", samples=2000, **{"theta": 60, name: shape})
+
+    def speed(theta, omega):
+        s, c = np.sin(theta), np.cos(theta)
+        lean = 10.0 + 50.0 * s
+        return -(50.0 * s + lean * 50.0 * c / np.sqrt(200.0**2 - lean**2)) * omega
+
+    at = {"theta": 60.0 * math.pi / 180, "omega0": 300.0 * math.pi / 30}
+    at[name] = shape.mean() * unit
+    assert found["value"] == pytest.approx(speed(at["theta"], at["omega0"]), rel=1e-12)
+    step = {"theta": 1e-6, "omega0": 1e-3}[name]
+    ends = [speed(*{**at, name: at[name] + side * step}.values()) for side in (1, -1)]
+    slope = (ends[0] - ends[1]) / (2 * step) * unit
+    assert found["gradient"][name] == pytest.approx(slope, rel=1e-6)
+    assert found["first_order"]["std"] == pytest.approx(abs(slope) * shape.std(), rel=1e-6)
+    drawn = speed(*{**at, name: shape.ppf((np.arange(20000) + 0.5) / 20000) * unit}.values())
+    assert found["monte_carlo"]["std"] == pytest.approx(drawn.std(), rel=0.06)
+    assert found["monte_carlo"]["mean"] == pytest.approx(drawn.mean(), abs=0.1 * drawn.std())
+
+
+@pytest.mark.parametrize("name", ["stroke", "margin", ("absmax", "a_C"), ("rms", "a_C"), ("at", 1.0, "Y")])
+@pytest.mark.parametrize("inputs", [{"AB": None, "BC": 0.3}, {"BC": 0.3}, {"AB": 0.1}])
+def test_a_missing_length_is_named(name, inputs):
+    missing = "AB" if inputs.get("AB") is None else "BC"
+    with pytest.raises(TypeError, match=f"tolerance: {missing} is missing"):
+        dx.tolerance(name, ec=plus_minus(0.01, 0.001), omega0=10.0, **inputs)

@@ -13,7 +13,7 @@ from ...mechanism.keywords import with_known_keywords
 from ...mechanism.names import LENGTHS, sensitivity
 from ...mechanism.ranges import Between
 from ...mechanism.status import ToleranceStatus
-from ...runtime.request import check_common
+from ...runtime.request import as_number, check_common
 from ...support.checks import whole_number
 from ...support.extras import needed
 from ...support.forks import IMPORTS, imported
@@ -183,13 +183,14 @@ def _function(name: Any, given: Mapping[str, Any], branch: int) -> SampledQuanti
     varying = tuple(n for n in given if n not in fixed)
     if design and "theta" in given:
         raise ValueError(f"theta: {name} is of a whole turn")
-    if design:
+    if design or name == "margin":
+        for length in LENGTHS:
+            if length not in given:
+                as_number(length, None, LENGTHS, ("tolerance",))
         return SampledQuantity(checked(name), False, fixed, varying, branch)
     quantity(name, "omega" in given)
     if name == "status":
         raise ValueError("status is not a real number")
-    if name == "margin":
-        return SampledQuantity("margin", False, fixed, varying, branch)
     state = "omega" in given
     for p in varying:
         if p in inputs_of(name, state) and not has(sensitivity(name, p), state):

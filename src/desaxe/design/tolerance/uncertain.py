@@ -12,6 +12,7 @@ from ...mechanism.read import in_si
 from ...mechanism.read import read as read_number
 from ...mechanism.spoken import spoken
 from ...support.extras import needed
+from ...units.system import Conversion
 from ...units.text import PLUS_MINUS, with_unit_of
 
 Array = NDArray[np.float64]
@@ -45,6 +46,23 @@ class Inexact(NamedTuple):
         if self.kind == "normal":
             return random.normal(self.mean, self.std, count)
         return self.at(random.random(count))
+
+
+class DistributionInSI:
+    """A distribution of numbers in another unit, in SI units: what `read` takes of a frozen one of SciPy."""
+
+    def __init__(self, distribution: Any, conversion: Conversion) -> None:
+        self.distribution, self.conversion = distribution, conversion
+
+    def ppf(self, share: Any) -> Any:
+        """Quantiles in SI units."""
+        return self.conversion.to_si(self.distribution.ppf(share))
+
+    def stats(self, moments: str = "mvsk") -> tuple[float, ...]:
+        """Mean and variance in SI units, skewness and excess kurtosis."""
+        mean, variance, *shape = (float(x) for x in self.distribution.stats(moments=moments))
+        si = self.conversion.si
+        return (float(self.conversion.to_si(mean)), variance * float(si * si), *shape)
 
 
 def read(name: str, value: Any, distribution: str, sigmas: float) -> float | Inexact:

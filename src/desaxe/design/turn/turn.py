@@ -73,7 +73,7 @@ class Turn:
 
     @computed_once
     def moving_parameters(self) -> tuple[str, ...]:
-        """The inputs that are numbers and matter to the torque where the speed varies; not the speed itself."""
+        """The inputs that are numbers and matter to the torque at a varying speed, but for the speed."""
         state = {"omega": 1.0, "alpha": 1.0}
         numbers = {n: value for n, value in self.numbers.items() if n != "omega0"}
         return tuple(n for n in self._parameters({**numbers, **state}) if n not in state)
