@@ -54,3 +54,17 @@ def test_labels(plane):
 def test_there_and_back(plane, tmp_path):
     plane.to_netcdf(tmp_path / "map.nc", engine="h5netcdf")
     xr.testing.assert_identical(xr.load_dataset(tmp_path / "map.nc", engine="h5netcdf"), plane)
+
+
+def margin(design):
+    return design["ec"], {"ec": 1.0}
+
+
+@pytest.mark.parametrize("names", [[("max", "T_in"), ("max", "T_in_wrt_ec")], [margin, "stroke"]])
+def test_two_variables_of_one_name_are_refused(names):
+    """d(max T_in)/d ec and max(d T_in/d ec) are different; a function may be called as a variable is."""
+    inputs = {"ec": 0.01, "AB": 0.05, "BC": 0.2, "omega0": 30.0, "m_slider": 2.0}
+    with pytest.raises(ValueError, match="two variables would be called ma"):
+        dx.design_map(names, derivatives=True, **inputs)
+    alone = [dx.design_map(name, derivatives=True, **inputs) for name in names if not callable(name)]
+    assert {"margin", "can_turn", "status", "kind"} <= set(alone[0].data_vars)

@@ -47,3 +47,27 @@ def test_peaks_in_a_store(tmp_path):
     assert "margin" in stored
     with pytest.raises(ValueError, match="kind = 'mean' of a_C"):
         dx.sweep([], store=tmp_path / "no.zarr", peaks={"a_C": "mean"}, **inputs)
+
+
+def test_a_derivative_of_a_peak_and_a_peak_of_a_derivative_do_not_share_a_name():
+    inputs = {"ec": [0.01, 0.02], "AB": 0.05, "BC": 0.2, "omega0": 30.0, "m_slider": 2.0}
+    with pytest.raises(
+        ValueError, match="peak_max_T_in_wrt_ec would be that of T_in and that of T_in_wrt_ec"
+    ):
+        dx.sweep([], store=None, peaks={"T_in": "max", "T_in_wrt_ec": "max"}, **inputs)
+    found = dx.sweep([], store=None, peaks={"T_in": "max", "T_in_wrt_ec": "min"}, **inputs)
+    assert float(found.peak_max_T_in_wrt_ec[0]) != float(found.peak_min_T_in_wrt_ec[0])
+
+
+@pytest.mark.parametrize("units", ["mm, deg, rpm, kN, N mm", {"torque": "kN m", "length": "cm"}])
+@pytest.mark.parametrize("name", ["T_in", "a_C", "T_in_wrt_ec"])
+def test_a_machine_has_the_gradients_of_its_sweep_in_the_units_of_its_peaks(units, name):
+    press = dx.Machine(ec="10 mm", AB="50 mm", BC="200 mm", omega0="300 rpm", m_slider=2, units=units)
+    swept = press.sweep([], store=None, peaks=name, ec=[press.in_units()["ec"]])
+    peak = press.peak(name)
+    stem = f"peak_absmax_{name}"
+    assert swept[stem].attrs["units"] == peak.units["value"]
+    for parameter, slope in peak["gradient"].items():
+        variable = swept[f"{stem}_wrt_{parameter}"]
+        assert variable.attrs["units"] == peak.units["gradient"][parameter]
+        assert float(variable[0]) == pytest.approx(slope, rel=1e-9)

@@ -62,25 +62,22 @@ def design_map(names: Any = (), *, branch: int = 1, derivatives: bool = False, *
     designs = {n: np.broadcast_to(a, shape).reshape(-1) for n, a in open_axes.items()}
     variables = _feasible(designs, shape, dimensions)
     for measure, found in measured(wanted, designs | loads, branch).items():
-        name = text_of(measure).replace(" ", "_")
-        attributes = {"units": str(unit_of(measure)), "long_name": _meaning(measure)}
-        variables[name] = (dimensions, np.reshape(found.value, shape), attributes)
+        name, meaning = _name(measure), _meaning(measure)
+        rows = {name: (found.value, str(unit_of(measure)), meaning)}
         for p, slope in found.gradient.items() if derivatives else ():
-            told = {
-                "units": _slope_unit(measure, p),
-                "long_name": f"{_meaning(measure)}, by {p}",
-            }
-            variables[f"{name}_wrt_{p}"] = (
-                dimensions,
-                np.broadcast_to(slope, designs["ec"].shape).reshape(shape),
-                told,
-            )
+            rows[f"{name}_wrt_{p}"] = slope, _slope_unit(measure, p), f"{meaning}, by {p}"
+        for row, (values, unit, words) in rows.items():
+            if row in variables and measure != "margin":
+                raise ValueError(f"design_map: two variables would be called {row}; ask for them one by one")
+            array = np.broadcast_to(values, designs["ec"].shape).reshape(shape)
+            variables[row] = (dimensions, array, {"units": unit, "long_name": words})
     import_xarray("design_map")
     with IMPORTS:
         import xarray
     coordinates = {n: ((n,) if axis.ndim else (), axis, input_attributes(n)) for n, axis in axes.items()}
-    names = [text_of(measure).replace(" ", "_") for measure in wanted]
-    about = provenance(names, axes, branch, title="offset slider-crank designs")
+    about = provenance(
+        [_name(measure) for measure in wanted], axes, branch, title="offset slider-crank designs"
+    )
     return with_loads(xarray.Dataset(variables, coordinates, about), loads)
 
 
@@ -111,6 +108,11 @@ def _feasible(designs: dict[str, Any], shape: tuple[int, ...], dimensions: list[
         }
         variables[name] = (dimensions, np.asarray(codes, np.int8).reshape(shape), attributes)
     return variables
+
+
+def _name(measure: Measure) -> str:
+    """The variable of a measure."""
+    return text_of(measure).replace(" ", "_")
 
 
 def _slope_unit(measure: Measure, parameter: str) -> str:

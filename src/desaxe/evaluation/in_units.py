@@ -157,13 +157,23 @@ def conversion_of_variable(units: UnitSystem, name: str, unit: str) -> Conversio
     along = _ALONG.search(name)
     if along and INPUTS[along[1]].unit == unit:
         return units.of(along[1])
-    stripped = [name.removeprefix(f"{kind}_") for kind in KINDS]
-    words = name.split("_")  # a_C_max_mean, Y_at_60_deg
+    base = name.removeprefix("peak_")
+    stripped = [base.removeprefix(f"{kind}_") for kind in KINDS]
+    words = base.split("_")  # a_C_max_mean, Y_at_60_deg
     stripped += ["_".join(words[:count]) for count in range(len(words) - 1, 0, -1)]
     for known in dict.fromkeys([name, *stripped]):
-        try:
-            if "_wrt_" in known or SI.of(known).unit == unit:
-                return units.of(known)
-        except ValueError:
-            continue
+        found = _conversion_of_quantity(units, known, unit)
+        if found is not None:
+            return found
     return units.of_unit(unit)
+
+
+def _conversion_of_quantity(units: UnitSystem, name: str, unit: str) -> Conversion | None:
+    """The conversion of a quantity with this SI unit, or of the derivative of one; else None."""
+    known = SI.find(name)
+    if known is not None and known.unit == unit:
+        return units.of(name)
+    base, _, parameter = name.rpartition("_wrt_")
+    if parameter in INPUTS and SI.find(base) is not None and SI.slope(base, parameter).unit == unit:
+        return units.slope(base, parameter) if units.quotients else Conversion(unit)
+    return None

@@ -42,6 +42,11 @@ class PeakStep(NamedTuple):
     state: bool
 
     @property
+    def quantity(self) -> str:
+        """The quantity whose peak it is."""
+        return self.block.sought.plan.name
+
+    @property
     def axes(self) -> tuple[str, ...]:
         """The dimensions whose values the step needs."""
         return self.dims
@@ -77,11 +82,11 @@ class PeakStep(NamedTuple):
         return {self._variable(output): array for output, array in found.items()}
 
     def _variable(self, output: str) -> str:
-        stem = f"peak_{self.block.sought.kind}_{self.block.sought.plan.name}"
+        stem = f"peak_{self.block.sought.kind}_{self.quantity}"
         return stem + ("" if output == "value" else f"_{output.replace(GRADIENT, 'wrt_', 1)}")
 
     def _attributes(self, output: str) -> dict[str, Any]:
-        name, kind = self.block.sought.plan.name, self.block.sought.kind
+        name, kind = self.quantity, self.block.sought.kind
         if output == "value":
             own = attributes(name, self.state)
             return {**own, "long_name": f"{WORDS[kind]} over theta of {own['long_name']}"}

@@ -93,6 +93,7 @@ def _plan_of(
     lost = [n for step in peaks for n in step.dims if reductions is not None and n in reductions.axes]
     if lost:
         raise ValueError(f"peaks: each is of one design, and {lost[0]} is reduced; sweep them by themselves")
+    _require_names_apart(peaks)
     if not (outer.names or peaks):
         raise ValueError("sweep: nothing is requested, give names or peaks=")
     if outer.names:
@@ -102,6 +103,17 @@ def _plan_of(
         plan = Plan(outer, branch, accuracy, (), designs)
     margin = () if outer.names and reductions is None else margin_of(outer, branch, accuracy, plan.dims)
     return plan._replace(beside=(*margin, *peaks))
+
+
+def _require_names_apart(peaks: Sequence[PeakStep]) -> None:
+    """ValueError for a name that is that of a peak and of a derivative of another one."""
+    known: dict[str, str] = {}
+    for step in peaks:
+        for name in step.outputs:
+            if name in known:
+                both = f"that of {known[name]} and that of {step.quantity}"
+                raise ValueError(f"peaks: {name} would be {both}; sweep them one by one")
+            known[name] = step.quantity
 
 
 def identity(
