@@ -125,7 +125,7 @@ def _kink(goal: Goal, found: Candidate) -> str:
 
 
 def _left_out(what: str, search: LocalSearch) -> str:
-    """How many designs of the scan keep the limits and have no finite objective, as text."""
+    """The number of designs of the scan that keep the limits and have no finite objective, as text."""
     lost = int(search.without_value(search.places).sum())
     share = f"{lost} of {len(search.places)} designs that were looked at"
     return f"; {what} has no finite value at {share}, which are left out" if lost else ""
