@@ -17,7 +17,7 @@ from ...support.shown import shown
 from .data import MOST, Array, Data, read_data
 from .model import FittedModel
 from .result import DONE, OPEN, STOPPED, WORDS, Fit
-from .solve import Solution, solve
+from .solve import FitSolution, solve
 from .spread import LOSSES, inflation, offset_of, spread_of, weights_of
 from .unknowns import unknowns_of
 
@@ -124,7 +124,7 @@ def _sigma(name: str, value: Any, samples: Array) -> float:
     return found
 
 
-def _set_sigma(model: FittedModel, loss: str, seed: int) -> Solution:
+def _set_sigma(model: FittedModel, loss: str, seed: int) -> FitSolution:
     """Set sigma to the scatter of the residuals, robustly: a robust loss needs a scale; the last solution."""
     (name,) = model.sigma
     model.sigma[name] = float(np.nanstd(model.data.measured[name])) or 1.0
@@ -140,7 +140,7 @@ def _set_sigma(model: FittedModel, loss: str, seed: int) -> Solution:
 
 
 @np.errstate(all="ignore")  # what is not fixed by the data is infinite or NaN
-def _result(model: FittedModel, found: Solution, loss: str, absolute: bool) -> Fit:
+def _result(model: FittedModel, found: FitSolution, loss: str, absolute: bool) -> Fit:
     residuals, jacobian = model.residuals(found.x), model.jacobian(found.x)
     sizes = np.array(
         [abs(x) if abs(x) > 1e-6 * u.scale else u.scale for x, u in zip(found.x, model.unknowns, strict=True)]

@@ -19,7 +19,7 @@ EVALUATIONS = 300
 REDESCENDING = ("cauchy", "arctan")
 
 
-class Solution(NamedTuple):
+class FitSolution(NamedTuple):
     """All unknowns at an optimum, the residuals there, its cost, and how often the model was evaluated."""
 
     x: Array
@@ -30,8 +30,8 @@ class Solution(NamedTuple):
 
 @np.errstate(all="ignore")  # squares beyond every double are no better than other bad fits
 def solve(
-    model: FittedModel, loss: str, seed: int, absolute: bool = False, before: Solution | None = None
-) -> Solution:
+    model: FittedModel, loss: str, seed: int, absolute: bool = False, before: FitSolution | None = None
+) -> FitSolution:
     """The best optimum. ValueError where no start is feasible.
 
     Where sigma is known and the first start leads to residuals of that size, no other start is tried; nor is
@@ -55,7 +55,7 @@ def solve(
     return min(runs, key=lambda run: run.cost)._replace(evaluations=evaluations)
 
 
-def _run(model: FittedModel, loss: str, start: Array) -> list[Solution]:
+def _run(model: FittedModel, loss: str, start: Array) -> list[FitSolution]:
     """The optimum from a start; none where the search meets derivatives beyond every double.
 
     A loss with many minima is searched from the optimum of soft_l1.
@@ -76,7 +76,7 @@ def _run(model: FittedModel, loss: str, start: Array) -> list[Solution]:
         except (ValueError, np.linalg.LinAlgError):
             return []
         start, evaluations = run.x, evaluations + run.nfev
-    return [Solution(projected.full(run.x), run.fun, run.cost, evaluations)]
+    return [FitSolution(projected.full(run.x), run.fun, run.cost, evaluations)]
 
 
 def _is_good(residuals: Array) -> bool:
