@@ -1,6 +1,6 @@
 """What the ledgers say of a paper, for its notebook: `beside("A-eq19")` shows the entry under a figure."""
 
-from desaxe.errata.ledger import entries
+from desaxe.tests.papers.errata.ledger import entries
 
 
 class Beside:

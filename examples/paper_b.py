@@ -4,7 +4,7 @@
 
 The paper calls AB, BC, ec, phi, Y by k, c, e, alpha, x, measures s = k + c - x, and counts the slider's
 velocity and acceleration as those of s. Solid curves are the mechanism's own; dashed ones are the paper's
-torque (48), with the wrong lever (`desaxe errata --paper B` has more), and its existing model (52), (53).
+torque (48), with the wrong lever (docs/ERRATA.md has more), and its existing model (52), (53).
 """
 
 import sys

@@ -25,7 +25,6 @@ COMMANDS = [
     "explore",
     "fit",
     "derive",
-    "errata",
     "audit",
     "doctor",
 ]
@@ -176,10 +175,6 @@ COMPLAINTS = {
     "pont": "'pont' (did you mean point? choose from",
     "run": "required: SCENE (see desaxe run --help)",
     "run missing.toml": "missing.toml: No such file or directory",
-    "errata --verdict maybe": "unknown verdict 'maybe'",
-    "errata A-eq99": "no entry for 'A-eq99'",
-    "errata --document Z": "unknown document 'Z'",
-    "errata --json --markdown": "not allowed with argument",
 }
 
 

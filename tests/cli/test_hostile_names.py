@@ -62,7 +62,6 @@ point {}
 point a_C theta={}
 run {} {}
 cache {}
-errata {}
 {}
 run --{}
 doctor {}

@@ -11,11 +11,11 @@ from functools import cache
 
 from mpmath import mp, mpf
 
-from desaxe.errata import ledger
-from desaxe.errata.equations import FINE
-from desaxe.errata.marks import MARK
 from tests.papers import formulas, letters
 from tests.papers.digits import DIGITS
+from tests.papers.errata import ledger
+from tests.papers.errata.equations import FINE
+from tests.papers.errata.marks import MARK
 from tests.papers.proofs import PROOFS, Proof
 
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:,\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?(?: million)?(?![\w.]*\d)")

@@ -15,9 +15,9 @@ from difflib import SequenceMatcher
 
 from mpmath import mp, mpc, mpf
 
-from desaxe.errata.equations import FINE
-from desaxe.errata.formula import parse
 from tests.papers import newton_euler_c as ne
+from tests.papers.errata.equations import FINE
+from tests.papers.errata.formula import parse
 from tests.papers.letters import DESIGNS_OF, ORACLE, PACKAGE, names_of, twin_of
 
 OPERATORS = {

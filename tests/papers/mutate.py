@@ -12,8 +12,8 @@ import random
 import re
 from collections.abc import Callable
 
-from desaxe.errata.ledger import VERDICTS
 from tests.papers.entry_checks import complaints, raw_entries
+from tests.papers.errata.ledger import VERDICTS
 from tests.papers.frozen import frozen, row_of
 from tests.papers.proofs import all_proofs
 

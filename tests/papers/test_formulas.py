@@ -4,10 +4,10 @@ import re
 
 import pytest
 
-from desaxe.errata.equations import FINE
-from desaxe.errata.formula import latex, parse
-from desaxe.errata.ledger import entries
 from tests.papers.entry_checks import raw_entries
+from tests.papers.errata.equations import FINE
+from tests.papers.errata.formula import latex, parse
+from tests.papers.errata.ledger import entries
 from tests.papers.formulas import FORMULA, everywhere, misses
 
 FORMULAS = [entry for entry in entries() if FORMULA.fullmatch(entry.id)]

@@ -6,14 +6,13 @@ from collections import Counter
 import pytest
 from mpmath import mp
 
-from desaxe.errata import ledger as _errata
-from desaxe.errata.ledger import VERDICTS, Entry, documents, entries, harm, sheets
-from desaxe.errata.terminal import first_lines, table
 from tests.effort import cases
 from tests.papers import mutate
 from tests.papers import paper_c as C
 from tests.papers.digits import DIGITS
 from tests.papers.entry_checks import harm_complaints, raw_entries
+from tests.papers.errata import ledger as _errata
+from tests.papers.errata.ledger import VERDICTS, documents, entries, harm, sheets
 from tests.papers.frozen import frozen, row_of
 from tests.papers.proofs import FOLDER, all_proofs
 from tests.papers.test_paper_a_listing import LISTING
@@ -132,31 +131,6 @@ def test_unknown_document_or_verdict():
 def test_entry_is_frozen():
     with pytest.raises(AttributeError):
         entries()[0].verdict = "typo"
-
-
-def test_table_shows_everything_within_the_width():
-    shown = table(entries("A"), width=80)
-    assert all(len(line) <= 80 for line in shown.splitlines() if " " in line.strip())
-    flat = " ".join(shown.split())
-    for entry in entries("A"):
-        assert all(" ".join(field.split()) in flat for field in (entry.id, entry.printed, entry.corrected))
-
-
-def test_table_counts_verdicts():
-    rows = [
-        Entry(f"A-{n}", "A", "Eq.", "x", verdict, "", "y", "z") for n, verdict in enumerate(VERDICTS[:2] * 2)
-    ]
-    assert table(rows).splitlines()[-1] == "4 entries: 2 correct, 2 given"
-    assert table(rows[:1]).splitlines()[-1] == "1 entry: 1 correct"
-    assert table([]) == "0 entries"
-    assert table(iter(rows)) == table(rows)
-
-
-@pytest.mark.parametrize("width", [80, 100, 120])
-def test_first_lines_are_few(width):
-    lines = first_lines(documents(), width).splitlines()
-    assert len(lines) <= 60
-    assert all(len(line) <= width for line in lines)
 
 
 def test_ledgers_are_read_once():

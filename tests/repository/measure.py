@@ -44,7 +44,7 @@ CALLS = {
 }
 # The lower half: the rooms under `loads`, own quantities, and the loader of machine code.
 LOWER = re.compile(
-    r"desaxe\.(support|compiler|oracle|errata|mechanism|definitions"
+    r"desaxe\.(support|compiler|oracle|mechanism|definitions"
     r"|runtime\.(cache|native))\b"
 )
 NAMED = {  # a word that nothing else is called -> where it counts

@@ -71,7 +71,6 @@ FLOORS = {
     "support": 0,
     "compiler": 1,
     "oracle": 1,
-    "errata": 1,
     "units": 2,
     "mechanism": 3,
     "loads": 4,
@@ -94,7 +93,6 @@ CLOSED = {
     "units": {"support"},
     "mechanism": {"compiler", "support", "units"},
     "oracle": set(),
-    "errata": {"support"},
 }
 BELOW_DERIVE = {"compiler", "mechanism", "support", "units"}
 

@@ -73,11 +73,6 @@ def test_every_source_is_in_it(unzipped, room, place):
 
 def test_the_data_is_in_it(unzipped):
     assert (unzipped / "desaxe" / "py.typed").is_file()
-    assert (
-        {path.name for path in (ROOT / "src/desaxe/errata").glob("*.toml")}
-        == {path.name for path in (unzipped / "desaxe/errata").glob("*.toml")}
-        != set()
-    )
     page = {path.name for path in (ROOT / "src/desaxe/scenes/explorer/page").iterdir()}
     assert page == {path.name for path in (unzipped / "desaxe/scenes/explorer/page").iterdir()}
 

@@ -7,7 +7,6 @@ point    `desaxe point`
 scene    `desaxe run`, `scene`, `explain`, `compile`, `explore`
 sweep    `desaxe sweep`
 fit      `desaxe fit`
-errata   `desaxe errata`
 checks   `desaxe derive`, `audit`, `doctor`
 cache    `desaxe cache`: the folder of compiled kernels
 doctor   the report of `desaxe doctor`

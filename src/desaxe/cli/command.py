@@ -19,7 +19,6 @@ from ..support.interrupts import is_at_work
 from ..support.shown import printable
 from .cache import add_cache
 from .checks import add_audit, add_derive, add_doctor, derive
-from .errata import add_errata
 from .fit import add_fit
 from .parser import SIGNS, Parser, Version
 from .point import add_point
@@ -45,7 +44,6 @@ COMMANDS = (
     add_explore,
     add_fit,
     add_derive,
-    add_errata,
     add_audit,
     add_cache,
     add_doctor,

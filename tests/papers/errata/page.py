@@ -8,15 +8,10 @@ from .ledger import VERDICTS, Entry, Harm, conventions, documents, entries, harm
 from .marks import changes
 
 
-def markdown(chosen: Iterable[Entry] | None = None) -> str:
-    """The ledgers as a Markdown page: the harm, the wrong equations, then each paper entry by entry.
-
-    With `chosen` only these entries are on it.
-    """
-    rows = entries() if chosen is None else tuple(chosen)
-    first = [_TITLE, *map(_worst, documents()), _HOW_TO_READ, _equations(rows), _counts()]
-    papers = [_paper(letter, [row for row in rows if row.document == letter]) for letter in documents()]
-    return "\n\n".join([*(first if chosen is None else [_SELECTION]), *filter(None, papers)])
+def markdown() -> str:
+    """The ledgers as a Markdown page: the harm, the wrong equations, then each paper entry by entry."""
+    first = [_TITLE, *map(_worst, documents()), _HOW_TO_READ, _equations(entries()), _counts()]
+    return "\n\n".join([*first, *map(_paper, documents())])
 
 
 _TITLE = """\
@@ -44,12 +39,9 @@ The verdicts:
 - **correct**: it holds
 
 A sign is judged by the paper's own conventions, which are told first. Every verdict, number and formula is
-proved by a test of this repository (`desaxe errata` lists the entries too, and `src/desaxe/errata/` names the
-test of each): formulas are evaluated as printed, in 50 digits, and compared with the closed loop of the
-mechanism, differentiated in time, and forces with the equations of the free bodies."""
-
-
-_SELECTION = "# Some entries of what the papers print, and whether it is right"
+proved by a test of this repository (`tests/papers/errata/` names the test of each): formulas are evaluated as
+printed, in 50 digits, and compared with the closed loop of the mechanism, differentiated in time, and forces
+with the equations of the free bodies."""
 
 
 def _worst(letter: str) -> str:
@@ -100,10 +92,9 @@ def _equations(rows: tuple[Entry, ...]) -> str:
     ).rstrip()
 
 
-def _paper(letter: str, ledger: list[Entry]) -> str:
+def _paper(letter: str) -> str:
     """One paper as Markdown: title, conventions, the wrong entries in full, the right ones as a table."""
-    if not ledger:
-        return ""
+    ledger = entries(letter)
     wrong = [_item(entry) for entry in ledger if entry.verdict not in FINE]
     right = [
         _row((entry.id, _plain(entry.where), _both(entry), _plain(entry.evidence)))
@@ -112,8 +103,7 @@ def _paper(letter: str, ledger: list[Entry]) -> str:
     ]
     head = [f"## Paper {letter}", _plain(title(letter)), *map(_plain, conventions(letter))]
     table = "\n".join([_row(("id", "where", "printed", "why")), _row(["---"] * 4), *right])
-    below = ["### Not right", *wrong] if wrong else []
-    return "\n\n".join([*head, *below, *(["### Right or given", table] if right else [])])
+    return "\n\n".join([*head, "### Not right", *wrong, "### Right or given", table])
 
 
 def _item(entry: Entry) -> str:

@@ -7,12 +7,13 @@ and the `harm`: what whoever uses the paper must know.
 
 import tomllib
 from functools import cache
-from importlib.resources import files
+from pathlib import Path
 from typing import Any, NamedTuple
 
-from .equations import FINE, forms
+from .equations import FINE
 from .marks import plain
 
+FOLDER = Path(__file__).parent
 VERDICTS = (
     "correct",
     "given",
@@ -96,19 +97,10 @@ def harm(document: str) -> tuple[Harm, ...]:
     )
 
 
-def record(entry: Entry) -> dict[str, Any]:
-    """An entry with its paper's title and conventions, its equation in LaTeX and the test of its verdict."""
-    printed, corrected = forms(entry)
-    paper = {"paper": title(entry.document), "conventions": list(conventions(entry.document))}
-    return {**entry._asdict(), "latex_printed": printed, "latex_corrected": corrected, **paper}
-
-
 @cache
 def sheets() -> dict[str, dict[str, Any]]:
     """The content of the ledgers' files by document letter, in alphabetical order, marks included."""
-    folder = files("desaxe").joinpath("errata")
-    paths = sorted((item for item in folder.iterdir() if item.name.endswith(".toml")), key=lambda s: s.name)
-    found = [tomllib.loads(path.read_text("utf-8")) for path in paths]
+    found = [tomllib.loads(path.read_text("utf-8")) for path in sorted(FOLDER.glob("*.toml"))]
     return {sheet["entry"][0]["document"]: sheet for sheet in found}
 
 
