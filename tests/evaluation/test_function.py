@@ -1,11 +1,13 @@
 """Prepared functions: any shape, the same digits, and the ways in from NumPy, numba, C, xarray and Dask."""
 
 import ctypes
+import gc
 import os
 import pickle
 import subprocess
 import sys
 import warnings
+import weakref
 
 import numpy as np
 import pytest
@@ -196,6 +198,33 @@ def test_inside_of_compiled_code_and_from_c(f, one):
     assert out[2] == 1.0
     assert function((ctypes.c_double * 2)(1.0, 0.01), out) == 0
     assert out[1] == wanted
+
+
+ADDRESS = """
+import ctypes, gc
+import desaxe as dx
+address = dx.function("V_C", ec=0.01, AB=0.125, BC=0.35, omega0=157.08).address
+gc.collect()
+bytes(10_000_000)
+others = [dx.function("V_C", ec=0.01 * k, AB=0.125, BC=0.35, omega0=157.08).address for k in range(3)]
+out = ctypes.c_double()
+ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p)(address)(
+    ctypes.byref(ctypes.c_double(1.0)), ctypes.byref(out))
+print(out.value)
+"""
+
+
+def test_an_address_outlives_its_function_until_it_is_released():
+    done = subprocess.run([sys.executable, "-c", ADDRESS], capture_output=True, text=True, check=True)
+    design = {"ec": 0.01, "AB": 0.125, "BC": 0.35, "omega0": 157.08}
+    assert float(done.stdout) == pytest.approx(dx.evaluate("V_C", theta=1.0, **design), rel=1e-13)
+    function = dx.function("V_C", **design)
+    code = weakref.ref(function._point.kept[0])
+    assert function.address
+    function.release()
+    del function
+    gc.collect()
+    assert code() is None
 
 
 def test_xarray_and_dask(f, one):

@@ -4,6 +4,7 @@ A module that another thread has imported halfway stays locked for ever in a chi
 """
 
 import ast
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -98,6 +99,46 @@ def test_first_calls_import_nothing_without_the_lock(tier, tmp_path, monkeypatch
     program = "\n".join([START, SPY, *calls])
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert not done.stdout
+
+
+# An alarm in a first call, at the first call of a function of a file; then the call again, which would not
+# return where a lock stayed locked.
+ALARMED = """
+import faulthandler
+faulthandler.dump_traceback_later(60.0, exit=True)
+class Alarm(Exception):
+    pass
+def ring(number, frame):
+    raise Alarm
+signal.signal(signal.SIGALRM, ring)
+def trace(frame, event, argument):
+    if frame.f_code.co_name == {function!r} and frame.f_code.co_filename.endswith({file!r}):
+        sys.settrace(None)
+        signal.raise_signal(signal.SIGALRM)
+call = lambda: {call}
+sys.settrace(trace)
+try:
+    call()
+except Alarm:
+    print(call() == call(), np.isfinite(dx.peak("a_C", **others, ec=0.0)["value"]))
+"""
+RPM = 'dx.evaluate("a_C", theta=1.0, AB=0.125, BC=0.35, ec=0.0, omega0="1 rpm")'
+LOADED = 'dx.evaluate("T_in", theta=1.0, m_slider=1.0, F_Y=dx.over_Y([0.2, 0.5], [0.0, 9.0]), **design)'
+INTERRUPTED = [
+    ('dx.evaluate("a_C", theta=1.0, **design)', "__exit__", "importlib._bootstrap>"),
+    ('dx.evaluate("a_C", theta=theta[:700], **design).sum()', "__exit__", "importlib._bootstrap>"),
+    (LOADED, "<module>", "loads/resolve.py"),
+    (LOADED, "__exit__", "importlib._bootstrap>"),
+    (RPM, "__exit__", "importlib._bootstrap>"),
+]
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGALRM"), reason="alarms")
+@pytest.mark.parametrize(("call", "function", "file"), INTERRUPTED)
+def test_what_a_handler_raises_leaves_imports_finished(call, function, file):
+    program = START + ALARMED.format(call=call, function=function, file=file)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout == "True True\n"
 
 
 def test_no_property_has_a_lock_that_a_fork_does_not_wait_for():

@@ -1,5 +1,6 @@
 """Parts of a length on threads: all of it once, the caller's thread among them, and one failure ends all."""
 
+import signal
 import threading
 import time
 
@@ -53,3 +54,51 @@ def test_a_failure_ends_the_work_of_all(by_caller):
     with pytest.raises(KeyboardInterrupt if by_caller else ValueError):
         run_parts(part, 1_000, 2, 1, 2)
     assert len(done) < 250
+
+
+class AlarmError(Exception):
+    """An alarm went off."""
+
+
+def alarm(number, frame):
+    raise AlarmError
+
+
+HANDLERS = [("SIGINT", signal.default_int_handler, KeyboardInterrupt), ("SIGALRM", alarm, AlarmError)]
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_kill"), reason="signals of threads")
+@pytest.mark.parametrize(("name", "handler", "error"), HANDLERS)
+def test_no_worker_is_left_behind_however_often_the_caller_is_interrupted(name, handler, error):
+    """It would go on to write into arrays that the caller may have freed."""
+    number, own, parts = getattr(signal, name), threading.get_ident(), []
+    busy, all_sent = threading.Event(), threading.Event()
+
+    def part(start, stop):
+        if threading.get_ident() == own:
+            busy.wait(10.0)
+            return
+        busy.set()
+        all_sent.wait(10.0)
+        parts.append(start)
+        busy.clear()
+
+    def send():
+        busy.wait(10.0)
+        for _ in range(20):
+            signal.pthread_kill(own, number)  # which wakes a wait
+            time.sleep(0.005)
+        all_sent.set()
+
+    before, sender = signal.signal(number, handler), threading.Thread(target=send)
+    try:
+        sender.start()
+        with pytest.raises(error):
+            run_parts(part, 1_000, 2, 1, 1)
+        assert not busy.is_set()
+        assert signal.getsignal(number) is handler
+    finally:
+        all_sent.set()
+        sender.join()
+        signal.signal(number, before)
+    assert len(parts) == 1

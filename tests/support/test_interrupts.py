@@ -8,7 +8,8 @@ import pytest
 
 from desaxe.support import interrupts
 from desaxe.support.deadline import Deadline
-from desaxe.support.interrupts import finished, put_off, stopped_early
+from desaxe.support.interrupts import finished, stopped_early
+from desaxe.support.signals import put_off
 
 LONG = 20.0  # seconds that work takes which nothing stops
 
@@ -115,12 +116,19 @@ def test_an_interrupt_at_any_line_ends_the_work(monkeypatch):
     assert DONE < line < 1_000
 
 
-@put_off()
-def interrupted_before_it_fails():
-    signal.raise_signal(signal.SIGINT)
-    raise ImportError("a package that is missing")
+def fails_after_signals(heard):
+    with put_off(lambda: heard.append("stop")):
+        signal.raise_signal(signal.SIGTERM)
+        signal.raise_signal(signal.SIGINT)
+        assert heard == [signal.SIGTERM, "stop"]
+        raise ImportError("a package that is missing")
 
 
-def test_an_interrupt_is_raised_where_the_block_that_puts_it_off_fails():
-    with pytest.raises(KeyboardInterrupt):
-        interrupted_before_it_fails()
+def test_a_handler_runs_when_its_signal_comes_and_raises_after_a_block_that_puts_it_off():
+    heard, before = [], signal.signal(signal.SIGTERM, lambda number, frame: heard.append(number))
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            fails_after_signals(heard)
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

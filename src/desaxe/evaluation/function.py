@@ -31,6 +31,7 @@ from .repair import repair_for
 
 Array = NDArray[Any]
 INPUTS_OF_FUNCTION = ("inputs", *INPUTS, "branch", "accuracy")
+_BY_ADDRESS: dict[int, Any] = {}  # code whose address somebody may have
 MARGIN = {"AB": -1.0, "BC": 1.0}  # derivatives of BC - AB - |ec|
 
 
@@ -76,7 +77,8 @@ class Function:
     scalar    the same of numbers, to be called inside of a function compiled by numba (in this process: it
               holds an address, so such a function cannot be kept by `cache=True`)
     address   a C function `int64_t f(const double *inputs, double *outputs)` of one point, which answers 0;
-              inputs and outputs stand in the order of `inputs` and `names`; it lives as long as this object
+              inputs and outputs stand in the order of `inputs` and `names`; it can be called until `release`,
+              whether this object still exists or not
     """
 
     def __init__(
@@ -191,15 +193,21 @@ class Function:
 
     @property
     def address(self) -> int:
-        """The address of a C function of one point."""
-        address: int = self._point.address
+        """The address of a C function of one point, which stays callable until `release`."""
+        point = self._point
+        _BY_ADDRESS[point.address] = point
+        address: int = point.address
         return address
+
+    def release(self) -> None:
+        """Free the code of `address` with this object: whoever has the address calls it no more then."""
+        _BY_ADDRESS.pop(self._point.address, None)
 
     @computed_once
     def scalar(self) -> Any:
         """The function of numbers, callable from numba's code: a number for a name, a tuple for a list."""
         import_whole("numba")
-        return scalar_of(self.address, self.inputs, len(self.names), self._one, self)
+        return scalar_of(self._point.address, self.inputs, len(self.names), self._one, self)
 
     def __reduce__(self) -> Any:
         names = self.names[0] if self._one else list(self.names)

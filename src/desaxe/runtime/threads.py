@@ -11,10 +11,11 @@ from threading import Event
 from typing import TYPE_CHECKING, Any
 
 from ..support.forks import IMPORTS, in_child
+from ..support.signals import put_off
 from .kernels import KernelKey, kernel_for
 
 if TYPE_CHECKING:
-    from concurrent.futures import ThreadPoolExecutor
+    from concurrent.futures import Future, ThreadPoolExecutor
 
 MOST_THREADS = 256
 LONGEST_BLOCK = 4_000_000  # points: half a second for the costliest kernels
@@ -131,22 +132,25 @@ def run_together(works: Sequence[Callable[[], None]], stopped: Event) -> None:
 
     A caller that only waited would leave its core to a thread that it wakes, often to both of two. A function
     that no thread has begun when the first returns finds nothing to do, and is not waited for: the threads
-    may be busy with another caller's work.
+    may be busy with another caller's work. However often it is interrupted, it returns when all have ended:
+    they write into the caller's arrays.
     """
     with IMPORTS:
         from concurrent.futures import wait
 
     first, *others = works
-    begun = [pool(len(others)).submit(copy_context().run, work) for work in others]
-    try:
-        first()
-        for done in begun:
-            if not done.cancel():
-                done.result()
-    except BaseException:
-        stopped.set()
-        wait(begun)
-        raise
+    begun: list[Future[None]] = []
+    with put_off(stopped.set):
+        try:
+            begun.extend(pool(len(others)).submit(copy_context().run, work) for work in others)
+            first()
+            for done in begun:
+                if not done.cancel():
+                    done.result()
+        except BaseException:
+            stopped.set()
+            wait(begun)
+            raise
 
 
 def fill_reduced(

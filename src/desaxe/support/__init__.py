@@ -10,7 +10,8 @@ version        the version of this installation
 deprecation    what is kept for one version, with a warning
 private        files and folders that only this user can have written
 forks          locks and threads that a forked process must not inherit
-interrupts     work that Ctrl-C must not cut in half
+signals        what handlers of signals raise, put off until a block is done
+interrupts     long work that Ctrl-C must not cut in half
 memory         a check for free memory
 checks         options of calls, checked
 deadline       a time limit

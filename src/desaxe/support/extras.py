@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from .forks import IMPORTS
-from .interrupts import put_off
 
 EXTRAS = {
     "sympy": "derive",
@@ -36,12 +35,12 @@ class MissingExtraError(ImportError):
 
 @contextmanager
 def needed(what: str, extra: str | None = None) -> Iterator[None]:
-    """Turn the ImportError of an optional dependency into MissingExtraError, and delay an interrupt.
+    """Turn the ImportError of an optional dependency into MissingExtraError, as `IMPORTS` does imports.
 
     The extra is the one that has the dependency, or the one named here. The block imports, and nothing else:
     interrupts and forks wait for its end, since a package that is imported halfway cannot be imported again.
     """
-    with put_off(), IMPORTS, explained(what, extra):
+    with IMPORTS, explained(what, extra):
         yield
 
 

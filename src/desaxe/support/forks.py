@@ -14,46 +14,66 @@ from threading import RLock, local
 from types import ModuleType, TracebackType
 from typing import Any
 
+from .signals import is_main, put_off
+
+LATE = 0.05  # seconds: how late an interrupt of a wait is heard at most
 WAIT = 60.0  # seconds that a fork waits for a compilation of another thread
 
 
-class ForkSafeLock:
+# A Python class around a lock could be interrupted between acquiring it and entering the block.
+_RLock: Any = type(RLock())
+
+
+class ForkSafeLock(_RLock):  # type: ignore[misc]
     """A reentrant lock that a fork waits for, so that what it guards is whole in the child.
 
     In the child it is free, even where the fork did not get it in time.
     """
 
     def __init__(self) -> None:
-        self._lock = RLock()
-        self._entered = local()
         _LOCKS.append(self)
 
     @property
     def is_mine(self) -> bool:
         """True in a block of this thread that holds the lock: no other thread can acquire it meanwhile."""
-        return getattr(self._entered, "depth", 0) > 0
+        return bool(self._is_owned())
+
+    def acquire_until(self, end: float) -> bool:
+        """Try to acquire it until some time of the monotonic clock."""
+        return bool(self.acquire(timeout=max(end - time.monotonic(), 0.0)))
+
+    def renew(self) -> None:
+        """In a child: free it of a thread that is not there."""
+        self._at_fork_reinit()
+
+
+class ImportLock(ForkSafeLock):
+    """The lock of imports inside functions, which what a signal's handler raises does not cut in half.
+
+    A module that was imported halfway cannot be imported again, and may stay locked for all threads.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._raised_later: put_off | None = None  # of the main thread, in its outermost block
 
     def __enter__(self) -> None:
-        self._lock.acquire()
-        self._entered.depth = getattr(self._entered, "depth", 0) + 1
+        if self.is_mine or not is_main():
+            self.acquire()
+            return
+        later = put_off().__enter__()
+        while not self.acquire(timeout=LATE):
+            if later.raised:
+                later.__exit__(None, None, None)
+        self._raised_later = later
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._entered.depth -= 1
-        self._lock.release()
-
-    def acquire_until(self, end: float) -> bool:
-        """Try to acquire it until some time of the monotonic clock."""
-        return self._lock.acquire(timeout=max(end - time.monotonic(), 0.0))
-
-    def release(self) -> None:
-        """Release it."""
-        self._lock.release()
-
-    def renew(self) -> None:
-        """In a child: free it of a thread that is not there."""
-        self._lock = RLock()
+        self.release()
+        if self._raised_later is not None and is_main() and not self.is_mine:
+            later, self._raised_later = self._raised_later, None
+            later.__exit__(kind, error, trace)
 
 
 _LOCKS: list[ForkSafeLock] = []
@@ -61,7 +81,7 @@ _HELD = local()  # of the forking thread: the locks that it has acquired
 
 # Held by every import inside a function. A module that another thread has imported halfway cannot be imported
 # in a child at all: Python's own lock of it stays locked there.
-IMPORTS = ForkSafeLock()
+IMPORTS = ImportLock()
 
 
 def imported(name: str) -> ModuleType:

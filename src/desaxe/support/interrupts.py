@@ -1,52 +1,31 @@
-"""Imports and compilations that an interrupt (SIGINT) must not cut in half.
+"""Long imports and compilations that no exception of a signal's handler, such as Ctrl-C's, must cut in half.
 
 A package that was imported halfway cannot be imported again, and a compiler that was stopped halfway leaves
 its tables inconsistent: the next call in the same process would fail. So both run in a thread of their own,
-which interrupts do not reach: the caller stops at once, and the work is finished behind it. Short imports put
-an interrupt off until they are done. Compiled loops do not hear of an interrupt either, but can be stopped.
+in which no handler runs: the caller stops at once, and the work is finished behind it. Short imports put the
+exception off until they are done (`forks.IMPORTS`). Compiled loops do not hear of one either, but can be
+stopped.
 """
 
-import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from contextvars import copy_context
 from types import ModuleType
 from typing import Generic, TypeVar
 
 from .deadline import Deadline
-from .forks import IMPORTS, imported
+from .forks import IMPORTS, LATE, imported
+from .signals import is_main, put_off
 
 T = TypeVar("T")
 
-LATE = 0.05  # seconds: how late an interrupt is heard at most
 _NAME = "desaxe-work"
 
 
 def is_at_work() -> bool:
     """True while work of an interrupted caller is still running."""
     return any(thread.name == _NAME for thread in threading.enumerate())
-
-
-def _is_main() -> bool:
-    return threading.current_thread() is threading.main_thread()
-
-
-@contextmanager
-def put_off() -> Iterator[None]:
-    """Delay an interrupt (SIGINT) until the block is done; only the main thread receives one."""
-    if not _is_main() or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
-        yield
-        return
-    came: list[int] = []
-    signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
-    try:
-        yield
-    finally:  # also where the block raises: what it raises may be caught
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-        if came:
-            raise KeyboardInterrupt
 
 
 def import_whole(name: str) -> ModuleType:
@@ -62,7 +41,7 @@ def finished(work: Callable[[], T]) -> T:
     Within an import, which is not interrupted either, it stays in this thread: another one would wait for the
     lock of imports for ever.
     """
-    return _Work(work).answer() if _is_main() and not IMPORTS.is_mine else work()
+    return _Work(work).answer() if is_main() and not IMPORTS.is_mine else work()
 
 
 def stopped_early(work: Callable[[], T], stop: Callable[[], object], deadline: Deadline) -> T:

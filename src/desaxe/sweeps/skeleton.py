@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..support.extras import explained
-from ..support.interrupts import put_off
+from ..support.signals import put_off
 from .layout import table_of
 
 with put_off(), explained("a sweep"):

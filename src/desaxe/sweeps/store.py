@@ -23,9 +23,9 @@ from ..evaluation.labels import import_xarray
 from ..support.extras import explained
 from ..support.files import exchange, staging
 from ..support.forks import IMPORTS
-from ..support.interrupts import put_off
 from ..support.locks import locked
 from ..support.shown import printable
+from ..support.signals import put_off
 from .skeleton import COMPLETE, METADATA, STATE, signed, skeleton_of, with_state
 
 with put_off(), explained("a sweep"):

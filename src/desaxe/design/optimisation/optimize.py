@@ -10,7 +10,7 @@ from ...support.answer import Answer
 from ...support.checks import whole_number
 from ...support.deadline import Deadline
 from ...support.extras import explained
-from ...support.interrupts import put_off
+from ...support.signals import put_off
 from .objectives import goals_of, limits_of, space_of
 
 with put_off(), explained("optimize", "design"):

@@ -12,7 +12,7 @@ from threading import Lock
 from typing import Any
 
 from ...support.extras import explained
-from ...support.interrupts import put_off
+from ...support.signals import put_off
 
 with put_off(), explained("a Zarr store"):
     from zarr.core.buffer import Buffer
