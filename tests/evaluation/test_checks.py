@@ -10,6 +10,7 @@ import pint
 import pytest
 
 import desaxe as dx
+from desaxe.mechanism import inputs as known
 from desaxe.mechanism.read import in_si
 from tests.ways import POINT, SIZES, columns
 
@@ -218,17 +219,17 @@ def registry(kind=float):
 )
 def test_a_quantity_of_pint_is_the_double_of_its_text(number, unit):
     name = {"deg": "theta", "rpm": "omega0", "kg mm2": "I_rod"}.get(unit, "BC")
-    text = in_si(name, f"{number} {unit}")
+    text = in_si(known.INPUTS[name], f"{number} {unit}")
     for kind in (float, Decimal):
         own = registry(kind).Quantity(kind(str(number)), unit.replace("mm2", "mm**2"))
-        assert in_si(name, own) == text
+        assert in_si(known.INPUTS[name], own) == text
     several = registry().Quantity(np.array([350.0, 12.7, 1.0]), "mm")
-    assert in_si("BC", several).tolist() == [0.35, 0.0127, 0.001]
+    assert in_si(known.INPUTS["BC"], several).tolist() == [0.35, 0.0127, 0.001]
 
 
 def test_a_unit_of_somebody_elses_registry():
     registry().define("ell = 1.143 m")
-    assert in_si("BC", 2 * registry().ell) == pytest.approx(2.286)
+    assert in_si(known.INPUTS["BC"], 2 * registry().ell) == pytest.approx(2.286)
 
 
 def test_a_list_of_text():

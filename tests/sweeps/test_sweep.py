@@ -276,9 +276,9 @@ def test_a_sweep_of_numbers_alone_is_one_point(tmp_path):
 @pytest.mark.parametrize(
     ("options", "error", "words"),
     [
-        ({"memory": "10 parsec"}, ValueError, "memory = '10 parsec'"),
+        *(({"memory": m}, ValueError, f"memory = '{m}': a number of bytes") for m in ("10 parsec", ". MB")),
         (
-            {"memory": "100 kB", "chunks": {"theta": 400}},
+            {"memory": np.int64(100_000), "chunks": {"theta": 400}},
             MemoryError,
             r"takes 1\d\d kB .* 100 kB are allowed",
         ),

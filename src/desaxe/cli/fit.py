@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..mechanism.quantity_units import UnitSystem, si_unit
 from .parser import add_command
 from .words import UsageError
 
@@ -50,7 +51,7 @@ def _fit(options: argparse.Namespace) -> int:
         require_place(Path(options.picture), options.overwrite)
     whole = scene(options.scene)
     known = whole.content
-    over = dict(_unknown(word, known.inputs) for word in options.over)
+    over = dict(_unknown(word, known.inputs, known.units) for word in options.over)
     fixed: dict[str, Any] = {
         name: value for name, value in known.inputs.items() if name not in over and name != "theta"
     }
@@ -60,7 +61,7 @@ def _fit(options: argparse.Namespace) -> int:
                 f"{name}: the scene has {len(value)} values of it, and a fit is of one machine: "
                 f"--over {name}=LOW:HIGH"
             )
-    sigma = dict(_pair("--sigma", word) for word in options.sigma) or None
+    sigma = dict(_sigma(word, known.units) for word in options.sigma) or None
     found = fit(options.data, over, sigma, options.nuisance, options.loss, branch=known.branch, **fixed)
     told = in_units(found, whole.shown_in)  # JSON is in SI units
     print(json.dumps(_plain(found), indent=2) if options.json else told.report(), flush=True)
@@ -72,8 +73,8 @@ def _fit(options: argparse.Namespace) -> int:
     return 0
 
 
-def _unknown(word: str, inputs: Mapping[str, Any]) -> tuple[str, Any]:
-    """Parse NAME, NAME=START or NAME=LOW:HIGH into a name and its value for `fit`."""
+def _unknown(word: str, inputs: Mapping[str, Any], units: UnitSystem) -> tuple[str, Any]:
+    """Parse NAME, NAME=START or NAME=LOW:HIGH, in the scene's units, into a name and its value for `fit`."""
     name, equals, value = word.partition("=")
     if not equals:
         if not isinstance(inputs.get(name), (int, float)):
@@ -82,14 +83,24 @@ def _unknown(word: str, inputs: Mapping[str, Any]) -> tuple[str, Any]:
             )
         return name, inputs[name]
     low, colon, high = value.partition(":")
-    return (name, (low, high)) if colon else (name, value)
+    first = _in_si(name, low, units)
+    return name, (first, _in_si(name, high, units)) if colon else first
 
 
-def _pair(option: str, word: str) -> tuple[str, Any]:
+def _sigma(word: str, units: UnitSystem) -> tuple[str, Any]:
     name, equals, value = word.partition("=")
     if not equals:
-        raise UsageError(f"{option} {word}: expected NAME=VALUE")
-    return name, value
+        raise UsageError(f"--sigma {word}: expected NAME=VALUE")
+    return name, _in_si(name, value, units)
+
+
+def _in_si(name: str, text: str, units: UnitSystem) -> Any:
+    """A number in SI units from a text, of which a plain one is in the scene's; `fit` refuses other names."""
+    from ..mechanism.inputs import Input
+    from ..mechanism.read import in_si
+
+    conversion = units.find(name)
+    return text if conversion is None else in_si(Input(name, si_unit(name), ""), text, units)
 
 
 def _plain(found: Any) -> dict[str, Any]:

@@ -53,11 +53,12 @@ def _refuse_parted(before: str, word: str) -> None:
     key, equals, value = before.partition("=")
     if not equals or word in quantities():
         return
+    from ..mechanism.inputs import INPUTS
     from ..mechanism.read import in_si
 
     try:
         float(value)
-        in_si(key, f"{value} {word}")
+        in_si(INPUTS[key], f"{value} {word}")
     except (ValueError, KeyError, MissingExtraError):
         return
     raise UsageError(

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanism.inputs import INPUTS, Input, is_good
+from ..mechanism.read import read_array
 from ..mechanism.spoken import named, spoken
 from ..runtime.interpreted import are_good, fill_by_points
 from ..runtime.kernels import KernelKey, key_of, tells_unsafe
@@ -17,7 +18,6 @@ from ..runtime.request import Request, as_number
 from ..runtime.threads import run_in_blocks
 from ..runtime.tiers import COMPILED, INTERPRETED, VARIABLE, tier_of
 from ..runtime.vectorised import fill_by_arrays
-from ..support.forks import IMPORTS
 from ..support.memory import require
 from ..support.shown import shown
 from .call_cache import planned
@@ -70,43 +70,12 @@ def as_array(name: str, value: Any, inputs: Sequence[str], names: Sequence[str])
     number = None if type(value) is np.ndarray else as_number(name, value, inputs, names)
     if number is not None:
         return np.array(number)
-    return _not_wholly_bad(name, array_of(INPUTS[name], value))
-
-
-def array_of(row: Input, value: Any) -> Array:
-    """Real numbers in the unit of a row as a float64 array: plain, labelled, with units, as texts."""
-    name = row.name
-    if hasattr(value, "dims"):
-        with IMPORTS:
-            from ..mechanism.read import unlabelled
-
-        value = unlabelled(name, value, row.unit)
-    if isinstance(value, str) or hasattr(value, "magnitude"):
-        with IMPORTS:
-            from ..units.parse import in_unit
-
-        value = in_unit(name, value, row.unit)
-    if hasattr(value, "mask") and np.ma.is_masked(value):  # who has one has imported them
-        raise TypeError(f"{name}: a masked array; fill it first, for example with .filled(np.nan)")
-    try:
-        array = np.asarray(value)
-    except (ValueError, TypeError, OverflowError):  # rows of different lengths
-        raise TypeError(f"{name} = {shown(value)}: expected a number or an array of numbers") from None
-    if array.dtype.kind == "U":
-        with IMPORTS:
-            from ..units.parse import in_unit
-
-        texts = array.reshape(-1).tolist()
-        array = np.array([in_unit(name, text, row.unit) for text in texts]).reshape(array.shape)
-    if array.dtype.kind not in "fiu":
-        kind = f"an array of {array.dtype}" if array.ndim else f"a {type(value).__name__}"
-        raise TypeError(f"{name}: expected real numbers, got {kind}: {shown(value)}")
-    return array.astype(FLOAT, copy=False)
+    return _not_wholly_bad(name, read_array(INPUTS[name], value))
 
 
 def number_or_array(row: Input, value: Any) -> Array:
-    """The array of `array_of`; ValueError for a number that is not finite."""
-    array = array_of(row, value)
+    """The array of `read_array`; ValueError for a number that is not finite."""
+    array = read_array(row, value)
     if not array.ndim and not np.isfinite(array):
         raise ValueError(f"{named(row.name, value)}: it must be {row.limit}")
     return array

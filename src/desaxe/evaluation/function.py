@@ -17,6 +17,7 @@ from ..mechanism.inputs import INPUTS
 from ..mechanism.keywords import check_inputs
 from ..mechanism.names import LENGTHS, sensitivity
 from ..mechanism.own import Definition, Register, register, register_with, used_by
+from ..mechanism.read import in_si
 from ..runtime.kernels import STRUCTURAL_ZEROS, KernelKey, kernel_for
 from ..runtime.native.any_stride import Bound, bind
 from ..runtime.native.native_calls import point_caller, scalar_of, ufunc_of
@@ -32,6 +33,7 @@ from .repair import repair_for
 Array = NDArray[Any]
 INPUTS_OF_FUNCTION = ("inputs", *INPUTS, "branch", "accuracy")
 _BY_ADDRESS: dict[int, Any] = {}  # code whose address somebody may have
+PLAIN = {float, int, np.ndarray, np.float64}
 MARGIN = {"AB": -1.0, "BC": 1.0}  # derivatives of BC - AB - |ec|
 
 
@@ -108,6 +110,9 @@ class Function:
             args, named = self._in_order(args, named)
         if len(args) != len(self.inputs):
             raise TypeError(f"function of ({', '.join(self.inputs)}): {len(args)} arguments were given")
+        labelled = not PLAIN.issuperset(map(type, args)) and any(hasattr(value, "attrs") for value in args)
+        if labelled:
+            args = tuple(map(_argument, self.inputs, args))
         if out is not None:
             if type(out) is not tuple or len(out) != len(self.names) or not _all_apart((*args, *out)):
                 out = self._outputs(out)
@@ -116,10 +121,13 @@ class Function:
         try:
             found = self._ufunc(*args, **named)
         except (TypeError, ValueError):
-            args = tuple(map(_number, self.inputs, args))
+            args = tuple(map(_array, self.inputs, args))
             found = self._ufunc(*args, **named)
         if self._failures:
             raise self._failures.pop()
+        if labelled:
+            for name, array in zip(self.names, (found,) if len(self.names) == 1 else found, strict=True):
+                array.attrs = {"units": self.units[name]} if hasattr(array, "dims") else {}
         return found if self._one or len(self.names) > 1 else (found,)
 
     def _in_order(
@@ -263,7 +271,12 @@ def _apart(argument: Any, outs: Sequence[Any]) -> Any:
     return argument
 
 
-def _number(name: str, value: Any) -> Any:
+def _argument(name: str, value: Any) -> Any:
+    """An argument in SI units, with its labels, from the unit that it names itself."""
+    return in_si(INPUTS[name], value) if hasattr(value, "attrs") else value
+
+
+def _array(name: str, value: Any) -> Any:
     """Convert an argument that NumPy's ufunc refused to numbers; an error names it if that fails."""
     with IMPORTS:
         from .arrays import as_array

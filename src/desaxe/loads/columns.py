@@ -36,7 +36,7 @@ def places_and_values(places: Any, values: Any) -> tuple[Any, Any]:
 
 def column_of(what: str, given: Any, units: tuple[str, ...], own: Conversion | None) -> Column:
     """Finite numbers in SI units, plain ones from `own`; their unit is one of `units`."""
-    said = given.attrs.get("units") if hasattr(given, "dims") else None
+    said = getattr(given, "attrs", {}).get("units")
     if said in units:
         return Column(_finite(what, given.values.tolist()), said)
     if said is not None:

@@ -3,7 +3,6 @@
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from math import inf
 from os import PathLike
 from typing import Any, ClassVar
 
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..mechanism.inputs import TINY, Input
 from ..mechanism.quantity_units import SI, UnitSystem
-from ..mechanism.read import number_of
+from ..mechanism.read import read_array
 from ..mechanism.slips import warn_of_slips
 from ..mechanism.spoken import UNITS, named, speaking, spoken
 from ..support.shown import printable, shown
@@ -270,41 +269,34 @@ class MakeKloss(Maker):
         self, breakdown_torque: Any, breakdown_slip: Any, synchronous_speed: Any, gear: Any = 1.0
     ) -> Motor:
         """An induction motor; see `help(desaxe.kloss)`."""
-        given = (breakdown_torque, breakdown_slip, synchronous_speed, gear)
-        names = {"N*m": "torque", "rad/s": "omega"}
-        plain, values = [], []
-        written = {row.name: one for row, one in zip(ROWS, given, strict=True)}
-        warn_of_slips(written, self.units or SI, stacklevel=MAKING)
-        for row, one in zip(ROWS, given, strict=True):
-            own = self.unit(names[row.unit]) if row.unit in names else None
-            value = _array(row, one) if isinstance(one, (list, tuple)) else one
-            text = isinstance(value, str) or getattr(getattr(value, "dtype", None), "kind", "") == "U"
-            bare = not text and not hasattr(value, "magnitude")
-            values.append(_number(row, own.to_si(value) if own is not None and bare else value))
-            plain += [names[row.unit]] if bare and row.unit in names and own is None else []
-        most, slip, speed, ratio = values
-        return Kloss(most, slip, speed, ratio, tuple(plain))
+        written = dict(zip(ROWS, (breakdown_torque, breakdown_slip, synchronous_speed, gear), strict=True))
+        by_name = {row.name: value for row, value in written.items()}
+        warn_of_slips(by_name, self.units or SI, stacklevel=MAKING)
+        most, slip, speed, ratio = (_numbers(row, value, self.units) for row, value in written.items())
+        kinds = {"N*m": "torque", "rad/s": "omega"}
+        plain = [kinds[row.unit] for row, value in written.items() if row.unit in kinds and _is_plain(value)]
+        return Kloss(most, slip, speed, ratio, () if self.units else tuple(plain))
 
 
-def _array(row: Input, value: Any) -> Any:
-    """A list as an array; TypeError for rows of different lengths."""
-    try:
-        return np.asarray(value)
-    except ValueError:
-        raise TypeError(f"{row.name} = {shown(value)}: kloss expects a number or an array") from None
-
-
-def _number(row: Input, value: Any) -> Any:
+def _numbers(row: Input, value: Any, units: UnitSystem | None) -> Any:
     """A number, or an array of numbers, within the limit of its row."""
-    if isinstance(value, (list, tuple)) or np.ndim(value):
-        each = [_number(row, part) for part in np.asarray(value).reshape(-1).tolist()]
-        return np.reshape(each, np.shape(value))
-    number = number_of(row, value)
-    if number is None:
-        raise TypeError(f"{row.name} = {shown(value)}: kloss expects a number or an array of numbers")
-    if row.least is None and (number == 0.0 or abs(number) == inf):
-        raise ValueError(f"{named(row.name, value)}: it must be {row.limit}")
-    return number
+    try:
+        array = read_array(row, value, units)
+    except TypeError:
+        raise TypeError(
+            f"{row.name} = {shown(value)}: kloss expects a number or an array of numbers"
+        ) from None
+    wrong = ~np.isfinite(array) | (array == 0.0 if row.least is None else array < row.least)
+    if wrong.any():
+        raise ValueError(f"{named(row.name, array[wrong].item(0))}: it must be {row.limit}")
+    return array if array.ndim else array.item()
+
+
+def _is_plain(value: Any) -> bool:
+    """True for numbers without a unit of their own."""
+    if hasattr(value, "magnitude") or "units" in getattr(value, "attrs", {}):
+        return False
+    return np.asarray(value).dtype.kind != "U"
 
 
 over_omega = MakeOverOmega()

@@ -4,10 +4,12 @@ from collections.abc import Mapping
 from os import PathLike
 from typing import Any
 
+from ..evaluation.reductions.argument import at_with_units
 from ..loads.resolve import settled
-from ..mechanism.inputs import INPUTS
+from ..mechanism import read
+from ..mechanism.inputs import INPUTS, Input
 from ..mechanism.names import WHOLE
-from ..mechanism.quantity_units import OTHERS, UnitSystem
+from ..mechanism.quantity_units import OTHERS, UnitSystem, si_unit
 from ..support.forks import IMPORTS
 from ..units.text import PLUS_MINUS, with_unit_of
 
@@ -30,55 +32,33 @@ def in_si(system: UnitSystem, name: str, value: Any) -> Any:
             from ..design.fit.data import columns_of
 
         value = columns_of(value)
+    value = at_with_units(value, system)
     if name in BY_KEY and isinstance(value, Mapping):
-        return {key: converted(system, _measure(key), part) for key, part in value.items()}
-    if not has_unit(name):
-        return value
-    return converted(system, name, value)
+        return {key: _converted(system, _quantity_of(key), part) for key, part in value.items()}
+    return _converted(system, name, value) if has_unit(name) else value
 
 
-def _measure(key: Any) -> str:
+def _quantity_of(measure: Any) -> str:
     """The name whose unit the limits of a measure are in: of a peak, the quantity."""
-    return str(key[-1]) if isinstance(key, (tuple, list)) else str(key)
+    return str(measure[-1]) if isinstance(measure, (tuple, list)) else str(measure)
 
 
-def converted(system: UnitSystem, name: str, value: Any) -> Any:
-    """A number, array or pair of a named quantity in SI units."""
-    if value is None or isinstance(value, bool) or hasattr(value, "magnitude"):
+def _converted(system: UnitSystem, name: str, value: Any) -> Any:
+    """A number, array or pair of a named quantity in SI units; of a text that is no number with its unit."""
+    conversion = system.find(name)
+    if value is None or conversion is None:
         return value
     if isinstance(value, str):
-        return _with_unit(system, name, value)
+        first, *tolerance = PLUS_MINUS.split(value)
+        return " +- ".join([str(with_unit_of(f"1 {conversion.unit}", first)), *tolerance])
     if isinstance(value, (tuple, list)):
-        parts = [converted(system, name, part) for part in value]
+        parts = [_converted(system, name, part) for part in value]
         return type(value)(*parts) if hasattr(value, "_fields") else type(value)(parts)
-    if getattr(getattr(value, "dtype", None), "kind", "") in "OUT" and hasattr(value, "tolist"):
-        # a Series keeps its index: of texts it is refused by its reader, which names the input
-        return value if hasattr(value, "iloc") else converted(system, name, value.tolist())
     if callable(value):
         return settled(name, value, system)
     if hasattr(value, "ppf"):
         with IMPORTS:
             from ..design.tolerance.uncertain import DistributionInSI
 
-        return DistributionInSI(value, system.of(name))
-    if "units" in getattr(value, "attrs", {}):
-        return value
-    plain = isinstance(value, (int, float)) or hasattr(value, "dtype")
-    conversion = system.find(name) if plain else None
-    if conversion is not None and hasattr(value, "dims"):
-        with IMPORTS:
-            import xarray
-
-        return xarray.apply_ufunc(conversion.to_si, value, dask="parallelized", output_dtypes=[float])
-    if conversion is not None and hasattr(value, "iloc"):  # a pandas Series keeps its index
-        return type(value)(conversion.to_si(value.to_numpy()), index=value.index, name=value.name)
-    return value if conversion is None else conversion.to_si(value)
-
-
-def _with_unit(system: UnitSystem, name: str, text: str) -> str:
-    """A text, of which a number without a unit is in the machine's, as if it were no text."""
-    conversion = system.find(name)
-    if conversion is None:
-        return text
-    value, *tolerance = PLUS_MINUS.split(text)
-    return " +- ".join([str(with_unit_of(f"1 {conversion.unit}", value)), *tolerance])
+        return DistributionInSI(value, conversion)
+    return read.in_si(Input(name, si_unit(name), ""), value, system)

@@ -3,9 +3,10 @@
 from collections.abc import Mapping
 from typing import Any
 
-from ..evaluation.arrays import as_array
 from ..evaluation.in_units import Shown
+from ..mechanism.inputs import INPUTS
 from ..mechanism.quantity_units import unit_of
+from ..mechanism.read import in_si
 from ..mechanism.spoken import speaking
 
 
@@ -54,21 +55,15 @@ class FunctionInUnits:
 
     def _value(self, found: Any, name: str) -> Any:
         """Convert a value from SI units; labels and chunks stay."""
-        return (
-            found / float(self._show.system.of(name).si)
-            if _is_labelled(found)
-            else self._show.entry(found, unit_of(name))
-        )
+        if not _is_labelled(found):
+            return self._show.entry(found, unit_of(name))
+        conversion = self._show.system.of(name)
+        result = found / float(conversion.si)
+        return result.assign_attrs(units=conversion.unit) if hasattr(result, "dims") else result
 
     def _argument(self, name: str, value: Any) -> Any:
         """An argument in SI units; texts and pint quantities say their units themselves."""
-        if _is_labelled(value):
-            return value * float(self._show.system.of(name).si)
-        if isinstance(value, (str, list)) or hasattr(value, "magnitude"):
-            own = hasattr(value, "magnitude") or any(isinstance(part, str) for part in (value, *value))
-            array = as_array(name, value, (name,), (name,))
-            return array if own else self._show.system.of(name).to_si(array)
-        return self._show.system.of(name).to_si(value)
+        return in_si(INPUTS[name], value, self._show.system)
 
     def __repr__(self) -> str:
         return f"{self.si!r} in {self._show.system!r}"

@@ -104,7 +104,7 @@ def _number(name: str, value: Any, whole: Any) -> Fraction:
     """The number as it is written."""
     if isinstance(value, str):
         return exact(name, value, INPUTS[name].unit)
-    number = in_si(name, value) if hasattr(value, "magnitude") else value
+    number = in_si(INPUTS[name], value) if hasattr(value, "magnitude") else value
     try:
         return Fraction(repr(float(number)))
     except (TypeError, ValueError, OverflowError):

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..evaluation.arrays import array_of
 from ..evaluation.labels import attributes, labelled, with_loads
 from ..loads.resolve import split
 from ..mechanism.inputs import INPUTS
+from ..mechanism.read import read_array
 from .from_motion import dataset_of_motion, is_motion
 
 if TYPE_CHECKING:
@@ -61,4 +61,4 @@ def as_dataset(found: Any, over: str, inputs: Mapping[str, Any]) -> "xr.Dataset"
 def _numbers(name: str, value: Any) -> Any:
     if name not in INPUTS:
         raise TypeError(f"no input {name!r}; there are {', '.join(INPUTS)}")
-    return array_of(INPUTS[name], value)
+    return read_array(INPUTS[name], value)

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation.arrays import array_of
 from ..mechanism.inputs import INPUTS
 from ..mechanism.names import parts
+from ..mechanism.read import read_array
 from ..support.forks import IMPORTS
 
 if TYPE_CHECKING:
@@ -119,7 +119,7 @@ def shown(array: "xr.DataArray") -> NDArray[np.float64]:
 
 def input_in_si(array: "xr.DataArray") -> NDArray[np.float64]:
     """The values of a labelled input in its SI unit, whatever it is labelled in."""
-    return array_of(INPUTS[str(array.name)], array)
+    return read_array(INPUTS[str(array.name)], array)
 
 
 def worth_showing(curves: Sequence[NDArray[np.float64]]) -> tuple[float, float] | None:

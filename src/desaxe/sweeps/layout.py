@@ -7,6 +7,7 @@ from math import prod
 from typing import Any, NamedTuple
 
 from ..evaluation.chunks import chunk_lengths, uniform
+from ..mechanism.read import is_numpy_number
 from ..support.shown import shown
 
 DEFAULT_MEMORY = 256_000_000  # bytes of the chunks in flight
@@ -83,13 +84,13 @@ def bytes_of(memory: Any) -> int | None:
     if memory is None:
         return None
     if isinstance(memory, str):
-        found = re.fullmatch(r"\s*([0-9.]+(?:[eE][0-9]+)?)\s*([A-Za-z]*)\s*", memory)
+        found = re.fullmatch(r"\s*((?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][0-9]{1,2})?)\s*([A-Za-z]*)\s*", memory)
         unit = found and next((u for u in UNITS if u.lower() == found[2].lower()), None)
-        if found is None or unit is None or found[1].count(".") > 1:
-            raise ValueError(f'memory = {memory!r}: a number of bytes, or text such as "200 MB"')
+        if found is None or unit is None:
+            raise ValueError(f'memory = {shown(memory)}: a number of bytes, or text such as "200 MB"')
         number = float(found[1]) * UNITS[unit]
-    elif isinstance(memory, bool) or not isinstance(memory, (int, float)):
-        raise TypeError(f'memory = {memory!r}: a number of bytes, or text such as "200 MB"')
+    elif isinstance(memory, bool) or not (isinstance(memory, (int, float)) or is_numpy_number(memory)):
+        raise TypeError(f'memory = {shown(memory)}: a number of bytes, or text such as "200 MB"')
     else:
         number = float(max(min(memory, 2**63), -1))
     if not 1.0 <= number < 2.0**63:

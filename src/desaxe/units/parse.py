@@ -14,6 +14,7 @@ from typing import Any
 from ..support.forks import IMPORTS
 from ..support.shown import printed, shown
 from .dimensions import ANGULAR_SPEED, NONE, PER_TIME, Unit
+from .scaling import by_digits
 from .table import UNITS, ScaledUnit, did_you_mean_unit
 from .text import plain_number, split_quantity, terms_of
 
@@ -144,7 +145,7 @@ def in_unit(name: str, value: Any, si: str) -> Any:
     if isinstance(magnitude, (int, float, Decimal, Fraction)) and isfinite(magnitude):
         written = repr(float(magnitude)) if isinstance(magnitude, float) else magnitude
         return rounded(name, str(value), Fraction(written) * factor)  # as the same text
-    return magnitude / float(1 / factor) if factor.numerator == 1 else magnitude * float(factor)
+    return magnitude * float(factor) if hasattr(magnitude, "dask") else by_digits(magnitude, factor)
 
 
 def _of_text(name: str, text: str, si: str) -> float:

@@ -2,14 +2,12 @@
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from decimal import Decimal, localcontext
 from fractions import Fraction
-from math import isfinite
 from typing import Any, NamedTuple
 
-from ..support.forks import IMPORTS
 from ..support.shown import shown
 from .parse import factor_to_si, is_in_table, parse_unit
+from .scaling import by_digits, scaled
 from .table import did_you_mean_unit
 from .text import quotient, spelled
 
@@ -41,11 +39,11 @@ class Conversion(NamedTuple):
 
     def shown(self, value: Any) -> Any:
         """A number or array in SI units, in the unit shown."""
-        return value if self.si == 1 else _scaled(value, self.si.denominator, self.si.numerator)
+        return value if self.si == 1 else scaled(value, 1 / self.si)
 
     def to_si(self, value: Any) -> Any:
-        """A number or array in the unit shown, in SI units: the double nearest to it."""
-        return value if self.si == 1 else _scaled(value, self.si.numerator, self.si.denominator)
+        """A number or array in the unit shown, in SI units: the double nearest to its digits."""
+        return value if self.si == 1 else by_digits(value, self.si)
 
     def per(self, others: "list[Conversion]") -> "Conversion":
         """The conversion of a derivative."""
@@ -136,23 +134,3 @@ def _dimension_of(unit: str) -> str:
 def _meant(unit: str, dimensions: Iterable[str]) -> str:
     """The question for the unit of these dimensions, by their SI units, whose letters it has; else empty."""
     return "".join(dict.fromkeys(did_you_mean_unit(unit, si) for si in dimensions))
-
-
-def _scaled(value: Any, above: int, below: int) -> Any:
-    """A number times above/below, rounded once; an array in extended precision where supported."""
-    if isinstance(value, (int, float)):
-        if not isfinite(value):
-            return float(value)
-        own, under = value.as_integer_ratio()
-        return own * above / (under * below)
-    with IMPORTS:
-        import numpy as np
-
-    wide = np.asarray(value, dtype=np.longdouble)
-    if above == 1:
-        scaled = wide / np.longdouble(str(below))
-    else:
-        with localcontext(prec=30):
-            scaled = wide * np.longdouble(str(Decimal(above) / Decimal(below)))
-    result = np.asarray(scaled, dtype=np.float64)
-    return result if result.ndim else float(result)

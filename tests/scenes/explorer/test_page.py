@@ -5,6 +5,7 @@ import math
 import pytest
 
 import desaxe as dx
+from desaxe.mechanism.inputs import INPUTS
 from desaxe.mechanism.read import in_si
 from tests.scenes.explorer.page import MINUS, design, reading, settle, verdict
 
@@ -124,7 +125,7 @@ def test_typing_what_is_there_changes_nothing(visit, several_designs, folder):
 )  # fmt: skip
 def test_a_field_means_what_python_means(unit, text, si, standing):
     name = {"m": "ec", "rad/s": "omega0", "kg*m^2": "I_rod"}[unit]
-    wanted = 80.6e-6 if name == "I_rod" else in_si(name, si)
+    wanted = 80.6e-6 if name == "I_rod" else in_si(INPUTS[name], si)
     assert standing.evaluate("([u, t]) => desaxe.toSI(u, t)", [unit, text]) == wanted
 
 

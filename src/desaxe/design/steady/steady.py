@@ -6,12 +6,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...evaluation.arrays import array_of, as_array, broadcast_shape
+from ...evaluation.arrays import as_array, broadcast_shape
 from ...evaluation.under_loads.loaded import loads_of
 from ...loads.angles import turns_of
 from ...mechanism.inputs import INPUTS, Input
 from ...mechanism.keywords import check_inputs, with_known_keywords
 from ...mechanism.names import LENGTHS
+from ...mechanism.read import read_array
 from ...mechanism.slips import warn_of_slips
 from ...mechanism.spoken import UNITS, named
 from ...runtime.interpreted import are_good
@@ -94,7 +95,7 @@ def steady(
 
 def _row(row: Input, value: Any) -> Array:
     """A number or an array of them within the limit of a row."""
-    array = array_of(row, value)
+    array = read_array(row, value)
     with np.errstate(invalid="ignore"):
         wrong = ~np.isfinite(array) | (array < (row.least or 0.0))
     if wrong.any():
@@ -133,7 +134,7 @@ def _designs(
             "a flywheel that stays is a part of I_crank"
         )
     if fluctuation is not None:
-        extra["fluctuation"] = array_of(FLUCTUATION, fluctuation)
+        extra["fluctuation"] = read_array(FLUCTUATION, fluctuation)
     if speed is not None and source.way is None:
         extra["omega0"] = speed
     shape = broadcast_shape({**arrays, **motor, **extra})

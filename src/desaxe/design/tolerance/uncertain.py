@@ -115,7 +115,7 @@ def _with_tolerance(name: str, value: PlusMinus) -> tuple[float, float]:
     if isinstance(second, str) and second.strip().endswith("%"):
         return nominal, _percent(name, second) * abs(nominal)
     if isinstance(second, str) or hasattr(second, "magnitude"):
-        return nominal, float(in_si(name, second))
+        return nominal, float(in_si(INPUTS[name], second))
     try:
         return nominal, float(second)
     except (TypeError, ValueError):

@@ -13,9 +13,13 @@ from typing import Any, NamedTuple
 
 from ...compiler.languages.numba.reductions import KINDS
 from ...mechanism.catalogue import of_design
+from ...mechanism.inputs import INPUTS
+from ...mechanism.quantity_units import UnitSystem
+from ...mechanism.read import is_numpy_number
 from ...mechanism.spelling import did_you_mean
 from ...runtime.request import as_number
 from ...support.shown import shown
+from ...units.text import with_unit_of
 from .kinds import ALLOWED, EXTREMES, kind_of
 from .own_measure import OwnMeasure
 
@@ -162,6 +166,30 @@ def reductions_of(asked: Any, dimensions: Sequence[str], names: Sequence[str]) -
     result = Reductions(tuple(found), tuple(dict.fromkeys(at)), tuple(functions))
     _check_names(result, names)
     return result
+
+
+def at_with_units(asked: Any, system: UnitSystem, axis: str = "theta") -> Any:
+    """A request, a measure or measures in which the plain place of ("at", 60, "Y") has the system's unit."""
+    if isinstance(asked, Mapping):
+        return {
+            at_with_units(key, system): at_with_units(one, system, key if key in INPUTS else axis)
+            for key, one in asked.items()
+        }
+    if type(asked) not in (tuple, list):
+        return asked
+    if not (len(asked) == 3 and asked[0] == "at"):
+        return type(asked)(at_with_units(one, system, axis) for one in asked)
+    conversion = system.of(axis)
+    if conversion.si == 1:
+        return asked
+    text = asked[1] if isinstance(asked[1], str) else _digits(asked[1])
+    return type(asked)(("at", with_unit_of(f"1 {conversion.unit}", text), asked[2]))
+
+
+def _digits(number: Any) -> Any:
+    """A number as text; anything else as it is."""
+    plain = isinstance(number, (int, float)) or is_numpy_number(number)
+    return number if isinstance(number, bool) or not plain else repr(float(number)).removesuffix(".0")
 
 
 def names_reduced(asked: Any) -> tuple[str, ...]:

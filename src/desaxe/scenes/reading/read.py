@@ -8,7 +8,13 @@ from typing import Any, cast
 
 from ...definitions.tables import read_definitions, redefine
 from ...evaluation.chunks import chunk_lengths
-from ...evaluation.reductions.argument import NO_STATUS, Reductions, names_reduced, reductions_of
+from ...evaluation.reductions.argument import (
+    NO_STATUS,
+    Reductions,
+    at_with_units,
+    names_reduced,
+    reductions_of,
+)
 from ...loads.load import Load
 from ...loads.resolve import settled
 from ...mechanism.inputs import INPUTS
@@ -104,7 +110,7 @@ def _content(
     return Content(
         file.title, outputs, _accuracy(file.accuracy), branch, inputs,
         tuple(checks), tuple(peaks), tuple(pictures), file.results.data,
-        _reduction(file, outputs, inputs), file.threads, units, *_storage(file, outputs, inputs), own,
+        _reduction(file, outputs, inputs, units), file.threads, units, *_storage(file, outputs, inputs), own,
         file.results.order, motor,
     )  # fmt: skip
 
@@ -169,7 +175,7 @@ def _accuracy(written: str | float) -> str:
 
 
 def _reduction(
-    file: schema.SceneFile, outputs: tuple[str, ...], inputs: Mapping[str, Value]
+    file: schema.SceneFile, outputs: tuple[str, ...], inputs: Mapping[str, Value], units: UnitSystem
 ) -> Reductions | None:
     """The reduction that a scene asks for instead of the grid."""
     if not file.reduce:
@@ -180,7 +186,7 @@ def _reduction(
         raise SceneError(f'outputs #{outputs.index("status") + 1} = "status": with [reduce] {NO_STATUS}')
     axes = [name for name, value in inputs.items() if isinstance(value, tuple)]
     try:
-        found = reductions_of(file.reduce, axes, outputs)
+        found = reductions_of(at_with_units(file.reduce, units), axes, outputs)
         absent = [name for name in names_reduced(file.reduce) if name not in outputs]
     except (ValueError, TypeError) as error:
         raise SceneError(str(error)) from None
